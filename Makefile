@@ -1,0 +1,34 @@
+# make study   the main study on the letter's scene
+# make test    all tests
+# make lint    style and types
+# make clean   caches and build products; results/ and .venv/ stay
+
+PYTHON ?= python3
+BIN := .venv/bin
+READY := .venv/.ready
+ONE_THREAD := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
+
+.PHONY: study test lint clean
+
+study: $(READY)
+	$(BIN)/python -m studies
+
+# `python -m pytest` puts this folder first on the path, so that what is tested is what lies here.
+test: $(READY)
+	$(ONE_THREAD) $(BIN)/python -m pytest -n 2
+
+lint: $(READY)
+	$(BIN)/python -m ruff check beam contact studies tests
+	$(BIN)/python -m mypy -p beam -p contact -p studies
+
+$(READY): pyproject.toml constraints.txt
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+		{ echo "grazing-spring needs Python 3.11 or later: name one with make PYTHON=/path/to/python3" >&2; exit 1; }
+	@echo "installing into .venv (a few minutes the first time)"
+	@$(PYTHON) -m venv .venv
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[test]'
+	@touch $@
+
+clean:
+	rm -rf build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find beam contact studies tests -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,0 +1,166 @@
+"""Plane curves made of straight pieces and circular arcs.
+
+A centreline lies in the x-y plane and is walked by arc length s [m]. With theta(s) the angle of its tangent
+to the x axis and k(s) = theta'(s) its curvature [1/m], positive where it turns left,
+
+    t = (cos theta, sin theta, 0),   n = (-sin theta, cos theta, 0),   t x n = (0, 0, 1),
+    r' = t,   t' = k n,   n' = -k t.
+
+Each piece has constant curvature; pieces join with a common tangent, so k may jump but t may not. The strip's
+width lies along z, and all motion is in the plane.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .material import require_number
+
+
+@dataclass(frozen=True, kw_only=True)
+class Straight:
+    """A straight piece.
+
+    Parameters
+    ----------
+    length : float
+        [m], positive.
+    """
+
+    length: float
+    curvature: float = field(default=0.0, init=False)
+
+    def __post_init__(self) -> None:
+        require_number("length", self.length, "m", positive=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Arc:
+    """A circular arc.
+
+    Parameters
+    ----------
+    radius : float
+        [m], positive.
+    angle : float
+        Turn of the tangent [rad], positive to the left, negative to the right, not zero.
+    """
+
+    radius: float
+    angle: float
+
+    def __post_init__(self) -> None:
+        require_number("radius", self.radius, "m", positive=True)
+        if not (math.isfinite(self.angle) and self.angle != 0.0):
+            raise ValueError(f"angle is {self.angle} rad; it must be finite and not zero.")
+
+    @property
+    def length(self) -> float:
+        """Arc length [m]."""
+        return self.radius * abs(self.angle)
+
+    @property
+    def curvature(self) -> float:
+        """Signed curvature [1/m]."""
+        return math.copysign(1.0 / self.radius, self.angle)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Centreline:
+    """Pieces joined end to end with a common tangent.
+
+    Parameters
+    ----------
+    pieces : sequence of Straight and Arc
+        At least one.
+    start : tuple of two floats
+        Where s = 0 lies, (x, y) [m].
+    heading : float
+        Angle of the tangent to the x axis at s = 0 [rad].
+    """
+
+    pieces: tuple[Straight | Arc, ...]
+    start: tuple[float, float] = (0.0, 0.0)
+    heading: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "pieces", tuple(self.pieces))
+        if not self.pieces:
+            raise ValueError("pieces is empty [no unit]; a centreline needs at least one Straight or Arc.")
+        if len(self.start) != 2 or not all(math.isfinite(value) for value in (*self.start, self.heading)):
+            raise ValueError(f"start is {self.start} m and heading {self.heading} rad; all must be finite.")
+
+    @property
+    def joints(self) -> NDArray[np.float64]:
+        """Arc lengths of the ends of the pieces [m], shape (n_pieces + 1,), from 0 to `length`."""
+        return np.concatenate(([0.0], np.cumsum([piece.length for piece in self.pieces])))
+
+    @property
+    def length(self) -> float:
+        """Total arc length [m]."""
+        return float(self.joints[-1])
+
+    @property
+    def curvatures(self) -> NDArray[np.float64]:
+        """Signed curvature of each piece [1/m], shape (n_pieces,)."""
+        return np.array([piece.curvature for piece in self.pieces])
+
+    @property
+    def is_straight(self) -> bool:
+        """Whether no piece is curved."""
+        return not np.any(self.curvatures)
+
+    def piece_at(self, s: ArrayLike) -> NDArray[np.intp]:
+        """Index of the piece that holds each arc length; at a joint, the piece that starts there.
+
+        Raises
+        ------
+        ValueError
+            For an arc length off the curve (by more than rounding).
+        """
+        s = np.asarray(s, dtype=np.float64)
+        outside = (s < -1e-12 * self.length) | (s > (1.0 + 1e-12) * self.length) | ~np.isfinite(s)
+        if np.any(outside):
+            raise ValueError(f"s is {s[outside].flat[0]} m; it must lie between 0 and {self.length} m.")
+        inside = np.searchsorted(self.joints, s, side="right") - 1
+        return np.clip(inside, 0, len(self.pieces) - 1)
+
+    def angle(self, s: ArrayLike) -> NDArray[np.float64]:
+        """Angle of the tangent to the x axis [rad], same shape as s."""
+        s = np.asarray(s, dtype=np.float64)
+        at = self.piece_at(s)
+        turns = self.heading + np.concatenate(([0.0], np.cumsum(self.curvatures * np.diff(self.joints))))
+        return turns[at] + self.curvatures[at] * (s - self.joints[at])
+
+    def frame(self, s: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Tangents and normals, each of shape (..., 3)."""
+        theta = self.angle(s)
+        cos, sin, zero = np.cos(theta), np.sin(theta), np.zeros_like(theta)
+        return np.stack([cos, sin, zero], axis=-1), np.stack([-sin, cos, zero], axis=-1)
+
+    def points(self, s: ArrayLike) -> NDArray[np.float64]:
+        """Points in space [m], shape (..., 3).
+
+        The chord over d = s - s_i of a piece of curvature k has the direction of the tangent at its middle:
+        r = r_i + d sinc(k d / 2) t(s_i + d / 2).
+        """
+        s = np.asarray(s, dtype=np.float64)
+        at, ends = self.piece_at(s), self.joints
+        chords = _chord(np.diff(ends), self.curvatures, self.angle(ends[:-1]))
+        corners = np.array([*self.start, 0.0]) + np.concatenate((np.zeros((1, 3)), np.cumsum(chords, axis=0)))
+        return corners[at] + _chord(s - ends[at], self.curvatures[at], self.angle(ends[:-1])[at])
+
+
+def _chord(
+    d: NDArray[np.float64], curvature: NDArray[np.float64], heading: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Vector across an arc of length d that starts at angle `heading` [m], shape (..., 3)."""
+    half = 0.5 * curvature * d
+    along = heading + half
+    return (d * np.sinc(half / np.pi))[..., None] * np.stack(
+        [np.cos(along), np.sin(along), 0.0 * along], axis=-1
+    )

@@ -1,0 +1,207 @@
+"""Natural modes of a discretized leaf spring.
+
+K x = omega^2 M x with x^T M x = 1, lowest frequency first, is solved in the shifted and inverted form
+
+    M x = mu (K + sigma M) x,   omega^2 = 1/mu - sigma,   sigma = min over pieces of EI / (m S^4) [1/s^2],
+
+S the length of the strip. K + sigma M is positive definite even when the supports leave a rigid motion, and
+the low modes, the ones that matter, are the large mu, so they come out with the smallest errors. (K itself
+spans from the bending of the whole strip to the stretching of one element: twelve decades in omega^2.)
+
+With e the drive direction and b the load of a unit base acceleration,
+
+    phi_k = tip displacement of x_k along e [kg^(-1/2)],     Gamma_k = b^T x_k [kg^(1/2)].
+
+A mode with phi = Gamma = 0 is uncoupled: neither the drive nor the stop can excite it. For the folded U
+driven sideways these are the breathing modes: the legs move against each other, and the ball not sideways.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import eigh
+from scipy.sparse import block_diag
+from scipy.sparse.linalg import eigsh
+
+from .assembly import Discretization
+
+#: phi sqrt(m_total) and Gamma/sqrt(m_total) below this count as zero: far above rounding in symmetric springs
+#: (about 1e-9), far below any coupling that matters to a motion.
+COUPLING_TOLERANCE = 1e-6
+#: Up to this many degrees of freedom LAPACK solves the full problem in a fraction of a second.
+DENSE_LIMIT = 900
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ShapesAlong:
+    """Mode shapes as vectors along the centreline.
+
+    Parameters
+    ----------
+    s : ndarray, shape (n_points,)
+        Arc length [m], increasing from 0.
+    points, tangent, normal : ndarray, shape (n_points, 3)
+        Reference points [m] and local frame; the third direction of the frame is z, along the width.
+    displacement : ndarray, shape (n_modes, n_points, 3)
+        Relative to the base [kg^(-1/2)]: times a modal coordinate it is in metres.
+    rotation : ndarray, shape (n_modes, n_points)
+        About z [kg^(-1/2) m^(-1)]: times a modal coordinate it is in radians.
+    """
+
+    s: NDArray[np.float64]
+    points: NDArray[np.float64]
+    tangent: NDArray[np.float64]
+    normal: NDArray[np.float64]
+    displacement: NDArray[np.float64]
+    rotation: NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Modes:
+    """Mass-normalised modes, lowest first.
+
+    The sign of each is fixed: phi >= 0, or Gamma >= 0 where phi is zero; an uncoupled mode first moves
+    towards the positive normal.
+
+    Parameters
+    ----------
+    discretization : Discretization
+    omega : ndarray, shape (n_modes,)
+        Angular frequencies [rad/s]; exactly 0 for rigid motions.
+    shapes : ndarray, shape (n_dofs, n_modes)
+        Columns x_k.
+    phi, participation : ndarray, shape (n_modes,)
+        [kg^(-1/2)], [kg^(1/2)]; exactly 0 in uncoupled modes.
+    coupled : ndarray of bool, shape (n_modes,)
+    readouts : dict of str to ndarray, shape (n_modes,)
+        Values at the read-outs [kg^(-1/2), rotations kg^(-1/2) m^(-1)].
+    """
+
+    discretization: Discretization
+    omega: NDArray[np.float64]
+    shapes: NDArray[np.float64]
+    phi: NDArray[np.float64]
+    participation: NDArray[np.float64]
+    coupled: NDArray[np.bool_]
+    readouts: dict[str, NDArray[np.float64]]
+
+    @property
+    def frequencies_hz(self) -> NDArray[np.float64]:
+        """Natural frequencies [Hz], shape (n_modes,)."""
+        return self.omega / (2.0 * np.pi)
+
+    def loss_factors(self) -> NDArray[np.float64]:
+        """Modal loss factors from strain energies [1], shape (n_modes,); 0 for rigid motions.
+
+        The loss factors of the sections, weighted by their shares of the strain energy of mode k (C. D.
+        Johnson and D. A. Kienholz, AIAA J. 20 (1982) 1284).
+        """
+        x, stiffness, loss = self.shapes, self.discretization.stiffness, self.discretization.loss_stiffness
+        stored = np.einsum("ik,ik->k", x, stiffness @ x)
+        lost = np.einsum("ik,ik->k", x, loss @ x)
+        return np.divide(lost, stored, out=np.zeros_like(lost), where=self.omega > 0.0)
+
+    def displacement_along(self, points_per_element: int = 4) -> ShapesAlong:
+        """Return the shapes along the centreline, `points_per_element` equal steps to an element."""
+        if points_per_element < 1:
+            raise ValueError(f"points_per_element is {points_per_element} [1]; it must be at least 1.")
+        s, (u, w, rotation) = _along(self.discretization, self.shapes, points_per_element)
+        line = self.discretization.spring.centreline
+        t, n = line.frame(s)
+        return ShapesAlong(
+            s=s,
+            points=line.points(s),
+            tangent=t,
+            normal=n,
+            displacement=u[..., None] * t + w[..., None] * n,
+            rotation=rotation,
+        )
+
+
+def natural_modes(discretization: Discretization, count: int) -> Modes:
+    """Return the `count` lowest modes.
+
+    Parameters
+    ----------
+    discretization : Discretization
+    count : int
+        From 1 to the number of degrees of freedom; trust the modes with four or more elements to a half wave.
+
+    Returns
+    -------
+    Modes
+
+    Raises
+    ------
+    ValueError
+        For a count out of range.
+    """
+    size = discretization.n_dofs
+    if not 1 <= count <= size:
+        raise ValueError(f"count is {count} modes; it must lie between 1 and the {size} degrees of freedom.")
+    spring = discretization.spring
+    shift = (
+        min(sec.bending_stiffness / sec.mass_per_length for sec in spring.sections)
+        / spring.centreline.length**4
+    )
+    inverse, shapes = _largest(discretization, shift, count)
+    omega = np.sqrt(np.maximum(1.0 / inverse - shift, 0.0))
+    omega[: spring.rigid_motions] = 0.0
+    shapes = shapes / np.sqrt(np.einsum("ik,ik->k", shapes, discretization.mass @ shapes))
+    total = np.sqrt(spring.strip_mass + spring.tip.mass)
+    phi, participation = discretization.tip @ shapes, discretization.base_load @ shapes
+    moves, driven = (
+        np.abs(phi) * total > COUPLING_TOLERANCE,
+        np.abs(participation) / total > COUPLING_TOLERANCE,
+    )
+    telling = np.where(moves, phi, np.where(driven, participation, _first_swing(discretization, shapes)))
+    sign = np.where(telling < 0.0, -1.0, 1.0)
+    coupled = moves | driven
+    shapes = shapes * sign
+    return Modes(
+        discretization=discretization,
+        omega=omega,
+        shapes=shapes,
+        phi=np.where(moves, phi * sign, 0.0),
+        participation=np.where(driven, participation * sign, 0.0),
+        coupled=coupled,
+        readouts={name: row @ shapes for name, row in discretization.readouts.items()},
+    )
+
+
+def _largest(
+    discretization: Discretization, shift: float, count: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The `count` largest mu, in falling order, and their vectors (n_dofs, count)."""
+    size, mass = discretization.n_dofs, discretization.mass
+    if size <= DENSE_LIMIT or 2 * count > size:
+        shifted = (discretization.stiffness + shift * mass).toarray()
+        mu, x = eigh(mass.toarray(), shifted, subset_by_index=[size - count, size - 1])
+        return mu[::-1], x[:, ::-1]
+    start = np.cos(np.arange(size))  # fixed, so that results repeat, and orthogonal to no mode
+    values, x = eigsh(discretization.stiffness.tocsc(), count, M=mass.tocsc(), sigma=-shift, v0=start)
+    order = np.argsort(values)
+    return 1.0 / (values[order] + shift), x[:, order]
+
+
+def _along(
+    discretization: Discretization, shapes: NDArray[np.float64], points_per_element: int
+) -> tuple[NDArray[np.float64], list[NDArray[np.float64]]]:
+    """Arc lengths (n_points,) and u, w, rotation of the shapes there, each (n_modes, n_points)."""
+    local = np.linspace(0.0, 1.0, points_per_element + 1)
+    places, matrices = zip(*(piece.sampling(local) for piece in discretization.pieces), strict=True)
+    s, unknowns = np.concatenate(places), discretization.ties @ shapes
+    kept = np.arange(s.size) % local.size < points_per_element  # an element's end is the next one's start
+    kept[-1] = True
+    fields = [(block_diag(part, format="csr") @ unknowns)[kept].T for part in zip(*matrices, strict=True)]
+    return np.clip(s[kept], 0.0, discretization.spring.centreline.length), fields
+
+
+def _first_swing(discretization: Discretization, shapes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Displacement across the strip where, walking from s = 0, it first exceeds half its largest size."""
+    _, (_, w, _) = _along(discretization, shapes, 2)
+    first = np.argmax(np.abs(w) > 0.5 * np.abs(w).max(axis=1, keepdims=True), axis=1)
+    return w[np.arange(first.size), first]

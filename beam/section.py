@@ -1,0 +1,160 @@
+"""Cross-section of a sheet strip, bare or with glued layers.
+
+Plies i of width b, thickness t_i, moduli E_i and G_i, density rho_i and loss factor eta_i are stacked along
+the normal coordinate y [m] and bonded, so that plane sections stay plane. With y_i the middle of a ply and
+
+    ybar = sum E_i t_i y_i / sum E_i t_i                          (neutral axis [m])
+
+stretching and bending about the neutral axis do not couple, and
+
+    EA = b sum E_i t_i                                            [N]
+    EI = b sum E_i (t_i^3/12 + t_i (y_i - ybar)^2)                [N m^2]
+    m  = b sum rho_i t_i                                          [kg/m]
+    GJ = 4 b kappa sum G_i (t_i^3/12 + t_i (y_i - yhat)^2)        [N m^2],   yhat as ybar with G_i for E_i
+
+GJ is that of a thin laminate; kappa = 1 - (192 t / pi^5 b) sum_{n odd} tanh(n pi b / 2t)/n^5 is
+Saint-Venant's factor for the two edges, exact for one ply (S. P. Timoshenko and J. N. Goodier, Theory of
+Elasticity, art. 109).
+
+The loss factor of the section is the mean of the plies', weighted by the energy that each stores (modal
+strain energy; in bending this is the free-layer formula of H. Oberst, Akust. Beihefte 4 (1952) 181):
+
+    eta_bending = b sum eta_i E_i (t_i^3/12 + t_i (y_i - ybar)^2) / EI,
+    eta_axial   = b sum eta_i E_i t_i / EA.
+
+E, not E/(1 - nu^2): the strip is free to curl across its width, which holds while its radius of curvature
+exceeds about b^2/t.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .material import Material, require_number
+
+#: Terms of Saint-Venant's series; the remainder is below 1/(4 * 59^4) = 2e-8 of kappa.
+TORSION_TERMS = 30
+
+
+@dataclass(frozen=True, kw_only=True)
+class Layer:
+    """A damping layer glued to a strip over its whole width.
+
+    Parameters
+    ----------
+    material : Material
+    thickness : float
+        Of one layer [m], positive.
+    both_sides : bool
+        One such layer on each face if true (the neutral axis then stays in the middle), on one face if false.
+    """
+
+    material: Material
+    thickness: float
+    both_sides: bool = True
+
+    def __post_init__(self) -> None:
+        require_number("thickness", self.thickness, "m", positive=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class StripSection:
+    """A flat strip that bends about its width.
+
+    Parameters
+    ----------
+    material : Material
+    width : float
+        b [m], positive.
+    thickness : float
+        Of the bare strip [m], positive and at most the width.
+    layer : Layer, optional
+        A glued damping layer.
+
+    Raises
+    ------
+    ValueError
+        For a width or thickness out of range.
+    """
+
+    material: Material
+    width: float
+    thickness: float
+    layer: Layer | None = None
+
+    def __post_init__(self) -> None:
+        require_number("width", self.width, "m", positive=True)
+        require_number("thickness", self.thickness, "m", positive=True)
+        if self.thickness > self.width:
+            raise ValueError(f"thickness is {self.thickness} m; it must not exceed the width {self.width} m.")
+
+    @property
+    def total_thickness(self) -> float:
+        """Strip and layers [m]."""
+        return float(self._plies()[1].sum())
+
+    @property
+    def axial_stiffness(self) -> float:
+        """EA [N]."""
+        return float(self._energies()[0].sum())
+
+    @property
+    def bending_stiffness(self) -> float:
+        """EI about the neutral axis [N m^2]."""
+        return float(self._energies()[1].sum())
+
+    @property
+    def torsional_stiffness(self) -> float:
+        """GJ [N m^2]."""
+        plies, t, y = self._plies()
+        shear = np.array([ply.shear_modulus for ply in plies])
+        slender = self.width / t.sum()
+        n = np.arange(1, 2 * TORSION_TERMS, 2)
+        edges = 1.0 - 192.0 / (np.pi**5 * slender) * np.sum(np.tanh(0.5 * n * np.pi * slender) / n**5)
+        return float(4.0 * self.width * edges * _second_moments(shear, t, y).sum())
+
+    @property
+    def mass_per_length(self) -> float:
+        """m [kg/m]."""
+        plies, t, _ = self._plies()
+        return float(self.width * sum(ply.density * ti for ply, ti in zip(plies, t, strict=True)))
+
+    @property
+    def axial_loss_factor(self) -> float:
+        """Loss factor of stretching [1]."""
+        return self._loss(self._energies()[0])
+
+    @property
+    def bending_loss_factor(self) -> float:
+        """Loss factor of bending [1]."""
+        return self._loss(self._energies()[1])
+
+    def _plies(self) -> tuple[tuple[Material, ...], NDArray[np.float64], NDArray[np.float64]]:
+        """Materials, thicknesses [m] and mid-heights [m] of the plies, from the lower face up."""
+        stack = [(self.material, self.thickness)]
+        if self.layer is not None:
+            glued = (self.layer.material, self.layer.thickness)
+            stack = [glued, *stack, glued] if self.layer.both_sides else [*stack, glued]
+        t = np.array([thickness for _, thickness in stack])
+        return tuple(material for material, _ in stack), t, np.cumsum(t) - 0.5 * t
+
+    def _energies(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """What each ply adds to EA [N] and to EI [N m^2]."""
+        plies, t, y = self._plies()
+        modulus = np.array([ply.youngs_modulus for ply in plies])
+        return self.width * modulus * t, self.width * _second_moments(modulus, t, y)
+
+    def _loss(self, energies: NDArray[np.float64]) -> float:
+        eta = np.array([ply.loss_factor for ply in self._plies()[0]])
+        return float(eta @ energies / energies.sum())
+
+
+def _second_moments(
+    modulus: NDArray[np.float64], t: NDArray[np.float64], y: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Modulus-weighted second moment per width of each ply about the weighted mean height [N m]."""
+    neutral = (modulus * t) @ y / (modulus @ t)
+    return modulus * (t**3 / 12.0 + t * (y - neutral) ** 2)

@@ -1,0 +1,1 @@
+"""Impacts (being written)."""

@@ -1,0 +1,64 @@
+"""Compiled kernels and where their machine code is kept.
+
+Every numerical kernel of the package is a pure function of numbers and arrays, compiled by numba without
+fast-math (so that results are the same bit for bit on one type of machine) and without the interpreter lock
+(so that threads share the cores).
+
+The compiled code is cached between runs.  Numba's own cache looks at the one file in which a kernel stands;
+a kernel that calls kernels of other files would then be reused although its callee has changed.  The cache
+folder is therefore named after a hash of all kernel sources: change one, and everything is compiled anew.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+from numba.core import config
+
+__all__ = ["kernel"]
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def _writable(folder: Path) -> bool:
+    """Whether files can be made in `folder` (made here if need be)."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return True
+    except OSError:
+        return False
+
+
+def _cache_folder() -> str:
+    """The first writable of: beside the sources, the user's cache; an empty string if there is none."""
+    package = Path(__file__).parent
+    digest = hashlib.sha256(numba.__version__.encode())
+    for source in sorted(package.rglob("*.py")):
+        digest.update(source.read_bytes())
+    name = "kernels-" + digest.hexdigest()[:16]
+    user_cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "grazing-spring"
+    for parent in (package / "__pycache__", user_cache):
+        if _writable(parent / name):
+            return str(parent / name)
+    return ""
+
+
+_CACHE = os.environ.get("NUMBA_CACHE_DIR") or _cache_folder()
+
+
+def kernel(function: Function) -> Function:
+    """Compile `function` on first call; keep the machine code for the next run where a folder allows it."""
+    before = config.CACHE_DIR
+    config.CACHE_DIR = _CACHE
+    try:
+        compiled: Function = numba.njit(cache=bool(_CACHE), nogil=True, error_model="numpy")(function)
+    finally:
+        config.CACHE_DIR = before
+    return compiled

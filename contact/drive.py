@@ -1,0 +1,55 @@
+"""Harmonic motion of the base that carries the spring and the stop.
+
+    z(t) = Z sin(2 pi f t)
+
+with amplitude Z [m] and frequency f [Hz]; strobes at t_n = n/f (letter 1996, Fig. 2).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+__all__ = ["HarmonicDrive"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class HarmonicDrive:
+    """Base motion ``amplitude * sin(2 pi frequency t)``.
+
+    Parameters
+    ----------
+    frequency : float
+        Drive frequency, above zero [Hz].
+    amplitude : float
+        Amplitude of the base displacement, zero or more [m].
+    """
+
+    frequency: float
+    amplitude: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.frequency) and self.frequency > 0):
+            raise ValueError(f"frequency of the drive is {self.frequency} Hz; it must be finite and above zero")
+        if not (math.isfinite(self.amplitude) and self.amplitude >= 0):
+            raise ValueError(f"amplitude of the drive is {self.amplitude} m; it must be finite and zero or more")
+
+    @property
+    def angular_frequency(self) -> float:
+        """2 pi f [rad/s]."""
+        return 2.0 * math.pi * self.frequency
+
+    @property
+    def period(self) -> float:
+        """1/f [s]."""
+        return 1.0 / self.frequency
+
+    def displacement(self, time: float | np.ndarray) -> np.ndarray:
+        """Base displacement at `time` [s], same shape [m]."""
+        return self.amplitude * np.sin(self.angular_frequency * np.asarray(time, dtype=float))
+
+    def strobe_times(self, count: int) -> np.ndarray:
+        """The first `count` strobe times n/f, shape (count,) [s]."""
+        return np.arange(count) / self.frequency

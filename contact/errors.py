@@ -1,0 +1,60 @@
+"""What can go wrong in a computation of impacts, as one small family.
+
+Wrong use (a negative stiffness, a law that a method cannot handle) is a ``ValueError`` or ``TypeError`` where
+the object is made.  The classes here are for computations that were asked for rightly and could not be
+finished: they carry the place where it happened, and never a number that might be taken for a result.
+"""
+
+from __future__ import annotations
+
+__all__ = ["Chatter", "ContactError", "ContactTooStiff", "NotPeriodic", "UnresolvedCrossing"]
+
+
+class ContactError(RuntimeError):
+    """A computation of impacts that could not be finished.
+
+    Attributes
+    ----------
+    time : float
+        Time since the start of the run [s].
+    gap : float
+        Distance of the tip from the stop, positive when the tip is free [m].
+    velocity : float
+        Velocity of the tip towards the stop [m/s].
+    """
+
+    reason = "the computation could not be finished"
+
+    def __init__(self, *, time: float, gap: float, velocity: float, detail: str = "") -> None:
+        self.time, self.gap, self.velocity = time, gap, velocity
+        place = f"at t = {time:.9g} s, {gap:.3g} m from the stop, velocity {velocity:.3g} m/s"
+        super().__init__(f"{self.reason} {place}{'; ' + detail if detail else ''}")
+
+
+class UnresolvedCrossing(ContactError):
+    """A stretch of the motion could be proved neither free nor touching."""
+
+    reason = "a crossing of the stop could be neither excluded nor located"
+
+
+class Chatter(ContactError):
+    """More impacts in one drive period than the bound allows.
+
+    ``displacement`` and ``velocities`` hold the modal state where the run stopped, each (n_modes,).
+    """
+
+    reason = "impacts accumulate"
+    displacement: object = None
+    velocities: object = None
+
+
+class ContactTooStiff(ContactError):
+    """A contact needs more steps than the bound allows."""
+
+    reason = "a contact needs more integration steps than the bound allows"
+
+
+class NotPeriodic(ContactError):
+    """An orbit that was asked to be periodic is not."""
+
+    reason = "the motion did not settle on a periodic orbit"

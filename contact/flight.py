@@ -1,0 +1,191 @@
+"""Motion between contacts, in closed form.
+
+Each mode obeys q'' + c q' + omega^2 q = g + Gamma Z w^2 sin(w t) (mass-normalised, w = 2 pi f).  Write
+q = q_s(t) + u with the steady motion
+
+    q_s(t) = g/omega^2 + S sin(w t) + C cos(w t),   S + iC = Gamma Z w^2 / (omega^2 - w^2 + i c w)
+
+(the g-term only for omega > 0).  The deviation u is free, u'' + c u' + omega^2 u = 0, and with D = omega^2 -
+(c/2)^2
+
+    u(t) = e^{-ct/2} [ Cn(t) u_0 + Sn(t) (v_0 + c u_0/2) ]
+    v(t) = e^{-ct/2} [ Cn(t) v_0 - Sn(t) (omega^2 u_0 + c v_0/2) ]
+
+where (Cn, Sn) is (cos, sin/d) of d t with d = sqrt(D) for an under-damped mode, (1, t) for a critical one and
+(cosh, sinh/k) of k t with k = sqrt(-D) for an over-damped one.  A mode of zero frequency under a constant load
+g adds g t^2 phi_2(-c t) to u, phi_2(x) = (e^x - 1 - x)/x^2.
+
+Bounds: every derivative of a free mode obeys the same equation, and v^2 + omega^2 u^2 never grows, hence for
+all later times, whatever the damping,
+
+    |u^(n)| <= sqrt( (u^(n))^2 + (u^(n+1)/omega)^2 ) now,   |u^(n+1)| <= sqrt( (u^(n+1))^2 + omega^2 (u^(n))^2 ) now.
+
+The phase d t is formed as an unevaluated sum of two doubles, so that its rounding error stays that of the
+result even after 1e5 rad.  Units: SI with mass-normalised modes (u in m kg^0.5).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from contact.compiled import kernel
+
+__all__ = ["Motion", "flow_matrix", "propagate", "tip_rounding"]
+
+EPS = 2.220446049250313e-16
+_SPLIT = 134217729.0  # 2^27 + 1, Veltkamp's splitting of a double into two halves
+
+
+class Motion(NamedTuple):
+    """The numbers of one impact oscillator, as kernels see them.
+
+    Arrays have shape (n_modes,): omega [rad/s], decay = c [1/s], damped and damped_low = sqrt|D| as a sum of
+    two doubles [rad/s], phi [kg^-0.5], load = g of the modes of zero frequency, sine and cosine = S and C,
+    offset = g/omega^2.  Scalars: tip_sine, tip_cosine = sums of phi S and phi C [m]; level = static tip
+    displacement minus gap [m]; drive = w [rad/s]; period [s]; gap [m]; compliance = sum phi^2 [1/kg]; law and
+    its numbers.
+    """
+
+    omega: np.ndarray
+    decay: np.ndarray
+    damped: np.ndarray
+    damped_low: np.ndarray
+    phi: np.ndarray
+    load: np.ndarray
+    sine: np.ndarray
+    cosine: np.ndarray
+    offset: np.ndarray
+    tip_sine: float
+    tip_cosine: float
+    level: float
+    drive: float
+    period: float
+    gap: float
+    compliance: float
+    law: int
+    number0: float
+    number1: float
+    number2: float
+
+
+@kernel
+def two_product(a, b):
+    """a*b and its rounding error, so that product + error is exact (Dekker)."""
+    p = a * b
+    t = _SPLIT * a
+    ah = t - (t - a)
+    al = a - ah
+    t = _SPLIT * b
+    bh = t - (t - b)
+    bl = b - bh
+    return p, ((ah * bh - p) + ah * bl + al * bh) + al * bl
+
+
+@kernel
+def damped_frequency(omega, decay):
+    """sqrt(|omega^2 - (c/2)^2|) as a sum of two doubles [rad/s]."""
+    half = 0.5 * decay
+    p, ep = two_product(omega, omega)
+    r, er = two_product(half, half)
+    d = (p - r) + (ep - er)
+    high = math.sqrt(abs(d))
+    if high == 0.0:
+        return 0.0, 0.0
+    s, es = two_product(high, high)
+    residual = ((p - r) if d > 0 else (r - p)) - s
+    residual += ((ep - er) if d > 0 else (er - ep)) - es
+    return high, residual / (2.0 * high)
+
+
+@kernel
+def flow_matrix(omega, decay, damped, damped_low, t):
+    """The 2 x 2 flow (u, v) -> (u, v) of a free mode over a time `t` [s], as four numbers."""
+    half = 0.5 * decay
+    if damped > 0.0 and omega > half:
+        p, e = two_product(damped, t)
+        e += damped_low * t
+        s, c = math.sin(p), math.cos(p)
+        fade = math.exp(-half * t)
+        cn = fade * (c - e * s)
+        sn = fade * (s + e * c) / damped
+    elif damped > 0.0:
+        slow = omega * omega / (half + damped)
+        fade = math.exp(-slow * t)
+        lost = -math.expm1(-2.0 * damped * t)
+        cn = fade * (1.0 - 0.5 * lost)
+        sn = fade * lost / (2.0 * damped)
+    else:
+        cn = math.exp(-half * t)
+        sn = cn * t
+    return cn + half * sn, sn, -omega * omega * sn, cn - half * sn
+
+
+@kernel
+def loaded_drift(decay, load, t):
+    """Displacement and velocity that a constant `load` adds to a mode of zero frequency in a time `t`."""
+    x = -decay * t
+    if x > -1e-2:
+        phi1 = 1.0 + x * (1 / 2 + x * (1 / 6 + x * (1 / 24 + x * (1 / 120 + x * (1 / 720 + x / 5040)))))
+        phi2 = 0.5 + x * (1 / 6 + x * (1 / 24 + x * (1 / 120 + x * (1 / 720 + x * (1 / 5040 + x / 40320)))))
+    else:
+        phi1 = math.expm1(x) / x
+        phi2 = (phi1 - 1.0) / x
+    return load * t * t * phi2, load * t * phi1
+
+
+@kernel
+def propagate_mode(motion, k, u, v, t):
+    """Deviation (u, v) of mode `k` after a time `t` [s]."""
+    a, b, c, d = flow_matrix(motion.omega[k], motion.decay[k], motion.damped[k], motion.damped_low[k], t)
+    un, vn = a * u + b * v, c * u + d * v
+    if motion.load[k] != 0.0:
+        du, dv = loaded_drift(motion.decay[k], motion.load[k], t)
+        un += du
+        vn += dv
+    return un, vn
+
+
+@kernel
+def propagate(motion, u, v, t, u_out, v_out):
+    """Deviations of all modes after a time `t` [s]; `u_out`, `v_out` may be `u`, `v` themselves."""
+    for k in range(motion.omega.size):
+        u_out[k], v_out[k] = propagate_mode(motion, k, u[k], v[k], t)
+
+
+@kernel
+def mode_acceleration(motion, k, u, v):
+    """Second derivative of the deviation of mode `k` when no contact acts."""
+    return motion.load[k] - motion.decay[k] * v - motion.omega[k] * motion.omega[k] * u
+
+
+@kernel
+def tip_steady(motion, t):
+    """Tip displacement relative to the stop, velocity and acceleration of the steady motion at drive time `t`."""
+    w = motion.drive
+    s, c = math.sin(w * t), math.cos(w * t)
+    x = motion.tip_sine * s + motion.tip_cosine * c
+    return motion.level + x, w * (motion.tip_sine * c - motion.tip_cosine * s), -w * w * x
+
+
+@kernel
+def tip_state(motion, t, u, v):
+    """Tip displacement relative to the stop [m], its velocity and acceleration, at drive time `t`."""
+    y0, y1, y2 = tip_steady(motion, t)
+    for k in range(motion.omega.size):
+        y0 += motion.phi[k] * u[k]
+        y1 += motion.phi[k] * v[k]
+        y2 += motion.phi[k] * mode_acceleration(motion, k, u[k], v[k])
+    return y0, y1, y2
+
+
+@kernel
+def tip_rounding(motion, u, v):
+    """Bound of the rounding error of the tip displacement in a flight that starts at (u, v) [m]."""
+    total = abs(motion.level) + abs(motion.tip_sine) + abs(motion.tip_cosine) + motion.gap
+    for k in range(motion.omega.size):
+        w = max(motion.omega[k], 0.5 * motion.decay[k])
+        total += abs(motion.phi[k]) * (abs(u[k]) + (abs(v[k]) / w if w > 0.0 else abs(v[k]) * motion.period))
+    return 4.0 * EPS * total

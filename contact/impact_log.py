@@ -1,0 +1,88 @@
+"""What a compiled run writes down: impacts, samples, and where it stands.
+
+A run is carried from call to call by two small arrays: `integers` (regime, number of derivatives that vanish at
+the start of the flight, rows logged, samples taken, impacts in this period) and `floats` (time since the
+strobe [s], approach velocity of the contact under way [m/s], energy that it has lost [J]).  A row of the log
+holds period and time of the first touch, period and time of the release, both tip velocities, the energy lost
+and the kind (0 impact, 1 graze, 2 stay on the wall); `log_state` the deviations (u, v) at both ends.
+"""
+
+from __future__ import annotations
+
+import math
+
+from contact.compiled import kernel
+from contact.flight import propagate
+from contact.series import series_state
+
+REGIME, ORDER, LOGGED, SAMPLED, COUNT = 0, 1, 2, 3, 4
+CLOCK, APPROACH, LOSS = 0, 1, 2
+LOG_FIELDS = 8
+START_PERIOD, START, END_PERIOD, END, IN, OUT, LOST, KIND = 0, 1, 2, 3, 4, 5, 6, 7
+
+
+@kernel
+def sample_flight(motion, u, v, base, until, period_index, integers, sample_period, sample_clock, samples, su, sv):
+    """States at the sample times of a free flight from (u, v) at `base` that lasts `until` (both since the strobe)."""
+    n = motion.omega.size
+    i = integers[SAMPLED]
+    while i < sample_clock.size and sample_period[i] == period_index and sample_clock[i] <= until:
+        propagate(motion, u, v, sample_clock[i] - base, su, sv)
+        samples[i, :n] = su
+        samples[i, n:] = sv
+        i += 1
+    integers[SAMPLED] = i
+
+
+@kernel
+def sample_series(series, base, until, period_index, integers, sample_period, sample_clock, samples, su, sv):
+    """States at the sample times of a contact step from `base` that lasts `until` (both since the strobe)."""
+    n = su.size
+    i = integers[SAMPLED]
+    while i < sample_clock.size and sample_period[i] == period_index and sample_clock[i] <= until:
+        series_state(series, sample_clock[i] - base, su, sv)
+        samples[i, :n] = su
+        samples[i, n:] = sv
+        i += 1
+    integers[SAMPLED] = i
+
+
+@kernel
+def open_row(log, log_state, integers, floats, period_index, base, approach, kind, u, v):
+    """Start a row of the impact log."""
+    integers[COUNT] += 1 if kind == 0 else 0
+    floats[APPROACH] = approach
+    floats[LOSS] = 0.0
+    i = integers[LOGGED]
+    integers[LOGGED] += 1
+    if log.shape[0] == 0:
+        return
+    n = u.size
+    log[i, START_PERIOD] = period_index
+    log[i, START] = base
+    log[i, END_PERIOD] = period_index
+    log[i, END] = math.nan
+    log[i, IN] = approach
+    log[i, OUT] = math.nan
+    log[i, LOST] = math.nan
+    log[i, KIND] = kind
+    log_state[i, :n] = u
+    log_state[i, n : 2 * n] = v
+    log_state[i, 2 * n :] = math.nan
+
+
+@kernel
+def close_row(log, log_state, integers, floats, period_index, base, rebound, u, v):
+    """Complete the last row of the impact log."""
+    if log.shape[0] == 0:
+        return
+    i = integers[LOGGED] - 1
+    n = u.size
+    log[i, END_PERIOD] = period_index
+    log[i, END] = base
+    log[i, OUT] = rebound
+    log[i, LOST] = floats[LOSS]
+    log_state[i, 2 * n : 3 * n] = u
+    log_state[i, 3 * n :] = v
+
+

@@ -1,0 +1,1 @@
+"""Methods for the motion with contacts."""

@@ -1,0 +1,248 @@
+r"""Maximal orbits of Nordmark's map: one impact every m drive periods, in closed form.
+
+Without impacts the height obeys x_{n+1} = alpha x_n - gamma x_{n-1} + rho. Its answer to a unit impulse is
+
+    p_0 = 1,  p_k = alpha p_{k-1} - gamma p_{k-2}    (= gamma^(k/2) sin((k+1) theta)/sin(theta), underdamped)
+
+and its answer to an impulse repeated every m steps
+
+    G_k = (p_k + gamma^(k+1) p_{m-k-2}) / D,   k = 0 ... m-1 (mod m),   p_{-1} = 0,
+    D = 1 - (p_m - gamma p_{m-2}) + gamma^m    (= 1 - 2 g cos(m theta) + g^2,  g = gamma^(m/2)).
+
+An impact at x_0 = X^2 > 0 adds u_1 = d - X - alpha X^2 to x_1 and u_2 = (gamma - gamma_impact) X^2 to x_2:
+
+    x_k = c rho + G_{k-1} u_1 + G_{k-2} u_2,    c = 1/(1 - alpha + gamma),                              (a)
+    k = 0:   a X^2 + b X = c rho + b d,   b = G_{m-1},   a = 1 + alpha b - (gamma - gamma_impact) G_{m-2}.
+
+For b < 0 < a a node (larger X) and a saddle meet in a **fold**, X = -b/(2a), rho_m = -b^2/(4 a c) - b d/c.
+Multipliers: determinant gamma^(m-1) gamma_impact, trace -p_{m-1}/(2X) - (gamma_impact + gamma) p_{m-2};
+stable if |trace| < 1 + determinant. An orbit is *admissible* (an orbit of the map) if x_1 ... x_{m-1} <= 0;
+when one of them reaches zero a **second impact** ends it. With (a) each x_k is a quadratic in X, so these
+ends are in closed form too.
+
+**Bands.** As rho -> 0- without delay, p_m is admissible for theta between
+
+    upper frequency   theta = pi/m, hence f = 2m/((2m j + 1) T): b = 0, no hysteresis, at any damping and tau
+    lower frequency   sin((m-1) theta)/sin(theta) = -(gamma_impact/gamma) gamma^(m/2): x_{m-1} = 0
+
+with theta = 2 pi/(f T) - 2 pi j and j = 1 in the letter (`whole_turns`); for m = 2 the lower end is at pi.
+Neighbouring bands overlap slightly, which is the coexistence noted under Fig. 3 of the letter. All of this is
+for an oscillating mode; an overdamped one has b > 0, and its orbits with one impact exist for rho > 0 only.
+
+Sources: letter of 1996, Fig. 3 and text; W. Chin, E. Ott, H. E. Nusse, C. Grebogi, Phys. Rev. E 50 (1994)
+4427. The formulae hold for either reading of the y-line; all quantities are pure numbers save f and T.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from contact.nordmark import NordmarkMap, YLine
+
+__all__ = ["Band", "MaximalOrbit", "band", "bands", "fold", "maximal_orbits", "maximal_period",
+           "maximal_periods", "stable_range"]  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MaximalOrbit:
+    """A periodic solution of the map with its impact at states[0].
+
+    Fields: `period` m; `rho`; `root` X = sqrt(x_0); `states`, shape (m, 2), the (x, y) in order of time;
+    `trace` and `determinant` of the derivative of m steps. All pure numbers.
+    """
+
+    period: int
+    rho: float
+    root: float
+    states: NDArray[np.float64]
+    trace: float
+    determinant: float
+
+    @property
+    def multipliers(self) -> NDArray[np.complex128]:
+        """Eigenvalues of the derivative of m steps, shape (2,), larger modulus first."""
+        pair = np.roots([1.0, -self.trace, self.determinant]).astype(complex)
+        return pair[np.argsort(-np.abs(pair))]
+
+    @property
+    def stable(self) -> bool:
+        """Whether both multipliers lie inside the unit circle."""
+        return abs(self.trace) < 1.0 + self.determinant and self.determinant < 1.0
+
+    @property
+    def admissible(self) -> bool:
+        """Whether no other iterate is an impact, so that the map has this orbit."""
+        return bool(np.all(self.states[1:, 0] <= 0.0))
+
+
+class _Impulses:
+    """p and G of the module's docstring for one map and period, and what follows from them."""
+
+    def __init__(self, nordmark: NordmarkMap, period: int) -> None:
+        if period != int(period) or period < 1:
+            raise ValueError(f"period is {period} drive periods; it must be a whole number, one or more")
+        self.map, self.period = nordmark, int(period)
+        m, alpha, gamma = self.period, nordmark.alpha, nordmark.gamma
+        p = [0.0, 1.0]  # p_{-1}, p_0, ...
+        for _ in range(m):
+            p.append(alpha * p[-1] - gamma * p[-2])
+        self.last, before = p[m], p[m - 1]  # p_{m-1}, p_{m-2}
+        size = 1.0 - (p[m + 1] - gamma * before) + gamma**m
+        self.periodic = np.array([p[k + 1] + gamma ** (k + 1) * p[m - k - 1] for k in range(m)]) / size
+        self.loss = gamma - nordmark.gamma_impact
+        self.c = 1.0 / (1.0 - alpha + gamma)
+        self.b = float(self.periodic[m - 1])
+        self.a = 1.0 + alpha * self.b - self.loss * float(self.periodic[(m - 2) % m])
+        self.trace_limit = -(nordmark.gamma_impact + gamma) * before
+        self.determinant = gamma ** (m - 1) * nordmark.gamma_impact
+
+    def rho(self, root: float) -> float:
+        return (self.a * root * root + self.b * (root - self.map.delay_term)) / self.c
+
+    def height(self, k: int) -> tuple[float, float, float]:
+        """Coefficients of X^2, X and 1 in x_k."""
+        m, first = self.period, float(self.periodic[(k - 1) % self.period]) - self.b
+        second = float(self.periodic[(k - 2) % m] - self.periodic[(m - 2) % m])
+        return 1.0 - self.map.alpha * first + self.loss * second, -first, self.map.delay_term * first
+
+    def orbit(self, root: float, rho: float) -> MaximalOrbit:
+        m, square = self.period, root * root
+        later = [self.height(k) for k in range(1, m)]
+        x = np.array([square] + [two * square + one * root + none for two, one, none in later])
+        y = -self.map.gamma * np.roll(x, 1)
+        y[1 % m] = -self.map.gamma_impact * square
+        return MaximalOrbit(
+            period=m, rho=rho, root=root, states=np.column_stack([x, y]),
+            trace=-self.last / (2.0 * root) + self.trace_limit, determinant=self.determinant,
+        )  # fmt: skip
+
+
+def _positive_roots(two: float, one: float, none: float) -> list[float]:
+    """The positive solutions of two X^2 + one X + none = 0, ascending."""
+    if two == 0.0:
+        found = [-none / one] if one != 0.0 else []
+    else:
+        square = one * one - 4.0 * two * none
+        if square < 0.0:
+            return []
+        half = -0.5 * (one + math.copysign(math.sqrt(square), one))
+        found = [half / two] + ([none / half] if half != 0.0 else [])
+    return sorted(root for root in found if root > 0.0)
+
+
+def maximal_orbits(nordmark: NordmarkMap, period: int, rho: float) -> tuple[MaximalOrbit, ...]:
+    """Solutions with one impact every `period` steps at `rho`, 0 to 2 of them, in order of rising X.
+
+    Of two, the first is the saddle and the second the node. They solve the equations of the branches; ask
+    each for `admissible` and `stable`.
+    """
+    parts = _Impulses(nordmark, period)
+    roots = _positive_roots(parts.a, parts.b, -(parts.c * rho + parts.b * nordmark.delay_term))
+    return tuple(parts.orbit(root, rho) for root in roots)
+
+
+def fold(nordmark: NordmarkMap, period: int) -> MaximalOrbit | None:
+    """The orbit at the fold of p_m, its `rho` being rho_m; None where there is no fold (b >= 0 or a <= 0)."""
+    parts = _Impulses(nordmark, period)
+    if not (parts.b < 0.0 < parts.a):
+        return None
+    root = -parts.b / (2.0 * parts.a)
+    return parts.orbit(root, parts.rho(root))
+
+
+def stable_range(nordmark: NordmarkMap, period: int) -> tuple[float, float] | None:
+    """The first interval of rho, from the fold upwards, in which the node p_m is stable and admissible.
+
+    Its lower end is rho_m, or the rho of a second impact; its upper end that of a second impact or of a
+    multiplier -1, or infinity. None where there is no fold or no such interval.
+    """
+    at_fold = fold(nordmark, period)
+    if at_fold is None:
+        return None
+    parts = _Impulses(nordmark, period)
+    ends = [root for k in range(1, parts.period) for root in _positive_roots(*parts.height(k))]
+    flip = 1.0 + parts.determinant + parts.trace_limit
+    ends += [parts.last / (2.0 * flip)] if flip < 0.0 else []
+    marks = [at_fold.root, *sorted(root for root in ends if root > at_fold.root), math.inf]
+    for low, high in pairwise(marks):
+        middle = 0.5 * (low + high) if high < math.inf else 2.0 * low
+        orbit = parts.orbit(middle, parts.rho(middle))
+        if orbit.stable and orbit.admissible:
+            return parts.rho(low), parts.rho(high) if high < math.inf else math.inf
+    return None
+
+
+def maximal_period(nordmark: NordmarkMap) -> int:
+    """The m with pi/m < theta <= pi/(m-1), whose upper band edge is next above; 0 without oscillation."""
+    angle = nordmark.angle
+    return math.floor(math.pi / angle) + 1 if angle > 0.0 else 0
+
+
+def maximal_periods(nordmark: NordmarkMap) -> tuple[int, ...]:
+    """All m for which p_m is admissible as rho -> 0-: `maximal_period`, and m + 1 where the bands overlap."""
+    m = maximal_period(nordmark)
+    if m == 0:
+        return ()
+    parts, gamma = _Impulses(nordmark, m), nordmark.gamma
+    overlap = parts.last + nordmark.gamma_impact * gamma ** (m - 1) >= 0.0  # x_m <= 0 on p_{m+1}
+    return (m, m + 1) if overlap else (m,)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Band:
+    """Drive frequencies `lower` to `upper` [Hz] at which p_m, m = `period`, is born at grazing."""
+
+    period: int
+    lower: float
+    upper: float
+
+
+def band(
+    period: int, *, free_period: float, decay_rate: float, restitution: float,
+    y_line: YLine = "corrected", whole_turns: int = 1,
+) -> Band:  # fmt: skip
+    """The band of p_m of the mode with free period T [s] and decay rate mu [1/s], m = `period` >= 2.
+
+    Raises ValueError for m < 2 and for parameters that `NordmarkMap.from_frequencies` refuses.
+    """
+    m = period
+    if m != int(m) or m < 2:
+        raise ValueError(f"period is {m} drive periods; a band needs a whole number, two or more")
+
+    def frequency(angle: float) -> float:
+        return 1.0 / (free_period * (whole_turns + angle / (2.0 * math.pi)))
+
+    middle = frequency(math.pi / (m - 0.5))  # wrong parameters are refused here
+    NordmarkMap.from_frequencies(drive_frequency=middle, free_period=free_period, decay_rate=decay_rate,
+                                 restitution=restitution, y_line=y_line)  # fmt: skip
+    ratio = restitution**2 if y_line == "corrected" else 1.0
+
+    def excess_height(past: float) -> float:  # proportional to -x_{m-1}; `past` = (m - 1) theta - pi
+        angle = (math.pi + past) / (m - 1)
+        decay = math.exp(-0.5 * m * decay_rate / frequency(angle))
+        return ratio * decay * math.sin(angle) - math.sin(past)
+
+    lower = math.pi
+    if m > 2:  # the sign changes before past = pi/2, where sin(theta) < 1; 1e-15 rad is the rounding of theta
+        lower = (math.pi + float(brentq(excess_height, 0.0, 0.5 * math.pi, xtol=1e-15))) / (m - 1)
+    return Band(period=m, lower=frequency(lower), upper=frequency(math.pi / m))
+
+
+def bands(
+    periods: Iterable[int], *, free_period: float, decay_rate: float, restitution: float,
+    y_line: YLine = "corrected", whole_turns: int = 1,
+) -> tuple[Band, ...]:  # fmt: skip
+    """`band` for each of `periods`, sorted by frequency."""
+    found = [
+        band(m, free_period=free_period, decay_rate=decay_rate, restitution=restitution, y_line=y_line,
+             whole_turns=whole_turns)
+        for m in periods
+    ]  # fmt: skip
+    return tuple(sorted(found, key=lambda entry: entry.upper))

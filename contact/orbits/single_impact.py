@@ -1,0 +1,363 @@
+r"""Maximal orbits of an impact oscillator: one impact every m drive periods, Newton's law, in closed form.
+
+    q_k'' + c_k q_k' + omega_k^2 q_k = -Gamma_k z'' + phi_k J delta(t - t_0),   x = sum_k phi_k q_k,
+    z = Z sin(w t),  w = 2 pi f;   at the wall x = gap:  x' -> -e x'.
+
+**Kick.** Let q_k = Z Im(H_k exp(i w t)) + u_k, H_k = Gamma_k w^2/(omega_k^2 - w^2 + i c_k w); u_k is free. An
+impact at approach speed v changes u_k' by B_k v, B_k = -(1 + e) phi_k/sum phi^2. With N the free flow of mode
+k over m/f, G = det N = exp(-c_k m/f) and D = 1 - tr N + G, the deviations that repeat after m/f are
+
+    before the impact:  u_k = N12 B_k v/D,  u_k' = (N22 - G) B_k v/D
+    after the impact:   u_k = N12 B_k v/D,  u_k' = (1 - N11) B_k v/D
+
+**Amplitude against impact.** Before the impact let s = sum phi_k u_k/v [s], r = sum phi_k u_k'/v [1] and
+b = (1 - r)/w [s]. With the steady tip amplitude A = Z |sum phi_k H_k| [m], the conditions x = gap, x' = v are
+
+    A sin(psi) = gap - s v,   A cos(psi) = b v,   psi = w t_0 + arg sum phi_k H_k
+    A(v)^2 = (gap - s v)^2 + (b v)^2                                                                     (a)
+
+for every speed. If s > 0, A has a least value, the **fold** of the node (larger v) and the saddle:
+
+    v = s gap/(s^2 + b^2),   A_m/gap = F_m/F_g = 1/sqrt(1 + k^2),   k = s/b.
+
+For one mode k = -w N12 (1 + e)/(1 - N11 + e N22 - e G), which is the F_m of Eq. (1) at any amplitude.
+
+**Multipliers.** An orbit beside this one meets the wall at another time. To first order its distance
+(dq, dq') at the impact is multiplied by the saltation matrix
+
+    S = [[1, 0], [0, P]] + [-(1 + e) phi/sum phi^2; (a+ - P a-)/v] (phi, 0)^T,
+    P = 1 - (1 + e) phi phi^T/sum phi^2
+
+with the modal accelerations a-, a+ before and after, which include the drive: the column is the mismatch of
+the motions on both sides, in q and in q'. The multipliers are the eigenvalues of Phi S, Phi the free flow of
+all modes over m/f. For one mode det(Phi S) = e^2 G.
+
+Everything is exact as long as the tip does not reach the wall at another time; `MaximalFlight` holds what a
+search for such a crossing needs. Units: SI with mass-normalised modes (q in m kg^0.5).
+Sources: letter of 1996, Eq. (1) and Fig. 3; A. B. Nordmark, J. Sound Vib. 145 (1991) 279.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from contact.flight import damped_frequency, flow_matrix
+
+__all__ = ["MaximalFamily", "MaximalFlight", "SingleImpactOrbit"]
+
+Array = NDArray[np.float64]
+SINGULAR = 1e-13  # a D below this is rounding of 1 - tr N + G, terms of size 1: the mode is back after m/f
+
+
+def _require(condition: bool, sentence: str) -> None:
+    if not condition:
+        raise ValueError(sentence)
+
+
+def modal_flow(omega: Array, decay_rate: Array, time: float) -> Array:
+    """Free flow (u, u') -> (u, u') of each mode over `time` [s], shape (n_modes, 2, 2)."""
+    rows = []
+    for w, c in zip(omega.tolist(), decay_rate.tolist(), strict=True):
+        high, low = damped_frequency(w, c)
+        rows.append(flow_matrix(w, c, high, low, time))
+    return np.array(rows).reshape(-1, 2, 2)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MaximalFlight:
+    """The free flight of a maximal orbit from its impact to the next, as initial data.
+
+    `start`: drive time of the impact [s]; `duration` m/f [s]; `displacement`, `velocity`: deviations u, u'
+    from the steady motion just after the impact, shape (n_modes,) [m kg^0.5, m kg^0.5/s].
+    """
+
+    start: float
+    duration: float
+    displacement: Array
+    velocity: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SingleImpactOrbit:
+    """One orbit of a `MaximalFamily`.
+
+    `speed` v of approach [m/s]; `amplitude` Z of the base [m]; `excess` F/F_g - 1 [1]; `flight` from the
+    impact on; `before`: deviations (u, u') just before the impact, shape (2, n_modes).
+    """
+
+    family: MaximalFamily
+    speed: float
+    amplitude: float
+    excess: float
+    flight: MaximalFlight
+    before: Array
+
+    def state(self, time: ArrayLike) -> Array:
+        """Modal (q, q') at drive times within the flight [s], shape (2, n_modes) + shape of `time`.
+
+        At the start of the flight it is the state after the impact, at its end that before the next one.
+        """
+        family, flight, times = self.family, self.flight, np.asarray(time, dtype=float)
+        since, slack = times.ravel() - flight.start, 1e-9 * flight.duration  # rounding of the caller's times
+        inside = np.all((since >= -slack) & (since <= flight.duration + slack))
+        _require(bool(inside), f"time leaves the flight; it must lie within {flight.duration} s of its start")
+        flows = np.array([modal_flow(family.omega, family.decay_rate, t) for t in since.tolist()])
+        start = np.column_stack([flight.displacement, flight.velocity])
+        free = np.einsum("tkij,kj->ikt", flows.reshape(-1, family.size, 2, 2), start)
+        w = family.angular_frequency
+        phase = self.amplitude * family.response[:, None] * np.exp(1j * w * times.ravel())
+        return (np.array([phase.imag, w * phase.real]) + free).reshape((2, family.size, *times.shape))
+
+    def tip(self, time: ArrayLike) -> tuple[Array, Array]:
+        """Tip displacement [m] and velocity [m/s] relative to the base at drive times within the flight."""
+        q, v = self.state(time)
+        return np.tensordot(self.family.phi, q, 1), np.tensordot(self.family.phi, v, 1)
+
+    def residual(self) -> float:
+        """Largest relative mismatch of the closed orbit: gap, speed, Newton's law, return of modes [1]."""
+        family, flight = self.family, self.flight
+        after, arrival = self.state(flight.start), self.state(flight.start + flight.duration)
+        x, v = family.phi @ arrival[0], family.phi @ arrival[1]
+        jump = arrival[1] - (1.0 + family.restitution) * family.phi / (family.phi @ family.phi) * v
+        mismatch = [abs(x / family.gap - 1.0), abs(v / self.speed - 1.0)]
+        for found, wanted in ((arrival[0], after[0]), (jump, after[1])):
+            mismatch.append(float(np.max(np.abs(found - wanted)) / np.max(np.abs(wanted))))
+        return float(max(mismatch))
+
+    def saltation(self) -> Array:
+        """Saltation matrix of the impact in (q, q') of all modes, shape (2 n_modes, 2 n_modes)."""
+        family, n = self.family, self.family.size
+        phi, lost = family.phi, (1.0 + family.restitution) / (family.phi @ family.phi)
+        project = np.eye(n) - lost * np.outer(phi, phi)
+        phase = np.exp(1j * family.angular_frequency * self.flight.start)
+        steady = -family.angular_frequency**2 * self.amplitude * (family.response * phase).imag
+        (u, du), after = self.before, self.flight.velocity
+        stiff = family.omega**2 * u
+        accelerations = [steady - family.decay_rate * velocity - stiff for velocity in (du, after)]
+        mismatch = (accelerations[1] - project @ accelerations[0]) / self.speed
+        matrix = np.zeros((2 * n, 2 * n))
+        matrix[:n, :n] = project
+        matrix[n:, :n] = np.outer(mismatch, phi)
+        matrix[n:, n:] = project
+        return matrix
+
+    def monodromy(self) -> Array:
+        """Derivative of the motion over m/f, from just before an impact to just before the next, Phi S."""
+        flow = self.family.flow
+        free = np.block([[np.diag(flow[:, i, j]) for j in range(2)] for i in range(2)])
+        return np.asarray(free @ self.saltation())
+
+    def multipliers(self) -> NDArray[np.complex128]:
+        """Eigenvalues of `monodromy`, shape (2 n_modes,), largest modulus first."""
+        values = np.linalg.eigvals(self.monodromy()).astype(complex)
+        return values[np.argsort(-np.abs(values))]
+
+    @property
+    def stable(self) -> bool:
+        """Whether all multipliers lie inside the unit circle."""
+        return bool(np.abs(self.multipliers()[0]) < 1.0)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MaximalFamily:
+    """All orbits with one impact every `period` drive periods, by approach speed.
+
+    Parameters
+    ----------
+    omega, decay_rate, phi, participation : array_like, shape (n_modes,)
+        omega_k [rad/s], c_k [1/s], phi_k [kg^-0.5], Gamma_k [kg^0.5].
+    drive_frequency : float
+        f [Hz].
+    gap : float
+        Distance of the wall, above zero [m].
+    restitution : float
+        e of the law, from 0 to 1 [1].
+    period : int
+        m, one or more [1].
+
+    Raises
+    ------
+    ValueError
+        For numbers outside these ranges; if the drive is at the frequency of an undamped mode; or if a mode
+        that the impact excites returns to itself after m/f (zero frequency, or undamped and in resonance),
+        for then no orbit is periodic.
+    """
+
+    omega: Array
+    decay_rate: Array
+    phi: Array
+    participation: Array
+    drive_frequency: float
+    gap: float
+    restitution: float
+    period: int
+
+    def __post_init__(self) -> None:
+        units = {"omega": "rad/s", "decay_rate": "1/s", "phi": "kg^-0.5", "participation": "kg^0.5"}
+        size = np.shape(self.omega)
+        for name, unit in units.items():
+            row = np.array(getattr(self, name), dtype=float)
+            _require(
+                row.ndim == 1 and row.shape == size and row.size > 0 and bool(np.all(np.isfinite(row))),
+                f"{name} has shape {row.shape}; it must be a row of one finite number [{unit}] for each mode",
+            )
+            row.setflags(write=False)
+            object.__setattr__(self, name, row)
+        for name in ("omega", "decay_rate"):
+            least = float(getattr(self, name).min())
+            _require(least >= 0.0, f"{name} holds {least} {units[name]}; no entry may be negative")
+        _require(bool(np.any(self.phi != 0.0)), "phi is zero in every mode; the tip must move in one of them")
+        for name, unit in (("drive_frequency", "Hz"), ("gap", "m")):
+            value = getattr(self, name)
+            _require(0.0 < value < math.inf, f"{name} is {value} {unit}; it must be finite and above zero")
+        e, m = self.restitution, self.period
+        _require(0.0 <= e <= 1.0, f"restitution is {e}; it must lie between 0 and 1")
+        whole = m >= 1 and m % 1 == 0
+        _require(whole, f"period is {m} drive periods; it must be a whole number, one or more")
+        free = (self.decay_rate == 0.0) & (self.omega == self.angular_frequency)
+        f = self.drive_frequency
+        _require(not np.any(free), f"drive_frequency is {f} Hz, that of an undamped mode; it must differ")
+        _require(self.tip_response != 0.0, "participation does not let the drive move the tip; it must")
+        trapped = np.flatnonzero((self._return <= SINGULAR) & (self.phi != 0.0))
+        if trapped.size:
+            raise ValueError(
+                f"omega[{trapped[0]}] is {self.omega[trapped[0]]} rad/s, a mode that is back after {m} drive "
+                "periods; it must have damping or another frequency"
+            )
+
+    @classmethod
+    def single_mode(
+        cls, *, drive_frequency: float, free_period: float, decay_rate: float, restitution: float,
+        period: int, gap: float = 1.0,
+    ) -> MaximalFamily:  # fmt: skip
+        """The family of Eq. (1), from f [Hz], damped free period T [s], mu [1/s], tau and m."""
+        known = 0.0 < free_period < math.inf
+        _require(known, f"free_period is {free_period} s; it must be finite and above zero")
+        omega, one = math.hypot(2.0 * math.pi / free_period, 0.5 * decay_rate), np.ones(1)
+        return cls(
+            omega=omega * one, decay_rate=decay_rate * one, phi=one, participation=one,
+            drive_frequency=drive_frequency, gap=gap, restitution=restitution, period=period,
+        )  # fmt: skip
+
+    @classmethod
+    def from_oscillator(
+        cls, oscillator: Any, *, period: int, restitution: float | None = None
+    ) -> MaximalFamily:
+        """The family of an `ImpactOscillator` without constant load.
+
+        `restitution` replaces the law's `local_restitution`; TypeError if there is neither.
+        """
+        if restitution is None:
+            try:
+                restitution = float(oscillator.stop.law.local_restitution)
+            except AttributeError:
+                law = type(oscillator.stop.law).__name__
+                raise TypeError(f"law of the stop is a {law}; it has no restitution, so give one") from None
+        _require(oscillator.load is None, "load is given; it must be None for these orbits")
+        _require(oscillator.drive is not None, "drive is None; it must be a HarmonicDrive")
+        model, drive = oscillator.model, oscillator.drive
+        return cls(
+            omega=model.omega, decay_rate=model.decay_rate, phi=model.phi, participation=model.participation,
+            drive_frequency=drive.frequency, gap=oscillator.stop.gap, restitution=restitution, period=period,
+        )  # fmt: skip
+
+    @property
+    def size(self) -> int:
+        """Number of modes."""
+        return self.omega.size
+
+    @property
+    def angular_frequency(self) -> float:
+        """w = 2 pi f [rad/s]."""
+        return 2.0 * math.pi * self.drive_frequency
+
+    @cached_property
+    def response(self) -> NDArray[np.complex128]:
+        """H_k, shape (n_modes,) [kg^0.5]."""
+        w = self.angular_frequency
+        stiffness = (self.omega - w) * (self.omega + w)
+        return np.asarray(self.participation * w**2 / (stiffness + 1j * self.decay_rate * w), dtype=complex)
+
+    @property
+    def tip_response(self) -> complex:
+        """sum phi_k H_k: steady tip displacement per base displacement [1]."""
+        return complex(self.phi @ self.response)
+
+    @cached_property
+    def flow(self) -> Array:
+        """Phi, mode by mode, shape (n_modes, 2, 2)."""
+        return modal_flow(self.omega, self.decay_rate, self.period / self.drive_frequency)
+
+    @cached_property
+    def _determinant(self) -> Array:
+        return np.exp(-self.decay_rate * self.period / self.drive_frequency)
+
+    @cached_property
+    def _return(self) -> Array:
+        return np.abs(1.0 - self.flow[:, 0, 0] - self.flow[:, 1, 1] + self._determinant)
+
+    @cached_property
+    def deviations(self) -> tuple[Array, Array]:
+        """(u, u') per unit approach speed, just before and just after the impact, each (2, n_modes)."""
+        moved = self.phi != 0.0  # a mode that the impact does not reach stays at rest
+        kick = -(1.0 + self.restitution) * self.phi / (self.phi @ self.phi)
+        kick = np.where(moved, kick / np.where(moved, self._return, 1.0), 0.0)
+        height = self.flow[:, 0, 1] * kick
+        before = (self.flow[:, 1, 1] - self._determinant) * kick
+        return np.array([height, before]), np.array([height, (1.0 - self.flow[:, 0, 0]) * kick])
+
+    @cached_property
+    def arms(self) -> tuple[float, float]:
+        """(s, b) of Eq. (a) [s]."""
+        before = self.deviations[0]
+        return float(self.phi @ before[0]), float((1.0 - self.phi @ before[1]) / self.angular_frequency)
+
+    @property
+    def grazing_amplitude(self) -> float:
+        """Base amplitude Z_g at which the steady motion touches the wall [m]."""
+        return self.gap / abs(self.tip_response)
+
+    def excess(self, speed: float) -> float:
+        """F/F_g - 1 of the orbit with approach speed `speed` [m/s]."""
+        s, b = self.arms
+        v = speed / self.gap
+        square = v * ((s * s + b * b) * v - 2.0 * s)  # (A/gap)^2 - 1, without the cancellation
+        return square / (1.0 + math.sqrt(max(1.0 + square, 0.0)))
+
+    def orbit(self, speed: float) -> SingleImpactOrbit:
+        """The orbit that meets the wall at `speed`, above zero [m/s]."""
+        _require(0.0 < speed < math.inf, f"speed is {speed} m/s; it must be finite and above zero")
+        s, b = self.arms
+        phase = math.atan2(self.gap - s * speed, b * speed) - float(np.angle(self.tip_response))
+        excess = self.excess(speed)
+        before, after = (rows * speed for rows in self.deviations)
+        flight = MaximalFlight(
+            start=(phase % (2.0 * math.pi)) / self.angular_frequency,
+            duration=self.period / self.drive_frequency, displacement=after[0], velocity=after[1],
+        )  # fmt: skip
+        return SingleImpactOrbit(
+            family=self, speed=speed, amplitude=(1.0 + excess) * self.grazing_amplitude, excess=excess,
+            flight=flight, before=before,
+        )  # fmt: skip
+
+    def orbits(self, excess: float) -> tuple[SingleImpactOrbit, ...]:
+        """The orbits at F/F_g - 1 = `excess` > -1, 0 to 2, by rising speed (of two, saddle, then node)."""
+        _require(-1.0 < excess < math.inf, f"excess is {excess}; it must be finite and above -1")
+        s, b = self.arms
+        square, above = s * s + b * b, excess * (2.0 + excess)
+        if s * s + square * above < 0.0:
+            return ()
+        half = s + math.copysign(math.sqrt(s * s + square * above), s)  # v/gap: half/square and -above/half
+        speeds = sorted((self.gap * half / square, -self.gap * above / half if half != 0.0 else 0.0))
+        return tuple(self.orbit(v) for v in speeds if v > 0.0)
+
+    def fold(self) -> SingleImpactOrbit | None:
+        """The orbit of least amplitude, at which node and saddle meet; None if s <= 0 (no fold)."""
+        s, b = self.arms
+        return self.orbit(s * self.gap / (s * s + b * b)) if s > 0.0 else None

@@ -1,0 +1,171 @@
+"""The impact oscillator: modes of a spring, the motion of its base, and a stop.
+
+    q_k'' + c_k q_k' + omega_k^2 q_k = -Gamma_k z''(t) + g_k - phi_k N(d, d')
+    x = sum_k phi_k q_k,   d = x - gap,   z = Z sin(2 pi f t)
+
+with mass-normalised modes (q in m kg^0.5), x the tip displacement relative to the base [m], N >= 0 the contact
+force [N] and g_k an optional constant modal load [N kg^-0.5].  With one mode, phi = Gamma = 1 and
+``NewtonRestitution`` this is Eq. (1) of the letter (1996), whose F is Z (2 pi f)^2.
+
+Steady response without contact: q_k = Z Im(H_k exp(i 2 pi f t)), H_k = Gamma_k w^2 / (omega_k^2 - w^2 + i c_k w),
+so that the tip just touches the stop at the grazing amplitude Z_g = gap / |sum_k phi_k H_k|.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from beam.reduction import ModalModel
+from contact.drive import HarmonicDrive
+from contact.flight import Motion, damped_frequency
+from contact.stop import Stop
+
+__all__ = ["ImpactOscillator"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ImpactOscillator:
+    """A modal spring on a moving base, with a stop at its tip.
+
+    Parameters
+    ----------
+    model : ModalModel
+        Modes: omega, decay_rate, phi, participation, each (n_modes,).
+    stop : Stop
+        Gap [m] and contact law.
+    drive : HarmonicDrive or None
+        Base motion; None for a base at rest.
+    load : ndarray, shape (n_modes,), optional
+        Constant modal load [N kg^-0.5].
+    """
+
+    model: ModalModel
+    stop: Stop
+    drive: HarmonicDrive | None = None
+    load: np.ndarray | None = None
+
+    def __post_init__(self) -> None:
+        omega, decay = self.model.omega, self.model.decay_rate
+        if self.load is not None:
+            load = np.array(self.load, dtype=float)
+            if load.shape != omega.shape or not np.all(np.isfinite(load)):
+                raise ValueError(f"load has shape {load.shape}; it must be {omega.size} finite modal loads [N kg^-0.5]")
+            load.setflags(write=False)
+            object.__setattr__(self, "load", load)
+        if self.drive is None:
+            return
+        if not self.stop.gap > 0:
+            raise ValueError(f"gap is {self.stop.gap} m; a driven spring needs a gap above zero")
+        highest = float(omega.max())
+        if highest > 0 and self.drive.angular_frequency > highest:
+            raise ValueError(
+                f"frequency of the drive is {self.drive.frequency:g} Hz; it must not exceed the highest retained "
+                f"mode at {highest / (2 * np.pi):g} Hz"
+            )
+        resonant = (omega == self.drive.angular_frequency) & (decay == 0)
+        if np.any(resonant):
+            raise ValueError(
+                f"frequency of the drive is {self.drive.frequency:g} Hz, that of an undamped mode; "
+                "there is no steady motion, so it must differ"
+            )
+
+    @property
+    def n_modes(self) -> int:
+        """Number of modes [1]."""
+        return int(self.model.omega.size)
+
+    @property
+    def period(self) -> float:
+        """Drive period [s]; of a base at rest, the period of the lowest mode that oscillates (1 s if none does)."""
+        if self.drive is not None:
+            return self.drive.period
+        oscillating = self.model.omega[self.model.omega > 0]
+        return float(2 * np.pi / oscillating.min()) if oscillating.size else 1.0
+
+    def with_amplitude(self, amplitude: float) -> ImpactOscillator:
+        """The same oscillator driven with another base amplitude [m]."""
+        return replace(self, drive=replace(self._driven(), amplitude=float(amplitude)))
+
+    def with_excess(self, excess: float) -> ImpactOscillator:
+        """The same oscillator driven at F/F_g - 1 = `excess` [1]."""
+        if not excess > -1:
+            raise ValueError(f"excess is {excess}; it must be above -1")
+        return self.with_amplitude((1.0 + float(excess)) * self.grazing_amplitude())
+
+    def steady_response(self) -> np.ndarray:
+        """H_k, complex, shape (n_modes,) [kg^0.5]: without contact q_k(t) = Z Im(H_k exp(i 2 pi f t))."""
+        if self.drive is None:
+            return np.zeros(self.n_modes, dtype=complex)
+        w = self.drive.angular_frequency
+        model = self.model
+        # (omega - w)(omega + w) keeps its digits close to resonance, where omega^2 - w^2 would lose them
+        detuning = (model.omega - w) * (model.omega + w)
+        return model.participation * w**2 / (detuning + 1j * model.decay_rate * w)
+
+    def tip_response(self) -> complex:
+        """Tip displacement per base amplitude without contact, complex [1]."""
+        return complex(self.model.phi @ self.steady_response())
+
+    def grazing_amplitude(self) -> float:
+        """Base amplitude Z_g at which the steady tip motion just touches the stop [m]."""
+        self._driven()
+        static = float(self.model.phi @ self._offset())
+        if static >= self.stop.gap:
+            raise ValueError(f"gap is {self.stop.gap} m; the static displacement {static:g} m must stay below it")
+        return (self.stop.gap - static) / abs(self.tip_response())
+
+    @property
+    def excess(self) -> float:
+        """F/F_g - 1 [1]."""
+        return self._driven().amplitude / self.grazing_amplitude() - 1.0
+
+    def energy(self, displacement: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+        """Kinetic and elastic energy of modal states, arrays (..., n_modes) -> (...) [J]; contact excluded."""
+        q, v = np.asarray(displacement), np.asarray(velocity)
+        return 0.5 * np.sum(v**2 + (self.model.omega * q) ** 2, axis=-1)
+
+    def motion(self) -> Motion:
+        """The numbers of this oscillator, as the kernels take them."""
+        model, law = self.model, self.stop.law
+        load = np.zeros(self.n_modes) if self.load is None else self.load
+        response = self.steady_response() * (0.0 if self.drive is None else self.drive.amplitude)
+        offset = self._offset()
+        pairs = [damped_frequency(w, c) for w, c in zip(model.omega, model.decay_rate, strict=True)]
+        sine, cosine = np.ascontiguousarray(response.real), np.ascontiguousarray(response.imag)
+        numbers = law.numbers
+        return Motion(
+            omega=np.array(model.omega, dtype=float),
+            decay=np.array(model.decay_rate, dtype=float),
+            damped=np.array([high for high, _ in pairs]),
+            damped_low=np.array([low for _, low in pairs]),
+            phi=np.array(model.phi, dtype=float),
+            load=np.where(model.omega > 0, 0.0, load),
+            sine=sine,
+            cosine=cosine,
+            offset=offset,
+            tip_sine=float(model.phi @ sine),
+            tip_cosine=float(model.phi @ cosine),
+            level=float(model.phi @ offset) - float(self.stop.gap),
+            drive=0.0 if self.drive is None else float(self.drive.angular_frequency),
+            period=float(self.period),
+            gap=float(self.stop.gap),
+            compliance=float(model.phi @ model.phi),
+            law=law.code,
+            number0=float(numbers[0]),
+            number1=float(numbers[1]),
+            number2=float(numbers[2]),
+        )
+
+    def _offset(self) -> np.ndarray:
+        """Static modal displacement under the constant load, (n_modes,); zero for modes of zero frequency."""
+        if self.load is None:
+            return np.zeros(self.n_modes)
+        stiff = self.model.omega > 0
+        return np.where(stiff, self.load / np.where(stiff, self.model.omega, 1.0) ** 2, 0.0)
+
+    def _driven(self) -> HarmonicDrive:
+        if self.drive is None:
+            raise ValueError("drive is None; this needs a spring on a moving base, so give a HarmonicDrive")
+        return self.drive

@@ -1,0 +1,132 @@
+"""One drive period as a map: State -> State.
+
+Sampling a driven oscillator at the strobe times t_n = n/f turns its motion into the iteration of a map; its
+periodic orbits are the p_m orbits of the letter (1996, Fig. 2).  ``StroboscopicMap`` is that map for any impact
+oscillator; ``contact.nordmark.StrobedNordmarkMap`` offers the same three methods, so that everything which
+scans, settles or classifies orbits takes either.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Generic, Protocol, TypeVar
+
+import numpy as np
+
+from contact.impact_log import LOG_FIELDS
+from contact.integrators.event_driven import DONE, advance
+from contact.oscillator import ImpactOscillator
+from contact.simulation import deviations, failure, split_time, steady_motion
+from contact.trajectory import State
+
+__all__ = ["StrobedMap", "StrobedOrbit", "StroboscopicMap"]
+
+S = TypeVar("S")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class StrobedOrbit(Generic[S]):
+    """A stretch of a strobed motion.
+
+    Parameters
+    ----------
+    end : State
+        Where it ended.
+    points : ndarray, shape (n_strobes, n_coordinates)
+        Coordinates at the strobes, all in the same unit, the start excluded.
+    impacts : ndarray of int, shape (n_strobes,)
+        Impacts since the strobe before.
+    """
+
+    end: S
+    points: np.ndarray
+    impacts: np.ndarray
+
+
+class StrobedMap(Protocol[S]):
+    """What a scan needs of a strobed or iterated system."""
+
+    @property
+    def scale(self) -> float:
+        """The size of a coordinate at grazing, in the unit of `points`."""
+
+    def at(self, excess: float) -> StrobedMap[S]:
+        """The same system at another excess over grazing [1]."""
+
+    def rest(self) -> S:
+        """The state of the orbit without impacts, or rest."""
+
+    def orbit(self, state: S, count: int) -> StrobedOrbit[S]:
+        """`count` periods from `state`."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class StroboscopicMap:
+    """The period map of an impact oscillator.
+
+    Parameters
+    ----------
+    oscillator : ImpactOscillator
+        A driven one.
+    """
+
+    oscillator: ImpactOscillator
+
+    @property
+    def scale(self) -> float:
+        """The gap [m]."""
+        return self.oscillator.stop.gap
+
+    def at(self, excess: float) -> StroboscopicMap:
+        """The period map of the same oscillator driven at F/F_g - 1 = `excess`."""
+        return StroboscopicMap(oscillator=self.oscillator.with_excess(excess))
+
+    def rest(self) -> State:
+        """The spring at rest."""
+        return State.rest(self.oscillator.n_modes)
+
+    def steady(self) -> State:
+        """The steady motion at a strobe, which is the p1 orbit without impacts below grazing."""
+        q, v = steady_motion(self.oscillator.motion(), np.zeros(1))
+        return State(displacement=q[0], velocity=v[0])
+
+    def step(self, state: State) -> State:
+        """One drive period."""
+        return self.orbit(state, 1).end
+
+    def orbit(self, state: State, count: int) -> StrobedOrbit[State]:
+        """`count` drive periods from `state`, which must lie at a strobe.
+
+        Returns
+        -------
+        StrobedOrbit
+            Its points are the contributions phi_k q_k and phi_k q_k' / omega_k of all modes to the tip motion,
+            shape (count, 2 n_modes) [m] (a mode of zero frequency counts with phi_k q_k' / (2 pi f)).
+
+        Raises
+        ------
+        ValueError
+            If the state is not at a strobe.
+        ContactError
+            If the motion could not be followed.
+        """
+        motion = self.oscillator.motion()
+        index, clock = split_time(np.array([state.time]), motion.period)
+        if clock[0] != 0.0:
+            raise ValueError(f"time of the state is {state.time} s; it must be a strobe time n/f")
+        n, first = motion.omega.size, int(index[0])
+        u, v, integers, floats = deviations(motion, state, 0.0)
+        strobes, counts = np.empty((count, 2 * n)), np.zeros(count, dtype=np.int64)
+        status, reached = advance(
+            motion, u, v, integers, floats, first, count, 0.0, strobes, counts, np.empty((0, LOG_FIELDS)),
+            np.empty((0, 4 * n)), np.empty(0, dtype=np.int64), np.empty(0), np.empty((0, 2 * n)),
+        )
+        if status != DONE:
+            raise failure(status, motion, reached, floats, u, v)
+        q, q_rate = steady_motion(motion, np.zeros(1))
+        speed = np.where(motion.omega > 0, motion.omega, motion.drive)
+        points = np.empty_like(strobes)
+        points[:, :n] = (strobes[:, :n] + q) * motion.phi
+        points[:, n:] = (strobes[:, n:] + q_rate) * (motion.phi / speed)
+        end: dict[str, Any] = {"displacement": u + q[0], "velocity": v + q_rate[0], "regime": int(integers[0])}
+        return StrobedOrbit(end=State(time=(first + count) * motion.period, **end), points=points, impacts=counts)

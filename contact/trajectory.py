@@ -1,0 +1,115 @@
+"""States and motions as named arrays.
+
+All arrays are in physical modal coordinates (not deviations): displacement q_k [m kg^0.5], velocity q_k'
+[m kg^0.5 / s]; the tip displacement relative to the base is ``model.phi @ displacement``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+__all__ = ["Impacts", "State", "Trajectory"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class State:
+    """Where a spring is: modal displacement and velocity at a time.
+
+    Parameters
+    ----------
+    displacement, velocity : ndarray, shape (n_modes,)
+        Modal coordinates [m kg^0.5] and their rates [m kg^0.5 / s].
+    time : float
+        Time since the start of the drive, base at z = Z sin(2 pi f time) [s].
+    regime : int
+        0 off the wall, 1 in contact, 2 behind the wall without force, 3 held on the wall.
+    """
+
+    displacement: np.ndarray
+    velocity: np.ndarray
+    time: float = 0.0
+    regime: int = 0
+
+    def __post_init__(self) -> None:
+        for name in ("displacement", "velocity"):
+            array = np.array(getattr(self, name), dtype=float)
+            if array.ndim != 1 or not np.all(np.isfinite(array)):
+                raise ValueError(f"{name} of the state must be a finite array of shape (n_modes,), not {array}")
+            array.setflags(write=False)
+            object.__setattr__(self, name, array)
+        if self.displacement.shape != self.velocity.shape:
+            raise ValueError(
+                f"velocity of the state has shape {self.velocity.shape}; it must be that of the displacement, "
+                f"{self.displacement.shape}"
+            )
+
+    @staticmethod
+    def rest(n_modes: int) -> State:
+        """The straight spring at rest, at time zero."""
+        return State(displacement=np.zeros(n_modes), velocity=np.zeros(n_modes))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Impacts:
+    """The touches of the tip in the order in which they began, each array of shape (n_impacts,) or (n_impacts, n_modes).
+
+    Parameters
+    ----------
+    start, end : ndarray
+        First touch and release [s]; equal for an impact law, NaN for a contact that had not ended.
+    approach, rebound : ndarray
+        Tip velocity at both, positive towards the wall [m/s].
+    loss : ndarray
+        Energy lost in the contact itself [J].
+    kind : ndarray of int
+        0 an impact, 1 a graze (no effect), 2 a stay on the wall after accumulated impacts.
+    displacement_start, velocity_start, displacement_end, velocity_end : ndarray, shape (n_impacts, n_modes)
+        Modal states just before the touch and just after the release.
+    """
+
+    start: np.ndarray
+    end: np.ndarray
+    approach: np.ndarray
+    rebound: np.ndarray
+    loss: np.ndarray
+    kind: np.ndarray
+    displacement_start: np.ndarray
+    velocity_start: np.ndarray
+    displacement_end: np.ndarray
+    velocity_end: np.ndarray
+
+    def __len__(self) -> int:
+        return int(self.start.size)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Trajectory:
+    """A motion: strobed states, sampled states, and every impact.
+
+    Parameters
+    ----------
+    end : State
+        The state at the end of the run.
+    strobe_time : ndarray, shape (n_strobes,)
+        Times of the strobes passed, the start excluded [s].
+    strobe_displacement, strobe_velocity : ndarray, shape (n_strobes, n_modes)
+        Modal states there.
+    strobe_impacts : ndarray of int, shape (n_strobes,)
+        Impacts that began since the strobe before (or the start).
+    time, displacement, velocity : ndarray, shapes (n_times,) and (n_times, n_modes)
+        The states at the times that were asked for.
+    impacts : Impacts
+        Every touch.
+    """
+
+    end: State
+    strobe_time: np.ndarray
+    strobe_displacement: np.ndarray
+    strobe_velocity: np.ndarray
+    strobe_impacts: np.ndarray
+    time: np.ndarray
+    displacement: np.ndarray
+    velocity: np.ndarray
+    impacts: Impacts = field(repr=False)

@@ -1,0 +1,66 @@
+"""Studies: one program per claim, on top of `beam` (the spring) and `contact` (the impacts).
+
+Run them from the root of the project as `python -m studies.NAME`; `python -m studies` runs the main one and
+lists the others. What several of them use is in `studies.instruments`, their input in `studies/scenes`.
+
+Importing this package does two things, both of which have to come before numpy is imported:
+
+- it sets the thread count of the linear algebra libraries to 1 unless the environment already says otherwise:
+  the matrices here are small, and several workers with several threads each slow one another down twentyfold;
+- it makes sure that `beam` and `contact` are the packages beside this one. Both names belong to other
+  people's packages on the public index, and with one of those in front every result would be an error at
+  best.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+from collections.abc import Iterable
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+"""The folder in which `beam`, `contact` and `studies` lie side by side."""
+
+THREAD_VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+def single_blas_thread() -> None:
+    """One thread for linear algebra, here and in the processes started from here."""
+    for variable in THREAD_VARIABLES:
+        os.environ.setdefault(variable, "1")
+
+
+def place_of(name: str) -> Path | None:
+    """The folder that `import NAME` would read, without importing it; None if there is none."""
+    try:
+        spec = importlib.util.find_spec(name)
+    except ValueError:  # already imported, and by something that left no trace of where from
+        return None
+    if spec is None:
+        return None
+    if spec.origin is not None:
+        return Path(spec.origin).resolve().parent
+    folders = list(spec.submodule_search_locations or ())
+    return Path(folders[0]).resolve() if folders else None
+
+
+def refuse_foreign_packages(names: Iterable[str] = ("beam", "contact"), root: Path = ROOT) -> None:
+    """ImportError unless each of `names` would be imported from the folder `root`."""
+    for name in names:
+        place = place_of(name)
+        if place is None:
+            raise ImportError(
+                f"the package '{name}' of grazing-spring is missing beside 'studies': run "
+                "`python -m studies` from the root of a complete checkout"
+            )
+        if place != root / name:
+            raise ImportError(
+                f"the package '{name}' in {place.parent} is not that of grazing-spring but another of the "
+                "same name: run `python -m studies` from the root of the checkout, or remove the other "
+                f"package with `python -m pip uninstall {name}`"
+            )
+
+
+single_blas_thread()
+refuse_foreign_packages()

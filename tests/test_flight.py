@@ -1,0 +1,376 @@
+"""Closed-form flights against matrix exponentials of 50 digits, and the bounds that the search relies on."""
+
+from __future__ import annotations
+
+import math
+
+import mpmath as mp
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from beam.reduction import ModalModel
+from contact.drive import HarmonicDrive
+from contact.flight import (
+    EPS,
+    damped_frequency,
+    flow_matrix,
+    mode_acceleration,
+    propagate,
+    tip_rounding,
+    tip_state,
+    two_product,
+)
+from contact.laws import NewtonRestitution
+from contact.oscillator import ImpactOscillator
+from contact.simulation import simulate
+from contact.stop import Stop
+from contact.trajectory import State
+
+MODES = {  # omega [rad/s], c [1/s]
+    "undamped": (150.0, 0.0),
+    "under-damped": (150.0, 3.56),
+    "heavily under-damped": (150.0, 270.0),
+    "under-damped within 1e-4": (150.0, 300.0 * (1 - 1e-4)),
+    "under-damped within 1e-8": (150.0, 300.0 * (1 - 1e-8)),
+    "under-damped within 1e-12": (150.0, 300.0 * (1 - 1e-12)),
+    "one rounding below critical": (150.0, math.nextafter(300.0, 0.0)),
+    "critical": (150.0, 300.0),
+    "one rounding above critical": (150.0, math.nextafter(300.0, 400.0)),
+    "over-damped within 1e-12": (150.0, 300.0 * (1 + 1e-12)),
+    "over-damped within 1e-8": (150.0, 300.0 * (1 + 1e-8)),
+    "over-damped within 1e-4": (150.0, 300.0 * (1 + 1e-4)),
+    "over-damped": (150.0, 650.0),
+    "creeping": (1.5, 4000.0),
+    "no frequency, damped": (0.0, 30.0),
+    "no frequency": (0.0, 0.0),
+}
+
+
+def flow(omega: float, decay: float, time: float) -> np.ndarray:
+    """The flow of the package, (2, 2)."""
+    return np.array(flow_matrix(omega, decay, *damped_frequency(omega, decay), time)).reshape(2, 2)
+
+
+def exact_flow(omega: float, decay: float, time: float) -> np.ndarray:
+    """exp(A t) of A = (0, 1; -omega^2, -c) by its eigenvalues, in 80 digits, rounded once."""
+    with mp.workdps(80):
+        w, c, t = mp.mpf(omega), mp.mpf(decay), mp.mpf(time)
+        matrix, one = mp.matrix([[0, 1], [-w * w, -c]]), mp.eye(2)
+        root = mp.sqrt(mp.mpc(c * c / 4 - w * w))
+        plus, minus = -c / 2 + root, -c / 2 - root
+        if root == 0:
+            result = mp.exp(plus * t) * (one + (matrix - plus * one) * t)
+        else:
+            result = (mp.exp(plus * t) * (matrix - minus * one) - mp.exp(minus * t) * (matrix - plus * one)) / (
+                plus - minus
+            )
+        return np.array([[float(mp.re(result[i, j])) for j in range(2)] for i in range(2)])
+
+
+def rate(omega: float, decay: float) -> float:
+    """The rate that makes displacement and velocity comparable [1/s]."""
+    return max(omega, 0.5 * decay) or 1.0
+
+
+def difference(a: np.ndarray, b: np.ndarray, scale: float) -> float:
+    """Largest difference of two flows relative to the larger, entries made dimensionless with `scale`."""
+    weight = np.array([[1.0, scale], [1.0 / scale, 1.0]])
+    return float(np.max(np.abs(a - b) * weight) / np.max(np.abs(b) * weight))
+
+
+def oscillator(
+    omega: list[float], decay: list[float], *, drive: HarmonicDrive | None = None, load: list[float] | None = None,
+    phi: list[float] | None = None, participation: list[float] | None = None, gap: float = 0.01,
+) -> ImpactOscillator:  # fmt: skip
+    n = len(omega)
+    model = ModalModel(
+        omega=omega, decay_rate=decay, phi=phi or [7.0 / (k + 1) for k in range(n)],
+        participation=participation or [0.1 / (k + 1) for k in range(n)],
+    )  # fmt: skip
+    stop = Stop(gap=gap, law=NewtonRestitution(local_restitution=0.5))
+    return ImpactOscillator(model=model, stop=stop, drive=drive, load=None if load is None else np.array(load))
+
+
+# --------------------------------------------------------------------------------------------- the free flow
+
+
+@pytest.mark.parametrize("name", MODES)
+def test_flow_is_the_matrix_exponential(name):
+    omega, decay = MODES[name]
+    for turns in (1e-9, 1e-3, 0.3, 1.0, 7.7, 40.0):
+        time = turns / rate(omega, decay)
+        with mp.workdps(50):
+            matrix = mp.matrix([[0, 1], [-mp.mpf(omega) ** 2, -mp.mpf(decay)]]) * mp.mpf(time)
+            reference = np.array(mp.expm(matrix).tolist(), dtype=float)
+        assert difference(exact_flow(omega, decay, time), reference, rate(omega, decay)) < 4 * EPS
+        assert difference(flow(omega, decay, time), reference, rate(omega, decay)) < 4 * EPS * (2 + turns)
+
+
+def test_flow_has_no_step_across_the_critical_damping():
+    """The three branches meet: c goes through 2 omega one rounding at a time."""
+    decay = 300.0
+    for _ in range(6):
+        decay = math.nextafter(decay, 0.0)
+    for _ in range(13):
+        assert difference(flow(150.0, decay, 0.02), exact_flow(150.0, decay, 0.02), 150.0) < 6 * EPS
+        decay = math.nextafter(decay, 400.0)
+
+
+def test_branches_are_told_apart_by_one_rounding():
+    below, above = math.nextafter(300.0, 0.0), math.nextafter(300.0, 400.0)
+    assert damped_frequency(150.0, 300.0) == (0.0, 0.0)
+    for decay in (below, above):
+        with mp.workdps(60):
+            exact = mp.sqrt(abs(mp.mpf(150.0) ** 2 - (mp.mpf(decay) / 2) ** 2))
+            high, low = damped_frequency(150.0, decay)
+            assert high > 0
+            assert abs((mp.mpf(high) + mp.mpf(low)) / exact - 1) < 1e-29
+
+
+def test_damped_frequency_has_32_digits():
+    generator = np.random.default_rng(1)
+    for _ in range(200):
+        omega, decay = 10 ** generator.uniform(-3, 5), 10 ** generator.uniform(-6, 5)
+        with mp.workdps(60):
+            exact = mp.sqrt(abs(mp.mpf(omega) ** 2 - (mp.mpf(decay) / 2) ** 2))
+            high, low = damped_frequency(omega, decay)
+            assert abs(low) <= EPS * high
+            assert abs((mp.mpf(high) + mp.mpf(low)) / exact - 1) < 1e-28
+
+
+def test_product_and_error_are_the_exact_product():
+    generator = np.random.default_rng(2)
+    for _ in range(200):
+        a, b = (float(x) for x in generator.uniform(-1, 1, 2) * 10.0 ** generator.integers(-8, 8, 2))
+        product, error = two_product(a, b)
+        with mp.workdps(60):
+            assert mp.mpf(product) + mp.mpf(error) == mp.mpf(a) * mp.mpf(b)
+
+
+@pytest.mark.parametrize("decay", [0.0, 1e-4, 0.02])
+def test_phase_keeps_its_digits_over_1e5_radians(decay):
+    generator = np.random.default_rng(3)
+    for phase in 10 ** generator.uniform(4, 5.1, 12):
+        omega = float(generator.uniform(100, 1e4))
+        time = float(phase / omega)
+        # a phase formed as one double is off by up to 1e5 EPS/2 = 1e-11
+        assert difference(flow(omega, decay, time), exact_flow(omega, decay, time), omega) < 4 * EPS
+
+
+def test_slow_decay_of_a_creeping_mode_keeps_its_digits():
+    """omega^2/c, not c/2 - sqrt(...): after 1e3 decay times of the fast part the slow part still has 13 digits."""
+    omega, decay = 1.0, 1e5
+    for time in (1e-2, 1e2, 1e5):
+        computed, exact = flow(omega, decay, time), exact_flow(omega, decay, time)
+        np.testing.assert_allclose(computed[:, 0], exact[:, 0], rtol=1e-13)
+
+
+@pytest.mark.parametrize("name", MODES)
+def test_no_time_no_change(name):
+    assert np.array_equal(flow(*MODES[name], 0.0) + 0.0, np.eye(2))
+
+
+@settings(max_examples=150, deadline=None, derandomize=True)
+@given(
+    omega=st.floats(0.0, 2e3), ratio=st.one_of(st.floats(0.0, 0.05), st.floats(0.0, 4.0)),
+    first=st.integers(0, 2**22), second=st.integers(0, 2**22),
+)  # fmt: skip
+def test_flows_compose(omega, ratio, first, second):
+    """Times are multiples of 2^-24 s, so that their sum has no rounding error."""
+    decay = ratio * (omega if omega > 1e-3 else 1.0)
+    t1, t2 = first * 2.0**-24, second * 2.0**-24
+    scale = rate(omega, decay)
+    product = flow(omega, decay, t2) @ flow(omega, decay, t1)
+    weight = np.array([[1.0, scale], [1.0 / scale, 1.0]])
+    whole = flow(omega, decay, t1 + t2)
+    size = np.max(np.abs(flow(omega, decay, t1)) * weight) * np.max(np.abs(flow(omega, decay, t2)) * weight)
+    assert np.max(np.abs(product - whole) * weight) <= 8 * EPS * (2 + decay * (t1 + t2)) * max(size, 1e-300)
+
+
+@settings(max_examples=100, deadline=None, derandomize=True)
+@given(
+    omega=st.floats(1e-2, 2e3), ratio=st.one_of(st.floats(0.0, 0.05), st.floats(0.0, 5.0)), angle=st.floats(0, 6.3),
+)  # fmt: skip
+def test_bounds_of_all_derivatives_hold_for_all_later_times(omega, ratio, angle):
+    decay = ratio * omega
+    u, v = math.cos(angle), omega * math.sin(angle)
+    derivatives = [u, v]
+    for _ in range(4):
+        derivatives.append(-decay * derivatives[-1] - omega**2 * derivatives[-2])
+    for turns in (1e-3, 0.1, 0.7, 1.5, 3.2, 20.0):
+        later = list(flow(omega, decay, turns / omega) @ (u, v))
+        for _ in range(4):
+            later.append(-decay * later[-1] - omega**2 * later[-2])
+        for order in range(4):
+            low = math.hypot(derivatives[order], derivatives[order + 1] / omega)
+            high = math.hypot(derivatives[order + 1], omega * derivatives[order])
+            assert abs(later[order]) <= low * (1 + 1e-12)
+            assert abs(later[order + 1]) <= high * (1 + 1e-12)
+
+
+def test_bounds_are_attained_without_damping():
+    """A bound that nothing approaches would be no bound worth testing: the undamped mode reaches it."""
+    omega = 100.0
+    flows = [flow(omega, 0.0, t) @ (0.6, 80.0) for t in np.linspace(0, 0.07, 4000)]
+    assert max(u for u, _ in flows) == pytest.approx(math.hypot(0.6, 0.8), rel=1e-6)
+    assert max(v for _, v in flows) == pytest.approx(math.hypot(60.0, 80.0), rel=1e-6)
+
+
+# ------------------------------------------------------------------------------------- with drive and load
+
+
+def exact_state(system: ImpactOscillator, k: int, q: float, v: float, start: float, time: float) -> np.ndarray:
+    """(q, v, a) of mode k at drive time start + time by the exponential of the five-dimensional linear system."""
+    with mp.workdps(40):
+        model, drive = system.model, system.drive
+        omega, c, gamma = (mp.mpf(float(x[k])) for x in (model.omega, model.decay_rate, model.participation))
+        w = mp.mpf(drive.angular_frequency if drive else 0.0)
+        z = mp.mpf(drive.amplitude if drive else 0.0)
+        g = mp.mpf(float(system.load[k]) if system.load is not None else 0.0)
+        unit = w if w > 0 else mp.mpf(1)
+        # unknowns q w, v, sin, cos, 1: entries of similar size
+        matrix = mp.matrix(5, 5)
+        matrix[0, 1] = unit
+        matrix[1, 0], matrix[1, 1], matrix[1, 2], matrix[1, 4] = -omega**2 / unit, -c, gamma * z * w * w, g
+        matrix[2, 3], matrix[3, 2] = w, -w
+        first = mp.matrix([mp.mpf(q) * unit, v, mp.sin(w * mp.mpf(start)), mp.cos(w * mp.mpf(start)), 1])
+        last = mp.expm(matrix * mp.mpf(time)) * first
+        return np.array([float(last[0] / unit), float(last[1]), float((matrix * last)[1])])
+
+
+DRIVEN = {
+    "drive": dict(drive=HarmonicDrive(frequency=21.5, amplitude=2e-3)),
+    "drive and load": dict(drive=HarmonicDrive(frequency=21.5, amplitude=2e-3), load=[3.0, -20.0, 500.0, 2.0, -4.0]),
+    "load": dict(load=[3.0, -20.0, 500.0, 2.0, -4.0]),
+    "neither": {},
+}
+
+
+@pytest.mark.parametrize("name", DRIVEN)
+def test_flight_of_many_modes_is_the_exponential_of_the_whole_system(name):
+    """Under-, critically and over-damped modes and two of zero frequency, one of them without damping."""
+    system = oscillator([150.0, 400.0, 900.0, 0.0, 0.0], [3.56, 800.0, 2500.0, 0.0, 25.0], **DRIVEN[name])
+    motion = system.motion()
+    generator = np.random.default_rng(5)
+    for start, time in ((0.0, 1e-3), (0.01, 0.02), (0.04, 0.006), (0.0, 0.0465)):
+        q, v = generator.normal(size=5) * 1e-3, generator.normal(size=5) * 0.1
+        s, c = math.sin(motion.drive * start), math.cos(motion.drive * start)
+        u = q - motion.offset - motion.sine * s - motion.cosine * c
+        du = v - motion.drive * (motion.sine * c - motion.cosine * s)
+        propagate(motion, u, du, time, u, du)
+        s, c = math.sin(motion.drive * (start + time)), math.cos(motion.drive * (start + time))
+        exact = np.array([exact_state(system, k, q[k], v[k], start, time) for k in range(5)])
+        size = np.max(np.abs(exact), axis=0)
+        displacement = u + motion.offset + motion.sine * s + motion.cosine * c
+        velocity = du + motion.drive * (motion.sine * c - motion.cosine * s)
+        acceleration = (
+            np.array([mode_acceleration(motion, k, u[k], du[k]) for k in range(5)])
+            - motion.drive**2 * (motion.sine * s + motion.cosine * c)
+        )  # fmt: skip
+        for computed, column in zip((displacement, velocity, acceleration), range(3), strict=True):
+            assert np.max(np.abs(computed - exact[:, column])) < 1e-12 * size[column]
+        tip = np.array(tip_state(motion, start + time, u, du))
+        expected = system.model.phi @ exact - np.array([system.stop.gap, 0.0, 0.0])
+        assert np.all(np.abs(tip - expected) < 1e-12 * np.abs(system.model.phi) @ np.abs(exact) + [1e-14, 0, 0])
+
+
+@pytest.mark.parametrize("product", [1e-12, 1e-6, 9.99e-3, 0.01052, 0.0168, 0.1, 0.49, 0.51, 0.99, 1.01, 30.0])
+def test_constant_load_on_a_free_body_with_drag(product):
+    """x'' + c x' = g from rest: g (t - (1 - exp(-ct))/c)/c, with c t through the switch of the formula."""
+    time = 0.25
+    system = oscillator([0.0], [product / time], load=[9.81], phi=[1.0], participation=[1.0])
+    u, v = np.zeros(1), np.zeros(1)
+    propagate(system.motion(), u, v, time, u, v)
+    with mp.workdps(60):
+        c, t, g = mp.mpf(product / time), mp.mpf(time), mp.mpf(9.81)
+        assert v[0] == pytest.approx(float(g * (1 - mp.exp(-c * t)) / c), rel=4 * EPS)
+        assert u[0] == pytest.approx(float(g * (t - (1 - mp.exp(-c * t)) / c) / c), rel=4 * EPS)
+
+
+def test_parabola_of_a_falling_body():
+    system = oscillator([0.0], [0.0], load=[9.81], phi=[1.0], participation=[1.0])
+    u, v = np.array([0.3]), np.array([-2.0])
+    propagate(system.motion(), u, v, 0.5, u, v)
+    assert u[0] == pytest.approx(0.3 - 1.0 + 0.5 * 9.81 * 0.25, rel=4 * EPS)
+    assert v[0] == pytest.approx(-2.0 + 9.81 * 0.5, rel=4 * EPS)
+
+
+def test_static_load_moves_the_tip_by_its_static_displacement():
+    system = oscillator([100.0, 300.0], [1.0, 5.0], load=[7.0, -30.0], phi=[2.0, 3.0], gap=0.05)
+    motion = system.motion()
+    assert motion.level == pytest.approx(2.0 * 7.0 / 1e4 - 3.0 * 30.0 / 9e4 - 0.05, rel=4 * EPS)
+    height, velocity, acceleration = tip_state(motion, 0.0, np.zeros(2), np.zeros(2))
+    assert (height, velocity, acceleration) == (motion.level, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("n_modes", [1, 3, 20])
+def test_rounding_bound_holds_and_is_not_idle(n_modes):
+    """The error of the tip displacement against 40 digits stays below its bound, and within 200 of it."""
+    generator = np.random.default_rng(n_modes)
+    worst = 0.0
+    for _ in range(40):
+        omega = 150.0 * 10 ** np.sort(generator.uniform(0, 2, n_modes))
+        decay = omega * 10 ** generator.uniform(-4, 0.6, n_modes)
+        system = oscillator(
+            list(omega), list(decay), drive=HarmonicDrive(frequency=21.5, amplitude=2e-3),
+            phi=list(generator.normal(size=n_modes) * 7), participation=list(generator.normal(size=n_modes)),
+        )  # fmt: skip
+        motion = system.motion()
+        u, v = generator.normal(size=n_modes) * 1e-3, generator.normal(size=n_modes) * 1e-3 * omega
+        start, time = float(generator.uniform(0, 0.02)), float(generator.uniform(0, 0.02))
+        bound = tip_rounding(motion, u, v)
+        with mp.workdps(40):
+            w, instant = mp.mpf(motion.drive), mp.mpf(start) + mp.mpf(time)
+            exact = mp.mpf(motion.level) + mp.mpf(motion.tip_sine) * mp.sin(w * instant)
+            exact += mp.mpf(motion.tip_cosine) * mp.cos(w * instant)
+            for k in range(n_modes):
+                c, o, t = mp.mpf(motion.decay[k]), mp.mpf(motion.omega[k]), mp.mpf(time)
+                root = mp.sqrt(mp.mpc(c * c / 4 - o * o))
+                plus, minus = -c / 2 + root, -c / 2 - root
+                free = ((mp.mpf(v[k]) - minus * mp.mpf(u[k])) * mp.exp(plus * t)
+                        - (mp.mpf(v[k]) - plus * mp.mpf(u[k])) * mp.exp(minus * t)) / (plus - minus)  # fmt: skip
+                exact += mp.mpf(motion.phi[k]) * mp.re(free)
+            propagate(motion, u, v, time, u, v)
+            error = float(abs(mp.mpf(tip_state(motion, start + time, u, v)[0]) - exact))
+        assert error <= bound
+        worst = max(worst, error / bound)
+    assert worst > 1 / 200
+
+
+# ------------------------------------------------------------------------------------------- the strobe clock
+
+
+def test_1e5_periods_bring_no_drift_of_the_strobe_clock():
+    """An undamped and a damped mode from rest, drive below grazing: the last strobe against 40 digits."""
+    periods = 100_000
+    # f is a power of two times a small integer: the period n/f of the run and of the reference are the same
+    system = oscillator(
+        [151.0, 987.0], [0.0, 0.0], drive=HarmonicDrive(frequency=16.0, amplitude=1e-4), gap=10.0,
+    )  # fmt: skip
+    run = simulate(system, periods=periods)
+    assert run.strobe_time[-1] == periods / 16.0
+    assert run.end.time == periods / 16.0
+    assert len(run.impacts) == 0 and not np.any(run.strobe_impacts)
+    with mp.workdps(40):
+        t, w = mp.mpf(periods) / 16, mp.mpf(system.drive.angular_frequency)
+        clock_slip = mp.sin(w * t)  # 2 pi f as a double times 1e5 periods is not quite a multiple of 2 pi
+        assert abs(clock_slip) < 1e-9
+        for k, o in enumerate(mp.mpf(float(x)) for x in system.model.omega):
+            steady = mp.mpf(float(system.model.participation[k])) * mp.mpf(1e-4) * w**2 / (o * o - w * w)
+            size = float(abs(steady) * w)
+            # q = S (sin wt - (w/omega) sin omega t) with wt counted as a whole number of turns
+            q, v = -steady * w / o * mp.sin(o * t), steady * w * (1 - mp.cos(o * t))
+            assert abs(run.strobe_displacement[-1, k] - float(q)) < 3e-11 * size / float(o)
+            assert abs(run.strobe_velocity[-1, k] - float(v)) < 3e-11 * size
+
+
+def test_steady_motion_stays_steady():
+    """Started on its steady motion the spring shows the same state at each of 2000 strobes, to rounding."""
+    system = oscillator([150.0, 960.0], [3.56, 20.0], drive=HarmonicDrive(frequency=21.5, amplitude=1e-4))
+    motion = system.motion()
+    start = State(displacement=motion.cosine, velocity=motion.drive * motion.sine)
+    run = simulate(system, start, periods=2000)
+    assert np.max(np.abs(run.strobe_displacement - motion.cosine)) == 0.0
+    assert np.max(np.abs(run.strobe_velocity - motion.drive * motion.sine)) == 0.0

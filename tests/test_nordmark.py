@@ -1,0 +1,341 @@
+"""Nordmark's map and its maximal orbits, against 50-digit arithmetic, iteration and a linearised impact."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from types import SimpleNamespace
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from contact.maximal_orbits import (
+    band,
+    bands,
+    fold,
+    maximal_orbits,
+    maximal_period,
+    maximal_periods,
+    stable_range,
+)
+from contact.nordmark import NordmarkMap
+
+T, MU, TAU = 0.0408, 3.56, 0.1
+# f [Hz], m of the map, F_m/F_g - 1 of the map
+TABLE = [
+    (20.90, 3, -6.272937252e-4),
+    (21.50, 4, -7.812531796e-3),
+    (22.20, 5, -8.235686505e-4),
+    (22.60, 6, -9.325644932e-5),
+    (23.05, 8, -7.691764860e-5),
+    (23.40, 11, -7.525757208e-4),
+]
+
+
+def letter_map(frequency: float, **changes: object) -> NordmarkMap:
+    numbers = {"free_period": T, "decay_rate": MU, "restitution": TAU} | changes
+    return NordmarkMap.from_frequencies(drive_frequency=frequency, **numbers)
+
+
+def test_coefficients_are_the_letters() -> None:
+    f = 20.90
+    made = letter_map(f)
+    gamma, angle = math.exp(-MU / f), 2 * math.pi / (f * T)
+    assert made.gamma == pytest.approx(gamma, rel=1e-15)
+    assert made.alpha == pytest.approx(2 * math.sqrt(gamma) * math.cos(angle), rel=1e-14)
+    per_excess = (1 - made.alpha + gamma) / (2 * gamma * (f * T) ** 2 * (1 + TAU) ** 2 * math.sin(angle) ** 2)
+    assert made.rho_per_excess == pytest.approx(per_excess, rel=1e-14)
+    assert made.excess(made.rho(0.013)) == pytest.approx(0.013, rel=1e-15)
+    assert made.gamma_impact == pytest.approx(0.0084338, abs=5e-8)
+    assert letter_map(f, y_line="printed").gamma_impact == made.gamma
+
+
+@pytest.mark.parametrize("damping", [0.15, 1.0, 1.0 + 1e-9, 3.0, 30.0])
+def test_coefficients_are_those_of_the_period_flow(damping: float) -> None:
+    """Trace, determinant and M12 of exp([[0, 1], [-w^2, -c]]/f), by a matrix exponential of 40 digits."""
+    omega, f = 150.0, 20.9
+    c = 2 * omega * damping
+    made = NordmarkMap.from_mode(omega=omega, decay_rate=c, drive_frequency=f, restitution=0.3, delay=1e-4)
+    with mp.workdps(40):
+        flow = mp.expm(mp.matrix([[0, 1], [-(omega**2), -c]]) / f)
+        alpha, gamma = flow[0, 0] + flow[1, 1], mp.det(flow)
+        per_excess = (1 - alpha + gamma) / (2 * (2 * mp.pi * f * flow[0, 1] * mp.mpf("1.3")) ** 2)
+        delay_term = mp.mpf("1e-4") / (2 * flow[0, 1] * mp.mpf("1.3") ** 2)
+    assert made.alpha == pytest.approx(float(alpha), rel=1e-12)
+    assert made.gamma == pytest.approx(float(gamma), rel=1e-12)
+    assert made.delay_term == pytest.approx(float(delay_term), rel=1e-12)
+    critical = abs(damping - 1) < 0.1  # there the exponents have the square root of the rounding of alpha
+    assert made.rho_per_excess == pytest.approx(float(per_excess), rel=1e-7 if critical else 1e-11)
+
+
+def test_next_peak_of_a_kicked_oscillator() -> None:
+    """Kick Eq. (1) at its peak by -(1 + tau) v: x' is the next peak, less the term alpha x the map drops."""
+    made, f, gap = letter_map(21.5), 21.5, 0.01
+    w, half, wd = 2 * math.pi * f, MU / 2, 2 * math.pi / T
+    decay, turn = math.exp(-half / f), wd / f
+    m11 = decay * (math.cos(turn) + half / wd * math.sin(turn))
+    m12 = decay * math.sin(turn) / wd
+    m22 = decay * (math.cos(turn) - half / wd * math.sin(turn))
+    scale = 2 * w**2 * gap * (m12 * (1 + TAU)) ** 2
+    excess, height = 1e-5, 3e-7  # of the steady motion; of the peak at hand above the wall [m]
+    u = height - excess * gap
+    kick = -(1 + TAU) * math.sqrt(2 * w**2 * gap * height)
+    x_now, x_past = height / scale, (m22 * u / made.gamma + excess * gap) / scale  # one period back, no kick
+    x_next = (m11 * u + m12 * kick + excess * gap) / scale
+    predicted = made.step([x_now, -made.gamma * x_past], made.rho(excess))[0]
+    assert x_next == pytest.approx(predicted + made.alpha * x_now, rel=1e-12)
+
+
+@pytest.mark.parametrize("y_line", ["corrected", "printed"])
+def test_step_jacobian_and_iterate_agree(y_line: str) -> None:
+    made = letter_map(21.5, y_line=y_line, delay=2e-4)
+    for state in ([0.2, -0.1], [-0.2, 0.05]):
+        small = 1e-6
+        columns = [
+            (made.step(np.add(state, d), 0.01) - made.step(np.subtract(state, d), 0.01)) / (2 * small)
+            for d in small * np.eye(2)
+        ]
+        assert np.allclose(np.column_stack(columns), made.jacobian(state), atol=1e-9)
+    determinant = np.linalg.det(made.jacobian([0.2, 0.0]))
+    assert determinant == pytest.approx(made.gamma * (TAU**2 if y_line == "corrected" else 1.0), rel=1e-14)
+    path = made.iterate([0.2, -0.1], 0.01, 50)
+    state = np.array([0.2, -0.1])
+    for row in path:
+        state = made.step(state, 0.01)
+        assert np.array_equal(state, row)
+    assert made.iterate([0.2, -0.1], 0.01, 0).shape == (0, 2)
+
+
+@pytest.mark.parametrize(("frequency", "period", "excess"), TABLE)
+def test_folds_of_the_letters_frequencies(frequency: float, period: int, excess: float) -> None:
+    made = letter_map(frequency)
+    at_fold = fold(made, period)
+    assert at_fold is not None and at_fold.admissible
+    assert maximal_period(made) == period  # 11 at 23.40 Hz, where the letter observed 10
+    last_digit = 10.0 ** (math.floor(math.log10(-excess)) - 9)
+    assert abs(made.excess(at_fold.rho) - excess) <= 0.5 * last_digit + 1e-17
+    assert at_fold.trace == pytest.approx(1 + at_fold.determinant, abs=1e-12)
+
+
+@pytest.mark.parametrize("y_line", ["corrected", "printed"])
+@pytest.mark.parametrize(("frequency", "period", "_excess"), TABLE)
+def test_folds_by_fifty_digit_newton(frequency: float, period: int, _excess: float, y_line: str) -> None:
+    """Iterate the branches themselves; the fold is where a multiplier of the chain of Jacobians is one."""
+    made = letter_map(frequency, y_line=y_line, delay=3e-5)
+    at_fold = fold(made, period)
+    with mp.workdps(50):
+        gamma = mp.e ** (-mp.mpf(MU) / mp.mpf(frequency))
+        angle = 2 * mp.pi / (mp.mpf(frequency) * mp.mpf(T))
+        alpha = 2 * mp.sqrt(gamma) * mp.cos(angle)
+        m12 = mp.sqrt(gamma) * mp.sin(angle) * mp.mpf(T) / (2 * mp.pi)
+        lag = mp.mpf(3e-5) / (2 * m12 * (1 + mp.mpf(TAU)) ** 2)
+        impact = gamma * mp.mpf(TAU) ** 2 if y_line == "corrected" else gamma
+
+        def conditions(root, y, rho):
+            x0 = root**2
+            x1, y1 = -root + lag + y + rho, -impact * x0
+            chain = mp.matrix([[-1 / (2 * root), 1], [-impact, 0]])
+            for _ in range(period - 1):
+                x1, y1 = alpha * x1 + y1 + rho, -gamma * x1
+                chain = mp.matrix([[alpha, 1], [-gamma, 0]]) * chain
+            return [x1 - x0, y1 - y, 1 - chain[0, 0] - chain[1, 1] + mp.det(chain)]
+
+        start = [mp.mpf(at_fold.root), mp.mpf(at_fold.states[0, 1]), mp.mpf(at_fold.rho)]
+        root, y, rho = mp.findroot(conditions, [value * mp.mpf("1.001") for value in start])
+    assert at_fold.root == pytest.approx(float(root), rel=1e-11)
+    assert at_fold.states[0, 1] == pytest.approx(float(y), rel=1e-11)
+    assert abs(at_fold.rho - float(rho)) < 1e-12
+
+
+@pytest.mark.parametrize("delay", [0.0, 1e-4])
+@pytest.mark.parametrize("period", [1, 2, 3, 4, 7])
+def test_orbits_repeat_and_have_their_multipliers(period: int, delay: float) -> None:
+    """Both solutions are carried round by the branches (whichever side of zero their iterates lie)."""
+    made = letter_map(20.9, delay=delay)
+    at_fold = fold(made, period)
+    rho = 0.05 if at_fold is None else at_fold.rho + 0.02
+    orbits = maximal_orbits(made, period, rho)
+    assert orbits
+    for orbit in orbits:
+        assert len(orbit.states) == period
+        linear = np.array([[made.alpha, 1.0], [-made.gamma, 0.0]])
+        impact = np.array([[-0.5 / orbit.root, 1.0], [-made.gamma_impact, 0.0]])
+        x, y = orbit.states[0]
+        assert x == orbit.root**2
+        state = np.array([-orbit.root + made.delay_term + y + rho, -made.gamma_impact * x])
+        for expected in orbit.states[1:]:
+            assert np.allclose(state, expected, atol=1e-14)
+            state = linear @ state + [rho, 0.0]
+        assert np.allclose(state, orbit.states[0], atol=1e-14)
+        chain = np.linalg.matrix_power(linear, period - 1) @ impact
+        assert orbit.trace == pytest.approx(np.trace(chain), rel=1e-11)
+        assert orbit.determinant == pytest.approx(np.linalg.det(chain), rel=1e-9)
+        assert np.prod(orbit.multipliers).real == pytest.approx(orbit.determinant, rel=1e-9)
+
+
+@pytest.mark.parametrize(("frequency", "period", "_excess"), TABLE[:4])
+def test_iteration_finds_the_orbit_above_the_fold_only(frequency: float, period: int, _excess: float) -> None:
+    made = letter_map(frequency)
+    at_fold = fold(made, period)
+    assert at_fold is not None
+    above = 0.98 * at_fold.rho
+    saddle, node = maximal_orbits(made, period, above)
+    assert node.stable and node.admissible and not saddle.stable and abs(saddle.multipliers[0]) > 1
+    settled = made.iterate(node.states[0] * 1.0001, above, 400 * period)[-period:]
+    assert np.allclose(np.sort(settled[:, 0]), np.sort(node.states[:, 0]), atol=1e-9)
+    assert maximal_orbits(made, period, 1.02 * at_fold.rho) == ()
+    gone = made.iterate(at_fold.states[0], 1.02 * at_fold.rho, 20000)[-1]
+    rest = 1.02 * at_fold.rho / (1 - made.alpha + made.gamma)
+    assert gone[0] == pytest.approx(rest, abs=1e-12) and rest < 0  # p1 without impacts
+
+
+@pytest.mark.parametrize("y_line", ["corrected", "printed"])
+@pytest.mark.parametrize(("frequency", "period"), [(f, m) for f, m, _ in TABLE])
+def test_a_second_impact_ends_the_stable_range(frequency: float, period: int, y_line: str) -> None:
+    made = letter_map(frequency, y_line=y_line)
+    ends = stable_range(made, period)
+    assert ends is not None
+    low, high = ends
+    assert low == pytest.approx(fold(made, period).rho, rel=1e-14)
+    assert high > 0  # in the map it is never below grazing; in Eq. (1) it may be
+    before, after = (maximal_orbits(made, period, high + side * 1e-6)[-1] for side in (-1, 1))
+    assert before.admissible and before.stable and after.stable and not after.admissible
+    assert max(after.states[1:, 0]) == pytest.approx(0, abs=1e-4)
+    for rho, same in ((high - 1e-4, True), (high + 1e-4, False)):
+        node = maximal_orbits(made, period, rho)[-1]
+        later = made.iterate(node.states[0], rho, 3000)[-period:]
+        assert np.allclose(np.sort(later[:, 0]), np.sort(node.states[:, 0]), atol=1e-8) is same
+
+
+def test_band_edges() -> None:
+    found = bands(range(2, 13), free_period=T, decay_rate=MU, restitution=TAU)
+    for entry in found:
+        m = entry.period
+        assert entry.upper == pytest.approx(2 * m / ((2 * m + 1) * T), rel=1e-14)
+        made = letter_map(entry.upper * (1 - 1e-6))
+        at_fold = fold(made, m)
+        assert at_fold is not None and -1e-5 < at_fold.rho < 0 and maximal_period(made) == m
+        past = fold(letter_map(entry.upper * (1 + 1e-6)), m)
+        assert past is None  # no hysteresis at the upper edge, no fold above it
+    for below, entry in pairwise(found):
+        assert entry.lower < below.upper < entry.upper  # neighbours overlap
+        for side in (-1, 1):
+            made = letter_map(entry.lower * (1 + side * 1e-6))
+            node = maximal_orbits(made, entry.period, 0.0)[-1]
+            assert node.admissible is (side > 0)
+            assert (entry.period in maximal_periods(made)) is (side > 0)
+        middle = 0.5 * (entry.lower + below.upper)
+        assert maximal_periods(letter_map(middle)) == (below.period, entry.period)
+
+
+def test_lower_edge_solves_its_equation_in_fifty_digits() -> None:
+    entry = band(5, free_period=T, decay_rate=MU, restitution=0.7, y_line="printed")
+    with mp.workdps(50):
+
+        def edge(f):
+            angle = 2 * mp.pi / (f * mp.mpf(T))
+            return mp.sin(4 * angle) / mp.sin(angle) + mp.e ** (-mp.mpf(2.5) * mp.mpf(MU) / f)
+
+        assert entry.lower == pytest.approx(float(mp.findroot(edge, mp.mpf(entry.lower))), rel=1e-14)
+    without = band(5, free_period=T, decay_rate=MU, restitution=0.0)
+    assert without.lower == pytest.approx(8 / (9 * T), rel=1e-14)  # the upper edge of p4: no overlap
+
+
+def test_period_ten_needs_another_period_or_frequency() -> None:
+    """Band edges depend on f T alone: 23.40 Hz lies in p11 for T = 40.80 +- 0.02 ms and any damping."""
+    for period_of_spring in (T - 2e-5, T, T + 2e-5):
+        for rate in (0.5, MU, 10.0):
+            for tau in (0.0, 0.1, 0.9):
+                made = letter_map(23.40, free_period=period_of_spring, decay_rate=rate, restitution=tau)
+                assert maximal_period(made) == 11
+    assert maximal_period(letter_map(23.40, free_period=0.04070)) == 10
+    assert maximal_period(letter_map(23.342)) == 10
+    assert maximal_period(letter_map(23.343)) == 11
+
+
+def test_born_orbit_at_the_letters_frequencies_by_iteration() -> None:
+    """Just above grazing the map settles from rest on p_m."""
+    for frequency, period, _ in TABLE:
+        tail = letter_map(frequency).iterate([-1e-3, 0.0], 1e-6, 40000)[-2 * period :, 0]
+        assert np.allclose(tail[:period], tail[period:], atol=1e-12)
+        assert np.sum(tail[:period] > 0) == 1
+
+
+def test_delay_moves_the_fold_and_ends_the_hysteresis() -> None:
+    plain = letter_map(21.5)
+    at_fold = fold(plain, 4)
+    assert at_fold is not None
+    enough = at_fold.root / 2
+    made = NordmarkMap(alpha=plain.alpha, gamma=plain.gamma, restitution=TAU, delay_term=enough)
+    assert fold(made, 4).rho == pytest.approx(0, abs=1e-15)
+    wd, f = 2 * math.pi / T, 21.5
+    delay = 1e-4
+    term = wd * delay / (2 * math.sqrt(plain.gamma) * math.sin(wd / f) * (1 + TAU) ** 2)
+    assert letter_map(f, delay=delay).delay_term == pytest.approx(term, rel=1e-13)
+
+
+def test_overdamped_map_adds_periods_and_has_no_fold() -> None:
+    made = NordmarkMap.from_mode(omega=60.0, decay_rate=200.0, drive_frequency=40.0, restitution=0.0)
+    assert made.alpha**2 > 4 * made.gamma and maximal_period(made) == 0 and maximal_periods(made) == ()
+    assert all(fold(made, m) is None for m in range(1, 8))
+    assert all(maximal_orbits(made, m, -1e-3) == () for m in range(1, 8))
+    seen = []
+    for rho in np.geomspace(1e-6, 0.5, 100):
+        tail = made.iterate([-0.1, 0.0], rho, 3000)[-840:, 0]
+        period = next((m for m in range(1, 30) if np.allclose(tail[m:], tail[:-m], atol=1e-9)), 0)
+        if period and np.sum(tail[:period] > 0) == 1:
+            node = maximal_orbits(made, period, rho)[-1]
+            assert np.allclose(np.sort(tail[:period]), np.sort(node.states[:, 0]), atol=1e-8)
+            seen.append(period)
+    assert sorted(set(seen)) == list(range(2, max(seen) + 1)) and max(seen) > 9
+    assert seen == sorted(seen, reverse=True)  # one period fewer, cascade by cascade, as rho grows
+
+
+def test_map_of_an_oscillator() -> None:
+    omega = math.hypot(2 * math.pi / T, MU / 2)
+    law = SimpleNamespace(local_restitution=TAU)
+    oscillator = SimpleNamespace(
+        model=SimpleNamespace(omega=np.array([omega, 900.0]), decay_rate=np.array([MU, 9.0])),
+        drive=SimpleNamespace(frequency=21.5),
+        stop=SimpleNamespace(gap=0.01, law=law),
+    )
+    assert NordmarkMap.from_oscillator(oscillator) == letter_map(21.5)
+    assert NordmarkMap.from_oscillator(oscillator, restitution=0.4) == letter_map(21.5, restitution=0.4)
+    oscillator.stop.law = SimpleNamespace(stiffness=1e6)
+    with pytest.raises(TypeError, match="restitution"):
+        NordmarkMap.from_oscillator(oscillator)
+
+
+@pytest.mark.parametrize(
+    ("changes", "word"),
+    [
+        ({"gamma": -0.1}, "gamma"),
+        ({"gamma": math.nan}, "gamma"),
+        ({"restitution": 1.5}, "restitution"),
+        ({"alpha": 1.9}, "alpha"),
+        ({"y_line": "other"}, "y_line"),
+        ({"delay_term": -1.0}, "delay_term"),
+        ({"whole_turns": 0.5}, "whole_turns"),
+    ],
+)
+def test_wrong_fields_are_named(changes: dict[str, object], word: str) -> None:
+    with pytest.raises(ValueError, match=word):
+        NordmarkMap(**{"alpha": 0.5, "gamma": 0.8, "restitution": 0.1} | changes)
+
+
+def test_wrong_calls_are_named() -> None:
+    with pytest.raises(ValueError, match=r"25\.0 Hz.*1/\(f T\)"):
+        letter_map(25.0)  # above resonance the root changes sign
+    with pytest.raises(ValueError, match="free_period"):
+        letter_map(21.5, free_period=-1.0)
+    with pytest.raises(ValueError, match="decay_rate"):
+        letter_map(21.5, decay_rate=-1.0)
+    with pytest.raises(ValueError, match="state"):
+        letter_map(21.5).step([1.0, 2.0, 3.0], 0.0)
+    with pytest.raises(ValueError, match="alpha"):
+        _ = NordmarkMap(alpha=-1.8, gamma=0.8, restitution=0.1).rho_per_excess
+    with pytest.raises(ValueError, match="period"):
+        fold(letter_map(21.5), 0)
+    with pytest.raises(ValueError, match="period"):
+        band(1, free_period=T, decay_rate=MU, restitution=TAU)

@@ -1,0 +1,389 @@
+"""Closed-form maximal orbits against integrations and 50-digit arithmetic that share no code with them."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import mpmath as mp
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from contact.maximal_orbits import fold as map_fold
+from contact.nordmark import NordmarkMap
+from contact.orbits.single_impact import MaximalFamily
+
+T, MU, TAU = 0.0408, 3.56, 0.1
+# f [Hz], m, F_m/F_g - 1 of Eq. (1), digits after the point
+TABLE = [
+    (20.90, 3, -1.2784409283e-3, 13),
+    (21.50, 4, -1.32105924246e-2, 13),
+    (22.20, 5, -1.4773426733e-3, 13),
+    (22.60, 6, -1.6810390565e-4, 14),
+    (23.05, 8, -1.2823017008e-4, 14),
+    (23.40, 11, -1.0196700981e-3, 13),
+]
+
+# under-, over- and critically damped modes beside the first; a light and a heavy tip
+MODES = {
+    "three modes": dict(
+        omega=[154.0, 960.0, 2690.0], decay_rate=[3.56, 19.2, 80.0], phi=[7.1, -6.5, 5.2],
+        participation=[0.09, -0.05, 0.03],
+    ),
+    "an overdamped mode": dict(
+        omega=[154.0, 500.0], decay_rate=[3.56, 1300.0], phi=[7.1, 4.0], participation=[0.09, 0.04]
+    ),
+    "a critical mode": dict(
+        omega=[154.0, 600.0], decay_rate=[3.56, 1200.0], phi=[7.1, 4.0], participation=[0.09, 0.04]
+    ),
+    "an undamped mode": dict(
+        omega=[154.0, 1000.0], decay_rate=[3.56, 0.0], phi=[7.1, 3.0], participation=[0.09, 0.0]
+    ),
+}  # fmt: skip
+
+
+def equation_1(frequency: float, period: int, **changes: float) -> MaximalFamily:
+    numbers = dict(free_period=T, decay_rate=MU, restitution=TAU) | changes
+    return MaximalFamily.single_mode(drive_frequency=frequency, period=period, **numbers)
+
+
+def many_modes(name: str, *, period: int = 3, restitution: float = 0.35) -> MaximalFamily:
+    return MaximalFamily(
+        **MODES[name], drive_frequency=20.5, gap=0.012, restitution=restitution, period=period
+    )
+
+
+def integrate(family: MaximalFamily, amplitude: float, state: np.ndarray, start: float, end: float) -> tuple:
+    """Modal equations by DOP853 with Newton's law as an event: final state and impacts (time, speed)."""
+    omega, rate, phi, participation = family.omega, family.decay_rate, family.phi, family.participation
+    w, n = 2 * math.pi * family.drive_frequency, len(omega)
+
+    def motion(t, y):
+        return np.concatenate(
+            [y[n:], participation * amplitude * w**2 * math.sin(w * t) - rate * y[n:] - omega**2 * y[:n]]
+        )
+
+    def wall(t, y):
+        return phi @ y[:n] - family.gap
+
+    wall.terminal, wall.direction = True, 1
+    impacts = []
+    while True:
+        run = solve_ivp(
+            motion, (start, end), state, "DOP853", events=wall, rtol=1e-12, atol=1e-14, max_step=0.003
+        )
+        state = run.y[:, -1].copy()
+        if run.status != 1:
+            return state, impacts
+        start, speed = run.t[-1], phi @ state[n:]
+        impacts.append((start, speed))
+        state[n:] -= (1 + family.restitution) * speed * phi / (phi @ phi)
+        state[:n] -= phi / (phi @ phi) * max(0.0, phi @ state[:n] - family.gap) * (1 + 1e-12)
+
+
+@pytest.mark.parametrize(("frequency", "period", "excess", "digits"), TABLE)
+def test_folds_of_equation_1(frequency: float, period: int, excess: float, digits: int) -> None:
+    family = equation_1(frequency, period)
+    at_fold = family.fold()
+    assert at_fold is not None
+    assert abs(at_fold.excess - excess) <= 0.6 * 10.0**-digits
+    assert at_fold.residual() < 1e-11
+    assert at_fold.multipliers()[0] == pytest.approx(1.0, abs=1e-10)
+
+
+@pytest.mark.parametrize(("frequency", "period"), [(f, m) for f, m, *_ in TABLE])
+def test_folds_of_equation_1_in_fifty_digits(frequency: float, period: int) -> None:
+    """F as a function of the impact time alone: periodicity and x = gap fix the rest; its minimum is F_m."""
+    at_fold = equation_1(frequency, period).fold()
+    with mp.workdps(50):
+        half, f, tau = mp.mpf(MU) / 2, mp.mpf(frequency), mp.mpf(TAU)
+        pole = mp.mpc(-half, 2 * mp.pi / mp.mpf(T))
+        w = 2 * mp.pi * f
+        steady = 1 / (abs(pole) ** 2 - w**2 + 2j * half * w)
+        span = mp.e ** (pole * period / f)
+
+        # x = F Im(steady e^{iwt}) + Re(c e^{pole s}) with s since the impact; unknown F, Re c, Im c, v
+        def amplitude(time):
+            e = steady * mp.e ** (1j * w * time)
+            rows, right = [], [1, 1, 0, 0]  # gap = 1 at both ends, velocity -tau v and v there
+            rows.append([e.imag, 1, 0, 0])
+            rows.append([e.imag, span.real, -span.imag, 0])
+            rate = [(w * e.real), pole.real, -pole.imag]
+            arrive = pole * span
+            rows.append([rate[0], rate[1], rate[2], tau])
+            rows.append([w * e.real, arrive.real, -arrive.imag, -1])
+            return mp.lu_solve(mp.matrix(rows), mp.matrix(right))[0]
+
+        start = mp.mpf(at_fold.flight.start)
+        best = mp.findroot(lambda time: mp.diff(amplitude, time), start + mp.mpf("1e-6"))
+        excess = abs(amplitude(best)) * abs(steady) - 1
+    assert abs(at_fold.excess - float(excess)) < 1e-14
+    assert at_fold.flight.start == pytest.approx(float(best), abs=1e-11)
+
+
+def test_ratio_to_the_map_at_a_band_edge() -> None:
+    """(1 - tau g)^2/((1 + tau^2 g)(1 + g)), not one: the map drops terms of the order of b^2."""
+    for period, tau, expected in ((3, 0.1, 0.476), (5, 0.1, None), (4, 0.8, None)):
+        upper = 2 * period / ((2 * period + 1) * T)
+        g = math.exp(-MU * period / (2 * upper))
+        limit = (1 - tau * g) ** 2 / ((1 + tau**2 * g) * (1 + g))
+        assert expected is None or limit == pytest.approx(expected, abs=5e-4)
+        errors = []
+        for below in (1e-3, 1e-4):
+            frequency = upper * (1 - below)
+            chart = NordmarkMap.from_frequencies(
+                drive_frequency=frequency, free_period=T, decay_rate=MU, restitution=tau
+            )
+            exact = equation_1(frequency, period, restitution=tau).fold().excess
+            errors.append(abs(chart.excess(map_fold(chart, period).rho) / exact - limit))
+        assert errors[1] < 0.15 * errors[0] and errors[1] < 2e-3
+
+
+@pytest.mark.parametrize(("frequency", "period"), [(f, m) for f, m, *_ in TABLE[:4]])
+def test_equation_1_keeps_its_orbit_down_to_the_fold(frequency: float, period: int) -> None:
+    """Exact flights and a root search, no other code: the orbit survives just above F_m and dies below it."""
+    family = equation_1(frequency, period)
+    at_fold = family.fold()
+    half, wd, w = MU / 2, 2 * math.pi / T, 2 * math.pi * frequency
+    steady = 1 / (complex(wd**2 + half**2 - w**2, 2 * half * w))
+
+    def alive(excess: float, periods: int) -> bool:
+        level = (1 + excess) * family.gap / abs(steady)
+        node = family.fold() if excess <= at_fold.excess else family.orbits(excess)[-1]
+        clock, speed, count = node.flight.start, node.speed * (1 + 1e-7), 0
+
+        def forced(t):
+            e = level * steady * complex(math.cos(w * t), math.sin(w * t))
+            return e.imag, w * e.real
+
+        while count < periods:
+            x0, v0 = forced(clock)
+            u, v = family.gap - x0, -TAU * speed - v0
+
+            def state(s, u=u, v=v, clock=clock):
+                x, dx = forced(clock + s)
+                c, sn, e = math.cos(wd * s), math.sin(wd * s) / wd, math.exp(-half * s)
+                big = v + half * u
+                return x + e * (u * c + big * sn), dx + e * (v * c - sn * (half * v + (wd**2 + half**2) * u))
+
+            grid = np.linspace(0.2 / 400 / frequency, (period + 2) / frequency, 400 * (period + 2))
+            heights = [state(s)[0] - family.gap for s in grid]
+            hit = next((i for i in range(len(grid) - 1) if heights[i] < 0 <= heights[i + 1]), None)
+            if hit is None:
+                return False
+            ends = grid[hit], grid[hit + 1]
+            s = brentq(lambda s, at=state: at(s)[0] - family.gap, *ends, xtol=1e-16, rtol=1e-15)
+            if abs(s * frequency - period) > 0.2:
+                return False
+            clock, speed, count = (clock + s) % (1 / frequency), state(s)[1], count + 1
+        return True
+
+    assert alive(at_fold.excess * 0.99, 25)
+    assert not alive(at_fold.excess * 1.05, 400)
+
+
+@pytest.mark.parametrize("frequency", [20.90])
+def test_determinant_is_that_of_a_period_with_an_impact(frequency: float) -> None:
+    for period in (1, 3, 5):
+        orbit = equation_1(frequency, period).orbit(0.3)
+        assert np.linalg.det(orbit.monodromy()) == pytest.approx(math.exp(-MU * period / frequency) * TAU**2)
+    single = np.linalg.det(equation_1(frequency, 1).orbit(0.3).monodromy())
+    assert single == pytest.approx(0.0084338, abs=5e-8)  # what y' = -gamma x would make 0.84338
+
+
+@pytest.mark.parametrize("name", MODES)
+def test_orbits_close_under_integration(name: str) -> None:
+    """Start just after the impact, integrate over m/f: one impact, at the end, at the predicted speed."""
+    family = many_modes(name)
+    at_fold = family.fold()
+    assert at_fold is not None
+    for speed in (1.3 * at_fold.speed, 0.7 * at_fold.speed):
+        orbit = family.orbit(speed)
+        assert orbit.residual() < 1e-9
+        flight = orbit.flight
+        start = orbit.state(flight.start).ravel()
+        end = flight.start + flight.duration
+        before, none = integrate(family, orbit.amplitude, start, flight.start, end - 1e-9)
+        assert none == [] and np.allclose(orbit.state(end - 1e-9).ravel(), before, rtol=1e-6, atol=1e-9)
+        _, impacts = integrate(family, orbit.amplitude, start, flight.start, end + 1e-4)
+        assert len(impacts) == 1
+        assert impacts[0][0] == pytest.approx(end, abs=1e-10)
+        assert impacts[0][1] == pytest.approx(speed, rel=1e-8)
+
+
+@pytest.mark.parametrize("name", [*MODES, "equation 1"])
+@pytest.mark.parametrize("factor", [1.5, 0.6])
+def test_multipliers_are_those_of_integrated_neighbours(name: str, factor: float) -> None:
+    """Central differences of the motion over m/f from mid-flight to mid-flight, across one impact."""
+    family = equation_1(20.9, 3) if name == "equation 1" else many_modes(name)
+    orbit = family.orbit(factor * family.fold().speed)
+    flight, n = orbit.flight, len(family.omega)
+    middle = flight.start + 0.5 * flight.duration
+    centre = orbit.state(middle).ravel()
+    sizes = np.concatenate([np.full(n, 1.0), np.maximum(family.omega, 1.0)]) * 1e-6 * np.abs(centre[0])
+    columns = []
+    for k, size in enumerate(sizes):
+        ends = []
+        for sign in (1, -1):
+            shifted = centre.copy()
+            shifted[k] += sign * size
+            ends.append(integrate(family, orbit.amplitude, shifted, middle, middle + flight.duration)[0])
+        columns.append((ends[0] - ends[1]) / (2 * size))
+    found = np.linalg.eigvals(np.column_stack(columns))
+    expected = orbit.multipliers()
+    for value in expected[np.abs(expected) > 1e-4]:
+        assert np.min(np.abs(found - value)) < 2e-4 * max(1.0, abs(value))
+    assert np.max(np.abs(found)) == pytest.approx(abs(expected[0]), rel=2e-4)
+    assert orbit.stable == (np.max(np.abs(found)) < 1)
+    assert orbit.stable == (factor > 1)
+
+
+@pytest.mark.parametrize("name", MODES)
+def test_fold_has_a_multiplier_one_and_the_least_amplitude(name: str) -> None:
+    family = many_modes(name)
+    at_fold = family.fold()
+    assert np.min(np.abs(at_fold.multipliers() - 1)) < 1e-8
+    nearby = [family.excess(at_fold.speed * factor) for factor in (0.999, 1.0, 1.001)]
+    assert nearby[1] < min(nearby[0], nearby[2])
+    assert family.orbits(at_fold.excess - 1e-9) == ()
+    slow, fast = family.orbits(at_fold.excess * 0.9)
+    assert slow.speed < at_fold.speed < fast.speed
+    for orbit in (slow, fast):
+        assert orbit.excess == pytest.approx(0.9 * at_fold.excess, rel=1e-9)
+    assert len(family.orbits(0.01)) == 1
+    assert slow.amplitude == pytest.approx((1 + slow.excess) * family.grazing_amplitude, rel=1e-15)
+
+
+def test_many_modes_with_one_tip_value_are_equation_1() -> None:
+    """A second mode that the tip does not see changes nothing, even if it is rigid and undamped."""
+    plain = equation_1(21.5, 4)
+    family = MaximalFamily(
+        omega=[*plain.omega, 0.0], decay_rate=[MU, 0.0], phi=[2.0, 0.0], participation=[0.5, 1.0],
+        drive_frequency=21.5, gap=0.01, restitution=TAU, period=4,
+    )  # fmt: skip
+    assert family.fold().excess == pytest.approx(plain.fold().excess, rel=1e-12)
+    assert family.fold().speed / family.gap == pytest.approx(plain.fold().speed / plain.gap, rel=1e-12)
+
+
+def test_letters_orbits_touch_the_wall_once() -> None:
+    """Dense sampling of the flights at the fold and at grazing; 19.65 Hz at grazing is the counterexample."""
+    for frequency, period, *_ in TABLE:
+        family = equation_1(frequency, period)
+        orbits = [family.fold(), *family.orbits(1e-6)]
+        for orbit in orbits:
+            assert highest(orbit) < 0
+    assert highest(equation_1(19.65, 3, free_period=0.0412).fold()) < 0
+    assert highest(equation_1(19.65, 3, free_period=0.0412).orbits(1e-3)[-1]) > 0
+
+
+def test_second_impact_ends_the_orbits_of_equation_1() -> None:
+    """23.40 Hz: p11 up to +0.0023, far below the map's +0.0155. Fig. 5: p3 exists below grazing only."""
+    fig_5 = (19.65, 3, 0.0412)
+    cases = [(23.40, 11, T, 0.1, 2.278e-3), (*fig_5, 0.1, -0.13097), (*fig_5, 0.05, -0.11282)]
+    for frequency, period, free_period, tau, end in cases:
+        family = equation_1(frequency, period, free_period=free_period, restitution=tau)
+        below, above = (family.orbits(end + side * 2e-5)[-1] for side in (-1, 1))
+        assert below.stable and highest(below) < 0 < highest(above)
+    assert equation_1(19.65, 3, free_period=0.0412).fold().excess == pytest.approx(-0.132, abs=1e-3)
+    softer = equation_1(19.65, 3, free_period=0.0412, restitution=0.05)
+    assert softer.fold().excess == pytest.approx(-0.116, abs=1e-3)
+
+
+def highest(orbit) -> float:
+    """Largest tip height over the wall away from the ends of the flight, relative to the gap."""
+    flight = orbit.flight
+    share = np.linspace(1e-3, 1 - 1e-3, 3001)
+    x, v = orbit.tip(flight.start + share * flight.duration)
+    assert x.shape == v.shape == share.shape
+    return float(np.max(x) / orbit.family.gap - 1)
+
+
+def test_tip_velocity_is_the_rate_of_the_tip() -> None:
+    orbit = many_modes("three modes").fold()
+    times = orbit.flight.start + np.linspace(0.1, 0.9, 7) * orbit.flight.duration
+    rate = (orbit.tip(times + 1e-6)[0] - orbit.tip(times - 1e-6)[0]) / 2e-6
+    assert np.allclose(rate, orbit.tip(times)[1], rtol=1e-4, atol=1e-4 * orbit.speed)
+    with pytest.raises(ValueError, match="time"):
+        orbit.tip(orbit.flight.start - 1e-3)
+
+
+def test_share_of_the_first_mode_in_a_kick() -> None:
+    """The tip velocity of mode k changes by -(1 + e) phi_k^2/sum phi^2 times the approach speed."""
+    family = many_modes("three modes")
+    orbit = family.orbit(0.2)
+    jump = family.phi * (orbit.flight.velocity - orbit.before[1])
+    share = family.phi**2 / np.sum(family.phi**2)
+    assert np.allclose(jump, -(1 + family.restitution) * share * 0.2, rtol=1e-10)
+
+
+def test_family_of_an_oscillator() -> None:
+    plain = many_modes("three modes")
+    oscillator = SimpleNamespace(
+        model=SimpleNamespace(**{key: np.array(value) for key, value in MODES["three modes"].items()}),
+        drive=SimpleNamespace(frequency=20.5),
+        stop=SimpleNamespace(gap=0.012, law=SimpleNamespace(local_restitution=0.35)),
+        load=None,
+    )
+    assert MaximalFamily.from_oscillator(oscillator, period=3).fold().excess == plain.fold().excess
+    oscillator.stop.law = SimpleNamespace(stiffness=1e6)
+    again = MaximalFamily.from_oscillator(oscillator, period=3, restitution=0.35)
+    assert again.fold().excess == plain.fold().excess
+    with pytest.raises(TypeError, match="restitution"):
+        MaximalFamily.from_oscillator(oscillator, period=3)
+
+
+def test_family_of_the_real_oscillator() -> None:
+    reduction = pytest.importorskip("beam.reduction")
+    pytest.importorskip("contact.oscillator")
+    from contact.drive import HarmonicDrive
+    from contact.laws import NewtonRestitution
+    from contact.oscillator import ImpactOscillator
+    from contact.stop import Stop
+
+    oscillator = ImpactOscillator(
+        model=reduction.single_mode(free_period=T, decay_rate=MU),
+        drive=HarmonicDrive(frequency=21.5),
+        stop=Stop(gap=0.01, law=NewtonRestitution(local_restitution=TAU)),
+    )
+    family = MaximalFamily.from_oscillator(oscillator, period=4)
+    assert family.grazing_amplitude == pytest.approx(oscillator.grazing_amplitude(), rel=1e-14)
+    assert np.allclose(family.response, oscillator.steady_response(), rtol=1e-14)
+    assert family.fold().excess == pytest.approx(-1.32105924246e-2, abs=1e-13)
+    assert NordmarkMap.from_oscillator(oscillator).restitution == TAU
+
+
+@pytest.mark.parametrize(
+    ("changes", "word"),
+    [
+        ({"omega": [154.0, -960.0, 2690.0]}, "omega"),
+        ({"decay_rate": [3.56, 19.2]}, "decay_rate"),
+        ({"phi": [0.0, 0.0, 0.0]}, "phi"),
+        ({"participation": [0.0, 0.0, 0.0]}, "participation"),
+        ({"drive_frequency": 0.0}, "drive_frequency"),
+        ({"gap": -0.01}, "gap"),
+        ({"restitution": 1.01}, "restitution"),
+        ({"period": 0}, "period"),
+        ({"omega": [0.0, 960.0, 2690.0]}, r"omega\[0\]"),
+        ({"omega": [154.0, 6 * math.pi * 21.0, 2690.0], "decay_rate": [3.56, 0.0, 80.0]}, r"omega\[1\]"),
+        ({"omega": [2 * math.pi * 21.0, 960.0, 2690.0], "decay_rate": [0.0, 0.0, 0.0]}, "drive_frequency"),
+    ],
+)
+def test_wrong_fields_are_named(changes: dict[str, object], word: str) -> None:
+    fields = MODES["three modes"] | dict(drive_frequency=21.0, gap=0.012, restitution=0.35, period=3)
+    fields |= changes
+    with pytest.raises(ValueError, match=word):
+        MaximalFamily(**fields)
+
+
+def test_wrong_calls_are_named() -> None:
+    family = equation_1(20.9, 3)
+    with pytest.raises(ValueError, match="speed"):
+        family.orbit(0.0)
+    with pytest.raises(ValueError, match="excess"):
+        family.orbits(-1.0)
+    with pytest.raises(ValueError, match="free_period"):
+        equation_1(20.9, 3, free_period=0.0)
+    above = equation_1(21.02, 3)
+    assert above.fold() is None and len(above.orbits(1e-4)) == 1 and above.orbits(-1e-4) == ()
