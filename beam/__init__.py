@@ -31,7 +31,8 @@ from .material import ALUMINA, BRASS, DAMPING_TAPE, STEEL, Material
 from .modes import Modes, ShapesAlong, natural_modes
 from .reduction import ModalModel, reduce, single_mode
 from .section import Layer, StripSection
-from .spring import LeafSpring, Readout, Support, Tip, cantilever, folded_u, straight_strip
+from .spring import LeafSpring, Readout, Support, Tip
+from .spring_shapes import cantilever, folded_u, straight_strip
 
 __all__ = [
     "ALUMINA",

@@ -1,27 +1,17 @@
-"""Euler-Bernoulli strips along a plane centreline, by finite elements in the arc length.
+"""The finite-element model of a leaf spring: pieces of strip, tied together, with supports and tip.
 
-A point of the centreline moves by u t + w n relative to the base. With k the curvature, and t' = k n,
-n' = -k t,
+Each piece of the centreline has elements of its own (`strip_element`). Where pieces meet, the displacements
+u along the tangent and w along the normal and the rotation w' + k u are continuous, not w': where the
+curvature k jumps by [k], w' jumps by -[k] u, while u' is free. The pieces are therefore assembled alone and
+tied by a sparse matrix T, x_pieces = T x, which holds the supports too:
 
-    stretch    u' - k w                             [1]
-    rotation   w' + k u                             [rad]
-    bending    (w' + k u)' = w'' + k u' on a piece  [1/m]
+    K = T^T K_pieces T,     M = T^T M_pieces T + the tip,     b = T^T b_pieces + the tip,
 
-and virtual work for test functions (v, z) reads
+and the tip, of mass M_t [kg] and rotary inertia J [kg m^2], adds for test functions (v, z)
 
-    int EA (u' - k w)(v' - k z) + EI (w'' + k u')(z'' + k v') ds + int m (u.. v + w.. z) ds
-        + M (u.. v + w.. z)|tip + J (w' + k u)..(z' + k v)|tip  =  -z_base.. b(v, z),
+    M_t (u.. v + w.. z) + J (w' + k u)..(z' + k v)  =  -z_base.. M_t (e_t v + e_n z)     where it sits,
 
-    b(v, z) = int m (e_t v + e_n z) ds + M (e_t v + e_n z)|tip,      e the drive direction.
-
-EA [N], EI [N m^2] and m [kg/m] belong to the section, M [kg] and J [kg m^2] to the tip. Shear and the rotary
-inertia of the strip itself are left out.
-
-On each piece w is cubic Hermite and u continuous of degree four, rich enough to cancel any cubic k w: thin
-arcs do not lock. Where pieces meet, u, w and the rotation are continuous, not w': where k jumps by [k], w'
-jumps by -[k] u, while u' is free. The pieces are therefore assembled alone and tied by a sparse matrix T,
-x_pieces = T x, which holds the supports too. Coordinates on a piece run from its middle, which keeps the
-Hermite basis, built from powers of the coordinate, accurate.
+e the drive direction.
 """
 
 from __future__ import annotations
@@ -32,90 +22,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import skfem as sk
 from numpy.typing import NDArray
 from scipy.sparse import block_diag, csr_array
 from scipy.sparse.linalg import splu
 
-from .section import StripSection
 from .spring import HELD, LeafSpring
-
-#: Degree of the tangential displacement.
-TANGENTIAL_DEGREE = 4
-#: Exact for the product of two quartics.
-QUADRATURE_ORDER = 2 * TANGENTIAL_DEGREE
-#: Unknowns at a node of a piece, in this order: u, w, w'.
-NODAL = 3
-
-Field = Any  # values of a scikit-fem function at the quadrature points, with .grad and .hess
-
-
-def stretch(u: Field, w: Field, k: float) -> Field:
-    """Membrane strain u' - k w [1]."""
-    return u.grad[0] - k * w
-
-
-def bend(u: Field, w: Field, k: float) -> Field:
-    """Change of curvature w'' + k u' [1/m]."""
-    return w.hess[0, 0] + k * u.grad[0]
-
-
-@sk.BilinearForm
-def stretching(u: Field, w: Field, v: Field, z: Field, p: Any) -> Field:
-    """int EA (u' - k w)(v' - k z) ds."""
-    return p.EA * stretch(u, w, p.k) * stretch(v, z, p.k)
-
-
-@sk.BilinearForm
-def bending(u: Field, w: Field, v: Field, z: Field, p: Any) -> Field:
-    """int EI (w'' + k u')(z'' + k v') ds."""
-    return p.EI * bend(u, w, p.k) * bend(v, z, p.k)
-
-
-@sk.BilinearForm
-def inertia(u: Field, w: Field, v: Field, z: Field, p: Any) -> Field:
-    """int m (u v + w z) ds."""
-    return p.m * (u * v + w * z)
-
-
-@sk.LinearForm
-def base_motion(v: Field, z: Field, p: Any) -> Field:
-    """int m (e_t v + e_n z) ds."""
-    return p.m * (p.along * v + p.across * z)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class PieceMesh:
-    """One piece of the centreline: from arc length `start` [m] on, `nodes` counted from there [m]."""
-
-    start: float
-    nodes: NDArray[np.float64]
-    curvature: float
-    section: StripSection
-
-    @property
-    def size(self) -> int:
-        """Number of unknowns: those at the nodes, then those inside the elements."""
-        return NODAL * self.nodes.size + (TANGENTIAL_DEGREE - 1) * (self.nodes.size - 1)
-
-    def basis(self, **points: Any) -> tuple[sk.Basis, NDArray[np.float64]]:
-        """Return the basis of (u, w) and the arc lengths of its points [m], shape (n_elements, n_points)."""
-        middle = 0.5 * self.nodes[-1]
-        element = sk.ElementComposite(sk.ElementLinePp(TANGENTIAL_DEGREE), sk.ElementLineHermite())
-        basis = sk.Basis(sk.MeshLine(self.nodes - middle), element, **points)
-        return basis, self.start + middle + np.asarray(basis.global_coordinates())[0]
-
-    def sampling(
-        self, local: NDArray[np.float64], elements: NDArray[np.intp] | None = None
-    ) -> tuple[NDArray[np.float64], tuple[csr_array, ...]]:
-        """Arc lengths [m] and matrices of u, w and rotation at `local` points (0 to 1) of the elements."""
-        basis, s = self.basis(quadrature=(local[None, :], np.ones(local.size)), elements=elements)
-        fields = [(u + 0.0, w + 0.0, w.grad[0] + self.curvature * u) for u, w in basis.basis]
-        rows = np.tile(np.arange(s.size), basis.Nbfun)
-        columns = np.repeat(basis.element_dofs, local.size, axis=1).ravel()
-        entries = (np.concatenate([np.broadcast_to(field[i], s.shape) for field in fields]) for i in range(3))
-        shape = (s.size, basis.N)
-        return s.ravel(), tuple(csr_array((part.ravel(), (rows, columns)), shape=shape) for part in entries)
+from .strip_element import NODAL, QUADRATURE_ORDER, PieceMesh, base_motion, bending, inertia, stretching
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -160,6 +72,25 @@ class Discretization:
         if self.spring.rigid_motions:
             return None
         return float(self.tip @ splu(self.stiffness.tocsc()).solve(self.tip))
+
+    def strain_energies(self, shapes: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Strain energies of shapes, from their strains rather than from K.
+
+        Parameters
+        ----------
+        shapes : ndarray, shape (n_dofs, n)
+
+        Returns
+        -------
+        ndarray, shape (2, n_pieces, n)
+            In stretching and in bending of each piece [J, for shapes in m]. Their sum is x^T K x / 2 with
+            some four digits more: K loses them to the stiffness of single elements.
+        """
+        energies, first, unknowns = [], 0, self.ties @ shapes
+        for piece in self.pieces:
+            energies.append(piece.strain_energies(unknowns[first : first + piece.size]))
+            first += piece.size
+        return np.stack(energies, axis=1)
 
 
 def default_elements(spring: LeafSpring) -> tuple[int, ...]:

@@ -12,9 +12,6 @@ On a straight centreline small motions along and across do not couple; only w an
 
 The base moves by z [m] along the unit vector `drive`; the displacement of the tip, the force on it and every
 displacement read-out count along that vector. A light beam reflected off the strip measures theta instead.
-
-The folded U: two legs, parallel to x and 2 r apart, clamped at x = 0; a semicircle of radius r [m] joins
-them, with the ball in its middle; driven along y (sway), across the legs and in the plane of the U.
 """
 
 from __future__ import annotations
@@ -26,7 +23,7 @@ from typing import Literal
 
 import numpy as np
 
-from .centreline import Arc, Centreline, Straight
+from .centreline import Centreline
 from .material import require_number
 from .section import StripSection
 
@@ -153,121 +150,3 @@ class LeafSpring:
             held[0] |= self.centreline.is_straight
             rows.append(at_end[held])
         return 3 - int(np.linalg.matrix_rank(np.concatenate(rows), tol=1e-9))
-
-
-def folded_u(
-    *,
-    leg_length: float,
-    bend_radius: float,
-    section: StripSection,
-    tip: Tip,
-    damped_section: StripSection | None = None,
-    damped_span: tuple[float, float] | None = None,
-    supports: tuple[Support, Support] = ("clamped", "clamped"),
-    drive: tuple[float, float] = (0.0, 1.0),
-    readouts: Mapping[str, Readout] | None = None,
-) -> LeafSpring:
-    """Return a strip folded into a U, the tip in the middle of the bend.
-
-    Parameters
-    ----------
-    leg_length, bend_radius : float
-        Straight length of each leg, radius of the centreline of the bend [m].
-    section : StripSection
-        Of the bare strip.
-    tip : Tip
-    damped_section : StripSection, optional
-        With the glued layer.
-    damped_span : tuple of two floats, optional
-        Where on each leg the layer lies, measured from the supports [m]; the whole leg by default.
-    supports : tuple of two supports
-    drive : tuple of two floats
-        (0, 1) is sway; (1, 0) is along the legs.
-    readouts : mapping of str to Readout, optional
-    """
-    leg, sections = _leg(leg_length, section, damped_section, damped_span)
-    bend = Arc(radius=bend_radius, angle=math.pi)
-    return LeafSpring(
-        centreline=Centreline(pieces=(*leg, bend, *reversed(leg)), start=(0.0, -bend_radius)),
-        sections=(*sections, section, *reversed(sections)),
-        supports=supports,
-        tip=tip,
-        tip_at=leg_length + 0.5 * math.pi * bend_radius,
-        drive=drive,
-        readouts=readouts or {},
-    )
-
-
-def straight_strip(
-    *,
-    length: float,
-    section: StripSection,
-    supports: tuple[Support, Support],
-    tip_at: float,
-    tip: Tip | None = None,
-    damped_section: StripSection | None = None,
-    damped_span: tuple[float, float] | None = None,
-    readouts: Mapping[str, Readout] | None = None,
-) -> LeafSpring:
-    """Return a straight strip along x, driven along y, with any two supports and the tip anywhere.
-
-    Parameters
-    ----------
-    length : float
-        [m].
-    section, damped_section, damped_span
-        As for `folded_u`, the span measured from x = 0.
-    supports : tuple of two supports
-    tip_at : float
-        Distance of the tip from x = 0 [m].
-    tip : Tip, optional
-        Without mass by default.
-    readouts : mapping of str to Readout, optional
-    """
-    pieces, sections = _leg(length, section, damped_section, damped_span)
-    return LeafSpring(
-        centreline=Centreline(pieces=pieces),
-        sections=sections,
-        supports=supports,
-        tip=tip or Tip(),
-        tip_at=tip_at,
-        readouts=readouts or {},
-    )
-
-
-def cantilever(
-    *,
-    length: float,
-    section: StripSection,
-    tip: Tip | None = None,
-    damped_section: StripSection | None = None,
-    damped_span: tuple[float, float] | None = None,
-    readouts: Mapping[str, Readout] | None = None,
-) -> LeafSpring:
-    """Return a `straight_strip` clamped at x = 0 and free at x = length, where the tip sits."""
-    return straight_strip(
-        length=length,
-        section=section,
-        supports=("clamped", "free"),
-        tip_at=length,
-        tip=tip,
-        damped_section=damped_section,
-        damped_span=damped_span,
-        readouts=readouts,
-    )
-
-
-def _leg(
-    length: float, bare: StripSection, damped: StripSection | None, span: tuple[float, float] | None
-) -> tuple[tuple[Straight, ...], tuple[StripSection, ...]]:
-    """Pieces and sections of a straight run, from the support outwards."""
-    if damped is None:
-        if span is not None:
-            raise ValueError(f"damped_span is {span} m without a damped_section; give both or neither.")
-        return (Straight(length=length),), (bare,)
-    start, end = (0.0, length) if span is None else span
-    if not 0.0 <= start < end <= length:
-        raise ValueError(f"damped_span is {span} m; it must increase and lie between 0 and {length} m.")
-    cuts = [(start, bare), (end - start, damped), (length - end, bare)]
-    kept = [(piece, section) for piece, section in cuts if piece > 0.0]
-    return tuple(Straight(length=piece) for piece, _ in kept), tuple(section for _, section in kept)

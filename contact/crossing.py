@@ -32,7 +32,7 @@ from contact.flight import (
 __all__ = ["CROSSES", "FREE", "GRAZES", "UNRESOLVED", "first_crossing", "first_polynomial_root"]
 
 FREE, CROSSES, GRAZES, UNRESOLVED = 0, 1, 2, 3
-_SKIP, _ROOT, _PEAK, _STALL = 0, 1, 2, 3
+_SKIP, _ROOT, _PEAK, _NEAR, _STALL = 0, 1, 2, 3, 4
 
 GRAZE_TOLERANCE = 1e-13
 """Largest rounding bound, relative to the gap, within which a peak may be called a graze."""
@@ -40,7 +40,11 @@ GRAZE_TOLERANCE = 1e-13
 
 @kernel
 def certify(y0, y1, y2, m3, rest, margin, h, h_min):
-    """The longest stretch of h, h/2, h/4, ... that one of the three proofs settles: (proof, stretch)."""
+    """The longest stretch of h, h/2, h/4, ... that one of the three proofs settles: (proof, stretch).
+
+    As long as some modes are only bounded (`rest` > 0), a stretch on which the others alone have a root or a
+    peak that matters is reported as near: there all modes must be sampled.
+    """
     while h > h_min:
         top = max(y0, y0 + h * (y1 + 0.5 * h * y2))
         if y2 < 0.0 and y1 > 0.0 and -y1 > y2 * h:
@@ -48,13 +52,13 @@ def certify(y0, y1, y2, m3, rest, margin, h, h_min):
         cubic = m3 * h * h * h / 6.0
         if top + cubic + rest < -margin:
             return _SKIP, h
-        if rest == 0.0 and y1 > 0.0:
+        if y1 > 0.0:
             slope_loss = 0.5 * m3 * h * h
             if y1 + min(0.0, y2 * h) - slope_loss > 0.0:
                 if y0 + h * (y1 + 0.5 * h * y2) - cubic > margin:
-                    return _ROOT, h
+                    return (_ROOT if rest == 0.0 else _NEAR), h
             elif y2 + m3 * h < 0.0 and y1 + y2 * h + slope_loss < 0.0:
-                return _PEAK, h
+                return (_PEAK if rest == 0.0 else _NEAR), h
         h *= 0.5
     return _STALL, h
 
@@ -262,7 +266,7 @@ def first_crossing(motion, base, u, v, duration, order, envelope):
             distance = -height
             h = 2.0 * step
         elif sampled < n:
-            sampled = min(n, 2 * sampled)
+            sampled = n
             distance = 0.0
         else:
             return UNRESOLVED, s
@@ -273,10 +277,10 @@ def first_crossing(motion, base, u, v, duration, order, envelope):
 def horner(coefficients, s):
     """Value of a polynomial and its first two derivatives at `s`; coefficients in rising order."""
     y0, y1, y2 = 0.0, 0.0, 0.0
-    for a in coefficients[::-1]:
+    for n in range(coefficients.size - 1, -1, -1):
         y2 = y2 * s + 2.0 * y1
         y1 = y1 * s + y0
-        y0 = y0 * s + a
+        y0 = y0 * s + coefficients[n]
     return y0, y1, y2
 
 

@@ -12,7 +12,9 @@ from __future__ import annotations
 import math
 
 from contact.compiled import kernel
+from contact.crossing import polynomial_root
 from contact.flight import propagate
+from contact.hertz_series import hertz_state
 from contact.series import series_state
 
 REGIME, ORDER, LOGGED, SAMPLED, COUNT = 0, 1, 2, 3, 4
@@ -28,8 +30,9 @@ def sample_flight(motion, u, v, base, until, period_index, integers, sample_peri
     i = integers[SAMPLED]
     while i < sample_clock.size and sample_period[i] == period_index and sample_clock[i] <= until:
         propagate(motion, u, v, sample_clock[i] - base, su, sv)
-        samples[i, :n] = su
-        samples[i, n:] = sv
+        for k in range(n):
+            samples[i, k] = su[k]
+            samples[i, n + k] = sv[k]
         i += 1
     integers[SAMPLED] = i
 
@@ -41,8 +44,28 @@ def sample_series(series, base, until, period_index, integers, sample_period, sa
     i = integers[SAMPLED]
     while i < sample_clock.size and sample_period[i] == period_index and sample_clock[i] <= until:
         series_state(series, sample_clock[i] - base, su, sv)
-        samples[i, :n] = su
-        samples[i, n:] = sv
+        for k in range(n):
+            samples[i, k] = su[k]
+            samples[i, n + k] = sv[k]
+        i += 1
+    integers[SAMPLED] = i
+
+
+@kernel
+def sample_hertz(
+    us, vs, scalars, base, until, end, period_index, integers, sample_period, sample_clock, samples, su, sv
+):
+    """States at the sample times of a step under Hertz's law that ends at sigma = `end`, time `until`."""
+    n = su.size
+    i = integers[SAMPLED]
+    late = scalars[1].copy()
+    while i < sample_clock.size and sample_period[i] == period_index and sample_clock[i] <= until:
+        late[0] = base - sample_clock[i]
+        s = polynomial_root(late, 0.0, end) if sample_clock[i] > base else 0.0
+        hertz_state(us, vs, s, su, sv)
+        for k in range(n):
+            samples[i, k] = su[k]
+            samples[i, n + k] = sv[k]
         i += 1
     integers[SAMPLED] = i
 
@@ -66,9 +89,11 @@ def open_row(log, log_state, integers, floats, period_index, base, approach, kin
     log[i, OUT] = math.nan
     log[i, LOST] = math.nan
     log[i, KIND] = kind
-    log_state[i, :n] = u
-    log_state[i, n : 2 * n] = v
-    log_state[i, 2 * n :] = math.nan
+    for k in range(n):
+        log_state[i, k] = u[k]
+        log_state[i, n + k] = v[k]
+        log_state[i, 2 * n + k] = math.nan
+        log_state[i, 3 * n + k] = math.nan
 
 
 @kernel
@@ -82,7 +107,8 @@ def close_row(log, log_state, integers, floats, period_index, base, rebound, u, 
     log[i, END] = base
     log[i, OUT] = rebound
     log[i, LOST] = floats[LOSS]
-    log_state[i, 2 * n : 3 * n] = u
-    log_state[i, 3 * n :] = v
+    for k in range(n):
+        log_state[i, 2 * n + k] = u[k]
+        log_state[i, 3 * n + k] = v[k]
 
 

@@ -5,7 +5,9 @@ With the penetration d = x - gap [m] and its rate d' [m/s], the stop pushes the 
 
 * Impact law (no duration): ``NewtonRestitution``, velocity of the tip d' -> -e d' (letter 1996, below Eq. (1)).
 * Force laws: ``LinearContact``, N = max(0, k d + c d').  With a dashpot (c > 0) the force vanishes before the
-  tip has left the wall: the contact lets go inside, and may close again there.
+  tip has left the wall: the contact lets go inside, and may close again there.  ``HertzContact``, N = k d^(3/2)
+  (H. Hertz, J. reine angew. Math. 92 (1882) 156), and ``HuntCrossley``, N = k d^(3/2) (1 + chi d')
+  (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440), which vanishes only at d = 0.
 
 Each law names the kernel that handles it by a small integer and three numbers (`code`, `numbers`), so that
 compiled code sees no objects.
@@ -15,16 +17,23 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
-__all__ = ["ContactLaw", "LinearContact", "NewtonRestitution"]
+from scipy.optimize import brentq
+from scipy.special import gamma
 
-NEWTON, LINEAR = 0, 1
+__all__ = ["ContactLaw", "HertzContact", "HuntCrossley", "LinearContact", "NewtonRestitution"]
+
+NEWTON, LINEAR, HERTZ = 0, 1, 2
+
+HERTZ_TIME = 0.8 * math.sqrt(math.pi) * float(gamma(0.4) / gamma(0.9))
+"""Contact time of a free mass under Hertz's law over (greatest approach / approach velocity), 2.9432 [1]."""
 
 
 class ContactLaw:
     """What all laws offer to the compiled motion."""
 
-    code: int = -1
+    code: ClassVar[int] = -1
 
     @property
     def numbers(self) -> tuple[float, float, float]:
@@ -48,7 +57,7 @@ class NewtonRestitution(ContactLaw):
     """
 
     local_restitution: float
-    code = NEWTON
+    code: ClassVar[int] = NEWTON
 
     def __post_init__(self) -> None:
         e = self.local_restitution
@@ -73,7 +82,7 @@ class LinearContact(ContactLaw):
 
     stiffness: float
     damping: float = 0.0
-    code = LINEAR
+    code: ClassVar[int] = LINEAR
 
     def __post_init__(self) -> None:
         k, c = self.stiffness, self.damping
@@ -83,3 +92,108 @@ class LinearContact(ContactLaw):
     @property
     def numbers(self) -> tuple[float, float, float]:
         return (self.stiffness, self.damping, 0.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class HertzContact(ContactLaw):
+    """Elastic contact of a ball: N = `stiffness` d^(3/2) for d > 0.
+
+    Parameters
+    ----------
+    stiffness : float
+        k, above zero [N/m^1.5].
+    """
+
+    stiffness: float
+    code: ClassVar[int] = HERTZ
+
+    def __post_init__(self) -> None:
+        k = self.stiffness
+        _require(
+            math.isfinite(k) and k > 0, f"stiffness of the contact is {k} N/m^1.5; it must be finite and above zero"
+        )
+
+    @staticmethod
+    def of_bodies(
+        *, radius: float, youngs_modulus: float, poissons_ratio: float, other_modulus: float, other_ratio: float
+    ) -> HertzContact:
+        """A ball of `radius` [m] on a plate: k = (4/3) sqrt(R) / ((1 - nu^2)/E + (1 - nu'^2)/E') [N/m^1.5]."""
+        for name, value, unit in (
+            ("radius", radius, "m"), ("youngs_modulus", youngs_modulus, "Pa"), ("other_modulus", other_modulus, "Pa"),
+        ):
+            _require(
+                math.isfinite(value) and value > 0, f"{name} is {value} {unit}; it must be finite and above zero"
+            )
+        for name, value in (("poissons_ratio", poissons_ratio), ("other_ratio", other_ratio)):
+            _require(-1 < value <= 0.5, f"{name} is {value}; it must lie above -1 and not above 0.5")
+        compliance = (1 - poissons_ratio**2) / youngs_modulus + (1 - other_ratio**2) / other_modulus
+        return HertzContact(stiffness=4.0 / 3.0 * math.sqrt(radius) / compliance)
+
+    def greatest_approach(self, mass: float, velocity: float) -> float:
+        """Depth that a free `mass` [kg] reaches at approach `velocity` [m/s]: (5 m v^2 / (4 k))^(2/5) [m]."""
+        return float((1.25 * mass * velocity**2 / self.stiffness) ** 0.4)
+
+    def contact_time(self, mass: float, velocity: float) -> float:
+        """Duration of the contact of a free `mass` [kg] at approach `velocity` [m/s] [s]."""
+        return HERTZ_TIME * self.greatest_approach(mass, velocity) / velocity
+
+    @property
+    def numbers(self) -> tuple[float, float, float]:
+        return (self.stiffness, 0.0, 0.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class HuntCrossley(ContactLaw):
+    """Hertz's law with dissipation: N = `stiffness` d^(3/2) (1 + `dissipation` d') for d > 0.
+
+    A free mass leaves with v_out given by a - ln(1 + a) = -b - ln(1 - b), a = chi v_in, b = chi v_out.
+
+    Parameters
+    ----------
+    stiffness : float
+        k, above zero [N/m^1.5].
+    dissipation : float
+        chi, zero or more [s/m].
+    """
+
+    stiffness: float
+    dissipation: float
+    code: ClassVar[int] = HERTZ
+
+    def __post_init__(self) -> None:
+        k, chi = self.stiffness, self.dissipation
+        _require(
+            math.isfinite(k) and k > 0, f"stiffness of the contact is {k} N/m^1.5; it must be finite and above zero"
+        )
+        _require(
+            math.isfinite(chi) and chi >= 0,
+            f"dissipation of the contact is {chi} s/m; it must be finite and zero or more",
+        )
+
+    @staticmethod
+    def with_restitution(*, stiffness: float, restitution: float, velocity: float) -> HuntCrossley:
+        """The law under which a free mass with approach `velocity` [m/s] leaves with `restitution` times it.
+
+        `restitution` lies above 0 and is at most 1; the relation is exact, for any exponent of d.
+        """
+        e = restitution
+        _require(math.isfinite(e) and 0 < e <= 1, f"restitution is {e}; it must lie above 0 and not above 1")
+        _require(
+            math.isfinite(velocity) and velocity > 0, f"velocity is {velocity} m/s; it must be finite and above zero"
+        )
+        if e == 1.0:
+            return HuntCrossley(stiffness=stiffness, dissipation=0.0)
+
+        def balance(w: float) -> float:
+            """The relation with b = 1 - exp(-w), a = b/e: b itself comes too close to 1 when e is small."""
+            b = -math.expm1(-w)
+            return b / e - math.log1p(b / e) + b - w
+
+        # for e near 1 the root is at b = (3/2)(1/e^2 - 1)/(1/e^3 + 1), for small e just below w = 1/e + 1
+        low = 0.5 * min(1.0, 1.5 * (1.0 / e**2 - 1.0) / (1.0 / e**3 + 1.0))
+        root = -math.expm1(-float(brentq(balance, low, 1.0 / e + 2.0, xtol=1e-300, rtol=1e-15, maxiter=500)))
+        return HuntCrossley(stiffness=stiffness, dissipation=root / (e * velocity))
+
+    @property
+    def numbers(self) -> tuple[float, float, float]:
+        return (self.stiffness, self.dissipation, 0.0)

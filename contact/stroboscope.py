@@ -90,6 +90,22 @@ class StroboscopicMap:
         q, v = steady_motion(self.oscillator.motion(), np.zeros(1))
         return State(displacement=q[0], velocity=v[0])
 
+    def tip(self, points: np.ndarray) -> np.ndarray:
+        """Tip displacement of strobed `points`, shape (n_strobes,) [m]."""
+        return points[:, : self.oscillator.n_modes] @ (self.oscillator.model.phi / self._weight())
+
+    def readout(self, points: np.ndarray, name: str) -> np.ndarray:
+        """The read-out quantity `name` of the model at strobed `points`, shape (n_strobes,)."""
+        readouts = self.oscillator.model.readouts
+        if name not in readouts:
+            raise ValueError(f"name is {name!r}; the model has the read-out points {sorted(readouts)}")
+        return points[:, : self.oscillator.n_modes] @ (readouts[name] / self._weight())
+
+    def _weight(self) -> np.ndarray:
+        """phi, with its largest value for modes whose node is the tip [kg^-0.5]."""
+        phi = self.oscillator.model.phi
+        return np.where(phi != 0, phi, np.abs(phi).max())
+
     def step(self, state: State) -> State:
         """One drive period."""
         return self.orbit(state, 1).end
@@ -101,7 +117,8 @@ class StroboscopicMap:
         -------
         StrobedOrbit
             Its points are the contributions phi_k q_k and phi_k q_k' / omega_k of all modes to the tip motion,
-            shape (count, 2 n_modes) [m] (a mode of zero frequency counts with phi_k q_k' / (2 pi f)).
+            shape (count, 2 n_modes) [m] (a mode of zero frequency counts with phi_k q_k' / (2 pi f), one with its
+            node at the tip with the largest phi); `tip` and `readout` turn them into displacements.
 
         Raises
         ------
@@ -125,8 +142,9 @@ class StroboscopicMap:
             raise failure(status, motion, reached, floats, u, v)
         q, q_rate = steady_motion(motion, np.zeros(1))
         speed = np.where(motion.omega > 0, motion.omega, motion.drive)
+        weight = self._weight()
         points = np.empty_like(strobes)
-        points[:, :n] = (strobes[:, :n] + q) * motion.phi
-        points[:, n:] = (strobes[:, n:] + q_rate) * (motion.phi / speed)
+        points[:, :n] = (strobes[:, :n] + q) * weight
+        points[:, n:] = (strobes[:, n:] + q_rate) * (weight / speed)
         end: dict[str, Any] = {"displacement": u + q[0], "velocity": v + q_rate[0], "regime": int(integers[0])}
         return StrobedOrbit(end=State(time=(first + count) * motion.period, **end), points=points, impacts=counts)

@@ -5,7 +5,8 @@ loss of phase.  In each period a certified search (``contact.crossing``) finds t
 acts at once, a force law is followed through the contact (``contact.series``) until the tip is off the wall
 again.  Periods without a touch cost one multiplication by the flow of a period.
 
-Order: exact to rounding.  Stability limit: none.  Laws: ``NewtonRestitution``, ``LinearContact``.
+Order: exact to rounding.  Stability limit: none.  Laws: ``NewtonRestitution``, ``LinearContact``,
+``HertzContact``, ``HuntCrossley``.
 """
 
 from __future__ import annotations
@@ -17,6 +18,15 @@ import numpy as np
 from contact.compiled import kernel
 from contact.crossing import CROSSES, FREE, UNRESOLVED, first_crossing, first_polynomial_root
 from contact.flight import EPS, flow_matrix, propagate, tip_rounding, tip_state
+from contact.hertz_series import (
+    HERTZ_ORDER,
+    depth_root,
+    evaluate,
+    hertz_series,
+    hertz_state,
+    hertz_step,
+    work_on_stop,
+)
 from contact.impact_log import (
     CLOCK,
     COUNT,
@@ -27,9 +37,10 @@ from contact.impact_log import (
     close_row,
     open_row,
     sample_flight,
+    sample_hertz,
     sample_series,
 )
-from contact.laws import NEWTON
+from contact.laws import HERTZ, NEWTON
 from contact.newton import accumulation_time, newton_impact
 from contact.series import (
     CONTACT,
@@ -54,6 +65,13 @@ drown in rounding, so a longer sequence is not on its way to rest."""
 MOST_STEPS = 1_000_000
 """Bound of flights and series steps in one drive period: 1e6 steps of two radians reach modes of 3e5 drive
 frequencies."""
+
+
+@kernel
+def negate(series, negative):
+    """`negative` = -`series`."""
+    for n in range(series.size):
+        negative[n] = -series[n]
 
 
 @kernel
@@ -95,14 +113,19 @@ def advance(
     """
     n = motion.omega.size
     flow = np.empty((n, 4))
+    loaded = False
     for k in range(n):
-        flow[k] = flow_matrix(motion.omega[k], motion.decay[k], motion.damped[k], motion.damped_low[k], motion.period)
-    loaded = np.any(motion.load != 0.0)
+        flow[k, 0], flow[k, 1], flow[k, 2], flow[k, 3] = flow_matrix(
+            motion.omega[k], motion.decay[k], motion.damped[k], motion.damped_low[k], motion.period
+        )
+        loaded = loaded or motion.load[k] != 0.0
     envelope = np.empty(n + 1)
     su, sv = np.empty(n), np.empty(n)
     series = np.empty((SERIES_ORDER + 1, n))
     depth, force = np.empty(SERIES_ORDER + 1), np.empty(SERIES_ORDER + 1)
     negative = np.empty(SERIES_ORDER + 1)
+    us, vs, scalars = np.empty((HERTZ_ORDER + 1, n)), np.empty((HERTZ_ORDER + 1, n)), np.empty((7, HERTZ_ORDER + 1))
+    root = -1.0  # sqrt of the penetration under Hertz's law; below zero when it is to be computed anew
 
     index = first
     steps = 0
@@ -149,6 +172,7 @@ def advance(
                 open_row(log, log_state, integers, floats, index, base, approach, 0, u, v)
                 if motion.law != NEWTON:
                     integers[REGIME] = CONTACT
+                    root = 0.0
                     continue
                 e = motion.number0
                 newton_impact(motion, v, approach, e)
@@ -173,6 +197,22 @@ def advance(
 
             # in contact: one step of the series, cut at the first event
             regime = integers[REGIME]
+            if motion.law == HERTZ:
+                scalars[0, 0] = root if root >= 0.0 else depth_root(motion, base, u, v)
+                hertz_series(motion, base, u, v, us, vs, scalars)
+                s, released, h = hertz_step(motion, u, v, us, vs, scalars, end - base)
+                until = base + h if h < end - base else end
+                sample_hertz(us, vs, scalars, base, until, s, index, integers, sample_period, sample_clock, samples, su, sv)
+                floats[LOSS] += work_on_stop(scalars, s)
+                root = evaluate(scalars[0], s)
+                hertz_state(us, vs, s, u, v)
+                floats[CLOCK] = until
+                if released:
+                    integers[REGIME] = OUTSIDE
+                    integers[ORDER] = 1
+                    _height, velocity, _a = tip_state(motion, until, u, v)
+                    close_row(log, log_state, integers, floats, index, until, velocity, u, v)
+                continue
             contact_series(motion, regime, base, u, v, series, depth, force)
             h = min(series_step(motion, u, v, series), end - base)
             if h <= EPS * base:
@@ -181,7 +221,7 @@ def advance(
             rounding = tip_rounding(motion, u, v)
             stop_at, next_regime = -1.0, regime
             if regime == CONTACT:
-                negative[:] = -force
+                negate(force, negative)
                 margin = rounding * motion.number0
                 stop_at = first_polynomial_root(negative, 0.0, h, margin)
                 next_regime = OUTSIDE if motion.number1 == 0.0 else INSIDE
@@ -190,12 +230,12 @@ def advance(
                 for k in range(n):
                     scale += abs(motion.phi[k]) * (motion.omega[k] ** 2 * abs(u[k]) + motion.decay[k] * abs(v[k]))
                 scale += (abs(motion.tip_sine) + abs(motion.tip_cosine)) * motion.drive**2
-                negative[:] = -force
+                negate(force, negative)
                 stop_at = first_polynomial_root(negative, 0.0, h, 4.0 * EPS * scale / motion.compliance)
                 next_regime = OUTSIDE
             else:
                 closes = first_polynomial_root(force, 0.0, h, rounding * motion.number0)
-                negative[:] = -depth
+                negate(depth, negative)
                 leaves = first_polynomial_root(negative, 0.0, h, rounding)
                 if leaves >= 0.0 and (closes < 0.0 or leaves <= closes):
                     stop_at, next_regime = leaves, OUTSIDE
@@ -221,8 +261,9 @@ def advance(
         if counts.size > 0:
             counts[index - first] = integers[COUNT]
         if strobes.shape[0] > 0:
-            strobes[index - first, :n] = u
-            strobes[index - first, n:] = v
+            for k in range(n):
+                strobes[index - first, k] = u[k]
+                strobes[index - first, n + k] = v[k]
         integers[COUNT] = 0
         floats[CLOCK] = 0.0
         steps = 0

@@ -63,7 +63,6 @@ class Scene:
         _check_strip(self)
         _check_damping(self)
         _check_modal_data(self)
-        _check_scan(self)
 
     def __getitem__(self, key: str) -> Any:
         """The value of a dotted key, `scene["spring.width_m"]`."""
@@ -217,10 +216,3 @@ def _check_modal_data(scene: Scene) -> None:
         )
     scene.refuse_drive_above(max(sorted(data.frequencies_hz)[: scene.modes.count]))
 
-
-def _check_scan(scene: Scene) -> None:
-    if scene.scan.excess_min >= scene.scan.excess_max:
-        raise SceneError(
-            f"scan.excess_min must be less than scan.excess_max, {scene.scan.excess_max} (dimensionless), "
-            f"not {scene.scan.excess_min}"
-        )

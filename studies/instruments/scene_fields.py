@@ -1,8 +1,8 @@
 """The keys of a scene: one line each, and no other list of them anywhere.
 
 Adding a key is adding a line here. `letter` marks what the letter prints, `calibrated` what was fitted to a
-number it prints (thickness to the free period, ball mass and gap to the impacts and the drive amplitude),
-`assumed` everything else. Names end in their unit.
+number it prints (thickness to the free period, loss factor of the tape to the decay rate, ball mass and gap
+to the impacts and the drive amplitude), `assumed` everything else. Names end in their unit.
 """
 
 from __future__ import annotations
@@ -44,25 +44,35 @@ class SpringKeys(Section):
     width_m: Annotated[float, Key(
         "m", ASSUMED, "width of the strip", POSITIVE)] = 0.012
     thickness_m: Annotated[float, Key(
-        "m", CALIBRATED, "thickness of the sheet, from the free period", POSITIVE)] = 0.00065
+        "m", CALIBRATED, "thickness of the sheet, from the free period", POSITIVE)] = 0.000679543
     young_modulus_pa: Annotated[float, Key(
         "Pa", ASSUMED, "Young's modulus of the sheet (brass)", POSITIVE)] = 105e9
     poisson_ratio: Annotated[float, Key(
         "1", ASSUMED, "Poisson's ratio of the sheet (brass)", POISSON)] = 0.34
     density_kg_m3: Annotated[float, Key(
         "kg/m^3", ASSUMED, "density of the sheet (brass)", POSITIVE)] = 8500.0
+    loss_factor: Annotated[float, Key(
+        "1", ASSUMED, "loss factor of the sheet (brass)", NOT_NEGATIVE)] = 1e-3
     tape_thickness_m: Annotated[float, Key(
         "m", ASSUMED, "thickness of the damping tape; 0 for none", NOT_NEGATIVE)] = 0.00045
+    tape_sides: Annotated[int, Key(
+        "1", ASSUMED, "faces of the strip that carry the tape", whole(1, 2))] = 1
+    tape_coverage: Annotated[float, Key(
+        "1", ASSUMED, "part of each leg, or of a straight strip, that the tape covers from its start; the "
+        "bend is bare", Interval(0.0, 1.0, low_open=True))] = 1.0
     tape_modulus_pa: Annotated[float, Key(
         "Pa", ASSUMED, "Young's modulus of the tape", POSITIVE)] = 1e9
+    tape_poisson_ratio: Annotated[float, Key(
+        "1", ASSUMED, "Poisson's ratio of the tape", POISSON)] = 0.40
     tape_density_kg_m3: Annotated[float, Key(
         "kg/m^3", ASSUMED, "density of the tape", POSITIVE)] = 1400.0
     tape_loss_factor: Annotated[float, Key(
-        "1", ASSUMED, "loss factor of the tape", NOT_NEGATIVE)] = 0.4
+        "1", CALIBRATED, "loss factor of the tape, from the decay of mode 1", NOT_NEGATIVE)] = 0.472839
     elements_per_leg: Annotated[int, Key(
-        "1", ASSUMED, "elements on a leg, or on a straight strip", whole(1, 2000))] = 20
+        "1", ASSUMED, "elements on a leg, or on a straight strip; 0 for the default, 60 on each of two legs "
+        "or 120 on a straight strip", whole(0, 2000))] = 0
     elements_on_arc: Annotated[int, Key(
-        "1", ASSUMED, "elements on the bend", whole(1, 2000))] = 20
+        "1", ASSUMED, "elements on the bend; 0 for the default, 48", whole(0, 2000))] = 0
     start_support: Annotated[str, Key(
         "", ASSUMED, "support at the start of a straight strip", SUPPORTS)] = "clamped"
     end_support: Annotated[str, Key(
@@ -78,6 +88,9 @@ class TipKeys(Section):
         "kg", CALIBRATED, "ball and mount, so that mode 1 is stopped (kick 1)", NOT_NEGATIVE)] = 0.0053
     rotary_inertia_kg_m2: Annotated[float, Key(
         "kg m^2", ASSUMED, "rotary inertia of ball and mount", NOT_NEGATIVE)] = 0.0
+    arc_fraction: Annotated[float, Key(
+        "1", ASSUMED, "place of the tip on a straight_strip: 0 first end, 1 last end; the other kinds have "
+        "theirs", FRACTION)] = 1.0
     ball_radius_m: Annotated[float, Key(
         "m", ASSUMED, "radius of the ball", POSITIVE)] = 0.0025
     ball_young_modulus_pa: Annotated[float, Key(
@@ -98,6 +111,9 @@ class ReadoutKeys(Section):
     arc_fraction: Annotated[float, Key(
         "1", ASSUMED, "place along the strip: 0 first end, 1 last end; the ball of a folded strip sits "
         "at 0.5", FRACTION)] = 0.4
+    quantity: Annotated[str, Key(
+        "", ASSUMED, "what is read there: displacement along the drive (m) or rotation of the strip (rad)",
+        one_of("displacement", "rotation"))] = "displacement"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,7 +125,8 @@ class DampingKeys(Section):
         "", ASSUMED, "how the modes decay; of no effect with spring.kind modal_data",
         one_of("strips", "constant_ratio", "constant_loss_factor", "rayleigh", "measured"))] = "strips"
     decay_rate_per_s: Annotated[float, Key(
-        "1/s", LETTER, "c of mode 1 (printed with Fig. 5)", NOT_NEGATIVE)] = 3.56
+        "1/s", LETTER, "strips: c of mode 1 (printed with Fig. 5); that of the others follows in proportion",
+        NOT_NEGATIVE)] = 3.56
     ratio: Annotated[float, Key(
         "1", ASSUMED, "constant_ratio: c/(2 omega) of every mode", NOT_NEGATIVE)] = 0.0116
     loss_factor: Annotated[float, Key(
@@ -211,12 +228,14 @@ class ScanKeys(Section):
     """Slow scans of the drive amplitude through grazing; excess is amplitude/grazing amplitude - 1."""
 
     section: ClassVar[str] = "scan"
-    excess_min: Annotated[float, Key(
-        "1", ASSUMED, "lower end of a scan", Interval(-1.0, low_open=True))] = -0.03
-    excess_max: Annotated[float, Key(
-        "1", ASSUMED, "upper end of a scan", Interval(-1.0, low_open=True))] = 0.05
+    reach_below: Annotated[float, Key(
+        "1", ASSUMED, "lower end of a scan: this many times the hysteresis below grazing", POSITIVE)] = 2.0
+    reach_above: Annotated[float, Key(
+        "1", ASSUMED, "upper end of a scan: this many times the hysteresis above grazing", POSITIVE)] = 3.0
+    narrowest: Annotated[float, Key(
+        "1", ASSUMED, "hysteresis assumed for the reach of a scan where there is less", POSITIVE)] = 5e-4
     points: Annotated[int, Key(
-        "1", ASSUMED, "amplitudes in a scan", whole(2, 1_000_000))] = 81
+        "1", ASSUMED, "amplitudes in a scan", whole(2, 1_000_000))] = 61
     settle_cycles: Annotated[int, Key(
         "1", ASSUMED, "drive periods left out at each amplitude (the letter waits for about 10000)",
         whole(0, 10_000_000))] = 1000

@@ -1,0 +1,160 @@
+"""The spring as a solid that moves: its strip with width and thickness, and the ball.
+
+A point of a strip that lies at (r, y, z), r the point of the centreline, y along the normal n and z across
+the width, moves with the cross-section at r, which stays plane and turns by theta about z:
+
+    v = d + theta e_z x (y n + z e_z) = d - theta y t.
+
+d and theta are the displacement [m] and the rotation [rad] of the centreline, t its tangent. The ball moves
+likewise as one body with the strip at the tip.
+
+Every ply of the strip is a row of hexahedra, the bare strip with its middle on the centreline. The ball is a
+sphere that touches the strip from the side towards which the drive pushes it, or, where the drive runs along
+the strip, from outside the bend.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
+
+from .material import require_number
+from .modes import Modes, ShapesAlong
+from .section import StripSection
+
+STRIP, LAYER, BALL = 0, 1, 2
+"""Values of the cell array `part`."""
+
+BALL_POINTS = 300
+"""On the sphere: a few degrees apart."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SpringMesh:
+    """The spring as a solid, with the motion of each of its points in each mode.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n_points, 3)
+        At rest [m].
+    shapes : ndarray, shape (n_modes, n_points, 3)
+        Displacements relative to the base [kg^(-1/2)]: times a modal coordinate they are in metres.
+    hexahedra : ndarray of int, shape (n_hexahedra, 8)
+    triangles : ndarray of int, shape (n_triangles, 3)
+        Of the ball; none without one.
+    part : ndarray of int, shape (n_hexahedra + n_triangles,)
+        STRIP, LAYER or BALL.
+    """
+
+    points: NDArray[np.float64]
+    shapes: NDArray[np.float64]
+    hexahedra: NDArray[np.intp]
+    triangles: NDArray[np.intp]
+    part: NDArray[np.intp]
+
+    def normalised(self, largest: float) -> NDArray[np.float64]:
+        """Shapes whose largest displacement is `largest` [m], shape (n_modes, n_points, 3)."""
+        require_number("largest", largest, "m", positive=True)
+        size = np.linalg.norm(self.shapes, axis=2).max(axis=1)
+        return self.shapes * (largest / size)[:, None, None]
+
+    def grid(self, points: NDArray[np.float64] | None = None) -> Any:
+        """Return the mesh as a `pyvista.UnstructuredGrid`, with other points [m] if they are given."""
+        import pyvista
+
+        cells = {
+            pyvista.CellType.HEXAHEDRON: self.hexahedra,
+            pyvista.CellType.TRIANGLE: self.triangles,
+        }
+        kept = {kind: rows for kind, rows in cells.items() if rows.size}
+        grid = pyvista.UnstructuredGrid(kept, self.points if points is None else points)
+        grid.cell_data["part"] = self.part
+        return grid
+
+
+def spring_mesh(modes: Modes, *, ball_radius: float | None = None, points_per_element: int = 1) -> SpringMesh:
+    """Return the solid that a leaf spring is, moving in its modes.
+
+    Parameters
+    ----------
+    modes : Modes
+    ball_radius : float, optional
+        [m]; no ball without it.
+    points_per_element : int
+        Rows of hexahedra along each element.
+    """
+    along = modes.displacement_along(points_per_element)
+    line = modes.discretization.spring.centreline
+    points, shapes, hexahedra, part = [], [], [], []
+    count = 0
+    for piece, section in enumerate(modes.discretization.spring.sections):
+        edge = 1e-9 * line.length
+        inside = (along.s > line.joints[piece] - edge) & (along.s < line.joints[piece + 1] + edge)
+        where = np.flatnonzero(inside)
+        for kind, low, high in _plies(section):
+            heights, sides = np.array([low, high, high, low]), np.array([-0.5, -0.5, 0.5, 0.5])
+            corners = heights[:, None] * along.normal[where, None]
+            corners = corners + (sides * section.width)[:, None] * np.array([0.0, 0.0, 1.0])
+            points.append((along.points[where, None] + corners).reshape(-1, 3))
+            shapes.append(_turned(along, where[:, None], corners).reshape(along.rotation.shape[0], -1, 3))
+            first = count + 4 * np.arange(where.size - 1)
+            hexahedra.append(first[:, None] + np.arange(8))
+            part.append(np.full(where.size - 1, kind))
+            count += 4 * where.size
+    triangles = np.empty((0, 3), dtype=np.intp)
+    if ball_radius is not None:
+        offsets, triangles = _ball(modes, ball_radius)
+        at = np.array([np.argmin(np.abs(along.s - modes.discretization.spring.tip_at))])
+        points.append(along.points[at] + offsets)
+        shapes.append(_turned(along, at, offsets))
+        part.append(np.full(len(triangles), BALL))
+    return SpringMesh(
+        points=np.concatenate(points),
+        shapes=np.concatenate(shapes, axis=1),
+        hexahedra=np.concatenate(hexahedra),
+        triangles=triangles + count,
+        part=np.concatenate(part),
+    )
+
+
+def _plies(section: StripSection) -> list[tuple[int, float, float]]:
+    """Kind, lower and upper height [m] of strip and layers; a layer on one face lies on the upper one."""
+    half, layer = 0.5 * section.thickness, section.layer
+    plies = [(STRIP, -half, half)]
+    if layer is not None:
+        plies.append((LAYER, half, half + layer.thickness))
+        if layer.both_sides:
+            plies.append((LAYER, -half - layer.thickness, -half))
+    return plies
+
+
+def _turned(
+    along: ShapesAlong, where: NDArray[np.intp], offsets: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Shapes (n_modes, ..., 3) of points off the centreline by `offsets` (..., 3) [m]."""
+    across = np.cross(np.array([0.0, 0.0, 1.0]), offsets)
+    return along.displacement[:, where] + along.rotation[:, where, None] * across
+
+
+def _ball(modes: Modes, radius: float) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
+    """Points of the sphere as seen from the tip on the centreline [m], and its triangles, facing outwards."""
+    require_number("ball_radius", radius, "m", positive=True)
+    spring = modes.discretization.spring
+    piece = int(spring.centreline.piece_at(spring.tip_at))
+    normal = spring.centreline.frame(spring.tip_at)[1]
+    push, bend = float(normal[:2] @ np.array(spring.drive)), float(spring.centreline.curvatures[piece])
+    side = math.copysign(1.0, push) if abs(push) > 0.5 or bend == 0.0 else -math.copysign(1.0, bend)
+    order = np.arange(BALL_POINTS) + 0.5
+    polar, turn = np.arccos(1.0 - 2.0 * order / BALL_POINTS), math.pi * (1.0 + math.sqrt(5.0)) * order
+    sphere = np.stack([np.sin(polar) * np.cos(turn), np.sin(polar) * np.sin(turn), np.cos(polar)], axis=1)
+    triangles = ConvexHull(sphere).simplices.astype(np.intp)
+    a, b, c = (sphere[triangles[:, i]] for i in range(3))
+    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a) < 0.0
+    triangles[inward] = triangles[inward][:, ::-1]
+    surface = max(side * height for _, *pair in _plies(spring.sections[piece]) for height in pair)
+    return radius * sphere + side * (surface + radius) * normal, triangles

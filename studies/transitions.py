@@ -1,0 +1,324 @@
+"""The letter's six transitions p1 <-> pm, in three descriptions side by side.
+
+Claim (letter 1996, Fig. 2): when the drive amplitude passes grazing, the motion without impacts gives way to an
+orbit of period m with one impact, m = 3, 4, 5, 6, 8, 10 at 20.90 ... 23.40 Hz; when the amplitude is lowered
+again, that orbit lives on until some way below grazing.
+
+Computed, at each frequency, for the Nordmark map (Eqs. (2), (3)), the single mode (Eq. (1)) and the beam with
+its N modes:
+
+    born period      period of the settled orbit at F/F_g - 1 = 1e-3 (and 2.5e-4, 1e-2), started below grazing
+    excess_down      F/F_g - 1 at which that orbit ends when the amplitude is lowered, to 1 % or 1e-7
+    orbit diagram    strobed points in an upward and a downward scan that carry the physical state along
+
+Run time: some seconds; --quick half of that; --full (10000 drive periods per amplitude, as in the experiment)
+some minutes.  Command: python -m studies.transitions.  Outputs: summary.json, orbit_diagram.png and .pdf (the
+beam at its read-out point), orbit_diagram_single_mode, orbit_diagram_map, and the points as csv and npz.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import time
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from beam import ModalModel
+from contact.errors import ContactError
+from contact.maximal_orbits import fold as map_fold
+from contact.orbits.single_impact import MaximalFamily
+from contact.strobed_nordmark import StrobedNordmarkMap
+from contact.stroboscope import StroboscopicMap
+from studies.instruments.command_line import Request, run_study
+from studies.instruments.figures import PAGE, label, new_figure
+from studies.instruments.fold_scan import orbit_end
+from studies.instruments.orbit_scan import OrbitDiagram, orbit_diagram
+from studies.instruments.oscillators import beam_of, nordmark_of, single_mode_oscillator
+from studies.instruments.periodicity import settle
+from studies.instruments.scene import Scene
+from studies.instruments.spring_of_scene import model_of
+from studies.published import PERIODS, SETTLE_CYCLES
+
+MODELS = ("map", "single_mode", "beam")
+TITLES = {"map": "Nordmark map", "single_mode": "Eq. (1)", "beam": "beam"}
+OTHER_EXCESSES = (2.5e-4, 1e-2)
+"""Where the born period is given as well: the letter's amplitude stability, and well above grazing."""
+
+BELOW = -1e-3
+"""Excess at which the motion without impacts settles before the drive is raised."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Description:
+    """One model at one frequency, with what is drawn of it."""
+
+    strobed: Any
+    observe: Callable[[np.ndarray], np.ndarray]
+
+
+def describe(scene: Scene, frequency: float, model: ModalModel) -> dict[str, Description]:
+    """The three descriptions at `frequency` [Hz]; displacements are observed in metres."""
+    single = StroboscopicMap(oscillator=single_mode_oscillator(scene, frequency))
+    beam = StroboscopicMap(oscillator=beam_of(scene, frequency, model))
+    return {
+        "map": Description(
+            strobed=StrobedNordmarkMap(map=nordmark_of(scene, frequency)), observe=lambda points: points[:, 0]
+        ),
+        "single_mode": Description(strobed=single, observe=single.tip),
+        "beam": Description(strobed=beam, observe=lambda points: beam.readout(points, "readout")),
+    }
+
+
+def born(description: Description, excess: float, cycles: int) -> tuple[int, Any]:
+    """Period of the settled orbit at `excess` and its state; the motion before is that just below grazing."""
+    strobed = description.strobed
+    below = settle(strobed.at(BELOW), strobed.rest(), most_cycles=cycles).end
+    settled = settle(strobed.at(excess), below, most_cycles=cycles)
+    return settled.period, settled.end
+
+
+def transition(description: Description, excess: float, cycles: int) -> dict[str, Any]:
+    """Born periods and the end of the orbit on the way down."""
+    period, state = born(description, excess, cycles)
+    end = orbit_end(description.strobed, state, excess, most_cycles=cycles) if period > 1 else None
+    return {
+        "period": period,
+        "excess_down": None if end is None else end.excess,
+        "bracket": None if end is None else [end.lost, end.held],
+        "also": {f"{other:g}": born(description, other, cycles)[0] for other in OTHER_EXCESSES},
+    }
+
+
+def row_at(scene: Scene, frequency: float, model: ModalModel) -> dict[str, Any]:
+    """One row of the table."""
+    scan = scene.scan
+    row: dict[str, Any] = {"frequency_hz": frequency, "letter": PERIODS.get(frequency)}
+    failures = []
+    for name, description in describe(scene, frequency, model).items():
+        try:
+            found = transition(description, scan.born_excess, max(scan.settle_cycles, 1))
+        except ContactError as error:
+            failures.append(f"{frequency:g} Hz, {TITLES[name]}: {error}")
+            found = {"period": None, "excess_down": None, "bracket": None, "also": {}}
+        row[name] = found["period"]
+        row[f"excess_down_{name}"] = found["excess_down"]
+        row[f"bracket_{name}"] = found["bracket"]
+        row[f"born_{name}"] = found["also"]
+    row |= exact_ends(scene, frequency, row)
+    row["failures"] = failures
+    return row
+
+
+def exact_ends(scene: Scene, frequency: float, row: Mapping[str, Any]) -> dict[str, float | None]:
+    """The ends of the p_m orbits in closed form, for the map and for Eq. (1)."""
+    found: dict[str, float | None] = {"exact_map": None, "exact_single_mode": None}
+    if (row["map"] or 0) > 1:
+        nordmark = nordmark_of(scene, frequency)
+        orbit = map_fold(nordmark, row["map"])
+        found["exact_map"] = None if orbit is None else nordmark.excess(orbit.rho)
+    if (row["single_mode"] or 0) > 1:
+        family = MaximalFamily.from_oscillator(single_mode_oscillator(scene, frequency), period=row["single_mode"])
+        end = family.fold()
+        found["exact_single_mode"] = None if end is None else end.excess
+    return found
+
+
+def amplitudes(scene: Scene, row: Mapping[str, Any]) -> np.ndarray:
+    """The excesses of the scans: on both sides of grazing, in proportion to the largest hysteresis found."""
+    scan = scene.scan
+    ends = [abs(row[f"excess_down_{name}"] or 0.0) for name in MODELS]
+    reach = max(*ends, scan.narrowest)
+    return np.linspace(-scan.reach_below * reach, scan.reach_above * reach, scan.points)
+
+
+def scans(
+    scene: Scene, row: Mapping[str, Any], model: ModalModel, full: bool, tell: Callable[[], None]
+) -> dict[str, dict[str, OrbitDiagram[Any]]]:
+    """Upward and downward scan of each description."""
+    scan, found = scene.scan, {}
+    for name, description in describe(scene, row["frequency_hz"], model).items():
+        values = amplitudes(scene, row)
+        common = {
+            "observe": description.observe,
+            "settle_cycles": SETTLE_CYCLES if full else max(scan.settle_cycles, 1),
+            "record_cycles": scan.record_cycles,
+            "largest_period": scan.largest_period,
+            "early": not full,
+            "after_each": tell,
+        }
+        up = orbit_diagram(description.strobed, values, description.strobed.rest(), **common)
+        down = orbit_diagram(description.strobed, values[::-1], up.end, **common)
+        found[name] = {"up": up, "down": down}
+    return found
+
+
+def draw(scene: Scene, rows: Sequence[Mapping[str, Any]], diagrams: Sequence[Mapping[str, Any]], name: str) -> Any:
+    """The six panels of the letter's Fig. 2 for one description."""
+    columns = min(3, len(rows))
+    lines = math.ceil(len(rows) / columns)
+    figure, axes = new_figure(lines, columns, width=PAGE, height=0.055 * lines + 0.012, squeeze=False)
+    for axis in axes.flat[len(rows) :]:
+        axis.set_visible(False)
+    for number, (axis, row, found) in enumerate(zip(axes.flat, rows, diagrams, strict=False)):
+        grazing = single_mode_oscillator(scene, row["frequency_hz"]).grazing_amplitude()
+        if name == "beam":
+            grazing = row["grazing_amplitude_m"]
+        for way, face, size in (("down", "none", 3.2), ("up", "#0072B2", 2.0)):
+            diagram = found[name][way]
+            across = np.repeat(diagram.excess[:, None], diagram.points.shape[1], axis=1)
+            x = 1e3 * grazing * (1.0 + across) if name != "map" else 1e3 * across
+            y = 1e3 * diagram.points if name != "map" else diagram.points
+            axis.plot(
+                x.ravel(), y.ravel(), linestyle="none", marker="o", markersize=size, markeredgewidth=0.5,
+                markerfacecolor=face, markeredgecolor="#0072B2" if way == "up" else "#D55E00",
+                label=f"{way}ward scan", rasterized=True, zorder=2 if way == "down" else 3,
+            )
+        axis.axvline(0.0 if name == "map" else 1e3 * grazing, color="0.6", linewidth=0.6, linestyle="--", zorder=1)
+        period = f"p$_{{{row[name]}}}$" if row[name] else "no period found"
+        axis.set_title(f"({'abcdefghijklmnopqrstuvwxyz'[number % 26]}) {row['frequency_hz']:.2f} Hz, p$_1$ ↔ {period}")
+        axis.locator_params(axis="x", nbins=4)
+    quantities = {
+        "map": (("excess F/F$_g$ - 1", "10$^{-3}$"), ("x of the map", "1")),
+        "single_mode": (("excitation amplitude", "mm"), ("tip displacement", "mm")),
+        "beam": (("excitation amplitude", "mm"), ("displacement at the read-out point", "mm")),
+    }
+    if name == "beam" and scene.readout.quantity == "rotation":
+        quantities["beam"] = (quantities["beam"][0], ("rotation at the read-out point", "mrad"))
+    across, upwards = quantities[name]
+    for axis in axes[-1, :]:
+        label(axis.xaxis, *across)
+    for axis in axes[:, 0]:
+        label(axis.yaxis, *upwards)
+    handles, names = axes.flat[0].get_legend_handles_labels()
+    figure.legend(handles, names, loc="outside lower center", ncols=2)
+    return figure
+
+
+def store_points(request: Request, rows: Sequence[Mapping[str, Any]], diagrams: Sequence[Mapping[str, Any]]) -> None:
+    """The points of all scans, as npz, and periods against amplitude as csv."""
+    arrays: dict[str, np.ndarray] = {}
+    table: dict[str, list[Any]] = {
+        name: [] for name in ("frequency_hz", "model", "direction", "excess", "period", "impacts", "cycles")
+    }
+    for row, found in zip(rows, diagrams, strict=True):
+        for name, ways in found.items():
+            for way, diagram in ways.items():
+                stem = f"{name}_{row['frequency_hz']:.2f}_hz_{way}".replace(".", "p")
+                arrays[f"{stem}_excess"], arrays[f"{stem}_points"] = diagram.excess, diagram.points
+                for i in range(diagram.excess.size):
+                    values = (
+                        row["frequency_hz"], name, way, float(diagram.excess[i]), int(diagram.period[i]),
+                        int(diagram.impacts[i]), int(diagram.cycles[i]),
+                    )
+                    for column, value in zip(table.values(), values, strict=True):
+                        column.append(value)
+    request.record.write_arrays("orbit_diagram", **arrays)
+    request.record.write_table("orbit_diagram", table)
+
+
+HEAD = f"{'f (Hz)':>7} {'letter':>7} {'map':>5} {'Eq. (1)':>8} {'beam':>5}   " + " ".join(
+    f"{'end, ' + TITLES[name]:>18}" for name in MODELS
+)
+
+
+def table_line(row: Mapping[str, Any]) -> str:
+    """A row of the table on the terminal."""
+    letter = f"p{row['letter']}" if row["letter"] else "-"
+    periods = {name: f"p{row[name]}" if row[name] else "-" for name in MODELS}
+    ends = [row[f"excess_down_{name}"] for name in MODELS]
+    return f"{row['frequency_hz']:7.2f} {letter:>7} {periods['map']:>5} {periods['single_mode']:>8} {periods['beam']:>5}   " + (
+        " ".join(f"{'-' if end is None else f'{end:+.3e}':>18}" for end in ends)
+    )
+
+
+def closing_lines(rows: Sequence[Mapping[str, Any]], figure: str) -> list[str]:
+    """Where the figure is, what agrees with the letter, and what does not and why."""
+    told = [row for row in rows if row["letter"]]
+    agree = [row for row in told if all(row[name] == row["letter"] for name in MODELS)]
+    lines = [f"figure: {figure}"]
+    lines.append(
+        "agrees with the letter in all three descriptions: "
+        + (", ".join(f"p{row['letter']} at {row['frequency_hz']:.2f} Hz" for row in agree) or "none")
+    )
+    for row in told:
+        if row in agree:
+            continue
+        found = ", ".join(f"{TITLES[name]} p{row[name]}" for name in MODELS)
+        above = ", ".join(f"{TITLES[name]} p{row[f'born_{name}'].get('0.01')}" for name in MODELS)
+        line = f"{row['frequency_hz']:.2f} Hz: the letter saw p{row['letter']}, here {found}; at excess 0.01 {above}"
+        if row["frequency_hz"] == 23.40:
+            line += (
+                "; the edge between p10 and p11 lies where f T = 20/21, at 23.343 Hz for T = 40.80 ms, so that p10 "
+                "at grazing needs T below 40.70 ms, five times the printed error of 0.02 ms"
+            )
+        lines.append(line)
+    return lines
+
+
+def run(scene: Scene, request: Request) -> dict[str, Any]:
+    """Compute, store and draw."""
+    began = time.perf_counter()
+    if scene.drive.kind != "harmonic":
+        raise ValueError(f"drive.kind is {scene.drive.kind}; the transitions need a harmonic drive")
+    if request.quick:
+        scene = scene.replace({"scan.points": min(scene.scan.points, 21)}, provenance="quick")
+    model = model_of(scene)
+    scene.refuse_drive_above(float(model.frequencies_hz.max()))
+    frequencies = sorted(scene.drive.frequencies_hz)
+    print(HEAD, flush=True)
+    rows: list[dict[str, Any]] = []
+    with ThreadPoolExecutor(max_workers=request.workers) as pool:
+        for row in pool.map(lambda f: row_at(scene, f, model), frequencies):
+            row["grazing_amplitude_m"] = beam_of(scene, row["frequency_hz"], model).grazing_amplitude()
+            rows.append(row)
+            print(table_line(row), flush=True)
+        request.record.write_json("rows", rows)
+        full = bool(request.options.full)
+        with request.progress("orbit diagrams", total=len(rows) * len(MODELS) * 2 * scene.scan.points) as progress:
+            futures = {pool.submit(scans, scene, row, model, full, progress.advance): i for i, row in enumerate(rows)}
+            diagrams: list[Any] = [None] * len(rows)
+            for future in as_completed(futures):
+                diagrams[futures[future]] = future.result()
+    store_points(request, rows, diagrams)
+    for name in MODELS:
+        request.record.write_figure(
+            draw(scene, rows, diagrams, name), "orbit_diagram" if name == "beam" else f"orbit_diagram_{name}"
+        )
+    failures = [sentence for row in rows for sentence in row.pop("failures")]
+    failures += [s for found in diagrams for ways in found.values() for d in ways.values() for s in d.failures]
+    lines = closing_lines(rows, str(request.record.folder / "orbit_diagram.png"))
+    for line in [*failures, *lines]:
+        print(line, flush=True)
+    return {
+        "rows": rows,
+        "modes": model.n_modes,
+        "contact": scene.contact.law,
+        "closing": lines,
+        "failures": failures,
+        "failed_cells": len(failures),
+        "wall_s": time.perf_counter() - began,
+    }
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """The study's own option."""
+    parser.add_argument(
+        "--full", action="store_true", help="as the experiment did: 10000 drive periods per amplitude, never fewer"
+    )
+
+
+def main(argv: Sequence[str] | None = None, *, module: str | None = None) -> int:
+    """Run the study from the command line."""
+    return run_study(
+        "transitions", "The letter's six transitions p1 <-> pm: Nordmark map, Eq. (1) and the beam side by side.",
+        run, argv, options=add_options, module=module,
+    )
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
