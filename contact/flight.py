@@ -45,8 +45,8 @@ class Motion(NamedTuple):
     Arrays have shape (n_modes,): omega [rad/s], decay = c [1/s], damped and damped_low = sqrt|D| as a sum of
     two doubles [rad/s], phi [kg^-0.5], load = g of the modes of zero frequency, sine and cosine = S and C,
     offset = g/omega^2.  Scalars: tip_sine, tip_cosine = sums of phi S and phi C [m]; level = static tip
-    displacement minus gap [m]; drive = w [rad/s]; period [s]; gap [m]; compliance = sum phi^2 [1/kg]; law and
-    its numbers.
+    displacement minus gap [m]; drive = w [rad/s]; period [s]; gap [m]; compliance = sum phi^2 [1/kg]; law, its
+    numbers and its table.
     """
 
     omega: np.ndarray
@@ -69,6 +69,7 @@ class Motion(NamedTuple):
     number0: float
     number1: float
     number2: float
+    table: np.ndarray
 
 
 @kernel

@@ -2,7 +2,8 @@
 
 A run is carried from call to call by two small arrays: `integers` (regime, number of derivatives that vanish at
 the start of the flight, rows logged, samples taken, impacts in this period) and `floats` (time since the
-strobe [s], approach velocity of the contact under way [m/s], energy that it has lost [J]).  A row of the log
+strobe [s], approach velocity of the contact under way [m/s], energy that it has lost [J], time that it still
+waits [s] and velocity with which it then leaves [m/s]).  A row of the log
 holds period and time of the first touch, period and time of the release, both tip velocities, the energy lost
 and the kind (0 impact, 1 graze, 2 stay on the wall); `log_state` the deviations (u, v) at both ends.
 """
@@ -13,12 +14,12 @@ import math
 
 from contact.compiled import kernel
 from contact.crossing import polynomial_root
-from contact.flight import propagate
+from contact.flight import propagate, tip_steady
 from contact.hertz_series import hertz_state
 from contact.series import series_state
 
 REGIME, ORDER, LOGGED, SAMPLED, COUNT = 0, 1, 2, 3, 4
-CLOCK, APPROACH, LOSS = 0, 1, 2
+CLOCK, APPROACH, LOSS, WAIT, REBOUND = 0, 1, 2, 3, 4
 LOG_FIELDS = 8
 START_PERIOD, START, END_PERIOD, END, IN, OUT, LOST, KIND = 0, 1, 2, 3, 4, 5, 6, 7
 
@@ -66,6 +67,18 @@ def sample_hertz(
         for k in range(n):
             samples[i, k] = su[k]
             samples[i, n + k] = sv[k]
+        i += 1
+    integers[SAMPLED] = i
+
+
+@kernel
+def sample_waiting(motion, until, period_index, integers, sample_period, sample_clock, samples):
+    """States at the sample times of a single mode that is held on the wall until `until` (since the strobe)."""
+    i = integers[SAMPLED]
+    while i < sample_clock.size and sample_period[i] == period_index and sample_clock[i] <= until:
+        height, velocity, _acceleration = tip_steady(motion, sample_clock[i])
+        samples[i, 0] = -height / motion.phi[0]
+        samples[i, 1] = -velocity / motion.phi[0]
         i += 1
     integers[SAMPLED] = i
 

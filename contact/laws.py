@@ -3,28 +3,41 @@
 With the penetration d = x - gap [m] and its rate d' [m/s], the stop pushes the tip back with a force
 -N, N >= 0, that acts only where d > 0.
 
-* Impact law (no duration): ``NewtonRestitution``, velocity of the tip d' -> -e d' (letter 1996, below Eq. (1)).
+* Impact laws: ``NewtonRestitution``, velocity of the tip d' -> -e d' at once (letter 1996, below Eq. (1));
+  ``DelayedRestitution``, the same after a time spent on the wall: the letter's "energy loss and time delay" as
+  the two parameters of a single mode.
 * Force laws: ``LinearContact``, N = max(0, k d + c d').  With a dashpot (c > 0) the force vanishes before the
   tip has left the wall: the contact lets go inside, and may close again there.  ``HertzContact``, N = k d^(3/2)
   (H. Hertz, J. reine angew. Math. 92 (1882) 156), and ``HuntCrossley``, N = k d^(3/2) (1 + chi d')
   (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440), which vanishes only at d = 0.
 
-Each law names the kernel that handles it by a small integer and three numbers (`code`, `numbers`), so that
-compiled code sees no objects.
+Each law names the kernel that handles it by a small integer, three numbers and a table (`code`, `numbers`,
+`table`), so that compiled code sees no objects.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
+import numpy as np
+from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 from scipy.special import gamma
 
-__all__ = ["ContactLaw", "HertzContact", "HuntCrossley", "LinearContact", "NewtonRestitution"]
+__all__ = [
+    "ContactLaw",
+    "DelayedRestitution",
+    "HertzContact",
+    "HuntCrossley",
+    "LinearContact",
+    "NewtonRestitution",
+]
 
-NEWTON, LINEAR, HERTZ = 0, 1, 2
+NEWTON, LINEAR, HERTZ, DELAYED = 0, 1, 2, 3
 
 HERTZ_TIME = 0.8 * math.sqrt(math.pi) * float(gamma(0.4) / gamma(0.9))
 """Contact time of a free mass under Hertz's law over (greatest approach / approach velocity), 2.9432 [1]."""
@@ -39,6 +52,11 @@ class ContactLaw:
     def numbers(self) -> tuple[float, float, float]:
         """The law's parameters for the kernels."""
         raise NotImplementedError
+
+    @property
+    def table(self) -> np.ndarray:
+        """Functions of the approach speed for the kernels, sampled; none for most laws."""
+        return np.empty((5, 0))
 
 
 def _require(condition: bool, sentence: str) -> None:
@@ -66,6 +84,63 @@ class NewtonRestitution(ContactLaw):
     @property
     def numbers(self) -> tuple[float, float, float]:
         return (self.local_restitution, 0.0, 0.0)
+
+
+SPEEDS = 1025
+"""Samples of a function of the approach speed: a cubic spline through them over six decades is good to 1e-9."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DelayedRestitution(ContactLaw):
+    """The tip stays on the wall for `delay` and leaves with -`restitution` times its approach velocity.
+
+    For one mode only: there the two numbers say all that a collision does.
+
+    Parameters
+    ----------
+    restitution : float or callable
+        From 0 to 1, or a function of the approach speed [m/s] [1].
+    delay : float or callable
+        Zero or more, or a function of the approach speed [m/s] [s].
+    speeds : (float, float)
+        Range of approach speeds in which functions are sampled; beyond it they keep their end values [m/s].
+    """
+
+    restitution: float | Callable[[float], float]
+    delay: float | Callable[[float], float]
+    speeds: tuple[float, float] = (1e-5, 10.0)
+    code: ClassVar[int] = DELAYED
+
+    def __post_init__(self) -> None:
+        low, high = self.speeds
+        _require(0 < low < high < math.inf, f"speeds is {self.speeds} m/s; it must be two rising numbers above zero")
+        _v, tau, _slope, delay, _slope2 = self.table
+        _require(
+            bool(np.all(np.isfinite(tau)) and np.all(tau >= 0) and np.all(tau <= 1)),
+            f"restitution runs from {tau.min()} to {tau.max()}; it must lie between 0 and 1",
+        )
+        _require(
+            bool(np.all(np.isfinite(delay)) and np.all(delay >= 0)),
+            f"delay runs from {delay.min()} to {delay.max()} s; it must be finite and zero or more",
+        )
+
+    @property
+    def numbers(self) -> tuple[float, float, float]:
+        return (0.0, 0.0, 0.0)
+
+    @cached_property
+    def table(self) -> np.ndarray:
+        """Rows: speed, restitution and its slope, delay and its slope; shape (5, n)."""
+        speed = np.geomspace(*self.speeds, SPEEDS if callable(self.restitution) or callable(self.delay) else 2)
+        rows = [speed]
+        for given in (self.restitution, self.delay):
+            if callable(given):
+                values = np.array([float(given(float(v))) for v in speed])
+                slopes = CubicSpline(speed, values)(speed, 1) if np.all(np.isfinite(values)) else values
+            else:
+                values, slopes = np.full(speed.size, float(given)), np.zeros(speed.size)
+            rows += [values, slopes]
+        return np.array(rows)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -20,6 +20,7 @@ import numpy as np
 from beam.reduction import ModalModel
 from contact.drive import HarmonicDrive
 from contact.flight import Motion, damped_frequency
+from contact.laws import DELAYED
 from contact.stop import Stop
 
 __all__ = ["ImpactOscillator"]
@@ -48,6 +49,11 @@ class ImpactOscillator:
 
     def __post_init__(self) -> None:
         omega, decay = self.model.omega, self.model.decay_rate
+        if self.stop.law.code == DELAYED and omega.size > 1:
+            raise TypeError(
+                f"law of the stop is DelayedRestitution, which holds for one mode; the model has {omega.size}, so "
+                "give a force law or NewtonRestitution, or truncate the model"
+            )
         if self.load is not None:
             load = np.array(self.load, dtype=float)
             if load.shape != omega.shape or not np.all(np.isfinite(load)):
@@ -156,6 +162,7 @@ class ImpactOscillator:
             number0=float(numbers[0]),
             number1=float(numbers[1]),
             number2=float(numbers[2]),
+            table=law.table,
         )
 
     def _offset(self) -> np.ndarray:

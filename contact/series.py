@@ -20,10 +20,11 @@ import math
 from contact.compiled import kernel
 from contact.flight import EPS
 
-__all__ = ["CONTACT", "INSIDE", "SERIES_ORDER", "OUTSIDE", "SUSTAINED", "contact_series", "series_state", "series_step"]
+__all__ = ["CONTACT", "INSIDE", "OUTSIDE", "SERIES_ORDER", "SUSTAINED", "WAITING", "contact_series", "series_state", "series_step"]
 
-OUTSIDE, CONTACT, INSIDE, SUSTAINED = 0, 1, 2, 3
-"""Regimes: off the wall; pushed by it; behind its rest position without force; held on it."""
+OUTSIDE, CONTACT, INSIDE, SUSTAINED, WAITING = 0, 1, 2, 3, 4
+"""Regimes: off the wall; pushed by it; behind its rest position without force; held on it by the motion; waiting
+on it for a delayed rebound."""
 
 SERIES_ORDER = 24
 """Order of the series: between 20 and 30 the cost per unit of time is flat to a few per cent."""

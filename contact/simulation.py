@@ -18,10 +18,12 @@ from contact.impact_log import (
     LOGGED,
     LOST,
     OUT,
+    REBOUND,
     REGIME,
     SAMPLED,
     START,
     START_PERIOD,
+    WAIT,
 )
 from contact.integrators.event_driven import (
     DONE,
@@ -32,7 +34,7 @@ from contact.integrators.event_driven import (
     MOST_STEPS,
     advance,
 )
-from contact.laws import NEWTON
+from contact.laws import DELAYED, NEWTON
 from contact.oscillator import ImpactOscillator
 from contact.series import CONTACT, INSIDE, OUTSIDE
 from contact.trajectory import Impacts, State, Trajectory
@@ -75,11 +77,11 @@ def deviations(motion: Motion, state: State, clock: float) -> tuple[np.ndarray, 
         )
     q, q_rate = steady_motion(motion, np.array([clock]))
     u, v = state.displacement - q[0], state.velocity - q_rate[0]
-    integers, floats = np.zeros(5, dtype=np.int64), np.array([clock, 0.0, 0.0])
+    integers, floats = np.zeros(5, dtype=np.int64), np.array([clock, 0.0, 0.0, state.wait, state.rebound])
     integers[REGIME] = state.regime
     height, velocity, _acceleration = tip_state(motion, clock, u, v)
     if state.regime == OUTSIDE and height > tip_rounding(motion, u, v):
-        if motion.law == NEWTON:
+        if motion.law in (NEWTON, DELAYED):
             raise ValueError(
                 f"displacement of the state puts the tip {height:.3g} m behind the stop; with an impact law it must "
                 "start on the near side"
@@ -210,7 +212,7 @@ def simulate(
     return Trajectory(
         end=State(
             displacement=u + q_end[0], velocity=v + v_end[0], time=last * motion.period + clock_end,
-            regime=int(integers[REGIME]),
+            regime=int(integers[REGIME]), wait=float(floats[WAIT]), rebound=float(floats[REBOUND]),
         ),
         strobe_time=np.arange(first + 1, last + 1) * motion.period,
         strobe_displacement=strobes[:, :n] + q_strobe,

@@ -43,9 +43,10 @@ class StrobedNordmarkMap:
         """The same map at another F/F_g - 1."""
         return replace(self, rho=self.map.rho(excess))
 
-    def rest(self) -> State:
-        """The fixed point without impacts at grazing."""
-        return np.zeros(2)
+    def steady(self) -> State:
+        """The fixed point of the branch without impact: x = rho / (1 - alpha + gamma), y = -gamma x."""
+        x = self.rho / (1.0 - self.map.alpha + self.map.gamma)
+        return np.array([x, -self.map.gamma * x])
 
     def orbit(self, state: State, count: int) -> StrobedOrbit[State]:
         """`count` steps from `state`; the points are (x, y), shape (count, 2)."""

@@ -9,11 +9,11 @@ scans, settles or classifies orbits takes either.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
-from contact.impact_log import LOG_FIELDS
+from contact.impact_log import LOG_FIELDS, REBOUND, REGIME, WAIT
 from contact.integrators.event_driven import DONE, advance
 from contact.oscillator import ImpactOscillator
 from contact.simulation import deviations, failure, split_time, steady_motion
@@ -53,8 +53,8 @@ class StrobedMap(Protocol[S]):
     def at(self, excess: float) -> StrobedMap[S]:
         """The same system at another excess over grazing [1]."""
 
-    def rest(self) -> S:
-        """The state of the orbit without impacts, or rest."""
+    def steady(self) -> S:
+        """The orbit without impacts at a strobe; above grazing, what it would be without the stop."""
 
     def orbit(self, state: S, count: int) -> StrobedOrbit[S]:
         """`count` periods from `state`."""
@@ -81,12 +81,8 @@ class StroboscopicMap:
         """The period map of the same oscillator driven at F/F_g - 1 = `excess`."""
         return StroboscopicMap(oscillator=self.oscillator.with_excess(excess))
 
-    def rest(self) -> State:
-        """The spring at rest."""
-        return State.rest(self.oscillator.n_modes)
-
     def steady(self) -> State:
-        """The steady motion at a strobe, which is the p1 orbit without impacts below grazing."""
+        """The steady motion at a strobe, which below grazing is the p1 orbit without impacts."""
         q, v = steady_motion(self.oscillator.motion(), np.zeros(1))
         return State(displacement=q[0], velocity=v[0])
 
@@ -146,5 +142,8 @@ class StroboscopicMap:
         points = np.empty_like(strobes)
         points[:, :n] = (strobes[:, :n] + q) * weight
         points[:, n:] = (strobes[:, n:] + q_rate) * (weight / speed)
-        end: dict[str, Any] = {"displacement": u + q[0], "velocity": v + q_rate[0], "regime": int(integers[0])}
-        return StrobedOrbit(end=State(time=(first + count) * motion.period, **end), points=points, impacts=counts)
+        end = State(
+            displacement=u + q[0], velocity=v + q_rate[0], time=(first + count) * motion.period,
+            regime=int(integers[REGIME]), wait=float(floats[WAIT]), rebound=float(floats[REBOUND]),
+        )
+        return StrobedOrbit(end=end, points=points, impacts=counts)

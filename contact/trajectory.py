@@ -24,13 +24,17 @@ class State:
     time : float
         Time since the start of the drive, base at z = Z sin(2 pi f time) [s].
     regime : int
-        0 off the wall, 1 in contact, 2 behind the wall without force, 3 held on the wall.
+        0 off the wall, 1 in contact, 2 behind the wall without force, 3 held on the wall, 4 waiting on it.
+    wait, rebound : float
+        In regime 4, the time still to wait [s] and the tip velocity with which it then leaves [m/s].
     """
 
     displacement: np.ndarray
     velocity: np.ndarray
     time: float = 0.0
     regime: int = 0
+    wait: float = 0.0
+    rebound: float = 0.0
 
     def __post_init__(self) -> None:
         for name in ("displacement", "velocity"):

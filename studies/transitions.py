@@ -35,7 +35,7 @@ from contact.orbits.single_impact import MaximalFamily
 from contact.strobed_nordmark import StrobedNordmarkMap
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.command_line import Request, run_study
-from studies.instruments.figures import PAGE, label, new_figure
+from studies.instruments.figures import PAGE, house_style, label, new_figure
 from studies.instruments.fold_scan import orbit_end
 from studies.instruments.orbit_scan import OrbitDiagram, orbit_diagram
 from studies.instruments.oscillators import beam_of, nordmark_of, single_mode_oscillator
@@ -50,7 +50,7 @@ OTHER_EXCESSES = (2.5e-4, 1e-2)
 """Where the born period is given as well: the letter's amplitude stability, and well above grazing."""
 
 BELOW = -1e-3
-"""Excess at which the motion without impacts settles before the drive is raised."""
+"""Excess of the motion without impacts from which the drive is raised."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,8 +77,7 @@ def describe(scene: Scene, frequency: float, model: ModalModel) -> dict[str, Des
 def born(description: Description, excess: float, cycles: int) -> tuple[int, Any]:
     """Period of the settled orbit at `excess` and its state; the motion before is that just below grazing."""
     strobed = description.strobed
-    below = settle(strobed.at(BELOW), strobed.rest(), most_cycles=cycles).end
-    settled = settle(strobed.at(excess), below, most_cycles=cycles)
+    settled = settle(strobed.at(excess), strobed.at(BELOW).steady(), most_cycles=cycles)
     return settled.period, settled.end
 
 
@@ -151,7 +150,7 @@ def scans(
             "early": not full,
             "after_each": tell,
         }
-        up = orbit_diagram(description.strobed, values, description.strobed.rest(), **common)
+        up = orbit_diagram(description.strobed, values, description.strobed.at(values[0]).steady(), **common)
         down = orbit_diagram(description.strobed, values[::-1], up.end, **common)
         found[name] = {"up": up, "down": down}
     return found
@@ -180,7 +179,8 @@ def draw(scene: Scene, rows: Sequence[Mapping[str, Any]], diagrams: Sequence[Map
             )
         axis.axvline(0.0 if name == "map" else 1e3 * grazing, color="0.6", linewidth=0.6, linestyle="--", zorder=1)
         period = f"p$_{{{row[name]}}}$" if row[name] else "no period found"
-        axis.set_title(f"({'abcdefghijklmnopqrstuvwxyz'[number % 26]}) {row['frequency_hz']:.2f} Hz, p$_1$ ↔ {period}")
+        with house_style():
+            axis.set_title(f"({chr(ord('a') + number % 26)}) {row['frequency_hz']:.2f} Hz, p$_1$ ↔ {period}")
         axis.locator_params(axis="x", nbins=4)
     quantities = {
         "map": (("excess F/F$_g$ - 1", "10$^{-3}$"), ("x of the map", "1")),
@@ -190,12 +190,12 @@ def draw(scene: Scene, rows: Sequence[Mapping[str, Any]], diagrams: Sequence[Map
     if name == "beam" and scene.readout.quantity == "rotation":
         quantities["beam"] = (quantities["beam"][0], ("rotation at the read-out point", "mrad"))
     across, upwards = quantities[name]
-    for axis in axes[-1, :]:
-        label(axis.xaxis, *across)
-    for axis in axes[:, 0]:
-        label(axis.yaxis, *upwards)
     handles, names = axes.flat[0].get_legend_handles_labels()
-    figure.legend(handles, names, loc="outside lower center", ncols=2)
+    with house_style():
+        for axis in axes[-1, :]:
+            label(axis.xaxis, *across)
+        figure.supylabel(f"{upwards[0]} ({upwards[1]})" if upwards[1] != "1" else upwards[0])
+        figure.legend(handles[::-1], names[::-1], loc="outside lower center", ncols=2, markerscale=1.5)
     return figure
 
 

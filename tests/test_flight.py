@@ -63,9 +63,9 @@ def exact_flow(omega: float, decay: float, time: float) -> np.ndarray:
         if root == 0:
             result = mp.exp(plus * t) * (one + (matrix - plus * one) * t)
         else:
-            result = (mp.exp(plus * t) * (matrix - minus * one) - mp.exp(minus * t) * (matrix - plus * one)) / (
-                plus - minus
-            )
+            result = (
+                mp.exp(plus * t) * (matrix - minus * one) - mp.exp(minus * t) * (matrix - plus * one)
+            ) / (plus - minus)
         return np.array([[float(mp.re(result[i, j])) for j in range(2)] for i in range(2)])
 
 
@@ -81,7 +81,8 @@ def difference(a: np.ndarray, b: np.ndarray, scale: float) -> float:
 
 
 def oscillator(
-    omega: list[float], decay: list[float], *, drive: HarmonicDrive | None = None, load: list[float] | None = None,
+    omega: list[float], decay: list[float], *, drive: HarmonicDrive | None = None,
+    load: list[float] | None = None,
     phi: list[float] | None = None, participation: list[float] | None = None, gap: float = 0.01,
 ) -> ImpactOscillator:  # fmt: skip
     n = len(omega)
@@ -90,10 +91,12 @@ def oscillator(
         participation=participation or [0.1 / (k + 1) for k in range(n)],
     )  # fmt: skip
     stop = Stop(gap=gap, law=NewtonRestitution(local_restitution=0.5))
-    return ImpactOscillator(model=model, stop=stop, drive=drive, load=None if load is None else np.array(load))
+    return ImpactOscillator(
+        model=model, stop=stop, drive=drive, load=None if load is None else np.array(load)
+    )
 
 
-# --------------------------------------------------------------------------------------------- the free flow
+# ---------------------------------------------------------------------------------------------- the free flow
 
 
 @pytest.mark.parametrize("name", MODES)
@@ -102,7 +105,7 @@ def test_flow_is_the_matrix_exponential(name):
     for turns in (1e-9, 1e-3, 0.3, 1.0, 7.7, 40.0):
         time = turns / rate(omega, decay)
         with mp.workdps(50):
-            matrix = mp.matrix([[0, 1], [-mp.mpf(omega) ** 2, -mp.mpf(decay)]]) * mp.mpf(time)
+            matrix = mp.matrix([[0, 1], [-(mp.mpf(omega) ** 2), -mp.mpf(decay)]]) * mp.mpf(time)
             reference = np.array(mp.expm(matrix).tolist(), dtype=float)
         assert difference(exact_flow(omega, decay, time), reference, rate(omega, decay)) < 4 * EPS
         assert difference(flow(omega, decay, time), reference, rate(omega, decay)) < 4 * EPS * (2 + turns)
@@ -160,7 +163,7 @@ def test_phase_keeps_its_digits_over_1e5_radians(decay):
 
 
 def test_slow_decay_of_a_creeping_mode_keeps_its_digits():
-    """omega^2/c, not c/2 - sqrt(...): after 1e3 decay times of the fast part the slow part still has 13 digits."""
+    """omega^2/c, not c/2 - sqrt(...): long after the fast part is gone the slow one still has 13 digits."""
     omega, decay = 1.0, 1e5
     for time in (1e-2, 1e2, 1e5):
         computed, exact = flow(omega, decay, time), exact_flow(omega, decay, time)
@@ -191,7 +194,9 @@ def test_flows_compose(omega, ratio, first, second):
 
 @settings(max_examples=100, deadline=None, derandomize=True)
 @given(
-    omega=st.floats(1e-2, 2e3), ratio=st.one_of(st.floats(0.0, 0.05), st.floats(0.0, 5.0)), angle=st.floats(0, 6.3),
+    omega=st.floats(1e-2, 2e3),
+    ratio=st.one_of(st.floats(0.0, 0.05), st.floats(0.0, 5.0)),
+    angle=st.floats(0, 6.3),
 )  # fmt: skip
 def test_bounds_of_all_derivatives_hold_for_all_later_times(omega, ratio, angle):
     decay = ratio * omega
@@ -218,11 +223,13 @@ def test_bounds_are_attained_without_damping():
     assert max(v for _, v in flows) == pytest.approx(math.hypot(60.0, 80.0), rel=1e-6)
 
 
-# ------------------------------------------------------------------------------------- with drive and load
+# ---------------------------------------------------------------------------------------- with drive and load
 
 
-def exact_state(system: ImpactOscillator, k: int, q: float, v: float, start: float, time: float) -> np.ndarray:
-    """(q, v, a) of mode k at drive time start + time by the exponential of the five-dimensional linear system."""
+def exact_state(
+    system: ImpactOscillator, k: int, q: float, v: float, start: float, time: float
+) -> np.ndarray:
+    """(q, v, a) of mode k at drive time start + time by the exponential of a five-dimensional system."""
     with mp.workdps(40):
         model, drive = system.model, system.drive
         omega, c, gamma = (mp.mpf(float(x[k])) for x in (model.omega, model.decay_rate, model.participation))
@@ -233,7 +240,7 @@ def exact_state(system: ImpactOscillator, k: int, q: float, v: float, start: flo
         # unknowns q w, v, sin, cos, 1: entries of similar size
         matrix = mp.matrix(5, 5)
         matrix[0, 1] = unit
-        matrix[1, 0], matrix[1, 1], matrix[1, 2], matrix[1, 4] = -omega**2 / unit, -c, gamma * z * w * w, g
+        matrix[1, 0], matrix[1, 1], matrix[1, 2], matrix[1, 4] = -(omega**2) / unit, -c, gamma * z * w * w, g
         matrix[2, 3], matrix[3, 2] = w, -w
         first = mp.matrix([mp.mpf(q) * unit, v, mp.sin(w * mp.mpf(start)), mp.cos(w * mp.mpf(start)), 1])
         last = mp.expm(matrix * mp.mpf(time)) * first
@@ -242,7 +249,9 @@ def exact_state(system: ImpactOscillator, k: int, q: float, v: float, start: flo
 
 DRIVEN = {
     "drive": dict(drive=HarmonicDrive(frequency=21.5, amplitude=2e-3)),
-    "drive and load": dict(drive=HarmonicDrive(frequency=21.5, amplitude=2e-3), load=[3.0, -20.0, 500.0, 2.0, -4.0]),
+    "drive and load": dict(
+        drive=HarmonicDrive(frequency=21.5, amplitude=2e-3), load=[3.0, -20.0, 500.0, 2.0, -4.0]
+    ),
     "load": dict(load=[3.0, -20.0, 500.0, 2.0, -4.0]),
     "neither": {},
 }
@@ -273,10 +282,14 @@ def test_flight_of_many_modes_is_the_exponential_of_the_whole_system(name):
             assert np.max(np.abs(computed - exact[:, column])) < 1e-12 * size[column]
         tip = np.array(tip_state(motion, start + time, u, du))
         expected = system.model.phi @ exact - np.array([system.stop.gap, 0.0, 0.0])
-        assert np.all(np.abs(tip - expected) < 1e-12 * np.abs(system.model.phi) @ np.abs(exact) + [1e-14, 0, 0])
+        assert np.all(
+            np.abs(tip - expected) < 1e-12 * np.abs(system.model.phi) @ np.abs(exact) + [1e-14, 0, 0]
+        )
 
 
-@pytest.mark.parametrize("product", [1e-12, 1e-6, 9.99e-3, 0.01052, 0.0168, 0.1, 0.49, 0.51, 0.99, 1.01, 30.0])
+@pytest.mark.parametrize(
+    "product", [1e-12, 1e-6, 9.99e-3, 0.01052, 0.0168, 0.1, 0.49, 0.51, 0.99, 1.01, 30.0]
+)
 def test_constant_load_on_a_free_body_with_drag(product):
     """x'' + c x' = g from rest: g (t - (1 - exp(-ct))/c)/c, with c t through the switch of the formula."""
     time = 0.25
@@ -329,8 +342,8 @@ def test_rounding_bound_holds_and_is_not_idle(n_modes):
                 c, o, t = mp.mpf(motion.decay[k]), mp.mpf(motion.omega[k]), mp.mpf(time)
                 root = mp.sqrt(mp.mpc(c * c / 4 - o * o))
                 plus, minus = -c / 2 + root, -c / 2 - root
-                free = ((mp.mpf(v[k]) - minus * mp.mpf(u[k])) * mp.exp(plus * t)
-                        - (mp.mpf(v[k]) - plus * mp.mpf(u[k])) * mp.exp(minus * t)) / (plus - minus)  # fmt: skip
+                first, second = (mp.mpf(v[k]) - root * mp.mpf(u[k]) for root in (minus, plus))
+                free = (first * mp.exp(plus * t) - second * mp.exp(minus * t)) / (plus - minus)
                 exact += mp.mpf(motion.phi[k]) * mp.re(free)
             propagate(motion, u, v, time, u, v)
             error = float(abs(mp.mpf(tip_state(motion, start + time, u, v)[0]) - exact))

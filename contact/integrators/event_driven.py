@@ -6,7 +6,7 @@ acts at once, a force law is followed through the contact (``contact.series``) u
 again.  Periods without a touch cost one multiplication by the flow of a period.
 
 Order: exact to rounding.  Stability limit: none.  Laws: ``NewtonRestitution``, ``LinearContact``,
-``HertzContact``, ``HuntCrossley``.
+``HertzContact``, ``HuntCrossley``, ``DelayedRestitution``.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 
 from contact.compiled import kernel
 from contact.crossing import CROSSES, FREE, UNRESOLVED, first_crossing, first_polynomial_root
-from contact.flight import EPS, flow_matrix, propagate, tip_rounding, tip_state
+from contact.flight import EPS, flow_matrix, propagate, tip_rounding, tip_state, tip_steady
 from contact.hertz_series import (
     HERTZ_ORDER,
     depth_root,
@@ -33,21 +33,25 @@ from contact.impact_log import (
     LOGGED,
     LOSS,
     ORDER,
+    REBOUND,
     REGIME,
+    WAIT,
     close_row,
     open_row,
     sample_flight,
     sample_hertz,
     sample_series,
+    sample_waiting,
 )
-from contact.laws import HERTZ, NEWTON
-from contact.newton import accumulation_time, newton_impact
+from contact.laws import DELAYED, HERTZ, NEWTON
+from contact.newton import accumulation_time, from_table, newton_impact
 from contact.series import (
     CONTACT,
     INSIDE,
     OUTSIDE,
     SERIES_ORDER,
     SUSTAINED,
+    WAITING,
     contact_series,
     series_state,
     series_step,
@@ -89,8 +93,9 @@ def advance(
     integers : ndarray of int64, shape (5,)
         Regime, vanishing derivatives at the start of the flight, rows logged, samples taken, impacts in this
         period; carried from call to call.
-    floats : ndarray, shape (3,)
-        Time since the strobe, approach velocity and energy loss of the contact under way; carried likewise.
+    floats : ndarray, shape (5,)
+        Time since the strobe; approach velocity, energy loss, waiting time and rebound velocity of the contact
+        under way; carried likewise.
     first, periods : int
         Number of the drive period in which the run starts, and strobes to pass.
     clock_end : float
@@ -170,6 +175,12 @@ def advance(
                     integers[ORDER] = 2
                     continue
                 open_row(log, log_state, integers, floats, index, base, approach, 0, u, v)
+                if motion.law == DELAYED:
+                    floats[REBOUND] = -from_table(motion.table, approach, 1) * approach
+                    floats[WAIT] = from_table(motion.table, approach, 3)
+                    floats[LOSS] = 0.5 * (approach * approach - floats[REBOUND] ** 2) / motion.compliance
+                    integers[REGIME] = WAITING
+                    continue
                 if motion.law != NEWTON:
                     integers[REGIME] = CONTACT
                     root = 0.0
@@ -195,8 +206,23 @@ def advance(
                     integers[ORDER] = 1 if e * approach > 0.0 else 2
                 continue
 
-            # in contact: one step of the series, cut at the first event
             regime = integers[REGIME]
+            if regime == WAITING:
+                leaves = base + floats[WAIT] <= end
+                until = base + floats[WAIT] if leaves else end
+                sample_waiting(motion, until, index, integers, sample_period, sample_clock, samples)
+                floats[WAIT] -= until - base
+                floats[CLOCK] = until
+                height, velocity, _a = tip_steady(motion, until)
+                u[0] = -height / motion.phi[0]
+                v[0] = ((floats[REBOUND] if leaves else 0.0) - velocity) / motion.phi[0]
+                if leaves:
+                    close_row(log, log_state, integers, floats, index, until, floats[REBOUND], u, v)
+                    integers[REGIME] = OUTSIDE
+                    integers[ORDER] = 1 if floats[REBOUND] < 0.0 else 2
+                continue
+
+            # in contact: one step of the series, cut at the first event
             if motion.law == HERTZ:
                 scalars[0, 0] = root if root >= 0.0 else depth_root(motion, base, u, v)
                 hertz_series(motion, base, u, v, us, vs, scalars)

@@ -43,6 +43,7 @@ STYLE: Any = {
     "font.size": 8.0,
     "axes.labelsize": 8.0,
     "axes.titlesize": 8.0,
+    "figure.labelsize": 8.0,
     "xtick.labelsize": 7.0,
     "ytick.labelsize": 7.0,
     "legend.fontsize": 7.0,
@@ -59,6 +60,11 @@ STYLE: Any = {
     "pdf.fonttype": 42,
     "savefig.facecolor": "white",
 }
+
+
+def house_style() -> Any:
+    """Context in which titles, legends and texts that are added to a figure get the house style."""
+    return matplotlib.rc_context(STYLE)
 
 
 def new_figure(

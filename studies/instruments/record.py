@@ -98,6 +98,10 @@ def git_state(root: Path = ROOT) -> dict[str, Any]:
     return {"commit": git("rev-parse", "--verify", "HEAD"), "dirty": None if status is None else status != ""}
 
 
+RESERVED = ("schema", "study", "status", "settings", "provenance", "folder", "wall_time_s")
+"""Keys of a summary that a study does not name its results by."""
+
+
 @dataclass(kw_only=True)
 class Record:
     """Writer of one results folder; `files` lists what has been written."""
@@ -133,6 +137,10 @@ class Record:
     def write_json(self, name: str, value: Any) -> Path:
         """NAME.json."""
         return self._write(f"{name}.json", (json_text(value) + "\n").encode())
+
+    def write_text(self, name: str, text: str) -> Path:
+        """A text file under its full name."""
+        return self._write(name, text.encode())
 
     def write_arrays(self, name: str, **arrays: Any) -> Path:
         """NAME.npz with these named arrays of numbers or texts."""
@@ -171,8 +179,8 @@ class Record:
             "study": self.study,
             "status": status,
             "settings": self.settings,
-            "results": results,
             "provenance": self.scene.provenance(),
+            **{key: value for key, value in results.items() if key not in RESERVED},
         }
         self.write_json("summary", summary)
         manifest = {

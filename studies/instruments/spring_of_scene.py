@@ -24,7 +24,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from dataclasses import dataclass
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,13 +63,7 @@ READOUT = "readout"
 
 @dataclass(frozen=True, kw_only=True)
 class MeasuredRates:
-    """Decay rates as measured, one for each coupled mode, lowest first; not a number for the other modes.
-
-    Parameters
-    ----------
-    rates : tuple of float
-        c [1/s].
-    """
+    """Decay rates c [1/s] as measured, one a coupled mode, lowest first; not a number for the other modes."""
 
     rates: tuple[float, ...]
 
@@ -83,40 +77,26 @@ class MeasuredRates:
 
 def spring_of(scene: Scene) -> LeafSpring:
     """The leaf spring; SceneError for spring.kind modal_data, which has no shape."""
-    keys, tip = scene.spring, Tip(mass=scene.tip.mass_kg, rotary_inertia=scene.tip.rotary_inertia_kg_m2)
+    keys = scene.spring
     bare, taped = sections_of(scene)
-    span = None if taped is None else (0.0, keys.tape_coverage * keys.leg_length_m)
-    readouts = {READOUT: _readout(scene)}
+    shared: dict[str, Any] = {
+        "section": bare,
+        "tip": Tip(mass=scene.tip.mass_kg, rotary_inertia=scene.tip.rotary_inertia_kg_m2),
+        "damped_section": taped,
+        "damped_span": None if taped is None else (0.0, keys.tape_coverage * keys.leg_length_m),
+        "readouts": {READOUT: _readout(scene)},
+    }
     if keys.kind == "folded_u":
-        return folded_u(
-            leg_length=keys.leg_length_m,
-            bend_radius=keys.bend_radius_m,
-            section=bare,
-            tip=tip,
-            damped_section=taped,
-            damped_span=span,
-            readouts=readouts,
-        )
+        return folded_u(leg_length=keys.leg_length_m, bend_radius=keys.bend_radius_m, **shared)
     if keys.kind == "cantilever":
-        return cantilever(
-            length=keys.leg_length_m,
-            section=bare,
-            tip=tip,
-            damped_section=taped,
-            damped_span=span,
-            readouts=readouts,
-        )
+        return cantilever(length=keys.leg_length_m, **shared)
     if keys.kind == "straight_strip":
         _refuse_held_tip(scene)
         return straight_strip(
             length=keys.leg_length_m,
-            section=bare,
             supports=(cast(Support, keys.start_support), cast(Support, keys.end_support)),
             tip_at=scene.tip.arc_fraction * keys.leg_length_m,
-            tip=tip,
-            damped_section=taped,
-            damped_span=span,
-            readouts=readouts,
+            **shared,
         )
     raise SceneError(
         f"spring.kind {keys.kind} gives modes without their shapes: this needs a spring that is drawn, "
