@@ -7,6 +7,7 @@ fast-math (so that results are the same bit for bit on one type of machine) and 
 The compiled code is cached between runs.  Numba's own cache looks at the one file in which a kernel stands;
 a kernel that calls kernels of other files would then be reused although its callee has changed.  The cache
 folder is therefore named after a hash of all kernel sources: change one, and everything is compiled anew.
+(A source counts if the word kernel occurs in it, which includes the constants that kernels take from it.)
 """
 
 from __future__ import annotations
@@ -41,7 +42,9 @@ def _cache_folder() -> str:
     package = Path(__file__).parent
     digest = hashlib.sha256(numba.__version__.encode())
     for source in sorted(package.rglob("*.py")):
-        digest.update(source.read_bytes())
+        text = source.read_bytes()
+        if b"kernel" in text:
+            digest.update(text)
     name = "kernels-" + digest.hexdigest()[:16]
     user_cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "grazing-spring"
     for parent in (package / "__pycache__", user_cache):

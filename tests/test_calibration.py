@@ -169,7 +169,8 @@ def test_every_kind_of_spring_makes_a_model_with_a_readout():
         assert model.n_modes == 4 and model.readouts[READOUT].shape == (4,)
     data = {"frequencies_hz": [150.0, 24.5], "decay_rates_per_s": [20.0, 3.5], "tip_values": [5.0, 8.0],
             "participation": [-0.05, 0.14]}
-    measured = LETTER.replace({"spring.kind": "modal_data", **{f"modal_data.{k}": v for k, v in data.items()}})
+    lists = {f"modal_data.{name}": values for name, values in data.items()}
+    measured = LETTER.replace({"spring.kind": "modal_data", **lists})
     model = model_of(measured)
     np.testing.assert_allclose(model.frequencies_hz, [24.5, 150.0])
     np.testing.assert_array_equal(model.readouts[READOUT], [8.0, 5.0])

@@ -372,7 +372,7 @@ def test_flight_that_ends_at_the_touch_finds_it_in_the_next_one():
 
 
 def on_the_wall(generator: np.random.Generator, n_modes: int, order: int) -> tuple:
-    """A driven oscillator and a state in which `order` derivatives of the height vanish, the next is negative.
+    """A driven oscillator and a state whose height has `order` derivatives zero, the next one negative.
 
     Returns motion, base, u, v and a direction (du, dv) along which all of this stays so.
     """
@@ -534,7 +534,7 @@ def degenerate(flatness: float, third: float) -> tuple:
 @pytest.mark.parametrize("flatness", [0.0, 1e-12, 1e-9, 1e-6, 1e-3, 1.0])
 @pytest.mark.parametrize("h", [0.0, 1e-15, -1e-15, 1e-13, -1e-13, 1e-10, -1e-10, 1e-6, -1e-6])
 def test_tangency_with_no_acceleration_is_right_or_refused(third, flatness, h):
-    """Height, velocity and acceleration vanish together: CROSSES only if the motion does, FREE only if not."""
+    """Height, velocity and acceleration vanish together: CROSSES only if it does, FREE only if not."""
     motion, u, v, time = degenerate(flatness, third)
     signal = Signal(motion, 0.0, u, v)
     duration = 0.016

@@ -91,7 +91,7 @@ def test_cross_sections_stay_plane_and_turn_with_the_strip(modes):
     place = mesh.points[strip].mean(axis=1)
     nearest = np.argmin(np.linalg.norm(along.points[None] - place[:, None], axis=2), axis=1)
     np.testing.assert_allclose(middle, along.displacement[:, nearest], atol=1e-9 * np.abs(middle).max())
-    tilt = mesh.shapes[:, strip[:, 1]] - mesh.shapes[:, strip[:, 2]]
+    tilt = mesh.shapes[:, strip[:, 0]] - mesh.shapes[:, strip[:, 1]]
     expected = along.rotation[:, nearest, None] * along.tangent[nearest] * BARE.thickness
     np.testing.assert_allclose(tilt, expected, atol=1e-9 * np.abs(tilt).max())
 
@@ -162,14 +162,14 @@ def test_a_mode_in_motion_loops_without_a_seam(modes, tmp_path, moved):
     assert steps[-1] == pytest.approx(steps[0], rel=1e-9)  # from the last frame back to the first
 
 
-def test_a_motion_of_the_reader_own_and_the_base(modes, tmp_path):
+def test_any_motion_and_the_base(modes, tmp_path):
     coordinates, base = np.array([[1e-3, 0.0, 2e-4, 0.0], [0.0, 5e-4, 0.0, 0.0]]), np.array([1e-3, -1e-3])
     _, first, second = write_motion(
         tmp_path / "motion.pvd", modes, [0.0, 1e-3], coordinates, base=base, magnification=2.0
     )
     mesh = spring_mesh(modes)
     for frame, q, z in zip((first, second), coordinates, base, strict=True):
-        expected = 2.0 * (np.einsum("k,kpi->pi", q, mesh.shapes) + [0.0, z, 0.0])
+        expected = 2.0 * (np.einsum("k,kpi->pi", q, mesh.shapes) + np.array([0.0, z, 0.0]))
         np.testing.assert_allclose(read(frame).point_data["displacement"], expected, atol=1e-14)
 
 
