@@ -33,7 +33,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from contact.crossing import tip_at
-from contact.flight import Motion, propagate
+from contact.flight import Motion, propagate, tip_rounding
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate, steady_motion
 from contact.trajectory import State, Trajectory
@@ -147,6 +147,8 @@ def _root(function: object, low: float, high: float) -> float:
 
 def _crossing(virtual: _Virtual, peak: float, direction: float) -> float:
     """The crossing of the gap next to `peak` on its rising (-1) or falling (+1) side [s]."""
+    if virtual.height(peak) <= 0.0:
+        return peak
     step = virtual.motion.period / _SAMPLES
     near, far = peak, peak + direction * step
     for _ in range(_SAMPLES):
@@ -264,7 +266,7 @@ def _measure(
     back = touch + s_in - release
     peaks_out = outgoing.extrema(back - 0.6 * period, back + 0.6 * period, 1.0)
     peak_out = min(peaks_out, key=lambda s: abs(s - back)) if peaks_out else math.nan
-    returns = bool(peaks_out) and outgoing.height(peak_out) >= 0.0
+    returns = bool(peaks_out) and outgoing.height(peak_out) >= -tip_rounding(single, outgoing.u, outgoing.v)
     restitution = delay = math.nan
     if returns and not forced:
         s_out = _crossing(outgoing, peak_out, 1.0)
@@ -326,6 +328,8 @@ def first_collision(oscillator: ImpactOscillator, state: State | None = None, *,
 
 def before_collision(oscillator: ImpactOscillator) -> State:
     """The steady motion, at the time of its lowest tip displacement in the first drive period."""
+    if oscillator.drive is None:
+        raise ValueError("drive is None; without one there is no steady motion that touches, so give a state")
     motion = oscillator.motion()
     lowest = math.atan2(-motion.tip_sine, -motion.tip_cosine) % (2 * math.pi) / motion.drive
     q, q_rate = steady_motion(motion, np.array([lowest]))

@@ -150,6 +150,9 @@ def hertz_step(motion, u, v, us, vs, scalars, limit):
         s = (allowed / top) ** (1.0 / HERTZ_ORDER)
     if below > 0.0:
         s = min(s, (allowed / below) ** (1.0 / (HERTZ_ORDER - 1)))
+    if scalars[0, 1] < 0.0 < scalars[0, 0]:
+        # no further than well behind the release: with no force left the terms give no bound
+        s = min(s, -4.0 * scalars[0, 0] / scalars[0, 1])
     # r and the time must be resolved as well as the modes
     size = 0.0
     for n in range(1, 4):

@@ -21,6 +21,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from numbers import Real
 from typing import ClassVar
 
 import numpy as np
@@ -64,6 +65,11 @@ def _require(condition: bool, sentence: str) -> None:
         raise ValueError(sentence)
 
 
+def _finite(value: object) -> bool:
+    """Whether `value` is a finite number; a text or a list is none."""
+    return isinstance(value, Real) and math.isfinite(value)
+
+
 @dataclass(frozen=True, kw_only=True)
 class NewtonRestitution(ContactLaw):
     """Instantaneous impact: the tip leaves with -`local_restitution` times its approach velocity.
@@ -79,7 +85,7 @@ class NewtonRestitution(ContactLaw):
 
     def __post_init__(self) -> None:
         e = self.local_restitution
-        _require(math.isfinite(e) and 0 <= e <= 1, f"local_restitution is {e}; it must lie between 0 and 1")
+        _require(_finite(e) and 0 <= e <= 1, f"local_restitution is {e}; it must lie between 0 and 1")
 
     @property
     def numbers(self) -> tuple[float, float, float]:
@@ -114,6 +120,12 @@ class DelayedRestitution(ContactLaw):
     def __post_init__(self) -> None:
         low, high = self.speeds
         _require(0 < low < high < math.inf, f"speeds is {self.speeds} m/s; it must be two rising numbers above zero")
+        for name in ("restitution", "delay"):
+            given = getattr(self, name)
+            _require(
+                callable(given) or isinstance(given, Real),
+                f"{name} is {given!r}; it must be a number or a function of the approach speed",
+            )
         _v, tau, _slope, delay, _slope2 = self.table
         _require(
             bool(np.all(np.isfinite(tau)) and np.all(tau >= 0) and np.all(tau <= 1)),
@@ -161,8 +173,8 @@ class LinearContact(ContactLaw):
 
     def __post_init__(self) -> None:
         k, c = self.stiffness, self.damping
-        _require(math.isfinite(k) and k > 0, f"stiffness of the contact is {k} N/m; it must be finite and above zero")
-        _require(math.isfinite(c) and c >= 0, f"damping of the contact is {c} N s/m; it must be finite and zero or more")
+        _require(_finite(k) and k > 0, f"stiffness of the contact is {k} N/m; it must be finite and above zero")
+        _require(_finite(c) and c >= 0, f"damping of the contact is {c} N s/m; it must be finite and zero or more")
 
     @property
     def numbers(self) -> tuple[float, float, float]:
@@ -185,7 +197,7 @@ class HertzContact(ContactLaw):
     def __post_init__(self) -> None:
         k = self.stiffness
         _require(
-            math.isfinite(k) and k > 0, f"stiffness of the contact is {k} N/m^1.5; it must be finite and above zero"
+            _finite(k) and k > 0, f"stiffness of the contact is {k} N/m^1.5; it must be finite and above zero"
         )
 
     @staticmethod
@@ -197,10 +209,10 @@ class HertzContact(ContactLaw):
             ("radius", radius, "m"), ("youngs_modulus", youngs_modulus, "Pa"), ("other_modulus", other_modulus, "Pa"),
         ):
             _require(
-                math.isfinite(value) and value > 0, f"{name} is {value} {unit}; it must be finite and above zero"
+                _finite(value) and value > 0, f"{name} is {value} {unit}; it must be finite and above zero"
             )
         for name, value in (("poissons_ratio", poissons_ratio), ("other_ratio", other_ratio)):
-            _require(-1 < value <= 0.5, f"{name} is {value}; it must lie above -1 and not above 0.5")
+            _require(_finite(value) and -1 < value <= 0.5, f"{name} is {value}; it must lie above -1 and not above 0.5")
         compliance = (1 - poissons_ratio**2) / youngs_modulus + (1 - other_ratio**2) / other_modulus
         return HertzContact(stiffness=4.0 / 3.0 * math.sqrt(radius) / compliance)
 
@@ -238,10 +250,10 @@ class HuntCrossley(ContactLaw):
     def __post_init__(self) -> None:
         k, chi = self.stiffness, self.dissipation
         _require(
-            math.isfinite(k) and k > 0, f"stiffness of the contact is {k} N/m^1.5; it must be finite and above zero"
+            _finite(k) and k > 0, f"stiffness of the contact is {k} N/m^1.5; it must be finite and above zero"
         )
         _require(
-            math.isfinite(chi) and chi >= 0,
+            _finite(chi) and chi >= 0,
             f"dissipation of the contact is {chi} s/m; it must be finite and zero or more",
         )
 
@@ -252,9 +264,9 @@ class HuntCrossley(ContactLaw):
         `restitution` lies above 0 and is at most 1; the relation is exact, for any exponent of d.
         """
         e = restitution
-        _require(math.isfinite(e) and 0 < e <= 1, f"restitution is {e}; it must lie above 0 and not above 1")
+        _require(_finite(e) and 0 < e <= 1, f"restitution is {e}; it must lie above 0 and not above 1")
         _require(
-            math.isfinite(velocity) and velocity > 0, f"velocity is {velocity} m/s; it must be finite and above zero"
+            _finite(velocity) and velocity > 0, f"velocity is {velocity} m/s; it must be finite and above zero"
         )
         if e == 1.0:
             return HuntCrossley(stiffness=stiffness, dissipation=0.0)
@@ -265,7 +277,7 @@ class HuntCrossley(ContactLaw):
             return b / e - math.log1p(b / e) + b - w
 
         # for e near 1 the root is at b = (3/2)(1/e^2 - 1)/(1/e^3 + 1), for small e just below w = 1/e + 1
-        low = 0.5 * min(1.0, 1.5 * (1.0 / e**2 - 1.0) / (1.0 / e**3 + 1.0))
+        low = 0.5 * min(1.0, 1.5 * e * (1.0 - e * e) / (1.0 + e**3))
         root = -math.expm1(-float(brentq(balance, low, 1.0 / e + 2.0, xtol=1e-300, rtol=1e-15, maxiter=500)))
         return HuntCrossley(stiffness=stiffness, dissipation=root / (e * velocity))
 

@@ -38,12 +38,12 @@ COARSE = {"spring.elements_per_leg": 12, "spring.elements_on_arc": 12, "modes.co
 
 
 def test_the_letters_scene_is_calibrated_to_the_digits_it_is_written_with():
-    """Thickness and loss factor have six digits; the period goes with a power of the thickness near -1."""
-    assert free_period(LETTER) == pytest.approx(PERIOD, rel=1e-6)
-    assert strip_decay_rate(LETTER) == pytest.approx(RATE, rel=1e-6)
+    """Thickness and loss factor have eight digits; the period goes with a power of the thickness near -1."""
+    assert free_period(LETTER) == pytest.approx(PERIOD, rel=1e-7)
+    assert strip_decay_rate(LETTER) == pytest.approx(RATE, rel=1e-7)
     fitted = calibrate(LETTER, free_period_s=PERIOD, decay_rate_per_s=RATE)
     for key in ("spring.thickness_m", "spring.tape_loss_factor"):
-        assert LETTER[key] == pytest.approx(fitted[key], rel=1e-6)
+        assert LETTER[key] == pytest.approx(fitted[key], rel=1e-7)
         assert LETTER.provenance()[key] == fitted.provenance()[key] == "calibrated"
 
 

@@ -355,6 +355,10 @@ def test_flight_that_ends_at_the_touch_finds_it_in_the_next_one():
         stopped = with_gap(motion, 0.5 * (height + start))
         outcome, root = search(stopped, 0.0, u, v, motion.period)
         assert outcome == CROSSES
+        for before in (1e-2, 1e-4, 1e-6, 1e-8, 1e-10):
+            end = root - before * motion.period
+            if end > 0:
+                assert search(stopped, 0.0, u, v, end) == (FREE, end)
         for end in (root, math.nextafter(root, 0.0), math.nextafter(root, 1.0), root - 1e-16, root + 1e-16):
             first, s = search(stopped, 0.0, u, v, end)
             if first == CROSSES:

@@ -46,6 +46,7 @@ ORDER = {
         "series",
         "hertz_series",
         "newton",
+        "tangent",
         "impact_log",
         "integrators.*",
         "simulation",

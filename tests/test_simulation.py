@@ -13,6 +13,7 @@ from beam.reduction import ModalModel, single_mode
 from contact.drive import HarmonicDrive
 from contact.errors import Chatter, ContactTooStiff, UnresolvedCrossing
 from contact.laws import ContactLaw, LinearContact, NewtonRestitution
+from contact.newton import LOWEST_HOP, accumulation_time
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
@@ -240,6 +241,18 @@ def test_accumulation_takes_the_time_it_should(e):
     assert stay.sum() == 1
     left = 2 * abs(run.impacts.approach[stay][0]) / (g * (1 - e))
     assert run.impacts.start[stay][0] + left == pytest.approx(total, rel=1e-9)
+
+
+def test_time_of_the_hops_that_are_summed():
+    """2 w/(a (1 - e)), once a hop of height w^2/2a has drowned in rounding, and never for e = 1."""
+    speed, acceleration, rounding = 1e-7, 10.0, 1e-17
+    assert speed**2 / (2 * acceleration) < LOWEST_HOP * rounding
+    for e in (0.0, 0.5, 0.9):
+        hops = sum(2 * speed * e**n / acceleration for n in range(400))
+        assert accumulation_time(speed, acceleration, e, rounding) == pytest.approx(hops, rel=1e-13)
+    assert accumulation_time(speed, acceleration, 1.0, rounding) == -1.0
+    assert accumulation_time(speed, -acceleration, 0.5, rounding) == -1.0
+    assert accumulation_time(1e-3, acceleration, 0.5, rounding) == -1.0
 
 
 @pytest.mark.parametrize("e", [0.7, 0.99])

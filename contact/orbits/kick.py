@@ -1,0 +1,238 @@
+"""A collision as a kick, and the p_m orbits that follow by linear algebra.
+
+One simulated collision, entered with approach velocity v from the steady motion with all modes at rest above
+it, changes the deviations of all modes by B(v), referred to the touch by their free flow.  If on an orbit of
+period m the same collision happens once in m drive periods, the deviations just before it are
+
+    w = (I - P)^-1 P B(v),   P = free flow over m/f,
+
+and the steady motion has to make up the rest of gap and velocity: with p = phi . w_u, r = phi . w_v,
+
+    A(v)^2 = (gap - p)^2 + ((v - r)/(2 pi f))^2
+
+is the square of the steady tip amplitude, so that F/F_g - 1 = A/gap - 1.  The orbit ends (fold) where A(v) is
+smallest.  With Newton's law B is proportional to v and the result exact (``contact.orbits.single_impact``).
+
+What this neglects is that the real collision starts with the ringing w left over from the last one and at
+another acceleration of the tip.  Both are there to be used: a second collision, simulated from w itself, gives
+another A at the same v, and the difference is the estimate of the error.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
+
+from contact.crossing import CROSSES, first_crossing
+from contact.errors import NotPeriodic
+from contact.flight import Motion, flow_matrix
+from contact.oscillator import ImpactOscillator
+from contact.tangent import FLOWN, flow_from_touch
+
+__all__ = ["Kick", "KickFamily", "KickOrbit"]
+
+Array = NDArray[np.float64]
+
+MOST_TOUCHES = 200
+"""Bound of touches in one collision: a bare tip under a stiff spring makes some dozens."""
+
+WINDOW = 0.5
+"""Part of a drive period after the first touch in which further touches belong to the collision."""
+
+
+def mode_flows(motion: Motion, time: float) -> Array:
+    """Free flows of all modes over `time` [s], shape (n_modes, 2, 2); `time` may be negative."""
+    flows = [
+        flow_matrix(motion.omega[k], motion.decay[k], motion.damped[k], motion.damped_low[k], time)
+        for k in range(motion.omega.size)
+    ]
+    return np.array(flows).reshape(-1, 2, 2)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Kick:
+    """What one collision does to all modes.
+
+    Parameters
+    ----------
+    speed : float
+        Approach velocity v of the tip [m/s].
+    jump : ndarray, shape (n_modes, 2)
+        B: jumps of displacement and velocity of the modes, referred to the touch.
+    touches : int
+        Contacts in the collision.
+    duration : float
+        From first touch to last release [s].
+    """
+
+    speed: float
+    jump: Array
+    touches: int
+    duration: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class KickOrbit:
+    """An orbit of the kick description.
+
+    Parameters
+    ----------
+    period : int
+        m.
+    kick : Kick
+        The collision that it was built from.
+    deviations : ndarray, shape (n_modes, 2)
+        w, just before the collision.
+    amplitude : float
+        Base amplitude [m].
+    excess : float
+        F/F_g - 1.
+    phase : float
+        Drive time of the touch [s].
+    """
+
+    period: int
+    kick: Kick
+    deviations: Array
+    amplitude: float
+    excess: float
+    phase: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class KickFamily:
+    """The p_m orbits with one collision, of an oscillator with any contact law, from kicks.
+
+    Parameters
+    ----------
+    oscillator : ImpactOscillator
+        Its drive amplitude does not matter.
+    period : int
+        m, one or more.
+    modes : int, optional
+        Keep the kick of the first `modes` modes only; with 1 the letter's single-mode description with its
+        measured restitution and delay.
+    """
+
+    oscillator: ImpactOscillator
+    period: int
+    modes: int | None = None
+
+    def __post_init__(self) -> None:
+        if self.oscillator.drive is None:
+            raise ValueError("drive is None; orbits of a driven spring need a HarmonicDrive")
+        if self.oscillator.load is not None:
+            raise ValueError("load is given; the orbits from kicks are those of a spring without constant load")
+        if not (isinstance(self.period, int) and self.period >= 1):
+            raise ValueError(f"period is {self.period}; it must be a whole number of drive periods, one or more")
+        if self.modes is not None and not 1 <= self.modes <= self.oscillator.n_modes:
+            raise ValueError(f"modes is {self.modes}; it must lie between 1 and {self.oscillator.n_modes}")
+
+    @cached_property
+    def response(self) -> complex:
+        """Tip response per unit base amplitude, complex [1]."""
+        return self.oscillator.tip_response()
+
+    @cached_property
+    def flow(self) -> Array:
+        """Free flow over m/f, shape (n_modes, 2, 2)."""
+        return mode_flows(self._motion, self.period * self.oscillator.period)
+
+    @cached_property
+    def _motion(self) -> Motion:
+        return self.oscillator.motion()
+
+    def drive_at_touch(self, reach: float, rate: float) -> tuple[float, float]:
+        """Base amplitude [m] and drive time [s] at which the steady tip motion has displacement `reach` [m] and
+        velocity `rate` [m/s]."""
+        w = self.oscillator.drive.angular_frequency  # type: ignore[union-attr]
+        # x = Z Im(H e^{i w t}), x' = Z w Re(H e^{i w t})
+        turned = (rate / w + 1j * reach) / self.response
+        return abs(turned), float(np.angle(turned) % (2.0 * np.pi)) / w
+
+    def kick(self, speed: float, deviations: Array | None = None) -> Kick:
+        """One collision with approach velocity `speed` [m/s], from rest or from given deviations.
+
+        Raises
+        ------
+        ValueError
+            If `speed` is not above zero.
+        NotPeriodic
+            If the collision does not end within half a drive period.
+        """
+        if not speed > 0:
+            raise ValueError(f"speed is {speed} m/s; it must be above zero")
+        gap, n = self.oscillator.stop.gap, self.oscillator.n_modes
+        w = np.zeros((n, 2)) if deviations is None else deviations
+        p, r = self._motion.phi @ w
+        amplitude, phase = self.drive_at_touch(gap - p, speed - r)
+        motion = self.oscillator.with_amplitude(amplitude).motion()
+        window = WINDOW * self.oscillator.period
+        envelope = np.empty(n + 1)
+        touches = 1
+        while True:
+            u, v = w[:, 0].copy(), w[:, 1].copy()
+            record = np.empty((touches, 4 + 2 * n))
+            outcome = flow_from_touch(
+                motion, self.response.real, self.response.imag, phase, u, v, window, touches, np.empty((0, 0)), record
+            )
+            end, u, v = record[-1, 1], record[-1, 4 : 4 + n].copy(), record[-1, 4 + n :].copy()
+            if outcome != FLOWN or touches > MOST_TOUCHES:
+                raise NotPeriodic(
+                    time=phase + window, gap=0.0, velocity=speed,
+                    detail="the collision does not end within half a drive period",
+                )
+            again, _time = first_crossing(motion, phase + end, u, v, window - end, 1, envelope)
+            if again != CROSSES:
+                break
+            touches += 1
+        free = np.einsum("kij,kj->ki", mode_flows(motion, end), w)
+        jump = np.einsum("kij,kj->ki", mode_flows(motion, -end), np.column_stack([u, v]) - free)
+        if self.modes is not None:
+            jump[self.modes :] = 0.0
+        return Kick(speed=speed, jump=jump, touches=touches, duration=float(end))
+
+    def orbit_of(self, kick: Kick) -> KickOrbit:
+        """The orbit on which `kick` happens once in m drive periods."""
+        w = np.linalg.solve(np.eye(2) - self.flow, np.einsum("kij,kj->ki", self.flow, kick.jump)[..., None])[..., 0]
+        p, r = self._motion.phi @ w
+        amplitude, phase = self.drive_at_touch(self.oscillator.stop.gap - p, kick.speed - r)
+        return KickOrbit(
+            period=self.period, kick=kick, deviations=w, amplitude=amplitude,
+            excess=amplitude / self.oscillator.grazing_amplitude() - 1.0, phase=phase,
+        )
+
+    def orbit(self, speed: float) -> KickOrbit:
+        """The orbit whose collision has approach velocity `speed` [m/s]."""
+        return self.orbit_of(self.kick(speed))
+
+    def error(self, orbit: KickOrbit) -> float:
+        """Estimated error of the excess of an orbit: the change when its collision starts from its own ringing."""
+        w = orbit.deviations if self.modes is None else orbit.deviations * (np.arange(len(orbit.deviations)) < self.modes)[:, None]
+        return self.orbit_of(self.kick(orbit.kick.speed, w)).excess - orbit.excess
+
+    def fold(self, speeds: tuple[float, float] = (1e-4, 1.0)) -> KickOrbit | None:
+        """The orbit of smallest amplitude, where the p_m orbit ends; None if it is not inside the range.
+
+        Parameters
+        ----------
+        speeds : (float, float)
+            Range of approach velocities over 2 pi f gap, in which the amplitude is searched on a logarithmic
+            grid and then minimised by Brent's method.
+        """
+        unit = 2.0 * np.pi * self.oscillator.drive.frequency * self.oscillator.stop.gap  # type: ignore[union-attr]
+
+        def excess(log_speed: float) -> float:
+            return self.orbit(float(np.exp(log_speed))).excess
+
+        grid = np.linspace(np.log(speeds[0] * unit), np.log(speeds[1] * unit), 33)
+        values = [excess(x) for x in grid]
+        i = int(np.argmin(values))
+        if i in (0, len(grid) - 1):
+            return None
+        best = minimize_scalar(excess, bracket=(grid[i - 1], grid[i], grid[i + 1]), method="brent", options={"xtol": 1e-9})
+        return self.orbit(float(np.exp(best.x)))

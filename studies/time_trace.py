@@ -1,0 +1,176 @@
+"""A period-4 orbit against time, one of its collisions from close by, and its spectrum.
+
+Claim (letter 1996, Fig. 4): at F/F_g - 1 = 0.013 the orbit has period 4, and at impact "a multitude of
+high-order modes is excited in the beam".
+
+Computed, at 21.50 Hz, where the letter's p1 goes over into p4:
+
+    settled orbit    reached from below grazing; its period is found, not assumed
+    motion           tip and read-out point over two periods of the orbit, impacts marked
+    close-up         tip relative to the plate and contact force in one collision
+    collision        restitution, delay and kick of the single-mode description (contact.collision)
+    spectrum         amplitudes of the read-out at the multiples of 1/(orbit period), FFT over a whole number of
+                     periods, so that no window is needed, against the modal frequencies
+
+A motion without a period up to 64 drive periods is drawn and told as such; its spectrum then has leakage.
+
+Run time: some seconds, --quick hardly less.  Command: python -m studies.time_trace [--excess E] [--frequency F].
+Outputs: summary.json, time_trace.npz (time, tip, read-out), spectrum.csv, time_trace and spectrum as png and pdf.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from contact.collision import Collision
+from studies.instruments.command_line import Request, run_study
+from studies.instruments.oscillators import beam_of
+from studies.instruments.quantities import SceneError
+from studies.instruments.scene import Scene
+from studies.instruments.settled_trace import close_up, settled_state, trace_of
+from studies.instruments.spectrum import lines_of, peaks_at_modes, peaks_of
+from studies.instruments.spring_of_scene import model_of
+from studies.instruments.trace_figure import draw_spectrum, draw_trace
+from studies.published import PERIODS, RESTITUTION, TIME_TRACE_EXCESS
+
+FREQUENCY = 21.50
+"""Where the letter has the period 4 of its Fig. 4 [Hz]."""
+
+ORBIT_PERIODS = 2
+"""Periods of the orbit in the figure."""
+
+APERIODIC = 8
+"""Drive periods shown of a motion that has no period."""
+
+MARGIN, SAMPLES = 2.0, 1201
+"""Of the close-up: time before and after in contact times (at least 50 us), and samples."""
+
+
+def told(collision: Collision) -> dict[str, Any]:
+    """A collision in terms of JSON."""
+    return {
+        "time_s": collision.first_touch,
+        "approach_velocity": collision.approach,
+        "real_approach_velocity": collision.real_approach,
+        "restitution": collision.restitution,
+        "delay_s": collision.delay,
+        "kick": collision.kick,
+        "shift_m": collision.shift,
+        "impacts": collision.impacts,
+        "contact_s": collision.contact_time,
+        "ringing_m": collision.ringing,
+        "energy_to_higher_modes": collision.energy_to_higher_modes,
+        "forced_by_ringing": collision.forced_by_ringing,
+        "returns": collision.returns,
+    }
+
+
+def closing_lines(period: int, frequency: float, excess: float, found: Sequence[dict[str, Any]]) -> list[str]:
+    """What was found, and whether it is what the letter shows."""
+    letter = PERIODS.get(frequency)
+    name = f"p{period}" if period else "no period up to 64"
+    lines = [f"{frequency:g} Hz, excess {excess:g}: {name}" + (f"; the letter has p{letter}" if letter else "")]
+    if letter and period != letter:
+        lines.append("the settled orbit is not the letter's; what is drawn is what is there")
+    if not found:
+        lines.append("no impacts: the drive does not reach the plate, or the orbit without impacts is stable")
+    for c in found[:1]:
+        tau = f"{c['restitution']:.3f}" if math.isfinite(c["restitution"]) else "none (no return to the gap)"
+        lines.append(
+            f"collision: approach {c['approach_velocity']:.3f} m/s, restitution {tau} (letter: about {RESTITUTION:g}), "
+            f"delay {1e3 * c['delay_s']:.3f} ms, kick {c['kick']:.3f}, {c['impacts']} impacts in "
+            f"{1e6 * c['contact_s']:.1f} us of contact; ringing left from before {1e6 * c['ringing_m']:.1f} um"
+        )
+    return lines
+
+
+def run(scene: Scene, request: Request) -> dict[str, Any]:
+    """Compute, store and draw."""
+    if scene.drive.kind != "harmonic":
+        raise SceneError(f"drive.kind is {scene.drive.kind}; a settled orbit needs a harmonic drive")
+    frequency, excess = request.options.frequency, request.options.excess
+    model = model_of(scene)
+    scene.replace({"drive.frequencies_hz": (frequency,)}).refuse_drive_above(float(model.frequencies_hz.max()))
+    oscillator = beam_of(scene, frequency, model).with_excess(excess)
+    period, state = settled_state(oscillator, max(scene.scan.settle_cycles, 1))
+    length = ORBIT_PERIODS * period or APERIODIC
+    trace = trace_of(oscillator, state, period, length)
+    near = None
+    if trace.collisions:
+        one = trace.collisions[0]
+        near = close_up(oscillator, state, one, max(MARGIN * one.contact_time, 50e-6), SAMPLES)
+    lines_hz, amplitude = lines_of(trace.readout, length * oscillator.period)
+    # one peak for each mode, of those that the lines can tell apart
+    peaks = peaks_at_modes(
+        peaks_of(lines_hz, amplitude, 0.5 * frequency), model.frequencies_hz, 0.5 * frequency / max(period, 1) + frequency
+    )
+    found = [told(c) for c in trace.collisions]
+    unit, power = ("mm", "m") if scene.readout.quantity == "displacement" else ("mrad", "rad")
+    request.record.write_arrays("time_trace", time_s=trace.time, tip_m=trace.tip, **{f"readout_{power}": trace.readout})
+    request.record.write_table("spectrum", {"frequency_hz": lines_hz, f"amplitude_{power}": amplitude})
+    name = f"p$_{{{period}}}$" if period else "no period"
+    title = f"{name}, {frequency:.2f} Hz, F/F$_g$ - 1 = {excess:g}"
+    request.record.write_figure(draw_trace(trace, near, scene.stop.gap_m, unit, title), "time_trace")
+    request.record.write_figure(draw_spectrum(lines_hz, amplitude, model.frequencies_hz, frequency, unit), "spectrum")
+    lines = closing_lines(period, frequency, excess, found)
+    at_modes = [p for p in peaks if p["mode"] is not None and p["mode"] > 1]
+    numbers = ", ".join(str(n) for n in sorted({p["mode"] for p in at_modes}))
+    lines.append(f"modes above the first with a peak in the spectrum: {numbers or 'none'}")
+    for line in lines:
+        print(line, flush=True)
+    return {
+        "frequency_hz": frequency,
+        "excess": excess,
+        "period": period,
+        "letter": PERIODS.get(frequency) if excess == TIME_TRACE_EXCESS else None,
+        "impacts": int(round(trace.impact_times.size / ORBIT_PERIODS)) if period else int(trace.impact_times.size),
+        "impact_times_s": trace.impact_times,
+        "collisions": found,
+        "modes_hz": model.frequencies_hz,
+        "peaks": peaks,
+        "peak_unit": power,
+        "closing": lines,
+        "failed_cells": 0,
+    }
+
+
+def _number(low: float, what: str) -> Any:
+    def read(text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not (math.isfinite(value) and value > low):
+            raise argparse.ArgumentTypeError(f"must be {what}, not {text!r}")
+        return value
+
+    return read
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """The study's own options."""
+    parser.add_argument(
+        "--excess", type=_number(-1.0, "a number above -1"), default=TIME_TRACE_EXCESS, metavar="E",
+        help=f"F/F_g - 1 of the orbit (default: {TIME_TRACE_EXCESS:g}, the letter's Fig. 4)",
+    )
+    parser.add_argument(
+        "--frequency", type=_number(0.0, "a frequency above 0 Hz"), default=FREQUENCY, metavar="HZ",
+        help=f"drive frequency (default: {FREQUENCY:g} Hz, the letter's p4)",
+    )
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the study from the command line."""
+    return run_study(
+        "time_trace", "A settled orbit against time, one collision from close by, and the spectrum.", run, argv,
+        options=add_options,
+    )
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
