@@ -9,13 +9,14 @@ Computed, at 21.50 Hz, where the letter's p1 goes over into p4:
     motion           tip and read-out point over two periods of the orbit, impacts marked
     close-up         tip relative to the plate and contact force in one collision
     collision        restitution, delay and kick of the single-mode description (contact.collision)
-    spectrum         amplitudes of the read-out at the multiples of 1/(orbit period), FFT over a whole number of
-                     periods, so that no window is needed, against the modal frequencies
+    spectrum         amplitudes of the read-out at the multiples of 1/(orbit period), by FFT over one period
+                     of the orbit, so that no window is needed, against the modal frequencies
 
 A motion without a period up to 64 drive periods is drawn and told as such; its spectrum then has leakage.
 
-Run time: some seconds, --quick hardly less.  Command: python -m studies.time_trace [--excess E] [--frequency F].
-Outputs: summary.json, time_trace.npz (time, tip, read-out), spectrum.csv, time_trace and spectrum as png and pdf.
+Run time: some seconds.  Command: python -m studies.time_trace [--excess E] [--frequency HZ].
+Outputs: summary.json, time_trace.npz (time, tip, read-out), spectrum.csv, and the figures time_trace and
+spectrum as png and pdf.
 """
 
 from __future__ import annotations
@@ -25,15 +26,13 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
 from contact.collision import Collision
 from studies.instruments.command_line import Request, run_study
 from studies.instruments.oscillators import beam_of
 from studies.instruments.quantities import SceneError
 from studies.instruments.scene import Scene
 from studies.instruments.settled_trace import close_up, settled_state, trace_of
-from studies.instruments.spectrum import lines_of, peaks_at_modes, peaks_of
+from studies.instruments.spectrum import lines_of, peaks_of
 from studies.instruments.spring_of_scene import model_of
 from studies.instruments.trace_figure import draw_spectrum, draw_trace
 from studies.published import PERIODS, RESTITUTION, TIME_TRACE_EXCESS
@@ -74,7 +73,9 @@ def closing_lines(period: int, frequency: float, excess: float, found: Sequence[
     """What was found, and whether it is what the letter shows."""
     letter = PERIODS.get(frequency)
     name = f"p{period}" if period else "no period up to 64"
-    lines = [f"{frequency:g} Hz, excess {excess:g}: {name}" + (f"; the letter has p{letter}" if letter else "")]
+    lines = [
+        f"{frequency:g} Hz, excess {excess:g}: {name}" + (f"; the letter has p{letter}" if letter else "")
+    ]
     if letter and period != letter:
         lines.append("the settled orbit is not the letter's; what is drawn is what is there")
     if not found:
@@ -82,9 +83,11 @@ def closing_lines(period: int, frequency: float, excess: float, found: Sequence[
     for c in found[:1]:
         tau = f"{c['restitution']:.3f}" if math.isfinite(c["restitution"]) else "none (no return to the gap)"
         lines.append(
-            f"collision: approach {c['approach_velocity']:.3f} m/s, restitution {tau} (letter: about {RESTITUTION:g}), "
+            f"collision: approach {c['approach_velocity']:.3f} m/s, restitution {tau} "
+            f"(letter: about {RESTITUTION:g}), "
             f"delay {1e3 * c['delay_s']:.3f} ms, kick {c['kick']:.3f}, {c['impacts']} impacts in "
-            f"{1e6 * c['contact_s']:.1f} us of contact; ringing left from before {1e6 * c['ringing_m']:.1f} um"
+            f"{1e6 * c['contact_s']:.1f} us of contact; "
+            f"ringing left from before {1e6 * c['ringing_m']:.1f} um"
         )
     return lines
 
@@ -95,7 +98,9 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
         raise SceneError(f"drive.kind is {scene.drive.kind}; a settled orbit needs a harmonic drive")
     frequency, excess = request.options.frequency, request.options.excess
     model = model_of(scene)
-    scene.replace({"drive.frequencies_hz": (frequency,)}).refuse_drive_above(float(model.frequencies_hz.max()))
+    scene.replace({"drive.frequencies_hz": (frequency,)}).refuse_drive_above(
+        float(model.frequencies_hz.max())
+    )
     oscillator = beam_of(scene, frequency, model).with_excess(excess)
     period, state = settled_state(oscillator, max(scene.scan.settle_cycles, 1))
     length = ORBIT_PERIODS * period or APERIODIC
@@ -104,19 +109,25 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
     if trace.collisions:
         one = trace.collisions[0]
         near = close_up(oscillator, state, one, max(MARGIN * one.contact_time, 50e-6), SAMPLES)
-    lines_hz, amplitude = lines_of(trace.readout, length * oscillator.period)
-    # one peak for each mode, of those that the lines can tell apart
-    peaks = peaks_at_modes(
-        peaks_of(lines_hz, amplitude, 0.5 * frequency), model.frequencies_hz, 0.5 * frequency / max(period, 1) + frequency
+    # over one period of the orbit: a longer stretch only puts zeros between its lines
+    share = ORBIT_PERIODS if period else 1
+    lines_hz, amplitude = lines_of(
+        trace.readout[: trace.readout.size // share], length / share * oscillator.period
     )
+    peaks = peaks_of(lines_hz, amplitude, model.frequencies_hz, frequency)
     found = [told(c) for c in trace.collisions]
     unit, power = ("mm", "m") if scene.readout.quantity == "displacement" else ("mrad", "rad")
-    request.record.write_arrays("time_trace", time_s=trace.time, tip_m=trace.tip, **{f"readout_{power}": trace.readout})
-    request.record.write_table("spectrum", {"frequency_hz": lines_hz, f"amplitude_{power}": amplitude})
+    request.record.write_arrays(
+        "time_trace", time_s=trace.time, tip_m=trace.tip, **{f"readout_{power}": trace.readout}
+    )
+    columns = {"frequency_hz": lines_hz.tolist(), f"amplitude_{power}": amplitude.tolist()}
+    request.record.write_table("spectrum", columns)
     name = f"p$_{{{period}}}$" if period else "no period"
     title = f"{name}, {frequency:.2f} Hz, F/F$_g$ - 1 = {excess:g}"
     request.record.write_figure(draw_trace(trace, near, scene.stop.gap_m, unit, title), "time_trace")
-    request.record.write_figure(draw_spectrum(lines_hz, amplitude, model.frequencies_hz, frequency, unit), "spectrum")
+    request.record.write_figure(
+        draw_spectrum(lines_hz, amplitude, model.frequencies_hz, frequency, unit), "spectrum"
+    )
     lines = closing_lines(period, frequency, excess, found)
     at_modes = [p for p in peaks if p["mode"] is not None and p["mode"] > 1]
     numbers = ", ".join(str(n) for n in sorted({p["mode"] for p in at_modes}))
@@ -128,7 +139,9 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
         "excess": excess,
         "period": period,
         "letter": PERIODS.get(frequency) if excess == TIME_TRACE_EXCESS else None,
-        "impacts": int(round(trace.impact_times.size / ORBIT_PERIODS)) if period else int(trace.impact_times.size),
+        "impacts": int(round(trace.impact_times.size / ORBIT_PERIODS))
+        if period
+        else int(trace.impact_times.size),
         "impact_times_s": trace.impact_times,
         "collisions": found,
         "modes_hz": model.frequencies_hz,
@@ -167,7 +180,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the study from the command line."""
     return run_study(
-        "time_trace", "A settled orbit against time, one collision from close by, and the spectrum.", run, argv,
+        "time_trace",
+        "A settled orbit against time, one collision from close by, and the spectrum.",
+        run,
+        argv,
         options=add_options,
     )
 

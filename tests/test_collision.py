@@ -1,8 +1,9 @@
-"""Restitution, delay, kick and shift of a collision: planted ones are given back, and energy is accounted for."""
+"""Restitution, delay, kick and shift of a collision: planted ones come back, energy is accounted for."""
 
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import math
 
 import numpy as np
@@ -115,7 +116,7 @@ def test_planted_restitution_and_delay_are_given_back(restitution: float, delay:
             assert abs(found.restitution - restitution) < 2e-10
             assert abs(found.delay - delay) < 1e-13
             assert found.contact_time == pytest.approx(delay, abs=1e-16)
-            # the wait moves mode 1 as a kick and a shift: the two relations hold to the order of delay x frequency
+            # the wait is a kick and a shift of mode 1, to the order of delay x frequency
             speed, a = found.approach, found.deceleration
             off = 0.15 * delay * 2 * math.pi * frequency * (1 + delay * a / speed)
             assert abs(found.kick - 1 - restitution + delay * a / speed) < off + 1e-9
@@ -199,22 +200,19 @@ def test_kick_of_one_newton_impact_is_the_share_of_mode_1(ratio: float) -> None:
     assert seen >= 8
 
 
-@pytest.mark.parametrize("e", [0.0, 0.3, 0.8])
+@pytest.mark.parametrize("e", [0.3, 0.6, 0.8])
 def test_several_impacts_of_a_collision_are_one_kick(e: float) -> None:
     """Mode 1 gets the sum of the impulses, each carried back to t_in by its own free flow."""
     oscillator = spring(6, newton(e), damping=0.01)
     run = simulate(oscillator, before_collision(oscillator), periods=60)
     found = collisions(oscillator, run, unfinished="drop")
     impacts = run.impacts
-    assert np.all(impacts.kind != 2) or e == 0
+    assert np.all(impacts.kind == 0)  # a stay on the wall would push too
     compliance = float(np.sum(PHI**2))
     several = position = 0
     for c in found:
         rows = np.arange(position, position + c.impacts)
         position += c.impacts
-        # rows of stays on the wall push too: this route is for impacts alone
-        if np.any(impacts.kind[impacts.start <= c.end + 1e-12] == 2):
-            break
         assert impacts.start[rows[0]] == c.first_touch and impacts.end[rows[-1]] == c.end
         u = v = 0.0
         for i in rows:
@@ -305,7 +303,7 @@ def test_every_number_is_what_its_definition_says(n_modes: int, law: ContactLaw)
             assert math.isnan(c.restitution) and math.isnan(c.delay)
         else:
             returned += 1
-            # a hump of height h is known to rounding over h: near its top, times and speeds lose half the digits
+            # rounding moves the sides of a low hump: times and speeds there lose up to half their digits
             height = min(incoming(hump(incoming, c.first_touch))[0], outgoing(hump(outgoing, t_in))[0])
             slack = 1e-15 * math.sqrt(GAP / height)
             assert c.delay == pytest.approx(left[1] - t_in, abs=20 * slack)
@@ -333,7 +331,7 @@ def test_each_impact_belongs_to_one_collision() -> None:
         several += counted - len(found)
         edges = np.searchsorted(starts, [c.first_touch for c in found])
         np.testing.assert_array_equal(np.diff(edges), [c.impacts for c in found[:-1]])
-        for c, following in zip(found, found[1:], strict=False):
+        for c, following in itertools.pairwise(found):
             last = int(np.flatnonzero(impacts.end == c.end)[-1])
             q, rate = steady(oscillator, c.end)
             u = impacts.displacement_end[last, 0] - q[0]
@@ -360,7 +358,7 @@ def letter_with_hertz() -> ImpactOscillator:
 def test_two_relations_of_a_single_contact_of_the_letters_spring(
     frequency: float, letter_with_hertz: ImpactOscillator
 ) -> None:
-    """restitution^2 = (1 - kick)^2 + 2 a shift / v^2 and delay = (v/a)(1 + restitution - kick) within 3e-3."""
+    """restitution^2 = (1 - kick)^2 + 2 a shift/v^2, delay = (v/a)(1 + restitution - kick), within 3e-3."""
     oscillator = dataclasses.replace(letter_with_hertz, drive=HarmonicDrive(frequency=frequency))
     kicks, restitutions = [], []
     for excess in (1e-5, 1e-4, 1e-3, 5e-3, 1.3e-2, 3e-2, 5e-2):
@@ -383,7 +381,7 @@ def test_two_relations_of_a_single_contact_of_the_letters_spring(
 
 
 def test_leading_order_relations_are_those_of_a_parabola() -> None:
-    """For ever shorter arcs a planted collision fulfils both relations better, in proportion to its length."""
+    """The shorter its arc, the better a planted collision fulfils both relations."""
     errors = []
     for scale in (1.0, 0.5, 0.25, 0.125):
         law = DelayedRestitution(restitution=0.4, delay=4e-4 * scale)
@@ -421,7 +419,7 @@ LOSSES = [
 @pytest.mark.parametrize("law", LOSSES, ids=repr)
 @pytest.mark.parametrize("n_modes", [1, 2, 6])
 def test_energy_of_an_undriven_collision_is_all_accounted_for(n_modes: int, law: ContactLaw) -> None:
-    """Without drive and damping: gain of mode 1 + gain of the higher modes + loss = 0, in several collisions."""
+    """Without drive and damping: gain of mode 1 + gain of the higher modes + loss = 0, time and again."""
     oscillator = spring(n_modes, law, excess=None, damping=0.0)
     start = np.zeros(n_modes)
     start[0] = -0.0009
@@ -439,13 +437,13 @@ def test_energy_of_an_undriven_collision_is_all_accounted_for(n_modes: int, law:
     lossless = law in (newton(1.0), HertzContact(stiffness=3e7), LinearContact(stiffness=3e4))
     assert (abs(used[0].energy_lost) < 1e-13 * first) == lossless
     assert (used[0].energy_to_higher_modes > 0.01 * first) == (n_modes > 1)
-    assert used[0].ringing < 1e-12 and (used[-1].ringing > 1e-4) == (n_modes > 1)
+    assert used[0].ringing < 1e-12 and (used[-1].ringing > 3e-5) == (n_modes > 1)
 
 
 @pytest.mark.parametrize("law", LOSSES[1:5], ids=repr)
 @pytest.mark.parametrize("n_modes", [1, 6])
 def test_energy_of_a_driven_collision_is_the_work_of_the_drive(n_modes: int, law: ContactLaw) -> None:
-    """The free motion gains what the force does along the steady motion, the integral of N x_s', less the loss."""
+    """The free motion gains what the force does along the steady motion, int N x_s' dt, less the loss."""
     oscillator = spring(n_modes, law, damping=0.0)
     start = before_collision(oscillator)
     c = first_collision(oscillator, start)
@@ -476,11 +474,11 @@ def test_energy_of_a_driven_collision_is_the_work_of_the_drive(n_modes: int, law
     assert abs(work) > 0.05 * scale
 
 
-# ---------------------------------------------------------------------------------- collisions of a special kind
+# --------------------------------------------------------------------------- collisions of a special kind
 
 
 def two_modes(first: float, second: float, e: float, lead: float) -> tuple[ImpactOscillator, State]:
-    """Mode 1 with an amplitude of `first` gaps, `lead` [rad] before its peak; mode 2 of `second` gaps, rising."""
+    """Mode 1 of `first` gaps, `lead` [rad] before its peak; mode 2 of `second` gaps, rising through zero."""
     oscillator = spring(2, newton(e), excess=None, damping=0.0)
     amplitude = GAP / PHI[:2] * np.array([first, second])
     return oscillator, State(
@@ -492,18 +490,18 @@ def two_modes(first: float, second: float, e: float, lead: float) -> tuple[Impac
 @pytest.mark.parametrize("second, returns", [(0.056, False), (0.2, True)])
 def test_ringing_alone_can_make_the_touch(second: float, returns: bool) -> None:
     """Mode 1 peaks at 0.97 gaps: it would pass by; mode 2 carries the tip into the wall."""
-    oscillator, state = two_modes(0.97, second, 0.9, 0.2)
+    oscillator, state = two_modes(0.97, second, 0.1, 0.2)
     run = simulate(oscillator, state, duration=0.06)
     c = collisions(oscillator, run, unfinished="drop")[0]
     assert c.forced_by_ringing and c.real_differs and c.returns == returns and c.impacts == 1
     assert all(math.isnan(x) for x in (c.approach, c.restitution, c.delay, c.kick))
     assert c.time == c.first_touch == run.impacts.start[0]
     assert c.ringing == pytest.approx(second * GAP, rel=1e-12)
-    share = 1.9 / (1 + 0.81)
+    share = 1.1 / (1 + 0.81)
     assert c.kick_velocity == pytest.approx(share * c.real_approach, rel=1e-12)
     assert abs(c.shift) < 1e-17
     # with a little more of mode 1 the same touch is one of its own
-    oscillator, state = two_modes(1.001, second, 0.9, 0.2)
+    oscillator, state = two_modes(1.001, second, 0.1, 0.2)
     other = collisions(oscillator, simulate(oscillator, state, duration=0.06), unfinished="drop")[0]
     assert not other.forced_by_ringing and other.approach > 0
 
@@ -570,7 +568,7 @@ def test_grazes_are_no_collisions() -> None:
     assert collisions(oscillator, run) == []
 
 
-# -------------------------------------------------------------------------------------------------- invariance
+# ------------------------------------------------------------------------------------------- invariance
 
 SAME = ["approach", "restitution", "delay", "kick", "kick_velocity", "shift", "deceleration", "contact_time",
         "real_approach", "ringing", "energy_to_higher_modes", "energy_lost"]  # fmt: skip
@@ -587,8 +585,8 @@ def test_collision_does_not_depend_on_where_the_motion_is_started(law: ContactLa
     found = collisions(oscillator, run, unfinished="drop")
     chosen = found[4]
     before = found[3].end
-    scale = {"ringing": GAP, "shift": 1e-3, "energy_to_higher_modes": 1e-3, "energy_lost": 1e-3, "delay": 1e-2,
-             "contact_time": 1e-2}  # fmt: skip
+    scale = {"ringing": GAP, "shift": 1e-3, "energy_to_higher_modes": 1e-3, "energy_lost": 1e-3,
+             "delay": 1e-2,             "contact_time": 1e-2}  # fmt: skip
     times = before + np.array([0.05, 0.3, 0.6, 0.95, 0.9999]) * (chosen.first_touch - before)
     along = simulate(oscillator, start, periods=40, times=times)
     for i, later in ((0, 0), (1, 0), (2, 0), (3, 0), (4, 0), (2, 1), (2, 1000), (4, 100_000)):
@@ -624,7 +622,7 @@ def test_first_collision_looks_for_one_long_enough_or_says_so() -> None:
         first_collision(below)
     with pytest.raises(ValueError, match="periods is 2; no collision"):
         first_collision(resting, State.rest(1), periods=2)
-    with pytest.raises(ValueError, match="drive is None.*give a state"):
+    with pytest.raises(ValueError, match=r"drive is None.*give a state"):
         first_collision(spring(2, newton(0.3), excess=None))
 
 

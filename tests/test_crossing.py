@@ -231,7 +231,7 @@ def test_planted_overshoots_are_found_and_undershoots_are_not(n_modes, kind):
     """Peaks h = 1e-1 ... 1e-12 of the gap above and below the stop, over flights of up to one period."""
     generator = np.random.default_rng([n_modes, len(kind)])
     told = {"free": 0, "crosses": 0, "within rounding": 0}
-    for _ in range(10):
+    for _ in range(10 if n_modes < 10 else 4):
         motion = random_oscillator(generator, n_modes, driven=kind != "drive off").motion()
         u, v = random_deviation(generator, motion, ringing=kind == "ringing")
         base = float(generator.uniform(0, 0.9) * motion.period * generator.integers(0, 2))
@@ -251,7 +251,7 @@ def test_planted_overshoots_are_found_and_undershoots_are_not(n_modes, kind):
                 result = search(stopped, base, u, v, duration)
                 told[assert_agrees(result, verdict, stopped, u, v, base)] += 1
     assert told["within rounding"] == 0
-    assert min(told["free"], told["crosses"]) > 50
+    assert min(told["free"], told["crosses"]) > 30
 
 
 @pytest.mark.parametrize("n_modes", [1, 2, 5, 20])
@@ -414,7 +414,7 @@ def on_the_wall(generator: np.random.Generator, n_modes: int, order: int) -> tup
     )
 
 
-@pytest.mark.parametrize("n_modes", [3, 6, 12])
+@pytest.mark.parametrize("n_modes", [3, 4, 6])
 @pytest.mark.parametrize("order", [1, 2, 3])
 def test_flights_from_the_wall(order, n_modes):
     """After an impact (1), a plastic one or a graze (2), a release (3): the start is no touch.
@@ -424,12 +424,12 @@ def test_flights_from_the_wall(order, n_modes):
     """
     generator = np.random.default_rng([10, order, n_modes])
     told = {"free": 0, "crosses": 0, "within rounding": 0}
-    for _ in range(8 if n_modes < 12 else 4):
+    for _ in range(8 if n_modes < 6 else 4):
         motion, base, u, v, du, dv = on_the_wall(generator, n_modes, order)
         duration = motion.period - base
         for h in PLANTED:
             lam, bent = 0.0, None
-            for _ in range(12):
+            for _ in range(8):
                 signal = Signal(motion, base, u + lam * du, v + lam * dv)
                 x = signal(signal.samples(duration))
                 places = signal.peaks(duration, above=max(0.9 * x.max(), 0.8 * motion.gap))
@@ -472,7 +472,7 @@ def test_overtones_ringing_after_an_impact(restitution):
     """Twenty modes hit the stop together; the next touch, often within a fraction of an overtone's period."""
     generator = np.random.default_rng([11, int(1e6 * restitution)])
     touches, early = 0, 0
-    for _ in range(40):
+    for _ in range(25):
         motion = random_oscillator(generator, 20).motion()
         u, v = random_deviation(generator, motion, ringing=False)
         base = float(generator.uniform(0, 0.5) * motion.period)
@@ -486,7 +486,7 @@ def test_overtones_ringing_after_an_impact(restitution):
         outcome, s = search(motion, base, u, v, duration, 1 if restitution > 0 else 2)
         assert outcome in (CROSSES, FREE)
         signal = Signal(motion, base, u, v)
-        fine = np.linspace(0.0, duration, 40_000)
+        fine = np.linspace(0.0, duration, 12_000)
         heights = signal(fine) - motion.gap
         above = fine[1:][heights[1:] > 1e-12]
         if outcome == FREE:
@@ -498,7 +498,7 @@ def test_overtones_ringing_after_an_impact(restitution):
         assert signal(Real(s), 1) > 0
         assert above.size == 0 or above[0] > s - 1e-12
         assert np.all(heights[(fine > 1e-9) & (fine < s)] < 1e-12)
-    assert touches > 10
+    assert touches > 5
     assert early > 0
 
 

@@ -98,7 +98,7 @@ def test_beam_swung_on_a_spring(stiffness: float) -> None:
         assert np.max(np.abs(other - SDNL32[stiffness])) > 0.05
 
 
-# ------------------------------------------------------------ code_aster SDND101: a mass on a spring and a wall
+# ---------------------------------------------------------- code_aster SDND101: a mass on a spring and a wall
 
 
 def test_sprung_mass_on_a_wall_spring() -> None:
@@ -212,7 +212,8 @@ class BarErrors:
             energy = oscillator.energy(run.displacement, run.velocity)
             rows.append([
                 np.max(np.abs(error)), np.sqrt(np.mean(error**2)), run.impacts.start[0] - 1 - 2 * depth,
-                run.impacts.end[np.isfinite(run.impacts.end)][-1] - 2, 0.125 - energy[-1], energy[-1] - energy[0],
+                run.impacts.end[np.isfinite(run.impacts.end)][-1] - 2,
+                0.125 - energy[-1], energy[-1] - energy[0],
                 np.sum(run.impacts.loss), np.count_nonzero(run.impacts.kind == 2), len(run.impacts),
             ])  # fmt: skip
         (self.largest, self.mean, self.touch, self.release, self.missing, self.change, self.loss, self.stays,
@@ -254,6 +255,17 @@ def test_bar_converges_with_the_first_power_of_the_number_of_modes(law: str, dep
         assert MODES[-1] * found.loss[-1] == pytest.approx(1 / 16, rel=0.01)
 
 
+@pytest.mark.xfail(strict=True, reason="a plastic touch without acceleration is not resolved")
+def test_plastic_touch_of_the_bar_at_depth_0() -> None:
+    """By symmetry the tip arrives without acceleration: the third derivative must decide what follows."""
+    releases = []
+    for n_modes in (8, 16, 32):
+        oscillator, state = bar(n_modes, BAR_LAWS["plastic"](n_modes))
+        run = simulate(oscillator, state, duration=3.4)
+        releases.append(n_modes * (float(run.impacts.end[-1]) - 2))
+    np.testing.assert_allclose(releases, -0.2225, atol=0.02)
+
+
 def test_force_on_the_bar_is_one_half_throughout() -> None:
     """The impulse 1/2 and its thirds, by Gauss's rule over k d, with an error that falls as 1/N."""
     errors = []
@@ -291,7 +303,7 @@ def test_second_swing_of_the_bar_is_as_the_first() -> None:
 
 
 def test_contact_time_of_hertz() -> None:
-    """2.9432 times greatest approach over speed: twice the integral of dx / sqrt(1 - x^(5/2)), by quadrature."""
+    """2.9432 times greatest approach over speed: 2 int dx/sqrt(1 - x^(5/2)), by quadrature."""
     with mp.workdps(30):
         # x = (1 - y^2)^(2/5) takes the root out of the integrand
         exact = 2 * mp.quad(lambda y: mp.mpf(4) / 5 * (1 - y * y) ** mp.mpf("-0.6"), [0, 0.9, 0.999, 1])
@@ -316,7 +328,7 @@ def test_contact_time_of_hertz() -> None:
 @pytest.mark.parametrize("restitution", [0.01, 0.03, 0.1, 0.3, 0.5, 0.8, 0.95, 0.999, 0.999999, 1.0])
 @pytest.mark.parametrize("speed", [1e-3, 0.24, 3.0])
 def test_rebound_of_hunt_and_crossley(restitution: float, speed: float) -> None:
-    """a - ln(1 + a) = -b - ln(1 - b): the mass leaves with the restitution asked for at that speed, to 1e-10."""
+    """a - ln(1 + a) = -b - ln(1 - b): the mass leaves with the restitution asked for, to 1e-10."""
     mass, stiffness = 0.005, 9.65e9
     law = HuntCrossley.with_restitution(stiffness=stiffness, restitution=restitution, velocity=speed)
 

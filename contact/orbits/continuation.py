@@ -32,6 +32,9 @@ SMALLEST_STEP = 1e-6
 PLACE = 1e-10
 """Accuracy of log v at a located point; the excess there is good to the square of it at a fold."""
 
+MOST_HALVINGS = 60
+"""Bound of the halvings of a bracket: 2^-60 of any step is below PLACE."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Event:
@@ -86,7 +89,9 @@ def _locate(family: Shooting, a: PeriodicOrbit, b: PeriodicOrbit, test: Callable
 def _bisect(family: Shooting, a: PeriodicOrbit, b: PeriodicOrbit) -> PeriodicOrbit:
     """The last admissible orbit between an admissible and an inadmissible neighbour."""
     good, bad = (a, b) if a.admissible else (b, a)
-    while abs(math.log(good.speed / bad.speed)) > PLACE:
+    for _ in range(MOST_HALVINGS):
+        if abs(math.log(good.speed / bad.speed)) <= PLACE:
+            break
         middle = family.at_speed(math.sqrt(good.speed * bad.speed), good)
         if middle.admissible:
             good = middle
@@ -112,12 +117,15 @@ def follow(family: Shooting, start: PeriodicOrbit, *, low: float, high: float, s
     for limit in (low, high):
         arm, reason = [start], "range"
         stride = step
-        while abs(math.log(limit / arm[-1].speed)) > PLACE:
+        # ends: a step reaches the limit, or halvings reach SMALLEST_STEP; no step succeeds below that
+        while True:
             far = math.log(limit / arm[-1].speed)
             target = limit if abs(far) <= stride else arm[-1].speed * math.exp(math.copysign(stride, far))
             try:
                 arm.append(family.at_speed(target, arm[-1]))
                 stride = min(step, 1.5 * stride)
+                if target == limit:
+                    break
             except ContactError as error:
                 stride *= 0.5
                 if stride < SMALLEST_STEP:

@@ -20,6 +20,7 @@ another A at the same v, and the difference is the estimate of the error.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -160,12 +161,12 @@ class KickFamily:
         Raises
         ------
         ValueError
-            If `speed` is not above zero.
+            If `speed` is not finite and above zero.
         NotPeriodic
             If the collision does not end within half a drive period.
         """
-        if not speed > 0:
-            raise ValueError(f"speed is {speed} m/s; it must be above zero")
+        if not 0 < speed < np.inf:
+            raise ValueError(f"speed is {speed} m/s; it must be finite and above zero")
         gap, n = self.oscillator.stop.gap, self.oscillator.n_modes
         w = np.zeros((n, 2)) if deviations is None else deviations
         p, r = self._motion.phi @ w
@@ -215,19 +216,25 @@ class KickFamily:
         w = orbit.deviations if self.modes is None else orbit.deviations * (np.arange(len(orbit.deviations)) < self.modes)[:, None]
         return self.orbit_of(self.kick(orbit.kick.speed, w)).excess - orbit.excess
 
-    def fold(self, speeds: tuple[float, float] = (1e-4, 1.0)) -> KickOrbit | None:
+    def fold(
+        self, speeds: tuple[float, float] = (1e-4, 1.0), *, kick: Callable[[float], Kick] | None = None
+    ) -> KickOrbit | None:
         """The orbit of smallest amplitude, where the p_m orbit ends; None if it is not inside the range.
 
         Parameters
         ----------
+        kick : callable, optional
+            Approach velocity [m/s] to Kick, in place of the simulated collision.
         speeds : (float, float)
             Range of approach velocities over 2 pi f gap, in which the amplitude is searched on a logarithmic
             grid and then minimised by Brent's method.
         """
         unit = 2.0 * np.pi * self.oscillator.drive.frequency * self.oscillator.stop.gap  # type: ignore[union-attr]
 
+        kick_at = self.kick if kick is None else kick
+
         def excess(log_speed: float) -> float:
-            return self.orbit(float(np.exp(log_speed))).excess
+            return self.orbit_of(kick_at(float(np.exp(log_speed)))).excess
 
         grid = np.linspace(np.log(speeds[0] * unit), np.log(speeds[1] * unit), 33)
         values = [excess(x) for x in grid]
@@ -235,4 +242,4 @@ class KickFamily:
         if i in (0, len(grid) - 1):
             return None
         best = minimize_scalar(excess, bracket=(grid[i - 1], grid[i], grid[i + 1]), method="brent", options={"xtol": 1e-9})
-        return self.orbit(float(np.exp(best.x)))
+        return self.orbit_of(kick_at(float(np.exp(best.x))))

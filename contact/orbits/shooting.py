@@ -24,7 +24,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from contact.crossing import CROSSES, first_crossing
+from contact.crossing import CROSSES, FREE, first_crossing
 from contact.errors import NotPeriodic
 from contact.flight import Motion
 from contact.laws import DELAYED
@@ -41,8 +41,15 @@ Array = NDArray[np.float64]
 MOST_ITERATIONS = 25
 """Of Newton's method: from a kick's orbit it takes three to six."""
 
+FARTHEST = 1e3
+"""Residual, in units of gap and 2 pi f gap, at which Newton's method is given up (and NaN)."""
+
 CONVERGED = 1e-12
 """Largest residual in units of gap and 2 pi f gap; rounding of the flow over m periods is about 1e-14."""
+
+ROUNDED = 1e-9
+"""Residual below which iterates that no longer improve count as an orbit: rounding, 1e-16, times the largest
+multiplier, which grows as 1/v towards grazing."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -195,8 +202,8 @@ class Shooting:
         place, rate = self._tip_rows()
         scale, unknown = self._scale, guess.copy()
         weight = np.concatenate([scale[: 2 * n], [gap, w * gap if amplitude is None else gap]])
-        best = np.inf
-        for _ in range(MOST_ITERATIONS):
+        found: tuple[Array, Array, Array, Array, Array, float] | None = None
+        for iteration in range(MOST_ITERATIONS):
             end, matrix, record = self.flow(unknown)
             residual = np.empty(2 * n + 2)
             residual[: 2 * n] = end - unknown[: 2 * n]
@@ -215,13 +222,23 @@ class Shooting:
                 jacobian[2 * n + 1, -2:] = unknown[-2:] / size
             error = float(np.max(np.abs(residual / weight)))
             scaled = jacobian * scale / weight[:, None]
-            if error < CONVERGED or (error < 1e3 * CONVERGED and error >= best):
-                return self._orbit(unknown, matrix, record, scaled, weight, error)
-            best = min(best, error)
-            unknown = unknown - scale * np.linalg.solve(scaled, residual / weight)
+            # one step in any case: near grazing a neighbour can lie within the tolerance, and is another orbit
+            if iteration > 0:
+                if found is None or error < found[-1]:
+                    found = unknown, matrix, record, scaled, weight, error
+                    if error < CONVERGED:
+                        return self._orbit(*found)
+                elif found[-1] < ROUNDED:
+                    return self._orbit(*found)
+            try:
+                unknown = unknown - scale * np.linalg.solve(scaled, residual / weight)
+            except np.linalg.LinAlgError:
+                break
+            if not np.all(np.isfinite(unknown)):
+                break
         raise NotPeriodic(
-            time=0.0, gap=0.0, velocity=float(rate @ unknown),
-            detail=f"Newton's method did not converge to an orbit of period {self.period} (residual {best:.1e})",
+            time=0.0, gap=0.0, velocity=record[0, 2],
+            detail=f"Newton's method did not converge to an orbit of period {self.period} (residual {error:.1e})",
         )
 
     def _orbit(
@@ -251,11 +268,11 @@ class Shooting:
             multipliers=values[np.argsort(-np.abs(values))],
             slope=float(unknown[-2:] @ change[-2:]) / amplitude / grazing,
             residual=error,
-            admissible=self._admissible(driven.motion(), phase, record),
+            admissible=self._admissible(driven.motion(), phase, record, error),
             oscillator=driven,
         )
 
-    def _admissible(self, motion: Motion, phase: float, record: Array) -> bool:
+    def _admissible(self, motion: Motion, phase: float, record: Array, error: float) -> bool:
         """Whether the last flight is free of the stop up to the touch that closes the orbit (certified)."""
         n = self.oscillator.n_modes
         last, duration = record[-1], self.period * self.oscillator.period
@@ -263,7 +280,8 @@ class Shooting:
         start, length = phase + last[1], duration - last[1]
         outcome, s = first_crossing(motion, start, u, v, length * (1 + 1e-9), 1, np.empty(n + 1))
         # the touch that closes the orbit is met at `length`, give or take the residual
-        return bool(outcome == CROSSES and abs(s - length) <= 1e-6 * self.oscillator.period) or outcome == 0
+        slack = 1e-6 * self.oscillator.period + 4.0 * error * motion.gap / record[0, 2]
+        return outcome == FREE or bool(outcome == CROSSES and abs(s - length) <= slack)
 
     def guess(self, orbit: KickOrbit) -> Array:
         """Unknowns from an orbit of the kick description."""
@@ -291,8 +309,8 @@ class Shooting:
         NotPeriodic
             If there is none, or Newton's method does not find it.
         """
-        if not speed > 0:
-            raise ValueError(f"speed is {speed} m/s; it must be above zero")
+        if not 0 < speed < np.inf:
+            raise ValueError(f"speed is {speed} m/s; it must be finite and above zero")
         start = self.guess(self.kicks.orbit(speed)) if near is None else self.unknowns(near)
         return self._solve(start, speed=speed, amplitude=None)
 

@@ -1,12 +1,4 @@
-"""What the curves of one approach to the plate say: numbers read off the rows, nothing computed anew.
-
-Between the cells of a curve tau^2 is smooth where tau is not: with one impact
-
-    tau^2 = (1 - kick)^2 + 2 a shift / v^2,
-
-the first term has its zero, and tau its corner, where kick = 1.  Smallest values and crossings are therefore
-read off splines through tau^2, in the logarithm of the tip mass or of the excess.
-"""
+"""What the curves of one approach to the plate say of kick, modes and clusters: read off the rows."""
 
 from __future__ import annotations
 
@@ -17,39 +9,19 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from studies.instruments.approaches import select
+from studies.instruments.approach_restitution import crossing
 from studies.published import TIME_TRACE_EXCESS
 
-__all__ = [
-    "clusters", "crossing", "fade", "floor_over_mass", "hard_stop", "local_loss", "settled_orbits", "stands_still",
-    "worst_of_closed_forms",
-]
+__all__ = ["clusters", "fade", "hard_stop", "stands_still", "worst_of_closed_forms"]
 
-Rows = Sequence[Mapping[str, Any]]
+Rows = Sequence[dict[str, Any]]
+
 STILL = 1e-3
 """How closely a result must agree with that of the most modes: absolute in restitution and kick, in the delay
 relative to the arc v/a."""
 
 FLAT = 0.9
 """Part of its largest value that a kick on its plateau has."""
-
-_FINE = 2001
-"""Points at which a spline is looked through: the smallest value is good to 1e-6 of itself."""
-
-
-def crossing(x: Sequence[float], y: Sequence[float], level: float) -> float:
-    """The first x at which y(x) goes through `level`, by a monotone spline in log x; NaN if it never does."""
-    keep = [i for i in range(len(x)) if math.isfinite(y[i]) and x[i] > 0.0]
-    if len(keep) < 2:
-        return math.nan
-    where, what = np.log([x[i] for i in keep]), np.array([y[i] for i in keep]) - level
-    turns = np.flatnonzero(what[:-1] * what[1:] <= 0.0)
-    if not turns.size:
-        return math.nan
-    spline = PchipInterpolator(where, what)
-    roots = spline.roots(extrapolate=False)
-    inside = roots[(roots >= where[turns[0]] - 1e-9) & (roots <= where[turns[0] + 1] + 1e-9)]
-    return float(math.exp(inside[0])) if inside.size else math.nan
 
 
 def fade(rows: Rows, resolution: float, born_excess: float) -> dict[str, float]:
@@ -65,7 +37,9 @@ def fade(rows: Rows, resolution: float, born_excess: float) -> dict[str, float]:
     """
     excess, kick = [float(r["excess"]) for r in rows], [float(r["kick"]) for r in rows]
     finite = [k for k in kick if math.isfinite(k)]
-    nothing = dict.fromkeys(("plateau", "half_excess", "share_at_resolution", "share_at_born_excess"), math.nan)
+    nothing = dict.fromkeys(
+        ("plateau", "half_excess", "share_at_resolution", "share_at_born_excess"), math.nan
+    )
     if len(finite) < 2:
         return nothing
     plateau = max(finite)
@@ -107,85 +81,12 @@ def stands_still(rows: Rows, most: int) -> dict[str, Any]:
                 break
             still = count
     ends = {name: last[name] for name in ("impacts", "kick", "restitution")}
-    return {"modes": still, "drift": drift, **ends, "impacts_beyond": {n: by_count[n]["impacts"] for n in beyond}}
-
-
-def floor_over_mass(rows: Rows, target: float) -> dict[str, Any]:
-    """The smallest restitution over tip mass, where it is, and the mass ratios at which it is `target`."""
-    kept = [r for r in rows if r["impacts"] == 1 and math.isfinite(r["restitution"]) and r["mass_ratio"] > 0.0]
-    if len(kept) < 3:
-        return {"restitution": math.nan, "mass_ratio": math.nan, "kick": math.nan, "at_edge": False, "at_target": []}
-    where = np.log([r["mass_ratio"] for r in kept])
-    # tau^2 - (1 - kick)^2 varies slowly, and so does the kick: interpolate these, not their sum
-    kick = PchipInterpolator(where, [r["kick"] for r in kept])
-    rest = PchipInterpolator(where, [r["restitution"] ** 2 - (1.0 - r["kick"]) ** 2 for r in kept])
-    fine = np.linspace(where[0], where[-1], _FINE)
-    square = np.maximum((1.0 - kick(fine)) ** 2 + rest(fine), 0.0)
-    least = int(np.argmin(square))
-    turns = np.flatnonzero((square[:-1] - target**2) * (square[1:] - target**2) < 0.0)
     return {
-        "restitution": float(math.sqrt(square[least])),
-        "mass_ratio": float(math.exp(fine[least])),
-        "kick": float(kick(fine[least])),
-        "at_edge": least in (0, fine.size - 1),
-        "at_target": [float(math.exp(0.5 * (fine[i] + fine[i + 1]))) for i in turns],
+        "modes": still,
+        "drift": drift,
+        **ends,
+        "impacts_beyond": {n: by_count[n]["impacts"] for n in beyond},
     }
-
-
-def _floors(rows: Rows, curve: str, target: float) -> list[dict[str, Any]]:
-    """`floor_over_mass` of every series of a curve, its number first."""
-    names = sorted({r["series"] for r in rows if r["curve"] == curve}, key=float)
-    return [
-        {"value": float(name), **floor_over_mass(select([dict(r) for r in rows], curve, name), target)}
-        for name in names
-    ]
-
-
-def local_loss(rows: Rows, target: float) -> dict[str, Any]:
-    """Whether restitution `target` at the excess of Fig. 4 needs loss in the contact, and what else gives it."""
-    floors, hard = _floors(rows, "search", target), _floors(rows, "hardness", target)
-    elastic = next((f for f in floors if f["value"] == 1.0), None)
-    elastic_floor = elastic["restitution"] if elastic else math.nan
-    lossy = [f["restitution"] for f in floors if f["value"] < 1.0 and math.isfinite(f["restitution"])]
-    lossy_floor = min(lossy, default=math.nan)
-    if elastic_floor <= target:
-        verdict = "reached without local loss"
-    elif lossy_floor <= target:
-        verdict = "reached with local loss only"
-    else:
-        verdict = "not reached, with or without local loss"
-    arcs = [r["arc_s"] for r in rows if r["curve"] == "search" and math.isfinite(r["arc_s"])]
-    speed = [r for r in select([dict(r) for r in rows], "speed", "hertz") if math.isfinite(r["restitution"])]
-    return {
-        "target": target,
-        "excess": TIME_TRACE_EXCESS,
-        "verdict": verdict,
-        "elastic_floor": elastic_floor,
-        "lossy_floor": lossy_floor,
-        "by_local_restitution": floors,
-        "by_hardness": hard,
-        "hardness_needed": crossing([f["value"] for f in hard], [f["restitution"] for f in hard], target),
-        "contact_time_needed_s": target**2 * float(np.median(arcs)) if arcs else math.nan,
-        "excess_needed": crossing([r["excess"] for r in speed], [r["restitution"] for r in speed], target),
-        "settled_orbits": settled_orbits(rows, target),
-    }
-
-
-def settled_orbits(rows: Rows, target: float) -> dict[str, Any]:
-    """Restitution in the orbits that settle at Fig. 4, where the ringing of the last collision is not over.
-
-    It shifts the touch to before or after t_in, by tens of microseconds, and with it shift and restitution; an
-    outgoing motion that does not come back to the gap counts as restitution 0.
-    """
-    cells = []
-    for r in rows:
-        if r["curve"] == "orbit" and r["orbit_period"] > 0 and r["impacts"] > 0 and not r["forced_by_ringing"]:
-            tau = r["restitution"] if r["returns"] else 0.0
-            names = ("mass_ratio", "orbit_period", "approach_velocity", "kick", "force_delay_s")
-            cells.append({name: r[name] for name in names} | {"restitution": tau})
-    cells.sort(key=lambda cell: float(cell["mass_ratio"]))
-    below = [cell["mass_ratio"] for cell in cells if cell["restitution"] <= target]
-    return {"reached": bool(below), "mass_ratios_below_target": below, "orbits": cells}
 
 
 def clusters(rows: Rows) -> dict[str, Any]:
@@ -212,15 +113,21 @@ def clusters(rows: Rows) -> dict[str, Any]:
 
 
 def worst_of_closed_forms(rows: Rows) -> dict[str, float]:
-    """Largest deviation of the leading-order restitution and delay [arcs] in first collisions with one impact."""
+    """Largest deviation of leading-order restitution and delay [arcs] in first collisions with one impact."""
     kept = [
-        r for r in rows
-        if r["impacts"] == 1 and r["curve"] != "orbit" and r["excess"] <= 0.05 and math.isfinite(r["restitution"])
+        r
+        for r in rows
+        if r["impacts"] == 1
+        and r["curve"] != "orbit"
+        and r["excess"] <= 0.05
+        and math.isfinite(r["restitution"])
         and math.isfinite(r["closed_restitution"])
     ]
     return {
         "restitution": max((abs(r["restitution"] - r["closed_restitution"]) for r in kept), default=math.nan),
-        "delay_over_arc": max((abs(r["delay_s"] - r["closed_delay_s"]) / r["arc_s"] for r in kept), default=math.nan),
+        "delay_over_arc": max(
+            (abs(r["delay_s"] - r["closed_delay_s"]) / r["arc_s"] for r in kept), default=math.nan
+        ),
         "collisions": len(kept),
     }
 

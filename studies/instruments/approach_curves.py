@@ -1,13 +1,13 @@
 """The curves along which one approach to the plate is varied, each a list of `Approach`.
 
-    speed        excess, hence approach speed v = 2 pi f gap sqrt((1 + excess)^2 - 1)
-    modes        number of modes kept, for the spring of the scene and for a bare cantilever
-    mass         tip mass over leaf, at fixed period and drive amplitude (tip_mass_family), at several excesses
-    orbit        the same, but the collision of the orbit that settles at the letter's Fig. 4
-    stiffness    linear contact of 1e2 ... 1e7 times the static stiffness of the tip, and Hertz of materials
-    damping      rates of the modes above the first, times a factor, for three rules with the same mode 1
-    loss         restitution of the contact itself, Hunt-Crossley's law or Newton's
-    search       tip mass and local restitution together; hardness: tip mass and stiffness together
+speed        excess, hence approach speed v = 2 pi f gap sqrt((1 + excess)^2 - 1)
+modes        number of modes kept, for the spring of the scene and for a bare cantilever
+mass         tip mass over leaf, at fixed period and drive amplitude (tip_mass_family), at several excesses
+orbit        the same, but the collision of the orbit that settles at the letter's Fig. 4
+stiffness    linear contact of 1e2 ... 1e7 times the static stiffness of the tip, and Hertz of materials
+damping      rates of the modes above the first, times a factor, for three rules with the same mode 1
+loss         restitution of the contact itself, Hunt-Crossley's law or Newton's
+search       tip mass and local restitution together; hardness: tip mass and stiffness together
 """
 
 from __future__ import annotations
@@ -27,14 +27,20 @@ from studies.instruments.oscillators import contact_law_of
 from studies.instruments.specimen import Specimen
 from studies.published import TIME_TRACE_EXCESS
 
-__all__ = ["PLASTIC", "all_curves"]
+__all__ = ["PLASTIC", "SCENE_MASS", "all_curves"]
 
 PLASTIC = Material(youngs_modulus=0.2e9, poissons_ratio=0.45, density=920.0, loss_factor=0.1)
 """Low-density polyethylene: a ball of it on steel is the softest contact considered."""
 
 BALLS: Mapping[str, Material] = {
-    "alumina on steel": ALUMINA, "steel on steel": STEEL, "brass on steel": BRASS, "polyethylene on steel": PLASTIC,
+    "alumina on steel": ALUMINA,
+    "steel on steel": STEEL,
+    "brass on steel": BRASS,
+    "polyethylene on steel": PLASTIC,
 }
+
+SCENE_MASS, LIGHTEST = "tip mass of the scene", 0.05
+"""Of the stiffness curves: name of the first, and tip mass over leaf of the last."""
 
 ORBIT_FREQUENCY = 21.50
 """The letter's Fig. 4 [Hz]."""
@@ -113,8 +119,12 @@ def _masses(masses: list[Specimen], grid: Grid) -> list[Approach]:
         oscillator = specimen.with_law(specimen.hertz, frequency=ORBIT_FREQUENCY)
         cells.append(
             Approach(
-                curve="orbit", series=f"{ORBIT_FREQUENCY:g} Hz", oscillator=oscillator, excess=TIME_TRACE_EXCESS,
-                orbit=True, **shared,
+                curve="orbit",
+                series=f"{ORBIT_FREQUENCY:g} Hz",
+                oscillator=oscillator,
+                excess=TIME_TRACE_EXCESS,
+                orbit=True,
+                **shared,
             )
         )
         for restitution in grid.restitutions:
@@ -136,9 +146,12 @@ def _masses(masses: list[Specimen], grid: Grid) -> list[Approach]:
 
 
 def _stiffness(scene: Specimen, masses: list[Specimen], grid: Grid) -> list[Approach]:
-    lines = [("scene", scene)]
-    light = [m for m in masses if m.mass_ratio < 0.06 and not 0.0 < m.mass_ratio < 0.04]
-    lines += [("bare tip" if m.mass_ratio == 0.0 else f"tip mass {m.mass_ratio:.2g} of the leaf", m) for m in light]
+    lines = [(SCENE_MASS, scene)]
+    lines += [
+        ("no tip mass" if m.mass_ratio == 0.0 else f"tip mass {m.mass_ratio:.2g} of the leaf", m)
+        for m in masses
+        if m.mass_ratio == 0.0 or math.isclose(m.mass_ratio, LIGHTEST, rel_tol=1e-6)
+    ]
     cells = [
         Approach(
             curve="stiffness", series=name, varied="stiffness_over_tip_stiffness", value=value,

@@ -3,100 +3,37 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import Any
 
-from matplotlib.axes import Axes
 from matplotlib.ticker import NullFormatter
 
+from studies.instruments.approach_panels import (
+    DOTTED,
+    QUANTITIES,
+    Rows,
+    guide,
+    legend,
+    name_letter,
+    plot,
+    three,
+)
 from studies.instruments.approaches import select
-from studies.instruments.figures import LINES, MARKERS, PAGE, PALETTE, house_style, label, new_figure
+from studies.instruments.figures import PAGE, PALETTE, house_style, label, new_figure
 from studies.published import AMPLITUDE_STABILITY_M, DRIVE_AMPLITUDE_M, RESTITUTION
 
 __all__ = ["draw_all"]
 
-Rows = Sequence[dict[str, Any]]
-GUIDE = {"color": "0.55", "linewidth": 0.7, "zorder": 0}
-
-TITLES = {
-    "scene": "contact of the scene", "hertz": "Hertz", "newton": "Newton, e = 1", "bare tip": "bare tip, Hertz",
-    "light tip, hertz": "light tip, Hertz", "bare cantilever, hertz": "bare cantilever, Hertz",
-    "bare cantilever, newton": "bare cantilever, Newton, e = 1", "as in the scene": "as in the scene",
-}
-QUANTITIES = {
-    "speed": ("excess F/F$_g$ - 1", "1"),
-    "modes": ("modes kept", "1"),
-    "mass": ("tip mass / mass of the leaf", "1"),
-    "stiffness": ("contact stiffness / tip stiffness", "1"),
-    "damping": ("factor on the rates of higher modes", "1"),
-    "loss": ("local restitution", "1"),
-    "search": ("tip mass / mass of the leaf", "1"),
-}
-
-
-def _plot(axis: Axes, rows: Rows, quantity: str, number: int, scale: float = 1.0, every: int = 1) -> None:
-    name = str(rows[0]["series"])
-    axis.plot(
-        [r["value"] for r in rows], [scale * r[quantity] for r in rows], color=PALETTE[number],
-        linestyle=LINES[number], marker=MARKERS[number], markevery=every, markersize=2.8, markerfacecolor="white",
-        markeredgewidth=0.7, label=TITLES.get(name, name),
-    )
-
-
-def _three(rows: Rows, curve: str, series: Sequence[str], *, log: bool, height: float = 0.066) -> tuple[Any, Any]:
-    """Restitution, delay and kick of some series of a curve."""
-    figure, axes = new_figure(1, 3, width=PAGE, height=height)
-    for number, name in enumerate(series):
-        found = select(rows, curve, name)
-        if not found:
-            continue
-        every = max(1, len(found) // 12)
-        for axis, quantity, scale in zip(axes, ("restitution", "delay_s", "kick"), (1.0, 1e3, 1.0), strict=True):
-            _plot(axis, found, quantity, number, scale, every)
-    for axis, (quantity, unit) in zip(axes, (("restitution τ", "1"), ("delay", "ms"), ("kick", "1")), strict=True):
-        if log:
-            axis.set_xscale("log")
-        with house_style():
-            label(axis.xaxis, *QUANTITIES[curve])
-            label(axis.yaxis, quantity, unit)
-        axis.set_ylim(bottom=0.0)
-    axes[0].axhline(RESTITUTION, **GUIDE, linestyle=":")
-    return figure, axes
-
-
-def _guide(axis: Axes, x: Sequence[float], y: Sequence[float], name: str, style: str = "--") -> None:
-    axis.plot(x, y, color="0.45", linewidth=0.8, linestyle=style, zorder=1, label=name)
-
-
-def _legend(figure: Any, axes: Any, columns: int = 4, *, left: bool = False) -> None:
-    """One legend below, every name once; the letter's restitution is the dotted line in the first panel."""
-    found: dict[str, Any] = {}
-    for axis in axes:
-        for handle, name in zip(*axis.get_legend_handles_labels(), strict=True):
-            found.setdefault(name, handle)
-    with house_style():
-        figure.legend(
-            list(found.values()), list(found), loc="outside lower center", ncols=columns, handlelength=3.0,
-            columnspacing=1.5,
-        )
-        _name_letter(axes[0], left)
-
-
-def _name_letter(axis: Axes, left: bool = False) -> None:
-    axis.annotate(
-        "letter", (0.02 if left else 0.99, RESTITUTION), xycoords=axis.get_yaxis_transform(),
-        ha="left" if left else "right", va="bottom", fontsize=6.5, color="0.4",
-    )
-
 
 def speed(rows: Rows) -> Any:
-    figure, axes = _three(rows, "speed", ("scene", "hertz", "bare tip"), log=True)
+    figure, axes = three(rows, "speed", ("scene", "hertz", "bare tip"), log=True)
     found = select(rows, "speed", "hertz")
     x = [r["value"] for r in found]
     axes[1].set_yscale("log")
     axes[1].set_ylim(1e-2, 1e1)
-    _guide(axes[0], x, [math.sqrt(r["contact_s"] / r["arc_s"]) for r in found], "√(contact time · a/v), Hertz")
-    _guide(axes[1], x, [1e3 * r["arc_s"] for r in found], "arc v/a", "-.")
+    guide(
+        axes[0], x, [math.sqrt(r["contact_s"] / r["arc_s"]) for r in found], "√(contact time · a/v), Hertz"
+    )
+    guide(axes[1], x, [1e3 * r["arc_s"] for r in found], "arc v/a", "-.")
     axes[0].set_ylim(0.0, 1.05)
     for axis in axes:
         axis.axvspan(x[0], AMPLITUDE_STABILITY_M / DRIVE_AMPLITUDE_M, color="0.92", zorder=-1, linewidth=0)
@@ -104,12 +41,19 @@ def speed(rows: Rows) -> Any:
     with house_style():
         axes[1].annotate("below the\namplitude\nstability", (1.3e-5, 8.0), fontsize=6.5, va="top")
         axes[2].set_ylim(0.0, 1.1)
-    _legend(figure, axes, 5, left=True)
+    legend(figure, axes, 5, left=True)
     return figure
 
 
 def modes(rows: Rows) -> Any:
-    names = ("scene", "hertz", "newton", "light tip, hertz", "bare cantilever, hertz", "bare cantilever, newton")
+    names = (
+        "scene",
+        "hertz",
+        "newton",
+        "light tip, hertz",
+        "bare cantilever, hertz",
+        "bare cantilever, newton",
+    )
     figure, axes = new_figure(2, 2, width=PAGE, height=0.105, sharex=True)
     for number, name in enumerate(names):
         found = select(rows, "modes", name)
@@ -117,9 +61,10 @@ def modes(rows: Rows) -> Any:
             axes.flat, ("restitution", "delay_s", "kick", "impacts"), (1.0, 1e3, 1.0, 1.0), strict=True
         ):
             if found:
-                _plot(axis, found, quantity, number, scale, max(1, len(found) // 12))
+                plot(axis, found, quantity, number, scale, max(1, len(found) // 12))
     for axis, (quantity, unit) in zip(
-        axes.flat, (("restitution τ", "1"), ("delay", "ms"), ("kick", "1"), ("impacts in the collision", "1")),
+        axes.flat,
+        (("restitution τ", "1"), ("delay", "ms"), ("kick", "1"), ("impacts in the collision", "1")),
         strict=True,
     ):
         axis.set_xscale("log")
@@ -133,79 +78,94 @@ def modes(rows: Rows) -> Any:
         axis.xaxis.set_minor_formatter(NullFormatter())
         with house_style():
             label(axis.xaxis, *QUANTITIES["modes"])
-    axes[0, 0].axhline(RESTITUTION, **GUIDE, linestyle=":")
-    _legend(figure, list(axes.flat), 3)
+    axes[0, 0].axhline(RESTITUTION, **DOTTED)
+    legend(figure, list(axes.flat), 3)
     return figure
 
 
 def mass(rows: Rows) -> Any:
     names = list(dict.fromkeys(r["series"] for r in rows if r["curve"] == "mass"))
     chosen = [n for n in names if n in ("excess 0.0001", "excess 0.001", "excess 0.013", "excess 0.05")]
-    figure, axes = _three(rows, "mass", chosen, log=False)
+    figure, axes = three(rows, "mass", chosen, log=False)
     found = select(rows, "mass", chosen[-1])
-    _guide(axes[2], [r["value"] for r in found], [r["ball_limit"] for r in found], "2 M φ$_1^2$")
+    guide(axes[2], [r["value"] for r in found], [r["ball_limit"] for r in found], "2 M φ$_1^2$")
     middle = select(rows, "mass", "excess 0.013")
-    _guide(axes[1], [r["value"] for r in middle], [1e3 * r["arc_s"] for r in middle], "arc v/a, excess 0.013", "-.")
+    guide(
+        axes[1],
+        [r["value"] for r in middle],
+        [1e3 * r["arc_s"] for r in middle],
+        "arc v/a, excess 0.013",
+        "-.",
+    )
     orbits = [r for r in select(rows, "orbit") if r["impacts"] and not r["forced_by_ringing"]]
     axes[0].plot(
-        [r["value"] for r in orbits], [r["restitution"] if r["returns"] else 0.0 for r in orbits], linestyle="none",
-        marker="x", markersize=3.5, color=PALETTE[4], label="settled orbit, 21.50 Hz, excess 0.013 (0: no return)",
+        [r["value"] for r in orbits],
+        [r["restitution"] if r["returns"] else 0.0 for r in orbits],
+        linestyle="none",
+        marker="x",
+        markersize=3.5,
+        color=PALETTE[4],
+        label="settled orbit, 21.50 Hz, excess 0.013 (0: no return)",
         clip_on=False,
     )
     for axis in axes:
         axis.set_xlim(0.0, 1.03)
     axes[0].set_ylim(0.0, 1.0)
     axes[2].set_ylim(0.0, 1.7)
-    _legend(figure, axes, 4)
+    legend(figure, axes, 4)
     return figure
 
 
 def stiffness(rows: Rows) -> Any:
     names = list(dict.fromkeys(r["series"] for r in rows if r["curve"] == "stiffness"))
-    figure, axes = _three(rows, "stiffness", names, log=True)
+    figure, axes = three(rows, "stiffness", names, log=True)
     balls = [r for r in rows if r["curve"] == "materials" and not r["failure"]]
     marks = ("*", "P", "X", "d")
     for ball, mark in zip(balls, marks, strict=False):
-        for axis, quantity, scale in zip(axes, ("restitution", "delay_s", "kick"), (1.0, 1e3, 1.0), strict=True):
+        for axis, quantity, scale in zip(
+            axes, ("restitution", "delay_s", "kick"), (1.0, 1e3, 1.0), strict=True
+        ):
             axis.plot(
                 [ball["value"]], [scale * ball[quantity]], marker=mark, markersize=5, linestyle="none",
                 color=PALETTE[5], markeredgecolor="black", markeredgewidth=0.4, zorder=5,
                 label=f"Hertz, {ball['series']}",
             )
-    found = select(rows, "stiffness", "scene")
-    _guide(axes[1], [r["value"] for r in found], [1e3 * r["arc_s"] for r in found], "arc v/a", "-.")
-    _guide(axes[2], [r["value"] for r in found], [r["ball_limit"] for r in found], "2 M φ$_1^2$, scene")
+    found = select(rows, "stiffness", names[0])
+    guide(axes[1], [r["value"] for r in found], [1e3 * r["arc_s"] for r in found], "arc v/a", "-.")
+    guide(axes[2], [r["value"] for r in found], [r["ball_limit"] for r in found], "2 M φ$_1^2$, scene")
     axes[0].set_ylim(0.0, 1.0)
-    _legend(figure, axes, 3)
+    legend(figure, axes, 3)
     return figure
 
 
 def damping(rows: Rows) -> Any:
     names = list(dict.fromkeys(r["series"] for r in rows if r["curve"] == "damping"))
-    figure, axes = _three(rows, "damping", names, log=True)
-    _legend(figure, axes, 3)
+    figure, axes = three(rows, "damping", names, log=True)
+    legend(figure, axes, 3)
     return figure
 
 
 def loss(rows: Rows) -> Any:
     names = list(dict.fromkeys(r["series"] for r in rows if r["curve"] == "loss"))
-    figure, axes = _three(rows, "loss", names, log=False)
-    _legend(figure, axes, 4, left=True)
+    figure, axes = three(rows, "loss", names, log=False)
+    legend(figure, axes, 4, left=True)
     return figure
 
 
 def search(rows: Rows) -> Any:
     """Restitution over tip mass: with loss in the contact, and with other hardness."""
     figure, axes = new_figure(1, 2, width=PAGE, height=0.075, sharey=True)
-    parts = (("search", "local restitution ", "1", "0.7", "0.4", "0.2", "0.1"), ("hardness", "stiffness × ", *(
-        "1", "3", "10", "30", "100", "300")))
+    parts = (
+        ("search", "local restitution ", "1", "0.7", "0.4", "0.2", "0.1"),
+        ("hardness", "stiffness × ", *("1", "3", "10", "30", "100", "300")),
+    )
     for axis, (curve, words, *wanted) in zip(axes, parts, strict=True):
         known = {r["series"] for r in rows if r["curve"] == curve}
         for number, name in enumerate([n for n in wanted if n in known]):
             found = [r for r in select(rows, curve, name) if r["value"] > 0.0]
-            _plot(axis, found, "restitution", number, 1.0, 2)
+            plot(axis, found, "restitution", number, 1.0, 2)
             axis.get_lines()[-1].set_label(words + name)
-        axis.axhline(RESTITUTION, **GUIDE, linestyle=":")
+        axis.axhline(RESTITUTION, **DOTTED)
         axis.set_xscale("log")
         axis.set_ylim(0.0, 1.0)
         axis.set_xticks([0.02, 0.05, 0.1, 0.2, 0.5, 1, 2], ["0.02", "0.05", "0.1", "0.2", "0.5", "1", "2"])
@@ -217,12 +177,17 @@ def search(rows: Rows) -> Any:
         label(axes[0].yaxis, "restitution τ", "1")
         axes[0].set_title("(a) loss in the contact (Hunt-Crossley)")
         axes[1].set_title("(b) hardness (linear, times that of the ball)")
-        _name_letter(axes[0])
+        name_letter(axes[0])
     return figure
 
 
 DRAWN = {
-    "speed": speed, "mass": mass, "search": search, "modes": modes, "stiffness": stiffness, "damping": damping,
+    "speed": speed,
+    "mass": mass,
+    "search": search,
+    "modes": modes,
+    "stiffness": stiffness,
+    "damping": damping,
     "loss": loss,
 }
 QUICK = 3

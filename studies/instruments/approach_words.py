@@ -28,7 +28,8 @@ def table(rows: Sequence[dict[str, Any]]) -> list[str]:
             kept = [found[i] for i in sorted({*range(0, len(found), step), len(found) - 1})]
             lines.append(f"{curve}, {name}")
             lines.append(
-                f"{kept[0]['varied']:>30} {'v (m/s)':>9} {'tau':>7} {'delay (ms)':>11} {'kick':>7} {'impacts':>8}"
+                f"{kept[0]['varied']:>30} {'v (m/s)':>9} {'tau':>7} {'delay (ms)':>11} {'kick':>7} "
+                f"{'impacts':>8}"
             )
             lines += [
                 f"{r['value']:30.5g} {_cell(r['approach_velocity'], 9, 4)} {_cell(r['restitution'], 7, 4)} "
@@ -69,18 +70,19 @@ def _restitution_lines(loss: Mapping[str, Any], least: Mapping[str, Any]) -> lis
     orbits = loss["settled_orbits"]
     among = [cell["restitution"] for cell in orbits["orbits"]]
     return [
-        f"restitution {loss['target']:g} in the first collision at excess {loss['excess']:g}: {loss['verdict']}; "
-        f"smallest over tip mass {_number(loss['elastic_floor'])} without local loss, "
+        f"restitution {loss['target']:g} in the first collision at excess {loss['excess']:g}: "
+        f"{loss['verdict']}; smallest over tip mass {_number(loss['elastic_floor'])} without local loss, "
         f"{_number(loss['lossy_floor'])} with{span}",
         f"what would give it: {_number(loss['hardness_needed'])} times the contact stiffness (a contact of "
-        f"{_number(1e6 * loss['contact_time_needed_s'])} us), or an excess of {_number(loss['excess_needed'])}",
-        f"in the orbits that settle at 21.50 Hz and that excess, restitution "
+        f"{_number(1e6 * loss['contact_time_needed_s'])} us), or an excess of "
+        f"{_number(loss['excess_needed'])}",
+        "in the orbits that settle at 21.50 Hz and that excess, restitution "
         + (f"{min(among):.2g} to {max(among):.2g}" if among else "not found")
         + ", at most the target at tip masses "
         + (", ".join(f"{r:.3g}" for r in orbits["mass_ratios_below_target"]) or "none")
         + " of the leaf (0: no return to the gap)",
-        f"smallest restitution at excess {loss['excess']:g}, elastic: {_number(least['restitution'])} at a tip mass "
-        f"of {_number(least['mass_ratio'])} of the leaf, kick {_number(least['kick'])}",
+        f"smallest restitution at excess {loss['excess']:g}, elastic: {_number(least['restitution'])} at "
+        f"a tip mass of {_number(least['mass_ratio'])} of the leaf, kick {_number(least['kick'])}",
     ]
 
 
@@ -91,13 +93,19 @@ def _delay_lines(reference: Mapping[str, Any], many: Mapping[str, Any]) -> list[
     return [
         f"delay at excess {reference['excess']:g}: {_number(1e3 * reference['delay_s'])} ms, "
         f"{_number(reference['delay_over_arc'])} of the arc v/a = {_number(1e3 * reference['arc_s'])} ms",
-        "more than one impact: tip mass over leaf and excess " + ("; ".join(masses) or "never")
-        + "; excess " + ("; ".join(speed) or "never") + "; contact over tip stiffness " + ("; ".join(hard) or "never"),
+        "more than one impact: tip mass over leaf and excess "
+        + ("; ".join(masses) or "never")
+        + "; excess "
+        + ("; ".join(speed) or "never")
+        + "; contact over tip stiffness "
+        + ("; ".join(hard) or "never"),
     ]
 
 
 def _mode_lines(modes: Mapping[str, Any]) -> list[str]:
-    still = [f"{name} from {found['modes']} on" for name, found in modes.items() if found["modes"] is not None]
+    still = [
+        f"{name} from {found['modes']} on" for name, found in modes.items() if found["modes"] is not None
+    ]
     never = [
         f"{name} (drift {_number(found['drift'])}, {found['impacts']} impacts, beyond "
         + ", ".join(f"{n} in {count} modes" for n, count in found.get("impacts_beyond", {}).items()) + ")"
@@ -110,17 +118,19 @@ def _mode_lines(modes: Mapping[str, Any]) -> list[str]:
 
 def _fade_lines(fades: Mapping[str, Any], resolution: float) -> list[str]:
     return [
-        f"{name}: kick {_number(found['plateau'])} at most, half of it at excess {_number(found['half_excess'])}; "
-        f"{_number(100 * found['share_at_resolution'])} % of it at the amplitude stability {resolution:g}, "
+        f"{name}: kick {_number(found['plateau'])} at most, half of it at excess "
+        f"{_number(found['half_excess'])}; {_number(100 * found['share_at_resolution'])} % of it at the "
+        f"amplitude stability {resolution:g}, "
         f"{_number(100 * found['share_at_born_excess'])} % where born periods are read"
-        for name, found in fades.items() if math.isfinite(found["plateau"])
+        for name, found in fades.items()
+        if math.isfinite(found["plateau"])
     ]
 
 
 def _closed_lines(hard: Mapping[str, float], forms: Mapping[str, float]) -> list[str]:
     return [
-        f"stop {_number(hard['stiffness_ratio'])} times as stiff as the tip: kick {_number(hard['kick'])}; the ball by "
-        f"itself, 2 M phi_1^2: {_number(hard['ball_limit'])}",
-        f"closed forms of restitution and delay in {forms['collisions']} collisions with one impact: off by at most "
-        f"{_number(forms['restitution'])} and {_number(forms['delay_over_arc'])} arcs",
+        f"stop {_number(hard['stiffness_ratio'])} times as stiff as the tip: kick {_number(hard['kick'])}; "
+        f"the ball by itself, 2 M phi_1^2: {_number(hard['ball_limit'])}",
+        f"closed forms of restitution and delay in {forms['collisions']} collisions with one impact: "
+        f"off by at most {_number(forms['restitution'])} and {_number(forms['delay_over_arc'])} arcs",
     ]

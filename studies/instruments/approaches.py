@@ -32,7 +32,10 @@ from studies.instruments.periodicity import settle
 __all__ = ["Approach", "measure", "measure_all", "orbit_collision", "select"]
 
 LAWS: dict[type[ContactLaw], str] = {
-    HertzContact: "hertz", HuntCrossley: "hunt_crossley", LinearContact: "linear", NewtonRestitution: "newton",
+    HertzContact: "hertz",
+    HuntCrossley: "hunt_crossley",
+    LinearContact: "linear",
+    NewtonRestitution: "newton",
 }
 
 BELOW = -1e-3

@@ -5,8 +5,8 @@ its events, so its derivative is a product of flows, with the times of touch and
 
     dP^m = F(t_n) C(t_c) E F(t_{n-1}) ...,     E = [[1, 0], [-c, 1]]
 
-F the free flow, C the flow with spring and dashpot of the wall.  E is the saltation matrix at the touch, where
-the dashpot's force c v sets in at once; at the release the force is zero and nothing jumps.
+F the free flow, C the flow with spring and dashpot of the wall.  E is the saltation matrix at the touch,
+where the dashpot's force c v sets in at once; at the release the force is zero and nothing jumps.
 
 Fixed points by Newton's method on P^m(s) = s.  Period doubling: det(dP + I) = 0; fold: det(dP^m - I) = 0.
 Peaks are measured over the wall in units of the gap, excess is F/F_g - 1.
@@ -33,8 +33,9 @@ __all__ = ["ContactOrbit", "SoftMap", "doubling", "fold_of"]
 MOST_STEPS = 40
 """Newton steps: from a peak wrong by half it takes about eight."""
 
-ROUNDING = 4e-15
-"""Residual of a fixed point over the gap: the steady motion and the wall are known to some 1e-16 of it."""
+ROUNDING = 2e-15
+"""Residual of a fixed point over the gap: steady motion and wall are known to some 1e-16 of it, and the map
+multiplies that by its derivative."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -137,7 +138,7 @@ class SoftMap:
         )
 
     def _release(self, oscillator: ImpactOscillator, touch: float, speed: float, longest: float) -> float:
-        """Time from the touch until the force of spring and dashpot is zero, before the tip is off the wall [s]."""
+        """Time from the touch until the force is zero; with a dashpot the tip is then still inside [s]."""
         wall, w = self.wall, self.wall.angular_frequency
         omega_sq, decay = wall.omega**2 + wall.stiffness, wall.decay_rate + wall.dashpot
         drive = w * w * oscillator.model.participation[0] * self._amplitude(oscillator)
@@ -169,18 +170,23 @@ class SoftMap:
             after = self.advance(excess, deviation)
             residual = after.deviation - deviation
             size = float(np.max(np.abs(residual)))
-            if size < ROUNDING or (size < 1e-9 * np.max(np.abs(deviation)) and size >= 0.5 * best):
+            if size < ROUNDING * (1.0 + float(np.max(np.abs(after.derivative)))):
                 return replace(after, deviation=deviation)
             best = min(best, size)
             deviation = deviation + np.linalg.solve(np.eye(2) - after.derivative, residual)
         raise NotPeriodic(
-            time=0.0, gap=0.0, velocity=0.0, detail=f"Newton's method left {best:.1e} gaps at excess {excess:.3e}"
+            time=0.0,
+            gap=0.0,
+            velocity=0.0,
+            detail=f"Newton's method left {best:.1e} gaps at excess {excess:.3e}",
         )
 
     def guess_at(self, excess: float) -> np.ndarray:
         """Deviation at the strobe of p1 with one collision, from the closed form of the kick."""
         wall = self.wall
-        peak = float(brentq(lambda h: wall.excess_of(h) - excess, 1e-9 * excess, excess, rtol=1e-12, xtol=1e-300))
+        peak = float(
+            brentq(lambda h: wall.excess_of(h) - excess, 1e-9 * excess, excess, rtol=1e-12, xtol=1e-300)
+        )
         # just after the collision at the time of the peak, then on to the strobe
         flow = wall.flow
         after = np.linalg.solve(np.eye(2) - flow, np.array([0.0, -wall.kick(peak)]))
@@ -193,8 +199,8 @@ class SoftMap:
 def doubling(soft: SoftMap, low: float, high: float, steps: int = 60) -> ContactOrbit | None:
     """The p1 orbit whose multiplier is -1, at the lowest excess in [low, high]; None if there is none.
 
-    The branch is followed on a geometric grid of `steps` amplitudes, each from the closed form of the kick; where
-    that fails, from the orbit before.
+    The branch is followed on a geometric grid of `steps` amplitudes, each from the closed form of the kick;
+    where that fails, from the orbit before.
     """
     last: ContactOrbit | None = None
     for excess in np.geomspace(low, high, steps):
@@ -231,7 +237,7 @@ def _refined(soft: SoftMap, below: ContactOrbit, above: ContactOrbit) -> Contact
 
 
 def fold_of(soft: SoftMap, excess: float, guess: np.ndarray) -> ContactOrbit:
-    """The orbit at the fold next to a guess: P^m(s) = s and det(dP^m - I) = 0; NotPeriodic if none is found."""
+    """The orbit at the fold next to a guess, P^m(s) = s and det(dP^m - I) = 0; else NotPeriodic."""
     size = float(np.max(np.abs(guess)))
 
     def residual(unknown: np.ndarray) -> np.ndarray:

@@ -1,13 +1,13 @@
 r"""Where Hertz contact smooths the square root of a grazing beam, and what orbit is born below that.
 
-Small peaks h over the wall press the ball in by the undisturbed parabola h - a t^2/2, a = omega^2 gap, so that the
-impulse of the force k d^(3/2) is
+Small peaks h over the wall press the ball in by the undisturbed parabola h - a t^2/2, a = omega^2 gap, so
+that the impulse of the force k d^(3/2) is
 
     P = k (3 pi/8) sqrt(2/a) h^2
 
-and the mode-1 tip velocity is kicked by phi_1^2 P.  With Phi_k the free flow of mode k over one drive period,
-alpha_k its trace and gamma_k its determinant, the orbit with one touch a period and its loss of stability by a
-multiplier -1 follow from
+and the mode-1 tip velocity is kicked by phi_1^2 P.  With Phi_k the free flow of mode k over one drive
+period, alpha_k its trace and gamma_k its determinant, the orbit with one touch a period and its loss of
+stability by a multiplier -1 follow from
 
     excess gap = h + P(h) sum_k phi_k^2 Phi_k12/(1 - alpha_k + gamma_k)
     1 = (dP/dh) sum_k phi_k^2 Phi_k12/(1 + alpha_k + gamma_k)
@@ -83,8 +83,8 @@ class HertzSmoothing:
 def collision_above(oscillator: ImpactOscillator, excess: float) -> Collision:
     """The collision that ends the motion without impacts at `excess`.
 
-    The crossing of the gap and the first touch can coincide to rounding, where the search for the one around the
-    other does not end in its bound of steps; an excess larger by 1e-9 of itself then has an answer.
+    The crossing of the gap and the first touch can coincide to rounding, where the search for the one around
+    the other does not end in its bound of steps; an excess larger by 1e-9 of itself then has an answer.
     """
     try:
         return first_collision(oscillator.with_excess(excess))
@@ -97,8 +97,7 @@ def collision_above(oscillator: ImpactOscillator, excess: float) -> Collision:
 def local_slope(oscillator: ImpactOscillator, excess: float) -> float:
     """d ln(kick velocity)/d ln(excess)."""
     low, high = (
-        collision_above(oscillator, excess * factor).kick_velocity
-        for factor in (STEP**-0.5, STEP**0.5)
+        collision_above(oscillator, excess * factor).kick_velocity for factor in (STEP**-0.5, STEP**0.5)
     )
     return math.log(high / low) / math.log(STEP)
 
@@ -118,8 +117,8 @@ def reach_of(measure: Callable[[float], float], low: float, high: float) -> floa
 def _quietly(strobed: StroboscopicMap, state: Any, excess: float, cycles: int) -> Settled[Any]:
     """Settle with a tolerance well below the height of the peak over the wall.
 
-    p1 with a slowly falling transient can look like a period of a few drive periods with as many impacts; it gets
-    `cycles` more to fall further.
+    p1 with a slowly falling transient can look like a period of a few drive periods with as many impacts; it
+    gets `cycles` more to fall further.
     """
     here, tolerance = strobed.at(excess), max(1e-5 * excess, 1e-14)
     settled = settle(here, state, most_cycles=cycles, tolerance=tolerance)
@@ -131,8 +130,8 @@ def _quietly(strobed: StroboscopicMap, state: Any, excess: float, cycles: int) -
 def born_orbits(oscillator: ImpactOscillator, excesses: np.ndarray, cycles: int) -> list[dict[str, Any]]:
     """Period and impacts at rising excesses, raised gently and in one step from just below grazing.
 
-    Gently: the state is carried along from excess to excess, from the grazing motion on.  In one step: from the
-    motion without impacts at -1e-3, as by an experiment of finite steps.
+    Gently: the state is carried along from excess to excess, from the grazing motion on.  In one step: from
+    the motion without impacts at -1e-3, as by an experiment of finite steps.
     """
     strobed = StroboscopicMap(oscillator=oscillator)
     state, below, found = strobed.at(0.0).steady(), strobed.at(-1e-3).steady(), []
@@ -151,15 +150,20 @@ def born_orbits(oscillator: ImpactOscillator, excesses: np.ndarray, cycles: int)
     return found
 
 
-def doubling_excess(oscillator: ImpactOscillator, low: float, high: float, cycles: int) -> tuple[float, int] | None:
-    """Excess at which the settled orbit stops being p1, to 0.1 %, and the period beyond; None without p1 at `low`."""
+def doubling_excess(
+    oscillator: ImpactOscillator, low: float, high: float, cycles: int
+) -> tuple[float, int] | None:
+    """Excess at which the settled orbit stops being p1, to 0.3 %, and the period beyond.
+
+    None without p1 at `low` or with p1 up to `high`.
+    """
     strobed = StroboscopicMap(oscillator=oscillator)
     settled = _quietly(strobed, strobed.at(0.0).steady(), low, cycles)
     if settled.period != 1:
         return None
     state, beyond = settled.end, 0
     step = 1.1
-    while step > 1.0005:
+    while step > 1.002:
         if low * step > high:
             return None
         settled = _quietly(strobed, state, low * step, cycles)

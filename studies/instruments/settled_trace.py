@@ -1,8 +1,8 @@
 """A settled orbit against time: tip, read-out point, impacts, contact force.
 
 Time counts from the strobe at which the trace begins.  The tip position relative to the plate is
-h = phi . q - gap [m], above zero where the ball is pressed into the plate; the contact force follows from it by
-the contact law, N = k h (+ c h') or k h^(3/2) (1 + chi h').
+h = phi . q - gap [m], above zero where the ball is pressed into the plate; the contact force follows from it
+by the contact law, N = k h (+ c h') or k h^(3/2) (1 + chi h').
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class CloseUp:
 
 
 def settled_state(oscillator: ImpactOscillator, cycles: int) -> tuple[int, State]:
-    """Period of the orbit that settles when the drive is raised from below grazing, and its state at a strobe."""
+    """Period of the orbit that settles when the drive is raised from below grazing, and its strobed state."""
     strobed = StroboscopicMap(oscillator=oscillator)
     settled = settle(strobed, strobed.at(BELOW).steady(), most_cycles=cycles)
     return settled.period, settled.end
@@ -86,11 +86,15 @@ def trace_of(oscillator: ImpactOscillator, state: State, period: int, length: in
         tip=run.displacement @ model.phi,
         readout=run.displacement @ model.readouts[READOUT],
         impact_times=touches - begin,
-        collisions=[c for c in collisions(oscillator, run, unfinished="drop") if c.first_touch < begin + span],
+        collisions=[
+            c for c in collisions(oscillator, run, unfinished="drop") if c.first_touch < begin + span
+        ],
     )
 
 
-def close_up(oscillator: ImpactOscillator, state: State, collision: Collision, margin: float, count: int) -> CloseUp:
+def close_up(
+    oscillator: ImpactOscillator, state: State, collision: Collision, margin: float, count: int
+) -> CloseUp:
     """A collision of the motion from `state`, with `margin` [s] before and after it, in `count` samples."""
     first, last = collision.first_touch - margin, collision.end + margin
     times = np.linspace(max(first, state.time), last, count)

@@ -1,8 +1,8 @@
 r"""A collision with a soft wall, and what it does to the orbits of one mode: closed forms.
 
 The wall multiplies the spring constant by K (letter of 1996, Ref. [10]): behind the gap the force grows with
-slope K Omega^2, so the contact adds kappa = (K - 1) Omega^2 [1/s^2], and a dashpot c = 2 zeta s [1/s] beside it,
-s = sqrt(kappa).  The wall only pushes: it lets go where kappa d + c d' falls to zero.
+slope K Omega^2, so the contact adds kappa = (K - 1) Omega^2 [1/s^2], and a dashpot c = 2 zeta s [1/s] beside
+it, s = sqrt(kappa).  The wall only pushes: it lets go where kappa d + c d' falls to zero.
 
 **One collision.** Next to a peak of height h over the gap the incoming motion is a parabola of deceleration
 a = omega^2 gap, and meets the wall at v = sqrt(2 a h).  With tau = s t and D = d kappa/a
@@ -27,38 +27,40 @@ is linear in h: the wall lets go at the peak, where the dashpot no longer pushes
 
 **Restitution of a hard approach** (z >> 1): tau_c = (pi - 2 beta)/cos beta with zeta = sin beta, and
 
-    tau = exp(-(pi - 2 beta) tan beta);    beyond zeta = 1:  exp(-2 eta coth eta), zeta = cosh eta.
+    restitution = exp(-(pi - 2 beta) tan beta);    beyond zeta = 1:  exp(-2 eta coth eta), zeta = cosh eta.
 
-At zeta = 1 it is exp(-2) = 0.135, so that the letter's 0.1 needs an overdamped contact.  (The half period of a
-wall that may also pull, exp(-pi zeta/w) = 0.1, has zeta = 0.591, which is tau = 0.253 here.)
+At zeta = 1 it is exp(-2) = 0.135, so that the letter's 0.1 needs an overdamped contact.  (The half period of
+a wall that may also pull, exp(-pi zeta/w) = 0.1, has zeta = 0.591, which is a restitution of 0.253 here.)
 
 **Period doubling of p1.** With M the free flow over 1/f (trace alpha, determinant gamma) the orbit with one
 collision a period has, to leading order, the peak h and the trace
 
-    excess = h + M12 J(h)/((1 - alpha + gamma) gap),      trace = alpha - M12 J'(h),   J' = s (dG/dz)/z
+    excess = h/gap + M12 J(h)/((1 - alpha + gamma) gap),   trace = alpha - M12 J'(h),   J' = s (dG/dz)/z
 
 A multiplier is -1 where J' = Lambda = (1 + alpha + gamma)/M12.  Without dashpot J' = 2 s z/(1 + z^2), hence
 
     z_f = (s/Lambda) [1 - sqrt(1 - (Lambda/s)^2)] -> Lambda/(2 s),     h_f = (a/2) z_f^2/kappa
 
-and none at all if s < Lambda: J' never exceeds s.  To leading order h_f = (a/2) [Lambda/(2 (K - 1) Omega^2)]^2 and
-excess = (h_f/gap) [1 + r], r = (2/3)(1 + gamma + alpha)/(1 - alpha + gamma); with K for K - 1, this is short by
+and none near grazing if s < Lambda: J' never exceeds s.  As K grows, h_f -> (a/2) [Lambda/(2 K Omega^2)]^2,
+excess -> (h_f/gap) [1 + r], r = (2/3)(1 + gamma + alpha)/(1 - alpha + gamma), which is too small by
 
     [2 + (Lambda/(2 Omega))^2 (2 + (12/5) r)/(1 + r)]/K      of itself, plus order K^(-2).
 
-With a dashpot, J' = c from the start:
-for c > Lambda the orbit is unstable as soon as it touches, as with a hard wall.
+With a dashpot J' = c from the start: for c > Lambda the orbit is unstable as soon as it touches, as with a
+hard wall.
 
 **Fold of p_m.** At a hard approach the contact lasts t_c = tau_c/s and ends at the depth d_c = D v/s with the
-velocity -tau v - (a_0/s) S.  Referred to the touch by the free flow, to first order in 1/s, the deviation jumps by
+velocity -tau v - (a_0/s) S, tau the restitution.  Referred to the touch by the free flow, to first order in
+1/s, the deviation jumps by
 
     (tau v t_c + d_c,   -(1 + tau) v + a_0 (t_c - S/s)),   a_0 = omega^2 gap + (Omega^2 - omega^2) u + mu u'
 
-with (u, u') before the touch, which are affine in v.  Hence the amplitude A of the drive in units of gap,
+with (u, u') before the touch, which are affine in v (terms mu v/s, small but of the same order, are in the
+code).  Hence the amplitude of the drive over that at grazing,
 
     A^2 = (1 - u)^2 + ((v - u')/omega)^2       (lengths in units of gap)
 
-is a quadratic in v, smallest at the fold (terms mu v/s, small but of the same order, are in the code); its distance from the hard wall's is of order 1/s, that is K^(-1/2).
+is a quadratic in v, smallest at the fold, and differs from that of the hard wall by order 1/s, K^(-1/2).
 """
 
 from __future__ import annotations
@@ -248,7 +250,8 @@ class SoftImpact:
         omega, decay = self.omega, self.decay_rate
         if touching:
             omega, decay = math.sqrt(omega**2 + self.stiffness), decay + self.dashpot
-        return np.array(flow_matrix(omega, decay, *damped_frequency(omega, decay), time)).reshape(2, 2)
+        high, low = damped_frequency(omega, decay)
+        return np.array(flow_matrix(omega, decay, high, low, time)).reshape(2, 2)
 
     @property
     def alpha(self) -> float:
@@ -341,7 +344,7 @@ class SoftImpact:
         return 0.5 * z * z * self.deceleration / (self.stiffness * self.gap)
 
     def leading_doubling(self, *, minus_one: bool = False) -> tuple[float, float]:
-        """(h_f/gap, excess) without dashpot as K -> infinity, with K Omega^2 or (K - 1) Omega^2 for the wall."""
+        """(h_f/gap, excess) without dashpot as K -> infinity; `minus_one` puts K - 1 for K."""
         stiffness = self.stiffness if minus_one else self.hardness * self.omega**2
         peak = 0.5 * self.angular_frequency**2 * (self.critical_slope / (2.0 * stiffness)) ** 2
         ratio = (1.0 + self.gamma + self.alpha) / (1.0 - self.alpha + self.gamma)
@@ -355,13 +358,15 @@ class SoftImpact:
 
     @property
     def grazing_multipliers(self) -> tuple[complex, complex]:
-        """Multipliers of p1 just after its first touch: trace alpha - M12 c, determinant gamma; falling in size."""
-        values = np.roots([1.0, float(self.flow[0, 1]) * self.dashpot - self.alpha, self.gamma]).astype(complex)
+        """Multipliers of p1 at its first touch, larger first: trace alpha - M12 c, determinant gamma."""
+        values = np.roots([1.0, float(self.flow[0, 1]) * self.dashpot - self.alpha, self.gamma]).astype(
+            complex
+        )
         first, second = sorted(values.tolist(), key=abs, reverse=True)
         return first, second
 
     def fold_excess(self, period: int) -> float:
-        """F/F_g - 1 at the fold of the orbit with one collision every `period` drive periods, to order 1/s."""
+        """F/F_g - 1 at the fold of the orbit with one collision in `period` drive periods, to order 1/s."""
         w, one = self.angular_frequency, np.eye(2)
         return_flow = self.free_flow(period / self.drive_frequency)
         answer = return_flow @ np.linalg.inv(one - return_flow)

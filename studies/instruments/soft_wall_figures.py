@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from studies.instruments.figures import LINES, MARKERS, PALETTE, PAGE, house_style, label, new_figure
+from studies.instruments.figures import LINES, MARKERS, PAGE, PALETTE, house_style, label, new_figure
 
 __all__ = ["draw_beam", "draw_doubling", "draw_hysteresis", "draw_kicks"]
 
@@ -43,22 +43,45 @@ def draw_kicks(curves: Rows, resolution: float) -> Any:
             excess = np.array(curve["excess"])
             soft, hard = np.array(curve["soft_law"]), np.array(curve["hard_law"])
             near = soft < 3.0 * hard
-            axis.loglog(excess[near], soft[near], color=COLOURS[i % 7], linewidth=0.8, linestyle="--", zorder=1)
             axis.loglog(
-                excess, curve["kick_velocity"], color=COLOURS[i % 7], linestyle="none", marker=MARKERS[i % 8],
-                markerfacecolor="white", zorder=3, label=f"K = {_power(curve['K'])}",
+                excess[near], soft[near], color=COLOURS[i % 7], linewidth=0.8, linestyle="--", zorder=1
+            )
+            axis.loglog(
+                excess,
+                curve["kick_velocity"],
+                color=COLOURS[i % 7],
+                linestyle="none",
+                marker=MARKERS[i % 8],
+                markerfacecolor="white",
+                zorder=3,
+                label=f"K = {_power(curve['K'])}",
             )
             axis.loglog(excess, curve["closed_form"], color=COLOURS[i % 7], linewidth=0.8, zorder=2)
         if chosen:
             axis.loglog(
-                excess, hard, color="0.45", linewidth=1.2, linestyle=":", zorder=1, label="hard wall, power 1/2"
+                excess,
+                hard,
+                color="0.45",
+                linewidth=1.2,
+                linestyle=":",
+                zorder=1,
+                label="hard wall, power 1/2",
             )
         axis.axvline(resolution, color="0.6", linewidth=0.6, linestyle="-.", zorder=0)
         axis.text(
-            resolution * 1.15, 0.02, "letter's amplitude\nstability", fontsize=6.0, color="0.35",
-            transform=axis.get_xaxis_transform(), va="bottom",
+            resolution * 1.15,
+            0.02,
+            "letter's amplitude\nstability",
+            fontsize=6.0,
+            color="0.35",
+            transform=axis.get_xaxis_transform(),
+            va="bottom",
         )
-        name = "lossless: power 3/2 below, dashed" if case == "lossless" else "with dashpot: power 1 below, dashed"
+        name = (
+            "lossless: power 3/2 below, dashed"
+            if case == "lossless"
+            else "with dashpot: power 1 below, dashed"
+        )
         axis.set_title(f"({'ab'[CASES.index(case)]}) {name}")
         label(axis.xaxis, "excess F/F$_g$ - 1")
     floor = min((min(curve["kick_velocity"]) for curve in curves), default=1e-6)
@@ -86,19 +109,40 @@ def draw_doubling(rows: Rows, theory: Rows, resolution: float) -> Any:
         hardness = np.array([r["K"] for r in here])
         measured = np.array([r["excess_pd_measured"] for r in here])
         dots = {"color": PALETTE[i % 7], "marker": MARKERS[i % 8]}
-        left.loglog(hardness, measured, linestyle="none", markerfacecolor="white", **dots, zorder=3,
-                    label=f"{frequency:.2f} Hz")
+        left.loglog(
+            hardness,
+            measured,
+            linestyle="none",
+            markerfacecolor="white",
+            **dots,
+            zorder=3,
+            label=f"{frequency:.2f} Hz",
+        )
         leading = np.array([r["excess_pd_leading"] for r in here])
         right.loglog(hardness, np.abs(measured / leading - 1.0), linestyle="--", linewidth=0.8, **dots)
-        closed = [(r["K"], abs(r["excess_pd_measured"] / r["excess_pd_theory"] - 1.0)) for r in here
-                  if r["excess_pd_theory"]]
+        closed = [
+            (r["K"], abs(r["excess_pd_measured"] / r["excess_pd_theory"] - 1.0))
+            for r in here
+            if r["excess_pd_theory"]
+        ]
         if closed:
-            right.loglog(*zip(*closed, strict=True), linestyle="-", linewidth=0.8, markerfacecolor="white", **dots)
+            right.loglog(
+                *zip(*closed, strict=True), linestyle="-", linewidth=0.8, markerfacecolor="white", **dots
+            )
     left.axhline(resolution, color="0.6", linewidth=0.6, linestyle="-.")
-    left.text(0.98, resolution * 1.3, "letter's amplitude stability", fontsize=6.0, color="0.35", ha="right",
-              transform=left.get_yaxis_transform())
+    left.text(
+        0.98,
+        resolution * 1.3,
+        "letter's amplitude stability",
+        fontsize=6.0,
+        color="0.35",
+        ha="right",
+        transform=left.get_yaxis_transform(),
+    )
     label(left.xaxis, "hardness K")
     label(left.yaxis, "excess of the period doubling")
+    words = "rise at $10^6$: rounding,\n$h_f$ is some $10^{-12}$ gaps"
+    right.text(0.03, 0.05, words, fontsize=6.0, color="0.35", transform=right.transAxes)
     label(right.xaxis, "hardness K")
     label(right.yaxis, "|measured/formula - 1|")
     left.set_title("(a) measured; closed form (line), K → ∞ (dashed)")
@@ -117,8 +161,12 @@ def draw_hysteresis(rows: Rows) -> Any:
     for i, frequency in enumerate(frequencies):
         for case in CASES:
             here = sorted(
-                (r for r in rows if r["frequency_hz"] == frequency and r["case"] == case
-                 and r["hysteresis"] is not None), key=lambda r: r["K"],
+                (
+                    r
+                    for r in rows
+                    if r["frequency_hz"] == frequency and r["case"] == case and r["hysteresis"] is not None
+                ),
+                key=lambda r: r["K"],
             )
             if not here:
                 continue
@@ -126,12 +174,20 @@ def draw_hysteresis(rows: Rows) -> Any:
             end = np.array([r["hysteresis"] for r in here])
             hard = abs(here[0]["hysteresis_hard"])
             shift = np.abs(np.array([r["hysteresis_shift"] for r in here]))
-            look = {"color": PALETTE[i % 7], "marker": MARKERS[i % 8], "linewidth": 0.8,
-                    "linestyle": LINES[0] if case == "dashpot" else LINES[1],
-                    "markerfacecolor": "white" if case == "lossless" else PALETTE[i % 7]}
+            look = {
+                "color": PALETTE[i % 7],
+                "marker": MARKERS[i % 8],
+                "linewidth": 0.8,
+                "linestyle": LINES[0] if case == "dashpot" else LINES[1],
+                "markerfacecolor": "white" if case == "lossless" else PALETTE[i % 7],
+            }
             axes[0].semilogx(hardness, -end / hard, **look)
-            axes[1].loglog(hardness, shift / hard, **look,
-                           label=f"{frequency:.2f} Hz, p$_{{{here[0]['period']}}}$, {case}")
+            axes[1].loglog(
+                hardness,
+                shift / hard,
+                **look,
+                label=f"{frequency:.2f} Hz, p$_{{{here[0]['period']}}}$, {case}",
+            )
     low, high = axes[1].get_xlim()
     span = np.array([max(low, 1e4), high])
     axes[1].loglog(span, 30.0 * span**-0.5, color="0.5", linestyle=":", linewidth=1.0, label="slope -1/2")
@@ -154,12 +210,22 @@ def draw_beam(beam: Mapping[str, Any], resolution: float) -> Any:
     figure, axes = new_figure(3, 1, height=0.120, sharex=True, height_ratios=(2.0, 1.3, 1.0))
     excess, speed = np.array(beam["excess"]), np.array(beam["kick_velocity"])
     top, middle, bottom = axes
-    top.loglog(excess, speed, color=PALETTE[1], marker="o", markerfacecolor="white", linestyle="-", zorder=3,
-               label="beam, mode 1")
+    top.loglog(
+        excess,
+        speed,
+        color=PALETTE[1],
+        marker="o",
+        markerfacecolor="white",
+        linestyle="-",
+        zorder=3,
+        label="beam, mode 1",
+    )
     soft = np.array(beam["soft_law"])
     near = soft < 3.0 * speed.max()
     top.loglog(excess[near], soft[near], color="0.4", linestyle="--", linewidth=0.8, label="Hertz, power 2")
-    top.loglog(excess, beam["hard_law"], color="0.4", linestyle=":", linewidth=1.2, label="power 1/2 at full kick")
+    top.loglog(
+        excess, beam["hard_law"], color="0.4", linestyle=":", linewidth=1.2, label="power 1/2 at full kick"
+    )
     top.set_ylim(0.4 * speed.min(), 4.0 * speed.max())
     label(top.yaxis, "kick of mode 1", "m/s")
     middle.semilogx(excess, beam["slope"], color=PALETTE[1], marker="o", markerfacecolor="white")
@@ -171,8 +237,12 @@ def draw_beam(beam: Mapping[str, Any], resolution: float) -> Any:
         found = [(r["excess"], r[f"period_{name}"]) for r in beam["born"] if r[f"period_{name}"]]
         if found:
             bottom.semilogx(
-                *zip(*found, strict=True), linestyle="none", marker=MARKERS[number], markersize=size,
-                color=PALETTE[number], markerfacecolor="white" if name == "in_one_step" else PALETTE[number],
+                *zip(*found, strict=True),
+                linestyle="none",
+                marker=MARKERS[number],
+                markersize=size,
+                color=PALETTE[number],
+                markerfacecolor="white" if name == "in_one_step" else PALETTE[number],
                 label="raised " + ("in one step" if name == "in_one_step" else "gently"),
             )
     highest = max((r[f"period_{n}"] or 0 for r in beam["born"] for n in ("gently", "in_one_step")), default=1)
@@ -186,10 +256,24 @@ def draw_beam(beam: Mapping[str, Any], resolution: float) -> Any:
                 axis.axvline(beam[key], color="0.35", linewidth=0.7, linestyle=style, zorder=1)
     for key, words in (("half_excess", "half kick"), ("doubling_excess", "p$_1$ ends")):
         if beam[key]:
-            top.text(beam[key], 1.02, words, fontsize=6.0, color="0.25", ha="center", va="bottom",
-                     transform=top.get_xaxis_transform())
+            top.text(
+                beam[key],
+                1.02,
+                words,
+                fontsize=6.0,
+                color="0.25",
+                ha="center",
+                va="bottom",
+                transform=top.get_xaxis_transform(),
+            )
     top.legend(loc="lower right")
     bottom.legend(loc="lower right")
-    top.text(0.02, 0.96, "shaded: within the letter's\namplitude stability", fontsize=6.0, va="top",
-             transform=top.transAxes)
+    top.text(
+        0.02,
+        0.96,
+        "shaded: within the letter's\namplitude stability",
+        fontsize=6.0,
+        va="top",
+        transform=top.transAxes,
+    )
     return figure

@@ -47,7 +47,9 @@ class Specimen:
         """Approach speed [m/s]."""
         return approach_speed(self.frequency, self.scene.stop.gap_m, excess)
 
-    def with_law(self, law: ContactLaw, model: ModalModel | None = None, frequency: float = 0.0) -> ImpactOscillator:
+    def with_law(
+        self, law: ContactLaw, model: ModalModel | None = None, frequency: float = 0.0
+    ) -> ImpactOscillator:
         """The oscillator with this contact law, and another model or drive frequency [Hz] if given."""
         hertz = self.scene.replace({"contact.law": "hertz"})
         oscillator = beam_of(hertz, frequency or self.frequency, self.model if model is None else model)

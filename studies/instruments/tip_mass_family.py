@@ -1,4 +1,4 @@
-"""The same spring with another ball: tip mass varied at fixed free period and fixed drive amplitude at grazing.
+"""The same spring with another ball: tip mass varied at fixed free period and drive amplitude at grazing.
 
     M = r m_leaf        mass of ball and mount as a part r of the mass of the leaf spring, tape included
     h                   thickness of the sheet such that mode 1, damped, keeps the period of the scene
@@ -43,8 +43,14 @@ def with_mass_ratio(scene: Scene, ratio: float, frequency: float) -> Scene:
     thickest = min(keys.width_m, 1.999 * keys.bend_radius_m) if keys.kind == "folded_u" else keys.width_m
     low = min(keys.thickness_m, thickest) * THINNEST
     fitted = solve_for(
-        "spring.thickness_m", scene, lambda trial: free_period(weighted(trial)), scene.single_mode.free_period_s,
-        name="free period", unit="s", low=low, high=thickest,
+        "spring.thickness_m",
+        scene,
+        lambda trial: free_period(weighted(trial)),
+        scene.single_mode.free_period_s,
+        name="free period",
+        unit="s",
+        low=low,
+        high=thickest,
     )
     return calibrate_gap(weighted(fitted), DRIVE_AMPLITUDE_M, frequency)
 

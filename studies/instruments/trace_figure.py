@@ -8,10 +8,13 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from studies.instruments.figures import INCH, PAGE, PALETTE, house_style, label, new_figure
+from studies.instruments.figures import PAGE, PALETTE, house_style, label, new_figure
 from studies.instruments.settled_trace import CloseUp, Trace
 
 __all__ = ["draw_spectrum", "draw_trace"]
+
+NUMBER_WIDTH = 13.0
+"""Room that the number of a mode takes, in dots of the screen."""
 
 MOST_DRAWN = 20_000
 """Points of a line: more than a page has dots."""
@@ -74,13 +77,23 @@ def _collision(axes: np.ndarray, near: CloseUp) -> None:
     axes[1].set_ylim(bottom=0.0)
 
 
-def draw_spectrum(frequency: np.ndarray, amplitude: np.ndarray, modes_hz: np.ndarray, drive_hz: float, unit: str) -> Any:
+def draw_spectrum(
+    frequency: np.ndarray, amplitude: np.ndarray, modes_hz: np.ndarray, drive_hz: float, unit: str
+) -> Any:
     """Lines of the read-out, with the frequencies of the modes marked above."""
     figure, axis = new_figure(width=PAGE, height=0.070)
     shown = modes_hz[modes_hz <= 0.5 * frequency[-1]]
     limit = 1.25 * float(shown[-1])
     inside = (frequency > 0.0) & (frequency <= limit)
-    axis.plot(frequency[inside], 1e3 * amplitude[inside], color=PALETTE[1], linewidth=0.7, label="lines of the read-out")
+    axis.plot(
+        frequency[inside],
+        1e3 * amplitude[inside],
+        color=PALETTE[1],
+        linewidth=0.5,
+        marker="o",
+        markersize=1.5,
+        label="lines of the read-out",
+    )
     axis.set_xscale("log")
     axis.set_yscale("log")
     top = 1e3 * float(amplitude[inside].max())
@@ -91,7 +104,7 @@ def draw_spectrum(frequency: np.ndarray, amplitude: np.ndarray, modes_hz: np.nda
     for number, at in enumerate(shown, start=1):
         axis.axvline(at, color=PALETTE[2], linewidth=0.6, linestyle=":", zorder=1)
         x = float(axis.transData.transform((at, 1.0))[0])
-        if x - last > 0.09 * INCH / INCH * 90:
+        if x - last > NUMBER_WIDTH:
             _mode_number(axis, at, number)
             last = x
     axis.axvline(drive_hz, color="0.4", linewidth=0.7, linestyle="--", zorder=1, label="drive")
@@ -99,7 +112,7 @@ def draw_spectrum(frequency: np.ndarray, amplitude: np.ndarray, modes_hz: np.nda
     with house_style():
         label(axis.xaxis, "frequency", "Hz")
         label(axis.yaxis, "amplitude at the read-out point", unit)
-        axis.legend(loc="lower left", handlelength=2.5)
+        figure.legend(loc="outside lower center", ncols=3, handlelength=2.5)
     return figure
 
 
