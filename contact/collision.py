@@ -141,8 +141,8 @@ class _Virtual:
 
 
 def _root(function: object, low: float, high: float) -> float:
-    """A root in [low, high] to rounding."""
-    return float(brentq(function, low, high, xtol=1e-300, rtol=8.9e-16, maxiter=300))
+    """A root in [low, high] to rounding (times count from the touch, so that it may lie at zero)."""
+    return float(brentq(function, low, high, xtol=1e-18, rtol=8.9e-16, maxiter=300))
 
 
 def _crossing(virtual: _Virtual, peak: float, direction: float) -> float:

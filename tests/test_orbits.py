@@ -51,7 +51,7 @@ EQUATION_1 = [
     (22.20, 5, -1.4773426733e-3, 0.0273, 1e-4),
     (22.60, 6, -1.6810390565e-4, 0.0250, 1e-4),
     (23.05, 8, -1.2823017008e-4, 0.0133, 1e-4),
-    (23.40, 11, -1.0196700981e-3, 0.00228, 1e-5),
+    (23.40, 11, -1.0196700981e-3, 0.002274, 1e-6),
 ]
 
 
@@ -155,7 +155,7 @@ def test_under_newtons_law_shooting_is_the_closed_form(spring: ModalModel, modes
     assert orbit.speed == pytest.approx(closed.speed, rel=1e-12)
     assert apart(orbit.multipliers, closed.multipliers()) < 1e-11 * max(1.0, abs(orbit.multipliers[0]))
     place = np.concatenate([orbit.displacement, orbit.velocity]) - closed.before.ravel()
-    assert np.max(np.abs(place) / sizes(oscillator)) < 1e-14
+    assert np.max(np.abs(place) / sizes(oscillator)) < 1e-16 * max(10.0, 1 / part)
     wave = np.exp(2j * np.pi * oscillator.drive.frequency * np.array([orbit.phase, closed.flight.start]))
     assert abs(wave[0] - wave[1]) < 1e-12
 
@@ -200,7 +200,7 @@ def test_one_amplitude_has_an_orbit_on_each_arm() -> None:
         low, high = closed.orbits(excess)
         for arm, near in ((low, 0.99 * low.speed), (high, 1.01 * high.speed)):
             orbit = family.at_excess(excess, family.at_speed(near))
-            assert orbit.excess == pytest.approx(excess, abs=1e-15)
+            assert orbit.excess == pytest.approx(excess, abs=1e-12)
             assert orbit.speed == pytest.approx(arm.speed, rel=1e-10)
             assert orbit.stable == (arm is high) == (orbit.slope > 0)
     with pytest.raises(NotPeriodic):
@@ -259,16 +259,21 @@ def test_the_determinant_is_the_decay_of_area_and_the_law(spring: ModalModel, na
 def test_the_determinant_counts_the_dashpot_while_it_pushes(spring: ModalModel) -> None:
     """The divergence in contact has -c phi.phi more, until the force has come down to zero."""
     oscillator = beam(spring, 20.90, LAWS["dashpot"], modes=3)
-    orbit = Shooting(oscillator=oscillator, period=3).at_speed(0.1 * unit_speed(oscillator))
-    decay = -math.log(abs(np.prod(orbit.multipliers)))
     free = oscillator.model.decay_rate.sum() * 3 * oscillator.period
-    rate = LAWS["dashpot"].damping * float(oscillator.model.phi @ oscillator.model.phi)
-    # half a period of the reduced mass on the spring, damped, less the part of it in which the force would pull
-    mass, stiffness, damping = 1 / (oscillator.model.phi @ oscillator.model.phi), 1.887e7, 68.0
-    natural, half = math.sqrt(stiffness / mass), damping / (2 * mass)
+    mass = 1 / float(oscillator.model.phi @ oscillator.model.phi)
+    # half a period of that mass on spring and dashpot, less the part in which the force would pull
+    natural, half = math.sqrt(LAWS["dashpot"].stiffness / mass), LAWS["dashpot"].damping / (2 * mass)
     damped = math.sqrt(natural**2 - half**2)
     pushes = (math.pi - math.atan2(2 * half * damped, natural**2 - 2 * half**2)) / damped
-    assert (decay - free) / rate == pytest.approx(pushes, rel=0.02)
+    missing = []
+    for part in (0.25, 0.5, 1.0):
+        orbit = Shooting(oscillator=oscillator, period=3).at_speed(part * unit_speed(oscillator))
+        decay = -math.log(abs(np.prod(orbit.multipliers)))
+        missing.append(1 - (decay - free) * mass / (LAWS["dashpot"].damping * pushes))
+    # the spring's own force, 2 a/(w v), shortens the contact
+    assert missing[2] < 4e-3
+    assert missing[0] / missing[1] == pytest.approx(2, rel=0.1)
+    assert missing[1] / missing[2] == pytest.approx(2, rel=0.1)
 
 
 # ---------------------------------------------------------------------------------------------------- kicks
@@ -413,18 +418,19 @@ def test_a_branch_that_loses_a_touch_ends_with_its_last_good_orbit() -> None:
     run = settled(oscillator, 0.1)
     family = Shooting(oscillator=oscillator.with_excess(0.1), period=3, impacts=2)
     start = family.from_state(run.end)
-    largest = max(start.approach)
-    assert start.speed == largest  # the first touch is the hard one
-    branch = follow(family, start, low=0.5 * start.speed, high=1.02 * start.speed)
-    assert branch.ended_high == "range"
-    assert "lost" in branch.ended_low or "converge" in branch.ended_low
-    last = branch.orbits[0]
-    assert f"{last.speed:.6g} m/s" in branch.ended_low and f"{last.excess:.6g}" in branch.ended_low
-    assert last.residual < 1e-9 and last.approach.min() < 0.02 * last.speed
-    # where the orbit of one impact gains a second
-    assert last.excess == pytest.approx(0.0891, abs=1e-3)
-    with pytest.raises(ContactError):
-        family.at_speed(0.5 * start.speed, last)
+    branch = follow(family, start, low=0.9 * start.speed, high=2.0 * start.speed)
+    assert branch.ended_low == "range"
+    assert "an orbit of period 3 with 2 touches was lost" in branch.ended_high
+    last = branch.orbits[-1]
+    assert f"{last.speed:.6g} m/s" in branch.ended_high and f"{last.excess:.6g}" in branch.ended_high
+    assert last.residual < 1e-9 and last.approach[1] < 1e-4 * last.approach[0]
+    # there the orbit of one impact has its grazing
+    single = Shooting(oscillator=oscillator, period=3)
+    (graze,) = follow(single, single.at_speed(100.0), low=90.0, high=140.0).of_kind("grazing")
+    assert last.speed == pytest.approx(graze.speed, rel=1e-5)
+    assert last.excess == pytest.approx(graze.excess, rel=1e-5)
+    with pytest.raises(ContactError, match="lost"):
+        family.at_speed(1.02 * last.speed, last)
 
 
 def test_folds_along_frequency_are_those_of_each_frequency() -> None:

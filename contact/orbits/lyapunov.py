@@ -279,7 +279,6 @@ class _OfOscillator:
         if state.regime != 0:
             raise ValueError("state is in contact; start from a strobe at which the tip is off the wall")
         response = self.oscillator.tip_response()
-        response /= abs(response) / math.hypot(motion.tip_sine, motion.tip_cosine)
         for _ in range(MOST_STRETCHES):
             run = simulate(self.oscillator, replace(state, time=0.0), periods=count)
             hits = run.impacts.kind != 1

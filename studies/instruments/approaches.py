@@ -90,17 +90,6 @@ def orbit_collision(oscillator: ImpactOscillator) -> tuple[Collision | None, int
     return (found[0] if found else None), settled.period
 
 
-def _first_collision(oscillator: ImpactOscillator) -> Collision:
-    """The first collision; where touch and t_in coincide to rounding, that of a drive 1e-12 stronger.
-
-    The time between the two is then sought as a root at zero, where a search to relative accuracy has no end.
-    """
-    try:
-        return first_collision(oscillator)
-    except RuntimeError:
-        return first_collision(oscillator.with_excess(oscillator.excess + 1e-12))
-
-
 def measure(approach: Approach) -> dict[str, Any]:
     """The row of an approach; `failure` says why there are no numbers, and is empty otherwise."""
     oscillator = approach.oscillator.with_excess(approach.excess)
@@ -126,8 +115,8 @@ def measure(approach: Approach) -> dict[str, Any]:
         if approach.orbit:
             found, period = orbit_collision(oscillator)
         else:
-            found = _first_collision(oscillator)
-    except (ContactError, ValueError, RuntimeError) as error:
+            found = first_collision(oscillator)
+    except (ContactError, ValueError) as error:
         row["failure"] = f"{approach.curve}, {approach.series}, {approach.varied} {approach.value:g}: {error}"
     return row | {"orbit_period": period} | _numbers(found, float(model.phi[0]))
 
