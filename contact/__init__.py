@@ -14,8 +14,8 @@
 The equation of motion is in ``contact.oscillator``; flights in closed form and their bounds in
 ``contact.flight``; the certified search for the next touch in ``contact.crossing``; motion in contact in
 ``contact.series`` and ``contact.hertz_series``; what a collision does to the first mode in
-``contact.collision``; the letter's map in ``contact.nordmark`` and ``contact.maximal_orbits``; periodic orbits
-in ``contact.orbits``.  Units are SI throughout; modes are mass-normalised (q in m kg^0.5).
+``contact.collision``; the letter's map in ``contact.nordmark`` and ``contact.maximal_orbits``; periodic
+orbits in ``contact.orbits``.  Units are SI throughout; modes are mass-normalised (q in m kg^0.5).
 """
 
 from contact.collision import Collision, collisions, first_collision

@@ -15,13 +15,14 @@ outgoing virtual motion, and is final when that minimum has passed.  With
     restitution = -(velocity at t_out) / v_in,   delay = t_out - t_in,
     kick = -(jump of the mode-1 tip velocity) / v_in,   shift = jump of the mode-1 tip displacement,
 
-both jumps referred to t_in by mode 1's free flow.  To leading order in v_in, with a the deceleration of the tip,
+both jumps referred to t_in by mode 1's free flow.  To leading order in v_in, with a the deceleration of the
+tip,
 
     restitution^2 = (1 - kick)^2 + 2 a shift / v_in^2,   delay = (v_in / a)(1 + restitution - kick).
 
-If the incoming peak stays below the gap, the ringing of higher modes made the touch (`forced_by_ringing`): then
-there is no restitution and no delay, and the kick is given as a velocity.  If the outgoing motion never reaches
-the gap, restitution and delay do not exist either, but the kick does.
+If the incoming peak stays below the gap, the ringing of higher modes made the touch (`forced_by_ringing`):
+then there is no restitution and no delay, and the kick is given as a velocity.  If the outgoing motion never
+reaches the gap, restitution and delay do not exist either, but the kick does.
 """
 
 from __future__ import annotations
@@ -116,7 +117,8 @@ class Collision:
 
 
 class _Virtual:
-    """The virtual motion through the mode-1 deviation (u, v) at `clock` after a strobe; times s count from there."""
+    """The virtual motion through the mode-1 deviation (u, v) at `clock` after a strobe; times s count from
+    there."""
 
     def __init__(self, motion: Motion, clock: float, u: float, v: float) -> None:
         self.motion, self.clock = motion, clock
@@ -177,7 +179,9 @@ def _ringing(motion: Motion, u: np.ndarray, v: np.ndarray) -> float:
     return float(np.sum(np.abs(motion.phi[1:]) * amplitude))
 
 
-def collisions(oscillator: ImpactOscillator, trajectory: Trajectory, *, unfinished: str = "refuse") -> list[Collision]:
+def collisions(
+    oscillator: ImpactOscillator, trajectory: Trajectory, *, unfinished: str = "refuse"
+) -> list[Collision]:
     """Group the impacts of a trajectory into collisions.
 
     Parameters
@@ -299,11 +303,13 @@ def _measure(
     )
 
 
-def first_collision(oscillator: ImpactOscillator, state: State | None = None, *, periods: int = 64) -> Collision:
+def first_collision(
+    oscillator: ImpactOscillator, state: State | None = None, *, periods: int = 64
+) -> Collision:
     """The first collision from `state`, or from the steady motion that the wall has not yet disturbed.
 
-    Started from the steady motion at an excess above zero, this is the collision that ends the p1 orbit, with all
-    higher modes at their steady amplitude: the cleanest measure of restitution, delay and kick.
+    Started from the steady motion at an excess above zero, this is the collision that ends the p1 orbit, with
+    all higher modes at their steady amplitude: the cleanest measure of restitution, delay and kick.
 
     Parameters
     ----------

@@ -1,18 +1,18 @@
 """The first crossing of the stop, certified.
 
 A signal y(s) (tip displacement minus gap, or a contact force) is known in closed form with its first two
-derivatives, and a bound M of its third.  Starting where y < 0, time is skipped only by a bound that proves the
-stretch free:
+derivatives, and a bound M of its third.  Starting where y < 0, time is skipped only by a bound that proves
+the stretch free:
 
     y(s + h) <= max over [0, h] of (y + y' h + y'' h^2/2) + M h^3/6 + R < -margin
 
-R is the sum of amplitudes of those high modes that are bounded instead of sampled; they are taken in one by one
-as the gap closes.  Where no such h exists, two other proofs end the search: y' > 0 throughout and y changes
-sign (one root), or y'' < 0 throughout and y' changes sign (one peak: its height decides).  The bounds of the
-single modes are those of ``contact.flight``.
+R is the sum of amplitudes of those high modes that are bounded instead of sampled; they are taken in one by
+one as the gap closes.  Where no such h exists, two other proofs end the search: y' > 0 throughout and y
+changes sign (one root), or y'' < 0 throughout and y' changes sign (one peak: its height decides).  The bounds
+of the single modes are those of ``contact.flight``.
 
-A graze, |peak| within the rounding bound of y (at most 1e-13 of the gap), is an outcome of its own.  A stretch
-that none of this settles, with h down to rounding, is reported as unresolved and never passed.
+A graze, |peak| within the rounding bound of y (at most 1e-13 of the gap), is an outcome of its own.  A
+stretch that none of this settles, with h down to rounding, is reported as unresolved and never passed.
 """
 
 from __future__ import annotations
@@ -193,7 +193,9 @@ def first_crossing(motion, base, u, v, duration, order, envelope):
     envelope[n] = 0.0
     for k in range(n - 1, -1, -1):
         if k >= must:
-            envelope[k] = envelope[k + 1] + abs(motion.phi[k]) * math.sqrt(u[k] ** 2 + (v[k] / motion.omega[k]) ** 2)
+            envelope[k] = envelope[k + 1] + abs(motion.phi[k]) * math.sqrt(
+                u[k] ** 2 + (v[k] / motion.omega[k]) ** 2
+            )
         else:
             envelope[k] = math.inf
     if order == 0 and motion.level + tip_amplitude + envelope[0] < -margin:
@@ -305,7 +307,8 @@ def first_polynomial_root(coefficients, start, end, margin):
             # at the start, or a touch: leave the band of rounding by the slope
             if s > start and y1 > 0.0:
                 return s
-            s += max(h_min, min(end - s, 2.0 * margin / max(abs(y1), 1e-300), 1e-3 * (end - start)))
+            out = 2.0 * max(margin, y0) / max(abs(y1), 1e-300)
+            s += max(h_min, min(end - s, out, 1e-3 * (end - start)))
             continue
         proof, step = certify(y0, y1, y2, m3, 0.0, margin, min(h, end - s), h_min)
         if proof == _SKIP:

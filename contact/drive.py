@@ -32,9 +32,13 @@ class HarmonicDrive:
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.frequency) and self.frequency > 0):
-            raise ValueError(f"frequency of the drive is {self.frequency} Hz; it must be finite and above zero")
+            raise ValueError(
+                f"frequency of the drive is {self.frequency} Hz; it must be finite and above zero"
+            )
         if not (math.isfinite(self.amplitude) and self.amplitude >= 0):
-            raise ValueError(f"amplitude of the drive is {self.amplitude} m; it must be finite and zero or more")
+            raise ValueError(
+                f"amplitude of the drive is {self.amplitude} m; it must be finite and zero or more"
+            )
 
     @property
     def angular_frequency(self) -> float:

@@ -12,8 +12,8 @@ q = q_s(t) + u with the steady motion
     v(t) = e^{-ct/2} [ Cn(t) v_0 - Sn(t) (omega^2 u_0 + c v_0/2) ]
 
 where (Cn, Sn) is (cos, sin/d) of d t with d = sqrt(D) for an under-damped mode, (1, t) for a critical one and
-(cosh, sinh/k) of k t with k = sqrt(-D) for an over-damped one.  A mode of zero frequency under a constant load
-g adds g t^2 phi_2(-c t) to u, phi_2(x) = (e^x - 1 - x)/x^2.
+(cosh, sinh/k) of k t with k = sqrt(-D) for an over-damped one.  A mode of zero frequency under a constant
+load g adds g t^2 phi_2(-c t) to u, phi_2(x) = (e^x - 1 - x)/x^2.
 
 Bounds: every derivative of a free mode obeys the same equation, and v^2 + omega^2 u^2 never grows, hence for
 all later times, whatever the damping,
@@ -45,8 +45,8 @@ class Motion(NamedTuple):
     Arrays have shape (n_modes,): omega [rad/s], decay = c [1/s], damped and damped_low = sqrt|D| as a sum of
     two doubles [rad/s], phi [kg^-0.5], load = g of the modes of zero frequency, sine and cosine = S and C,
     offset = g/omega^2.  Scalars: tip_sine, tip_cosine = sums of phi S and phi C [m]; level = static tip
-    displacement minus gap [m]; drive = w [rad/s]; period [s]; gap [m]; compliance = sum phi^2 [1/kg]; law, its
-    numbers and its table.
+    displacement minus gap [m]; drive = w [rad/s]; period [s]; gap [m]; compliance = sum phi^2 [1/kg]; law,
+    its numbers and its table.
     """
 
     omega: np.ndarray
@@ -164,7 +164,8 @@ def mode_acceleration(motion, k, u, v):
 
 @kernel
 def tip_steady(motion, t):
-    """Tip displacement relative to the stop, velocity and acceleration of the steady motion at drive time `t`."""
+    """Tip displacement relative to the stop, velocity and acceleration of the steady motion at drive time
+    `t`."""
     w = motion.drive
     s, c = math.sin(w * t), math.cos(w * t)
     x = motion.tip_sine * s + motion.tip_cosine * c

@@ -1,7 +1,8 @@
 """Contact under Hertz's law as a power series without its singularity.
 
 The force k d^(3/2) (1 + chi d') has no Taylor series at the touch d = 0, where every contact begins and ends.
-With r = sqrt(d) as an unknown of its own and a new variable sigma that runs slowly while the contact is shallow,
+With r = sqrt(d) as an unknown of its own and a new variable sigma that runs slowly while the contact is
+shallow,
 
     dt/dsigma = r,  dr/dsigma = d'/2,  du/dsigma = r v,  dv/dsigma = r (-c v - omega^2 u - phi N),
     N = k r^3 (1 + chi d'),  d' = sum phi v + x_s'(t),  d sin(w t)/dsigma = w r cos(w t), ...
@@ -46,8 +47,8 @@ def hertz_series(motion, base, u, v, us, vs, scalars):
     us, vs : ndarray, shape (HERTZ_ORDER + 1, n_modes)
         Results: deviations and their velocities.
     scalars : ndarray, shape (7, HERTZ_ORDER + 1)
-        Results: r, time, sin, cos, d', N, r N.  On entry scalars[0, 0] holds r, which the caller carries along:
-        computed anew from the tip displacement it would lose its digits at shallow depth.
+        Results: r, time, sin, cos, d', N, r N.  On entry scalars[0, 0] holds r, which the caller carries
+        along: computed anew from the tip displacement it would lose its digits at shallow depth.
     """
     n_modes = motion.omega.size
     w = motion.drive

@@ -1,7 +1,7 @@
 """What a compiled run writes down: impacts, samples, and where it stands.
 
-A run is carried from call to call by two small arrays: `integers` (regime, number of derivatives that vanish at
-the start of the flight, rows logged, samples taken, impacts in this period) and `floats` (time since the
+A run is carried from call to call by two small arrays: `integers` (regime, number of derivatives that vanish
+at the start of the flight, rows logged, samples taken, impacts in this period) and `floats` (time since the
 strobe [s], approach velocity of the contact under way [m/s], energy that it has lost [J], time that it still
 waits [s] and velocity with which it then leaves [m/s]).  A row of the log
 holds period and time of the first touch, period and time of the release, both tip velocities, the energy lost
@@ -25,8 +25,11 @@ START_PERIOD, START, END_PERIOD, END, IN, OUT, LOST, KIND = 0, 1, 2, 3, 4, 5, 6,
 
 
 @kernel
-def sample_flight(motion, u, v, base, until, period_index, integers, sample_period, sample_clock, samples, su, sv):
-    """States at the sample times of a free flight from (u, v) at `base` that lasts `until` (both since the strobe)."""
+def sample_flight(
+    motion, u, v, base, until, period_index, integers, sample_period, sample_clock, samples, su, sv
+):
+    """States at the sample times of a free flight from (u, v) at `base` that lasts `until` (both since the
+    strobe)."""
     n = motion.omega.size
     i = integers[SAMPLED]
     while i < sample_clock.size and sample_period[i] == period_index and sample_clock[i] <= until:
@@ -73,7 +76,8 @@ def sample_hertz(
 
 @kernel
 def sample_waiting(motion, until, period_index, integers, sample_period, sample_clock, samples):
-    """States at the sample times of a single mode that is held on the wall until `until` (since the strobe)."""
+    """States at the sample times of a single mode that is held on the wall until `until` (since the
+    strobe)."""
     i = integers[SAMPLED]
     while i < sample_clock.size and sample_period[i] == period_index and sample_clock[i] <= until:
         height, velocity, _acceleration = tip_steady(motion, sample_clock[i])

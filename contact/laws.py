@@ -4,11 +4,11 @@ With the penetration d = x - gap [m] and its rate d' [m/s], the stop pushes the 
 -N, N >= 0, that acts only where d > 0.
 
 * Impact laws: ``NewtonRestitution``, velocity of the tip d' -> -e d' at once (letter 1996, below Eq. (1));
-  ``DelayedRestitution``, the same after a time spent on the wall: the letter's "energy loss and time delay" as
-  the two parameters of a single mode.
+  ``DelayedRestitution``, the same after a time spent on the wall: the letter's "energy loss and time delay"
+  as the two parameters of a single mode.
 * Force laws: ``LinearContact``, N = max(0, k d + c d').  With a dashpot (c > 0) the force vanishes before the
-  tip has left the wall: the contact lets go inside, and may close again there.  ``HertzContact``, N = k d^(3/2)
-  (H. Hertz, J. reine angew. Math. 92 (1882) 156), and ``HuntCrossley``, N = k d^(3/2) (1 + chi d')
+  tip has left the wall: the contact lets go inside, and may close again there.  ``HertzContact``, N = k
+  d^(3/2) (H. Hertz, J. reine angew. Math. 92 (1882) 156), and ``HuntCrossley``, N = k d^(3/2) (1 + chi d')
   (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440), which vanishes only at d = 0.
 
 Each law names the kernel that handles it by a small integer, three numbers and a table (`code`, `numbers`,
@@ -93,7 +93,8 @@ class NewtonRestitution(ContactLaw):
 
 
 SPEEDS = 1025
-"""Samples of a function of the approach speed: a cubic spline through them over six decades is good to 1e-9."""
+"""Samples of a function of the approach speed: a cubic spline through them over six decades is good to
+1e-9."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -119,7 +120,10 @@ class DelayedRestitution(ContactLaw):
 
     def __post_init__(self) -> None:
         low, high = self.speeds
-        _require(0 < low < high < math.inf, f"speeds is {self.speeds} m/s; it must be two rising numbers above zero")
+        _require(
+            0 < low < high < math.inf,
+            f"speeds is {self.speeds} m/s; it must be two rising numbers above zero",
+        )
         for name in ("restitution", "delay"):
             given = getattr(self, name)
             _require(
@@ -143,7 +147,9 @@ class DelayedRestitution(ContactLaw):
     @cached_property
     def table(self) -> np.ndarray:
         """Rows: speed, restitution and its slope, delay and its slope; shape (5, n)."""
-        speed = np.geomspace(*self.speeds, SPEEDS if callable(self.restitution) or callable(self.delay) else 2)
+        speed = np.geomspace(
+            *self.speeds, SPEEDS if callable(self.restitution) or callable(self.delay) else 2
+        )
         rows = [speed]
         for given in (self.restitution, self.delay):
             if callable(given):
@@ -173,8 +179,12 @@ class LinearContact(ContactLaw):
 
     def __post_init__(self) -> None:
         k, c = self.stiffness, self.damping
-        _require(_finite(k) and k > 0, f"stiffness of the contact is {k} N/m; it must be finite and above zero")
-        _require(_finite(c) and c >= 0, f"damping of the contact is {c} N s/m; it must be finite and zero or more")
+        _require(
+            _finite(k) and k > 0, f"stiffness of the contact is {k} N/m; it must be finite and above zero"
+        )
+        _require(
+            _finite(c) and c >= 0, f"damping of the contact is {c} N s/m; it must be finite and zero or more"
+        )
 
     @property
     def numbers(self) -> tuple[float, float, float]:
@@ -202,17 +212,28 @@ class HertzContact(ContactLaw):
 
     @staticmethod
     def of_bodies(
-        *, radius: float, youngs_modulus: float, poissons_ratio: float, other_modulus: float, other_ratio: float
+        *,
+        radius: float,
+        youngs_modulus: float,
+        poissons_ratio: float,
+        other_modulus: float,
+        other_ratio: float,
     ) -> HertzContact:
-        """A ball of `radius` [m] on a plate: k = (4/3) sqrt(R) / ((1 - nu^2)/E + (1 - nu'^2)/E') [N/m^1.5]."""
+        """A ball of `radius` [m] on a plate: k = (4/3) sqrt(R) / ((1 - nu^2)/E + (1 - nu'^2)/E')
+        [N/m^1.5]."""
         for name, value, unit in (
-            ("radius", radius, "m"), ("youngs_modulus", youngs_modulus, "Pa"), ("other_modulus", other_modulus, "Pa"),
+            ("radius", radius, "m"),
+            ("youngs_modulus", youngs_modulus, "Pa"),
+            ("other_modulus", other_modulus, "Pa"),
         ):
             _require(
                 _finite(value) and value > 0, f"{name} is {value} {unit}; it must be finite and above zero"
             )
         for name, value in (("poissons_ratio", poissons_ratio), ("other_ratio", other_ratio)):
-            _require(_finite(value) and -1 < value <= 0.5, f"{name} is {value}; it must lie above -1 and not above 0.5")
+            _require(
+                _finite(value) and -1 < value <= 0.5,
+                f"{name} is {value}; it must lie above -1 and not above 0.5",
+            )
         compliance = (1 - poissons_ratio**2) / youngs_modulus + (1 - other_ratio**2) / other_modulus
         return HertzContact(stiffness=4.0 / 3.0 * math.sqrt(radius) / compliance)
 
@@ -266,7 +287,8 @@ class HuntCrossley(ContactLaw):
         e = restitution
         _require(_finite(e) and 0 < e <= 1, f"restitution is {e}; it must lie above 0 and not above 1")
         _require(
-            _finite(velocity) and velocity > 0, f"velocity is {velocity} m/s; it must be finite and above zero"
+            _finite(velocity) and velocity > 0,
+            f"velocity is {velocity} m/s; it must be finite and above zero",
         )
         if e == 1.0:
             return HuntCrossley(stiffness=stiffness, dissipation=0.0)

@@ -3,12 +3,12 @@
     q_k'' + c_k q_k' + omega_k^2 q_k = -Gamma_k z''(t) + g_k - phi_k N(d, d')
     x = sum_k phi_k q_k,   d = x - gap,   z = Z sin(2 pi f t)
 
-with mass-normalised modes (q in m kg^0.5), x the tip displacement relative to the base [m], N >= 0 the contact
-force [N] and g_k an optional constant modal load [N kg^-0.5].  With one mode, phi = Gamma = 1 and
+with mass-normalised modes (q in m kg^0.5), x the tip displacement relative to the base [m], N >= 0 the
+contact force [N] and g_k an optional constant modal load [N kg^-0.5].  With one mode, phi = Gamma = 1 and
 ``NewtonRestitution`` this is Eq. (1) of the letter (1996), whose F is Z (2 pi f)^2.
 
-Steady response without contact: q_k = Z Im(H_k exp(i 2 pi f t)), H_k = Gamma_k w^2 / (omega_k^2 - w^2 + i c_k w),
-so that the tip just touches the stop at the grazing amplitude Z_g = gap / |sum_k phi_k H_k|.
+Steady response without contact: q_k = Z Im(H_k exp(i 2 pi f t)), H_k = Gamma_k w^2 / (omega_k^2 - w^2 + i c_k
+w), so that the tip just touches the stop at the grazing amplitude Z_g = gap / |sum_k phi_k H_k|.
 """
 
 from __future__ import annotations
@@ -57,7 +57,9 @@ class ImpactOscillator:
         if self.load is not None:
             load = np.array(self.load, dtype=float)
             if load.shape != omega.shape or not np.all(np.isfinite(load)):
-                raise ValueError(f"load has shape {load.shape}; it must be {omega.size} finite modal loads [N kg^-0.5]")
+                raise ValueError(
+                    f"load has shape {load.shape}; it must be {omega.size} finite modal loads [N kg^-0.5]"
+                )
             load.setflags(write=False)
             object.__setattr__(self, "load", load)
         if self.drive is None:
@@ -84,7 +86,8 @@ class ImpactOscillator:
 
     @property
     def period(self) -> float:
-        """Drive period [s]; of a base at rest, the period of the lowest mode that oscillates (1 s if none does)."""
+        """Drive period [s]; of a base at rest, the period of the lowest mode that oscillates (1 s if none
+        does)."""
         if self.drive is not None:
             return self.drive.period
         oscillating = self.model.omega[self.model.omega > 0]
@@ -119,7 +122,9 @@ class ImpactOscillator:
         self._driven()
         static = float(self.model.phi @ self._offset())
         if static >= self.stop.gap:
-            raise ValueError(f"gap is {self.stop.gap} m; the static displacement {static:g} m must stay below it")
+            raise ValueError(
+                f"gap is {self.stop.gap} m; the static displacement {static:g} m must stay below it"
+            )
         return (self.stop.gap - static) / abs(self.tip_response())
 
     @property
@@ -128,7 +133,8 @@ class ImpactOscillator:
         return self._driven().amplitude / self.grazing_amplitude() - 1.0
 
     def energy(self, displacement: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-        """Kinetic and elastic energy of modal states, arrays (..., n_modes) -> (...) [J]; contact excluded."""
+        """Kinetic and elastic energy of modal states, arrays (..., n_modes) -> (...) [J]; contact
+        excluded."""
         q, v = np.asarray(displacement), np.asarray(velocity)
         return 0.5 * np.sum(v**2 + (self.model.omega * q) ** 2, axis=-1)
 

@@ -2,14 +2,15 @@
 
     u_k'' = -c_k u_k' - omega_k^2 u_k + g_k - phi_k N(t),   d(t) = sum_k phi_k u_k + x_s(t) - gap
 
-While the tip is in contact all modes are coupled through one number, the contact force N.  For a force that is
-linear in d and d', and for sustained contact (d = 0 held by N), the series coefficients follow from each other,
+While the tip is in contact all modes are coupled through one number, the contact force N.  For a force that
+is linear in d and d', and for sustained contact (d = 0 held by N), the series coefficients follow from each
+other,
 
     u[n+2] = ( -c (n+1) u[n+1] - omega^2 u[n] - phi N[n] ) / ((n+1)(n+2))
 
 at a cost proportional to the number of modes, without eigenvectors and so without their ill-conditioning for
-repeated or critically damped ones.  The step is chosen so that the last terms lie below rounding: with order 24
-that is about two radians of the fastest mode, and the propagation is exact in the sense that only rounding
+repeated or critically damped ones.  The step is chosen so that the last terms lie below rounding: with order
+24 that is about two radians of the fastest mode, and the propagation is exact in the sense that only rounding
 error remains.
 """
 
@@ -20,11 +21,21 @@ import math
 from contact.compiled import kernel
 from contact.flight import EPS
 
-__all__ = ["CONTACT", "INSIDE", "OUTSIDE", "SERIES_ORDER", "SUSTAINED", "WAITING", "contact_series", "series_state", "series_step"]
+__all__ = [
+    "CONTACT",
+    "INSIDE",
+    "OUTSIDE",
+    "SERIES_ORDER",
+    "SUSTAINED",
+    "WAITING",
+    "contact_series",
+    "series_state",
+    "series_step",
+]
 
 OUTSIDE, CONTACT, INSIDE, SUSTAINED, WAITING = 0, 1, 2, 3, 4
-"""Regimes: off the wall; pushed by it; behind its rest position without force; held on it by the motion; waiting
-on it for a delayed rebound."""
+"""Regimes: off the wall; pushed by it; behind its rest position without force; held on it by the motion;
+waiting on it for a delayed rebound."""
 
 SERIES_ORDER = 24
 """Order of the series: between 20 and 30 the cost per unit of time is flat to a few per cent."""

@@ -63,7 +63,9 @@ def split_time(time: np.ndarray, period: float) -> tuple[np.ndarray, np.ndarray]
     return index.astype(np.int64), clock
 
 
-def deviations(motion: Motion, state: State, clock: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def deviations(
+    motion: Motion, state: State, clock: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Deviations (u, v) of `state` from the steady motion, and the bookkeeping arrays with which a run starts.
 
     Raises
@@ -90,7 +92,9 @@ def deviations(motion: Motion, state: State, clock: float) -> tuple[np.ndarray, 
     return u, v, integers, floats
 
 
-def failure(status: int, motion: Motion, index: int, floats: np.ndarray, u: np.ndarray, v: np.ndarray) -> ContactError:
+def failure(
+    status: int, motion: Motion, index: int, floats: np.ndarray, u: np.ndarray, v: np.ndarray
+) -> ContactError:
     """The error that belongs to a status of `advance`."""
     height, velocity, _acceleration = tip_state(motion, floats[CLOCK], u, v)
     place = {"time": index * motion.period + floats[CLOCK], "gap": -height, "velocity": velocity}
@@ -158,10 +162,15 @@ def simulate(
         raise ValueError("times must be a rising array of finite values [s]")
     stop_time = start.time + length
     if wanted.size and (wanted[0] < start.time - 1e-12 * length or wanted[-1] > stop_time + 1e-12 * length):
-        raise ValueError(f"times run from {wanted[0]} to {wanted[-1]} s; they must lie within {start.time} to {stop_time} s")
+        raise ValueError(
+            f"times run from {wanted[0]} to {wanted[-1]} s; they must lie within {start.time} to {stop_time} s"
+        )
     sample_period, sample_clock = split_time(wanted, motion.period)
     inside = (sample_period > last) | ((sample_period == last) & (sample_clock > clock_end))
-    sample_period, sample_clock = np.where(inside, last, sample_period), np.where(inside, clock_end, sample_clock)
+    sample_period, sample_clock = (
+        np.where(inside, last, sample_period),
+        np.where(inside, clock_end, sample_clock),
+    )
     early = (sample_period < first) | ((sample_period == first) & (sample_clock < clock))
     sample_period, sample_clock = np.where(early, first, sample_period), np.where(early, clock, sample_clock)
 
@@ -184,7 +193,10 @@ def simulate(
         )
         if status != LOG_FULL:
             break
-        log, log_state = np.concatenate([log, np.empty_like(log)]), np.concatenate([log_state, np.empty_like(log_state)])
+        log, log_state = (
+            np.concatenate([log, np.empty_like(log)]),
+            np.concatenate([log_state, np.empty_like(log_state)]),
+        )
     if status != DONE:
         raise failure(status, motion, index, floats, u, v)
 

@@ -29,4 +29,6 @@ class Stop:
         if not (math.isfinite(self.gap) and self.gap >= 0):
             raise ValueError(f"gap is {self.gap} m; it must be finite and zero or more")
         if not isinstance(self.law, ContactLaw):
-            raise TypeError(f"law of the stop is {self.law!r}; it must be a contact law such as NewtonRestitution")
+            raise TypeError(
+                f"law of the stop is {self.law!r}; it must be a contact law such as NewtonRestitution"
+            )

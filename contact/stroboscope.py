@@ -1,9 +1,9 @@
 """One drive period as a map: State -> State.
 
 Sampling a driven oscillator at the strobe times t_n = n/f turns its motion into the iteration of a map; its
-periodic orbits are the p_m orbits of the letter (1996, Fig. 2).  ``StroboscopicMap`` is that map for any impact
-oscillator; ``contact.nordmark.StrobedNordmarkMap`` offers the same three methods, so that everything which
-scans, settles or classifies orbits takes either.
+periodic orbits are the p_m orbits of the letter (1996, Fig. 2).  ``StroboscopicMap`` is that map for any
+impact oscillator; ``contact.nordmark.StrobedNordmarkMap`` offers the same three methods, so that everything
+which scans, settles or classifies orbits takes either.
 """
 
 from __future__ import annotations
@@ -112,9 +112,10 @@ class StroboscopicMap:
         Returns
         -------
         StrobedOrbit
-            Its points are the contributions phi_k q_k and phi_k q_k' / omega_k of all modes to the tip motion,
-            shape (count, 2 n_modes) [m] (a mode of zero frequency counts with phi_k q_k' / (2 pi f), one with its
-            node at the tip with the largest phi); `tip` and `readout` turn them into displacements.
+            Its points are the contributions phi_k q_k and phi_k q_k' / omega_k of all modes to the tip
+            motion, shape (count, 2 n_modes) [m] (a mode of zero frequency counts with phi_k q_k' / (2 pi f),
+            one with its node at the tip with the largest phi); `tip` and `readout` turn them into
+            displacements.
 
         Raises
         ------

@@ -1,14 +1,14 @@
 """From touch to touch with derivatives: the flow that periodic orbits are made of.
 
-The drive is carried along as two more coordinates, S = Z sin(w t) and C = Z cos(w t), so that the motion is an
-autonomous flow of e = (u, v, S, C), 2 N + 2 numbers, in which amplitude and phase of the drive are ordinary
-initial values.  The tip is at
+The drive is carried along as two more coordinates, S = Z sin(w t) and C = Z cos(w t), so that the motion is
+an autonomous flow of e = (u, v, S, C), 2 N + 2 numbers, in which amplitude and phase of the drive are
+ordinary initial values.  The tip is at
 
     y(e) = phi . u + a S + b C + level,      a + i b the tip response per unit base amplitude.
 
 Starting at a touch, y = 0, the flow runs through a given number of contacts and then freely to the end of m
-drive periods, the wall ignored after the last of them: it is therefore smooth in e right through grazing, where
-the strobe map has its square root.
+drive periods, the wall ignored after the last of them: it is therefore smooth in e right through grazing,
+where the strobe map has its square root.
 
 Tangents d = de(t)/de(0), columns of a (2 N + 2) x (2 N + 2) matrix:
 
@@ -18,7 +18,8 @@ Tangents d = de(t)/de(0), columns of a (2 N + 2) x (2 N + 2) matrix:
 * a touch at which the force jumps by F (dashpot): d -> d - phi F (n.d)/v, n.d = y of the tangent, v the
   approach velocity; forces that start from zero need no jump (saltation matrix of Aizerman and Gantmacher;
   R. I. Leine, H. Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems, 2004, ch. 7);
-* Newton's law: d -> R d + (R f - f') (-n.d / v), R the reflection of the tip velocity, f and f' the velocity of
+* Newton's law: d -> R d + (R f - f') (-n.d / v), R the reflection of the tip velocity, f and f' the velocity
+of
   the flow before and after.
 """
 
@@ -47,8 +48,9 @@ __all__ = ["FAILED", "FEWER_TOUCHES", "FLOWN", "flow_from_touch"]
 
 FLOWN, FEWER_TOUCHES, FAILED = 0, 1, 2
 
-MOST_STEPS = 5_000
-"""Bound of contact steps in one flow: a contact of 5000 steps would last 1e4 radians of the fastest mode."""
+MOST_STEPS = 1_500
+"""Bound of contact steps in one flow: they cover 3000 radians of the fastest mode, a hundred times the
+longest contact of the letter's beam."""
 
 
 @kernel
@@ -76,7 +78,9 @@ def tangent_flight(motion, tangent, time):
     """Carry the tangents through a free flight of length `time` [s]."""
     n = motion.omega.size
     for k in range(n):
-        a, b, c, d = flow_matrix(motion.omega[k], motion.decay[k], motion.damped[k], motion.damped_low[k], time)
+        a, b, c, d = flow_matrix(
+            motion.omega[k], motion.decay[k], motion.damped[k], motion.damped_low[k], time
+        )
         for j in range(2 * n + 2):
             x, y = tangent[k, j], tangent[n + k, j]
             tangent[k, j] = a * x + b * y
@@ -151,7 +155,9 @@ def tangent_hertz(motion, response_sine, response_cosine, scalars, tangent, s, u
                     vs[m + 1, k] += ri * us[m - i, k]
             for k in range(n):
                 vs[m + 1, k] = (
-                    -motion.decay[k] * us[m + 1, k] - motion.omega[k] ** 2 * vs[m + 1, k] - motion.phi[k] * push * scale
+                    -motion.decay[k] * us[m + 1, k]
+                    - motion.omega[k] ** 2 * vs[m + 1, k]
+                    - motion.phi[k] * push * scale
                 )
             sine[m + 1] = w * scale * rc
             cosine[m + 1] = -w * scale * rs
@@ -166,7 +172,8 @@ def tangent_hertz(motion, response_sine, response_cosine, scalars, tangent, s, u
 
 @kernel
 def touch_jump(motion, response_sine, response_cosine, base, u, v, approach, tangent):
-    """Apply impact or onset of force at a touch with velocity `approach` to the tangents (and, Newton, to v)."""
+    """Apply impact or onset of force at a touch with velocity `approach` to the tangents (and, Newton, to
+    v)."""
     n = motion.omega.size
     if motion.law != NEWTON and motion.number1 == 0.0:
         return
@@ -231,8 +238,16 @@ def flow_from_touch(motion, response_sine, response_cosine, base, u, v, duration
     with_tangent = tangent.shape[0] > 0
     envelope = np.empty(n + 1)
     series = np.empty((SERIES_ORDER + 1, n))
-    depth, force, negative = np.empty(SERIES_ORDER + 1), np.empty(SERIES_ORDER + 1), np.empty(SERIES_ORDER + 1)
-    us, vs, scalars = np.empty((HERTZ_ORDER + 1, n)), np.empty((HERTZ_ORDER + 1, n)), np.empty((7, HERTZ_ORDER + 1))
+    depth, force, negative = (
+        np.empty(SERIES_ORDER + 1),
+        np.empty(SERIES_ORDER + 1),
+        np.empty(SERIES_ORDER + 1),
+    )
+    us, vs, scalars = (
+        np.empty((HERTZ_ORDER + 1, n)),
+        np.empty((HERTZ_ORDER + 1, n)),
+        np.empty((7, HERTZ_ORDER + 1)),
+    )
     clock = 0.0
     steps = 0
     for touch in range(touches):
@@ -291,7 +306,9 @@ def flow_from_touch(motion, response_sine, response_cosine, base, u, v, duration
                     h, following = closes, CONTACT
             series_state(series, h, u, v)
             if with_tangent:
-                tangent_series(motion, response_sine, response_cosine, regime, tangent, h, series, depth, force)
+                tangent_series(
+                    motion, response_sine, response_cosine, regime, tangent, h, series, depth, force
+                )
             clock += h
             if following < 0:
                 break

@@ -40,7 +40,9 @@ class State:
         for name in ("displacement", "velocity"):
             array = np.array(getattr(self, name), dtype=float)
             if array.ndim != 1 or not np.all(np.isfinite(array)):
-                raise ValueError(f"{name} of the state must be a finite array of shape (n_modes,), not {array}")
+                raise ValueError(
+                    f"{name} of the state must be a finite array of shape (n_modes,), not {array}"
+                )
             array.setflags(write=False)
             object.__setattr__(self, name, array)
         if self.displacement.shape != self.velocity.shape:

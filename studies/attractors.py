@@ -15,7 +15,8 @@ Computed at one drive frequency (--frequency, 21.50 Hz) for Eq. (1) and for the 
 Both exponents are one number, lyapunov_map = lyapunov_flow / f.
 
 Run time: about a minute; --quick some seconds.  Command: python -m studies.attractors [--model single_mode].
-Outputs: summary.json, attractors.png and .pdf, basins.png and .pdf, rows.csv, attractors.npz, basins.npz.
+Outputs: summary.json, attractors.png and .pdf, basins.png and .pdf (the strobe plane, and close to p1), rows.csv,
+attractors.npz, basins.npz, basins_close.npz.
 """
 
 from __future__ import annotations
@@ -177,9 +178,11 @@ def row_of(strobed: StroboscopicMap, start: Start, cycles: int, settle_cycles: i
 
 # basins ---------------------------------------------------------------------------------------------------
 
-FAR, NEAR = 1.5, 1e-5
-"""Half the side of the plane of starts in x/gap and x'/(2 pi f gap); distance from an orbit at which a motion has
-reached it, in gaps (an orbit whose own basin is narrower than that would be missed)."""
+FAR, CLOSE = 1.5, 0.03
+"""Half the sides of the two planes of starts, in x/gap and x'/(2 pi f gap): all of it, and around p1."""
+
+NEAR = 1e-5
+"""Distance from an orbit at which a motion has reached it, in gaps (a basin narrower than that is missed)."""
 
 MOST_PERIODS = 4000
 """Bound of a motion in the basins; what has not been told by then is counted as something else."""
@@ -189,7 +192,7 @@ MOST_PERIODS = 4000
 class Basins:
     """Starts on the strobe plane and where they lead.
 
-    `x` [m] and `velocity` [m/s] of the starts; `leads`, shape (velocities, x): 1 motion without impacts, m for
+    `x` [m] and `velocity` [m/s] of the starts, `rest` those of p1; `leads`, shape (velocities, x): 1 motion without impacts, m for
     the p_m orbit, 0 something else, -1 starts behind the wall; `orbit`, shape (m, 2): strobe points of p_m.
     """
 
@@ -197,6 +200,7 @@ class Basins:
     velocity: np.ndarray
     leads: np.ndarray
     orbit: np.ndarray
+    rest: tuple[float, float]
     period: int
 
     def parts(self) -> dict[str, float]:
@@ -206,8 +210,11 @@ class Basins:
         return {name: float(np.mean(self.leads[before] == code)) for code, name in names.items()}
 
 
-def basins(scene: Scene, frequency: float, excess: float, side: int, workers: int, tell: Callable[[], None]) -> Basins:
-    """Basins of Eq. (1) between fold and grazing on a grid of `side` by `side` starts.
+def basins(
+    scene: Scene, frequency: float, excess: float, side: int, workers: int, tell: Callable[[], None], *,
+    close: bool = False,
+) -> Basins:
+    """Basins of Eq. (1) between fold and grazing on a grid of `side` by `side` starts, all or `close` to p1.
 
     A motion has settled on p1 when the envelope of its deviation is smaller than what is left to the wall: then
     it never touches again.  It has settled on p_m at a distance `NEAR` of one of its points.
@@ -228,8 +235,10 @@ def basins(scene: Scene, frequency: float, excess: float, side: int, workers: in
     weight = float(here.oscillator.model.phi[0])
     omega, damped, half = float(motion.omega[0]), float(motion.damped[0]), 0.5 * float(motion.decay[0])
     speed = 2.0 * np.pi * frequency
-    x = np.linspace(-FAR, 1.0, side) * gap
-    velocity = np.linspace(-FAR, FAR, side) * speed * gap
+    rest = (weight * float(q[0, 0]), weight * float(q_rate[0, 0]))
+    grid = np.linspace(-1.0, 1.0, side)
+    x = rest[0] + CLOSE * gap * grid if close else np.linspace(-FAR, 1.0, side) * gap
+    velocity = rest[1] + CLOSE * speed * gap * grid if close else FAR * speed * gap * grid
 
     def envelope(points: np.ndarray) -> np.ndarray:
         u = points[:, 0] / weight - q[0, 0]
@@ -263,7 +272,7 @@ def basins(scene: Scene, frequency: float, excess: float, side: int, workers: in
     with ThreadPoolExecutor(max_workers=workers) as pool:
         leads = np.array(list(pool.map(line, range(side))))
     points = np.column_stack([orbit[:, 0], orbit[:, 1] * omega])
-    return Basins(x=x, velocity=velocity, leads=leads, orbit=points, period=period)
+    return Basins(x=x, velocity=velocity, leads=leads, orbit=points, rest=rest, period=period)
 
 
 # figures --------------------------------------------------------------------------------------------------
@@ -320,40 +329,50 @@ def draw_scan(starts: Sequence[Start], rows: Sequence[Mapping[str, Any]], freque
     return figure
 
 
-def draw_basins(found: Basins, frequency: float, excess: float, gap: float) -> Any:
-    """The strobe plane, coloured by where its points lead."""
-    figure, axis = new_figure(width=COLUMN, height=0.080)
-    codes = {1: 0, found.period: 1, 0: 2}
+def draw_basins(planes: Sequence[Basins], frequency: float, excess: float, gap: float) -> Any:
+    """The strobe plane and a part of it, coloured by where the points lead."""
+    figure, axes = new_figure(1, 2, width=PAGE, height=0.082)
+    period = planes[0].period
+    codes = {1: 0, period: 1, 0: 2}
     colours = ("#CFE8F7", "#0072B2", "#E69F00")
-    picture = np.full(found.leads.shape, np.nan)
-    for code, place in codes.items():
-        picture[found.leads == code] = place
     speed = 2.0 * np.pi * frequency * gap
-    axis.imshow(
-        picture, origin="lower", aspect="auto", interpolation="nearest", vmin=-0.5, vmax=2.5,
-        cmap=ListedColormap(colours), extent=(
-            found.x[0] / gap, found.x[-1] / gap, found.velocity[0] / speed, found.velocity[-1] / speed
-        ),
-    )
-    axis.plot(
-        found.orbit[:, 0] / gap, found.orbit[:, 1] / speed, linestyle="none", marker="o", markersize=4,
-        markerfacecolor="white", markeredgecolor="black", markeredgewidth=0.8,
-    )
-    names = {1: "to p$_1$ without impacts", found.period: f"to p$_{{{found.period}}}$", 0: "to something else"}
+    for number, (axis, found) in enumerate(zip(axes, planes, strict=True)):
+        picture = np.full(found.leads.shape, np.nan)
+        for code, place in codes.items():
+            picture[found.leads == code] = place
+        x, y = found.x / gap, found.velocity / speed
+        axis.imshow(
+            picture, origin="lower", aspect="auto", interpolation="nearest", vmin=-0.5, vmax=2.5,
+            cmap=ListedColormap(colours), extent=(x[0], x[-1], y[0], y[-1]),
+        )
+        marks = {"white": found.orbit / (gap, speed), "#D55E00": np.array([found.rest]) / (gap, speed)}
+        for colour, places in marks.items():
+            inside = (abs(places[:, 0] - x.mean()) < np.ptp(x) / 2) & (abs(places[:, 1] - y.mean()) < np.ptp(y) / 2)
+            axis.plot(
+                places[inside, 0], places[inside, 1], linestyle="none", marker="o" if colour == "white" else "D",
+                markersize=4, markerfacecolor=colour, markeredgecolor="black", markeredgewidth=0.7,
+            )
+        parts = found.parts()
+        with house_style():
+            where = "the strobe plane" if number == 0 else "around p$_1$"
+            axis.set_title(f"({'ab'[number]}) {where}: {100 * parts['p1 without impacts']:.1f} % lead to p$_1$")
+            label(axis.xaxis, "x / gap at the strobe")
+            if number == 0:
+                label(axis.yaxis, "x′ / (2π f gap) at the strobe")
+    names = {1: "to p$_1$ without impacts", period: f"to p$_{{{period}}}$", 0: "to something else"}
     handles = [
         Line2D([], [], linestyle="none", marker="s", markersize=5, markerfacecolor=colours[place],
                markeredgecolor="0.4", markeredgewidth=0.4, label=names[code])
-        for code, place in codes.items() if np.any(found.leads == code)
+        for code, place in codes.items() if any(np.any(found.leads == code) for found in planes)
     ]
-    handles.append(
-        Line2D([], [], linestyle="none", marker="o", markersize=4, markerfacecolor="white",
-               markeredgecolor="black", label=f"the points of p$_{{{found.period}}}$")
-    )
+    for marker, colour, name in (("o", "white", f"points of p$_{{{period}}}$"), ("D", "#D55E00", "p$_1$")):
+        handles.append(
+            Line2D([], [], linestyle="none", marker=marker, markersize=4, markerfacecolor=colour,
+                   markeredgecolor="black", label=name)
+        )
     with house_style():
-        axis.set_title(f"Eq. (1), {frequency:.2f} Hz, F/F$_g$ - 1 = {excess:g}")
-        label(axis.xaxis, "x / gap at the strobe")
-        label(axis.yaxis, "x′ / (2π f gap) at the strobe")
-        figure.legend(handles=handles, loc="outside lower center", ncols=2)
+        figure.suptitle(f"Eq. (1), {frequency:.2f} Hz, F/F$_g$ - 1 = {excess:g}", fontsize=8)
+        figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
     return figure
 
 
@@ -393,8 +412,8 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
     starts: list[Start] = []
     failures: list[str] = []
     with ThreadPoolExecutor(max_workers=request.workers) as pool:
-        for found, failed in pool.map(lambda name: carried(maps[name], name, values, scene), names):
-            starts += found
+        for scanned, failed in pool.map(lambda name: carried(maps[name], name, values, scene), names):
+            starts += scanned
             failures += failed
         cycles = 150 if quick else options.cycles
         with request.progress("exponents", total=len(starts)) as progress:
@@ -416,12 +435,17 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
     )
     request.record.write_figure(draw_scan(starts, rows, frequency, scene.readout.quantity), "attractors")
     side = 48 if quick else options.side
-    with request.progress("basins", total=side) as progress:
-        plane = basins(scene, frequency, options.basin_excess, side, request.workers, progress.advance)
-    request.record.write_arrays(
-        "basins", x=plane.x, velocity=plane.velocity, leads=plane.leads, orbit=plane.orbit
-    )
-    request.record.write_figure(draw_basins(plane, frequency, options.basin_excess, scene.stop.gap_m), "basins")
+    excess = options.basin_excess
+    with request.progress("basins", total=2 * side) as progress:
+        plane, part = (
+            basins(scene, frequency, excess, side, request.workers, progress.advance, close=close)
+            for close in (False, True)
+        )
+    for name, found in (("basins", plane), ("basins_close", part)):
+        request.record.write_arrays(
+            name, x=found.x, velocity=found.velocity, leads=found.leads, orbit=found.orbit
+        )
+    request.record.write_figure(draw_basins((plane, part), frequency, excess, scene.stop.gap_m), "basins")
     chaotic = {
         name: [row["excess"] for row in rows if row["model"] == name and row["kind"] == CHAOTIC] for name in names
     }
@@ -432,7 +456,7 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
         lines.append(f"{TITLES[name]}: " + ", ".join(f"{n} {kind}" for kind, n in kinds.items() if n))
         if chaotic[name]:
             lines.append(f"{TITLES[name]}: chaos between excess {min(chaotic[name]):+.4f} and {max(chaotic[name]):+.4f}")
-    lines.append("basins: " + ", ".join(f"{100 * part:.1f} % {name}" for name, part in plane.parts().items()))
+    lines.append("basins: " + ", ".join(f"{100 * share:.1f} % {name}" for name, share in plane.parts().items()))
     for line in [*failures, *lines]:
         print(line, flush=True)
     return {
@@ -440,7 +464,8 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
         "rows": rows,
         "chaotic": chaotic,
         "agreement": agree,
-        "basins": {"excess": options.basin_excess, "period": plane.period, "parts": plane.parts()},
+        "basins": {"excess": excess, "period": plane.period, "parts": plane.parts(),
+                   "parts_close": part.parts(), "close": CLOSE},
         "closing": lines,
         "failures": failures,
         "failed_cells": len(failures),

@@ -1,4 +1,5 @@
-"""One thread for linear algebra: the matrices are small, and threads of several workers get in each other's way."""
+"""One thread for linear algebra: the matrices are small, and threads of several workers get in each other's
+way."""
 
 from __future__ import annotations
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 import math
 from dataclasses import dataclass
@@ -210,6 +211,27 @@ def test_contacts_are_those_of_an_independent_integration(n_modes, law):
         assert tip_speeds[these][0] > 0.9 * speed and tip_speeds[these][-1] < 0
 
 
+@pytest.mark.parametrize("law", [HERTZ, LOSSY, SPRING], ids=repr)
+def test_contacts_of_a_body_pressed_by_its_weight(law):
+    """A rigid motion under a constant load beside one that bends: the load acts during the contact too."""
+    omega = np.array([0.0, 2 * np.pi * 60.0])
+    model = ModalModel(omega=omega, decay_rate=[0.3, 2.0], phi=[5.0, 4.0], participation=[0.0, 0.0])
+    load = np.array([60.0, 20.0])
+    oscillator = ImpactOscillator(model=model, stop=Stop(gap=0.001, law=law), load=load)
+    impacts = simulate(oscillator, duration=0.06).impacts
+    count = np.count_nonzero(np.isfinite(impacts.end))
+    assert count >= 2
+    weightless = dataclasses.replace(oscillator, load=None)
+    for i in range(min(count, 4)):
+        touch = impacts.start[i], impacts.displacement_start[i], impacts.velocity_start[i]
+        contact = integrate_contact(oscillator, *touch, np.zeros(0))
+        assert impacts.end[i] - impacts.start[i] == pytest.approx(contact.end - impacts.start[i], rel=1e-9)
+        scale = np.max(np.abs(touch[2]))
+        np.testing.assert_allclose(impacts.velocity_end[i], contact.velocity, rtol=0, atol=1e-10 * scale)
+        other = integrate_contact(weightless, *touch, np.zeros(0))
+        assert abs(other.end - contact.end) > 1e-4 * (contact.end - impacts.start[i])
+
+
 @pytest.mark.parametrize("law", [*FORCES, DASHPOT], ids=repr)
 def test_touch_and_release_lie_on_the_wall_to_rounding(law):
     """Heights there are a few rounding errors of the sum over modes; signs are right on either side."""
@@ -332,7 +354,7 @@ STRADDLERS = [
 @pytest.mark.parametrize("n_modes, law", STRADDLERS, ids=repr)
 @pytest.mark.parametrize("share", [0.02, 0.5, 0.98])
 def test_strobe_within_a_contact_changes_nothing(n_modes, law, share):
-    """Half a drive period later the same motion has its strobes elsewhere: one within the contact, one not."""
+    """Half a drive period later the same motion has its strobes elsewhere: once in the contact, once not."""
 
     def approaching(time: float) -> State:
         q, v = np.zeros(n_modes), np.zeros(n_modes)

@@ -251,7 +251,7 @@ def test_planted_overshoots_are_found_and_undershoots_are_not(n_modes, kind):
                 result = search(stopped, base, u, v, duration)
                 told[assert_agrees(result, verdict, stopped, u, v, base)] += 1
     assert told["within rounding"] == 0
-    assert min(told["free"], told["crosses"]) > 30
+    assert min(told["free"], told["crosses"]) > 20
 
 
 @pytest.mark.parametrize("n_modes", [1, 2, 5, 20])
@@ -424,7 +424,7 @@ def test_flights_from_the_wall(order, n_modes):
     """
     generator = np.random.default_rng([10, order, n_modes])
     told = {"free": 0, "crosses": 0, "within rounding": 0}
-    for _ in range(8 if n_modes < 6 else 4):
+    for _ in range(8):
         motion, base, u, v, du, dv = on_the_wall(generator, n_modes, order)
         duration = motion.period - base
         for h in PLANTED:
@@ -724,6 +724,13 @@ def test_touch_of_zero_within_the_margin_has_no_consequence():
     assert first_polynomial_root(lifted, 0.0, 1.0, 1e-15) == pytest.approx(0.5 - 1e-5, abs=1e-11)
     then_rising = np.convolve(touching, [0.8, -1.0])  # touches at 0.5, rises through zero at 0.8
     assert first_polynomial_root(then_rising, 0.0, 1.0, 1e-15) == pytest.approx(0.8, abs=1e-12)
+
+
+def test_polynomial_already_above_zero_is_left_in_few_steps():
+    """Positive and falling at the start, which no contact should be: an answer all the same, and soon."""
+    assert first_polynomial_root(np.array([1.0, -0.5]), 0.0, 1.0, 1e-16) == -1.0
+    falling_then_rising = np.array([0.06, -0.5, 1.0])  # zeros at 0.2 and 0.3
+    assert first_polynomial_root(falling_then_rising, 0.0, 1.0, 1e-16) == pytest.approx(0.3, abs=1e-14)
 
 
 def test_polynomial_that_starts_at_zero_and_falls():

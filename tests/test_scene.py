@@ -72,7 +72,7 @@ def test_replace_keeps_track_of_provenance():
     assert provenance["spring.thickness_m"] == "calibrated"
     assert provenance["spring.width_m"] == "given"
     assert provenance["tip.mass_kg"] == "calibrated"  # the value is still the default
-    assert Scene().spring.thickness_m == 0.00069558969
+    assert Scene().spring.thickness_m == 0.00069683709
 
 
 def test_scenes_are_values():

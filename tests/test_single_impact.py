@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 
 from contact.maximal_orbits import fold as map_fold
 from contact.nordmark import NordmarkMap
-from contact.orbits.single_impact import MaximalFamily
+from contact.orbits.single_impact import MaximalFamily, SingleImpactOrbit
 
 T, MU, TAU = 0.0408, 3.56, 0.1
 # f [Hz], m, F_m/F_g - 1 of Eq. (1), digits after the point
@@ -387,3 +387,70 @@ def test_wrong_calls_are_named() -> None:
         equation_1(20.9, 3, free_period=0.0)
     above = equation_1(21.02, 3)
     assert above.fold() is None and len(above.orbits(1e-4)) == 1 and above.orbits(-1e-4) == ()
+
+
+def highest_between(orbit: SingleImpactOrbit) -> float:
+    """Largest tip displacement over gap at interior peaks of the flight, by dense sampling and parabolas."""
+    flight = orbit.flight
+    times = np.linspace(flight.start, flight.start + flight.duration, 300 * orbit.family.period)
+    x = orbit.tip(times)[0] / orbit.family.gap
+    inner = np.flatnonzero((x[1:-1] > x[:-2]) & (x[1:-1] >= x[2:])) + 1
+    before, at, after = x[inner - 1], x[inner], x[inner + 1]
+    return float(np.max(at - (after - before) ** 2 / (8 * (before - 2 * at + after))))
+
+
+@pytest.mark.parametrize(
+    ("frequency", "period", "excess", "digit"),
+    [
+        (20.90, 3, 0.0891, 1e-4),
+        (21.50, 4, 0.0101, 1e-4),
+        (22.20, 5, 0.0273, 1e-4),
+        (22.60, 6, 0.0250, 1e-4),
+        (23.05, 8, 0.0133, 1e-4),
+        (23.40, 11, 0.002274, 1e-6),
+    ],
+)
+def test_the_orbits_of_equation_1_gain_a_second_impact(
+    frequency: float, period: int, excess: float, digit: float
+) -> None:
+    """The certified search against dense sampling, and the excess at which both change their answer."""
+    family = equation_1(frequency, period)
+    speed = family.fold().speed
+    for factor in (1e-3, 0.1, 1.0):
+        assert family.orbit(factor * speed).admissible and highest_between(family.orbit(factor * speed)) < 1
+    peaks = brentq(
+        lambda v: highest_between(family.orbit(v)) - 1,
+        speed,
+        100 * speed if frequency == 22.60 else 12 * speed,
+        xtol=1e-7 * speed,
+    )
+    assert abs(family.excess(peaks) - excess) <= 0.6 * digit
+    good, bad = 0.9 * peaks, 1.1 * peaks
+    assert family.orbit(good).admissible and not family.orbit(bad).admissible
+    while bad / good > 1 + 1e-9:
+        middle = math.sqrt(good * bad)
+        good, bad = (middle, bad) if family.orbit(middle).admissible else (good, middle)
+    assert good == pytest.approx(peaks, rel=1e-5)
+
+
+@pytest.mark.parametrize("name", ["three modes", "an overdamped mode"])
+@pytest.mark.parametrize("restitution", [0.0, 0.35])
+def test_certified_flights_of_many_modes_agree_with_dense_sampling(name: str, restitution: float) -> None:
+    answers = []
+    for period in (1, 3):
+        family = many_modes(name, period=period, restitution=restitution)
+        for speed in np.geomspace(1e-3, 3.0, 7) * family.gap * family.angular_frequency:
+            orbit = family.orbit(speed)
+            times = orbit.flight.start + orbit.flight.duration * np.linspace(1e-3, 1 - 1e-3, 2001)
+            top = float(np.max(orbit.tip(times)[0])) / family.gap - 1
+            if abs(top) < 1e-4:
+                continue  # sampling cannot tell
+            assert orbit.admissible == (top < 0), (period, speed)
+            answers.append(orbit.admissible)
+    assert any(answers) and not all(answers)
+
+
+def test_slow_orbits_are_certified_down_to_grazing() -> None:
+    family = equation_1(20.90, 3)
+    for part in (1e-2, 1e-4, 1e-6):
+        assert family.orbit(part * family.gap * family.angular_frequency).admissible

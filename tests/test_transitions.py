@@ -163,7 +163,13 @@ def test_json_has_the_promised_keys_and_nothing_else_is_printed(tmp_path, capsys
     assert answer["modes"] == 15
     assert {"schema", "wall_s"} <= answer.keys()
     folder = tmp_path / "transitions"
-    for name in ("summary.json", "manifest.json", "orbit_diagram.png", "orbit_diagram.pdf", "orbit_diagram.csv"):
+    for name in (
+        "summary.json",
+        "manifest.json",
+        "orbit_diagram.png",
+        "orbit_diagram.pdf",
+        "orbit_diagram.csv",
+    ):
         assert (folder / name).stat().st_size > 500
 
 
@@ -194,7 +200,10 @@ def test_own_modes_from_a_scene_go_through_everything(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--set", "drive.frequencies_hz=[5000.0]", "--set", "modes.count=2"], "above the highest of the modes kept"),
+        (
+            ["--set", "drive.frequencies_hz=[5000.0]", "--set", "modes.count=2"],
+            "above the highest of the modes kept",
+        ),
         (["--set", "drive.kind=none"], "harmonic drive"),
         (["--set", "stop.gap_m=0.0"], "gap_m"),
         (["--set", "contact.local_restitution=1.5"], "local_restitution"),

@@ -94,8 +94,8 @@ def advance(
         Regime, vanishing derivatives at the start of the flight, rows logged, samples taken, impacts in this
         period; carried from call to call.
     floats : ndarray, shape (5,)
-        Time since the strobe; approach velocity, energy loss, waiting time and rebound velocity of the contact
-        under way; carried likewise.
+        Time since the strobe; approach velocity, energy loss, waiting time and rebound velocity of the
+        contact under way; carried likewise.
     first, periods : int
         Number of the drive period in which the run starts, and strobes to pass.
     clock_end : float
@@ -129,7 +129,11 @@ def advance(
     series = np.empty((SERIES_ORDER + 1, n))
     depth, force = np.empty(SERIES_ORDER + 1), np.empty(SERIES_ORDER + 1)
     negative = np.empty(SERIES_ORDER + 1)
-    us, vs, scalars = np.empty((HERTZ_ORDER + 1, n)), np.empty((HERTZ_ORDER + 1, n)), np.empty((7, HERTZ_ORDER + 1))
+    us, vs, scalars = (
+        np.empty((HERTZ_ORDER + 1, n)),
+        np.empty((HERTZ_ORDER + 1, n)),
+        np.empty((7, HERTZ_ORDER + 1)),
+    )
     root = -1.0  # sqrt of the penetration under Hertz's law; below zero when it is to be computed anew
 
     index = first
@@ -228,7 +232,21 @@ def advance(
                 hertz_series(motion, base, u, v, us, vs, scalars)
                 s, released, h = hertz_step(motion, u, v, us, vs, scalars, end - base)
                 until = base + h if h < end - base else end
-                sample_hertz(us, vs, scalars, base, until, s, index, integers, sample_period, sample_clock, samples, su, sv)
+                sample_hertz(
+                    us,
+                    vs,
+                    scalars,
+                    base,
+                    until,
+                    s,
+                    index,
+                    integers,
+                    sample_period,
+                    sample_clock,
+                    samples,
+                    su,
+                    sv,
+                )
                 floats[LOSS] += work_on_stop(scalars, s)
                 root = evaluate(scalars[0], s)
                 hertz_state(us, vs, s, u, v)
@@ -254,7 +272,9 @@ def advance(
             elif regime == SUSTAINED:
                 scale = 0.0
                 for k in range(n):
-                    scale += abs(motion.phi[k]) * (motion.omega[k] ** 2 * abs(u[k]) + motion.decay[k] * abs(v[k]))
+                    scale += abs(motion.phi[k]) * (
+                        motion.omega[k] ** 2 * abs(u[k]) + motion.decay[k] * abs(v[k])
+                    )
                 scale += (abs(motion.tip_sine) + abs(motion.tip_cosine)) * motion.drive**2
                 negate(force, negative)
                 stop_at = first_polynomial_root(negative, 0.0, h, 4.0 * EPS * scale / motion.compliance)

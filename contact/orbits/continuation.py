@@ -1,8 +1,8 @@
 """Branches of periodic orbits, and the points on them that matter.
 
-A branch is followed in the approach velocity v of its first touch, which runs monotonically where the amplitude
-turns round (``contact.orbits.shooting``).  Each orbit starts Newton's method for the next; a step that fails is
-halved.  Between neighbours the following are located by Brent's method on log v:
+A branch is followed in the approach velocity v of its first touch, which runs monotonically where the
+amplitude turns round (``contact.orbits.shooting``).  Each orbit starts Newton's method for the next; a step
+that fails is halved.  Between neighbours the following are located by Brent's method on log v:
 
     fold              dZ/dv changes sign: two orbits, one stable, meet
     period doubling   det(M + I) changes sign: a multiplier passes -1
@@ -28,6 +28,13 @@ __all__ = ["Branch", "Event", "fold_along_frequency", "fold_of", "follow"]
 
 SMALLEST_STEP = 1e-6
 """Step of log v at which a branch is given up: the orbit then changes its character, not its size."""
+
+MOST_STRIDES = 30
+"""Bound of steps towards a fold: they cover three decades of the approach velocity."""
+
+LEAST_SPEED, GREATEST_SPEED = 1e-6, 2.0
+"""Approach velocities, over 2 pi f gap, between which a fold is looked for: faster ones than 2 pi f gap
+belong to amplitudes far beyond the letter's."""
 
 PLACE = 1e-10
 """Accuracy of log v at a located point; the excess there is good to the square of it at a fold."""
@@ -71,7 +78,9 @@ def doubling(orbit: PeriodicOrbit) -> float:
     return float(np.prod(orbit.multipliers + 1.0).real)
 
 
-def _locate(family: Shooting, a: PeriodicOrbit, b: PeriodicOrbit, test: Callable[[PeriodicOrbit], float]) -> PeriodicOrbit:
+def _locate(
+    family: Shooting, a: PeriodicOrbit, b: PeriodicOrbit, test: Callable[[PeriodicOrbit], float]
+) -> PeriodicOrbit:
     """The orbit between neighbours a and b where `test` changes sign."""
     seen = {math.log(a.speed): a, math.log(b.speed): b}
 
@@ -112,7 +121,9 @@ def follow(family: Shooting, start: PeriodicOrbit, *, low: float, high: float, s
         Largest step of log v.
     """
     if not 0 < low < start.speed < high:
-        raise ValueError(f"low and high are {low} and {high} m/s; they must enclose the start, {start.speed:g} m/s")
+        raise ValueError(
+            f"low and high are {low} and {high} m/s; they must enclose the start, {start.speed:g} m/s"
+        )
     arms, reasons = [], []
     for limit in (low, high):
         arm, reason = [start], "range"
@@ -168,7 +179,10 @@ def fold_of(family: Shooting, near: PeriodicOrbit | None = None) -> PeriodicOrbi
     else:
         here = family.at_speed(near.speed, near)
     stride = 0.02
-    for _ in range(60):
+    unit = family.oscillator.drive.angular_frequency * family.oscillator.stop.gap  # type: ignore[union-attr]
+    for _ in range(MOST_STRIDES):
+        if not LEAST_SPEED * unit < here.speed < GREATEST_SPEED * unit:
+            break
         direction = -math.copysign(1.0, here.slope)
         there = family.at_speed(here.speed * math.exp(direction * stride), here)
         if there.slope * here.slope <= 0:

@@ -14,8 +14,8 @@ is the square of the steady tip amplitude, so that F/F_g - 1 = A/gap - 1.  The o
 smallest.  With Newton's law B is proportional to v and the result exact (``contact.orbits.single_impact``).
 
 What this neglects is that the real collision starts with the ringing w left over from the last one and at
-another acceleration of the tip.  Both are there to be used: a second collision, simulated from w itself, gives
-another A at the same v, and the difference is the estimate of the error.
+another acceleration of the tip.  Both are there to be used: a second collision, simulated from w itself,
+gives another A at the same v, and the difference is the estimate of the error.
 """
 
 from __future__ import annotations
@@ -127,9 +127,13 @@ class KickFamily:
         if self.oscillator.drive is None:
             raise ValueError("drive is None; orbits of a driven spring need a HarmonicDrive")
         if self.oscillator.load is not None:
-            raise ValueError("load is given; the orbits from kicks are those of a spring without constant load")
+            raise ValueError(
+                "load is given; the orbits from kicks are those of a spring without constant load"
+            )
         if not (isinstance(self.period, int) and self.period >= 1):
-            raise ValueError(f"period is {self.period}; it must be a whole number of drive periods, one or more")
+            raise ValueError(
+                f"period is {self.period}; it must be a whole number of drive periods, one or more"
+            )
         if self.modes is not None and not 1 <= self.modes <= self.oscillator.n_modes:
             raise ValueError(f"modes is {self.modes}; it must lie between 1 and {self.oscillator.n_modes}")
 
@@ -148,8 +152,8 @@ class KickFamily:
         return self.oscillator.motion()
 
     def drive_at_touch(self, reach: float, rate: float) -> tuple[float, float]:
-        """Base amplitude [m] and drive time [s] at which the steady tip motion has displacement `reach` [m] and
-        velocity `rate` [m/s]."""
+        """Base amplitude [m] and drive time [s] at which the steady tip motion has displacement `reach` [m]
+        and velocity `rate` [m/s]."""
         w = self.oscillator.drive.angular_frequency  # type: ignore[union-attr]
         # x = Z Im(H e^{i w t}), x' = Z w Re(H e^{i w t})
         turned = (rate / w + 1j * reach) / self.response
@@ -179,7 +183,16 @@ class KickFamily:
             u, v = w[:, 0].copy(), w[:, 1].copy()
             record = np.empty((touches, 4 + 2 * n))
             outcome = flow_from_touch(
-                motion, self.response.real, self.response.imag, phase, u, v, window, touches, np.empty((0, 0)), record
+                motion,
+                self.response.real,
+                self.response.imag,
+                phase,
+                u,
+                v,
+                window,
+                touches,
+                np.empty((0, 0)),
+                record,
             )
             end, u, v = record[-1, 1], record[-1, 4 : 4 + n].copy(), record[-1, 4 + n :].copy()
             if outcome != FLOWN or touches > MOST_TOUCHES:
@@ -199,7 +212,9 @@ class KickFamily:
 
     def orbit_of(self, kick: Kick) -> KickOrbit:
         """The orbit on which `kick` happens once in m drive periods."""
-        w = np.linalg.solve(np.eye(2) - self.flow, np.einsum("kij,kj->ki", self.flow, kick.jump)[..., None])[..., 0]
+        w = np.linalg.solve(np.eye(2) - self.flow, np.einsum("kij,kj->ki", self.flow, kick.jump)[..., None])[
+            ..., 0
+        ]
         p, r = self._motion.phi @ w
         amplitude, phase = self.drive_at_touch(self.oscillator.stop.gap - p, kick.speed - r)
         return KickOrbit(
@@ -212,8 +227,13 @@ class KickFamily:
         return self.orbit_of(self.kick(speed))
 
     def error(self, orbit: KickOrbit) -> float:
-        """Estimated error of the excess of an orbit: the change when its collision starts from its own ringing."""
-        w = orbit.deviations if self.modes is None else orbit.deviations * (np.arange(len(orbit.deviations)) < self.modes)[:, None]
+        """Estimated error of the excess of an orbit: the change when its collision starts from its own
+        ringing."""
+        w = (
+            orbit.deviations
+            if self.modes is None
+            else orbit.deviations * (np.arange(len(orbit.deviations)) < self.modes)[:, None]
+        )
         return self.orbit_of(self.kick(orbit.kick.speed, w)).excess - orbit.excess
 
     def fold(
@@ -241,5 +261,7 @@ class KickFamily:
         i = int(np.argmin(values))
         if i in (0, len(grid) - 1):
             return None
-        best = minimize_scalar(excess, bracket=(grid[i - 1], grid[i], grid[i + 1]), method="brent", options={"xtol": 1e-9})
+        best = minimize_scalar(
+            excess, bracket=(grid[i - 1], grid[i], grid[i + 1]), method="brent", options={"xtol": 1e-9}
+        )
         return self.orbit_of(kick_at(float(np.exp(best.x))))

@@ -1,31 +1,33 @@
 r"""Lyapunov exponents by two routes: Jacobians of the period map, and two neighbouring motions of the flow.
 
-**Map.** With J_n the derivative of the period map at the n-th strobe and Q R = J_n Q' (Q' of the step before),
+**Map.** With J_n the derivative of the period map at the n-th strobe and Q R = J_n Q' (Q' of the step
+before),
 
     lambda_i = < log |R_ii| >        [per drive period],  largest first.
 
 For an impact oscillator J_n is composed in physical time, from the strobe to its first touch by the free flow
 of the modes, then from touch to touch and to the next strobe by the tangents of ``contact.tangent`` (contact
-forces by their variational equation, Newton's law by its saltation matrix).  A strobe that falls into a contact
-is passed over: that J_n spans more than one period.  On an orbit of period m the exponents are log|mu_i|/m, with
-mu_i the eigenvalues of J_m ... J_1.  For Eq. (1) of the letter (1996) the determinants give
+forces by their variational equation, Newton's law by its saltation matrix).  A strobe that falls into a
+contact is passed over: that J_n spans more than one period.  On an orbit of period m the exponents are
+log|mu_i|/m, with mu_i the eigenvalues of J_m ... J_1.  For Eq. (1) of the letter (1996) the determinants give
 
     sum of lambda_i = -mu/f + 2 log(tau) x impacts per period.
 
 **Flow** (G. Benettin, L. Galgani, J.-M. Strelcyn, Phys. Rev. A 14 (1976) 2338).  A second motion starts at a
-distance d_0 from the first, both are followed by the exact simulation over a stretch h of time, and the distance
-is set back to d_0 without turning it:
+distance d_0 from the first, both are followed by the exact simulation over a stretch h of time, and the
+distance is set back to d_0 without turning it:
 
     lambda = < log(d/d_0) > / h      [1/s].
 
-No derivative and no strobe occurs in this: h is 0.618 drive periods, so that the distance is taken at all phases
-of the drive.  A stretch that would end in a contact is prolonged.  Both routes measure one number,
+No derivative and no strobe occurs in this: h is 0.618 drive periods, so that the distance is taken at all
+phases of the drive.  A stretch that would end in a contact is prolonged.  Both routes measure one number,
 
     lambda_map = lambda_flow / f.
 
 Averages are weighted by w(t) = exp(-1/(t (1 - t))), t the fraction of the run: on periodic and quasi-periodic
 motions they converge faster than any power of its length (S. Das, Y. Saiki, E. Sander, J. A. Yorke,
-Nonlinearity 30 (2017) 4111), on chaos like a plain average.  The standard error comes from the scatter of blocks.
+Nonlinearity 30 (2017) 4111), on chaos like a plain average.  The standard error comes from the scatter of
+blocks.
 
 Whatever has the methods of `Differentiable` can be asked; `of_oscillator` and `of_nordmark` make one.
 """
@@ -56,8 +58,8 @@ Array = NDArray[np.float64]
 S = TypeVar("S")
 
 SEPARATION = 1e-8
-"""d_0 in units of the scale: its square root, the size of what is neglected after a graze, is still small, and
-rounding changes it by 1e-8 of itself."""
+"""d_0 in units of the scale: its square root, the size of what is neglected after a graze, is still small,
+and rounding changes it by 1e-8 of itself."""
 
 STRETCH = 0.618
 """h in drive periods, no simple fraction."""
@@ -123,7 +125,8 @@ class Exponents:
 
 
 def _weighted(rates: Array, spans: Array) -> tuple[Array, float]:
-    """Weighted mean of `rates`, shape (n, k), over steps of length `spans`, and standard error of column 0."""
+    """Weighted mean of `rates`, shape (n, k), over steps of length `spans`, and standard error of column
+    0."""
     ends = np.cumsum(spans)
     middle = (ends - 0.5 * spans) / ends[-1]
     weight = np.exp(-1.0 / (middle * (1.0 - middle))) * spans
@@ -176,7 +179,9 @@ def orbit_exponents(system: Differentiable[S], state: S, period: int) -> Exponen
     done = 0
     while done % period or done == 0:  # a strobe in contact is never the last: m periods later it is again
         if done > MOST_STRETCHES * period:
-            raise NotPeriodic(time=0.0, gap=0.0, velocity=0.0, detail="every strobe of the orbit is in contact")
+            raise NotPeriodic(
+                time=0.0, gap=0.0, velocity=0.0, detail="every strobe of the orbit is in contact"
+            )
         found, state = system.jacobians(state, period - done % period)
         for step, span in found:
             matrix, done = step @ matrix, done + span
@@ -264,7 +269,9 @@ class _OfOscillator:
 
     def moved(self, state: State, change: Array) -> State:
         n, shift = self.oscillator.n_modes, change / self._weight
-        return replace(state, displacement=state.displacement + shift[:n], velocity=state.velocity + shift[n:])
+        return replace(
+            state, displacement=state.displacement + shift[:n], velocity=state.velocity + shift[n:]
+        )
 
     def follow(self, state: State, time: float) -> State:
         run = simulate(self.oscillator, state, duration=time)
@@ -286,7 +293,9 @@ class _OfOscillator:
                 raise UnresolvedCrossing(time=state.time, gap=0.0, velocity=0.0)
             start, end = run.impacts.start[hits], run.impacts.end[hits]
             end = np.where(np.isnan(end), np.inf, end)
-            strobes = [j for j in range(1, count + 1) if not np.any((start < j * period) & (end > j * period))]
+            strobes = [
+                j for j in range(1, count + 1) if not np.any((start < j * period) & (end > j * period))
+            ]
             if strobes:
                 break
             count += 1  # all strobes so far are in contact
@@ -310,12 +319,16 @@ class _OfOscillator:
                     until - begin, 1, tangent, np.empty((1, 4 + 2 * n)),
                 )
                 if outcome != FLOWN:
-                    raise UnresolvedCrossing(time=begin, gap=0.0, velocity=float(run.impacts.approach[hits][touch]))
+                    raise UnresolvedCrossing(
+                        time=begin, gap=0.0, velocity=float(run.impacts.approach[hits][touch])
+                    )
                 matrix = tangent[: 2 * n, : 2 * n] @ matrix
                 touch += 1
             found.append((self._weight[:, None] * matrix / self._weight, last - first))
             first = last
-        ended = State(displacement=run.strobe_displacement[first - 1], velocity=run.strobe_velocity[first - 1])
+        ended = State(
+            displacement=run.strobe_displacement[first - 1], velocity=run.strobe_velocity[first - 1]
+        )
         return found, ended
 
 

@@ -6,9 +6,9 @@ An orbit with k touches in m drive periods satisfies
     (u, v) after m/f  =  (u, v),      y(e) = 0 (the tip is at the stop),
 
 2 N + 1 equations for 2 N + 2 unknowns: a curve.  One more equation picks a point of it: the approach velocity
-y'(e) = v, or the amplitude S^2 + C^2 = Z^2.  With the approach velocity the curve is single-valued through its
-fold and down to grazing, where Newton's method on the strobe map has nothing to hold on to (its square root):
-see also arXiv:2510.16218.  The derivatives are the exact tangents of the flow, so that Newton's method
+y'(e) = v, or the amplitude S^2 + C^2 = Z^2.  With the approach velocity the curve is single-valued through
+its fold and down to grazing, where Newton's method on the strobe map has nothing to hold on to (its square
+root): see also arXiv:2510.16218.  The derivatives are the exact tangents of the flow, so that Newton's method
 converges quadratically; floquet multipliers are the eigenvalues of d(u, v)(m/f)/d(u, v) at fixed drive, and
 
     dZ/dv = 0            at a fold,
@@ -41,8 +41,9 @@ Array = NDArray[np.float64]
 MOST_ITERATIONS = 25
 """Of Newton's method: from a kick's orbit it takes three to six."""
 
-FARTHEST = 1e3
-"""Residual, in units of gap and 2 pi f gap, at which Newton's method is given up (and NaN)."""
+LONGEST_STEP = 0.3
+"""Longest change of an unknown in one iteration, in units of its scale (the gap): larger ones are
+shortened."""
 
 CONVERGED = 1e-12
 """Largest residual in units of gap and 2 pi f gap; rounding of the flow over m periods is about 1e-14."""
@@ -108,7 +109,9 @@ class PeriodicOrbit:
         """The physical state just before the first touch."""
         motion = self.oscillator.motion()
         q, q_rate = steady_motion(motion, np.array([self.phase]))
-        return State(displacement=self.displacement + q[0], velocity=self.velocity + q_rate[0], time=self.phase)
+        return State(
+            displacement=self.displacement + q[0], velocity=self.velocity + q_rate[0], time=self.phase
+        )
 
     def strobe_state(self) -> State:
         """The state at the strobe that follows the first touch."""
@@ -196,11 +199,19 @@ class Shooting:
         rate[-2:] = -w * response.imag, w * response.real
         return place, rate
 
+    def _at_the_stop(self, unknown: Array, speed: float) -> Array:
+        """The same deviations with the drive that puts the tip on the stop with approach velocity `speed`."""
+        n = self.oscillator.n_modes
+        p, r = self.oscillator.model.phi @ unknown[:n], self.oscillator.model.phi @ unknown[n : 2 * n]
+        amplitude, phase = self.kicks.drive_at_touch(self.oscillator.stop.gap - p, speed - r)
+        angle = self.oscillator.drive.angular_frequency * phase  # type: ignore[union-attr]
+        return np.concatenate([unknown[: 2 * n], amplitude * np.array([np.sin(angle), np.cos(angle)])])
+
     def _solve(self, guess: Array, *, speed: float | None, amplitude: float | None) -> PeriodicOrbit:
         n, gap = self.oscillator.n_modes, self.oscillator.stop.gap
         w = self.oscillator.drive.angular_frequency  # type: ignore[union-attr]
         place, rate = self._tip_rows()
-        scale, unknown = self._scale, guess.copy()
+        scale, unknown = self._scale, guess.copy() if speed is None else self._at_the_stop(guess, speed)
         weight = np.concatenate([scale[: 2 * n], [gap, w * gap if amplitude is None else gap]])
         found: tuple[Array, Array, Array, Array, Array, float] | None = None
         for iteration in range(MOST_ITERATIONS):
@@ -222,7 +233,8 @@ class Shooting:
                 jacobian[2 * n + 1, -2:] = unknown[-2:] / size
             error = float(np.max(np.abs(residual / weight)))
             scaled = jacobian * scale / weight[:, None]
-            # one step in any case: near grazing a neighbour can lie within the tolerance, and is another orbit
+            # one step in any case: near grazing a neighbour can lie within the tolerance, and is another
+            # orbit
             if iteration > 0:
                 if found is None or error < found[-1]:
                     found = unknown, matrix, record, scaled, weight, error
@@ -231,13 +243,19 @@ class Shooting:
                 elif found[-1] < ROUNDED:
                     return self._orbit(*found)
             try:
-                unknown = unknown - scale * np.linalg.solve(scaled, residual / weight)
+                change = np.linalg.solve(scaled, residual / weight)
             except np.linalg.LinAlgError:
                 break
+            longest = float(np.max(np.abs(change)))
+            unknown = unknown - scale * change * min(1.0, LONGEST_STEP / max(longest, 1e-300))
+            if speed is not None:
+                unknown = self._at_the_stop(unknown, speed)
             if not np.all(np.isfinite(unknown)):
                 break
         raise NotPeriodic(
-            time=0.0, gap=0.0, velocity=record[0, 2],
+            time=0.0,
+            gap=0.0,
+            velocity=record[0, 2],
             detail=f"Newton's method did not converge to an orbit of period {self.period} (residual {error:.1e})",
         )
 
@@ -248,7 +266,8 @@ class Shooting:
         driven, amplitude, phase = self._driven(unknown)
         place, rate = self._tip_rows()
         grazing = self.oscillator.grazing_amplitude()
-        # the tangent of the curve: null vector of the first 2 N + 1 equations, unit change of the approach velocity
+        # the tangent of the curve: null vector of the first 2 N + 1 equations, unit change of the approach
+        # velocity
         closing = scaled.copy()
         closing[2 * n + 1] = rate * self._scale / (self._scale[-1] * self.oscillator.drive.angular_frequency)  # type: ignore[union-attr]
         right = np.zeros(2 * n + 2)
@@ -320,11 +339,14 @@ class Shooting:
         return self._solve(self.unknowns(near), speed=None, amplitude=amplitude)
 
     def from_state(self, state: State) -> PeriodicOrbit:
-        """The orbit on which a simulated motion has settled: its first touch from `state` starts the search."""
+        """The orbit on which a simulated motion has settled: its first touch from `state` starts the
+        search."""
         run = simulate(self.oscillator, state, periods=self.period + 1)
         hits = run.impacts.kind == 0
         if not np.any(hits):
-            raise NotPeriodic(time=state.time, gap=0.0, velocity=0.0, detail="the motion has no impact to start from")
+            raise NotPeriodic(
+                time=state.time, gap=0.0, velocity=0.0, detail="the motion has no impact to start from"
+            )
         i = int(np.flatnonzero(hits)[0])
         motion = self.oscillator.motion()
         clock = float(run.impacts.start[i] % motion.period)

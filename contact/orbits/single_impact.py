@@ -22,18 +22,9 @@ for every speed. If s > 0, A has a least value, the **fold** of the node (larger
 
 For one mode k = -w N12 (1 + e)/(1 - N11 + e N22 - e G), which is the F_m of Eq. (1) at any amplitude.
 
-**Multipliers.** An orbit beside this one meets the wall at another time. To first order its distance
-(dq, dq') at the impact is multiplied by the saltation matrix
-
-    S = [[1, 0], [0, P]] + [-(1 + e) phi/sum phi^2; (a+ - P a-)/v] (phi, 0)^T,
-    P = 1 - (1 + e) phi phi^T/sum phi^2
-
-with the modal accelerations a-, a+ before and after, which include the drive: the column is the mismatch of
-the motions on both sides, in q and in q'. The multipliers are the eigenvalues of Phi S, Phi the free flow of
-all modes over m/f. For one mode det(Phi S) = e^2 G.
-
-Everything is exact as long as the tip does not reach the wall at another time; `MaximalFlight` holds what a
-search for such a crossing needs. Units: SI with mass-normalised modes (q in m kg^0.5).
+Everything is exact as long as the tip does not reach the wall at another time: `SingleImpactOrbit.admissible`
+says whether it does, by the certified search of ``contact.crossing``. Multipliers of an orbit are in
+``contact.orbits.saltation``. Units: SI with mass-normalised modes (q in m kg^0.5).
 Sources: letter of 1996, Eq. (1) and Fig. 3; A. B. Nordmark, J. Sound Vib. 145 (1991) 279.
 """
 
@@ -42,31 +33,19 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contact.flight import damped_frequency, flow_matrix
+from contact.crossing import CROSSES, FREE, first_crossing
+from contact.orbits.driven_modes import DrivenModes, modal_flow, require
+from contact.orbits.saltation import monodromy, newton_saltation, sorted_multipliers
 
-__all__ = ["MaximalFamily", "MaximalFlight", "SingleImpactOrbit"]
+__all__ = ["MaximalFamily", "MaximalFlight", "SingleImpactOrbit", "modal_flow"]
 
 Array = NDArray[np.float64]
-SINGULAR = 1e-13  # a D below this is rounding of 1 - tr N + G, terms of size 1: the mode is back after m/f
-
-
-def _require(condition: bool, sentence: str) -> None:
-    if not condition:
-        raise ValueError(sentence)
-
-
-def modal_flow(omega: Array, decay_rate: Array, time: float) -> Array:
-    """Free flow (u, u') -> (u, u') of each mode over `time` [s], shape (n_modes, 2, 2)."""
-    rows = []
-    for w, c in zip(omega.tolist(), decay_rate.tolist(), strict=True):
-        high, low = damped_frequency(w, c)
-        rows.append(flow_matrix(w, c, high, low, time))
-    return np.array(rows).reshape(-1, 2, 2)
+CLOSING = 1e-9  # part of the flight within which a crossing is the impact that ends it
+HEIGHT = 1e-13  # the same in units of the gap: rounding of the height at which the flight ends
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -106,7 +85,7 @@ class SingleImpactOrbit:
         family, flight, times = self.family, self.flight, np.asarray(time, dtype=float)
         since, slack = times.ravel() - flight.start, 1e-9 * flight.duration  # rounding of the caller's times
         inside = np.all((since >= -slack) & (since <= flight.duration + slack))
-        _require(bool(inside), f"time leaves the flight; it must lie within {flight.duration} s of its start")
+        require(bool(inside), f"time leaves the flight; it must lie within {flight.duration} s of its start")
         flows = np.array([modal_flow(family.omega, family.decay_rate, t) for t in since.tolist()])
         start = np.column_stack([flight.displacement, flight.velocity])
         free = np.einsum("tkij,kj->ikt", flows.reshape(-1, family.size, 2, 2), start)
@@ -130,33 +109,39 @@ class SingleImpactOrbit:
             mismatch.append(float(np.max(np.abs(found - wanted)) / np.max(np.abs(wanted))))
         return float(max(mismatch))
 
+    @cached_property
+    def admissible(self) -> bool:
+        """Whether the flight meets the wall at its end only (certified; a graze counts as a meeting)."""
+        family, flight = self.family, self.flight
+        # the tip leaves with velocity -e v, or is at rest on the wall: one or two derivatives vanish at the
+        # start
+        order = 1 if family.restitution > 0.0 else 2
+        outcome, time = first_crossing(
+            family.motion(self.amplitude), flight.start, flight.displacement.copy(), flight.velocity.copy(),
+            flight.duration * (1.0 + CLOSING), order, np.empty(family.size + 1),
+        )  # fmt: skip
+        slack = CLOSING * flight.duration + HEIGHT * family.gap / self.speed
+        return bool(outcome == FREE or (outcome == CROSSES and abs(time - flight.duration) <= slack))
+
     def saltation(self) -> Array:
         """Saltation matrix of the impact in (q, q') of all modes, shape (2 n_modes, 2 n_modes)."""
-        family, n = self.family, self.family.size
-        phi, lost = family.phi, (1.0 + family.restitution) / (family.phi @ family.phi)
-        project = np.eye(n) - lost * np.outer(phi, phi)
+        family = self.family
         phase = np.exp(1j * family.angular_frequency * self.flight.start)
         steady = -family.angular_frequency**2 * self.amplitude * (family.response * phase).imag
-        (u, du), after = self.before, self.flight.velocity
-        stiff = family.omega**2 * u
-        accelerations = [steady - family.decay_rate * velocity - stiff for velocity in (du, after)]
-        mismatch = (accelerations[1] - project @ accelerations[0]) / self.speed
-        matrix = np.zeros((2 * n, 2 * n))
-        matrix[:n, :n] = project
-        matrix[n:, :n] = np.outer(mismatch, phi)
-        matrix[n:, n:] = project
-        return matrix
+        pull = family.omega**2 * self.before[0]
+        before, after = (
+            steady - family.decay_rate * velocity - pull
+            for velocity in (self.before[1], self.flight.velocity)
+        )
+        return newton_saltation(family.phi, family.restitution, before, after, self.speed)
 
     def monodromy(self) -> Array:
         """Derivative of the motion over m/f, from just before an impact to just before the next, Phi S."""
-        flow = self.family.flow
-        free = np.block([[np.diag(flow[:, i, j]) for j in range(2)] for i in range(2)])
-        return np.asarray(free @ self.saltation())
+        return monodromy(self.family.flow, self.saltation())
 
     def multipliers(self) -> NDArray[np.complex128]:
         """Eigenvalues of `monodromy`, shape (2 n_modes,), largest modulus first."""
-        values = np.linalg.eigvals(self.monodromy()).astype(complex)
-        return values[np.argsort(-np.abs(values))]
+        return sorted_multipliers(self.monodromy())
 
     @property
     def stable(self) -> bool:
@@ -165,7 +150,7 @@ class SingleImpactOrbit:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class MaximalFamily:
+class MaximalFamily(DrivenModes):
     """All orbits with one impact every `period` drive periods, by approach speed.
 
     Parameters
@@ -189,127 +174,14 @@ class MaximalFamily:
         for then no orbit is periodic.
     """
 
-    omega: Array
-    decay_rate: Array
-    phi: Array
-    participation: Array
-    drive_frequency: float
-    gap: float
-    restitution: float
-    period: int
-
-    def __post_init__(self) -> None:
-        units = {"omega": "rad/s", "decay_rate": "1/s", "phi": "kg^-0.5", "participation": "kg^0.5"}
-        size = np.shape(self.omega)
-        for name, unit in units.items():
-            row = np.array(getattr(self, name), dtype=float)
-            _require(
-                row.ndim == 1 and row.shape == size and row.size > 0 and bool(np.all(np.isfinite(row))),
-                f"{name} has shape {row.shape}; it must be a row of one finite number [{unit}] for each mode",
-            )
-            row.setflags(write=False)
-            object.__setattr__(self, name, row)
-        for name in ("omega", "decay_rate"):
-            least = float(getattr(self, name).min())
-            _require(least >= 0.0, f"{name} holds {least} {units[name]}; no entry may be negative")
-        _require(bool(np.any(self.phi != 0.0)), "phi is zero in every mode; the tip must move in one of them")
-        for name, unit in (("drive_frequency", "Hz"), ("gap", "m")):
-            value = getattr(self, name)
-            _require(0.0 < value < math.inf, f"{name} is {value} {unit}; it must be finite and above zero")
-        e, m = self.restitution, self.period
-        _require(0.0 <= e <= 1.0, f"restitution is {e}; it must lie between 0 and 1")
-        whole = m >= 1 and m % 1 == 0
-        _require(whole, f"period is {m} drive periods; it must be a whole number, one or more")
-        free = (self.decay_rate == 0.0) & (self.omega == self.angular_frequency)
-        f = self.drive_frequency
-        _require(not np.any(free), f"drive_frequency is {f} Hz, that of an undamped mode; it must differ")
-        _require(self.tip_response != 0.0, "participation does not let the drive move the tip; it must")
-        trapped = np.flatnonzero((self._return <= SINGULAR) & (self.phi != 0.0))
-        if trapped.size:
-            raise ValueError(
-                f"omega[{trapped[0]}] is {self.omega[trapped[0]]} rad/s, a mode that is back after {m} drive "
-                "periods; it must have damping or another frequency"
-            )
-
-    @classmethod
-    def single_mode(
-        cls, *, drive_frequency: float, free_period: float, decay_rate: float, restitution: float,
-        period: int, gap: float = 1.0,
-    ) -> MaximalFamily:  # fmt: skip
-        """The family of Eq. (1), from f [Hz], damped free period T [s], mu [1/s], tau and m."""
-        known = 0.0 < free_period < math.inf
-        _require(known, f"free_period is {free_period} s; it must be finite and above zero")
-        omega, one = math.hypot(2.0 * math.pi / free_period, 0.5 * decay_rate), np.ones(1)
-        return cls(
-            omega=omega * one, decay_rate=decay_rate * one, phi=one, participation=one,
-            drive_frequency=drive_frequency, gap=gap, restitution=restitution, period=period,
-        )  # fmt: skip
-
-    @classmethod
-    def from_oscillator(
-        cls, oscillator: Any, *, period: int, restitution: float | None = None
-    ) -> MaximalFamily:
-        """The family of an `ImpactOscillator` without constant load.
-
-        `restitution` replaces the law's `local_restitution`; TypeError if there is neither.
-        """
-        if restitution is None:
-            try:
-                restitution = float(oscillator.stop.law.local_restitution)
-            except AttributeError:
-                law = type(oscillator.stop.law).__name__
-                raise TypeError(f"law of the stop is a {law}; it has no restitution, so give one") from None
-        _require(oscillator.load is None, "load is given; it must be None for these orbits")
-        _require(oscillator.drive is not None, "drive is None; it must be a HarmonicDrive")
-        model, drive = oscillator.model, oscillator.drive
-        return cls(
-            omega=model.omega, decay_rate=model.decay_rate, phi=model.phi, participation=model.participation,
-            drive_frequency=drive.frequency, gap=oscillator.stop.gap, restitution=restitution, period=period,
-        )  # fmt: skip
-
-    @property
-    def size(self) -> int:
-        """Number of modes."""
-        return self.omega.size
-
-    @property
-    def angular_frequency(self) -> float:
-        """w = 2 pi f [rad/s]."""
-        return 2.0 * math.pi * self.drive_frequency
-
-    @cached_property
-    def response(self) -> NDArray[np.complex128]:
-        """H_k, shape (n_modes,) [kg^0.5]."""
-        w = self.angular_frequency
-        stiffness = (self.omega - w) * (self.omega + w)
-        return np.asarray(self.participation * w**2 / (stiffness + 1j * self.decay_rate * w), dtype=complex)
-
-    @property
-    def tip_response(self) -> complex:
-        """sum phi_k H_k: steady tip displacement per base displacement [1]."""
-        return complex(self.phi @ self.response)
-
-    @cached_property
-    def flow(self) -> Array:
-        """Phi, mode by mode, shape (n_modes, 2, 2)."""
-        return modal_flow(self.omega, self.decay_rate, self.period / self.drive_frequency)
-
-    @cached_property
-    def _determinant(self) -> Array:
-        return np.exp(-self.decay_rate * self.period / self.drive_frequency)
-
-    @cached_property
-    def _return(self) -> Array:
-        return np.abs(1.0 - self.flow[:, 0, 0] - self.flow[:, 1, 1] + self._determinant)
-
     @cached_property
     def deviations(self) -> tuple[Array, Array]:
         """(u, u') per unit approach speed, just before and just after the impact, each (2, n_modes)."""
         moved = self.phi != 0.0  # a mode that the impact does not reach stays at rest
         kick = -(1.0 + self.restitution) * self.phi / (self.phi @ self.phi)
-        kick = np.where(moved, kick / np.where(moved, self._return, 1.0), 0.0)
+        kick = np.where(moved, kick / np.where(moved, self.distance_from_return, 1.0), 0.0)
         height = self.flow[:, 0, 1] * kick
-        before = (self.flow[:, 1, 1] - self._determinant) * kick
+        before = (self.flow[:, 1, 1] - self.determinant) * kick
         return np.array([height, before]), np.array([height, (1.0 - self.flow[:, 0, 0]) * kick])
 
     @cached_property
@@ -317,11 +189,6 @@ class MaximalFamily:
         """(s, b) of Eq. (a) [s]."""
         before = self.deviations[0]
         return float(self.phi @ before[0]), float((1.0 - self.phi @ before[1]) / self.angular_frequency)
-
-    @property
-    def grazing_amplitude(self) -> float:
-        """Base amplitude Z_g at which the steady motion touches the wall [m]."""
-        return self.gap / abs(self.tip_response)
 
     def excess(self, speed: float) -> float:
         """F/F_g - 1 of the orbit with approach speed `speed` [m/s]."""
@@ -332,7 +199,7 @@ class MaximalFamily:
 
     def orbit(self, speed: float) -> SingleImpactOrbit:
         """The orbit that meets the wall at `speed`, above zero [m/s]."""
-        _require(0.0 < speed < math.inf, f"speed is {speed} m/s; it must be finite and above zero")
+        require(0.0 < speed < math.inf, f"speed is {speed} m/s; it must be finite and above zero")
         s, b = self.arms
         phase = math.atan2(self.gap - s * speed, b * speed) - float(np.angle(self.tip_response))
         excess = self.excess(speed)
@@ -348,7 +215,7 @@ class MaximalFamily:
 
     def orbits(self, excess: float) -> tuple[SingleImpactOrbit, ...]:
         """The orbits at F/F_g - 1 = `excess` > -1, 0 to 2, by rising speed (of two, saddle, then node)."""
-        _require(-1.0 < excess < math.inf, f"excess is {excess}; it must be finite and above -1")
+        require(-1.0 < excess < math.inf, f"excess is {excess}; it must be finite and above -1")
         s, b = self.arms
         square, above = s * s + b * b, excess * (2.0 + excess)
         if s * s + square * above < 0.0:
