@@ -17,12 +17,14 @@ import os
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numba
-from numba.core import config
+from numba.core import config as numba_config
 
 __all__ = ["kernel"]
+
+config: Any = numba_config
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -61,7 +63,7 @@ def kernel(function: Function) -> Function:
     before = config.CACHE_DIR
     config.CACHE_DIR = _CACHE
     try:
-        compiled: Function = numba.njit(cache=bool(_CACHE), nogil=True, error_model="numpy")(function)
+        compiled: Any = numba.njit(cache=bool(_CACHE), nogil=True, error_model="numpy")(function)
     finally:
         config.CACHE_DIR = before
-    return compiled
+    return cast(Function, compiled)

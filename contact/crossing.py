@@ -19,7 +19,6 @@ from __future__ import annotations
 
 import math
 
-
 from contact.compiled import kernel
 from contact.flight import (
     EPS,

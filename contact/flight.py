@@ -18,7 +18,8 @@ load g adds g t^2 phi_2(-c t) to u, phi_2(x) = (e^x - 1 - x)/x^2.
 Bounds: every derivative of a free mode obeys the same equation, and v^2 + omega^2 u^2 never grows, hence for
 all later times, whatever the damping,
 
-    |u^(n)| <= sqrt( (u^(n))^2 + (u^(n+1)/omega)^2 ) now,   |u^(n+1)| <= sqrt( (u^(n+1))^2 + omega^2 (u^(n))^2 ) now.
+    |u^(n)|   <= sqrt( (u^(n))^2 + (u^(n+1)/omega)^2 ) now,
+    |u^(n+1)| <= sqrt( (u^(n+1))^2 + omega^2 (u^(n))^2 ) now.
 
 The phase d t is formed as an unevaluated sum of two doubles, so that its rounding error stays that of the
 result even after 1e5 rad.  Units: SI with mass-normalised modes (u in m kg^0.5).

@@ -51,8 +51,8 @@ class ImpactOscillator:
         omega, decay = self.model.omega, self.model.decay_rate
         if self.stop.law.code == DELAYED and omega.size > 1:
             raise TypeError(
-                f"law of the stop is DelayedRestitution, which holds for one mode; the model has {omega.size}, so "
-                "give a force law or NewtonRestitution, or truncate the model"
+                "law of the stop is DelayedRestitution, which holds for one mode; "
+                f"the model has {omega.size}, so give a force law or NewtonRestitution, or truncate the model"
             )
         if self.load is not None:
             load = np.array(self.load, dtype=float)
@@ -69,8 +69,8 @@ class ImpactOscillator:
         highest = float(omega.max())
         if highest > 0 and self.drive.angular_frequency > highest:
             raise ValueError(
-                f"frequency of the drive is {self.drive.frequency:g} Hz; it must not exceed the highest retained "
-                f"mode at {highest / (2 * np.pi):g} Hz"
+                f"frequency of the drive is {self.drive.frequency:g} Hz; it must not exceed the highest "
+                f"retained mode at {highest / (2 * np.pi):g} Hz"
             )
         resonant = (omega == self.drive.angular_frequency) & (decay == 0)
         if np.any(resonant):

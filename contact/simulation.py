@@ -66,7 +66,7 @@ def split_time(time: np.ndarray, period: float) -> tuple[np.ndarray, np.ndarray]
 def deviations(
     motion: Motion, state: State, clock: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Deviations (u, v) of `state` from the steady motion, and the bookkeeping arrays with which a run starts.
+    """Deviations (u, v) of `state` from the steady motion, and the bookkeeping arrays of a run's start.
 
     Raises
     ------
@@ -75,7 +75,8 @@ def deviations(
     """
     if state.displacement.size != motion.omega.size:
         raise ValueError(
-            f"displacement of the state has {state.displacement.size} modes; the model has {motion.omega.size}"
+            f"displacement of the state has {state.displacement.size} modes; "
+            f"the model has {motion.omega.size}"
         )
     q, q_rate = steady_motion(motion, np.array([clock]))
     u, v = state.displacement - q[0], state.velocity - q_rate[0]
@@ -85,8 +86,8 @@ def deviations(
     if state.regime == OUTSIDE and height > tip_rounding(motion, u, v):
         if motion.law in (NEWTON, DELAYED):
             raise ValueError(
-                f"displacement of the state puts the tip {height:.3g} m behind the stop; with an impact law it must "
-                "start on the near side"
+                f"displacement of the state puts the tip {height:.3g} m behind the stop; with an impact law "
+                "it must start on the near side"
             )
         integers[REGIME] = CONTACT if motion.number0 * height + motion.number1 * velocity > 0 else INSIDE
     return u, v, integers, floats
@@ -163,7 +164,8 @@ def simulate(
     stop_time = start.time + length
     if wanted.size and (wanted[0] < start.time - 1e-12 * length or wanted[-1] > stop_time + 1e-12 * length):
         raise ValueError(
-            f"times run from {wanted[0]} to {wanted[-1]} s; they must lie within {start.time} to {stop_time} s"
+            f"times run from {wanted[0]} to {wanted[-1]} s; "
+            f"they must lie within {start.time} to {stop_time} s"
         )
     sample_period, sample_clock = split_time(wanted, motion.period)
     inside = (sample_period > last) | ((sample_period == last) & (sample_clock > clock_end))

@@ -47,8 +47,8 @@ class State:
             object.__setattr__(self, name, array)
         if self.displacement.shape != self.velocity.shape:
             raise ValueError(
-                f"velocity of the state has shape {self.velocity.shape}; it must be that of the displacement, "
-                f"{self.displacement.shape}"
+                f"velocity of the state has shape {self.velocity.shape}; it must be that of the "
+                f"displacement, {self.displacement.shape}"
             )
 
     @staticmethod
@@ -59,7 +59,9 @@ class State:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Impacts:
-    """The touches of the tip in the order in which they began, each array of shape (n_impacts,) or (n_impacts, n_modes).
+    """The touches of the tip, in the order in which they began.
+
+    Arrays have shape (n_impacts,) or (n_impacts, n_modes).
 
     Parameters
     ----------

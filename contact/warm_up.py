@@ -6,7 +6,11 @@ longer than the next.
 
 from __future__ import annotations
 
-from beam.reduction import single_mode
+import math
+
+import numpy as np
+
+from beam.reduction import ModalModel
 from contact.drive import HarmonicDrive
 from contact.laws import HertzContact
 from contact.orbits.shooting import Shooting
@@ -19,8 +23,11 @@ __all__ = ["compile_kernels"]
 
 def compile_kernels() -> None:
     """Run every compiled kernel once on a small problem."""
+    one = np.ones(1)
     oscillator = ImpactOscillator(
-        model=single_mode(free_period=40.80e-3, decay_rate=3.56),
+        model=ModalModel(
+            omega=2 * math.pi / 40.80e-3 * one, decay_rate=3.56 * one, phi=one, participation=one
+        ),
         stop=Stop(gap=0.01, law=HertzContact(stiffness=1e9)),
         drive=HarmonicDrive(frequency=22.2),
     ).with_excess(1e-3)

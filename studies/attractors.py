@@ -1,7 +1,7 @@
-"""What the spring settles on above grazing: period, impacts and Lyapunov exponent, and which starts lead where.
+"""What the spring settles on: period, impacts and Lyapunov exponent, and which starts lead where.
 
-Claim (letter 1996): besides the p_m orbits "other transitions" occur, which "may even be to chaotic states", and
-below grazing p_m and the motion without impacts coexist.
+Claim (letter 1996): besides the p_m orbits "other transitions" occur, which "may even be to chaotic states",
+and below grazing p_m and the motion without impacts coexist.
 
 Computed at one drive frequency (--frequency, 21.50 Hz) for Eq. (1) and for the beam with its N modes:
 
@@ -14,9 +14,9 @@ Computed at one drive frequency (--frequency, 21.50 Hz) for Eq. (1) and for the 
 
 Both exponents are one number, lyapunov_map = lyapunov_flow / f.
 
-Run time: about a minute; --quick some seconds.  Command: python -m studies.attractors [--model single_mode].
-Outputs: summary.json, attractors.png and .pdf, basins.png and .pdf (the strobe plane, and close to p1), rows.csv,
-attractors.npz, basins.npz, basins_close.npz.
+Run time: some minutes; --quick some ten seconds.  Command: python -m studies.attractors.
+Outputs: summary.json, attractors.png and .pdf, basins.png and .pdf (the strobe plane, and close to p1),
+rows.csv, attractors.npz, basins.npz, basins_close.npz.
 """
 
 from __future__ import annotations
@@ -33,12 +33,18 @@ from matplotlib.colors import ListedColormap
 from matplotlib.lines import Line2D
 
 from contact.errors import ContactError
-from contact.orbits.lyapunov import Differentiable, divergence_rate, map_exponents, of_oscillator, orbit_exponents
+from contact.orbits.lyapunov import (
+    Differentiable,
+    divergence_rate,
+    map_exponents,
+    of_oscillator,
+    orbit_exponents,
+)
 from contact.simulation import steady_motion
 from contact.stroboscope import StrobedMap, StroboscopicMap
 from contact.trajectory import State
 from studies.instruments.command_line import Request, run_study
-from studies.instruments.figures import COLUMN, PAGE, PALETTE, house_style, label, new_figure
+from studies.instruments.figures import COLUMN, PAGE, house_style, label, new_figure
 from studies.instruments.oscillators import beam_of, single_mode_oscillator
 from studies.instruments.periodicity import settle
 from studies.instruments.scene import Scene
@@ -55,7 +61,13 @@ ALIGN = 20
 
 WITHOUT, PERIODIC, CHAOTIC = "without impacts", "periodic", "chaotic"
 NOT_SETTLED, UNDECIDED = "not settled", "undecided"
-COLOURS = {WITHOUT: "#56B4E9", PERIODIC: "#0072B2", CHAOTIC: "#D55E00", NOT_SETTLED: "#E69F00", UNDECIDED: "0.5"}
+COLOURS = {
+    WITHOUT: "#56B4E9",
+    PERIODIC: "#0072B2",
+    CHAOTIC: "#D55E00",
+    NOT_SETTLED: "#E69F00",
+    UNDECIDED: "0.5",
+}
 SHAPES = {WITHOUT: "v", PERIODIC: "o", CHAOTIC: "s", NOT_SETTLED: "^", UNDECIDED: "x"}
 
 
@@ -81,7 +93,7 @@ class Attractor:
 def classify(
     strobed: StrobedMap[S],
     state: S,
-    derivatives: Callable[[Any], Differentiable[S]] = of_oscillator,
+    derivatives: Callable[[Any], Differentiable[Any]] = of_oscillator,
     *,
     most_cycles: int = 4000,
     cycles: int = 600,
@@ -127,14 +139,20 @@ def classify(
         found = divergence_rate(system, settled.end, cycles * system.period, align=ALIGN * system.period)
         rate, error = found.largest, found.error
     return Attractor(
-        kind=kind, period=settled.period, impacts=impacts, impacts_per_period=mean,
-        lyapunov_map=exponents.largest, error_map=exponents.error, lyapunov_flow=rate, error_flow=error,
+        kind=kind,
+        period=settled.period,
+        impacts=impacts,
+        impacts_per_period=mean,
+        lyapunov_map=exponents.largest,
+        error_map=exponents.error,
+        lyapunov_flow=rate,
+        error_flow=error,
     )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Start:
-    """A state of a scan, and what is drawn of it: `tip`, strobed displacements, shape (record_cycles,) [m]."""
+    """A state of a scan and what is drawn of it: `tip`, its strobed read-out, (record_cycles,) [m]."""
 
     model: str
     direction: str
@@ -158,7 +176,6 @@ def carried(
             except ContactError as error:
                 failures.append(f"{TITLES[name]}, excess {excess:.6g}: {error}")
                 continue
-            # a state behind the wall stays what it is; one at a strobe of the next amplitude goes on from here
             state = replace(settled.end, time=0.0)
             tip = here.readout(orbit.points, readout)
             found.append(Start(model=name, direction=direction, excess=float(excess), state=state, tip=tip))
@@ -192,8 +209,9 @@ MOST_PERIODS = 4000
 class Basins:
     """Starts on the strobe plane and where they lead.
 
-    `x` [m] and `velocity` [m/s] of the starts, `rest` those of p1; `leads`, shape (velocities, x): 1 motion without impacts, m for
-    the p_m orbit, 0 something else, -1 starts behind the wall; `orbit`, shape (m, 2): strobe points of p_m.
+    `x` [m] and `velocity` [m/s] of the starts, `rest` those of p1; `leads`, shape (velocities, x): 1 motion
+    without impacts, m for the p_m orbit, 0 something else, -1 starts behind the wall; `orbit`, shape (m, 2):
+    strobe points of p_m.
     """
 
     x: np.ndarray
@@ -211,13 +229,19 @@ class Basins:
 
 
 def basins(
-    scene: Scene, frequency: float, excess: float, side: int, workers: int, tell: Callable[[], None], *,
+    scene: Scene,
+    frequency: float,
+    excess: float,
+    side: int,
+    workers: int,
+    tell: Callable[[], None],
+    *,
     close: bool = False,
 ) -> Basins:
     """Basins of Eq. (1) between fold and grazing on a grid of `side` by `side` starts, all or `close` to p1.
 
-    A motion has settled on p1 when the envelope of its deviation is smaller than what is left to the wall: then
-    it never touches again.  It has settled on p_m at a distance `NEAR` of one of its points.
+    A motion has settled on p1 when the envelope of its deviation is smaller than what is left to the wall:
+    then it never touches again.  It has settled on p_m at a distance `NEAR` of one of its points.
     """
     strobed = StroboscopicMap(oscillator=single_mode_oscillator(scene, frequency))
     here = strobed.at(excess)
@@ -278,7 +302,9 @@ def basins(
 # figures --------------------------------------------------------------------------------------------------
 
 
-def draw_scan(starts: Sequence[Start], rows: Sequence[Mapping[str, Any]], frequency: float, quantity: str) -> Any:
+def draw_scan(
+    starts: Sequence[Start], rows: Sequence[Mapping[str, Any]], frequency: float, quantity: str
+) -> Any:
     """Strobe points and exponents against the excess, a column for each model."""
     names = [name for name in TITLES if any(row["model"] == name for row in rows)]
     figure, axes = new_figure(
@@ -286,26 +312,47 @@ def draw_scan(starts: Sequence[Start], rows: Sequence[Mapping[str, Any]], freque
     )
     for column, name in enumerate(names):
         upper, lower = axes[:, column]
-        for direction, colour, face, size in (("down", "#D55E00", "none", 2.6), ("up", "#0072B2", "#0072B2", 1.4)):
+        for direction, colour, face, size in (
+            ("down", "#D55E00", "none", 2.6),
+            ("up", "#0072B2", "#0072B2", 1.4),
+        ):
             chosen = [start for start in starts if start.model == name and start.direction == direction]
             across = np.concatenate([np.full(start.tip.size, start.excess) for start in chosen])
             upper.plot(
-                1e2 * across, 1e3 * np.concatenate([start.tip for start in chosen]), linestyle="none", marker="o",
-                markersize=size, markeredgewidth=0.4, markeredgecolor=colour, markerfacecolor=face,
-                label=f"{direction}ward scan", rasterized=True, zorder=2 if direction == "down" else 3,
+                1e2 * across,
+                1e3 * np.concatenate([start.tip for start in chosen]),
+                linestyle="none",
+                marker="o",
+                markersize=size,
+                markeredgewidth=0.4,
+                markeredgecolor=colour,
+                markerfacecolor=face,
+                label=f"{direction}ward scan",
+                rasterized=True,
+                zorder=2 if direction == "down" else 3,
             )
         mine = [row for row in rows if row["model"] == name and row["lyapunov_map"] is not None]
         lower.axhline(0.0, color="0.6", linewidth=0.6)
         for kind in SHAPES:
-            chosen = [row for row in mine if row["kind"] == kind]
+            alike = [row for row in mine if row["kind"] == kind]
             lower.plot(
-                [1e2 * row["excess"] for row in chosen], [row["lyapunov_map"] for row in chosen], linestyle="none",
-                marker=SHAPES[kind], markersize=3.4, markerfacecolor="none", markeredgewidth=0.7,
+                [1e2 * row["excess"] for row in alike],
+                [row["lyapunov_map"] for row in alike],
+                linestyle="none",
+                marker=SHAPES[kind],
+                markersize=3.4,
+                markerfacecolor="none",
+                markeredgewidth=0.7,
                 markeredgecolor=COLOURS[kind],
             )
         lower.plot(
-            [1e2 * row["excess"] for row in mine], [row["lyapunov_flow"] / frequency for row in mine],
-            linestyle="none", marker=".", markersize=1.6, color="black", zorder=4,
+            [1e2 * row["excess"] for row in mine],
+            [row["lyapunov_flow"] / frequency for row in mine],
+            linestyle="none",
+            marker=".",
+            markersize=1.6,
+            color="black",
+            zorder=4,
         )
         for axis in (upper, lower):
             axis.axvline(0.0, color="0.6", linewidth=0.6, linestyle="--", zorder=1)
@@ -313,19 +360,41 @@ def draw_scan(starts: Sequence[Start], rows: Sequence[Mapping[str, Any]], freque
             upper.set_title(f"({chr(ord('a') + column)}) {TITLES[name]}, {frequency:.2f} Hz")
             label(lower.xaxis, "excess F/F$_g$ - 1", "%")
             if column == 0:
-                label(upper.yaxis, *(("rotation", "mrad") if quantity == "rotation" else ("displacement", "mm")))
+                label(
+                    upper.yaxis, *(("rotation", "mrad") if quantity == "rotation" else ("displacement", "mm"))
+                )
                 label(lower.yaxis, "largest exponent per drive period")
     kinds = [kind for kind in SHAPES if any(row["kind"] == kind for row in rows)]
     handles = [
-        Line2D([], [], linestyle="none", marker=SHAPES[kind], markersize=3.8, markerfacecolor="none",
-               markeredgecolor=COLOURS[kind], label=kind) for kind in kinds
+        Line2D(
+            [],
+            [],
+            linestyle="none",
+            marker=SHAPES[kind],
+            markersize=3.8,
+            markerfacecolor="none",
+            markeredgecolor=COLOURS[kind],
+            label=kind,
+        )
+        for kind in kinds
     ] + [Line2D([], [], linestyle="none", marker=".", markersize=3, color="black", label="from two motions")]
     scans = [
-        Line2D([], [], linestyle="none", marker="o", markersize=3, markerfacecolor=face, markeredgecolor=colour,
-               label=f"{way}ward scan") for way, colour, face in (("up", "#0072B2", "#0072B2"), ("down", "#D55E00", "none"))
+        Line2D(
+            [],
+            [],
+            linestyle="none",
+            marker="o",
+            markersize=3,
+            markerfacecolor=face,
+            markeredgecolor=colour,
+            label=f"{way}ward scan",
+        )
+        for way, colour, face in (("up", "#0072B2", "#0072B2"), ("down", "#D55E00", "none"))
     ]
     with house_style():
-        figure.legend(handles=[*scans, *handles], loc="outside lower center", ncols=3 if len(names) > 1 else 2)
+        figure.legend(
+            handles=[*scans, *handles], loc="outside lower center", ncols=3 if len(names) > 1 else 2
+        )
     return figure
 
 
@@ -342,33 +411,67 @@ def draw_basins(planes: Sequence[Basins], frequency: float, excess: float, gap: 
             picture[found.leads == code] = place
         x, y = found.x / gap, found.velocity / speed
         axis.imshow(
-            picture, origin="lower", aspect="auto", interpolation="nearest", vmin=-0.5, vmax=2.5,
-            cmap=ListedColormap(colours), extent=(x[0], x[-1], y[0], y[-1]),
+            picture,
+            origin="lower",
+            aspect="auto",
+            interpolation="nearest",
+            vmin=-0.5,
+            vmax=2.5,
+            cmap=ListedColormap(colours),
+            extent=(x[0], x[-1], y[0], y[-1]),
         )
         marks = {"white": found.orbit / (gap, speed), "#D55E00": np.array([found.rest]) / (gap, speed)}
         for colour, places in marks.items():
-            inside = (abs(places[:, 0] - x.mean()) < np.ptp(x) / 2) & (abs(places[:, 1] - y.mean()) < np.ptp(y) / 2)
+            inside = (abs(places[:, 0] - x.mean()) < np.ptp(x) / 2) & (
+                abs(places[:, 1] - y.mean()) < np.ptp(y) / 2
+            )
             axis.plot(
-                places[inside, 0], places[inside, 1], linestyle="none", marker="o" if colour == "white" else "D",
-                markersize=4, markerfacecolor=colour, markeredgecolor="black", markeredgewidth=0.7,
+                places[inside, 0],
+                places[inside, 1],
+                linestyle="none",
+                marker="o" if colour == "white" else "D",
+                markersize=4,
+                markerfacecolor=colour,
+                markeredgecolor="black",
+                markeredgewidth=0.7,
             )
         parts = found.parts()
         with house_style():
             where = "the strobe plane" if number == 0 else "around p$_1$"
-            axis.set_title(f"({'ab'[number]}) {where}: {100 * parts['p1 without impacts']:.1f} % lead to p$_1$")
+            axis.set_title(
+                f"({'ab'[number]}) {where}: {100 * parts['p1 without impacts']:.1f} % lead to p$_1$"
+            )
             label(axis.xaxis, "x / gap at the strobe")
             if number == 0:
                 label(axis.yaxis, "x′ / (2π f gap) at the strobe")
     names = {1: "to p$_1$ without impacts", period: f"to p$_{{{period}}}$", 0: "to something else"}
     handles = [
-        Line2D([], [], linestyle="none", marker="s", markersize=5, markerfacecolor=colours[place],
-               markeredgecolor="0.4", markeredgewidth=0.4, label=names[code])
-        for code, place in codes.items() if any(np.any(found.leads == code) for found in planes)
+        Line2D(
+            [],
+            [],
+            linestyle="none",
+            marker="s",
+            markersize=5,
+            markerfacecolor=colours[place],
+            markeredgecolor="0.4",
+            markeredgewidth=0.4,
+            label=names[code],
+        )
+        for code, place in codes.items()
+        if any(np.any(found.leads == code) for found in planes)
     ]
     for marker, colour, name in (("o", "white", f"points of p$_{{{period}}}$"), ("D", "#D55E00", "p$_1$")):
         handles.append(
-            Line2D([], [], linestyle="none", marker=marker, markersize=4, markerfacecolor=colour,
-                   markeredgecolor="black", label=name)
+            Line2D(
+                [],
+                [],
+                linestyle="none",
+                marker=marker,
+                markersize=4,
+                markerfacecolor=colour,
+                markeredgecolor="black",
+                label=name,
+            )
         )
     with house_style():
         figure.suptitle(f"Eq. (1), {frequency:.2f} Hz, F/F$_g$ - 1 = {excess:g}", fontsize=8)
@@ -400,7 +503,7 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
     if not -1.0 < low < high:
         raise ValueError(f"lowest is {low} and highest {high}; -1 < lowest < highest must hold")
     names = [name for name in TITLES if options.model in (name, "both")]
-    count = 15 if quick else options.points
+    count = min(options.points, 11) if quick else options.points
     values = np.linspace(low, high, count)
     maps = {}
     if "single_mode" in names:
@@ -415,7 +518,7 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
         for scanned, failed in pool.map(lambda name: carried(maps[name], name, values, scene), names):
             starts += scanned
             failures += failed
-        cycles = 150 if quick else options.cycles
+        cycles = min(options.cycles, 100) if quick else options.cycles
         with request.progress("exponents", total=len(starts)) as progress:
 
             def one(start: Start) -> dict[str, Any]:
@@ -431,10 +534,12 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
     columns = sorted({key for row in rows for key in row})
     request.record.write_table("rows", {key: [row.get(key) for row in rows] for key in columns})
     request.record.write_arrays(
-        "attractors", tip=np.array([start.tip for start in starts]), excess=np.array([s.excess for s in starts])
+        "attractors",
+        tip=np.array([start.tip for start in starts]),
+        excess=np.array([s.excess for s in starts]),
     )
     request.record.write_figure(draw_scan(starts, rows, frequency, scene.readout.quantity), "attractors")
-    side = 48 if quick else options.side
+    side = min(options.side, 32) if quick else options.side
     excess = options.basin_excess
     with request.progress("basins", total=2 * side) as progress:
         plane, part = (
@@ -447,7 +552,8 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
         )
     request.record.write_figure(draw_basins((plane, part), frequency, excess, scene.stop.gap_m), "basins")
     chaotic = {
-        name: [row["excess"] for row in rows if row["model"] == name and row["kind"] == CHAOTIC] for name in names
+        name: [row["excess"] for row in rows if row["model"] == name and row["kind"] == CHAOTIC]
+        for name in names
     }
     agree = agreement(rows, frequency)
     lines = []
@@ -455,8 +561,12 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
         kinds = {kind: sum(r["model"] == name and r["kind"] == kind for r in rows) for kind in SHAPES}
         lines.append(f"{TITLES[name]}: " + ", ".join(f"{n} {kind}" for kind, n in kinds.items() if n))
         if chaotic[name]:
-            lines.append(f"{TITLES[name]}: chaos between excess {min(chaotic[name]):+.4f} and {max(chaotic[name]):+.4f}")
-    lines.append("basins: " + ", ".join(f"{100 * share:.1f} % {name}" for name, share in plane.parts().items()))
+            lines.append(
+                f"{TITLES[name]}: chaos from excess {min(chaotic[name]):+.4f} to {max(chaotic[name]):+.4f}"
+            )
+    lines.append(
+        "basins: " + ", ".join(f"{100 * share:.1f} % {name}" for name, share in plane.parts().items())
+    )
     for line in [*failures, *lines]:
         print(line, flush=True)
     return {
@@ -464,8 +574,13 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
         "rows": rows,
         "chaotic": chaotic,
         "agreement": agree,
-        "basins": {"excess": excess, "period": plane.period, "parts": plane.parts(),
-                   "parts_close": part.parts(), "close": CLOSE},
+        "basins": {
+            "excess": excess,
+            "period": plane.period,
+            "parts": plane.parts(),
+            "parts_close": part.parts(),
+            "close": CLOSE,
+        },
         "closing": lines,
         "failures": failures,
         "failed_cells": len(failures),
@@ -475,7 +590,9 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """The study's own options."""
-    parser.add_argument("--frequency", type=float, default=21.50, metavar="HZ", help="drive frequency (21.50)")
+    parser.add_argument(
+        "--frequency", type=float, default=21.50, metavar="HZ", help="drive frequency (21.50)"
+    )
     parser.add_argument("--model", choices=(*TITLES, "both"), default="both", help="which description (both)")
     parser.add_argument("--lowest", type=float, default=-0.016, help="lowest excess of the scan (-0.016)")
     parser.add_argument("--highest", type=float, default=0.06, help="highest excess of the scan (0.06)")
@@ -488,8 +605,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def main(argv: Sequence[str] | None = None, *, module: str | None = None) -> int:
     """Run the study from the command line."""
     return run_study(
-        "attractors", "Period, impacts and Lyapunov exponent of the settled motion, and basins of attraction.",
-        run, argv, options=add_options, module=module,
+        "attractors",
+        "Period, impacts and Lyapunov exponent of the settled motion, and basins of attraction.",
+        run,
+        argv,
+        options=add_options,
+        module=module,
     )
 
 

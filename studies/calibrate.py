@@ -4,8 +4,8 @@ Thickness from the free period (40.80 ms), tape from the decay rate of mode 1 (3
 amplitude at grazing (2 mm at 22.2 Hz), and the mass of ball and mount from a collision that stops mode 1
 (kick 1 at excess 0.013), where the restitution is smallest.
 
-Run time: about ten seconds.  Command: python -m studies.calibrate.  Outputs: summary.json and calibrated.toml,
-a scene that every study takes with --scene.
+Run time: about ten seconds.  Command: python -m studies.calibrate.  Outputs: summary.json and
+calibrated.toml, a scene that every study takes with --scene.
 """
 
 from __future__ import annotations
@@ -34,7 +34,8 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
         print(f"{key:<26} {scene[key]:.10g} -> {fitted[key]:.10g}", flush=True)
     collision = collision_at(fitted, targets.frequency_hz, targets.excess)
     print(
-        f"collision at excess {targets.excess:g}: kick {collision.kick:.9f}, restitution {collision.restitution:.6f}, "
+        f"collision at excess {targets.excess:g}: kick {collision.kick:.9f}, restitution "
+        f"{collision.restitution:.6f}, "
         f"delay {1e6 * collision.delay:.3f} us, contact {1e6 * collision.contact_time:.3f} us",
         flush=True,
     )
@@ -51,7 +52,9 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the study from the command line."""
-    return run_study("calibrate", "Fit thickness, tape, gap and ball mass to the letter's numbers.", run, argv)
+    return run_study(
+        "calibrate", "Fit thickness, tape, gap and ball mass to the letter's numbers.", run, argv
+    )
 
 
 if __name__ == "__main__":

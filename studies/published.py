@@ -2,8 +2,8 @@
 
 Two misprints of the stored text are corrected where they are used (``contact.nordmark``): the y-line of the
 map after an impact is -gamma tau^2 x, and the bracket in rho reads (1 + tau)^2 sin^2(2 pi/(f T)).  Apart from
-them, "rho = F/F_g - 1" under Fig. 4 is the excess, not the map's rho; the -0.0707 in the text on Fig. 5 may be
-either.
+them, "rho = F/F_g - 1" under Fig. 4 is the excess, not the map's rho; the -0.0707 in the text on Fig. 5 may
+be either.
 """
 
 from __future__ import annotations

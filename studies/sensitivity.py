@@ -9,8 +9,8 @@ Computed, for each change of one parameter and each of the six frequencies:
     fold             F_m/F_g - 1 at the end of the p_m orbit that is born without the change: closed forms for
                      map and Eq. (1), shooting for the beam
 
-Changes: T, mu within their errors, tau between 0.05 and 0.15, and the free assumptions of the spring.  A change
-of the spring goes with the thickness of the sheet that keeps T; the rate of mode 1 is kept, gap and mass are.
+Changes: T, mu within their errors, tau between 0.05 and 0.15, and the free assumptions of the spring.  A
+change of the spring goes with the thickness of the sheet that keeps T; the rate of mode 1, gap and mass stay.
 
 Noise of the amplitude, relative rms 2.5e-4, redrawn at every strobe, the motion relative to the base carried
 along: jitter (independent from one drive period to the next) and drift (correlated over 100 periods).  The
@@ -18,7 +18,7 @@ strobe points of p_m form m clouds: one is told from the next if they are furthe
 (90 % of the points).  This is asked for m = 3 ... 16, in Eq. (1), where the letter's frequencies lie on
 average: 15 % of the band below its upper edge; and for the beam at three of the letter's frequencies.
 
-Run time: about two minutes; --quick some ten seconds.  Command: python -m studies.sensitivity.  Outputs:
+Run time: under a minute on two cores; --quick some ten seconds.  Command: python -m studies.sensitivity.  Outputs:
 summary.json, sensitivity.csv, noise.csv, the figures fold_against_parameter, strobe_points, noise.
 """
 
@@ -54,7 +54,6 @@ from studies.published import (
     BREAKDOWN,
     DRIVE_AMPLITUDE_M,
     FREE_PERIOD_ERROR_S,
-    PERIODS,
 )
 
 BORN_EXCESS, BELOW, CYCLES = 1e-3, -1e-3, 3000
@@ -62,13 +61,13 @@ NOISE = AMPLITUDE_STABILITY_M / DRIVE_AMPLITUDE_M
 """Relative rms of the amplitude: 2.5e-4."""
 
 CORRELATION = 100.0
-"""Drive periods over which the drift is correlated: some seconds, as long as 40 strobe points take and longer."""
+"""Drive periods over which the drift is correlated: some seconds, longer than 40 strobe points take."""
 
 PERIOD_RANGE = range(3, 17)
 SHARE_OF_BAND = 0.15
 """Where in its band p_m is asked about noise, from the upper edge."""
 
-STROBES, SKIPPED = 1200, 200
+STROBES, SKIPPED = 1000, 200
 """Noisy drive periods followed, and those left out at the start."""
 
 SEED = 1996
@@ -234,7 +233,7 @@ def row_at(
     scene: Scene, model: ModalModel, frequency: float, change: Change | None, base: Mapping[str, int] | None
 ) -> tuple[dict[str, Any], Mapping[str, int]]:
     """One row of the table, and the born periods whose folds it gives: those of `base`, or its own."""
-    strobed = {
+    strobed: dict[str, Any] = {
         "map": StrobedNordmarkMap(map=nordmark_of(scene, frequency)),
         "single_mode": StroboscopicMap(oscillator=single_mode_oscillator(scene, frequency)),
         "beam": StroboscopicMap(oscillator=beam_of(scene, frequency, model)),
@@ -263,7 +262,7 @@ def row_at(
 
 
 def upper_end(strobed: StroboscopicMap, period: int, highest: float = 0.1) -> float | None:
-    """Highest excess, in steps of 10 %, up to which the orbit born at 1e-3 keeps its period in an upward scan."""
+    """Highest excess, in steps of 10 %, up to which the orbit born at 1e-3 keeps its period."""
     settled = born(strobed)
     if settled.period != period:
         return None
@@ -319,8 +318,8 @@ def since_impact(impacts: np.ndarray) -> np.ndarray:
 def clouds(points: np.ndarray, impacts: np.ndarray, period: int) -> dict[str, Any]:
     """How well the m strobe points of p_m are told apart.
 
-    `regular`: part of the intervals between periods with impact that are m long.  `spread`: greatest width of a
-    cloud (90 % of its points), `separation`: distance of the closest two, `told_apart`: least ratio of the
+    `regular`: part of the intervals between periods with impact that are m long.  `spread`: greatest width of
+    a cloud (90 % of its points), `separation`: distance of the closest two, `told_apart`: least ratio of the
     distance of neighbours to their mean width (above 1 they do not overlap).
     """
     phase = since_impact(impacts)
@@ -410,7 +409,7 @@ def answers_of(
     hidden = [
         row["frequency_hz"]
         for row in rows
-        if row["parameter"] == "none" and row["fold_beam"] is not None and abs(row["fold_beam"]) < NOISE
+        if row["parameter"] == "none" and row["m"] > 1 and abs(row["fold_beam"] or 0.0) < NOISE
     ]
     return {
         "noise": NOISE,
@@ -436,6 +435,10 @@ def sentences(scene: Scene, answers: Mapping[str, Any], rows: Sequence[Mapping[s
     merged, broken = answers["first_period_with_merged_points"], answers["first_period_that_noise_breaks"]
     last = max(scene.drive.frequencies_hz)
     base = {(row["frequency_hz"]): row for row in rows if row["parameter"] == "none"}
+
+    def words(m: int | None) -> str:
+        return f"none up to {max(PERIOD_RANGE)}" if m is None else str(m)
+
     other = [
         row
         for row in rows
@@ -443,23 +446,27 @@ def sentences(scene: Scene, answers: Mapping[str, Any], rows: Sequence[Mapping[s
             row[f"born_{n}"] != base[row["frequency_hz"]][f"born_{n}"] for n in ("map", "single_mode", "beam")
         )
     ]
+    shortest = 1e3 * answers["free_period_for_p10_at_grazing_s"]
     lines = [
-        f"Amplitude noise of {answers['noise']:.1e}, Eq. (1) near the upper edge of each band: the closest strobe points of "
-        f"p_m run into one another from m = {merged['jitter']} on with jitter, {merged['drift']} with drift; the order of "
-        f"the impacts itself is lost from m = {broken['jitter']} and {broken['drift']} on"
-        f" (none up to {max(PERIOD_RANGE)} if None).",
+        f"Amplitude noise of {answers['noise']:.1e}, Eq. (1) near the upper edge of each band: the "
+        f"closest strobe points of p_m run into one another from m = {words(merged['jitter'])} on with "
+        f"jitter, {words(merged['drift'])} with drift; the order of the impacts itself is lost from m = "
+        f"{words(broken['jitter'])} with jitter, {words(broken['drift'])} with drift; the hysteresis is "
+        f"below the noise from m = {words(answers['first_period_with_hysteresis_below_noise'])} on.",
         "The hysteresis of the beam is below that noise at "
         + (", ".join(f"{f:.2f}" for f in answers["frequencies_with_hysteresis_below_noise_hz"]) or "none")
         + " Hz of the letter's frequencies.",
-        f"{last:.2f} Hz: p10 at grazing needs T <= {1e3 * answers['free_period_for_p10_at_grazing_s']:.2f} ms; changes that "
-        f"give it at excess 1e-3: {', '.join(answers['changes_that_give_p10']) or 'none'}. Without any change p10 is what is "
-        f"born from excess {number(answers['p10_born_from_single_mode'])} (Eq. (1)) or {number(answers['p10_born_from_beam'])} "
-        f"(beam) on: a first step past grazing of {number(_microns(answers['p10_born_from_beam']), '.1f')} um of 2 mm skips p11.",
+        f"{last:.2f} Hz: p10 at grazing needs T <= {shortest:.2f} ms; "
+        f"changes that give it at excess 1e-3: {', '.join(answers['changes_that_give_p10']) or 'none'}. "
+        "Without any change p10 is what is born from excess "
+        f"{number(answers['p10_born_from_single_mode'])} (Eq. (1)) or "
+        f"{number(answers['p10_born_from_beam'])} (beam) on: a first step past grazing of "
+        f"{number(_microns(answers['p10_born_from_beam']), '.1f')} um of 2 mm skips p11.",
         "Born periods other than the scene's: "
         + (
             "; ".join(
-                f"{row['frequency_hz']:.2f} Hz, {row['parameter']} {row['change']}: map {row['born_map']}, Eq. (1) "
-                f"{row['born_single_mode']}, beam {row['born_beam']}"
+                f"{row['frequency_hz']:.2f} Hz, {row['parameter']} {row['change']}: map {row['born_map']}, "
+                f"Eq. (1) {row['born_single_mode']}, beam {row['born_beam']}"
                 for row in other
             )
             or "none"
@@ -498,8 +505,20 @@ def draw_tornado(rows: Sequence[Mapping[str, Any]]) -> Any:
                 if row["parameter"] == "none":
                     continue
                 place, raised = parameters.index(row["parameter"]), row["sign"] > 0
-                for model, height, shift in (("beam", 0.42, 0.18), ("single_mode", 0.22, -0.22)):
+                for model, height, shift in (
+                    ("beam", 0.23, 0.27 if raised else 0.03),
+                    ("single_mode", 0.2, -0.24),
+                ):
                     now, then = row[f"fold_{model}"], base[f"fold_{model}"]
+                    if now is None and then is not None:
+                        axis.plot(
+                            0.23,
+                            place + shift,
+                            marker="x",
+                            markersize=3,
+                            color="#D55E00" if raised else "#0072B2",
+                            clip_on=False,
+                        )
                     if now is None or then is None or now * then <= 0 or abs(now / then - 1.0) < 1e-9:
                         continue
                     axis.barh(
@@ -525,17 +544,21 @@ def draw_tornado(rows: Sequence[Mapping[str, Any]]) -> Any:
                     )
             axis.axvline(1.0, color="0.3", linewidth=0.7, zorder=3)
             axis.set_xscale("log")
-            axis.set_xlim(0.28, 3.6)
-            axis.set_xticks([0.3, 0.5, 1.0, 2.0, 3.0], ["0.3", "0.5", "1", "2", "3"])
+            axis.set_xlim(0.22, 4.5)
+            axis.set_xticks([0.25, 0.5, 1.0, 2.0, 4.0], ["0.25", "0.5", "1", "2", "4"])
             axis.minorticks_off()
             axis.set_yticks(range(len(parameters)), parameters)
             axis.set_ylim(-0.6, len(parameters) - 0.4)
-            fold = number(base["fold_beam"], ".1e")
+            fold = (
+                "no hysteresis"
+                if base["fold_beam"] is None
+                else f"hysteresis {_tex(format(-base['fold_beam'], '.1e'))}"
+            )
             axis.set_title(
-                f"({chr(ord('a') + panel)}) {frequency:.2f} Hz, p$_{{{base['m']}}}$, F$_m$/F$_g$ - 1 = {_tex(fold)}",
+                f"({chr(ord('a') + panel)}) {frequency:.2f} Hz, p$_{{{base['m']}}}$, {fold}",
                 fontsize=7,
             )
-        figure.supxlabel("hysteresis after the change / before it")
+        figure.supxlabel("hysteresis after the change / before it (×: none is left)")
         from matplotlib.patches import Patch
 
         handles = [
@@ -588,7 +611,7 @@ def draw_points(stored: Mapping[str, Any], panels: Sequence[Mapping[str, Any]]) 
                     middle = 0.5 * (span[0] + span[1])
                     bottom.hist(
                         1e3 * (group - middle),
-                        bins=70,
+                        bins=40,
                         range=(-0.9e3 * (span[1] - span[0]), 0.9e3 * (span[1] - span[0])),
                         histtype="step" if kind == "jitter" else "stepfilled",
                         linestyle="-" if number_ == 0 else "--",
@@ -601,8 +624,8 @@ def draw_points(stored: Mapping[str, Any], panels: Sequence[Mapping[str, Any]]) 
             top.locator_params(axis="x", integer=True)
             label(top.xaxis, "strobes since the impact")
             ratio = number(panel["jitter"]["told_apart"], ".2g")
-            bottom.set_title(f"strobes {low} and {high}; distance/width {ratio}", fontsize=7)
-            label(bottom.xaxis, "read-out, from the middle", "µm")
+            bottom.set_title(f"distance/width {ratio} (jitter)", fontsize=7)
+            label(bottom.xaxis, f"strobes {low} and {high}, from the middle", "µm")
         label(axes[0, 0].yaxis, "read-out", "mm")
         label(axes[1, 0].yaxis, "points")
         handles, names = axes[0, 0].get_legend_handles_labels()
@@ -629,9 +652,11 @@ def draw_noise(noise: Sequence[Mapping[str, Any]]) -> Any:
                 label=kind,
             )
             lost = np.array([row[kind]["regular"] < 0.9 for row in noise])
+            if not np.any(lost):
+                continue
             axes[0].plot(
                 m[lost],
-                np.full(lost.sum(), (2.2e-3, 1.4e-3)[number_ - 1]),
+                np.full(lost.sum(), (0.04, 0.03)[number_ - 1]),
                 linestyle="none",
                 marker="x",
                 markersize=4,
@@ -736,7 +761,8 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
     request.record.write_figure(draw_noise(noise), "noise")
     answers["words"] = sentences(scene, answers, rows)
     print(
-        f"{'f (Hz)':>7} {'parameter':>24} {'change':>9} {'born: map, Eq. (1), beam':>26}   fold: map, Eq. (1), beam"
+        f"{'f (Hz)':>7} {'parameter':>24} {'change':>9} {'born: map, Eq. (1), beam':>26}   "
+        "fold: map, Eq. (1), beam"
     )
     for row in rows:
         periods = ", ".join(f"p{row[f'born_{n}']}" for n in ("map", "single_mode", "beam"))

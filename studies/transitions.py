@@ -1,8 +1,8 @@
 """The letter's six transitions p1 <-> pm, in three descriptions side by side.
 
-Claim (letter 1996, Fig. 2): when the drive amplitude passes grazing, the motion without impacts gives way to an
-orbit of period m with one impact, m = 3, 4, 5, 6, 8, 10 at 20.90 ... 23.40 Hz; when the amplitude is lowered
-again, that orbit lives on until some way below grazing.
+Claim (letter 1996, Fig. 2): when the drive amplitude passes grazing, the motion without impacts gives way to
+an orbit of period m with one impact, m = 3, 4, 5, 6, 8, 10 at 20.90 ... 23.40 Hz; when the amplitude is
+lowered again, that orbit lives on until some way below grazing.
 
 Computed, at each frequency, for the Nordmark map (Eqs. (2), (3)), the single mode (Eq. (1)) and the beam with
 its N modes:
@@ -121,7 +121,9 @@ def exact_ends(scene: Scene, frequency: float, row: Mapping[str, Any]) -> dict[s
         orbit = map_fold(nordmark, row["map"])
         found["exact_map"] = None if orbit is None else nordmark.excess(orbit.rho)
     if (row["single_mode"] or 0) > 1:
-        family = MaximalFamily.from_oscillator(single_mode_oscillator(scene, frequency), period=row["single_mode"])
+        family = MaximalFamily.from_oscillator(
+            single_mode_oscillator(scene, frequency), period=row["single_mode"]
+        )
         end = family.fold()
         found["exact_single_mode"] = None if end is None else end.excess
     return found
@@ -142,7 +144,7 @@ def scans(
     scan, found = scene.scan, {}
     for name, description in describe(scene, row["frequency_hz"], model).items():
         values = amplitudes(scene, row)
-        common = {
+        common: dict[str, Any] = {
             "observe": description.observe,
             "settle_cycles": SETTLE_CYCLES if full else max(scan.settle_cycles, 1),
             "record_cycles": scan.record_cycles,
@@ -156,7 +158,9 @@ def scans(
     return found
 
 
-def draw(scene: Scene, rows: Sequence[Mapping[str, Any]], diagrams: Sequence[Mapping[str, Any]], name: str) -> Any:
+def draw(
+    scene: Scene, rows: Sequence[Mapping[str, Any]], diagrams: Sequence[Mapping[str, Any]], name: str
+) -> Any:
     """The six panels of the letter's Fig. 2 for one description."""
     columns = min(3, len(rows))
     lines = math.ceil(len(rows) / columns)
@@ -177,7 +181,9 @@ def draw(scene: Scene, rows: Sequence[Mapping[str, Any]], diagrams: Sequence[Map
                 markerfacecolor=face, markeredgecolor="#0072B2" if way == "up" else "#D55E00",
                 label=f"{way}ward scan", rasterized=True, zorder=2 if way == "down" else 3,
             )
-        axis.axvline(0.0 if name == "map" else 1e3 * grazing, color="0.6", linewidth=0.6, linestyle="--", zorder=1)
+        axis.axvline(
+            0.0 if name == "map" else 1e3 * grazing, color="0.6", linewidth=0.6, linestyle="--", zorder=1
+        )
         period = f"p$_{{{row[name]}}}$" if row[name] else "no period found"
         with house_style():
             axis.set_title(f"({chr(ord('a') + number % 26)}) {row['frequency_hz']:.2f} Hz, p$_1$ ↔ {period}")
@@ -189,17 +195,19 @@ def draw(scene: Scene, rows: Sequence[Mapping[str, Any]], diagrams: Sequence[Map
     }
     if name == "beam" and scene.readout.quantity == "rotation":
         quantities["beam"] = (quantities["beam"][0], ("rotation at the read-out point", "mrad"))
-    across, upwards = quantities[name]
+    sideways, upwards = quantities[name]
     handles, names = axes.flat[0].get_legend_handles_labels()
     with house_style():
         for axis in axes[-1, :]:
-            label(axis.xaxis, *across)
+            label(axis.xaxis, *sideways)
         figure.supylabel(f"{upwards[0]} ({upwards[1]})" if upwards[1] != "1" else upwards[0])
         figure.legend(handles[::-1], names[::-1], loc="outside lower center", ncols=2, markerscale=1.5)
     return figure
 
 
-def store_points(request: Request, rows: Sequence[Mapping[str, Any]], diagrams: Sequence[Mapping[str, Any]]) -> None:
+def store_points(
+    request: Request, rows: Sequence[Mapping[str, Any]], diagrams: Sequence[Mapping[str, Any]]
+) -> None:
     """The points of all scans, as npz, and periods against amplitude as csv."""
     arrays: dict[str, np.ndarray] = {}
     table: dict[str, list[Any]] = {
@@ -231,8 +239,10 @@ def table_line(row: Mapping[str, Any]) -> str:
     letter = f"p{row['letter']}" if row["letter"] else "-"
     periods = {name: f"p{row[name]}" if row[name] else "-" for name in MODELS}
     ends = [row[f"excess_down_{name}"] for name in MODELS]
-    return f"{row['frequency_hz']:7.2f} {letter:>7} {periods['map']:>5} {periods['single_mode']:>8} {periods['beam']:>5}   " + (
-        " ".join(f"{'-' if end is None else f'{end:+.3e}':>18}" for end in ends)
+    return (
+        f"{row['frequency_hz']:7.2f} {letter:>7} {periods['map']:>5} {periods['single_mode']:>8} "
+        f"{periods['beam']:>5}   "
+        + (" ".join(f"{'-' if end is None else f'{end:+.3e}':>18}" for end in ends))
     )
 
 
@@ -250,10 +260,14 @@ def closing_lines(rows: Sequence[Mapping[str, Any]], figure: str) -> list[str]:
             continue
         found = ", ".join(f"{TITLES[name]} p{row[name]}" for name in MODELS)
         above = ", ".join(f"{TITLES[name]} p{row[f'born_{name}'].get('0.01')}" for name in MODELS)
-        line = f"{row['frequency_hz']:.2f} Hz: the letter saw p{row['letter']}, here {found}; at excess 0.01 {above}"
+        line = (
+            f"{row['frequency_hz']:.2f} Hz: the letter saw p{row['letter']}, here {found}; "
+            f"at excess 0.01 {above}"
+        )
         if row["frequency_hz"] == 23.40:
             line += (
-                "; the edge between p10 and p11 lies where f T = 20/21, at 23.343 Hz for T = 40.80 ms, so that p10 "
+                "; the edge between p10 and p11 lies where f T = 20/21, at 23.343 Hz for T = 40.80 ms, "
+                "so that p10 "
                 "at grazing needs T below 40.70 ms, five times the printed error of 0.02 ms"
             )
         lines.append(line)
@@ -279,8 +293,12 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
             print(table_line(row), flush=True)
         request.record.write_json("rows", rows)
         full = bool(request.options.full)
-        with request.progress("orbit diagrams", total=len(rows) * len(MODELS) * 2 * scene.scan.points) as progress:
-            futures = {pool.submit(scans, scene, row, model, full, progress.advance): i for i, row in enumerate(rows)}
+        with request.progress(
+            "orbit diagrams", total=len(rows) * len(MODELS) * 2 * scene.scan.points
+        ) as progress:
+            futures = {
+                pool.submit(scans, scene, row, model, full, progress.advance): i for i, row in enumerate(rows)
+            }
             diagrams: list[Any] = [None] * len(rows)
             for future in as_completed(futures):
                 diagrams[futures[future]] = future.result()
@@ -290,7 +308,9 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
             draw(scene, rows, diagrams, name), "orbit_diagram" if name == "beam" else f"orbit_diagram_{name}"
         )
     failures = [sentence for row in rows for sentence in row.pop("failures")]
-    failures += [s for found in diagrams for ways in found.values() for d in ways.values() for s in d.failures]
+    failures += [
+        s for found in diagrams for ways in found.values() for d in ways.values() for s in d.failures
+    ]
     lines = closing_lines(rows, str(request.record.folder / "orbit_diagram.png"))
     for line in [*failures, *lines]:
         print(line, flush=True)
@@ -308,15 +328,21 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
 def add_options(parser: argparse.ArgumentParser) -> None:
     """The study's own option."""
     parser.add_argument(
-        "--full", action="store_true", help="as the experiment did: 10000 drive periods per amplitude, never fewer"
+        "--full",
+        action="store_true",
+        help="as the experiment did: 10000 drive periods per amplitude, never fewer",
     )
 
 
 def main(argv: Sequence[str] | None = None, *, module: str | None = None) -> int:
     """Run the study from the command line."""
     return run_study(
-        "transitions", "The letter's six transitions p1 <-> pm: Nordmark map, Eq. (1) and the beam side by side.",
-        run, argv, options=add_options, module=module,
+        "transitions",
+        "The letter's six transitions p1 <-> pm: Nordmark map, Eq. (1) and the beam side by side.",
+        run,
+        argv,
+        options=add_options,
+        module=module,
     )
 
 

@@ -9,7 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from contact.orbits.lyapunov import divergence_rate, map_exponents, of_nordmark, of_oscillator, orbit_exponents
+from contact.orbits.lyapunov import (
+    divergence_rate,
+    map_exponents,
+    of_nordmark,
+    of_oscillator,
+    orbit_exponents,
+)
 from contact.orbits.shooting import Shooting
 from contact.strobed_nordmark import StrobedNordmarkMap
 from contact.stroboscope import StrobedOrbit, StroboscopicMap
@@ -114,7 +120,9 @@ def test_the_jacobians_are_the_differences_of_the_period_map(single, beam):
         start = system.coordinates(state)
         for direction in (0, start.size // 2):
             step = 1e-6 * system.scale * np.eye(start.size)[direction]
-            ends = [system.coordinates(here.orbit(system.moved(state, sign * step), 4).end) for sign in (1, -1)]
+            ends = [
+                system.coordinates(here.orbit(system.moved(state, sign * step), 4).end) for sign in (1, -1)
+            ]
             difference = (ends[0] - ends[1]) / (2e-6 * system.scale)
             # fast modes ring out within a period: their rows are rounding on both sides
             assert difference == pytest.approx(matrix[:, direction], rel=1e-3, abs=1e-5)

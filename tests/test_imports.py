@@ -55,7 +55,15 @@ ORDER = {
         "nordmark",
         "strobed_nordmark",
         "maximal_orbits",
-        "orbits.*",
+        "orbits.driven_modes",
+        "orbits.saltation",
+        "orbits.single_impact",
+        "orbits.kick",
+        "orbits.shooting",
+        "orbits.continuation",
+        "orbits.lyapunov",
+        "orbits",
+        "warm_up",
     ),
 }
 

@@ -313,7 +313,7 @@ def test_kicks_foretell_their_own_error(
         assert kicks.error(guess) == pytest.approx(true, rel=0.03)
         errors.append(abs(true))
     assert errors[0] < errors[1] < errors[2]
-    assert errors[2] > 1e-5  # there is something to foretell
+    assert errors[2] > 3e-6  # there is something to foretell
 
 
 @pytest.mark.parametrize(("frequency", "period"), [(20.90, 3), (22.20, 5)])
@@ -490,7 +490,7 @@ def test_wrong_input_is_refused_with_a_sentence() -> None:
     oscillator = equation_1(20.90)
     with pytest.raises(ValueError, match="period is 0; it must be a whole number of drive periods"):
         Shooting(oscillator=oscillator, period=0)
-    with pytest.raises(ValueError, match="period is 2.5"):
+    with pytest.raises(ValueError, match=r"period is 2\.5"):
         KickFamily(oscillator=oscillator, period=2.5)
     with pytest.raises(ValueError, match="impacts is 0; it must be a whole number, one or more"):
         Shooting(oscillator=oscillator, period=3, impacts=0)
@@ -505,9 +505,9 @@ def test_wrong_input_is_refused_with_a_sentence() -> None:
         Shooting(oscillator=delayed, period=3)
     family = Shooting(oscillator=oscillator, period=3)
     for speed in (0.0, -1.0, math.nan, math.inf):
-        with pytest.raises(ValueError, match="speed is .* m/s; it must be finite and above zero"):
+        with pytest.raises(ValueError, match=r"speed is .* m/s; it must be finite and above zero"):
             family.at_speed(speed)
-        with pytest.raises(ValueError, match="speed is .* m/s; it must be finite and above zero"):
+        with pytest.raises(ValueError, match=r"speed is .* m/s; it must be finite and above zero"):
             family.kicks.kick(speed)
     orbit = family.at_speed(10.0)
     for low, high in ((11.0, 12.0), (1.0, 9.0), (0.0, 20.0)):

@@ -11,8 +11,6 @@ Order: exact to rounding.  Stability limit: none.  Laws: ``NewtonRestitution``, 
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from contact.compiled import kernel

@@ -16,6 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import brentq
@@ -146,7 +147,7 @@ def follow(family: Shooting, start: PeriodicOrbit, *, low: float, high: float, s
         reasons.append(reason)
     orbits = [*arms[0][:0:-1], *arms[1]]
     events = []
-    for a, b in zip(orbits[:-1], orbits[1:], strict=True):
+    for a, b in pairwise(orbits):
         if a.slope * b.slope < 0:
             events.append(Event(kind="fold", orbit=_locate(family, a, b, lambda orbit: orbit.slope)))
         if doubling(a) * doubling(b) < 0:

@@ -249,7 +249,8 @@ class KickFamily:
             Range of approach velocities over 2 pi f gap, in which the amplitude is searched on a logarithmic
             grid and then minimised by Brent's method.
         """
-        unit = 2.0 * np.pi * self.oscillator.drive.frequency * self.oscillator.stop.gap  # type: ignore[union-attr]
+        w = self.oscillator.drive.angular_frequency  # type: ignore[union-attr]
+        unit = w * self.oscillator.stop.gap
 
         kick_at = self.kick if kick is None else kick
 
@@ -258,9 +259,11 @@ class KickFamily:
 
         grid = np.linspace(np.log(speeds[0] * unit), np.log(speeds[1] * unit), 33)
         values = [excess(x) for x in grid]
-        i = int(np.argmin(values))
-        if i in (0, len(grid) - 1):
+        # a contact that is soft at low speed makes A(v) start from grazing upwards: look for minima inside
+        inside = [i for i in range(1, len(grid) - 1) if values[i - 1] > values[i] <= values[i + 1]]
+        if not inside:
             return None
+        i = min(inside, key=lambda k: values[k])
         best = minimize_scalar(
             excess, bracket=(grid[i - 1], grid[i], grid[i + 1]), method="brent", options={"xtol": 1e-9}
         )

@@ -138,9 +138,7 @@ def _weighted(rates: Array, spans: Array) -> tuple[Array, float]:
     return mean, error
 
 
-def map_exponents(
-    system: Differentiable[S], state: S, count: int, *, align: int = 0
-) -> tuple[Exponents, S]:
+def map_exponents(system: Differentiable[S], state: S, count: int, *, align: int = 0) -> tuple[Exponents, S]:
     """All exponents per step from Jacobians, and the state at the end.
 
     Parameters
@@ -315,8 +313,16 @@ class _OfOscillator:
                 until = min(last * period, float(start[touch + 1]) if touch + 1 < start.size else math.inf)
                 tangent = np.eye(2 * n + 2)
                 outcome = flow_from_touch(
-                    motion, response.real, response.imag, begin % period, u[touch].copy(), v[touch].copy(),
-                    until - begin, 1, tangent, np.empty((1, 4 + 2 * n)),
+                    motion,
+                    response.real,
+                    response.imag,
+                    begin % period,
+                    u[touch].copy(),
+                    v[touch].copy(),
+                    until - begin,
+                    1,
+                    tangent,
+                    np.empty((1, 4 + 2 * n)),
                 )
                 if outcome != FLOWN:
                     raise UnresolvedCrossing(

@@ -29,6 +29,7 @@ from contact.errors import NotPeriodic
 from contact.flight import Motion
 from contact.laws import DELAYED
 from contact.orbits.kick import KickFamily, KickOrbit
+from contact.orbits.saltation import sorted_multipliers
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate, steady_motion
 from contact.tangent import FLOWN, flow_from_touch
@@ -202,7 +203,8 @@ class Shooting:
     def _at_the_stop(self, unknown: Array, speed: float) -> Array:
         """The same deviations with the drive that puts the tip on the stop with approach velocity `speed`."""
         n = self.oscillator.n_modes
-        p, r = self.oscillator.model.phi @ unknown[:n], self.oscillator.model.phi @ unknown[n : 2 * n]
+        phi = self.oscillator.model.phi
+        p, r = float(phi @ unknown[:n]), float(phi @ unknown[n : 2 * n])
         amplitude, phase = self.kicks.drive_at_touch(self.oscillator.stop.gap - p, speed - r)
         angle = self.oscillator.drive.angular_frequency * phase  # type: ignore[union-attr]
         return np.concatenate([unknown[: 2 * n], amplitude * np.array([np.sin(angle), np.cos(angle)])])
@@ -223,10 +225,10 @@ class Shooting:
             jacobian[: 2 * n] = matrix[: 2 * n]
             jacobian[: 2 * n, : 2 * n] -= np.eye(2 * n)
             jacobian[2 * n] = place
-            if amplitude is None:
+            if speed is not None:
                 residual[2 * n + 1] = rate @ unknown - speed
                 jacobian[2 * n + 1] = rate
-            else:
+            elif amplitude is not None:
                 size = np.hypot(*unknown[-2:])
                 residual[2 * n + 1] = size - amplitude
                 jacobian[2 * n + 1] = 0.0
@@ -256,7 +258,9 @@ class Shooting:
             time=0.0,
             gap=0.0,
             velocity=record[0, 2],
-            detail=f"Newton's method did not converge to an orbit of period {self.period} (residual {error:.1e})",
+            detail=(
+                f"Newton's method did not converge to an orbit of period {self.period} (residual {error:.1e})"
+            ),
         )
 
     def _orbit(
@@ -264,16 +268,16 @@ class Shooting:
     ) -> PeriodicOrbit:
         n = self.oscillator.n_modes
         driven, amplitude, phase = self._driven(unknown)
-        place, rate = self._tip_rows()
+        _place, rate = self._tip_rows()
         grazing = self.oscillator.grazing_amplitude()
         # the tangent of the curve: null vector of the first 2 N + 1 equations, unit change of the approach
         # velocity
         closing = scaled.copy()
-        closing[2 * n + 1] = rate * self._scale / (self._scale[-1] * self.oscillator.drive.angular_frequency)  # type: ignore[union-attr]
+        unit = self._scale[-1] * self.oscillator.drive.angular_frequency  # type: ignore[union-attr]
+        closing[2 * n + 1] = rate * self._scale / unit
         right = np.zeros(2 * n + 2)
-        right[2 * n + 1] = 1.0 / (self._scale[-1] * self.oscillator.drive.angular_frequency)  # type: ignore[union-attr]
+        right[2 * n + 1] = 1.0 / unit
         change = self._scale * np.linalg.solve(closing, right)
-        values = np.linalg.eigvals(matrix[: 2 * n, : 2 * n])
         return PeriodicOrbit(
             period=self.period,
             impacts=self.impacts,
@@ -284,7 +288,7 @@ class Shooting:
             phase=phase,
             displacement=unknown[:n].copy(),
             velocity=unknown[n : 2 * n].copy(),
-            multipliers=values[np.argsort(-np.abs(values))],
+            multipliers=sorted_multipliers(matrix[: 2 * n, : 2 * n]),
             slope=float(unknown[-2:] @ change[-2:]) / amplitude / grazing,
             residual=error,
             admissible=self._admissible(driven.motion(), phase, record, error),

@@ -3,8 +3,8 @@
     base amplitude at grazing  Z_g = gap / |H(f)|          ->  gap: Z_g of the letter's "typically 2 mm"
     kick of mode 1 in one collision at an excess           ->  mass of ball and mount: a kick of 1
 
-A kick of 1 takes all velocity from mode 1, which makes the restitution smallest; the kick grows with the mass.
-Each trial mass goes with the sheet thickness, the tape and the gap that keep the other three numbers.
+A kick of 1 takes all velocity from mode 1, which makes the restitution smallest; the kick grows with the
+mass. Each trial mass goes with the sheet thickness, the tape and the gap that keep the other three numbers.
 """
 
 from __future__ import annotations

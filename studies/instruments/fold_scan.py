@@ -1,10 +1,10 @@
 """Where a periodic orbit ends when the drive amplitude is lowered.
 
-The amplitude is lowered in steps that carry the physical state along.  A step succeeds if the motion settles on
-an orbit of the same period with the same impacts; the step is then enlarged, otherwise halved and tried again
-from the last orbit that held.  (Impacts alone would not do: below the end of a p_m orbit they can go on for
-thousands of periods.)  What is left at the end is a bracket of the excess at which the orbit ends, by a fold,
-a further impact or a loss of stability.
+The amplitude is lowered in steps that carry the physical state along.  A step succeeds if the motion settles
+on an orbit of the same period with the same impacts; the step is then enlarged, otherwise halved and tried
+again from the last orbit that held.  (Impacts alone would not do: below the end of a p_m orbit they can go on
+for thousands of periods.)  What is left at the end is a bracket of the excess at which the orbit ends, by a
+fold, a further impact or a loss of stability.
 """
 
 from __future__ import annotations

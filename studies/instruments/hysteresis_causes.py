@@ -125,7 +125,12 @@ def folds_at(
     whole = kicks.fold()
     if whole is None:
         return Fold(
-            frequency=frequency, period=period, excess=excess, estimated_error=None, orbit=None, kick_orbit=None
+            frequency=frequency,
+            period=period,
+            excess=excess,
+            estimated_error=None,
+            orbit=None,
+            kick_orbit=None,
         )
     excess["all_mode_kick"] = whole.excess
     reference = whole.kick
@@ -134,7 +139,9 @@ def folds_at(
     slope = reference.jump[0, 1] / reference.speed
 
     def constant(speed: float) -> Kick:
-        return one_mode(Kick(speed=speed, jump=reference.jump, touches=1, duration=0.0), velocity=slope * speed, shift=0.0)
+        return one_mode(
+            Kick(speed=speed, jump=reference.jump, touches=1, duration=0.0), velocity=slope * speed, shift=0.0
+        )
 
     def of_velocity(speed: float) -> Kick:
         kick = kicks.kick(speed)
@@ -144,7 +151,11 @@ def folds_at(
         kick = kicks.kick(speed)
         return one_mode(kick, velocity=kick.jump[0, 1], shift=kick.jump[0, 0])
 
-    for name, kick in (("measured_kick", constant), ("kick_of_velocity", of_velocity), ("two_parameters", two)):
+    for name, kick in (
+        ("measured_kick", constant),
+        ("kick_of_velocity", of_velocity),
+        ("two_parameters", two),
+    ):
         found = kicks.fold(kick=kick)
         excess[name] = None if found is None else found.excess
     family = Shooting(oscillator=oscillator, period=period, impacts=whole.kick.touches)
@@ -165,7 +176,8 @@ def folds_at(
 
 
 def shares(fold: Fold) -> dict[str, float | None]:
-    """The share of each cause in the change of the hysteresis from map to beam, as natural logarithms that add up."""
+    """The share of each cause in the change of the hysteresis from map to beam, as natural logarithms that
+    add up."""
     found: dict[str, float | None] = {}
     for cause, (before, after) in CAUSES.items():
         a, b = fold.excess[before], fold.excess[after]

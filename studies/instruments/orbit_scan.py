@@ -1,8 +1,8 @@
 """Orbit diagrams: strobed points against drive amplitude, the physical state carried along.
 
-The letter (1996) scans the excitation amplitude upwards and downwards in small steps, lets the spring settle at
-each and records 40 strobe points.  Carrying the state along is what shows hysteresis: the spring stays on the
-orbit that it is on until that orbit ends.
+The letter (1996) scans the excitation amplitude upwards and downwards in small steps, lets the spring settle
+at each and records 40 strobe points.  Carrying the state along is what shows hysteresis: the spring stays on
+the orbit that it is on until that orbit ends.
 """
 
 from __future__ import annotations

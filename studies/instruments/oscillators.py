@@ -30,7 +30,7 @@ REFERENCE_EXCESS = 0.013
 
 
 def approach_speed(frequency: float, gap: float, excess: float) -> float:
-    """Tip velocity at the stop on the steady motion at an excess above zero: 2 pi f gap sqrt((1 + e)^2 - 1) [m/s]."""
+    """Tip velocity at the stop, steady motion at excess e above 0: 2 pi f gap sqrt((1 + e)^2 - 1) [m/s]."""
     return 2.0 * math.pi * frequency * gap * math.sqrt(excess * (2.0 + excess))
 
 
@@ -58,8 +58,8 @@ def contact_law_of(scene: Scene) -> ContactLaw:
         mass = scene.modal_data.tip_mass_kg if scene.spring.kind == "modal_data" else scene.tip.mass_kg
         if not mass > 0:
             raise SceneError(
-                "contact.stiffness_n_per_m is 0, to be found from the contact time of the ball, but the ball has "
-                "no mass: give the stiffness or the mass above zero"
+                "contact.stiffness_n_per_m is 0, to be found from the contact time of the ball, but the "
+                "ball has no mass: give the stiffness or the mass above zero"
             )
         middle = sorted(scene.drive.frequencies_hz)[len(scene.drive.frequencies_hz) // 2]
         speed = approach_speed(middle, scene.stop.gap_m, REFERENCE_EXCESS)
@@ -68,7 +68,7 @@ def contact_law_of(scene: Scene) -> ContactLaw:
 
 
 def beam_of(scene: Scene, frequency: float, model: ModalModel | None = None) -> ImpactOscillator:
-    """The spring of the scene at drive frequency `frequency` [Hz]; `model` saves computing its modes again."""
+    """The spring of the scene at drive `frequency` [Hz]; `model` saves computing its modes again."""
     return ImpactOscillator(
         model=model_of(scene) if model is None else model,
         stop=Stop(gap=scene.stop.gap_m, law=contact_law_of(scene)),

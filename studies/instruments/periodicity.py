@@ -1,8 +1,8 @@
 """Settling on a periodic orbit and telling its period.
 
 The motion is followed in blocks.  After each block the last points are compared with those p strobes earlier,
-p = 1 ... `largest_period`: the orbit has period p if all coordinates of the last `largest_period` points repeat
-to `TOLERANCE` of the scale and the impact counts repeat exactly.  A motion that has not repeated after
+p = 1 ... `largest_period`: the orbit has period p if all coordinates of the last `largest_period` points
+repeat to `TOLERANCE` of the scale and the impact counts repeat exactly.  A motion that has not repeated after
 `most_cycles` periods gets period 0: chaos, a longer period, or a transient that is not over.
 """
 
@@ -20,8 +20,8 @@ __all__ = ["TOLERANCE", "Settled", "period_of", "settle"]
 S = TypeVar("S")
 
 TOLERANCE = 1e-9
-"""Largest change over one period of a settled orbit, relative to the scale of its coordinates.  Rounding is at
-1e-14; the slow drift past a vanished fold at relative distance 1e-7 moves by more than this per period."""
+"""Largest change over one period of a settled orbit, relative to the scale of its coordinates.  Rounding is
+at 1e-14; the slow drift past a vanished fold at relative distance 1e-7 moves by more than this per period."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

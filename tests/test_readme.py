@@ -1,0 +1,51 @@
+"""The README is true: its code runs, its studies exist, its table is what is computed."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from studies import transitions
+from studies.instruments.scene_file import read_scene
+from studies.instruments.spring_of_scene import model_of
+
+ROOT = Path(__file__).parent.parent
+TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def test_the_code_block_runs_and_says_what_its_comments_promise(capsys):
+    (block,) = re.findall(r"```python\n(.*?)```", TEXT, flags=re.DOTALL)
+    names: dict[str, object] = {}
+    exec(compile(block, "README.md", "exec"), names)
+    said = capsys.readouterr().out.splitlines()
+    frequencies = [float(word) for word in re.findall(r"[\d.]+", said[0])]
+    assert frequencies == pytest.approx([24.5, 149, 378, 718], rel=2e-3)
+    assert said[1] == "2"
+    restitution, delay, kick = map(float, said[2].split())
+    assert 0 < restitution < 0.6 and 0 < delay < 1e-3 and 0.5 < kick < 1.2
+    assert names["fold"].excess < 0
+    assert abs(names["fold"].multipliers[0] - 1.0) < 1e-5
+
+
+def test_every_study_named_exists_and_every_study_is_named():
+    named = set(re.findall(r"python -m studies\.([a-z_]+)", TEXT))
+    there = {
+        path.stem
+        for path in (ROOT / "studies").glob("*.py")
+        if "def main(" in path.read_text(encoding="utf-8") and not path.stem.startswith("_")
+    }
+    assert named == there - {"transitions"}
+
+
+@pytest.mark.parametrize("frequency", [21.50, 22.20])
+def test_the_rows_of_the_first_table_are_computed_values(frequency):
+    (line,) = re.findall(rf"^\| {frequency:.2f} \|(.*)\|$", TEXT, flags=re.MULTILINE)
+    cells = [cell.strip() for cell in line.split("|")]
+    scene = read_scene("letter", [])
+    row = transitions.row_at(scene, frequency, model_of(scene))
+    for cell, name in zip(cells[:4], ("letter", "map", "single_mode", "beam"), strict=True):
+        assert cell == f"p{row[name]}"
+    for cell, name in zip(cells[4:], ("map", "single_mode", "beam"), strict=True):
+        assert float(cell) == pytest.approx(row[f"excess_down_{name}"], rel=0.03)
