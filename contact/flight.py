@@ -92,13 +92,20 @@ def damped_frequency(omega, decay):
     half = 0.5 * decay
     p, ep = two_product(omega, omega)
     r, er = two_product(half, half)
-    d = (p - r) + (ep - er)
+    d = p - r
+    back = d - p
+    low = ((p - (d - back)) + (-r - back)) + (ep - er)  # with the rounding error of p - r (Knuth)
+    lead = d + low
+    back = lead - d
+    low = (d - (lead - back)) + (low - back)
+    d = lead
     high = math.sqrt(abs(d))
     if high == 0.0:
         return 0.0, 0.0
     s, es = two_product(high, high)
-    residual = ((p - r) if d > 0 else (r - p)) - s
-    residual += ((ep - er) if d > 0 else (er - ep)) - es
+    if d < 0.0:
+        d, low = -d, -low
+    residual = (d - s) + (low - es)
     return high, residual / (2.0 * high)
 
 
@@ -129,9 +136,11 @@ def flow_matrix(omega, decay, damped, damped_low, t):
 def loaded_drift(decay, load, t):
     """Displacement and velocity that a constant `load` adds to a mode of zero frequency in a time `t`."""
     x = -decay * t
-    if x > -1e-2:
-        phi1 = 1.0 + x * (1 / 2 + x * (1 / 6 + x * (1 / 24 + x * (1 / 120 + x * (1 / 720 + x / 5040)))))
-        phi2 = 0.5 + x * (1 / 6 + x * (1 / 24 + x * (1 / 120 + x * (1 / 720 + x * (1 / 5040 + x / 40320)))))
+    if x > -1.0:
+        phi2 = 0.0
+        for n in range(20, 1, -1):
+            phi2 = (1.0 + x * phi2) / n
+        phi1 = 1.0 + x * phi2
     else:
         phi1 = math.expm1(x) / x
         phi2 = (phi1 - 1.0) / x

@@ -20,6 +20,7 @@ import math
 
 from contact.compiled import kernel
 from contact.flight import EPS
+from contact.laws import NEWTON
 
 __all__ = [
     "CONTACT",
@@ -99,9 +100,9 @@ def contact_series(motion, regime, base, u, v, series, depth, force):
 
 
 @kernel
-def series_step(motion, u, v, series):
+def series_step(motion, u, v, series, depth):
     """Longest time over which the neglected terms stay below rounding [s]."""
-    energy = 0.0
+    energy = motion.number0 * depth[0] ** 2 if motion.law != NEWTON else 0.0
     top, below = 0.0, 0.0
     for k in range(motion.omega.size):
         energy += v[k] ** 2 + (motion.omega[k] * u[k]) ** 2

@@ -34,9 +34,9 @@ from contact.integrators.event_driven import (
     MOST_STEPS,
     advance,
 )
-from contact.laws import DELAYED, NEWTON
+from contact.laws import DELAYED, HERTZ, LINEAR, NEWTON
 from contact.oscillator import ImpactOscillator
-from contact.series import CONTACT, INSIDE, OUTSIDE
+from contact.series import CONTACT, INSIDE, OUTSIDE, SUSTAINED, WAITING
 from contact.trajectory import Impacts, State, Trajectory
 
 __all__ = ["simulate"]
@@ -83,6 +83,7 @@ def deviations(
     integers, floats = np.zeros(5, dtype=np.int64), np.array([clock, 0.0, 0.0, state.wait, state.rebound])
     integers[REGIME] = state.regime
     height, velocity, _acceleration = tip_state(motion, clock, u, v)
+    _refuse_regime(motion, state.regime, height, tip_rounding(motion, u, v))
     if state.regime == OUTSIDE and height > tip_rounding(motion, u, v):
         if motion.law in (NEWTON, DELAYED):
             raise ValueError(
@@ -91,6 +92,30 @@ def deviations(
             )
         integers[REGIME] = CONTACT if motion.number0 * height + motion.number1 * velocity > 0 else INSIDE
     return u, v, integers, floats
+
+
+HELD_WITHIN = 1e3
+"""How far from the gap a tip that is said to rest on the wall may be, in rounding bounds."""
+
+
+def _refuse_regime(motion: Motion, regime: int, height: float, rounding: float) -> None:
+    """ValueError for a regime that the law does not know, or that does not fit where the tip is."""
+    known = {
+        NEWTON: (OUTSIDE, SUSTAINED), LINEAR: (OUTSIDE, CONTACT, INSIDE), HERTZ: (OUTSIDE, CONTACT),
+        DELAYED: (OUTSIDE, WAITING),
+    }[motion.law]
+    if regime not in known:
+        raise ValueError(f"regime of the state is {regime}; with this contact law it must be one of {known}")
+    if regime in (SUSTAINED, WAITING) and abs(height) > HELD_WITHIN * rounding:
+        raise ValueError(
+            f"regime of the state is {regime}, held on the stop, but the tip is {abs(height):.3g} m away from "
+            "it; it must be at the gap"
+        )
+    if regime in (CONTACT, INSIDE) and height < -HELD_WITHIN * rounding:
+        raise ValueError(
+            f"regime of the state is {regime}, behind the stop, but the tip is {-height:.3g} m before it; it "
+            "must be at the gap or beyond"
+        )
 
 
 def failure(
@@ -148,6 +173,8 @@ def simulate(
     start = State.rest(n) if state is None else state
     if (duration is None) == (periods is None):
         raise ValueError("duration and periods are both given or both missing; give exactly one of them")
+    if periods is not None and int(periods) != periods:
+        raise ValueError(f"periods is {periods}; it must be a whole number of drive periods")
     length = float(periods * motion.period if periods is not None else duration)  # type: ignore[arg-type]
     if not (math.isfinite(length) and length > 0):
         raise ValueError(f"duration is {length} s; it must be finite and above zero")

@@ -286,7 +286,7 @@ def flow_from_touch(motion, response_sine, response_cosine, base, u, v, duration
                     break
                 continue
             contact_series(motion, regime, base + clock, u, v, series, depth, force)
-            h = series_step(motion, u, v, series)
+            h = series_step(motion, u, v, series, depth)
             rounding = tip_rounding(motion, u, v)
             following = regime
             if regime == CONTACT:

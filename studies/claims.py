@@ -301,7 +301,7 @@ def secondary_claim(scene: Scene, quick: bool) -> Claim:
     table: dict[str, list[Any]] = {
         n: [] for n in ("frequency_hz", "m", "restitution", "map", "eq1", "kind", "fold_eq1")
     }
-    figure, axes = new_figure(1, 2, width=PAGE, height=0.076)
+    figure, axes = new_figure(1, 2, width=PAGE, height=0.084)
     numbers: dict[str, Any] = {}
     for number, f in enumerate(frequencies_of(scene)):
         m = leaf.period(f, 0.0)
@@ -374,8 +374,7 @@ def secondary_claim(scene: Scene, quick: bool) -> Claim:
         axes[0].set_title("(a) Eq. (1)")
         label(axes[0].xaxis, "restitution τ")
         label(axes[0].yaxis, "excess of the secondary bifurcation", "%")
-        axes[0].set_ylim(-8.0, 10.0)
-        axes[0].legend(loc="lower left")
+        figure.legend(loc="outside lower center", ncols=3)
         for m in range(3, 11):
             entry = 2 * m / (2 * m + 1)
             if across[0] * leaf.free_period < entry < across[-1] * leaf.free_period:
@@ -878,8 +877,8 @@ def overdamped_claim(quick: bool) -> Claim:
         figure=figure,
         sentence=(
             f"With gamma = 0 the windows of p_{m} and p_{m + 1} overlap for alpha below {ends[0]:.4f}, are "
-            f"parted by chaos up to {ends[1]:.4f} and are gone above (1/4 and 2/3); the part of ln rho with a "
-            "positive exponent is that outside the windows within "
+            f"parted by chaos up to {ends[1]:.4f} and are gone above (1/4 and 2/3); the part of ln rho with "
+            "a positive exponent is that outside the windows within "
             f"{numbers['largest_difference_from_the_windows']:.2g}. The period falls by one from "
             "window to window as rho rises: the cascade is reversed."
         ),

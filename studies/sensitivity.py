@@ -18,7 +18,7 @@ strobe points of p_m form m clouds: one is told from the next if they are furthe
 (90 % of the points).  This is asked for m = 3 ... 16, in Eq. (1), where the letter's frequencies lie on
 average: 15 % of the band below its upper edge; and for the beam at three of the letter's frequencies.
 
-Run time: under a minute on two cores; --quick some ten seconds.  Command: python -m studies.sensitivity.  Outputs:
+Run time: about a minute; --quick some ten seconds.  Command: python -m studies.sensitivity.  Outputs:
 summary.json, sensitivity.csv, noise.csv, the figures fold_against_parameter, strobe_points, noise.
 """
 
@@ -413,6 +413,7 @@ def answers_of(
     ]
     return {
         "noise": NOISE,
+        "periods_examined": [noise[0]["m"], noise[-1]["m"]],
         "first_period_with_merged_points": merged,
         "first_period_that_noise_breaks": irregular,
         "first_period_with_hysteresis_below_noise": next(
@@ -437,7 +438,8 @@ def sentences(scene: Scene, answers: Mapping[str, Any], rows: Sequence[Mapping[s
     base = {(row["frequency_hz"]): row for row in rows if row["parameter"] == "none"}
 
     def words(m: int | None) -> str:
-        return f"none up to {max(PERIOD_RANGE)}" if m is None else str(m)
+        least, most = answers["periods_examined"]
+        return f"none up to {most}" if m is None else f"{m} or less" if m == least else str(m)
 
     other = [
         row
@@ -625,7 +627,7 @@ def draw_points(stored: Mapping[str, Any], panels: Sequence[Mapping[str, Any]]) 
             label(top.xaxis, "strobes since the impact")
             ratio = number(panel["jitter"]["told_apart"], ".2g")
             bottom.set_title(f"distance/width {ratio} (jitter)", fontsize=7)
-            label(bottom.xaxis, f"strobes {low} and {high}, from the middle", "µm")
+            label(bottom.xaxis, f"strobes {low} and {high}, offset", "µm")
         label(axes[0, 0].yaxis, "read-out", "mm")
         label(axes[1, 0].yaxis, "points")
         handles, names = axes[0, 0].get_legend_handles_labels()

@@ -208,7 +208,7 @@ def test_both_orbits_have_a_basin_between_fold_and_grazing_and_one_below(scene):
 
 
 def test_the_study_writes_rows_and_figures(tmp_path, capsys):
-    words = ["--quick", "--json", "--model", "single_mode", "--side", "8", "--cycles", "60", "--points", "5",
+    words = ["--quick", "--json", "--model", "single_mode", "--side", "8", "--cycles", "60",
              "--out", str(tmp_path), "--workers", "2"]  # fmt: skip
     assert attractors.main(words) == 0
     summary = json.loads(capsys.readouterr().out)

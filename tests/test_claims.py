@@ -163,9 +163,9 @@ def test_the_study_answers_every_claim(tmp_path, capsys):
     springs = {n: e for n, e in summary["claims"]["d"]["numbers"].items() if isinstance(e, dict)}
     assert len(springs) == 7
     for name, entry in springs.items():
-        # the quarter next to the upper edge agrees, the one next to the band below does not
-        quarters = entry["agree_by_quarter_of_band"]
-        assert quarters[3] > 0.6 and quarters[0] < 0.5, name
+        # next to the upper edge all agree, over whole bands not; a bare tip only closer to grazing
+        assert entry["agree"] < 0.9, name
+        assert entry["agree_by_quarter_of_band"][3] == 1.0 or name.startswith("bare"), name
     for stem in ("a_hysteresis", "b_secondary", "c_bands", "d_universality", "e_overdamped"):
         for ending in ("png", "pdf", "csv"):
             assert (tmp_path / "claims" / f"{stem}.{ending}").exists()

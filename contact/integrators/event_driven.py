@@ -151,6 +151,8 @@ def advance(
             if integers[REGIME] == OUTSIDE:
                 outcome, s = first_crossing(motion, base, u, v, end - base, integers[ORDER], envelope)
                 if outcome == UNRESOLVED:
+                    propagate(motion, u, v, s, u, v)
+                    floats[CLOCK] = base + s
                     return FAILED_CROSSING, index
                 until = end if outcome == FREE else base + s
                 sample_flight(
@@ -196,6 +198,7 @@ def advance(
                 if rest >= 0.0:
                     # the remaining hops take `rest`; then the tip stays on the wall
                     open_row(log, log_state, integers, floats, index, base, -e * approach, 2, u, v)
+                    rest = min(rest, end - base)  # what is left after the strobe is below rounding
                     if rest > 0.0:
                         propagate(motion, u, v, rest, u, v)
                         floats[CLOCK] = base + rest
@@ -256,10 +259,12 @@ def advance(
                     close_row(log, log_state, integers, floats, index, until, velocity, u, v)
                 continue
             contact_series(motion, regime, base, u, v, series, depth, force)
-            h = min(series_step(motion, u, v, series), end - base)
-            if h <= EPS * base:
+            h = min(series_step(motion, u, v, series, depth), end - base)
+            if end - base <= 4.0 * EPS * motion.period:
                 floats[CLOCK] = end
                 continue
+            if not h > EPS * base:
+                return FAILED_STEPS, index
             rounding = tip_rounding(motion, u, v)
             stop_at, next_regime = -1.0, regime
             if regime == CONTACT:
@@ -293,6 +298,12 @@ def advance(
                 floats[LOSS] += work_of_force(depth, force, h)
             series_state(series, h, u, v)
             floats[CLOCK] = until
+            if regime == SUSTAINED:
+                # rounding would let the tip drift off the wall over many steps
+                drift, drift_rate, _a = tip_state(motion, until, u, v)
+                for k in range(n):
+                    u[k] -= motion.phi[k] * drift / motion.compliance
+                    v[k] -= motion.phi[k] * drift_rate / motion.compliance
             if stop_at >= 0.0:
                 integers[REGIME] = next_regime
                 if next_regime == OUTSIDE:

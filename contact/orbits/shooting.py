@@ -213,7 +213,9 @@ class Shooting:
         n, gap = self.oscillator.n_modes, self.oscillator.stop.gap
         w = self.oscillator.drive.angular_frequency  # type: ignore[union-attr]
         place, rate = self._tip_rows()
-        scale, unknown = self._scale, guess.copy() if speed is None else self._at_the_stop(guess, speed)
+        scale, unknown = self._scale, guess.copy()
+        if speed is not None and abs(place @ guess - gap) > 1e-9 * gap:
+            unknown = self._at_the_stop(guess, speed)  # a neighbour at another frequency misses the stop
         weight = np.concatenate([scale[: 2 * n], [gap, w * gap if amplitude is None else gap]])
         found: tuple[Array, Array, Array, Array, Array, float] | None = None
         for iteration in range(MOST_ITERATIONS):
@@ -250,7 +252,7 @@ class Shooting:
                 break
             longest = float(np.max(np.abs(change)))
             unknown = unknown - scale * change * min(1.0, LONGEST_STEP / max(longest, 1e-300))
-            if speed is not None:
+            if speed is not None and longest > LONGEST_STEP:
                 unknown = self._at_the_stop(unknown, speed)
             if not np.all(np.isfinite(unknown)):
                 break
