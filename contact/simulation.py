@@ -108,8 +108,8 @@ def _refuse_regime(motion: Motion, regime: int, height: float, rounding: float) 
         raise ValueError(f"regime of the state is {regime}; with this contact law it must be one of {known}")
     if regime in (SUSTAINED, WAITING) and abs(height) > HELD_WITHIN * rounding:
         raise ValueError(
-            f"regime of the state is {regime}, held on the stop, but the tip is {abs(height):.3g} m away from "
-            "it; it must be at the gap"
+            f"regime of the state is {regime}, held on the stop, but the tip is {abs(height):.3g} m away "
+            "from it; it must be at the gap"
         )
     if regime in (CONTACT, INSIDE) and height < -HELD_WITHIN * rounding:
         raise ValueError(

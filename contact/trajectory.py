@@ -45,6 +45,8 @@ class State:
                 )
             array.setflags(write=False)
             object.__setattr__(self, name, array)
+        if self.regime not in (0, 1, 2, 3, 4):
+            raise ValueError(f"regime of the state is {self.regime}; it must be 0, 1, 2, 3 or 4")
         if self.displacement.shape != self.velocity.shape:
             raise ValueError(
                 f"velocity of the state has shape {self.velocity.shape}; it must be that of the "

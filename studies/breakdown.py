@@ -459,13 +459,15 @@ def draw_scans(panels: Sequence[tuple[str, Mapping[str, OrbitDiagram[Any]], str,
             axes[i, 0].set_title(f"({chr(ord('a') + i)}) {title}", loc="left")
             label(axes[i, 0].yaxis, quantity, "mm")
             if fold is not None:
+                room = fold > 0.85 * lowest  # on the left of the line
                 axes[i, 0].axvline(1e2 * fold, color="#009E73", linestyle=":", linewidth=0.9, zorder=0)
                 axes[i, 0].annotate(
                     "fold of p$_3$",
-                    (1e2 * fold, 0.98),
+                    (1e2 * fold, 0.98 if room else 0.86),
                     xycoords=("data", "axes fraction"),
-                    xytext=(3, 0),
+                    xytext=(-3 if room else 3, 0),
                     textcoords="offset points",
+                    ha="right" if room else "left",
                     va="top",
                     fontsize=7,
                     color="#00704F",

@@ -197,7 +197,7 @@ def test_dump_scene_prints_toml_and_runs_nothing(tmp_path, capsys):
     assert call(found, tmp_path, "--dump-scene", "--set", "stop.gap_m=0.02") == 0
     assert tomllib.loads(capsys.readouterr().out)["stop"]["gap_m"] == 0.02
     assert call(found, tmp_path, "--dump-scene", "--json") == 0
-    assert json.loads(capsys.readouterr().out)["scene"]["stop"]["gap_m"] == 0.010699332
+    assert json.loads(capsys.readouterr().out)["scene"]["stop"]["gap_m"] == 0.0106993324
     assert list(tmp_path.iterdir()) == []
 
 

@@ -312,7 +312,9 @@ def test_the_answers_agree_with_what_is_known(quick):
     assert 0.15 < loss["excess_needed"] < 0.25
     assert 0.2 < answers["smallest_restitution"]["mass_ratio"] < 0.3
     assert 3e-5 < answers["fade"]["hertz"]["half_excess"] < 8e-5
-    assert answers["fade"]["scene"]["half_excess"] < answers["fade"]["hertz"]["half_excess"]
+    # the scene's law is Hertz's: the same collisions by two ways through the study
+    same = answers["fade"]["hertz"]["half_excess"]
+    assert answers["fade"]["scene"]["half_excess"] == pytest.approx(same, rel=1e-9)
     assert answers["closed_forms"]["restitution"] < 3e-3
     assert 0.2 < answers["reference"]["delay_over_arc"] < 0.27
     assert answers["modes"]["scene"]["modes"] <= 20

@@ -44,7 +44,7 @@ class SpringKeys(Section):
     width_m: Annotated[float, Key(
         "m", ASSUMED, "width of the strip", POSITIVE)] = 0.012
     thickness_m: Annotated[float, Key(
-        "m", CALIBRATED, "thickness of the sheet, from the free period", POSITIVE)] = 0.00069683709
+        "m", CALIBRATED, "thickness of the sheet, from the free period", POSITIVE)] = 0.00069683709067
     young_modulus_pa: Annotated[float, Key(
         "Pa", ASSUMED, "Young's modulus of the sheet (brass)", POSITIVE)] = 105e9
     poisson_ratio: Annotated[float, Key(
@@ -67,7 +67,7 @@ class SpringKeys(Section):
     tape_density_kg_m3: Annotated[float, Key(
         "kg/m^3", ASSUMED, "density of the tape", POSITIVE)] = 1400.0
     tape_loss_factor: Annotated[float, Key(
-        "1", CALIBRATED, "loss factor of the tape, from the decay of mode 1", NOT_NEGATIVE)] = 0.4948193
+        "1", CALIBRATED, "loss factor of the tape, from the decay of mode 1", NOT_NEGATIVE)] = 0.49481929798
     elements_per_leg: Annotated[int, Key(
         "1", ASSUMED, "elements on a leg, or on a straight strip; 0 for the default, 60 on each of two legs "
         "or 120 on a straight strip", whole(0, 2000))] = 0
@@ -85,7 +85,8 @@ class TipKeys(Section):
 
     section: ClassVar[str] = "tip"
     mass_kg: Annotated[float, Key(
-        "kg", CALIBRATED, "ball and mount, so that mode 1 is stopped (kick 1)", NOT_NEGATIVE)] = 0.00616145
+        "kg", CALIBRATED, "ball and mount, so that mode 1 is stopped (kick 1)",
+        NOT_NEGATIVE)] = 0.006161452904
     rotary_inertia_kg_m2: Annotated[float, Key(
         "kg m^2", ASSUMED, "rotary inertia of ball and mount", NOT_NEGATIVE)] = 0.0
     arc_fraction: Annotated[float, Key(
@@ -204,7 +205,7 @@ class StopKeys(Section):
     section: ClassVar[str] = "stop"
     gap_m: Annotated[float, Key(
         "m", CALIBRATED, "from the ball at rest to the plate; 2 mm of drive at grazing",
-        NOT_NEGATIVE)] = 0.010699332
+        NOT_NEGATIVE)] = 0.0106993324
 
 
 @dataclass(frozen=True, kw_only=True)
