@@ -194,6 +194,17 @@ def tip_state(motion, t, u, v):
 
 
 @kernel
+def pull_rounding(motion, u, v):
+    """Bound of the rounding error of the tip acceleration at (u, v) [m/s^2]."""
+    total = (abs(motion.tip_sine) + abs(motion.tip_cosine)) * motion.drive**2
+    for k in range(motion.omega.size):
+        total += abs(motion.phi[k]) * (
+            motion.omega[k] ** 2 * abs(u[k]) + motion.decay[k] * abs(v[k]) + abs(motion.load[k])
+        )
+    return 4.0 * EPS * total
+
+
+@kernel
 def tip_rounding(motion, u, v):
     """Bound of the rounding error of the tip displacement in a flight that starts at (u, v) [m]."""
     total = abs(motion.level) + abs(motion.tip_sine) + abs(motion.tip_cosine) + motion.gap

@@ -15,7 +15,15 @@ import numpy as np
 
 from contact.compiled import kernel
 from contact.crossing import CROSSES, FREE, UNRESOLVED, first_crossing, first_polynomial_root
-from contact.flight import EPS, flow_matrix, propagate, tip_rounding, tip_state, tip_steady
+from contact.flight import (
+    EPS,
+    flow_matrix,
+    propagate,
+    pull_rounding,
+    tip_rounding,
+    tip_state,
+    tip_steady,
+)
 from contact.hertz_series import (
     HERTZ_ORDER,
     depth_root,
@@ -273,14 +281,9 @@ def advance(
                 stop_at = first_polynomial_root(negative, 0.0, h, margin)
                 next_regime = OUTSIDE if motion.number1 == 0.0 else INSIDE
             elif regime == SUSTAINED:
-                scale = 0.0
-                for k in range(n):
-                    scale += abs(motion.phi[k]) * (
-                        motion.omega[k] ** 2 * abs(u[k]) + motion.decay[k] * abs(v[k])
-                    )
-                scale += (abs(motion.tip_sine) + abs(motion.tip_cosine)) * motion.drive**2
                 negate(force, negative)
-                stop_at = first_polynomial_root(negative, 0.0, h, 4.0 * EPS * scale / motion.compliance)
+                margin = pull_rounding(motion, u, v) / motion.compliance
+                stop_at = first_polynomial_root(negative, 0.0, h, margin)
                 next_regime = OUTSIDE
             else:
                 closes = first_polynomial_root(force, 0.0, h, rounding * motion.number0)

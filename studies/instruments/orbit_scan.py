@@ -15,7 +15,7 @@ import numpy as np
 
 from contact.errors import ContactError
 from contact.stroboscope import StrobedMap
-from studies.instruments.periodicity import TOLERANCE, period_of, settle
+from studies.instruments.periodicity import TOLERANCE, Settled, period_of, settle
 
 __all__ = ["OrbitDiagram", "orbit_diagram"]
 
@@ -58,6 +58,7 @@ def orbit_diagram(
     record_cycles: int = 40,
     largest_period: int = 64,
     early: bool = True,
+    settle_with: Callable[..., Settled[S]] = settle,
     after_each: Callable[[], None] | None = None,
 ) -> OrbitDiagram[S]:
     """Scan the amplitudes `excesses` in the given order, starting from `state`.
@@ -77,7 +78,9 @@ def orbit_diagram(
         Strobe points recorded.
     largest_period : int
     early : bool
-        End a transient as soon as the orbit repeats; otherwise every amplitude gets all `settle_cycles`.
+        End a transient as soon as the orbit is known; otherwise every amplitude gets all `settle_cycles`.
+    settle_with : callable
+        How it gets known: ``periodicity.settle`` (it repeats) or ``settling.settle_on_orbit`` (it is proved).
     after_each : callable, optional
         Called after each amplitude (progress).
     """
@@ -91,7 +94,7 @@ def orbit_diagram(
         here = strobed.at(float(excess))
         try:
             if early:
-                settled = settle(here, state, most_cycles=settle_cycles, largest_period=largest_period)
+                settled = settle_with(here, state, most_cycles=settle_cycles, largest_period=largest_period)
                 state, cycles[i] = settled.end, settled.cycles
                 period[i], impacts[i] = settled.period, settled.impacts
                 recorded = here.orbit(state, record_cycles)

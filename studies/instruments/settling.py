@@ -1,8 +1,8 @@
 """Transients that end as soon as the orbit is known, not when it has been reached.
 
 A motion that seems to repeat to a part in a thousand is compared with a periodic orbit in its neighbourhood,
-found by shooting (``contact.orbits.shooting``) from the motion itself.  If that orbit is stable, touches the
-stop only where it should (certified), and the motion has come closer to it over a whole block of drive periods
+found by shooting (``contact.orbits.shooting``) from the motion itself.  If that orbit is stable, touches
+the stop only where it should (certified), and the motion has come closer to it over a whole block of drive periods
 by what its largest multiplier says,
 
     distance(n + block) <= SLACK |mu|^(block/m) distance(n) + rounding,
@@ -27,7 +27,7 @@ from studies.instruments.periodicity import TOLERANCE, Settled, period_of
 __all__ = ["orbit_near", "settle_on_orbit"]
 
 FIRST_LOOK = 1e-3
-"""Repetition, relative to the gap, at which an orbit is looked for: the search costs about ten drive periods."""
+"""Repetition, relative to the gap, at which an orbit is looked for: a search costs some ten drive periods."""
 
 SLACK = 1.5
 """Factor on the decay that the multiplier promises: the other multipliers and curvature need some room."""
@@ -40,9 +40,9 @@ def orbit_near(strobed: StroboscopicMap, state: State, period: int, impacts: int
     """The stable, admissible orbit next to `state`, by shooting; None if there is none."""
     try:
         family = Shooting(oscillator=strobed.oscillator, period=period, impacts=impacts)
-        orbit = family.from_state(State(
-            displacement=state.displacement, velocity=state.velocity, time=0.0, regime=state.regime
-        ))
+        orbit = family.from_state(
+            State(displacement=state.displacement, velocity=state.velocity, time=0.0, regime=state.regime)
+        )
     except (ContactError, ValueError, TypeError):
         return None
     return orbit if orbit.stable and orbit.admissible else None
@@ -93,7 +93,9 @@ def settle_on_orbit(
     while True:
         run = strobed.orbit(state, block)
         state, cycles = run.end, cycles + block
-        exact = period_of(run.points, run.impacts, largest_period=largest_period, tolerance=tolerance * strobed.scale)
+        exact = period_of(
+            run.points, run.impacts, largest_period=largest_period, tolerance=tolerance * strobed.scale
+        )
         rough = exact or period_of(
             run.points, run.impacts, largest_period=largest_period, tolerance=FIRST_LOOK * strobed.scale
         )
@@ -123,7 +125,9 @@ def settle_on_orbit(
             on_orbit = strobed.orbit(_points_of(strobed, known).end, _steps_to(phase, known.period)).end
             final = strobed.orbit(
                 State(
-                    displacement=on_orbit.displacement, velocity=on_orbit.velocity, time=state.time,
+                    displacement=on_orbit.displacement,
+                    velocity=on_orbit.velocity,
+                    time=state.time,
                     regime=on_orbit.regime,
                 ),
                 block,
