@@ -254,8 +254,8 @@ class HertzContact(ContactLaw):
 class HuntCrossley(ContactLaw):
     """Hertz's law with dissipation: N = `stiffness` d^(3/2) (1 + `dissipation` d') for d > 0.
 
-    The law as its authors have it: for d' < -1/chi the force would pull, which a free mass never reaches but a
-    heavily damped tip that is torn off the stop can.  A free mass leaves with v_out given by
+    The law as its authors have it: for d' < -1/chi the force would pull, which a free mass never reaches but
+    a heavily damped tip that is torn off the stop can.  A free mass leaves with v_out given by
     a - ln(1 + a) = -b - ln(1 - b), a = chi v_in, b = chi v_out.
 
     Parameters

@@ -2,8 +2,8 @@
 
 A motion that seems to repeat to a part in a thousand is compared with a periodic orbit in its neighbourhood,
 found by shooting (``contact.orbits.shooting``) from the motion itself.  If that orbit is stable, touches
-the stop only where it should (certified), and the motion has come closer to it over a whole block of drive periods
-by what its largest multiplier says,
+the stop only where it should (certified), and the motion has come closer to it over a whole block of drive
+periods by what its largest multiplier says,
 
     distance(n + block) <= SLACK |mu|^(block/m) distance(n) + rounding,
 
@@ -85,8 +85,8 @@ def settle_on_orbit(
 ) -> Settled[State]:
     """Follow a motion until the orbit on which it ends is proved, or for `most_cycles` drive periods.
 
-    Parameters and result are those of ``periodicity.settle``; `strobed` is a StroboscopicMap.  The end state and
-    the points lie on the orbit itself.
+    Parameters and result are those of ``periodicity.settle``; `strobed` is a StroboscopicMap.  The end state
+    and the points lie on the orbit itself.
     """
     block = 2 * largest_period
     cycles, known, before = 0, None, np.inf
