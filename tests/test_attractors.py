@@ -20,11 +20,12 @@ from contact.orbits.shooting import Shooting
 from contact.strobed_nordmark import StrobedNordmarkMap
 from contact.stroboscope import StrobedOrbit, StroboscopicMap
 from studies import attractors
-from studies.attractors import CHAOTIC, NOT_SETTLED, PERIODIC, WITHOUT, classify
+from studies.instruments.attractor_kinds import CHAOTIC, NOT_SETTLED, PERIODIC, WITHOUT, classify
 from studies.instruments.oscillators import beam_of, nordmark_of, single_mode_oscillator
 from studies.instruments.periodicity import settle
 from studies.instruments.scene_file import read_scene
 from studies.instruments.spring_of_scene import model_of
+from studies.instruments.strobe_basins import basins
 
 FREQUENCY = 21.50
 
@@ -198,12 +199,12 @@ def test_wrong_use_is_refused(single):
 
 
 def test_both_orbits_have_a_basin_between_fold_and_grazing_and_one_below(scene):
-    between = attractors.basins(scene, FREQUENCY, -0.006, 12, 2, lambda: None, close=True)
+    between = basins(scene, FREQUENCY, -0.006, 12, 2, lambda: None, close=True)
     assert between.period == 4
     parts = between.parts()
     assert parts["p1 without impacts"] > 0.02 and parts["p4"] > 0.5
     # a start next to p1, and one on p4
-    below = attractors.basins(scene, FREQUENCY, -0.02, 6, 2, lambda: None)
+    below = basins(scene, FREQUENCY, -0.02, 6, 2, lambda: None)
     assert set(np.unique(below.leads)) <= {-1, 1}  # below the fold of -0.0132 only p1 is left
 
 

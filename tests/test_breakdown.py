@@ -20,9 +20,28 @@ from contact.stop import Stop
 from contact.stroboscope import StroboscopicMap
 from contact.trajectory import State
 from studies import breakdown
+from studies.instruments.beam_of_fig_5 import (
+    FREE_PERIOD_S,
+    FREQUENCY_HZ,
+    born,
+    driven,
+    fold_of_p3,
+    lossy,
+    scene_of_fig_5,
+    tuned,
+)
+from studies.instruments.born_period_map import candidates, within_errors
+from studies.instruments.breakdown_scans import both_ways, periods
 from studies.instruments.calibration import ACCURACY, decay_rate, free_period
-from studies.instruments.oscillators import nordmark_of, single_mode_oscillator
+from studies.instruments.oscillators import (
+    REFERENCE_EXCESS,
+    approach_speed,
+    nordmark_of,
+    single_mode_oscillator,
+)
 from studies.instruments.scene_file import read_scene
+from studies.instruments.single_mode_island import island
+from studies.instruments.spring_of_scene import model_of
 from studies.published import BREAKDOWN
 
 SIX = {"mass": 0.004, "factor": 2.0}
@@ -31,13 +50,13 @@ SIX = {"mass": 0.004, "factor": 2.0}
 
 @pytest.fixture(scope="module")
 def scene():
-    return breakdown.scene_of_fig_5(read_scene("letter", []))
+    return scene_of_fig_5(read_scene("letter", []))
 
 
 @pytest.fixture(scope="module")
 def light(scene):
-    model = breakdown.tuned(scene, breakdown.FREE_PERIOD_S, mass=SIX["mass"])
-    return breakdown.driven(scene, model, factor=SIX["factor"], local_restitution=1.0)
+    model = tuned(scene, FREE_PERIOD_S, mass=SIX["mass"])
+    return driven(scene, model, factor=SIX["factor"], local_restitution=1.0)
 
 
 def test_the_beam_of_fig_5_has_its_period_and_damping_and_keeps_ball_and_gap(scene):
@@ -50,7 +69,7 @@ def test_the_beam_of_fig_5_has_its_period_and_damping_and_keeps_ball_and_gap(sce
 
 
 def test_the_map_puts_fig_5_in_the_region_of_a_stable_p3(scene):
-    nordmark = nordmark_of(scene, breakdown.FREQUENCY_HZ)
+    nordmark = nordmark_of(scene, FREQUENCY_HZ)
     assert maximal_period(nordmark) == 3
     low, high = stable_range(nordmark, 3)
     assert low < 0 < high
@@ -63,7 +82,7 @@ def test_the_map_puts_fig_5_in_the_region_of_a_stable_p3(scene):
 def test_the_island_of_eq_1_starts_at_the_fold_and_outlives_the_single_impact_p3(
     scene, restitution, fold, second_impact, end
 ):
-    found, diagram = breakdown.island(scene, restitution, step=1e-3)
+    found, diagram = island(scene, restitution, step=1e-3)
     assert found["fold_p3"] == pytest.approx(fold, abs=2e-5)
     on_p3 = (diagram.period == 3) & (diagram.impacts == 1)
     assert on_p3[0]
@@ -82,9 +101,9 @@ def test_the_fold_of_p3_of_eq_1_from_shooting_is_that_of_the_closed_form_for_eit
     folds = []
     for tau in (0.05, 0.1):
         here = scene.replace({"single_mode.restitution": tau})
-        oscillator = single_mode_oscillator(here, breakdown.FREQUENCY_HZ)
+        oscillator = single_mode_oscillator(here, FREQUENCY_HZ)
         closed = MaximalFamily.from_oscillator(oscillator, period=3).fold().excess
-        scan = breakdown.fold_of_p3(StroboscopicMap(oscillator=oscillator))
+        scan = fold_of_p3(StroboscopicMap(oscillator=oscillator))
         assert scan == pytest.approx(closed, rel=1e-8)
         folds.append(closed)
     assert folds[1] / folds[0] == pytest.approx(1.141, abs=2e-3)
@@ -92,26 +111,26 @@ def test_the_fold_of_p3_of_eq_1_from_shooting_is_that_of_the_closed_form_for_eit
 
 def test_the_beam_as_calibrated_and_eq_1_are_born_without_a_period(scene):
     for oscillator in (
-        single_mode_oscillator(scene, breakdown.FREQUENCY_HZ),
-        breakdown.driven(scene, breakdown.model_of(scene)).oscillator,
+        single_mode_oscillator(scene, FREQUENCY_HZ),
+        driven(scene, model_of(scene)).oscillator,
     ):
-        period, impacts = breakdown.born(StroboscopicMap(oscillator=oscillator), 1500)
+        period, impacts = born(StroboscopicMap(oscillator=oscillator), 1500)
         assert period == 0
         assert impacts > 20
 
 
 def test_a_ball_of_4_g_gives_the_letters_p6_and_p3_at_the_end_of_the_downward_scan(light):
-    assert breakdown.born(light) == (6, 3)
-    fold = breakdown.fold_of_p3(light)
+    assert born(light) == (6, 3)
+    fold = fold_of_p3(light)
     assert -0.09 < fold < -0.05
     plan = SimpleNamespace(below=45, above=4, cycles=700, early=True)
-    found = breakdown.both_ways(light, 1.12 * fold, plan, light.tip)
+    found = both_ways(light, 1.12 * fold, plan, light.tip)
     up, down = found["up"], found["down"]
     below = up.excess < -1e-9
-    assert np.all(breakdown.periods(up)[below] == 1)
+    assert np.all(periods(up)[below] == 1)
     assert np.all(up.impacts[below] == 0)
     # p3 with one impact is met once, and after it there is only the motion without impacts
-    falling, period = down.excess, breakdown.periods(down)
+    falling, period = down.excess, periods(down)
     on_p3 = np.flatnonzero((period == 3) & (down.impacts == 1))
     assert on_p3.size >= 1
     last = int(on_p3[-1])
@@ -127,14 +146,14 @@ def test_the_search_keeps_the_period_of_the_beam_and_scales_the_higher_modes_onl
     omega, rate = light.oscillator.model.omega[0], light.oscillator.model.decay_rate[0]
     period = 2 * math.pi / math.sqrt(omega**2 - 0.25 * rate**2)
     assert period == pytest.approx(BREAKDOWN["free_period_s"], rel=1e-9)
-    more = breakdown.driven(scene, light.oscillator.model, factor=3.0).oscillator.model
+    more = driven(scene, light.oscillator.model, factor=3.0).oscillator.model
     assert more.decay_rate[0] == rate
     assert more.decay_rate[1:] == pytest.approx(3.0 * light.oscillator.model.decay_rate[1:], rel=1e-15)
 
 
 def test_a_lossy_ball_leaves_with_the_restitution_asked_for(scene):
-    law = breakdown.lossy(scene, 0.7)
-    speed = breakdown.approach_speed(breakdown.FREQUENCY_HZ, scene.stop.gap_m, breakdown.REFERENCE_EXCESS)
+    law = lossy(scene, 0.7)
+    speed = approach_speed(FREQUENCY_HZ, scene.stop.gap_m, REFERENCE_EXCESS)
     mass = 0.006
     free = ModalModel(
         omega=[0.0], decay_rate=[0.0], phi=[1 / math.sqrt(mass)], participation=[math.sqrt(mass)]
@@ -146,7 +165,7 @@ def test_a_lossy_ball_leaves_with_the_restitution_asked_for(scene):
 
 
 def test_rho_of_the_letters_chaos_is_not_its_excess(scene):
-    nordmark = nordmark_of(scene, breakdown.FREQUENCY_HZ)
+    nordmark = nordmark_of(scene, FREQUENCY_HZ)
     assert isinstance(nordmark, NordmarkMap)
     assert nordmark.excess(BREAKDOWN["chaos_at"]) / BREAKDOWN["chaos_at"] == pytest.approx(0.787, abs=2e-3)
 
@@ -161,13 +180,13 @@ def test_cells_are_tried_by_what_they_ask_for(scene):
             (0.006, 1.0, 1.0, 12),
         )
     ]
-    assert breakdown.candidates(cells, scene) == [cells[2], cells[1], cells[0]]
-    assert breakdown.candidates(cells[-1:], scene) == []
+    assert candidates(cells, scene) == [cells[2], cells[1], cells[0]]
+    assert candidates(cells[-1:], scene) == []
 
 
 def test_errors_of_the_letter_do_not_give_period_6_to_the_calibrated_beam(scene):
     with ThreadPoolExecutor(max_workers=2) as pool:
-        assert 6 not in [row["period"] for row in breakdown.within_errors(scene, pool)]
+        assert 6 not in [row["period"] for row in within_errors(scene, pool)]
 
 
 def test_json_has_the_promised_keys(tmp_path, capsys):

@@ -12,10 +12,15 @@ from contact.maximal_orbits import maximal_orbits
 from contact.orbits.shooting import Shooting
 from contact.stroboscope import StroboscopicMap
 from studies import claims
-from studies.claims import Leaf, exponents, flip_speed, overdamped, second_impact_speed, secondary, window
+from studies.instruments.claim_bands import bands_claim
+from studies.instruments.claim_hysteresis_and_loss import hysteresis_claim
+from studies.instruments.claim_second_impact import secondary_claim
 from studies.instruments.oscillators import single_mode_oscillator
+from studies.instruments.overdamped_map import exponents, overdamped, window
 from studies.instruments.periodicity import settle
 from studies.instruments.scene_file import read_scene
+from studies.instruments.secondary_bifurcation import flip_speed, second_impact_speed, secondary
+from studies.instruments.single_mode_leaf import Leaf
 
 
 @pytest.fixture(scope="module")
@@ -78,7 +83,7 @@ def test_a_secondary_bifurcation_below_grazing_lets_another_state_be_born(scene,
 
 
 def test_hysteresis_falls_with_the_energy_lost(scene):
-    found = claims.hysteresis_claim(scene)
+    found = hysteresis_claim(scene)
     assert found.holds is True
     for f in scene.drive.frequencies_hz:
         entry = found.numbers[f"{f:g} Hz"]
@@ -96,7 +101,7 @@ def test_hysteresis_falls_with_the_energy_lost(scene):
 
 
 def test_secondary_bifurcations_come_above_grazing_in_the_map_only(scene):
-    found = claims.secondary_claim(scene, quick=True)
+    found = secondary_claim(scene, quick=True)
     assert found.holds is True
     assert found.numbers["map_lowest_excess"] > 0.0
     parts = list(found.numbers["part_of_band_below_grazing"].values())
@@ -104,7 +109,7 @@ def test_secondary_bifurcations_come_above_grazing_in_the_map_only(scene):
 
 
 def test_the_path_crosses_the_bands_and_the_hysteresis_starts_from_zero(scene):
-    found = claims.bands_claim(scene, quick=True)
+    found = bands_claim(scene, quick=True)
     assert found.holds is True
     assert {3, 4, 5, 6, 8, 11} <= set(found.numbers["crossed"])
     assert found.numbers["largest_at_upper_edge"] < 1e-12

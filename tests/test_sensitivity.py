@@ -7,12 +7,18 @@ import json
 import numpy as np
 import pytest
 
+from contact.strobed_nordmark import StrobedNordmarkMap
 from contact.stroboscope import StroboscopicMap
 from studies import sensitivity
+from studies.instruments.amplitude_noise import noise_at, noisy
 from studies.instruments.calibration import free_period
-from studies.instruments.oscillators import beam_of, single_mode_oscillator
+from studies.instruments.changed_folds import row_at
+from studies.instruments.grazing_births import BORN_EXCESS, NOISE, born, first_birth, upper_end
+from studies.instruments.oscillators import beam_of, nordmark_of, single_mode_oscillator
+from studies.instruments.scene_changes import changed, changes_of
 from studies.instruments.scene_file import read_scene
 from studies.instruments.spring_of_scene import model_of
+from studies.instruments.strobe_clouds import clouds, since_impact
 from studies.published import FREE_PERIOD_ERROR_S
 
 NAMES = ("map", "single_mode", "beam")
@@ -29,17 +35,17 @@ def model(scene):
 
 
 def change(scene, parameter, sign):
-    return next(c for c in sensitivity.changes_of(scene, False) if (c.parameter, c.sign) == (parameter, sign))
+    return next(c for c in changes_of(scene, False) if (c.parameter, c.sign) == (parameter, sign))
 
 
 @pytest.fixture(scope="module")
 def last(scene, model):
     """23.40 Hz without a change, and with T at both ends of its error."""
-    base, periods = sensitivity.row_at(scene, model, 23.40, None, None)
+    base, periods = row_at(scene, model, 23.40, None, None)
     found = {0: base}
     for sign in (-1, 1):
         one = change(scene, "free period", sign)
-        found[sign] = sensitivity.row_at(*sensitivity.changed(scene, one), 23.40, one, periods)[0]
+        found[sign] = row_at(*changed(scene, one), 23.40, one, periods)[0]
     return found
 
 
@@ -65,32 +71,32 @@ def test_the_free_period_at_which_p10_is_born(scene):
     """The band edge f T = 20/21 in the map itself, on both sides of it."""
     for period, wanted in ((40.71e-3, 11), (40.69e-3, 10)):
         there = scene.replace({"single_mode.free_period_s": period})
-        strobed = sensitivity.StrobedNordmarkMap(map=sensitivity.nordmark_of(there, 23.40))
-        assert sensitivity.born(strobed, 1e-5).period == wanted
+        strobed = StrobedNordmarkMap(map=nordmark_of(there, 23.40))
+        assert born(strobed, 1e-5).period == wanted
     assert 20.0 / (21.0 * 23.40) == pytest.approx(40.70e-3, abs=5e-6)
 
 
 def test_the_steps_that_skip_p11_are_far_above_the_noise(scene, model):
     for oscillator in (single_mode_oscillator(scene, 23.40), beam_of(scene, 23.40, model)):
         strobed = StroboscopicMap(oscillator=oscillator)
-        lives = sensitivity.upper_end(strobed, 11)
-        ten = sensitivity.first_birth(strobed, 10)
-        assert 5 * sensitivity.NOISE < lives < ten < 40 * sensitivity.NOISE
+        lives = upper_end(strobed, 11)
+        ten = first_birth(strobed, 10)
+        assert 5 * NOISE < lives < ten < 40 * NOISE
 
 
 def test_a_changed_spring_keeps_its_period_and_the_rate_of_mode_1(scene, model):
     period = free_period(scene)
     for parameter in ("mass of ball and mount", "damping of higher modes"):
-        there, modes = sensitivity.changed(scene, change(scene, parameter, 1))
+        there, modes = changed(scene, change(scene, parameter, 1))
         assert free_period(there) == pytest.approx(period, rel=1e-9)
         assert modes.decay_rate[0] == pytest.approx(model.decay_rate[0], rel=1e-9)
     assert modes.decay_rate[1:] == pytest.approx(2.0 * model.decay_rate[1:], rel=1e-12)
 
 
 def test_the_fold_of_eq_1_and_map_know_nothing_of_the_higher_modes(scene, model):
-    base, periods = sensitivity.row_at(scene, model, 20.90, None, None)
+    base, periods = row_at(scene, model, 20.90, None, None)
     one = change(scene, "damping of higher modes", 1)
-    row, _ = sensitivity.row_at(*sensitivity.changed(scene, one), 20.90, one, periods)
+    row, _ = row_at(*changed(scene, one), 20.90, one, periods)
     assert row["fold_map"] == base["fold_map"]
     assert row["fold_single_mode"] == base["fold_single_mode"]
     assert abs(row["fold_beam"] / base["fold_beam"] - 1) > 0.05
@@ -99,27 +105,27 @@ def test_the_fold_of_eq_1_and_map_know_nothing_of_the_higher_modes(scene, model)
 def test_noise_has_the_size_asked_for_and_leaves_p3_with_three_clouds(scene):
     """Jitter of relative rms s moves a strobe point of p_m by at least its own share of the steady motion."""
     strobed = StroboscopicMap(oscillator=single_mode_oscillator(scene, 20.90))
-    points, impacts = sensitivity.noisy(strobed, strobed.tip, "jitter", 600)
-    found = sensitivity.clouds(points, impacts, 3)
+    points, impacts = noisy(strobed, strobed.tip, "jitter", 600)
+    found = clouds(points, impacts, 3)
     assert found["regular"] == 1.0
     assert found["told_apart"] > 5
-    quiet = strobed.at(sensitivity.BORN_EXCESS).orbit(sensitivity.born(strobed).end, 3)
-    phases = sensitivity.since_impact(impacts)
+    quiet = strobed.at(BORN_EXCESS).orbit(born(strobed).end, 3)
+    phases = since_impact(impacts)
     centres = np.sort([np.median(points[phases == j]) for j in range(3)])
     # the clouds lie where the points without noise are
     assert centres == pytest.approx(np.sort(strobed.tip(quiet.points)), abs=0.5 * found["spread"])
 
 
 def test_strobe_points_run_together_and_hysteresis_sinks_below_the_noise_as_m_grows(scene):
-    rows = {m: sensitivity.noise_at(scene, m, 500) for m in (6, 9, 13)}
+    rows = {m: noise_at(scene, m, 500) for m in (6, 9, 13)}
     ratio = [rows[m]["jitter"]["told_apart"] for m in rows]
     assert ratio[0] > 2 > ratio[1] > 1 / 2 > ratio[2] or ratio[0] > 2 > 0.7 > ratio[2]
     assert ratio[0] > ratio[1] > ratio[2]
     for m in rows:
         assert rows[m]["born"] == m
         assert rows[m]["drift"]["told_apart"] < rows[m]["jitter"]["told_apart"]
-    assert abs(rows[6]["fold"]) > 2 * sensitivity.NOISE
-    assert abs(rows[13]["fold"]) < 0.5 * sensitivity.NOISE
+    assert abs(rows[6]["fold"]) > 2 * NOISE
+    assert abs(rows[13]["fold"]) < 0.5 * NOISE
 
 
 def test_clouds_tell_well_separated_points_from_merged_ones():
@@ -127,14 +133,14 @@ def test_clouds_tell_well_separated_points_from_merged_ones():
     impacts = (n % 3 == 0).astype(int)
     dice = np.random.default_rng(0)
     level = np.array([0.0, 1.0, 5.0])[n % 3]
-    near = sensitivity.clouds(level + 0.1 * dice.standard_normal(n.size), impacts, 3)
+    near = clouds(level + 0.1 * dice.standard_normal(n.size), impacts, 3)
     # 90 % of a normal distribution lie within 3.29 standard deviations
     assert near["told_apart"] == pytest.approx(1 / 0.329, rel=0.05)
     assert near["separation"] == pytest.approx(1.0, abs=0.02)
     assert near["regular"] == 1.0
-    far = sensitivity.clouds(level + 1.0 * dice.standard_normal(n.size), impacts, 3)
+    far = clouds(level + 1.0 * dice.standard_normal(n.size), impacts, 3)
     assert far["told_apart"] < 0.5
-    assert sensitivity.clouds(level, impacts, 4)["regular"] == 0.0
+    assert clouds(level, impacts, 4)["regular"] == 0.0
 
 
 def test_json_has_the_promised_keys(tmp_path, capsys):
