@@ -1,0 +1,91 @@
+"""Orbit diagrams of the six transitions, as in the letter's Fig. 2, and their points as tables.
+
+Filled points are the upward scan, open ones the downward scan, against the amplitude of the base [mm] (for
+the map: against the excess); the dashed line is grazing.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from studies.instruments.command_line import Request
+from studies.instruments.figures import PAGE, house_style, label, new_figure
+from studies.instruments.oscillators import single_mode_oscillator
+from studies.instruments.scene import Scene
+
+__all__ = ["draw", "store_points"]
+
+
+def draw(
+    scene: Scene, rows: Sequence[Mapping[str, Any]], diagrams: Sequence[Mapping[str, Any]], name: str
+) -> Any:
+    """The six panels of the letter's Fig. 2 for one description."""
+    columns = min(3, len(rows))
+    lines = math.ceil(len(rows) / columns)
+    figure, axes = new_figure(lines, columns, width=PAGE, height=0.055 * lines + 0.012, squeeze=False)
+    for axis in axes.flat[len(rows) :]:
+        axis.set_visible(False)
+    for number, (axis, row, found) in enumerate(zip(axes.flat, rows, diagrams, strict=False)):
+        grazing = single_mode_oscillator(scene, row["frequency_hz"]).grazing_amplitude()
+        if name == "beam":
+            grazing = row["grazing_amplitude_m"]
+        for way, face, size in (("down", "none", 3.2), ("up", "#0072B2", 2.0)):
+            diagram = found[name][way]
+            across = np.repeat(diagram.excess[:, None], diagram.points.shape[1], axis=1)
+            x = 1e3 * grazing * (1.0 + across) if name != "map" else 1e3 * across
+            y = 1e3 * diagram.points if name != "map" else diagram.points
+            axis.plot(
+                x.ravel(), y.ravel(), linestyle="none", marker="o", markersize=size, markeredgewidth=0.5,
+                markerfacecolor=face, markeredgecolor="#0072B2" if way == "up" else "#D55E00",
+                label=f"{way}ward scan", rasterized=True, zorder=2 if way == "down" else 3,
+            )
+        axis.axvline(
+            0.0 if name == "map" else 1e3 * grazing, color="0.6", linewidth=0.6, linestyle="--", zorder=1
+        )
+        period = f"p$_{{{row[name]}}}$" if row[name] else "no period found"
+        with house_style():
+            axis.set_title(f"({chr(ord('a') + number % 26)}) {row['frequency_hz']:.2f} Hz, p$_1$ ↔ {period}")
+        axis.locator_params(axis="x", nbins=4)
+    quantities = {
+        "map": (("excess F/F$_g$ - 1", "10$^{-3}$"), ("x of the map", "1")),
+        "single_mode": (("excitation amplitude", "mm"), ("tip displacement", "mm")),
+        "beam": (("excitation amplitude", "mm"), ("displacement at the read-out point", "mm")),
+    }
+    if name == "beam" and scene.readout.quantity == "rotation":
+        quantities["beam"] = (quantities["beam"][0], ("rotation at the read-out point", "mrad"))
+    sideways, upwards = quantities[name]
+    handles, names = axes.flat[0].get_legend_handles_labels()
+    with house_style():
+        for axis in axes[-1, :]:
+            label(axis.xaxis, *sideways)
+        figure.supylabel(f"{upwards[0]} ({upwards[1]})" if upwards[1] != "1" else upwards[0])
+        figure.legend(handles[::-1], names[::-1], loc="outside lower center", ncols=2, markerscale=1.5)
+    return figure
+
+
+def store_points(
+    request: Request, rows: Sequence[Mapping[str, Any]], diagrams: Sequence[Mapping[str, Any]]
+) -> None:
+    """The points of all scans, as npz, and periods against amplitude as csv."""
+    arrays: dict[str, np.ndarray] = {}
+    table: dict[str, list[Any]] = {
+        name: [] for name in ("frequency_hz", "model", "direction", "excess", "period", "impacts", "cycles")
+    }
+    for row, found in zip(rows, diagrams, strict=True):
+        for name, ways in found.items():
+            for way, diagram in ways.items():
+                stem = f"{name}_{row['frequency_hz']:.2f}_hz_{way}".replace(".", "p")
+                arrays[f"{stem}_excess"], arrays[f"{stem}_points"] = diagram.excess, diagram.points
+                for i in range(diagram.excess.size):
+                    values = (
+                        row["frequency_hz"], name, way, float(diagram.excess[i]), int(diagram.period[i]),
+                        int(diagram.impacts[i]), int(diagram.cycles[i]),
+                    )
+                    for column, value in zip(table.values(), values, strict=True):
+                        column.append(value)
+    request.record.write_arrays("orbit_diagram", **arrays)
+    request.record.write_table("orbit_diagram", table)
