@@ -432,8 +432,8 @@ def test_a_branch_that_loses_a_touch_ends_with_its_last_good_orbit() -> None:
     # there the orbit of one impact has its grazing
     single = Shooting(oscillator=oscillator, period=3)
     (graze,) = follow(single, single.at_speed(100.0), low=90.0, high=140.0).of_kind("grazing")
-    assert last.speed == pytest.approx(graze.speed, rel=3e-3)
-    assert last.excess == pytest.approx(graze.excess, rel=3e-4)
+    assert last.speed == pytest.approx(graze.speed, rel=1e-5)
+    assert last.excess == pytest.approx(graze.excess, rel=1e-5)
     with pytest.raises(ContactError, match="lost"):
         family.at_speed(1.02 * last.speed, last)
 

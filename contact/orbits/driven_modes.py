@@ -33,7 +33,7 @@ def require(condition: bool, sentence: str) -> None:
 
 
 def modal_flow(omega: Array, decay_rate: Array, time: float) -> Array:
-    """Free flow (u, u') -> (u, u') of each mode over `time` [s], shape (n_modes, 2, 2)."""
+    """Free flow (u, u') -> (u, u') of each mode over `time` [s], of either sign, shape (n_modes, 2, 2)."""
     rows = []
     for w, c in zip(omega.tolist(), decay_rate.tolist(), strict=True):
         high, low = damped_frequency(w, c)

@@ -30,7 +30,8 @@ from scipy.optimize import minimize_scalar
 
 from contact.crossing import CROSSES, first_crossing
 from contact.errors import NotPeriodic
-from contact.flight import Motion, flow_matrix
+from contact.flight import Motion
+from contact.orbits.driven_modes import modal_flow
 from contact.oscillator import ImpactOscillator
 from contact.tangent import FLOWN, flow_from_touch
 
@@ -43,15 +44,6 @@ MOST_TOUCHES = 200
 
 WINDOW = 0.5
 """Part of a drive period after the first touch in which further touches belong to the collision."""
-
-
-def mode_flows(motion: Motion, time: float) -> Array:
-    """Free flows of all modes over `time` [s], shape (n_modes, 2, 2); `time` may be negative."""
-    flows = [
-        flow_matrix(motion.omega[k], motion.decay[k], motion.damped[k], motion.damped_low[k], time)
-        for k in range(motion.omega.size)
-    ]
-    return np.array(flows).reshape(-1, 2, 2)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -145,7 +137,7 @@ class KickFamily:
     @cached_property
     def flow(self) -> Array:
         """Free flow over m/f, shape (n_modes, 2, 2)."""
-        return mode_flows(self._motion, self.period * self.oscillator.period)
+        return modal_flow(self._motion.omega, self._motion.decay, self.period * self.oscillator.period)
 
     @cached_property
     def _motion(self) -> Motion:
@@ -204,8 +196,9 @@ class KickFamily:
             if again != CROSSES:
                 break
             touches += 1
-        free = np.einsum("kij,kj->ki", mode_flows(motion, end), w)
-        jump = np.einsum("kij,kj->ki", mode_flows(motion, -end), np.column_stack([u, v]) - free)
+        free = np.einsum("kij,kj->ki", modal_flow(motion.omega, motion.decay, end), w)
+        back = modal_flow(motion.omega, motion.decay, -end)
+        jump = np.einsum("kij,kj->ki", back, np.column_stack([u, v]) - free)
         if self.modes is not None:
             jump[self.modes :] = 0.0
         return Kick(speed=speed, jump=jump, touches=touches, duration=float(end))

@@ -43,7 +43,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact.errors import NotPeriodic, UnresolvedCrossing
-from contact.orbits.kick import mode_flows
+from contact.orbits.driven_modes import modal_flow
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate, steady_motion
 from contact.strobed_nordmark import StrobedNordmarkMap
@@ -252,7 +252,8 @@ class _OfOscillator:
         return np.concatenate([phi, phi / np.where(model.omega > 0, model.omega, drive)])
 
     def _free(self, time: float) -> Array:
-        flows = mode_flows(self.oscillator.motion(), time)
+        model = self.oscillator.model
+        flows = modal_flow(model.omega, model.decay_rate, time)
         return np.block([[np.diag(flows[:, i, j]) for j in range(2)] for i in range(2)])
 
     @cached_property
