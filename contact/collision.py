@@ -34,9 +34,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from contact.crossing import tip_at
-from contact.flight import Motion, propagate, tip_rounding
+from contact.flight import Motion, propagate, steady_motion, tip_rounding
 from contact.oscillator import ImpactOscillator
-from contact.simulation import simulate, steady_motion
+from contact.simulation import simulate
 from contact.trajectory import State, Trajectory
 
 __all__ = ["Collision", "collisions", "first_collision"]

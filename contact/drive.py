@@ -12,7 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-__all__ = ["HarmonicDrive"]
+__all__ = ["HarmonicDrive", "split_time"]
+
+EPS = 2.220446049250313e-16
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,3 +59,14 @@ class HarmonicDrive:
     def strobe_times(self, count: int) -> np.ndarray:
         """The first `count` strobe times n/f, shape (count,) [s]."""
         return np.arange(count) / self.frequency
+
+
+def split_time(time: np.ndarray, period: float) -> tuple[np.ndarray, np.ndarray]:
+    """Times as number of the drive period and time since its strobe [s]."""
+    index = np.floor(time / period)
+    clock = time - index * period
+    # a time within rounding of a strobe belongs to that strobe
+    late = clock > period * (1 - 4 * EPS * np.maximum(index, 1))
+    index, clock = np.where(late, index + 1, index), np.where(late, 0.0, np.maximum(clock, 0.0))
+    clock = np.where(clock <= 4 * EPS * index * period, 0.0, clock)
+    return index.astype(np.int64), clock

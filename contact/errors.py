@@ -7,7 +7,17 @@ finished: they carry the place where it happened, and never a number that might 
 
 from __future__ import annotations
 
-__all__ = ["Chatter", "ContactError", "ContactTooStiff", "NotPeriodic", "UnresolvedCrossing"]
+import math
+
+__all__ = [
+    "Chatter",
+    "ContactError",
+    "ContactTooStiff",
+    "Diverged",
+    "NotPeriodic",
+    "StepTooLarge",
+    "UnresolvedCrossing",
+]
 
 
 class ContactError(RuntimeError):
@@ -52,6 +62,22 @@ class ContactTooStiff(ContactError):
     """A contact needs more steps than the bound allows."""
 
     reason = "a contact needs more integration steps than the bound allows"
+
+
+class StepTooLarge(ContactError):
+    """A method's time step is beyond its limit of stability, in flight or in the contact at hand.
+
+    ``step`` is the step [s].
+    """
+
+    reason = "the time step is beyond the limit of stability"
+    step: float = math.nan
+
+
+class Diverged(ContactError):
+    """A discretised motion has grown without bound."""
+
+    reason = "the discretised motion grew without bound"
 
 
 class NotPeriodic(ContactError):

@@ -34,7 +34,7 @@ import numpy as np
 
 from contact.compiled import kernel
 
-__all__ = ["Motion", "flow_matrix", "propagate", "tip_rounding"]
+__all__ = ["Motion", "flow_matrix", "propagate", "steady_motion", "tip_rounding"]
 
 EPS = 2.220446049250313e-16
 _SPLIT = 134217729.0  # 2^27 + 1, Veltkamp's splitting of a double into two halves
@@ -212,3 +212,13 @@ def tip_rounding(motion, u, v):
         w = max(motion.omega[k], 0.5 * motion.decay[k])
         total += abs(motion.phi[k]) * (abs(u[k]) + (abs(v[k]) / w if w > 0.0 else abs(v[k]) * motion.period))
     return 4.0 * EPS * total
+
+
+def steady_motion(motion: Motion, clock: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Steady modal displacement and velocity at times `clock` since a strobe, each (n_times, n_modes)."""
+    phase = motion.drive * np.asarray(clock, dtype=float)[:, None]
+    s, c = np.sin(phase), np.cos(phase)
+    return (
+        motion.offset + motion.sine * s + motion.cosine * c,
+        motion.drive * (motion.sine * c - motion.cosine * s),
+    )

@@ -13,10 +13,12 @@ from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
+from contact.drive import split_time
+from contact.flight import steady_motion
 from contact.impact_log import LOG_FIELDS, REBOUND, REGIME, WAIT
-from contact.integrators.event_driven import DONE, advance
+from contact.integrators.event_loop import DONE, advance
+from contact.integrators.exact_run import deviations, failure
 from contact.oscillator import ImpactOscillator
-from contact.simulation import deviations, failure, split_time, steady_motion
 from contact.trajectory import State
 
 __all__ = ["StrobedMap", "StrobedOrbit", "StroboscopicMap"]

@@ -112,6 +112,8 @@ class Trajectory:
         The states at the times that were asked for.
     impacts : Impacts
         Every touch.
+    evaluations : int
+        Steps, flights or evaluations of the force that the method has spent.
     """
 
     end: State
@@ -123,3 +125,4 @@ class Trajectory:
     displacement: np.ndarray
     velocity: np.ndarray
     impacts: Impacts = field(repr=False)
+    evaluations: int = 0

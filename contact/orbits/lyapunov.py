@@ -43,9 +43,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact.errors import NotPeriodic, UnresolvedCrossing
+from contact.flight import steady_motion
 from contact.orbits.driven_modes import modal_flow
 from contact.oscillator import ImpactOscillator
-from contact.simulation import simulate, steady_motion
+from contact.simulation import simulate
 from contact.strobed_nordmark import StrobedNordmarkMap
 from contact.stroboscope import StroboscopicMap
 from contact.tangent import FLOWN, flow_from_touch

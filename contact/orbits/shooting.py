@@ -26,12 +26,12 @@ from numpy.typing import NDArray
 
 from contact.crossing import CROSSES, FREE, first_crossing
 from contact.errors import NotPeriodic
-from contact.flight import Motion
+from contact.flight import Motion, steady_motion
 from contact.laws import DELAYED
 from contact.orbits.kick import KickFamily, KickOrbit
 from contact.orbits.saltation import sorted_multipliers
 from contact.oscillator import ImpactOscillator
-from contact.simulation import simulate, steady_motion
+from contact.simulation import simulate
 from contact.tangent import FLOWN, flow_from_touch
 from contact.trajectory import State
 

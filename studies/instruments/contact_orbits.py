@@ -22,8 +22,9 @@ import numpy as np
 from scipy.optimize import brentq, root
 
 from contact.errors import ContactError, NotPeriodic
+from contact.flight import steady_motion
 from contact.oscillator import ImpactOscillator
-from contact.simulation import simulate, steady_motion
+from contact.simulation import simulate
 from contact.stop import Stop
 from contact.trajectory import State
 from studies.instruments.soft_impact import SoftImpact
