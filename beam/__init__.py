@@ -33,6 +33,7 @@ from .reduction import ModalModel, reduce, single_mode
 from .section import Layer, StripSection
 from .spring import LeafSpring, Readout, Support, Tip
 from .spring_shapes import cantilever, folded_u, straight_strip
+from .straight_equivalent import as_one_spring, straight_equivalent
 
 __all__ = [
     "ALUMINA",
@@ -61,6 +62,7 @@ __all__ = [
     "Support",
     "Tip",
     "UniformBeam",
+    "as_one_spring",
     "assemble",
     "cantilever",
     "default_elements",
@@ -70,5 +72,6 @@ __all__ = [
     "natural_modes",
     "reduce",
     "single_mode",
+    "straight_equivalent",
     "straight_strip",
 ]

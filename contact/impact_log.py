@@ -2,7 +2,7 @@
 
 A run is carried from call to call by two small arrays: `integers` (regime, number of derivatives that vanish
 at the start of the flight, rows logged, samples taken, impacts in this period, flights and contact steps so
-far) and `floats` (time since the
+far, and how crossings are looked for: 0 certified, else samples per period) and `floats` (time since the
 strobe [s], approach velocity of the contact under way [m/s], energy that it has lost [J], time that it still
 waits [s] and velocity with which it then leaves [m/s]).  A row of the log
 holds period and time of the first touch, period and time of the release, both tip velocities, the energy lost
@@ -19,7 +19,8 @@ from contact.flight import propagate, tip_steady
 from contact.hertz_series import hertz_state
 from contact.series import series_state
 
-REGIME, ORDER, LOGGED, SAMPLED, COUNT, EVALUATIONS = 0, 1, 2, 3, 4, 5
+REGIME, ORDER, LOGGED, SAMPLED, COUNT, EVALUATIONS, SEARCH = 0, 1, 2, 3, 4, 5, 6
+INTEGERS = 7
 CLOCK, APPROACH, LOSS, WAIT, REBOUND = 0, 1, 2, 3, 4
 LOG_FIELDS = 8
 START_PERIOD, START, END_PERIOD, END, IN, OUT, LOST, KIND = 0, 1, 2, 3, 4, 5, 6, 7

@@ -26,6 +26,7 @@ from typing import Any
 import numpy as np
 
 from contact.stroboscope import StroboscopicMap
+from studies.instruments.adequacy.fitted_scene import Need
 from studies.instruments.attractor_figures import SHAPES, draw_basins, draw_scan
 from studies.instruments.attractor_kinds import CHAOTIC, agreement
 from studies.instruments.attractor_scan import TITLES, Start, carried, row_of
@@ -145,6 +146,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--side", type=int, default=200, help="starts along each side of the basins (200)")
 
 
+NEEDS = (Need(quantity="fold", tolerance=0.05, everywhere=True),)
+"""What the numbers rest on: modes and mesh are chosen for it."""
+
+
 def main(argv: Sequence[str] | None = None, *, module: str | None = None) -> int:
     """Run the study from the command line."""
     return run_study(
@@ -154,6 +159,7 @@ def main(argv: Sequence[str] | None = None, *, module: str | None = None) -> int
         argv,
         options=add_options,
         module=module,
+        needs=NEEDS,
     )
 
 

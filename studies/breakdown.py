@@ -28,6 +28,7 @@ from typing import Any
 
 from contact.maximal_orbits import maximal_period
 from contact.stroboscope import StroboscopicMap
+from studies.instruments.adequacy.fitted_scene import Need
 from studies.instruments.beam_of_fig_5 import CHAOS_AT, FREQUENCY_HZ, born, driven, scene_of_fig_5
 from studies.instruments.born_period_map import candidates, search, within_errors
 from studies.instruments.breakdown_figures import draw_born, draw_scans
@@ -172,6 +173,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
+NEEDS = (Need(quantity="kick", tolerance=0.005),)
+"""What the numbers rest on: modes and mesh are chosen for it."""
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the study from the command line."""
     return run_study(
@@ -180,6 +185,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         run,
         argv,
         options=add_options,
+        needs=NEEDS,
     )
 
 

@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from studies.instruments.adequacy.fitted_scene import Need
 from studies.instruments.command_line import Request, run_study
 from studies.instruments.contact_calibration import Targets, calibrate_all, collision_at
 from studies.instruments.scene import Scene
@@ -50,10 +51,15 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
     }
 
 
+NEEDS = (Need(quantity="frequency 1", tolerance=1e-5), Need(quantity="kick", tolerance=0.005))
+"""What the numbers rest on: modes and mesh are chosen for it."""
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the study from the command line."""
     return run_study(
-        "calibrate", "Fit thickness, tape, gap and ball mass to the letter's numbers.", run, argv
+        "calibrate", "Fit thickness, tape, gap and ball mass to the letter's numbers.", run, argv,
+        needs=NEEDS,
     )
 
 

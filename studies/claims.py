@@ -19,6 +19,7 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from studies.instruments.adequacy.fitted_scene import Need
 from studies.instruments.claim_bands import bands_claim
 from studies.instruments.claim_hysteresis_and_loss import hysteresis_claim
 from studies.instruments.claim_overdamped_map import overdamped_claim
@@ -57,10 +58,15 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
     return {"claims": claims, "failed_cells": failed, "wall_s": time.perf_counter() - began}
 
 
+NEEDS = (Need(quantity="fold", tolerance=0.05, everywhere=True),)
+"""What the numbers rest on: modes and mesh are chosen for it."""
+
+
 def main(argv: Sequence[str] | None = None, *, module: str | None = None) -> int:
     """Run the study from the command line."""
     return run_study(
-        "claims", "The letter's other claims, each with the numbers that decide it.", run, argv, module=module
+        "claims", "The letter's other claims, each with the numbers that decide it.", run, argv, module=module,
+        needs=NEEDS,
     )
 
 

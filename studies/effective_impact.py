@@ -43,6 +43,7 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
+from studies.instruments.adequacy.fitted_scene import Need
 from studies.instruments.approach_answers import (
     clusters,
     fade,
@@ -179,12 +180,17 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
     }
 
 
+NEEDS = (Need(quantity="kick", tolerance=0.005, mesh=False),)
+"""What the numbers rest on: modes and mesh are chosen for it."""
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the study from the command line."""
     return run_study(
         "effective_impact",
         "Restitution, delay and kick of one approach to the plate, against all that they may depend on.",
         run, argv,
+        needs=NEEDS,
     )
 
 

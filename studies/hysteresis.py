@@ -26,6 +26,7 @@ from beam import ModalModel
 from contact.errors import ContactError
 from contact.maximal_orbits import bands
 from contact.stroboscope import StroboscopicMap
+from studies.instruments.adequacy.fitted_scene import Need
 from studies.instruments.command_line import Request, run_study
 from studies.instruments.fold_scan import orbit_end
 from studies.instruments.hysteresis_causes import CAUSES, DESCRIPTIONS, Fold, folds_at, row_of
@@ -216,10 +217,15 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
     }
 
 
+NEEDS = (Need(quantity="fold", tolerance=0.05, everywhere=True),)
+"""What the numbers rest on: modes and mesh are chosen for it."""
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the study from the command line."""
     return run_study(
-        "hysteresis", "Hysteresis of the p_m orbits, map against beam, and its causes.", run, argv
+        "hysteresis", "Hysteresis of the p_m orbits, map against beam, and its causes.", run, argv,
+        needs=NEEDS,
     )
 
 

@@ -39,6 +39,7 @@ from numpy.typing import NDArray
 
 from beam import LeafSpring, Modes, UniformBeam, exact_modes
 from beam.export import mode_name, write_mode_motion, write_modes
+from studies.instruments.adequacy.fitted_scene import Need
 from studies.instruments.command_line import Request, WrongUse, run_study
 from studies.instruments.mode_figures import DRAWN, LARGEST, draw, draw_in_space
 from studies.instruments.off_screen import SENTENCE, can_render
@@ -208,9 +209,13 @@ def _number(text: str) -> int:
     return number
 
 
+NEEDS = (Need(quantity="frequency 10", tolerance=1e-3),)
+"""What the numbers rest on: modes and mesh are chosen for it."""
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     return run_study("modes", "Natural modes of the spring: table, ParaView files and figure.", run, argv,
-                     options=options)
+                     options=options, needs=NEEDS)
 
 
 if __name__ == "__main__":

@@ -19,6 +19,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 from contact.stroboscope import StroboscopicMap
+from studies.instruments.adequacy.fitted_scene import Need
 from studies.instruments.amplitude_noise import SKIPPED, STROBES, noise_at, noisy
 from studies.instruments.changed_folds import row_at
 from studies.instruments.command_line import Request, run_study
@@ -134,10 +135,15 @@ def _noise_columns(noise: Sequence[Mapping[str, Any]]) -> dict[str, list[Any]]:
     return found
 
 
+NEEDS = (Need(quantity="fold", tolerance=0.05, everywhere=True, mesh=False),)
+"""What the numbers rest on: modes and mesh are chosen for it."""
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the study from the command line."""
     return run_study(
-        "sensitivity", "The six transitions under the letter's errors, noise and open assumptions.", run, argv
+        "sensitivity", "The six transitions under the letter's errors, noise and open assumptions.", run, argv,
+        needs=NEEDS,
     )
 
 

@@ -36,6 +36,7 @@ from typing import Any
 import numpy as np
 
 from contact.errors import ContactError
+from studies.instruments.adequacy.fitted_scene import Need
 from studies.instruments.command_line import Request, run_study
 from studies.instruments.hertz_smoothing import (
     HertzSmoothing,
@@ -250,6 +251,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
+NEEDS = (Need(quantity="kick", tolerance=0.005, mesh=False),)
+"""What the numbers rest on: modes and mesh are chosen for it."""
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the study from the command line."""
     return run_study(
@@ -258,6 +263,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         run,
         argv,
         options=add_options,
+        needs=NEEDS,
     )
 
 

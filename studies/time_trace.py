@@ -27,6 +27,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from contact.collision import Collision
+from studies.instruments.adequacy.fitted_scene import Need
 from studies.instruments.command_line import Request, run_study
 from studies.instruments.oscillators import beam_of
 from studies.instruments.quantities import SceneError
@@ -177,6 +178,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
+NEEDS = (Need(quantity="tip_trace", tolerance=2e-3),)
+"""What the numbers rest on: modes and mesh are chosen for it."""
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the study from the command line."""
     return run_study(
@@ -185,6 +190,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         run,
         argv,
         options=add_options,
+        needs=NEEDS,
     )
 
 

@@ -33,6 +33,7 @@ from contact.maximal_orbits import fold as map_fold
 from contact.orbits.single_impact import MaximalFamily
 from contact.strobed_nordmark import StrobedNordmarkMap
 from contact.stroboscope import StroboscopicMap
+from studies.instruments.adequacy.fitted_scene import Need
 from studies.instruments.command_line import Request, run_study
 from studies.instruments.fold_scan import orbit_end
 from studies.instruments.orbit_scan import OrbitDiagram, orbit_diagram
@@ -289,6 +290,13 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
+NEEDS = (
+    Need(quantity="born_period", tolerance=0.0, everywhere=True),
+    Need(quantity="fold", tolerance=0.07, everywhere=True),
+)
+"""What the numbers rest on: modes and mesh are chosen for it."""
+
+
 def main(argv: Sequence[str] | None = None, *, module: str | None = None) -> int:
     """Run the study from the command line."""
     return run_study(
@@ -298,6 +306,7 @@ def main(argv: Sequence[str] | None = None, *, module: str | None = None) -> int
         argv,
         options=add_options,
         module=module,
+        needs=NEEDS,
     )
 
 

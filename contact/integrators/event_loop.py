@@ -1,9 +1,10 @@
 """The loop over flights and contacts: flights in closed form, contacts at once or by their power series.
 
 A run goes from strobe to strobe, with time counted from the last strobe, so that a million periods bring no
-loss of phase.  In each period a certified search (``contact.crossing``) finds the first touch; an impact law
-acts at once, a force law is followed through the contact (``contact.series``) until the tip is off the wall
-again.  Periods without a touch cost one multiplication by the flow of a period.
+loss of phase.  In each period a certified search (``contact.crossing``) finds the first touch, or, if that is
+asked for, the letter's sampled one (``contact.integrators.sampled_search``); an impact law acts at once, a
+force law is followed through the contact (``contact.series``) until the tip is off the wall again.  Periods
+without a touch cost one multiplication by the flow of a period.
 
 The three exact methods, ``event_driven``, ``piecewise_linear`` and ``contact_series``, differ in the law that
 meets them here, and share everything else.
@@ -42,6 +43,7 @@ from contact.impact_log import (
     ORDER,
     REBOUND,
     REGIME,
+    SEARCH,
     WAIT,
     close_row,
     open_row,
@@ -50,6 +52,7 @@ from contact.impact_log import (
     sample_series,
     sample_waiting,
 )
+from contact.integrators.sampled_search import first_sampled_crossing, sampled_flow
 from contact.laws import DELAYED, HERTZ, NEWTON
 from contact.newton import accumulation_time, from_table, newton_impact
 from contact.series import (
@@ -97,9 +100,10 @@ def advance(
     motion : Motion
     u, v : ndarray, shape (n_modes,)
         Deviations from the steady motion; overwritten.
-    integers : ndarray of int64, shape (6,)
+    integers : ndarray of int64, shape (7,)
         Regime, vanishing derivatives at the start of the flight, rows logged, samples taken, impacts in this
-        period, flights and contact steps so far; carried from call to call.
+        period, flights, contact steps and sampled positions so far, kind of search; carried from call to
+        call.
     floats : ndarray, shape (5,)
         Time since the strobe; approach velocity, energy loss, waiting time and rebound velocity of the
         contact under way; carried likewise.
@@ -131,6 +135,10 @@ def advance(
             motion.omega[k], motion.decay[k], motion.damped[k], motion.damped_low[k], motion.period
         )
         loaded = loaded or motion.load[k] != 0.0
+    search = integers[SEARCH]
+    spacing, spaced = motion.period / max(1, search), np.empty((n, 6))
+    if search > 0:
+        sampled_flow(motion, spacing, spaced)
     envelope = np.empty(n + 1)
     su, sv = np.empty(n), np.empty(n)
     series = np.empty((SERIES_ORDER + 1, n))
@@ -159,7 +167,12 @@ def advance(
             if integers[COUNT] > MOST_IMPACTS:
                 return FAILED_CHATTER, index
             if integers[REGIME] == OUTSIDE:
-                outcome, s = first_crossing(motion, base, u, v, end - base, integers[ORDER], envelope)
+                if search == 0:
+                    outcome, s = first_crossing(motion, base, u, v, end - base, integers[ORDER], envelope)
+                else:
+                    outcome, s = first_sampled_crossing(
+                        motion, base, u, v, end - base, integers[ORDER], spacing, spaced, integers, su, sv
+                    )
                 if outcome == UNRESOLVED:
                     propagate(motion, u, v, s, u, v)
                     floats[CLOCK] = base + s

@@ -12,6 +12,7 @@ from contact.impact_log import (
     END_PERIOD,
     EVALUATIONS,
     IN,
+    INTEGERS,
     KIND,
     LOG_FIELDS,
     LOGGED,
@@ -20,6 +21,7 @@ from contact.impact_log import (
     REBOUND,
     REGIME,
     SAMPLED,
+    SEARCH,
     START,
     START_PERIOD,
     WAIT,
@@ -59,7 +61,8 @@ def deviations(
         )
     q, q_rate = steady_motion(motion, np.array([clock]))
     u, v = state.displacement - q[0], state.velocity - q_rate[0]
-    integers, floats = np.zeros(6, dtype=np.int64), np.array([clock, 0.0, 0.0, state.wait, state.rebound])
+    integers = np.zeros(INTEGERS, dtype=np.int64)
+    floats = np.array([clock, 0.0, 0.0, state.wait, state.rebound])
     integers[REGIME] = state.regime
     height, velocity, _acceleration = tip_state(motion, clock, u, v)
     _refuse_regime(motion, state.regime, height, tip_rounding(motion, u, v))
@@ -113,8 +116,10 @@ def failure(
     return UnresolvedCrossing(**place)
 
 
-def exact_trajectory(oscillator: ImpactOscillator, run: Run) -> Trajectory:
+def exact_trajectory(oscillator: ImpactOscillator, run: Run, *, search: int = 0) -> Trajectory:
     """The motion of `run`, followed event by event.
+
+    Crossings of the stop are proved (`search` 0) or looked for at `search` instants of each drive period.
 
     Raises
     ------
@@ -126,6 +131,7 @@ def exact_trajectory(oscillator: ImpactOscillator, run: Run) -> Trajectory:
     motion, n = oscillator.motion(), oscillator.n_modes
     first, clock, last, clock_end = run.first, run.clock, run.last, run.clock_end
     u, v, integers, floats = deviations(motion, run.start, clock)
+    integers[SEARCH] = search
     _height, velocity, _acceleration = tip_state(motion, clock, u, v)
     capacity = 64
     log, log_state = np.empty((capacity, LOG_FIELDS)), np.empty((capacity, 4 * n))

@@ -33,6 +33,7 @@ from pathlib import Path
 from typing import Any, NoReturn, TextIO
 
 from studies import single_blas_thread
+from studies.instruments.adequacy.fitted_scene import Need, fitted
 from studies.instruments.progress import Progress, duration
 from studies.instruments.record import SCHEMA, Record, json_text
 from studies.instruments.scene import Scene
@@ -158,6 +159,7 @@ def _study(
     run: Run,
     argv: Sequence[str],
     options: Options | None,
+    needs: Sequence[Need],
     output: TextIO,
 ) -> int:
     parser = _parser(command, description, options)
@@ -168,6 +170,10 @@ def _study(
         values = {"schema": SCHEMA, "study": name, "scene": scene.as_dict(), "provenance": scene.provenance()}
         print(json_text(values) if arguments.json else dump_scene(scene).rstrip(), file=output)
         return DONE
+    if needs and scene.drive.kind == "harmonic":
+        scene, sentence = fitted(scene, needs, _say)
+        if sentence:
+            _say(sentence)
     record = Record(
         study=name,
         folder=Path(arguments.out) / name,
@@ -203,6 +209,7 @@ def run_study(
     argv: Sequence[str] | None = None,
     *,
     options: Options | None = None,
+    needs: Sequence[Need] = (),
     module: str | None = None,
 ) -> int:
     """Read the arguments, run the study, store and report; returns the exit code.
@@ -213,6 +220,8 @@ def run_study(
     description : one or two sentences for --help.
     run : from scene and request to results in terms of JSON; `failed_cells` among them counts the failures.
     argv : arguments, those of the process by default.
+    needs : what the numbers of the study rest on; modes and mesh are chosen for it where the scene leaves
+        them open (``adequacy.fitted_scene``).
     options : adds options of the study's own to the parser; they arrive as `request.options`.
     module : what follows `python -m`, studies.NAME by default.
     """
@@ -222,7 +231,7 @@ def run_study(
     with _standard_output_kept_clean() as output:
         try:
             try:
-                return _study(name, command, description, run, arguments, options, output)
+                return _study(name, command, description, run, arguments, options, needs, output)
             except SystemExit as leaving:  # --help
                 return DONE if leaving.code in (None, 0) else WRONG_USE
             except KeyboardInterrupt:

@@ -38,6 +38,10 @@ MODE_LISTS = ("frequencies_hz", "decay_rates_per_s", "tip_values", "participatio
 """The lists of [modal_data], one entry per mode."""
 
 
+USUAL_MODES = 15
+"""Modes kept where neither the scene nor a study says how many are needed."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Scene:
     """The sections, and in `origins` the provenance of values that are no defaults (not part of equality)."""
@@ -104,6 +108,17 @@ class Scene:
             key: entry.provenance if self[key] == defaults[key] else origins.get(key, GIVEN)
             for key, _, entry in keys()
         }
+
+    @property
+    def kept_modes(self) -> int:
+        """Modes kept: `modes.count`, or where that is left open (0) all that were measured, or the usual 15."""
+        if self.modes.count:
+            return self.modes.count
+        if self.spring.kind == "modal_data":
+            return len(self.modal_data.frequencies_hz)
+        if self.damping.kind == "measured":
+            return min(USUAL_MODES, len(self.damping.measured_rates_per_s))
+        return USUAL_MODES
 
     def refuse_drive_above(self, highest_hz: float) -> None:
         """SceneError if a drive frequency lies above the highest mode retained, `highest_hz`."""
@@ -197,9 +212,9 @@ def _check_damping(scene: Scene) -> None:
             "damping.kind strips needs a tape that dissipates, spring.tape_thickness_m and "
             "spring.tape_loss_factor greater than 0: give both or choose another damping.kind"
         )
-    if damping.kind == "measured" and len(damping.measured_rates_per_s) < scene.modes.count:
+    if damping.kind == "measured" and len(damping.measured_rates_per_s) < scene.kept_modes:
         raise SceneError(
-            f"damping.kind measured needs a rate for each mode, {scene.modes.count} (modes.count), but "
+            f"damping.kind measured needs a rate for each mode, {scene.kept_modes} (modes.count), but "
             f"damping.measured_rates_per_s (unit 1/s) has {len(damping.measured_rates_per_s)}"
         )
 
@@ -214,5 +229,5 @@ def _check_modal_data(scene: Scene) -> None:
             "spring.kind modal_data needs lists of equal length, one entry per mode, in modal_data, not "
             + ", ".join(f"{name} with {length}" for name, length in lengths.items())
         )
-    scene.refuse_drive_above(max(sorted(data.frequencies_hz)[: scene.modes.count]))
+    scene.refuse_drive_above(max(sorted(data.frequencies_hz)[: scene.kept_modes]))
 

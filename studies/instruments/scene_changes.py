@@ -106,7 +106,7 @@ def changes_of(scene: Scene, quick: bool) -> list[Change]:
             for factor in [low if sign < 0 else high]
             if key != "spring.tape_coverage" or scene[key] * factor <= 1.0
         ]
-        count = scene.modes.count
+        count = scene.kept_modes
         found.append(
             Change(
                 parameter="number of modes",

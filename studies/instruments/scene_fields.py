@@ -146,7 +146,7 @@ class ModesKeys(Section):
 
     section: ClassVar[str] = "modes"
     count: Annotated[int, Key(
-        "1", ASSUMED, "modes kept (of modal_data: at most)", whole(1, 500))] = 15
+        "1", ASSUMED, "modes kept (of modal_data: at most); 0: what the study needs", whole(0, 500))] = 0
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -142,7 +142,7 @@ def modes_of(scene: Scene, count: int | None = None) -> Modes:
 
     Twice as many are asked for until enough of them couple, at most all that the elements have.
     """
-    wanted = scene.modes.count if count is None else count
+    wanted = scene.kept_modes if count is None else count
     if wanted < 1:
         raise SceneError(f"modes.count must be at least 1, not {wanted}")
     spring = spring_of(scene)
@@ -201,7 +201,7 @@ def model_of(scene: Scene) -> ModalModel:
     """The modal model: `modes.count` coupled modes, or at most as many of those that were measured."""
     if scene.spring.kind == "modal_data":
         return _measured_model(scene)
-    model = reduce(modes_of(scene), damping_of(scene), scene.modes.count)
+    model = reduce(modes_of(scene), damping_of(scene), scene.kept_modes)
     scene.refuse_drive_above(float(model.frequencies_hz[-1]))
     return model
 
@@ -215,7 +215,7 @@ def single_mode_of(scene: Scene) -> ModalModel:
 
 def _measured_model(scene: Scene) -> ModalModel:
     data = scene.modal_data
-    order = np.argsort(data.frequencies_hz, kind="stable")[: scene.modes.count]
+    order = np.argsort(data.frequencies_hz, kind="stable")[: scene.kept_modes]
     tip_values = np.array(data.tip_values)[order]
     return ModalModel(
         omega=2.0 * np.pi * np.array(data.frequencies_hz)[order],

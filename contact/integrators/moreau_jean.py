@@ -1,0 +1,192 @@
+"""Moreau and Jean's time stepping: impacts as percussions within a step, never located.
+
+With f = g + P sin(w t) - c v - omega^2 q the force per modal mass, U = phi . v the velocity of the tip
+towards the stop, d its penetration, p the percussion [N s] and e the restitution of Newton's law,
+
+    v_{n+1} = v_n + h (theta f_{n+1} + (1 - theta) f_n) - phi p
+    q_{n+1} = q_n + h (theta v_{n+1} + (1 - theta) v_n)
+    0 <= p  and  U_{n+1} + e U_n <= 0,  one of them zero,  if  d_n + (h/2) U_n >= 0;   p = 0 otherwise
+
+(J. J. Moreau, in Nonsmooth Mechanics and Applications, CISM 302 (1988), 1; M. Jean, J. J. Moreau, Proc.
+Contact Mechanics Int. Symp., Lausanne 1992, 31; V. Acary, B. Brogliato, Numerical Methods for Nonsmooth
+Dynamical Systems, Springer 2008).  With D = 1 + theta h c + theta^2 h^2 omega^2 per mode and v* the velocity
+without percussion, v_{n+1} = v* - phi p/D, and p = max(0, (U* + e U_n) / sum phi^2/D) in closed form.
+
+Order: an impact is late or early by a fraction of a step, so 1 after an impact; before one, 2 for theta = 1/2
+and 1 otherwise.  Stability: a mode q'' + c q' + omega^2 q = 0 with eigenvalues lambda does not grow if
+2 Re(lambda) + h |lambda|^2 (1 - 2 theta) <= 0, i.e. always for theta >= 1/2.
+
+Energy (V. Acary, Z. Angew. Math. Mech. 96 (2016) 585): without damping and drive
+
+    E_{n+1} - E_n = (1/2 - theta) (|v_{n+1} - v_n|^2 + |omega (q_{n+1} - q_n)|^2)
+                    - p (theta U_{n+1} + (1 - theta) U_n),
+
+so theta = 1/2 keeps the energy to rounding when e = 1 and loses p (1 - e) U_n/2 otherwise; no impact gains
+any if theta <= 1/(1 + e), no flight if theta >= 1/2.
+
+Penetration: the stop acts at velocity level, so a tip that is behind it stays behind.  The test sees a
+touch up to half a step early or late: at a grid point the tip can be h U/2 behind the stop after an impact,
+h U after one with e = 0; it does not grow while the contact lasts.
+
+The path of the step has its corner at t_n + (1 - theta) h, where q = q_n + (1 - theta) h v_n: there the
+impact is dated, from v_n to v_{n+1}, so that Newton's law holds for what is written down.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from contact.compiled import kernel
+from contact.flight import Motion
+from contact.integrators.equation import force_in_flight, tip_of
+from contact.integrators.grid import (
+    DIVERGED,
+    EVALUATIONS,
+    FINISHED,
+    FULL,
+    LOGGED,
+    STEP,
+    TOUCHING,
+    UNBOUNDED,
+    record_impulse,
+    record_times,
+)
+from contact.integrators.grid_run import check_step, grid_trajectory
+from contact.integrators.method import Integrator, Run
+from contact.laws import NEWTON
+from contact.oscillator import ImpactOscillator
+from contact.trajectory import Trajectory
+
+__all__ = ["MoreauJean", "percussion_of", "record_percussion"]
+
+MARGIN = 1e-12
+"""Slack of the test for stability, relative: on the limit itself its two terms cancel up to rounding."""
+
+
+@kernel
+def percussion_of(equation, h, depth, before, after, mobility):
+    """Percussion p of the stop [N s] in a step from penetration `depth` and tip velocity `before` that would
+    end, untouched, with tip velocity `after`; `mobility` is the velocity that a unit of it takes away."""
+    if depth + 0.5 * h * before < 0.0:
+        return 0.0
+    return max(0.0, (after + equation.number0 * before) / mobility)
+
+
+@kernel
+def record_percussion(equation, grid, s0, h, corner, q0, v0, q1, v1, place):
+    """Write down a step in which the stop has acted: the path has its corner at the fraction `corner`.
+
+    `place` is a row to work in.
+    """
+    for k in range(q0.size):
+        place[k] = q0[k] + corner * h * v0[k]
+    middle = s0 + corner * h
+    if corner > 0.0:
+        record_times(grid, s0, corner * h, q0, v0, place, v0)
+    record_impulse(equation, grid, middle, place, v0, v1)
+    if corner < 1.0:
+        record_times(grid, middle, (1.0 - corner) * h, place, v1, q1, v1)
+    record_times(grid, s0, h, q0, v0, q1, v1)  # what lies within rounding behind the end of the step
+
+
+@kernel
+def moreau_jean(equation, grid, q, v, carried, steps, h, theta):
+    """March from the step reached to `steps`; `carried`, shape (4, n_modes), is room to work in."""
+    n = q.size
+    q0, v0, inertia, place = carried[0], carried[1], carried[2], carried[3]
+    old = (1.0 - theta) * h
+    new = theta * h
+    mobility = 0.0
+    for k in range(n):
+        inertia[k] = 1.0 + new * (equation.decay[k] + new * equation.stiffness[k])
+        mobility += equation.phi[k] ** 2 / inertia[k]
+    for i in range(grid.integers[STEP], steps):
+        if grid.integers[LOGGED] >= grid.log.shape[0] - 1:
+            grid.integers[STEP] = i
+            return FULL
+        swing0 = math.sin(equation.drive * (equation.clock + i * h))
+        swing1 = math.sin(equation.drive * (equation.clock + (i + 1) * h))
+        depth, before = tip_of(equation, q, v)
+        for k in range(n):
+            q0[k], v0[k] = q[k], v[k]
+            change = old * force_in_flight(equation, k, swing0, q, v)
+            q[k] += h * v[k]  # where the old velocity leads; the change of velocity then counts by theta
+            change += new * force_in_flight(equation, k, swing1, q, v)
+            v[k] += change / inertia[k]
+        _d, after = tip_of(equation, q, v)
+        grid.integers[EVALUATIONS] += 1
+        push = percussion_of(equation, h, depth, before, after, mobility)
+        for k in range(n):
+            v[k] -= equation.phi[k] * push / inertia[k]
+            q[k] += new * (v[k] - v0[k])
+        if push > 0.0:
+            record_percussion(equation, grid, i * h, h, 1.0 - theta, q0, v0, q, v, place)
+        else:
+            grid.integers[TOUCHING] = 0
+            record_times(grid, i * h, h, q0, v0, q, v)
+        depth, _u = tip_of(equation, q, v)
+        if not abs(depth) < UNBOUNDED:
+            grid.integers[STEP] = i + 1
+            return DIVERGED
+    grid.integers[STEP] = steps
+    return FINISHED
+
+
+@dataclass(frozen=True, kw_only=True)
+class MoreauJean(Integrator):
+    """Moreau and Jean's time stepping with a fixed step.
+
+    Parameters
+    ----------
+    step : float
+        Time step [s].
+    theta : float
+        Weight of the end of the step, from 0 to 1 [1]; 1/2 keeps the energy, 1 damps most.
+    beyond_limit : bool
+        Run even where the step is unstable, for a study of what happens there.
+    """
+
+    step: float
+    theta: float = 0.5
+    beyond_limit: bool = False
+    name: ClassVar[str] = "moreau-jean"
+    order: ClassVar[float] = 1.0
+    laws: ClassVar[tuple[int, ...]] = (NEWTON,)
+    limit: ClassVar[str] = "none for theta >= 1/2; else h <= -2 Re(lambda) / ((1 - 2 theta) |lambda|^2)"
+    source: ClassVar[str] = (
+        "M. Jean, J. J. Moreau, Proc. Contact Mechanics Int. Symp. (Lausanne 1992) 31; V. Acary, "
+        "B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems (2008)"
+    )
+
+    def __post_init__(self) -> None:
+        check_step(self.step)
+        if not (math.isfinite(self.theta) and 0 <= self.theta <= 1):
+            raise ValueError(f"theta is {self.theta}; it must lie between 0 and 1")
+
+    def critical_stiffness(self, motion: Motion) -> float:
+        """Infinite, or below zero if a mode grows in flight: the method knows no contact stiffness [N/m]."""
+        half = 0.5 * motion.decay
+        over = np.sqrt(np.maximum(half**2 - motion.omega**2, 0.0))
+        # eigenvalues -c/2 +- i d of modulus omega, or the larger of two real ones, -c/2 - k
+        size = np.where(over > 0.0, half + over, motion.omega)
+        lost = 2.0 * np.where(over > 0.0, size, half)
+        gained = self.step * size**2 * (1.0 - 2.0 * self.theta)
+        return -1.0 if np.any(gained > lost + MARGIN * np.abs(gained)) else math.inf
+
+    def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
+        """The motion of `run`."""
+        critical = math.inf if self.beyond_limit else self.critical_stiffness(oscillator.motion())
+        return grid_trajectory(
+            oscillator,
+            run,
+            step=self.step,
+            march=lambda equation, grid, q, v, carried, steps: moreau_jean(
+                equation, grid, q, v, carried, steps, self.step, self.theta
+            ),
+            carried=np.zeros((4, oscillator.n_modes)),
+            critical=critical,
+        )

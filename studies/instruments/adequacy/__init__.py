@@ -1,0 +1,1 @@
+"""No more model than a scene needs: the ladder of models, what is asked of them, and the choice."""

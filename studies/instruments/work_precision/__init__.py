@@ -1,0 +1,1 @@
+"""Error against cost: problems, a reference in extended precision, measures, the front, figures."""

@@ -1,0 +1,156 @@
+"""Figures of the work-precision study.
+
+    work_precision    error against time for each method, one panel a problem, with the front
+    other_errors      impact time, restitution, kick, fold and missed crossings against time
+    model_error       error and cost against the number of modes: truncation beside the time step
+
+Methods differ in colour and marker, families in the line: solid for fixed steps, dashed for outside solvers;
+exact methods are single large points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from studies.instruments.figures import LINES, MARKERS, PAGE, PALETTE, house_style, label, new_figure
+from studies.instruments.work_precision.front import front
+from studies.instruments.work_precision.methods import EXACT, OUTSIDE
+from studies.instruments.work_precision.model_error import ModelErrors
+
+__all__ = ["model_figure", "other_errors_figure", "work_precision_figure"]
+
+Row = Mapping[str, Any]
+
+FLOOR = 1e-17
+"""Errors that vanish are drawn here."""
+
+COLOURS = (*PALETTE[1:7], "0.45")
+"""Seven against eight markers: no two methods of a family look alike."""
+
+AXES = {
+    "error": "error of mode 1",
+    "error_time": "error of impact time (periods)",
+    "error_restitution": "error of restitution",
+    "error_kick": "error of kick",
+    "error_fold": "shift of fold (of $F_g$)",
+    "missed": "crossings missed (share)",
+}
+"""Label of an axis by the measure."""
+
+
+def styles_of(rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
+    """Colour, marker and line of each method, the same in every panel."""
+    labels = dict.fromkeys((row["family"], row["method"]) for row in rows)
+    found: dict[str, dict[str, Any]] = {}
+    counts: dict[str, int] = {}
+    for family, name in labels:
+        i = counts[family] = counts.get(family, -1) + 1
+        if family == EXACT:
+            marker = ("*", "P", "X")[i % 3]
+            style = {"marker": marker, "color": PALETTE[0], "linestyle": "none", "markersize": 8}
+        else:
+            colour, outside = COLOURS[i % len(COLOURS)], family == OUTSIDE
+            style = {
+                "marker": MARKERS[i % len(MARKERS)], "color": colour, "linestyle": "--" if outside else "-",
+                "linewidth": 0.8, "markersize": 3.2, "markerfacecolor": "white" if outside else colour,
+            }  # fmt: skip
+        found[name] = style
+    return found
+
+
+def _draw(axes: Any, rows: Sequence[Row], styles: Mapping[str, Mapping[str, Any]], measure: str) -> None:
+    """All methods of one problem in one panel."""
+    for name, style in styles.items():
+        points = [
+            (row["us_per_period"], row[measure]) for row in rows
+            if row["method"] == name and row[measure] is not None and row["us_per_period"] is not None
+        ]  # fmt: skip
+        if points:
+            cost, error = np.array(points).T
+            axes.plot(cost, error if measure == "missed" else np.maximum(error, FLOOR), label=name, **style)
+    axes.set_xscale("log")
+    if measure == "missed":
+        axes.set_ylim(-0.05, 1.05)
+    else:
+        axes.set_yscale("log")
+
+
+def _legend(figure: Figure, axes: Any, columns: int) -> None:
+    handles: dict[str, Any] = {}
+    for panel in np.ravel(axes):
+        for handle, name in zip(*panel.get_legend_handles_labels(), strict=True):
+            handles.setdefault(name, handle)
+    with house_style():
+        figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=columns)
+
+
+def work_precision_figure(rows: Sequence[Row], titles: Mapping[str, str]) -> Figure:
+    """One panel a problem."""
+    figure, axes = new_figure(2, 2, width=PAGE, height=0.175)
+    styles = styles_of(rows)
+    for (name, title), panel in zip(titles.items(), np.ravel(axes), strict=False):
+        here = [row for row in rows if row["problem"] == name]
+        _draw(panel, here, styles, "error")
+        best = front(here)
+        if best:
+            # from the cheapest point straight up, from the most accurate one to the right
+            cost, error = np.array([(row["us_per_period"], max(row["error"], FLOOR)) for row in best]).T
+            (_left, right), (_low, top) = panel.get_xlim(), panel.get_ylim()
+            panel.step(
+                [cost[0], *cost, right], [top, *error, error[-1]], where="post", color="0.8", linewidth=4,
+                zorder=0, label="front",
+            )  # fmt: skip
+            panel.set_xlim(_left, right)
+            panel.set_ylim(_low, top)
+        with house_style():
+            panel.set_title(title)
+        label(panel.xaxis, "time per drive period" if name != "swung beam" else "time per 12 ms", "µs")
+        label(panel.yaxis, AXES["error"])
+    _legend(figure, axes, 4)
+    return figure
+
+
+def other_errors_figure(rows: Sequence[Row], titles: Mapping[str, str]) -> Figure:
+    """A row a measure, a column a driven problem."""
+    measures = [name for name in AXES if name != "error"]
+    driven = {row["problem"] for row in rows if row["missed"] is not None}
+    names = [name for name in titles if name in driven]
+    figure, axes = new_figure(len(measures), len(names), width=PAGE, height=0.24, sharex="col", squeeze=False)
+    styles = styles_of(rows)
+    for j, name in enumerate(names):
+        here = [row for row in rows if row["problem"] == name]
+        with house_style():
+            axes[0, j].set_title(titles[name])
+        for i, measure in enumerate(measures):
+            _draw(axes[i, j], here, styles, measure)
+            if j == 0:
+                label(axes[i, j].yaxis, AXES[measure])
+        label(axes[-1, j].xaxis, "time per drive period", "µs")
+    _legend(figure, axes, 4)
+    return figure
+
+
+def model_figure(found: ModelErrors) -> Figure:
+    """Errors on the left, costs on the right."""
+    figure, (left, right) = new_figure(1, 2, width=PAGE, height=0.085)
+    left.plot(found.modes, found.model_error, color=PALETTE[0], marker="o", linewidth=1.8,
+              label="too few modes (against 4 times as many)")
+    right.plot(found.modes, found.default_cost, color=PALETTE[0], marker="*", markersize=7, linewidth=1.8,
+               label="exact method")
+    for j, h in enumerate(found.steps):
+        style = {"color": PALETTE[1 + j % 6], "marker": MARKERS[1 + j % 6], "linestyle": LINES[1 + j % 6]}
+        left.plot(found.modes, found.step_error[:, j], label=f"step {1e6 * h:.3g} µs", **style)
+        right.plot(found.modes, found.step_cost[:, j], label=f"step {1e6 * h:.3g} µs", **style)
+    for panel, quantity, unit in ((left, "error of mode 1", "1"), (right, "time per drive period", "µs")):
+        panel.set_xscale("log", base=2)
+        panel.set_yscale("log")
+        panel.set_xticks(found.modes, [str(n) for n in found.modes])
+        panel.minorticks_off()
+        label(panel.xaxis, "number of modes")
+        label(panel.yaxis, quantity, unit)
+    _legend(figure, [left, right], 3)
+    return figure

@@ -1,0 +1,315 @@
+"""Newmark, Hilber-Hughes-Taylor and generalised-alpha: the step, its order, its energy and its limits."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from beam.reduction import ModalModel
+from contact.drive import HarmonicDrive
+from contact.errors import StepTooLarge
+from contact.integrators.equation import contact_force, equation_of, stiffness_at
+from contact.integrators.generalised_alpha import ITERATIONS, GeneralisedAlpha, chung_hulbert, force_at_end
+from contact.laws import ContactLaw, HertzContact, HuntCrossley, LinearContact, NewtonRestitution
+from contact.oscillator import ImpactOscillator
+from contact.simulation import simulate
+from contact.stop import Stop
+from contact.trajectory import State
+
+OMEGA = 2 * np.pi * 24.5 * np.array([1.0, 6.1, 15.4])
+PHI = 10.0 * np.array([1.0, 0.7, 0.5])
+GAMMA = np.array([0.09, 0.05, -0.03])
+GAP = 0.005
+START = State(displacement=np.zeros(3), velocity=np.array([0.15, 0.02, 0.01]))
+HERTZ = HertzContact(stiffness=3e7)
+LOSSY = HuntCrossley(stiffness=3e7, dissipation=1.2)
+SPRING = LinearContact(stiffness=3e5)
+DASHPOT = LinearContact(stiffness=3e5, damping=15.0)
+FORMS = [
+    GeneralisedAlpha.newmark(step=1.0),
+    GeneralisedAlpha.newmark(step=1.0, beta=0.0),
+    GeneralisedAlpha.newmark(step=1.0, beta=1 / 6),
+    GeneralisedAlpha.newmark(step=1.0, beta=0.5, gamma=0.8),
+    GeneralisedAlpha.newmark(step=1.0, beta=0.1, gamma=0.7),
+    GeneralisedAlpha.hht(step=1.0, alpha=0.1),
+    GeneralisedAlpha.hht(step=1.0, alpha=1 / 3),
+    GeneralisedAlpha.with_dissipation(step=1.0, rho=0.0),
+    GeneralisedAlpha.with_dissipation(step=1.0, rho=0.8),
+    GeneralisedAlpha.with_dissipation(step=1.0, rho=1.0),
+]
+
+
+def oscillator(
+    law: ContactLaw, *, damping: float = 0.02, amplitude: float = 0.0, gap: float = GAP, load: float = 0.0
+) -> ImpactOscillator:
+    model = ModalModel(omega=OMEGA, decay_rate=damping * OMEGA, phi=PHI, participation=GAMMA)
+    drive = HarmonicDrive(frequency=21.5, amplitude=amplitude) if amplitude else None
+    loads = load * PHI if load else None
+    return ImpactOscillator(model=model, stop=Stop(gap=gap, law=law), drive=drive, load=loads)
+
+
+def dense_motion(
+    spring: ImpactOscillator, method: GeneralisedAlpha, start: State, steps: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """The same method written down with matrices, its contact force by bisection at the tip."""
+    model, law, h = spring.model, spring.stop.law, method.step
+    n = spring.n_modes
+    stiffness, damping, phi = np.diag(model.omega**2), np.diag(model.decay_rate), np.asarray(model.phi)
+    w = 0.0 if spring.drive is None else spring.drive.angular_frequency
+    push = 0.0 if spring.drive is None else spring.drive.amplitude * w**2 * model.participation
+    constant = np.zeros(n) if spring.load is None else spring.load
+    k, extra = law.numbers[0], law.numbers[1]
+
+    def force(q: np.ndarray, v: np.ndarray) -> float:
+        depth, rate = phi @ q - spring.stop.gap, phi @ v
+        if depth <= 0:
+            return 0.0
+        if isinstance(law, LinearContact):
+            return float(max(0.0, k * depth + extra * rate))
+        return float(k * depth**1.5 * (1 + extra * rate))
+
+    def flight(t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        return np.asarray(constant + push * math.sin(w * t) - damping @ v - stiffness @ q)
+
+    m, f, beta, gamma = method.alpha_m, method.alpha_f, method.beta, method.gamma
+    q, v = np.array(start.displacement), np.array(start.velocity)
+    a = total = flight(start.time, q, v) - phi * force(q, v)
+    matrix = (1 - m) * np.eye(n) + (1 - f) * (gamma * h * damping + beta * h**2 * stiffness)
+    for i in range(steps):
+        q_old = q + h * v + h**2 * (0.5 - beta) * a
+        v_old = v + h * (1 - gamma) * a
+        known = f * total - m * a + (1 - f) * flight(start.time + (i + 1) * h, q_old, v_old)
+
+        def end(
+            contact: float, known: np.ndarray = known, q_old: np.ndarray = q_old, v_old: np.ndarray = v_old
+        ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+            new = np.linalg.solve(matrix, known - (1 - f) * phi * contact)
+            return q_old + beta * h**2 * new, v_old + gamma * h * new, new
+
+        def balance(contact: float, end: object = end) -> float:
+            q_new, v_new, _ = end(contact)  # type: ignore[operator]
+            return contact - force(q_new, v_new)
+
+        first = force(*end(0.0)[:2])
+        contact = 0.0
+        if first != 0.0:
+            contact = float(brentq(balance, 0.0, first * (1 + 1e-9), xtol=1e-13, rtol=1e-15))
+        q, v, a = end(contact)
+        total = flight(start.time + (i + 1) * h, q, v) - phi * force(q, v)
+    return q, v
+
+
+@pytest.mark.parametrize("law", [SPRING, HERTZ, LOSSY], ids=["linear", "hertz", "hunt-crossley"])
+@pytest.mark.parametrize("form", [0, 1, 4, 5, 8])
+def test_the_step_is_that_of_the_matrix_equations(law: ContactLaw, form: int) -> None:
+    spring = oscillator(law, amplitude=1e-4)
+    method = dataclasses.replace(FORMS[form], step=4e-5)
+    steps = 340
+    through = simulate(spring, START, duration=steps * method.step, method=method)
+    q, v = dense_motion(spring, method, START, steps)
+    assert len(through.impacts) >= 1
+    # the tip force is good to 1e-15 of N; a contact multiplies what that leaves by less than a thousand
+    np.testing.assert_allclose(through.end.displacement, q, rtol=0, atol=1e-12 * GAP)
+    np.testing.assert_allclose(through.end.velocity, v, rtol=0, atol=1e-11 * np.abs(v).max())
+
+
+def test_a_dashpot_lets_go_where_the_matrix_equations_do() -> None:
+    spring = oscillator(DASHPOT)
+    method = GeneralisedAlpha.newmark(step=4e-5)
+    through = simulate(spring, START, duration=340 * method.step, method=method)
+    q, v = dense_motion(spring, method, START, 340)
+    np.testing.assert_allclose(through.end.displacement, q, rtol=0, atol=1e-12 * GAP)
+    np.testing.assert_allclose(through.end.velocity, v, rtol=0, atol=1e-11 * np.abs(v).max())
+    assert through.impacts.loss[0] > 0
+
+
+@pytest.mark.parametrize("law", [HERTZ, LOSSY, SPRING, DASHPOT], ids=["hertz", "hunt", "linear", "dashpot"])
+def test_the_contact_force_solves_its_equation(law: ContactLaw) -> None:
+    """Over ten decades of depths and steps, soft and stiff, approaching and leaving, pulled as well."""
+    equation = equation_of(oscillator(law), 0.0)
+    random = np.random.default_rng(3)
+    most = 0
+    pulled = 0
+    for _ in range(3000):
+        depth = 10.0 ** random.uniform(-12, -2)
+        rate = random.choice([-1.0, 1.0]) * 10.0 ** random.uniform(-4, 1)
+        g = 10.0 ** random.uniform(-9, 1)
+        b = g * 10.0 ** random.uniform(-9, -1)
+        force, used = force_at_end(equation, depth, rate, b, g)
+        most = max(most, used)
+        start = contact_force(equation, depth, rate)
+        if force == 0.0:
+            assert start == 0.0
+            continue
+        pulled += force < 0
+        assert (force > 0) == (start > 0)
+        # bracket: the balance changes sign within 100 units of the last place of the force
+        low, high = sorted((force * (1 - 2e-14), force * (1 + 2e-14)))
+        assert low - contact_force(equation, depth - b * low, rate - g * low) <= 0
+        assert high - contact_force(equation, depth - b * high, rate - g * high) >= 0
+    assert most < ITERATIONS - 20
+    assert (pulled > 100) == (law is LOSSY)
+
+
+def test_at_the_edge_of_a_dashpot_the_tip_stays_on_it() -> None:
+    equation = equation_of(oscillator(DASHPOT), 0.0)
+    depth, rate, b, g = 1e-9, 1.0, 1e-9, 1e-5
+    force, _ = force_at_end(equation, depth, rate, b, g)
+    assert contact_force(equation, 1e-30, rate - g * force) > force > 0
+    assert force == pytest.approx(depth / b, rel=1e-14)
+
+
+@pytest.mark.parametrize("form", range(len(FORMS)))
+def test_flight_multiplies_by_the_roots(form: int) -> None:
+    """A single mode: the sampled motion obeys the recurrence whose roots are the multipliers."""
+    method = dataclasses.replace(FORMS[form], step=1e-3)
+    model = ModalModel(
+        omega=np.array([150.0]), decay_rate=np.array([9.0]), phi=np.ones(1), participation=np.ones(1)
+    )
+    spring = ImpactOscillator(model=model, stop=Stop(gap=10.0, law=SPRING))
+    start = State(displacement=np.array([1.0]), velocity=np.array([30.0]))
+    times = method.step * np.arange(1, 12)
+    motion = simulate(spring, start, duration=12e-3, times=times, method=method).displacement[:, 0]
+    polynomial = np.poly(method.multipliers(150.0, 9.0))
+    residual = np.convolve(motion, polynomial, mode="valid")
+    assert np.abs(residual).max() < 1e-13 * np.abs(motion).max()
+
+
+@pytest.mark.parametrize("form", range(len(FORMS)))
+@pytest.mark.parametrize("decay", [0.0, 0.3])
+def test_the_limit_is_where_the_radius_leaves_one(form: int, decay: float) -> None:
+    """Routh and Hurwitz against the roots themselves; `decay` is c/omega."""
+    method = FORMS[form]
+
+    def stable(size: float) -> bool:
+        return method.stable_in_flight(np.array([size]), np.array([decay * size]))
+
+    sizes = np.geomspace(1e-2, 1e4, 241)
+    radii = np.array([method.spectral_radius(size, decay * size) for size in sizes])
+    by_roots = radii <= 1 + 1e-7
+    by_test = np.array([stable(size) for size in sizes])
+    limit = method.stability_limit()
+    away = np.abs(np.log(sizes / limit)) > 1e-3 if 0 < limit < math.inf else np.ones(sizes.size, dtype=bool)
+    assert np.array_equal(by_roots[away], by_test[away])
+    if decay == 0.0:
+        assert np.array_equal(by_test[away], sizes[away] < limit)
+    elif limit == math.inf:
+        assert by_test.all()
+
+
+def test_limits_known_in_closed_form() -> None:
+    for beta, gamma in ((0.0, 0.5), (0.1, 0.5), (1 / 6, 0.5), (0.0, 0.7), (0.3, 0.8)):
+        method = GeneralisedAlpha.newmark(step=1.0, beta=beta, gamma=gamma)
+        assert method.stability_limit() == pytest.approx(1 / math.sqrt(gamma / 2 - beta), rel=1e-14)
+    assert GeneralisedAlpha.newmark(step=1.0, beta=0.25, gamma=0.4).stability_limit() == 0.0
+    # T. J. R. Hughes, The Finite Element Method (1987), ch. 9, with damping ratio xi
+    method, xi = GeneralisedAlpha.newmark(step=1.0, beta=0.1, gamma=0.7), 0.15
+    lead, half = 0.7 / 2 - 0.1, xi * (0.7 - 0.5)
+    limit = (half + math.sqrt(lead + half**2)) / lead
+    for factor, good in ((1 - 1e-9, True), (1 + 1e-9, False)):
+        size = factor * limit
+        assert method.stable_in_flight(np.array([size]), np.array([2 * xi * size])) is good
+
+
+@pytest.mark.parametrize("rho", [0.0, 0.2, 0.5, 0.9, 1.0])
+def test_rho_is_the_radius_at_infinite_frequency(rho: float) -> None:
+    method = GeneralisedAlpha.with_dissipation(step=1.0, rho=rho)
+    numbers = chung_hulbert(rho)
+    # the double or triple root there makes the radius a root of the rounding error
+    assert method.spectral_radius(1e8) == pytest.approx(rho, abs=2e-4)
+    assert method.second_order and method.stability_limit() == math.inf
+    assert numbers["beta"] == pytest.approx(0.25 * (1 - numbers["alpha_m"] + numbers["alpha_f"]) ** 2)
+
+
+@pytest.mark.parametrize("form, order", [(0, 2), (1, 2), (3, 1), (5, 2), (7, 2), (8, 2)])
+def test_order(form: int, order: int) -> None:
+    """Flight, one Hertz contact, flight; the error against the contact series falls as h^order."""
+    spring = oscillator(HERTZ, amplitude=1e-4)
+    exact = simulate(spring, START, duration=0.013)
+    assert len(exact.impacts) == 1
+    errors = []
+    for step in (8e-6, 4e-6, 2e-6):
+        method = dataclasses.replace(FORMS[form], step=step)
+        end = simulate(spring, START, duration=0.013, method=method).end
+        errors.append(float(np.linalg.norm(OMEGA * (end.displacement - exact.end.displacement))))
+    rates = np.diff(np.log(errors)) / math.log(0.5)
+    assert np.all(np.abs(rates - order) < 0.2)
+    assert dataclasses.replace(FORMS[form], step=1.0).second_order is (order == 2)
+
+
+def test_the_trapezoidal_rule_keeps_the_energy_of_a_lasting_contact() -> None:
+    """Started inside a linear stop that it never leaves; rho = 0.5 loses some."""
+    load = 800.0
+    spring = oscillator(LinearContact(stiffness=3e5), damping=0.0, gap=0.0, load=load)
+    rest = np.linalg.solve(np.diag(OMEGA**2) + 3e5 * np.outer(PHI, PHI), load * PHI)
+    start = State(displacement=rest, velocity=np.array([0.01, -0.02, 0.01]))
+    times = np.linspace(0.0, 0.2, 41)[1:]
+
+    def energies(method: GeneralisedAlpha) -> np.ndarray:
+        motion = simulate(spring, start, duration=0.2, times=times, method=method)
+        assert np.all(motion.displacement @ PHI > 0)
+        states, speeds = motion.displacement - rest, motion.velocity
+        return np.asarray(spring.energy(states, speeds) + 0.5 * 3e5 * (states @ PHI) ** 2)
+
+    begun = 0.5 * float(start.velocity @ start.velocity)
+    kept = energies(GeneralisedAlpha.newmark(step=1e-3))
+    np.testing.assert_allclose(kept, begun, rtol=1e-11)
+    lost = energies(GeneralisedAlpha.with_dissipation(step=1e-3, rho=0.5))
+    assert lost[-1] < 0.9 * begun
+
+
+def test_a_contact_beyond_the_limit_is_refused_and_grows() -> None:
+    """Explicit Newmark in a lasting linear contact: bounded just below the critical stiffness, not above."""
+    step = 1.9 / OMEGA[-1]
+    method = GeneralisedAlpha.newmark(step=step, beta=0.0, beyond_limit=True)
+    critical = method.critical_stiffness(oscillator(SPRING).motion())
+    assert critical == pytest.approx(stiffness_at(OMEGA, PHI, 2 / step), rel=1e-12)
+    start = State(displacement=np.zeros(3), velocity=np.array([0.0, 0.0, 1e-3]))
+    sizes = []
+    for factor in (0.99, 1.01):
+        law = LinearContact(stiffness=factor * critical)
+        spring = oscillator(law, damping=0.0, gap=0.0, load=50.0)
+        rest = np.linalg.solve(np.diag(OMEGA**2) + law.stiffness * np.outer(PHI, PHI), 50.0 * PHI)
+        begun = dataclasses.replace(start, displacement=rest)
+        # growth by 1 % of (h omega)^2 beyond 4: a step multiplies by 1 + 0.2 or less; 60 steps suffice
+        end = simulate(spring, begun, duration=60 * step, method=method).end
+        sizes.append(float(np.abs(end.displacement - rest).max()))
+        refusing = dataclasses.replace(method, beyond_limit=False)
+        if factor > 1:
+            with pytest.raises(StepTooLarge, match="beyond the limit of stability"):
+                simulate(spring, begun, duration=60 * step, method=refusing)
+        else:
+            simulate(spring, begun, duration=60 * step, method=refusing)
+    assert sizes[1] > 30 * sizes[0]
+
+
+def test_refusals() -> None:
+    spring = oscillator(HERTZ)
+    conditional = GeneralisedAlpha.newmark(step=2.01 / OMEGA[-1], beta=0.0)
+    with pytest.raises(StepTooLarge, match="unstable even in flight"):
+        simulate(spring, START, duration=0.01, method=conditional)
+    stiffening = GeneralisedAlpha.newmark(step=1.5 / OMEGA[-1], beta=0.0)
+    with pytest.raises(StepTooLarge, match="become too stiff"):
+        simulate(spring, START, duration=0.02, method=stiffening)
+    with pytest.raises(StepTooLarge):
+        simulate(spring, START, duration=0.01, method=GeneralisedAlpha.newmark(step=1e-6, gamma=0.45))
+    with pytest.raises(TypeError, match="generalised-alpha"):
+        simulate(
+            oscillator(NewtonRestitution(local_restitution=0.5)), START, duration=0.01,
+            method=GeneralisedAlpha.newmark(step=1e-5),
+        )  # fmt: skip
+    simulate(spring, START, duration=0.02, method=GeneralisedAlpha.newmark(step=1e-3))
+    for wrong, word in (
+        ({"beta": -0.1}, "beta"), ({"gamma": 0.0}, "gamma"), ({"alpha_m": 1.0}, "alpha_m"),
+        ({"alpha_f": math.nan}, "alpha_f"), ({"step": -1.0}, "step"),
+    ):  # fmt: skip
+        with pytest.raises(ValueError, match=word):
+            GeneralisedAlpha(**{"step": 1e-5, **wrong})  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="1977"):
+        GeneralisedAlpha.hht(step=1e-5, alpha=-0.1)
+    with pytest.raises(ValueError, match=r"rho is 1\.1"):
+        GeneralisedAlpha.with_dissipation(step=1e-5, rho=1.1)

@@ -1,0 +1,185 @@
+"""The letter's scheme: exact where nothing is missed, and missing exactly what its rule misses."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from beam.reduction import ModalModel, single_mode
+from contact.drive import HarmonicDrive
+from contact.integrators.sampled_flight import SampledFlight
+from contact.laws import (
+    ContactLaw,
+    DelayedRestitution,
+    HertzContact,
+    HuntCrossley,
+    LinearContact,
+    NewtonRestitution,
+)
+from contact.oscillator import ImpactOscillator
+from contact.simulation import simulate
+from contact.stop import Stop
+from contact.trajectory import State
+
+OMEGA = 2 * np.pi * 24.5 * np.array([1.0, 6.1, 15.4, 29.0])
+PHI = 10.0 * np.array([1.0, 0.7, 0.5, 0.4])
+LAWS = {
+    "Newton": NewtonRestitution(local_restitution=0.6),
+    "delayed": DelayedRestitution(restitution=0.4, delay=4e-4),
+    "linear": LinearContact(stiffness=4e5),
+    "dashpot": LinearContact(stiffness=4e5, damping=20.0),
+    "Hertz": HertzContact(stiffness=1e9),
+    "lossy": HuntCrossley(stiffness=1e9, dissipation=0.3),
+}
+
+
+def driven(law: ContactLaw, n: int) -> ImpactOscillator:
+    model = ModalModel(
+        omega=OMEGA[:n], decay_rate=0.02 * OMEGA[:n], phi=PHI[:n],
+        participation=np.array([0.09, 0.05, -0.03, 0.02])[:n],
+    )  # fmt: skip
+    return ImpactOscillator(
+        model=model, stop=Stop(gap=0.005, law=law), drive=HarmonicDrive(frequency=22.2)
+    ).with_excess(0.01)
+
+
+@pytest.mark.parametrize(
+    ("law", "n", "points"),
+    [(name, n, points) for name in LAWS for n, points in ((1, 4), (4, 32)) if (name, n) != ("delayed", 4)],
+)
+def test_it_is_exact_where_nothing_is_missed(law, n, points):
+    """All laws, one mode and four, strobes, samples between them, and impacts, against the proved search."""
+    oscillator = driven(LAWS[law], n)
+    times = np.linspace(0.001, 0.9, 57)
+    exact = simulate(oscillator, periods=25, times=times)
+    run = simulate(oscillator, periods=25, times=times, method=SampledFlight(points=points))
+    assert len(run.impacts) == len(exact.impacts) > 3
+    for name in ("strobe_displacement", "strobe_velocity", "displacement", "velocity"):
+        ours, theirs = getattr(run, name), getattr(exact, name)
+        assert ours == pytest.approx(theirs, abs=1e-11 * np.abs(theirs).max())
+    assert run.impacts.start == pytest.approx(exact.impacts.start, abs=1e-13)
+    assert np.array_equal(run.strobe_impacts, exact.strobe_impacts)
+
+
+def test_equation_1_needs_two_points_and_one_is_too_few():
+    """The letter's "small number of discrete points": p5 at 22.2 Hz, one impact every fifth period."""
+    oscillator = ImpactOscillator(
+        model=single_mode(free_period=0.0408, decay_rate=3.56),
+        stop=Stop(gap=1.0, law=NewtonRestitution(local_restitution=0.1)),
+        drive=HarmonicDrive(frequency=22.2),
+    ).with_excess(1e-3)
+    exact = simulate(oscillator, periods=500)
+    assert set(np.diff(np.flatnonzero(exact.strobe_impacts[-100:]))) == {5}
+    run = simulate(oscillator, periods=500, method=SampledFlight(points=2))
+    assert run.strobe_displacement == pytest.approx(exact.strobe_displacement, abs=1e-12)
+    blind = simulate(oscillator, periods=500, method=SampledFlight(points=1))
+    assert len(blind.impacts) == 0  # sampled at the strobes alone, the tip never seems to arrive
+
+
+def first_seen(y: np.ndarray, v: np.ndarray, per_interval: int) -> int:
+    """The number of the interval in which the rule sees a crossing first, from fine samples; -1 for none."""
+    for start in range(0, y.size - 1, per_interval):
+        stop = start + per_interval
+        if y[stop] > 0:
+            return start // per_interval
+        if v[start] > 0 > v[stop]:
+            inside = slice(start, stop + 1)
+            falls = np.flatnonzero((v[inside][:-1] > 0) & (v[inside][1:] <= 0))
+            if falls.size == 1 and y[inside][falls[0]] > 0:
+                return start // per_interval
+    return -1
+
+
+def test_it_misses_what_its_rule_misses():
+    """Two undamped modes in closed form: where the first crossing is seen, or is not, is the rule's doing.
+
+    Flights in which a peak lies within 1e-3 of the stop or an interval holds several peaks are left to
+    chance, and not looked at.
+    """
+    random = np.random.default_rng(5)
+    omega, period, fine = np.array([2 * np.pi, 2 * np.pi * 7.3]), 1.0, 2400
+    model = ModalModel(omega=omega, decay_rate=np.zeros(2), phi=np.ones(2), participation=np.zeros(2))
+    oscillator = ImpactOscillator(
+        model=model, stop=Stop(gap=1.0, law=NewtonRestitution(local_restitution=0.0))
+    )
+    t = np.linspace(0.0, period, fine + 1)[:, None]
+    missed, seen = {8: 0, 60: 0}, {8: 0, 60: 0}
+    for _ in range(300):
+        q, v = random.normal(size=2) * [0.5, 0.3], random.normal(size=2) * [3.0, 14.0]
+        y = (q * np.cos(omega * t) + v / omega * np.sin(omega * t)).sum(axis=1) - 1.0
+        rate = (v * np.cos(omega * t) - q * omega * np.sin(omega * t)).sum(axis=1)
+        peaks = np.flatnonzero((rate[:-1] > 0) & (rate[1:] <= 0))
+        if y[0] > -0.05 or np.abs(y[peaks]).min() < 1e-3 or abs(y[-1]) < 1e-3:
+            continue
+        state = State(displacement=q, velocity=v)
+        exact = simulate(oscillator, state, duration=0.999999 * period)
+        for points in missed:
+            per_interval = fine // points
+            inside = np.bincount(peaks // per_interval, minlength=points)
+            if inside.max() > 1:
+                continue
+            expected = first_seen(y, rate, per_interval)
+            run = simulate(
+                oscillator, state, duration=0.999999 * period, method=SampledFlight(points=points)
+            )
+            if expected < 0:
+                assert len(run.impacts) == 0
+            else:
+                assert len(run.impacts) > 0
+                place = run.impacts.start[0] * points / period
+                assert expected - 1e-9 <= place <= expected + 1 + 1e-9
+            same = len(run.impacts) == len(exact.impacts) == 0 or (
+                len(run.impacts) > 0 and abs(run.impacts.start[0] - exact.impacts.start[0]) < 1e-9
+            )
+            missed[points] += not same
+            seen[points] += same and expected >= 0
+    assert missed[8] > 10 and missed[60] == 0
+    assert seen[8] > 20 and seen[60] > 20
+
+
+def test_a_missed_crossing_shows_as_a_tip_behind_a_rigid_stop():
+    oscillator = driven(LAWS["Newton"], 4)
+    kicked = State(displacement=np.zeros(4), velocity=[0.0, 0.0, 4.0, 0.0])
+    times = np.linspace(0.0, 1 / 22.2, 2001)
+    deepest = {}
+    for points in (3, 400):
+        run = simulate(oscillator, kicked, periods=1, times=times, method=SampledFlight(points=points))
+        deepest[points] = (run.displacement @ PHI).max() - 0.005
+    proved = simulate(oscillator, kicked, periods=1, times=times)
+    assert (proved.displacement @ PHI).max() <= 0.005 + 1e-15
+    assert deepest[400] <= 1e-15
+    assert deepest[3] > 1e-4
+
+
+def test_a_bouncing_ball_comes_to_rest_at_any_number_of_points():
+    """The ball stays behind the floor that it has missed, so that no hop is lost: h = 1 m, e = 0.7."""
+    model = ModalModel(omega=np.zeros(1), decay_rate=np.zeros(1), phi=np.ones(1), participation=np.zeros(1))
+    oscillator = ImpactOscillator(
+        model=model, stop=Stop(gap=1.0, law=NewtonRestitution(local_restitution=0.7)), load=np.array([9.81])
+    )
+    for points in (1, 7):
+        run = simulate(oscillator, duration=3.0, method=SampledFlight(points=points))
+        hops = run.impacts.start[run.impacts.kind == 0]
+        assert hops[:10] == pytest.approx(
+            [math.sqrt(2 / 9.81) * (1 + 2 * sum(0.7**j for j in range(1, i + 1))) for i in range(10)]
+        )
+        assert run.end.regime == 3
+        assert run.end.displacement[0] == pytest.approx(1.0, abs=1e-12)
+
+
+def test_positions_computed_are_counted():
+    oscillator = driven(LAWS["Newton"], 4).with_excess(-0.5)
+    run = simulate(oscillator, periods=20, method=SampledFlight(points=10))
+    flights = 20
+    turns = run.evaluations - flights - 20 * 10
+    assert 20 <= turns <= 3 * 20  # a peak or a few in every period
+
+
+def test_what_is_refused():
+    for points in (0, -3, 2.5, "8"):
+        with pytest.raises(ValueError, match="must be a whole number of samples per drive period above zero"):
+            SampledFlight(points=points)
+    method = SampledFlight(points=8)
+    assert not method.certified and all(method.accepts(law.code) for law in LAWS.values())
