@@ -60,7 +60,7 @@ def oscillator_with(law: ContactLaw, modes: int = 3, gap: float = 0.01) -> Impac
 
 
 FINEST = {
-    "sampled-flight": lambda fine: INTEGRATORS["sampled-flight"](points=64 * fine),
+    "sampled-flight": lambda fine: INTEGRATORS["sampled-flight"](points=round(64 * fine)),
     "splitting": lambda fine: INTEGRATORS["splitting"](step=PERIOD / (8000 * fine)),
     "central-difference": lambda fine: INTEGRATORS["central-difference"](step=PERIOD / (8000 * fine)),
     "generalised-alpha": lambda fine: INTEGRATORS["generalised-alpha"](step=PERIOD / (8000 * fine)),
@@ -77,7 +77,7 @@ FINEST = {
 ALL: dict[str, type[Integrator]] = {**INTEGRATORS, **{name: PEERS[name] for name in available()}}
 
 
-def made(name: str, fine: int = 1) -> Integrator:
+def made(name: str, fine: float = 1) -> Integrator:
     """The method, `fine` times as fine as its coarsest setting here."""
     return FINEST[name](fine) if name in FINEST else ALL[name]()
 
@@ -141,19 +141,24 @@ def test_a_flight_is_a_flight(name: str) -> None:
 def test_a_collision_is_the_exact_one_in_the_limit(name: str, law: ContactLaw) -> None:
     """State, time and number of impacts of the first collision; a finer setting is closer.
 
-    Six times finer: where the force jumps (a dashpot that is met at speed) the error falls with the step
-    itself, times a number that depends on where in a step the touch falls.
+    Where the force jumps (a dashpot that is met at speed) the error falls with the step itself, times a
+    number that depends on where in a step the touch falls: so the worst of a few settings, against the worst
+    of some that are six times finer.
     """
     oscillator = oscillator_with(law, modes_for(law))
     start = before_collision(oscillator)
     exact = simulate(oscillator, start, periods=2)
     errors = []
+    grid = "step" in _fields(name) and getattr(law, "damping", 0) > 0
     for fine in (1, 6):
-        run = simulate(oscillator, start, periods=2, method=made(name, fine))
-        assert len(run.impacts) == len(exact.impacts) == 1
-        np.testing.assert_allclose(run.impacts.start, exact.impacts.start, atol=2e-4 * PERIOD)
-        np.testing.assert_array_equal(run.strobe_impacts, exact.strobe_impacts)
-        errors.append(distance(run, exact, oscillator))
+        worst = 0.0
+        for shift in (1.0, 1.1, 1.2, 1.3) if grid else (1.0,):
+            run = simulate(oscillator, start, periods=2, method=made(name, fine * shift))
+            assert len(run.impacts) == len(exact.impacts) == 1
+            np.testing.assert_allclose(run.impacts.start, exact.impacts.start, atol=2e-4 * PERIOD)
+            np.testing.assert_array_equal(run.strobe_impacts, exact.strobe_impacts)
+            worst = max(worst, distance(run, exact, oscillator))
+        errors.append(worst)
     assert errors[0] < 3e-3
     assert errors[1] < 1e-9 or errors[1] < 0.75 * errors[0]
     mine, truth = (collisions(oscillator, one, unfinished="drop")[0] for one in (run, exact))
