@@ -173,7 +173,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-NEEDS = (Need(quantity="kick", tolerance=0.005),)
+NEEDS = (Need(quantity="kick", tolerance=0.005, mesh=False),)
 """What the numbers rest on: modes and mesh are chosen for it."""
 
 

@@ -1,10 +1,10 @@
 """Where each method fails: the limit that theory gives and the limit found, method by method.
 
 A method for impacts can fail by its step (explicit methods in flight and in contact), by what it does to the
-energy of a contact, by a touch that it does not see, by impacts that accumulate, by a law that has no limit as
-modes are added, by a stiff contact, by odd modes, and by drift in long runs. Each family of failures is one
-file of ``studies.instruments.stability``: its docstring derives the limit, its `measure` finds the same limit
-by bisection or by direct measurement, and says whether the package refuses to go beyond it.
+energy of a contact, by a touch that it does not see, by impacts that accumulate, by a law that has no limit
+as modes are added, by a stiff contact, by odd modes, and by drift in long runs. Each family of failures is
+one file of ``studies.instruments.stability``: its docstring derives the limit, its `measure` finds the same
+limit by bisection or by direct measurement, and says whether the package refuses to go beyond it.
 
 Columns of the table: method; case; the quantity that is turned; its limit by theory (empty where theory gives
 no sharp one); the limit found (empty where the failure did not appear); refused: whether asking for more is
@@ -19,9 +19,11 @@ with its sentence, the others go on, and the exit code is 3.
 from __future__ import annotations
 
 import argparse
+import time
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from importlib import import_module
+from multiprocessing import get_context
 from typing import Any, Protocol, cast
 
 from studies.instruments.command_line import Request, WrongUse, run_study
@@ -41,7 +43,10 @@ FAMILIES = (
     "odd_modes",
     "long_runs",
 )
-"""The files of ``studies.instruments.stability`` that hold a family of failures, in the order of the table."""
+"""The files of ``studies.instruments.stability`` that hold a family each, in the order of the table."""
+
+LONGEST = ("missed_crossings", "implicit_contact", "splitting_limits", "numerical_restitution")
+"""Families that take longest: begun first, so that no core waits for them at the end."""
 
 
 class Family(Protocol):
@@ -64,23 +69,54 @@ def sentence(error: Exception) -> str:
     return f"{type(error).__name__}: {' '.join(str(error).split())}"
 
 
-def failed(name: str, error: Exception, what: str = "measured") -> Limit:
-    """The row of a family that could not be computed."""
+def failed(name: str, what: str, why: str) -> Limit:
+    """The row of a family that could not be measured or drawn."""
     return Limit(
         method="none", case=f"{name}: could not be {what}", knob="", theory=None, measured=None, refused=None,
-        note=sentence(error),
+        note=why,
     )  # fmt: skip
 
 
-def measured(name: str, quick: bool, scene: Scene) -> Findings | Exception:
-    """What the family finds, or why it does not."""
+def measured(name: str, quick: bool, scene: Scene) -> tuple[Findings | str, float]:
+    """What the family finds, or in a sentence why it does not, and the seconds that it has computed."""
+    began = time.thread_time()
     try:
-        return family(name).measure(quick=quick, scene=scene)
+        result: Findings | str = family(name).measure(quick=quick, scene=scene)
     except Exception as error:  # whatever goes wrong in one family must not take the others along
-        return error
+        result = sentence(error)
+    return result, time.thread_time() - began
 
 
-def store(name: str, findings: Findings, record: Record) -> Exception | None:
+def all_measured(
+    names: Sequence[str], scene: Scene, request: Request
+) -> dict[str, tuple[Findings | str, float]]:
+    """What `measured` gives for every family, by name.
+
+    Families run in processes of their own (spawned), because much of their time is spent in outside solvers
+    and in arithmetic of many digits, which hold the interpreter; with one worker, one after another in this
+    one.
+    """
+    results: dict[str, tuple[Findings | str, float]] = {}
+    workers = min(request.workers, len(names))
+    with request.progress("families", total=len(names)) as progress:
+        if workers == 1:
+            for name in names:
+                results[name] = measured(name, request.quick, scene)
+                progress.advance()
+            return results
+        pool = ProcessPoolExecutor(max_workers=workers, mp_context=get_context("spawn"))
+        try:
+            long_first = sorted(names, key=lambda name: name not in LONGEST)
+            futures = {pool.submit(measured, name, request.quick, scene): name for name in long_first}
+            for future in as_completed(futures):
+                results[futures[future]] = future.result()
+                progress.advance()
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+    return results
+
+
+def store(name: str, findings: Findings, record: Record) -> str | None:
     """Rows, arrays and figures of a family; what went wrong in drawing, if anything did."""
     rows = [limit.row() for limit in findings.limits]
     keys = ("method", "case", "knob", "limit_theory", "limit_measured", "refused", "note")
@@ -91,7 +127,7 @@ def store(name: str, findings: Findings, record: Record) -> Exception | None:
             record.write_arrays(name, **findings.arrays)
         family(name).draw(findings, record)
     except Exception as error:
-        return error
+        return sentence(error)
     return None
 
 
@@ -118,27 +154,23 @@ def table(limits: Sequence[Limit]) -> list[str]:
 def run(scene: Scene, request: Request) -> Mapping[str, Any]:
     """Measure all families, store them, draw them and print the table."""
     names = _chosen(request.options.families)
-    results: dict[str, Findings | Exception] = {}
-    with ThreadPoolExecutor(max_workers=request.workers) as pool:
-        futures = {name: pool.submit(measured, name, request.quick, scene) for name in names}
-        with request.progress("families", total=len(names)) as progress:
-            for name, future in futures.items():
-                results[name] = future.result()
-                progress.advance()
+    results = all_measured(names, scene, request)
     rows: list[dict[str, Any]] = []
     failures: list[str] = []
-    for name, result in results.items():
-        if isinstance(result, Exception):
-            limits = [failed(name, result)]
+    for name in names:
+        result = results[name][0]
+        if isinstance(result, str):
+            limits = [failed(name, "measured", result)]
         else:
             undrawn = store(name, result, request.record)
-            limits = [*result.limits, *([] if undrawn is None else [failed(name, undrawn, "drawn")])]
+            limits = [*result.limits, *([] if undrawn is None else [failed(name, "drawn", undrawn)])]
         failures += [f"{limit.case}; {limit.note}" for limit in limits if limit.method == "none"]
         rows += [{**limit.row(), "family": name} for limit in limits]
         print(f"\n{name}", *table(limits), sep="\n", flush=True)
     for line in failures:
         print(line, flush=True)
-    return {"rows": rows, "failures": failures, "failed_cells": len(failures)}
+    seconds = {name: round(results[name][1], 1) for name in names}
+    return {"rows": rows, "seconds": seconds, "failures": failures, "failed_cells": len(failures)}
 
 
 def _chosen(text: str) -> tuple[str, ...]:

@@ -207,6 +207,14 @@ def test_strobes_and_the_end_need_not_lie_on_the_grid() -> None:
     assert int(whole.strobe_impacts.sum()) == len(whole.impacts) > 3
 
 
+def test_an_end_within_rounding_behind_an_impact_is_taken() -> None:
+    mass = free_mass(0.5, gap=0.34)
+    start = State(displacement=np.zeros(1), velocity=np.ones(1))
+    end = simulate(mass, start, duration=0.1 * (4 + 8e-10), method=MoreauJean(step=0.1)).end
+    assert float(end.displacement[0]) == pytest.approx(0.35 - 0.5 * 0.05, rel=1e-8)
+    assert float(end.velocity[0]) == pytest.approx(-0.5, rel=1e-8)
+
+
 def test_limits_and_refusals() -> None:
     spring = oscillator(0.5, damping=0.0)
     with pytest.raises(StepTooLarge, match="unstable even in flight"):

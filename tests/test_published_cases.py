@@ -14,7 +14,7 @@ from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
 from contact.trajectory import State
-from studies.instruments.work_precision.problems import SDNL32, swung_beam
+from studies.instruments.work_precision.swung_beam import SDNL32, swung_beam
 
 HELD = 3
 GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(24)

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from studies import transitions
+from studies.instruments.adequacy.fitted_scene import fitted
 from studies.instruments.scene_file import read_scene
 from studies.instruments.spring_of_scene import model_of
 
@@ -43,7 +44,7 @@ def test_every_study_named_exists_and_every_study_is_named():
 def test_the_rows_of_the_first_table_are_computed_values(frequency):
     (line,) = re.findall(rf"^\| {frequency:.2f} \|(.*)\|$", TEXT, flags=re.MULTILINE)
     cells = [cell.strip() for cell in line.split("|")]
-    scene = read_scene("letter", [])
+    scene, _words = fitted(read_scene("letter", []), transitions.NEEDS, pytest.fail)
     row = transitions.row_at(scene, frequency, model_of(scene))
     for cell, name in zip(cells[:4], ("letter", "map", "single_mode", "beam"), strict=True):
         assert cell == f"p{row[name]}"

@@ -16,6 +16,8 @@ from contact.integrators.splitting import COMPOSITIONS, Splitting
 from contact.integrators.splitting_limit import (
     closed_form_limit,
     first_instability,
+    passage,
+    spectral_radius,
     step_matrix,
 )
 from contact.integrators.splitting_step import Composition, kick, tip_depth, tip_rate
@@ -24,7 +26,7 @@ from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
 from contact.trajectory import State
-from studies.instruments.stability.splitting_limits import settled
+from studies.instruments.stability.splitting_limits import growth, settled
 
 OMEGA = np.array([154.0, 940.0, 2370.0, 4500.0])
 PHI = np.array([9.0, 8.0, 7.5, 7.0])
@@ -268,8 +270,15 @@ def test_of_three_compositions_the_one_chosen_errs_least_and_bears_most():
     assert errors["Suzuki"] / errors["ours"] == pytest.approx(140, rel=0.05)
     assert errors["Yoshida"] / errors["ours"] == pytest.approx(420, rel=0.05)
     assert [limits[name] for name in ("ours", "Suzuki", "Yoshida")] == pytest.approx(
-        [0.175, 0.074, 0.069], abs=5e-4
+        [0.0695, 0.0740, 0.0688], abs=5e-5
     )
+    stiffness = np.linspace(0.069, 0.2, 40_000)
+    radius = spectral_radius(motion, COMPOSITIONS[4], 0.02 * 6, stiffness * 4 / 0.02**2)
+    tongue = radius[stiffness < 0.17]
+    assert tongue.max() == pytest.approx(1.0024, abs=1e-4)
+    unstable = stiffness[radius > 1 + 1e-7]
+    assert unstable[unstable < 0.17].max() == pytest.approx(0.0697, abs=5e-5)
+    assert unstable[unstable > 0.08].min() == pytest.approx(0.175, abs=5e-4)
 
 
 def test_without_damping_the_limit_is_a_sum_of_tangents():
@@ -296,23 +305,39 @@ def test_beyond_pi_the_limit_is_a_resonance_of_step_and_contact():
         assert Splitting(step=step).critical_stiffness(motion) == pytest.approx(exact, rel=1e-6)
 
 
+@pytest.mark.parametrize("ratio", [0.0, 0.02])
+@pytest.mark.parametrize("order", [2, 4])
+def test_the_first_instability_is_not_preceded_by_another(order, ratio):
+    """Against 4000 spectral radii below the limit, and one just beyond it; order 2 by the closed form too."""
+    for seed in range(6):
+        motion = random_beam(seed, 4, ratio).motion()
+        step = (0.3, 1.0, 2.5)[seed % 3] / motion.omega[-1]
+        limit = first_instability(motion, COMPOSITIONS[order], step)
+        below = spectral_radius(motion, COMPOSITIONS[order], step, np.geomspace(1e-3, 0.9999, 4000) * limit)
+        assert below.max() < 1 + 1e-6
+        assert spectral_radius(motion, COMPOSITIONS[order], step, (1 + 1e-5) * limit) > 1 + 1e-6
+        if order == 2:
+            assert passage(motion, COMPOSITIONS[2], step) == pytest.approx(
+                closed_form_limit(motion, step), rel=1e-9
+            )
+
+
 @pytest.mark.parametrize(("order", "damping"), [(2, 0.0), (2, 20.0), (4, 0.0)])
-def test_a_lasting_contact_grows_just_beyond_the_limit_and_not_below(order, damping):
-    """Order 4 with a dashpot is left out: near its limit an inner kick finds the tip off the stop."""
+def test_a_lasting_contact_grows_beyond_the_limit_at_the_rate_of_the_step_matrix(order, damping):
     law = LinearContact(stiffness=1e6, damping=damping)
-    motion = spring(law, ratio=0.002).motion()
+    motion = spring(law).motion()
     step = 3e-5 * order
     limit = Splitting(step=step, order=order).critical_stiffness(motion)
     for part, grown in ((0.9995, False), (1.0005, True)):
-        stiff = LinearContact(stiffness=part * limit, damping=damping)
-        oscillator = spring(stiff, ratio=0.002, gap=0.0, load=100.0)
-        method = Splitting(step=step, order=order, beyond_limit=True)
-        rest = settled(oscillator, method)
-        size = 1e-9 * np.abs(rest.displacement).max()
-        start = State(displacement=rest.displacement + size, velocity=rest.velocity)
-        end = simulate(oscillator, start, duration=5000 * step, method=method).end
-        assert apart(start, rest) < 1e-10
-        assert (apart(end, rest) > 1e-3) is grown
+        oscillator = spring(LinearContact(stiffness=part * limit, damping=damping), gap=0.0, load=100.0)
+        rest = np.linalg.solve(np.diag(OMEGA**2) + part * limit * np.outer(PHI, PHI), 100.0 * PHI)
+        rate = growth(oscillator, Splitting(step=step, order=order, beyond_limit=True), rest)
+        radius = spectral_radius(motion, COMPOSITIONS[order], step, part * limit, damping)
+        if grown:
+            assert radius > 1.0005
+            assert rate == pytest.approx(math.log(radius), rel=0.2)
+        else:
+            assert radius <= 1 + 1e-7 and rate < 2e-4
 
 
 def test_what_is_refused():
@@ -349,7 +374,8 @@ def test_the_energy_of_a_closed_contact_does_not_drift(order):
     method = Splitting(step=3e-5 * order / 2, order=order)
     stiffness = 0.5 * method.critical_stiffness(spring(SOFT).motion())
     oscillator = spring(LinearContact(stiffness=stiffness), gap=0.0, load=100.0)
-    rest = settled(oscillator, method)
+    place = np.linalg.solve(np.diag(OMEGA**2) + stiffness * np.outer(PHI, PHI), 100.0 * PHI)
+    rest, _radius = settled(oscillator, method, place)
     start = State(displacement=rest.displacement * [1.3, 0.9, 1.2, 0.9], velocity=rest.velocity)
     count = 200_000
     times = method.step * np.arange(1, count + 1)

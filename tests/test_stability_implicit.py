@@ -32,6 +32,7 @@ from studies.instruments.stability.contact_energy import (
     evenly,
     history,
     modal_stiffness,
+    rigid_contact,
     single_contact,
 )
 from studies.instruments.stability.elastic_collision import ElasticCollision
@@ -54,6 +55,15 @@ def test_an_infinitely_stiff_contact_multiplies_the_speed_as_derived() -> None:
     np.testing.assert_allclose(np.sqrt(after), speed, rtol=1e-3)
     growth = float(np.mean(np.log(speed**2)))
     assert growth == pytest.approx(2.5 * math.log(3) - 2, abs=2e-3)
+    np.testing.assert_allclose(rigid_contact(trapezoidal(1.0), places), speed**2, rtol=1e-12)
+
+
+@pytest.mark.parametrize("rho", [0.2, 0.5, 0.8])
+def test_a_rigid_stop_is_the_limit_of_a_stiff_one(rho: float) -> None:
+    places = (np.arange(50) + 0.5) / 50
+    method = GeneralisedAlpha.with_dissipation(step=1.0, rho=rho)
+    stiff = single_contact(lambda h: method, np.full(places.size, 1e12), places)
+    np.testing.assert_allclose(stiff, rigid_contact(method, places, 12), rtol=1e-3, atol=1e-4)
 
 
 def test_a_resolved_contact_errs_as_derived() -> None:
@@ -71,6 +81,8 @@ def test_pairs_are_evenly_spread() -> None:
     assert np.mean(steps) == pytest.approx(10 * math.pi, rel=0.01)
     covered, _, _ = np.histogram2d(steps % 1.0, places, bins=5, range=[[0, 1], [0, 1]])
     assert covered.min() > 25
+    stiff, _ = evenly(1e4, 100)
+    assert 0.8e4 < math.sqrt(stiff.min()) < 1e4 < math.sqrt(stiff.max()) < 1.25e4
 
 
 def test_the_exact_motion_keeps_the_energy_that_the_trapezoidal_rule_raises(scene: Scene) -> None:

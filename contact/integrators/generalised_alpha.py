@@ -20,21 +20,10 @@ so that one number is unknown: N = N(d* - B N, d'* - G N).  The right side falls
 one root; at the edge d = 0, where a dashpot makes the force jump, N takes the value in between that puts the
 tip there.
 
-Order 2 if gamma = 1/2 - alpha_m + alpha_f, else 1.  Stability, without damping: a mode multiplies its
-amplitude by the roots z of
-
-    (z - 1)^2 (alpha_m + (1 - alpha_m) z) + (alpha_f + (1 - alpha_f) z) [ c h (1 - gamma + gamma z)(z - 1)
-        + y (beta z^2 + (1/2 + gamma - 2 beta) z + 1/2 - gamma + beta) ] = 0,   y = h^2 omega^2.
-
-With z = (1 + s)/(1 - s), A = 1 - 2 alpha_m, F = 1 - 2 alpha_f, g = 2 gamma - 1, b = 4 beta - 2 gamma and
-X = 2 c h this is p3 s^3 + p2 s^2 + p1 s + y = 0,
-
-    p3 = 4 A + F (b y + X g),   p2 = 4 + b y + X g + F (g y + X),   p1 = (g + F) y + X,
-
-stable if none is below zero and p2 p1 >= p3 y (Routh and Hurwitz).  Without damping all four conditions are
-linear in y: hence the limit, for Newmark's method y <= 1/(gamma/2 - beta), and none at all if 2 beta >= gamma
->= 1/2.  This is linear theory: a contact that opens and closes can feed energy to an unconditionally stable
-method, which is a finding of ``studies.stability`` and no ground to refuse a step.
+Order 2 if gamma = 1/2 - alpha_m + alpha_f, else 1.  Stability: ``amplification``; without damping h omega <=
+(gamma/2 - beta)^(-1/2) for Newmark's method, and no limit at all if 2 beta >= gamma >= 1/2.  This is linear
+theory: a contact that opens and closes can feed energy to an unconditionally stable method, a finding of
+``studies.stability`` and no ground to refuse a step.
 """
 
 from __future__ import annotations
@@ -47,6 +36,7 @@ import numpy as np
 
 from contact.compiled import kernel
 from contact.flight import Motion
+from contact.integrators.amplification import Amplification
 from contact.integrators.equation import (
     contact_force,
     contact_tangent,
@@ -82,10 +72,6 @@ ITERATIONS = 130
 from zero never pass it; each cuts d (in a power of at most 5/2) to 3/5 or less until it converges
 quadratically: 75 such steps span the digits of a double.  Where Hunt and Crossley's law pulls, each step
 halves the bracket or the residual: 130 for the digits of both."""
-
-MARGIN = 1e-12
-"""Slack of the test for stability, in units of its terms: on the limit itself they cancel up to rounding."""
-
 
 @kernel
 def force_at_end(equation, depth, rate, b, g):
@@ -257,53 +243,29 @@ class GeneralisedAlpha(Integrator):
     @property
     def second_order(self) -> bool:
         """Whether the numbers give order 2, not 1."""
-        return abs(self.gamma - 0.5 + self.alpha_m - self.alpha_f) <= MARGIN
+        return abs(self.gamma - 0.5 + self.alpha_m - self.alpha_f) <= 1e-12
 
-    def multipliers(self, frequency: float, decay: float = 0.0) -> np.ndarray:
-        """The factors by which a step multiplies the free motions of a mode, complex, shape (3,).
-
-        `frequency` in rad/s, `decay` is c in 1/s.
-        """
-        y, x = (self.step * frequency) ** 2, self.step * decay
-        old_m, old_f, beta, gamma = self.alpha_m, self.alpha_f, self.beta, self.gamma
-        inertia = np.convolve([1.0 - old_m, old_m], [1.0, -2.0, 1.0])
-        spring = y * np.array([beta, 0.5 + gamma - 2.0 * beta, 0.5 - gamma + beta])
-        dashpot = x * np.array([gamma, 1.0 - 2.0 * gamma, gamma - 1.0])
-        return np.asarray(np.roots(inertia + np.convolve([1.0 - old_f, old_f], spring + dashpot)))
+    @property
+    def amplification(self) -> Amplification:
+        """The linear theory of these numbers."""
+        return Amplification(
+            alpha_m=self.alpha_m, alpha_f=self.alpha_f, beta=self.beta, gamma=self.gamma
+        )
 
     def spectral_radius(self, frequency: float, decay: float = 0.0) -> float:
-        """The largest factor by which a step multiplies a free motion [1]."""
-        return float(np.max(np.abs(self.multipliers(frequency, decay))))
+        """The largest factor by which a step multiplies a free motion of a mode, `frequency` in rad/s and
+        `decay` = c in 1/s [1]."""
+        return float(np.max(np.abs(self.amplification.factors(self.step * frequency, self.step * decay))))
 
     def stability_limit(self) -> float:
         """Largest h omega of an undamped mode; infinite if there is none, 0 if any is too large [1]."""
-        a, f = 1.0 - 2.0 * self.alpha_m, 1.0 - 2.0 * self.alpha_f
-        g, b = 2.0 * self.gamma - 1.0, 4.0 * self.beta - 2.0 * self.gamma
-        largest = math.inf
-        for constant, slope in (
-            (4.0 * a, f * b), (4.0, b + f * g), (0.0, g + f), (4.0 * (g + f - a), g * (b + f * g + f * f)),
-        ):  # fmt: skip
-            if constant < -MARGIN or (constant < MARGIN and slope < -MARGIN):
-                return 0.0
-            if slope < -MARGIN:
-                largest = min(largest, -constant / slope)
-        return math.sqrt(largest)
-
-    def stable_in_flight(self, omega: np.ndarray, decay: np.ndarray) -> bool:
-        """Whether no free mode grows, its damping counted; arrays of shape (n_modes,)."""
-        a, f = 1.0 - 2.0 * self.alpha_m, 1.0 - 2.0 * self.alpha_f
-        g, b = 2.0 * self.gamma - 1.0, 4.0 * self.beta - 2.0 * self.gamma
-        y, x = (self.step * omega) ** 2, 2.0 * self.step * decay
-        p3, p2, p1 = 4.0 * a + f * (b * y + x * g), 4.0 + b * y + x * g + f * (g * y + x), (g + f) * y + x
-        size = (4.0 + y + x) * (1.0 + abs(b) + abs(g) + abs(f))
-        least = np.minimum(np.minimum(p3, p2), p1)
-        return bool(np.all(least >= -MARGIN * size) and np.all(p2 * p1 - p3 * y >= -MARGIN * size * (y + x)))
+        return self.amplification.limit()
 
     def critical_stiffness(self, motion: Motion) -> float:
         """Contact stiffness at which the highest frequency reaches the limit, formed without damping; below
         zero if a mode is beyond it [N/m]."""
         largest = self.stability_limit()
-        if not self.stable_in_flight(motion.omega, motion.decay):
+        if not np.all(self.amplification.stable(self.step * motion.omega, self.step * motion.decay)):
             return -1.0
         return math.inf if largest == math.inf else stiffness_at(
             motion.omega, motion.phi, largest / self.step

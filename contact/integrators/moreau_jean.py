@@ -26,7 +26,9 @@ any if theta <= 1/(1 + e), no flight if theta >= 1/2.
 
 Penetration: the stop acts at velocity level, so a tip that is behind it stays behind.  The test sees a
 touch up to half a step early or late: at a grid point the tip can be h U/2 behind the stop after an impact,
-h U after one with e = 0; it does not grow while the contact lasts.
+h U after one with e = 0; it does not grow while the contact lasts.  A tip that hovers behind the stop may
+be touched once more while it leaves, with less than a step's change of velocity: such a touch is written
+down with an approach below zero.
 
 The path of the step has its corner at t_n + (1 - theta) h, where q = q_n + (1 - theta) h v_n: there the
 impact is dated, from v_n to v_{n+1}, so that Newton's law holds for what is written down.

@@ -28,11 +28,20 @@ All residues have one sign, so that one root lies below each cos(theta_k) and ab
 fall as k rises, and only the lowest can pass -1.  For h -> 0 the limit becomes 4/(h^2 Phi), that of central
 difference on a free body of mass 1/Phi: here too the frequencies of the spring itself set none.
 
-Beyond omega h = pi residues of both signs occur, two roots can meet and leave the real axis: a resonance of
-step and contact, near theta_j + theta_k = 2 pi m (theta_k = m pi included).  There, and for order 4, whose
-sub-flows go backwards too, the first k at which the spectral radius exceeds one is searched for.  Width of
-the scan: from 1e-6 to 10 times 4/(h^2 Phi), 30 values a decade; narrower gaps of stability are passed over,
-and a limit below the scan is given as its lower end.
+Any order.  Each kick adds a matrix of rank one times k, and the first and the last are one kick, so that
+
+    det(M(k) + I)  and  det(M(k) - I)  are polynomials in k of degree s, the number of sub-flows,
+
+known from s + 1 values; their lowest positive root is where an eigenvalue passes -1 or 1.  For omega h < pi
+and no damping nothing fails before: at k = 0 all eigenvalues in the upper half plane have the same signature
+(M. G. Krein), and such eigenvalues may meet, but not leave the circle, until they meet their conjugates.  A
+composition of order 4 fails there by little: at h sqrt(k Phi) = 3.163 to 3.169 for a free body, by 1.0024 a
+step, and by much only from 5.03 on.  The lower value is the limit.
+
+With damping, and beyond omega h = pi, pairs may leave the circle elsewhere: beyond pi near the resonances of
+step and contact, theta_j + theta_k = 2 pi m.  There the first k below that root at which the spectral radius
+exceeds one is searched for, at 100 values a decade over one decade, or, beyond pi, over six.  Resonances
+narrower than that may be passed over.
 """
 
 from __future__ import annotations
@@ -45,11 +54,13 @@ from numpy.typing import ArrayLike
 from contact.flight import Motion, flow_matrix
 from contact.integrators.splitting_step import Composition
 
-__all__ = ["closed_form_limit", "first_instability", "spectral_radius", "step_matrix"]
+__all__ = ["closed_form_limit", "first_instability", "passage", "spectral_radius", "step_matrix"]
 
-PER_DECADE = 30
-SCAN = (-6, 1)
-"""Decades of k h^2 Phi / 4 between which the search runs, and its values in each."""
+SEARCH, SEARCH_BEYOND_PI = (1, 100), (6, 100)
+"""Decades of k below the lowest root, and values in each, for omega h < pi and beyond."""
+
+JUST_BEYOND = 1e-5
+"""How far beyond a root its instability is looked for, relative."""
 
 EXCEEDS = 1e-7
 """By how much the spectral radius must exceed one: at a double eigenvalue rounding alone makes 1e-8."""
@@ -113,26 +124,66 @@ def spectral_radius(
     return np.abs(np.linalg.eigvals(scale[:, None] * matrix / scale)).max(axis=-1)
 
 
+def _roots(
+    motion: Motion, composition: Composition, step: float, damping: float, sign: float, width: float
+) -> np.ndarray:
+    """Positive stiffnesses at which det(M + sign I) vanishes, from values up to `width` [N/m]."""
+    degree = composition.flows.size
+    nodes = 0.5 - 0.5 * np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1))
+    matrices = step_matrix(motion, composition, step, width * nodes, damping)
+    values = np.linalg.det(matrices + sign * np.eye(2 * motion.omega.size))
+    found = np.polynomial.Polynomial.fit(nodes, values, degree, domain=[0.0, 1.0]).roots()
+    real = np.abs(found.imag) <= 1e-9 * np.abs(found)
+    return width * np.sort(found.real[real & (found.real > 0.0)])
+
+
+def passage(motion: Motion, composition: Composition, step: float, damping: float = 0.0) -> float:
+    """The lowest contact stiffness at which an eigenvalue passes -1 or 1, infinite if there is none [N/m].
+
+    A root counts if the step is unstable just beyond it: rounding may add one to det(M - I), which is small
+    where the frequencies are.  It is found anew from values closer to it.
+    """
+    widest = 4.0 * composition.flows.size**2 / (step**2 * motion.compliance)
+    lowest = math.inf
+    for sign in (1.0, -1.0):
+        for coarse in _roots(motion, composition, step, damping, sign, widest):
+            near = _roots(motion, composition, step, damping, sign, 2.0 * coarse)
+            root = float(near[np.argmin(np.abs(near - coarse))]) if near.size else float(coarse)
+            beyond = spectral_radius(motion, composition, step, (1.0 + JUST_BEYOND) * root, damping)
+            if beyond > 1.0 + EXCEEDS:
+                lowest = min(lowest, root)
+                break
+    return lowest
+
+
 def first_instability(
     motion: Motion, composition: Composition, step: float, damping: float = 0.0
 ) -> float:
-    """The lowest contact stiffness at which the spectral radius of the step exceeds one [N/m]."""
+    """The lowest contact stiffness at which a lasting contact is unstable [N/m]."""
 
     def unstable(stiffness: ArrayLike) -> np.ndarray:
         return spectral_radius(motion, composition, step, stiffness, damping) > 1.0 + EXCEEDS
 
-    scale = 4.0 / (step**2 * motion.compliance)
-    values = scale * 10.0 ** np.linspace(*SCAN, int(PER_DECADE * (SCAN[1] - SCAN[0])) + 1)
-    for chunk in np.split(values[1:], range(PER_DECADE, values.size - 1, PER_DECADE)):
+    high = passage(motion, composition, step, damping)
+    under = motion.omega > 0.5 * motion.decay
+    beyond_pi = bool(np.any(motion.damped[under] * step >= math.pi))
+    if not (beyond_pi or damping > 0.0 or np.any(motion.decay > 0.0)):
+        return high
+    if not math.isfinite(high):
+        high = 40.0 * composition.flows.size**2 / (step**2 * motion.compliance)
+    decades, each = SEARCH_BEYOND_PI if beyond_pi else SEARCH
+    values = high * 10.0 ** np.linspace(-decades, 0.0, decades * each + 1)[:-1]
+    low = 0.0
+    for chunk in np.split(values, decades):
         found = np.flatnonzero(unstable(chunk))
         if found.size:
             place = int(np.searchsorted(values, chunk[found[0]]))
+            if place == 0:
+                return float(values[0])  # at the end of the search, or below
             low, high = float(values[place - 1]), float(values[place])
             break
     else:
-        return float(values[-1])
-    if unstable(low):
-        return low  # below the scan
+        return high
     while high - low > 1e-9 * high:
         middle = 0.5 * (low + high)
         low, high = (low, middle) if unstable(middle) else (middle, high)

@@ -170,10 +170,9 @@ def _study(
         values = {"schema": SCHEMA, "study": name, "scene": scene.as_dict(), "provenance": scene.provenance()}
         print(json_text(values) if arguments.json else dump_scene(scene).rstrip(), file=output)
         return DONE
+    model = ""
     if needs and scene.drive.kind == "harmonic":
-        scene, sentence = fitted(scene, needs, _say)
-        if sentence:
-            _say(sentence)
+        scene, model = fitted(scene, needs, _say)
     record = Record(
         study=name,
         folder=Path(arguments.out) / name,
@@ -189,7 +188,9 @@ def _study(
         record=record,
     )
     code, status, results = _computed(run, scene, request)
-    summary = record.close(status, results)
+    summary = record.close(status, {**results, "model_choice": model} if model else results)
+    if model and code in (DONE, FAILED_CELLS):
+        _say(model)
     took = duration(record.wall_time)
     if code == INTERRUPTED:
         _say(f"{command}: interrupted after {took}; what was stored is in {record.folder}; go on with: "

@@ -117,7 +117,7 @@ class Scene:
         if self.spring.kind == "modal_data":
             return len(self.modal_data.frequencies_hz)
         if self.damping.kind == "measured":
-            return min(USUAL_MODES, len(self.damping.measured_rates_per_s))
+            return max(1, min(USUAL_MODES, len(self.damping.measured_rates_per_s)))
         return USUAL_MODES
 
     def refuse_drive_above(self, highest_hz: float) -> None:

@@ -35,7 +35,8 @@ USUAL_MESH = 60
 class Need:
     """What a study rests on: a quantity and its tolerance, at the middle or at every drive frequency.
 
-    A study that varies the number of modes itself needs the usual mesh: `mesh` is then false.
+    A study that varies the number of modes itself, or hangs on the last digits of a frequency, needs the usual
+    mesh: `mesh` is then false.
     """
 
     quantity: str
@@ -53,12 +54,12 @@ class Need:
 def fitted(scene: Scene, needs: Sequence[Need], tell: Callable[[str], None]) -> tuple[Scene, str]:
     """The scene with modes and mesh for all `needs`, and what was chosen and why, in one line.
 
-    The line is empty where the user has given the modes.
+    The line is empty where the user has given the modes, by their number or by their data.
 
     `tell` is called with a sentence when the choice is not known yet and has to be made.
     Where no model reaches a tolerance the sharpest is taken, and the line says what error remains.
     """
-    if scene.modes.count:
+    if scene.modes.count or scene.spring.kind == "modal_data":
         return scene, ""
     rungs, laws, models = rungs_of(scene)[-1:], (scene.contact.law,), Models(scene)
     allowed: dict[str, Any] = {"rungs": rungs, "laws": laws, "residual": False}

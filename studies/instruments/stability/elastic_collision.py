@@ -3,7 +3,8 @@
 The driven spring comes from its steady motion, so that the higher modes are at rest before the first touch;
 the collision is that of ``contact.collision``.  The energy is followed on the same spring without damping and
 drive, from a few steps before the touch: what a method loses there, it loses by itself, since law and spring
-lose nothing.  It is given in units of mode 1's energy of approach, v^2/(2 phi_1^2).
+lose nothing.  It is given in units of mode 1's energy of approach, v^2/(2 phi_1^2); the bent spring holds
+some 1/(2 excess) times as much, of which a method that damps mode 1 loses a part as well.
 """
 
 from __future__ import annotations

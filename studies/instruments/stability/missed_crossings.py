@@ -55,8 +55,8 @@ SLOW = "scipy Radau"
 
 def _try(trial: Trial, swing: Swing, case: str, runs: int) -> tuple[list[Limit], dict[str, Any]]:
     """Rows and numbers of one method on one motion."""
+    runs = runs // 4 if trial.label == SLOW and case == "many" else runs
     few = max(4, runs // 4)
-    runs = few if trial.label == SLOW and case == "many" else runs
     below = few if trial.panel in ("control", "") else runs
     samples = trial.spacings.size > 0
     slack = 2.0 * float(trial.spacings.max()) if samples else 1e-6 / swing.pace
@@ -176,7 +176,8 @@ def draw(findings: Findings, record: Record) -> None:
                 axis.set_ylim(-4.0, 104.0)
         for axis in axes[:, 0]:
             label(axis.yaxis, "crossings missed", "%")
-        for axis, title in zip(axes[1], (f"tolerance {TOLERANCE:.0e} if none is given", None), strict=True):
+        common = f"tolerance 10$^{{{np.log10(TOLERANCE):.0f}}}$ if none is given"
+        for axis, title in zip(axes[1], (common, None), strict=True):
             label(axis.xaxis, "overshoot / gap")
             axis.legend(loc="upper left", bbox_to_anchor=(0.0, -0.22), ncols=2, title=title,
                         title_fontsize=7.0, alignment="left")

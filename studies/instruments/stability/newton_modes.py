@@ -186,7 +186,7 @@ def _whole(counts: tuple[int, ...], restitutions: tuple[float, ...]) -> tuple[li
         Limit(
             method=NAME, case=f"impacts in one collision of a bare tip, e = {restitutions[-1]:g}",
             knob=f"number at {counts[-1]} modes [1]", theory=None, measured=float(bare[-1]), refused=None,
-            note=f"grows as N^{slope:.1f} from 10 modes on; the run of three periods takes {1e3 * spent:.0f} ms",
+            note=f"grows as N^{slope:.1f} from 10 modes on; three periods take {1e3 * spent:.0f} ms",
         )
     )  # fmt: skip
     return limits, arrays

@@ -14,8 +14,9 @@ sqrt(2/d), so that the error is about
 
     eps sqrt(2/d)                                                                                          (a)
 
-and 1e-12 are passed at d = 2 (eps/1e-12)^2 = 1e-7; at critical damping there is nothing left to invert.  The
-Pade approximation with scaling and squaring (scipy.linalg.expm) needs no eigenvectors, but its products lose
+and 1e-12 are passed at d = 2 (eps/1e-12)^2 = 1e-7; at critical damping rounding alone keeps the two apart.
+(Just below it the vectors are conjugate, and most of the error cancels in a 2 x 2 matrix.)  The Pade
+approximation with scaling and squaring (scipy.linalg.expm) needs no eigenvectors, but its products lose
 digits with the norm c t of a strongly damped mode.
 
 Units: SI.

@@ -12,6 +12,8 @@ apart from e = 5e-8 on.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from beam.reduction import ModalModel
@@ -79,18 +81,18 @@ def growth_rate(
     try:
         run = simulate(oscillator, disturbed(rest), duration=step * steps, times=times, method=method)
     except Diverged:
-        return np.inf
+        return math.inf
     touching = oscillator.model.phi @ rest > oscillator.stop.gap
     if touching and not (len(run.impacts) == 1 and np.isnan(run.impacts.end[0])):
-        return np.inf
-    size = np.abs(run.displacement - rest).max()
+        return math.inf
+    size = float(np.abs(run.displacement - rest).max())
     if size == 0.0:
-        return -np.inf
-    return float(np.log(size / (DISTURBANCE * np.abs(rest).max())))
+        return -math.inf
+    return math.log(size / (DISTURBANCE * float(np.abs(rest).max())))
 
 
 def grows(
     oscillator: ImpactOscillator, rest: np.ndarray, method: Integrator, step: float, steps: int = STEPS
 ) -> bool:
     """Whether a disturbance of the pressed contact grows under the method."""
-    return growth_rate(oscillator, rest, method, step, steps) > np.log(GROWTH)
+    return growth_rate(oscillator, rest, method, step, steps) > math.log(GROWTH)

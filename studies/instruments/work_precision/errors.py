@@ -63,7 +63,7 @@ def yardstick_of(problem: Problem) -> Yardstick:
     """References of a problem, each by two routes."""
     reference = reference_of(
         problem.oscillator, problem.start, [problem.probe], scales=problem.scales, period=problem.period,
-        near=problem.collision,
+        near=problem.collision, touches=problem.touches,
     )  # fmt: skip
     test, fold_error = None, 0.0
     if problem.fold is not None:
@@ -124,7 +124,7 @@ def fold_errors(yardstick: Yardstick, method: Integrator) -> dict[str, Any]:
     """The shift of the fold, or why there is none."""
     test = yardstick.fold
     if test is None:
-        return {"error_fold": None, "fold_note": "no fold: no drive"}
+        return {"error_fold": None, "fold_note": "no fold"}
     fold = test.fold
     try:
         end = simulate(fold.oscillator, fold.state, periods=fold.periods, method=method).end

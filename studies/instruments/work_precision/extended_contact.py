@@ -5,8 +5,7 @@ In deviations (u, v) from the steady motion, with the penetration d = sum phi u 
     u_k' = v_k,   v_k' = -c_k v_k - omega_k^2 u_k - phi_k N(d).
 
 Linear contact, N = k d
-    first    eigenvectors of the coupled system: (u, v) = p(t) + V e^{Lambda t} b with p the answer to level
-             and drive; d(t) is a sum of exponentials, and the release a root of it
+    first    eigenvectors of the coupled system (`extended_eigenvectors`): d(t) is a sum of exponentials
     second   Taylor series in t, steps put one after another until d < 0
 
 Hertz, N = k d^(3/2)
@@ -28,7 +27,15 @@ import numpy as np
 from mpmath import mp
 
 from contact.laws import HERTZ
-from studies.instruments.work_precision.extended_flight import WIDER, ExtendedSpring, Modal, newton_root
+from studies.instruments.work_precision.extended_eigenvectors import contact_by_eigenvectors
+from studies.instruments.work_precision.extended_flight import (
+    WIDER,
+    ExtendedSpring,
+    Modal,
+    NoReference,
+    newton_root,
+)
+from studies.instruments.work_precision.extended_series import Series, horner, order_for_digits, reach, slope
 
 __all__ = ["contact"]
 
@@ -39,37 +46,6 @@ impulse."""
 MOST_STEPS = 4000
 """Bound of series steps in one contact: Hertz's first route takes 200, a linear one two for each swing of the
 fastest mode."""
-
-Series = list[Any]
-
-
-def order_for_digits() -> int:
-    """Terms with which a step of a fifth of the radius of convergence reaches the working precision."""
-    return int(mp.dps * 1.45) + 4
-
-
-def horner(series: Series, t: Any) -> Any:
-    """Value of a power series."""
-    value = series[-1]
-    for term in series[-2::-1]:
-        value = value * t + term
-    return value
-
-
-def slope(series: Series, t: Any) -> Any:
-    """Derivative of a power series."""
-    return horner([n * term for n, term in enumerate(series)][1:], t)
-
-
-def reach(series: Series, size: Any) -> Any:
-    """Step for which the last terms lie below the working precision of `size`.
-
-    Six of them: of a mass alone, four in five terms of the series in sigma vanish.
-    """
-    goal = size * mp.mpf(10) ** (-mp.dps)
-    steps = [mp.root(goal / abs(series[n]), n) for n in range(len(series) - 6, len(series)) if series[n] != 0]
-    return min(steps, default=mp.inf)
-
 
 def contact(spring: ExtendedSpring, deviation: Modal, start: Any, limit: Any) -> tuple[Any, Modal] | None:
     """Duration of the contact that begins with `deviation` at drive time `start`, and the end's deviations.
@@ -83,7 +59,7 @@ def contact(spring: ExtendedSpring, deviation: Modal, start: Any, limit: Any) ->
         return _contact_in_time(spring, deviation, start, limit, _hertz_force, shallow)
     if spring.second:
         return _contact_in_time(spring, deviation, start, limit, _linear_force, None)
-    return _contact_by_eigenvectors(spring, deviation, start, limit)
+    return contact_by_eigenvectors(spring, deviation, start, limit)
 
 
 # --------------------------------------------------------------------------------------- series in time
@@ -173,64 +149,7 @@ def _contact_in_time(
 
             rest = newton_root(free, mp.mpf(0), -2 * here / rate, -here / rate, spring.swing)
             return clock + rest, spring.fly(deviation, rest)
-    raise ArithmeticError(f"a contact took more than {MOST_STEPS} steps of the series")
-
-
-# ------------------------------------------------------------------------------------ eigenvectors, linear
-
-
-def _contact_by_eigenvectors(
-    spring: ExtendedSpring, deviation: Modal, start: Any, limit: Any
-) -> tuple[Any, Modal] | None:
-    n, k_stop = spring.size, spring.number
-    scale = [max(w, 1 / (1000 * spring.swing)) for w in spring.omega]  # v in these units: a balanced matrix
-    system = mp.zeros(2 * n)
-    for i in range(n):
-        system[i, n + i] = scale[i]
-        system[n + i, n + i] = -spring.decay[i]
-        for j in range(n):
-            stiff = k_stop * spring.phi[i] * spring.phi[j] + (spring.omega[i] ** 2 if i == j else 0)
-            system[n + i, j] = -stiff / scale[i]
-    # answer to the level and to the steady tip motion: -phi k (level + Im(T e^{iwt}))
-    pushes = [-k_stop * phi / s for phi, s in zip(spring.phi, scale, strict=True)]
-    weight = mp.matrix([mp.mpf(0)] * n + pushes)
-    still = mp.lu_solve(system, -spring.level * weight)
-    turn = spring.tip_response * mp.expjpi(spring.drive * start / mp.pi)
-    swing = mp.lu_solve(mp.mpc(0, spring.drive) * mp.eye(2 * n) - system, turn * weight)
-    rates, vectors = mp.eig(system)
-    begin = mp.matrix(
-        [u for u in deviation[0]] + [v / s for v, s in zip(deviation[1], scale, strict=True)]
-    )
-    parts = mp.lu_solve(vectors, begin - still - swing.apply(mp.im))
-
-    def at(t: Any) -> Modal:
-        forced = swing * mp.expjpi(spring.drive * t / mp.pi)
-        free = vectors * mp.matrix([b * mp.exp(rate * t) for b, rate in zip(parts, rates, strict=True)])
-        whole = [(still[i] + forced[i].imag + free[i].real) for i in range(2 * n)]
-        return whole[:n], [x * s for x, s in zip(whole[n:], scale, strict=True)]
-
-    def tip(t: Any) -> tuple[Any, Any]:
-        return spring.tip(at(t), start + t)
-
-    # the release bracketed in double precision, as a touch is
-    fastest = max(abs(rate) for rate in rates)
-    count = min(200_000, max(64, int(mp.ceil(16 * fastest * limit))))
-    grid = np.linspace(0.0, float(limit), count + 1)[1:]
-    mode_tip = np.array([complex(mp.fdot(spring.phi, vectors[:n, j])) for j in range(2 * n)])
-    drive_tip = complex(mp.fdot(spring.phi, swing[:n, 0]) + turn)
-    depth = float(spring.level + mp.fdot(spring.phi, still[:n, 0])) + np.zeros(count)
-    depth += (drive_tip * np.exp(1j * float(spring.drive) * grid)).imag
-    for rate, b, weight_tip in zip(rates, parts, mode_tip, strict=True):
-        depth += (weight_tip * complex(b) * np.exp(complex(rate) * grid)).real
-    below = np.flatnonzero(depth < 0.0)
-    if below.size == 0:
-        return None
-    i = int(below[0])
-    if i == 0:
-        raise ArithmeticError("a contact is shorter than the sampling of the reference")
-    low, high = mp.mpf(grid[i - 1] * (1.0 - WIDER)), mp.mpf(grid[i] * (1.0 + WIDER))
-    end = newton_root(tip, low, high, (low + high) / 2)
-    return end, at(end)
+    raise NoReference(f"a contact took more than {MOST_STEPS} steps of the series")
 
 
 # ---------------------------------------------------------------------------------------- sigma, Hertz
@@ -283,6 +202,6 @@ def _contact_in_sigma(
             return None
         if released:
             return clock, deviation
-    raise ArithmeticError(f"a contact took more than {MOST_STEPS} steps of the series")
+    raise NoReference(f"a contact took more than {MOST_STEPS} steps of the series")
 
 

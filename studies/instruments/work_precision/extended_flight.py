@@ -26,7 +26,7 @@ from contact.laws import DELAYED, HERTZ, LINEAR
 from contact.oscillator import ImpactOscillator
 from contact.trajectory import State
 
-__all__ = ["ExtendedSpring", "Modal", "newton_root"]
+__all__ = ["ExtendedSpring", "Modal", "NoReference", "newton_root"]
 
 Modal = tuple[list[Any], list[Any]]
 """Displacements and velocities of all modes, or their deviations from the steady motion."""
@@ -42,6 +42,10 @@ WIDER = 1e-6
 
 MOST_ITERATIONS = 60
 """Of Newton's method: from a bracket of 1/48 swing it takes six to reach 50 digits."""
+
+
+class NoReference(ValueError):
+    """A motion that the extended reference cannot follow, or is not sure of."""
 
 
 def newton_root(function: Any, low: Any, high: Any, guess: Any, unit: Any = 0) -> Any:
@@ -63,7 +67,7 @@ def newton_root(function: Any, low: Any, high: Any, guess: Any, unit: Any = 0) -
         elif abs(step) <= goal * max(abs(t), high - low, unit):
             return following
         t = following
-    raise ArithmeticError(f"no root to {mp.dps} digits between {float(low)} and {float(high)} s")
+    raise NoReference(f"no root to {mp.dps} digits between {float(low)} and {float(high)} s")
 
 
 class ExtendedSpring:
@@ -193,7 +197,7 @@ class ExtendedSpring:
             rise, bend = 0.5 * (depth[i + 1] - depth[i - 1]), depth[i + 1] - 2 * depth[i] + depth[i - 1]
             peak = depth[i] - (0.5 * rise**2 / bend if bend < 0 else 0.0)
             if peak > -TOO_NEAR * travel:
-                raise ArithmeticError(
+                raise NoReference(
                     f"the tip passes {-peak:.3g} m before the stop at {float(start) + grid[i]:.6g} s: "
                     "too near a graze for a reference"
                 )

@@ -32,6 +32,7 @@ from studies.instruments.work_precision.extended_contact import contact
 from studies.instruments.work_precision.extended_flight import (
     ExtendedSpring,
     Modal,
+    NoReference,
     extended_state,
     newton_root,
 )
@@ -73,7 +74,7 @@ def extended_motion(
 
     Raises
     ------
-    ArithmeticError
+    NoReference
         If the tip passes the stop too near a graze, or one of `times` lies within a contact.
     """
     with mp.workdps(digits):
@@ -104,14 +105,14 @@ def extended_motion(
             else:
                 met = contact(spring, before, clock, last - clock)
                 if met is None:
-                    raise ArithmeticError(f"a contact lasts until {float(last)} s, a time that is asked for")
+                    raise NoReference(f"a contact lasts until {float(last)} s, a time that is asked for")
                 length, after = met
             touches.append(Touch(start=clock, end=clock + length, before=before, after=after))
             clock, deviation = clock + length, after
             if len(states) < len(wanted) and wanted[len(states)] < clock:
                 asked = float(wanted[len(states)])
-                raise ArithmeticError(f"{asked} s, a time that is asked for, is in a contact")
-        raise ArithmeticError(f"more than {MOST_TOUCHES} touches in a reference motion")
+                raise NoReference(f"{asked} s, a time that is asked for, is in a contact")
+        raise NoReference(f"more than {MOST_TOUCHES} touches in a reference motion")
 
 
 def extended_collision(

@@ -18,8 +18,9 @@ from matplotlib.figure import Figure
 
 from studies.instruments.figures import LINES, MARKERS, PAGE, PALETTE, house_style, label, new_figure
 from studies.instruments.work_precision.front import front
-from studies.instruments.work_precision.methods import EXACT, OUTSIDE
+from studies.instruments.work_precision.methods import EXACT, OUTSIDE, STEPPED
 from studies.instruments.work_precision.model_error import ModelErrors
+from studies.instruments.work_precision.problems import Problem
 
 __all__ = ["model_figure", "other_errors_figure", "work_precision_figure"]
 
@@ -44,19 +45,26 @@ AXES = {
 
 def styles_of(rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
     """Colour, marker and line of each method, the same in every panel."""
-    labels = dict.fromkeys((row["family"], row["method"]) for row in rows)
+    families = (EXACT, STEPPED, OUTSIDE)
+    pairs = dict.fromkeys((row["family"], row["method"]) for row in rows)
+    labels = sorted(pairs, key=lambda pair: families.index(pair[0]))
     found: dict[str, dict[str, Any]] = {}
     counts: dict[str, int] = {}
     for family, name in labels:
         i = counts[family] = counts.get(family, -1) + 1
         if family == EXACT:
             marker = ("*", "P", "X")[i % 3]
-            style = {"marker": marker, "color": PALETTE[0], "linestyle": "none", "markersize": 8}
+            style = {
+                "marker": marker, "color": PALETTE[0], "linestyle": "none", "markersize": 8, "zorder": 5,
+            }  # fmt: skip
         else:
             colour, outside = COLOURS[i % len(COLOURS)], family == OUTSIDE
             style = {
-                "marker": MARKERS[i % len(MARKERS)], "color": colour, "linestyle": "--" if outside else "-",
-                "linewidth": 0.8, "markersize": 3.2, "markerfacecolor": "white" if outside else colour,
+                "marker": MARKERS[(i + 3 * outside) % len(MARKERS)], "color": colour,
+                "linestyle": "--" if outside else "-",
+                # methods that agree are drawn on top of each other, the larger ones first
+                "linewidth": 0.8, "markersize": 3.2 if outside else 5.0 if i % 2 == 0 else 2.6,
+                "markerfacecolor": "white" if outside else colour,
             }  # fmt: skip
         found[name] = style
     return found
@@ -79,21 +87,26 @@ def _draw(axes: Any, rows: Sequence[Row], styles: Mapping[str, Mapping[str, Any]
         axes.set_yscale("log")
 
 
-def _legend(figure: Figure, axes: Any, columns: int) -> None:
+def _legend(figure: Figure, axes: Any, columns: int, order: Sequence[str] = ()) -> None:
+    """One legend below all panels, in the order given, others first."""
     handles: dict[str, Any] = {}
     for panel in np.ravel(axes):
         for handle, name in zip(*panel.get_legend_handles_labels(), strict=True):
             handles.setdefault(name, handle)
+    place = {name: i for i, name in enumerate(order)}
+    handles = dict(sorted(handles.items(), key=lambda item: place.get(item[0], -1)))
     with house_style():
         figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=columns)
 
 
-def work_precision_figure(rows: Sequence[Row], titles: Mapping[str, str]) -> Figure:
-    """One panel a problem."""
+def work_precision_figure(
+    rows: Sequence[Row], problems: Sequence[Problem], reference: Mapping[str, Mapping[str, float]]
+) -> Figure:
+    """One panel a problem; `reference` holds the reference's own errors."""
     figure, axes = new_figure(2, 2, width=PAGE, height=0.175)
     styles = styles_of(rows)
-    for (name, title), panel in zip(titles.items(), np.ravel(axes), strict=False):
-        here = [row for row in rows if row["problem"] == name]
+    for problem, panel in zip(problems, np.ravel(axes), strict=False):
+        here = [row for row in rows if row["problem"] == problem.name]
         _draw(panel, here, styles, "error")
         best = front(here)
         if best:
@@ -107,30 +120,32 @@ def work_precision_figure(rows: Sequence[Row], titles: Mapping[str, str]) -> Fig
             panel.set_xlim(_left, right)
             panel.set_ylim(_low, top)
         with house_style():
-            panel.set_title(title)
-        label(panel.xaxis, "time per drive period" if name != "swung beam" else "time per 12 ms", "µs")
+            own = reference[problem.name]["error"]
+            panel.set_title(f"{problem.title}\nreference good to {own:.0e}")
+        label(panel.xaxis, f"time per {problem.unit}", "µs")
         label(panel.yaxis, AXES["error"])
-    _legend(figure, axes, 4)
+    _legend(figure, axes, 4, list(styles))
     return figure
 
 
-def other_errors_figure(rows: Sequence[Row], titles: Mapping[str, str]) -> Figure:
+def other_errors_figure(rows: Sequence[Row], problems: Sequence[Problem]) -> Figure:
     """A row a measure, a column a driven problem."""
     measures = [name for name in AXES if name != "error"]
-    driven = {row["problem"] for row in rows if row["missed"] is not None}
-    names = [name for name in titles if name in driven]
-    figure, axes = new_figure(len(measures), len(names), width=PAGE, height=0.24, sharex="col", squeeze=False)
+    driven = [problem for problem in problems if problem.oscillator.drive is not None]
+    figure, axes = new_figure(
+        len(measures), len(driven), width=PAGE, height=0.24, sharex="col", squeeze=False
+    )
     styles = styles_of(rows)
-    for j, name in enumerate(names):
-        here = [row for row in rows if row["problem"] == name]
+    for j, problem in enumerate(driven):
+        here = [row for row in rows if row["problem"] == problem.name]
         with house_style():
-            axes[0, j].set_title(titles[name])
+            axes[0, j].set_title(problem.title)
         for i, measure in enumerate(measures):
             _draw(axes[i, j], here, styles, measure)
             if j == 0:
                 label(axes[i, j].yaxis, AXES[measure])
-        label(axes[-1, j].xaxis, "time per drive period", "µs")
-    _legend(figure, axes, 4)
+        label(axes[-1, j].xaxis, f"time per {problem.unit}", "µs")
+    _legend(figure, axes, 4, list(styles))
     return figure
 
 

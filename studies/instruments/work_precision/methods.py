@@ -12,12 +12,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contact.integrators import CentralDifference, ContactSeries, EventDriven, Integrator, PiecewiseLinear
-from contact.integrators.generalised_alpha import GeneralisedAlpha
-from contact.integrators.moreau_jean import MoreauJean
-from contact.integrators.nonsmooth_generalised_alpha import NonsmoothGeneralisedAlpha
-from contact.integrators.sampled_flight import SampledFlight
-from contact.integrators.splitting import Splitting
+from contact.integrators import (
+    CentralDifference,
+    ContactSeries,
+    EventDriven,
+    GeneralisedAlpha,
+    Integrator,
+    MoreauJean,
+    NonsmoothGeneralisedAlpha,
+    PiecewiseLinear,
+    SampledFlight,
+    Splitting,
+)
 from studies.instruments import peers
 from studies.instruments.work_precision.problems import Problem
 
@@ -114,7 +120,7 @@ def lines_for(problem: Problem, *, quick: bool = False) -> list[Line]:
                 Setting(value=tolerance, words=f"tolerance {tolerance:.0e}", method=ladder[label])
                 for tolerance, ladder in zip(tolerances, ladders, strict=True)
             )
-            lines.append(Line(label=label, family=OUTSIDE, growth=3.0 ** (3 if quick else 1), settings=settings))
+            lines.append(Line(label=label, family=OUTSIDE, growth=3.0**stride, settings=settings))
     return lines
 
 

@@ -20,8 +20,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from beam.frequency_equation import UniformBeam, exact_modes
-from beam.reduction import ModalModel
 from contact.collision import before_collision, first_collision
 from contact.laws import HERTZ, LINEAR, LinearContact
 from contact.orbits.continuation import fold_of
@@ -33,8 +31,9 @@ from contact.stop import Stop
 from contact.trajectory import State
 from studies.instruments.oscillators import beam_of, hertz_of, single_mode_oscillator
 from studies.instruments.scene import Scene
+from studies.instruments.work_precision.swung_beam import LENGTH, TURNING, swung_beam
 
-__all__ = ["FoldPoint", "Problem", "SDNL32", "driven_problem", "problems_of", "swung_beam"]
+__all__ = ["FoldPoint", "Problem", "driven_problem", "problems_of"]
 
 FREQUENCY, PERIOD = 21.50, 4
 """Drive frequency [Hz] and period of the maximal orbit of the letter's Fig. 4."""
@@ -50,13 +49,6 @@ SETTLING = 600
 
 LONGEST = 16
 """Longest period of a settled orbit that is looked for; a motion without one is followed that long."""
-
-SDNL32 = {
-    18000.0: [-2.66, -4.33, -4.92, -4.78, -3.82, -2.87, -2.71, -3.09, -3.41, -3.36, -2.64, -0.742],
-    45000.0: [-2.25, -2.66, -1.96, -1.15, -0.124, -0.364, -2.01, -2.74, -1.89, -0.352, 1.70, 4.99],
-}
-"""Tip displacement at 1 ... 12 ms [mm], for each stiffness [N/m]."""
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FoldPoint:
@@ -97,8 +89,12 @@ class Problem:
     contact_time : float
         Of the first touch, 0 for an impact law [s].
     collision : (float, float) or None
-        t_in and t_out of the first collision in doubles [s].
+        t_in and t_out of the first collision in doubles [s]; None if it has no restitution.
+    touches : int
+        Touches in that collision.
     fold : FoldPoint or None
+    unit : str
+        What `period` is called.
     """
 
     name: str
@@ -116,7 +112,9 @@ class Problem:
     mode: int = 0
     timed_end: bool = False
     collision: tuple[float, float] | None = None
+    touches: int = 1
     fold: FoldPoint | None = None
+    unit: str = "drive period"
 
     @property
     def law(self) -> int:
@@ -176,6 +174,7 @@ def driven_problem(
         cost_start=State(displacement=run.strobe_displacement[-1], velocity=run.strobe_velocity[-1]),
         cost_periods=repeats[0] if repeats else LONGEST, contact_time=met.contact_time,
         collision=(met.time, met.time + met.delay) if math.isfinite(met.delay) else None,
+        touches=met.impacts,
         fold=fold_point(oscillator, periods) if fold else None,
     )  # fmt: skip
 
@@ -198,33 +197,6 @@ def linear_beam(scene: Scene, frequency: float, excess: float) -> ImpactOscillat
     return with_stiffness(stiffness)
 
 
-def swung_beam(
-    stiffness: float, bending_modes: int = 9, damping_ratio: float = 0.01
-) -> tuple[ImpactOscillator, State]:
-    """The beam of SDNL32, pinned at one end and turning at -3.8 rad/s, as its free end meets the spring.
-
-    The stop lies where the tip moves to, so that the model counts positive what the source counts negative.
-    """
-    length, side, modulus, density = 0.783, 0.014, 6.7e10, 2400.0
-    line = density * side**2
-    beam = UniformBeam(
-        length=length,
-        bending_stiffness=modulus * side**4 / 12,
-        mass_per_length=line,
-        supports=("pinned", "free"),
-    )
-    bending = exact_modes(beam, bending_modes)
-    phi = np.append(math.sqrt(3 / (line * length)), bending.phi)  # turning as a whole: w = s phi_0 / L
-    model = ModalModel(
-        omega=np.append(0.0, bending.omega), decay_rate=np.append(0.0, 2 * damping_ratio * bending.omega),
-        phi=phi, participation=np.zeros(phi.size),
-    )  # fmt: skip
-    velocity = np.zeros(phi.size)
-    velocity[0] = 3.8 * length / phi[0]
-    oscillator = ImpactOscillator(model=model, stop=Stop(gap=0.0, law=LinearContact(stiffness=stiffness)))
-    return oscillator, State(displacement=np.zeros(phi.size), velocity=velocity)
-
-
 def swung_problem() -> Problem:
     """SDNL32 with the stiffer spring, which the tip leaves before 12 ms."""
     oscillator, start = swung_beam(45000.0)
@@ -232,8 +204,8 @@ def swung_problem() -> Problem:
     phi = float(oscillator.model.phi[0])
     return Problem(
         name="swung beam", title="SDNL32, 10 modes, linear contact", oscillator=oscillator, start=start,
-        probe=0.012, duration=0.012, period=0.012, size=0.005 / phi, speed=3.8 * 0.783 / phi,
-        timed_end=True, cost_start=start, cost_periods=1,
+        probe=0.012, duration=0.012, period=0.012, size=0.005 / phi, speed=TURNING * LENGTH / phi,
+        timed_end=True, unit="12 ms", cost_start=start, cost_periods=1,
         contact_time=float(touches.end[0] - touches.start[0]),
     )  # fmt: skip
 
