@@ -10,7 +10,7 @@ Columns of the table: method; case; the quantity that is turned; its limit by th
 no sharp one); the limit found (empty where the failure did not appear); refused: whether asking for more is
 refused before a number comes out, "-" where there is nothing to refuse.
 
-Run time: two to three minutes on two cores; --quick half a minute.  Command: python -m studies.stability
+Run time: three to four minutes on two cores; --quick half a minute.  Command: python -m studies.stability
 [--families explicit_limits,odd_modes].  Outputs: summary.json with all rows, and for every family its rows
 (csv), the arrays of its figures (npz) and the figures. A family that cannot be computed becomes a failed row
 with its sentence, the others go on, and the exit code is 3.

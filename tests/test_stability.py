@@ -391,8 +391,9 @@ def test_periodic_orbit_repeats_to_rounding_and_is_the_closed_form(scene):
 
 
 def test_stable_steps_let_the_energy_of_contacts_walk_at_random():
-    assert walk(1_000_000, 60) < 1e-9
-    assert wander(7, 40, 32) == pytest.approx(walk(7, 40), rel=3 / math.sqrt(64))
+    """The deviation of 64 starts is good to 1/sqrt(128), and three of those are allowed."""
+    assert walk(14, 20) == pytest.approx(walk(7, 20) / 3.7, rel=0.1)  # as the square of the step
+    assert wander(7, 20, 64) == pytest.approx(walk(7, 20), rel=3 / math.sqrt(128))
 
 
 # -------------------------------------------------------------------------------------------------- the study

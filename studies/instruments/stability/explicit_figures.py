@@ -66,7 +66,7 @@ def draw_contacts(arrays: Mapping[str, np.ndarray]) -> Any:
                           label="bound of the gain, 1/(1 - (h ω$_c$/2)$^2$) - 1")
                 axis.plot(fine, 0.25 * fine**2, color=PALETTE[1], linestyle="--",
                           label="bound of the loss, (h ω$_c$/2)$^2$")
-            for i, place in enumerate(arrays["commensurate"]):
+            for i, place in enumerate(arrays["commensurate"] if name == "linear" else ()):
                 axis.axvline(place, color="0.6", linewidth=0.5, linestyle=":", zorder=0,
                              label="contact of a whole number of steps" if i == 0 else None)
             axis.set_yscale("log")

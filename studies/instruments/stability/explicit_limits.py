@@ -97,7 +97,7 @@ def flights(quick: bool) -> tuple[list[Limit], dict[str, np.ndarray]]:
     """One mode without contact: centred and lagged damping."""
     limits: list[Limit] = []
     measured: dict[bool, list[float]] = {True: [], False: []}
-    ratios, many = (RATIOS[::2], STEPS) if quick else (RATIOS, 5 * STEPS)
+    ratios, many = (RATIOS[::2], STEPS) if quick else (RATIOS, 3 * STEPS)
     for lagged in (False, True):
         for ratio in ratios:
             oscillator = ImpactOscillator(

@@ -24,9 +24,9 @@ def draw_odd(arrays: Mapping[str, np.ndarray]) -> Any:
     with house_style():
         for i, (key, name) in enumerate(NAMES.items()):
             style = {**series(i), "markerfacecolor": "none"}
-            near = np.minimum(np.maximum(arrays[f"near_{key}"], FLOOR), 10.0)
+            near = np.maximum(arrays[f"near_{key}"], FLOOR)
             left.plot(distance, near, **style, label=name)
-            middle.plot(arrays["ratio"], np.minimum(np.maximum(arrays[f"ratio_{key}"], FLOOR), 10.0), **style)
+            middle.plot(arrays["ratio"], np.maximum(arrays[f"ratio_{key}"], FLOOR), **style)
         fine = np.geomspace(1e-16, 1e-2, 50)
         left.plot(fine, EPS * np.sqrt(2.0 / fine), color="0.5", linewidth=0.8, label="ε (2/δ)$^{1/2}$")
         for axis, name, title in (
@@ -35,10 +35,11 @@ def draw_odd(arrays: Mapping[str, np.ndarray]) -> Any:
         ):  # fmt: skip
             axis.set_xscale("log")
             axis.set_yscale("log")
-            axis.set_ylim(FLOOR / 2.0, 30.0)
+            axis.set_ylim(FLOOR / 2.0, 1e-6)
             label(axis.xaxis, name)
             label(axis.yaxis, "largest relative error")
             axis.set_title(title, loc="left")
+        left.set_xticks([1e-16, 1e-12, 1e-8, 1e-4])
         place = np.arange(arrays["collision"].size)[::-1]
         right.plot(np.maximum(arrays["collision_error"], FLOOR), place, linestyle="none", marker="o",
                    color=PALETTE[0])

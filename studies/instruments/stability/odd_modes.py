@@ -165,7 +165,7 @@ def overdamped(quick: bool) -> list[Limit]:
             return True
         return False
 
-    measured = bisect(ends, 0.3 * theory, 3.0 * theory, relative=0.3 if quick else 0.05)
+    measured = bisect(ends, 0.8 * theory, 1.4 * theory, relative=0.5 if quick else 0.05)
     return [
         Limit(
             method=NAME, case="contact of a spring with one strongly damped mode", knob="c of the mode [1/s]",

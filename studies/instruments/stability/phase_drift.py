@@ -42,7 +42,7 @@ __all__ = ["OMEGA", "drift", "drifts", "methods", "one_mode"]
 OMEGA = 2.0 * math.pi * 24.5
 STEPS = (0.05, 0.1, 0.2, 0.4, 0.8)
 """h omega of the runs [1]."""
-PASSES = 4
+PASSES = 10
 """Of the fit: each uses the rate of the one before, so that in the end the model fits the samples exactly."""
 QUOTED = 0.1
 """h omega of the rows of the table."""
