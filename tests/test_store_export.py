@@ -66,7 +66,8 @@ def test_shards_are_exported_as_one(tmp_path):
                 if row[0] // 2 == k:
                     here = Batch(column=row[0], frequency=row[1], direction=row[2], first_step=row[3],
                                  excesses=(row[4],), state=None)  # fmt: skip
-                    part.add(here, [Cell(period=row[5], impacts=row[6], cycles=row[7], reason=row[8], state=row[9])])
+                    cell = Cell(period=row[5], impacts=row[6], cycles=row[7], reason=row[8], state=row[9])
+                    part.add(here, [cell])
     names = [str(tmp_path / name) for name in ("1.sqlite", "0.sqlite")]
     assert export.main([*names, "--out", str(tmp_path / "both.csv")]) == 0
     assert export.main([str(tmp_path / "whole.sqlite"), "--out", str(tmp_path / "one.csv")]) == 0

@@ -6,12 +6,14 @@
 with the damping either centred, v = (v_{n-1/2} + v_{n+1/2})/2, solved mode by mode, or lagged, v = v_{n-1/2}.
 The motion starts with v_{1/2} = v_0 + (h/2) a_0; the velocity at a grid point is the mean of its neighbours.
 
-Order 2. Stable for h <= 2/omega with centred and h <= (2/omega)(sqrt(1 + zeta^2) - zeta), zeta = c/(2 omega),
-with lagged damping, where omega runs over the frequencies of the modes with and without the contact's
-stiffness (T. Belytschko, in Belytschko and Hughes, Computational Methods for Transient Analysis, 1983, ch.
-1). With modal damping the highest mode of K + k phi phi^T in contact takes its damping from several modes;
-the limit for k is then formed without damping when it is centred, and with the largest c of all modes when it
-is lagged.
+Order 2.  Stable in flight for h <= 2/omega with centred and h <= (2/omega)(sqrt(1 + zeta^2) - zeta), zeta =
+c/(2 omega), with lagged damping (T. Belytschko, in Belytschko and Hughes, Computational Methods for Transient
+Analysis, 1983, ch. 1).  In a lasting contact of stiffness k, stable if and only if h^2 (K + k phi phi^T) <=
+4, with lagged damping h^2 (K + k phi phi^T) + 2 h C <= 4, as matrices: the quadratic of a step, (z - 1)^2 +
+h c (z - 1) + h^2 kappa z = 0 with c = x*Cx and kappa = x*Kx for lagged damping, has its roots in the unit
+disc then, and one at z = -1 at the limit,
+
+    1/k = sum_k phi_k^2 / (4/h^2 - 2 c_k/h - omega_k^2)    (without the term in c_k for centred damping).
 """
 
 from __future__ import annotations
@@ -24,7 +26,7 @@ import numpy as np
 
 from contact.compiled import kernel
 from contact.flight import Motion
-from contact.integrators.equation import contact_force, contact_tangent, stiffness_at, tip_of
+from contact.integrators.equation import contact_force, contact_tangent, tip_of
 from contact.integrators.grid import (
     DIVERGED,
     EVALUATIONS,
@@ -121,13 +123,9 @@ class CentralDifference(Integrator):
         """Contact stiffness at which the highest frequency reaches the limit, below zero if a mode is beyond
         it [N/m]."""
         h = self.step
-        if not self.lagged:
-            return stiffness_at(motion.omega, motion.phi, 2.0 / h)
-        # with damping c, h omega = 2 (sqrt(1 + zeta^2) - zeta) is omega^2 = 4/h^2 - 2c/h
-        squares = 4.0 / h**2 - 2.0 * motion.decay / h
-        if np.any(motion.omega**2 >= squares):
-            return -1.0
-        return stiffness_at(motion.omega, motion.phi, math.sqrt(float(squares.min())))
+        squares = 4.0 / h**2 - (2.0 * motion.decay / h if self.lagged else 0.0)
+        room = squares - motion.omega**2
+        return float(1.0 / np.sum(motion.phi**2 / room)) if np.all(room > 0.0) else -1.0
 
     def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
         """The motion of `run`."""

@@ -1,8 +1,9 @@
 r"""Energy over many elastic contacts: the exact methods keep it, a stable fixed step lets it walk.
 
 Central difference changes ln E in each contact by f(s) - f(s'), f = ln(1 - X s(1 - s)), X = (h omega_c)^2,
-with the phases s, s' of the grid at touch and release (``short_contacts``). A contact lasts pi/W steps, W =
-2 arcsin(h omega_c/2), so that s' = r - s up to whole numbers, r the part of pi/W beyond a whole number. For evenly spread s and small X the variance is that of X (g(s) - g(r - s)), g = s(1 - s),
+with the phases s, s' of the grid at touch and release (``short_contacts``). A contact lasts pi/W steps,
+W = 2 arcsin(h omega_c/2), so that s' = r - s up to whole numbers, r the part of pi/W beyond a whole number.
+For evenly spread s and small X the variance is that of X (g(s) - g(r - s)), g = s(1 - s),
 
     X^2 (1 + 30 B4(r))/90,     B4(r) = r^4 - 2 r^3 + r^2 - 1/30,
 
