@@ -13,8 +13,8 @@ quadratics, necessary because the determinant changes sign between z = -1 and z 
     lagged, modal damping    1/k = sum_k phi_k^2 / (4/h^2 - 2 c_k/h - omega_k^2)                           (a)
 
 (a) is sharp, and the package refuses by it. Under Hertz's law the tangent 3/2 k d^(1/2) takes the place of
-k. A free mass m that arrives with v reaches d = (5 m v^2/(4k))^(2/5), so that the step h bears speeds up to the v with
-3/2 k d^(1/2) = 4 m/h^2.
+k. A free mass m that arrives with v reaches d = (5 m v^2/(4k))^(2/5), so that the step h bears speeds up to
+the v with 3/2 k d^(1/2) = 4 m/h^2.
 
 Units: SI. Source of the limits for a single mode: T. Belytschko, Computational Methods for Transient
 Analysis (1983), ch. 1; (a) is derived here.

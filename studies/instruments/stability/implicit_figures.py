@@ -83,7 +83,10 @@ def _plane(arrays: Any) -> Any:
                                     shading="nearest", rasterized=True)  # fmt: skip
             rows, columns = np.nonzero(growth > 1e-3)
             axis.plot(sizes[columns], ratios[rows], ".", color="black", markersize=2.0)
-            axis.plot(sizes, (math.pi / sizes) ** 2, color="black", linewidth=0.9, linestyle="--")
+            (line,) = axis.plot(
+                sizes, (math.pi / sizes) ** 2, color="black", linewidth=0.9, linestyle="--",
+                label="a contact lasts one step",
+            )  # fmt: skip
             axis.set_xscale("log")
             axis.set_yscale("log")
             axis.set_xlim(sizes[0] / 1.1, sizes[-1] * 1.1)
@@ -93,6 +96,7 @@ def _plane(arrays: Any) -> Any:
             label(axis.xaxis, "$h\\,\\omega_\\mathrm{max}$", "1")
         for axis in axes[:, 0]:
             label(axis.yaxis, "$k / k_\\mathrm{modal}$", "1")
+        figure.legend(handles=[line], loc="outside lower center")
         bar = figure.colorbar(image, ax=axes, extend="both", shrink=0.8)
         label(bar.ax.yaxis, "growth of ln(energy) per contact; dots: above 0.001", "1")
     return figure
