@@ -1,5 +1,6 @@
 # make study   the main study on the letter's scene
-# make test    all tests
+# make test    the tests, but for the long forms of some
+# make test-all  those as well
 # make lint    style and types
 # make clean   caches and build products; results/ and .venv/ stay
 
@@ -8,13 +9,16 @@ BIN := .venv/bin
 READY := .venv/.ready
 ONE_THREAD := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
 
-.PHONY: study test lint clean
+.PHONY: study test test-all lint clean
 
 study: $(READY)
 	$(BIN)/python -m studies
 
 # `python -m pytest` puts this folder first on the path, so that what is tested is what lies here.
 test: $(READY)
+	$(ONE_THREAD) $(BIN)/python -m pytest -n 2 -m "not slow"
+
+test-all: $(READY)
 	$(ONE_THREAD) $(BIN)/python -m pytest -n 2
 
 lint: $(READY)

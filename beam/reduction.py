@@ -173,8 +173,8 @@ class ModalModel:
         if not (mobility > 0.0 and compliance > LEAST_RESIDUAL * self.static_compliance):
             raise ValueError(
                 f"tip_mass is {self.tip_mass} kg and static_compliance {self.static_compliance} m/N; the "
-                f"modes leave {mobility:.3g} 1/kg of the one and {compliance:.3g} m/N of the other, which must be "
-                f"above zero and above {LEAST_RESIDUAL:g} of the whole."
+                f"modes leave {mobility:.3g} 1/kg of the one and {compliance:.3g} m/N of the other, which "
+                f"must be above zero and above {LEAST_RESIDUAL:g} of the whole."
             )
         phi, omega = np.sqrt(mobility), np.sqrt(mobility / compliance)
         ratio = self.decay_rate[-1] / self.omega[-1] if self.omega[-1] > 0.0 else 0.0

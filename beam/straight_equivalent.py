@@ -70,7 +70,7 @@ def straight_equivalent(spring: LeafSpring) -> LeafSpring:
         and math.isclose(spring.tip_at, 0.5 * spring.centreline.length)
         and abs(spring.drive[0]) < 1e-12
     )
-    if not folded:
+    if not folded or not isinstance(bend, Arc):
         raise ValueError(
             f"centreline has {len(pieces)} pieces [no unit] that are no folded U; the straight "
             "equivalent needs two equal clamped legs, a bend of half a turn with the ball amid it, and a "

@@ -23,7 +23,7 @@ from contact.compiled import kernel
 from contact.flight import (
     EPS,
     mode_acceleration,
-    propagate_mode,
+    mode_flow,
     tip_rounding,
     tip_steady,
 )
@@ -100,11 +100,14 @@ def depart(motion, base, u, v, order, h, h_min):
 def tip_at(motion, base, u, v, s):
     """Tip displacement relative to the stop and two derivatives, a time `s` into the flight from (u, v)."""
     y0, y1, y2 = tip_steady(motion, base + s)
-    for k in range(motion.omega.size):
-        uk, vk = propagate_mode(motion, k, u[k], v[k], s)
-        y0 += motion.phi[k] * uk
-        y1 += motion.phi[k] * vk
-        y2 += motion.phi[k] * mode_acceleration(motion, k, uk, vk)
+    omega, decay, damped, low, load, phi = (
+        motion.omega, motion.decay, motion.damped, motion.damped_low, motion.load, motion.phi
+    )
+    for k in range(omega.size):
+        uk, vk = mode_flow(omega[k], decay[k], damped[k], low[k], load[k], u[k], v[k], s)
+        y0 += phi[k] * uk
+        y1 += phi[k] * vk
+        y2 += phi[k] * (load[k] - decay[k] * vk - omega[k] * omega[k] * uk)
     return y0, y1, y2
 
 
@@ -179,22 +182,23 @@ def first_crossing(motion, base, u, v, duration, order, envelope):
     s : float
         Time since the start of the flight [s].
     """
-    n = motion.omega.size
+    omega, decay, damped, low, load, phi = (
+        motion.omega, motion.decay, motion.damped, motion.damped_low, motion.load, motion.phi
+    )
+    n = omega.size
     w = motion.drive
     tip_amplitude = math.sqrt(motion.tip_sine**2 + motion.tip_cosine**2)
     margin = tip_rounding(motion, u, v)
     must = 0  # modes that are always sampled: zero frequency means no bound of the displacement
     fastest = w
     for k in range(n):
-        fastest = max(fastest, motion.omega[k], motion.decay[k])
-        if motion.omega[k] <= 0.0:
+        fastest = max(fastest, omega[k], decay[k])
+        if omega[k] <= 0.0:
             must = k + 1
     envelope[n] = 0.0
     for k in range(n - 1, -1, -1):
         if k >= must:
-            envelope[k] = envelope[k + 1] + abs(motion.phi[k]) * math.sqrt(
-                u[k] ** 2 + (v[k] / motion.omega[k]) ** 2
-            )
+            envelope[k] = envelope[k + 1] + abs(phi[k]) * math.sqrt(u[k] ** 2 + (v[k] / omega[k]) ** 2)
         else:
             envelope[k] = math.inf
     if order == 0 and motion.level + tip_amplitude + envelope[0] < -margin:
@@ -219,14 +223,14 @@ def first_crossing(motion, base, u, v, duration, order, envelope):
         m3 = tip_amplitude * w**3
         k = 0
         while k < sampled:
-            uk, vk = propagate_mode(motion, k, u[k], v[k], s)
-            d2 = mode_acceleration(motion, k, uk, vk)
-            o2 = motion.omega[k] ** 2
-            d3 = -motion.decay[k] * d2 - o2 * vk
-            y0 += motion.phi[k] * uk
-            y1 += motion.phi[k] * vk
-            y2 += motion.phi[k] * d2
-            m3 += abs(motion.phi[k]) * math.sqrt(d3 * d3 + o2 * d2 * d2)
+            uk, vk = mode_flow(omega[k], decay[k], damped[k], low[k], load[k], u[k], v[k], s)
+            o2 = omega[k] * omega[k]
+            d2 = load[k] - decay[k] * vk - o2 * uk
+            d3 = -decay[k] * d2 - o2 * vk
+            y0 += phi[k] * uk
+            y1 += phi[k] * vk
+            y2 += phi[k] * d2
+            m3 += abs(phi[k]) * math.sqrt(d3 * d3 + o2 * d2 * d2)
             k += 1
             if k == sampled and sampled < n and envelope[sampled] > 0.25 * max(-y0, 0.0):
                 sampled += 1

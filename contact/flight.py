@@ -22,7 +22,11 @@ all later times, whatever the damping,
     |u^(n+1)| <= sqrt( (u^(n+1))^2 + omega^2 (u^(n))^2 ) now.
 
 The phase d t is formed as an unevaluated sum of two doubles, so that its rounding error stays that of the
-result even after 1e5 rad.  Units: SI with mass-normalised modes (u in m kg^0.5).
+result even after 1e5 rad.  Sine and cosine of it come from one reduction by multiples of pi/2, whose leading
+33 bits make the product exact (W. J. Cody and W. Waite, Software Manual for the Elementary Functions,
+Prentice-Hall 1980), and their Taylor sums on |x| <= pi/4; the exponential likewise on |x| <= ln 2/2.  Each is
+good to one unit in the last place, without a call of the system's library.  Units: SI with mass-normalised
+modes (u in m kg^0.5).
 """
 
 from __future__ import annotations
@@ -109,6 +113,64 @@ def damped_frequency(omega, decay):
     return high, residual / (2.0 * high)
 
 
+_QUARTER, _QUARTER_LOW = 1.5707963267341256, 6.077100506506192e-11  # pi/2, its first 33 bits and the rest
+_LN2, _LN2_LOW = 0.6931471803691238, 1.9082149292705877e-10  # ln 2, its first 32 bits and the rest
+_FARTHEST = 5e5  # phase up to which the number of quarter turns leaves the product with pi/2 exact [rad]
+_LOWEST = -700.0  # exponent down to which powers of two are tabulated
+_POWERS_OF_TWO = 2.0 ** np.arange(-1020.0, 1.0)
+_S3, _S5, _S7, _S9, _S11, _S13, _S15, _S17 = (
+    (-1.0) ** n / math.factorial(2 * n + 1) for n in range(1, 9)
+)
+_C4, _C6, _C8, _C10, _C12, _C14, _C16 = ((-1.0) ** n / math.factorial(2 * n) for n in range(2, 9))
+_E2, _E3, _E4, _E5, _E6, _E7, _E8, _E9, _E10, _E11, _E12, _E13 = (
+    1.0 / math.factorial(n) for n in range(2, 14)
+)
+
+
+@kernel
+def sine_cosine(phase, rest):
+    """sin and cos of `phase` + `rest`, |rest| far below one."""
+    if not abs(phase) < _FARTHEST:
+        s, c = math.sin(phase), math.cos(phase)
+        return s + rest * c, c - rest * s
+    n = np.floor(phase * (2.0 / math.pi) + 0.5)
+    lead, part = phase - n * _QUARTER, n * _QUARTER_LOW
+    near = lead - part
+    low = ((lead - near) - part) + rest
+    x = near + low
+    low = (near - x) + low
+    z = x * x
+    z2 = z * z
+    z4 = z2 * z2
+    tail = (_S3 + z * _S5) + z2 * (_S7 + z * _S9) + z4 * ((_S11 + z * _S13) + z2 * (_S15 + z * _S17))
+    s = x + (x * z * tail + low * (1.0 - 0.5 * z))
+    half = 0.5 * z
+    c = 1.0 - half
+    tail = (_C4 + z * _C6) + z2 * (_C8 + z * _C10) + z4 * ((_C12 + z * _C14) + z2 * _C16)
+    c += ((1.0 - c) - half) + (z2 * tail - x * low)
+    turns = int(n) & 3
+    if turns & 1:
+        s, c = c, -s
+    if turns & 2:
+        s, c = -s, -c
+    return s, c
+
+
+@kernel
+def fading(x):
+    """exp(x) for x <= 0."""
+    if not x > _LOWEST:
+        return math.exp(x)
+    n = np.floor(x * 1.4426950408889634 + 0.5)
+    r = (x - n * _LN2) - n * _LN2_LOW
+    r2 = r * r
+    r4 = r2 * r2
+    tail = (_E2 + r * _E3) + r2 * (_E4 + r * _E5)
+    high = (_E10 + r * _E11) + r2 * (_E12 + r * _E13)
+    tail += r4 * (((_E6 + r * _E7) + r2 * (_E8 + r * _E9)) + r4 * high)
+    return _POWERS_OF_TWO[int(n) + 1020] * (1.0 + (r + r2 * tail))
+
+
 @kernel
 def flow_matrix(omega, decay, damped, damped_low, t):
     """The 2 x 2 flow (u, v) -> (u, v) of a free mode over a time `t` [s], as four numbers."""
@@ -116,10 +178,10 @@ def flow_matrix(omega, decay, damped, damped_low, t):
     if damped > 0.0 and omega > half:
         p, e = two_product(damped, t)
         e += damped_low * t
-        s, c = math.sin(p), math.cos(p)
-        fade = math.exp(-half * t)
-        cn = fade * (c - e * s)
-        sn = fade * (s + e * c) / damped
+        s, c = sine_cosine(p, e)
+        fade = fading(-half * t)
+        cn = fade * c
+        sn = fade * s / damped
     elif damped > 0.0:
         slow = omega * omega / (half + damped)
         fade = math.exp(-slow * t)
@@ -148,12 +210,12 @@ def loaded_drift(decay, load, t):
 
 
 @kernel
-def propagate_mode(motion, k, u, v, t):
-    """Deviation (u, v) of mode `k` after a time `t` [s]."""
-    a, b, c, d = flow_matrix(motion.omega[k], motion.decay[k], motion.damped[k], motion.damped_low[k], t)
+def mode_flow(omega, decay, damped, damped_low, load, u, v, t):
+    """Deviation (u, v) of one mode after a time `t` [s]."""
+    a, b, c, d = flow_matrix(omega, decay, damped, damped_low, t)
     un, vn = a * u + b * v, c * u + d * v
-    if motion.load[k] != 0.0:
-        du, dv = loaded_drift(motion.decay[k], motion.load[k], t)
+    if load != 0.0:
+        du, dv = loaded_drift(decay, load, t)
         un += du
         vn += dv
     return un, vn
@@ -162,8 +224,12 @@ def propagate_mode(motion, k, u, v, t):
 @kernel
 def propagate(motion, u, v, t, u_out, v_out):
     """Deviations of all modes after a time `t` [s]; `u_out`, `v_out` may be `u`, `v` themselves."""
-    for k in range(motion.omega.size):
-        u_out[k], v_out[k] = propagate_mode(motion, k, u[k], v[k], t)
+    # arrays taken out of the tuple once: inside the loop each access would count references
+    omega, decay, damped, low, load = (
+        motion.omega, motion.decay, motion.damped, motion.damped_low, motion.load
+    )
+    for k in range(omega.size):
+        u_out[k], v_out[k] = mode_flow(omega[k], decay[k], damped[k], low[k], load[k], u[k], v[k], t)
 
 
 @kernel

@@ -17,9 +17,11 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from contact.compiled import kernel
 from contact.crossing import first_polynomial_root, polynomial_root
-from contact.flight import EPS, tip_state
+from contact.flight import EPS
 
 __all__ = ["HERTZ_ORDER", "HERTZ_TOLERANCE", "hertz_series", "hertz_state", "hertz_step"]
 
@@ -55,7 +57,7 @@ def hertz_series(motion, base, u, v, us, vs, scalars):
     stiffness, chi = motion.number0, motion.number1
     r, sine, cosine = scalars[0], scalars[2], scalars[3]
     speed, force, push = scalars[4], scalars[5], scalars[6]
-    clock = scalars[1]
+    clock, square = scalars[1], np.empty(HERTZ_ORDER)
     clock[0] = 0.0
     sine[0], cosine[0] = math.sin(w * base), math.cos(w * base)
     for k in range(n_modes):
@@ -68,11 +70,11 @@ def hertz_series(motion, base, u, v, us, vs, scalars):
         speed[n] = total
         cube = 0.0
         rs, rc = 0.0, 0.0
+        square[n] = 0.0
         for i in range(n + 1):
-            square = 0.0
-            for j in range(n - i + 1):
-                square += r[j] * r[n - i - j]
-            cube += r[i] * square
+            square[n] += r[i] * r[n - i]
+        for i in range(n + 1):
+            cube += r[i] * square[n - i]
             rs += r[i] * sine[n - i]
             rc += r[i] * cosine[n - i]
         push[n] = cube  # r^3 for now
@@ -180,27 +182,3 @@ def hertz_step(motion, u, v, us, vs, scalars, limit):
         late[0] -= limit
         s, released, length = polynomial_root(late, 0.0, s), False, limit
     return s, released, length
-
-
-@kernel
-def work_on_stop(scalars, s):
-    """Work of the tip on the stop up to sigma = `s`, the integral of N d' r over sigma [J]."""
-    product = 0.0
-    power = s
-    r, speed, force = scalars[0], scalars[4], scalars[5]
-    for n in range(HERTZ_ORDER):
-        term = 0.0
-        for i in range(n + 1):
-            rv = 0.0
-            for j in range(n - i + 1):
-                rv += r[j] * speed[n - i - j]
-            term += force[i] * rv
-        product += term * power / (n + 1.0)
-        power *= s
-    return product
-
-
-@kernel
-def depth_root(motion, base, u, v):
-    """r = sqrt(d) of a contact that is under way at (u, v)."""
-    return math.sqrt(max(0.0, tip_state(motion, base, u, v)[0]))

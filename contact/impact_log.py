@@ -16,7 +16,7 @@ import math
 from contact.compiled import kernel
 from contact.crossing import polynomial_root
 from contact.flight import propagate, tip_steady
-from contact.hertz_series import hertz_state
+from contact.hertz_chain import CLOCK_SERIES, chain_state
 from contact.series import series_state
 
 REGIME, ORDER, LOGGED, SAMPLED, COUNT, EVALUATIONS, SEARCH = 0, 1, 2, 3, 4, 5, 6
@@ -59,16 +59,20 @@ def sample_series(series, base, until, period_index, integers, sample_period, sa
 
 @kernel
 def sample_hertz(
-    us, vs, scalars, base, until, end, period_index, integers, sample_period, sample_clock, samples, su, sv
+    motion, theta, impulse, u, v, scalars, products, base, until, end, period_index, integers, sample_period,
+    sample_clock, samples, late, work, su, sv,
 ):
     """States at the sample times of a step under Hertz's law that ends at sigma = `end`, time `until`."""
     n = su.size
     i = integers[SAMPLED]
-    late = scalars[1].copy()
     while i < sample_clock.size and sample_period[i] == period_index and sample_clock[i] <= until:
-        late[0] = base - sample_clock[i]
-        s = polynomial_root(late, 0.0, end) if sample_clock[i] > base else 0.0
-        hertz_state(us, vs, s, su, sv)
+        s = 0.0
+        if sample_clock[i] > base:
+            for j in range(late.size):
+                late[j] = scalars[CLOCK_SERIES, j]
+            late[0] = base - sample_clock[i]
+            s = polynomial_root(late, 0.0, end)
+        chain_state(motion, theta, impulse, u, v, scalars, products, s, work, su, sv)
         for k in range(n):
             samples[i, k] = su[k]
             samples[i, n + k] = sv[k]

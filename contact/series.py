@@ -59,7 +59,8 @@ def contact_series(motion, regime, base, u, v, series, depth, force):
     depth, force : ndarray, shape (SERIES_ORDER + 1,)
         Results; the last two coefficients of `force` are left zero.
     """
-    n_modes = motion.omega.size
+    omega, decay, phi, load = motion.omega, motion.decay, motion.phi, motion.load
+    n_modes = omega.size
     w = motion.drive
     s, c = math.sin(w * base), math.cos(w * base)
     x0 = motion.tip_sine * s + motion.tip_cosine * c
@@ -68,31 +69,30 @@ def contact_series(motion, regime, base, u, v, series, depth, force):
     for k in range(n_modes):
         series[0, k] = u[k]
         series[1, k] = v[k]
-        depth[0] += motion.phi[k] * u[k]
-        depth[1] += motion.phi[k] * v[k]
+        depth[0] += phi[k] * u[k]
+        depth[1] += phi[k] * v[k]
     for n in range(SERIES_ORDER - 1):
         x2 = -w * w * x0 / ((n + 1.0) * (n + 2.0))
         if regime == SUSTAINED:
             pull = (n + 1.0) * (n + 2.0) * x2
             for k in range(n_modes):
-                pull -= motion.phi[k] * (
-                    motion.decay[k] * (n + 1.0) * series[n + 1, k] + motion.omega[k] ** 2 * series[n, k]
-                )
+                pull -= phi[k] * (decay[k] * (n + 1.0) * series[n + 1, k] + omega[k] ** 2 * series[n, k])
                 if n == 0:
-                    pull += motion.phi[k] * motion.load[k]
+                    pull += phi[k] * load[k]
             force[n] = pull / motion.compliance
         else:
             force[n] = motion.number0 * depth[n] + motion.number1 * (n + 1.0) * depth[n + 1]
         push = 0.0 if regime == INSIDE else force[n]
         scale = 1.0 / ((n + 1.0) * (n + 2.0))
         total = x2
+        now, after, fresh = series[n], series[n + 1], series[n + 2]
         for k in range(n_modes):
-            a = -motion.decay[k] * (n + 1.0) * series[n + 1, k] - motion.omega[k] ** 2 * series[n, k]
+            a = -decay[k] * (n + 1.0) * after[k] - omega[k] ** 2 * now[k]
             if n == 0:
-                a += motion.load[k]
-            a = (a - motion.phi[k] * push) * scale
-            series[n + 2, k] = a
-            total += motion.phi[k] * a
+                a += load[k]
+            fresh[k] = (a - phi[k] * push) * scale
+        for k in range(n_modes):
+            total += phi[k] * fresh[k]
         depth[n + 2] = total
         x0, x1 = x1, x2
     force[SERIES_ORDER - 1] = 0.0
@@ -122,12 +122,11 @@ def series_step(motion, u, v, series, depth):
 def series_state(series, h, u, v):
     """Deviations of all modes a time `h` [s] into the step."""
     for k in range(series.shape[1]):
-        x, y = series[SERIES_ORDER, k], 0.0
-        for n in range(SERIES_ORDER - 1, -1, -1):
-            y = y * h + x
-            x = x * h + series[n, k]
-        u[k] = x
-        v[k] = y
+        u[k], v[k] = series[SERIES_ORDER, k], 0.0
+    for n in range(SERIES_ORDER - 1, -1, -1):
+        for k in range(series.shape[1]):
+            v[k] = v[k] * h + u[k]
+            u[k] = u[k] * h + series[n, k]
 
 
 @kernel

@@ -4,24 +4,34 @@ Sampling a driven oscillator at the strobe times t_n = n/f turns its motion into
 periodic orbits are the p_m orbits of the letter (1996, Fig. 2).  ``StroboscopicMap`` is that map for any
 impact oscillator; ``contact.nordmark.StrobedNordmarkMap`` offers the same three methods, so that everything
 which scans, settles or classifies orbits takes either.
+
+One mode under Newton's law has a loop of its own (``contact.integrators.single_mode_loop``), which proves
+most periods free without a sine; its strobes agree with those of the general loop within rounding.
 """
 
 from __future__ import annotations
 
+import os
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
 from contact.drive import split_time
-from contact.flight import steady_motion
+from contact.flight import Motion, steady_motion
 from contact.impact_log import LOG_FIELDS, REBOUND, REGIME, WAIT
 from contact.integrators.event_loop import DONE, advance
 from contact.integrators.exact_run import deviations, failure
+from contact.integrators.single_mode_loop import strobed_motion
+from contact.integrators.strobe_nodes import StrobeNodes, nodes_of
+from contact.laws import NEWTON
 from contact.oscillator import ImpactOscillator
 from contact.trajectory import State
 
-__all__ = ["StrobedMap", "StrobedOrbit", "StroboscopicMap"]
+__all__ = ["StrobedMap", "StrobedOrbit", "StroboscopicMap", "strobed_orbits"]
 
 S = TypeVar("S")
 
@@ -104,6 +114,16 @@ class StroboscopicMap:
         phi = self.oscillator.model.phi
         return np.where(phi != 0, phi, np.abs(phi).max())
 
+    @cached_property
+    def _motion(self) -> Motion:
+        """The numbers of the oscillator, made once for many short orbits."""
+        return self.oscillator.motion()
+
+    @cached_property
+    def _nodes(self) -> StrobeNodes | None:
+        """What the loop of one mode under Newton's law needs; None for everything else."""
+        return nodes_of(self._motion) if self._motion.law == NEWTON else None
+
     def step(self, state: State) -> State:
         """One drive period."""
         return self.orbit(state, 1).end
@@ -126,27 +146,53 @@ class StroboscopicMap:
         ContactError
             If the motion could not be followed.
         """
-        motion = self.oscillator.motion()
+        motion, nodes = self._motion, self._nodes
         index, clock = split_time(np.array([state.time]), motion.period)
         if clock[0] != 0.0:
             raise ValueError(f"time of the state is {state.time} s; it must be a strobe time n/f")
         n, first = motion.omega.size, int(index[0])
         u, v, integers, floats = deviations(motion, state, 0.0)
-        strobes, counts = np.empty((count, 2 * n)), np.zeros(count, dtype=np.int64)
-        status, reached = advance(
-            motion, u, v, integers, floats, first, count, 0.0, strobes, counts, np.empty((0, LOG_FIELDS)),
-            np.empty((0, 4 * n)), np.empty(0, dtype=np.int64), np.empty(0), np.empty((0, 2 * n)),
-        )
-        if status != DONE:
-            raise failure(status, motion, reached, floats, u, v)
         q, q_rate = steady_motion(motion, np.zeros(1))
         speed = np.where(motion.omega > 0, motion.omega, motion.drive)
-        weight = self._weight()
-        points = np.empty_like(strobes)
-        points[:, :n] = (strobes[:, :n] + q) * weight
-        points[:, n:] = (strobes[:, n:] + q_rate) * (weight / speed)
+        mean = np.concatenate([q[0], q_rate[0]])
+        weight = np.concatenate([self._weight(), self._weight() / speed])
+        points, counts = np.empty((count, 2 * n)), np.zeros(count, dtype=np.int64)
+        if nodes is not None:
+            status, reached, _searched, _left = strobed_motion(
+                motion, nodes, u, v, integers, floats, first, count, mean, weight, points, counts
+            )
+        else:
+            status, reached = advance(
+                motion, u, v, integers, floats, first, count, 0.0, points, counts, np.empty((0, LOG_FIELDS)),
+                np.empty((0, 4 * n)), np.empty(0, dtype=np.int64), np.empty(0), np.empty((0, 2 * n)),
+            )
+            points += mean
+            points *= weight
+        if status != DONE:
+            raise failure(status, motion, reached, floats, u, v)
         end = State(
             displacement=u + q[0], velocity=v + q_rate[0], time=(first + count) * motion.period,
             regime=int(integers[REGIME]), wait=float(floats[WAIT]), rebound=float(floats[REBOUND]),
         )
         return StrobedOrbit(end=end, points=points, impacts=counts)
+
+
+def strobed_orbits(
+    maps: Sequence[StroboscopicMap], states: Sequence[State], count: int, *, workers: int | None = None
+) -> list[StrobedOrbit[State]]:
+    """`count` drive periods of many orbits, one in each map from its state, on `workers` threads.
+
+    Every orbit is a task of its own and the same, bit for bit, as `orbit` alone makes it; the kernels release
+    the interpreter lock, so that threads share the cores.  `workers` is the number of cores unless given.
+
+    Raises
+    ------
+    ValueError
+        If there are not as many states as maps, or as `StroboscopicMap.orbit` does.
+    ContactError
+        Of the first orbit, in their order, that could not be followed.
+    """
+    if len(maps) != len(states):
+        raise ValueError(f"states has {len(states)} entries; it must have one for each of {len(maps)} maps")
+    with ThreadPoolExecutor(max_workers=workers or os.cpu_count()) as pool:
+        return list(pool.map(lambda strobed, state: strobed.orbit(state, count), maps, states))

@@ -7,12 +7,13 @@ longer than the next.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from beam.reduction import ModalModel
 from contact.drive import HarmonicDrive
-from contact.laws import HertzContact
+from contact.laws import HertzContact, NewtonRestitution
 from contact.orbits.shooting import Shooting
 from contact.oscillator import ImpactOscillator
 from contact.stop import Stop
@@ -33,6 +34,8 @@ def compile_kernels() -> None:
     ).with_excess(1e-3)
     strobed = StroboscopicMap(oscillator=oscillator)
     strobed.orbit(strobed.steady(), 10)
+    newton = replace(oscillator, stop=Stop(gap=0.01, law=NewtonRestitution(local_restitution=0.1)))
+    StroboscopicMap(oscillator=newton).orbit(strobed.steady(), 10)
     Shooting(oscillator=oscillator, period=5).at_speed(0.1)
 
 

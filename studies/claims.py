@@ -65,8 +65,8 @@ NEEDS = (Need(quantity="fold", tolerance=0.05, everywhere=True),)
 def main(argv: Sequence[str] | None = None, *, module: str | None = None) -> int:
     """Run the study from the command line."""
     return run_study(
-        "claims", "The letter's other claims, each with the numbers that decide it.", run, argv, module=module,
-        needs=NEEDS,
+        "claims", "The letter's other claims, each with the numbers that decide it.", run, argv,
+        module=module, needs=NEEDS,
     )
 
 

@@ -142,7 +142,10 @@ NEEDS = (Need(quantity="fold", tolerance=0.05, everywhere=True, mesh=False),)
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the study from the command line."""
     return run_study(
-        "sensitivity", "The six transitions under the letter's errors, noise and open assumptions.", run, argv,
+        "sensitivity",
+        "The six transitions under the letter's errors, noise and open assumptions.",
+        run,
+        argv,
         needs=NEEDS,
     )
 

@@ -104,7 +104,7 @@ def test_parts_of_the_error_explain_it() -> None:
 
 
 def test_errors_that_cancel_get_no_credit() -> None:
-    """One mode and a residual one with a linear contact come within 0.01 of the restitution, but not soundly."""
+    """One mode and a residual one with a linear contact come within 0.01 of the restitution, by luck."""
     search = Search(LETTER, Asked(quantity="restitution", frequency=22.2))
     choice = ModelChoice(rung="straight", law="hertz", modes=1, mesh=2, residual=True)
     assert search.off(choice) < 1e-2 < search.error(choice)
@@ -128,7 +128,7 @@ def test_a_model_without_an_answer_is_infinitely_far_off() -> None:
     assert asked.error(np.array([5.0, -1e-4]), np.array([5.0, -2e-4])) == pytest.approx(0.4)  # of 2.5e-4
 
 
-# ------------------------------------------------------------------------------------------------ used by studies
+# -------------------------------------------------------------------------------------------- used by studies
 
 
 def test_the_delivered_choices_are_those_that_are_found() -> None:

@@ -51,6 +51,7 @@ ORDER = {
         "trajectory",
         "series",
         "hertz_series",
+        "hertz_chain",
         "newton",
         "tangent",
         "impact_log",

@@ -49,7 +49,7 @@ def test_sway_stiffness_is_that_of_the_u(radius: float, span: tuple[float, float
 
 
 def test_modes_are_those_of_the_u() -> None:
-    """Up to mode 8 the frequencies agree to 2e-3; legs alone, without their share of the bend, are 5 % off."""
+    """Up to mode 8 frequencies agree to 2e-3; legs without their share of the bend are 5 % off in statics."""
     spring = folded_u(leg_length=0.13, bend_radius=7.5e-3, section=STRIP, tip=TIP)
     u = reduce(natural_modes(assemble(spring), 20), RATIO, 8)
     leg = as_one_spring(reduce(natural_modes(assemble(straight_equivalent(spring)), 8), RATIO))
@@ -80,7 +80,7 @@ def test_residual_mode_fulfils_the_sum_rules(count: int) -> None:
 
 
 def test_sum_rules_hold_for_the_exact_modes_of_a_loaded_cantilever() -> None:
-    """A second route to what the residual mode is made of: the frequency equation, 60 modes and their tail."""
+    """A second route to what the residual mode is made of: 60 modes of the frequency equation."""
     beam = UniformBeam(length=0.2, bending_stiffness=0.05, mass_per_length=0.07, tip_mass=0.004)
     modes = exact_modes(beam, 60)
     shares = modes.phi**2 / modes.omega**2
@@ -89,7 +89,8 @@ def test_sum_rules_hold_for_the_exact_modes_of_a_loaded_cantilever() -> None:
     assert np.all(missing > 0) and missing[-1] < 0.06 * missing[0]
     model = ModalModel(
         omega=modes.omega[:3], decay_rate=0.1 * np.ones(3), phi=modes.phi[:3],
-        participation=modes.participation[:3], tip_mass=beam.tip_mass, static_compliance=beam.static_compliance,
+        participation=modes.participation[:3], tip_mass=beam.tip_mass,
+        static_compliance=beam.static_compliance,
     )  # fmt: skip
     more = model.with_residual_mode()
     assert more.phi[-1] ** 2 / more.omega[-1] ** 2 == pytest.approx(shares[3:].sum(), rel=1e-3)

@@ -25,15 +25,17 @@ from contact.flight import (
     tip_state,
     tip_steady,
 )
-from contact.hertz_series import (
-    HERTZ_ORDER,
+from contact.hertz_chain import (
+    CHAIN_ORDER,
+    TIME_ORDER,
+    chain_scale,
+    chain_series,
+    chain_state,
+    chain_step,
+    chain_table,
     depth_root,
-    evaluate,
-    hertz_series,
-    hertz_state,
-    hertz_step,
-    work_on_stop,
 )
+from contact.hertz_series import evaluate
 from contact.impact_log import (
     CLOCK,
     COUNT,
@@ -144,11 +146,11 @@ def advance(
     series = np.empty((SERIES_ORDER + 1, n))
     depth, force = np.empty(SERIES_ORDER + 1), np.empty(SERIES_ORDER + 1)
     negative = np.empty(SERIES_ORDER + 1)
-    us, vs, scalars = (
-        np.empty((HERTZ_ORDER + 1, n)),
-        np.empty((HERTZ_ORDER + 1, n)),
-        np.empty((7, HERTZ_ORDER + 1)),
-    )
+    shallow = CHAIN_ORDER + 1 if motion.law == HERTZ else 0
+    theta, known = 0.0, False  # the chain's numbers are found at the first contact
+    impulse, seen, pull = np.empty((TIME_ORDER + 2, n)), np.empty((n, shallow + 1)), np.empty(shallow + 7)
+    chain, scalars = np.empty((shallow, shallow + 8)), np.empty((3, shallow))
+    products, late, work = np.empty((2, 2 * CHAIN_ORDER)), np.empty(shallow), np.empty((6, max(8, n)))
     root = -1.0  # sqrt of the penetration under Hertz's law; below zero when it is to be computed anew
 
     index = first
@@ -252,28 +254,22 @@ def advance(
 
             # in contact: one step of the series, cut at the first event
             if motion.law == HERTZ:
+                if not known:
+                    theta, known = chain_scale(motion), True
+                    chain_table(motion, theta, impulse, seen, pull)
+                    for j in range(shallow):
+                        for k in range(shallow + 8):
+                            chain[j, k] = 0.0
                 scalars[0, 0] = root if root >= 0.0 else depth_root(motion, base, u, v)
-                hertz_series(motion, base, u, v, us, vs, scalars)
-                s, released, h = hertz_step(motion, u, v, us, vs, scalars, end - base)
+                chain_series(motion, theta, seen, pull, base, u, v, chain, scalars, products)
+                s, released, h = chain_step(motion, theta, u, v, scalars, products, late, end - base)
                 until = base + h if h < end - base else end
                 sample_hertz(
-                    us,
-                    vs,
-                    scalars,
-                    base,
-                    until,
-                    s,
-                    index,
-                    integers,
-                    sample_period,
-                    sample_clock,
-                    samples,
-                    su,
-                    sv,
+                    motion, theta, impulse, u, v, scalars, products, base, until, s, index, integers,
+                    sample_period, sample_clock, samples, late, work, su, sv,
                 )
-                floats[LOSS] += work_on_stop(scalars, s)
+                floats[LOSS] += chain_state(motion, theta, impulse, u, v, scalars, products, s, work, u, v)
                 root = evaluate(scalars[0], s)
-                hertz_state(us, vs, s, u, v)
                 floats[CLOCK] = until
                 if released:
                     integers[REGIME] = OUTSIDE

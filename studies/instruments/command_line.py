@@ -97,8 +97,9 @@ def _parser(command: str, description: str, options: Options | None) -> _Parser:
                         help="folder in which the study makes its own (default: results)")
     parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
     parser.add_argument("--workers", type=_positive, default=os.cpu_count() or 1, metavar="N",
-                        help="threads (default: one for each core)")
-    parser.add_argument("--executor", default="", metavar="URL", help="scheduler of a cluster to run on")
+                        help="threads or processes (default: one for each core)")
+    parser.add_argument("--executor", default="", metavar="URL",
+                        help="where a sweep runs: threads, processes or dask://host:port")
     parser.add_argument("--dump-scene", action="store_true",
                         help="print every key of the scene with unit, default and provenance, and stop")
     if options is not None:

@@ -111,7 +111,7 @@ class Scene:
 
     @property
     def kept_modes(self) -> int:
-        """Modes kept: `modes.count`, or where that is left open (0) all that were measured, or the usual 15."""
+        """Modes kept: `modes.count`, or where that is 0 all that were measured, or the usual 15."""
         if self.modes.count:
             return self.modes.count
         if self.spring.kind == "modal_data":

@@ -35,8 +35,8 @@ USUAL_MESH = 60
 class Need:
     """What a study rests on: a quantity and its tolerance, at the middle or at every drive frequency.
 
-    A study that varies the number of modes itself, or hangs on the last digits of a frequency, needs the usual
-    mesh: `mesh` is then false.
+    A study that varies the number of modes itself, or hangs on the last digits of a frequency, needs the
+    usual mesh: `mesh` is then false.
     """
 
     quantity: str
