@@ -29,7 +29,7 @@ class ContactSeries(Integrator):
     order: ClassVar[float] = math.inf
     laws: ClassVar[tuple[int, ...]] = (HERTZ,)
     certified: ClassVar[bool] = True
-    accuracy: ClassVar[float] = 1e-10
+    accuracy: ClassVar[float] = 1e-12
     limit: ClassVar[str] = "none"
     source: ClassVar[str] = "the package's own; the substitution is Sundman's, Acta Math. 36 (1913) 105"
 

@@ -29,7 +29,7 @@ class EventDriven(Integrator):
     order: ClassVar[float] = math.inf
     laws: ClassVar[tuple[int, ...]] = (NEWTON, DELAYED)
     certified: ClassVar[bool] = True
-    accuracy: ClassVar[float] = 1e-10
+    accuracy: ClassVar[float] = 1e-12
     limit: ClassVar[str] = "none"
     source: ClassVar[str] = (
         "flights in closed form as in the letter (1996), note [11]; the search is the package's own"

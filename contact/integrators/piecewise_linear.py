@@ -28,7 +28,7 @@ class PiecewiseLinear(Integrator):
     order: ClassVar[float] = math.inf
     laws: ClassVar[tuple[int, ...]] = (LINEAR,)
     certified: ClassVar[bool] = True
-    accuracy: ClassVar[float] = 1e-10
+    accuracy: ClassVar[float] = 1e-12
     limit: ClassVar[str] = "none"
     source: ClassVar[str] = (
         "S. W. Shaw, P. J. Holmes, J. Sound Vib. 90 (1983) 129, for one mode; the series is the package's own"

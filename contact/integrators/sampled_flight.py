@@ -40,7 +40,7 @@ class SampledFlight(Integrator):
     order: ClassVar[float] = math.inf
     laws: ClassVar[tuple[int, ...]] = (NEWTON, DELAYED, LINEAR, HERTZ)
     certified: ClassVar[bool] = False
-    accuracy: ClassVar[float] = 1e-10
+    accuracy: ClassVar[float] = 1e-12
     limit: ClassVar[str] = "none; misses crossings when the tip turns twice between two samples"
     source: ClassVar[str] = "the letter (1996), note [11]"
 

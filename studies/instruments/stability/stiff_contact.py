@@ -9,7 +9,7 @@ of which the largest part is
 
     error of the state ~ omega_c u / v,   u = eps gap,   eps = 2^-52,                                      (a)
 
-v the approach speed: the digits go as the root of the stiffness, and the stated accuracy 1e-10 is lost where
+v the approach speed: the digits go as the root of the stiffness, and the stated accuracy is lost where
 (a) equals it, if nothing else is.
 
 Cost. A step of the series covers about two radians of the fastest rate, max(omega_N, omega_c): a soft
