@@ -14,6 +14,7 @@ from scipy.integrate import solve_ivp
 
 from beam.reduction import ModalModel, single_mode
 from contact.drive import HarmonicDrive
+from contact.errors import ContactTooStiff, UnresolvedCrossing
 from contact.laws import (
     ContactLaw,
     DelayedRestitution,
@@ -638,3 +639,19 @@ def test_stop_takes_laws_only():
             Stop(gap=0.01, law=law)
         one_sentence(caught.value, "law of the stop is")
     assert single_mode(free_period=0.04, decay_rate=0.0).n_modes == 1
+
+
+@pytest.mark.parametrize("ratio", [1e24, 1e26, 1e28, 1e40])
+def test_a_contact_beyond_the_range_of_doubles_is_refused_and_does_not_hang(ratio: float) -> None:
+    """Some 1e24 times the stiffness of the spring the series overflows; below that the impact is Newton's."""
+    model = ModalModel(omega=[150.0, 900.0], decay_rate=[3.0, 9.0], phi=[10.0, 9.0], participation=[0.1, 0.05])
+    modal = float(model.omega[0] ** 2 / model.phi[0] ** 2)
+    oscillator = ImpactOscillator(
+        model=model, stop=Stop(gap=0.01, law=LinearContact(stiffness=ratio * modal)),
+        drive=HarmonicDrive(frequency=22.0),
+    ).with_excess(0.01)  # fmt: skip
+    try:
+        run = simulate(oscillator, periods=60)
+    except (ContactTooStiff, UnresolvedCrossing):
+        return
+    assert ratio < 1e27 and len(run.impacts) > 0

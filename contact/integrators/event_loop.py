@@ -78,6 +78,10 @@ MOST_IMPACTS = 100_000
 """Bound of impacts in one drive period: accumulating impacts with e = 0.999 take about 2e4 before the hops
 drown in rounding, so a longer sequence is not on its way to rest."""
 
+OVERFLOW = 1e300
+"""A coefficient of the contact series beyond this is about to leave the range of doubles: some 1e24 times the
+stiffness of the spring."""
+
 MOST_STEPS = 1_000_000
 """Bound of flights and series steps in one drive period: 1e6 steps of two radians reach modes of 3e5 drive
 frequencies."""
@@ -278,6 +282,8 @@ def advance(
                     close_row(log, log_state, integers, floats, index, until, velocity, u, v)
                 continue
             contact_series(motion, regime, base, u, v, series, depth, force)
+            if not (abs(depth[SERIES_ORDER]) < OVERFLOW and abs(force[SERIES_ORDER - 2]) < OVERFLOW):
+                return FAILED_STEPS, index
             h = min(series_step(motion, u, v, series, depth), end - base)
             if end - base <= 4.0 * EPS * motion.period:
                 floats[CLOCK] = end
