@@ -644,7 +644,9 @@ def test_stop_takes_laws_only():
 @pytest.mark.parametrize("ratio", [1e24, 1e26, 1e28, 1e40])
 def test_a_contact_beyond_the_range_of_doubles_is_refused_and_does_not_hang(ratio: float) -> None:
     """Some 1e24 times the stiffness of the spring the series overflows; below that the impact is Newton's."""
-    model = ModalModel(omega=[150.0, 900.0], decay_rate=[3.0, 9.0], phi=[10.0, 9.0], participation=[0.1, 0.05])
+    model = ModalModel(
+        omega=[150.0, 900.0], decay_rate=[3.0, 9.0], phi=[10.0, 9.0], participation=[0.1, 0.05]
+    )
     modal = float(model.omega[0] ** 2 / model.phi[0] ** 2)
     oscillator = ImpactOscillator(
         model=model, stop=Stop(gap=0.01, law=LinearContact(stiffness=ratio * modal)),
