@@ -46,7 +46,7 @@ from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
 from contact.strobed_nordmark import StrobedNordmarkMap
-from contact.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap
+from contact.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap, strobed_orbits
 from contact.trajectory import Impacts, State, Trajectory
 
 __all__ = [
@@ -87,4 +87,5 @@ __all__ = [
     "maximal_periods",
     "simulate",
     "stable_range",
+    "strobed_orbits",
 ]

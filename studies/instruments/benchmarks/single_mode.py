@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from contact.stroboscope import StroboscopicMap
+from contact.stroboscope import StroboscopicMap, strobed_orbits
 from studies.instruments.benchmarks.bare_heyoka import batch_of, orbit_of
 from studies.instruments.benchmarks.floor import carry, flows_of
 from studies.instruments.benchmarks.timing import in_turns
@@ -65,9 +65,7 @@ def batch_rows(scene: Scene, frequency: float, *, quick: bool, peers: bool) -> l
     states = [one.orbit(one.steady(), SETTLING).end for one in maps]
     with ThreadPoolExecutor(2) as pool:
         runs: dict[str, Callable[[], object]] = {
-            "grazing-spring": lambda: list(
-                pool.map(lambda one, state: one.orbit(state, ours), maps, states)
-            )
+            "grazing-spring": lambda: strobed_orbits(maps, states, ours, workers=2)
         }
         length = {"grazing-spring": ours, "heyoka": theirs}
         if peers:
