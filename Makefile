@@ -1,6 +1,6 @@
 # make study   the main study on the letter's scene
 # make test    the tests, but for the long forms of some
-# make test-all  those as well
+# make test-slow  these long forms
 # make lint    style and types
 # make clean   caches and build products; results/ and .venv/ stay
 
@@ -9,7 +9,7 @@ BIN := .venv/bin
 READY := .venv/.ready
 ONE_THREAD := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
 
-.PHONY: study test test-all lint clean
+.PHONY: study test test-slow lint clean
 
 study: $(READY)
 	$(BIN)/python -m studies
@@ -18,8 +18,8 @@ study: $(READY)
 test: $(READY)
 	$(ONE_THREAD) $(BIN)/python -m pytest -n 2 -m "not slow"
 
-test-all: $(READY)
-	$(ONE_THREAD) $(BIN)/python -m pytest -n 2
+test-slow: $(READY)
+	$(ONE_THREAD) $(BIN)/python -m pytest -n 2 -m slow
 
 lint: $(READY)
 	$(BIN)/python -m ruff check beam contact studies tests

@@ -306,6 +306,7 @@ def test_digits_go_as_the_root_of_the_stiffness_and_stay_below_what_is_stated(co
         assert 0.02 * theory < errors[k] < 1.5 * theory
         assert found.run.evaluations <= 8  # however stiff
     assert errors[1e4] < 1e-13 and errors[1e8] < PiecewiseLinear.accuracy < errors[1e16]
+    assert errors[1e12] < 1e-10
     slope = math.log10(errors[1e16] / errors[1e8]) / 8
     assert slope == pytest.approx(0.5, abs=0.07)
 
