@@ -7,7 +7,7 @@ Computed at one drive frequency (--frequency, 21.50 Hz) for Eq. (1) and for the 
 
     period, impacts     of the settled orbit in an upward and a downward scan that carry the state along
     exponents, kind     largest Lyapunov exponent by two routes, and periodic or chaotic by it (see
-                        studies.instruments.attractor_kinds)
+                        studies.instruments.attractors.kinds)
     basins              for Eq. (1) at --basin-excess (-0.006): where each start on the strobe plane leads
 
 Run time: some minutes; --quick some ten seconds.  Command: python -m studies.attractors.
@@ -27,14 +27,14 @@ import numpy as np
 
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.adequacy.fitted_scene import Need
-from studies.instruments.attractor_figures import SHAPES, draw_basins, draw_scan
-from studies.instruments.attractor_kinds import CHAOTIC, agreement
-from studies.instruments.attractor_scan import TITLES, Start, carried, row_of
+from studies.instruments.attractors.basins import CLOSE, basins
+from studies.instruments.attractors.figures import SHAPES, draw_basins, draw_scan
+from studies.instruments.attractors.kinds import CHAOTIC, agreement
+from studies.instruments.attractors.scan import TITLES, Start, carried, row_of
 from studies.instruments.command_line import Request, run_study
 from studies.instruments.oscillators import beam_of, single_mode_oscillator
 from studies.instruments.scene import Scene
 from studies.instruments.spring_of_scene import model_of
-from studies.instruments.strobe_basins import CLOSE, basins
 
 
 def run(scene: Scene, request: Request) -> dict[str, Any]:

@@ -29,17 +29,17 @@ from typing import Any
 from contact.maximal_orbits import maximal_period
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.adequacy.fitted_scene import Need
-from studies.instruments.beam_of_fig_5 import CHAOS_AT, FREQUENCY_HZ, born, driven, scene_of_fig_5
-from studies.instruments.born_period_map import candidates, search, within_errors
-from studies.instruments.breakdown_figures import draw_born, draw_scans
-from studies.instruments.breakdown_plan import plan_of
-from studies.instruments.breakdown_scans import beam_result, both_ways, periods, rows_of
-from studies.instruments.breakdown_words import sentences
+from studies.instruments.breakdown.beam_of_fig_5 import CHAOS_AT, FREQUENCY_HZ, born, driven, scene_of_fig_5
+from studies.instruments.breakdown.born_period_map import candidates, search, within_errors
+from studies.instruments.breakdown.figures import draw_born, draw_scans
+from studies.instruments.breakdown.plan import plan_of
+from studies.instruments.breakdown.scans import beam_result, both_ways, periods, rows_of
+from studies.instruments.breakdown.single_mode_island import island
+from studies.instruments.breakdown.words import sentences
 from studies.instruments.command_line import Request, run_study
 from studies.instruments.orbit_scan import OrbitDiagram
 from studies.instruments.oscillators import nordmark_of, single_mode_oscillator
 from studies.instruments.scene import Scene
-from studies.instruments.single_mode_island import island
 from studies.instruments.spring_of_scene import model_of
 
 MOST_SCANNED = 4

@@ -20,12 +20,12 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from studies.instruments.adequacy.fitted_scene import Need
-from studies.instruments.claim_bands import bands_claim
-from studies.instruments.claim_hysteresis_and_loss import hysteresis_claim
-from studies.instruments.claim_overdamped_map import overdamped_claim
-from studies.instruments.claim_second_impact import secondary_claim
-from studies.instruments.claim_universality import universality_claim
-from studies.instruments.claim_verdict import Claim
+from studies.instruments.claims.bands import bands_claim
+from studies.instruments.claims.hysteresis_and_loss import hysteresis_claim
+from studies.instruments.claims.overdamped_windows import overdamped_claim
+from studies.instruments.claims.second_impact import secondary_claim
+from studies.instruments.claims.universality import universality_claim
+from studies.instruments.claims.verdict import Claim
 from studies.instruments.command_line import Request, run_study
 from studies.instruments.scene import Scene
 

@@ -44,24 +44,24 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 from studies.instruments.adequacy.fitted_scene import Need
-from studies.instruments.approach_answers import (
+from studies.instruments.command_line import Request, run_study
+from studies.instruments.contact_calibration import Targets
+from studies.instruments.effective_impact.answers import (
     clusters,
     fade,
     hard_stop,
     stands_still,
     worst_of_closed_forms,
 )
-from studies.instruments.approach_curves import SCENE_MASS, all_curves
-from studies.instruments.approach_figures import draw_all
-from studies.instruments.approach_grid import Grid
-from studies.instruments.approach_restitution import floor_over_mass, local_loss
-from studies.instruments.approach_words import closing_lines, table
-from studies.instruments.approaches import measure_all, select
-from studies.instruments.command_line import Request, run_study
-from studies.instruments.contact_calibration import Targets
+from studies.instruments.effective_impact.approaches import measure_all, select
+from studies.instruments.effective_impact.curves import SCENE_MASS, all_curves
+from studies.instruments.effective_impact.figures import draw_all
+from studies.instruments.effective_impact.grid import Grid
+from studies.instruments.effective_impact.restitution import floor_over_mass, local_loss
+from studies.instruments.effective_impact.specimen import Specimen
+from studies.instruments.effective_impact.words import closing_lines, table
 from studies.instruments.quantities import SceneError
 from studies.instruments.scene import Scene
-from studies.instruments.specimen import Specimen
 from studies.instruments.tip_mass_family import bare_cantilever, with_mass_ratio
 from studies.published import AMPLITUDE_STABILITY_M, DRIVE_AMPLITUDE_M, RESTITUTION, TIME_TRACE_EXCESS
 

@@ -20,17 +20,17 @@ from typing import Any
 
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.adequacy.fitted_scene import Need
-from studies.instruments.amplitude_noise import SKIPPED, STROBES, noise_at, noisy
-from studies.instruments.changed_folds import row_at
 from studies.instruments.command_line import Request, run_study
-from studies.instruments.noise_figures import draw_noise, draw_points
 from studies.instruments.oscillators import beam_of
 from studies.instruments.scene import Scene
-from studies.instruments.scene_changes import Change, changed, changes_of
-from studies.instruments.sensitivity_answers import answers_of, number, sentences
+from studies.instruments.sensitivity.amplitude_noise import SKIPPED, STROBES, noise_at, noisy
+from studies.instruments.sensitivity.answers import answers_of, number, sentences
+from studies.instruments.sensitivity.changed_folds import row_at
+from studies.instruments.sensitivity.noise_figures import draw_noise, draw_points
+from studies.instruments.sensitivity.scene_changes import Change, changed, changes_of
+from studies.instruments.sensitivity.strobe_clouds import clouds, since_impact
+from studies.instruments.sensitivity.tornado_figure import draw_tornado
 from studies.instruments.spring_of_scene import model_of
-from studies.instruments.strobe_clouds import clouds, since_impact
-from studies.instruments.tornado_figure import draw_tornado
 
 PERIOD_RANGE = range(3, 17)
 

@@ -18,8 +18,8 @@ a hard approach the letter's restitution, at each drive frequency and K = 10 ...
                downward scan, and the hard wall (closed form), from which it lies at a distance K^(-1/2)
 
 and for the beam with Hertz contact the excess at which the kick leaves the square root, the orbit born below
-it and whether the letter could have seen it.  The equations are derived in `studies.instruments.soft_impact`,
-`contact_orbits` and `hertz_smoothing`.
+it and whether the letter could have seen it.  The equations are derived in `soft_impact`, `contact_orbits`
+and `hertz_smoothing` of `studies.instruments.soft_wall`.
 
 Run time: three quarters of a minute; --quick ten seconds.  Command: python -m studies.soft_wall.  Outputs:
 summary.json, rows.csv, kicks.csv, beam.csv, beam_born.csv; kick, doubling, hysteresis and beam (png, pdf).
@@ -38,7 +38,10 @@ import numpy as np
 from contact.errors import ContactError
 from studies.instruments.adequacy.fitted_scene import Need
 from studies.instruments.command_line import Request, run_study
-from studies.instruments.hertz_smoothing import (
+from studies.instruments.oscillators import beam_of, hertz_of
+from studies.instruments.scene import Scene
+from studies.instruments.soft_wall.figures import draw_beam, draw_doubling, draw_hysteresis, draw_kicks
+from studies.instruments.soft_wall.hertz_smoothing import (
     HertzSmoothing,
     born_orbits,
     collision_above,
@@ -46,12 +49,9 @@ from studies.instruments.hertz_smoothing import (
     local_slope,
     reach_of,
 )
-from studies.instruments.oscillators import beam_of, hertz_of
-from studies.instruments.scene import Scene
-from studies.instruments.soft_impact import damping_ratio
-from studies.instruments.soft_wall_figures import draw_beam, draw_doubling, draw_hysteresis, draw_kicks
-from studies.instruments.soft_wall_measures import Case, curve_of, hysteresis_chain, row_of, theory_lines
-from studies.instruments.soft_wall_words import HEAD, RESOLUTION, answers_of, table_line
+from studies.instruments.soft_wall.measures import Case, curve_of, hysteresis_chain, row_of, theory_lines
+from studies.instruments.soft_wall.soft_impact import damping_ratio
+from studies.instruments.soft_wall.words import HEAD, RESOLUTION, answers_of, table_line
 from studies.instruments.spring_of_scene import model_of
 from studies.published import TIME_TRACE_EXCESS
 

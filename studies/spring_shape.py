@@ -13,10 +13,10 @@ Equations
         (EA, u' - k w), (EI_z, w'' + k u'), (EI_n, v'' - k phi), (GJ, phi' + k v'), (EG, phi'' + k v'')
     as stiffness and strain (`beam.spatial_element`), tied to the ball; solids of quadratic hexahedra beside
     them (`beam.solid`). Each shape is brought to omega_1^2 = (2 pi/T)^2 + (c/2)^2 by its sheet's thickness,
-    the channel by its flanges (`studies.instruments.shape_readings`). Printed: first bending, twist and
-    sideways frequencies [Hz]; phi at the ball along the stop [kg^(-1/2)], also with ball and contact off the
-    plane of symmetry; the turn of the ball in the twist mode [kg^(-1/2) m^(-1)]; f_strip/f_solid - 1 mode by
-    mode.
+    the channel by its flanges (`studies.instruments.spring_shape.readings`). Printed: first bending, twist
+    and sideways frequencies [Hz]; phi at the ball along the stop [kg^(-1/2)], also with ball and contact off
+    the plane of symmetry; the turn of the ball in the twist mode [kg^(-1/2) m^(-1)]; f_strip/f_solid - 1 mode
+    by mode.
 
 Run time
     About 20 s on two cores, --quick 9 s.
@@ -47,7 +47,7 @@ from beam.spatial_frame import spatial_modes
 from studies.instruments.command_line import Request, run_study
 from studies.instruments.quantities import SceneError
 from studies.instruments.scene import Scene
-from studies.instruments.shape_checks import (
+from studies.instruments.spring_shape.checks import (
     COARSE,
     FINE,
     PLANE_MODES,
@@ -57,9 +57,15 @@ from studies.instruments.shape_checks import (
     solid_row,
     width_rows,
 )
-from studies.instruments.shape_readings import READINGS, Shape, angular_frequency_of, brought_to, kinds_of
-from studies.instruments.shape_surfaces import net_of
-from studies.instruments.shape_table import (
+from studies.instruments.spring_shape.readings import (
+    READINGS,
+    Shape,
+    angular_frequency_of,
+    brought_to,
+    kinds_of,
+)
+from studies.instruments.spring_shape.surfaces import net_of
+from studies.instruments.spring_shape.table import (
     CHANNEL_SHEETS,
     VARIATIONS,
     channels_of,
@@ -68,7 +74,7 @@ from studies.instruments.shape_table import (
     shapes_of,
     varied,
 )
-from studies.instruments.shape_words import (
+from studies.instruments.spring_shape.words import (
     printed_errors,
     printed_readings,
     printed_solids,
@@ -185,7 +191,7 @@ def _draw(
     request: Request, shapes: Mapping[str, Shape], tables: Mapping[str, Sequence[Mapping[str, Any]]]
 ) -> None:
     """Arrays and figures."""
-    from studies.instruments.shape_figures import draw_channels, draw_errors, draw_shapes, draw_widths
+    from studies.instruments.spring_shape.figures import draw_channels, draw_errors, draw_shapes, draw_widths
 
     nets: dict[str, Any] = {}
     for name, shape in shapes.items():

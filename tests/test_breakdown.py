@@ -20,7 +20,7 @@ from contact.stop import Stop
 from contact.stroboscope import StroboscopicMap
 from contact.trajectory import State
 from studies import breakdown
-from studies.instruments.beam_of_fig_5 import (
+from studies.instruments.breakdown.beam_of_fig_5 import (
     FREE_PERIOD_S,
     FREQUENCY_HZ,
     born,
@@ -30,8 +30,9 @@ from studies.instruments.beam_of_fig_5 import (
     scene_of_fig_5,
     tuned,
 )
-from studies.instruments.born_period_map import candidates, within_errors
-from studies.instruments.breakdown_scans import both_ways, periods
+from studies.instruments.breakdown.born_period_map import candidates, within_errors
+from studies.instruments.breakdown.scans import both_ways, periods
+from studies.instruments.breakdown.single_mode_island import island
 from studies.instruments.calibration import ACCURACY, decay_rate, free_period
 from studies.instruments.oscillators import (
     REFERENCE_EXCESS,
@@ -40,7 +41,6 @@ from studies.instruments.oscillators import (
     single_mode_oscillator,
 )
 from studies.instruments.scene_file import read_scene
-from studies.instruments.single_mode_island import island
 from studies.instruments.spring_of_scene import model_of
 from studies.published import BREAKDOWN
 

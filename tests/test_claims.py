@@ -12,15 +12,15 @@ from contact.maximal_orbits import maximal_orbits
 from contact.orbits.shooting import Shooting
 from contact.stroboscope import StroboscopicMap
 from studies import claims
-from studies.instruments.claim_bands import bands_claim
-from studies.instruments.claim_hysteresis_and_loss import hysteresis_claim
-from studies.instruments.claim_second_impact import secondary_claim
+from studies.instruments.claims.bands import bands_claim
+from studies.instruments.claims.hysteresis_and_loss import hysteresis_claim
+from studies.instruments.claims.overdamped_map import exponents, overdamped, window
+from studies.instruments.claims.second_impact import secondary_claim
+from studies.instruments.claims.secondary_bifurcation import flip_speed, second_impact_speed, secondary
+from studies.instruments.claims.single_mode_leaf import Leaf
 from studies.instruments.oscillators import single_mode_oscillator
-from studies.instruments.overdamped_map import exponents, overdamped, window
 from studies.instruments.periodicity import settle
 from studies.instruments.scene_file import read_scene
-from studies.instruments.secondary_bifurcation import flip_speed, second_impact_speed, secondary
-from studies.instruments.single_mode_leaf import Leaf
 
 
 @pytest.fixture(scope="module")

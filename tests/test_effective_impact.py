@@ -12,19 +12,24 @@ import pytest
 
 from contact.laws import HuntCrossley, LinearContact, NewtonRestitution
 from studies import effective_impact
-from studies.instruments.approach_answers import (
+from studies.instruments.calibration import free_period
+from studies.instruments.effective_impact.answers import (
     clusters,
     fade,
     hard_stop,
     stands_still,
     worst_of_closed_forms,
 )
-from studies.instruments.approach_restitution import crossing, floor_over_mass, local_loss, settled_orbits
-from studies.instruments.approaches import Approach, measure, measure_all, select
-from studies.instruments.calibration import free_period
+from studies.instruments.effective_impact.approaches import Approach, measure, measure_all, select
+from studies.instruments.effective_impact.restitution import (
+    crossing,
+    floor_over_mass,
+    local_loss,
+    settled_orbits,
+)
+from studies.instruments.effective_impact.specimen import Specimen
 from studies.instruments.oscillators import beam_of
 from studies.instruments.scene_file import read_scene
-from studies.instruments.specimen import Specimen
 from studies.instruments.tip_mass_family import bare_cantilever, leaf_mass, with_mass_ratio
 from studies.published import TIME_TRACE_EXCESS
 

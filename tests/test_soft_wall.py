@@ -16,12 +16,23 @@ from contact.orbits.single_impact import MaximalFamily
 from contact.stroboscope import StroboscopicMap
 from contact.trajectory import State
 from studies import soft_wall
-from studies.instruments.contact_orbits import SoftMap, doubling, fold_of
-from studies.instruments.hertz_smoothing import HertzSmoothing, born_orbits, collision_above, doubling_excess
 from studies.instruments.oscillators import beam_of, single_mode_oscillator
 from studies.instruments.scene_file import read_scene
-from studies.instruments.soft_impact import SoftImpact, damping_ratio, hard_contact, release, soft_contact
-from studies.instruments.soft_wall_measures import hysteresis_chain, sides_of
+from studies.instruments.soft_wall.contact_orbits import SoftMap, doubling, fold_of
+from studies.instruments.soft_wall.hertz_smoothing import (
+    HertzSmoothing,
+    born_orbits,
+    collision_above,
+    doubling_excess,
+)
+from studies.instruments.soft_wall.measures import hysteresis_chain, sides_of
+from studies.instruments.soft_wall.soft_impact import (
+    SoftImpact,
+    damping_ratio,
+    hard_contact,
+    release,
+    soft_contact,
+)
 
 SCENE = read_scene("letter")
 ZETA = damping_ratio(0.1)

@@ -15,12 +15,18 @@ from beam import StripSection, Tip, UniformBeam, assemble, exact_modes, folded_u
 from beam.spatial_frame import spatial_modes
 from studies.instruments.quantities import SceneError
 from studies.instruments.scene_file import read_scene
-from studies.instruments.shape_checks import plate_excess
-from studies.instruments.shape_figures import draw_channels, draw_errors, draw_shapes, draw_widths
-from studies.instruments.shape_readings import READINGS, angular_frequency_of, brought_to, kinds_of, shape_of
-from studies.instruments.shape_surfaces import net_of
-from studies.instruments.shape_table import compact_mount, row_of, shapes_of
-from studies.instruments.shape_words import verdict_of, verdict_words
+from studies.instruments.spring_shape.checks import plate_excess
+from studies.instruments.spring_shape.figures import draw_channels, draw_errors, draw_shapes, draw_widths
+from studies.instruments.spring_shape.readings import (
+    READINGS,
+    angular_frequency_of,
+    brought_to,
+    kinds_of,
+    shape_of,
+)
+from studies.instruments.spring_shape.surfaces import net_of
+from studies.instruments.spring_shape.table import compact_mount, row_of, shapes_of
+from studies.instruments.spring_shape.words import verdict_of, verdict_words
 from studies.spring_shape import main
 
 

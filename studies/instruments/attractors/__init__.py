@@ -1,0 +1,1 @@
+"""Attractors along a scan: their kind, exponents and basins."""

@@ -1,0 +1,149 @@
+"""Claim c (letter 1996): bands in the (alpha, gamma) plane, and the hysteresis across each of them.
+
+"bands in the (alpha, gamma) parameter plane ... crossed approximately transversely"; "At the upper boundary
+... there is no hysteresis. The hysteresis increases towards ... the lower-lying m - 1".  With
+alpha = 2 sqrt(gamma) cos theta the band of p_m has its upper edge at theta = pi/m and its lower one at
+
+    sin((m - 1) theta)/sin(theta) = -tau^2 gamma^(m/2).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq
+
+from contact.maximal_orbits import band, fold
+from studies.instruments.claims.single_mode_leaf import Leaf
+from studies.instruments.claims.verdict import Claim, falls, frequencies_of
+from studies.instruments.figures import PAGE, PALETTE, house_style, label, new_figure
+from studies.instruments.scene import Scene
+
+__all__ = ["bands_claim", "lower_angle"]
+
+
+def lower_angle(period: int, gamma: float, restitution: float) -> float:
+    """theta at the lower edge of a band at fixed gamma: sin((m-1) theta)/sin(theta) = -tau^2 gamma^(m/2)."""
+    m, ratio = period, restitution**2 * gamma ** (0.5 * period)
+    if m == 2:
+        return math.pi
+
+    def height(past: float) -> float:
+        return ratio * math.sin((math.pi + past) / (m - 1)) - math.sin(past)
+
+    return (math.pi + float(brentq(height, 0.0, 0.5 * math.pi, xtol=1e-15))) / (m - 1)
+
+
+def bands_claim(scene: Scene, quick: bool) -> Claim:
+    """c: bands in the (alpha, gamma) plane, the path of the experiment, and the hysteresis along it."""
+    leaf, tau = Leaf.of(scene), scene.single_mode.restitution
+    figure, axes = new_figure(1, 2, width=PAGE, height=0.070)
+    gammas = np.linspace(0.02, 1.0, 80)
+    for m in range(3, 9):
+        angles = [[math.pi / m] * gammas.size, [lower_angle(m, float(g), tau) for g in gammas]]
+        edges = [2.0 * np.sqrt(gammas) * np.cos(angle) for angle in angles]
+        axes[0].fill_betweenx(gammas, edges[1], edges[0], color=PALETTE[m % 6 + 1], alpha=0.35, linewidth=0.4)
+        axes[0].text(
+            0.5 * (edges[0][-1] + edges[1][-1]),
+            1.015,
+            f"{m}",
+            fontsize=7,
+            ha="center",
+            va="bottom",
+        )
+    path = np.linspace(19.6, 23.8, 200)
+    alpha = [leaf.map(f, tau).alpha for f in path.tolist()]
+    gamma = [leaf.map(f, tau).gamma for f in path.tolist()]
+    axes[0].plot(alpha, gamma, color="black", linewidth=1.4)
+    places = [f for f in frequencies_of(scene)]
+    axes[0].plot(
+        [leaf.map(f, tau).alpha for f in places],
+        [leaf.map(f, tau).gamma for f in places],
+        linestyle="none",
+        marker="o",
+        markersize=3.2,
+        color="black",
+    )
+    table: dict[str, list[Any]] = {n: [] for n in ("m", "frequency_hz", "map", "eq1")}
+    zero, grows, ratios = [], {"map": True, "eq1": True}, {}
+    for m in range(3, 12):
+        edge = band(m, free_period=leaf.free_period, decay_rate=leaf.decay_rate, restitution=tau)
+        inside = np.linspace(edge.lower, edge.upper, 26 if quick else 101)[:-1]
+        inside = np.append(inside, edge.upper - 1e-7 * (edge.upper - edge.lower))
+        map_values, exact = [], []
+        for f in inside.tolist():
+            nordmark = leaf.map(f, tau)
+            end, orbit = fold(nordmark, m), leaf.family(f, tau, m).fold()
+            map_values.append(0.0 if end is None else -nordmark.excess(end.rho))
+            exact.append(0.0 if orbit is None else -orbit.excess)
+        table["m"] += [m] * inside.size
+        table["frequency_hz"] += inside.tolist()
+        table["map"] += map_values
+        table["eq1"] += exact
+        zero.append(max(map_values[-1], exact[-1]))
+        grows["map"] &= falls(map_values)
+        grows["eq1"] &= falls(exact)
+        ratios[f"p{m}"] = {
+            "lower_hz": edge.lower,
+            "upper_hz": edge.upper,
+            "map": map_values[0],
+            "eq1": exact[0],
+        }
+        shown = (inside >= 19.6) & (inside <= 23.8)
+        for values, style in ((map_values, "-"), (exact, "--")):
+            axes[1].plot(
+                inside[shown],
+                1e2 * np.array(values)[shown],
+                color=PALETTE[m % 6 + 1],
+                linestyle=style,
+                linewidth=1.1,
+            )
+        if m < 10:
+            middle = max(edge.lower, 19.6)
+            axes[1].text(
+                0.3 * edge.upper + 0.7 * middle,
+                105.0 * exact[0] if edge.lower > 19.6 else 3.2,
+                f"{m}",
+                fontsize=7,
+                ha="left",
+            )
+    with house_style():
+        axes[0].set_title("(a) bands of p$_m$ as ρ → 0", pad=12)
+        label(axes[0].xaxis, "α")
+        label(axes[0].yaxis, "γ")
+        axes[0].annotate(
+            "19.6 to 23.8 Hz",
+            (alpha[60], gamma[60]),
+            xytext=(0.05, 0.62),
+            fontsize=7,
+            arrowprops={"arrowstyle": "-", "linewidth": 0.6},
+        )
+        axes[1].set_title("(b) hysteresis along the path", pad=12)
+        axes[1].plot([], [], color="0.3", linestyle="-", label="Nordmark map")
+        axes[1].plot([], [], color="0.3", linestyle="--", label="Eq. (1)")
+        axes[1].legend(loc="upper right")
+        label(axes[1].xaxis, "drive frequency", "Hz")
+        label(axes[1].yaxis, "1 - F$_m$/F$_g$", "%")
+    crossed = sorted({leaf.period(f, tau) for f in path.tolist()})
+    holds = max(zero) < 1e-9 and all(grows.values())
+    return Claim(
+        holds=holds,
+        table=table,
+        figure=figure,
+        numbers={
+            "bands": ratios,
+            "crossed": crossed,
+            "largest_at_upper_edge": max(zero),
+            "grows": grows,
+            "alpha": [alpha[0], alpha[-1]],
+            "gamma": [gamma[0], gamma[-1]],
+        },
+        sentence=(
+            f"From 19.6 to 23.8 Hz the experiment crosses the bands m = {crossed[0]} to {crossed[-1]}: "
+            f"alpha from {alpha[0]:.2f} to {alpha[-1]:.2f}, gamma from {gamma[0]:.3f} to {gamma[-1]:.3f}; "
+            "in each of p3 to p11 the hysteresis is zero at the upper edge and "
+            f"{'grows' if all(grows.values()) else 'does not always grow'} towards the lower."
+        ),
+    )

@@ -1,0 +1,1 @@
+"""What the letter's errors and the assumptions change: folds, births, noise."""
