@@ -13,17 +13,18 @@
 
 The subject
     A spring is shaken by its base beside a stop.  Below the grazing amplitude F_g its tip stays short of the
-    stop; the *excess* F/F_g - 1 counts from there.  A touch that is barely one changes the state by the square
-    root of the overshoot, whatever happens between touches: the derivative of the period map is infinite, and
-    just above grazing the motion jumps to a p_m orbit, one impact in m drive periods, or to chaos.  Lowered
-    again, the drive finds that orbit alive down to a fold below grazing: *hysteresis*.  The letter "Generic
-    behavior of grazing impact oscillators" (1996) measured this and set a two-dimensional map beside it.
+    stop; the *excess* F/F_g - 1 counts from there.  A touch that is barely one changes the state by the
+    square root of the overshoot, whatever happens between touches: the derivative of the period map is
+    infinite, and just above grazing the motion jumps to a p_m orbit, one impact in m drive periods, or to
+    chaos.  Lowered again, the drive finds that orbit alive down to a fold below grazing: *hysteresis*.  The
+    letter "Generic behavior of grazing impact oscillators" (1996) measured this and set a two-dimensional map
+    beside it.
 
 Words
-    An *impact* is one touch.  A *collision* is all the impacts of one approach, seen by mode 1 alone: it leaves
-    with -`restitution` times the speed with which it came, `delay` later; its `kick` is the jump of its velocity
-    over the approach speed.  A *graze* is a touch without effect within rounding.  *Strobes* are the instants
-    n/f of the drive; what happens from one to the next is a map.
+    An *impact* is one touch.  A *collision* is all the impacts of one approach, as mode 1 alone feels them:
+    it leaves with -`restitution` times the speed with which it came, `delay` later; its `kick` is the jump of
+    its velocity over the approach speed.  A *graze* is a touch without effect within rounding.  *Strobes* are
+    the instants n/f of the drive; what happens from one to the next is a map.
 
 From problem to answer
     `ImpactOscillator`  a ``beam.ModalModel``, a `Stop` with its law, a `HarmonicDrive`; carries no numerics
@@ -41,8 +42,8 @@ Laws of contact: `NewtonRestitution` (at once), `DelayedRestitution` (once, afte
 
 What cannot be followed raises one of the `ContactError` family (`UnresolvedCrossing`, `Chatter`,
 `ContactTooStiff`, `NotPeriodic`, ...) with time, gap and velocity; no number comes out.  Units are SI
-throughout; modes are mass-normalised (q in m kg^0.5).  Every module opens with its equations: that of motion in
-``contact.oscillator``, flights and their bounds in ``contact.flight``, the certified search for a touch in
+throughout; modes are mass-normalised (q in m kg^0.5).  Every module opens with its equations: that of motion
+in ``contact.oscillator``, flights and their bounds in ``contact.flight``, the certified search for a touch in
 ``contact.crossing``, motion in contact in ``contact.series`` and ``contact.hertz_series``.
 """
 
