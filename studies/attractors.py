@@ -32,9 +32,13 @@ from studies.instruments.attractors.figures import SHAPES, draw_basins, draw_sca
 from studies.instruments.attractors.kinds import CHAOTIC, agreement
 from studies.instruments.attractors.scan import TITLES, Start, carried, row_of
 from studies.instruments.command_line import Request, run_study
+from studies.instruments.corresponding import corresponding
 from studies.instruments.oscillators import beam_of, single_mode_oscillator
 from studies.instruments.scene import Scene
 from studies.instruments.spring_of_scene import model_of
+
+FREQUENCY = 21.50
+"""Where the letter has period 4 [Hz]."""
 
 
 def run(scene: Scene, request: Request) -> dict[str, Any]:
@@ -43,7 +47,8 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
     options, quick = request.options, request.quick
     if scene.drive.kind != "harmonic":
         raise ValueError(f"drive.kind is {scene.drive.kind}; attractors need a harmonic drive")
-    frequency, low, high = options.frequency, options.lowest, options.highest
+    frequency = corresponding(scene, FREQUENCY) if options.frequency is None else options.frequency
+    low, high = options.lowest, options.highest
     if not -1.0 < low < high:
         raise ValueError(f"lowest is {low} and highest {high}; -1 < lowest < highest must hold")
     names = [name for name in TITLES if options.model in (name, "both")]
@@ -135,7 +140,8 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
 def add_options(parser: argparse.ArgumentParser) -> None:
     """The study's own options."""
     parser.add_argument(
-        "--frequency", type=float, default=21.50, metavar="HZ", help="drive frequency (21.50)"
+        "--frequency", type=float, metavar="HZ",
+        help=f"drive frequency ({FREQUENCY:g} Hz; for another spring that of its f T)",
     )
     parser.add_argument("--model", choices=(*TITLES, "both"), default="both", help="which description (both)")
     parser.add_argument("--lowest", type=float, default=-0.016, help="lowest excess of the scan (-0.016)")

@@ -29,6 +29,7 @@ from typing import Any
 from contact.collision import Collision
 from studies.instruments.adequacy.fitted_scene import Need
 from studies.instruments.command_line import Request, run_study
+from studies.instruments.corresponding import corresponding, periods_of
 from studies.instruments.oscillators import beam_of
 from studies.instruments.quantities import SceneError
 from studies.instruments.scene import Scene
@@ -36,7 +37,7 @@ from studies.instruments.settled_trace import close_up, settled_state, trace_of
 from studies.instruments.spectrum import lines_of, peaks_of
 from studies.instruments.spring_of_scene import model_of
 from studies.instruments.trace_figure import draw_spectrum, draw_trace
-from studies.published import PERIODS, RESTITUTION, TIME_TRACE_EXCESS
+from studies.published import RESTITUTION, TIME_TRACE_EXCESS
 
 FREQUENCY = 21.50
 """Where the letter has the period 4 of its Fig. 4 [Hz]."""
@@ -70,9 +71,10 @@ def told(collision: Collision) -> dict[str, Any]:
     }
 
 
-def closing_lines(period: int, frequency: float, excess: float, found: Sequence[dict[str, Any]]) -> list[str]:
-    """What was found, and whether it is what the letter shows."""
-    letter = PERIODS.get(frequency)
+def closing_lines(
+    period: int, letter: int | None, frequency: float, excess: float, found: Sequence[dict[str, Any]]
+) -> list[str]:
+    """What was found, and whether it is what the letter shows at this f T."""
     name = f"p{period}" if period else "no period up to 64"
     lines = [
         f"{frequency:g} Hz, excess {excess:g}: {name}" + (f"; the letter has p{letter}" if letter else "")
@@ -97,7 +99,10 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
     """Compute, store and draw."""
     if scene.drive.kind != "harmonic":
         raise SceneError(f"drive.kind is {scene.drive.kind}; a settled orbit needs a harmonic drive")
-    frequency, excess = request.options.frequency, request.options.excess
+    excess = request.options.excess
+    asked = request.options.frequency
+    frequency = corresponding(scene, FREQUENCY) if asked is None else asked
+    letter = periods_of(scene).get(frequency)
     model = model_of(scene)
     scene.replace({"drive.frequencies_hz": (frequency,)}).refuse_drive_above(
         float(model.frequencies_hz.max())
@@ -129,7 +134,7 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
     request.record.write_figure(
         draw_spectrum(lines_hz, amplitude, model.frequencies_hz, frequency, unit), "spectrum"
     )
-    lines = closing_lines(period, frequency, excess, found)
+    lines = closing_lines(period, letter, frequency, excess, found)
     at_modes = [p for p in peaks if p["mode"] is not None and p["mode"] > 1]
     numbers = ", ".join(str(n) for n in sorted({p["mode"] for p in at_modes}))
     lines.append(f"modes above the first with a peak in the spectrum: {numbers or 'none'}")
@@ -139,7 +144,7 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
         "frequency_hz": frequency,
         "excess": excess,
         "period": period,
-        "letter": PERIODS.get(frequency) if excess == TIME_TRACE_EXCESS else None,
+        "letter": letter if excess == TIME_TRACE_EXCESS else None,
         "impacts": int(round(trace.impact_times.size / ORBIT_PERIODS))
         if period
         else int(trace.impact_times.size),
@@ -173,8 +178,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help=f"F/F_g - 1 of the orbit (default: {TIME_TRACE_EXCESS:g}, the letter's Fig. 4)",
     )
     parser.add_argument(
-        "--frequency", type=_number(0.0, "a frequency above 0 Hz"), default=FREQUENCY, metavar="HZ",
-        help=f"drive frequency (default: {FREQUENCY:g} Hz, the letter's p4)",
+        "--frequency", type=_number(0.0, "a frequency above 0 Hz"), metavar="HZ",
+        help=f"drive frequency (default: {FREQUENCY:g} Hz, the letter's p4; other springs at the same f T)",
     )
 
 

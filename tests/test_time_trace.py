@@ -147,11 +147,11 @@ def test_a_peak_belongs_to_the_mode_next_to_it():
 
 
 def test_another_orbit_than_the_letters_is_told():
-    lines = time_trace.closing_lines(3, 21.5, 0.013, [])
+    lines = time_trace.closing_lines(3, 4, 21.5, 0.013, [])
     assert "p3; the letter has p4" in lines[0] and "not the letter's" in lines[1]
-    assert "no period up to 64" in time_trace.closing_lines(0, 20.0, 0.013, [])[0]
+    assert "no period up to 64" in time_trace.closing_lines(0, None, 20.0, 0.013, [])[0]
     cell = dict.fromkeys(("approach_velocity", "delay_s", "kick", "contact_s", "ringing_m"), 0.1)
-    words = time_trace.closing_lines(4, 21.5, 0.013, [cell | {"restitution": math.nan, "impacts": 1}])
+    words = time_trace.closing_lines(4, 4, 21.5, 0.013, [cell | {"restitution": math.nan, "impacts": 1}])
     assert "no return to the gap" in words[-1]
 
 
