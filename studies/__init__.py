@@ -1,7 +1,23 @@
 """Studies: one program per claim, on top of `beam` (the spring) and `contact` (the impacts).
 
 Run them from the root of the project as `python -m studies.NAME`; `python -m studies` runs the main one and
-lists the others. What several of them use is in `studies.instruments`, their input in `studies/scenes`.
+lists the others, `studies.tour` is the whole package in one script.
+
+What they have in common
+    A *scene* (studies/scenes/letter.toml, or one's own: --scene FILE, --set section.key=value) holds the
+    physics, each value with its unit and whether it is the letter's, calibrated or assumed. A study takes
+    from it the spring, with as many modes as its question needs, computes, stores, and draws from what it
+    stored: results/NAME/ has tables (csv), arrays (npz), figures (png, pdf), what was found (summary.json)
+    and what it rests on (manifest.json). `studies.report` gathers all of it into one page.
+
+What they show
+    The letter's figures: `transitions` (the main job), `hysteresis` (Fig. 3), `time_trace` (Fig. 4),
+    `breakdown` (Fig. 5), `claims` and `chart` (the plane). What it left open: `hysteresis` (why measurement
+    and map differ), `effective_impact` (higher modes in tau and delay), `soft_wall` (the square root),
+    `attractors`, `sensitivity`. To be seen in motion: `motion`. What all of it rests on: `calibrate`,
+    `modes`, `spring_shape`, `adequacy`, `work_precision`, `stability`, `benchmarks`.
+
+What several of them use is in `studies.instruments`; the letter's numbers are in `studies.published`.
 
 Importing this package does two things, both of which have to come before numpy is imported:
 

@@ -3,10 +3,11 @@
     python -m studies.export results/chart/single_mode-400x400.sqlite               -> the same name, .npz
     python -m studies.export results/chart/*-of-8.sqlite --to csv --out chart.csv   shards of one sweep as one
 
-Reads while the sweep is still running, too, and then gives what is there.  Columns and their units: see
-``studies.instruments.sweep.columns_file``; the store itself: ``studies.instruments.sweep.store``.  Some
-100 000 cells per second; memory does not depend on their number.  Exit codes: 0 done, 2 wrong use or a file
-that cannot be read or written, 130 interrupted.
+Reads while the sweep is still running, too, and then gives what is there.  Output: one .npz or .csv file; its
+columns and their units are in ``studies.instruments.sweep.columns_file``, the store itself in
+``studies.instruments.sweep.store``.  Run time: a second for 100 000 cells; memory does not depend on their
+number.  Command: python -m studies.export STORE [STORE ...] [--to csv] [--out FILE].  Exit codes: 0 done, 2
+wrong use or a file that cannot be read or written, 130 interrupted.
 """
 
 from __future__ import annotations

@@ -28,6 +28,7 @@ SINGULAR = 1e-13  # a D below this is rounding of 1 - tr N + G, terms of size 1:
 
 
 def require(condition: bool, sentence: str) -> None:
+    """Raise ValueError with `sentence` unless `condition` holds."""
     if not condition:
         raise ValueError(sentence)
 
