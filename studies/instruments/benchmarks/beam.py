@@ -1,12 +1,13 @@
-"""The beam: time per drive period and per collision against modes and law, on the settled orbit.
+"""The beam: time per drive period and per collision against modes, law, excess and tolerance.
 
-At 21.50 Hz and excess 0.013 (the letter's Fig. 4) the beam follows p4 with one collision; the same number of
-periods without a touch, at excess -0.02, tells the collision from the rest.
+At 21.50 Hz and excess 0.013 (the letter's Fig. 4) the beam settles on p4 with one collision; the same number
+of periods without a touch, at excess -0.02, tells the collision from the rest.  A tolerance is heyoka's: the
+package has none, its contacts are followed to rounding.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -23,20 +24,21 @@ from studies.instruments.scene import Scene
 from studies.instruments.work_precision.errors import collision_errors, missed_crossings, yardstick_of
 from studies.instruments.work_precision.problems import Problem
 
-__all__ = ["EXCESS", "FREQUENCY", "beam_rows", "measured_errors", "slope_of"]
+__all__ = ["BELOW", "EXCESS", "FREQUENCY", "beam_rows", "measured_errors", "slope_of"]
 
-FREQUENCY, EXCESS = 21.50, 0.013
+FREQUENCY, EXCESS, BELOW = 21.50, 0.013, -0.02
 SETTLING = 1000
 
 
 def beam_rows(
-    scene: Scene, model: ModalModel, law: str, modes: int, *, quick: bool, peer_tolerance: float | None
-) -> list[dict[str, Any]]:
+    scene: Scene, model: ModalModel, law: str, modes: int, *, quick: bool, peer_tolerance: float | None,
+    excess: float = EXCESS,
+) -> list[dict[str, Any]]:  # fmt: skip
     """The rows of one number of modes: the package, the floor and, with a tolerance, heyoka."""
     count, theirs = (200, 8) if quick else (2000, 40)
     oscillator = beam_of(scene.replace({"contact.law": law}), FREQUENCY, model.truncated(modes))
-    strobed = StroboscopicMap(oscillator=oscillator.with_excess(EXCESS))
-    free = StroboscopicMap(oscillator=oscillator.with_excess(-0.02))
+    strobed = StroboscopicMap(oscillator=oscillator.with_excess(excess))
+    free = StroboscopicMap(oscillator=oscillator.with_excess(BELOW))
     state = strobed.orbit(strobed.steady(), SETTLING).end
     impacts = strobed.orbit(state, count).impacts.sum() / count
     flow, u, v = flows_of(oscillator), np.full(modes, 1e-4), np.full(modes, 1e-4)
@@ -57,6 +59,8 @@ def beam_rows(
             "case": f"beam, {law} contact" + (", no touch" if tool == "without a touch" else ""),
             "tool": "grazing-spring" if tool == "without a touch" else tool, "modes": modes, "law": law,
             "frequency_hz": FREQUENCY, "us_per_period": each, "error": None, "missed": None,
+            "excess": BELOW if tool == "without a touch" else excess,
+            "tolerance": peer_tolerance if tool == "heyoka" else None,
             "impacts_per_period": float(impacts) if tool in ("grazing-spring", "heyoka") else 0.0,
             "us_per_collision": collision if tool == "grazing-spring" else None,
         }
@@ -64,18 +68,19 @@ def beam_rows(
     ]  # fmt: skip
 
 
-def measured_errors(problem: Problem, peer_tolerance: float | None) -> dict[str, tuple[float, float | None]]:
-    """Error of the mode-1 state after a collision against extended precision, and share of crossings missed,
-    for the package's method of the law and for heyoka at `peer_tolerance`."""
+def measured_errors(
+    problem: Problem, peer_tolerances: Sequence[float]
+) -> dict[float | None, tuple[float, float | None]]:
+    """Error of the mode-1 state after a collision against extended precision, and share of crossings missed:
+    for the package's method of the law (None) and for heyoka at each of `peer_tolerances`."""
     yardstick = yardstick_of(problem)
-    tools: dict[str, Any] = {"grazing-spring": method_for(problem.oscillator.stop.law.code)}
-    if peer_tolerance is not None:
-        tools["heyoka"] = HeyokaTaylor(tolerance=peer_tolerance)
-    found: dict[str, tuple[float, float | None]] = {}
-    for tool, method in tools.items():
+    tools: dict[float | None, Any] = {None: method_for(problem.oscillator.stop.law.code)}
+    tools |= {tolerance: HeyokaTaylor(tolerance=tolerance) for tolerance in peer_tolerances}
+    found: dict[float | None, tuple[float, float | None]] = {}
+    for tolerance, method in tools.items():
         error = collision_errors(yardstick, method)["error"]
         assert error is not None
-        found[tool] = (error, missed_crossings(yardstick, method)["missed"])
+        found[tolerance] = (error, missed_crossings(yardstick, method)["missed"])
     return found
 
 
