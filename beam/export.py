@@ -4,13 +4,18 @@ The mesh is the solid of `spring_mesh`; its cell array `part` is 0 in the strip,
 the ball. Displacements are real vectors of three components [m], and as small as they are in the theory:
 drawn large, points move along straight lines.
 
+Every file is written under another name in the same folder and then takes its own: it is complete or absent.
+A .pvd lists only frames that are there, also where writing was interrupted.
+
 pyvista is imported only when something is written: writing opens no window and needs no graphics library.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 from xml.sax.saxutils import quoteattr
@@ -76,7 +81,7 @@ def write_mode_motion(
     mode: int,
     *,
     frames: int = 24,
-    moved: bool = False,
+    moved: bool = True,
     largest: float = 0.01,
     ball_radius: float | None = None,
 ) -> tuple[Path, ...]:
@@ -92,10 +97,10 @@ def write_mode_motion(
     mode : int
         From 0.
     frames : int
-        At least 2.
+        An even number, at least 2: with an odd one two frames in the middle would show the same shape.
     moved : bool
-        Whether the points themselves move. If not, they stay, and the array `displacement` [m] is there for
-        ParaView's filter Warp By Vector.
+        Whether the points themselves move, which is seen without any filter. If not, they stay, and the array
+        `displacement` [m] is there for ParaView's filter Warp By Vector.
     largest, ball_radius
         As for `write_modes`.
 
@@ -106,8 +111,8 @@ def write_mode_motion(
     """
     if not 0 <= mode < modes.omega.size:
         raise ValueError(f"mode is {mode} [1]; it must lie between 0 and {modes.omega.size - 1}.")
-    if frames < 2:
-        raise ValueError(f"frames is {frames} [1]; it must be at least 2.")
+    if frames < 2 or frames % 2:
+        raise ValueError(f"frames is {frames} [1]; it must be an even number of at least 2.")
     mesh = spring_mesh(modes, ball_radius=ball_radius)
     period = 2.0 * math.pi / modes.omega[mode] if modes.omega[mode] > 0.0 else 1.0
     phase = np.arange(frames) / frames
@@ -124,7 +129,7 @@ def write_motion(
     coordinates: ArrayLike,
     *,
     base: ArrayLike | None = None,
-    moved: bool = False,
+    moved: bool = True,
     magnification: float = 1.0,
     ball_radius: float | None = None,
 ) -> tuple[Path, ...]:
@@ -167,6 +172,48 @@ def write_motion(
     return _write_frames(path, mesh, t, frame_of, moved, {"magnification": [magnification]})
 
 
+def write_frames(path: Path, frames: Iterable[tuple[float, Any]]) -> tuple[Path, ...]:
+    """Write grids in time: NAME.pvd and NAME_frames/frame_0000.vtu and so on.
+
+    Parameters
+    ----------
+    path : Path
+        Ending in .pvd.
+    frames : iterable of (time [s], pyvista.UnstructuredGrid)
+        Written as they come; each gets its time as the field array TimeValue.
+
+    Returns
+    -------
+    tuple of Path
+        The .pvd file, then its frames. Frames of an earlier and longer motion of the same name are removed.
+    """
+    _require_suffix(path, ".pvd")
+    folder = path.with_name(f"{path.stem}_frames")
+    folder.mkdir(parents=True, exist_ok=True)
+    files, lines = [], []
+    try:
+        for number, (time, grid) in enumerate(frames):
+            file = _write_grid(folder / f"frame_{number:04d}.vtu", grid, {"TimeValue": [time]})
+            name = quoteattr(f"{folder.name}/{file.name}")
+            lines.append(f'    <DataSet timestep="{time!r}" group="" part="0" file={name}/>\n')
+            files.append(file)
+    finally:
+        if lines:
+            _write_list(path, lines)
+    for left in set(folder.glob("frame_*.vtu")) - set(files):
+        left.unlink()
+    return path, *files
+
+
+def _write_list(path: Path, lines: Sequence[str]) -> None:
+    text = (
+        '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n'
+        "  <Collection>\n" + "".join(lines) + "  </Collection>\n</VTKFile>\n"
+    )
+    with _in_one_step(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
 def _write_frames(
     path: Path,
     mesh: SpringMesh,
@@ -175,31 +222,37 @@ def _write_frames(
     moved: bool,
     fields: Mapping[str, ArrayLike],
 ) -> tuple[Path, ...]:
-    """Write NAME.pvd and NAME_frames/frame_0000.vtu and so on."""
-    _require_suffix(path, ".pvd")
-    folder = path.with_name(f"{path.stem}_frames")
-    folder.mkdir(parents=True, exist_ok=True)
-    files, lines = [], []
-    for number, (time, displacement) in enumerate(zip(times.tolist(), displacements, strict=True)):
-        grid = mesh.grid(mesh.points + displacement if moved else None)
-        grid.point_data["displacement"] = displacement
-        files.append(_write_grid(folder / f"frame_{number:04d}.vtu", grid, {**fields, "TimeValue": [time]}))
-        name = quoteattr(f"{folder.name}/{files[-1].name}")
-        lines.append(f'    <DataSet timestep="{time!r}" group="" part="0" file={name}/>\n')
-    path.write_text(
-        '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n'
-        "  <Collection>\n" + "".join(lines) + "  </Collection>\n</VTKFile>\n",
-        encoding="utf-8",
-    )
-    return path, *files
+    """Write the spring with these displacements."""
+
+    def grids() -> Iterator[tuple[float, Any]]:
+        for time, displacement in zip(times.tolist(), displacements, strict=True):
+            grid = mesh.grid(mesh.points + displacement if moved else None)
+            grid.point_data["displacement"] = displacement
+            for name, values in fields.items():
+                grid.field_data[name] = np.asarray(values)
+            yield time, grid
+
+    return write_frames(path, grids())
 
 
 def _write_grid(path: Path, grid: Any, fields: Mapping[str, ArrayLike]) -> Path:
     for name, values in fields.items():
         grid.field_data[name] = np.asarray(values)
     path.parent.mkdir(parents=True, exist_ok=True)
-    grid.save(path)
+    with _in_one_step(path) as temporary:
+        grid.save(temporary)
     return path
+
+
+@contextmanager
+def _in_one_step(path: Path) -> Iterator[Path]:
+    """Yield a hidden name with the same ending; what was written there becomes `path`, or nothing does."""
+    temporary = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
+    try:
+        yield temporary
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
 
 
 def _require_suffix(path: Path, suffix: str) -> None:

@@ -23,8 +23,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
-from .material import require_number
 from .modes import Modes, ShapesAlong
+from .parameters import require_number
 from .section import StripSection
 
 STRIP, LAYER, BALL = 0, 1, 2
@@ -62,6 +62,21 @@ class SpringMesh:
         require_number("largest", largest, "m", positive=True)
         size = np.linalg.norm(self.shapes, axis=2).max(axis=1)
         return self.shapes * (largest / size)[:, None, None]
+
+    def surface(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Faces of the strip and its layers that can be seen, shape (n_faces, 4), and the part of each.
+
+        These are the four long sides of every hexahedron and both ends of every row; corners run round a face
+        so that it faces outwards.
+        """
+        first, last = self.hexahedra[:, :4], self.hexahedra[:, 4:]
+        after = np.roll(np.arange(4), -1)
+        sides = np.stack([first, first[:, after], last[:, after], last], axis=2)
+        opens = np.append(True, np.any(first[1:] != last[:-1], axis=1))
+        closes = np.append(opens[1:], True)
+        faces = [sides.reshape(-1, 4), first[opens][:, ::-1], last[closes]]
+        part = self.part[: len(self.hexahedra)]
+        return np.concatenate(faces), np.concatenate([np.repeat(part, 4), part[opens], part[closes]])
 
     def grid(self, points: NDArray[np.float64] | None = None) -> Any:
         """Return the mesh as a `pyvista.UnstructuredGrid`, with other points [m] if they are given."""

@@ -11,20 +11,22 @@ Equations
     are set beside the zeros of the frequency equation (`beam.frequency_equation`).
 
 Run time
-    A few seconds.
+    Ten seconds; a few with --quick.
 
 Command
-    python -m studies.modes [--mode 3] [--moved] [--frames 24]
+    python -m studies.modes [--mode 3] [--at-rest] [--frames 24]
 
 Outputs (results/modes)
     modes.csv         the table; modes.npz with the shapes along the strip
     modes.vtu         all shapes as vectors on one mesh, frequencies and decay rates as field data
     motion.pvd        one period of one mode, its frames in motion_frames
+    mode_1.gif, ...   one period of each of the first modes, repeated without a seam
     modes.png, .pdf   the first modes in the plane of the strip
-    modes_3d.png      the same in space, where the machine can draw it
+    modes_3d.png, .pdf   the same in space
 
-In ParaView open modes.vtu, apply Warp By Vector and choose a mode. Or open motion.pvd and press play: with
---moved the points move by themselves, without it apply Warp By Vector to `displacement` first.
+In ParaView open modes.vtu, apply Warp By Vector and choose a mode. Or open motion.pvd and press play: the
+points move by themselves; with --at-rest they stay, and Warp By Vector by `displacement` moves them. Where
+the machine cannot draw in space, matplotlib does, and one sentence names the packages that are missing.
 """
 
 from __future__ import annotations
@@ -38,13 +40,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam import LeafSpring, Modes, UniformBeam, exact_modes
-from beam.export import mode_name, write_mode_motion, write_modes
+from beam.export import write_mode_motion, write_modes
 from studies.instruments.adequacy.fitted_scene import Need
 from studies.instruments.command_line import Request, WrongUse, run_study
 from studies.instruments.mode_figures import DRAWN, LARGEST, draw, draw_in_space
-from studies.instruments.off_screen import SENTENCE, can_render
+from studies.instruments.motion.film import write_gif
+from studies.instruments.motion.scene_bodies import choose_stage
 from studies.instruments.scene import Scene
 from studies.instruments.spring_of_scene import damping_of, model_of, modes_of
+
+FILMED, QUICK_FILMED = 6, 2
+"""Modes with a film, lowest first."""
+
+RATE = 20.0
+"""Frames a second of the films."""
 
 
 def exact_frequencies(spring: LeafSpring, count: int) -> NDArray[np.float64] | None:
@@ -125,8 +134,8 @@ def run(scene: Scene, request: Request) -> Mapping[str, Any]:
     mode = request.options.mode - 1
     if mode >= count:
         raise WrongUse(f"--mode must be at most {count}, the modes of this scene, not {mode + 1}")
-    if request.options.frames < 2:
-        raise WrongUse("--frames must be at least 2")
+    if request.options.frames < 2 or request.options.frames % 2:
+        raise WrongUse(f"--frames must be an even number of at least 2, not {request.options.frames}")
     record, folder = request.record, request.record.folder
     columns: dict[str, Any] = {"mode": np.arange(1, count + 1), **table}
     record.write_table("modes", columns)
@@ -138,7 +147,7 @@ def run(scene: Scene, request: Request) -> Mapping[str, Any]:
         print(
             f"ParaView: open {folder / 'modes.vtu'}, apply Warp By Vector and choose a mode; or open "
             f"{folder / 'motion.pvd'} (mode {mode + 1}) and press play"
-            + ("" if request.options.moved else ", with Warp By Vector by displacement")
+            + (", with Warp By Vector by displacement" if request.options.at_rest else "")
         )
     return {
         "frequencies_hz": table["frequency_hz"],
@@ -176,27 +185,46 @@ def _write_shapes(
         modes,
         mode,
         frames=request.options.frames,
-        moved=request.options.moved,
+        moved=not request.options.at_rest,
         **drawing,
     )
     record.files += [mesh.name, motion.name, f"{motion.stem}_frames"]
     record.write_figure(draw(shapes, radius), "modes")
-    if request.quick:
-        return
-    if can_render():
-        names = [mode_name(modes, number) for number in range(min(DRAWN, modes.omega.size))]
-        draw_in_space(mesh, names, record.folder / "modes_3d.png")
-        record.files.append("modes_3d.png")
-    else:
-        print(SENTENCE)
+    _write_films(request, modes, largest, radius)
+
+
+def _write_films(request: Request, modes: Modes, largest: float, radius: float) -> None:
+    """The first modes in space, and their films."""
+    from studies.instruments.motion.mode_film import frames_of, mode_film  # matplotlib is slow to import
+    from studies.instruments.motion.orbit_film import stage_of
+
+    record, frames = request.record, request.options.frames
+    renderer, sentence = choose_stage("matplotlib" if request.quick else "auto")
+    if sentence:
+        print(sentence)
+    film = mode_film(modes, min(DRAWN, modes.omega.size), largest=largest, ball_radius=radius)
+    filmed = min(QUICK_FILMED if request.quick else FILMED, modes.omega.size)
+    stage = stage_of(renderer, film.bodies, film.view)
+    try:
+        record.write_figure(draw_in_space(film, stage), "modes_3d")
+        with request.progress("frames of the modes", total=filmed * frames) as progress:
+            for mode in range(filmed):
+                pictures = []
+                for picture in frames_of(film, stage, mode, frames):
+                    pictures.append(picture)
+                    progress.advance()
+                file = write_gif(record.folder / f"mode_{mode + 1}.gif", pictures, RATE)
+                record.files.append(file.name)
+    finally:
+        stage.close()
 
 
 def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--mode", type=_number, default=1, metavar="K", help="mode to animate (default: 1)")
     parser.add_argument("--frames", type=_number, default=24, metavar="N",
-                        help="frames in one period, at least 2 (default: 24)")
-    parser.add_argument("--moved", action="store_true",
-                        help="move the points of the frames, so that no filter is needed to see them move")
+                        help="frames in one period, an even number (default: 24)")
+    parser.add_argument("--at-rest", action="store_true",
+                        help="leave the points of motion.pvd at rest, for Warp By Vector by displacement")
 
 
 def _number(text: str) -> int:

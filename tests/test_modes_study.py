@@ -5,12 +5,14 @@ from __future__ import annotations
 import csv
 import json
 import math
+import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from beam import UniformBeam, exact_modes
+from beam.export import write_mode_motion
 from studies.instruments import off_screen
 from studies.instruments.mode_figures import draw
 from studies.instruments.scene_file import read_scene
@@ -32,16 +34,17 @@ DATA = {
 def folded(tmp_path_factory) -> tuple[Path, str]:
     """Folder of results of the folded strip; the study is run once."""
     out = tmp_path_factory.mktemp("results")
-    assert main([*SMALL, "--out", str(out), "--quick", "--mode", "3", "--frames", "4", "--moved"]) == 0
+    assert main([*SMALL, "--out", str(out), "--quick", "--mode", "3", "--frames", "6"]) == 0
     return out / "modes"
 
 
 def test_all_files_are_there_and_listed(folded):
     results = json.loads((folded / "summary.json").read_text())
     named = {"modes.csv", "modes.npz", "modes.vtu", "motion.pvd", "motion_frames", "modes.png", "modes.pdf"}
-    assert set(results["files"]) == named
-    assert named | {"summary.json", "manifest.json"} == {path.name for path in folded.iterdir()}
-    assert len(list((folded / "motion_frames").glob("*.vtu"))) == 4
+    named |= {"modes_3d.png", "modes_3d.pdf", "mode_1.gif", "mode_2.gif"}
+    assert named <= set(results["files"])
+    assert {*results["files"], "summary.json", "manifest.json"} == {path.name for path in folded.iterdir()}
+    assert len(list((folded / "motion_frames").iterdir())) == 6
 
 
 def test_the_table_tells_sway_from_breathing(folded):
@@ -65,6 +68,42 @@ def test_the_animated_mode_is_the_one_that_was_asked_for_and_moves_by_itself(fol
     assert name.startswith("mode_03_")
     np.testing.assert_allclose(frame.point_data["displacement"], shapes.point_data[name], atol=1e-15)
     np.testing.assert_allclose(frame.points - shapes.points, shapes.point_data[name], atol=1e-15)
+
+
+def test_frames_for_paraview_move_the_points_and_have_no_seam(folded):
+    import pyvista
+
+    sets = ET.parse(folded / "motion.pvd").getroot().findall("Collection/DataSet")
+    grids = [pyvista.read(folded / entry.attrib["file"]) for entry in sets]
+    swing = np.linalg.norm(grids[0].point_data["displacement"], axis=1).max()
+    steps = [
+        np.linalg.norm(after.points - before.points, axis=1).max()
+        for before, after in zip(grids, [*grids[1:], grids[0]], strict=True)
+    ]
+    assert min(steps) > 0.2 * swing
+    assert steps[-1] == pytest.approx(steps[0], rel=1e-9)
+
+
+@pytest.mark.parametrize("mode", [1, 2])
+def test_films_of_modes_move_the_shape_in_every_frame(folded, mode):
+    from PIL import Image, ImageSequence
+
+    with Image.open(folded / f"mode_{mode}.gif") as film:
+        assert film.info["loop"] == 0
+        frames = [np.asarray(frame.convert("RGB")).astype(int) for frame in ImageSequence.Iterator(film)]
+    assert len(frames) == 6 and {frame.shape for frame in frames} == {(260, 720, 3)}
+    brass = [frame[..., 0] - frame[..., 2] > 60 for frame in frames]
+    for number in range(6):
+        here, there = brass[number], brass[(number + 1) % 6]
+        assert (here & there).sum() < 0.8 * (here | there).sum()  # elsewhere, not only another colour
+    # the seam: from the last frame to the first is as long a step as from the first to the second
+    np.testing.assert_array_equal(brass[5], brass[1])
+
+
+def test_an_odd_number_of_frames_is_refused(tmp_path):
+    modes = modes_of(read_scene().replace({"modes.count": 1}))
+    with pytest.raises(ValueError, match="even"):
+        write_mode_motion(tmp_path / "motion.pvd", modes, 0, frames=5)
 
 
 def test_json_is_alone_on_standard_output(capfd, tmp_path):
@@ -125,7 +164,8 @@ def test_modes_that_were_measured_have_a_table_and_no_shapes(tmp_path, capfd):
     [
         (["--mode", "9"], "--mode must be at most 5"),
         (["--mode", "0"], "--mode"),
-        (["--frames", "1"], "--frames must be at least 2"),
+        (["--frames", "1"], "--frames must be an even number of at least 2, not 1"),
+        (["--frames", "5"], "--frames must be an even number of at least 2, not 5"),
         (["--set", "spring.kind=straight_strip", "--set", "spring.end_support=clamped"], "tip.arc_fraction"),
     ],
 )
@@ -135,7 +175,7 @@ def test_wrong_use_is_told_in_one_sentence(words, sentence, tmp_path, capfd):
     assert sentence in err and len(err.strip().splitlines()) == 1
 
 
-def test_without_graphics_the_study_names_the_packages(tmp_path, capfd, monkeypatch):
+def test_without_graphics_matplotlib_draws_and_the_packages_are_named(tmp_path, capfd, monkeypatch):
     monkeypatch.setattr(off_screen, "TRIAL", "import os; os.abort()")
     off_screen.can_render.cache_clear()
     try:
@@ -143,8 +183,9 @@ def test_without_graphics_the_study_names_the_packages(tmp_path, capfd, monkeypa
     finally:
         off_screen.can_render.cache_clear()
     err = capfd.readouterr().err
-    assert "libegl1 libegl-mesa0 libgl1-mesa-dri" in err
-    assert not (tmp_path / "modes" / "modes_3d.png").exists()
+    assert err.count("libegl1 libegl-mesa0 libgl1-mesa-dri") == 1
+    films = {f"mode_{number}.gif" for number in range(1, 6)}
+    assert films | {"modes_3d.png"} <= {path.name for path in (tmp_path / "modes").iterdir()}
 
 
 def test_the_figure_draws_every_mode_to_scale_with_units():

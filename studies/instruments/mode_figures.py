@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from pathlib import Path
-from typing import Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from studies.instruments.off_screen import prepare_off_screen
+if TYPE_CHECKING:
+    from studies.instruments.motion.mode_film import ModeFilm
+    from studies.instruments.motion.scene_bodies import Stage
 
 DRAWN = 8
 """Modes in the figure, lowest first."""
@@ -68,31 +69,31 @@ def draw(shapes: Mapping[str, Any], ball_radius: float) -> Any:
     return figure
 
 
-def draw_in_space(mesh_file: Path, names: Sequence[str], picture: Path) -> None:
-    """The first modes as solids, from the mesh that was written."""
-    prepare_off_screen()
-    import pyvista
+def draw_in_space(film: ModeFilm, stage: Stage) -> Any:
+    """The modes of a film as solids, at their largest displacement."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
 
-    rows = math.ceil(len(names) / 2)
-    grid: Any = pyvista.read(mesh_file)
-    size = [1600, 330 * rows]
-    plotter: Any = pyvista.Plotter(off_screen=True, shape=(rows, 2), window_size=size, border=False)
-    colours = ["#D8B24A", "#505050", "#F2F2F2"]  # brass, tape, ceramic
-    at_rest = grid.extract_cells(np.flatnonzero(grid.cell_data["part"] != 2))
-    for number, name in enumerate(names):
-        plotter.subplot(number // 2, number % 2)
-        _, ordinal, frequency = name.split("_")
-        title = f"mode {int(ordinal)}: {frequency.removesuffix('Hz')} Hz"
-        plotter.add_text(title, font_size=11, color="black")
-        plotter.add_mesh(at_rest, color="lightgrey", opacity=0.2)
-        warped = grid.warp_by_vector(name)
-        for part, colour in enumerate(colours):
-            body = warped.extract_cells(np.flatnonzero(warped.cell_data["part"] == part))
-            if body.n_cells:
-                plotter.add_mesh(body, color=colour, ambient=0.35, smooth_shading=part == 2)
-        plotter.set_background("white")
-        plotter.camera_position = [(0.25, -0.35, 0.30), (0.07, 0.0, 0.0), (0.0, 0.0, 1.0)]
-        plotter.reset_camera()
-        plotter.camera.zoom(1.9)
-    plotter.screenshot(str(picture))
-    plotter.close()
+    from studies.instruments.figures import INCH, PAGE, house_style
+    from studies.instruments.motion.marks import Place
+
+    count, view = len(film.names), film.view
+    columns = min(2, count)
+    rows, wide = math.ceil(count / columns), PAGE / columns
+    tall = wide * view.height / view.width
+    head, foot = 0.005, 0.006
+    height = foot + rows * (head + tall)
+    figure = Figure(figsize=(PAGE / INCH, height / INCH), facecolor="white")
+    FigureCanvasAgg(figure)
+    with house_style():
+        for mode, name in enumerate(film.names):
+            row, column = divmod(mode, columns)
+            bottom = height - (row + 1) * (head + tall)
+            box = (column * wide / PAGE, bottom / height, wide / PAGE, tall / height)
+            place = Place(figure, view, box)
+            place.show(stage.picture(film.moment(mode, 0.0)))
+            film.mark(place, 5.5)
+            figure.text(box[0] + 0.01, box[1] + box[3], name, va="bottom", fontsize=8.0)
+        words = "dashed: at rest; all modes drawn with the same largest displacement"
+        figure.text(0.5, 0.3 * foot / height, words, ha="center", va="bottom", fontsize=7.0)
+    return figure

@@ -2,7 +2,7 @@
 
 Without the libraries of OpenGL, rendering ends in a segmentation fault that no program can catch. Whether it
 works is therefore tried once, in a process of its own; where it does not, studies say so in one sentence and
-keep to their plane figures.
+let matplotlib draw.
 """
 
 from __future__ import annotations
@@ -15,7 +15,10 @@ from functools import cache
 NEEDED = "libegl1 libegl-mesa0 libgl1-mesa-dri"
 """Debian packages that bring rendering in software."""
 
-SENTENCE = f"no 3-D picture: off-screen rendering does not work here (on Debian it needs {NEEDED})"
+SENTENCE = (
+    "matplotlib draws what is seen in space: off-screen rendering does not work here "
+    f"(on Debian it needs {NEEDED})"
+)
 
 TRIAL = (
     "import pyvista; plotter = pyvista.Plotter(off_screen=True, window_size=(32, 32)); "
