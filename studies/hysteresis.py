@@ -28,13 +28,14 @@ from contact.maximal_orbits import bands
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.adequacy.fitted_scene import Need
 from studies.instruments.command_line import Request, run_study
+from studies.instruments.corresponding import corresponding, periods_of
 from studies.instruments.fold_scan import orbit_end
 from studies.instruments.hysteresis_causes import CAUSES, DESCRIPTIONS, Fold, folds_at, row_of
 from studies.instruments.hysteresis_figures import draw_causes, draw_curves, draw_ratios
 from studies.instruments.oscillators import beam_of
 from studies.instruments.scene import Scene
 from studies.instruments.spring_of_scene import model_of
-from studies.published import AMPLITUDE_STABILITY_M, DRIVE_AMPLITUDE_M, PERIODS
+from studies.published import AMPLITUDE_STABILITY_M, DRIVE_AMPLITUDE_M
 
 PERIOD_RANGE = range(3, 11)
 FREQUENCIES_HZ, STEP_HZ, QUICK_STEP_HZ = (19.6, 23.8), 0.05, 0.35
@@ -56,10 +57,11 @@ def column(scene: Scene, period: int, step: float, model: ModalModel) -> list[Fo
         decay_rate=keys.decay_rate_per_s,
         restitution=keys.restitution,
     )
-    low = max(FREQUENCIES_HZ[0], band.lower - BELOW_BAND * (band.upper - band.lower))
-    grid = np.arange(FREQUENCIES_HZ[0], FREQUENCIES_HZ[1] + 1e-9, step)
+    least = corresponding(scene, FREQUENCIES_HZ[0])
+    low = max(least, band.lower - BELOW_BAND * (band.upper - band.lower))
+    grid = [corresponding(scene, f) for f in np.arange(FREQUENCIES_HZ[0], FREQUENCIES_HZ[1] + 1e-9, step)]
     values = {round(float(f), 6) for f in grid if low <= f < band.upper}
-    values |= {f for f, m in PERIODS.items() if m == period and low <= f < band.upper}
+    values |= {f for f, m in periods_of(scene).items() if m == period and low <= f < band.upper}
     found: list[Fold] = []
     near = None
     for frequency in sorted(values, reverse=True):
@@ -97,6 +99,11 @@ def _stable_state(fold: Fold, excess: float) -> Any:
     while orbit.excess < excess:
         orbit = family.at_speed(1.1 * orbit.speed, orbit)
     return family.at_excess(excess, orbit).strobe_state()
+
+
+def resolved(rows: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """The rows that enter the statistics: hysteresis of the beam above `RESOLVED`, and a fold in the map."""
+    return [row for row in rows if (row["beam"] or 0.0) < -RESOLVED and row["map"] is not None]
 
 
 def factors(rows: Sequence[Mapping[str, Any]]) -> dict[str, dict[str, float | int]]:
@@ -176,7 +183,8 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
             for found in pool.map(lambda m: column(scene, m, step, model), PERIOD_RANGE):
                 folds += found
                 progress.advance()
-        at_letter = [fold for fold in folds if PERIODS.get(fold.frequency) == fold.period]
+        seen = periods_of(scene)
+        at_letter = [fold for fold in folds if seen.get(fold.frequency) == fold.period]
         scanned = list(
             pool.map(lambda fold: confirm(scene, fold, model), at_letter[:2] if request.quick else at_letter)
         )
@@ -185,12 +193,10 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
         if (fold.excess["beam"] or 0.0) < 0:
             negative.setdefault(fold.frequency, []).append(fold.period)
     rows = [row_of(fold, [m for m in negative.get(fold.frequency, []) if m != fold.period]) for fold in folds]
-    letter = [row for row in rows if PERIODS.get(row["frequency_hz"]) == row["m"]]
+    letter = [row for row in rows if seen.get(row["frequency_hz"]) == row["m"]]
     for row, value in zip(letter, scanned, strict=False):
         row["beam_scan"] = value
-    hysteretic = [
-        row for row in rows if (row["beam"] or 0.0) < 0 and all(row[name] is not None for name in ("map",))
-    ]
+    hysteretic = resolved(rows)
     answers = sentences(hysteretic, letter)
     columns = {name: [row[name] for row in rows] for name in ("frequency_hz", "m", *DESCRIPTIONS)}
     request.record.write_table(

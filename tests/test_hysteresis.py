@@ -74,6 +74,14 @@ def test_the_answers_follow_from_the_rows():
     assert "1.20" in answers["do energy loss and delay suffice"]
 
 
+def test_statistics_are_of_folds_that_the_letter_could_resolve():
+    """Next to a band edge hysteresis vanishes, and ratios of it say nothing."""
+    row = {"map": -1e-3, "beam": -1e-3}
+    edge, none = {"map": -1e-3, "beam": -1e-6}, {"map": None, "beam": -1e-2}
+    above, missing = {"map": -1e-3, "beam": 1e-3}, {"map": -1e-3, "beam": None}
+    assert hysteresis.resolved([row, edge, none, above, missing]) == [row]
+
+
 def test_json_has_the_promised_keys(tmp_path, capsys):
     code = hysteresis.main(["--json", "--quick", "--out", str(tmp_path)])
     answer = json.loads(capsys.readouterr().out)
@@ -85,5 +93,7 @@ def test_json_has_the_promised_keys(tmp_path, capsys):
     assert all(wanted <= row.keys() for row in answer["rows"])
     assert {row["m"] for row in answer["rows"]} >= {3, 4, 5, 6}
     assert answer["answers"] and answer["causes"]
+    counted = sum((row["beam"] or 0.0) < -2.5e-4 and row["map"] is not None for row in answer["rows"])
+    assert answer["factors"]["single_mode"]["count"] == counted < len(answer["rows"])
     for name in ("hysteresis.png", "hysteresis_ratio.png", "hysteresis_causes.png", "hysteresis.csv"):
         assert (tmp_path / "hysteresis" / name).stat().st_size > 500
