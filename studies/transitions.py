@@ -13,16 +13,19 @@ its N modes:
 
 Run time: some seconds; --quick half of that; --full (10000 drive periods per amplitude, as in the experiment)
 some minutes.  Command: python -m studies.transitions.  Outputs: summary.json, orbit_diagram.png and .pdf (the
-beam at its read-out point), orbit_diagram_single_mode, orbit_diagram_map, and the points as csv and npz.
+beam at its read-out point), orbit_diagram_single_mode, orbit_diagram_map, the points as csv and
+npz; and results/report/index.html, the report of everything that is stored there (``studies.report``).
 """
 
 from __future__ import annotations
 
 import argparse
+import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -34,11 +37,12 @@ from contact.orbits.single_impact import MaximalFamily
 from contact.strobed_nordmark import StrobedNordmarkMap
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.adequacy.fitted_scene import Need
-from studies.instruments.command_line import Request, run_study
+from studies.instruments.command_line import DONE, FAILED_CELLS, Request, run_study
 from studies.instruments.fold_scan import orbit_end
 from studies.instruments.orbit_scan import OrbitDiagram, orbit_diagram
 from studies.instruments.oscillators import beam_of, nordmark_of, single_mode_oscillator
 from studies.instruments.periodicity import settle
+from studies.instruments.report.writing import told_report
 from studies.instruments.scene import Scene
 from studies.instruments.settling import settle_on_orbit
 from studies.instruments.spring_of_scene import model_of
@@ -298,16 +302,25 @@ NEEDS = (
 
 
 def main(argv: Sequence[str] | None = None, *, module: str | None = None) -> int:
-    """Run the study from the command line."""
-    return run_study(
+    """Run the study from the command line, then write the report of all that is stored beside it."""
+    results: list[Path] = []
+
+    def noted(scene: Scene, request: Request) -> dict[str, Any]:
+        results.append(request.record.folder.parent)
+        return run(scene, request)
+
+    code = run_study(
         "transitions",
         "The letter's six transitions p1 <-> pm: Nordmark map, Eq. (1) and the beam side by side.",
-        run,
+        noted,
         argv,
         options=add_options,
         module=module,
         needs=NEEDS,
     )
+    if results and code in (DONE, FAILED_CELLS):
+        print(told_report(results[0]), file=sys.stderr)
+    return code
 
 
 if __name__ == "__main__":

@@ -1,0 +1,1 @@
+"""The report: what the studies stored, as one page that needs nothing but a browser."""
