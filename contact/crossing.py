@@ -6,10 +6,11 @@ the stretch free:
 
     y(s + h) <= max over [0, h] of (y + y' h + y'' h^2/2) + M h^3/6 + R < -margin
 
-R is the sum of amplitudes of those high modes that are bounded instead of sampled; they are taken in one by
-one as the gap closes.  Where no such h exists, two other proofs end the search: y' > 0 throughout and y
-changes sign (one root), or y'' < 0 throughout and y' changes sign (one peak: its height decides).  The bounds
-of the single modes are those of ``contact.flight``.
+(``contact.certificate``, with the two proofs that end a search: one root, one peak).  R is the sum of
+amplitudes of those high modes that are bounded instead of sampled; they are taken in one by one as the gap
+closes.  The bounds of the single modes are those of ``contact.flight``.  Whole flights, the way to just
+before a touch, and what is left of a period after one, are settled by the lowest mode alone where that can be
+done (``contact.lowest_mode``).
 
 A graze, |peak| within the rounding bound of y (at most 1e-13 of the gap), is an outcome of its own.  A
 stretch that none of this settles, with h down to rounding, is reported as unresolved and never passed.
@@ -19,68 +20,74 @@ from __future__ import annotations
 
 import math
 
+from contact.certificate import PEAK as _PEAK
+from contact.certificate import ROOT as _ROOT
+from contact.certificate import SKIP as _SKIP
+from contact.certificate import certify, first_polynomial_root
 from contact.compiled import kernel
-from contact.flight import (
-    EPS,
-    mode_acceleration,
-    mode_flow,
-    tip_rounding,
-    tip_steady,
+from contact.flight import EPS
+from contact.lanes import LANES
+from contact.lowest_mode import free_from, free_until, lowest_mode
+from contact.modal_flow import (
+    BEND,
+    DECAY,
+    HEIGHT,
+    LOAD,
+    RATE,
+    SLOWNESS,
+    SQUARE,
+    START_U,
+    START_V,
+    THIRD,
+    WEIGHT,
+    flow_rows,
+    load_state,
+    mode_rows,
+    rounding_of,
+    scalars_of,
+    swing_at,
+    tip_rows,
 )
+from contact.tip_search import find_peak, find_root, tip_at, tip_of
 
-__all__ = ["CROSSES", "FREE", "GRAZES", "UNRESOLVED", "first_crossing", "first_polynomial_root"]
+__all__ = [
+    "CROSSES",
+    "FREE",
+    "GRAZES",
+    "UNRESOLVED",
+    "first_crossing",
+    "first_polynomial_root",
+    "searched_flight",
+    "tip_at",
+]
 
 FREE, CROSSES, GRAZES, UNRESOLVED = 0, 1, 2, 3
-_SKIP, _ROOT, _PEAK, _NEAR, _STALL = 0, 1, 2, 3, 4
 
 GRAZE_TOLERANCE = 1e-13
 """Largest rounding bound, relative to the gap, within which a peak may be called a graze."""
 
 
 @kernel
-def certify(y0, y1, y2, m3, rest, margin, h, h_min):
-    """The longest stretch of h, h/2, h/4, ... that one of the three proofs settles: (proof, stretch).
-
-    As long as some modes are only bounded (`rest` > 0), a stretch on which the others alone have a root or a
-    peak that matters is reported as near: there all modes must be sampled.
-    """
-    while h > h_min:
-        top = max(y0, y0 + h * (y1 + 0.5 * h * y2))
-        if y2 < 0.0 and y1 > 0.0 and -y1 > y2 * h:
-            top = max(top, y0 - 0.5 * y1 * y1 / y2)
-        cubic = m3 * h * h * h / 6.0
-        if top + cubic + rest < -margin:
-            return _SKIP, h
-        if y1 > 0.0:
-            slope_loss = 0.5 * m3 * h * h
-            if y1 + min(0.0, y2 * h) - slope_loss > 0.0:
-                if y0 + h * (y1 + 0.5 * h * y2) - cubic > margin:
-                    return (_ROOT if rest == 0.0 else _NEAR), h
-            elif y2 + m3 * h < 0.0 and y1 + y2 * h + slope_loss < 0.0:
-                return (_PEAK if rest == 0.0 else _NEAR), h
-        h *= 0.5
-    return _STALL, h
-
-
-@kernel
-def depart(motion, base, u, v, order, h, h_min):
+def depart(fixed, numbers, room, base, order, h, h_min):
     """The longest of h, h/2, ... on which a flight that starts on the wall is proved free; 0 if none is.
 
     `order` derivatives of the tip displacement vanish at the start, from the zeroth on: 1, 2 or 3.
     """
-    w = motion.drive
-    _level, y1, y2 = tip_steady(motion, base)
+    w = fixed.drive
+    _level, y1, y2 = swing_at(fixed, base)
     y3 = -w * w * y1
-    m4 = math.sqrt(motion.tip_sine**2 + motion.tip_cosine**2) * w**4
-    for k in range(motion.omega.size):
-        c, o2 = motion.decay[k], motion.omega[k] ** 2
-        d2 = mode_acceleration(motion, k, u[k], v[k])
+    m4 = fixed.amplitude * w**4
+    decay, square, phi, load = numbers[DECAY], numbers[SQUARE], numbers[WEIGHT], numbers[LOAD]
+    u, v = room[START_U], room[START_V]
+    for k in range(room.shape[1]):
+        c, o2 = decay[k], square[k]
+        d2 = load[k] - c * v[k] - o2 * u[k]
         d3 = -c * d2 - o2 * v[k]
         d4 = -c * d3 - o2 * d2
-        y1 += motion.phi[k] * v[k]
-        y2 += motion.phi[k] * d2
-        y3 += motion.phi[k] * d3
-        m4 += abs(motion.phi[k]) * math.sqrt(d4 * d4 + o2 * d3 * d3)
+        y1 += phi[k] * v[k]
+        y2 += phi[k] * d2
+        y3 += phi[k] * d3
+        m4 += abs(phi[k]) * math.sqrt(d4 * d4 + o2 * d3 * d3)
     while h > h_min:
         # (y - vanishing terms) / (leading power of h), bounded from above on (0, h]
         bound = m4 * h * h * h / 24.0
@@ -97,62 +104,21 @@ def depart(motion, base, u, v, order, h, h_min):
 
 
 @kernel
-def tip_at(motion, base, u, v, s):
-    """Tip displacement relative to the stop and two derivatives, a time `s` into the flight from (u, v)."""
-    y0, y1, y2 = tip_steady(motion, base + s)
-    omega, decay, damped, low, load, phi = (
-        motion.omega, motion.decay, motion.damped, motion.damped_low, motion.load, motion.phi
-    )
-    for k in range(omega.size):
-        uk, vk = mode_flow(omega[k], decay[k], damped[k], low[k], load[k], u[k], v[k], s)
-        y0 += phi[k] * uk
-        y1 += phi[k] * vk
-        y2 += phi[k] * (load[k] - decay[k] * vk - omega[k] * omega[k] * uk)
-    return y0, y1, y2
-
-
-@kernel
-def find_root(motion, base, u, v, low, high, margin):
-    """The root of the tip displacement in [low, high], where it rises from below to above zero [s]."""
-    s = 0.5 * (low + high)
-    for _ in range(200):
-        y0, y1, _unused = tip_at(motion, base, u, v, s)
-        if abs(y0) <= 0.05 * margin:
-            return s
-        if y0 < 0.0:
-            low = s
-        else:
-            high = s
-        step = -y0 / y1 if y1 > 0.0 else 0.0
-        new = s + step
-        if not (low < new < high):
-            new = 0.5 * (low + high)
-        if abs(new - s) <= 2.0 * EPS * abs(s) or high - low <= 2.0 * EPS * high:
-            return new
-        s = new
-    return s
-
-
-@kernel
-def find_peak(motion, base, u, v, low, high, margin):
-    """The peak of the tip displacement in [low, high], where it is concave [s]."""
-    s = 0.5 * (low + high)
-    for _ in range(200):
-        _unused, y1, y2 = tip_at(motion, base, u, v, s)
-        if y1 == 0.0:
-            return s
-        if y1 > 0.0:
-            low = s
-        else:
-            high = s
-        new = s - y1 / y2 if y2 < 0.0 else 0.5 * (low + high)
-        if not (low < new < high):
-            new = 0.5 * (low + high)
-        # the height is settled long before the place: its error is y'' (new - s)^2 / 2
-        if abs(y2) * (new - s) ** 2 <= 1e-3 * margin or high - low <= 4.0 * EPS * (base + high):
-            return new
-        s = new
-    return s
+def amplitudes(numbers, room, envelope):
+    """Fill `envelope` with the sums of the amplitudes of mode k and all above it [m]; returns how many modes,
+    from the first on, have none that could be bounded (those of zero frequency and all below)."""
+    n = envelope.size - 1
+    u, v, phi, slowness = room[START_U], room[START_V], numbers[WEIGHT], numbers[SLOWNESS]
+    for k in range(n):
+        x = v[k] * slowness[k]
+        envelope[k] = abs(phi[k]) * math.sqrt(u[k] * u[k] + x * x)
+    envelope[n] = 0.0
+    must = 0
+    for k in range(n - 1, -1, -1):
+        if must == 0 and not slowness[k] > 0.0:
+            must = k + 1
+        envelope[k] = envelope[k] + envelope[k + 1] if must == 0 else math.inf
+    return must
 
 
 @kernel
@@ -182,55 +148,57 @@ def first_crossing(motion, base, u, v, duration, order, envelope):
     s : float
         Time since the start of the flight [s].
     """
-    omega, decay, damped, low, load, phi = (
-        motion.omega, motion.decay, motion.damped, motion.damped_low, motion.load, motion.phi
-    )
-    n = omega.size
-    w = motion.drive
-    tip_amplitude = math.sqrt(motion.tip_sine**2 + motion.tip_cosine**2)
-    margin = tip_rounding(motion, u, v)
-    must = 0  # modes that are always sampled: zero frequency means no bound of the displacement
-    fastest = w
-    for k in range(n):
-        fastest = max(fastest, omega[k], decay[k])
-        if omega[k] <= 0.0:
-            must = k + 1
-    envelope[n] = 0.0
-    for k in range(n - 1, -1, -1):
-        if k >= must:
-            envelope[k] = envelope[k + 1] + abs(phi[k]) * math.sqrt(u[k] ** 2 + (v[k] / omega[k]) ** 2)
-        else:
-            envelope[k] = math.inf
-    if order == 0 and motion.level + tip_amplitude + envelope[0] < -margin:
-        return FREE, duration
+    fixed = scalars_of(motion)
+    numbers, room = mode_rows(motion)
+    load_state(room, u, v)
+    return searched_flight(fixed, numbers, room, base, duration, order, envelope)
 
-    h_min = 64.0 * EPS * (base + duration)
-    if fastest > 0.0:
-        h_min += 1e-15 / fastest
-    h = 0.05 * motion.period
+
+@kernel
+def searched_flight(fixed, numbers, room, base, duration, order, envelope):
+    """`first_crossing` with the oscillator and the start of the flight as ``contact.modal_flow`` keeps
+    them."""
+    n, w = envelope.size - 1, fixed.drive
+    margin = rounding_of(fixed, numbers, room)
+    must = amplitudes(numbers, room, envelope)  # modes that are always sampled
+    if order == 0 and fixed.level + fixed.amplitude + envelope[0] < -margin:
+        return FREE, duration
+    lowest = lowest_mode(fixed, numbers, room, base, duration, envelope[1], margin)
+    h = 0.05 * fixed.period
     s = 0.0
+    if order == 0:
+        s = free_until(fixed, numbers, room, lowest, base, duration)
+        if s >= duration:
+            return FREE, duration
+    h_min = 64.0 * EPS * (base + duration)
+    if fixed.fastest > 0.0:
+        h_min += 1e-15 / fixed.fastest
     if order > 0:
-        s = depart(motion, base, u, v, order, h, h_min)
+        s = depart(fixed, numbers, room, base, order, h, h_min)
         if s == 0.0:
             return UNRESOLVED, 0.0
     sampled = n if order > 0 else max(must, 1)
     distance = 0.0
+    padded = room.shape[1]
+    height, rate, bend, third = room[HEIGHT], room[RATE], room[BEND], room[THIRD]
     while s < duration:
         if distance > 0.0:
             while sampled > max(must, 1) and envelope[sampled - 1] < 0.125 * distance:
                 sampled -= 1
-        y0, y1, y2 = tip_steady(motion, base + s)
-        m3 = tip_amplitude * w**3
-        k = 0
+        y0, y1, y2 = swing_at(fixed, base + s)
+        m3 = fixed.amplitude * w**3
+        k, ready = 0, 0
         while k < sampled:
-            uk, vk = mode_flow(omega[k], decay[k], damped[k], low[k], load[k], u[k], v[k], s)
-            o2 = omega[k] * omega[k]
-            d2 = load[k] - decay[k] * vk - o2 * uk
-            d3 = -decay[k] * d2 - o2 * vk
-            y0 += phi[k] * uk
-            y1 += phi[k] * vk
-            y2 += phi[k] * d2
-            m3 += abs(phi[k]) * math.sqrt(d3 * d3 + o2 * d2 * d2)
+            if k == ready:
+                flow_rows(fixed, numbers, room, ready, min(ready + LANES, padded), s)
+                tip_rows(numbers, room, ready, min(ready + LANES, padded))
+                ready += LANES
+            y0 += height[k]
+            y1 += rate[k]
+            y2 += bend[k]
+            m3 += third[k]
+            if k == 0 and free_from(lowest, base + s, y0, y1):
+                return FREE, duration
             k += 1
             if k == sampled and sampled < n and envelope[sampled] > 0.25 * max(-y0, 0.0):
                 sampled += 1
@@ -238,7 +206,7 @@ def first_crossing(motion, base, u, v, duration, order, envelope):
             # on the wall within rounding although not by construction: the velocity decides
             if y1 > 0.0:
                 return CROSSES, 0.0
-            s = depart(motion, base, u, v, 1 if y1 < 0.0 else 2, h, h_min)
+            s = depart(fixed, numbers, room, base, 1 if y1 < 0.0 else 2, h, h_min)
             if s == 0.0:
                 return UNRESOLVED, 0.0
             continue
@@ -249,26 +217,28 @@ def first_crossing(motion, base, u, v, duration, order, envelope):
             distance = -y0
             h = 2.0 * step
         elif proof == _ROOT:
-            root = find_root(motion, base, u, v, s, s + step, margin)
+            root = find_root(fixed, numbers, room, base, s, y0, y1, y2, m3, s, s + step, margin)
             if root > duration:
                 return FREE, duration
             return CROSSES, root
         elif proof == _PEAK:
-            peak = find_peak(motion, base, u, v, s, s + step, margin)
+            peak = find_peak(fixed, numbers, room, base, s, y1, y2, m3, s, s + step, margin)
             if peak > duration:
                 # the motion rises all the way to the end: its height there decides
-                if tip_at(motion, base, u, v, duration)[0] > margin:
-                    return CROSSES, find_root(motion, base, u, v, s, duration, margin)
+                if tip_of(fixed, numbers, room, base, duration)[0] > margin:
+                    return CROSSES, find_root(
+                        fixed, numbers, room, base, s, y0, y1, y2, m3, s, duration, margin
+                    )
                 return FREE, duration
-            height = tip_at(motion, base, u, v, peak)[0]
-            if height > margin:
-                return CROSSES, find_root(motion, base, u, v, s, peak, margin)
-            if height >= -margin:
-                if margin > GRAZE_TOLERANCE * motion.gap:
+            top = tip_of(fixed, numbers, room, base, peak)[0]
+            if top > margin:
+                return CROSSES, find_root(fixed, numbers, room, base, s, y0, y1, y2, m3, s, peak, margin)
+            if top >= -margin:
+                if margin > GRAZE_TOLERANCE * fixed.gap:
                     return UNRESOLVED, peak
                 return GRAZES, peak
             s += step
-            distance = -height
+            distance = -top
             h = 2.0 * step
         elif sampled < n:
             sampled = n
@@ -278,81 +248,3 @@ def first_crossing(motion, base, u, v, duration, order, envelope):
     return FREE, duration
 
 
-@kernel
-def horner(coefficients, s):
-    """Value of a polynomial and its first two derivatives at `s`; coefficients in rising order."""
-    y0, y1, y2 = 0.0, 0.0, 0.0
-    for n in range(coefficients.size - 1, -1, -1):
-        y2 = y2 * s + 2.0 * y1
-        y1 = y1 * s + y0
-        y0 = y0 * s + coefficients[n]
-    return y0, y1, y2
-
-
-@kernel
-def first_polynomial_root(coefficients, start, end, margin):
-    """First s in (start, end] at which a polynomial rises through zero, or -1 if there is none.
-
-    The polynomial is negative at `start`, or zero there and falling.  Heights within `margin` count as none:
-    meant for forces of continuous laws, where a touch of zero has no consequence.
-    """
-    m3 = 0.0
-    power = 1.0
-    for j in range(3, coefficients.size):
-        m3 += j * (j - 1.0) * (j - 2.0) * abs(coefficients[j]) * power
-        power *= end
-    s = start
-    h = end - start
-    h_min = 4.0 * EPS * end
-    while s < end:
-        y0, y1, y2 = horner(coefficients, s)
-        if y0 >= -margin:
-            # at the start, or a touch: leave the band of rounding by the slope
-            if s > start and y1 > 0.0:
-                return s
-            out = 2.0 * max(margin, y0) / max(abs(y1), 1e-300)
-            s += max(h_min, min(end - s, out, 1e-3 * (end - start)))
-            continue
-        proof, step = certify(y0, y1, y2, m3, 0.0, margin, min(h, end - s), h_min)
-        if proof == _SKIP:
-            s += step
-            h = 2.0 * step
-        elif proof == _ROOT or (proof == _PEAK and horner(coefficients, s + step)[0] > 0.0):
-            return polynomial_root(coefficients, s, s + step)
-        elif proof == _PEAK:
-            low, high = s, s + step
-            for _ in range(60):
-                middle = 0.5 * (low + high)
-                if horner(coefficients, middle)[1] > 0.0:
-                    low = middle
-                else:
-                    high = middle
-            if horner(coefficients, low)[0] > margin:
-                return polynomial_root(coefficients, s, low)
-            s += step
-            h = step
-        else:
-            s += max(step, h_min)
-            h = end - start
-    return -1.0
-
-
-@kernel
-def polynomial_root(coefficients, low, high):
-    """The root of a polynomial in [low, high], negative at `low` and positive at `high`."""
-    s = 0.5 * (low + high)
-    for _ in range(100):
-        y0, y1, _unused = horner(coefficients, s)
-        if y0 == 0.0:
-            return s
-        if y0 < 0.0:
-            low = s
-        else:
-            high = s
-        new = s - y0 / y1 if y1 > 0.0 else 0.5 * (low + high)
-        if not (low < new < high):
-            new = 0.5 * (low + high)
-        if abs(new - s) <= EPS * abs(s):
-            return new
-        s = new
-    return s

@@ -19,8 +19,8 @@ import math
 
 import numpy as np
 
+from contact.certificate import first_polynomial_root, polynomial_root
 from contact.compiled import kernel
-from contact.crossing import first_polynomial_root, polynomial_root
 from contact.flight import EPS
 
 __all__ = ["HERTZ_ORDER", "HERTZ_TOLERANCE", "hertz_series", "hertz_state", "hertz_step"]

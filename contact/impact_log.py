@@ -13,11 +13,12 @@ from __future__ import annotations
 
 import math
 
+from contact.certificate import polynomial_root
 from contact.compiled import kernel
-from contact.crossing import polynomial_root
 from contact.flight import propagate, tip_steady
-from contact.hertz_chain import CLOCK_SERIES, chain_state
-from contact.series import series_state
+from contact.hertz_lanes import CLOCK as CLOCK_SERIES
+from contact.hertz_lanes import lane_state
+from contact.linear_lanes import linear_state
 
 REGIME, ORDER, LOGGED, SAMPLED, COUNT, EVALUATIONS, SEARCH = 0, 1, 2, 3, 4, 5, 6
 INTEGERS = 7
@@ -44,12 +45,14 @@ def sample_flight(
 
 
 @kernel
-def sample_series(series, base, until, period_index, integers, sample_period, sample_clock, samples, su, sv):
+def sample_linear(
+    series, sums, scalars, base, until, period_index, integers, sample_period, sample_clock, samples, su, sv
+):
     """States at the sample times of a contact step from `base` that lasts `until` (both since the strobe)."""
     n = su.size
     i = integers[SAMPLED]
     while i < sample_clock.size and sample_period[i] == period_index and sample_clock[i] <= until:
-        series_state(series, sample_clock[i] - base, su, sv)
+        linear_state(sample_clock[i] - base, series, sums, scalars, su, sv)
         for k in range(n):
             samples[i, k] = su[k]
             samples[i, n + k] = sv[k]
@@ -59,8 +62,8 @@ def sample_series(series, base, until, period_index, integers, sample_period, sa
 
 @kernel
 def sample_hertz(
-    motion, theta, impulse, u, v, scalars, products, base, until, end, period_index, integers, sample_period,
-    sample_clock, samples, late, work, su, sv,
+    series, sums, scalars, base, until, end, period_index, integers, sample_period, sample_clock, samples,
+    late, su, sv,
 ):
     """States at the sample times of a step under Hertz's law that ends at sigma = `end`, time `until`."""
     n = su.size
@@ -72,7 +75,7 @@ def sample_hertz(
                 late[j] = scalars[CLOCK_SERIES, j]
             late[0] = base - sample_clock[i]
             s = polynomial_root(late, 0.0, end)
-        chain_state(motion, theta, impulse, u, v, scalars, products, s, work, su, sv)
+        lane_state(s, series, sums, scalars, su, sv)
         for k in range(n):
             samples[i, k] = su[k]
             samples[i, n + k] = sv[k]

@@ -127,17 +127,3 @@ def series_state(series, h, u, v):
         for k in range(series.shape[1]):
             v[k] = v[k] * h + u[k]
             u[k] = u[k] * h + series[n, k]
-
-
-@kernel
-def work_of_force(depth, force, h):
-    """Work that the tip does on the stop during the step, the integral of N d' [J]."""
-    total = 0.0
-    power = h
-    for n in range(SERIES_ORDER):
-        term = 0.0
-        for j in range(n + 1):
-            term += force[n - j] * (j + 1.0) * depth[j + 1]
-        total += term * power / (n + 1.0)
-        power *= h
-    return total

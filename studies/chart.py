@@ -7,16 +7,19 @@ amplitude is raised and lowered again with the state carried along, and each cel
 and the impacts of the orbit on which the motion settles, within a stated bound of drive periods (--cycles;
 ``sweep.settled_column``).  Drawn over it: the band edges of the map and the exact folds.
 
-    python -m studies.chart                          Eq. (1), 400 x 400, both directions: about a minute
-    python -m studies.chart --model beam             the beam of the scene, 120 x 120: some minutes
+    python -m studies.chart                          Eq. (1), 400 x 400, both directions
+    python -m studies.chart --model beam             the beam of the scene, 120 x 120
     python -m studies.chart --quick                  a coarse one
     python -m studies.chart --executor processes     or dask://host:port, for a cluster
     python -m studies.chart --shard 2/8              part 2 of 8, for a job array; when all are there, the
                                                      command without --shard gathers them and draws
 
 Every finished cell is in MODEL-NxM.sqlite (``sweep.store``); the same command goes on where the last one was
-stopped, in whatever way; --fresh begins anew.  Outputs: summary.json, chart.png and .pdf, the cells as
-chart.npz, folds.csv; `python -m studies.export` for the cells with their end states.
+stopped, in whatever way; --fresh begins anew.
+
+Run time on two cores: half a minute, --model beam some minutes.  Command: python -m studies.chart.  Outputs:
+summary.json, chart_MODEL.png and .pdf, the cells as chart_MODEL.npz, folds_MODEL.csv; `python -m
+studies.export` for the cells with their end states.
 """
 
 from __future__ import annotations
@@ -39,19 +42,21 @@ from studies.instruments.command_line import Request, run_study
 from studies.instruments.oscillators import beam_of, single_mode_oscillator
 from studies.instruments.periodicity import TOLERANCE
 from studies.instruments.scene import Scene
+from studies.instruments.sweep.column_scan import ColumnScan
 from studies.instruments.sweep.executors import pool_of
 from studies.instruments.sweep.program import program
 from studies.instruments.sweep.run import run_sweep
-from studies.instruments.sweep.settled_column import LARGEST_PERIOD, ColumnScan
+from studies.instruments.sweep.settled_column import LARGEST_PERIOD
 from studies.instruments.sweep.store import Store, remove_store
 from studies.instruments.sweep.tasks import Shard
 
 TITLES = {"single_mode": "Eq. (1)", "beam": "beam"}
 POINTS = {"single_mode": (400, 400), "beam": (120, 120)}
 QUICK_POINTS = {"single_mode": (46, 40), "beam": (10, 16)}
-CYCLES = {"single_mode": 512, "beam": 1024}
+CYCLES = {"single_mode": 8192, "beam": 1024}
 """Bounds of settling in drive periods: free motion falls by e^-1 in 12 of them, so that a motion that is not
-periodic to 1e-9 of the gap after 512 is chaotic or next to a bifurcation."""
+periodic to 1e-9 of the gap after 512 is chaotic or next to a bifurcation.  With one mode 8192 are cheap, and
+then the orbits next to all folds have come to rest."""
 
 QUICK_CYCLES = 256
 
@@ -205,7 +210,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--excesses", nargs=2, type=float, metavar=("LOW", "HIGH"), default=EXCESSES,
                         help="range of F/F_g - 1")
     parser.add_argument("--cycles", type=int, default=None, metavar="N",
-                        help="bound of the drive periods at one amplitude (default: 512, beam 1024)")
+                        help="bound of the drive periods at one amplitude (default: 8192, beam 1024)")
     parser.add_argument("--shard", default="1/1", metavar="k/n",
                         help="compute part k of n only, and draw nothing")
     parser.add_argument("--fresh", action="store_true", help="forget what is stored and begin anew")

@@ -1,4 +1,4 @@
-"""The kernels of a drive period of the beam: sine, cosine and exponential, and Hertz contact by its chain."""
+"""The kernels of a drive period of the beam: sine, cosine and exponential, and Hertz contact side by side."""
 
 from __future__ import annotations
 
@@ -9,14 +9,13 @@ import numpy as np
 import pytest
 
 from contact.flight import Motion, fading, loaded_drift, sine_cosine, tip_state
-from contact.hertz_chain import (
-    CHAIN_ORDER,
-    TIME_ORDER,
-    chain_scale,
-    chain_series,
-    chain_state,
-    chain_step,
-    chain_table,
+from contact.hertz_lanes import (
+    ROOT,
+    contact_work,
+    lane_arrays,
+    lane_series,
+    lane_state,
+    speed_scale,
 )
 from contact.hertz_series import (
     HERTZ_ORDER,
@@ -25,7 +24,9 @@ from contact.hertz_series import (
     hertz_state,
     hertz_step,
 )
+from contact.hertz_step import lane_step
 from contact.laws import HERTZ
+from contact.modal_flow import mode_rows, scalars_of
 
 
 def beam(n: int, *, chi: float = 0.0, decay: float = 0.02, load: float = 0.0) -> Motion:
@@ -56,21 +57,19 @@ def touching(motion: Motion, speed: float) -> tuple[np.ndarray, np.ndarray]:
     return u, v
 
 
-def contact_by_chain(motion: Motion, u: np.ndarray, v: np.ndarray) -> tuple[float, float, int]:
+def contact_by_lanes(motion: Motion, u: np.ndarray, v: np.ndarray) -> tuple[float, float, int]:
     """Duration of the contact, work on the stop, steps; (u, v) overwritten by the state at the release."""
-    n, p = motion.omega.size, CHAIN_ORDER
-    theta = chain_scale(motion)
-    impulse, seen, pull = np.empty((TIME_ORDER + 2, n)), np.empty((n, p + 2)), np.empty(p + 8)
-    chain_table(motion, theta, impulse, seen, pull)
-    chain, scalars, products = np.zeros((p + 1, p + 9)), np.empty((3, p + 1)), np.empty((2, 2 * p))
-    late, work = np.empty(p + 1), np.empty((6, max(8, n)))
+    fixed, numbers = scalars_of(motion), mode_rows(motion)[0]
+    series, sums, scalars = lane_arrays(numbers)
+    late, size = np.empty(scalars.shape[1]), speed_scale(fixed, numbers, u, v)
     clock, root, done = 0.0, 0.0, 0.0
     for step in range(1, 20_000):
-        scalars[0, 0] = root
-        chain_series(motion, theta, seen, pull, clock, u, v, chain, scalars, products)
-        s, released, h = chain_step(motion, theta, u, v, scalars, products, late, 1.0)
-        done += chain_state(motion, theta, impulse, u, v, scalars, products, s, work, u, v)
-        root, clock = evaluate(scalars[0], s), clock + h
+        scalars[ROOT, 0] = root
+        lane_series(fixed, numbers, clock, u, v, series, sums, scalars)
+        s, released, h = lane_step(numbers, size, series, scalars, late, 1.0)
+        done += contact_work(s, series, scalars)
+        lane_state(s, series, sums, scalars, u, v)
+        root, clock = evaluate(scalars[ROOT], s), clock + h
         if released:
             return clock, done, step
     raise AssertionError("the contact does not end")
@@ -96,26 +95,26 @@ def contact_by_modes(motion: Motion, u: np.ndarray, v: np.ndarray) -> float:
 @pytest.mark.parametrize("modes", [1, 2, 8, 20, 40])
 @pytest.mark.parametrize("chi", [0.0, 0.3])
 @pytest.mark.parametrize("decay", [0.02, 2.5])
-def test_chain_and_single_modes_give_the_same_collision(modes, chi, decay):
-    """Two routes: one scalar chain for all modes, or a power series for each of them."""
+def test_modes_side_by_side_and_one_by_one_give_the_same_collision(modes, chi, decay):
+    """Two routes: all modes in the columns of one array, or a power series for each of them."""
     motion = beam(modes, chi=chi, decay=decay)
     for speed in (0.3, 1e-3):
         u, v = touching(motion, speed)
         other_u, other_v = u.copy(), v.copy()
         size = math.sqrt(float(np.sum(v**2 + (motion.omega * u) ** 2)))
         before = v.copy()
-        duration, _work, _steps = contact_by_chain(motion, u, v)
+        duration, _work, _steps = contact_by_lanes(motion, u, v)
         assert duration == pytest.approx(contact_by_modes(motion, other_u, other_v), rel=1e-11)
         assert np.max(np.abs(v - before)) > 1e-5 * size  # the collision did something
         np.testing.assert_allclose(v, other_v, rtol=0, atol=2e-13 * size)
         np.testing.assert_allclose(motion.omega * u, motion.omega * other_u, rtol=0, atol=2e-13 * size)
 
 
-def test_chain_takes_a_loaded_mode_of_zero_frequency():
+def test_a_contact_takes_a_loaded_mode_of_zero_frequency():
     motion = beam(4, load=3.0)
     u, v = touching(motion, 0.2)
     other_u, other_v = u.copy(), v.copy()
-    duration, _work, _steps = contact_by_chain(motion, u, v)
+    duration, _work, _steps = contact_by_lanes(motion, u, v)
     assert duration == pytest.approx(contact_by_modes(motion, other_u, other_v), rel=1e-11)
     np.testing.assert_allclose(v, other_v, rtol=0, atol=1e-13)
     _du, dv = loaded_drift(motion.decay[0], motion.load[0], duration)
@@ -125,12 +124,12 @@ def test_chain_takes_a_loaded_mode_of_zero_frequency():
 def test_an_elastic_stop_gives_back_what_it_got_and_a_lossy_one_less():
     for modes in (1, 8, 20):
         u, v = touching(beam(modes), 0.3)
-        _duration, work, _steps = contact_by_chain(beam(modes), u, v)
+        _duration, work, _steps = contact_by_lanes(beam(modes), u, v)
         energy = 0.5 * 0.3**2 / beam(modes).compliance
         assert abs(work) < 1e-13 * energy
         motion = beam(modes, chi=0.3)
         u, v = touching(motion, 0.3)
-        _duration, work, _steps = contact_by_chain(motion, u, v)
+        _duration, work, _steps = contact_by_lanes(motion, u, v)
         assert 0.01 * energy < work < energy
 
 

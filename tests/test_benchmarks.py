@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from contact.stroboscope import StroboscopicMap
 from studies import benchmarks
 from studies.instruments.benchmarks.bare_heyoka import batch_of, orbit_of
 from studies.instruments.benchmarks.beam import slope_of
+from studies.instruments.benchmarks.cost_table import HEADING, SHOWN, cost_table, seconds_told
 from studies.instruments.benchmarks.floor import carry, flows_of
 from studies.instruments.benchmarks.timing import in_turns
 from studies.instruments.oscillators import beam_of, single_mode_oscillator
@@ -21,6 +23,7 @@ from studies.instruments.peers import available
 from studies.instruments.scene_file import read_scene
 
 SCENE = read_scene()
+README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
 
 
 def test_the_floor_carries_the_modes() -> None:
@@ -86,3 +89,32 @@ def test_the_study_gives_rows_and_ratios(tmp_path: Path, capsys: pytest.CaptureF
     assert mine["error"] < 1e-10 and mine["missed"] == 0.0
     assert answer["ratios"]["single_mode_over_floor"] > 0
     assert (tmp_path / "benchmarks" / "costs.png").exists()
+    table = (tmp_path / "benchmarks" / "costs.md").read_text(encoding="utf-8")
+    assert seconds_told(mine["us_per_period"]) in table and HEADING in README
+
+
+def test_the_table_of_costs_is_that_of_the_rows() -> None:
+    """Medians over frequencies; a row at another excess or tolerance stays out."""
+    blank = {"error": None, "missed": None, "us_per_collision": None, "tolerance": None}
+    one = {**blank, "case": "single mode", "tool": "grazing-spring", "modes": 1, "excess": 0.02}
+    single = [{**one, "us_per_period": t} for t in (0.03, 0.05, 0.9)]
+    beam = {**blank, "case": "beam, hertz contact", "modes": 8}
+    rows = [
+        *single,
+        {**beam, "tool": "grazing-spring", "us_per_period": 12.3, "us_per_collision": 45.6, "excess": 0.013},
+        {**beam, "tool": "grazing-spring", "us_per_period": 99.0, "excess": 0.1},
+        {**beam, "tool": "heyoka", "us_per_period": 2345.0, "excess": 0.013, "tolerance": 1e-7}
+        | {"error": 2e-9},
+        {**beam, "tool": "heyoka", "us_per_period": 1.0, "excess": 0.013, "tolerance": 1e-4},
+    ]
+    heading, _rule, first, eight = cost_table(rows, 0.013, 1e-7)
+    assert heading == HEADING
+    assert [cell.strip() for cell in first.split("|")[2:5]] == ["1", "50 ns", "-"]
+    assert [cell.strip() for cell in eight.split("|")[2:8]] == ["8", "12 us", "46 us", "-", "2.3 ms", "2e-09"]
+
+
+def test_the_readme_shows_the_cases_of_the_table() -> None:
+    """Its times are of one machine; its rows are the program's."""
+    (block,) = re.findall(rf"^{re.escape(HEADING)}\n(.*?)\n\n", README, flags=re.MULTILINE | re.DOTALL)
+    shown = [tuple(cell.strip() for cell in line.split("|")[1:3]) for line in block.splitlines()[1:]]
+    assert shown == [(words, str(modes)) for _case, words, ladder in SHOWN for modes in ladder]

@@ -85,7 +85,7 @@ def test_the_same_command_goes_on_and_another_scene_is_refused(whole, capsys, mo
     refusal = study(whole, capsys, "--set", "single_mode.restitution=0.2", code=2)
     assert "scene.single_mode.restitution was 0.1 and is 0.2" in refusal["error"]
     refusal = study(whole, capsys, "--cycles", "300", code=2)
-    assert "settling.most_cycles was 512 and is 300" in refusal["error"]
+    assert "settling.most_cycles was 8192 and is 300" in refusal["error"]
     fresh = study(whole, capsys, "--fresh")
     assert fresh["computed_now"] == 360
     assert all(np.array_equal(before[name], values) for name, values in arrays(whole).items())

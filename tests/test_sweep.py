@@ -26,9 +26,10 @@ from studies import ROOT
 from studies.instruments.oscillators import single_mode_oscillator
 from studies.instruments.periodicity import TOLERANCE, period_of
 from studies.instruments.scene_file import read_scene
+from studies.instruments.sweep.column_scan import ColumnScan
 from studies.instruments.sweep.executors import Pool, pool_of
 from studies.instruments.sweep.run import AHEAD, WorkersLost, run_sweep
-from studies.instruments.sweep.settled_column import ColumnScan, repetition
+from studies.instruments.sweep.settled_column import LARGEST_PERIOD, SingleMode, repetition, returns
 from studies.instruments.sweep.store import Store
 from studies.instruments.sweep.tasks import Answer, Batch, Cell, Grid, Shard
 
@@ -334,20 +335,20 @@ def test_memory_stays_flat(tmp_path):
 
 
 def test_a_failed_cell_is_a_row_with_its_reason_and_the_scan_goes_on(monkeypatch):
-    from studies.instruments.sweep import settled_column as module
+    from studies.instruments.sweep import column_scan as module
 
     compiled, calls = module.settled_column, []
 
-    def failing(motion, amplitudes, state, weight, *rest):
+    def failing(motion, single, amplitudes, state, weight, *rest):
         calls.append(amplitudes.size)
         if len(calls) == 1:
-            done, status, _index = compiled(motion, amplitudes[:2], state, weight, *rest)
+            done, status, _index = compiled(motion, single, amplitudes[:2], state, weight, *rest)
             assert (done, status) == (2, 0)
             n = motion.omega.size
             rest[4][:] = 0.0
             rest[4][2 * n] = 0.01
             return 2, 2, 17  # FAILED_CHATTER in drive period 17
-        return compiled(motion, amplitudes, state, weight, *rest)
+        return compiled(motion, single, amplitudes, state, weight, *rest)
 
     monkeypatch.setattr(module, "settled_column", failing)
     scan = ColumnScan(oscillator=SINGLE, most_cycles=256)
@@ -373,14 +374,14 @@ def test_a_state_behind_the_stop_is_a_failed_cell():
 
 
 def followed(oscillator: ImpactOscillator, excess: float, before: bytes | None, cell: Cell):
-    """The same cell by the period map and `period_of`: (period, impacts) after 1024 drive periods, and the
-    state after as many as the cell took."""
+    """The same cell by the period map and `period_of`: (period, impacts) when chaos below a fold, which lasts
+    as long as rounding decides, has ended; and the state after as many drive periods as the cell took."""
     here, n = StroboscopicMap(oscillator=oscillator).at(excess), oscillator.n_modes
     start = here.steady()
     if before is not None:
         numbers = np.frombuffer(before)
         start = State(displacement=numbers[:n], velocity=numbers[n : 2 * n], regime=int(numbers[2 * n]))
-    run = here.orbit(start, 1024)
+    run = here.orbit(start, 16384)
     period = period_of(run.points, run.impacts, largest_period=64, tolerance=TOLERANCE * here.scale)
     end = here.orbit(start, cell.cycles).end if cell.cycles else here.steady()
     found = (period, int(run.impacts[-period:].sum()) if period else -1)
@@ -416,6 +417,50 @@ def test_cells_agree_with_the_period_map(law, frequency):
     assert len(kinds) >= 10 and (1, 0) in kinds and any(period > 1 for period, _ in kinds)
 
 
+@pytest.mark.parametrize("frequency", [19.8, 20.9, 21.5, 22.6])
+def test_the_loop_of_one_mode_gives_the_cells_of_the_event_loop(frequency, monkeypatch):
+    """Both ways through a column, without the amplitudes at which the motion is chaotic."""
+    from studies.instruments.sweep import column_scan as module
+
+    up = tuple(np.linspace(-0.03, 0.03, 41).tolist())
+    scan = ColumnScan(oscillator=SINGLE, most_cycles=1024)
+
+    def cells() -> list[Cell]:
+        state, found = None, []
+        for way, excesses in (("up", up), ("down", up[::-1])):
+            batch = Batch(
+                column=0, frequency=frequency, direction=way, first_step=0, excesses=excesses, state=state
+            )
+            found += scan(batch).cells
+            state = found[-1].state
+        return found
+
+    fast, singles = cells(), []
+    compiled = module.settled_column
+
+    def general(motion, single, *rest):
+        singles.append(single)
+        return compiled(motion, None, *rest)
+
+    monkeypatch.setattr(module, "settled_column", general)
+    slow = cells()
+    assert len(singles) == 2 and all(isinstance(single, SingleMode) for single in singles)
+    gap, periods, compared = SINGLE.stop.gap, set(), 0
+    for mine, theirs in zip(fast, slow, strict=True):
+        if max(mine.cycles, theirs.cycles) > 400:
+            # chaos, or chaos for a while: rounding decides how long it lasts and where it leads
+            if (mine.period, mine.impacts) == (theirs.period, theirs.impacts) == (1, 0):
+                continue
+            break
+        compared += 1
+        assert (mine.period, mine.impacts, mine.cycles) == (theirs.period, theirs.impacts, theirs.cycles)
+        ours, general_state = np.frombuffer(mine.state), np.frombuffer(theirs.state)
+        assert np.abs(ours - general_state)[0] < 1e-10 * gap
+        assert np.abs(ours - general_state)[1] < 1e-10 * gap * 2 * np.pi * frequency
+        periods.add(mine.period)
+    assert compared > 15 and (len(periods) >= 2 or frequency < 20)
+
+
 def test_slow_convergence_next_to_a_fold_is_told_at_the_bound():
     """p_3 at 20.90 Hz, 1 % above its fold at -1.2784409283e-3: its multiplier is near 1."""
     fold = -1.2784409283e-3
@@ -447,9 +492,15 @@ def test_repetition_is_period_of():
             if kind == 2:
                 impacts[chance.integers(0, 2 * stretch)] += 1
             found = repetition(points, impacts, 2 * stretch, stretch, 1e-9)
+            assert returns(points, 2 * stretch, 1e-9) or not found
             assert found == period_of(points, impacts, largest_period=stretch, tolerance=1e-9)
             seen.add(found)
     assert len(seen) > 25 and 0 in seen
+    assert not returns(np.arange(128.0)[:, None] * np.ones(2), 128, 1e-9)
+    for place, wanted in ((127 - LARGEST_PERIOD, True), (126 - LARGEST_PERIOD, False)):
+        points = np.arange(128.0)[:, None] * np.ones(2)
+        points[place, 0] = points[127, 0] + 1e-10
+        assert returns(points, 128, 1e-9) == wanted
 
 
 def test_shards_and_grids_are_checked():

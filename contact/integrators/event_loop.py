@@ -3,8 +3,9 @@
 A run goes from strobe to strobe, with time counted from the last strobe, so that a million periods bring no
 loss of phase.  In each period a certified search (``contact.crossing``) finds the first touch, or, if that is
 asked for, the letter's sampled one (``contact.integrators.sampled_search``); an impact law acts at once, a
-force law is followed through the contact (``contact.series``) until the tip is off the wall again.  Periods
-without a touch cost one multiplication by the flow of a period.
+force law is followed through the contact (``contact.linear_lanes``, ``contact.hertz_lanes``) until the tip is
+off the wall again.  Periods without a touch cost one multiplication by the flow of a period and a proof, most
+often by the lowest mode alone (``contact.lowest_mode``).
 
 The three exact methods, ``event_driven``, ``piecewise_linear`` and ``contact_series``, differ in the law that
 meets them here, and share everything else.
@@ -14,28 +15,28 @@ from __future__ import annotations
 
 import numpy as np
 
+from contact.certificate import first_polynomial_root
 from contact.compiled import kernel
-from contact.crossing import CROSSES, FREE, UNRESOLVED, first_crossing, first_polynomial_root
+from contact.crossing import CROSSES, FREE, UNRESOLVED, searched_flight
 from contact.flight import (
     EPS,
     flow_matrix,
-    propagate,
     pull_rounding,
     tip_rounding,
     tip_state,
     tip_steady,
 )
-from contact.hertz_chain import (
-    CHAIN_ORDER,
-    TIME_ORDER,
-    chain_scale,
-    chain_series,
-    chain_state,
-    chain_step,
-    chain_table,
+from contact.hertz_lanes import (
+    ROOT,
+    contact_work,
     depth_root,
+    lane_arrays,
+    lane_series,
+    lane_state,
+    speed_scale,
 )
 from contact.hertz_series import evaluate
+from contact.hertz_step import lane_step
 from contact.impact_log import (
     CLOCK,
     COUNT,
@@ -45,30 +46,31 @@ from contact.impact_log import (
     ORDER,
     REBOUND,
     REGIME,
+    SAMPLED,
     SEARCH,
     WAIT,
     close_row,
     open_row,
     sample_flight,
     sample_hertz,
-    sample_series,
+    sample_linear,
     sample_waiting,
 )
 from contact.integrators.sampled_search import first_sampled_crossing, sampled_flow
 from contact.laws import DELAYED, HERTZ, NEWTON
-from contact.newton import accumulation_time, from_table, newton_impact
-from contact.series import (
-    CONTACT,
-    INSIDE,
-    OUTSIDE,
-    SERIES_ORDER,
-    SUSTAINED,
-    WAITING,
-    contact_series,
-    series_state,
-    series_step,
-    work_of_force,
+from contact.linear_lanes import (
+    DEPTH,
+    FORCE,
+    LINEAR_ORDER,
+    linear_arrays,
+    linear_series,
+    linear_state,
+    linear_step,
+    linear_work,
 )
+from contact.modal_flow import carry, load_state, mode_rows, scalars_of
+from contact.newton import accumulation_time, from_table, newton_impact
+from contact.series import CONTACT, INSIDE, OUTSIDE, SUSTAINED, WAITING
 
 __all__ = ["advance"]
 
@@ -145,16 +147,12 @@ def advance(
     spacing, spaced = motion.period / max(1, search), np.empty((n, 6))
     if search > 0:
         sampled_flow(motion, spacing, spaced)
-    envelope = np.empty(n + 1)
+    envelope, fixed = np.empty(n + 1), scalars_of(motion)
+    numbers, room = mode_rows(motion)
     su, sv = np.empty(n), np.empty(n)
-    series = np.empty((SERIES_ORDER + 1, n))
-    depth, force = np.empty(SERIES_ORDER + 1), np.empty(SERIES_ORDER + 1)
-    negative = np.empty(SERIES_ORDER + 1)
-    shallow = CHAIN_ORDER + 1 if motion.law == HERTZ else 0
-    theta, known = 0.0, False  # the chain's numbers are found at the first contact
-    impulse, seen, pull = np.empty((TIME_ORDER + 2, n)), np.empty((n, shallow + 1)), np.empty(shallow + 7)
-    chain, scalars = np.empty((shallow, shallow + 8)), np.empty((3, shallow))
-    products, late, work = np.empty((2, 2 * CHAIN_ORDER)), np.empty(shallow), np.empty((6, max(8, n)))
+    series, sums, scalars = lane_arrays(numbers) if motion.law == HERTZ else linear_arrays(numbers)
+    depth, force, negative = scalars[DEPTH], scalars[FORCE], np.empty(scalars.shape[1])
+    speed_size = -1.0  # modal speeds at the start of the contact; below zero when to be computed anew
     root = -1.0  # sqrt of the penetration under Hertz's law; below zero when it is to be computed anew
 
     index = first
@@ -174,33 +172,38 @@ def advance(
                 return FAILED_CHATTER, index
             if integers[REGIME] == OUTSIDE:
                 if search == 0:
-                    outcome, s = first_crossing(motion, base, u, v, end - base, integers[ORDER], envelope)
+                    load_state(room, u, v)
+                    outcome, s = searched_flight(
+                        fixed, numbers, room, base, end - base, integers[ORDER], envelope
+                    )
                 else:
                     outcome, s = first_sampled_crossing(
-                        motion, base, u, v, end - base, integers[ORDER], spacing, spaced, integers, su, sv
+                        motion, fixed, numbers, room, base, u, v, end - base, integers[ORDER], spacing,
+                        spaced, integers, su, sv,
                     )
                 if outcome == UNRESOLVED:
-                    propagate(motion, u, v, s, u, v)
+                    carry(fixed, numbers, room, s, u, v)
                     floats[CLOCK] = base + s
                     return FAILED_CROSSING, index
                 until = end if outcome == FREE else base + s
-                sample_flight(
-                    motion, u, v, base, until, index, integers, sample_period, sample_clock, samples, su, sv
-                )
+                if integers[SAMPLED] < sample_clock.size:
+                    sample_flight(
+                        motion, u, v, base, until, index, integers, sample_period, sample_clock, samples, su,
+                        sv,
+                    )
                 if outcome == FREE and base == 0.0 and not last and not loaded:
                     for k in range(n):
                         uk = u[k]
                         u[k] = flow[k, 0] * uk + flow[k, 1] * v[k]
                         v[k] = flow[k, 2] * uk + flow[k, 3] * v[k]
                 else:
-                    propagate(motion, u, v, s, u, v)
+                    carry(fixed, numbers, room, s, u, v)
                 integers[ORDER] = 0
                 if outcome == FREE:
                     floats[CLOCK] = end
                     continue
                 floats[CLOCK] = base + s
                 base = floats[CLOCK]
-                rounding = tip_rounding(motion, u, v)
                 _height, approach, acceleration = tip_state(motion, base, u, v)
                 if outcome != CROSSES:
                     open_row(log, log_state, integers, floats, index, base, 0.0, 1, u, v)
@@ -216,9 +219,9 @@ def advance(
                     continue
                 if motion.law != NEWTON:
                     integers[REGIME] = CONTACT
-                    root = 0.0
+                    root, speed_size = 0.0, -1.0
                     continue
-                e = motion.number0
+                e, rounding = motion.number0, tip_rounding(motion, u, v)
                 newton_impact(motion, v, approach, e)
                 floats[LOSS] = 0.5 * (1.0 - e * e) * approach * approach / motion.compliance
                 close_row(log, log_state, integers, floats, index, base, -e * approach, u, v)
@@ -229,7 +232,7 @@ def advance(
                     open_row(log, log_state, integers, floats, index, base, -e * approach, 2, u, v)
                     rest = min(rest, end - base)  # what is left after the strobe is below rounding
                     if rest > 0.0:
-                        propagate(motion, u, v, rest, u, v)
+                        carry(fixed, numbers, room, rest, u, v)
                         floats[CLOCK] = base + rest
                     height, velocity, _a = tip_state(motion, floats[CLOCK], u, v)
                     for k in range(n):
@@ -258,22 +261,21 @@ def advance(
 
             # in contact: one step of the series, cut at the first event
             if motion.law == HERTZ:
-                if not known:
-                    theta, known = chain_scale(motion), True
-                    chain_table(motion, theta, impulse, seen, pull)
-                    for j in range(shallow):
-                        for k in range(shallow + 8):
-                            chain[j, k] = 0.0
-                scalars[0, 0] = root if root >= 0.0 else depth_root(motion, base, u, v)
-                chain_series(motion, theta, seen, pull, base, u, v, chain, scalars, products)
-                s, released, h = chain_step(motion, theta, u, v, scalars, products, late, end - base)
+                if speed_size < 0.0:
+                    speed_size = speed_scale(fixed, numbers, u, v)
+                scalars[ROOT, 0] = root if root >= 0.0 else depth_root(motion, base, u, v)
+                lane_series(fixed, numbers, base, u, v, series, sums, scalars)
+                s, released, h = lane_step(numbers, speed_size, series, scalars, negative, end - base)
                 until = base + h if h < end - base else end
-                sample_hertz(
-                    motion, theta, impulse, u, v, scalars, products, base, until, s, index, integers,
-                    sample_period, sample_clock, samples, late, work, su, sv,
-                )
-                floats[LOSS] += chain_state(motion, theta, impulse, u, v, scalars, products, s, work, u, v)
-                root = evaluate(scalars[0], s)
+                if integers[SAMPLED] < sample_clock.size:
+                    sample_hertz(
+                        series, sums, scalars, base, until, s, index, integers, sample_period, sample_clock,
+                        samples, negative, su, sv,
+                    )
+                if log.shape[0] > 0:
+                    floats[LOSS] += contact_work(s, series, scalars)
+                lane_state(s, series, sums, scalars, u, v)
+                root = evaluate(scalars[ROOT], s)
                 floats[CLOCK] = until
                 if released:
                     integers[REGIME] = OUTSIDE
@@ -281,10 +283,11 @@ def advance(
                     _height, velocity, _a = tip_state(motion, until, u, v)
                     close_row(log, log_state, integers, floats, index, until, velocity, u, v)
                 continue
-            contact_series(motion, regime, base, u, v, series, depth, force)
-            if not (abs(depth[SERIES_ORDER]) < OVERFLOW and abs(force[SERIES_ORDER - 2]) < OVERFLOW):
+            linear_series(fixed, numbers, regime, base, u, v, series, scalars)
+            if not (abs(depth[LINEAR_ORDER]) < OVERFLOW and abs(force[LINEAR_ORDER - 2]) < OVERFLOW):
                 return FAILED_STEPS, index
-            h = min(series_step(motion, u, v, series, depth), end - base)
+            stored = motion.number0 * depth[0] ** 2 if motion.law != NEWTON else 0.0
+            h = min(linear_step(fixed, numbers, stored, u, v, series), end - base)
             if end - base <= 4.0 * EPS * motion.period:
                 floats[CLOCK] = end
                 continue
@@ -313,10 +316,14 @@ def advance(
             if stop_at >= 0.0:
                 h = stop_at
             until = base + h if h < end - base else end
-            sample_series(series, base, until, index, integers, sample_period, sample_clock, samples, su, sv)
-            if regime == CONTACT:
-                floats[LOSS] += work_of_force(depth, force, h)
-            series_state(series, h, u, v)
+            if integers[SAMPLED] < sample_clock.size:
+                sample_linear(
+                    series, sums, scalars, base, until, index, integers, sample_period, sample_clock, samples,
+                    su, sv,
+                )
+            if regime == CONTACT and log.shape[0] > 0:
+                floats[LOSS] += linear_work(h, scalars)
+            linear_state(h, series, sums, scalars, u, v)
             floats[CLOCK] = until
             if regime == SUSTAINED:
                 # rounding would let the tip drift off the wall over many steps

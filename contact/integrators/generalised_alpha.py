@@ -34,6 +34,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from beam.parameters import brief, is_number, require_within
 from contact.compiled import kernel
 from contact.flight import Motion
 from contact.integrators.amplification import Amplification
@@ -160,8 +161,8 @@ def generalised_alpha(equation, grid, q, v, carried, steps, h, alpha_m, alpha_f,
 def chung_hulbert(rho: float) -> dict[str, float]:
     """alpha_m, alpha_f, beta and gamma of order 2 that damp infinite frequencies by the factor `rho` a step
     and low ones least (Chung and Hulbert 1993)."""
-    if not (isinstance(rho, (int, float)) and 0.0 <= rho <= 1.0):
-        raise ValueError(f"rho is {rho}; it must lie between 0 and 1")
+    if not (is_number(rho) and 0.0 <= rho <= 1.0):
+        raise ValueError(f"rho is {brief(rho)}; it must lie between 0 and 1")
     alpha_m, alpha_f = (2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0)
     gamma = 0.5 + (1.0 - rho) / (1.0 + rho)
     return {"alpha_m": alpha_m, "alpha_f": alpha_f, "beta": 0.25 * (0.5 + gamma) ** 2, "gamma": gamma}
@@ -205,14 +206,10 @@ class GeneralisedAlpha(Integrator):
 
     def __post_init__(self) -> None:
         check_step(self.step)
-        for field, value, good, words in (
-            ("beta", self.beta, self.beta >= 0, "zero or more"),
-            ("gamma", self.gamma, self.gamma > 0, "above zero"),
-            ("alpha_m", self.alpha_m, self.alpha_m < 1, "below 1"),
-            ("alpha_f", self.alpha_f, self.alpha_f < 1, "below 1"),
-        ):
-            if not (math.isfinite(value) and good):
-                raise ValueError(f"{field} is {value}; it must be finite and {words}")
+        require_within("beta", self.beta, "[1]", low=0)
+        require_within("gamma", self.gamma, "[1]", above=0)
+        require_within("alpha_m", self.alpha_m, "[1]", below=1)
+        require_within("alpha_f", self.alpha_f, "[1]", below=1)
 
     @staticmethod
     def newmark(
@@ -224,10 +221,10 @@ class GeneralisedAlpha(Integrator):
     @staticmethod
     def hht(*, step: float, alpha: float, beyond_limit: bool = False) -> GeneralisedAlpha:
         """The method of Hilber, Hughes and Taylor; `alpha` from 0 to 1/3 is minus that of their paper."""
-        if not (isinstance(alpha, (int, float)) and 0.0 <= alpha <= 1.0 / 3.0):
+        if not (is_number(alpha) and 0.0 <= alpha <= 1.0 / 3.0):
             raise ValueError(
-                f"alpha is {alpha}; it must lie between 0 and 1/3 (that of the paper of 1977 with its sign "
-                "turned)"
+                f"alpha is {brief(alpha)}; it must lie between 0 and 1/3 (that of the paper of 1977 with "
+                "its sign turned)"
             )
         return GeneralisedAlpha(
             step=step, beta=0.25 * (1.0 + alpha) ** 2, gamma=0.5 + alpha, alpha_f=alpha,

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from beam.parameters import brief, is_number, require
 from contact.errors import ContactError, Diverged, StepTooLarge
 from contact.integrators.equation import Equation, equation_of, tip_of
 from contact.integrators.grid import (
@@ -42,8 +43,7 @@ overwriting q and v, and `carried`, whatever else the method carries from step t
 
 def check_step(step: float) -> None:
     """ValueError unless `step` is a time step [s]."""
-    if not (isinstance(step, (int, float)) and math.isfinite(step) and step > 0):
-        raise ValueError(f"step is {step} s; it must be finite and above zero")
+    require(is_number(step) and step > 0, f"step is {brief(step)} s; it must be finite and above zero")
 
 
 def _place(equation: Equation, time: float, q: np.ndarray, v: np.ndarray) -> dict[str, Any]:

@@ -42,6 +42,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from beam.parameters import require_within
 from contact.compiled import kernel
 from contact.flight import Motion
 from contact.integrators.equation import force_in_flight, tip_of
@@ -166,8 +167,7 @@ class MoreauJean(Integrator):
 
     def __post_init__(self) -> None:
         check_step(self.step)
-        if not (math.isfinite(self.theta) and 0 <= self.theta <= 1):
-            raise ValueError(f"theta is {self.theta}; it must lie between 0 and 1")
+        require_within("theta", self.theta, "[1]", low=0, high=1)
 
     def critical_stiffness(self, motion: Motion) -> float:
         """Infinite, or below zero if a mode grows in flight: the method knows no contact stiffness [N/m]."""

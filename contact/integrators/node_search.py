@@ -17,6 +17,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from contact.compiled import kernel
 from contact.crossing import _PEAK, _ROOT, _SKIP, certify
 from contact.flight import EPS
@@ -213,7 +215,8 @@ def searched_period(motion, nodes, u, v):
     steady = abs(motion.level) + abs(motion.tip_sine) + abs(motion.tip_cosine) + motion.gap
     faster = max(1.0, 0.5 * mode.decay / math.sqrt(mode.stiffness))
     after = motion.omega * 0.0
-    since, first = 0, 0
+    # literal zeros would make numba compile the search twice
+    since, first = np.int64(0), np.int64(0)
     rho = abs(mode.phi) * math.sqrt(u * u + v * v / mode.stiffness)
     for impacts in range(MOST_IMPACTS):
         margin = SAFETY * 4.0 * EPS * (steady + 2.0 * faster * rho)
@@ -227,7 +230,7 @@ def searched_period(motion, nodes, u, v):
         newton_impact(motion, after, approach, e)
         vi = after[0]
         rho = abs(mode.phi) * math.sqrt(ui * ui + vi * vi / mode.stiffness)
-        _u, _v, swing, _y0, _y1, _y2 = tip_near(mode, rows, 0, 0.0, 0.0, t)
+        _u, _v, swing, _y0, _y1, _y2 = tip_near(mode, rows, np.int64(0), 0.0, 0.0, t)
         acceleration = -mode.drive**2 * swing - mode.phi * (mode.decay * vi + mode.stiffness * ui)
         since, first = int(t * mode.per_second + 0.5), int(t * mode.per_second) + 1
         if first >= rows.shape[0]:

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from numbers import Integral
 from typing import ClassVar
 
+from beam.parameters import shown
 from contact.integrators.exact_run import exact_trajectory
 from contact.integrators.method import Integrator, Run
 from contact.laws import DELAYED, HERTZ, LINEAR, NEWTON
@@ -23,6 +24,10 @@ from contact.oscillator import ImpactOscillator
 from contact.trajectory import Trajectory
 
 __all__ = ["SampledFlight"]
+
+
+MOST_POINTS = 10**9
+"""Samples per drive period: some minutes for each."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,9 +50,11 @@ class SampledFlight(Integrator):
     source: ClassVar[str] = "the letter (1996), note [11]"
 
     def __post_init__(self) -> None:
-        if not (isinstance(self.points, Integral) and self.points > 0):
+        whole = isinstance(self.points, Integral) and not isinstance(self.points, bool)
+        if not (whole and 0 < self.points <= MOST_POINTS):
             raise ValueError(
-                f"points is {self.points!r}; it must be a whole number of samples per drive period above zero"
+                f"points is {shown(self.points)}; it must be a whole number of samples per drive period "
+                f"above zero, at most {MOST_POINTS}"
             )
 
     def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:

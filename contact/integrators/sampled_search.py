@@ -16,10 +16,14 @@ interval, the one located need not be the first.
 
 from __future__ import annotations
 
+import math
+
 from contact.compiled import kernel
-from contact.crossing import CROSSES, FREE, find_peak, find_root, tip_at
+from contact.crossing import CROSSES, FREE
 from contact.flight import flow_matrix, loaded_drift, propagate, tip_rounding, tip_state
 from contact.impact_log import EVALUATIONS
+from contact.modal_flow import load_state
+from contact.tip_search import find_peak, find_root, tip_of
 
 __all__ = ["first_sampled_crossing", "sampled_flow"]
 
@@ -41,12 +45,24 @@ def sampled_flow(motion, spacing, flow):
 
 
 @kernel
-def first_sampled_crossing(motion, base, u, v, duration, order, spacing, flow, integers, su, sv):
+def root_between(fixed, numbers, room, base, low, high, margin):
+    """The root of the tip displacement in [low, high] [s]."""
+    middle = 0.5 * (low + high)
+    y0, y1, y2 = tip_of(fixed, numbers, room, base, middle)
+    return find_root(fixed, numbers, room, base, middle, y0, y1, y2, math.inf, low, high, margin)
+
+
+@kernel
+def first_sampled_crossing(
+    motion, fixed, numbers, room, base, u, v, duration, order, spacing, flow, integers, su, sv
+):
     """First crossing that is detected in (0, duration] of a free flight.
 
     Parameters
     ----------
     motion : Motion
+    fixed, numbers, room
+        The same oscillator as in ``contact.modal_flow``; `room` is overwritten.
     base : float
         Time since the strobe at which the flight starts [s].
     u, v : ndarray, shape (n_modes,)
@@ -76,6 +92,7 @@ def first_sampled_crossing(motion, base, u, v, duration, order, spacing, flow, i
     height, rate, _acceleration = tip_state(motion, base, u, v)
     if order == 0 and height >= -margin and rate > 0.0:
         return CROSSES, 0.0
+    load_state(room, u, v)
     for k in range(n):
         su[k], sv[k] = u[k], v[k]
     j = int(base / spacing)
@@ -95,11 +112,13 @@ def first_sampled_crossing(motion, base, u, v, duration, order, spacing, flow, i
             propagate(motion, u, v, until, su, sv)
         height, new_rate, _acceleration = tip_state(motion, base + until, su, sv)
         if height > margin:
-            return CROSSES, find_root(motion, base, u, v, s, until, margin)
+            return CROSSES, root_between(fixed, numbers, room, base, s, until, margin)
         if rate > 0.0 and new_rate < 0.0:
-            peak = find_peak(motion, base, u, v, s, until, margin)
+            middle = 0.5 * (s + until)
+            _height, y1, y2 = tip_of(fixed, numbers, room, base, middle)
+            peak = find_peak(fixed, numbers, room, base, middle, y1, y2, math.inf, s, until, margin)
             integers[EVALUATIONS] += 1
-            if tip_at(motion, base, u, v, peak)[0] > margin:
-                return CROSSES, find_root(motion, base, u, v, s, peak, margin)
+            if tip_of(fixed, numbers, room, base, peak)[0] > margin:
+                return CROSSES, root_between(fixed, numbers, room, base, s, peak, margin)
         s, rate = until, new_rate
     return FREE, duration

@@ -26,8 +26,9 @@ the middle half of the period (below resonance it does, unless the mode's sign p
   At t_1 = t_p these are z_1 = A + p - d and z_1' = q, (p, q) = phi (u, u') there, each two products of (u, v)
   with constants: a period that is settled so needs no sine.  If that fails, t_1 near the peak may settle it.
 * A zero of y lies within a quarter of a period of t_p.  If y' > 0 there, (1) with t_1 at the zero shows y < 0
-  all the time before it: it is the first crossing, whichever way an iteration came to it.  It is one beyond
-  rounding if the peak that its slope must reach, y'^2/(2 max|y''|), exceeds m.
+  all the time before it: it is the first crossing, whichever way it was found.  It is one beyond rounding if
+  the peak that its slope must reach, y'^2/(2 max|y''|), exceeds m.  ``struck_period`` finds nearly all of
+  them in one evaluation and tells whether it did; an iteration finds the others.
 * After an impact (1) with z_1 = G - d > 0 and z_1' <= 0 shows y < 0 for the rest of the period, with the rho
   and d from then on; and y'' <= -w^2 z_1 < 0, so that impacts do not accumulate.
 
@@ -43,27 +44,45 @@ import math
 import numpy as np
 
 from contact.compiled import kernel
-from contact.flight import EPS
 from contact.impact_log import LOG_FIELDS, ORDER, REGIME
 from contact.integrators.event_loop import DONE, advance
-from contact.integrators.node_search import SAFETY, rising_zero, searched_period
+from contact.integrators.node_search import rising_zero, searched_period
 from contact.integrators.strobe_nodes import flow_over, tip_near
-from contact.newton import newton_impact
+from contact.integrators.struck_period import (
+    carried,
+    free_near,
+    guessed,
+    is_settled,
+    steady_near,
+    tip_derivatives,
+    zero_of,
+)
 from contact.series import OUTSIDE
 
 __all__ = ["strobed_motion"]
 
-LEAST_ROOM = 1.0 / 16.0
-"""G - d and G - rho over G below which (*) is not used, so that squares are rounded by less than m allows."""
+
+@kernel
+def left_period(motion, u, v, integers, floats, index):
+    """The period `index` by ``event_loop.advance``: status, period reached, impacts."""
+    # a literal one as an argument would make numba compile the event loop once more
+    count, one = np.zeros(1, dtype=np.int64), np.int64(1)
+    status, reached = advance(
+        motion, u, v, integers, floats, index, one, 0.0, np.empty((1, 2)), count, np.empty((0, LOG_FIELDS)),
+        np.empty((0, 4)), np.empty(0, dtype=np.int64), np.empty(0), np.empty((0, 2)),
+    )
+    return status, reached, count[0]
 
 
 @kernel
-def strobed_motion(motion, nodes, u, v, integers, floats, first, periods, mean, weight, points, counts):
+def strobed_motion(
+    motion, nodes, numbers, u, v, integers, floats, first, periods, mean, weight, points, counts
+):
     """Carry the deviation (u, v), shape (1,) each, from strobe `first` over `periods` periods.
 
     Parameters are those of ``event_loop.advance`` but for
 
-    nodes : StrobeNodes
+    nodes, numbers : StrobeNodes, LoopNumbers
     mean, weight : ndarray, shape (2,)
         Steady displacement and velocity at a strobe, and what their sums with (u, v) are multiplied by in
         `points`, shape (periods, 2).
@@ -75,70 +94,63 @@ def strobed_motion(motion, nodes, u, v, integers, floats, first, periods, mean, 
     searched, left : int
         Periods that needed a search, and those left to ``advance``.
     """
-    mode, rows = nodes.mode, nodes.rows
-    w, decay, stiffness, phi = mode.drive, mode.decay, mode.stiffness, mode.phi
-    last = rows.shape[0] - 1
-    f0, f1, f2, f3 = rows[last, 2], rows[last, 3], rows[last, 4], rows[last, 5]
-    g0, g1, g2, g3 = nodes.to_peak[0], nodes.to_peak[1], nodes.to_peak[2], nodes.to_peak[3]
-    gap, amplitude, omega = -motion.level, nodes.amplitude, motion.omega[0]
-    steady = abs(motion.level) + abs(motion.tip_sine) + abs(motion.tip_cosine) + motion.gap
-    margin = SAFETY * 4.0 * EPS * (steady + 2.0 * max(1.0, 0.5 * decay / omega) * abs(gap))
-    detuning = (abs(w * w - stiffness) + decay * omega) / (w * w)
-    most = (1.0 - LEAST_ROOM) * gap / max(1.0, detuning) if nodes.inner else -1.0  # of rho
-    slow = 1.0 / (w * w)
-    above = amplitude + motion.level
-    square_u, square_v = phi * phi, phi * phi / stiffness
-    crest = amplitude * w * w
+    mode, rows, n = nodes.mode, nodes.rows, numbers
     q, q_rate, weight_u, weight_v = mean[0], mean[1], weight[0], weight[1]
-
-    none, none_whole = np.empty(0), np.empty(0, dtype=np.int64)
-    no_log, no_states = np.empty((0, LOG_FIELDS)), np.empty((0, 4))
-    strobe, count = np.empty((1, 2)), np.zeros(1, dtype=np.int64)
-    end = np.empty(1)
-    searched, left = 0, 0
+    searched, left, strobe = 0, 0, np.int64(0)
     un, vn = u[0], v[0]
     for i in range(periods):
         impacts = -1
         if integers[REGIME] == OUTSIDE and integers[ORDER] == 0:
-            rho = math.sqrt(square_u * un * un + square_v * vn * vn)
-            if rho < most:
-                p, slope = g0 * un + g1 * vn, g2 * un + g3 * vn
-                height = above + p
-                deviant = detuning * rho
-                room = gap - deviant - margin
-                z = height + gap - deviant
-                if z * z + slow * slope * slope < room * room:
+            square = n.square_u * un * un + n.square_v * vn * vn
+            if square < n.most:
+                rho = math.sqrt(square)
+                p, slope = n.g0 * un + n.g1 * vn, n.g2 * un + n.g3 * vn
+                room = n.gap - n.detuning * rho
+                z, room = n.above + p + room, room - n.margin
+                if z * z + n.slow * slope * slope < room * room:
                     impacts = 0
-                    un, vn = f0 * un + f1 * vn, f2 * un + f3 * vn
+                    un, vn = n.f0 * un + n.f1 * vn, n.f2 * un + n.f3 * vn
                 else:
-                    # the motion next to t_p by its third-order Taylor polynomial
-                    drop = decay * slope + stiffness * p
-                    dip = crest + drop
-                    twist = decay * drop - stiffness * slope
-                    under = slope * slope + 2.0 * dip * height
-                    if under > 0.0 and dip > 0.0:
-                        x = (slope - math.sqrt(under)) / dip
-                        rate = slope + x * (0.5 * x * twist - dip)
-                        x -= (height + x * (slope + x * (x * twist / 6.0 - 0.5 * dip))) / rate
-                        found, t, ui, vi, approach = rising_zero(
-                            mode, rows, 0, un, vn, nodes.peak + x, 0.0, motion.period, crest, margin
+                    t = guessed(n, p, slope, n.above + p)
+                    if 0.0 <= t <= n.period:
+                        k = int(t * n.per_second + 0.5)
+                        j, x = rows.shape[0] - 1 - k, t - k * n.stretch
+                        u0, v0, s0, s1 = free_near(
+                            n, x, rows[k, 2] * un + rows[k, 3] * vn, rows[k, 4] * un + rows[k, 5] * vn
                         )
-                        if found:
-                            end[0] = vi
-                            newton_impact(motion, end, approach, motion.number0)
-                            vi = end[0]
-                            if math.sqrt(square_u * ui * ui + square_v * vi * vi) < most:
+                        swing, glide = steady_near(n, x, rows[k, 0], rows[k, 1])
+                        y0, y1, y2, y3, y4 = tip_derivatives(n, u0, v0, swing, glide)
+                        d, rest, approach = zero_of(y0, y1, y2, y3, y4)
+                        u0, v0 = carried(n, u0, v0, d)
+                        s0, s1 = carried(n, s0, s1, -d)
+                        jump = n.kick * approach
+                        if is_settled(n, rho, u0, v0 + jump, y1, d, rest, approach):
+                            impacts = 1
+                            un, vn = (
+                                n.f0 * un + n.f1 * vn + jump * (rows[j, 2] * s0 + rows[j, 3] * s1),
+                                n.f2 * un + n.f3 * vn + jump * (rows[j, 4] * s0 + rows[j, 5] * s1),
+                            )
+                        else:
+                            found, t, ui, vi, approach = rising_zero(
+                                mode, rows, strobe, un, vn, t, 0.0, n.period, n.crest, n.margin
+                            )
+                            vi += n.kick * approach
+                            if found and n.square_u * ui * ui + n.square_v * vi * vi < n.most:
                                 impacts = 1
-                                un, vn = flow_over(mode, rows, motion.period - t, ui, vi)
-                    elif dip > 0.0:
+                                un, vn = flow_over(mode, rows, n.period - t, ui, vi)
+                    else:
+                        # no crossing in sight: perhaps (*) holds at the peak
+                        drop = n.decay * slope + n.stiffness * p
+                        dip = n.crest + drop
+                        twist = n.decay * drop - n.stiffness * slope
                         x = slope / dip
                         x += 0.5 * twist * x * x / (dip - twist * x)
-                        if abs(x) * w < 1.5:
-                            _u, _v, _swing, y0, y1, _y2 = tip_near(mode, rows, 0, un, vn, nodes.peak + x)
-                            z = y0 + gap - deviant
-                            if z * z + slow * y1 * y1 < room * room:
+                        if dip > 0.0 and abs(x) * n.drive < 1.5:
+                            _u, _v, _swing, y0, y1, _y2 = tip_near(mode, rows, strobe, un, vn, n.peak + x)
+                            z = y0 + n.gap - n.detuning * rho
+                            if z * z + n.slow * y1 * y1 < room * room:
                                 impacts = 0
-                                un, vn = f0 * un + f1 * vn, f2 * un + f3 * vn
+                                un, vn = n.f0 * un + n.f1 * vn, n.f2 * un + n.f3 * vn
             if impacts < 0:
                 searched += 1
                 impacts, ui, vi = searched_period(motion, nodes, un, vn)
@@ -147,13 +159,10 @@ def strobed_motion(motion, nodes, u, v, integers, floats, first, periods, mean, 
         if impacts < 0:
             left += 1
             u[0], v[0] = un, vn
-            status, reached = advance(
-                motion, u, v, integers, floats, first + i, 1, 0.0, strobe, count, no_log, no_states,
-                none_whole, none, strobe,
-            )
+            status, reached, impacts = left_period(motion, u, v, integers, floats, first + i)
             if status != DONE:
                 return status, reached, searched, left
-            un, vn, impacts = u[0], v[0], count[0]
+            un, vn = u[0], v[0]
         points[i, 0] = (un + q) * weight_u
         points[i, 1] = (vn + q_rate) * weight_v
         counts[i] = impacts

@@ -26,7 +26,17 @@ import numpy as np
 from contact.compiled import kernel
 from contact.flight import Motion, flow_matrix
 
-__all__ = ["SingleMode", "StrobeNodes", "flow_over", "nodes_of", "short_flow", "tip_near"]
+__all__ = [
+    "SingleMode",
+    "StrobeNodes",
+    "flow_over",
+    "nodes_at",
+    "nodes_of",
+    "short_fades",
+    "short_flow",
+    "short_turn",
+    "tip_near",
+]
 
 FEWEST, MOST = 64, 4096
 """Stretches of a period: 64 where the drive is fastest (w x <= pi/64), more for a faster mode; beyond 4096,
@@ -94,6 +104,12 @@ def fill_nodes(motion, count, rows):
         )
 
 
+@kernel
+def is_inner(peak, period, amplitude, level):
+    """Whether t_p = `peak` lies in the middle half of the period."""
+    return abs(peak / period - 0.5) <= 0.25 + 1e-12 and amplitude <= HIGHEST * abs(level)
+
+
 def nodes_of(motion: Motion) -> StrobeNodes | None:
     """The nodes of a driven oscillator of one mode; None if it has several modes, no stiffness or no drive,
     its node at the tip, or is so fast that too many nodes would be needed."""
@@ -118,7 +134,26 @@ def nodes_of(motion: Motion) -> StrobeNodes | None:
         ),
         rows=rows, level=motion.level + rows[:, 0], from_u=phi * rows[:, 2], from_v=phi * rows[:, 3],
         amplitude=amplitude, peak=peak, to_peak=phi * np.array(flow_matrix(omega, decay, high, low, peak)),
-        inner=abs(peak / motion.period - 0.5) <= 0.25 + 1e-12 and amplitude <= HIGHEST * abs(motion.level),
+        inner=is_inner(peak, motion.period, amplitude, motion.level),
+    )
+
+
+@kernel
+def nodes_at(nodes, factor, period):
+    """The nodes of the same oscillator at `factor` times the drive amplitude, `period` its drive period.
+
+    The steady motion alone depends on the amplitude, and in proportion.
+    """
+    rows, level = nodes.rows.copy(), np.empty(nodes.level.size)
+    for k in range(level.size):
+        rows[k, 0] *= factor
+        rows[k, 1] *= factor
+        level[k] = nodes.mode.level + rows[k, 0]
+    amplitude = nodes.amplitude * factor
+    return StrobeNodes(
+        mode=nodes.mode, rows=rows, level=level, from_u=nodes.from_u, from_v=nodes.from_v,
+        amplitude=amplitude, peak=nodes.peak, to_peak=nodes.to_peak,
+        inner=is_inner(nodes.peak, period, amplitude, nodes.mode.level),
     )
 
 
@@ -131,12 +166,12 @@ def short_turn(z):
 
 
 @kernel
-def short_fade(y):
-    """e^y for |y| up to 0.05."""
+def short_fades(y):
+    """cosh y and sinh y for |y| up to 0.05: e^y is their sum, e^-y their difference."""
     z = y * y
     even = 1.0 + z * (1.0 / 2.0 + z * (1.0 / 24.0 + z * (1.0 / 720.0 + z * (1.0 / 40320.0))))
     odd = 1.0 + z * (1.0 / 6.0 + z * (1.0 / 120.0 + z * (1.0 / 5040.0)))
-    return even + y * odd
+    return even, y * odd
 
 
 @kernel
@@ -144,7 +179,8 @@ def short_flow(mode, x, u, v):
     """Deviation (u, v) after a time |x| <= P/(2K) [s]."""
     half = 0.5 * mode.decay
     even, odd = short_turn(mode.determinant * x * x)
-    fade = short_fade(-half * x)
+    fade, rest = short_fades(-half * x)
+    fade += rest
     cn, sn = fade * even, fade * odd * x
     return cn * u + sn * (v + half * u), cn * v - sn * (mode.stiffness * u + half * v)
 

@@ -2,7 +2,7 @@
 
     x'' + mu x' + Omega^2 x = F sin(w t),   at x = gap, rising:  x' -> -tau x'
 
-At its default tolerance (the rounding of a double), one orbit or four in a batch.
+At its default tolerance (the rounding of a double), one orbit or several in a batch.
 """
 
 from __future__ import annotations

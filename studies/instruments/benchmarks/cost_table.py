@@ -17,7 +17,7 @@ RULE = "|---|---|---|---|---|---|---|"
 
 SHOWN = (
     ("single mode", "Eq. (1), hard wall, excess 0.02", (1,)),
-    ("batch on two cores", "the same, eight orbits on two cores", (1,)),
+    ("batch on two cores", "the same, 32 orbits on two cores", (1,)),
     ("beam, hertz contact", "beam, p4 at 0.013, Hertz contact", (8, 20, 40)),
     ("beam, linear contact", "the same, linear contact", (8, 20, 40)),
     ("beam, hertz contact, no touch", "the same without a touch, at -0.02", (8, 20, 40)),

@@ -21,8 +21,15 @@ EXCESS = 0.02
 SETTLING = 2000
 """Drive periods before the clock starts: a free motion falls to 0.92 in each."""
 
-LANES = 4
-"""Orbits side by side in heyoka's batch: as many doubles as a vector register of these machines holds."""
+CORES, BATCH = 2, 32
+"""Threads, and orbits in all: two batches of the widest kind on each."""
+
+
+def _lanes() -> int:
+    """Orbits side by side in one of heyoka's batches, as many as it recommends for this machine."""
+    import heyoka as hy
+
+    return int(min(hy.recommended_simd_size(), BATCH // CORES))
 
 
 def _row(case: str, tool: str, frequency: float, microseconds: float, **more: Any) -> dict[str, Any]:
@@ -57,19 +64,20 @@ def single_rows(scene: Scene, frequency: float, *, quick: bool, peers: bool) -> 
 
 
 def batch_rows(scene: Scene, frequency: float, *, quick: bool, peers: bool) -> list[dict[str, Any]]:
-    """Eight orbits on two cores, time per orbit and drive period: a thread an orbit, or a batch."""
+    """Many orbits on two cores, time per orbit and drive period: our lanes, or heyoka's batches."""
     ours, theirs = (2000, 200) if quick else (20000, 1000)
     base = single_mode_oscillator(scene, frequency)
-    oscillators = [base.with_excess(EXCESS + 1e-4 * i) for i in range(2 * LANES)]
+    oscillators = [base.with_excess(EXCESS + 1e-4 * i) for i in range(BATCH)]
     maps = [StroboscopicMap(oscillator=oscillator) for oscillator in oscillators]
     states = [one.orbit(one.steady(), SETTLING).end for one in maps]
-    with ThreadPoolExecutor(2) as pool:
+    with ThreadPoolExecutor(CORES) as pool:
         runs: dict[str, Callable[[], object]] = {
-            "grazing-spring": lambda: strobed_orbits(maps, states, ours, workers=2)
+            "grazing-spring": lambda: strobed_orbits(maps, states, ours, workers=CORES)
         }
         length = {"grazing-spring": ours, "heyoka": theirs}
         if peers:
-            batches = [batch_of(oscillators[:LANES]), batch_of(oscillators[LANES:])]
+            lanes = _lanes()
+            batches = [batch_of(oscillators[i : i + lanes]) for i in range(0, BATCH, lanes)]
             for batch in batches:
                 batch(SETTLING)
             runs["heyoka"] = lambda: list(pool.map(lambda batch: batch(theirs), batches))

@@ -21,7 +21,8 @@ PACKAGES = ("numpy", "scipy", "numba")
 
 def _sources() -> list[Path]:
     packages = [source for name in ("beam", "contact") for source in sorted((ROOT / name).rglob("*.py"))]
-    return [*packages, Path(__file__).with_name("settled_column.py")]
+    scan = [Path(__file__).with_name(name) for name in ("column_scan.py", "settled_column.py")]
+    return [*packages, *scan]
 
 
 @cache

@@ -19,21 +19,16 @@ has left it, and is followed in blocks of `BLOCK` drive periods until it is know
 - Otherwise **period 0**: chaos, a period above 64, or a transient longer than `most_cycles`.  Its impacts are
   those of the last 128 strobes.
 
-The amplitude enters the motion linearly, so that the loop scales the steady motion of unit amplitude.  A
+The amplitude enters the motion linearly, so that the loop scales the steady motion at grazing.  A
 batch may end after any amplitude: the state is carried as (q, q') between two amplitudes of one batch as
-between two batches, and the results do not depend on where a column is cut.
-
-State of a cell: q, q' of all modes, regime, wait and rebound (``contact.trajectory.State``), float64, shape
-(2 n_modes + 3,), at a strobe.
+between two batches, and the results do not depend on where a column is cut.  One mode under Newton's law is
+carried by its own loop (``contact.integrators.single_mode_loop``), everything else by ``event_loop``.
 """
 
 from __future__ import annotations
 
 import math
-import time
-from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -41,14 +36,12 @@ from contact.compiled import kernel
 from contact.flight import Motion, tip_rounding, tip_state
 from contact.impact_log import INTEGERS, LOG_FIELDS, REBOUND, REGIME, WAIT
 from contact.integrators.event_loop import DONE, advance
-from contact.integrators.exact_run import failure
-from contact.oscillator import ImpactOscillator
+from contact.integrators.single_mode_loop import strobed_motion
+from contact.integrators.strobe_nodes import StrobeNodes, nodes_at
+from contact.integrators.struck_period import LoopNumbers, loop_numbers
 from contact.series import OUTSIDE
-from contact.stroboscope import StroboscopicMap
-from studies.instruments.periodicity import TOLERANCE
-from studies.instruments.sweep.tasks import Answer, Batch, Cell
 
-__all__ = ["LARGEST_PERIOD", "ColumnScan", "repetition"]
+__all__ = ["BEHIND", "EXTRA", "LARGEST_PERIOD", "SingleMode", "repetition", "settled_column"]
 
 LARGEST_PERIOD = 64
 """Longest period told, as in the other studies."""
@@ -96,8 +89,18 @@ def repetition(points: Any, impacts: Any, rows: Any, stretch: Any, tolerance: An
 
 
 @kernel
+def returns(points: Any, rows: Any, tolerance: Any) -> Any:
+    """Whether a strobe before the last of `rows` is as close to it as a repetition asks for."""
+    close = 0
+    last = points[rows - 1, 0]
+    for i in range(max(0, rows - 1 - LARGEST_PERIOD), rows - 1):
+        close += 1 if abs(points[i, 0] - last) <= tolerance else 0
+    return close > 0
+
+
+@kernel
 def at_amplitude(motion: Any, amplitude: Any) -> Any:
-    """`motion`, which is that of unit base amplitude, at another one."""
+    """`motion` at `amplitude` times its own base amplitude."""
     return Motion(
         omega=motion.omega,
         decay=motion.decay,
@@ -134,19 +137,73 @@ def free_for_good(motion: Any, u: Any, v: Any) -> Any:
     return left < -motion.level * (1.0 - 1e-12)
 
 
+class SingleMode(NamedTuple):
+    """What the loop of one mode under Newton's law needs of an oscillator.
+
+    Parameters
+    ----------
+    nodes : StrobeNodes
+    numbers : LoopNumbers
+    """
+
+    nodes: StrobeNodes
+    numbers: LoopNumbers
+
+
+@kernel
+def single_mode_at(motion: Any, single: Any, amplitude: Any) -> Any:
+    """`single` at `amplitude` times its own base amplitude, for `motion` there; None stays None."""
+    if single is None:
+        return single
+    else:
+        nodes = nodes_at(single.nodes, amplitude, motion.period)
+        return SingleMode(nodes, loop_numbers(motion, nodes))
+
+
+@kernel
+def carried_block(
+    motion: Any, single: Any, u: Any, v: Any, integers: Any, floats: Any, first: Any, mean: Any, weight: Any,
+    strobes: Any, counts: Any,
+) -> Any:  # fmt: skip
+    """Carry the deviations (u, v) over `BLOCK` drive periods; status and the period reached.
+
+    `strobes` gets them plus `mean`, times `weight`; `counts` the impacts.
+    """
+    if single is None:
+        # a literal zero or BLOCK as an argument would make numba compile the event loop once more
+        n = motion.omega.size
+        status, index = advance(
+            motion, u, v, integers, floats, first, np.int64(BLOCK), 0.0, strobes, counts,
+            np.empty((0, LOG_FIELDS)), np.empty((0, 4 * n)), np.empty(0, dtype=np.int64), np.empty(0),
+            np.empty((0, 2 * n)),
+        )
+        for i in range(BLOCK):
+            for k in range(2 * n):
+                strobes[i, k] = (strobes[i, k] + mean[k]) * weight[k]
+        return status, index
+    else:
+        status, index, _searched, _left = strobed_motion(
+            motion, single.nodes, single.numbers, u, v, integers, floats, first, np.int64(BLOCK), mean,
+            weight, strobes, counts,
+        )
+        return status, index
+
+
 @kernel
 def settled_column(
-    motion: Any, amplitudes: Any, state: Any, weight: Any, most_cycles: Any, tolerance: Any, ends: Any,
-    found: Any, place: Any,
+    motion: Any, single: Any, amplitudes: Any, state: Any, weight: Any, most_cycles: Any, tolerance: Any,
+    ends: Any, found: Any, place: Any,
 ) -> Any:  # fmt: skip
     """Settle at each of `amplitudes` in turn, or until one fails.
 
     Parameters
     ----------
     motion : Motion
-        At unit amplitude.
+        At grazing.
+    single : SingleMode or None
+        For one mode under Newton's law; at grazing too.
     amplitudes : ndarray, shape (n,)
-        Base amplitudes [m].
+        Base amplitudes over that at grazing [1].
     state : ndarray, shape (2 n_modes + 3,)
         Start; overwritten by the last state that was reached.
     weight : ndarray, shape (2 n_modes,)
@@ -168,19 +225,17 @@ def settled_column(
     capacity = 2 * LARGEST_PERIOD
     points, impacts = np.empty((capacity, 2 * n)), np.zeros(capacity, dtype=np.int64)
     strobes, counts = np.empty((BLOCK, 2 * n)), np.zeros(BLOCK, dtype=np.int64)
-    log, log_state = np.empty((0, LOG_FIELDS)), np.empty((0, 4 * n))
-    sample_period, sample_clock = np.empty(0, dtype=np.int64), np.empty(0)
-    samples = np.empty((0, 2 * n))
+    deviation = np.zeros(2 * n)
     u, v = np.empty(n), np.empty(n)
     for a in range(amplitudes.size):
         here = at_amplitude(motion, amplitudes[a])
+        local = single_mode_at(here, single, amplitudes[a])
         for k in range(n):
             u[k] = state[k] - (here.offset[k] + here.cosine[k])
             v[k] = state[n + k] - here.drive * here.sine[k]
         integers, floats = np.zeros(INTEGERS, dtype=np.int64), np.zeros(5)
         integers[REGIME] = int(state[2 * n])
         floats[WAIT], floats[REBOUND] = state[2 * n + 1], state[2 * n + 2]
-        # a literal zero or BLOCK as an argument would make numba compile the event loop once more
         rows, cycles, period, hits = 0, np.int64(0), 0, 0
         status, index, known = DONE, np.int64(0), False
         height, _velocity, _acceleration = tip_state(here, 0.0, u, v)
@@ -197,9 +252,8 @@ def settled_column(
                 for i in range(rows - period if period > 0 else 0, rows):
                     hits += impacts[i]
                 break
-            status, index = advance(
-                here, u, v, integers, floats, cycles, np.int64(BLOCK), 0.0, strobes, counts, log, log_state,
-                sample_period, sample_clock, samples,
+            status, index = carried_block(
+                here, local, u, v, integers, floats, cycles, deviation, weight, strobes, counts
             )
             if status != DONE:
                 break
@@ -213,10 +267,11 @@ def settled_column(
             for i in range(BLOCK):
                 impacts[rows + i] = counts[i]
                 for k in range(2 * n):
-                    points[rows + i, k] = strobes[i, k] * weight[k]
+                    points[rows + i, k] = strobes[i, k]
             rows += BLOCK
             stretch = np.int64(SHORTEST)
-            while not known and 2 * stretch <= rows:
+            back = returns(points, rows, tolerance)
+            while back and not known and 2 * stretch <= rows:
                 period = repetition(points, impacts, rows, stretch, tolerance)
                 known = period > 0
                 stretch *= 2
@@ -237,89 +292,3 @@ def settled_column(
             ends[a, k] = state[k]
         found[a, 0], found[a, 1], found[a, 2] = period, hits, cycles
     return amplitudes.size, DONE, np.int64(0)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ColumnScan:
-    """What a worker does with a batch of any column of one oscillator.
-
-    Parameters
-    ----------
-    oscillator : ImpactOscillator
-        A driven one; its own frequency and amplitude do not matter.
-    most_cycles : int
-        Bound of the drive periods at one amplitude.
-    """
-
-    oscillator: ImpactOscillator
-    most_cycles: int
-
-    def __post_init__(self) -> None:
-        if self.most_cycles < 2 * LARGEST_PERIOD:
-            raise ValueError(
-                f"most_cycles is {self.most_cycles} drive periods; a period of up to {LARGEST_PERIOD} takes "
-                f"at least {2 * LARGEST_PERIOD} to be seen"
-            )
-
-    @cached_property
-    def _size(self) -> int:
-        return 2 * self.oscillator.n_modes
-
-    def at_frequency(self, frequency: float) -> ImpactOscillator:
-        """The oscillator at unit base amplitude and drive `frequency` [Hz]."""
-        assert self.oscillator.drive is not None
-        drive = replace(self.oscillator.drive, frequency=frequency, amplitude=1.0)
-        return replace(self.oscillator, drive=drive)
-
-    def start(self, oscillator: ImpactOscillator, excess: float) -> np.ndarray:
-        """The steady motion at `excess`, as a state."""
-        steady = StroboscopicMap(oscillator=oscillator.with_excess(excess)).steady()
-        return np.concatenate([steady.displacement, steady.velocity, np.zeros(EXTRA)])
-
-    def __call__(self, batch: Batch) -> Answer:
-        """The cells of a batch."""
-        began = time.perf_counter()
-        oscillator = self.at_frequency(batch.frequency)
-        excesses = np.array(batch.excesses, dtype=float)
-        amplitudes = (1.0 + excesses) * oscillator.grazing_amplitude()
-        motion = oscillator.motion()
-        if batch.state is None:
-            state = self.start(oscillator, float(excesses[0]))
-        else:
-            state = np.frombuffer(batch.state, dtype="<f8").astype(float)
-        speed = np.where(motion.omega > 0, motion.omega, motion.drive)
-        phi = np.where(motion.phi != 0, motion.phi, np.abs(motion.phi).max())
-        weight = np.concatenate([phi, phi / speed])
-        cells: list[Cell] = []
-        while len(cells) < excesses.size:
-            rest = amplitudes[len(cells) :]
-            ends = np.empty((rest.size, self._size + EXTRA))
-            found, place = np.zeros((rest.size, 3), dtype=np.int64), np.empty(self._size + 5)
-            done, status, index = settled_column(
-                motion, rest, state, weight, self.most_cycles, TOLERANCE * motion.gap, ends, found, place
-            )
-            for (period, impacts, cycles), end in zip(
-                found[:done].tolist(), ends[:done].astype("<f8"), strict=True
-            ):
-                cells.append(
-                    Cell(period=period, impacts=impacts, cycles=cycles, reason="", state=end.tobytes())
-                )
-            if status != DONE:
-                reason = self._reason(oscillator, float(rest[done]), status, index, place)
-                # the next amplitude goes on from the last state that was reached
-                reached = state.astype("<f8").tobytes()
-                cells.append(Cell(period=0, impacts=0, cycles=index, reason=reason, state=reached))
-        return Answer(cells=cells, seconds=time.perf_counter() - began)
-
-    def _reason(
-        self, oscillator: ImpactOscillator, amplitude: float, status: int, index: int, place: np.ndarray
-    ) -> str:
-        """One sentence for an amplitude that failed."""
-        motion = oscillator.with_amplitude(amplitude).motion()
-        n = oscillator.n_modes
-        u, v, floats = place[:n].copy(), place[n : 2 * n].copy(), place[2 * n :].copy()
-        if status == BEHIND:
-            height = tip_state(motion, 0.0, u, v)[0]
-            return f"the amplitude before left the tip {height:.3g} m behind the stop"
-        error = failure(status, motion, index, floats, u, v)
-        return f"{type(error).__name__}: {error}"

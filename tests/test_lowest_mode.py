@@ -1,0 +1,137 @@
+"""Stretches of a flight that the lowest mode alone proves free: never one with a touch in it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from beam.reduction import ModalModel
+from contact.crossing import CROSSES, FREE, first_crossing
+from contact.drive import HarmonicDrive
+from contact.flight import Motion
+from contact.laws import NewtonRestitution
+from contact.lowest_mode import CLOSE, LowestMode, free_from, free_until, lowest_mode, without_others
+from contact.modal_flow import load_state, mode_rows, rounding_of, scalars_of
+from contact.oscillator import ImpactOscillator
+from contact.stop import Stop
+
+GAP = 0.02
+
+
+class Tip:
+    """Tip displacement minus gap and its slope in a flight, by real exponentials in extended precision."""
+
+    def __init__(self, motion: Motion, base: float, u: np.ndarray, v: np.ndarray) -> None:
+        self.base, self.level, self.w = np.longdouble(base), np.longdouble(motion.level), motion.drive
+        self.sine, self.cosine = motion.tip_sine, motion.tip_cosine
+        half = motion.decay.astype(np.longdouble) / 2
+        self.rates = -half + 1j * np.sqrt(motion.omega.astype(np.longdouble) ** 2 - half**2)
+        self.terms = motion.phi * (u - 1j * (v + half * u) / self.rates.imag)
+
+    def __call__(self, s: np.ndarray, order: int = 0) -> np.ndarray:
+        s = np.asarray(s, dtype=np.longdouble)
+        free = (np.exp(s[..., None] * self.rates) @ (self.terms * self.rates**order)).real
+        turn = np.longdouble(self.w) * (self.base + s)
+        sine, cosine = self.sine * np.sin(turn), self.cosine * np.cos(turn)
+        if order == 0:
+            return self.level + sine + cosine + free
+        if order == 1:
+            return self.w * (self.sine * np.cos(turn) - self.cosine * np.sin(turn)) + free
+        return -self.w**2 * (sine + cosine) + free
+
+    def highest(self, start: float, end: float) -> np.longdouble:
+        """Greatest value in [start, end], its inner maxima polished."""
+        s = np.linspace(start, end, 3 + int(40 * (end - start) * float(self.rates.imag.max()) / math.tau))
+        y = self(s)
+        tops = np.flatnonzero((y[1:-1] >= y[:-2]) & (y[1:-1] >= y[2:])) + 1
+        place = s[tops[np.argsort(y[tops])[-5:]]].astype(np.longdouble)
+        for _ in range(6):
+            place = place - self(place, 1) / self(place, 2)
+        inside = place[(place >= start) & (place <= end)]
+        return max(y.max(), self(inside).max(initial=-np.inf))
+
+
+def beam(generator: np.random.Generator, modes: int) -> tuple[Motion, np.ndarray, np.ndarray]:
+    """A driven spring with a deviation that makes the peak come close to the stop, and that deviation."""
+    ladder = np.arange(1.0, modes + 1.0)
+    omega = 154.0 * (2.0 * ladder - 1.0) ** 2
+    model = ModalModel(
+        omega=omega, decay_rate=generator.uniform(0.001, 0.05) * omega, phi=8.0 / ladder,
+        participation=0.1 / ladder,
+    )  # fmt: skip
+    motion = (
+        ImpactOscillator(
+            model=model, stop=Stop(gap=GAP, law=NewtonRestitution(local_restitution=0.1)),
+            drive=HarmonicDrive(frequency=generator.uniform(14.0, 24.0)),
+        )
+        .with_excess(generator.uniform(-0.3, 0.3))
+        .motion()
+    )  # fmt: skip
+    size = GAP * 10 ** generator.uniform(-3, -0.5) / 10 ** (generator.uniform(1, 3) * (ladder > 1))
+    angle = generator.uniform(0, math.tau, modes)
+    return motion, size * np.cos(angle) / model.phi, size * omega * np.sin(angle) / model.phi
+
+
+def claims(motion: Motion, base: float, u: np.ndarray, v: np.ndarray) -> tuple[LowestMode, tuple]:
+    """What can be claimed about the flight from `base` to the strobe, and the flight for the kernels."""
+    fixed = scalars_of(motion)
+    numbers, room = mode_rows(motion)
+    load_state(room, u, v)
+    rest = float(np.sum(np.abs(motion.phi[1:]) * np.hypot(u[1:], v[1:] / motion.omega[1:])))
+    margin = rounding_of(fixed, numbers, room)
+    lowest = lowest_mode(fixed, numbers, room, base, motion.period - base, rest, margin)
+    return lowest, (fixed, numbers, room)
+
+
+@pytest.mark.parametrize("modes, cases", [(1, 300), (2, 300), (4, 100), (9, 10)])
+def test_no_touch_lies_in_what_is_proved_free(modes, cases):
+    generator = np.random.default_rng(modes)
+    free, part, later = 0, 0, 0
+    for _ in range(cases):
+        motion, u, v = beam(generator, modes)
+        base = motion.period * generator.choice([0.0, generator.uniform(0, 0.9)])
+        lowest, flight = claims(motion, base, u, v)
+        duration, tip = motion.period - base, Tip(motion, base, u, v)
+        s = free_until(*flight, lowest, base, duration)
+        if s > 0.0:
+            free, part = free + (s == duration), part + (s < duration)
+            assert tip.highest(0.0, s) < 0
+        for t in generator.uniform(0, duration, 8):
+            height, rate, _bend, _twist = without_others(*flight, base, t)
+            if free_from(lowest, base + t, height, rate):
+                later += 1
+                assert tip.highest(t, duration) < 0
+    assert free > cases / 10 and part > cases / 30 and later > cases / 3  # the claims are made
+
+
+@pytest.mark.parametrize("modes", [1, 4])
+@pytest.mark.parametrize("planted", [10.0**-k for k in range(2, 13)])
+def test_a_planted_touch_is_found_and_a_planted_miss_settled(modes, planted):
+    """The level is set such that the highest peak of a period overshoots, or misses, by `planted` gaps."""
+    generator = np.random.default_rng(7)
+    touched, settled, missed = 0, 0, 0
+    while touched < 12:
+        motion, u, v = beam(generator, modes)
+        top = float(Tip(motion, 0.0, u, v).highest(0.0, motion.period))
+        for sign in (1.0, -1.0):
+            moved = motion._replace(level=motion.level - top + sign * planted * GAP)
+            lowest, flight = claims(moved, 0.0, u, v)
+            if lowest.room == 0.0 or Tip(moved, 0.0, u, v)(0.0) > -0.1 * GAP:
+                continue
+            s = free_until(*flight, lowest, 0.0, moved.period)
+            outcome, root = first_crossing(moved, 0.0, u, v, moved.period, 0, np.empty(modes + 1))
+            if sign > 0.0:
+                touched += 1
+                assert s < moved.period
+                assert outcome == CROSSES
+                assert s <= root
+                assert Tip(moved, 0.0, u, v).highest(0.0, root * (1 - 1e-12) - 1e-12) < 1e-16
+                assert abs(Tip(moved, 0.0, u, v)(root)) < 5e-17
+            else:
+                missed += 1
+                settled += s == moved.period
+                assert outcome == FREE
+    # with one mode what misses by more than ``CLOSE`` is settled without a search
+    assert missed > 0 and (modes > 1 or planted < 2 * CLOSE or settled == missed)
