@@ -20,10 +20,7 @@ from __future__ import annotations
 
 import math
 
-from contact.certificate import PEAK as _PEAK
-from contact.certificate import ROOT as _ROOT
-from contact.certificate import SKIP as _SKIP
-from contact.certificate import certify, first_polynomial_root
+from contact.certificate import PEAK, ROOT, SKIP, certify, first_polynomial_root
 from contact.compiled import kernel
 from contact.flight import EPS
 from contact.lanes import LANES
@@ -212,16 +209,16 @@ def searched_flight(fixed, numbers, room, base, duration, order, envelope):
             continue
         rest = envelope[sampled]
         proof, step = certify(y0, y1, y2, m3, rest, margin, h, h_min)
-        if proof == _SKIP:
+        if proof == SKIP:
             s += step
             distance = -y0
             h = 2.0 * step
-        elif proof == _ROOT:
+        elif proof == ROOT:
             root = find_root(fixed, numbers, room, base, s, y0, y1, y2, m3, s, s + step, margin)
             if root > duration:
                 return FREE, duration
             return CROSSES, root
-        elif proof == _PEAK:
+        elif proof == PEAK:
             peak = find_peak(fixed, numbers, room, base, s, y1, y2, m3, s, s + step, margin)
             if peak > duration:
                 # the motion rises all the way to the end: its height there decides

@@ -17,7 +17,7 @@ from contact.laws import HertzContact, NewtonRestitution
 from contact.orbits.shooting import Shooting
 from contact.oscillator import ImpactOscillator
 from contact.stop import Stop
-from contact.stroboscope import StroboscopicMap
+from contact.stroboscope import StroboscopicMap, strobed_orbits
 
 __all__ = ["compile_kernels"]
 
@@ -35,7 +35,9 @@ def compile_kernels() -> None:
     strobed = StroboscopicMap(oscillator=oscillator)
     strobed.orbit(strobed.steady(), 10)
     newton = replace(oscillator, stop=Stop(gap=0.01, law=NewtonRestitution(local_restitution=0.1)))
-    StroboscopicMap(oscillator=newton).orbit(strobed.steady(), 10)
+    single = StroboscopicMap(oscillator=newton)
+    strobed_orbits([single, single], [single.steady()] * 2, 10, workers=1)
+    single.orbit(single.steady(), 10)
     Shooting(oscillator=oscillator, period=5).at_speed(0.1)
 
 

@@ -64,7 +64,7 @@ from contact.laws import NEWTON
 from contact.oscillator import ImpactOscillator
 from contact.trajectory import Trajectory
 
-__all__ = ["MoreauJean", "percussion_of", "record_percussion"]
+__all__ = ["MoreauJean", "end_step", "percussion_of"]
 
 MARGIN = 1e-12
 """Slack of the test for stability, relative: on the limit itself its two terms cancel up to rounding."""
@@ -97,6 +97,24 @@ def record_percussion(equation, grid, s0, h, corner, q0, v0, q1, v1, place):
 
 
 @kernel
+def end_step(equation, grid, i, h, push, corner, q0, v0, q1, v1, place):
+    """Write down step `i`, with the percussion `push` at the fraction `corner` of it if there is one.
+
+    Returns whether the motion is still finite.
+    """
+    if push > 0.0:
+        record_percussion(equation, grid, i * h, h, corner, q0, v0, q1, v1, place)
+    else:
+        grid.integers[TOUCHING] = 0
+        record_times(grid, i * h, h, q0, v0, q1, v1)
+    depth, _u = tip_of(equation, q1, v1)
+    if abs(depth) < UNBOUNDED:
+        return True
+    grid.integers[STEP] = i + 1
+    return False
+
+
+@kernel
 def moreau_jean(equation, grid, q, v, carried, steps, h, theta):
     """March from the step reached to `steps`; `carried`, shape (4, n_modes), is room to work in."""
     n = q.size
@@ -126,14 +144,7 @@ def moreau_jean(equation, grid, q, v, carried, steps, h, theta):
         for k in range(n):
             v[k] -= equation.phi[k] * push / inertia[k]
             q[k] += new * (v[k] - v0[k])
-        if push > 0.0:
-            record_percussion(equation, grid, i * h, h, 1.0 - theta, q0, v0, q, v, place)
-        else:
-            grid.integers[TOUCHING] = 0
-            record_times(grid, i * h, h, q0, v0, q, v)
-        depth, _u = tip_of(equation, q, v)
-        if not abs(depth) < UNBOUNDED:
-            grid.integers[STEP] = i + 1
+        if not end_step(equation, grid, i, h, push, 1.0 - theta, q0, v0, q, v, place):
             return DIVERGED
     grid.integers[STEP] = steps
     return FINISHED

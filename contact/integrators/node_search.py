@@ -19,8 +19,8 @@ import math
 
 import numpy as np
 
+from contact.certificate import PEAK, ROOT, SKIP, certify
 from contact.compiled import kernel
-from contact.crossing import _PEAK, _ROOT, _SKIP, certify
 from contact.flight import EPS
 from contact.integrators.strobe_nodes import short_flow, tip_near
 from contact.newton import accumulation_time, newton_impact
@@ -166,16 +166,16 @@ def search(period, nodes, since, u, v, rho, first, margin):
         m3 = third_bound(mode, crest * mode.drive, un, vn)
         proof, step = certify(y0, y1, y2, m3, 0.0, margin, min(h, period - t), h_min)
         until = t + step
-        if proof == _ROOT or proof == _PEAK:
+        if proof == ROOT or proof == PEAK:
             # a rising zero of this stretch is the first; a parabola tells about where
             under = y1 * y1 - 2.0 * y0 * y2
-            if proof == _ROOT or under > 0.0:
+            if proof == ROOT or under > 0.0:
                 near = t - 2.0 * y0 / (y1 + math.sqrt(max(0.0, under)))
                 found, at, un, vn, speed = rising_zero(mode, rows, since, u, v, near, t, until, crest, margin)
                 if found:
                     return _CROSSES, at, un, vn, speed
             top, height = until, 0.0
-            if proof == _PEAK:
+            if proof == PEAK:
                 top, height = highest_point(mode, rows, since, u, v, t, until, margin)
             if height > margin:
                 near = t + y0 / (y0 - height) * (top - t)
@@ -184,7 +184,7 @@ def search(period, nodes, since, u, v, rho, first, margin):
                     return _CROSSES, at, un, vn, speed
             if not height < -margin:
                 return _UNSETTLED, top, un, vn, 0.0
-        elif proof != _SKIP:
+        elif proof != SKIP:
             return _UNSETTLED, t, un, vn, 0.0
         t = until
         h = 2.0 * step

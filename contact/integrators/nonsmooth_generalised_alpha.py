@@ -44,13 +44,10 @@ from contact.integrators.grid import (
     FULL,
     LOGGED,
     STEP,
-    TOUCHING,
-    UNBOUNDED,
-    record_times,
 )
 from contact.integrators.grid_run import check_step, grid_trajectory
 from contact.integrators.method import Integrator, Run
-from contact.integrators.moreau_jean import percussion_of, record_percussion
+from contact.integrators.moreau_jean import end_step, percussion_of
 from contact.laws import NEWTON
 from contact.oscillator import ImpactOscillator
 from contact.trajectory import Trajectory
@@ -102,14 +99,7 @@ def nonsmooth_generalised_alpha(
             q[k] += beta * h * h * change + 0.5 * h * jump
             v[k] += gamma * h * change + jump
             f[k] = force_in_flight(equation, k, swing, q, v)
-        if push > 0.0:
-            record_percussion(equation, grid, i * h, h, 0.5, q0, v0, q, v, place)
-        else:
-            grid.integers[TOUCHING] = 0
-            record_times(grid, i * h, h, q0, v0, q, v)
-        depth, _u = tip_of(equation, q, v)
-        if not abs(depth) < UNBOUNDED:
-            grid.integers[STEP] = i + 1
+        if not end_step(equation, grid, i, h, push, 0.5, q0, v0, q, v, place):
             return DIVERGED
     grid.integers[STEP] = steps
     return FINISHED
