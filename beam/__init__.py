@@ -19,8 +19,9 @@ the classical oscillator with one degree of freedom, and a `ModalModel` of measu
 computed one. `exact_modes` solves the frequency equation of the straight beam, to check the elements by.
 
 SI units throughout; parameters are keyword-only and frozen, and `dataclasses.replace` varies them. Wrong
-values raise `ValueError` with a sentence that names the field, the value, the unit and what is valid. Every
-module opens with the equations it solves.
+values raise `ValueError` or `TypeError` with a sentence that names the field, the value, the unit and what is
+valid; valid ones that can hardly be meant bring a warning, `SuspiciousValue`. Every module opens with the
+equations it solves.
 """
 
 from .assembly import Discretization, assemble, default_elements
@@ -29,6 +30,7 @@ from .damping import ConstantLossFactor, ConstantRatio, Damping, MeasuredDecay, 
 from .frequency_equation import ExactModes, UniformBeam, exact_modes, frequency_function
 from .material import ALUMINA, BRASS, DAMPING_TAPE, STEEL, Material
 from .modes import Modes, ShapesAlong, natural_modes
+from .parameters import SuspiciousValue
 from .reduction import ModalModel, reduce, single_mode
 from .section import Layer, StripSection
 from .spring import LeafSpring, Readout, Support, Tip
@@ -60,6 +62,7 @@ __all__ = [
     "StripDamping",
     "StripSection",
     "Support",
+    "SuspiciousValue",
     "Tip",
     "UniformBeam",
     "as_one_spring",

@@ -26,8 +26,12 @@ from numpy.typing import NDArray
 from scipy.sparse import block_diag, csr_array
 from scipy.sparse.linalg import splu
 
+from .parameters import require_array, require_kind, require_whole, shown
 from .spring import HELD, LeafSpring
 from .strip_element import NODAL, QUADRATURE_ORDER, PieceMesh, base_motion, bending, inertia, stretching
+
+MOST_ELEMENTS = 100_000
+"""On a piece: rounding has long since eaten the digits by then, and a slip does not fill the memory."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -62,6 +66,15 @@ class Discretization:
     pieces: tuple[PieceMesh, ...]
     ties: csr_array
 
+    def __post_init__(self) -> None:
+        require_kind("spring", self.spring, LeafSpring, "a LeafSpring")
+        tip = require_array("tip", self.tip, "[1]", dimensions=1, words="a row of numbers")
+        require_array("base_load", self.base_load, "kg", shape=tip.shape, words="a row of numbers")
+        for name in ("stiffness", "mass", "loss_stiffness"):
+            shape = getattr(getattr(self, name), "shape", None)
+            if shape != 2 * tip.shape:
+                raise ValueError(f"{name} has shape {shape}; it must be a matrix of shape {2 * tip.shape}")
+
     @property
     def n_dofs(self) -> int:
         """Number of degrees of freedom."""
@@ -93,13 +106,29 @@ class Discretization:
         return np.stack(energies, axis=1)
 
 
+def element_counts(elements: int | Sequence[int], pieces: int) -> list[int]:
+    """Return the number of elements on each of so many pieces, from one for all or one for each."""
+    several = isinstance(elements, Sequence | np.ndarray) and not isinstance(elements, str)
+    counts = [
+        require_whole("elements", count, "[1]", low=1, high=MOST_ELEMENTS, why=", or one for each piece")
+        for count in (elements if several else [elements] * pieces)  # type: ignore[union-attr,list-item]
+    ]
+    if len(counts) != pieces:
+        raise ValueError(
+            f"elements is {shown(elements)} [1]; it must be a whole number, or one for each of {pieces} "
+            "pieces"
+        )
+    return counts
+
+
 def default_elements(spring: LeafSpring) -> tuple[int, ...]:
-    """Return the number of elements on each piece that `assemble` takes by default.
+    """Return the number of elements on each piece of `spring` that `assemble` takes by default.
 
     The straight pieces share 120 by length: four for each half wave of mode 30. An arc has 48 for each half
     turn, whatever its size: a cubic w follows the rigid motion of an arc element of angle a only to order
     a^4, and the bending so feigned competes with the small true bending of a tight bend.
     """
+    require_kind("spring", spring, LeafSpring, "a LeafSpring")
     pieces = spring.centreline.pieces
     straight = sum(piece.length for piece in pieces if piece.curvature == 0.0)
     shares = [abs(p.curvature) * p.length / math.pi * 48 or p.length / straight * 120 for p in pieces]
@@ -126,6 +155,7 @@ def assemble(spring: LeafSpring, elements: int | Sequence[int] | None = None) ->
     ValueError
         For fewer than one element on a piece, or a count for each piece where there are more or fewer pieces.
     """
+    require_kind("spring", spring, LeafSpring, "a LeafSpring")
     pieces = _meshes(spring, default_elements(spring) if elements is None else elements)
     ties = _ties(spring, pieces)
     parts = list(zip(*(_parts(spring, piece) for piece in pieces), strict=True))
@@ -154,9 +184,7 @@ def assemble(spring: LeafSpring, elements: int | Sequence[int] | None = None) ->
 def _meshes(spring: LeafSpring, elements: int | Sequence[int]) -> tuple[PieceMesh, ...]:
     """Uniform meshes of the pieces, but for the node that is moved to the tip."""
     line = spring.centreline
-    counts = np.array([elements] * len(line.pieces) if np.ndim(elements) == 0 else elements)
-    if counts.shape != (len(line.pieces),) or counts.dtype.kind not in "iu" or np.any(counts < 1):
-        raise ValueError(f"elements is {elements} [1]; it must be a positive integer, or one for each piece.")
+    counts = element_counts(elements, len(line.pieces))
     meshes = []
     for i, (piece, start) in enumerate(zip(line.pieces, line.joints[:-1].tolist(), strict=True)):
         tip = (spring.tip_at - start) / piece.length

@@ -13,12 +13,14 @@ width lies along z, and all motion is in the plane.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, field
+from numbers import Real
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .material import require_number
+from .parameters import brief, is_number, require_array, require_kind, require_number, require_within
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,6 +31,8 @@ class Straight:
     ----------
     length : float
         [m], positive.
+
+    Its curvature is 0 and not given.
     """
 
     length: float
@@ -55,8 +59,8 @@ class Arc:
 
     def __post_init__(self) -> None:
         require_number("radius", self.radius, "m", positive=True)
-        if not (math.isfinite(self.angle) and self.angle != 0.0):
-            raise ValueError(f"angle is {self.angle} rad; it must be finite and not zero.")
+        if require_within("angle", self.angle, "rad") == 0.0:
+            raise ValueError(f"angle is {self.angle} rad; it must be finite and not zero")
 
     @property
     def length(self) -> float:
@@ -88,11 +92,17 @@ class Centreline:
     heading: float = 0.0
 
     def __post_init__(self) -> None:
+        require_kind("pieces", self.pieces, Iterable, "a sequence of Straight and Arc")
         object.__setattr__(self, "pieces", tuple(self.pieces))
+        for piece in self.pieces:
+            require_kind("pieces", piece, (Straight, Arc), "a sequence of Straight and Arc")
         if not self.pieces:
-            raise ValueError("pieces is empty [no unit]; a centreline needs at least one Straight or Arc.")
-        if len(self.start) != 2 or not all(math.isfinite(value) for value in (*self.start, self.heading)):
-            raise ValueError(f"start is {self.start} m and heading {self.heading} rad; all must be finite.")
+            raise ValueError("pieces is empty [no unit]; a centreline needs at least one Straight or Arc")
+        require_array("start", self.start, "m", shape=(2,), words="a point (x, y), two finite numbers")
+        require_kind("heading", self.heading, Real, "a finite number in rad")
+        if not is_number(self.heading):
+            turn = brief(self.heading)
+            raise ValueError(f"start is {self.start} m and heading {turn} rad; all must be finite")
 
     @property
     def joints(self) -> NDArray[np.float64]:
@@ -122,17 +132,16 @@ class Centreline:
         ValueError
             For an arc length off the curve (by more than rounding).
         """
-        s = np.asarray(s, dtype=np.float64)
+        s = require_array("s", s, "m", words="arc lengths")
         outside = (s < -1e-12 * self.length) | (s > (1.0 + 1e-12) * self.length) | ~np.isfinite(s)
         if np.any(outside):
-            raise ValueError(f"s is {s[outside].flat[0]} m; it must lie between 0 and {self.length} m.")
+            raise ValueError(f"s is {s[outside].flat[0]} m; it must lie between 0 and {self.length} m")
         inside = np.searchsorted(self.joints, s, side="right") - 1
         return np.clip(inside, 0, len(self.pieces) - 1)
 
     def angle(self, s: ArrayLike) -> NDArray[np.float64]:
         """Angle of the tangent to the x axis [rad], same shape as s."""
-        s = np.asarray(s, dtype=np.float64)
-        at = self.piece_at(s)
+        at, s = self.piece_at(s), np.asarray(s, dtype=np.float64)
         turns = self.heading + np.concatenate(([0.0], np.cumsum(self.curvatures * np.diff(self.joints))))
         return turns[at] + self.curvatures[at] * (s - self.joints[at])
 
@@ -148,8 +157,7 @@ class Centreline:
         The chord over d = s - s_i of a piece of curvature k has the direction of the tangent at its middle:
         r = r_i + d sinc(k d / 2) t(s_i + d / 2).
         """
-        s = np.asarray(s, dtype=np.float64)
-        at, ends = self.piece_at(s), self.joints
+        at, ends, s = self.piece_at(s), self.joints, np.asarray(s, dtype=np.float64)
         chords = _chord(np.diff(ends), self.curvatures, self.angle(ends[:-1]))
         corners = np.array([*self.start, 0.0]) + np.concatenate((np.zeros((1, 3)), np.cumsum(chords, axis=0)))
         return corners[at] + _chord(s - ends[at], self.curvatures[at], self.angle(ends[:-1])[at])

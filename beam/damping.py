@@ -23,8 +23,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from .material import require_number
 from .modes import Modes
+from .parameters import require_kind, require_number, shown
 
 
 class Damping(Protocol):
@@ -35,12 +35,19 @@ class Damping(Protocol):
         ...
 
 
+def require_rule(name: str, rule: object) -> None:
+    """TypeError unless `rule` is one for decay rates."""
+    if isinstance(rule, type) or not callable(getattr(rule, "decay_rates", None)):
+        raise TypeError(f"{name} is {shown(rule)}; it must be a rule for decay rates such as StripDamping()")
+
+
 @dataclass(frozen=True, kw_only=True)
 class StripDamping:
     """Internal friction of the strip and its glued layers, by modal strain energy."""
 
     def decay_rates(self, modes: Modes) -> NDArray[np.float64]:
         """Return eta_k omega_k [1/s], shape (n_modes,)."""
+        require_kind("modes", modes, Modes, "Modes, from natural_modes")
         return modes.loss_factors() * modes.omega
 
 
@@ -61,6 +68,7 @@ class ConstantLossFactor:
 
     def decay_rates(self, modes: Modes) -> NDArray[np.float64]:
         """Return eta omega_k [1/s], shape (n_modes,)."""
+        require_kind("modes", modes, Modes, "Modes, from natural_modes")
         return self.loss_factor * modes.omega
 
 
@@ -81,6 +89,7 @@ class ConstantRatio:
 
     def decay_rates(self, modes: Modes) -> NDArray[np.float64]:
         """Return 2 zeta omega_k [1/s], shape (n_modes,)."""
+        require_kind("modes", modes, Modes, "Modes, from natural_modes")
         return 2.0 * self.ratio * modes.omega
 
 
@@ -105,6 +114,7 @@ class Rayleigh:
 
     def decay_rates(self, modes: Modes) -> NDArray[np.float64]:
         """Return alpha + beta omega_k^2 [1/s], shape (n_modes,)."""
+        require_kind("modes", modes, Modes, "Modes, from natural_modes")
         return self.mass_coefficient + self.stiffness_coefficient * modes.omega**2
 
 
@@ -136,18 +146,21 @@ class MeasuredDecay:
 
     def __post_init__(self) -> None:
         require_number("decay_rate", self.decay_rate, "1/s", positive=False)
+        require_rule("others", self.others)
+        require_kind("scaled", self.scaled, bool, "True or False")
 
     def decay_rates(self, modes: Modes) -> NDArray[np.float64]:
         """Return c [1/s], shape (n_modes,)."""
+        require_kind("modes", modes, Modes, "Modes, from natural_modes")
         candidates = np.flatnonzero(modes.coupled & (modes.omega > 0.0))
         if candidates.size == 0:
-            raise ValueError(f"modes has {modes.omega.size} modes, none of which both couples and vibrates.")
+            raise ValueError(f"modes has {modes.omega.size} modes, none of which both couples and vibrates")
         first, rates = candidates[0], np.array(self.others.decay_rates(modes))
         if not self.scaled:
             rates[first] = self.decay_rate
             return rates
         if not rates[first] > 0.0:
             raise ValueError(
-                f"others gives mode 1 a rate of {rates[first]} 1/s; to be scaled it must be positive."
+                f"others gives mode 1 a rate of {rates[first]} 1/s; to be scaled it must be positive"
             )
         return rates * (self.decay_rate / rates[first])

@@ -34,8 +34,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
-from .material import require_number
-from .spring import HELD, Support
+from .parameters import require_array, require_kind, require_number, require_whole
+from .spring import Support, two_supports
 
 #: Grid of beta L. Zeros lie near pi apart; a tip whose own rotation resonates with a bending mode brings two
 #: closer, to 0.077 at the least for M up to 1e6 m L and J up to 1e4 m L^3.
@@ -44,6 +44,9 @@ SCAN_STEP = 0.02
 SCAN_START = 0.04
 #: Points of the Gauss rule for each half wave: shapes are entire functions, so few give all digits.
 POINTS_PER_HALF_WAVE = 12
+
+MOST_MODES = 2000
+"""Modes at once: the scan over beta L then takes some 50 MB."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,14 +82,13 @@ class UniformBeam:
     def __post_init__(self) -> None:
         for name, unit in (("length", "m"), ("bending_stiffness", "N m^2"), ("mass_per_length", "kg/m")):
             require_number(name, getattr(self, name), unit, positive=True)
-        if len(self.supports) != 2 or not set(self.supports) <= set(HELD):
-            raise ValueError(f"supports is {self.supports} [no unit]; it must be two of {', '.join(HELD)}.")
+        object.__setattr__(self, "supports", two_supports(self.supports))
         for name, unit in (("tip_mass", "kg"), ("tip_rotary_inertia", "kg m^2")):
             value = getattr(self, name)
             require_number(name, value, unit, positive=False)
             if value and self.supports[1] != "free":
                 raise ValueError(
-                    f"{name} is {value} {unit}; at an end that is {self.supports[1]} it must be 0."
+                    f"{name} is {value} {unit}; at an end that is {self.supports[1]} it must be 0"
                 )
 
     @property
@@ -105,7 +107,7 @@ class UniformBeam:
     def _require_cantilever(self, name: str) -> None:
         if self.supports != ("clamped", "free"):
             raise ValueError(
-                f"{name} is for supports clamped and free; the beam is {' and '.join(self.supports)}."
+                f"{name} is for supports clamped and free; the beam is {' and '.join(self.supports)}"
             )
 
 
@@ -150,7 +152,7 @@ class ExactModes:
 
     def shapes(self, s: ArrayLike, derivative: int = 0) -> NDArray[np.float64]:
         """Shapes, or a derivative of them, at arc lengths s [m]; shape (n_modes, n_points)."""
-        s = np.atleast_1d(np.asarray(s, dtype=np.float64))
+        s = np.atleast_1d(require_array("s", s, "m", words="arc lengths"))
         values = [
             beta**derivative * _basis(beta * s, beta * self.beam.length, derivative) @ a
             for beta, a in zip(self.wave_numbers, self.coefficients, strict=True)
@@ -171,7 +173,11 @@ def frequency_function(beam: UniformBeam, beta_length: ArrayLike) -> NDArray[np.
     -------
     ndarray, same shape
     """
-    return np.linalg.det(_rows(beam, np.asarray(beta_length, dtype=np.float64)))
+    require_kind("beam", beam, UniformBeam, "a UniformBeam")
+    values = require_array("beta_length", beta_length, "[1]", words="positive numbers")
+    if np.any(values <= 0.0):
+        raise ValueError(f"beta_length holds {values.min():g} [1]; every entry must be positive")
+    return np.linalg.det(_rows(beam, values))
 
 
 def exact_modes(beam: UniformBeam, count: int) -> ExactModes:
@@ -181,14 +187,14 @@ def exact_modes(beam: UniformBeam, count: int) -> ExactModes:
     ----------
     beam : UniformBeam
     count : int
-        From 1 on; a few hundred are fine.
+        From 1 to `MOST_MODES`.
 
     Returns
     -------
     ExactModes
     """
-    if count < 1:
-        raise ValueError(f"count is {count} modes; it must be at least 1.")
+    require_kind("beam", beam, UniformBeam, "a UniformBeam")
+    count = require_whole("count", count, "modes", high=MOST_MODES)
     grid = np.arange(SCAN_START, (count + 3) * math.pi, SCAN_STEP)
     values = frequency_function(beam, grid)
     left = np.flatnonzero(np.sign(values[:-1]) * np.sign(values[1:]) < 0.0)[:count]

@@ -27,6 +27,7 @@ from scipy.sparse import block_diag
 from scipy.sparse.linalg import eigsh
 
 from .assembly import Discretization
+from .parameters import require_array, require_kind, require_whole
 
 #: phi sqrt(m_total) and Gamma/sqrt(m_total) below this count as zero: far above rounding in symmetric springs
 #: (about 1e-9), far below any coupling that matters to a motion.
@@ -88,6 +89,13 @@ class Modes:
     coupled: NDArray[np.bool_]
     readouts: dict[str, NDArray[np.float64]]
 
+    def __post_init__(self) -> None:
+        require_kind("discretization", self.discretization, Discretization, "a Discretization")
+        omega = require_array("omega", self.omega, "rad/s", dimensions=1, words="a row of numbers")
+        require_array("phi", self.phi, "kg^(-1/2)", shape=omega.shape)
+        require_array("participation", self.participation, "kg^(1/2)", shape=omega.shape)
+        require_array("shapes", self.shapes, "kg^(-1/2)", shape=(self.discretization.n_dofs, omega.size))
+
     @property
     def frequencies_hz(self) -> NDArray[np.float64]:
         """Natural frequencies [Hz], shape (n_modes,)."""
@@ -106,8 +114,7 @@ class Modes:
 
     def displacement_along(self, points_per_element: int = 4) -> ShapesAlong:
         """Return the shapes along the centreline, `points_per_element` equal steps to an element."""
-        if points_per_element < 1:
-            raise ValueError(f"points_per_element is {points_per_element} [1]; it must be at least 1.")
+        require_whole("points_per_element", points_per_element, "[1]", low=1)
         s, (u, w, rotation) = _along(self.discretization, self.shapes, points_per_element)
         line = self.discretization.spring.centreline
         t, n = line.frame(s)
@@ -139,9 +146,9 @@ def natural_modes(discretization: Discretization, count: int) -> Modes:
     ValueError
         For a count out of range.
     """
+    require_kind("discretization", discretization, Discretization, "a Discretization, from assemble")
     size = discretization.n_dofs
-    if not 1 <= count <= size:
-        raise ValueError(f"count is {count} modes; it must lie between 1 and the {size} degrees of freedom.")
+    count = require_whole("count", count, "modes", high=size, why=", the degrees of freedom")
     spring = discretization.spring
     shift = (
         min(sec.bending_stiffness / sec.mass_per_length for sec in spring.sections)

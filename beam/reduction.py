@@ -43,9 +43,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .damping import Damping
-from .material import require_number
+from .damping import Damping, require_rule
 from .modes import Modes
+from .parameters import require_array, require_kind, require_number, require_whole
 
 LEAST_RESIDUAL = 1e-5
 """Residual compliance over the static one below which there is no residual mode: finite elements give statics
@@ -100,13 +100,14 @@ class ModalModel:
             "phi": _row("phi", self.phi, "kg^(-1/2)"),
             "participation": _row("participation", self.participation, "kg^(1/2)"),
         }
+        require_kind("readouts", self.readouts, Mapping, "a mapping of names to rows of numbers")
         readouts = {
             name: _row(f"readouts[{name!r}]", row, "kg^(-1/2)") for name, row in self.readouts.items()
         }
         for name, row in (rows | readouts).items():
             if row.shape != omega.shape:
                 raise ValueError(
-                    f"{name} has shape {row.shape}; it must have the shape {omega.shape} of omega."
+                    f"{name} has shape {row.shape}; it must have the shape {omega.shape} of omega"
                 )
         for name, row in rows.items():
             object.__setattr__(self, name, row)
@@ -129,8 +130,7 @@ class ModalModel:
 
     def truncated(self, count: int) -> ModalModel:
         """Return the same structure with its first `count` modes only, 1 <= count <= n_modes."""
-        if not 1 <= count <= self.n_modes:
-            raise ValueError(f"count is {count} modes; it must lie between 1 and n_modes = {self.n_modes}.")
+        count = require_whole("count", count, "modes", high=self.n_modes, why=", those of the model")
         return replace(
             self,
             omega=self.omega[:count],
@@ -163,7 +163,7 @@ class ModalModel:
             ("tip_mass", self.tip_mass, "kg"),
         ):
             if not value:
-                raise ValueError(f"{name} is {value} {unit}; the residual mode needs it, above zero.")
+                raise ValueError(f"{name} is {value} {unit}; the residual mode needs it, above zero")
         assert self.static_compliance is not None and self.tip_mass is not None
         oscillating = self.omega > 0.0
         squares = np.where(oscillating, self.omega, 1.0) ** 2
@@ -174,7 +174,7 @@ class ModalModel:
             raise ValueError(
                 f"tip_mass is {self.tip_mass} kg and static_compliance {self.static_compliance} m/N; the "
                 f"modes leave {mobility:.3g} 1/kg of the one and {compliance:.3g} m/N of the other, which "
-                f"must be above zero and above {LEAST_RESIDUAL:g} of the whole."
+                f"must be above zero and above {LEAST_RESIDUAL:g} of the whole"
             )
         phi, omega = np.sqrt(mobility), np.sqrt(mobility / compliance)
         ratio = self.decay_rate[-1] / self.omega[-1] if self.omega[-1] > 0.0 else 0.0
@@ -191,21 +191,15 @@ class ModalModel:
 
 def _row(name: str, values: ArrayLike, unit: str) -> NDArray[np.float64]:
     """Return a read-only float copy of shape (n,), n >= 1, all finite."""
-    try:
-        row = np.array(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise TypeError(f"{name} is {values!r}; it must be one row of numbers in {unit}.") from None
-    if row.ndim != 1 or row.size == 0:
-        raise ValueError(f"{name} has shape {row.shape}; it must be one row of at least one mode [{unit}].")
-    if not np.all(np.isfinite(row)):
-        raise ValueError(f"{name} holds {row[~np.isfinite(row)][0]} {unit}; every entry must be finite.")
-    row.setflags(write=False)
+    row = require_array(name, values, unit, dimensions=1, words="one row of numbers")
+    if row.size == 0:
+        raise ValueError(f"{name} has shape {row.shape}; it must be one row of at least one mode [{unit}]")
     return row
 
 
 def _not_negative(name: str, row: NDArray[np.float64], unit: str) -> NDArray[np.float64]:
     if np.any(row < 0.0):
-        raise ValueError(f"{name} holds {row.min()} {unit}; no entry may be negative.")
+        raise ValueError(f"{name} holds {row.min()} {unit}; no entry may be negative")
     return row
 
 
@@ -259,13 +253,16 @@ def reduce(
     ValueError
         If `modes` holds fewer than `count` modes of the wanted kind.
     """
+    require_kind("modes", modes, Modes, "Modes, from natural_modes")
+    require_rule("damping", damping)
+    require_kind("coupled_only", coupled_only, bool, "True or False")
     keep = np.flatnonzero(modes.coupled) if coupled_only else np.arange(modes.omega.size)
-    wanted = keep.size if count is None else count
+    wanted = keep.size if count is None else require_whole("count", count, "modes", low=0)
     if not 1 <= wanted <= keep.size:
         kind = "coupled modes" if coupled_only else "modes"
         raise ValueError(
             f"count is {wanted} modes; it must lie between 1 and the {keep.size} {kind} found among the "
-            f"{modes.omega.size} computed (ask natural_modes for more)."
+            f"{modes.omega.size} computed (ask natural_modes for more)"
         )
     keep = keep[:wanted]
     return ModalModel(

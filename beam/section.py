@@ -33,7 +33,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .material import Material, require_number
+from .material import Material
+from .parameters import require_kind, require_number
 
 #: Terms of Saint-Venant's series; the remainder is below 1/(4 * 59^4) = 2e-8 of kappa.
 TORSION_TERMS = 30
@@ -57,6 +58,8 @@ class Layer:
     both_sides: bool = True
 
     def __post_init__(self) -> None:
+        require_kind("material", self.material, Material, "a Material, such as DAMPING_TAPE")
+        require_kind("both_sides", self.both_sides, bool, "True or False")
         require_number("thickness", self.thickness, "m", positive=True)
 
 
@@ -86,10 +89,12 @@ class StripSection:
     layer: Layer | None = None
 
     def __post_init__(self) -> None:
+        require_kind("material", self.material, Material, "a Material, such as BRASS")
+        require_kind("layer", self.layer, (Layer, type(None)), "a Layer or None")
         require_number("width", self.width, "m", positive=True)
         require_number("thickness", self.thickness, "m", positive=True)
         if self.thickness > self.width:
-            raise ValueError(f"thickness is {self.thickness} m; it must not exceed the width {self.width} m.")
+            raise ValueError(f"thickness is {self.thickness} m; it must not exceed the width {self.width} m")
 
     @property
     def total_thickness(self) -> float:

@@ -27,7 +27,9 @@ from numpy.typing import NDArray
 from scipy.sparse import block_diag, csr_array
 from scipy.sparse.linalg import eigsh
 
+from .assembly import element_counts
 from .centreline import Centreline
+from .parameters import require_kind, require_whole
 from .spatial_element import SpatialPiece
 from .spatial_spring import HOLDS, SpatialSpring
 
@@ -101,10 +103,10 @@ def spatial_modes(
     ValueError
         For a count out of range, or fewer than one element on a piece.
     """
+    require_kind("spring", spring, SpatialSpring, "a SpatialSpring")
     pieces = _meshes(spring, _default_elements(spring.centreline) if elements is None else elements)
     ties = _ties(spring, pieces)
-    if not 1 <= count < ties.shape[1] - 1:
-        raise ValueError(f"count is {count} modes; it must lie between 1 and {ties.shape[1] - 2}.")
+    count = require_whole("count", count, "modes", high=ties.shape[1] - 2)
     loose = [block_diag(part, format="csr") for part in zip(*(p.matrices() for p in pieces), strict=True)]
     stiffness, mass = (ties.T @ matrix @ ties for matrix in loose)
     places = _section_rows(spring, pieces)
@@ -151,9 +153,7 @@ def _default_elements(line: Centreline) -> list[int]:
 def _meshes(spring: SpatialSpring, elements: int | Sequence[int]) -> tuple[SpatialPiece, ...]:
     """Uniform meshes of the pieces, but for the node that is moved to the tip."""
     line = spring.centreline
-    counts = np.array([elements] * len(line.pieces) if np.ndim(elements) == 0 else elements)
-    if counts.shape != (len(line.pieces),) or counts.dtype.kind not in "iu" or np.any(counts < 1):
-        raise ValueError(f"elements is {elements} [1]; it must be a positive integer, or one for each piece.")
+    counts = element_counts(elements, len(line.pieces))
     meshes = []
     for i, (piece, start) in enumerate(zip(line.pieces, line.joints[:-1].tolist(), strict=True)):
         tip = (spring.tip_at - start) / piece.length

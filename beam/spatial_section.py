@@ -36,7 +36,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .material import Material, require_number
+from .material import Material
+from .parameters import require_kind, require_number
 from .section import StripSection
 
 
@@ -91,11 +92,13 @@ class SpatialSection:
 
 def upright(section: StripSection) -> SpatialSection:
     """Return the strip with its width out of the plane of the centreline."""
+    require_kind("section", section, StripSection, "a StripSection")
     return _strip(section, section.bending_stiffness, _edgewise(section))
 
 
 def flat(section: StripSection) -> SpatialSection:
     """Return the strip with its width in the plane of the centreline."""
+    require_kind("section", section, StripSection, "a StripSection")
     return _strip(section, _edgewise(section), section.bending_stiffness)
 
 
@@ -112,11 +115,12 @@ def channel(*, material: Material, width: float, flange: float, thickness: float
     thickness : float
         t [m] of the sheet, positive, below half of the width.
     """
+    require_kind("material", material, Material, "a Material, such as BRASS")
     require_number("width", width, "m", positive=True)
     require_number("flange", flange, "m", positive=False)
     require_number("thickness", thickness, "m", positive=True)
     if 2.0 * thickness > width:
-        raise ValueError(f"thickness is {thickness} m; it must not exceed half of the width {width} m.")
+        raise ValueError(f"thickness is {thickness} m; it must not exceed half of the width {width} m")
     b, h, t = width, flange, thickness
     web, both = b * t, 2.0 * h * t
     area, arm = web + both, 0.5 * (h + t)  # arm: from the middle of the web to the middle of a flange

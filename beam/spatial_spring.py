@@ -20,9 +20,9 @@ import math
 from dataclasses import dataclass
 
 from .centreline import Centreline
-from .material import require_number
+from .parameters import require_array, require_kind, require_number
 from .spatial_section import SpatialSection
-from .spring import HELD, Support, Tip
+from .spring import Support, Tip, two_supports
 
 #: Unknowns u, w, w', v, v', phi, phi' held by each support.
 HOLDS: dict[str, tuple[bool, ...]] = {
@@ -70,26 +70,28 @@ class SpatialSpring:
     drive: Vector = (0.0, 1.0, 0.0)
 
     def __post_init__(self) -> None:
+        require_kind("centreline", self.centreline, Centreline, "a Centreline")
+        require_kind("sections", self.sections, (tuple, list), "one SpatialSection for each piece")
+        for section in self.sections:
+            require_kind("sections", section, SpatialSection, "one SpatialSection for each piece")
+        require_kind("tip", self.tip, Tip, "a Tip")
         object.__setattr__(self, "sections", tuple(self.sections))
         line, count = self.centreline, len(self.sections)
         if count != len(line.pieces):
             raise ValueError(
-                f"sections has {count} entries [no unit]; it needs one for each of {len(line.pieces)} pieces."
+                f"sections has {count} entries [no unit]; it needs one for each of {len(line.pieces)} pieces"
             )
         for section, piece in zip(self.sections, line.pieces, strict=True):
             if section.shear_offset and piece.curvature:
-                raise ValueError(f"shear_offset is {section.shear_offset} m; on an arc it must be 0.")
-        if len(self.supports) != 2 or not set(self.supports) <= set(HELD):
-            raise ValueError(f"supports is {self.supports} [no unit]; it must be two of {', '.join(HELD)}.")
+                raise ValueError(f"shear_offset is {section.shear_offset} m; on an arc it must be 0")
+        object.__setattr__(self, "supports", two_supports(self.supports))
         require_number("tip_at", self.tip_at, "m", positive=False)
         if self.tip_at > line.length * (1.0 + 1e-12):
-            raise ValueError(f"tip_at is {self.tip_at} m; it must lie between 0 and {line.length} m.")
+            raise ValueError(f"tip_at is {self.tip_at} m; it must lie between 0 and {line.length} m")
         for name, unit in (("tip_offset", "m"), ("drive", "1")):
-            value = getattr(self, name)
-            if len(value) != 3 or not all(math.isfinite(part) for part in value):
-                raise ValueError(f"{name} is {value} {unit}; it must be three finite numbers.")
+            require_array(name, getattr(self, name), unit, shape=(3,), words="three finite numbers")
         size = math.hypot(*self.drive)
         if not size > 0.0:
-            raise ValueError(f"drive is {self.drive} [1]; it must be of positive length.")
+            raise ValueError(f"drive is {self.drive} [1]; it must be of positive length")
         x, y, z = self.drive
         object.__setattr__(self, "drive", (x / size, y / size, z / size))

@@ -24,7 +24,7 @@ from typing import Literal
 import numpy as np
 
 from .centreline import Centreline
-from .material import require_number
+from .parameters import require_array, require_kind, require_number, shown, suspect
 from .section import StripSection
 
 Support = Literal["clamped", "pinned", "guided", "free"]
@@ -36,6 +36,22 @@ HELD: dict[str, tuple[bool, bool, bool]] = {
     "guided": (True, False, True),
     "free": (False, False, False),
 }
+
+THICKEST = 0.2
+"""Thickness over width of a strip beyond which a warning is given: edgewise it is then less than 25 times as
+stiff as flat, and what bends about the width only in theory does so no longer."""
+
+STOUTEST = 0.1
+"""Thickness over the length of the whole strip beyond which a warning is given: Euler-Bernoulli's beam leaves
+out shear, 3 (t/L)^2 of mode 1 and twenty times that of mode 3."""
+
+
+def two_supports(supports: object) -> tuple[Support, Support]:
+    """The supports at both ends, if they are two of the four."""
+    pair = tuple(supports) if isinstance(supports, tuple | list) else ()
+    if len(pair) != 2 or not all(isinstance(end, str) and end in HELD for end in pair):
+        raise ValueError(f"supports is {shown(supports)} [no unit]; it must be two of {', '.join(HELD)}")
+    return pair[0], pair[1]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,8 +90,9 @@ class Readout:
     quantity: Literal["displacement", "rotation"] = "displacement"
 
     def __post_init__(self) -> None:
+        require_number("at", self.at, "m", positive=False)
         if self.quantity not in ("displacement", "rotation"):
-            raise ValueError(f"quantity is {self.quantity!r} [no unit]; valid: 'displacement', 'rotation'.")
+            raise ValueError(f"quantity is {self.quantity!r} [no unit]; valid: 'displacement', 'rotation'")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,6 +117,12 @@ class LeafSpring:
     ------
     ValueError
         For a wrong number of sections, an unknown support, a place off the centreline, a drive of no length.
+
+    Warns
+    -----
+    SuspiciousValue
+        For a tip heavier than the strip, and a strip thicker than `THICKEST` of its
+        width or `STOUTEST` of its length.
     """
 
     centreline: Centreline
@@ -111,24 +134,54 @@ class LeafSpring:
     readouts: Mapping[str, Readout] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        require_kind("centreline", self.centreline, Centreline, "a Centreline")
+        require_kind("sections", self.sections, (tuple, list), "one StripSection for each piece")
+        for section in self.sections:
+            require_kind("sections", section, StripSection, "one StripSection for each piece")
         object.__setattr__(self, "sections", tuple(self.sections))
         count, pieces = len(self.sections), len(self.centreline.pieces)
         if count != pieces:
             raise ValueError(
-                f"sections has {count} entries [no unit]; it needs one for each of {pieces} pieces."
+                f"sections has {count} entries [no unit]; it needs one for each of {pieces} pieces"
             )
-        if len(self.supports) != 2 or not set(self.supports) <= set(HELD):
-            raise ValueError(f"supports is {self.supports} [no unit]; it must be two of {', '.join(HELD)}.")
+        object.__setattr__(self, "supports", two_supports(self.supports))
+        require_kind("tip", self.tip, Tip, "a Tip")
+        require_kind("readouts", self.readouts, Mapping, "a mapping of names to Readout")
+        for name, readout in self.readouts.items():
+            require_kind(f"readouts[{name!r}]", readout, Readout, "a Readout")
         places = {"tip_at": self.tip_at} | {f"readouts[{name!r}]": r.at for name, r in self.readouts.items()}
         for name, s in places.items():
             require_number(name, s, "m", positive=False)
             if s > self.centreline.length * (1.0 + 1e-12):
-                raise ValueError(f"{name} is {s} m; it must lie between 0 and {self.centreline.length} m.")
+                raise ValueError(f"{name} is {s} m; it must lie between 0 and {self.centreline.length} m")
+        require_array("drive", self.drive, "[1]", shape=(2,), words="a direction (x, y) of two numbers")
         size = math.hypot(*self.drive)
-        if not (math.isfinite(size) and size > 0.0):
-            raise ValueError(f"drive is {self.drive} [1]; it must be finite and of positive length.")
+        if not size > 0.0:
+            raise ValueError(f"drive is {self.drive} [1]; it must be finite and of positive length")
         object.__setattr__(self, "drive", (self.drive[0] / size, self.drive[1] / size))
         object.__setattr__(self, "readouts", dict(self.readouts))
+        self._suspect()
+
+    def _suspect(self) -> None:
+        """Warn of a tip heavier than the strip, and of a strip too thick to be a thin or a long one."""
+        mass, length = self.strip_mass, self.centreline.length
+        if self.tip.mass > mass:
+            suspect(
+                f"mass of the tip is {self.tip.mass:g} kg; it is heavier than the strip that carries it, "
+                f"{mass:g} kg, so that hardly more than one mode is left of the spring"
+            )
+        thickest = max(self.sections, key=lambda section: section.total_thickness)
+        thickness = thickest.total_thickness
+        if thickness > THICKEST * thickest.width:
+            suspect(
+                f"thickness is {thickness:g} m with its layers; above {THICKEST:g} of the width "
+                f"{thickest.width:g} m it is a bar rather than a strip that bends about its width only"
+            )
+        if thickness > STOUTEST * length:
+            suspect(
+                f"thickness is {thickness:g} m with its layers; above {STOUTEST:g} of the strip's length "
+                f"{length:g} m its shear, which is left out, counts beside its bending"
+            )
 
     @property
     def strip_mass(self) -> float:

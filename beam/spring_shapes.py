@@ -13,6 +13,7 @@ import math
 from collections.abc import Mapping
 
 from .centreline import Arc, Centreline, Straight
+from .parameters import require_array, require_kind, require_number
 from .section import StripSection
 from .spring import LeafSpring, Readout, Support, Tip
 
@@ -106,7 +107,17 @@ def cantilever(
     damped_span: tuple[float, float] | None = None,
     readouts: Mapping[str, Readout] | None = None,
 ) -> LeafSpring:
-    """Return a `straight_strip` clamped at x = 0 and free at x = length, where the tip sits."""
+    """Return a `straight_strip` clamped at x = 0 and free at x = length, where the tip sits.
+
+    Parameters
+    ----------
+    length : float
+        [m].
+    tip : Tip, optional
+        Without mass by default.
+    section, damped_section, damped_span, readouts
+        As for `straight_strip`.
+    """
     return straight_strip(
         length=length,
         section=section,
@@ -123,13 +134,17 @@ def _leg(
     length: float, bare: StripSection, damped: StripSection | None, span: tuple[float, float] | None
 ) -> tuple[tuple[Straight, ...], tuple[StripSection, ...]]:
     """Pieces and sections of a straight run, from the support outwards."""
+    require_number("length of the straight strip or leg", length, "m", positive=True)
+    require_kind("damped_section", damped, (StripSection, type(None)), "a StripSection or None")
     if damped is None:
         if span is not None:
-            raise ValueError(f"damped_span is {span} m without a damped_section; give both or neither.")
+            raise ValueError(f"damped_span is {span} m without a damped_section; give both or neither")
         return (Straight(length=length),), (bare,)
+    if span is not None:
+        require_array("damped_span", span, "m", shape=(2,), words="its start and its end")
     start, end = (0.0, length) if span is None else span
     if not 0.0 <= start < end <= length:
-        raise ValueError(f"damped_span is {span} m; it must increase and lie between 0 and {length} m.")
+        raise ValueError(f"damped_span is {span} m; it must increase and lie between 0 and {length} m")
     cuts = [(start, bare), (end - start, damped), (length - end, bare)]
     kept = [(piece, section) for piece, section in cuts if piece > 0.0]
     return tuple(Straight(length=piece) for piece, _ in kept), tuple(section for _, section in kept)

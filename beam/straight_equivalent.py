@@ -35,6 +35,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from .centreline import Arc, Straight
+from .parameters import require_kind
 from .reduction import ModalModel
 from .spring import LeafSpring, Tip
 from .spring_shapes import straight_strip
@@ -56,6 +57,7 @@ def straight_equivalent(spring: LeafSpring) -> LeafSpring:
         Unless `spring` is a folded U: legs, a bend of half a turn, the same legs back, clamped, ball in the
         middle of the bend, driven across the legs.
     """
+    require_kind("spring", spring, LeafSpring, "a LeafSpring")
     pieces, sections = spring.centreline.pieces, spring.sections
     middle = len(pieces) // 2
     bend = pieces[middle]
@@ -74,7 +76,7 @@ def straight_equivalent(spring: LeafSpring) -> LeafSpring:
         raise ValueError(
             f"centreline has {len(pieces)} pieces [no unit] that are no folded U; the straight "
             "equivalent needs two equal clamped legs, a bend of half a turn with the ball amid it, and a "
-            "drive across the legs."
+            "drive across the legs"
         )
     radius = bend.radius
     legs = [
@@ -120,7 +122,8 @@ def straight_equivalent(spring: LeafSpring) -> LeafSpring:
 
 
 def as_one_spring(half: ModalModel) -> ModalModel:
-    """Return the model of two such legs that move as one, from that of one of them."""
+    """Return the model of two such legs that move as one, from `half`, the model of one of them."""
+    require_kind("half", half, ModalModel, "a ModalModel")
     root = math.sqrt(2.0)
     return replace(
         half,

@@ -33,6 +33,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
+from beam.parameters import require_kind, require_whole
 from contact.crossing import tip_at
 from contact.flight import Motion, propagate, steady_motion, tip_rounding
 from contact.oscillator import ImpactOscillator
@@ -201,6 +202,8 @@ def collisions(
     ValueError
         For an unfinished last collision, unless it may be dropped.
     """
+    require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
+    require_kind("trajectory", trajectory, Trajectory, "a Trajectory, from simulate")
     if unfinished not in ("refuse", "drop"):
         raise ValueError(f'unfinished is {unfinished!r}; it must be "refuse" or "drop"')
     motion = oscillator.motion()
@@ -323,6 +326,8 @@ def first_collision(
     ValueError
         If the tip does not touch the stop, or the collision is not final, within `periods`.
     """
+    require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
+    periods = require_whole("periods", periods, "drive periods")
     start = before_collision(oscillator) if state is None else state
     for length in sorted({min(3, periods), periods}):
         trajectory = simulate(oscillator, start, periods=length)

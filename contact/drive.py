@@ -12,6 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beam.parameters import require_array, require_whole, require_within
+
 __all__ = ["HarmonicDrive", "split_time"]
 
 EPS = 2.220446049250313e-16
@@ -33,14 +35,8 @@ class HarmonicDrive:
     amplitude: float = 0.0
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.frequency) and self.frequency > 0):
-            raise ValueError(
-                f"frequency of the drive is {self.frequency} Hz; it must be finite and above zero"
-            )
-        if not (math.isfinite(self.amplitude) and self.amplitude >= 0):
-            raise ValueError(
-                f"amplitude of the drive is {self.amplitude} m; it must be finite and zero or more"
-            )
+        require_within("frequency of the drive", self.frequency, "Hz", above=0)
+        require_within("amplitude of the drive", self.amplitude, "m", low=0)
 
     @property
     def angular_frequency(self) -> float:
@@ -54,11 +50,12 @@ class HarmonicDrive:
 
     def displacement(self, time: float | np.ndarray) -> np.ndarray:
         """Base displacement at `time` [s], same shape [m]."""
-        return self.amplitude * np.sin(self.angular_frequency * np.asarray(time, dtype=float))
+        times = require_array("time", time, "s", words="a time or an array of times")
+        return self.amplitude * np.sin(self.angular_frequency * times)
 
     def strobe_times(self, count: int) -> np.ndarray:
         """The first `count` strobe times n/f, shape (count,) [s]."""
-        return np.arange(count) / self.frequency
+        return np.arange(require_whole("count", count, "strobe times", low=0)) / self.frequency
 
 
 def split_time(time: np.ndarray, period: float) -> tuple[np.ndarray, np.ndarray]:

@@ -21,13 +21,14 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from numbers import Real
 from typing import ClassVar
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 from scipy.special import gamma
+
+from beam.parameters import brief, is_number, require, require_kind, shown, suspect
 
 __all__ = [
     "ContactLaw",
@@ -42,6 +43,11 @@ NEWTON, LINEAR, HERTZ, DELAYED = 0, 1, 2, 3
 
 HERTZ_TIME = 0.8 * math.sqrt(math.pi) * float(gamma(0.4) / gamma(0.9))
 """Contact time of a free mass under Hertz's law over (greatest approach / approach velocity), 2.9432 [1]."""
+
+
+SOFTEST, HARDEST = 1e8, 1.5e12
+"""Young's moduli of the bodies in contact beyond which a warning is given [Pa]: soft polymers and diamond; in
+GPa or MPa a modulus is far below."""
 
 
 class ContactLaw:
@@ -60,14 +66,14 @@ class ContactLaw:
         return np.empty((5, 0))
 
 
-def _require(condition: bool, sentence: str) -> None:
-    if not condition:
-        raise ValueError(sentence)
+def _above_zero(name: str, value: float, unit: str) -> None:
+    sentence = f"{name} is {brief(value)} {unit}; it must be finite and above zero"
+    require(is_number(value) and value > 0, sentence)
 
 
-def _finite(value: object) -> bool:
-    """Whether `value` is a finite number; a text or a list is none."""
-    return isinstance(value, Real) and math.isfinite(value)
+def _zero_or_more(name: str, value: float, unit: str) -> None:
+    sentence = f"{name} is {brief(value)} {unit}; it must be finite and zero or more"
+    require(is_number(value) and value >= 0, sentence)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,11 +91,22 @@ class NewtonRestitution(ContactLaw):
 
     def __post_init__(self) -> None:
         e = self.local_restitution
-        _require(_finite(e) and 0 <= e <= 1, f"local_restitution is {e}; it must lie between 0 and 1")
+        require(is_number(e) and 0 <= e <= 1, f"local_restitution is {brief(e)}; it must lie between 0 and 1")
 
     @property
     def numbers(self) -> tuple[float, float, float]:
         return (self.local_restitution, 0.0, 0.0)
+
+
+def _value(function: Callable[[float], float], speed: float) -> float:
+    """The function at an approach speed; TypeError unless it gives a number there."""
+    value = function(speed)
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise TypeError(
+            f"function of the approach speed gives {value!r} at {speed:g} m/s; it must give a number"
+        ) from None
 
 
 SPEEDS = 1025
@@ -119,23 +136,24 @@ class DelayedRestitution(ContactLaw):
     code: ClassVar[int] = DELAYED
 
     def __post_init__(self) -> None:
-        low, high = self.speeds
-        _require(
-            0 < low < high < math.inf,
-            f"speeds is {self.speeds} m/s; it must be two rising numbers above zero",
+        require_kind("speeds", self.speeds, (tuple, list), "two rising numbers above zero, in m/s")
+        rising = len(self.speeds) == 2 and all(map(is_number, self.speeds))
+        require(
+            rising and 0 < self.speeds[0] < self.speeds[1],
+            f"speeds is {brief(self.speeds)} m/s; it must be two rising numbers above zero",
         )
         for name in ("restitution", "delay"):
             given = getattr(self, name)
-            _require(
-                callable(given) or isinstance(given, Real),
-                f"{name} is {given!r}; it must be a number or a function of the approach speed",
+            require(
+                callable(given) or isinstance(given, float) or is_number(given),
+                f"{name} is {shown(given)}; it must be a number or a function of the approach speed",
             )
         _v, tau, _slope, delay, _slope2 = self.table
-        _require(
+        require(
             bool(np.all(np.isfinite(tau)) and np.all(tau >= 0) and np.all(tau <= 1)),
             f"restitution runs from {tau.min()} to {tau.max()}; it must lie between 0 and 1",
         )
-        _require(
+        require(
             bool(np.all(np.isfinite(delay)) and np.all(delay >= 0)),
             f"delay runs from {delay.min()} to {delay.max()} s; it must be finite and zero or more",
         )
@@ -153,7 +171,7 @@ class DelayedRestitution(ContactLaw):
         rows = [speed]
         for given in (self.restitution, self.delay):
             if callable(given):
-                values = np.array([float(given(float(v))) for v in speed])
+                values = np.array([_value(given, float(v)) for v in speed])
                 slopes = CubicSpline(speed, values)(speed, 1) if np.all(np.isfinite(values)) else values
             else:
                 values, slopes = np.full(speed.size, float(given)), np.zeros(speed.size)
@@ -179,12 +197,8 @@ class LinearContact(ContactLaw):
 
     def __post_init__(self) -> None:
         k, c = self.stiffness, self.damping
-        _require(
-            _finite(k) and k > 0, f"stiffness of the contact is {k} N/m; it must be finite and above zero"
-        )
-        _require(
-            _finite(c) and c >= 0, f"damping of the contact is {c} N s/m; it must be finite and zero or more"
-        )
+        _above_zero("stiffness of the contact", k, "N/m")
+        _zero_or_more("damping of the contact", c, "N s/m")
 
     @property
     def numbers(self) -> tuple[float, float, float]:
@@ -206,9 +220,7 @@ class HertzContact(ContactLaw):
 
     def __post_init__(self) -> None:
         k = self.stiffness
-        _require(
-            _finite(k) and k > 0, f"stiffness of the contact is {k} N/m^1.5; it must be finite and above zero"
-        )
+        _above_zero("stiffness of the contact", k, "N/m^1.5")
 
     @staticmethod
     def of_bodies(
@@ -226,19 +238,24 @@ class HertzContact(ContactLaw):
             ("youngs_modulus", youngs_modulus, "Pa"),
             ("other_modulus", other_modulus, "Pa"),
         ):
-            _require(
-                _finite(value) and value > 0, f"{name} is {value} {unit}; it must be finite and above zero"
-            )
+            _above_zero(name, value, unit)
+            if unit == "Pa" and not SOFTEST <= value <= HARDEST:
+                suspect(
+                    f"{name} is {value:g} Pa; solids that a ball rebounds from lie between {SOFTEST:g} and "
+                    f"{HARDEST:g} Pa"
+                )
         for name, value in (("poissons_ratio", poissons_ratio), ("other_ratio", other_ratio)):
-            _require(
-                _finite(value) and -1 < value <= 0.5,
-                f"{name} is {value}; it must lie above -1 and not above 0.5",
+            require(
+                is_number(value) and -1 < value <= 0.5,
+                f"{name} is {brief(value)}; it must lie above -1 and not above 0.5",
             )
         compliance = (1 - poissons_ratio**2) / youngs_modulus + (1 - other_ratio**2) / other_modulus
         return HertzContact(stiffness=4.0 / 3.0 * math.sqrt(radius) / compliance)
 
     def greatest_approach(self, mass: float, velocity: float) -> float:
         """Depth that a free `mass` [kg] reaches at approach `velocity` [m/s]: (5 m v^2 / (4 k))^(2/5) [m]."""
+        _above_zero("mass", mass, "kg")
+        _above_zero("velocity", velocity, "m/s")
         return float((1.25 * mass * velocity**2 / self.stiffness) ** 0.4)
 
     def contact_time(self, mass: float, velocity: float) -> float:
@@ -272,13 +289,8 @@ class HuntCrossley(ContactLaw):
 
     def __post_init__(self) -> None:
         k, chi = self.stiffness, self.dissipation
-        _require(
-            _finite(k) and k > 0, f"stiffness of the contact is {k} N/m^1.5; it must be finite and above zero"
-        )
-        _require(
-            _finite(chi) and chi >= 0,
-            f"dissipation of the contact is {chi} s/m; it must be finite and zero or more",
-        )
+        _above_zero("stiffness of the contact", k, "N/m^1.5")
+        _zero_or_more("dissipation of the contact", chi, "s/m")
 
     @staticmethod
     def with_restitution(*, stiffness: float, restitution: float, velocity: float) -> HuntCrossley:
@@ -287,11 +299,9 @@ class HuntCrossley(ContactLaw):
         `restitution` lies above 0 and is at most 1; the relation is exact, for any exponent of d.
         """
         e = restitution
-        _require(_finite(e) and 0 < e <= 1, f"restitution is {e}; it must lie above 0 and not above 1")
-        _require(
-            _finite(velocity) and velocity > 0,
-            f"velocity is {velocity} m/s; it must be finite and above zero",
-        )
+        sentence = f"restitution is {brief(e)}; it must lie above 0 and not above 1"
+        require(is_number(e) and 0 < e <= 1, sentence)
+        _above_zero("velocity", velocity, "m/s")
         if e == 1.0:
             return HuntCrossley(stiffness=stiffness, dissipation=0.0)
 

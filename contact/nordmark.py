@@ -47,6 +47,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from beam.parameters import require, require_array, require_whole, require_within, shown
 from contact.compiled import kernel
 from contact.flight import damped_frequency, flow_matrix
 
@@ -67,17 +68,14 @@ def iterate_map(x, y, alpha, gamma, gamma_impact, rho, delay_term, out):  # type
         out[n, 1] = y
 
 
-def _require(condition: bool, sentence: str) -> None:
-    if not condition:
-        raise ValueError(sentence)
-
-
-def _at_least_zero(name: str, value: float, unit: str) -> None:
-    _require(0.0 <= value < math.inf, f"{name} is {value} {unit}; it must be finite and zero or more")
-
-
-def _positive(name: str, value: float, unit: str) -> None:
-    _require(0.0 < value < math.inf, f"{name} is {value} {unit}; it must be finite and above zero")
+def restitution_of(oscillator: Any) -> float:
+    """The `local_restitution` of an oscillator's contact law; TypeError if it has none."""
+    if not (hasattr(oscillator, "stop") and hasattr(oscillator, "model")):
+        raise TypeError(f"oscillator is {shown(oscillator)}; it must be an ImpactOscillator")
+    law = oscillator.stop.law
+    if not hasattr(law, "local_restitution"):
+        raise TypeError(f"law of the stop is a {type(law).__name__}; it has no restitution, so give one")
+    return float(law.local_restitution)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,12 +107,13 @@ class NordmarkMap:
 
     def __post_init__(self) -> None:
         gamma, tau, line, turns = self.gamma, self.restitution, self.y_line, self.whole_turns
-        _require(0.0 <= gamma <= 1.0, f"gamma is {gamma}; it must lie between 0 and 1")
-        _require(0.0 <= tau <= 1.0, f"restitution is {tau}; it must lie between 0 and 1")
-        _at_least_zero("delay_term", self.delay_term, "(a pure number)")
-        _require(abs(self.alpha) < 1.0 + gamma, f"alpha is {self.alpha}; its size must be below 1 + gamma")
-        _require(line in ("corrected", "printed"), f'y_line is {line!r}; it must be "corrected" or "printed"')
-        _require(turns >= 0 and turns % 1 == 0, f"whole_turns is {turns}; it must be 0, 1, 2 or more")
+        require_within("gamma", gamma, "[1]", low=0, high=1)
+        require_within("restitution", tau, "[1]", low=0, high=1)
+        require_within("delay_term", self.delay_term, "(a pure number)", low=0)
+        require_within("alpha", self.alpha, "[1]")
+        require(abs(self.alpha) < 1.0 + gamma, f"alpha is {self.alpha}; its size must be below 1 + gamma")
+        require(line in ("corrected", "printed"), f'y_line is {line!r}; it must be "corrected" or "printed"')
+        require_whole("whole_turns", turns, "turns", low=0)
 
     @classmethod
     def from_mode(
@@ -127,14 +126,15 @@ class NordmarkMap:
         Raises ValueError where M12 <= 0: a kick away from the wall would then raise the next peak, and the
         square root of Eq. (3) would have the other sign.
         """
-        _positive("omega", omega, "rad/s")
-        _at_least_zero("decay_rate", decay_rate, "1/s")
-        _positive("drive_frequency", drive_frequency, "Hz")
-        _at_least_zero("delay", delay, "s")
+        require_within("omega", omega, "rad/s", above=0)
+        require_within("decay_rate", decay_rate, "1/s", low=0)
+        require_within("drive_frequency", drive_frequency, "Hz", above=0)
+        require_within("delay", delay, "s", low=0)
+        require_within("restitution", restitution, "[1]", low=0, high=1)
         damped, damped_low = damped_frequency(omega, decay_rate)
         n11, n12, _, n22 = flow_matrix(omega, decay_rate, damped, damped_low, 1.0 / drive_frequency)
         turns = damped / (2.0 * math.pi * drive_frequency) if omega > 0.5 * decay_rate else 0.0
-        _require(
+        require(
             n12 > 0.0,
             f"drive_frequency is {drive_frequency} Hz, where 1/(f T) is {turns:.6g}; the fractional part of "
             "1/(f T) must lie between 0 and 1/2, as it does for 2/3 < f T < 1",
@@ -157,8 +157,8 @@ class NordmarkMap:
 
         `free_period` is that of the damped free motion, `delay` [s] as in `from_mode`, as are the errors.
         """
-        _positive("free_period", free_period, "s")
-        _at_least_zero("decay_rate", decay_rate, "1/s")
+        require_within("free_period", free_period, "s", above=0)
+        require_within("decay_rate", decay_rate, "1/s", low=0)
         return cls.from_mode(
             omega=math.hypot(2.0 * math.pi / free_period, 0.5 * decay_rate),
             decay_rate=decay_rate, drive_frequency=drive_frequency, restitution=restitution,
@@ -175,12 +175,8 @@ class NordmarkMap:
         `restitution` is the effective one; left out, it is the `local_restitution` of the oscillator's law,
         and a law without one (a force law) raises TypeError.
         """
-        if restitution is None:
-            try:
-                restitution = float(oscillator.stop.law.local_restitution)
-            except AttributeError:
-                law = type(oscillator.stop.law).__name__
-                raise TypeError(f"law of the stop is a {law}; it has no restitution, so give one") from None
+        restitution = restitution_of(oscillator) if restitution is None else restitution
+        require(oscillator.drive is not None, "drive is None; it must be a HarmonicDrive")
         return cls.from_mode(
             omega=float(oscillator.model.omega[0]), decay_rate=float(oscillator.model.decay_rate[0]),
             drive_frequency=float(oscillator.drive.frequency),
@@ -204,7 +200,7 @@ class NordmarkMap:
         All of it follows from the fields. ValueError if gamma = 0 or alpha <= -2 sqrt(gamma).
         """
         root = math.sqrt(self.gamma)
-        _require(
+        require(
             self.gamma > 0.0 and self.alpha > -2.0 * root,
             f"alpha is {self.alpha}, gamma {self.gamma}; alpha > -2 sqrt(gamma) and gamma > 0 must hold",
         )
@@ -218,11 +214,11 @@ class NordmarkMap:
 
     def rho(self, excess: float) -> float:
         """rho at the excess F/F_g - 1 [1]."""
-        return self.rho_per_excess * excess
+        return self.rho_per_excess * require_within("excess", excess, "[1]")
 
     def excess(self, rho: float) -> float:
         """The excess F/F_g - 1 [1] at rho."""
-        return rho / self.rho_per_excess
+        return require_within("rho", rho, "[1]") / self.rho_per_excess
 
     def step(self, state: ArrayLike, rho: float) -> NDArray[np.float64]:
         """The state (x, y), shape (2,), one drive period later."""
@@ -230,10 +226,10 @@ class NordmarkMap:
 
     def iterate(self, state: ArrayLike, rho: float, count: int) -> NDArray[np.float64]:
         """The `count` states that follow `state`, shape (count, 2); row 0 is one period later."""
-        _require(count >= 0, f"count is {count} periods; it must be zero or more")
         x, y = _state(state)
-        out = np.empty((count, 2))
-        iterate_map(x, y, self.alpha, self.gamma, self.gamma_impact, float(rho), self.delay_term, out)
+        out = np.empty((require_whole("count", count, "periods", low=0), 2))
+        value = require_within("rho", rho, "[1]")
+        iterate_map(x, y, self.alpha, self.gamma, self.gamma_impact, value, self.delay_term, out)
         return out
 
     def jacobian(self, state: ArrayLike) -> NDArray[np.float64]:
@@ -245,6 +241,5 @@ class NordmarkMap:
 
 
 def _state(state: ArrayLike) -> tuple[float, float]:
-    pair = np.asarray(state, dtype=float)
-    _require(pair.shape == (2,), f"state has shape {pair.shape}; it must be the pair (x, y) of shape (2,)")
+    pair = require_array("state", state, "[1]", shape=(2,), words="the pair (x, y)")
     return float(pair[0]), float(pair[1])

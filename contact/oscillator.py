@@ -13,10 +13,12 @@ w), so that the tip just touches the stop at the grazing amplitude Z_g = gap / |
 
 from __future__ import annotations
 
+import copy
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from beam.parameters import require_array, require_kind, require_number, require_within, suspect
 from beam.reduction import ModalModel
 from contact.drive import HarmonicDrive
 from contact.flight import Motion, damped_frequency
@@ -24,6 +26,15 @@ from contact.laws import DELAYED
 from contact.stop import Stop
 
 __all__ = ["ImpactOscillator"]
+
+
+GREATEST_AMPLITUDE = 0.1
+"""Amplitude of a base motion beyond which a warning is given [m]: the stroke of large vibration exciters is
+50 mm, and the letter's drive moved by 1.5 mm.  Exactly 1 asks for the response per unit amplitude."""
+
+SLOWEST_DRIVE = 0.01
+"""Drive frequency over that of the lowest mode below which a warning is given: the tip then moves by less
+than 1e-4 of the base's motion, and nobody grazes a stop that way."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -40,6 +51,11 @@ class ImpactOscillator:
         Base motion; None for a base at rest.
     load : ndarray, shape (n_modes,), optional
         Constant modal load [N kg^-0.5].
+
+    Warns
+    -----
+    SuspiciousValue
+        For a drive amplitude above `GREATEST_AMPLITUDE` and ten gaps, or a drive slower than `SLOWEST_DRIVE`.
     """
 
     model: ModalModel
@@ -48,6 +64,9 @@ class ImpactOscillator:
     load: np.ndarray | None = None
 
     def __post_init__(self) -> None:
+        require_kind("model", self.model, ModalModel, "a ModalModel")
+        require_kind("stop", self.stop, Stop, "a Stop")
+        require_kind("drive", self.drive, (HarmonicDrive, type(None)), "a HarmonicDrive or None")
         omega, decay = self.model.omega, self.model.decay_rate
         if self.stop.law.code == DELAYED and omega.size > 1:
             raise TypeError(
@@ -55,12 +74,8 @@ class ImpactOscillator:
                 f"the model has {omega.size}, so give a force law or NewtonRestitution, or truncate the model"
             )
         if self.load is not None:
-            load = np.array(self.load, dtype=float)
-            if load.shape != omega.shape or not np.all(np.isfinite(load)):
-                raise ValueError(
-                    f"load has shape {load.shape}; it must be {omega.size} finite modal loads [N kg^-0.5]"
-                )
-            load.setflags(write=False)
+            words = f"{omega.size} finite modal loads"
+            load = require_array("load", self.load, "N kg^-0.5", shape=omega.shape, words=words)
             object.__setattr__(self, "load", load)
         if self.drive is None:
             return
@@ -78,6 +93,22 @@ class ImpactOscillator:
                 f"frequency of the drive is {self.drive.frequency:g} Hz, that of an undamped mode; "
                 "there is no steady motion, so it must differ"
             )
+        self._suspect(self.drive)
+
+    def _suspect(self, drive: HarmonicDrive) -> None:
+        """Warn of a drive that moves or turns like no exciter of this spring."""
+        if drive.amplitude > max(GREATEST_AMPLITUDE, 10.0 * self.stop.gap) and drive.amplitude != 1.0:
+            suspect(
+                f"amplitude of the drive is {drive.amplitude:g} m with a gap of {self.stop.gap:g} m; "
+                "exciters move by some centimetres at most, and millimetres may have been meant"
+            )
+        oscillating = self.model.omega[self.model.omega > 0]
+        if oscillating.size and drive.angular_frequency < SLOWEST_DRIVE * float(oscillating.min()):
+            suspect(
+                f"frequency of the drive is {drive.frequency:g} Hz, below {SLOWEST_DRIVE:g} of the lowest "
+                f"mode at {oscillating.min() / (2 * np.pi):g} Hz; the spring then follows its base and does "
+                "not bend"
+            )
 
     @property
     def n_modes(self) -> int:
@@ -94,14 +125,19 @@ class ImpactOscillator:
         return float(2 * np.pi / oscillating.min()) if oscillating.size else 1.0
 
     def with_amplitude(self, amplitude: float) -> ImpactOscillator:
-        """The same oscillator driven with another base amplitude [m]."""
-        return replace(self, drive=replace(self._driven(), amplitude=float(amplitude)))
+        """The same oscillator driven with another base amplitude [m].
+
+        A search may pass through any amplitude: none is suspicious here.
+        """
+        number = require_number("amplitude", amplitude, "m", positive=False)
+        changed = copy.copy(self)  # all else has been checked
+        object.__setattr__(changed, "drive", replace(self._driven(), amplitude=number))
+        return changed
 
     def with_excess(self, excess: float) -> ImpactOscillator:
         """The same oscillator driven at F/F_g - 1 = `excess` [1]."""
-        if not excess > -1:
-            raise ValueError(f"excess is {excess}; it must be above -1")
-        return self.with_amplitude((1.0 + float(excess)) * self.grazing_amplitude())
+        number = require_within("excess", excess, "[1]", above=-1)
+        return self.with_amplitude((1.0 + number) * self.grazing_amplitude())
 
     def steady_response(self) -> np.ndarray:
         """H_k, complex, shape (n_modes,) [kg^0.5]: without contact q_k(t) = Z Im(H_k exp(i 2 pi f t))."""
@@ -125,7 +161,13 @@ class ImpactOscillator:
             raise ValueError(
                 f"gap is {self.stop.gap} m; the static displacement {static:g} m must stay below it"
             )
-        return (self.stop.gap - static) / abs(self.tip_response())
+        response = abs(self.tip_response())
+        if response == 0.0:
+            raise ValueError(
+                "phi and participation are such that the drive does not move the tip; at least one mode must "
+                "have both other than zero"
+            )
+        return (self.stop.gap - static) / response
 
     @property
     def excess(self) -> float:

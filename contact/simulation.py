@@ -8,10 +8,11 @@ is both cheaper and as accurate.
 
 from __future__ import annotations
 
-import math
+from numbers import Real
 
 import numpy as np
 
+from beam.parameters import is_number, require_kind, shown
 from contact.drive import split_time
 from contact.integrators import INTEGRATORS, Integrator, Run, method_for
 from contact.integrators.method import LAW_NAMES
@@ -19,6 +20,9 @@ from contact.oscillator import ImpactOscillator
 from contact.trajectory import State, Trajectory
 
 __all__ = ["simulate"]
+
+MOST_STORED = 2.0**28
+"""Numbers in the strobes of one run: 2 GB."""
 
 
 def _method(method: Integrator | str | None, law: int) -> Integrator:
@@ -61,12 +65,21 @@ def _run(
         )
     if (duration is None) == (periods is None):
         raise ValueError("duration and periods are both given or both missing; give exactly one of them")
-    if periods is not None and int(periods) != periods:
-        raise ValueError(f"periods is {periods}; it must be a whole number of drive periods")
+    for name, value, words in (("duration", duration, "in s"), ("periods", periods, "of drive periods")):
+        if isinstance(value, bool) or not isinstance(value, Real | None):
+            raise TypeError(f"{name} is {shown(value)}; it must be a number {words}")
+    if periods is not None and not (is_number(periods) and periods % 1 == 0):
+        raise ValueError(f"periods is {shown(periods)}; it must be a whole number of drive periods")
     period = oscillator.period
-    length = float(periods * period if periods is not None else duration)  # type: ignore[arg-type]
-    if not (math.isfinite(length) and length > 0):
-        raise ValueError(f"duration is {length} s; it must be finite and above zero")
+    length = duration if periods is None else periods * period
+    if length is None or not (is_number(length) and length > 0):
+        raise ValueError(f"duration is {shown(length)} s; it must be finite and above zero")
+    length = float(length)
+    if length / period * 2 * oscillator.n_modes > MOST_STORED:
+        raise ValueError(
+            f"duration is {length:g} s, {length / period:g} drive periods with {oscillator.n_modes} modes; "
+            f"the strobes kept must stay below {MOST_STORED:g} numbers, so run it in pieces"
+        )
     first_array, clock_array = split_time(np.array([start.time]), period)
     first, clock = int(first_array[0]), float(clock_array[0])
     if periods is not None:
@@ -74,7 +87,10 @@ def _run(
     else:
         last_array, end_array = split_time(np.array([start.time + length]), period)
         last, clock_end = int(last_array[0]), float(end_array[0])
-    wanted = np.zeros(0) if times is None else np.asarray(times, dtype=float)
+    wanted = np.zeros(0) if times is None else np.asarray(times)
+    if wanted.dtype.kind not in "iuf":
+        raise TypeError(f"times is {shown(times)}; it must be a rising array of finite values [s]")
+    wanted = wanted.astype(float)
     if wanted.ndim != 1 or not np.all(np.isfinite(wanted)) or np.any(np.diff(wanted) < 0):
         raise ValueError("times must be a rising array of finite values [s]")
     stop_time = start.time + length
@@ -139,6 +155,8 @@ def simulate(
     UnresolvedCrossing, Chatter, ContactTooStiff
         Where the motion could not be followed; see ``contact.errors``.
     """
+    require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
+    require_kind("state", state, (State, type(None)), "a State or None")
     law = oscillator.stop.law.code
     chosen = _method(method, law)
     start = State.rest(oscillator.n_modes) if state is None else state

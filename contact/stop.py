@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
+from beam.parameters import require_within, suspect
 from contact.laws import ContactLaw
 
 __all__ = ["Stop"]
+
+GREATEST_GAP = 1.0
+"""Distance of a stop beyond which a warning is given [m]; lengths in units of the gap give just this."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,14 +23,23 @@ class Stop:
         Distance from the tip at rest to the wall, zero or more [m]; a driven spring needs more than zero.
     law : ContactLaw
         What happens when the tip reaches it.
+
+    Warns
+    -----
+    SuspiciousValue
+        For a gap above `GREATEST_GAP`.
     """
 
     gap: float
     law: ContactLaw
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.gap) and self.gap >= 0):
-            raise ValueError(f"gap is {self.gap} m; it must be finite and zero or more")
+        require_within("gap", self.gap, "m", low=0)
+        if self.gap > GREATEST_GAP:
+            suspect(
+                f"gap is {self.gap:g} m; above {GREATEST_GAP:g} m no leaf spring moves that far, and "
+                "millimetres may have been meant"
+            )
         if not isinstance(self.law, ContactLaw):
             raise TypeError(
                 f"law of the stop is {self.law!r}; it must be a contact law such as NewtonRestitution"

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from beam.parameters import require_kind, require_within
 from contact.nordmark import NordmarkMap
 from contact.stroboscope import StrobedOrbit
 
@@ -33,6 +34,10 @@ class StrobedNordmarkMap:
 
     map: NordmarkMap
     rho: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_kind("map", self.map, NordmarkMap, "a NordmarkMap")
+        require_within("rho", self.rho, "[1]")
 
     @property
     def scale(self) -> float:

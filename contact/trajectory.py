@@ -6,9 +6,12 @@ All arrays are in physical modal coordinates (not deviations): displacement q_k 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
+
+from beam.parameters import is_number, require_whole, require_within, shown
 
 __all__ = ["Impacts", "State", "Trajectory"]
 
@@ -38,15 +41,23 @@ class State:
 
     def __post_init__(self) -> None:
         for name in ("displacement", "velocity"):
-            array = np.array(getattr(self, name), dtype=float)
-            if array.ndim != 1 or not np.all(np.isfinite(array)):
+            given = getattr(self, name)
+            try:
+                array = np.array(given, dtype=float)
+            except (TypeError, ValueError):
+                array = np.full(1, np.nan)
+            if array.ndim != 1 or not array.size or not np.all(np.isfinite(array)):
                 raise ValueError(
-                    f"{name} of the state must be a finite array of shape (n_modes,), not {array}"
+                    f"{name} of the state must be a finite array of shape (n_modes,), not {shown(given)}"
                 )
             array.setflags(write=False)
             object.__setattr__(self, name, array)
-        if self.regime not in (0, 1, 2, 3, 4):
-            raise ValueError(f"regime of the state is {self.regime}; it must be 0, 1, 2, 3 or 4")
+        if not (is_number(self.regime) and self.regime in (0, 1, 2, 3, 4)):
+            raise ValueError(f"regime of the state is {shown(self.regime)}; it must be 0, 1, 2, 3 or 4")
+        for name, unit in (("time", "s"), ("wait", "s"), ("rebound", "m/s")):
+            value = getattr(self, name)
+            if type(value) is not float or not math.isfinite(value):  # the usual case without a call
+                require_within(f"{name} of the state", value, unit)
         if self.displacement.shape != self.velocity.shape:
             raise ValueError(
                 f"velocity of the state has shape {self.velocity.shape}; it must be that of the "
@@ -56,7 +67,8 @@ class State:
     @staticmethod
     def rest(n_modes: int) -> State:
         """The straight spring at rest, at time zero."""
-        return State(displacement=np.zeros(n_modes), velocity=np.zeros(n_modes))
+        size = require_whole("n_modes", n_modes, "modes")
+        return State(displacement=np.zeros(size), velocity=np.zeros(size))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -19,7 +19,8 @@ What they show
 
 What several of them use is in `studies.instruments`; the letter's numbers are in `studies.published`.
 
-Importing this package does two things, both of which have to come before numpy is imported:
+Importing this package does two things, both of which have to come before numpy is imported (and when it runs
+as a program, `start_as_program`):
 
 - it sets the thread count of the linear algebra libraries to 1 unless the environment already says otherwise:
   the matrices here are small, and several workers with several threads each slow one another down twentyfold;
@@ -31,7 +32,10 @@ Importing this package does two things, both of which have to come before numpy 
 from __future__ import annotations
 
 import importlib.util
+import multiprocessing
 import os
+import sys
+import warnings
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -78,5 +82,31 @@ def refuse_foreign_packages(names: Iterable[str] = ("beam", "contact"), root: Pa
             )
 
 
+def start_as_program() -> None:
+    """For `python -m studies...`: all streams there, Ctrl-C without a traceback, a sentence for an unknown
+    study."""
+    from studies.instruments.interruption import watch_start
+    from studies.instruments.programs import named_by, unknown
+    from studies.instruments.standard_output import fill_closed
+
+    fill_closed()
+    watch_start()
+    name = named_by(sys.orig_argv[1:])
+    if name is not None:
+        print(f"python -m studies.{name}: {unknown(name)}", file=sys.stderr)
+        raise SystemExit(2)
+
+
+def quiet_worker() -> None:
+    """In a worker: what is suspicious about the scene has been told by the process that started it."""
+    from beam import SuspiciousValue
+
+    warnings.simplefilter("ignore", SuspiciousValue)
+
+
+if sys.argv[:1] == ["-m"]:  # as long as the interpreter looks for the module that it was told to run
+    start_as_program()
 single_blas_thread()
 refuse_foreign_packages()
+if multiprocessing.parent_process() is not None:
+    quiet_worker()

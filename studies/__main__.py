@@ -2,33 +2,28 @@
 
 from __future__ import annotations
 
-import ast
 import sys
-from pathlib import Path
 
-from studies import transitions
-
-
-def others() -> list[tuple[str, str]]:
-    """Name and first sentence of every study beside the main one."""
-    found = []
-    for source in sorted(Path(__file__).parent.glob("*.py")):
-        text = source.read_text(encoding="utf-8")
-        if source.stem.startswith("_") or source.stem == "transitions" or "def main(" not in text:
-            continue
-        sentence = (ast.get_docstring(ast.parse(text)) or "").split("\n\n")[0].replace("\n", " ")
-        found.append((source.stem, sentence))
-    return found
+from studies.instruments.programs import MAIN, first_sentence, names, unknown
 
 
 def main() -> int:
     """Run the transitions, then say what else there is."""
-    code = transitions.main(sys.argv[1:], module="studies")
+    arguments = sys.argv[1:]
+    if arguments and not arguments[0].startswith("-"):
+        name = arguments[0].removeprefix("studies.")
+        words = f"a study runs as python -m studies.{name}" if name in names() else unknown(name)
+        print(f"python -m studies: {words}", file=sys.stderr)
+        return 2
+    from studies import transitions
+
+    code = transitions.main(arguments, module="studies")
     quiet = {"--json", "--help", "-h", "--dump-scene"}
-    if code == 0 and not quiet.intersection(sys.argv[1:]) and others():
+    if code == 0 and not quiet.intersection(arguments):
         print("other studies:", file=sys.stderr)
-        for name, sentence in others():
-            print(f"  python -m studies.{name:<18} {sentence}", file=sys.stderr)
+        for name in names():
+            if name != MAIN:
+                print(f"  python -m studies.{name:<18} {first_sentence(name)}", file=sys.stderr)
     return code
 
 

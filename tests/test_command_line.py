@@ -2,29 +2,38 @@
 
 from __future__ import annotations
 
+import ast
 import csv
 import errno
 import io
 import json
 import os
+import re
+import shlex
 import signal
 import subprocess
 import sys
+import time
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import studies
 from contact.errors import ContactError
-from studies.instruments import atomic_file
+from studies.instruments import atomic_file, programs
+from studies.instruments import record as record_module
 from studies.instruments.atomic_file import RecordError, write_atomically
 from studies.instruments.command_line import run_study
 from studies.instruments.figures import LINES, MARKERS, PALETTE, label, new_figure, points, save, series
+from studies.instruments.interruption import PATIENCE, Interruption
+from studies.instruments.programs import FOLDER, named_by, names
 from studies.instruments.progress import INTERVAL, Progress, duration, rate_of
-from studies.instruments.record import Record, git_state, plain
+from studies.instruments.record import Record, git_state, plain, versions
 from studies.instruments.scene import Scene
+from studies.instruments.spring_of_scene import spring_of
 
 
 def found(scene, request):
@@ -239,6 +248,222 @@ def test_a_full_disk_is_one_sentence_and_leaves_the_old_file(tmp_path, capsys, m
     assert [file.name for file in tmp_path.iterdir()] == ["old.json"]
     assert call(found, tmp_path) == 2
     assert "No space left on device" in capsys.readouterr().err.splitlines()[-1]
+
+
+def test_suspicious_values_are_told_once_and_kept(tmp_path, capsys):
+    def run(scene, request):
+        scene.replace({"tip.mass_kg": 1.0})
+        spring_of(scene.replace({"tip.mass_kg": 1.0}))  # what a study varies is its own affair
+        return {}
+
+    overrides = ("--set", "stop.gap_m=0.05", "--set", "tip.mass_kg=0.05")
+    assert call(run, tmp_path, *overrides, "--json") == 0
+    out, err = capsys.readouterr()
+    told = [line for line in err.splitlines() if line.startswith("warning: ")]
+    assert len(told) == 2 and "stop.gap_m is 0.05 m" in told[0] and "heavier than the strip" in told[1]
+    summary, manifest = (json.loads((tmp_path / "example" / f"{n}.json").read_text())
+                         for n in ("summary", "manifest"))  # fmt: skip
+    assert summary["warnings"] == manifest["warnings"] == json.loads(out)["warnings"]
+    assert [f"warning: {sentence}" for sentence in summary["warnings"]] == told
+    assert call(run, tmp_path) == 0
+    assert "warning" not in capsys.readouterr().err.lower()
+    assert json.loads((tmp_path / "example" / "summary.json").read_text())["warnings"] == []
+
+
+def test_help_says_what_the_study_does_in_groups(tmp_path, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    monkeypatch.setattr(sys.modules[__name__], "__doc__", "An example.\n\n" + "Claim: it is so. " * 12
+                        + "\n\n    x = 1    a formula " + "word " * 20)  # fmt: skip
+
+    def options(parser):
+        parser.add_argument("--modes", type=int, help="modes")
+
+    assert call(found, tmp_path, "--help", options=options) == 0
+    out = capsys.readouterr().out
+    assert max(len(line) for line in out.splitlines()) <= 80
+    for words in ("Claim: it is so.", "    x = 1    a formula", "options of this study:", "the scene:",
+                  "how it runs:", "where the results go:"):  # fmt: skip
+        assert words in out
+    assert out.index("--modes") < out.index("--scene") < out.index("--quick") < out.index("--out")
+
+
+@pytest.mark.parametrize("name", [n for n in names() if "run_study(" in (FOLDER / f"{n}.py").read_text()])
+def test_every_study_says_in_its_docstring_how_long_it_runs_and_what_it_leaves(name):
+    account = ast.get_docstring(ast.parse((FOLDER / f"{name}.py").read_text())) or ""
+    assert "utputs" in account or "summary.json" in account, "no outputs"
+    assert re.search(r"\d+ (s|min)\b|minute|second", account), "no run time"
+
+
+@pytest.mark.parametrize(
+    ("argv", "words"),
+    [
+        (["--height", "nan"], "argument --height: must be a finite number, not 'nan'"),
+        (["--height=-inf"], "must be a finite number, not '-inf'"),
+        (["--height", "tall"], "must be a finite number, not 'tall'"),
+        (["--points", "0"], "argument --points: must be a whole number of at least 1, not '0'"),
+        (["--points", "1.5"], "must be a whole number of at least 1, not '1.5'"),
+        (["--points"], "argument --points: expected one argument"),
+        (["--kind", "x"], "argument --kind: invalid choice: 'x'"),
+    ],
+)
+def test_wrong_numbers_for_options_of_a_study_are_one_sentence(tmp_path, capsys, argv, words):
+    def options(parser):
+        parser.add_argument("--height", type=float, default=1.0)
+        parser.add_argument("--points", type=int, default=3)
+        parser.add_argument("--kind", choices=("a", "b"), default="a")
+
+    assert call(found, tmp_path, *argv, options=options) == 2
+    assert words in refused(capsys)
+
+
+@pytest.mark.parametrize(
+    ("argv", "words"),
+    [
+        (["--quik"], "there is no option --quik; did you mean --quick?"),
+        (["--zzz"], "unrecognized argument --zzz"),
+        (["stray"], "unrecognized argument stray"),
+        (["--set", "stop.gap_m"], "--set needs section.key=value"),
+        (["--set", "stop.gap_mm=1"], "the nearest valid key is stop.gap_m"),
+        (["--scene", "/"], "cannot be read"),
+        (["--scene", "lettre"], "there is no scene 'lettre'"),
+    ],
+)
+def test_slips_are_answered_with_what_was_meant(tmp_path, capsys, argv, words):
+    assert call(found, tmp_path, *argv) == 2
+    assert words in refused(capsys)
+
+
+def test_out_may_not_be_a_file(tmp_path, capsys):
+    (tmp_path / "file").write_text("")
+    assert run_study("example", "An example.", found, ["--out", str(tmp_path / "file")]) == 2
+    assert "results cannot be written to the folder" in refused(capsys)
+
+
+def program(*words: str, **options: Any) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [sys.executable, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        cwd=studies.ROOT, **options,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["-m", "studies.transitons"], "did you mean python -m studies.transitions?"),
+        (["-m", "studies", "transitons"], "did you mean python -m studies.transitions?"),
+        (["-m", "studies", "modes"], "a study runs as python -m studies.modes"),
+        (["-m", "studies.zzzzzz"], "there is no study zzzzzz; the studies are adequacy, "),
+    ],
+)
+def test_an_unknown_study_is_answered_with_the_nearest(words, sentence):
+    with program(*words) as process:
+        out, err = process.communicate(timeout=60)
+    assert process.returncode == 2 and out == ""
+    assert sentence in err and err.count("\n") == 1
+
+
+def test_modules_below_the_studies_are_no_unknown_study():
+    assert named_by(["-m", "studies.instruments.adequacy.memory"]) is None
+    assert named_by(["-X", "dev", "-m", "studies.modes", "--quick"]) is None
+    assert named_by(["-m", "pytest", "-m", "studies.none"]) is None
+    assert named_by(["-mstudies.none"]) == "none"
+
+
+@pytest.mark.parametrize("options", [["--dump-scene"], ["--dump-scene", "--json"], ["--help"]])
+def test_a_reader_that_has_seen_enough_is_no_error(options):
+    with program("-m", "studies.modes", *options) as process:
+        assert process.stdout is not None and process.stderr is not None
+        process.stdout.close()  # before a line has been written
+        err = process.stderr.read()
+        process.wait(timeout=60)
+    assert process.returncode == 0 and err == ""
+
+
+@pytest.mark.parametrize("stream", [1, 2])
+def test_a_closed_stream_is_no_error(stream):
+    command = f"{shlex.quote(sys.executable)} -m studies.modes --dump-scene --json {stream}>&-"
+    outcome = subprocess.run(
+        ["sh", "-c", command], capture_output=True, text=True, cwd=studies.ROOT, timeout=60, check=False
+    )
+    assert outcome.returncode == 0
+    assert outcome.stderr == "" and (stream == 1 or json.loads(outcome.stdout)["study"] == "modes")
+
+
+def test_ctrl_c_while_a_program_is_importing_is_one_line():
+    with program("-X", "importtime", "-m", "studies.modes") as process:
+        assert process.stderr is not None
+        while "numpy" not in process.stderr.readline():
+            assert process.poll() is None
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=60)
+    assert process.returncode == 130 and "Traceback" not in err
+    told = [line for line in err.splitlines() if not line.startswith("import time:")]
+    assert told == ["interrupted; nothing was stored; go on with: python -X importtime -m studies.modes"]
+
+
+def interrupted(name: str, tmp_path: Path, number: int = signal.SIGINT) -> None:
+    """Start a study, interrupt it in the middle, and look at what it says and leaves."""
+    folder = tmp_path / (programs.MAIN if name == "studies" else name.removeprefix("studies."))
+    with program("-m", name, "--quick", "--out", str(tmp_path)) as process:
+        while not folder.exists() and process.poll() is None:
+            time.sleep(0.02)
+        time.sleep(0.5)
+        begun, running = time.monotonic(), process.poll() is None
+        process.send_signal(number)
+        _, err = process.communicate(timeout=60)
+    if not running or process.returncode == 0:  # done before the signal came
+        assert process.returncode == 0
+        return
+    assert process.returncode == 130, err
+    assert time.monotonic() - begun < PATIENCE + 5.0
+    assert "Traceback" not in err and "Error" not in err, err
+    last = err.splitlines()[-1]
+    assert last.startswith(f"python -m {name}: interrupted after ")
+    assert last.endswith(f"; what was stored is in {folder}; go on with: "
+                         f"python -m {name} --quick --out {tmp_path}")  # fmt: skip
+    assert json.loads((folder / "summary.json").read_text())["status"] == "interrupted"
+    assert not list(folder.glob(".*")), "half-written files are left"
+
+
+QUICKLY_TRIED = ("studies", "studies.hysteresis", "studies.stability")
+"""Threads that go on computing, processes, and the main job."""
+
+
+@pytest.mark.parametrize("name", QUICKLY_TRIED)
+def test_ctrl_c_in_the_middle_of_a_study(name, tmp_path):
+    interrupted(name, tmp_path)
+
+
+def test_a_request_to_end_is_an_interruption_too(tmp_path):
+    interrupted("studies.claims", tmp_path, signal.SIGTERM)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "name", [n for n in names() if "run_study(" in (FOLDER / f"{n}.py").read_text() and n != programs.MAIN]
+)
+def test_ctrl_c_in_the_middle_of_every_study(name, tmp_path):
+    interrupted(f"studies.{name}", tmp_path)
+
+
+def test_interruptions_wait_while_results_are_written_and_end_loops_before():
+    left: list[str] = []
+    with Interruption(lambda: left.append("left")) as interruption:
+        with interruption.calm():
+            signal.raise_signal(signal.SIGINT)
+        assert interruption.count == 1
+    with Interruption(lambda: left.append("left")) as interruption:
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGTERM)
+        interruption.end_program(130)  # of a program only: this test goes on
+    assert left == [] and signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_versions_name_the_optional_packages_that_are_there(monkeypatch):
+    assert {"numpy", "mpmath", "numba"} <= set(versions())
+    monkeypatch.setattr(record_module, "OPTIONAL", ("pytest", "no-such-package"))
+    found = versions()
+    assert found["pytest"] == pytest.__version__ and "no-such-package" not in found
 
 
 def record(tmp_path: Path) -> Record:

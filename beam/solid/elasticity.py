@@ -34,6 +34,7 @@ from scipy.sparse import coo_array, csc_array, csr_array
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
 from ..material import Material
+from ..parameters import require_array, require_kind, require_number
 from ..spring import Tip
 from .swept_mesh import SweptMesh
 
@@ -75,12 +76,20 @@ class SolidSpring:
     drive: tuple[float, float, float] = (0.0, 1.0, 0.0)
 
     def __post_init__(self) -> None:
-        if not any(self.clamped):
-            raise ValueError(f"clamped is {self.clamped} [no unit]; at least one end must be clamped.")
+        require_kind("solid", self.solid, SweptMesh, "a SweptMesh")
+        require_kind("material", self.material, Material, "a Material")
+        require_kind("tip", self.tip, Tip, "a Tip")
+        require_kind("clamped", self.clamped, (tuple, list), "two of True and False")
+        require_number("tip_at", self.tip_at, "m", positive=False)
+        require_array("drive", self.drive, "1", shape=(3,), words="three finite numbers")
+        if len(self.clamped) != 2 or not any(self.clamped):
+            raise ValueError(
+                f"clamped is {self.clamped} [no unit]; at least one end must be clamped, of two"
+            )
         nearest = float(np.min(np.abs(self.solid.stations - self.tip_at)))
         if nearest > 1e-9 * self.solid.centreline.length:
             raise ValueError(
-                f"tip_at is {self.tip_at} m; the nearest station of the mesh is {nearest} m off."
+                f"tip_at is {self.tip_at} m; the nearest station of the mesh is {nearest} m off"
             )
 
 

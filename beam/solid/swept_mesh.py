@@ -19,7 +19,9 @@ import numpy as np
 import skfem as sk
 from numpy.typing import NDArray
 
+from ..assembly import element_counts
 from ..centreline import Centreline
+from ..parameters import require_array, require_kind, require_number, require_whole, require_within
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -37,6 +39,12 @@ class Profile:
     y: NDArray[np.float64]
     z: NDArray[np.float64]
     hollow: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("y", "z"):
+            lines = require_array(name, getattr(self, name), "m", dimensions=1, words="grid lines")
+            if lines.size < 2 or np.any(np.diff(lines) <= 0.0):
+                raise ValueError(f"{name} has {lines.size} grid lines [m]; it must have two or more, rising")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -73,6 +81,10 @@ def rectangle_profile(*, along_n: float, along_z: float, cells: int, through: in
     through : int
         Across the shorter side, or across half of it where that is along z.
     """
+    for name, value in (("along_n", along_n), ("along_z", along_z)):
+        require_number(name, value, "m", positive=True)
+    for name, number in (("cells", cells), ("through", through)):
+        require_whole(name, number, "[1]")
     if along_z >= along_n:
         y = np.linspace(-0.5 * along_n, 0.5 * along_n, through + 1)
         return Profile(y=y, z=_towards_edge(0.5 * along_z, along_n, cells))
@@ -94,6 +106,10 @@ def channel_profile(
     cells : tuple of two ints
         Along a flange and along half of the web; the sheet has one through its thickness.
     """
+    for name, value in (("width", width), ("flange", flange), ("thickness", thickness)):
+        require_number(name, value, "m", positive=True)
+    require_within("centroid", centroid, "m")
+    element_counts(cells, 2)
     web = 0.5 * thickness - centroid
     y = np.concatenate(([web - thickness], np.linspace(web, web + flange, cells[0] + 1)))
     inner = 0.5 * width - thickness
@@ -128,9 +144,12 @@ def sweep(
     ValueError
         For a profile that reaches the centre of a bend.
     """
+    require_kind("profile", profile, Profile, "a Profile")
+    require_kind("centreline", centreline, Centreline, "a Centreline")
+    elements = element_counts(elements, len(centreline.pieces))
     reach = float(np.max(np.outer(centreline.curvatures, profile.y)))
     if reach >= 1.0:
-        raise ValueError(f"y reaches {reach:.3g} bend radii [1]; it must stay below 1.")
+        raise ValueError(f"y reaches {reach:.3g} bend radii [1]; it must stay below 1")
     stations = [np.zeros(1)]
     for count, start, end in zip(elements, centreline.joints[:-1], centreline.joints[1:], strict=True):
         piece = np.linspace(start, end, count + 1)

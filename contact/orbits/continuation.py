@@ -21,11 +21,15 @@ from itertools import pairwise
 import numpy as np
 from scipy.optimize import brentq
 
+from beam.parameters import require_array, require_kind, require_within
 from contact.errors import ContactError
 from contact.orbits.kick import KickFamily
 from contact.orbits.shooting import PeriodicOrbit, Shooting
 
 __all__ = ["Branch", "Event", "fold_along_frequency", "fold_of", "follow"]
+
+GREATEST_STEP = 10.0
+"""Longest step of log v: over four decades at once."""
 
 SMALLEST_STEP = 1e-6
 """Step of log v at which a branch is given up: the orbit then changes its character, not its size."""
@@ -121,6 +125,11 @@ def follow(family: Shooting, start: PeriodicOrbit, *, low: float, high: float, s
     step : float
         Largest step of log v.
     """
+    require_kind("family", family, Shooting, "a Shooting family")
+    require_kind("start", start, PeriodicOrbit, "a PeriodicOrbit")
+    for name, value in (("low", low), ("high", high)):
+        require_within(name, value, "m/s")
+    require_within("step", step, "[1]", low=SMALLEST_STEP, high=GREATEST_STEP)
     if not 0 < low < start.speed < high:
         raise ValueError(
             f"low and high are {low} and {high} m/s; they must enclose the start, {start.speed:g} m/s"
@@ -172,6 +181,8 @@ def fold_of(family: Shooting, near: PeriodicOrbit | None = None) -> PeriodicOrbi
     NotPeriodic
         If the orbits around the place where the fold should be are not found.
     """
+    require_kind("family", family, Shooting, "a Shooting family")
+    require_kind("near", near, (PeriodicOrbit, type(None)), "a PeriodicOrbit or None")
     if near is None:
         kick = KickFamily(oscillator=family.oscillator, period=family.period).fold()
         if kick is None:
@@ -196,8 +207,9 @@ def fold_along_frequency(
     family: Shooting, frequencies: np.ndarray, near: PeriodicOrbit | None = None
 ) -> list[PeriodicOrbit | None]:
     """The folds at `frequencies` [Hz], each started from the one before; None where there is none."""
+    require_kind("family", family, Shooting, "a Shooting family")
     found: list[PeriodicOrbit | None] = []
-    for frequency in frequencies:
+    for frequency in require_array("frequencies", frequencies, "Hz", dimensions=1, words="drive frequencies"):
         drive = replace(family.oscillator.drive, frequency=float(frequency))  # type: ignore[type-var]
         here = replace(family, oscillator=replace(family.oscillator, drive=drive))
         fold = None

@@ -18,19 +18,15 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from beam.parameters import require, require_array, require_whole, require_within
 from contact.flight import Motion, damped_frequency, flow_matrix
 from contact.laws import NEWTON
+from contact.nordmark import restitution_of
 
 __all__ = ["DrivenModes", "modal_flow"]
 
 Array = NDArray[np.float64]
 SINGULAR = 1e-13  # a D below this is rounding of 1 - tr N + G, terms of size 1: the mode is back after m/f
-
-
-def require(condition: bool, sentence: str) -> None:
-    """Raise ValueError with `sentence` unless `condition` holds."""
-    if not condition:
-        raise ValueError(sentence)
 
 
 def modal_flow(omega: Array, decay_rate: Array, time: float) -> Array:
@@ -80,24 +76,18 @@ class DrivenModes:
         units = {"omega": "rad/s", "decay_rate": "1/s", "phi": "kg^-0.5", "participation": "kg^0.5"}
         size = np.shape(self.omega)
         for name, unit in units.items():
-            row = np.array(getattr(self, name), dtype=float)
-            require(
-                row.ndim == 1 and row.shape == size and row.size > 0 and bool(np.all(np.isfinite(row))),
-                f"{name} has shape {row.shape}; it must be a row of one finite number [{unit}] for each mode",
-            )
-            row.setflags(write=False)
+            words = "a row of one finite number for each mode"
+            row = require_array(name, getattr(self, name), unit, dimensions=1, words=words)
+            require(row.size > 0 and row.shape == size, f"{name} has shape {row.shape}; it must be {words}")
             object.__setattr__(self, name, row)
         for name in ("omega", "decay_rate"):
             least = float(getattr(self, name).min())
             require(least >= 0.0, f"{name} holds {least} {units[name]}; no entry may be negative")
         require(bool(np.any(self.phi != 0.0)), "phi is zero in every mode; the tip must move in one of them")
         for name, unit in (("drive_frequency", "Hz"), ("gap", "m")):
-            value = getattr(self, name)
-            require(0.0 < value < math.inf, f"{name} is {value} {unit}; it must be finite and above zero")
-        e, m = self.restitution, self.period
-        require(0.0 <= e <= 1.0, f"restitution is {e}; it must lie between 0 and 1")
-        whole = m >= 1 and m % 1 == 0
-        require(whole, f"period is {m} drive periods; it must be a whole number, one or more")
+            require_within(name, getattr(self, name), unit, above=0)
+        require_within("restitution", self.restitution, "[1]", low=0, high=1)
+        m = require_whole("period", self.period, "drive periods")
         free = (self.decay_rate == 0.0) & (self.omega == self.angular_frequency)
         f = self.drive_frequency
         require(not np.any(free), f"drive_frequency is {f} Hz, that of an undamped mode; it must differ")
@@ -115,8 +105,8 @@ class DrivenModes:
         period: int, gap: float = 1.0,
     ) -> Self:  # fmt: skip
         """Those of Eq. (1), from f [Hz], damped free period T [s], mu [1/s], tau and m."""
-        known = 0.0 < free_period < math.inf
-        require(known, f"free_period is {free_period} s; it must be finite and above zero")
+        require_within("free_period", free_period, "s", above=0)
+        require_within("decay_rate", decay_rate, "1/s", low=0)
         omega, one = math.hypot(2.0 * math.pi / free_period, 0.5 * decay_rate), np.ones(1)
         return cls(
             omega=omega * one, decay_rate=decay_rate * one, phi=one, participation=one,
@@ -131,12 +121,7 @@ class DrivenModes:
 
         `restitution` replaces the law's `local_restitution`; TypeError if there is neither.
         """
-        if restitution is None:
-            try:
-                restitution = float(oscillator.stop.law.local_restitution)
-            except AttributeError:
-                law = type(oscillator.stop.law).__name__
-                raise TypeError(f"law of the stop is a {law}; it has no restitution, so give one") from None
+        restitution = restitution_of(oscillator) if restitution is None else restitution
         require(oscillator.load is None, "load is given; it must be None for these orbits")
         require(oscillator.drive is not None, "drive is None; it must be a HarmonicDrive")
         model, drive = oscillator.model, oscillator.drive

@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
+from beam.parameters import is_whole, require, require_array, require_kind, require_within, shown
 from contact.crossing import CROSSES, first_crossing
 from contact.errors import NotPeriodic
 from contact.flight import Motion
@@ -116,18 +117,20 @@ class KickFamily:
     modes: int | None = None
 
     def __post_init__(self) -> None:
+        require_kind("oscillator", self.oscillator, ImpactOscillator, "an ImpactOscillator")
         if self.oscillator.drive is None:
             raise ValueError("drive is None; orbits of a driven spring need a HarmonicDrive")
         if self.oscillator.load is not None:
             raise ValueError(
                 "load is given; the orbits from kicks are those of a spring without constant load"
             )
-        if not (isinstance(self.period, int) and self.period >= 1):
+        if not is_whole(self.period, 1):
             raise ValueError(
-                f"period is {self.period}; it must be a whole number of drive periods, one or more"
+                f"period is {shown(self.period)}; it must be a whole number of drive periods, one or more"
             )
-        if self.modes is not None and not 1 <= self.modes <= self.oscillator.n_modes:
-            raise ValueError(f"modes is {self.modes}; it must lie between 1 and {self.oscillator.n_modes}")
+        most = self.oscillator.n_modes
+        if self.modes is not None and not (is_whole(self.modes, 1) and self.modes <= most):
+            raise ValueError(f"modes is {shown(self.modes)}; it must lie between 1 and {most}")
 
     @cached_property
     def response(self) -> complex:
@@ -161,8 +164,7 @@ class KickFamily:
         NotPeriodic
             If the collision does not end within half a drive period.
         """
-        if not 0 < speed < np.inf:
-            raise ValueError(f"speed is {speed} m/s; it must be finite and above zero")
+        require_within("speed", speed, "m/s", above=0)
         gap, n = self.oscillator.stop.gap, self.oscillator.n_modes
         w = np.zeros((n, 2)) if deviations is None else deviations
         p, r = self._motion.phi @ w
@@ -242,6 +244,8 @@ class KickFamily:
             Range of approach velocities over 2 pi f gap, in which the amplitude is searched on a logarithmic
             grid and then minimised by Brent's method.
         """
+        low, high = require_array("speeds", speeds, "[1]", shape=(2,), words="two rising numbers above zero")
+        require(0.0 < low < high, f"speeds is {shown(speeds)}; it must be two rising numbers above zero")
         w = self.oscillator.drive.angular_frequency  # type: ignore[union-attr]
         unit = w * self.oscillator.stop.gap
 

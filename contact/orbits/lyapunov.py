@@ -42,6 +42,7 @@ from typing import Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from beam.parameters import require_kind, require_whole, require_within, shown
 from contact.errors import NotPeriodic, UnresolvedCrossing
 from contact.flight import steady_motion
 from contact.orbits.driven_modes import modal_flow
@@ -122,8 +123,15 @@ class Exponents:
 
     @property
     def largest(self) -> float:
-        """The first of them: above zero in chaos."""
         return float(self.values[0])
+
+
+def require_system(system: object) -> None:
+    """TypeError unless `system` has derivatives."""
+    if isinstance(system, type) or not callable(getattr(system, "jacobians", None)):
+        raise TypeError(
+            f"system is {shown(system)}; it must be a strobed motion with derivatives, as of_oscillator gives"
+        )
 
 
 def _weighted(rates: Array, spans: Array) -> tuple[Array, float]:
@@ -158,8 +166,9 @@ def map_exponents(system: Differentiable[S], state: S, count: int, *, align: int
     ContactError
         If the motion could not be followed, or the tip came to rest on the wall.
     """
-    if count < 2:
-        raise ValueError(f"count is {count} steps; an average needs two or more")
+    require_system(system)
+    count = require_whole("count", count, "steps", low=2, why=": an average needs them")
+    align = require_whole("align", align, "steps", low=0)
     frame, rates, spans, done = np.eye(system.coordinates(state).size), [], [], 0
     while done < align + count:
         found, state = system.jacobians(state, min(BLOCK, align + count - done))
@@ -175,6 +184,8 @@ def map_exponents(system: Differentiable[S], state: S, count: int, *, align: int
 
 def orbit_exponents(system: Differentiable[S], state: S, period: int) -> Exponents:
     """Exponents log|mu_i|/m of the periodic orbit of `period` m on which `state` lies, per step."""
+    require_system(system)
+    period = require_whole("period", period, "drive periods")
     matrix = np.eye(system.coordinates(state).size)
     done = 0
     while done % period or done == 0:  # a strobe in contact is never the last: m periods later it is again
@@ -204,8 +215,10 @@ def divergence_rate(
     seed : int
         Of the direction in which the second motion starts.
     """
-    if not duration > 0:
-        raise ValueError(f"duration is {duration} s; it must be above zero")
+    require_system(system)
+    require_within("duration", duration, "s", above=0)
+    require_within("align", align, "s", low=0)
+    require_whole("seed", seed, "[1]", low=0)
     size = SEPARATION * system.scale
     start = np.random.default_rng(seed).standard_normal(system.coordinates(state).size)
     beside = system.moved(state, size * start / np.linalg.norm(start))
@@ -375,6 +388,7 @@ class _OfNordmark:
 
 def of_oscillator(strobed: StroboscopicMap) -> Differentiable[State]:
     """The derivatives of the period map of an oscillator at its amplitude."""
+    require_kind("strobed", strobed, StroboscopicMap, "a StroboscopicMap")
     if strobed.oscillator.drive is None:
         raise ValueError("drive is None; a period map needs a HarmonicDrive")
     return _OfOscillator(oscillator=strobed.oscillator)
@@ -382,4 +396,5 @@ def of_oscillator(strobed: StroboscopicMap) -> Differentiable[State]:
 
 def of_nordmark(strobed: StrobedNordmarkMap) -> Differentiable[Array]:
     """The derivatives of a Nordmark map."""
+    require_kind("strobed", strobed, StrobedNordmarkMap, "a StrobedNordmarkMap")
     return _OfNordmark(strobed=strobed)

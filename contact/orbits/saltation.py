@@ -20,6 +20,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from beam.parameters import require, require_array, require_within
+
 __all__ = ["monodromy", "newton_saltation", "sorted_multipliers"]
 
 Array = NDArray[np.float64]
@@ -37,6 +39,12 @@ def newton_saltation(phi: Array, restitution: float, before: Array, after: Array
     speed : float
         Approach speed v [m/s].
     """
+    phi = require_array("phi", phi, "kg^-0.5", dimensions=1, words="a row of numbers")
+    before = require_array("before", before, "m kg^0.5/s^2", shape=phi.shape, words="a row of numbers")
+    after = require_array("after", after, "m kg^0.5/s^2", shape=phi.shape, words="a row of numbers")
+    require_within("restitution", restitution, "[1]", low=0, high=1)
+    require_within("speed", speed, "m/s", above=0)
+    require(bool(np.any(phi != 0.0)), "phi is zero in every mode; the tip must move in one of them")
     n = phi.size
     project = np.eye(n) - (1.0 + restitution) / (phi @ phi) * np.outer(phi, phi)
     matrix = np.zeros((2 * n, 2 * n))
@@ -48,11 +56,17 @@ def newton_saltation(phi: Array, restitution: float, before: Array, after: Array
 
 def monodromy(flow: Array, saltation: Array) -> Array:
     """Phi S, from the flows of the modes, shape (n_modes, 2, 2), and the saltation matrix."""
+    flow = require_array("flow", flow, "[1]", dimensions=3, words="a flow (2, 2) for each mode")
+    size = 2 * len(flow)
+    saltation = require_array("saltation", saltation, "[1]", shape=(size, size), words="a square matrix")
     free = np.block([[np.diag(flow[:, i, j]) for j in range(2)] for i in range(2)])
     return np.asarray(free @ saltation)
 
 
 def sorted_multipliers(matrix: Array) -> NDArray[np.complex128]:
     """Eigenvalues, largest modulus first."""
-    values = np.linalg.eigvals(matrix).astype(complex)
+    square = require_array("matrix", matrix, "[1]", dimensions=2, words="a square matrix")
+    if square.shape[0] != square.shape[1]:
+        raise ValueError(f"matrix has shape {square.shape}; it must be a square matrix")
+    values = np.linalg.eigvals(square).astype(complex)
     return np.asarray(values[np.argsort(-np.abs(values))])

@@ -24,6 +24,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from beam.parameters import is_whole, require_kind, require_within, shown
 from contact.crossing import CROSSES, FREE, first_crossing
 from contact.errors import NotPeriodic
 from contact.flight import Motion, steady_motion
@@ -138,10 +139,11 @@ class Shooting:
     impacts: int = 1
 
     def __post_init__(self) -> None:
+        require_kind("oscillator", self.oscillator, ImpactOscillator, "an ImpactOscillator")
         if self.oscillator.stop.law.code == DELAYED:
             raise TypeError("law of the stop is DelayedRestitution; its orbits follow from a KickFamily")
-        if not (isinstance(self.impacts, int) and self.impacts >= 1):
-            raise ValueError(f"impacts is {self.impacts}; it must be a whole number, one or more")
+        if not is_whole(self.impacts, 1):
+            raise ValueError(f"impacts is {shown(self.impacts)}; it must be a whole number, one or more")
         _ = self.kicks
 
     @cached_property
@@ -334,19 +336,22 @@ class Shooting:
         NotPeriodic
             If there is none, or Newton's method does not find it.
         """
-        if not 0 < speed < np.inf:
-            raise ValueError(f"speed is {speed} m/s; it must be finite and above zero")
+        require_within("speed", speed, "m/s", above=0)
+        require_kind("near", near, (PeriodicOrbit, type(None)), "a PeriodicOrbit or None")
         start = self.guess(self.kicks.orbit(speed)) if near is None else self.unknowns(near)
         return self._solve(start, speed=speed, amplitude=None)
 
     def at_excess(self, excess: float, near: PeriodicOrbit) -> PeriodicOrbit:
         """The orbit at F/F_g - 1 = `excess` that is next to `near`."""
+        require_within("excess", excess, "[1]", above=-1)
+        require_kind("near", near, PeriodicOrbit, "a PeriodicOrbit")
         amplitude = (1.0 + excess) * self.oscillator.grazing_amplitude()
         return self._solve(self.unknowns(near), speed=None, amplitude=amplitude)
 
     def from_state(self, state: State) -> PeriodicOrbit:
         """The orbit on which a simulated motion has settled: its first touch from `state` starts the
         search."""
+        require_kind("state", state, State, "a State")
         run = simulate(self.oscillator, state, periods=self.period + 1)
         hits = run.impacts.kind == 0
         if not np.any(hits):

@@ -37,8 +37,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from beam.parameters import require, require_array, require_within
 from contact.crossing import CROSSES, FREE, first_crossing
-from contact.orbits.driven_modes import DrivenModes, modal_flow, require
+from contact.orbits.driven_modes import DrivenModes, modal_flow
 from contact.orbits.saltation import monodromy, newton_saltation, sorted_multipliers
 
 __all__ = ["MaximalFamily", "MaximalFlight", "SingleImpactOrbit", "modal_flow"]
@@ -64,7 +65,7 @@ class MaximalFlight:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SingleImpactOrbit:
-    """One orbit of a `MaximalFamily`, its `family`.
+    """One orbit of a `MaximalFamily`.
 
     `speed` v of approach [m/s]; `amplitude` Z of the base [m]; `excess` F/F_g - 1 [1]; `flight` from the
     impact on; `before`: deviations (u, u') just before the impact, shape (2, n_modes).
@@ -82,7 +83,7 @@ class SingleImpactOrbit:
 
         At the start of the flight it is the state after the impact, at its end that before the next one.
         """
-        family, flight, times = self.family, self.flight, np.asarray(time, dtype=float)
+        family, flight, times = self.family, self.flight, require_array("time", time, "s", words="times")
         since, slack = times.ravel() - flight.start, 1e-9 * flight.duration  # rounding of the caller's times
         inside = np.all((since >= -slack) & (since <= flight.duration + slack))
         require(bool(inside), f"time leaves the flight; it must lie within {flight.duration} s of its start")
@@ -193,13 +194,13 @@ class MaximalFamily(DrivenModes):
     def excess(self, speed: float) -> float:
         """F/F_g - 1 of the orbit with approach speed `speed` [m/s]."""
         s, b = self.arms
-        v = speed / self.gap
+        v = require_within("speed", speed, "m/s", low=0) / self.gap
         square = v * ((s * s + b * b) * v - 2.0 * s)  # (A/gap)^2 - 1, without the cancellation
         return square / (1.0 + math.sqrt(max(1.0 + square, 0.0)))
 
     def orbit(self, speed: float) -> SingleImpactOrbit:
         """The orbit that meets the wall at `speed`, above zero [m/s]."""
-        require(0.0 < speed < math.inf, f"speed is {speed} m/s; it must be finite and above zero")
+        require_within("speed", speed, "m/s", above=0)
         s, b = self.arms
         phase = math.atan2(self.gap - s * speed, b * speed) - float(np.angle(self.tip_response))
         excess = self.excess(speed)
@@ -215,7 +216,7 @@ class MaximalFamily(DrivenModes):
 
     def orbits(self, excess: float) -> tuple[SingleImpactOrbit, ...]:
         """The orbits at F/F_g - 1 = `excess` > -1, 0 to 2, by rising speed (of two, saddle, then node)."""
-        require(-1.0 < excess < math.inf, f"excess is {excess}; it must be finite and above -1")
+        require_within("excess", excess, "[1]", above=-1)
         s, b = self.arms
         square, above = s * s + b * b, excess * (2.0 + excess)
         if s * s + square * above < 0.0:

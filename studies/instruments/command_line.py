@@ -15,31 +15,37 @@
 Exit codes: 0 done; 2 wrong use, told in one sentence; 3 finished with failed cells (`failed_cells` in what
 `run` returns, or a failed computation); 130 interrupted, with what was stored kept and the command that goes
 on. What is meant for people goes to standard error; with --json standard output carries one JSON object and
-nothing else.
+nothing else. Suspicious values of the scene (`plausibility`) are told before the run, one line "warning: ..."
+each, and kept as `warnings` in the summary.
 """
 
 from __future__ import annotations
 
 import argparse
-import contextlib
-import io
 import os
 import shlex
 import sys
 import traceback
-from collections.abc import Callable, Iterator, Mapping, Sequence
+import warnings
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NoReturn, TextIO
+from typing import Any, TextIO
 
+from beam import SuspiciousValue
 from studies import single_blas_thread
 from studies.instruments.adequacy.fitted_scene import Need, fitted
+from studies.instruments.interruption import INTERRUPTED, Interruption
+from studies.instruments.options import Options, WrongUse, parser_of
 from studies.instruments.progress import Progress, duration
 from studies.instruments.record import SCHEMA, Record, json_text
 from studies.instruments.scene import Scene
 from studies.instruments.scene_file import dump_scene, read_scene
+from studies.instruments.standard_output import kept_clean, tell
 
-DONE, WRONG_USE, FAILED_CELLS, INTERRUPTED = 0, 2, 3, 130
+__all__ = ["DONE", "FAILED_CELLS", "INTERRUPTED", "WRONG_USE", "Request", "WrongUse", "run_study"]
+
+DONE, WRONG_USE, FAILED_CELLS = 0, 2, 3
 TRACEBACK = "GRAZING_SPRING_TRACEBACK"
 """Set to 1 in the environment, it shows where a refused input was noticed."""
 
@@ -59,83 +65,37 @@ class Request:
 
 
 Run = Callable[[Scene, Request], Mapping[str, Any]]
-Options = Callable[[argparse.ArgumentParser], None]
 
 
-class WrongUse(ValueError):
-    """The arguments make no sense; the message is one sentence."""
+@dataclass(frozen=True, kw_only=True)
+class _Study:
+    """A study as the command line knows it."""
 
-
-class _Parser(argparse.ArgumentParser):
-    output: TextIO | None = None
-
-    def print_help(self, file: Any = None) -> None:
-        super().print_help(self.output if file is None else file)
-
-    def error(self, message: str) -> NoReturn:
-        raise WrongUse(f"{message} (--help lists the options)")
-
-
-def _positive(text: str) -> int:
-    try:
-        number = int(text)
-    except ValueError:
-        number = 0
-    if number < 1:
-        raise argparse.ArgumentTypeError(f"must be a whole number of at least 1, not {text!r}")
-    return number
-
-
-def _parser(command: str, description: str, options: Options | None) -> _Parser:
-    parser = _Parser(prog=command, description=description, allow_abbrev=False)
-    parser.add_argument("--scene", default="letter", metavar="FILE.toml",
-                        help="scene: a file, or the name of one in studies/scenes (default: letter)")
-    parser.add_argument("--set", action="append", default=[], metavar="section.key=value", dest="overrides",
-                        help="change one key of the scene; may be repeated")
-    parser.add_argument("--quick", action="store_true", help="a small form of the study, for a first look")
-    parser.add_argument("--out", default="results", metavar="DIR",
-                        help="folder in which the study makes its own (default: results)")
-    parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
-    parser.add_argument("--workers", type=_positive, default=os.cpu_count() or 1, metavar="N",
-                        help="threads or processes (default: one for each core)")
-    parser.add_argument("--executor", default="", metavar="URL",
-                        help="where a sweep runs: threads, processes or dask://host:port")
-    parser.add_argument("--dump-scene", action="store_true",
-                        help="print every key of the scene with unit, default and provenance, and stop")
-    if options is not None:
-        options(parser)
-    return parser
-
-
-@contextlib.contextmanager
-def _standard_output_kept_clean() -> Iterator[TextIO]:
-    """Yield standard output; whatever else is printed meanwhile, even by a worker, goes to standard error."""
-    wanted = sys.stdout
-    kept: int | None = None
-    with contextlib.suppress(AttributeError, OSError, ValueError, io.UnsupportedOperation):
-        wanted.flush()
-        if wanted.fileno() == 1 and sys.stderr.fileno() == 2:
-            kept = os.dup(1)
-            os.dup2(2, 1)
-    try:
-        if kept is None:
-            with contextlib.redirect_stdout(sys.stderr):
-                yield wanted
-        else:
-            with contextlib.redirect_stdout(sys.stderr), open(os.dup(kept), "w", encoding="utf-8") as output:
-                yield output
-    finally:
-        if kept is not None:
-            os.dup2(kept, 1)
-            os.close(kept)
+    name: str
+    command: str
+    description: str
+    run: Run
+    options: Options | None
+    needs: Sequence[Need]
 
 
 def _say(words: str) -> None:
-    print(words, file=sys.stderr, flush=True)
+    tell(words, sys.stderr)
 
 
 def _one_sentence(error: BaseException) -> str:
     return " ".join(str(error).split()) or f"{type(error).__name__} without a message"
+
+
+def _read(arguments: argparse.Namespace) -> tuple[Scene, tuple[str, ...]]:
+    """The scene, and what is suspicious about it."""
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always", SuspiciousValue)
+        scene = read_scene(arguments.scene, arguments.overrides)
+    for warning in found:
+        if not issubclass(warning.category, SuspiciousValue):
+            warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
+    return scene, tuple(str(w.message) for w in found if issubclass(w.category, SuspiciousValue))
 
 
 def _computed(run: Run, scene: Scene, request: Request) -> tuple[int, str, Mapping[str, Any]]:
@@ -143,7 +103,9 @@ def _computed(run: Run, scene: Scene, request: Request) -> tuple[int, str, Mappi
     from contact.errors import ContactError
 
     try:
-        results = run(scene, request)
+        with warnings.catch_warnings():  # a study varies the scene on purpose; what the user gave is told
+            warnings.simplefilter("ignore", SuspiciousValue)
+            results = run(scene, request)
     except KeyboardInterrupt:
         return INTERRUPTED, "interrupted", {}
     except ContactError as error:
@@ -153,33 +115,29 @@ def _computed(run: Run, scene: Scene, request: Request) -> tuple[int, str, Mappi
     return DONE, "done", results
 
 
-def _study(
-    name: str,
-    command: str,
-    description: str,
-    run: Run,
-    argv: Sequence[str],
-    options: Options | None,
-    needs: Sequence[Need],
-    output: TextIO,
-) -> int:
-    parser = _parser(command, description, options)
+def _performed(study: _Study, argv: Sequence[str], output: TextIO) -> int:
+    account = getattr(sys.modules.get(study.run.__module__), "__doc__", None) or ""
+    parser = parser_of(study.command, study.description, account, study.options)
     parser.output = output
-    arguments = parser.parse_args(argv)
-    scene = read_scene(arguments.scene, arguments.overrides)
+    arguments = parser.read(argv)
+    scene, suspicious = _read(arguments)
     if arguments.dump_scene:
-        values = {"schema": SCHEMA, "study": name, "scene": scene.as_dict(), "provenance": scene.provenance()}
-        print(json_text(values) if arguments.json else dump_scene(scene).rstrip(), file=output)
+        values = {"schema": SCHEMA, "study": study.name, "scene": scene.as_dict(),
+                  "provenance": scene.provenance()}  # fmt: skip
+        tell(json_text(values) if arguments.json else dump_scene(scene).rstrip(), output)
         return DONE
     model = ""
-    if needs and scene.drive.kind == "harmonic":
-        scene, model = fitted(scene, needs, _say)
+    if study.needs and scene.drive.kind == "harmonic":
+        scene, model = fitted(scene, study.needs, _say)
+    for sentence in suspicious:  # of a scene that is not refused
+        _say(f"warning: {sentence}")
     record = Record(
-        study=name,
-        folder=Path(arguments.out) / name,
+        study=study.name,
+        folder=Path(arguments.out) / study.name,
         scene=scene,
-        command=shlex.join([*command.split(), *argv]),
+        command=shlex.join([*study.command.split(), *argv]),
         settings={"quick": arguments.quick, "workers": arguments.workers, "executor": arguments.executor},
+        warnings=suspicious,
     )
     request = Request(
         quick=arguments.quick,
@@ -188,19 +146,27 @@ def _study(
         options=arguments,
         record=record,
     )
-    code, status, results = _computed(run, scene, request)
-    summary = record.close(status, {**results, "model_choice": model} if model else results)
-    if model and code in (DONE, FAILED_CELLS):
-        _say(model)
-    took = duration(record.wall_time)
-    if code == INTERRUPTED:
-        _say(f"{command}: interrupted after {took}; what was stored is in {record.folder}; go on with: "
-             f"{record.command}")
-    else:
-        _say(f"{command}: {status} in {took}; {len(record.files)} files in {record.folder}"
-             + (f"; {results['failure']}" if "failure" in results else ""))
-    if arguments.json:
-        print(json_text({**summary, "exit_code": code}), file=output)
+
+    def close(code: int, status: str, results: Mapping[str, Any]) -> None:
+        summary = record.close(status, {**results, "model_choice": model} if model else results)
+        if model and code in (DONE, FAILED_CELLS):
+            _say(model)
+        took = duration(record.wall_time)
+        if code == INTERRUPTED:
+            _say(f"{study.command}: interrupted after {took}; what was stored is in {record.folder}; go on "
+                 f"with: {record.command}")
+        else:
+            _say(f"{study.command}: {status} in {took}; {len(record.files)} files in {record.folder}"
+                 + (f"; {results['failure']}" if "failure" in results else ""))
+        if arguments.json:
+            tell(json_text({**summary, "exit_code": code}), output)
+
+    with Interruption(lambda: close(INTERRUPTED, "interrupted", {})) as interruption:
+        code, status, results = _computed(study.run, scene, request)
+        with interruption.calm():
+            close(code, status, results)
+        if code == INTERRUPTED:
+            interruption.end_program(code)
     return code
 
 
@@ -230,25 +196,26 @@ def run_study(
     single_blas_thread()
     arguments = list(sys.argv[1:] if argv is None else argv)
     command = f"python -m {module or f'studies.{name}'}"
-    with _standard_output_kept_clean() as output:
+    study = _Study(
+        name=name, command=command, description=description, run=run, options=options, needs=needs
+    )
+    with kept_clean() as output:
         try:
-            try:
-                return _study(name, command, description, run, arguments, options, needs, output)
-            except SystemExit as leaving:  # --help
-                return DONE if leaving.code in (None, 0) else WRONG_USE
-            except KeyboardInterrupt:
-                _say(f"{command}: interrupted; nothing was stored; go on with: "
-                     f"{shlex.join([*command.split(), *arguments])}")
-                return INTERRUPTED
-            except (ValueError, TypeError, OSError) as error:
-                if os.environ.get(TRACEBACK) == "1":
-                    traceback.print_exc()
-                sentence = _one_sentence(error)
-                _say(f"{command}: {sentence}")
-                if "--json" in arguments:
-                    refusal = {"schema": SCHEMA, "study": name, "status": "refused", "error": sentence}
-                    print(json_text({**refusal, "exit_code": WRONG_USE}), file=output)
-                return WRONG_USE
-        finally:
-            with contextlib.suppress(BrokenPipeError):
-                output.flush()
+            return _performed(study, arguments, output)
+        except SystemExit as leaving:  # --help
+            return DONE if leaving.code in (None, 0) else WRONG_USE
+        except KeyboardInterrupt:
+            _say(f"{command}: interrupted; nothing was stored; go on with: "
+                 f"{shlex.join([*command.split(), *arguments])}")
+            return INTERRUPTED
+        except BrokenPipeError:  # nobody reads standard error any more
+            return INTERRUPTED
+        except (ValueError, TypeError, OSError) as error:
+            if os.environ.get(TRACEBACK) == "1":
+                traceback.print_exc()
+            sentence = _one_sentence(error)
+            _say(f"{command}: {sentence}")
+            if "--json" in arguments:
+                refusal = {"schema": SCHEMA, "study": name, "status": "refused", "error": sentence}
+                tell(json_text({**refusal, "exit_code": WRONG_USE}), output)
+            return WRONG_USE

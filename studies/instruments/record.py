@@ -2,7 +2,7 @@
 
     results/NAME/summary.json     what was found; NaN and infinity are null
                  *.npz, *.csv     arrays and tables
-                 *.png, *.pdf     figures, drawn from what was stored
+                 *.png, *.pdf     figures, drawn from what was stored; what each shows as NAME_drawn.csv
                  manifest.json    versions, parameters with provenance, command, commit, wall time
 
 Every file is complete or absent (`atomic_file`). What an interrupted study has stored until then stays.
@@ -33,6 +33,9 @@ from studies.instruments.scene import Scene
 SCHEMA = 1
 """Number of the layout of summary.json, manifest.json and the JSON on standard output."""
 
+OPTIONAL = ("heyoka", "scikit-sundae", "distributed", "imageio", "imageio-ffmpeg", "trame")
+"""Packages that add something when they are there; told only then."""
+
 PACKAGES = (
     "grazing-spring",
     "numpy",
@@ -42,6 +45,7 @@ PACKAGES = (
     "pyvista",
     "numba",
     "matplotlib",
+    "mpmath",
     "rich",
 )
 
@@ -69,13 +73,15 @@ def json_text(value: Any, *, indent: int | None = 2) -> str:
 
 
 def versions() -> dict[str, str | None]:
-    """Versions of Python and of the packages that results depend on; None for one that is not installed."""
+    """Versions of Python and of the packages that results depend on, None for one that is not installed, and
+    of the optional ones that are."""
     found: dict[str, str | None] = {"python": platform.python_version()}
-    for name in PACKAGES:
+    for name in (*PACKAGES, *OPTIONAL):
         try:
             found[name] = version(name)
         except PackageNotFoundError:
-            found[name] = None
+            if name in PACKAGES:
+                found[name] = None
     return found
 
 
@@ -98,7 +104,7 @@ def git_state(root: Path = ROOT) -> dict[str, Any]:
     return {"commit": git("rev-parse", "--verify", "HEAD"), "dirty": None if status is None else status != ""}
 
 
-RESERVED = ("schema", "study", "status", "settings", "provenance", "folder", "wall_time_s")
+RESERVED = ("schema", "study", "status", "settings", "provenance", "warnings", "folder", "wall_time_s")
 """Keys of a summary that a study does not name its results by."""
 
 
@@ -111,6 +117,7 @@ class Record:
     scene: Scene
     command: str
     settings: Mapping[str, Any] = field(default_factory=dict)
+    warnings: Sequence[str] = ()
     files: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -165,11 +172,18 @@ class Record:
         return self._write(f"{name}.csv", stream.getvalue().encode())
 
     def write_figure(self, figure: Any, name: str) -> None:
-        """NAME.png and NAME.pdf."""
-        from studies.instruments.figures import save  # matplotlib is slow to import and not always needed
+        """NAME.png, NAME.pdf and what they show: NAME_drawn.csv, for a map in panel a NAME_drawn_a.csv."""
+        # matplotlib is slow to import and not always needed
+        from studies.instruments.drawn_points import drawn_maps, drawn_points
+        from studies.instruments.figures import save
 
         for path in save(figure, self.folder, name):
             self._note(path)
+        points = drawn_points(figure)
+        if any(points.values()):  # a rendered body has none
+            self.write_table(f"{name}_drawn", points)
+        for panel, columns in drawn_maps(figure).items():
+            self.write_table(f"{name}_drawn_{panel[:2] or 'map'}", columns)
 
     def close(self, status: str, results: Mapping[str, Any]) -> dict[str, Any]:
         """Write summary.json and manifest.json; returns the summary."""
@@ -180,6 +194,7 @@ class Record:
             "status": status,
             "settings": self.settings,
             "provenance": self.scene.provenance(),
+            "warnings": list(self.warnings),
             **{key: value for key, value in results.items() if key not in RESERVED},
         }
         self.write_json("summary", summary)
@@ -191,6 +206,7 @@ class Record:
             "settings": self.settings,
             "parameters": self.scene.as_dict(),
             "provenance": self.scene.provenance(),
+            "warnings": list(self.warnings),
             "fingerprint": self.scene.fingerprint(),
             "versions": versions(),
             "git": git_state(),

@@ -10,11 +10,14 @@ from __future__ import annotations
 
 import json
 import tomllib
+import warnings
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from beam import SuspiciousValue
 from studies.instruments.measured_modes import read_measured_modes
+from studies.instruments.plausibility import suspicions
 from studies.instruments.quantities import GIVEN, SceneError, shown, what_is_valid
 from studies.instruments.scene import MODE_LISTS, SECTIONS, Scene, keys, scene_of, split
 
@@ -35,7 +38,13 @@ def scene_path(name: str) -> Path:
 
 
 def read_scene(name: str | Path = "letter", overrides: Iterable[str] = ()) -> Scene:
-    """The scene in a file, with `section.key=value` overrides in the order given (the last one wins)."""
+    """The scene in a file, with `section.key=value` overrides in the order given (the last one wins).
+
+    Warns
+    -----
+    SuspiciousValue
+        Of values that are valid and can hardly be meant (``plausibility``).
+    """
     path = scene_path(str(name))
     try:
         text = path.read_bytes().decode("utf-8-sig")
@@ -44,7 +53,10 @@ def read_scene(name: str | Path = "letter", overrides: Iterable[str] = ()) -> Sc
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "it is no file name"
         raise SceneError(f"the scene {shown(str(path))} cannot be read: {reason}") from error
-    return scene_from_text(text, name=str(path), overrides=overrides, folder=path.parent)
+    scene = scene_from_text(text, name=str(path), overrides=overrides, folder=path.parent)
+    for sentence in suspicions(scene):
+        warnings.warn(sentence, SuspiciousValue, stacklevel=2)
+    return scene
 
 
 def scene_from_text(

@@ -1,0 +1,181 @@
+"""What a parameter must be, and what is said when it is not.
+
+A parameter that makes no sense is refused where it is given, in one sentence with its name, its value, its
+unit and what would be valid:
+
+    TypeError     a value of the wrong kind: a text, a truth value, a complex number, an array for a number
+    ValueError    a value out of range, not finite, or of the wrong shape
+
+One that makes sense but can hardly be meant, such as a gap longer than the spring or a slip of a factor of
+1000 in a unit, is taken as it stands, with a warning of the category `SuspiciousValue` that says why.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+import warnings
+from collections.abc import Callable
+from numbers import Real
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+LONGEST_SHOWN = 60
+"""Characters of a value that a sentence quotes."""
+
+
+class SuspiciousValue(UserWarning):
+    """A parameter that is valid and can hardly be meant; the message says why."""
+
+
+def suspect(sentence: str) -> None:
+    """Warn of a suspicious value, at the line outside of `beam` and `contact` that gave it."""
+    level, frame = 2, sys._getframe(1)
+    while frame.f_back is not None and _package(frame.f_globals) in ("beam", "contact"):
+        level, frame = level + 1, frame.f_back
+    warnings.warn(sentence, SuspiciousValue, stacklevel=level)
+
+
+def _package(names: dict[str, Any]) -> str:
+    return str(names.get("__name__", "")).partition(".")[0]
+
+
+def shown(value: object) -> str:
+    """The value as part of a sentence: one line, of at most `LONGEST_SHOWN` characters, texts in quotes."""
+    return brief(value) if isinstance(value, Real) else _cut(repr(value))
+
+
+def brief(value: object) -> str:
+    """The same without quotes."""
+    try:
+        return _cut(str(value))
+    except ValueError:  # an integer with more digits than the interpreter is willing to print
+        return "a very large number"
+
+
+def _cut(text: str) -> str:
+    line = "".join(c if c.isprintable() else " " for c in text)
+    return line if len(line) <= LONGEST_SHOWN else line[: LONGEST_SHOWN - 3] + "..."
+
+
+def require(condition: bool, sentence: str) -> None:
+    """ValueError of this sentence, put on one line, unless the condition holds."""
+    if not condition:
+        raise ValueError(" ".join(sentence.split()))
+
+
+def is_number(value: object) -> bool:
+    """Whether the value is a finite real number; a text, a truth value or a list is none."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # an integer beyond the range of floats
+        return False
+
+
+def is_whole(value: object, low: int) -> bool:
+    """Whether the value is a whole number, `low` or more; 2.0 is one, True is not."""
+    return is_number(value) and value % 1 == 0 and value >= low  # type: ignore[operator]
+
+
+def _number(name: str, value: object, unit: str, valid: str, inside: Callable[[float], bool]) -> float:
+    """The value as a float, if it is a finite number inside its range."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise TypeError(f"{name} is {shown(value)}; it must be a number in {unit}, {valid}")
+    if not (is_number(value) and inside(float(value))):
+        raise ValueError(f"{name} is {shown(value)} {unit}; it must be {valid}")
+    return float(value)
+
+
+def require_number(name: str, value: object, unit: str, *, positive: bool) -> float:
+    """The value as a float, if it is a finite number, positive or at least not negative.
+
+    Raises
+    ------
+    TypeError
+        If the value is not a real number.
+    ValueError
+        If it is out of range.
+    """
+    if positive:
+        return _number(name, value, unit, "finite and positive", lambda number: number > 0.0)
+    return _number(name, value, unit, "finite and not negative", lambda number: number >= 0.0)
+
+
+def require_within(
+    name: str,
+    value: object,
+    unit: str,
+    *,
+    low: float | None = None,
+    high: float | None = None,
+    above: float | None = None,
+    below: float | None = None,
+) -> float:
+    """The value as a float, if it is a finite number with low <= value <= high, above < value < below."""
+    bounds = [
+        (low, "{:g} or more", lambda x, b: x >= b),
+        (above, "above {:g}", lambda x, b: x > b),
+        (high, "at most {:g}", lambda x, b: x <= b),
+        (below, "below {:g}", lambda x, b: x < b),
+    ]
+    set_bounds = [(bound, words, holds) for bound, words, holds in bounds if bound is not None]
+    words = " and ".join(words.format(bound) for bound, words, _ in set_bounds)
+    words = {"0 or more": "zero or more", "above 0": "above zero"}.get(words, words)
+    if low is not None and high is not None:
+        valid = f"between {low:g} and {high:g}"
+    elif (low is None and above is None) or (high is None and below is None):
+        valid = f"finite and {words}" if words else "finite"
+    else:
+        valid = words
+    return _number(name, value, unit, valid, lambda x: all(holds(x, b) for b, _, holds in set_bounds))
+
+
+def require_whole(
+    name: str, value: object, unit: str, *, low: int = 1, high: int | None = None, why: str = ""
+) -> int:
+    """The value as an int, if it is a whole number from `low` to `high`; `why` ends the sentence."""
+    least = {0: "zero or more", 1: "one or more"}.get(low, f"{low} or more")
+    valid = f"a whole number, {least}" if high is None else f"a whole number between {low} and {high}"
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise TypeError(f"{name} is {shown(value)}; it must be {valid}{why}")
+    if not is_whole(value, low) or (high is not None and float(value) > high):
+        raise ValueError(f"{name} is {shown(value)} {unit}; it must be {valid}{why}")
+    return int(float(value))
+
+
+def require_kind(name: str, value: Any, kind: type | tuple[type, ...], words: str) -> Any:
+    """The value, or TypeError unless it is of this kind, `words` in a sentence."""
+    if not isinstance(value, kind):
+        raise TypeError(f"{name} is {shown(value)}; it must be {words}")
+    return value
+
+
+def require_array(
+    name: str,
+    values: object,
+    unit: str,
+    *,
+    dimensions: int | None = None,
+    shape: tuple[int, ...] | None = None,
+    words: str = "an array of numbers",
+) -> NDArray[np.float64]:
+    """The values as a read-only float copy, if they are finite numbers of these dimensions or this shape."""
+    try:
+        given = np.asarray(values)
+    except (TypeError, ValueError):
+        given = np.asarray(None)
+    if given.dtype.kind not in "iuf":
+        raise TypeError(f"{name} is {shown(values)}; it must be {words} in {unit}")
+    array = np.array(given, dtype=np.float64)
+    if (dimensions is not None and array.ndim != dimensions) or (shape is not None and array.shape != shape):
+        wanted = f" of shape {shape}" if shape is not None else ""
+        raise ValueError(f"{name} has shape {array.shape}; it must be {words} in {unit}{wanted}")
+    if not np.all(np.isfinite(array)):
+        found = f"is {shown(values)}" if shape is not None else f"holds {array[~np.isfinite(array)].flat[0]}"
+        raise ValueError(f"{name} {found} {unit}; it must be {words}, every entry finite")
+    array.setflags(write=False)
+    return array
