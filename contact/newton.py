@@ -14,11 +14,21 @@ from __future__ import annotations
 
 from contact.compiled import kernel
 
-__all__ = ["LOWEST_HOP", "accumulation_time", "from_table", "newton_impact"]
+__all__ = ["accumulation_time", "from_table", "lowest_hop", "newton_impact"]
 
 LOWEST_HOP = 200.0
-"""Height of a hop, in rounding bounds of the tip displacement, below which hops are summed, not computed.
-Two digits of the height are then still good; the time left to sum is of the order of 1e-7 s."""
+"""Height of a hop, in rounding bounds of the tip displacement, below which hops are summed, not computed: two
+digits of the height are then still good.  See `lowest_hop` for laws close to e = 1."""
+
+
+@kernel
+def lowest_hop(restitution, rounding):
+    """Height of the lowest hop that is computed [m], `rounding` the bound of the tip displacement's [m].
+
+    A hop loses 2(1 - e) of its height, and rounding may move its end by as much as its bound: where that is
+    not the smaller of the two, hops need not get lower, and may repeat for good.
+    """
+    return max(LOWEST_HOP, 1.0 / (1.0 - restitution)) * rounding
 
 
 @kernel
@@ -60,6 +70,6 @@ def accumulation_time(rebound, acceleration, restitution, rounding):
     """
     if acceleration <= 0.0 or restitution >= 1.0:
         return -1.0
-    if rebound * rebound > 2.0 * acceleration * LOWEST_HOP * rounding:
+    if rebound * rebound > 2.0 * acceleration * lowest_hop(restitution, rounding):
         return -1.0
     return 2.0 * rebound / (acceleration * (1.0 - restitution))

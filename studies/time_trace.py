@@ -129,7 +129,9 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
     columns = {"frequency_hz": lines_hz.tolist(), f"amplitude_{power}": amplitude.tolist()}
     request.record.write_table("spectrum", columns)
     name = f"p$_{{{period}}}$" if period else "no period"
-    title = f"{name}, {frequency:.2f} Hz, F/F$_g$ - 1 = {excess:g}"
+    title = f"{name}, {frequency:.2f} Hz, $F/F_g - 1$ = {excess:g}"
+    if excess == TIME_TRACE_EXCESS:
+        title += " (letter: p$_4$)"
     request.record.write_figure(draw_trace(trace, near, scene.stop.gap_m, unit, title), "time_trace")
     request.record.write_figure(
         draw_spectrum(lines_hz, amplitude, model.frequencies_hz, frequency, unit), "spectrum"

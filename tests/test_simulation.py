@@ -13,7 +13,7 @@ from beam.reduction import ModalModel, single_mode
 from contact.drive import HarmonicDrive
 from contact.errors import Chatter, ContactTooStiff, UnresolvedCrossing
 from contact.laws import ContactLaw, LinearContact, NewtonRestitution
-from contact.newton import LOWEST_HOP, accumulation_time
+from contact.newton import accumulation_time, lowest_hop
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
@@ -243,10 +243,28 @@ def test_accumulation_takes_the_time_it_should(e):
     assert run.impacts.start[stay][0] + left == pytest.approx(total, rel=1e-9)
 
 
+@pytest.mark.parametrize("left", [3e-3, 1e-3, 3e-4, 1.3e-4])
+def test_hops_of_an_almost_elastic_ball_do_not_lock_into_one_another(left):
+    """(v e^n)^2 falls below rounding's share of a hop only when the rest is summed: the ball comes to rest."""
+    gravity, gap = 9.81, 1e-3
+    ball = ModalModel(omega=[0.0], decay_rate=[0.0], phi=[1.0], participation=[0.0])
+    oscillator = ImpactOscillator(
+        model=ball, stop=Stop(gap=gap, law=NewtonRestitution(local_restitution=1.0 - left)), load=[gravity]
+    )
+    speed = 0.25 * gravity * left
+    state = State(displacement=np.array([gap]), velocity=np.array([-speed]))
+    run = simulate(oscillator, state, duration=0.9)
+    hops = run.impacts.approach[run.impacts.kind == 0]
+    assert run.end.regime == 3
+    np.testing.assert_allclose(hops / (speed * (1.0 - left) ** np.arange(hops.size)), 1.0, atol=2e-4)
+    rest = run.impacts.start[-1] + 2 * abs(run.impacts.approach[-1]) / (gravity * left)
+    assert rest == pytest.approx(0.5, rel=1e-6)
+
+
 def test_time_of_the_hops_that_are_summed():
     """2 w/(a (1 - e)), once a hop of height w^2/2a has drowned in rounding, and never for e = 1."""
     speed, acceleration, rounding = 1e-7, 10.0, 1e-17
-    assert speed**2 / (2 * acceleration) < LOWEST_HOP * rounding
+    assert speed**2 / (2 * acceleration) < lowest_hop(0.0, rounding) == 200.0 * rounding
     for e in (0.0, 0.5, 0.9):
         hops = sum(2 * speed * e**n / acceleration for n in range(400))
         assert accumulation_time(speed, acceleration, e, rounding) == pytest.approx(hops, rel=1e-13)

@@ -81,7 +81,7 @@ MOST_IMPACTS = 100_000
 drown in rounding, so a longer sequence is not on its way to rest."""
 
 OVERFLOW = 1e300
-"""A coefficient of the contact series beyond this is about to leave the range of doubles: some 1e24 times the
+"""A coefficient of the contact series beyond this is about to leave the range of doubles: some 1e18 times the
 stiffness of the spring."""
 
 MOST_STEPS = 1_000_000

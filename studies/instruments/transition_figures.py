@@ -1,7 +1,8 @@
 """Orbit diagrams of the six transitions, as in the letter's Fig. 2, and their points as tables.
 
 Filled points are the upward scan, open ones the downward scan, against the amplitude of the base [mm] (for
-the map: against the excess); the dashed line is grazing.
+the map: against the excess); the dashed line is grazing, the grey band around it as wide as the amplitude of
+the letter was stable.
 """
 
 from __future__ import annotations
@@ -13,13 +14,25 @@ from typing import Any
 import numpy as np
 
 from studies.instruments.command_line import Request
-from studies.instruments.figures import PAGE, house_style, label, new_figure
+from studies.instruments.figures import (
+    BLUE,
+    EXCESS,
+    GUIDE,
+    PAGE,
+    VERMILION,
+    in_house_style,
+    label,
+    new_figure,
+    panel,
+)
 from studies.instruments.oscillators import single_mode_oscillator
 from studies.instruments.scene import Scene
+from studies.published import AMPLITUDE_STABILITY_M, DRIVE_AMPLITUDE_M
 
 __all__ = ["draw", "store_points"]
 
 
+@in_house_style
 def draw(
     scene: Scene, rows: Sequence[Mapping[str, Any]], diagrams: Sequence[Mapping[str, Any]], name: str
 ) -> Any:
@@ -33,37 +46,42 @@ def draw(
         grazing = single_mode_oscillator(scene, row["frequency_hz"]).grazing_amplitude()
         if name == "beam":
             grazing = row["grazing_amplitude_m"]
-        for way, face, size in (("down", "none", 3.2), ("up", "#0072B2", 2.0)):
+        for way, face, size in (("down", "none", 3.2), ("up", BLUE, 2.0)):
             diagram = found[name][way]
             across = np.repeat(diagram.excess[:, None], diagram.points.shape[1], axis=1)
             x = 1e3 * grazing * (1.0 + across) if name != "map" else 1e3 * across
             y = 1e3 * diagram.points if name != "map" else diagram.points
             axis.plot(
                 x.ravel(), y.ravel(), linestyle="none", marker="o", markersize=size, markeredgewidth=0.5,
-                markerfacecolor=face, markeredgecolor="#0072B2" if way == "up" else "#D55E00",
+                markerfacecolor=face, markeredgecolor=BLUE if way == "up" else VERMILION,
                 label=f"{way}ward scan", rasterized=True, zorder=2 if way == "down" else 3,
             )
-        axis.axvline(
-            0.0 if name == "map" else 1e3 * grazing, color="0.6", linewidth=0.6, linestyle="--", zorder=1
-        )
-        period = f"p$_{{{row[name]}}}$" if row[name] else "no period found"
-        with house_style():
-            axis.set_title(f"({chr(ord('a') + number % 26)}) {row['frequency_hz']:.2f} Hz, p$_1$ ↔ {period}")
+        at, stable = (0.0, AMPLITUDE_STABILITY_M / DRIVE_AMPLITUDE_M)
+        if name != "map":
+            at, stable = grazing, AMPLITUDE_STABILITY_M
+        axis.axvspan(1e3 * (at - stable), 1e3 * (at + stable), color="0.88", linewidth=0, zorder=0,
+                     gid="amplitude stability of the letter", label="letter: stability of the amplitude")
+        axis.axvline(1e3 * at, **GUIDE, gid="grazing", label="grazing")
+        period = f"p$_{{{row[name]}}}$" if row[name] else "no period"
+        seen = row.get("letter")
+        letter = "" if seen is None else f" (letter: p$_{{{seen}}}$)"
+        panel(axis, number, f"{row['frequency_hz']:.2f} Hz: {period}{letter}")
         axis.locator_params(axis="x", nbins=4)
     quantities = {
-        "map": (("excess F/F$_g$ - 1", "10$^{-3}$"), ("x of the map", "1")),
-        "single_mode": (("excitation amplitude", "mm"), ("tip displacement", "mm")),
-        "beam": (("excitation amplitude", "mm"), ("displacement at the read-out point", "mm")),
+        "map": ((EXCESS, "10$^{-3}$"), ("$x$ of the map", "1")),
+        "single_mode": (("excitation amplitude", "mm"), ("tip displacement $ξ$", "mm")),
+        "beam": (("excitation amplitude", "mm"), ("read-out displacement", "mm")),
     }
     if name == "beam" and scene.readout.quantity == "rotation":
-        quantities["beam"] = (quantities["beam"][0], ("rotation at the read-out point", "mrad"))
+        quantities["beam"] = (quantities["beam"][0], ("read-out rotation", "mrad"))
     sideways, upwards = quantities[name]
     handles, names = axes.flat[0].get_legend_handles_labels()
-    with house_style():
-        for axis in axes[-1, :]:
-            label(axis.xaxis, *sideways)
-        figure.supylabel(f"{upwards[0]} ({upwards[1]})" if upwards[1] != "1" else upwards[0])
-        figure.legend(handles[::-1], names[::-1], loc="outside lower center", ncols=2, markerscale=1.5)
+    for axis in axes[-1, :]:
+        label(axis.xaxis, *sideways)
+    for axis in axes[:, 0]:
+        label(axis.yaxis, *upwards)
+    figure.legend(handles[1::-1] + handles[2:], names[1::-1] + names[2:], loc="outside lower center", ncols=4,
+                  markerscale=1.5)
     return figure
 
 

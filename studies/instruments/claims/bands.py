@@ -18,8 +18,22 @@ from scipy.optimize import brentq
 from contact.maximal_orbits import band, fold
 from studies.instruments.claims.single_mode_leaf import Leaf
 from studies.instruments.claims.verdict import Claim, falls, frequencies_of
-from studies.instruments.figures import PAGE, PALETTE, house_style, label, new_figure
+from studies.instruments.figures import (
+    BLACK,
+    BLUE,
+    HYSTERESIS,
+    LETTER,
+    LETTER_POINTS,
+    NOTE,
+    PAGE,
+    PALETTE,
+    in_house_style,
+    label,
+    new_figure,
+    panel,
+)
 from studies.instruments.scene import Scene
+from studies.published import PERIODS
 
 __all__ = ["bands_claim", "lower_angle"]
 
@@ -36,6 +50,7 @@ def lower_angle(period: int, gamma: float, restitution: float) -> float:
     return (math.pi + float(brentq(height, 0.0, 0.5 * math.pi, xtol=1e-15))) / (m - 1)
 
 
+@in_house_style
 def bands_claim(scene: Scene, quick: bool) -> Claim:
     """c: bands in the (alpha, gamma) plane, the path of the experiment, and the hysteresis along it."""
     leaf, tau = Leaf.of(scene), scene.single_mode.restitution
@@ -44,27 +59,27 @@ def bands_claim(scene: Scene, quick: bool) -> Claim:
     for m in range(3, 9):
         angles = [[math.pi / m] * gammas.size, [lower_angle(m, float(g), tau) for g in gammas]]
         edges = [2.0 * np.sqrt(gammas) * np.cos(angle) for angle in angles]
-        axes[0].fill_betweenx(gammas, edges[1], edges[0], color=PALETTE[m % 6 + 1], alpha=0.35, linewidth=0.4)
+        axes[0].fill_betweenx(gammas, edges[1], edges[0], color=PALETTE[m % 6 + 1], alpha=0.35, linewidth=0.4,
+                              gid=f"band of p$_{{{m}}}$")
         axes[0].text(
             0.5 * (edges[0][-1] + edges[1][-1]),
             1.015,
             f"{m}",
-            fontsize=7,
+            fontsize=NOTE,
             ha="center",
             va="bottom",
         )
     path = np.linspace(19.6, 23.8, 200)
     alpha = [leaf.map(f, tau).alpha for f in path.tolist()]
     gamma = [leaf.map(f, tau).gamma for f in path.tolist()]
-    axes[0].plot(alpha, gamma, color="black", linewidth=1.4)
+    axes[0].plot(alpha, gamma, color="black", linewidth=1.4, gid="path from 19.6 to 23.8 Hz")
     places = [f for f in frequencies_of(scene)]
     axes[0].plot(
         [leaf.map(f, tau).alpha for f in places],
         [leaf.map(f, tau).gamma for f in places],
-        linestyle="none",
-        marker="o",
-        markersize=3.2,
-        color="black",
+        **LETTER_POINTS,
+        gid="letter",
+        label="letter",
     )
     table: dict[str, list[Any]] = {n: [] for n in ("m", "frequency_hz", "map", "eq1")}
     zero, grows, ratios = [], {"map": True, "eq1": True}, {}
@@ -96,9 +111,10 @@ def bands_claim(scene: Scene, quick: bool) -> Claim:
             axes[1].plot(
                 inside[shown],
                 1e2 * np.array(values)[shown],
-                color=PALETTE[m % 6 + 1],
+                color=BLACK if style == "-" else BLUE,
                 linestyle=style,
                 linewidth=1.1,
+                gid=f"{'Nordmark map' if style == '-' else 'Eq. (1)'}, m = {m}",
             )
         if m < 10:
             middle = max(edge.lower, 19.6)
@@ -106,26 +122,28 @@ def bands_claim(scene: Scene, quick: bool) -> Claim:
                 0.3 * edge.upper + 0.7 * middle,
                 105.0 * exact[0] if edge.lower > 19.6 else 3.2,
                 f"{m}",
-                fontsize=7,
+                fontsize=NOTE,
                 ha="left",
             )
-    with house_style():
-        axes[0].set_title("(a) bands of p$_m$ as ρ → 0", pad=12)
-        label(axes[0].xaxis, "α")
-        label(axes[0].yaxis, "γ")
-        axes[0].annotate(
-            "19.6 to 23.8 Hz",
-            (alpha[60], gamma[60]),
-            xytext=(0.05, 0.62),
-            fontsize=7,
-            arrowprops={"arrowstyle": "-", "linewidth": 0.6},
-        )
-        axes[1].set_title("(b) hysteresis along the path", pad=12)
-        axes[1].plot([], [], color="0.3", linestyle="-", label="Nordmark map")
-        axes[1].plot([], [], color="0.3", linestyle="--", label="Eq. (1)")
-        axes[1].legend(loc="upper right")
-        label(axes[1].xaxis, "drive frequency", "Hz")
-        label(axes[1].yaxis, "1 - F$_m$/F$_g$", "%")
+    panel(axes[0], 0, "bands of p$_m$ as ρ → 0\n")
+    label(axes[0].xaxis, "α")
+    label(axes[0].yaxis, "γ")
+    axes[0].annotate(
+        "19.6 to 23.8 Hz",
+        (alpha[60], gamma[60]),
+        xytext=(0.05, 0.62),
+        fontsize=NOTE,
+        arrowprops={"arrowstyle": "-", "linewidth": 0.6},
+    )
+    panel(axes[1], 1, "hysteresis along the path\n")
+    axes[1].plot([], [], color=BLACK, linestyle="-", label="Nordmark map")
+    axes[1].plot([], [], color=BLUE, linestyle="--", label="Eq. (1)")
+    label(axes[1].xaxis, "drive frequency", "Hz")
+    label(axes[1].yaxis, HYSTERESIS, "%")
+    for f in PERIODS:
+        axes[1].axvline(f, **LETTER, gid="letter", label="letter, Fig. 2" if f == min(PERIODS) else None)
+    axes[0].legend(loc="lower right")
+    axes[1].legend(loc="upper right", frameon=True, framealpha=1.0, edgecolor="white")
     crossed = sorted({leaf.period(f, tau) for f in path.tolist()})
     holds = max(zero) < 1e-9 and all(grows.values())
     return Claim(

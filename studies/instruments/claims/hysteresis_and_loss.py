@@ -16,12 +16,23 @@ from contact.maximal_orbits import fold
 from studies.instruments.claims.secondary_bifurcation import secondary
 from studies.instruments.claims.single_mode_leaf import Leaf
 from studies.instruments.claims.verdict import RESTITUTIONS, Claim, falls, frequencies_of
-from studies.instruments.figures import PAGE, house_style, label, new_figure, series
+from studies.instruments.figures import (
+    HYSTERESIS,
+    PAGE,
+    in_house_style,
+    label,
+    mark_letter,
+    new_figure,
+    panel,
+    series,
+)
 from studies.instruments.scene import Scene
+from studies.published import RESTITUTION
 
 __all__ = ["hysteresis_claim"]
 
 
+@in_house_style
 def hysteresis_claim(scene: Scene) -> Claim:
     """a: F_m/F_g - 1 against tau."""
     leaf = Leaf.of(scene)
@@ -71,15 +82,16 @@ def hysteresis_claim(scene: Scene) -> Claim:
         axes[0].plot(
             RESTITUTIONS, 1e2 * np.array(ends), markevery=3, **style, label=f"{f:.2f} Hz, p$_{{{m}}}$"
         )
-        axes[1].plot(RESTITUTIONS, np.where(mask, 1e2 * np.array(exact), np.nan), markevery=3, **style)
-    with house_style():
-        for axis, title in zip(axes, ("(a) Nordmark map", "(b) Eq. (1)"), strict=True):
-            axis.set_yscale("log")
-            axis.set_title(title)
-            label(axis.xaxis, "restitution τ")
-            axis.set_ylim(4e-3, 30.0)
-        label(axes[0].yaxis, "hysteresis 1 - F$_m$/F$_g$", "%")
-        figure.legend(loc="outside lower center", ncols=3)
+        axes[1].plot(RESTITUTIONS, np.where(mask, 1e2 * np.array(exact), np.nan), markevery=3, **style,
+                     gid=f"{f:.2f} Hz, p$_{{{m}}}$")
+    for place, (axis, title) in enumerate(zip(axes, ("Nordmark map", "Eq. (1)"), strict=True)):
+        axis.set_yscale("log")
+        panel(axis, place, title)
+        mark_letter(axis.xaxis, RESTITUTION, along=0.98, turn=True, level=True)
+        label(axis.xaxis, "restitution τ")
+        axis.set_ylim(4e-3, 30.0)
+    label(axes[0].yaxis, HYSTERESIS, "%")
+    figure.legend(loc="outside lower center", ncols=3)
     sentence = (
         "The hysteresis in the drive amplitude falls with rising energy loss in the map and in Eq. (1)"
         if good["map"] and good["eq1"]

@@ -14,11 +14,22 @@ from matplotlib.ticker import NullFormatter
 
 from studies.instruments.claims.overdamped_map import exponents, overdamped, overlap, switch, window
 from studies.instruments.claims.verdict import Claim
-from studies.instruments.figures import PAGE, house_style, label, new_figure
+from studies.instruments.figures import (
+    BLUE,
+    GUIDE,
+    NOTE,
+    PAGE,
+    VERMILION,
+    in_house_style,
+    label,
+    new_figure,
+    panel,
+)
 
 __all__ = ["overdamped_claim"]
 
 
+@in_house_style
 def overdamped_claim(quick: bool) -> Claim:
     """e: windows of p_m, their overlap and the chaos between, for the overdamped map as rho -> 0+."""
     m = 16  # what the limit rho -> 0+ neglects is of the order l^m, 0.2 % here
@@ -62,40 +73,41 @@ def overdamped_claim(quick: bool) -> Claim:
         top = 1e-3
         rho = np.geomspace(top * alpha ** (4 if alpha < 0.7 else 16), top, 150 if quick else 500)
         found, x = exponents(alpha, 0.0, rho, 1000, 2000)
-        for chaos, colour in ((False, "#0072B2"), (True, "#D55E00")):
+        seen = x[:: 1 if alpha < 0.7 else 4]
+        for chaos, colour in ((False, BLUE), (True, VERMILION)):
             chosen = (found > 0.0) == chaos
             if not chosen.any():
                 continue
             axis.plot(
-                np.tile(rho[chosen], x.shape[0]),
-                (x[:, chosen] / np.sqrt(rho[chosen])).ravel(),
+                np.tile(rho[chosen], seen.shape[0]),
+                (seen[:, chosen] / np.sqrt(rho[chosen])).ravel(),
                 linestyle="none",
-                marker=".",
-                markersize=0.9,
+                marker="s" if chaos else ".",
+                markersize=0.7 if chaos else 1.0,
                 markeredgewidth=0.0,
                 color=colour,
                 rasterized=True,
+                gid="exponent above 0" if chaos else "exponent below 0",
             )
-        with house_style():
-            axis.set_xscale("log")
-            axis.xaxis.set_minor_formatter(NullFormatter())
-            regime = ("windows overlap", "chaos between windows", "chaos only")[number]
-            axis.set_title(f"({'abc'[number]}) α = {alpha:g}: {regime}")
-            label(axis.yaxis, "x / √ρ")
-            label(axis.xaxis, "ρ")
+        axis.set_xscale("log")
+        axis.xaxis.set_minor_formatter(NullFormatter())
+        regime = ("windows overlap", "chaos between windows", "chaos only")[number]
+        panel(axis, number, f"α = {alpha:g}: {regime}")
+        label(axis.yaxis, "$x$ / √ρ")
+        label(axis.xaxis, "ρ")
     last = axes.flat[3]
-    last.plot(alphas, predicted, color="#D55E00", linewidth=1.0, label="outside the windows of p$_m$")
+    last.plot(alphas, predicted, color=VERMILION, linewidth=1.0, label="outside the windows of p$_m$")
     last.plot(
         alphas, part, color="black", marker="o", markersize=2.2, linestyle="none", label="exponent above 0"
     )
-    with house_style():
-        for place, name in ((0.25, "1/4"), (2.0 / 3.0, "2/3")):
-            last.axvline(place, color="0.6", linewidth=0.6, linestyle="--")
-            last.text(place + 0.01, 0.06, name, fontsize=7)
-        last.set_title("(d) chaotic part of ln ρ")
-        last.legend(loc="upper left")
-        label(last.xaxis, "α")
-        last.set_ylim(-0.03, 1.05)
+    for place, name in ((0.25, "1/4"), (2.0 / 3.0, "2/3")):
+        last.axvline(place, **GUIDE, gid=f"α = {name}")
+        last.text(place + 0.01, 0.06, name, fontsize=NOTE)
+    panel(last, 3, "chaotic part of ln ρ")
+    last.legend(loc="upper left")
+    label(last.xaxis, "α")
+    label(last.yaxis, "chaotic part")
+    last.set_ylim(-0.03, 1.05)
     table = {"alpha": alphas.tolist(), "chaotic_part": part.tolist(), "outside_windows": predicted.tolist()}
     found_limits = limits["gamma 0"]
     ends = (found_limits["overlap_ends_at_alpha"] or 0.0, found_limits["windows_end_at_alpha"] or 0.0)

@@ -18,12 +18,28 @@ from contact.maximal_orbits import maximal_period, maximal_periods
 from studies.instruments.claims.secondary_bifurcation import secondary, secondary_of_map
 from studies.instruments.claims.single_mode_leaf import Leaf
 from studies.instruments.claims.verdict import RESTITUTIONS, Claim, falls, frequencies_of
-from studies.instruments.figures import PAGE, house_style, label, new_figure, series
+from studies.instruments.figures import (
+    BLUE,
+    GUIDE,
+    LETTER_POINTS,
+    ORANGE,
+    PAGE,
+    SKY,
+    in_house_style,
+    label,
+    mark_letter,
+    new_figure,
+    panel,
+    series,
+    tint,
+)
 from studies.instruments.scene import Scene
+from studies.published import FREE_PERIOD_S, PERIODS, RESTITUTION
 
 __all__ = ["secondary_claim"]
 
 
+@in_house_style
 def secondary_claim(scene: Scene, quick: bool) -> Claim:
     """b: the first secondary bifurcation against tau, and where it lies below grazing."""
     leaf = Leaf.of(scene)
@@ -88,6 +104,7 @@ def secondary_claim(scene: Scene, quick: bool) -> Claim:
         vmax=2.5,
         rasterized=True,
         shading="nearest",
+        gid="0: above grazing; 1: below; 2: no simple p$_m$ at the fold",
     )
     numbers |= {
         "map_lowest_excess": lowest,
@@ -98,24 +115,26 @@ def secondary_claim(scene: Scene, quick: bool) -> Claim:
     rises = bool(np.all(np.diff(below) >= -0.02))
     always = lowest > 0.0
     some, less = bool(below.max() > 0.0), bool(below[0] < below[-1])
-    with house_style():
-        axes[0].axhline(0.0, color="0.6", linewidth=0.6)
-        axes[0].set_title("(a) Eq. (1)")
-        label(axes[0].xaxis, "restitution τ")
-        label(axes[0].yaxis, "excess of the secondary bifurcation", "%")
-        figure.legend(loc="outside lower center", ncols=3)
-        for m in range(3, 11):
-            entry = 2 * m / (2 * m + 1)
-            if across[0] * leaf.free_period < entry < across[-1] * leaf.free_period:
-                axes[1].axvline(entry, color="black", linewidth=0.5)
-        axes[1].set_title("(b) Eq. (1): the secondary bifurcation is")
-        label(axes[1].xaxis, "f T")
-        label(axes[1].yaxis, "restitution τ")
-        bar = figure.colorbar(
-            picture, ax=axes[1], ticks=[0, 1, 2], location="bottom", aspect=40, drawedges=False
-        )
-        bar.ax.set_xticklabels(["above grazing", "below grazing", "no simple p$_m$ at the fold"])
-        bar.outline.set_visible(False)  # type: ignore[operator]
+    axes[0].axhline(0.0, **GUIDE, gid="grazing")
+    panel(axes[0], 0, "Eq. (1)")
+    mark_letter(axes[0].xaxis, RESTITUTION, along=0.02, turn=True, level=True)
+    label(axes[0].xaxis, "restitution τ")
+    label(axes[0].yaxis, "secondary bifurcation, excess", "%")
+    for m in range(3, 11):
+        entry = 2 * m / (2 * m + 1)
+        if across[0] * leaf.free_period < entry < across[-1] * leaf.free_period:
+            axes[1].axvline(entry, color="black", linewidth=0.5, gid=f"upper edge, m = {m}")
+    places = np.array(list(PERIODS)) * FREE_PERIOD_S
+    axes[1].plot(places, np.full(places.size, RESTITUTION), **LETTER_POINTS, gid="letter", label="letter")
+    panel(axes[1], 1, "Eq. (1): the secondary bifurcation is")
+    label(axes[1].xaxis, "f T")
+    label(axes[1].yaxis, "restitution τ")
+    figure.legend(loc="outside lower center", ncols=4)
+    bar = figure.colorbar(
+        picture, ax=axes[1], ticks=[0, 1, 2], location="bottom", aspect=40, drawedges=False
+    )
+    bar.ax.set_xticklabels(["above grazing", "below grazing", "no simple p$_m$"])
+    bar.outline.set_visible(False)  # type: ignore[operator]
     monotone = [numbers[f"{f:g} Hz"]["falls_with_restitution"] for f in frequencies_of(scene)]
     numbers |= {"below_rises_with_restitution": rises, "excess_falls_at": sum(monotone)}
     holds = always and some and less and rises
@@ -135,4 +154,4 @@ def secondary_claim(scene: Scene, quick: bool) -> Claim:
 
 
 def _three() -> Any:
-    return ListedColormap(["#CFE8F7", "#0072B2", "#E69F00"])
+    return ListedColormap([tint(SKY, 0.3), BLUE, ORANGE])

@@ -19,12 +19,13 @@ from contact.maximal_orbits import band, maximal_period, maximal_periods
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.claims.single_mode_leaf import Leaf
 from studies.instruments.claims.verdict import Claim, frequencies_of
-from studies.instruments.figures import PAGE, house_style, label, new_figure, series
+from studies.instruments.figures import LETTER_POINTS, NOTE, PAGE, in_house_style, label, new_figure, series
 from studies.instruments.oscillators import beam_of, single_mode_oscillator
 from studies.instruments.periodicity import settle
 from studies.instruments.scene import Scene
 from studies.instruments.spring_of_scene import model_of
 from studies.instruments.tip_mass_family import bare_cantilever, with_mass_ratio
+from studies.published import FREE_PERIOD_ERROR_S, FREE_PERIOD_S, PERIODS
 
 __all__ = ["born_period", "springs", "universality_claim"]
 
@@ -69,6 +70,7 @@ def born_period(
         return -1
 
 
+@in_house_style
 def universality_claim(scene: Scene, quick: bool, workers: int) -> Claim:
     """d: born period against f T."""
     leaf, tau = Leaf.of(scene), scene.single_mode.restitution
@@ -149,6 +151,7 @@ def universality_claim(scene: Scene, quick: bool, workers: int) -> Claim:
             markersize=2.6,
             markerfacecolor="none" if style["marker"] not in "xP*" else None,
             markeredgewidth=0.7,
+            gid=f"{name}, other than 2 to 12",
         )
         table["spring"] += [name] * len(mine)
         table["f_times_T"] += [x for x, _p in mine]
@@ -157,16 +160,21 @@ def universality_claim(scene: Scene, quick: bool, workers: int) -> Claim:
     for m in range(2, 13):
         edge = band(m, free_period=leaf.free_period, decay_rate=leaf.decay_rate, restitution=tau)
         left, right = edge.lower * leaf.free_period, edge.upper * leaf.free_period
-        axis.fill_between([left, right], m - 0.42, m + 0.42, color="0.88", linewidth=0.0, zorder=0)
-    with house_style():
-        axis.set_xlim(positions[0] - 0.003, positions[-1] + 0.003)
-        axis.set_ylim(0.4, 12.6)
-        axis.set_yticks([1, *range(2, 13)], ["other", *(str(m) for m in range(2, 13))])
-        label(axis.xaxis, "f T")
-        label(axis.yaxis, f"period born at excess {scene.scan.born_excess:g}")
-        figure.legend(
-            loc="outside lower center", ncols=3, title="grey: bands of the Nordmark map", title_fontsize=7
-        )
+        axis.fill_between([left, right], m - 0.42, m + 0.42, color="0.88", linewidth=0.0, zorder=0,
+                          gid=f"band of the map, m = {m}")
+    axis.set_xlim(positions[0] - 0.003, positions[-1] + 0.003)
+    axis.set_ylim(0.4, 12.6)
+    axis.set_yticks([1, *range(2, 13)], ["other", *(str(m) for m in range(2, 13))])
+    axis.errorbar(
+        [f * FREE_PERIOD_S for f in PERIODS], list(PERIODS.values()),
+        xerr=[f * FREE_PERIOD_ERROR_S for f in PERIODS], **LETTER_POINTS, elinewidth=0.7, ecolor="black",
+        label="letter, error of T",
+    )  # fmt: skip
+    label(axis.xaxis, "$f T$")
+    label(axis.yaxis, f"period $m$ born, excess {scene.scan.born_excess:g}")
+    figure.legend(
+        loc="outside lower center", ncols=3, title="grey: bands of the Nordmark map", title_fontsize=NOTE
+    )
     unlike = {name: numbers[name]["exceptions_in_top_quarter"] for name in entries}
     wrong = [name for name, some in unlike.items() if any(e["closer"] not in e["map"] for e in some)]
     some_unlike = ", ".join(name for name, some in unlike.items() if some)

@@ -9,21 +9,22 @@ from matplotlib.ticker import NullFormatter
 
 from studies.instruments.effective_impact.approaches import select
 from studies.instruments.effective_impact.panels import (
-    DOTTED,
     QUANTITIES,
     Rows,
+    drawn,
     guide,
     legend,
     name_letter,
     plot,
     three,
 )
-from studies.instruments.figures import PAGE, PALETTE, house_style, label, new_figure
-from studies.published import AMPLITUDE_STABILITY_M, DRIVE_AMPLITUDE_M, RESTITUTION
+from studies.instruments.figures import NOTE, PAGE, PALETTE, in_house_style, label, new_figure, panel
+from studies.published import AMPLITUDE_STABILITY_M, DRIVE_AMPLITUDE_M
 
 __all__ = ["draw_all"]
 
 
+@in_house_style
 def speed(rows: Rows) -> Any:
     figure, axes = three(rows, "speed", ("scene", "hertz", "bare tip"), log=True)
     found = select(rows, "speed", "hertz")
@@ -36,15 +37,16 @@ def speed(rows: Rows) -> Any:
     guide(axes[1], x, [1e3 * r["arc_s"] for r in found], "arc v/a", "-.")
     axes[0].set_ylim(0.0, 1.05)
     for axis in axes:
-        axis.axvspan(x[0], AMPLITUDE_STABILITY_M / DRIVE_AMPLITUDE_M, color="0.92", zorder=-1, linewidth=0)
+        axis.axvspan(x[0], AMPLITUDE_STABILITY_M / DRIVE_AMPLITUDE_M, color="0.92", zorder=-1, linewidth=0,
+                     gid="letter, stability of the amplitude")
         axis.set_xlim(x[0], x[-1])
-    with house_style():
-        axes[1].annotate("below the\namplitude\nstability", (1.3e-5, 8.0), fontsize=6.5, va="top")
-        axes[2].set_ylim(0.0, 1.1)
+    axes[1].annotate("letter:\nstability\nof the\namplitude", (1.3e-5, 8.0), fontsize=NOTE, va="top")
+    axes[2].set_ylim(0.0, 1.1)
     legend(figure, axes, 5, left=True)
     return figure
 
 
+@in_house_style
 def modes(rows: Rows) -> Any:
     names = (
         "scene",
@@ -55,7 +57,7 @@ def modes(rows: Rows) -> Any:
         "bare cantilever, newton",
     )
     figure, axes = new_figure(2, 2, width=PAGE, height=0.105, sharex=True)
-    for number, name in enumerate(names):
+    for number, name in enumerate(drawn(rows, "modes", names)):
         found = select(rows, "modes", name)
         for axis, quantity, scale in zip(
             axes.flat, ("restitution", "delay_s", "kick", "impacts"), (1.0, 1e3, 1.0, 1.0), strict=True
@@ -69,20 +71,20 @@ def modes(rows: Rows) -> Any:
     ):
         axis.set_xscale("log")
         axis.set_ylim(bottom=0.0)
-        with house_style():
-            label(axis.yaxis, quantity, unit)
+        label(axis.yaxis, quantity, unit)
     axes[1, 1].set_yscale("log")
     axes[1, 1].set_ylim(0.8, 200)
     for axis in axes[1]:
         axis.set_xticks([1, 2, 5, 10, 20, 40, 60], ["1", "2", "5", "10", "20", "40", "60"])
         axis.xaxis.set_minor_formatter(NullFormatter())
-        with house_style():
-            label(axis.xaxis, *QUANTITIES["modes"])
-    axes[0, 0].axhline(RESTITUTION, **DOTTED)
+        label(axis.xaxis, *QUANTITIES["modes"])
+    for place, axis in enumerate(axes.flat):
+        panel(axis, place)
     legend(figure, list(axes.flat), 3)
     return figure
 
 
+@in_house_style
 def mass(rows: Rows) -> Any:
     names = list(dict.fromkeys(r["series"] for r in rows if r["curve"] == "mass"))
     chosen = [n for n in names if n in ("excess 0.0001", "excess 0.001", "excess 0.013", "excess 0.05")]
@@ -116,6 +118,7 @@ def mass(rows: Rows) -> Any:
     return figure
 
 
+@in_house_style
 def stiffness(rows: Rows) -> Any:
     names = list(dict.fromkeys(r["series"] for r in rows if r["curve"] == "stiffness"))
     figure, axes = three(rows, "stiffness", names, log=True)
@@ -138,6 +141,7 @@ def stiffness(rows: Rows) -> Any:
     return figure
 
 
+@in_house_style
 def damping(rows: Rows) -> Any:
     names = list(dict.fromkeys(r["series"] for r in rows if r["curve"] == "damping"))
     figure, axes = three(rows, "damping", names, log=True)
@@ -145,6 +149,7 @@ def damping(rows: Rows) -> Any:
     return figure
 
 
+@in_house_style
 def loss(rows: Rows) -> Any:
     names = list(dict.fromkeys(r["series"] for r in rows if r["curve"] == "loss"))
     figure, axes = three(rows, "loss", names, log=False)
@@ -152,6 +157,7 @@ def loss(rows: Rows) -> Any:
     return figure
 
 
+@in_house_style
 def search(rows: Rows) -> Any:
     """Restitution over tip mass: with loss in the contact, and with other hardness."""
     figure, axes = new_figure(1, 2, width=PAGE, height=0.075, sharey=True)
@@ -165,19 +171,16 @@ def search(rows: Rows) -> Any:
             found = [r for r in select(rows, curve, name) if r["value"] > 0.0]
             plot(axis, found, "restitution", number, 1.0, 2)
             axis.get_lines()[-1].set_label(words + name)
-        axis.axhline(RESTITUTION, **DOTTED)
+        name_letter(axis)
         axis.set_xscale("log")
-        axis.set_ylim(0.0, 1.0)
+        axis.set_ylim(0.0, 1.12)
         axis.set_xticks([0.02, 0.05, 0.1, 0.2, 0.5, 1, 2], ["0.02", "0.05", "0.1", "0.2", "0.5", "1", "2"])
         axis.xaxis.set_minor_formatter(NullFormatter())
-        with house_style():
-            label(axis.xaxis, *QUANTITIES["search"])
-            axis.legend(loc="upper center", ncols=2, handlelength=3.0)
-    with house_style():
-        label(axes[0].yaxis, "restitution τ", "1")
-        axes[0].set_title("(a) loss in the contact (Hunt-Crossley)")
-        axes[1].set_title("(b) hardness (linear, times that of the ball)")
-        name_letter(axes[0])
+        label(axis.xaxis, *QUANTITIES["search"])
+        axis.legend(loc="upper left", bbox_to_anchor=(0.0, 1.02), ncols=2, handlelength=3.0)
+    label(axes[0].yaxis, "restitution τ", "1")
+    panel(axes[0], 0, "loss in the contact (Hunt-Crossley)")
+    panel(axes[1], 1, "hardness (linear, times that of the ball)")
     return figure
 
 
@@ -194,6 +197,7 @@ QUICK = 3
 """So many of them, the first ones, are drawn for a first look."""
 
 
+@in_house_style
 def draw_all(rows: Rows, *, quick: bool) -> dict[str, Any]:
     """All figures by name, or those of a first look."""
     return {name: DRAWN[name](rows) for name in list(DRAWN)[: QUICK if quick else len(DRAWN)]}

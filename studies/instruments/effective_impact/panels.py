@@ -8,13 +8,22 @@ from typing import Any
 from matplotlib.axes import Axes
 
 from studies.instruments.effective_impact.approaches import select
-from studies.instruments.figures import LINES, MARKERS, PAGE, PALETTE, house_style, label, new_figure
+from studies.instruments.figures import (
+    EXCESS,
+    LINES,
+    MARKERS,
+    PAGE,
+    PALETTE,
+    label,
+    mark_letter,
+    new_figure,
+    panel,
+)
 from studies.published import RESTITUTION
 
-__all__ = ["DOTTED", "PANELS", "QUANTITIES", "Rows", "guide", "legend", "name_letter", "plot", "three"]
+__all__ = ["PANELS", "QUANTITIES", "Rows", "drawn", "guide", "legend", "name_letter", "plot", "three"]
 
 Rows = Sequence[dict[str, Any]]
-DOTTED: dict[str, Any] = {"color": "0.55", "linewidth": 0.7, "zorder": 0, "linestyle": ":"}
 
 PANELS = (("restitution", 1.0), ("delay_s", 1e3), ("kick", 1.0))
 """Column of the rows and factor to the unit of its axis."""
@@ -30,11 +39,11 @@ TITLES = {
     "as in the scene": "as in the scene",
 }
 QUANTITIES = {
-    "speed": ("excess F/F$_g$ - 1", "1"),
+    "speed": (EXCESS, "1"),
     "modes": ("modes kept", "1"),
     "mass": ("tip mass / mass of the leaf", "1"),
     "stiffness": ("contact stiffness / tip stiffness", "1"),
-    "damping": ("factor on the rates of higher modes", "1"),
+    "damping": ("factor on the higher rates", "1"),
     "loss": ("local restitution", "1"),
     "search": ("tip mass / mass of the leaf", "1"),
 }
@@ -61,10 +70,8 @@ def three(
 ) -> tuple[Any, Any]:
     """Restitution, delay and kick of some series of a curve."""
     figure, axes = new_figure(1, 3, width=PAGE, height=height)
-    for number, name in enumerate(series):
+    for number, name in enumerate(drawn(rows, curve, series)):
         found = select(rows, curve, name)
-        if not found:
-            continue
         every = max(1, len(found) // 12)
         for axis, (quantity, scale) in zip(axes, PANELS, strict=True):
             plot(axis, found, quantity, number, scale, every)
@@ -73,12 +80,28 @@ def three(
     ):
         if log:
             axis.set_xscale("log")
-        with house_style():
-            label(axis.xaxis, *QUANTITIES[curve])
-            label(axis.yaxis, quantity, unit)
+        label(axis.xaxis, *QUANTITIES[curve])
+        label(axis.yaxis, quantity, unit)
         axis.set_ylim(bottom=0.0)
-    axes[0].axhline(RESTITUTION, **DOTTED)
+    for place, axis in enumerate(axes):
+        panel(axis, place)
     return figure, axes
+
+
+def _repeats(rows: Rows, curve: str, name: str, others: Sequence[str]) -> bool:
+    """Whether the contact of the scene is one that has a series of its own."""
+    if name != "scene":
+        return False
+
+    def numbers(of: str) -> list[tuple[Any, ...]]:
+        return [tuple(r[key] for key, _ in PANELS) for r in select(rows, curve, of)]
+
+    return any(numbers(other) == numbers(name) for other in others if other != name)
+
+
+def drawn(rows: Rows, curve: str, series: Sequence[str]) -> list[str]:
+    """The series that are there and do not repeat another."""
+    return [name for name in series if select(rows, curve, name) and not _repeats(rows, curve, name, series)]
 
 
 def guide(axis: Axes, x: Sequence[float], y: Sequence[float], name: str, style: str = "--") -> None:
@@ -91,16 +114,13 @@ def legend(figure: Any, axes: Any, columns: int = 4, *, left: bool = False) -> N
     for axis in axes:
         for handle, name in zip(*axis.get_legend_handles_labels(), strict=True):
             found.setdefault(name, handle)
-    with house_style():
-        figure.legend(
-            list(found.values()), list(found), loc="outside lower center", ncols=columns, handlelength=3.0,
-            columnspacing=1.5,
-        )
-        name_letter(axes[0], left)
+    figure.legend(
+        list(found.values()), list(found), loc="outside lower center", ncols=columns, handlelength=3.0,
+        columnspacing=1.5,
+    )
+    name_letter(axes[0], left)
 
 
 def name_letter(axis: Axes, left: bool = False) -> None:
-    axis.annotate(
-        "letter", (0.02 if left else 0.99, RESTITUTION), xycoords=axis.get_yaxis_transform(),
-        ha="left" if left else "right", va="bottom", fontsize=6.5, color="0.4",
-    )
+    """The restitution that the letter estimates."""
+    mark_letter(axis.yaxis, RESTITUTION, words="letter, τ ≈ 0.1", along=0.02 if left else 0.99)

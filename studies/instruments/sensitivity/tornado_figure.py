@@ -6,11 +6,25 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from studies.instruments.figures import PAGE, house_style, new_figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from studies.instruments.figures import (
+    BLUE,
+    NOTE,
+    PAGE,
+    VERMILION,
+    in_house_style,
+    label,
+    new_figure,
+    panel,
+    tint,
+)
 
 __all__ = ["draw_tornado"]
 
 
+@in_house_style
 def draw_tornado(rows: Sequence[Mapping[str, Any]]) -> Any:
     """The fold after a change over the fold without it, one panel for each frequency."""
     frequencies = sorted({row["frequency_hz"] for row in rows})
@@ -26,80 +40,87 @@ def draw_tornado(rows: Sequence[Mapping[str, Any]]) -> Any:
         sharey=True,
         sharex=True,
     )
-    with house_style():
-        for axis in axes.flat[len(frequencies) :]:
-            axis.set_visible(False)
-        for panel, (axis, frequency) in enumerate(zip(axes.flat, frequencies, strict=False)):
-            here = [row for row in rows if row["frequency_hz"] == frequency]
-            base = next(row for row in here if row["parameter"] == "none")
-            for row in here:
-                if row["parameter"] == "none":
+    for axis in axes.flat[len(frequencies) :]:
+        axis.set_visible(False)
+    for number, (axis, frequency) in enumerate(zip(axes.flat, frequencies, strict=False)):
+        here = [row for row in rows if row["frequency_hz"] == frequency]
+        base = next(row for row in here if row["parameter"] == "none")
+        for row in here:
+            if row["parameter"] == "none":
+                continue
+            place, raised = parameters.index(row["parameter"]), row["sign"] > 0
+            for model, height, shift in (
+                ("beam", 0.23, 0.27 if raised else 0.03),
+                ("single_mode", 0.2, -0.24),
+            ):
+                now, then = row[f"fold_{model}"], base[f"fold_{model}"]
+                way = "raised" if raised else "lowered"
+                name = f"{row['parameter']} {way}, {'beam' if model == 'beam' else 'Eq. (1)'}"
+                if now is None and then is not None:
+                    axis.plot(
+                        0.23, place + shift, linestyle="none", marker="x" if raised else "+", markersize=3.5,
+                        color=VERMILION if raised else BLUE, clip_on=False, gid=f"{name}: none is left",
+                    )  # fmt: skip
+                if now is None or then is None or now * then <= 0 or abs(now / then - 1.0) < 1e-9:
                     continue
-                place, raised = parameters.index(row["parameter"]), row["sign"] > 0
-                for model, height, shift in (
-                    ("beam", 0.23, 0.27 if raised else 0.03),
-                    ("single_mode", 0.2, -0.24),
-                ):
-                    now, then = row[f"fold_{model}"], base[f"fold_{model}"]
-                    if now is None and then is not None:
-                        axis.plot(
-                            0.23,
-                            place + shift,
-                            marker="x",
-                            markersize=3,
-                            color="#D55E00" if raised else "#0072B2",
-                            clip_on=False,
-                        )
-                    if now is None or then is None or now * then <= 0 or abs(now / then - 1.0) < 1e-9:
-                        continue
-                    axis.barh(
-                        place + shift,
-                        now / then - 1.0,
-                        height,
-                        left=1.0,
-                        zorder=2,
-                        color=("#D55E00" if raised else "#0072B2") if model == "beam" else "white",
-                        edgecolor="#D55E00" if raised else "#0072B2",
-                        linewidth=0.6,
-                        hatch=None if model == "beam" else "//////",
-                    )
-                if row["born_beam"] != base["born_beam"]:
-                    words = f"p$_{{{row['born_beam']}}}$" if row["born_beam"] else "no period"
-                    axis.annotate(
-                        f"{words} at {row['change']}",
-                        (0.99, place),
-                        xycoords=("axes fraction", "data"),
-                        ha="right",
-                        va="center" if not raised else "top",
-                        fontsize=6,
-                    )
-            axis.axvline(1.0, color="0.3", linewidth=0.7, zorder=3)
-            axis.set_xscale("log")
-            axis.set_xlim(0.22, 4.5)
-            axis.set_xticks([0.25, 0.5, 1.0, 2.0, 4.0], ["0.25", "0.5", "1", "2", "4"])
-            axis.minorticks_off()
-            axis.set_yticks(range(len(parameters)), parameters)
-            axis.set_ylim(-0.6, len(parameters) - 0.4)
-            fold = (
-                "no hysteresis"
-                if base["fold_beam"] is None
-                else f"hysteresis {_tex(format(-base['fold_beam'], '.1e'))}"
-            )
-            axis.set_title(
-                f"({chr(ord('a') + panel)}) {frequency:.2f} Hz, p$_{{{base['m']}}}$, {fold}",
-                fontsize=7,
-            )
-        figure.supxlabel("hysteresis after the change / before it (×: none is left)")
-        from matplotlib.patches import Patch
-
-        handles = [
-            Patch(facecolor="#0072B2", label="lowered, beam"),
-            Patch(facecolor="#D55E00", label="raised, beam"),
-            Patch(facecolor="white", edgecolor="#0072B2", hatch="//////", label="lowered, Eq. (1)"),
-            Patch(facecolor="white", edgecolor="#D55E00", hatch="//////", label="raised, Eq. (1)"),
-        ]
-        figure.legend(handles=handles, loc="outside upper center", ncols=4)
+                axis.barh(
+                    place + shift,
+                    now / then - 1.0,
+                    height,
+                    left=1.0,
+                    zorder=2,
+                    **_look(model, raised),
+                    gid=name,
+                )
+            if row["born_beam"] != base["born_beam"]:
+                words = f"p$_{{{row['born_beam']}}}$" if row["born_beam"] else "no period"
+                axis.annotate(
+                    f"{words} at {row['change']}",
+                    (0.99, place),
+                    xycoords=("axes fraction", "data"),
+                    ha="right",
+                    va="center" if not raised else "top",
+                    fontsize=NOTE,
+                )
+        axis.axvline(1.0, color="0.3", linewidth=0.7, zorder=3, gid="no change")
+        axis.set_xscale("log")
+        axis.set_xlim(0.22, 4.5)
+        axis.set_xticks([0.25, 0.5, 1.0, 2.0, 4.0], ["0.25", "0.5", "1", "2", "4"])
+        axis.minorticks_off()
+        axis.set_yticks(range(len(parameters)), parameters)
+        axis.set_ylim(-0.6, len(parameters) - 0.4)
+        fold = (
+            "none"
+            if base["fold_beam"] is None
+            else _tex(format(-base["fold_beam"], ".1e"))
+        )
+        panel(axis, number, f"{frequency:.2f} Hz, p$_{{{base['m']}}}$ ({fold})")
+    for axis in axes[-1]:
+        label(axis.xaxis, "hysteresis / (hysteresis before)")
+    for axis in axes[:, 0]:
+        label(axis.yaxis, "what is changed")
+    handles: list[Any] = [
+        Patch(
+            **_look(model, raised),
+            label=f"{'raised' if raised else 'lowered'}, {'beam' if model == 'beam' else 'Eq. (1)'}",
+        )
+        for model in ("beam", "single_mode") for raised in (False, True)
+    ]  # fmt: skip
+    handles += [
+        Line2D([], [], linestyle="none", marker=mark, color=colour, markersize=3.5, label=f"{way}: none left")
+        for mark, colour, way in (("+", BLUE, "lowered"), ("x", VERMILION, "raised"))
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=6, columnspacing=1.2)
     return figure
+
+
+def _look(model: str, raised: bool) -> dict[str, Any]:
+    """Fill and hatch by description and direction: a grey copy tells them apart."""
+    colour = VERMILION if raised else BLUE
+    if model == "beam":
+        return {"facecolor": tint(colour, 0.4) if raised else colour, "edgecolor": colour, "linewidth": 0.6}
+    hatch = "\\\\" * 3 if raised else "/" * 6
+    return {"facecolor": "white", "edgecolor": colour, "linewidth": 0.6, "hatch": hatch}
 
 
 def _tex(text: str) -> str:

@@ -4,10 +4,10 @@ A ball dropped from h rebounds with e times its speed; its impacts fall at
 
     t_n = t_0 (1 + 2 (e + ... + e^n)),   t_0 = sqrt(2 h/g),   t_inf = t_0 (1 + e)/(1 - e).                 (a)
 
-The package computes hops until their height drowns in rounding, (v e^n)^2 <= 2 g L r with r the rounding
-bound of the tip and L = ``LOWEST_HOP``, sums the rest and lets the ball lie (``contact.newton``). The number
-of hops that are computed is ln(v / sqrt(2 g L r)) / ln(1/e); if it exceeds the bound ``MOST_IMPACTS`` of one
-drive period, which with e below 1 needs 1 - e of some 1e-4 and less, the run ends with ``Chatter``.
+The package computes hops until their height drowns in rounding, (v e^n)^2 <= 2 g L with L the lowest hop
+(``contact.newton.lowest_hop``), sums the rest and lets the ball lie. The number of hops that are computed is
+ln(v / sqrt(2 g L)) / ln(1/e); if it exceeds the bound ``MOST_IMPACTS`` of one drive period, which with e below
+1 needs 1 - e of some 1e-4 and less, the run ends with ``Chatter``.
 
 Two loops as they are often written, for contrast, both with a bound on the events:
 
@@ -37,7 +37,7 @@ from contact.flight import tip_rounding
 from contact.integrators import EventDriven
 from contact.integrators.event_loop import MOST_IMPACTS
 from contact.laws import NewtonRestitution
-from contact.newton import LOWEST_HOP
+from contact.newton import lowest_hop
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
@@ -158,7 +158,7 @@ def expected_impacts(left: float) -> float:
     """Hops from the first speed of `last_hops` to that of the lowest hop."""
     oscillator, state = last_hops(left)
     rounding = tip_rounding(oscillator.motion(), np.array(state.displacement), np.zeros(1))
-    lowest = math.sqrt(2.0 * GRAVITY * LOWEST_HOP * rounding)
+    lowest = math.sqrt(2.0 * GRAVITY * lowest_hop(1.0 - left, rounding))
     return math.log(abs(float(state.velocity[0])) / lowest) / -math.log1p(-left)
 
 

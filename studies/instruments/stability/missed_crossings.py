@@ -20,12 +20,13 @@ only where the tip turns twice between two samples, so the formula is not theirs
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from studies.instruments.figures import PAGE, house_style, label, new_figure, series
+from studies.instruments.figures import NOTE, PAGE, in_house_style, label, new_figure, panel, series
 from studies.instruments.record import Record
 from studies.instruments.scene import Scene
 from studies.instruments.stability.bisection import bisect
@@ -136,49 +137,50 @@ def measure(*, quick: bool, scene: Scene) -> Findings:
     return Findings(limits=limits, arrays=arrays)
 
 
+@in_house_style
 def draw(findings: Findings, record: Record) -> None:
     """Share missed over overshoot: one mode above, six below; error control left, fixed steps right."""
     arrays = findings.arrays
     figure, axes = new_figure(2, 2, width=PAGE, height=0.160, sharex=True, sharey=True)
     overshoot, fine = arrays["overshoot"], arrays["fine"]
-    titles = iter("abcd")
-    with house_style():
-        for row, case in zip(axes, WORDS, strict=True):
-            labels, panels = arrays[f"label_{case}"], arrays[f"panel_{case}"]
-            acts = arrays[f"percussions_{case}"]
-            theory, share = 100.0 * arrays[f"theory_{case}"], 100.0 * arrays[f"share_{case}"]
-            for axis, panel, words in zip(
-                row, ("control", "step"), ("error control", "fixed steps and samples"), strict=True
-            ):
-                chosen = np.flatnonzero(panels == panel)
-                families: list[str] = []
-                for i in chosen:
-                    # settings of one method share a colour; the second has filled markers
-                    family = str(labels[i]).split(",")[0]
-                    first = family not in families
-                    families += [family] * first
-                    number = families.index(family) + (panel == "step")
-                    style = {**series(number % 8), "linestyle": "none"}
-                    axis.plot(overshoot, share[i], **style, label=str(labels[i]),
-                              markerfacecolor="none" if first else style["color"])
-                    if panel == "control":
-                        axis.plot(fine, theory[i], color=style["color"], linewidth=0.7)
-                if panel == "step":
-                    for percussions, words_of in ((False, "looks a step apart"), (True, "percussions")):
-                        known = [i for i in chosen if np.isfinite(theory[i, 0]) and acts[i] == percussions]
-                        if known:
-                            axis.plot(fine, theory[known[0]], color="0.4", linewidth=0.7, label=words_of,
-                                      linestyle="--" if percussions else "-")
-                    exact = np.flatnonzero(panels == "exact")
-                    axis.plot(overshoot, share[exact].max(axis=0), **series(0), label="exact methods")
-                axis.set_title(f"({next(titles)}) {WORDS[case]}, {words}", loc="left")
-                axis.set_xscale("log")
-                axis.set_ylim(-4.0, 104.0)
-        for axis in axes[:, 0]:
-            label(axis.yaxis, "crossings missed", "%")
-        common = f"tolerance 10$^{{{np.log10(TOLERANCE):.0f}}}$ if none is given"
-        for axis, title in zip(axes[1], (common, None), strict=True):
-            label(axis.xaxis, "overshoot / gap")
-            axis.legend(loc="upper left", bbox_to_anchor=(0.0, -0.22), ncols=2, title=title,
-                        title_fontsize=7.0, alignment="left")
+    places = itertools.count()
+    for row, case in zip(axes, WORDS, strict=True):
+        labels, panels = arrays[f"label_{case}"], arrays[f"panel_{case}"]
+        acts = arrays[f"percussions_{case}"]
+        theory, share = 100.0 * arrays[f"theory_{case}"], 100.0 * arrays[f"share_{case}"]
+        for axis, kind, words in zip(
+            row, ("control", "step"), ("error control", "fixed steps and samples"), strict=True
+        ):
+            chosen = np.flatnonzero(panels == kind)
+            families: list[str] = []
+            for i in chosen:
+                # settings of one method share a colour; the second has filled markers
+                family = str(labels[i]).split(",")[0]
+                first = family not in families
+                families += [family] * first
+                number = families.index(family) + (kind == "step")
+                style = {**series(number % 8), "linestyle": "none"}
+                axis.plot(overshoot, share[i], **style, label=str(labels[i]),
+                          markerfacecolor="none" if first else style["color"])
+                if kind == "control":
+                    axis.plot(fine, theory[i], color=style["color"], linewidth=0.7,
+                              gid=f"{labels[i]}, theory")
+            if kind == "step":
+                for percussions, words_of in ((False, "looks a step apart"), (True, "percussions")):
+                    known = [i for i in chosen if np.isfinite(theory[i, 0]) and acts[i] == percussions]
+                    if known:
+                        axis.plot(fine, theory[known[0]], color="0.4", linewidth=0.7, label=words_of,
+                                  linestyle="--" if percussions else "-")
+                exact = np.flatnonzero(panels == "exact")
+                axis.plot(overshoot, share[exact].max(axis=0), **series(0), label="exact methods")
+            panel(axis, next(places), f"{WORDS[case]}, {words}")
+            axis.set_xscale("log")
+            axis.set_ylim(-4.0, 104.0)
+    for axis in axes[:, 0]:
+        label(axis.yaxis, "crossings missed", "%")
+    common = f"tolerance 10$^{{{np.log10(TOLERANCE):.0f}}}$ if none is given"
+    for axis, title in zip(axes[1], (common, None), strict=True):
+        label(axis.xaxis, "overshoot / gap")
+        axis.legend(loc="upper left", bbox_to_anchor=(0.0, -0.22), ncols=2, title=title,
+                    title_fontsize=NOTE, alignment="left")
     record.write_figure(figure, "missed_crossings")

@@ -30,7 +30,7 @@ from contact.integrators.nonsmooth_generalised_alpha import NonsmoothGeneralised
 from contact.laws import NewtonRestitution
 from contact.simulation import simulate
 from contact.stop import Stop
-from studies.instruments.figures import PAGE, house_style, label, new_figure, series
+from studies.instruments.figures import PAGE, in_house_style, label, new_figure, panel, series
 from studies.instruments.oscillators import beam_of
 from studies.instruments.record import Record
 from studies.instruments.scene import Scene
@@ -198,47 +198,45 @@ def measure(*, quick: bool, scene: Scene) -> Findings:
     )  # fmt: skip
 
 
+@in_house_style
 def draw(findings: Findings, record: Record) -> None:
     """Restitution, kick and loss against the step for both laws; penetration."""
     arrays = findings.arrays
-    figure, axes = new_figure(2, 3, width=PAGE, height=0.115)
+    figure, axes = new_figure(2, 3, width=PAGE, height=0.124)
     unit = {"hertz": "$h$ / contact time", "newton": "$h\\,\\omega_\\mathrm{max}$"}
-    with house_style():
-        for row, (law, methods) in enumerate((("hertz", HERTZ), ("newton", NEWTON))):
-            sizes, exact = arrays[f"{law}_h"], arrays[f"{law}_exact"]
-            for i, name in enumerate(methods):
-                table = arrays[f"{law} {name}"]
-                for column in (0, 1):
-                    axes[row, column].errorbar(
-                        sizes, table[column], yerr=table[2 + column], **series(i), label=name, elinewidth=0.6,
-                        markevery=max(1, sizes.size // 6), errorevery=max(1, sizes.size // 6),
-                    )  # fmt: skip
-                axes[row, 2].plot(sizes, table[5], **series(i), markevery=max(1, sizes.size // 6))
-            for column, words in enumerate(QUANTITIES):
-                axis = axes[row, column]
-                axis.set_xscale("log")
-                label(axis.xaxis, unit[law], "1")
-                label(axis.yaxis, words, "1")
-                if column < 2:
-                    axis.axhline(exact[column], color="0.5", linewidth=0.8, linestyle=":")
-                else:
-                    axis.axhline(0.0, color="0.5", linewidth=0.8, linestyle=":")
-                    axis.set_yscale("symlog", linthresh=1e-3)
-            axes[row, 0].legend(loc="upper left")
-        axes[0, 1].set_title("elastic Hertz contact")
-        axes[1, 1].set_title("Newton's law, e = 1")
+    for row, (law, methods) in enumerate((("hertz", HERTZ), ("newton", NEWTON))):
+        sizes, exact = arrays[f"{law}_h"], arrays[f"{law}_exact"]
+        for i, name in enumerate(methods):
+            table = arrays[f"{law} {name}"]
+            for column in (0, 1):
+                axes[row, column].errorbar(
+                    sizes, table[column], yerr=table[2 + column], **series(i), label=name, elinewidth=0.6,
+                    markevery=max(1, sizes.size // 6), errorevery=max(1, sizes.size // 6),
+                )  # fmt: skip
+            axes[row, 2].plot(sizes, table[5], **series(i), markevery=max(1, sizes.size // 6), gid=name)
+        for column, words in enumerate(QUANTITIES):
+            axis = axes[row, column]
+            axis.set_xscale("log")
+            panel(axis, 3 * row + column, "Hertz contact" if law == "hertz" else "Newton's law, e = 1")
+            label(axis.xaxis, unit[law], "1")
+            label(axis.yaxis, words, "1")
+            if column < 2:
+                axis.axhline(exact[column], color="0.5", linewidth=0.8, linestyle=":", gid="exact")
+            else:
+                axis.axhline(0.0, color="0.5", linewidth=0.8, linestyle=":", gid="no loss")
+                axis.set_yscale("symlog", linthresh=1e-3)
+        axes[row, 0].legend(loc="upper left")
     record.write_figure(figure, "numerical_restitution")
     figure, axis = new_figure(height=0.06)
-    with house_style():
-        sizes = arrays["penetration_h_omega"]
-        axis.plot(sizes, 1e6 * arrays["penetration"], **series(0), label="deepest of a run")
-        axis.plot(
-            sizes, 1e6 * arrays["penetration"][0] * sizes / sizes[0], color="0.5", linestyle=":",
-            label="slope 1",
-        )  # fmt: skip
-        axis.set_xscale("log")
-        axis.set_yscale("log")
-        axis.legend(loc="upper left")
-        label(axis.xaxis, "$h\\,\\omega_\\mathrm{max}$", "1")
-        label(axis.yaxis, "penetration, Moreau-Jean", "µm")
+    sizes = arrays["penetration_h_omega"]
+    axis.plot(sizes, 1e6 * arrays["penetration"], **series(0), label="deepest of a run")
+    axis.plot(
+        sizes, 1e6 * arrays["penetration"][0] * sizes / sizes[0], color="0.5", linestyle=":",
+        label="slope 1",
+    )  # fmt: skip
+    axis.set_xscale("log")
+    axis.set_yscale("log")
+    axis.legend(loc="upper left")
+    label(axis.xaxis, "$h\\,\\omega_\\mathrm{max}$", "1")
+    label(axis.yaxis, "penetration, Moreau-Jean", "µm")
     record.write_figure(figure, "moreau_jean_penetration")

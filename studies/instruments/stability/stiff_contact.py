@@ -137,7 +137,7 @@ def _accuracy(model: ModalModel, stiffness: np.ndarray, quick: bool) -> tuple[li
 def followed() -> Limit:
     """A single collision of one mode, far beyond any real stiffness."""
     model = spring(1)
-    highest = 1e22
+    highest = 1e18
     digits = -math.log10(worst(model, highest * modal_stiffness(model), SPEEDS)[0])
     return Limit(
         method=NAME, case="1 mode, one collision: is followed to its end", knob="k/k_modal [1]", theory=None,

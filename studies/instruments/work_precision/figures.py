@@ -10,13 +10,24 @@ exact methods are single large points.
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from studies.instruments.figures import LINES, MARKERS, PAGE, PALETTE, house_style, label, new_figure
+from studies.instruments.figures import (
+    LINES,
+    MARKERS,
+    PAGE,
+    PALETTE,
+    in_house_style,
+    label,
+    new_figure,
+    panel,
+)
 from studies.instruments.work_precision.front import front
 from studies.instruments.work_precision.methods import EXACT, OUTSIDE, STEPPED
 from studies.instruments.work_precision.model_error import ModelErrors
@@ -90,44 +101,44 @@ def _draw(axes: Any, rows: Sequence[Row], styles: Mapping[str, Mapping[str, Any]
 def _legend(figure: Figure, axes: Any, columns: int, order: Sequence[str] = ()) -> None:
     """One legend below all panels, in the order given, others first."""
     handles: dict[str, Any] = {}
-    for panel in np.ravel(axes):
-        for handle, name in zip(*panel.get_legend_handles_labels(), strict=True):
+    for axis in np.ravel(axes):
+        for handle, name in zip(*axis.get_legend_handles_labels(), strict=True):
             handles.setdefault(name, handle)
     place = {name: i for i, name in enumerate(order)}
     handles = dict(sorted(handles.items(), key=lambda item: place.get(item[0], -1)))
-    with house_style():
-        figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=columns)
+    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=columns)
 
 
+@in_house_style
 def work_precision_figure(
     rows: Sequence[Row], problems: Sequence[Problem], reference: Mapping[str, Mapping[str, float]]
 ) -> Figure:
     """One panel a problem; `reference` holds the reference's own errors."""
     figure, axes = new_figure(2, 2, width=PAGE, height=0.175)
     styles = styles_of(rows)
-    for problem, panel in zip(problems, np.ravel(axes), strict=False):
+    for number, (problem, axis) in enumerate(zip(problems, np.ravel(axes), strict=False)):
         here = [row for row in rows if row["problem"] == problem.name]
-        _draw(panel, here, styles, "error")
+        _draw(axis, here, styles, "error")
         best = front(here)
         if best:
             # from the cheapest point straight up, from the most accurate one to the right
             cost, error = np.array([(row["us_per_period"], max(row["error"], FLOOR)) for row in best]).T
-            (_left, right), (_low, top) = panel.get_xlim(), panel.get_ylim()
-            panel.step(
+            (_left, right), (_low, top) = axis.get_xlim(), axis.get_ylim()
+            axis.step(
                 [cost[0], *cost, right], [top, *error, error[-1]], where="post", color="0.8", linewidth=4,
                 zorder=0, label="front",
             )  # fmt: skip
-            panel.set_xlim(_left, right)
-            panel.set_ylim(_low, top)
-        with house_style():
-            own = reference[problem.name]["error"]
-            panel.set_title(f"{problem.title}\nreference good to {own:.0e}")
-        label(panel.xaxis, f"time per {problem.unit}", "µs")
-        label(panel.yaxis, AXES["error"])
+            axis.set_xlim(_left, right)
+            axis.set_ylim(_low, top)
+        own = reference[problem.name]["error"]
+        panel(axis, number, f"{problem.title}\nreference good to 10$^{{{math.log10(own):.0f}}}$")
+        label(axis.xaxis, f"time per {problem.unit}", "µs")
+        label(axis.yaxis, AXES["error"])
     _legend(figure, axes, 4, list(styles))
     return figure
 
 
+@in_house_style
 def other_errors_figure(rows: Sequence[Row], problems: Sequence[Problem]) -> Figure:
     """A row a measure, a column a driven problem."""
     measures = [name for name in AXES if name != "error"]
@@ -138,10 +149,10 @@ def other_errors_figure(rows: Sequence[Row], problems: Sequence[Problem]) -> Fig
     styles = styles_of(rows)
     for j, problem in enumerate(driven):
         here = [row for row in rows if row["problem"] == problem.name]
-        with house_style():
-            axes[0, j].set_title(problem.title)
         for i, measure in enumerate(measures):
             _draw(axes[i, j], here, styles, measure)
+            title = re.sub(r", \d+ modes", "", problem.title) if i == 0 else ""
+            panel(axes[i, j], i * len(driven) + j, title)
             if j == 0:
                 label(axes[i, j].yaxis, AXES[measure])
         label(axes[-1, j].xaxis, f"time per {problem.unit}", "µs")
@@ -149,6 +160,7 @@ def other_errors_figure(rows: Sequence[Row], problems: Sequence[Problem]) -> Fig
     return figure
 
 
+@in_house_style
 def model_figure(found: ModelErrors) -> Figure:
     """Errors on the left, costs on the right."""
     figure, (left, right) = new_figure(1, 2, width=PAGE, height=0.085)
@@ -160,12 +172,14 @@ def model_figure(found: ModelErrors) -> Figure:
         style = {"color": PALETTE[1 + j % 6], "marker": MARKERS[1 + j % 6], "linestyle": LINES[1 + j % 6]}
         left.plot(found.modes, found.step_error[:, j], label=f"step {1e6 * h:.3g} µs", **style)
         right.plot(found.modes, found.step_cost[:, j], label=f"step {1e6 * h:.3g} µs", **style)
-    for panel, quantity, unit in ((left, "error of mode 1", "1"), (right, "time per drive period", "µs")):
-        panel.set_xscale("log", base=2)
-        panel.set_yscale("log")
-        panel.set_xticks(found.modes, [str(n) for n in found.modes])
-        panel.minorticks_off()
-        label(panel.xaxis, "number of modes")
-        label(panel.yaxis, quantity, unit)
+    shown = ((left, "error of mode 1", "1"), (right, "time per drive period", "µs"))
+    for number, (axis, quantity, unit) in enumerate(shown):
+        axis.set_xscale("log", base=2)
+        axis.set_yscale("log")
+        axis.set_xticks(found.modes, [str(n) for n in found.modes])
+        axis.minorticks_off()
+        panel(axis, number)
+        label(axis.xaxis, "number of modes")
+        label(axis.yaxis, quantity, unit)
     _legend(figure, [left, right], 3)
     return figure
