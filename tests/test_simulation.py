@@ -245,7 +245,7 @@ def test_accumulation_takes_the_time_it_should(e):
 
 @pytest.mark.parametrize("left", [3e-3, 1e-3, 3e-4, 1.3e-4])
 def test_hops_of_an_almost_elastic_ball_do_not_lock_into_one_another(left):
-    """(v e^n)^2 falls below rounding's share of a hop only when the rest is summed: the ball comes to rest."""
+    """Rounding moves a speed by some left/10 in the lowest hops, at random: in 1/left hops, by sqrt(left)/10."""
     gravity, gap = 9.81, 1e-3
     ball = ModalModel(omega=[0.0], decay_rate=[0.0], phi=[1.0], participation=[0.0])
     oscillator = ImpactOscillator(
@@ -256,9 +256,9 @@ def test_hops_of_an_almost_elastic_ball_do_not_lock_into_one_another(left):
     run = simulate(oscillator, state, duration=0.9)
     hops = run.impacts.approach[run.impacts.kind == 0]
     assert run.end.regime == 3
-    np.testing.assert_allclose(hops / (speed * (1.0 - left) ** np.arange(hops.size)), 1.0, atol=2e-4)
+    np.testing.assert_allclose(hops / (speed * (1.0 - left) ** np.arange(hops.size)), 1.0, atol=0.1 * math.sqrt(left))
     rest = run.impacts.start[-1] + 2 * abs(run.impacts.approach[-1]) / (gravity * left)
-    assert rest == pytest.approx(0.5, rel=1e-6)
+    assert rest == pytest.approx(0.5, rel=1e-5)
 
 
 def test_time_of_the_hops_that_are_summed():
