@@ -142,7 +142,7 @@ def _positive_roots(two: float, one: float, none: float) -> list[float]:
 
 
 def maximal_orbits(nordmark: NordmarkMap, period: int, rho: float) -> tuple[MaximalOrbit, ...]:
-    """Solutions with one impact every `period` steps at `rho`, 0 to 2 of them, in order of rising X.
+    """Solutions of the map `nordmark` with one impact every `period` steps at `rho`, 0 to 2, X rising.
 
     Of two, the first is the saddle and the second the node. They solve the equations of the branches; ask
     each for `admissible` and `stable`.
@@ -154,7 +154,10 @@ def maximal_orbits(nordmark: NordmarkMap, period: int, rho: float) -> tuple[Maxi
 
 
 def fold(nordmark: NordmarkMap, period: int) -> MaximalOrbit | None:
-    """The orbit at the fold of p_m, its `rho` being rho_m; None where there is no fold (b >= 0 or a <= 0)."""
+    """The orbit p_m of the map `nordmark` at its fold, m = `period`, its `rho` being rho_m.
+
+    None where there is no fold (b >= 0 or a <= 0).
+    """
     parts = _Impulses(nordmark, period)
     if not (parts.b < 0.0 < parts.a):
         return None
@@ -164,6 +167,8 @@ def fold(nordmark: NordmarkMap, period: int) -> MaximalOrbit | None:
 
 def stable_range(nordmark: NordmarkMap, period: int) -> tuple[float, float] | None:
     """The first interval of rho, from the fold upwards, in which the node p_m is stable and admissible.
+
+    m = `period`, in the map `nordmark`.
 
     Its lower end is rho_m, or the rho of a second impact; its upper end that of a second impact or of a
     multiplier -1, or infinity. None where there is no fold or no such interval.
@@ -185,13 +190,19 @@ def stable_range(nordmark: NordmarkMap, period: int) -> tuple[float, float] | No
 
 
 def maximal_period(nordmark: NordmarkMap) -> int:
-    """The m with pi/m < theta <= pi/(m-1), whose upper band edge is next above; 0 without oscillation."""
+    """The m with pi/m < theta <= pi/(m-1), theta the angle of the map `nordmark`; 0 without oscillation.
+
+    Its upper band edge is the next above.
+    """
     angle = require_kind("nordmark", nordmark, NordmarkMap, "a NordmarkMap").angle
     return math.floor(math.pi / angle) + 1 if angle > 0.0 else 0
 
 
 def maximal_periods(nordmark: NordmarkMap) -> tuple[int, ...]:
-    """All m for which p_m is admissible as rho -> 0-: `maximal_period`, and m + 1 where the bands overlap."""
+    """All m for which p_m of the map `nordmark` is admissible as rho -> 0-.
+
+    They are `maximal_period`, and m + 1 where the bands overlap.
+    """
     m = maximal_period(nordmark)
     if m == 0:
         return ()
@@ -213,9 +224,23 @@ def band(
     period: int, *, free_period: float, decay_rate: float, restitution: float,
     y_line: YLine = "corrected", whole_turns: int = 1,
 ) -> Band:  # fmt: skip
-    """The band of p_m of the mode with free period T [s] and decay rate mu [1/s], m = `period` >= 2.
+    """The band of p_m of one mode, m = `period` >= 2.
 
-    Raises ValueError for m < 2 and for parameters that `NordmarkMap.from_frequencies` refuses.
+    Parameters
+    ----------
+    period : int
+        m, in drive periods.
+    free_period, decay_rate, restitution : float
+        Damped period T [s], mu [1/s] and tau of the mode.
+    y_line : {"corrected", "printed"}
+        Which second line the map has; see `NordmarkMap.from_frequencies`.
+    whole_turns : int
+        Free swings in a drive period, rounded down.
+
+    Raises
+    ------
+    ValueError
+        For m < 2 and for parameters that `NordmarkMap.from_frequencies` refuses.
     """
     m = require_whole("period", period, "drive periods", low=2, high=MOST_PERIODS)
     require_within("free_period", free_period, "s", above=0)
@@ -244,7 +269,10 @@ def bands(
     periods: Iterable[int], *, free_period: float, decay_rate: float, restitution: float,
     y_line: YLine = "corrected", whole_turns: int = 1,
 ) -> tuple[Band, ...]:  # fmt: skip
-    """`band` for each of `periods`, sorted by frequency."""
+    """`band` for each of `periods`, sorted by frequency.
+
+    `free_period`, `decay_rate`, `restitution`, `y_line` and `whole_turns` are as there.
+    """
     require_kind("periods", periods, Iterable, "a sequence of periods")
     found = [
         band(m, free_period=free_period, decay_rate=decay_rate, restitution=restitution, y_line=y_line,

@@ -204,7 +204,7 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
         {name: [math.nan if v is None else v for v in values] for name, values in columns.items()},
     )
     request.record.write_figure(draw_curves(scene, rows), "hysteresis")
-    request.record.write_figure(draw_ratios(rows), "hysteresis_ratio")
+    request.record.write_figure(draw_ratios(scene, rows), "hysteresis_ratio")
     request.record.write_figure(draw_causes(letter), "hysteresis_causes")
     print(f"{'f (Hz)':>7} {'m':>3} " + " ".join(f"{name:>18}" for name in DESCRIPTIONS), flush=True)
     for row in letter:

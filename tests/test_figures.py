@@ -302,7 +302,7 @@ DRAWN: dict[str, Callable[[], Figure]] = {
     "trace": _trace,
     "spectrum": _spectrum,
     "hysteresis": lambda: hysteresis_figures.draw_curves(read_scene("letter"), _folds()),
-    "ratios": lambda: hysteresis_figures.draw_ratios(_folds()),
+    "ratios": lambda: hysteresis_figures.draw_ratios(read_scene("letter"), _folds()),
     "causes": lambda: hysteresis_figures.draw_causes(_folds()),
     "kicks": _kicks,
     "doubling": _doubling,

@@ -159,7 +159,7 @@ def test_every_method_is_tried_and_the_rows_hold_together(
 
     record = Record(study="missed", folder=tmp_path, scene=SCENE, command="")
     draw(findings, record)
-    assert set(record.files) == {"missed_crossings.png", "missed_crossings.pdf"}
+    assert set(record.files) == {f"missed_crossings{end}" for end in (".png", ".pdf", "_drawn.csv")}
 
 
 def test_phases_fill_the_interval_evenly() -> None:

@@ -123,6 +123,7 @@ class Exponents:
 
     @property
     def largest(self) -> float:
+        """The first of them: above zero in chaos."""
         return float(self.values[0])
 
 

@@ -65,7 +65,7 @@ class MaximalFlight:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SingleImpactOrbit:
-    """One orbit of a `MaximalFamily`.
+    """One orbit of a `MaximalFamily`, its `family`.
 
     `speed` v of approach [m/s]; `amplitude` Z of the base [m]; `excess` F/F_g - 1 [1]; `flight` from the
     impact on; `before`: deviations (u, u') just before the impact, shape (2, n_modes).

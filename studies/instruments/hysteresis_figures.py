@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from contact.maximal_orbits import bands
+from studies.instruments.corresponding import corresponding, periods_of
 from studies.instruments.figures import (
     BLACK,
     BLUE,
@@ -34,7 +35,6 @@ from studies.published import (
     DRIVE_AMPLITUDE_M,
     FREE_PERIOD_ERROR_S,
     FREE_PERIOD_S,
-    PERIODS,
 )
 
 __all__ = ["draw_causes", "draw_curves", "draw_ratios"]
@@ -75,6 +75,8 @@ def draw_curves(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> Any:
         restitution=keys.restitution,
     )
     unsure = FREE_PERIOD_ERROR_S / FREE_PERIOD_S
+    periods = periods_of(scene)
+    lowest, highest = (corresponding(scene, f) for f in FREQUENCIES_DRAWN_HZ)
     for axis, logarithmic in zip(axes, (False, True), strict=True):
         for m in PERIODS_DRAWN:
             for name, style in STYLES.items():
@@ -88,26 +90,26 @@ def draw_curves(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> Any:
             axis.axvspan(band.upper * (1.0 - unsure), band.upper * (1.0 + unsure), color="0.82", linewidth=0,
                          zorder=0, gid=f"upper edge, m = {band.period}",
                          label="upper edge of a band, letter's error of T" if band.period == 3 else None)
-        for seen in PERIODS:
-            axis.axvline(seen, **LETTER, gid=f"letter, m = {PERIODS[seen]}",
-                         label="letter's Fig. 2: p$_m$ seen here" if seen == min(PERIODS) else None)
-    for seen, m in PERIODS.items():
+        for seen, m in periods.items():
+            axis.axvline(seen, **LETTER, gid=f"letter, m = {m}",
+                         label="letter's Fig. 2: p$_m$ seen here" if seen == min(periods) else None)
+    for seen, m in periods.items():
         axes[1].annotate(
             f"p$_{{{m}}}$", (seen, 0.02), xytext=(-1.5, 0), textcoords="offset points", ha="right",
             xycoords=("data", "axes fraction"), va="bottom", fontsize=NOTE,
         )  # fmt: skip
     for band in edges:
-        if band.lower < FREQUENCIES_DRAWN_HZ[1]:
+        if band.lower < highest:
             axes[0].annotate(
                 f"$m$ = {band.period}" if band.period < 6 else f"{band.period}",
-                (0.5 * (max(band.lower, FREQUENCIES_DRAWN_HZ[0]) + band.upper), 1.01),
+                (0.5 * (max(band.lower, lowest) + band.upper), 1.01),
                 xycoords=("data", "axes fraction"), ha="center", va="bottom", fontsize=NOTE,
             )  # fmt: skip
     axes[0].set_ylim(-0.16, 0.005)
     axes[0].axhline(0.0, **GUIDE, gid="grazing")
     axes[1].set_yscale("log")
     axes[1].set_ylim(1e-6, 0.3)
-    axes[1].set_xlim(*FREQUENCIES_DRAWN_HZ)
+    axes[1].set_xlim(lowest, highest)
     mark_letter(axes[1].yaxis, AMPLITUDE_STABILITY_M / DRIVE_AMPLITUDE_M,
                 words="letter: stability of the amplitude", along=0.01)
     label(axes[0].yaxis, "$F_m/F_g - 1$")
@@ -120,7 +122,7 @@ def draw_curves(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> Any:
 
 
 @in_house_style
-def draw_ratios(rows: Sequence[Mapping[str, Any]]) -> Any:
+def draw_ratios(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> Any:
     """Every description over the beam, against frequency."""
     figure, axis = new_figure(width=PAGE, height=0.075)
     names = ("map", "map_measured_kick", "single_mode", "two_parameters", "all_mode_kick")
@@ -134,9 +136,10 @@ def draw_ratios(rows: Sequence[Mapping[str, Any]]) -> Any:
             label=NAMES[name],
         )  # fmt: skip
     axis.axhline(1.0, color="0.4", linewidth=0.8, gid="the beam itself")
-    for seen, m in PERIODS.items():
+    periods = periods_of(scene)
+    for seen, m in periods.items():
         axis.axvline(seen, **LETTER, gid=f"letter, m = {m}",
-                     label="letter's frequencies" if seen == min(PERIODS) else None)
+                     label="letter's frequencies" if seen == min(periods) else None)
     axis.set_yscale("log")
     axis.set_ylim(0.1, 20.0)
     axis.set_yticks([0.1, 0.3, 1.0, 3.0, 10.0], ["0.1", "0.3", "1", "3", "10"])
