@@ -32,7 +32,6 @@ as a program, `start_as_program`):
 from __future__ import annotations
 
 import importlib.util
-import multiprocessing
 import os
 import sys
 import warnings
@@ -108,5 +107,5 @@ if sys.argv[:1] == ["-m"]:  # as long as the interpreter looks for the module th
     start_as_program()
 single_blas_thread()
 refuse_foreign_packages()
-if multiprocessing.parent_process() is not None:
+if "--multiprocessing-fork" in sys.orig_argv:  # a spawned worker knows its parent only after its imports
     quiet_worker()

@@ -5,7 +5,10 @@ from __future__ import annotations
 import inspect
 import json
 import math
+import subprocess
+import sys
 from decimal import Decimal, localcontext
+from pathlib import Path
 
 import mpmath
 import numpy as np
@@ -40,6 +43,7 @@ from studies.instruments.stability.pressed_contact import (
 from studies.instruments.stability.short_contacts import free_body, rebound_of, rebound_ratio
 
 EPS = 2.0**-52
+ROOT = Path(__file__).resolve().parent.parent
 
 
 @pytest.fixture(scope="module")
@@ -464,3 +468,11 @@ def test_all_families_in_their_small_form(tmp_path, capsys):
     answer = json.loads(capsys.readouterr().out)
     assert {row["family"] for row in answer["rows"]} == set(stability.FAMILIES)
     assert answer["failed_cells"] == 0
+
+
+def test_workers_of_a_study_do_not_warn_of_what_it_varies_on_purpose(tmp_path):
+    """Its gaps of 1000 m are meant; a worker is started anew and has to be told."""
+    command = [sys.executable, "-m", "studies.stability", "--quick", "--workers", "2", "--out", str(tmp_path)]
+    command += ["--families", "accumulation,explicit_limits"]
+    answer = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert answer.returncode == 0 and "SuspiciousValue" not in answer.stderr

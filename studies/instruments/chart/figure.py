@@ -21,7 +21,7 @@ from scipy import ndimage
 from contact.maximal_orbits import Band
 from studies.instruments.chart.cells import Cells
 from studies.instruments.chart.plane import sheared
-from studies.instruments.figures import PAGE, PALETTE, house_style, label, new_figure
+from studies.instruments.figures import PAGE, PALETTE, house_style, label, new_figure, panel
 
 __all__ = ["colour_of_impacts", "colour_of_period", "draw"]
 
@@ -147,8 +147,8 @@ def draw(
                 axis.plot(x[failed[:, 0]], y[failed[:, 1]], "x", color=PALETTE[2], markersize=3)
             _write_numbers(above, hit, x, y, lambda value: f"p$_{{{value}}}$")
             _write_numbers(below, classes, x, y, class_name)
-            above.set_title(f"{way}: period")
-            below.set_title(f"{way}: impacts in a period")
+            panel(above, k, f"{way}: period")
+            panel(below, 2 + k, f"{way}: impacts in a period")
             label(below.xaxis, "drive frequency", "Hz")
         for axis in axes[:, 0]:
             ticks = [t for t in TICKS if cells.excesses[0] <= t <= cells.excesses[-1]]
