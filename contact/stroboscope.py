@@ -21,6 +21,7 @@ from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
+from beam.parameters import require_kind, require_whole
 from contact.drive import split_time
 from contact.errors import ContactError
 from contact.flight import Motion, steady_motion
@@ -89,6 +90,9 @@ class StroboscopicMap:
     """
 
     oscillator: ImpactOscillator
+
+    def __post_init__(self) -> None:
+        require_kind("oscillator", self.oscillator, ImpactOscillator, "an ImpactOscillator")
 
     @property
     def scale(self) -> float:
@@ -241,6 +245,8 @@ def strobed_orbits(
     ContactError
         Of the first orbit, in their order, that could not be followed.
     """
+    if workers is not None:
+        require_whole("workers", workers, "threads")
     if len(maps) != len(states):
         raise ValueError(f"states has {len(states)} entries; it must have one for each of {len(maps)} maps")
     threads = workers or os.cpu_count() or 1

@@ -51,6 +51,8 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
     low, high = options.lowest, options.highest
     if not -1.0 < low < high:
         raise ValueError(f"lowest is {low} and highest {high}; -1 < lowest < highest must hold")
+    if not options.basin_excess > -1.0:
+        raise ValueError(f"basin-excess is {options.basin_excess}; it must be above -1")
     names = [name for name in TITLES if options.model in (name, "both")]
     count = min(options.points, 11) if quick else options.points
     values = np.linspace(low, high, count)

@@ -497,21 +497,24 @@ CONTACT: dict[str, Entry] = {
         ({"state": contact.State.rest(3)}, "3 modes|the model has 1"),
     ),
     "StroboscopicMap": entry(
-        lambda excess, name, time: (
-            contact.StroboscopicMap(oscillator=eq_1()).at(excess),
+        lambda excess, name, time, oscillator: (
+            contact.StroboscopicMap(oscillator=oscillator or eq_1()).at(excess),
             contact.StroboscopicMap(oscillator=eq_1()).orbit(contact.State(**START, time=time), 1),
             name and contact.StroboscopicMap(oscillator=eq_1()).readout(np.zeros((1, 2)), name),
         ),
-        dict(excess=1e-3, name="", time=0.0),
+        dict(excess=1e-3, name="", time=0.0, oscillator=None),
+        ({"oscillator": 3}, "oscillator is 3|an ImpactOscillator"),
         ({"excess": -2.0}, "excess is -2.0|above -1"),
         ({"name": "laser"}, "name is 'laser'|read-out points"),
         ({"time": 1e-3}, "time of the state is 0.001 s|strobe time"),
     ),
     "strobed_orbits": entry(
-        lambda maps, states: contact.strobed_orbits(
-            [contact.StroboscopicMap(oscillator=eq_1())] * maps, [contact.State(**START)] * states, 1
+        lambda maps, states, workers: contact.strobed_orbits(
+            [contact.StroboscopicMap(oscillator=eq_1())] * maps, [contact.State(**START)] * states, 1,
+            workers=workers,
         ),
-        dict(maps=2, states=2),
+        dict(maps=2, states=2, workers=2),
+        ({"workers": 0}, "workers is 0 threads|one or more"),
         ({"maps": 1}, "states has 2 entries|1 maps"),
         ({"states": 0}, "states has 0 entries|2 maps"),
         ({"states": 3}, "states has 3 entries|2 maps"),
