@@ -175,6 +175,8 @@ class StroboscopicMap:
         ContactError
             If the motion could not be followed.
         """
+        require_kind("state", state, State, "a State")
+        count = require_whole("count", count, "drive periods", low=0)
         motion, nodes = self._motion, self._nodes
         first, (u, v, integers, floats) = self._strobe_of(state), self._start(state)
         n = motion.omega.size

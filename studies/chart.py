@@ -39,6 +39,7 @@ from studies.instruments.chart.overlays import bands_in, folds_of_beam, folds_of
 from studies.instruments.chart.plane import EXCESSES, FREQUENCIES_HZ, Plane
 from studies.instruments.chart.words import closing_lines
 from studies.instruments.command_line import Request, run_study
+from studies.instruments.corresponding import corresponding
 from studies.instruments.oscillators import beam_of, single_mode_oscillator
 from studies.instruments.periodicity import TOLERANCE
 from studies.instruments.scene import Scene
@@ -111,7 +112,8 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
     if scene.drive.kind != "harmonic":
         raise ValueError(f"drive.kind is {scene.drive.kind}; the chart needs a harmonic drive")
     columns, rows = options.points or (QUICK_POINTS if request.quick else POINTS)[model]
-    (low, high), (least, most) = options.frequencies, options.excesses
+    low, high = options.frequencies or (corresponding(scene, f) for f in FREQUENCIES_HZ)
+    least, most = options.excesses
     plane = Plane(columns=columns, rows=rows, frequencies_hz=(low, high), excesses=(least, most))
     cycles = options.cycles or (QUICK_CYCLES if request.quick else CYCLES[model])
     shard = Shard.of_text(options.shard)
@@ -205,8 +207,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--model", choices=sorted(TITLES), default="single_mode", help="Eq. (1) or the beam")
     parser.add_argument("--points", nargs=2, type=int, metavar=("N", "M"), default=None,
                         help="frequencies and amplitudes (default: 400 400, beam 120 120)")
-    parser.add_argument("--frequencies", nargs=2, type=float, metavar=("LOW", "HIGH"), default=FREQUENCIES_HZ,
-                        help="range of drive frequencies [Hz]")
+    parser.add_argument("--frequencies", nargs=2, type=float, metavar=("LOW", "HIGH"), default=None,
+                        help="range of drive frequencies [Hz] (default: 19.5 24; other springs, same f T)")
     parser.add_argument("--excesses", nargs=2, type=float, metavar=("LOW", "HIGH"), default=EXCESSES,
                         help="range of F/F_g - 1")
     parser.add_argument("--cycles", type=int, default=None, metavar="N",

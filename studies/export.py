@@ -66,7 +66,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     except SystemExit as leaving:
         return DONE if leaving.code in (None, 0) else WRONG_USE
     ending = "" if arguments.out is None else arguments.out.suffix[1:]
-    form = arguments.to or (ending if ending in FORMATS else "npz")
+    if ending and ending not in FORMATS and arguments.to is None:
+        print(f"{COMMAND}: --out ends in .{ending}; it must end in .csv or .npz, or --to say which",
+              file=sys.stderr)
+        return WRONG_USE
+    form = arguments.to or ending or "npz"
     path = arguments.out or arguments.stores[0].with_suffix(f".{form}")
     try:
         count = export(arguments.stores, path, form=form, states=arguments.states)

@@ -41,6 +41,7 @@ from numpy.typing import NDArray
 from beam.export import write_frames
 from studies.instruments.adequacy.fitted_scene import Need
 from studies.instruments.command_line import Request, run_study
+from studies.instruments.corresponding import corresponding
 from studies.instruments.motion.film import NO_VIDEO, can_encode, write_gif, write_mp4
 from studies.instruments.motion.filmed_orbit import FilmedOrbit, film_orbit
 from studies.instruments.motion.orbit_film import OrbitFilm, orbit_film, stage_of
@@ -75,12 +76,13 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
     if scene.drive.kind != "harmonic":
         raise SceneError(f"drive.kind is {scene.drive.kind}; a settled orbit needs a harmonic drive")
     asked, record = request.options, request.record
+    frequency = corresponding(scene, FREQUENCY) if asked.frequency is None else asked.frequency
     renderer, sentence = choose_stage(asked.renderer)
     modes, model = modes_of(scene), model_of(scene)
-    scene.replace({"drive.frequencies_hz": (asked.frequency,)}).refuse_drive_above(
+    scene.replace({"drive.frequencies_hz": (frequency,)}).refuse_drive_above(
         float(model.frequencies_hz.max())
     )
-    oscillator = beam_of(scene, asked.frequency, model).with_excess(asked.excess)
+    oscillator = beam_of(scene, frequency, model).with_excess(asked.excess)
     period, state = settled_state(oscillator, max(scene.scan.settle_cycles, 1))
     frames = asked.frames or (QUICK_FRAMES if request.quick else FRAMES)
     orbit = film_orbit(oscillator, state, period, frames=frames, rate=RATE)
@@ -97,14 +99,14 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
     record.files += [written[0].name, "motion_frames"]
     if sentence:
         print(sentence, flush=True)
-    _write_film(request, film, renderer, stills)
+    _write_film(request, film, frequency, renderer, stills)
     if not can_encode():
         print(NO_VIDEO, flush=True)
-    lines = closing_lines(film, asked.frequency, asked.excess, record.folder)
+    lines = closing_lines(film, frequency, asked.excess, record.folder)
     for line in lines:
         print(line, flush=True)
     return {
-        "frequency_hz": asked.frequency,
+        "frequency_hz": frequency,
         "excess": asked.excess,
         "period": period,
         "duration_s": orbit.duration,
@@ -153,13 +155,15 @@ def _write_tables(request: Request, orbit: FilmedOrbit, stills: Sequence[int]) -
     request.record.write_table("strobes", strobes)  # type: ignore[arg-type]
 
 
-def _write_film(request: Request, film: OrbitFilm, renderer: str, stills: Sequence[int]) -> None:
+def _write_film(
+    request: Request, film: OrbitFilm, frequency: float, renderer: str, stills: Sequence[int]
+) -> None:
     """Draw every frame once; the pictures of the stills serve the contact sheet, too."""
     from studies.instruments.motion.contact_sheet import draw_sheet
     from studies.instruments.motion.panels import Panels
 
     record, asked = request.record, request.options
-    title, scale = words_of(film, asked.frequency, asked.excess)
+    title, scale = words_of(film, frequency, asked.excess)
     panels = Panels(film.orbit, film.view, film.bodies.bench, film.reach, title, scale)
     stage = stage_of(renderer, film.bodies, film.view)
     frames: list[NDArray[np.uint8]] = []
@@ -211,8 +215,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help=f"F/F_g - 1 of the orbit (default: {TIME_TRACE_EXCESS:g}, the letter's Fig. 4)",
     )
     parser.add_argument(
-        "--frequency", type=_number(0.0, "a frequency above 0 Hz"), default=FREQUENCY, metavar="HZ",
-        help=f"drive frequency (default: {FREQUENCY:g} Hz, the letter's p4)",
+        "--frequency", type=_number(0.0, "a frequency above 0 Hz"), metavar="HZ",
+        help=f"drive frequency (default: {FREQUENCY:g} Hz, the letter's p4; other springs at the same f T)",
     )
     parser.add_argument("--frames", type=_count, default=None, metavar="N",
                         help=f"frames at most (default: {FRAMES}, with --quick {QUICK_FRAMES})")

@@ -77,21 +77,29 @@ def closing_lines(
     """What was found, and whether it is what the letter shows at this f T."""
     name = f"p{period}" if period else "no period up to 64"
     lines = [
-        f"{frequency:g} Hz, excess {excess:g}: {name}" + (f"; the letter has p{letter}" if letter else "")
+        f"{frequency:g} Hz, excess {excess:g}: {name}"
+        + (f"; the letter has p{letter} at this f T" if letter else "")
     ]
     if letter and period != letter:
         lines.append("the settled orbit is not the letter's; what is drawn is what is there")
     if not found:
         lines.append("no impacts: the drive does not reach the plate, or the orbit without impacts is stable")
     for c in found[:1]:
-        tau = f"{c['restitution']:.3f}" if math.isfinite(c["restitution"]) else "none (no return to the gap)"
+        impacts = f"{c['impacts']} impact{'' if c['impacts'] == 1 else 's'}"
+        if not math.isfinite(c["approach_velocity"]):
+            lines.append(f"collision: {impacts} that ringing alone makes, no approach of mode 1 to the plate")
+            continue
+        back = "no restitution or delay (mode 1 does not come back to the plate)"
+        if math.isfinite(c["restitution"]):
+            back = f"restitution {c['restitution']:.3f} (letter: about {RESTITUTION:g}), "
+            back += f"delay {1e3 * c['delay_s']:.3f} ms"
         lines.append(
-            f"collision: approach {c['approach_velocity']:.3f} m/s, restitution {tau} "
-            f"(letter: about {RESTITUTION:g}), "
-            f"delay {1e3 * c['delay_s']:.3f} ms, kick {c['kick']:.3f}, {c['impacts']} impacts in "
-            f"{1e6 * c['contact_s']:.1f} us of contact; "
-            f"ringing left from before {1e6 * c['ringing_m']:.1f} um"
+            f"collision: approach {c['approach_velocity']:.3f} m/s, {back}, kick {c['kick']:.3f}, "
+            f"{impacts} in {1e6 * c['contact_s']:.1f} us of contact; ringing left from before "
+            f"{1e6 * c['ringing_m']:.1f} um"
         )
+    if len(found) > 1:
+        lines.append(f"further collisions in the stretch shown: {len(found) - 1}, all in summary.json")
     return lines
 
 

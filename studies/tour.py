@@ -2,7 +2,7 @@
 
 The letter's Fig. 4 (1996): a U with legs of 13 cm, driven at 21.50 Hz, 1.3 % above grazing. Each cell prints
 what it found. Run time: 3 s. Command: python -m studies.tour, or cell by cell in an editor that knows `# %%`.
-Output: results/tour/tour.png and .pdf.
+Output: results/tour.png and .pdf.
 """
 
 # %% A strip of brass, damping tape on its legs, folded into a U; a ceramic ball with its mount at the bend
@@ -72,6 +72,6 @@ label(axes.xaxis, "time", "ms")
 label(axes.yaxis, "displacement", "mm")
 with house_style():
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3)
-folder = Path("results/tour")
+folder = Path("results")
 folder.mkdir(parents=True, exist_ok=True)
 print("drawn in", *save(figure, folder, "tour"))

@@ -285,6 +285,8 @@ SLIPS = {
     "single_mode.decay_rate_per_s=3560": "damping ratio of 11.6",
     "damping.decay_rate_per_s=3560": "damping ratio of 11.6",
     "scan.born_excess=1": "far from grazing",
+    "spring.width_m=0.010": "map and Eq. (1) describe another spring",
+    "tip.mass_kg=0.004": "map and Eq. (1) describe another spring",
 }
 
 

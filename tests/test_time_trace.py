@@ -152,7 +152,10 @@ def test_another_orbit_than_the_letters_is_told():
     assert "no period up to 64" in time_trace.closing_lines(0, None, 20.0, 0.013, [])[0]
     cell = dict.fromkeys(("approach_velocity", "delay_s", "kick", "contact_s", "ringing_m"), 0.1)
     words = time_trace.closing_lines(4, 4, 21.5, 0.013, [cell | {"restitution": math.nan, "impacts": 1}])
-    assert "no return to the gap" in words[-1]
+    assert "does not come back" in words[-1] and "1 impact in" in words[-1] and "nan" not in words[-1]
+    rung = {"restitution": math.nan, "impacts": 2, "approach_velocity": math.nan}
+    words = time_trace.closing_lines(4, 4, 21.5, 0.013, [cell | rung, cell | rung])
+    assert "2 impacts that ringing alone makes" in words[-2] and "further collisions" in words[-1]
 
 
 @pytest.mark.parametrize(

@@ -497,12 +497,14 @@ CONTACT: dict[str, Entry] = {
         ({"state": contact.State.rest(3)}, "3 modes|the model has 1"),
     ),
     "StroboscopicMap": entry(
-        lambda excess, name, time, oscillator: (
+        lambda excess, name, time, oscillator, count: (
             contact.StroboscopicMap(oscillator=oscillator or eq_1()).at(excess),
-            contact.StroboscopicMap(oscillator=eq_1()).orbit(contact.State(**START, time=time), 1),
+            contact.StroboscopicMap(oscillator=eq_1()).orbit(contact.State(**START, time=time), count),
             name and contact.StroboscopicMap(oscillator=eq_1()).readout(np.zeros((1, 2)), name),
         ),
-        dict(excess=1e-3, name="", time=0.0, oscillator=None),
+        dict(excess=1e-3, name="", time=0.0, oscillator=None, count=1),
+        ({"count": -5}, "count is -5 drive periods|whole number"),
+        ({"count": 2.5}, "count is 2.5 drive periods|whole number"),
         ({"oscillator": 3}, "oscillator is 3|an ImpactOscillator"),
         ({"excess": -2.0}, "excess is -2.0|above -1"),
         ({"name": "laser"}, "name is 'laser'|read-out points"),

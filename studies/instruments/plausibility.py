@@ -16,6 +16,7 @@ import warnings
 from collections.abc import Iterator
 
 from beam import SuspiciousValue
+from studies.instruments.calibration import free_period
 from studies.instruments.oscillators import contact_law_of
 from studies.instruments.scene import Scene
 from studies.instruments.spring_of_scene import spring_of
@@ -45,6 +46,9 @@ REFUSED = 100.0
 LEAST_STIFFNESS = 10.0
 """Stiffness of the stop over that of the tip's mass on mode 1, below which it is a second spring."""
 
+SAME_SPRING = 0.005
+"""Relative difference of two free periods beyond which the born period changes next to a band edge."""
+
 NEAR_GRAZING = 0.1
 """Excess beyond which the born period is no longer one at grazing; the letter's are below 0.02."""
 
@@ -60,6 +64,8 @@ def suspicions(scene: Scene) -> tuple[str, ...]:
             except ValueError:  # refused with a sentence of its own where it is used
                 continue
     found += [str(warning.message) for warning in told if issubclass(warning.category, SuspiciousValue)]
+    if not found:  # any of the above would move the first mode, too
+        found += [*_of_first_mode(scene)]
     return tuple(dict.fromkeys(found))
 
 
@@ -110,6 +116,19 @@ def _of_times(scene: Scene) -> Iterator[str]:
         )
     if scene.scan.born_excess > NEAR_GRAZING:
         yield f"scan.born_excess is {scene.scan.born_excess:g}, above {NEAR_GRAZING:g} and far from grazing"
+
+
+def _of_first_mode(scene: Scene) -> Iterator[str]:
+    try:
+        period = free_period(scene)
+    except ValueError:  # refused with a sentence of its own where the modes are made
+        return
+    told = scene.single_mode.free_period_s
+    if not abs(told / period - 1.0) <= SAME_SPRING:
+        yield (
+            f"single_mode.free_period_s is {told:g} s, but the first mode of the spring has {period:.5g} s: "
+            "map and Eq. (1) describe another spring than the beam does"
+        )
 
 
 def _of_damping(scene: Scene) -> Iterator[str]:

@@ -51,6 +51,8 @@ FREQUENCY_HZ, FREE_PERIOD_S = float(BREAKDOWN["frequency_hz"]), float(BREAKDOWN[
 DECAY_RATE_PER_S, CHAOS_AT = float(BREAKDOWN["decay_rate_per_s"]), float(BREAKDOWN["chaos_at"])
 BORN_EXCESS, BELOW = 1e-3, -1e-3
 SEARCH_CYCLES = 1500
+NEAR = 0.2
+"""Relative distance from the free period of Fig. 5 within which the thickness brings a spring to it."""
 
 
 def scene_of_fig_5(scene: Scene) -> Scene:
@@ -61,6 +63,11 @@ def scene_of_fig_5(scene: Scene) -> Scene:
         )
     if scene.drive.kind != "harmonic":
         raise ValueError(f"drive.kind is {scene.drive.kind}; Fig. 5 needs a harmonic drive")
+    if not abs(scene.single_mode.free_period_s / FREE_PERIOD_S - 1.0) <= NEAR:
+        raise ValueError(
+            f"single_mode.free_period_s is {scene.single_mode.free_period_s:g} s; to be fitted to the spring "
+            f"of Fig. 5 it must be within {100 * NEAR:g} % of {FREE_PERIOD_S:g} s"
+        )
     fitted = calibrate(scene, free_period_s=FREE_PERIOD_S, decay_rate_per_s=DECAY_RATE_PER_S)
     return fitted.replace(
         {"single_mode.free_period_s": FREE_PERIOD_S, "single_mode.decay_rate_per_s": DECAY_RATE_PER_S}

@@ -18,6 +18,7 @@ from scipy.optimize import brentq
 from contact.maximal_orbits import band, fold
 from studies.instruments.claims.single_mode_leaf import Leaf
 from studies.instruments.claims.verdict import Claim, falls, frequencies_of
+from studies.instruments.corresponding import corresponding
 from studies.instruments.figures import (
     BLACK,
     BLUE,
@@ -35,7 +36,10 @@ from studies.instruments.figures import (
 from studies.instruments.scene import Scene
 from studies.published import PERIODS
 
-__all__ = ["bands_claim", "lower_angle"]
+__all__ = ["SPAN_HZ", "bands_claim", "lower_angle"]
+
+SPAN_HZ = (19.6, 23.8)
+"""Where the letter measured, by its Figs. 3 and 5."""
 
 
 def lower_angle(period: int, gamma: float, restitution: float) -> float:
@@ -69,10 +73,11 @@ def bands_claim(scene: Scene, quick: bool) -> Claim:
             ha="center",
             va="bottom",
         )
-    path = np.linspace(19.6, 23.8, 200)
+    low, high = (corresponding(scene, f) for f in SPAN_HZ)
+    path = np.linspace(low, high, 200)
     alpha = [leaf.map(f, tau).alpha for f in path.tolist()]
     gamma = [leaf.map(f, tau).gamma for f in path.tolist()]
-    axes[0].plot(alpha, gamma, color="black", linewidth=1.4, gid="path from 19.6 to 23.8 Hz")
+    axes[0].plot(alpha, gamma, color="black", linewidth=1.4, gid=f"path from {low:g} to {high:g} Hz")
     places = [f for f in frequencies_of(scene)]
     axes[0].plot(
         [leaf.map(f, tau).alpha for f in places],
@@ -106,7 +111,7 @@ def bands_claim(scene: Scene, quick: bool) -> Claim:
             "map": map_values[0],
             "eq1": exact[0],
         }
-        shown = (inside >= 19.6) & (inside <= 23.8)
+        shown = (inside >= low) & (inside <= high)
         for values, style in ((map_values, "-"), (exact, "--")):
             axes[1].plot(
                 inside[shown],
@@ -117,10 +122,10 @@ def bands_claim(scene: Scene, quick: bool) -> Claim:
                 gid=f"{'Nordmark map' if style == '-' else 'Eq. (1)'}, m = {m}",
             )
         if m < 10:
-            middle = max(edge.lower, 19.6)
+            middle = max(edge.lower, low)
             axes[1].text(
                 0.3 * edge.upper + 0.7 * middle,
-                105.0 * exact[0] if edge.lower > 19.6 else 3.2,
+                105.0 * exact[0] if edge.lower > low else 3.2,
                 f"{m}",
                 fontsize=NOTE,
                 ha="left",
@@ -129,7 +134,7 @@ def bands_claim(scene: Scene, quick: bool) -> Claim:
     label(axes[0].xaxis, "α")
     label(axes[0].yaxis, "γ")
     axes[0].annotate(
-        "19.6 to 23.8 Hz",
+        f"{low:g} to {high:g} Hz",
         (alpha[60], gamma[60]),
         xytext=(0.05, 0.62),
         fontsize=NOTE,
@@ -159,8 +164,9 @@ def bands_claim(scene: Scene, quick: bool) -> Claim:
             "gamma": [gamma[0], gamma[-1]],
         },
         sentence=(
-            f"From 19.6 to 23.8 Hz the experiment crosses the bands m = {crossed[0]} to {crossed[-1]}: "
-            f"alpha from {alpha[0]:.2f} to {alpha[-1]:.2f}, gamma from {gamma[0]:.3f} to {gamma[-1]:.3f}; "
+            f"From {low:g} to {high:g} Hz the experiment crosses the bands m = {crossed[0]} to "
+            f"{crossed[-1]}: alpha from {alpha[0]:.2f} to {alpha[-1]:.2f}, gamma from {gamma[0]:.3f} to "
+            f"{gamma[-1]:.3f}; "
             "in each of p3 to p11 the hysteresis is zero at the upper edge and "
             f"{'grows' if all(grows.values()) else 'does not always grow'} towards the lower."
         ),

@@ -18,6 +18,7 @@ from contact.maximal_orbits import maximal_period, maximal_periods
 from studies.instruments.claims.secondary_bifurcation import secondary, secondary_of_map
 from studies.instruments.claims.single_mode_leaf import Leaf
 from studies.instruments.claims.verdict import RESTITUTIONS, Claim, falls, frequencies_of
+from studies.instruments.corresponding import corresponding
 from studies.instruments.figures import (
     BLUE,
     GUIDE,
@@ -37,6 +38,9 @@ from studies.instruments.scene import Scene
 from studies.published import FREE_PERIOD_S, PERIODS, RESTITUTION
 
 __all__ = ["secondary_claim"]
+
+SCANNED_HZ = (19.62, 23.75)
+"""Across the bands of p3 to p16, for the letter's spring."""
 
 
 @in_house_style
@@ -81,7 +85,8 @@ def secondary_claim(scene: Scene, quick: bool) -> Claim:
             label=f"{f:.2f} Hz, p$_{{{m}}}$",
         )
     # the (f, tau) plane: where the node p_m is lost below grazing
-    across = np.linspace(19.62, 23.75, 60 if quick else 240)
+    low, high = (corresponding(scene, f) for f in SCANNED_HZ)
+    across = np.linspace(low, high, 60 if quick else 240)
     upwards = np.linspace(0.0, 0.9, 10 if quick else 46)
     where, lowest = np.full((upwards.size, across.size), np.nan), math.inf
     for j, tau in enumerate(upwards.tolist()):
