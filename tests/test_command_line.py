@@ -16,6 +16,7 @@ import sys
 import time
 import tomllib
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -399,6 +400,18 @@ def test_ctrl_c_while_a_program_is_importing_is_one_line():
     assert process.returncode == 130 and "Traceback" not in err
     told = [line for line in err.splitlines() if not line.startswith("import time:")]
     assert told == ["interrupted; nothing was stored; go on with: python -X importtime -m studies.modes"]
+
+
+def test_an_interruption_lost_in_a_callback_is_not_told(monkeypatch):
+    """The compiler's callbacks swallow it; what else they swallow is told as ever."""
+    told: list[type] = []
+    monkeypatch.setattr(sys, "unraisablehook", lambda lost: told.append(lost.exc_type))
+    with Interruption(lambda: None):
+        for kind in (KeyboardInterrupt, ValueError):
+            sys.unraisablehook(SimpleNamespace(exc_type=kind))
+    assert told == [ValueError]
+    sys.unraisablehook(SimpleNamespace(exc_type=KeyboardInterrupt))
+    assert told == [ValueError, KeyboardInterrupt]
 
 
 def interrupted(name: str, tmp_path: Path, number: int = signal.SIGINT) -> None:

@@ -88,12 +88,15 @@ class Interruption:
         self._lock = threading.Lock()
         self._timer: threading.Timer | None = None
         self._before: dict[int, Any] = {}
+        self._unraisable: Callable[[Any], object] | None = None
 
     def __enter__(self) -> Interruption:
         if threading.current_thread() is threading.main_thread():
             for number in SIGNALS:
                 if signal.getsignal(number) is not signal.SIG_IGN:  # nohup and background jobs of a shell
                     self._before[number] = signal.signal(number, self._signalled)
+            self._unraisable = sys.unraisablehook
+            sys.unraisablehook = self._lost
         return self
 
     def __exit__(
@@ -103,6 +106,13 @@ class Interruption:
             self._timer.cancel()
         for number, handler in self._before.items():
             signal.signal(number, handler)
+        if self._unraisable is not None:
+            sys.unraisablehook = self._unraisable
+
+    def _lost(self, told: Any) -> None:
+        """An interruption within a callback of the compiler cannot be raised; the timer ends the study."""
+        if not issubclass(told.exc_type, KeyboardInterrupt) and self._unraisable is not None:
+            self._unraisable(told)
 
     def _signalled(self, number: int, frame: FrameType | None) -> None:
         self.count += 1
