@@ -17,7 +17,7 @@ and the impacts of the orbit on which the motion settles, within a stated bound 
 Every finished cell is in MODEL-NxM.sqlite (``sweep.store``); the same command goes on where the last one was
 stopped, in whatever way; --fresh begins anew.
 
-Run time on two cores: half a minute, --model beam some minutes.  Command: python -m studies.chart.  Outputs:
+Run time on two cores: 40 s, for --model beam as well.  Command: python -m studies.chart.  Outputs:
 summary.json, chart_MODEL.png and .pdf, the cells as chart_MODEL.npz, folds_MODEL.csv; `python -m
 studies.export` for the cells with their end states.
 """
