@@ -31,7 +31,6 @@ Outputs (results/motion)
 from __future__ import annotations
 
 import argparse
-import math
 from collections.abc import Iterator, Sequence
 from typing import Any, TypeVar
 
@@ -48,6 +47,7 @@ from studies.instruments.motion.orbit_film import OrbitFilm, orbit_film, stage_o
 from studies.instruments.motion.paraview import grids_of
 from studies.instruments.motion.scene_bodies import choose_stage
 from studies.instruments.motion.words import closing_lines, slow_motion, words_of
+from studies.instruments.options import above, positive
 from studies.instruments.oscillators import beam_of
 from studies.instruments.progress import Progress
 from studies.instruments.quantities import SceneError
@@ -185,42 +185,19 @@ def _write_film(
         record.files.append(write_mp4(record.folder / "motion.mp4", frames, RATE).name)
 
 
-def _number(low: float, what: str) -> Any:
-    def read(text: str) -> float:
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
-        if not (math.isfinite(value) and value > low):
-            raise argparse.ArgumentTypeError(f"must be {what}, not {text!r}")
-        return value
-
-    return read
-
-
-def _count(text: str) -> int:
-    try:
-        number = int(text)
-    except ValueError:
-        number = 0
-    if number < 1:
-        raise argparse.ArgumentTypeError(f"must be a whole number of at least 1, not {text!r}")
-    return number
-
-
 def add_options(parser: argparse.ArgumentParser) -> None:
     """The study's own options."""
     parser.add_argument(
-        "--excess", type=_number(-1.0, "a number above -1"), default=TIME_TRACE_EXCESS, metavar="E",
+        "--excess", type=above(-1.0, "a number above -1"), default=TIME_TRACE_EXCESS, metavar="E",
         help=f"F/F_g - 1 of the orbit (default: {TIME_TRACE_EXCESS:g}, the letter's Fig. 4)",
     )
     parser.add_argument(
-        "--frequency", type=_number(0.0, "a frequency above 0 Hz"), metavar="HZ",
+        "--frequency", type=above(0.0, "a frequency above 0 Hz"), metavar="HZ",
         help=f"drive frequency (default: {FREQUENCY:g} Hz, the letter's p4; other springs at the same f T)",
     )
-    parser.add_argument("--frames", type=_count, default=None, metavar="N",
+    parser.add_argument("--frames", type=positive, default=None, metavar="N",
                         help=f"frames at most (default: {FRAMES}, with --quick {QUICK_FRAMES})")
-    parser.add_argument("--magnify", type=_number(0.0, "a number above 0"), default=None, metavar="M",
+    parser.add_argument("--magnify", type=above(0.0, "a number above 0"), default=None, metavar="M",
                         help="how many times the higher modes are drawn (default: so that they show)")
     parser.add_argument("--seen-from", choices=("laboratory", "base"), default="laboratory",
                         help="where the viewer stands (default: laboratory, in which the exciter moves)")

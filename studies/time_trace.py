@@ -30,6 +30,7 @@ from contact.collision import Collision
 from studies.instruments.adequacy.fitted_scene import Need
 from studies.instruments.command_line import Request, run_study
 from studies.instruments.corresponding import corresponding, periods_of
+from studies.instruments.options import above
 from studies.instruments.oscillators import beam_of
 from studies.instruments.quantities import SceneError
 from studies.instruments.scene import Scene
@@ -168,27 +169,14 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
     }
 
 
-def _number(low: float, what: str) -> Any:
-    def read(text: str) -> float:
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
-        if not (math.isfinite(value) and value > low):
-            raise argparse.ArgumentTypeError(f"must be {what}, not {text!r}")
-        return value
-
-    return read
-
-
 def add_options(parser: argparse.ArgumentParser) -> None:
     """The study's own options."""
     parser.add_argument(
-        "--excess", type=_number(-1.0, "a number above -1"), default=TIME_TRACE_EXCESS, metavar="E",
+        "--excess", type=above(-1.0, "a number above -1"), default=TIME_TRACE_EXCESS, metavar="E",
         help=f"F/F_g - 1 of the orbit (default: {TIME_TRACE_EXCESS:g}, the letter's Fig. 4)",
     )
     parser.add_argument(
-        "--frequency", type=_number(0.0, "a frequency above 0 Hz"), metavar="HZ",
+        "--frequency", type=above(0.0, "a frequency above 0 Hz"), metavar="HZ",
         help=f"drive frequency (default: {FREQUENCY:g} Hz, the letter's p4; other springs at the same f T)",
     )
 

@@ -114,6 +114,21 @@ def positive(text: str) -> int:
     return number
 
 
+def above(low: float, words: str) -> Callable[[str], float]:
+    """The type of an option whose value is a finite number above `low`, `words` in a sentence."""
+
+    def read(text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not (math.isfinite(value) and value > low):
+            raise argparse.ArgumentTypeError(f"must be {words}, not {text!r}")
+        return value
+
+    return read
+
+
 def finite(text: str) -> float:
     """A finite number."""
     try:
