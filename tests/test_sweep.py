@@ -322,8 +322,8 @@ def still(batch: Batch) -> Answer:
 
 
 def test_memory_stays_flat(tmp_path):
-    """What is held at the end depends neither on columns nor on cells; meanwhile the interpreter keeps some of
-    what it has freed, 140 bytes for each column in a direction."""
+    """What is held at the end depends neither on columns nor on cells; meanwhile the interpreter keeps some
+    of what it has freed, 140 bytes for each column in a direction."""
     peaks, held = [], []
     for columns, rows in ((20, 40), (20, 40), (200, 40), (20, 400)):  # the first one pays for imports
         frequencies, excesses = np.arange(float(columns)), np.arange(float(rows))
