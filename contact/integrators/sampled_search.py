@@ -4,7 +4,7 @@ The letter (1996, note [11]) computes the exact position at t_1, ..., t_k in eac
 crossings "both directly", where a sampled position is beyond the stop, and at the turning points of the
 motion, where the sampled velocities change from rising to falling.  Here t_j = j / (k f), and a flight that
 begins in between starts with a shorter interval.  Once detected, a crossing is located to rounding on the
-exact flow, by Newton's method within the bracket (``contact.crossing``).
+exact flow, by Newton's method within the bracket (``contact.tip_search``).
 
 A crossing is seen if the tip is behind the stop at the end of the interval, or if the velocity changes from
 rising to falling and the peak found is behind the stop.  Missed is one that the tip undoes within the
