@@ -237,13 +237,14 @@ def _peers() -> list[Limit]:
             )  # fmt: skip
             continue
         stay = run.impacts.start[run.impacts.kind == ImpactKind.STAY]
+        hops = np.count_nonzero(run.impacts.kind == ImpactKind.IMPACT)
         off = abs(float(run.end.displacement[0]) - HEIGHT)
         limits.append(
             Limit(
                 method=name, case="bouncing ball comes to rest, e = 0.7", knob="time of rest [s]",
                 theory=theory, measured=float(stay[0]) if stay.size else None, refused=None,
-                note=f"tolerance 1e-10; {int(np.sum(run.impacts.kind == ImpactKind.IMPACT))} impacts, then held "
-                f"because hops are below the tolerance; in the end {off:.1e} m off the floor",
+                note=f"tolerance 1e-10; {hops} impacts, then held because hops are below the tolerance; in "
+                f"the end {off:.1e} m off the floor",
             )
         )  # fmt: skip
     return limits
@@ -266,12 +267,13 @@ def _driven(scene: Scene, periods: int) -> list[Limit]:
         raise ValueError(f"the single mode at {frequency:g} Hz is not held within {periods} periods")
     phase = np.mod(run.impacts.end[held] * frequency, 1.0)
     theory = 0.5 - math.asin(1.0 / 3.0) / (2.0 * math.pi)
+    hops = np.count_nonzero(run.impacts.kind == ImpactKind.IMPACT)
     return [
         Limit(
             method=NAME, case=f"driven single mode, e = 0.7, {periods} periods: held and let go",
             knob="drive phase of the release [1]", theory=theory, measured=float(phase[-1]), refused=None,
-            note=f"{int(held.sum())} stays after {int(np.sum(run.impacts.kind == ImpactKind.IMPACT))} impacts; "
-            f"largest departure of a release from (b) {np.abs(phase - theory).max():.1e} periods",
+            note=f"{int(held.sum())} stays after {hops} impacts; largest departure of a release from (b) "
+            f"{np.abs(phase - theory).max():.1e} periods",
         )
     ]  # fmt: skip
 
