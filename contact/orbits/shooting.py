@@ -31,6 +31,7 @@ from contact.flight import Motion, steady_motion
 from contact.orbits.kick import KickFamily, KickOrbit
 from contact.orbits.saltation import sorted_multipliers
 from contact.oscillator import ImpactOscillator
+from contact.series import OUTSIDE
 from contact.simulation import simulate
 from contact.tangent import FLOWN, flow_from_touch
 from contact.trajectory import State
@@ -352,6 +353,7 @@ class Shooting:
         require_kind("state", state, State, "a State")
         run = simulate(self.oscillator, state, periods=self.period + 1)
         hits = run.impacts.kind == 0
+        hits[:1] &= state.regime == OUTSIDE  # a contact under way began with a touch that is not known
         if not np.any(hits):
             raise NotPeriodic(
                 time=state.time, gap=0.0, velocity=0.0, detail="the motion has no impact to start from"
