@@ -171,13 +171,24 @@ def test_events_of_a_branch_are_seen_by_the_simulation() -> None:
     before, after = (family.at_speed(graze.speed * part, graze) for part in (0.999, 1.001))
     assert (before.admissible, after.admissible) == (True, False)
     assert (touches(before), touches(after)) == (1, 2)
-    # a strong rebound doubles the period
-    elastic = Shooting(oscillator=equation_1(21.50, LAWS["elastic"]), period=4)
-    start = elastic.at_speed(0.55 * unit_speed(21.5))
-    branch = follow(elastic, start, low=0.4 * unit_speed(21.5), high=1.2 * unit_speed(21.5))
-    assert branch.of_kind("period doubling")
-    for doubled in branch.of_kind("period doubling"):
-        assert np.min(np.abs(doubled.multipliers + 1.0)) < 1e-7
+
+
+def test_a_period_doubling_is_seen_by_the_simulation() -> None:
+    family = Shooting(oscillator=equation_1(22.20, LAWS["constant"]), period=4)
+    unit = unit_speed(22.20)
+    branch = follow(family, family.at_speed(0.36 * unit), low=0.3 * unit, high=0.45 * unit)
+    (doubled,) = branch.of_kind("period doubling")
+    assert abs(doubled.multipliers[0] + 1.0) < 1e-7
+    for part, stable in ((0.99, False), (1.01, True)):
+        orbit = family.at_speed(part * doubled.speed, doubled)
+        assert orbit.stable == stable and orbit.admissible
+        # a small change at the strobe alternates in sign from one period to the next, and grows or shrinks
+        strobed, start = StroboscopicMap(oscillator=orbit.oscillator), orbit.strobe_state()
+        begin = State(displacement=start.displacement + 1e-7 * GAP, velocity=start.velocity)
+        steps = [strobed.orbit(begin, 4 * n).end.displacement[0] - start.displacement[0] for n in (3, 4, 13, 14)]
+        assert steps[0] * steps[1] < 0.0
+        assert (abs(steps[3]) > abs(steps[1])) == (not stable)
+        assert steps[3] / steps[2] == pytest.approx(orbit.multipliers[0].real, rel=1e-4)
 
 
 @pytest.mark.parametrize(("frequency", "part"), [(22.20, 0.8), (20.90, 0.9), (23.40, 0.9)])
