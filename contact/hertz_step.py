@@ -88,8 +88,8 @@ def lane_step(numbers, speed_size, series, scalars, negative, limit):
         longest(greatest_speed(numbers, series, p), p, allowed),
         longest(greatest_speed(numbers, series, p - 1), p - 1, allowed),
     )
-    # r must be resolved as well as the modes, relative to the larger of its first two terms; under a contact so
-    # soft that the modes give no bound, r is odd in sigma and its last term alone gives none either
+    # r must be resolved as well as the modes, relative to the larger of its first two terms; under a contact
+    # so soft that the modes give no bound, r is odd in sigma and its last term alone gives none either
     for n in (p, p - 1):
         if r[n] != 0.0 and (r[0] != 0.0 or r[1] != 0.0):
             whole = longest(abs(r[n]), n, HERTZ_TOLERANCE * abs(r[0])) if r[0] != 0.0 else -math.inf

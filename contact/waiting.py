@@ -9,12 +9,12 @@ while the drive (S, C) has turned by w delta: the deviations (u, u') after the t
 and hold nothing of those before it but v.
 
 A neighbour whose tip stands `reach` higher at t, and moves faster by `rate`, comes to the stop later by
-dt = -reach/v, hits it faster by dv = rate + y''(t) dt, and leaves it later by d = dt + delta' dv.  Seen at
-t + delta, its tip there differs by
+dt = -reach/v, hits it faster by dv = rate + y''(t) dt, and leaves it later by d = dt + delta' dv.  Seen
+at t + delta, its tip differs by
 
     reach -> tau v d,      rate -> -(tau + tau' v) dv - y''(t + delta) d,
 
-the saltation matrix of this law, of determinant tau (tau + tau' v); without delay and slopes that of Newton's.
+the saltation matrix of this law, of determinant tau (tau + tau' v); without delay and slopes Newton's.
 """
 
 # mypy: allow-untyped-defs, allow-incomplete-defs
@@ -64,7 +64,7 @@ def hermite(table, row, low, high, h, s):
 
 @kernel
 def waiting_touch(motion, response_sine, response_cosine, base, u, v, approach, tangent):
-    """Carry the deviation (u, v), shape (1,) each, and its tangents through the wait: delay [s], rebound [m/s].
+    """Carry the deviation (u, v), shape (1,) each, and tangents through the wait: delay [s], rebound [m/s].
 
     Parameters are those of ``contact.tangent.flow_from_touch``; `base` is the drive time of the touch [s] and
     `approach` the velocity with which it is met [m/s].

@@ -17,7 +17,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
 
 import contact
 from beam import ModalModel, single_mode
@@ -50,7 +49,9 @@ GAP = 0.0107
 LAWS: dict[str, ContactLaw] = {
     "newton": NewtonRestitution(local_restitution=0.1),
     "delayed": DelayedRestitution(restitution=0.1, delay=1e-4),
-    "delayed by table": DelayedRestitution(restitution=lambda v: 0.3 / (1 + v), delay=lambda v: 2e-4 * v**0.2),
+    "delayed by table": DelayedRestitution(
+        restitution=lambda v: 0.3 / (1 + v), delay=lambda v: 2e-4 * v**0.2
+    ),
     "linear": LinearContact(stiffness=1e7),
     "dashpot": LinearContact(stiffness=1e7, damping=100.0),
     "hertz": HertzContact(stiffness=1e9),
@@ -79,7 +80,9 @@ WITHOUT_A_LAW = {
     "StrobedNordmarkMap", "StrobedOrbit", "Trajectory", "UnresolvedCrossing", "band", "bands", "fold",
     "maximal_orbits", "maximal_period", "maximal_periods", "modal_flow", "of_nordmark", "stable_range",
 }  # fmt: skip
-COMPUTING = ("KickFamily", "MaximalFamily", "PeriodicOrbit", "Shooting", "SingleImpactOrbit", "StroboscopicMap")
+COMPUTING = (
+    "KickFamily", "MaximalFamily", "PeriodicOrbit", "Shooting", "SingleImpactOrbit", "StroboscopicMap"
+)  # fmt: skip
 
 
 def oscillator_of(law: ContactLaw, modes: int, frequency: float = 22.2) -> ImpactOscillator:
@@ -88,7 +91,8 @@ def oscillator_of(law: ContactLaw, modes: int, frequency: float = 22.2) -> Impac
     else:
         omega = np.array([154.0, 963.0])
         model = ModalModel(
-            omega=omega, decay_rate=0.02 * omega, phi=np.array([1.0, -0.8]), participation=np.array([1.0, 0.3])
+            omega=omega, decay_rate=0.02 * omega, phi=np.array([1.0, -0.8]),
+            participation=np.array([1.0, 0.3]),
         )
     return ImpactOscillator(
         model=model, stop=Stop(gap=GAP, law=law), drive=HarmonicDrive(frequency=frequency)
@@ -104,12 +108,14 @@ def motions(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], ob
     yield "StroboscopicMap.at", lambda: strobed.at(0.1)
     yield "StroboscopicMap.steady", strobed.steady
     for state in (strobed.steady(), fast):
-        run = contact.simulate
-        yield "simulate", lambda state=state: run(driven, state, periods=5, times=np.linspace(0.0, 0.2, 50))
+        yield "simulate", lambda state=state: contact.simulate(
+            driven, state, periods=5, times=np.linspace(0.0, 0.2, 50)
+        )
         yield "collisions", lambda state=state: contact.collisions(
             driven, contact.simulate(driven, state, periods=5), unfinished="drop"
         )
         yield "first_collision", lambda state=state: contact.first_collision(driven, state, periods=5)
+        yield "StroboscopicMap.step", lambda state=state: strobed.step(state)
         yield "StroboscopicMap.orbit", lambda state=state: strobed.orbit(state, 20)
         yield "strobed_orbits", lambda state=state: contact.strobed_orbits([strobed] * 2, [state] * 2, 20)
         for exponents in (lyapunov.map_exponents, lyapunov.orbit_exponents):
