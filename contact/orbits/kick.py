@@ -185,15 +185,7 @@ class KickFamily:
             u, v = w[:, 0].copy(), w[:, 1].copy()
             record = np.empty((touches, 4 + 2 * n))
             outcome = flow_from_touch(
-                motion,
-                self.response.real,
-                self.response.imag,
-                phase,
-                u,
-                v,
-                window,
-                touches,
-                np.empty((0, 0)),
+                motion, self.response.real, self.response.imag, phase, u, v, window, touches, np.empty((0, 0)),
                 record,
             )
             end, u, v = record[-1, 1], record[-1, 4 : 4 + n].copy(), record[-1, 4 + n :].copy()
