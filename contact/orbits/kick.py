@@ -185,8 +185,8 @@ class KickFamily:
             u, v = w[:, 0].copy(), w[:, 1].copy()
             record = np.empty((touches, 4 + 2 * n))
             outcome = flow_from_touch(
-                motion, self.response.real, self.response.imag, phase, u, v, window, touches, np.empty((0, 0)),
-                record,
+                motion, self.response.real, self.response.imag, phase, u, v, window, touches,
+                np.empty((0, 0)), record,
             )
             end, u, v = record[-1, 1], record[-1, 4 : 4 + n].copy(), record[-1, 4 + n :].copy()
             if outcome != FLOWN or touches > MOST_TOUCHES:
@@ -278,8 +278,7 @@ class KickFamily:
         """
         low, high = require_array("speeds", speeds, "[1]", shape=(2,), words="two rising numbers above zero")
         require(0.0 < low < high, f"speeds is {shown(speeds)}; it must be two rising numbers above zero")
-        w = self.oscillator.drive.angular_frequency  # type: ignore[union-attr]
-        unit = w * self.oscillator.stop.gap
+        unit = self._motion.drive * self.oscillator.stop.gap
 
         def orbit(log_speed: float) -> KickOrbit:
             speed = float(np.exp(log_speed))
