@@ -19,6 +19,10 @@ from contact.modal_flow import SQUARE
 
 __all__ = ["lane_step"]
 
+FAR = math.log(1.5)
+"""Logarithm of the factor by which the last term but one of r must fall short of the others' bound to count:
+where the modes take part, both ends of the series agree within it."""
+
 
 @kernel
 def longest(last, order, allowed):
@@ -84,11 +88,14 @@ def lane_step(numbers, speed_size, series, scalars, negative, limit):
         longest(greatest_speed(numbers, series, p), p, allowed),
         longest(greatest_speed(numbers, series, p - 1), p - 1, allowed),
     )
-    # r must be resolved as well as the modes, relative to the larger of its first two terms
-    if r[p] != 0.0 and (r[0] != 0.0 or r[1] != 0.0):
-        whole = longest(abs(r[p]), p, HERTZ_TOLERANCE * abs(r[0])) if r[0] != 0.0 else -math.inf
-        linear = longest(abs(r[p]), p - 1, HERTZ_TOLERANCE * abs(r[1])) if r[1] != 0.0 else -math.inf
-        power = min(power, max(whole, linear))
+    # r must be resolved as well as the modes, relative to the larger of its first two terms; under a contact
+    # so soft that the modes give no bound, r is odd in sigma and its last term alone gives none either
+    for n in (p, p - 1):
+        if r[n] != 0.0 and (r[0] != 0.0 or r[1] != 0.0):
+            whole = longest(abs(r[n]), n, HERTZ_TOLERANCE * abs(r[0])) if r[0] != 0.0 else -math.inf
+            linear = longest(abs(r[n]), n - 1, HERTZ_TOLERANCE * abs(r[1])) if r[1] != 0.0 else -math.inf
+            if n == p or max(whole, linear) < power - FAR:
+                power = min(power, max(whole, linear))
     s = math.exp(power)
     if r[1] < 0.0 < r[0]:
         # no further than well behind the release: with no force left the terms give no bound

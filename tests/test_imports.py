@@ -61,6 +61,7 @@ ORDER = {
         "hertz_step",
         "linear_lanes",
         "newton",
+        "waiting",
         "tangent",
         "impact_log",
         "integrators.*",
