@@ -72,8 +72,8 @@ def test_close_to_a_fold_the_proof_comes_long_before_the_repetition():
 def test_below_the_fold_nothing_is_proved_to_be_p4():
     """The slow passage of a vanished fold looks like p4 for hundreds of periods, but there is no orbit.
 
-    What comes after the passage is a chaotic transient, whose end the last bit decides: nothing is said of it.
-    As far above the fold, from the same start, p4 is what is proved.
+    What comes after the passage is a chaotic transient, whose end the last bit decides: nothing is said of
+    it.  As far above the fold, from the same start, p4 is what is proved.
     """
     from contact.orbits.continuation import fold_of
     from contact.orbits.shooting import Shooting
