@@ -22,10 +22,14 @@ test: $(READY)
 test-slow: $(READY)
 	$(ONE_THREAD) $(BIN)/python -m pytest -n 2 -m slow
 
-# The kernels, LAPACK and NumPy's loops round otherwise there; kernels compiled in this way are not kept.
+# LAPACK and NumPy's loops round otherwise there; kernels compiled in this way are not kept.
+NOT_NUMBERS := beam_% benchmarks.py command_line.py docstrings.py export.py figures.py generic_processor.py \
+	imports.py motion.py readme.py report.py scene.py scene_fuzz.py store.py store_export.py tour.py wrong_input.py
+NUMBERS := $(filter-out $(addprefix tests/test_,$(NOT_NUMBERS)),$(wildcard tests/test_*.py))
 SIMD := import numpy; print(*numpy.show_config("dicts")["SIMD Extensions"].get("found", []))
 test-generic: $(READY)
-	@cache=$$(mktemp -d) && trap 'rm -rf "$$cache"' EXIT && export NUMBA_CACHE_DIR="$$cache" && \
+	@cache=$$(mktemp -d) && trap 'rm -rf "$$cache"' EXIT && trap 'exit 130' INT TERM && \
+	export NUMBA_CACHE_DIR="$$cache" && \
 	export NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c '$(SIMD)')" && \
 	export NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES= OPENBLAS_CORETYPE=Prescott $(ONE_THREAD) && \
 	$(BIN)/python -m contact.warm_up && \
