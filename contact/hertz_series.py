@@ -35,6 +35,7 @@ FARTHEST = 1e3
 """Longest step that is tried, in units of the sigma in which r changes: two hundred tenths off it end below
 1e-6."""
 
+
 @kernel
 def hertz_series(motion, base, u, v, us, vs, scalars):
     """Fill the Taylor coefficients in sigma of a contact that is at (u, v) at time `base` after the strobe.
