@@ -60,8 +60,8 @@ def draw(
                 markerfacecolor=face, markeredgecolor=BLUE if way == "up" else VERMILION,
                 label=f"{way}ward scan", rasterized=True, zorder=2 if way == "down" else 3,
             )
-        for place, x in enumerate(sorted(set(moving))):
-            axis.axvline(x, color="0.75", linewidth=0.5, zorder=1, gid="not settled",
+        for place, unsettled in enumerate(sorted(set(moving))):
+            axis.axvline(unsettled, color="0.75", linewidth=0.5, zorder=1, gid="not settled",
                          label="_" if place else "not settled")
         at, stable = (0.0, AMPLITUDE_STABILITY_M / DRIVE_AMPLITUDE_M)
         if name != "map":
@@ -85,8 +85,8 @@ def draw(
     series: dict[str, Any] = {}
     for axis in axes.flat[: len(rows)]:
         series = dict(zip(*axis.get_legend_handles_labels()[::-1], strict=True)) | series
-    names = ("upward scan", "downward scan", "letter: stability of the amplitude", "grazing", "not settled")
-    names = tuple(name for name in names if name in series)
+    order = ("upward scan", "downward scan", "letter: stability of the amplitude", "grazing", "not settled")
+    names = [name for name in order if name in series]
     for axis in axes[-1, :]:
         label(axis.xaxis, *sideways)
     for axis in axes[:, 0]:
