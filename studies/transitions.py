@@ -129,10 +129,13 @@ def linear_instead(
 
 
 def amplitudes(scene: Scene, row: Mapping[str, Any]) -> np.ndarray:
-    """The excesses of the scans: on both sides of grazing, in proportion to the largest hysteresis found."""
+    """The excesses of the scans: on both sides of grazing, in proportion to the largest hysteresis found.
+
+    That is taken to two digits, so that the last bit of an end moves no amplitude, and none lies on a fold.
+    """
     scan = scene.scan
     ends = [abs(row[f"excess_down_{name}"] or 0.0) for name in MODELS]
-    reach = max(*ends, scan.narrowest)
+    reach = float(f"{max(*ends, scan.narrowest):.2g}")
     return np.linspace(-scan.reach_below * reach, scan.reach_above * reach, scan.points)
 
 
