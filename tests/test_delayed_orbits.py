@@ -18,6 +18,7 @@ from contact.laws import ContactLaw, DelayedRestitution, NewtonRestitution
 from contact.maximal_orbits import band
 from contact.maximal_orbits import fold as fold_of_map
 from contact.nordmark import NordmarkMap
+from contact.orbits import orbit_end, settle
 from contact.orbits.continuation import fold_of, follow
 from contact.orbits.kick import KickFamily
 from contact.orbits.lyapunov import of_oscillator, orbit_exponents
@@ -28,8 +29,6 @@ from contact.simulation import simulate
 from contact.stop import Stop
 from contact.stroboscope import StroboscopicMap
 from contact.trajectory import State
-from studies.instruments.fold_scan import orbit_end
-from studies.instruments.settling import settle_on_orbit
 
 T, MU, TAU, GAP = 40.80e-3, 3.56, 0.1, 0.0107
 LAWS = {
@@ -202,7 +201,7 @@ def test_a_motion_settles_on_its_orbit_though_the_strobe_falls_into_the_wait(
         oscillator=equation_1(frequency, DelayedRestitution(restitution=0.1, delay=part / frequency))
     ).at(0.3)
     fast = State(displacement=np.zeros(1), velocity=np.array([2.0]))
-    settled = settle_on_orbit(strobed, fast, most_cycles=4000)
+    settled = settle(strobed, fast, most_cycles=4000)
     assert settled.period > 1 and settled.impacts == 1
     family = Shooting(oscillator=strobed.oscillator, period=settled.period)
     state = settled.end
@@ -230,7 +229,7 @@ def test_exponents_are_the_logarithms_of_the_multipliers() -> None:
 def test_two_touches_with_a_wait_each(excess: float) -> None:
     oscillator = equation_1(22.20, DelayedRestitution(restitution=0.1, delay=2e-3))
     strobed = StroboscopicMap(oscillator=oscillator)
-    settled = settle_on_orbit(strobed.at(excess), strobed.at(-1e-3).steady(), most_cycles=2000)
+    settled = settle(strobed.at(excess), strobed.at(-1e-3).steady(), most_cycles=2000)
     assert (settled.period, settled.impacts) == (6, 2)
     family = Shooting(oscillator=oscillator.with_excess(excess), period=6, impacts=2)
     orbit = family.from_state(settled.end)
