@@ -20,7 +20,7 @@ from numbers import Real
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .parameters import brief, is_number, require_array, require_kind, require_number, require_within
+from .parameters import brief, is_number, require_array, require_kind, require_within
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +39,7 @@ class Straight:
     curvature: float = field(default=0.0, init=False)
 
     def __post_init__(self) -> None:
-        require_number("length", self.length, "m", positive=True)
+        require_within("length", self.length, "m", above=0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,7 +58,7 @@ class Arc:
     angle: float
 
     def __post_init__(self) -> None:
-        require_number("radius", self.radius, "m", positive=True)
+        require_within("radius", self.radius, "m", above=0)
         if require_within("angle", self.angle, "rad") == 0.0:
             raise ValueError(f"angle is {self.angle} rad; it must be finite and not zero")
 

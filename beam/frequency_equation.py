@@ -34,7 +34,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
-from .parameters import require_array, require_kind, require_number, require_whole
+from .parameters import require_array, require_kind, require_whole, require_within
 from .spring import Support, two_supports
 
 #: Grid of beta L. Zeros lie near pi apart; a tip whose own rotation resonates with a bending mode brings two
@@ -81,11 +81,11 @@ class UniformBeam:
 
     def __post_init__(self) -> None:
         for name, unit in (("length", "m"), ("bending_stiffness", "N m^2"), ("mass_per_length", "kg/m")):
-            require_number(name, getattr(self, name), unit, positive=True)
+            require_within(name, getattr(self, name), unit, above=0)
         object.__setattr__(self, "supports", two_supports(self.supports))
         for name, unit in (("tip_mass", "kg"), ("tip_rotary_inertia", "kg m^2")):
             value = getattr(self, name)
-            require_number(name, value, unit, positive=False)
+            require_within(name, value, unit, low=0)
             if value and self.supports[1] != "free":
                 raise ValueError(
                     f"{name} is {value} {unit}; at an end that is {self.supports[1]} it must be 0"

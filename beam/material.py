@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from .parameters import require_number, require_within, suspect
+from .parameters import require_within, suspect
 
 SLOWEST_WAVE, FASTEST_WAVE = 400.0, 20_000.0
 """Speeds of sound sqrt(E/rho) [m/s] between which solids lie: 450 in soft polyethylene, 1200 in lead, 3500 in
@@ -58,9 +58,9 @@ class Material:
     loss_factor: float = 0.0
 
     def __post_init__(self) -> None:
-        require_number("youngs_modulus", self.youngs_modulus, "Pa", positive=True)
-        require_number("density", self.density, "kg/m^3", positive=True)
-        require_number("loss_factor", self.loss_factor, "[1]", positive=False)
+        require_within("youngs_modulus", self.youngs_modulus, "Pa", above=0)
+        require_within("density", self.density, "kg/m^3", above=0)
+        require_within("loss_factor", self.loss_factor, "[1]", low=0)
         require_within("poissons_ratio", self.poissons_ratio, "[1]", above=-1.0, below=0.5)
         speed = self.wave_speed
         if not SLOWEST_WAVE <= speed <= FASTEST_WAVE:

@@ -37,7 +37,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from .material import Material
-from .parameters import require_kind, require_number
+from .parameters import require_kind, require_within
 from .section import StripSection
 
 
@@ -85,9 +85,9 @@ class SpatialSection:
             "polar_inertia": "kg m",
         }
         for name, unit in units.items():
-            require_number(name, getattr(self, name), unit, positive=True)
-        require_number("warping_stiffness", self.warping_stiffness, "N m^4", positive=False)
-        require_number("shear_offset", self.shear_offset, "m", positive=False)
+            require_within(name, getattr(self, name), unit, above=0)
+        require_within("warping_stiffness", self.warping_stiffness, "N m^4", low=0)
+        require_within("shear_offset", self.shear_offset, "m", low=0)
 
 
 def upright(section: StripSection) -> SpatialSection:
@@ -116,9 +116,9 @@ def channel(*, material: Material, width: float, flange: float, thickness: float
         t [m] of the sheet, positive, below half of the width.
     """
     require_kind("material", material, Material, "a Material, such as BRASS")
-    require_number("width", width, "m", positive=True)
-    require_number("flange", flange, "m", positive=False)
-    require_number("thickness", thickness, "m", positive=True)
+    require_within("width", width, "m", above=0)
+    require_within("flange", flange, "m", low=0)
+    require_within("thickness", thickness, "m", above=0)
     if 2.0 * thickness > width:
         raise ValueError(f"thickness is {thickness} m; it must not exceed half of the width {width} m")
     b, h, t = width, flange, thickness

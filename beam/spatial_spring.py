@@ -20,7 +20,7 @@ import math
 from dataclasses import dataclass
 
 from .centreline import Centreline
-from .parameters import require_array, require_kind, require_number
+from .parameters import require_array, require_kind, require_within
 from .spatial_section import SpatialSection
 from .spring import Support, Tip, two_supports
 
@@ -85,7 +85,7 @@ class SpatialSpring:
             if section.shear_offset and piece.curvature:
                 raise ValueError(f"shear_offset is {section.shear_offset} m; on an arc it must be 0")
         object.__setattr__(self, "supports", two_supports(self.supports))
-        require_number("tip_at", self.tip_at, "m", positive=False)
+        require_within("tip_at", self.tip_at, "m", low=0)
         if self.tip_at > line.length * (1.0 + 1e-12):
             raise ValueError(f"tip_at is {self.tip_at} m; it must lie between 0 and {line.length} m")
         for name, unit in (("tip_offset", "m"), ("drive", "1")):

@@ -24,7 +24,7 @@ from typing import Literal
 import numpy as np
 
 from .centreline import Centreline
-from .parameters import require_array, require_kind, require_number, shown, suspect
+from .parameters import require_array, require_kind, require_within, shown, suspect
 from .section import StripSection
 
 Support = Literal["clamped", "pinned", "guided", "free"]
@@ -70,8 +70,8 @@ class Tip:
     rotary_inertia: float = 0.0
 
     def __post_init__(self) -> None:
-        require_number("mass", self.mass, "kg", positive=False)
-        require_number("rotary_inertia", self.rotary_inertia, "kg m^2", positive=False)
+        require_within("mass", self.mass, "kg", low=0)
+        require_within("rotary_inertia", self.rotary_inertia, "kg m^2", low=0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,7 +90,7 @@ class Readout:
     quantity: Literal["displacement", "rotation"] = "displacement"
 
     def __post_init__(self) -> None:
-        require_number("at", self.at, "m", positive=False)
+        require_within("at", self.at, "m", low=0)
         if self.quantity not in ("displacement", "rotation"):
             raise ValueError(f"quantity is {self.quantity!r} [no unit]; valid: 'displacement', 'rotation'")
 
@@ -151,7 +151,7 @@ class LeafSpring:
             require_kind(f"readouts[{name!r}]", readout, Readout, "a Readout")
         places = {"tip_at": self.tip_at} | {f"readouts[{name!r}]": r.at for name, r in self.readouts.items()}
         for name, s in places.items():
-            require_number(name, s, "m", positive=False)
+            require_within(name, s, "m", low=0)
             if s > self.centreline.length * (1.0 + 1e-12):
                 raise ValueError(f"{name} is {s} m; it must lie between 0 and {self.centreline.length} m")
         require_array("drive", self.drive, "[1]", shape=(2,), words="a direction (x, y) of two numbers")

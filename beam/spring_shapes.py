@@ -13,7 +13,7 @@ import math
 from collections.abc import Mapping
 
 from .centreline import Arc, Centreline, Straight
-from .parameters import require_array, require_kind, require_number
+from .parameters import require_array, require_kind, require_within
 from .section import StripSection
 from .spring import LeafSpring, Readout, Support, Tip
 
@@ -134,7 +134,7 @@ def _leg(
     length: float, bare: StripSection, damped: StripSection | None, span: tuple[float, float] | None
 ) -> tuple[tuple[Straight, ...], tuple[StripSection, ...]]:
     """Pieces and sections of a straight run, from the support outwards."""
-    require_number("length of the straight strip or leg", length, "m", positive=True)
+    require_within("length of the straight strip or leg", length, "m", above=0)
     require_kind("damped_section", damped, (StripSection, type(None)), "a StripSection or None")
     if damped is None:
         if span is not None:

@@ -106,5 +106,5 @@ def test_shear_modulus() -> None:
 
 @pytest.mark.parametrize("value", ["1 mm", None, True, [1.0]])
 def test_what_is_no_number_is_named(value: object) -> None:
-    with pytest.raises(TypeError, match="it must be a number in m, finite and positive"):
+    with pytest.raises(TypeError, match="it must be a number in m, finite and above zero"):
         replace(BARE, width=value)

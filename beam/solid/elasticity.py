@@ -34,7 +34,7 @@ from scipy.sparse import coo_array, csc_array, csr_array
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
 from ..material import Material
-from ..parameters import require_array, require_kind, require_number
+from ..parameters import require_array, require_kind, require_within
 from ..spring import Tip
 from .swept_mesh import SweptMesh
 
@@ -80,7 +80,7 @@ class SolidSpring:
         require_kind("material", self.material, Material, "a Material")
         require_kind("tip", self.tip, Tip, "a Tip")
         require_kind("clamped", self.clamped, (tuple, list), "two of True and False")
-        require_number("tip_at", self.tip_at, "m", positive=False)
+        require_within("tip_at", self.tip_at, "m", low=0)
         require_array("drive", self.drive, "1", shape=(3,), words="three finite numbers")
         if len(self.clamped) != 2 or not any(self.clamped):
             raise ValueError(

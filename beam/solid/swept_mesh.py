@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from ..assembly import element_counts
 from ..centreline import Centreline
-from ..parameters import require_array, require_kind, require_number, require_whole, require_within
+from ..parameters import require_array, require_kind, require_whole, require_within
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -82,7 +82,7 @@ def rectangle_profile(*, along_n: float, along_z: float, cells: int, through: in
         Across the shorter side, or across half of it where that is along z.
     """
     for name, value in (("along_n", along_n), ("along_z", along_z)):
-        require_number(name, value, "m", positive=True)
+        require_within(name, value, "m", above=0)
     for name, number in (("cells", cells), ("through", through)):
         require_whole(name, number, "[1]")
     if along_z >= along_n:
@@ -107,7 +107,7 @@ def channel_profile(
         Along a flange and along half of the web; the sheet has one through its thickness.
     """
     for name, value in (("width", width), ("flange", flange), ("thickness", thickness)):
-        require_number(name, value, "m", positive=True)
+        require_within(name, value, "m", above=0)
     require_within("centroid", centroid, "m")
     element_counts(cells, 2)
     web = 0.5 * thickness - centroid

@@ -35,8 +35,8 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from .centreline import Arc, Straight
+from .modal_model import ModalModel
 from .parameters import require_kind
-from .reduction import ModalModel
 from .spring import LeafSpring, Tip
 from .spring_shapes import straight_strip
 
