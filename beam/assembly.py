@@ -12,23 +12,29 @@ and the tip, of mass M_t [kg] and rotary inertia J [kg m^2], adds for test funct
     M_t (u.. v + w.. z) + J (w' + k u)..(z' + k v)  =  -z_base.. M_t (e_t v + e_n z)     where it sits,
 
 e the drive direction.
+
+The lower half of this module ties pieces of any kind, in the plane or in space (`space`): a `Piece` says how
+many unknowns its nodes have and which of them jump where the curvature does.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import block_diag, csr_array
 from scipy.sparse.linalg import splu
 
+from .centreline import Centreline
 from .parameters import require_array, require_kind, require_whole, shown
-from .spring import HELD, LeafSpring
-from .strip_element import NODAL, QUADRATURE_ORDER, PieceMesh, base_motion, bending, inertia, stretching
+from .spring import HELD, LeafSpring, Tip
+from .strip_element import NODAL, Piece, PieceMesh
+
+P = TypeVar("P", bound=Piece)
 
 MOST_ELEMENTS = 100_000
 """On a piece: rounding has long since eaten the digits by then, and a slip does not fill the memory."""
@@ -129,9 +135,16 @@ def default_elements(spring: LeafSpring) -> tuple[int, ...]:
     a^4, and the bending so feigned competes with the small true bending of a tight bend.
     """
     require_kind("spring", spring, LeafSpring, "a LeafSpring")
-    pieces = spring.centreline.pieces
-    straight = sum(piece.length for piece in pieces if piece.curvature == 0.0)
-    shares = [abs(p.curvature) * p.length / math.pi * 48 or p.length / straight * 120 for p in pieces]
+    return shared_elements(spring.centreline, 120, 48)
+
+
+def shared_elements(line: Centreline, straight: int, half_turn: int) -> tuple[int, ...]:
+    """Return the number of elements on each piece: so many on all straight pieces, and on each half turn."""
+    whole = sum(piece.length for piece in line.pieces if piece.curvature == 0.0)
+    shares = [
+        abs(piece.curvature) * piece.length / math.pi * half_turn or piece.length / whole * straight
+        for piece in line.pieces
+    ]
     return tuple(max(2, math.ceil(share - 1e-9)) for share in shares)
 
 
@@ -156,88 +169,133 @@ def assemble(spring: LeafSpring, elements: int | Sequence[int] | None = None) ->
         For fewer than one element on a piece, or a count for each piece where there are more or fewer pieces.
     """
     require_kind("spring", spring, LeafSpring, "a LeafSpring")
-    pieces = _meshes(spring, default_elements(spring) if elements is None else elements)
-    ties = _ties(spring, pieces)
-    parts = list(zip(*(_parts(spring, piece) for piece in pieces), strict=True))
-    stiffness, loss, mass = (ties.T @ block_diag(blocks, format="csr") @ ties for blocks in parts[:3])
-    *lumped, tip = _place(spring, pieces, ties, spring.tip_at)
-    carried = (spring.tip.mass, spring.tip.mass, spring.tip.rotary_inertia)
-    for row, amount in zip(lumped, carried, strict=True):
-        mass = mass + amount * (csr_array(row[:, None]) @ csr_array(row[None, :]))
+    pieces = meshes(PieceMesh, spring, default_elements(spring) if elements is None else elements)
+    left_out = [piece.tangential & spring.centreline.is_straight for piece in pieces]  # u decouples there
+    t = ties(pieces, [np.array(HELD[support][: NODAL]) for support in spring.supports], left_out)
+    drive = np.array([*spring.drive, 0.0])
+    stiffness, mass, loss = assembled(pieces, t)
+    displacement, rotation = place(spring.centreline, pieces, t, spring.tip_at)
+    mass = mass + carried(spring.tip, displacement, rotation)
+    load = t.T @ base_load(spring.centreline, pieces, drive) + spring.tip.mass * (drive @ displacement)
     readouts = {}
     for name, readout in spring.readouts.items():
-        *_, rotation, displacement = _place(spring, pieces, ties, readout.at)
-        readouts[name] = {"displacement": displacement, "rotation": rotation}[readout.quantity]
+        moved, turned = place(spring.centreline, pieces, t, readout.at)
+        readouts[name] = turned[2] if readout.quantity == "rotation" else drive @ moved
     return Discretization(
         spring=spring,
         stiffness=csr_array(0.5 * (stiffness + stiffness.T)),
         mass=csr_array(0.5 * (mass + mass.T)),
         loss_stiffness=csr_array(0.5 * (loss + loss.T)),
-        base_load=ties.T @ np.concatenate(parts[3]) + spring.tip.mass * tip,
-        tip=tip,
+        base_load=load,
+        tip=drive @ displacement,
         readouts=readouts,
         pieces=pieces,
-        ties=ties,
+        ties=t,
     )
 
 
-def _meshes(spring: LeafSpring, elements: int | Sequence[int]) -> tuple[PieceMesh, ...]:
-    """Uniform meshes of the pieces, but for the node that is moved to the tip."""
-    line = spring.centreline
+def meshes(kind: Callable[..., P], spring: Any, elements: int | Sequence[int]) -> tuple[P, ...]:
+    """Return the pieces of a spring, uniform meshes but for the node that is moved to the tip."""
+    line, found = spring.centreline, []
     counts = element_counts(elements, len(line.pieces))
-    meshes = []
     for i, (piece, start) in enumerate(zip(line.pieces, line.joints[:-1].tolist(), strict=True)):
         tip = (spring.tip_at - start) / piece.length
         inside = 1e-9 < tip < 1.0 - 1e-9
         x = np.linspace(0.0, 1.0, max(counts[i], 1 + inside) + 1)
         if inside:
             x[1 + np.argmin(np.abs(x[1:-1] - tip))] = tip
-        section, k = spring.sections[i], piece.curvature
-        meshes.append(PieceMesh(start=start, nodes=piece.length * x, curvature=k, section=section))
-    return tuple(meshes)
+        nodes, section = piece.length * x, spring.sections[i]
+        found.append(kind(start=start, nodes=nodes, curvature=piece.curvature, section=section))
+    return tuple(found)
 
 
-def _parts(spring: LeafSpring, piece: PieceMesh) -> tuple[Any, Any, Any, NDArray[np.float64]]:
-    """K, K times loss factors, M and b of one piece alone."""
-    (basis, s), section, k = piece.basis(intorder=QUADRATURE_ORDER), piece.section, piece.curvature
-    m, drive = section.mass_per_length, np.array([*spring.drive, 0.0])
-    along, across = (direction @ drive for direction in spring.centreline.frame(s))
-    membrane = stretching.assemble(basis, EA=section.axial_stiffness, k=k)
-    flexure = bending.assemble(basis, EI=section.bending_stiffness, k=k)
-    loss = section.axial_loss_factor * membrane + section.bending_loss_factor * flexure
-    mass = inertia.assemble(basis, m=m)
-    return membrane + flexure, loss, mass, base_motion.assemble(basis, m=m, along=along, across=across)
+def assembled(pieces: Sequence[Piece], ties: csr_array) -> list[csr_array]:
+    """Return the matrices of the pieces, tied."""
+    parts = zip(*(piece.matrices() for piece in pieces), strict=True)
+    return [ties.T @ block_diag(blocks, format="csr") @ ties for blocks in parts]
 
 
-def _ties(spring: LeafSpring, pieces: tuple[PieceMesh, ...]) -> csr_array:
-    """T: joins the pieces with continuous u, w and rotation, and builds in the supports."""
+def ties(
+    pieces: Sequence[Piece],
+    held: Sequence[NDArray[np.bool_]],
+    left_out: Sequence[NDArray[np.bool_]] | None = None,
+) -> csr_array:
+    """Return T, which joins the pieces and builds in the supports.
+
+    Parameters
+    ----------
+    pieces : sequence of Piece
+    held : two arrays of bool
+        Whether the first and the last support hold each unknown of a node.
+    left_out : arrays of bool, shape (size,), optional
+        Unknowns of each piece that are left out.
+    """
     begins = np.concatenate(([0], np.cumsum([piece.size for piece in pieces])))
-    first, size, nodal = begins[:-1], begins[-1], NODAL * np.array([piece.nodes.size for piece in pieces])
-    last, k = first + nodal - NODAL, np.array([piece.curvature for piece in pieces])
-    free, unknown = np.ones(size, dtype=bool), np.arange(NODAL)
-    free[first[1:, None] + unknown] = False  # follow from the piece before
-    free[first[0] + unknown] &= ~np.array(HELD[spring.supports[0]])
-    free[last[-1] + unknown] &= ~np.array(HELD[spring.supports[1]])
-    if spring.centreline.is_straight:  # u decouples and is left out
-        for start, inner, end in zip(first, first + nodal, begins[1:], strict=True):
-            free[start:inner:NODAL] = free[inner:end] = False
-    follows, leads = (first[1:, None] + unknown).ravel(), (last[:-1, None] + unknown).ravel()
-    weights = np.concatenate((free * 1.0, np.ones(follows.size), k[:-1] - k[1:]))
-    rows = np.concatenate((np.arange(size), follows, first[1:] + 2))
-    columns = np.concatenate((np.arange(size), leads, last[:-1]))
-    return csr_array((weights, (rows, columns)), shape=(size, size))[:, np.flatnonzero(free)]
+    first = [begin + piece.node(0) for begin, piece in zip(begins, pieces, strict=False)]
+    last = [begin + piece.node(-1) for begin, piece in zip(begins, pieces, strict=False)]
+    free = np.ones(begins[-1], dtype=bool) if left_out is None else ~np.concatenate(left_out)
+    free[first[0][held[0]]] = free[last[-1][held[1]]] = False
+    follows, leads, weights = [], [], []
+    for after, before, piece, lead in zip(first[1:], last[:-1], pieces[1:], pieces[:-1], strict=True):
+        free[after] = False  # follow from the piece before
+        kinks = np.array(piece.kinks)
+        follows += [after, after[kinks[:, 0]]]
+        leads += [before, before[kinks[:, 1]]]
+        weights += [np.ones(after.size), np.full(len(kinks), lead.curvature - piece.curvature)]
+    every = np.arange(free.size)
+    places = np.concatenate([every, *follows]), np.concatenate([every, *leads])
+    full = csr_array((np.concatenate([free * 1.0, *weights]), places), shape=2 * free.shape)
+    return full[:, np.flatnonzero(free)]
 
 
-def _place(
-    spring: LeafSpring, pieces: tuple[PieceMesh, ...], ties: csr_array, s: float
-) -> tuple[NDArray[np.float64], ...]:
-    """Rows (n_dofs,) of u [m], w [m], rotation [rad] and displacement along the drive [m] at arc length s."""
-    which = int(spring.centreline.piece_at(s))
+def place(
+    line: Centreline, pieces: Sequence[Piece], ties: csr_array, s: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Rows of displacement [m] and rotation [rad] along and about x, y, z at arc length s, (3, n_dofs)."""
+    which = int(line.piece_at(s))
     piece, before = pieces[which], sum(piece.size for piece in pieces[:which])
     x, nodes = s - piece.start, piece.nodes
     element = int(np.clip(np.searchsorted(nodes, x, side="right") - 1, 0, nodes.size - 2))
     local = np.clip((x - nodes[element]) / (nodes[element + 1] - nodes[element]), 0.0, 1.0)
     _, matrices = piece.sampling(np.array([local]), np.array([element]))
-    u, w, rotation = ((matrix @ ties[before : before + piece.size]).toarray()[0] for matrix in matrices)
-    tangent, normal = (direction @ np.array([*spring.drive, 0.0]) for direction in spring.centreline.frame(s))
-    return u, w, rotation, tangent * u + normal * w
+    rows = np.zeros((6, ties.shape[1]))
+    for move, matrix in zip(piece.moves, matrices, strict=True):
+        rows[move] = (matrix @ ties[before : before + piece.size]).toarray()[0]
+    turn = line.axes(np.array(s)).T
+    return turn @ rows[:3], turn @ rows[3:]
+
+
+def carried(tip: Tip, displacement: NDArray[np.float64], rotation: NDArray[np.float64]) -> csr_array:
+    """Return the mass matrix of a tip that moves and turns by these rows, each (3, n_dofs)."""
+    moves, turns = csr_array(displacement), csr_array(rotation)
+    return tip.mass * (moves.T @ moves) + tip.rotary_inertia * (turns.T @ turns)
+
+
+def base_load(line: Centreline, pieces: Sequence[Piece], drive: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return b of the loose pieces [kg] for a base motion along `drive`, (3,)."""
+
+    def direction(s: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.moveaxis(line.axes(s) @ drive, -1, 0)
+
+    return np.concatenate([piece.base_load(direction) for piece in pieces])
+
+
+def along(
+    line: Centreline, pieces: Sequence[Piece], unknowns: NDArray[np.float64], points_per_element: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Return arc lengths (n_points,), displacements and rotations (n_modes, n_points, 3) in x, y, z.
+
+    Of `unknowns`, those of the loose pieces end to end, (..., n_modes), at `points_per_element` equal steps
+    to an element.
+    """
+    local = np.linspace(0.0, 1.0, points_per_element + 1)
+    places, matrices = zip(*(piece.sampling(local) for piece in pieces), strict=True)
+    s = np.concatenate(places)
+    kept = np.arange(s.size) % local.size < points_per_element  # an element's end is the next one's start
+    kept[-1] = True
+    s = np.clip(s[kept], 0.0, line.length)
+    fields = np.zeros((6, unknowns.shape[1], s.size))
+    for move, part in zip(pieces[0].moves, zip(*matrices, strict=True), strict=True):
+        fields[move] = (block_diag(part, format="csr") @ unknowns)[kept].T
+    axes = line.axes(s)
+    return s, *(np.einsum("ikp,pic->kpc", part, axes) for part in (fields[:3], fields[3:]))

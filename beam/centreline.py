@@ -151,6 +151,11 @@ class Centreline:
         cos, sin, zero = np.cos(theta), np.sin(theta), np.zeros_like(theta)
         return np.stack([cos, sin, zero], axis=-1), np.stack([-sin, cos, zero], axis=-1)
 
+    def axes(self, s: ArrayLike) -> NDArray[np.float64]:
+        """Rows t, n and e_z of the frame, shape (..., 3, 3)."""
+        t, n = self.frame(s)
+        return np.stack([t, n, np.broadcast_to([0.0, 0.0, 1.0], t.shape)], axis=-2)
+
     def points(self, s: ArrayLike) -> NDArray[np.float64]:
         """Points in space [m], shape (..., 3).
 

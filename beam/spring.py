@@ -1,14 +1,16 @@
 """A leaf spring on a moving base: centreline, sections, supports, tip, drive direction and read-out points.
 
 The ends of the centreline are tied to the base. With u, w [m] the displacements relative to the base along
-the tangent and the normal, and theta [rad] the rotation of the strip, a support holds
+the tangent and the normal, and theta [rad] the rotation of the strip about z, a support holds
 
-    clamped   u = w = theta = 0
-    pinned    u = w = 0
-    guided    u = theta = 0        (slides along the normal)
+    clamped   u = w = theta = 0        and out of the plane   v = v' = phi = phi' = 0
+    pinned    u = w = 0                                       v = phi = 0
+    guided    u = theta = 0                                   v' = phi' = 0
     free      nothing
 
-On a straight centreline small motions along and across do not couple; only w and theta are kept there.
+(guided: a plane of symmetry across the strip, which slides along the normal; v [m] along z and the turn phi
+[rad] about the tangent belong to `space`, the rest of this package lies in the plane.) On a straight
+centreline small motions along and across do not couple; only w and theta are kept there.
 
 The base moves by z [m] along the unit vector `drive`; the displacement of the tip, the force on it and every
 displacement read-out count along that vector. A light beam reflected off the strip measures theta instead.
@@ -19,22 +21,22 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from .centreline import Centreline
-from .parameters import require_array, require_kind, require_within, shown, suspect
+from .parameters import require, require_array, require_each, require_kind, require_within, shown, suspect
 from .section import StripSection
 
 Support = Literal["clamped", "pinned", "guided", "free"]
 
-#: Whether a support holds (u, w, theta).
-HELD: dict[str, tuple[bool, bool, bool]] = {
-    "clamped": (True, True, True),
-    "pinned": (True, True, False),
-    "guided": (True, False, True),
-    "free": (False, False, False),
+#: Whether a support holds u, w, theta in the plane and v, v', phi, phi' out of it.
+HELD: dict[str, tuple[bool, ...]] = {
+    "clamped": (True, True, True, True, True, True, True),
+    "pinned": (True, True, False, True, False, True, False),
+    "guided": (True, False, True, False, True, False, True),
+    "free": (False, False, False, False, False, False, False),
 }
 
 THICKEST = 0.2
@@ -52,6 +54,47 @@ def two_supports(supports: object) -> tuple[Support, Support]:
     if len(pair) != 2 or not all(isinstance(end, str) and end in HELD for end in pair):
         raise ValueError(f"supports is {shown(supports)} [no unit]; it must be two of {', '.join(HELD)}")
     return pair[0], pair[1]
+
+
+def check_strip(spring: Any, section: type, axes: int) -> None:
+    """Refuse what is wrong with any strip, in the plane (`axes` 2) or in space (3); put the rest in order.
+
+    Raises
+    ------
+    TypeError
+        For a field of the wrong kind.
+    ValueError
+        For a wrong number of sections, an unknown support, a tip off the centreline or on a support that
+        does not let it move, or a drive of no length.
+    """
+    line = require_kind("centreline", spring.centreline, Centreline, "a Centreline")
+    sections = require_each("sections", spring.sections, section, f"one {section.__name__} for each piece")
+    count, pieces = len(sections), len(line.pieces)
+    require(
+        count == pieces, f"sections has {count} entries [no unit]; it needs one for each of {pieces} pieces"
+    )
+    supports = two_supports(spring.supports)
+    require_kind("tip", spring.tip, Tip, "a Tip")
+    check_place("tip_at", spring.tip_at, line)
+    for support, end in zip(supports, (0.0, line.length), strict=True):
+        require(
+            not (HELD[support][0] and HELD[support][1]) or abs(spring.tip_at - end) > 1e-9 * line.length,
+            f"tip_at is {spring.tip_at} m, where the strip is {support}; the tip must be free to move",
+        )
+    require_array("drive", spring.drive, "[1]", shape=(axes,), words=f"a direction of {axes} numbers")
+    size = math.hypot(*spring.drive)
+    require(size > 0.0, f"drive is {spring.drive} [1]; it must be finite and of positive length")
+    kept = {"sections": sections, "supports": supports, "drive": tuple(part / size for part in spring.drive)}
+    for name, value in kept.items():
+        object.__setattr__(spring, name, value)
+
+
+def check_place(name: str, s: float, line: Centreline) -> None:
+    """ValueError unless s [m] is an arc length on the line."""
+    require_within(name, s, "m", low=0)
+    require(
+        s <= line.length * (1.0 + 1e-12), f"{name} is {s} m; it must lie between 0 and {line.length} m"
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,7 +159,8 @@ class LeafSpring:
     Raises
     ------
     ValueError
-        For a wrong number of sections, an unknown support, a place off the centreline, a drive of no length.
+        For a wrong number of sections, an unknown support, a place off the centreline, a tip on a support
+        that holds it, or a drive of no length.
 
     Warns
     -----
@@ -134,31 +178,11 @@ class LeafSpring:
     readouts: Mapping[str, Readout] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        require_kind("centreline", self.centreline, Centreline, "a Centreline")
-        require_kind("sections", self.sections, (tuple, list), "one StripSection for each piece")
-        for section in self.sections:
-            require_kind("sections", section, StripSection, "one StripSection for each piece")
-        object.__setattr__(self, "sections", tuple(self.sections))
-        count, pieces = len(self.sections), len(self.centreline.pieces)
-        if count != pieces:
-            raise ValueError(
-                f"sections has {count} entries [no unit]; it needs one for each of {pieces} pieces"
-            )
-        object.__setattr__(self, "supports", two_supports(self.supports))
-        require_kind("tip", self.tip, Tip, "a Tip")
+        check_strip(self, StripSection, 2)
         require_kind("readouts", self.readouts, Mapping, "a mapping of names to Readout")
         for name, readout in self.readouts.items():
             require_kind(f"readouts[{name!r}]", readout, Readout, "a Readout")
-        places = {"tip_at": self.tip_at} | {f"readouts[{name!r}]": r.at for name, r in self.readouts.items()}
-        for name, s in places.items():
-            require_within(name, s, "m", low=0)
-            if s > self.centreline.length * (1.0 + 1e-12):
-                raise ValueError(f"{name} is {s} m; it must lie between 0 and {self.centreline.length} m")
-        require_array("drive", self.drive, "[1]", shape=(2,), words="a direction (x, y) of two numbers")
-        size = math.hypot(*self.drive)
-        if not size > 0.0:
-            raise ValueError(f"drive is {self.drive} [1]; it must be finite and of positive length")
-        object.__setattr__(self, "drive", (self.drive[0] / size, self.drive[1] / size))
+            check_place(f"readouts[{name!r}]", readout.at, self.centreline)
         object.__setattr__(self, "readouts", dict(self.readouts))
         self._suspect()
 
@@ -199,7 +223,7 @@ class LeafSpring:
         for i, support in enumerate(self.supports):
             t, n = (vectors[i, :2] for vectors in self.centreline.frame(ends))
             at_end = np.array([[*t, t @ turned[i]], [*n, n @ turned[i]], [0.0, 0.0, 1.0]])
-            held = np.array(HELD[support])
+            held = np.array(HELD[support][:3])
             held[0] |= self.centreline.is_straight
             rows.append(at_end[held])
         return 3 - int(np.linalg.matrix_rank(np.concatenate(rows), tol=1e-9))

@@ -108,7 +108,7 @@ def test_every_pair_of_supports(supports: tuple) -> None:
     ],
 )
 def test_rigid_motions(supports: tuple, rigid: int) -> None:
-    spring = straight_strip(length=LENGTH, section=STRIP, supports=supports, tip_at=LENGTH)
+    spring = straight_strip(length=LENGTH, section=STRIP, supports=supports, tip_at=0.4 * LENGTH)
     assert spring.rigid_motions == rigid
     assert (assemble(spring, 8).static_compliance() is None) == (rigid > 0)
 

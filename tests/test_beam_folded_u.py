@@ -120,8 +120,8 @@ def test_sharing_the_slope_instead_of_the_rotation_would_be_seen() -> None:
     assert jump.sum() == 2  # one entry -[k] u at each end of the bend
     kept = slope.data * ~jump
     wrong = coo_array((kept, (slope.row, slope.col)), shape=slope.shape).tocsr()
-    parts = [beam.assembly._parts(model.spring, piece) for piece in model.pieces]
-    stiffness, mass = (block_diag([part[i] for part in parts], format="csr") for i in (0, 2))
+    parts = [piece.matrices() for piece in model.pieces]
+    stiffness, mass = (block_diag([part[i] for part in parts], format="csr") for i in (0, 1))
     lumped = model.mass - model.ties.T @ mass @ model.ties
     value = eigsh(
         (wrong.T @ stiffness @ wrong).tocsc(),

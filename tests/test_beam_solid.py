@@ -11,11 +11,16 @@ import skfem as sk
 from skfem.helpers import ddot, sym_grad, trace
 
 from beam import BRASS, Arc, Centreline, Material, Straight, StripSection, Tip, UniformBeam, exact_modes
-from beam.solid import SolidSpring, channel_profile, end_compliance, rectangle_profile, solid_modes, sweep
-from beam.solid.elasticity import _assembled
-from beam.spatial_frame import spatial_modes
-from beam.spatial_section import upright
-from beam.spatial_spring import SpatialSpring
+from beam.space import SpatialSpring, spatial_modes, upright
+from studies.spring_shape_solids import (
+    SolidSpring,
+    channel_profile,
+    end_compliance,
+    rectangle_profile,
+    solid_modes,
+    sweep,
+)
+from studies.spring_shape_solids.elasticity import _assembled
 
 LENGTH, WIDTH, THICKNESS, RADIUS = 0.13, 12e-3, 1e-3, 7.5e-3
 U = Centreline(

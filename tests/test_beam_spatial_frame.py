@@ -24,10 +24,17 @@ from beam import (
     folded_u,
     natural_modes,
 )
-from beam.solid import SolidSpring, channel_profile, solid_modes, sweep
-from beam.spatial_frame import SpatialModes, spatial_modes
-from beam.spatial_section import SpatialSection, channel, channel_centroid, flat, upright
-from beam.spatial_spring import SpatialSpring
+from beam.space import (
+    SpatialModes,
+    SpatialSection,
+    SpatialSpring,
+    channel,
+    channel_centroid,
+    flat,
+    spatial_modes,
+    upright,
+)
+from studies.spring_shape_solids import SolidSpring, channel_profile, solid_modes, sweep
 
 STRIP = StripSection(material=BRASS, width=12e-3, thickness=0.65e-3)
 BALL = Tip(mass=4e-3, rotary_inertia=3e-8)

@@ -190,8 +190,9 @@ BEAM: dict[str, Entry] = {
         ({"supports": ("clamped", ["free"])}, "supports is|two of"),
         ({"tip": 0.004}, "tip is 0.004|a Tip"),
         ({"tip_at": 1.0}, "tip_at is 1.0 m|between 0 and"),
+        ({"tip_at": 0.0}, "tip_at is 0.0 m|clamped"),
         ({"drive": (0.0, 0.0)}, "drive is (0.0, 0.0)|positive length"),
-        ({"drive": ("x", "y")}, "drive is ('x', 'y')|two numbers"),
+        ({"drive": ("x", "y")}, "drive is ('x', 'y')|direction"),
         ({"readouts": {"laser": 0.1}}, "readouts['laser'] is 0.1|a Readout"),
     ),
     "folded_u": entry(

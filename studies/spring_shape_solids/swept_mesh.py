@@ -19,9 +19,9 @@ import numpy as np
 import skfem as sk
 from numpy.typing import NDArray
 
-from ..assembly import element_counts
-from ..centreline import Centreline
-from ..parameters import require_array, require_kind, require_whole, require_within
+from beam import Centreline
+from beam.assembly import element_counts
+from beam.parameters import require_array, require_kind, require_whole, require_within
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -100,7 +100,7 @@ def channel_profile(
     Parameters
     ----------
     width, flange, thickness : float
-        b, h and t [m] as in `spatial_section.channel`.
+        b, h and t [m] as in `beam.space.channel`.
     centroid : float
         From the middle of the web to the centreline [m].
     cells : tuple of two ints

@@ -33,10 +33,9 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csc_array, csr_array
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
-from ..material import Material
-from ..parameters import require_array, require_kind, require_within
-from ..spring import Tip
-from .swept_mesh import SweptMesh
+from beam import Material, Tip
+from beam.parameters import require_array, require_kind, require_within
+from studies.spring_shape_solids.swept_mesh import SweptMesh
 
 #: Three Gauss points each way: exact for the stiffness of a brick.
 QUADRATURE_ORDER = 5

@@ -6,8 +6,8 @@ moves by u t + w n + v z and turns by phi about t, without shear:
     rotation   theta = phi t - v' n + (w' + k u) z                                     [rad]
     strains    theta' = (phi' + k v') t + (k phi - v'') n + (w'' + k u') z             [1/m]
 
-so that motion in the plane (u, w: `strip_element`) and out of it (v, phi) do not couple. Out of the plane,
-with test functions (y, psi), v measured at the shear centre and a the distance from there to the centroid,
+so that motion in the plane (u, w: `beam.strip_element`) and out of it (v, phi) do not couple. Out of the
+plane, with test functions (y, psi), v measured at the shear centre and the centroid at a n from there,
 
     twist      tau = phi' + k v'       [1/m]      warping  tau' = phi'' + k v''        [1/m^2]
     bending    chi = v'' - k phi       [1/m]
@@ -34,12 +34,25 @@ import skfem as sk
 from numpy.typing import NDArray
 from scipy.sparse import block_diag, csr_array
 
-from .spatial_section import SpatialSection
-from .strip_element import NODAL, QUADRATURE_ORDER, TANGENTIAL_DEGREE, bending, inertia, stretching
+from ..strip_element import (
+    NODAL,
+    QUADRATURE_ORDER,
+    TANGENTIAL_DEGREE,
+    Direction,
+    Field,
+    Piece,
+    at_points,
+    base_motion,
+    bending,
+    inertia,
+    plane_element,
+    sampled,
+    stretching,
+)
+from .section import SpatialSection
 
 #: Unknowns at a node, in this order: u, w, w' in the plane, v, v', phi, phi' out of it.
 PLANE, SPACE = NODAL, 4
-Field = Any  # values of a scikit-fem function at the quadrature points, with .grad and .hess
 
 
 def twist(v: Field, phi: Field, k: float) -> Field:
@@ -74,12 +87,12 @@ def inertia_out_of_plane(v: Field, phi: Field, y: Field, psi: Field, p: Any) -> 
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class SpatialPiece:
-    """One piece of the centreline: from arc length `start` [m] on, `nodes` counted from there [m]."""
+class SpatialPiece(Piece):
+    """A piece in space, with its section; unknowns: in the plane as in `PieceMesh`, then v, v', phi, phi'."""
 
-    start: float
-    nodes: NDArray[np.float64]
-    curvature: float
+    moves = (0, 1, 5, 2, 3, 4)
+    kinks = ((2, 0), (6, 4))
+
     section: SpatialSection
 
     @property
@@ -93,13 +106,13 @@ class SpatialPiece:
         return self.plane_size + SPACE * self.nodes.size
 
     def node(self, number: int) -> NDArray[np.intp]:
-        """Places of u, w, w', v, v', phi, phi' of a node among the unknowns of the piece."""
+        """Places of u, w, w', v, v', phi, phi' of a node."""
         at = number % self.nodes.size
         plane, space = PLANE * at + np.arange(PLANE), SPACE * at + np.arange(SPACE)
         return np.concatenate((plane, self.plane_size + space))
 
     def matrices(self) -> tuple[csr_array, csr_array]:
-        """K and M of the piece alone."""
+        """K and M."""
         s, nodes = self.section, tuple(self.nodes.tolist())
         stretch, bend, move, bow_, twist_, warp_, across, turn, both = _unit_matrices(nodes, self.curvature)
         m, a = s.mass_per_length, s.shear_offset
@@ -108,66 +121,49 @@ class SpatialPiece:
         turning = m * across + (m * a) * both + (m * a**2 + s.polar_inertia) * turn
         return csr_array(block_diag([plane, space])), csr_array(block_diag([m * move, turning]))
 
+    def base_load(self, direction: Direction) -> NDArray[np.float64]:
+        """int m (e_t y_u + e_n y_w) ds, then int m e_z (y + a psi) ds."""
+        plane, s = self.basis(plane_element(), intorder=QUADRATURE_ORDER)
+        space, _ = self.basis(space_element(), intorder=QUADRATURE_ORDER)
+        m, a = self.section.mass_per_length, self.section.shear_offset
+        along, across, up = direction(s)
+        loads = (
+            base_motion.assemble(plane, m=m, along=along, across=across),
+            base_motion.assemble(space, m=m, along=up, across=a * up),
+        )
+        return np.concatenate(loads)
+
     def sampling(
         self, local: NDArray[np.float64], elements: NDArray[np.intp] | None = None
-    ) -> tuple[NDArray[np.float64], tuple[csr_array, ...]]:
-        """Arc lengths [m] and matrices of u, w, v of the centroid [m] and of the three rotations [rad].
-
-        At `local` points (0 to 1) of the elements; the rotations are about t, n and z.
-        """
-        bases, s = self._bases(local, elements)
+    ) -> tuple[NDArray[np.float64], list[csr_array]]:
+        """Arc lengths [m] and matrices of u, w [m], the turn about z, v of the centroid, the turns about t
+        and n, at `local` points (0 to 1) of the elements."""
         k, a = self.curvature, self.section.shear_offset
-        fields: list[list[Any]] = [[] for _ in range(6)]
-        columns = [bases[0].element_dofs, self.plane_size + bases[1].element_dofs]
-        for u, w in bases[0].basis:
-            for place, value in zip((0, 1, 5), (u + 0.0, w + 0.0, w.grad[0] + k * u), strict=True):
-                fields[place].append(value)
-        for v, phi in bases[1].basis:
-            for place, value in zip((2, 3, 4), (v + a * phi, phi + 0.0, -v.grad[0]), strict=True):
-                fields[place].append(value)
-        found = []
-        for place, field in enumerate(fields):
-            where = columns[0] if place in (0, 1, 5) else columns[1]
-            entries = np.concatenate([np.broadcast_to(part, s.shape) for part in field]).ravel()
-            rows = np.tile(np.arange(s.size), where.shape[0])
-            at = np.repeat(where, local.size, axis=1).ravel()
-            found.append(csr_array((entries, (rows, at)), shape=(s.size, self.size)))
-        return s.ravel(), tuple(found)
-
-    def _bases(
-        self, local: NDArray[np.float64] | None = None, elements: NDArray[np.intp] | None = None
-    ) -> tuple[tuple[sk.Basis, sk.Basis], NDArray[np.float64]]:
-        """Bases of (u, w) and of (v, phi), and arc lengths of their points [m]."""
-        bases = _bases_on(
-            tuple(self.nodes.tolist()),
-            None if local is None else tuple(local.tolist()),
-            None if elements is None else tuple(elements.tolist()),
-        )
-        return bases, self.start + 0.5 * self.nodes[-1] + np.asarray(bases[0].global_coordinates())[0]
+        plane, s = self.basis(plane_element(), **at_points(local, elements))
+        space, _ = self.basis(space_element(), **at_points(local, elements))
+        in_plane = [(u + 0.0, w + 0.0, w.grad[0] + k * u) for u, w in plane.basis]
+        out_of_it = [(v + a * phi, phi + 0.0, -v.grad[0]) for v, phi in space.basis]
+        families = (in_plane, plane.element_dofs), (out_of_it, self.plane_size + space.element_dofs)
+        return s.ravel(), [
+            sampled(field, dofs, s.shape, self.size)
+            for fields, dofs in families
+            for field in zip(*fields, strict=True)
+        ]
 
 
-@lru_cache(maxsize=128)
-def _bases_on(
-    nodes: tuple[float, ...], local: tuple[float, ...] | None, elements: tuple[int, ...] | None
-) -> tuple[sk.Basis, sk.Basis]:
-    """Bases about the middle of a piece, at `local` points or Gauss's. Kept: springs differ in their sections
-    more often than in their meshes."""
-    mesh = sk.MeshLine(np.array(nodes) - 0.5 * nodes[-1])
-    plane = sk.ElementComposite(sk.ElementLinePp(TANGENTIAL_DEGREE), sk.ElementLineHermite())
-    space = sk.ElementComposite(sk.ElementLineHermite(), sk.ElementLineHermite())
-    points: dict[str, Any] = {"intorder": QUADRATURE_ORDER}
-    if local is not None:
-        points = {"quadrature": (np.array([local]), np.ones(len(local)))}
-    if elements is not None:
-        points["elements"] = np.array(elements)
-    return sk.Basis(mesh, plane, **points), sk.Basis(mesh, space, **points)
+def space_element() -> sk.Element:
+    """(v, phi)."""
+    return sk.ElementComposite(sk.ElementLineHermite(), sk.ElementLineHermite())
 
 
 @lru_cache(maxsize=64)
 def _unit_matrices(nodes: tuple[float, ...], k: float) -> tuple[csr_array, ...]:
     """The matrices of a piece for EA, EI_z and m of 1 in the plane, for EI_n, GJ, EG, m, I and m a of 1 out
-    of it. Kept, as the bases are."""
-    plane, space = _bases_on(nodes, None, None)
+    of it. Kept: springs differ in their sections more often than in their meshes."""
+    mesh = sk.MeshLine(np.array(nodes) - 0.5 * nodes[-1])
+    plane, space = (
+        sk.Basis(mesh, element, intorder=QUADRATURE_ORDER) for element in (plane_element(), space_element())
+    )
     zero = {"EI": 0.0, "GJ": 0.0, "EG": 0.0}
     stiff = [bending_and_twist.assemble(space, **{**zero, name: 1.0}, k=k) for name in zero]
     across, turn, together = (

@@ -12,7 +12,7 @@ along n and the origin in the centroid,
     I      `polar_inertia` about the centroid, int rho (y^2 + z^2) dA                       [kg m]
     a      `shear_offset`: the centroid lies at +a n from the shear centre                  [m]
 
-Strip of width b, thickness t: with EA, EI, GJ, m of `section.StripSection`,
+Strip of width b, thickness t: with EA, EI, GJ, m of `beam.StripSection`,
 
     bending about its width EI,  edgewise EA b^2/12,  EG = EI b^2/12  (a warping displacement y z),
     I = m (b^2 + t^2)/12.
@@ -36,9 +36,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .material import Material
-from .parameters import require_kind, require_within
-from .section import StripSection
+from ..material import Material
+from ..parameters import require_kind, require_within
+from ..section import StripSection
 
 
 @dataclass(frozen=True, kw_only=True)
