@@ -1,9 +1,6 @@
 """The finite-element model of a leaf spring: pieces of strip, tied together, with supports and tip.
 
-Each piece of the centreline has elements of its own (`strip_element`). Where pieces meet, the displacements
-u along the tangent and w along the normal and the rotation w' + k u are continuous, not w': where the
-curvature k jumps by [k], w' jumps by -[k] u, while u' is free. The pieces are therefore assembled alone and
-tied by a sparse matrix T, x_pieces = T x, which holds the supports too:
+Each piece of the centreline has elements of its own (`strip_element`), tied together by T (`pieces`):
 
     K = T^T K_pieces T,     M = T^T M_pieces T + the tip,     b = T^T b_pieces + the tip,
 
@@ -12,32 +9,22 @@ and the tip, of mass M_t [kg] and rotary inertia J [kg m^2], adds for test funct
     M_t (u.. v + w.. z) + J (w' + k u)..(z' + k v)  =  -z_base.. M_t (e_t v + e_n z)     where it sits,
 
 e the drive direction.
-
-The lower half of this module ties pieces of any kind, in the plane or in space (`space`): a `Piece` says how
-many unknowns its nodes have and which of them jump where the curvature does.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import block_diag, csr_array
+from scipy.sparse import csr_array
 from scipy.sparse.linalg import splu
 
-from .centreline import Centreline
-from .parameters import require_array, require_kind, require_whole, shown
+from .parameters import require_array, require_kind
+from .pieces import meshes, place, shared_elements, tied, ties
 from .spring import HELD, LeafSpring, Tip
-from .strip_element import NODAL, Piece, PieceMesh
-
-P = TypeVar("P", bound=Piece)
-
-MOST_ELEMENTS = 100_000
-"""On a piece: rounding has long since eaten the digits by then, and a slip does not fill the memory."""
+from .strip_element import PieceMesh
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -112,21 +99,6 @@ class Discretization:
         return np.stack(energies, axis=1)
 
 
-def element_counts(elements: int | Sequence[int], pieces: int) -> list[int]:
-    """Return the number of elements on each of so many pieces, from one for all or one for each."""
-    several = isinstance(elements, Sequence | np.ndarray) and not isinstance(elements, str)
-    counts = [
-        require_whole("elements", count, "[1]", low=1, high=MOST_ELEMENTS, why=", or one for each piece")
-        for count in (elements if several else [elements] * pieces)  # type: ignore[union-attr,list-item]
-    ]
-    if len(counts) != pieces:
-        raise ValueError(
-            f"elements is {shown(elements)} [1]; it must be a whole number, or one for each of {pieces} "
-            "pieces"
-        )
-    return counts
-
-
 def default_elements(spring: LeafSpring) -> tuple[int, ...]:
     """Return the number of elements on each piece of `spring` that `assemble` takes by default.
 
@@ -136,16 +108,6 @@ def default_elements(spring: LeafSpring) -> tuple[int, ...]:
     """
     require_kind("spring", spring, LeafSpring, "a LeafSpring")
     return shared_elements(spring.centreline, 120, 48)
-
-
-def shared_elements(line: Centreline, straight: int, half_turn: int) -> tuple[int, ...]:
-    """Return the number of elements on each piece: so many on all straight pieces, and on each half turn."""
-    whole = sum(piece.length for piece in line.pieces if piece.curvature == 0.0)
-    shares = [
-        abs(piece.curvature) * piece.length / math.pi * half_turn or piece.length / whole * straight
-        for piece in line.pieces
-    ]
-    return tuple(max(2, math.ceil(share - 1e-9)) for share in shares)
 
 
 def assemble(spring: LeafSpring, elements: int | Sequence[int] | None = None) -> Discretization:
@@ -169,133 +131,33 @@ def assemble(spring: LeafSpring, elements: int | Sequence[int] | None = None) ->
         For fewer than one element on a piece, or a count for each piece where there are more or fewer pieces.
     """
     require_kind("spring", spring, LeafSpring, "a LeafSpring")
+    line, drive = spring.centreline, np.array([*spring.drive, 0.0])
     pieces = meshes(PieceMesh, spring, default_elements(spring) if elements is None else elements)
-    left_out = [piece.tangential & spring.centreline.is_straight for piece in pieces]  # u decouples there
-    t = ties(pieces, [np.array(HELD[support][: NODAL]) for support in spring.supports], left_out)
-    drive = np.array([*spring.drive, 0.0])
-    stiffness, mass, loss = assembled(pieces, t)
-    displacement, rotation = place(spring.centreline, pieces, t, spring.tip_at)
-    mass = mass + carried(spring.tip, displacement, rotation)
-    load = t.T @ base_load(spring.centreline, pieces, drive) + spring.tip.mass * (drive @ displacement)
+    held = np.array([HELD[support][:3] for support in spring.supports])
+    t = ties(pieces, held, line.is_straight)
+    stiffness, mass, loss = tied(pieces, t)
+    moved = place(line, pieces, t, spring.tip_at)
+    mass = mass + carried(spring.tip, moved)
+    tip = drive @ moved[:3]
     readouts = {}
     for name, readout in spring.readouts.items():
-        moved, turned = place(spring.centreline, pieces, t, readout.at)
-        readouts[name] = turned[2] if readout.quantity == "rotation" else drive @ moved
+        seen = place(line, pieces, t, readout.at)
+        readouts[name] = seen[5] if readout.quantity == "rotation" else drive @ seen[:3]
+    loads = np.concatenate([piece.base_load(line, drive) for piece in pieces])
     return Discretization(
         spring=spring,
         stiffness=csr_array(0.5 * (stiffness + stiffness.T)),
         mass=csr_array(0.5 * (mass + mass.T)),
         loss_stiffness=csr_array(0.5 * (loss + loss.T)),
-        base_load=load,
-        tip=drive @ displacement,
+        base_load=t.T @ loads + spring.tip.mass * tip,
+        tip=tip,
         readouts=readouts,
         pieces=pieces,
         ties=t,
     )
 
 
-def meshes(kind: Callable[..., P], spring: Any, elements: int | Sequence[int]) -> tuple[P, ...]:
-    """Return the pieces of a spring, uniform meshes but for the node that is moved to the tip."""
-    line, found = spring.centreline, []
-    counts = element_counts(elements, len(line.pieces))
-    for i, (piece, start) in enumerate(zip(line.pieces, line.joints[:-1].tolist(), strict=True)):
-        tip = (spring.tip_at - start) / piece.length
-        inside = 1e-9 < tip < 1.0 - 1e-9
-        x = np.linspace(0.0, 1.0, max(counts[i], 1 + inside) + 1)
-        if inside:
-            x[1 + np.argmin(np.abs(x[1:-1] - tip))] = tip
-        nodes, section = piece.length * x, spring.sections[i]
-        found.append(kind(start=start, nodes=nodes, curvature=piece.curvature, section=section))
-    return tuple(found)
-
-
-def assembled(pieces: Sequence[Piece], ties: csr_array) -> list[csr_array]:
-    """Return the matrices of the pieces, tied."""
-    parts = zip(*(piece.matrices() for piece in pieces), strict=True)
-    return [ties.T @ block_diag(blocks, format="csr") @ ties for blocks in parts]
-
-
-def ties(
-    pieces: Sequence[Piece],
-    held: Sequence[NDArray[np.bool_]],
-    left_out: Sequence[NDArray[np.bool_]] | None = None,
-) -> csr_array:
-    """Return T, which joins the pieces and builds in the supports.
-
-    Parameters
-    ----------
-    pieces : sequence of Piece
-    held : two arrays of bool
-        Whether the first and the last support hold each unknown of a node.
-    left_out : arrays of bool, shape (size,), optional
-        Unknowns of each piece that are left out.
-    """
-    begins = np.concatenate(([0], np.cumsum([piece.size for piece in pieces])))
-    first = [begin + piece.node(0) for begin, piece in zip(begins, pieces, strict=False)]
-    last = [begin + piece.node(-1) for begin, piece in zip(begins, pieces, strict=False)]
-    free = np.ones(begins[-1], dtype=bool) if left_out is None else ~np.concatenate(left_out)
-    free[first[0][held[0]]] = free[last[-1][held[1]]] = False
-    follows, leads, weights = [], [], []
-    for after, before, piece, lead in zip(first[1:], last[:-1], pieces[1:], pieces[:-1], strict=True):
-        free[after] = False  # follow from the piece before
-        kinks = np.array(piece.kinks)
-        follows += [after, after[kinks[:, 0]]]
-        leads += [before, before[kinks[:, 1]]]
-        weights += [np.ones(after.size), np.full(len(kinks), lead.curvature - piece.curvature)]
-    every = np.arange(free.size)
-    places = np.concatenate([every, *follows]), np.concatenate([every, *leads])
-    full = csr_array((np.concatenate([free * 1.0, *weights]), places), shape=2 * free.shape)
-    return full[:, np.flatnonzero(free)]
-
-
-def place(
-    line: Centreline, pieces: Sequence[Piece], ties: csr_array, s: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Rows of displacement [m] and rotation [rad] along and about x, y, z at arc length s, (3, n_dofs)."""
-    which = int(line.piece_at(s))
-    piece, before = pieces[which], sum(piece.size for piece in pieces[:which])
-    x, nodes = s - piece.start, piece.nodes
-    element = int(np.clip(np.searchsorted(nodes, x, side="right") - 1, 0, nodes.size - 2))
-    local = np.clip((x - nodes[element]) / (nodes[element + 1] - nodes[element]), 0.0, 1.0)
-    _, matrices = piece.sampling(np.array([local]), np.array([element]))
-    rows = np.zeros((6, ties.shape[1]))
-    for move, matrix in zip(piece.moves, matrices, strict=True):
-        rows[move] = (matrix @ ties[before : before + piece.size]).toarray()[0]
-    turn = line.axes(np.array(s)).T
-    return turn @ rows[:3], turn @ rows[3:]
-
-
-def carried(tip: Tip, displacement: NDArray[np.float64], rotation: NDArray[np.float64]) -> csr_array:
-    """Return the mass matrix of a tip that moves and turns by these rows, each (3, n_dofs)."""
-    moves, turns = csr_array(displacement), csr_array(rotation)
+def carried(tip: Tip, moved: NDArray[np.float64]) -> csr_array:
+    """Return the mass matrix of a tip that moves and turns by these rows, (6, n_dofs)."""
+    moves, turns = csr_array(moved[:3]), csr_array(moved[3:])
     return tip.mass * (moves.T @ moves) + tip.rotary_inertia * (turns.T @ turns)
-
-
-def base_load(line: Centreline, pieces: Sequence[Piece], drive: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return b of the loose pieces [kg] for a base motion along `drive`, (3,)."""
-
-    def direction(s: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.moveaxis(line.axes(s) @ drive, -1, 0)
-
-    return np.concatenate([piece.base_load(direction) for piece in pieces])
-
-
-def along(
-    line: Centreline, pieces: Sequence[Piece], unknowns: NDArray[np.float64], points_per_element: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Return arc lengths (n_points,), displacements and rotations (n_modes, n_points, 3) in x, y, z.
-
-    Of `unknowns`, those of the loose pieces end to end, (..., n_modes), at `points_per_element` equal steps
-    to an element.
-    """
-    local = np.linspace(0.0, 1.0, points_per_element + 1)
-    places, matrices = zip(*(piece.sampling(local) for piece in pieces), strict=True)
-    s = np.concatenate(places)
-    kept = np.arange(s.size) % local.size < points_per_element  # an element's end is the next one's start
-    kept[-1] = True
-    s = np.clip(s[kept], 0.0, line.length)
-    fields = np.zeros((6, unknowns.shape[1], s.size))
-    for move, part in zip(pieces[0].moves, zip(*matrices, strict=True), strict=True):
-        fields[move] = (block_diag(part, format="csr") @ unknowns)[kept].T
-    axes = line.axes(s)
-    return s, *(np.einsum("ikp,pic->kpc", part, axes) for part in (fields[:3], fields[3:]))

@@ -26,8 +26,9 @@ from scipy.linalg import eigh
 from scipy.sparse import csr_array
 from scipy.sparse.linalg import eigsh
 
-from .assembly import Discretization, along
+from .assembly import Discretization
 from .parameters import require_array, require_kind, require_whole
+from .pieces import along
 
 #: phi sqrt(m_total) and Gamma/sqrt(m_total) below this count as zero: far above rounding in symmetric springs
 #: (about 1e-9), far below any coupling that matters to a motion.
@@ -116,15 +117,15 @@ class Modes:
         """Return the shapes along the centreline, `points_per_element` equal steps to an element."""
         require_whole("points_per_element", points_per_element, "[1]", low=1)
         line, model = self.discretization.spring.centreline, self.discretization
-        s, displacement, rotation = along(line, model.pieces, model.ties @ self.shapes, points_per_element)
+        s, (moved, turned) = along(line, model.pieces, model.ties @ self.shapes, points_per_element)
         t, n = line.frame(s)
         return ShapesAlong(
             s=s,
             points=line.points(s),
             tangent=t,
             normal=n,
-            displacement=displacement,
-            rotation=rotation[..., 2],
+            displacement=moved,
+            rotation=turned[..., 2],
         )
 
 
@@ -202,7 +203,7 @@ def lowest(
 def _first_swing(discretization: Discretization, shapes: NDArray[np.float64]) -> NDArray[np.float64]:
     """Displacement across the strip where, walking from s = 0, it first exceeds half its largest size."""
     line = discretization.spring.centreline
-    s, displacement, _ = along(line, discretization.pieces, discretization.ties @ shapes, 2)
-    w = np.einsum("kpc,pc->kp", displacement, line.frame(s)[1])
+    s, (moved, _) = along(line, discretization.pieces, discretization.ties @ shapes, 2)
+    w = np.einsum("kpc,pc->kp", moved, line.frame(s)[1])
     first = np.argmax(np.abs(w) > 0.5 * np.abs(w).max(axis=1, keepdims=True), axis=1)
     return w[np.arange(first.size), first]

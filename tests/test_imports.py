@@ -24,6 +24,7 @@ ORDER = {
         "centreline",
         "spring",
         "spring_shapes",
+        "pieces",
         "strip_element",
         "assembly",
         "frequency_equation",

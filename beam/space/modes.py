@@ -25,11 +25,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import block_diag
 
-from ..assembly import along, assembled, base_load, carried, meshes, place, shared_elements, ties
+from ..assembly import carried
 from ..modes import lowest
 from ..parameters import require_kind, require_whole
+from ..pieces import Piece, along, meshes, place, shared_elements, tied, ties
 from ..spring import HELD
-from .element import SpatialPiece
+from ..strip_element import PieceMesh
+from .element import SidePiece
 from .spring import SpatialSpring
 
 #: Elements on all straight pieces together, shared by length, and on each half turn of an arc.
@@ -51,8 +53,10 @@ class SpatialModes:
         Of the section that carries the tip, along and about x, y, z [kg^(-1/2)], [kg^(-1/2) m^(-1)].
     out_of_plane : ndarray, shape (n_modes,)
         Share of the strain energy in bending out of the plane and in twist [1].
-    pieces : tuple of SpatialPiece
-    unknowns : ndarray, shape (unknowns of all pieces, n_modes)
+    families : tuple of two tuples of Piece
+        In the plane and out of it.
+    unknowns : tuple of two ndarrays, shape (unknowns of all pieces, n_modes)
+        Those of each family.
     """
 
     spring: SpatialSpring
@@ -62,8 +66,8 @@ class SpatialModes:
     displacement: NDArray[np.float64]
     rotation: NDArray[np.float64]
     out_of_plane: NDArray[np.float64]
-    pieces: tuple[SpatialPiece, ...]
-    unknowns: NDArray[np.float64]
+    families: tuple[tuple[Piece, ...], ...]
+    unknowns: tuple[NDArray[np.float64], ...]
 
     @property
     def frequencies_hz(self) -> NDArray[np.float64]:
@@ -74,8 +78,9 @@ class SpatialModes:
         """Return arc length [m] (n_points,), points [m] (n_points, 3), displacement and rotation along and
         about x, y, z, each (n_modes, n_points, 3)."""
         line = self.spring.centreline
-        s, displacement, rotation = along(line, self.pieces, self.unknowns, points_per_element)
-        return s, line.points(s), displacement, rotation
+        pairs = zip(self.families, self.unknowns, strict=True)
+        (s, plane), (_, side) = (along(line, *pair, points_per_element) for pair in pairs)
+        return s, line.points(s), *(plane + side)
 
 
 def spatial_modes(
@@ -96,42 +101,42 @@ def spatial_modes(
         For a count out of range, or fewer than one element on a piece.
     """
     require_kind("spring", spring, SpatialSpring, "a SpatialSpring")
-    line = spring.centreline
+    line, c, e = spring.centreline, np.array(spring.tip_offset), np.array(spring.drive)
     usual = shared_elements(line, STRAIGHT_ELEMENTS, ARC_ELEMENTS)
-    pieces = meshes(SpatialPiece, spring, usual if elements is None else elements)
-    t = ties(pieces, _held(spring))
-    count = require_whole("count", count, "modes", high=t.shape[1] - 2)
-    stiffness, mass = assembled(pieces, t)
-    displacement, rotation = place(line, pieces, t, spring.tip_at)
-    e = np.array(spring.drive)
-    point = displacement + np.cross(rotation, np.array(spring.tip_offset), axis=0)
-    mass = mass + carried(spring.tip, point, rotation)
-    load = t.T @ base_load(line, pieces, e) + spring.tip.mass * (e @ point)
+    kinds = PieceMesh, SidePiece
+    families = tuple(meshes(kind, spring, usual if elements is None else elements) for kind in kinds)
+    joints = [ties(pieces, held) for pieces, held in zip(families, _held(spring), strict=True)]
+    pairs = list(zip(families, joints, strict=True))
+    count = require_whole("count", count, "modes", high=sum(t.shape[1] for t in joints) - 2)
+    parts = [tied(*pair) for pair in pairs]
+    stiffness, mass = (block_diag([part[i] for part in parts], format="csr") for i in range(2))
+    moved = np.hstack([place(line, *pair, spring.tip_at) for pair in pairs])
+    point = moved[:3] + np.cross(moved[3:], c, axis=0)
+    mass = mass + carried(spring.tip, np.concatenate((point, moved[3:])))
+    loads = [t.T @ np.concatenate([piece.base_load(line, e) for piece in pieces]) for pieces, t in pairs]
     shift = min(sec.in_plane_stiffness / sec.mass_per_length for sec in spring.sections) / line.length**4
     squares, x = lowest(stiffness, mass, shift, count, dense_limit=0)
     x = x / np.sqrt(np.einsum("ik,ik->k", x, mass @ x))
     x = x * np.where(e @ point @ x < 0.0, -1.0, 1.0)
-    unknowns = t @ x
-    energies = unknowns * (block_diag([piece.matrices()[0] for piece in pieces]) @ unknowns)
-    apart = np.concatenate([np.arange(piece.size) >= piece.plane_size for piece in pieces])
+    energies = x * (stiffness @ x)
+    first = joints[0].shape[1]
     return SpatialModes(
         spring=spring,
         omega=np.sqrt(np.maximum(squares, 0.0)),
         phi=e @ point @ x,
-        participation=load @ x,
-        displacement=(displacement @ x).T,
-        rotation=(rotation @ x).T,
-        out_of_plane=energies[apart].sum(axis=0) / energies.sum(axis=0),
-        pieces=pieces,
-        unknowns=unknowns,
+        participation=(np.concatenate(loads) + spring.tip.mass * (e @ point)) @ x,
+        displacement=(moved[:3] @ x).T,
+        rotation=(moved[3:] @ x).T,
+        out_of_plane=energies[first:].sum(axis=0) / energies.sum(axis=0),
+        families=families,
+        unknowns=(joints[0] @ x[:first], joints[1] @ x[first:]),
     )
 
 
-def _held(spring: SpatialSpring) -> list[NDArray[np.bool_]]:
-    """Unknowns that each support holds: a clamp holds phi' only where there is warping stiffness."""
-    found = []
-    for support, section in zip(spring.supports, (spring.sections[0], spring.sections[-1]), strict=True):
-        held = np.array(HELD[support])
-        held[6] &= section.warping_stiffness > 0.0 or support == "guided"
-        found.append(held)
-    return found
+def _held(spring: SpatialSpring) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """What each support holds, (2, nodal) for each family: phi' only where there is warping stiffness."""
+    held = np.array([HELD[support] for support in spring.supports])
+    ends = spring.sections[0], spring.sections[-1]
+    for row, support, section in zip(held, spring.supports, ends, strict=True):
+        row[6] &= section.warping_stiffness > 0.0 or support == "guided"
+    return held[:, :3], held[:, 3:]

@@ -35,6 +35,7 @@ edges of the strip: 0.63 t/b.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from ..material import Material
 from ..parameters import require_kind, require_within
@@ -75,6 +76,9 @@ class SpatialSection:
     warping_stiffness: float = 0.0
     shear_offset: float = 0.0
 
+    axial_loss_factor: ClassVar[float] = 0.0
+    bending_loss_factor: ClassVar[float] = 0.0
+
     def __post_init__(self) -> None:
         units = {
             "axial_stiffness": "N",
@@ -88,6 +92,11 @@ class SpatialSection:
             require_within(name, getattr(self, name), unit, above=0)
         require_within("warping_stiffness", self.warping_stiffness, "N m^4", low=0)
         require_within("shear_offset", self.shear_offset, "m", low=0)
+
+    @property
+    def bending_stiffness(self) -> float:
+        """EI_z, by the name that it has in the plane [N m^2]."""
+        return self.in_plane_stiffness
 
 
 def upright(section: StripSection) -> SpatialSection:

@@ -20,8 +20,8 @@ import skfem as sk
 from numpy.typing import NDArray
 
 from beam import Centreline
-from beam.assembly import element_counts
 from beam.parameters import require_array, require_kind, require_whole, require_within
+from beam.pieces import element_counts
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
