@@ -13,14 +13,12 @@ width lies along z, and all motion is in the plane.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass, field
-from numbers import Real
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .parameters import brief, is_number, require_array, require_kind, require_within
+from .parameters import require, require_array, require_each, require_within
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,8 +57,8 @@ class Arc:
 
     def __post_init__(self) -> None:
         require_within("radius", self.radius, "m", above=0)
-        if require_within("angle", self.angle, "rad") == 0.0:
-            raise ValueError(f"angle is {self.angle} rad; it must be finite and not zero")
+        angle = require_within("angle", self.angle, "rad")
+        require(angle != 0.0, f"angle is {self.angle} rad; it must be finite and not zero")
 
     @property
     def length(self) -> float:
@@ -92,17 +90,11 @@ class Centreline:
     heading: float = 0.0
 
     def __post_init__(self) -> None:
-        require_kind("pieces", self.pieces, Iterable, "a sequence of Straight and Arc")
-        object.__setattr__(self, "pieces", tuple(self.pieces))
-        for piece in self.pieces:
-            require_kind("pieces", piece, (Straight, Arc), "a sequence of Straight and Arc")
-        if not self.pieces:
-            raise ValueError("pieces is empty [no unit]; a centreline needs at least one Straight or Arc")
+        pieces = require_each("pieces", self.pieces, (Straight, Arc), "a sequence of Straight and Arc")
+        object.__setattr__(self, "pieces", pieces)
+        require(bool(pieces), "pieces is empty [no unit]; a centreline needs at least one Straight or Arc")
         require_array("start", self.start, "m", shape=(2,), words="a point (x, y), two finite numbers")
-        require_kind("heading", self.heading, Real, "a finite number in rad")
-        if not is_number(self.heading):
-            turn = brief(self.heading)
-            raise ValueError(f"start is {self.start} m and heading {turn} rad; all must be finite")
+        require_within("heading", self.heading, "rad")
 
     @property
     def joints(self) -> NDArray[np.float64]:
@@ -133,7 +125,7 @@ class Centreline:
             For an arc length off the curve (by more than rounding).
         """
         s = require_array("s", s, "m", words="arc lengths")
-        outside = (s < -1e-12 * self.length) | (s > (1.0 + 1e-12) * self.length) | ~np.isfinite(s)
+        outside = (s < -1e-12 * self.length) | (s > (1.0 + 1e-12) * self.length)
         if np.any(outside):
             raise ValueError(f"s is {s[outside].flat[0]} m; it must lie between 0 and {self.length} m")
         inside = np.searchsorted(self.joints, s, side="right") - 1

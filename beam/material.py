@@ -25,6 +25,9 @@ SLOWEST_WAVE, FASTEST_WAVE = 400.0, 20_000.0
 brass, 18 000 in diamond. E or rho wrong by 1000 changes the speed by 32, out of this range for metals,
 ceramics, glass and hard polymers."""
 
+GREATEST_LOSS = 3.0
+"""Loss factor beyond which a warning is given: the best damping polymers have 1 to 2."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Material:
@@ -49,7 +52,7 @@ class Material:
     Warns
     -----
     SuspiciousValue
-        For E and rho whose speed of sound is that of no solid.
+        For E and rho whose speed of sound is that of no solid, and a loss factor above `GREATEST_LOSS`.
     """
 
     youngs_modulus: float
@@ -68,6 +71,9 @@ class Material:
                 f"youngs_modulus {self.youngs_modulus:g} Pa and density {self.density:g} kg/m^3 give a speed "
                 f"of sound of {speed:.3g} m/s; solids lie between {SLOWEST_WAVE:g} and {FASTEST_WAVE:g} m/s"
             )
+
+        if self.loss_factor > GREATEST_LOSS:
+            suspect(f"loss_factor is {self.loss_factor:g} [1]; materials stay below {GREATEST_LOSS:g}")
 
     @property
     def wave_speed(self) -> float:

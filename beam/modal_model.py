@@ -43,11 +43,15 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .parameters import require_array, require_kind, require_whole, require_within
+from .parameters import require_array, require_kind, require_whole, require_within, suspect
 
 LEAST_RESIDUAL = 1e-5
 """Residual compliance over the static one below which there is no residual mode: finite elements give statics
 to 1e-7, of which the residual is a small difference, so that 1 % of it is then left uncertain."""
+
+GREATEST_RATIO = 0.5
+"""Damping ratio of the lowest mode beyond which a warning is given: it hardly swings, and no measured spring
+is like that; damping alloys reach 0.1."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -80,6 +84,11 @@ class ModalModel:
         For entries that are not numbers.
     ValueError
         For an empty, non-finite or negative array where none is allowed, or for shapes that differ.
+
+    Warns
+    -----
+    SuspiciousValue
+        For a lowest mode that vibrates with a damping ratio above `GREATEST_RATIO`.
     """
 
     omega: NDArray[np.float64]
@@ -91,13 +100,12 @@ class ModalModel:
     readouts: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        omega = _row("omega", self.omega, "rad/s")
-        rows = {
-            "omega": _not_negative("omega", omega, "rad/s"),
-            "decay_rate": _not_negative("decay_rate", _row("decay_rate", self.decay_rate, "1/s"), "1/s"),
-            "phi": _row("phi", self.phi, "kg^(-1/2)"),
-            "participation": _row("participation", self.participation, "kg^(1/2)"),
-        }
+        units = {"omega": "rad/s", "decay_rate": "1/s", "phi": "kg^(-1/2)", "participation": "kg^(1/2)"}
+        rows = {name: _row(name, getattr(self, name), unit) for name, unit in units.items()}
+        omega = rows["omega"]
+        for name in ("omega", "decay_rate"):
+            if np.any(rows[name] < 0.0):
+                raise ValueError(f"{name} holds {rows[name].min()} {units[name]}; no entry may be negative")
         require_kind("readouts", self.readouts, Mapping, "a mapping of names to rows of numbers")
         readouts = {
             name: _row(f"readouts[{name!r}]", row, "kg^(-1/2)") for name, row in self.readouts.items()
@@ -115,6 +123,14 @@ class ModalModel:
             if value is not None:
                 require_within(name, value, unit, low=0)
                 object.__setattr__(self, name, float(value))
+        vibrating = np.flatnonzero(omega)
+        first = vibrating[np.argsort(omega[vibrating])[:1]]
+        for ratio in 0.5 * self.decay_rate[first] / omega[first]:
+            if ratio > GREATEST_RATIO:
+                suspect(
+                    f"decay_rate is {self.decay_rate[first[0]]:g} 1/s in the lowest mode, a damping ratio of "
+                    f"{ratio:.3g}; above {GREATEST_RATIO:g} it hardly swings"
+                )
 
     @property
     def n_modes(self) -> int:
@@ -192,12 +208,6 @@ def _row(name: str, values: ArrayLike, unit: str) -> NDArray[np.float64]:
     row = require_array(name, values, unit, dimensions=1, words="one row of numbers")
     if row.size == 0:
         raise ValueError(f"{name} has shape {row.shape}; it must be one row of at least one mode [{unit}]")
-    return row
-
-
-def _not_negative(name: str, row: NDArray[np.float64], unit: str) -> NDArray[np.float64]:
-    if np.any(row < 0.0):
-        raise ValueError(f"{name} holds {row.min()} {unit}; no entry may be negative")
     return row
 
 

@@ -17,6 +17,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, ClassVar, TypeVar
 
 import numpy as np
@@ -29,6 +30,11 @@ from .parameters import require_whole, shown
 
 MOST_ELEMENTS = 100_000
 """On a piece: rounding has long since eaten the digits by then, and a slip does not fill the memory."""
+
+TANGENTIAL_DEGREE = 4
+"""Of the displacement u along a strip."""
+QUADRATURE_ORDER = 2 * TANGENTIAL_DEGREE
+"""Exact for the product of two quartics."""
 
 Field = Any  # values of a scikit-fem function at the quadrature points, with .grad and .hess
 
@@ -69,17 +75,22 @@ class Piece(ABC):
         """Number of unknowns."""
         return self.nodal * self.nodes.size + self.inner * (self.nodes.size - 1)
 
-    def basis(self, **points: Any) -> tuple[sk.Basis, NDArray[np.float64]]:
-        """Return the basis and the arc lengths of its points [m], shape (n_elements, n_points)."""
-        middle = 0.5 * self.nodes[-1]
-        basis = sk.Basis(sk.MeshLine(self.nodes - middle), self.element(), **points)
-        return basis, self.start + middle + np.asarray(basis.global_coordinates())[0]
+    def basis(
+        self, local: NDArray[np.float64] | None = None, elements: NDArray[np.intp] | None = None
+    ) -> tuple[sk.Basis, NDArray[np.float64]]:
+        """Return the basis and the arc lengths of its points [m], shape (n_elements, n_points).
+
+        At Gauss's points, or at `local` ones (0 to 1), in all elements or in these.
+        """
+        points = (None if array is None else tuple(array.tolist()) for array in (local, elements))
+        basis = _basis(type(self), tuple(self.nodes.tolist()), *points)
+        return basis, self.start + 0.5 * self.nodes[-1] + np.asarray(basis.global_coordinates())[0]
 
     def sampling(
         self, local: NDArray[np.float64], elements: NDArray[np.intp] | None = None
     ) -> tuple[NDArray[np.float64], list[csr_array]]:
         """Arc lengths [m] and matrices of what `moves`, at `local` points (0 to 1) of the elements."""
-        basis, s = self.basis(quadrature=(local[None, :], np.ones(local.size)), elements=elements)
+        basis, s = self.basis(local, elements)
         rows = np.tile(np.arange(s.size), basis.Nbfun)
         columns = np.repeat(basis.element_dofs, local.size, axis=1).ravel()
         found = []
@@ -89,15 +100,31 @@ class Piece(ABC):
         return s.ravel(), found
 
     def base_load(self, line: Centreline, drive: NDArray[np.float64]) -> NDArray[np.float64]:
-        """int m e . (motion) ds [kg] for a base motion along e = `drive`, (3,): Gauss's rule on each element,
-        for a product of degree 4 and a frame that turns."""
-        x, weight = np.polynomial.legendre.leggauss(8)
-        s, matrices = self.sampling(0.5 * (1.0 + x))
-        lengths = np.repeat(np.diff(self.nodes), x.size)
-        amount = self.section.mass_per_length * 0.5 * lengths * np.tile(weight, self.nodes.size - 1)
-        pull = amount[:, None] * (line.axes(s) @ drive)
-        pairs = zip(self.moves, matrices, strict=True)
-        return sum(matrix.T @ pull[:, move] for move, matrix in pairs if move < 3)  # type: ignore[return-value]
+        """int m e . (motion) ds [kg], shape (size,), for a base motion along e = `drive`, (3,)."""
+        basis, s = self.basis()
+        pull, load = line.axes(s) @ drive * self.section.mass_per_length, np.zeros(self.size)
+        for functions, places in zip(basis.basis, basis.element_dofs, strict=True):
+            motion = zip(self.moves, self.motion(*functions), strict=True)
+            work = sum(pull[..., move] * field for move, field in motion if move < 3)
+            np.add.at(load, places, np.sum(work * basis.dx, axis=1))
+        return load
+
+
+@lru_cache(maxsize=32)
+def _basis(
+    kind: type[Piece],
+    nodes: tuple[float, ...],
+    local: tuple[float, ...] | None,
+    elements: tuple[int, ...] | None,
+) -> sk.Basis:
+    """The basis about the middle of a piece. Kept: springs differ in their sections more often than in their
+    meshes, and a leg comes twice."""
+    points: dict[str, Any] = {"intorder": QUADRATURE_ORDER}
+    if local is not None:
+        points = {"quadrature": (np.array([local]), np.ones(len(local)))}
+    if elements is not None:
+        points["elements"] = np.array(elements)
+    return sk.Basis(sk.MeshLine(np.array(nodes) - 0.5 * nodes[-1]), kind.element(), **points)
 
 
 P = TypeVar("P", bound=Piece)

@@ -47,6 +47,10 @@ STOUTEST = 0.1
 """Thickness over the length of the whole strip beyond which a warning is given: Euler-Bernoulli's beam leaves
 out shear, 3 (t/L)^2 of mode 1 and twenty times that of mode 3."""
 
+SLENDEREST = 5000.0
+"""Arm of the tip over the thickness beyond which a warning is given: the strip hangs under its own weight, as
+a brass strip of 0.7 mm and 3.5 m does."""
+
 
 def two_supports(supports: object) -> tuple[Support, Support]:
     """The supports at both ends, if they are two of the four."""
@@ -160,13 +164,14 @@ class LeafSpring:
     ------
     ValueError
         For a wrong number of sections, an unknown support, a place off the centreline, a tip on a support
-        that holds it, or a drive of no length.
+        that holds it, a drive of no length, or a bend tighter than half the thickness.
 
     Warns
     -----
     SuspiciousValue
-        For a tip heavier than the strip, and a strip thicker than `THICKEST` of its
-        width or `STOUTEST` of its length.
+        For a tip heavier than the strip or with a radius of gyration longer than its arm (the longer way
+        from the tip to an end), a strip wider than that, thinner than this over `SLENDEREST`, or thicker than
+        `THICKEST` of its width or `STOUTEST` of its length.
     """
 
     centreline: Centreline
@@ -184,28 +189,53 @@ class LeafSpring:
             require_kind(f"readouts[{name!r}]", readout, Readout, "a Readout")
             check_place(f"readouts[{name!r}]", readout.at, self.centreline)
         object.__setattr__(self, "readouts", dict(self.readouts))
+        for section, piece in zip(self.sections, self.centreline.pieces, strict=True):
+            half, radius = 0.5 * section.total_thickness, getattr(piece, "radius", math.inf)
+            require(radius > half, f"radius is {radius} m; it must be above half the thickness, {half:g} m")
         self._suspect()
 
     def _suspect(self) -> None:
-        """Warn of a tip heavier than the strip, and of a strip too thick to be a thin or a long one."""
-        mass, length = self.strip_mass, self.centreline.length
-        if self.tip.mass > mass:
-            suspect(
-                f"mass of the tip is {self.tip.mass:g} kg; it is heavier than the strip that carries it, "
-                f"{mass:g} kg, so that hardly more than one mode is left of the spring"
-            )
+        """Warn of a tip that no strip carries, and of a strip that is a bar, a plate or a ribbon."""
+        mass, length, tip = self.strip_mass, self.centreline.length, self.tip
+        arm = max(self.tip_at, length - self.tip_at)
+        gyration = math.sqrt(tip.rotary_inertia / tip.mass) if tip.mass else 0.0
         thickest = max(self.sections, key=lambda section: section.total_thickness)
-        thickness = thickest.total_thickness
-        if thickness > THICKEST * thickest.width:
-            suspect(
-                f"thickness is {thickness:g} m with its layers; above {THICKEST:g} of the width "
-                f"{thickest.width:g} m it is a bar rather than a strip that bends about its width only"
-            )
-        if thickness > STOUTEST * length:
-            suspect(
-                f"thickness is {thickness:g} m with its layers; above {STOUTEST:g} of the strip's length "
-                f"{length:g} m its shear, which is left out, counts beside its bending"
-            )
+        thickness, width = thickest.total_thickness, thickest.width
+        size = f"thickness is {thickness:g} m with its layers"
+        doubts = (
+            (
+                tip.mass > mass,
+                f"mass of the tip is {tip.mass:g} kg; it is heavier than the strip that carries it, {mass:g} "
+                "kg, so that hardly more than one mode is left of the spring",
+            ),
+            (
+                gyration > arm,
+                f"rotary_inertia of the tip is {tip.rotary_inertia:g} kg m^2; with a mass of {tip.mass:g} kg "
+                f"it reaches {gyration:.3g} m around, farther than the spring is long",
+            ),
+            (
+                thickness > THICKEST * width,
+                f"{size}; above {THICKEST:g} of the width {width:g} m it is a bar rather than a strip that "
+                "bends about its width only",
+            ),
+            (
+                thickness > STOUTEST * length,
+                f"{size}; above {STOUTEST:g} of the strip's length {length:g} m its shear, which is left "
+                "out, counts beside its bending",
+            ),
+            (
+                arm > SLENDEREST * thickness,
+                f"{size}; below 1/{SLENDEREST:g} of the length from support to tip, {arm:g} m, the strip "
+                "hangs under its own weight",
+            ),
+            (
+                width > arm,
+                f"width is {width:g} m; above the length from support to tip, {arm:g} m, it is a plate",
+            ),
+        )
+        for holds, sentence in doubts:
+            if holds:
+                suspect(sentence)
 
     @property
     def strip_mass(self) -> float:

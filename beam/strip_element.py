@@ -34,13 +34,8 @@ import skfem as sk
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from .pieces import Field, Piece
+from .pieces import TANGENTIAL_DEGREE, Field, Piece
 from .section import StripSection
-
-#: Degree of the tangential displacement.
-TANGENTIAL_DEGREE = 4
-#: Exact for the product of two quartics.
-QUADRATURE_ORDER = 2 * TANGENTIAL_DEGREE
 
 
 def stretch(u: Field, w: Field, k: float) -> Field:
@@ -94,7 +89,7 @@ class PieceMesh(Piece):
 
     def matrices(self) -> tuple[csr_array, ...]:
         """K, M and K with each stiffness times its loss factor."""
-        basis, _ = self.basis(intorder=QUADRATURE_ORDER)
+        basis, _ = self.basis()
         section, k = self.section, self.curvature
         membrane = stretching.assemble(basis, EA=section.axial_stiffness, k=k)
         flexure = bending.assemble(basis, EI=section.bending_stiffness, k=k)
@@ -103,7 +98,7 @@ class PieceMesh(Piece):
 
     def strain_energies(self, unknowns: NDArray[np.float64]) -> NDArray[np.float64]:
         """Strain energies in stretching and in bending [J] of `unknowns` [m], (size, n); shape (2, n)."""
-        basis, _ = self.basis(intorder=QUADRATURE_ORDER)
+        basis, _ = self.basis()
         local = unknowns[basis.element_dofs]  # (functions of an element, elements, n)
         moduli = self.section.axial_stiffness, self.section.bending_stiffness
         energies = []

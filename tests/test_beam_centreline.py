@@ -56,7 +56,7 @@ def test_u_comes_back_alongside() -> None:
         (lambda: Arc(radius=-1.0, angle=1.0), "radius is -1.0 m"),
         (lambda: Arc(radius=1.0, angle=0.0), "angle is 0.0 rad"),
         (lambda: Centreline(pieces=()), "at least one"),
-        (lambda: Centreline(pieces=(Straight(length=1.0),), heading=math.inf), "heading inf rad"),
+        (lambda: Centreline(pieces=(Straight(length=1.0),), heading=math.inf), "heading is inf rad"),
         (lambda: WINDING.points(0.2), "s is 0.2 m"),
     ],
 )

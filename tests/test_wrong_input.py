@@ -200,6 +200,7 @@ BEAM: dict[str, Entry] = {
         lambda: dict(leg_length=0.13, bend_radius=0.0075, section=strip(), tip=beam.Tip(mass=0.004)),
         ({"leg_length": 0.0}, "length of the straight strip or leg is 0.0 m|above zero"),
         ({"bend_radius": "tight"}, "radius is 'tight'|number in m"),
+        ({"bend_radius": 0.0003}, "radius is 0.0003 m|half the thickness, 0.000325 m"),
         ({"section": beam.BRASS}, "sections is Material|StripSection"),
         ({"tip": None}, "tip is None|a Tip"),
         ({"damped_span": (0.0, 0.1)}, "damped_span is|without a damped_section"),
@@ -949,6 +950,23 @@ def oscillator(*, gap: float = 0.0107, frequency: float = 22.2, amplitude: float
             "a bar rather than a strip",
         ),
         (lambda: beam.cantilever(length=0.005, section=strip()), "of the strip's length 0.005 m"),
+        (lambda: beam.cantilever(length=0.01, section=strip()), "it is a plate"),
+        (lambda: beam.cantilever(length=4.0, section=strip()), "hangs under its own weight"),
+        (
+            lambda: beam.cantilever(
+                length=0.13, section=strip(), tip=beam.Tip(mass=0.004, rotary_inertia=1e-4)
+            ),
+            "rotary_inertia of the tip is 0.0001",
+        ),
+        (
+            lambda: beam.folded_u(leg_length=0.13, bend_radius=0.2, section=strip(), tip=beam.Tip()),
+            "bend_radius is 0.2 m",
+        ),
+        (
+            lambda: beam.Material(youngs_modulus=1e9, poissons_ratio=0.4, density=1400.0, loss_factor=4.0),
+            "loss_factor is 4",
+        ),
+        (lambda: beam.single_mode(free_period=0.04, decay_rate=500.0), "it hardly swings"),
         (lambda: oscillator(amplitude=1.5), "amplitude of the drive is 1.5 m"),
         (lambda: oscillator(gap=10.7), "gap is 10.7 m"),
         (lambda: oscillator(frequency=0.0222), "frequency of the drive is 0.0222 Hz"),

@@ -32,7 +32,6 @@ import skfem as sk
 from scipy.sparse import csr_array
 
 from ..pieces import Field, Piece
-from ..strip_element import QUADRATURE_ORDER
 from .section import SpatialSection
 
 
@@ -91,7 +90,7 @@ class SidePiece(Piece):
     def matrices(self) -> tuple[csr_array, ...]:
         """K and M."""
         section, m, a = self.section, self.section.mass_per_length, self.section.shear_offset
-        basis, _ = self.basis(intorder=QUADRATURE_ORDER)
+        basis, _ = self.basis()
         stiffness = bending_and_twist.assemble(
             basis,
             EI=section.out_of_plane_stiffness,
