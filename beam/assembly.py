@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.linalg import splu
 
-from .parameters import require_array, require_kind
+from .parameters import require, require_array, require_kind
 from .pieces import meshes, place, shared_elements, tied, ties
 from .spring import HELD, LeafSpring, Tip
 from .strip_element import PieceMesh
@@ -65,8 +65,8 @@ class Discretization:
         require_array("base_load", self.base_load, "kg", shape=tip.shape, words="a row of numbers")
         for name in ("stiffness", "mass", "loss_stiffness"):
             shape = getattr(getattr(self, name), "shape", None)
-            if shape != 2 * tip.shape:
-                raise ValueError(f"{name} has shape {shape}; it must be a matrix of shape {2 * tip.shape}")
+            square = 2 * tip.shape
+            require(shape == square, f"{name} has shape {shape}; it must be a matrix of shape {square}")
 
     @property
     def n_dofs(self) -> int:

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .modes import Modes
-from .parameters import require_kind, require_within, shown
+from .parameters import require, require_kind, require_within, shown
 
 
 class Damping(Protocol):
@@ -153,14 +153,12 @@ class MeasuredDecay:
         """Return c [1/s], shape (n_modes,)."""
         require_kind("modes", modes, Modes, "Modes, from natural_modes")
         candidates = np.flatnonzero(modes.coupled & (modes.omega > 0.0))
-        if candidates.size == 0:
-            raise ValueError(f"modes has {modes.omega.size} modes, none of which both couples and vibrates")
+        count = modes.omega.size
+        require(candidates.size > 0, f"modes has {count} modes, none of which both couples and vibrates")
         first, rates = candidates[0], np.array(self.others.decay_rates(modes))
         if not self.scaled:
             rates[first] = self.decay_rate
             return rates
-        if not rates[first] > 0.0:
-            raise ValueError(
-                f"others gives mode 1 a rate of {rates[first]} 1/s; to be scaled it must be positive"
-            )
+        rate = rates[first]
+        require(rate > 0.0, f"others gives mode 1 a rate of {rate} 1/s; to be scaled it must be above zero")
         return rates * (self.decay_rate / rates[first])

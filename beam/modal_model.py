@@ -43,7 +43,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .parameters import require_array, require_kind, require_whole, require_within, suspect
+from .parameters import require, require_array, require_kind, require_whole, require_within, suspect
 
 LEAST_RESIDUAL = 1e-5
 """Residual compliance over the static one below which there is no residual mode: finite elements give statics
@@ -104,17 +104,17 @@ class ModalModel:
         rows = {name: _row(name, getattr(self, name), unit) for name, unit in units.items()}
         omega = rows["omega"]
         for name in ("omega", "decay_rate"):
-            if np.any(rows[name] < 0.0):
-                raise ValueError(f"{name} holds {rows[name].min()} {units[name]}; no entry may be negative")
+            least = rows[name].min()
+            require(least >= 0.0, f"{name} holds {least} {units[name]}; no entry may be negative")
         require_kind("readouts", self.readouts, Mapping, "a mapping of names to rows of numbers")
         readouts = {
             name: _row(f"readouts[{name!r}]", row, "kg^(-1/2)") for name, row in self.readouts.items()
         }
         for name, row in (rows | readouts).items():
-            if row.shape != omega.shape:
-                raise ValueError(
-                    f"{name} has shape {row.shape}; it must have the shape {omega.shape} of omega"
-                )
+            require(
+                row.shape == omega.shape,
+                f"{name} has shape {row.shape}; it must have the shape {omega.shape} of omega",
+            )
         for name, row in rows.items():
             object.__setattr__(self, name, row)
         object.__setattr__(self, "readouts", readouts)
@@ -172,24 +172,21 @@ class ModalModel:
         ValueError
             If the model has no static compliance or tip mass, or its modes leave nothing of one of them.
         """
-        for name, value, unit in (
-            ("static_compliance", self.static_compliance, "m/N"),
-            ("tip_mass", self.tip_mass, "kg"),
-        ):
-            if not value:
-                raise ValueError(f"{name} is {value} {unit}; the residual mode needs it, above zero")
+        for name, unit in (("static_compliance", "m/N"), ("tip_mass", "kg")):
+            value = getattr(self, name)
+            require(bool(value), f"{name} is {value} {unit}; the residual mode needs it, above zero")
         assert self.static_compliance is not None and self.tip_mass is not None
         oscillating = self.omega > 0.0
         squares = np.where(oscillating, self.omega, 1.0) ** 2
         mobility = 1.0 / self.tip_mass - float(self.phi @ self.phi)
         carried = np.where(oscillating, self.phi**2 / squares, 0.0)
         compliance = self.static_compliance - float(carried.sum())
-        if not (mobility > 0.0 and compliance > LEAST_RESIDUAL * self.static_compliance):
-            raise ValueError(
-                f"tip_mass is {self.tip_mass} kg and static_compliance {self.static_compliance} m/N; the "
-                f"modes leave {mobility:.3g} 1/kg of the one and {compliance:.3g} m/N of the other, which "
-                f"must be above zero and above {LEAST_RESIDUAL:g} of the whole"
-            )
+        require(
+            mobility > 0.0 and compliance > LEAST_RESIDUAL * self.static_compliance,
+            f"tip_mass is {self.tip_mass} kg and static_compliance {self.static_compliance} m/N; the modes "
+            f"leave {mobility:.3g} 1/kg of the one and {compliance:.3g} m/N of the other, which must be "
+            f"above zero and above {LEAST_RESIDUAL:g} of the whole",
+        )
         phi, omega = np.sqrt(mobility), np.sqrt(mobility / compliance)
         ratio = self.decay_rate[-1] / self.omega[-1] if self.omega[-1] > 0.0 else 0.0
         participation = (1.0 - float(self.phi @ self.participation)) / phi
@@ -206,8 +203,7 @@ class ModalModel:
 def _row(name: str, values: ArrayLike, unit: str) -> NDArray[np.float64]:
     """Return a read-only float copy of shape (n,), n >= 1, all finite."""
     row = require_array(name, values, unit, dimensions=1, words="one row of numbers")
-    if row.size == 0:
-        raise ValueError(f"{name} has shape {row.shape}; it must be one row of at least one mode [{unit}]")
+    require(row.size > 0, f"{name} has shape {row.shape}; it must be one row of at least one mode [{unit}]")
     return row
 
 

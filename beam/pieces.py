@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from scipy.sparse import block_diag, csr_array
 
 from .centreline import Centreline
-from .parameters import require_whole, shown
+from .parameters import require, require_whole, shown
 
 MOST_ELEMENTS = 100_000
 """On a piece: rounding has long since eaten the digits by then, and a slip does not fill the memory."""
@@ -137,11 +137,8 @@ def element_counts(elements: int | Sequence[int], pieces: int) -> list[int]:
         require_whole("elements", count, "[1]", low=1, high=MOST_ELEMENTS, why=", or one for each piece")
         for count in (elements if several else [elements] * pieces)  # type: ignore[union-attr,list-item]
     ]
-    if len(counts) != pieces:
-        raise ValueError(
-            f"elements is {shown(elements)} [1]; it must be a whole number, or one for each of {pieces} "
-            "pieces"
-        )
+    told = f"elements is {shown(elements)} [1]"
+    require(len(counts) == pieces, f"{told}; it must be a whole number, or one for each of {pieces} pieces")
     return counts
 
 

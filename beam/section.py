@@ -34,7 +34,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .material import Material
-from .parameters import require_kind, require_within
+from .parameters import require, require_kind, require_within
 
 #: Terms of Saint-Venant's series; the remainder is below 1/(4 * 59^4) = 2e-8 of kappa.
 TORSION_TERMS = 30
@@ -93,8 +93,8 @@ class StripSection:
         require_kind("layer", self.layer, (Layer, type(None)), "a Layer or None")
         require_within("width", self.width, "m", above=0)
         require_within("thickness", self.thickness, "m", above=0)
-        if self.thickness > self.width:
-            raise ValueError(f"thickness is {self.thickness} m; it must not exceed the width {self.width} m")
+        flat = self.thickness <= self.width
+        require(flat, f"thickness is {self.thickness} m; it must not exceed the width {self.width} m")
 
     @property
     def total_thickness(self) -> float:

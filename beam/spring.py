@@ -55,8 +55,8 @@ a brass strip of 0.7 mm and 3.5 m does."""
 def two_supports(supports: object) -> tuple[Support, Support]:
     """The supports at both ends, if they are two of the four."""
     pair = tuple(supports) if isinstance(supports, tuple | list) else ()
-    if len(pair) != 2 or not all(isinstance(end, str) and end in HELD for end in pair):
-        raise ValueError(f"supports is {shown(supports)} [no unit]; it must be two of {', '.join(HELD)}")
+    known = len(pair) == 2 and all(isinstance(end, str) and end in HELD for end in pair)
+    require(known, f"supports is {shown(supports)} [no unit]; it must be two of {', '.join(HELD)}")
     return pair[0], pair[1]
 
 
@@ -197,45 +197,22 @@ class LeafSpring:
     def _suspect(self) -> None:
         """Warn of a tip that no strip carries, and of a strip that is a bar, a plate or a ribbon."""
         mass, length, tip = self.strip_mass, self.centreline.length, self.tip
-        arm = max(self.tip_at, length - self.tip_at)
-        gyration = math.sqrt(tip.rotary_inertia / tip.mass) if tip.mass else 0.0
         thickest = max(self.sections, key=lambda section: section.total_thickness)
         thickness, width = thickest.total_thickness, thickest.width
-        size = f"thickness is {thickness:g} m with its layers"
-        doubts = (
-            (
-                tip.mass > mass,
-                f"mass of the tip is {tip.mass:g} kg; it is heavier than the strip that carries it, {mass:g} "
-                "kg, so that hardly more than one mode is left of the spring",
-            ),
-            (
-                gyration > arm,
-                f"rotary_inertia of the tip is {tip.rotary_inertia:g} kg m^2; with a mass of {tip.mass:g} kg "
-                f"it reaches {gyration:.3g} m around, farther than the spring is long",
-            ),
-            (
-                thickness > THICKEST * width,
-                f"{size}; above {THICKEST:g} of the width {width:g} m it is a bar rather than a strip that "
-                "bends about its width only",
-            ),
-            (
-                thickness > STOUTEST * length,
-                f"{size}; above {STOUTEST:g} of the strip's length {length:g} m its shear, which is left "
-                "out, counts beside its bending",
-            ),
-            (
-                arm > SLENDEREST * thickness,
-                f"{size}; below 1/{SLENDEREST:g} of the length from support to tip, {arm:g} m, the strip "
-                "hangs under its own weight",
-            ),
-            (
-                width > arm,
-                f"width is {width:g} m; above the length from support to tip, {arm:g} m, it is a plate",
-            ),
-        )
-        for holds, sentence in doubts:
-            if holds:
-                suspect(sentence)
+        size, arm = f"thickness is {thickness:g} m with its layers", max(self.tip_at, length - self.tip_at)
+        if tip.mass > mass:
+            suspect(f"mass of the tip is {tip.mass:g} kg; it is heavier than the strip, {mass:g} kg")
+        if tip.rotary_inertia > tip.mass * arm**2 > 0.0:
+            reach = math.sqrt(tip.rotary_inertia / tip.mass)
+            suspect(f"rotary_inertia of the tip is {tip.rotary_inertia:g} kg m^2; its body has {reach:.2g} m")
+        if thickness > THICKEST * width:
+            suspect(f"{size}; above {THICKEST:g} of the width {width:g} m it is a bar rather than a strip")
+        if thickness > STOUTEST * length:
+            suspect(f"{size}; above {STOUTEST:g} of the strip's length {length:g} m its shear counts too")
+        if arm > SLENDEREST * thickness:
+            suspect(f"{size}; with {arm:g} m from support to tip the strip hangs under its own weight")
+        if width > arm:
+            suspect(f"width is {width:g} m; above the length from support to tip, {arm:g} m, it is a plate")
 
     @property
     def strip_mass(self) -> float:

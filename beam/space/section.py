@@ -80,16 +80,11 @@ class SpatialSection:
     bending_loss_factor: ClassVar[float] = 0.0
 
     def __post_init__(self) -> None:
-        units = {
-            "axial_stiffness": "N",
-            "in_plane_stiffness": "N m^2",
-            "out_of_plane_stiffness": "N m^2",
-            "torsional_stiffness": "N m^2",
-            "mass_per_length": "kg/m",
-            "polar_inertia": "kg m",
-        }
-        for name, unit in units.items():
-            require_within(name, getattr(self, name), unit, above=0)
+        require_within("axial_stiffness", self.axial_stiffness, "N", above=0)
+        for name in ("in_plane_stiffness", "out_of_plane_stiffness", "torsional_stiffness"):
+            require_within(name, getattr(self, name), "N m^2", above=0)
+        require_within("mass_per_length", self.mass_per_length, "kg/m", above=0)
+        require_within("polar_inertia", self.polar_inertia, "kg m", above=0)
         require_within("warping_stiffness", self.warping_stiffness, "N m^4", low=0)
         require_within("shear_offset", self.shear_offset, "m", low=0)
 
