@@ -120,15 +120,6 @@ def assemble(spring: LeafSpring, elements: int | Sequence[int] | None = None) ->
         Elements on every piece, or on each; `default_elements` by default. Inside a piece the node nearest to
         the tip is moved there. Rounding grows as the fourth power of the number of elements on the strip:
         2e-7 of the first frequency at 300, 5e-5 at 1200.
-
-    Returns
-    -------
-    Discretization
-
-    Raises
-    ------
-    ValueError
-        For fewer than one element on a piece, or a count for each piece where there are more or fewer pieces.
     """
     require_kind("spring", spring, LeafSpring, "a LeafSpring")
     line, drive = spring.centreline, np.array([*spring.drive, 0.0])

@@ -56,20 +56,15 @@ class UniformBeam:
     Parameters
     ----------
     length : float
-        L [m].
+        L [m], above zero.
     bending_stiffness : float
-        EI [N m^2].
+        EI [N m^2], above zero.
     mass_per_length : float
-        m [kg/m].
+        m [kg/m], above zero.
     supports : tuple of two supports
         At s = 0 and s = L: "clamped", "pinned", "guided" or "free".
     tip_mass, tip_rotary_inertia : float
         M [kg] and J [kg m^2] at s = L, only where that end is free.
-
-    Raises
-    ------
-    ValueError
-        For a value that is not positive (M and J: negative), or a tip on a held end.
     """
 
     length: float
@@ -174,10 +169,6 @@ def exact_modes(beam: UniformBeam, count: int) -> ExactModes:
     beam : UniformBeam
     count : int
         From 1 to `MOST_MODES`.
-
-    Returns
-    -------
-    ExactModes
     """
     require_kind("beam", beam, UniformBeam, "a UniformBeam")
     count = require_whole("count", count, "modes", high=MOST_MODES)

@@ -44,11 +44,6 @@ class Material:
     loss_factor : float
         eta [1], not negative.
 
-    Raises
-    ------
-    ValueError
-        For a value outside these ranges.
-
     Warns
     -----
     SuspiciousValue

@@ -78,13 +78,6 @@ class ModalModel:
         Values of the mode shapes at named places, in the units of phi for displacements: the motion seen
         there, relative to the base, is ``readouts[name] @ q``.
 
-    Raises
-    ------
-    TypeError
-        For entries that are not numbers.
-    ValueError
-        For an empty, non-finite or negative array where none is allowed, or for shapes that differ.
-
     Warns
     -----
     SuspiciousValue
@@ -123,14 +116,13 @@ class ModalModel:
             if value is not None:
                 require_within(name, value, unit, low=0)
                 object.__setattr__(self, name, float(value))
-        vibrating = np.flatnonzero(omega)
-        first = vibrating[np.argsort(omega[vibrating])[:1]]
-        for ratio in 0.5 * self.decay_rate[first] / omega[first]:
-            if ratio > GREATEST_RATIO:
-                suspect(
-                    f"decay_rate is {self.decay_rate[first[0]]:g} 1/s in the lowest mode, a damping ratio of "
-                    f"{ratio:.3g}; above {GREATEST_RATIO:g} it hardly swings"
-                )
+        lowest = int(np.argmin(np.where(omega > 0.0, omega, np.inf)))
+        ratio = 0.5 * self.decay_rate[lowest] / omega[lowest] if omega[lowest] > 0.0 else 0.0
+        if ratio > GREATEST_RATIO:
+            suspect(
+                f"decay_rate is {self.decay_rate[lowest]:g} 1/s in the lowest mode, a damping ratio of "
+                f"{ratio:.3g}; above {GREATEST_RATIO:g} it hardly swings"
+            )
 
     @property
     def n_modes(self) -> int:
@@ -208,7 +200,7 @@ def _row(name: str, values: ArrayLike, unit: str) -> NDArray[np.float64]:
 
 
 def single_mode(*, free_period: float, decay_rate: float) -> ModalModel:
-    """Return Eq. (1) of the letter: one mode of unit mass.
+    """Return Eq. (1) of the letter: one mode of unit mass, phi = participation = 1.
 
     Parameters
     ----------
@@ -216,11 +208,6 @@ def single_mode(*, free_period: float, decay_rate: float) -> ModalModel:
         Period T of the free *damped* oscillation [s], positive; omega^2 = (2 pi / T)^2 + (decay_rate / 2)^2.
     decay_rate : float
         The letter's mu [1/s], not negative: amplitudes fall as exp(-mu t / 2).
-
-    Returns
-    -------
-    ModalModel
-        With phi = participation = 1.
     """
     require_within("free_period", free_period, "s", above=0)
     require_within("decay_rate", decay_rate, "1/s", low=0)

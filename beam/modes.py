@@ -137,15 +137,6 @@ def natural_modes(discretization: Discretization, count: int) -> Modes:
     discretization : Discretization
     count : int
         From 1 to the number of degrees of freedom; trust the modes with four or more elements to a half wave.
-
-    Returns
-    -------
-    Modes
-
-    Raises
-    ------
-    ValueError
-        For a count out of range.
     """
     require_kind("discretization", discretization, Discretization, "a Discretization, from assemble")
     size = discretization.n_dofs

@@ -92,15 +92,7 @@ def require_within(
     above: float | None = None,
     below: float | None = None,
 ) -> float:
-    """The value as a float, if it is a finite number with low <= value <= high, above < value < below.
-
-    Raises
-    ------
-    TypeError
-        If the value is not a real number.
-    ValueError
-        If it is out of range.
-    """
+    """The value as a float, if it is a finite number with low <= value <= high, above < value < below."""
     lower = (low, "{} or more", ge), (above, "above {}", gt)
     upper = (high, "at most {}", le), (below, "below {}", lt)
     limits = [(bound, words, holds) for bound, words, holds in lower + upper if bound is not None]

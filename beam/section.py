@@ -76,11 +76,6 @@ class StripSection:
         Of the bare strip [m], positive and at most the width.
     layer : Layer, optional
         A glued damping layer.
-
-    Raises
-    ------
-    ValueError
-        For a width or thickness out of range.
     """
 
     material: Material

@@ -61,16 +61,7 @@ def two_supports(supports: object) -> tuple[Support, Support]:
 
 
 def check_strip(spring: Any, section: type, axes: int) -> None:
-    """Refuse what is wrong with any strip, in the plane (`axes` 2) or in space (3); put the rest in order.
-
-    Raises
-    ------
-    TypeError
-        For a field of the wrong kind.
-    ValueError
-        For a wrong number of sections, an unknown support, a tip off the centreline or on a support that
-        does not let it move, or a drive of no length.
-    """
+    """Refuse what is wrong with any strip, in the plane (`axes` 2) or in space (3); put the rest in order."""
     line = require_kind("centreline", spring.centreline, Centreline, "a Centreline")
     sections = require_each("sections", spring.sections, section, f"one {section.__name__} for each piece")
     count, pieces = len(sections), len(line.pieces)

@@ -94,11 +94,6 @@ def spatial_modes(
     count : int
     elements : int or sequence of int, optional
         On every piece, or on each; by default 80 on the straight pieces together, 32 on each half turn.
-
-    Raises
-    ------
-    ValueError
-        For a count out of range, or fewer than one element on a piece.
     """
     require_kind("spring", spring, SpatialSpring, "a SpatialSpring")
     line, c, e = spring.centreline, np.array(spring.tip_offset), np.array(spring.drive)

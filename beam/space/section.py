@@ -59,12 +59,7 @@ class SpatialSection:
     warping_stiffness : float
         EG [N m^4], not negative.
     shear_offset : float
-        a [m], not negative.
-
-    Raises
-    ------
-    ValueError
-        For a value out of these ranges.
+        a [m], not negative; 0 on an arc.
     """
 
     axial_stiffness: float

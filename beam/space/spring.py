@@ -38,12 +38,6 @@ class SpatialSpring:
         c, from the centroid of the section there to the tip, along x, y and z [m].
     drive : tuple of three floats
         e; stored as a unit vector.
-
-    Raises
-    ------
-    ValueError
-        For a wrong number of sections, a shear offset on an arc, an unknown support, a place off the
-        centreline, a vector that is not three finite numbers or a drive of no length.
     """
 
     centreline: Centreline
