@@ -24,9 +24,6 @@ from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
-from scipy.interpolate import CubicSpline
-from scipy.optimize import brentq
-from scipy.special import gamma
 
 from beam.parameters import brief, is_number, require, require_kind, require_within, shown, suspect
 
@@ -41,8 +38,9 @@ __all__ = [
 
 NEWTON, LINEAR, HERTZ, DELAYED = 0, 1, 2, 3
 
-HERTZ_TIME = 0.8 * math.sqrt(math.pi) * float(gamma(0.4) / gamma(0.9))
-"""Contact time of a free mass under Hertz's law over (greatest approach / approach velocity), 2.9432 [1]."""
+HERTZ_TIME = 0.8 * math.sqrt(math.pi) * 2.0757065006382507
+"""Contact time of a free mass under Hertz's law over (greatest approach / approach velocity): 0.8 sqrt(pi)
+Gamma(0.4)/Gamma(0.9) = 2.9432 [1]."""
 
 
 SOFTEST, HARDEST = 1e8, 1.5e12
@@ -154,6 +152,8 @@ class DelayedRestitution(ContactLaw):
     @cached_property
     def table(self) -> np.ndarray:
         """Rows: speed, restitution and its slope, delay and its slope; shape (5, n)."""
+        from scipy.interpolate import CubicSpline  # slow to import
+
         speed = np.geomspace(
             *self.speeds, SPEEDS if callable(self.restitution) or callable(self.delay) else 2
         )
@@ -285,6 +285,8 @@ class HuntCrossley(ContactLaw):
         require_within("velocity", velocity, "m/s", above=0)
         if e == 1.0:
             return HuntCrossley(stiffness=stiffness, dissipation=0.0)
+
+        from scipy.optimize import brentq  # slow to import
 
         def balance(w: float) -> float:
             """The relation with b = 1 - exp(-w), a = b/e: b itself comes too close to 1 when e is small."""
