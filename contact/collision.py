@@ -31,7 +31,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from beam.parameters import require_kind, require_whole
 from contact.crossing import tip_at
@@ -145,6 +144,8 @@ class _Virtual:
 
 def _root(function: object, low: float, high: float) -> float:
     """A root in [low, high] to rounding (times count from the touch, so that it may lie at zero)."""
+    from scipy.optimize import brentq  # slow to import
+
     return float(brentq(function, low, high, xtol=1e-18, rtol=8.9e-16, maxiter=300))
 
 
