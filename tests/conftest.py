@@ -13,6 +13,7 @@ import contextlib
 import os
 import signal
 import sys
+import warnings
 
 import pytest
 
@@ -32,7 +33,9 @@ def instructions_left() -> list[str]:
     """What is on though the environment asks for the instructions that every processor has."""
     if os.environ.get("NUMBA_CPU_NAME") != "generic" and not os.environ.get("NPY_DISABLE_CPU_FEATURES"):
         return []
-    import numpy as np
+    with warnings.catch_warnings():  # told below, in a sentence
+        warnings.simplefilter("ignore", ImportWarning)
+        import numpy as np
     from numba.core.registry import cpu_target
 
     left = [f"numpy uses {name}" for name in np.show_config("dicts")["SIMD Extensions"].get("found", [])]

@@ -56,7 +56,7 @@ def test_the_table_tells_sway_from_breathing(folded):
         assert (tip > 0.0) == coupled == (participation != 0.0)
     assert results["exact_hz"] == [None] * 5  # no frequency equation for a folded strip
     assert results["decay_rates"][0] == pytest.approx(3.56, rel=1e-12)
-    rows = list(csv.DictReader((folded / "modes.csv").open()))
+    rows = list(csv.DictReader((folded / "modes.csv").read_text().splitlines()))
     np.testing.assert_allclose([float(row["frequency_hz"]) for row in rows], results["frequencies_hz"])
 
 

@@ -290,6 +290,7 @@ def test_a_gif_has_every_frame_as_it_was_and_runs_for_ever(tmp_path):
     assert {file.name for file in tmp_path.iterdir()} == {"square.gif"}
 
 
+@pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning")  # imageio-ffmpeg leaves its pipes open
 @pytest.mark.skipif(not can_encode(), reason="the extra `video` is not installed")
 def test_an_mp4_has_every_frame(tmp_path):
     import imageio_ffmpeg
