@@ -16,17 +16,14 @@ import numpy as np
 from contact.flight import tip_state
 from contact.integrators.event_loop import DONE
 from contact.integrators.exact_run import failure
-from contact.integrators.strobe_nodes import nodes_of
-from contact.integrators.struck_period import loop_numbers
-from contact.laws import NEWTON
 from contact.oscillator import ImpactOscillator
+from contact.strobed_motion import strobed_system
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.periodicity import TOLERANCE
 from studies.instruments.sweep.settled_column import (
     BEHIND,
     EXTRA,
     LARGEST_PERIOD,
-    SingleMode,
     settled_column,
 )
 from studies.instruments.sweep.tasks import Answer, Batch, Cell
@@ -76,24 +73,18 @@ class ColumnScan:
         began = time.perf_counter()
         oscillator = self.at_frequency(batch.frequency)
         excesses = np.array(batch.excesses, dtype=float)
-        motion = oscillator.motion()
-        nodes = nodes_of(motion) if motion.law == NEWTON else None
-        single = None if nodes is None else SingleMode(nodes=nodes, numbers=loop_numbers(motion, nodes))
+        system = strobed_system(oscillator)
         if batch.state is None:
             state = self.start(oscillator, float(excesses[0]))
         else:
             state = np.frombuffer(batch.state, dtype="<f8").astype(float)
-        speed = np.where(motion.omega > 0, motion.omega, motion.drive)
-        phi = np.where(motion.phi != 0, motion.phi, np.abs(motion.phi).max())
-        weight = np.concatenate([phi, phi / speed])
         cells: list[Cell] = []
         while len(cells) < excesses.size:
             rest = 1.0 + excesses[len(cells) :]
             ends = np.empty((rest.size, self._size + EXTRA))
             found, place = np.zeros((rest.size, 3), dtype=np.int64), np.empty(self._size + 5)
             done, status, index = settled_column(
-                motion, single, rest, state, weight, self.most_cycles, TOLERANCE * motion.gap, ends, found,
-                place,
+                system, rest, state, self.most_cycles, TOLERANCE * oscillator.stop.gap, ends, found, place
             )
             for (period, impacts, cycles), end in zip(
                 found[:done].tolist(), ends[:done].astype("<f8"), strict=True
