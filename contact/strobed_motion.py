@@ -111,13 +111,17 @@ def at_amplitude(system, factor):
 
 
 @kernel
-def _periods(table, motion, u, v, integers, floats, first, points, counts):
+def _periods(table, system, u, v, integers, floats, first, points, counts):
     """The loop that fits: numba leaves out the branch that does not."""
     if table is None:
-        return any_periods(motion, u, v, integers, floats, first, points, counts)
+        status, reached = any_periods(system.motion, u, v, integers, floats, first, points, counts)
+        for i in range(counts.size):
+            for k in range(points.shape[1]):
+                points[i, k] = (points[i, k] + system.mean[k]) * system.weight[k]
+        return status, reached
     else:
         status, reached, _searched, _left = one_mode_periods(
-            table, motion, u, v, integers, floats, first, points, counts
+            table, system, u, v, integers, floats, first, points, counts
         )
         return status, reached
 
@@ -139,10 +143,4 @@ def strobed_motion(system, u, v, integers, floats, first, points, counts):
     status, period : int
         As those of ``event_loop.advance``.
     """
-    status, reached = _periods(
-        system.table, system.motion, u, v, integers, floats, first, points, counts
-    )
-    for i in range(counts.size):
-        for k in range(points.shape[1]):
-            points[i, k] = (points[i, k] + system.mean[k]) * system.weight[k]
-    return status, reached
+    return _periods(system.table, system, u, v, integers, floats, first, points, counts)
