@@ -76,7 +76,7 @@ from contact.simulation import simulate
 from contact.stop import Stop
 from contact.strobed_nordmark import StrobedNordmarkMap
 from contact.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap, strobed_orbits
-from contact.trajectory import Impacts, State, Trajectory
+from contact.trajectory import ImpactKind, Impacts, Regime, State, Trajectory
 
 __all__ = [
     "Band",
@@ -89,6 +89,7 @@ __all__ = [
     "HarmonicDrive",
     "HertzContact",
     "HuntCrossley",
+    "ImpactKind",
     "ImpactOscillator",
     "Impacts",
     "LinearContact",
@@ -97,6 +98,7 @@ __all__ = [
     "NewtonRestitution",
     "NordmarkMap",
     "NotPeriodic",
+    "Regime",
     "SingleImpactOrbit",
     "State",
     "Stop",

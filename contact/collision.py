@@ -38,7 +38,7 @@ from contact.crossing import tip_at
 from contact.flight import Motion, propagate, steady_motion, tip_rounding
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
-from contact.trajectory import State, Trajectory
+from contact.trajectory import ImpactKind, State, Trajectory
 
 __all__ = ["Collision", "collisions", "first_collision"]
 
@@ -209,7 +209,7 @@ def collisions(
     motion = oscillator.motion()
     single = _single_mode(motion)
     impacts = trajectory.impacts
-    rows = np.flatnonzero(impacts.kind != 1)
+    rows = np.flatnonzero(impacts.kind != ImpactKind.GRAZE)
     found: list[Collision] = []
     position = 0
     while position < rows.size:
@@ -283,7 +283,7 @@ def _measure(
     u_out = impacts.displacement_end[last] - q_end[0]
     v_out = impacts.velocity_end[last] - q_end_rate[0]
     between = slice(first, last + 1)
-    counted = impacts.kind[between] == 0
+    counted = impacts.kind[between] == ImpactKind.IMPACT
     return Collision(
         time=touch + s_in,
         end=release,

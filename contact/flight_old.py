@@ -73,7 +73,6 @@ class Motion(NamedTuple):
     law: int
     number0: float
     number1: float
-    number2: float
     table: np.ndarray
 
 

@@ -31,9 +31,6 @@ HERTZ_ORDER = 20
 HERTZ_TOLERANCE = 1e-15
 """Size of the last terms of a step, relative to the modal speeds: at the rounding of the sum of all terms."""
 
-ROOT, CLOCK_SERIES, SINE, COSINE, SPEED, FORCE, PUSH = 0, 1, 2, 3, 4, 5, 6
-"""Rows of the scalar series: r, time since the step's start, sin and cos of the drive, d', N and r N."""
-
 
 @kernel
 def hertz_series(motion, base, u, v, us, vs, scalars):

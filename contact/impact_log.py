@@ -6,7 +6,7 @@ far, and how crossings are looked for: 0 certified, else samples per period) and
 strobe [s], approach velocity of the contact under way [m/s], energy that it has lost [J], time that it still
 waits [s] and velocity with which it then leaves [m/s]).  A row of the log
 holds period and time of the first touch, period and time of the release, both tip velocities, the energy lost
-and the kind (0 impact, 1 graze, 2 stay on the wall); `log_state` the deviations (u, v) at both ends.
+and the kind (``trajectory.ImpactKind``); `log_state` the deviations (u, v) at both ends.
 """
 
 from __future__ import annotations
@@ -19,12 +19,15 @@ from contact.flight import propagate, tip_steady
 from contact.hertz_lanes import CLOCK as CLOCK_SERIES
 from contact.hertz_lanes import lane_state
 from contact.linear_lanes import linear_state
+from contact.trajectory import ImpactKind
 
 REGIME, ORDER, LOGGED, SAMPLED, COUNT, EVALUATIONS, SEARCH = 0, 1, 2, 3, 4, 5, 6
 INTEGERS = 7
 CLOCK, APPROACH, LOSS, WAIT, REBOUND = 0, 1, 2, 3, 4
 LOG_FIELDS = 8
 START_PERIOD, START, END_PERIOD, END, IN, OUT, LOST, KIND = 0, 1, 2, 3, 4, 5, 6, 7
+IMPACT, GRAZE, STAY = map(int, ImpactKind)
+"""The kinds as kernels write them, plain integers."""
 
 
 @kernel
@@ -99,7 +102,7 @@ def sample_waiting(motion, until, period_index, integers, sample_period, sample_
 @kernel
 def open_row(log, log_state, integers, floats, period_index, base, approach, kind, u, v):
     """Start a row of the impact log."""
-    integers[COUNT] += 1 if kind == 0 else 0
+    integers[COUNT] += 1 if kind == IMPACT else 0
     floats[APPROACH] = approach
     floats[LOSS] = 0.0
     i = integers[LOGGED]

@@ -7,7 +7,7 @@ The impulse of the stop acts on the tip alone, so that the modal velocities jump
 which sends the tip velocity x' to -e x'.  After an impact that leaves the tip with velocity -w while it is
 accelerated towards the wall with a > 0, the next flights last 2w/a, 2ew/a, ...: their sum 2w/(a(1 - e)) is
 finite, and when a hop has become so low that its height drowns in rounding the rest of the sequence is taken
-in one step.  Then the tip stays on the wall (``contact.series``) until the force would pull.
+in one step.  Then the tip stays on the wall (``contact.linear_lanes``) until the force would pull.
 """
 
 from __future__ import annotations

@@ -209,7 +209,6 @@ class ImpactOscillator:
             law=law.code,
             number0=float(numbers[0]),
             number1=float(numbers[1]),
-            number2=float(numbers[2]),
             table=law.table,
         )
 

@@ -21,6 +21,7 @@ import math
 from contact.compiled import kernel
 from contact.flight import EPS
 from contact.laws import NEWTON
+from contact.trajectory import Regime
 
 __all__ = [
     "CONTACT",
@@ -34,9 +35,8 @@ __all__ = [
     "series_step",
 ]
 
-OUTSIDE, CONTACT, INSIDE, SUSTAINED, WAITING = 0, 1, 2, 3, 4
-"""Regimes: off the wall; pushed by it; behind its rest position without force; held on it by the motion;
-waiting on it for a delayed rebound."""
+OUTSIDE, CONTACT, INSIDE, SUSTAINED, WAITING = map(int, Regime)
+"""The regimes as kernels compare them, plain integers."""
 
 SERIES_ORDER = 24
 """Order of the series: between 20 and 30 the cost per unit of time is flat to a few per cent."""

@@ -2,8 +2,8 @@
 
 Sampling a driven oscillator at the strobe times t_n = n/f turns its motion into the iteration of a map; its
 periodic orbits are the p_m orbits of the letter (1996, Fig. 2).  ``StroboscopicMap`` is that map for any
-impact oscillator; ``contact.nordmark.StrobedNordmarkMap`` offers the same three methods, so that everything
-which scans, settles or classifies orbits takes either.
+impact oscillator; ``contact.strobed_nordmark.StrobedNordmarkMap`` offers the same three methods, so that
+everything which scans, settles or classifies orbits takes either.
 
 One mode under Newton's law has a loop of its own (``contact.integrators.single_mode_loop``), which proves
 most periods free without a sine, and for many orbits at once ``contact.integrators.orbit_lanes``; their

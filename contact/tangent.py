@@ -59,7 +59,7 @@ def variation(motion, sine, cosine):
     return Motion(
         motion.omega, motion.decay, motion.damped, motion.damped_low, motion.phi, np.zeros(motion.omega.size),
         motion.sine, motion.cosine, motion.offset, sine, cosine, 0.0, motion.drive, motion.period, motion.gap,
-        motion.compliance, motion.law, motion.number0, motion.number1, motion.number2, motion.table,
+        motion.compliance, motion.law, motion.number0, motion.number1, motion.table,
     )
 
 

@@ -41,7 +41,7 @@ def beam(n: int, *, chi: float = 0.0, decay: float = 0.02, load: float = 0.0) ->
         phi=phi, load=load * (omega == 0.0), sine=sine, cosine=-0.1 * sine, offset=0.0 * omega,
         tip_sine=float(phi @ sine), tip_cosine=float(-0.1 * phi @ sine), level=-0.01, drive=135.0,
         period=2 * math.pi / 135.0, gap=0.01, compliance=float(phi @ phi), law=HERTZ, number0=2e7,
-        number1=chi, number2=0.0, table=np.empty((0, 0)),
+        number1=chi, table=np.empty((0, 0)),
     )
 
 

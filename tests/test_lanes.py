@@ -81,7 +81,7 @@ def ladder(n: int, damping: float, load: float = 0.0) -> Motion:
     return Motion(
         omega=omega, decay=decay, damped=pairs, damped_low=zeros, phi=1.0 + zeros, load=load * (omega == 0),
         sine=zeros, cosine=zeros, offset=zeros, tip_sine=0.0, tip_cosine=0.0, level=-0.01, drive=135.0,
-        period=math.tau / 135.0, gap=0.01, compliance=float(n), law=0, number0=0.5, number1=0.0, number2=0.0,
+        period=math.tau / 135.0, gap=0.01, compliance=float(n), law=0, number0=0.5, number1=0.0,
         table=np.empty((0, 0)),
     )
 

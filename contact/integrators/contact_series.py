@@ -2,7 +2,7 @@
 
 In contact under a law with the power 3/2 the motion is not smooth where the tip touches the stop. With dt =
 sqrt(d) d(sigma) all equations become polynomial, and a series of order 20 in sigma, with steps that put the
-neglected terms below rounding, passes touch and release alike (``contact.hertz_series``). The error is that
+neglected terms below rounding, passes touch and release alike (``contact.hertz_lanes``). The error is that
 of rounding, and there is no step that could be too large.
 """
 

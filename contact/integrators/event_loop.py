@@ -41,6 +41,8 @@ from contact.impact_log import (
     CLOCK,
     COUNT,
     EVALUATIONS,
+    GRAZE,
+    IMPACT,
     LOGGED,
     LOSS,
     ORDER,
@@ -48,6 +50,7 @@ from contact.impact_log import (
     REGIME,
     SAMPLED,
     SEARCH,
+    STAY,
     WAIT,
     close_row,
     open_row,
@@ -206,11 +209,11 @@ def advance(
                 base = floats[CLOCK]
                 _height, approach, acceleration = tip_state(motion, base, u, v)
                 if outcome != CROSSES:
-                    open_row(log, log_state, integers, floats, index, base, 0.0, 1, u, v)
+                    open_row(log, log_state, integers, floats, index, base, 0.0, GRAZE, u, v)
                     close_row(log, log_state, integers, floats, index, base, 0.0, u, v)
                     integers[ORDER] = 2
                     continue
-                open_row(log, log_state, integers, floats, index, base, approach, 0, u, v)
+                open_row(log, log_state, integers, floats, index, base, approach, IMPACT, u, v)
                 if motion.law == DELAYED:
                     floats[REBOUND] = -from_table(motion.table, approach, 1) * approach
                     floats[WAIT] = from_table(motion.table, approach, 3)
@@ -229,7 +232,7 @@ def advance(
                 rest = accumulation_time(e * approach, acceleration, e, rounding)
                 if rest >= 0.0:
                     # the remaining hops take `rest`; then the tip stays on the wall
-                    open_row(log, log_state, integers, floats, index, base, -e * approach, 2, u, v)
+                    open_row(log, log_state, integers, floats, index, base, -e * approach, STAY, u, v)
                     rest = min(rest, end - base)  # what is left after the strobe is below rounding
                     if rest > 0.0:
                         carry(fixed, numbers, room, rest, u, v)

@@ -11,6 +11,7 @@ from contact.impact_log import (
     END,
     END_PERIOD,
     EVALUATIONS,
+    IMPACT,
     IN,
     INTEGERS,
     KIND,
@@ -136,7 +137,7 @@ def exact_trajectory(oscillator: ImpactOscillator, run: Run, *, search: int = 0)
     capacity = 64
     log, log_state = np.empty((capacity, LOG_FIELDS)), np.empty((capacity, 4 * n))
     if integers[REGIME] != OUTSIDE:
-        log[0] = [first, clock, first, np.nan, velocity, np.nan, np.nan, 0]
+        log[0] = [first, clock, first, np.nan, velocity, np.nan, np.nan, IMPACT]
         log_state[0] = np.concatenate([u, v, np.full(2 * n, np.nan)])
         integers[LOGGED] = 1
     strobes, counts = np.empty((last - first, 2 * n)), np.zeros(last - first, dtype=np.int64)

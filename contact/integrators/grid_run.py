@@ -22,6 +22,7 @@ from contact.integrators.grid import (
     LOGGED,
     LOST,
     OUT,
+    SAMPLED,
     START,
     STEP,
     TOO_LARGE,
@@ -130,7 +131,7 @@ def grid_trajectory(
     )
     early = int(np.searchsorted(sample, 0.0, side="right"))
     grid.samples[:early] = np.concatenate([q, v])
-    grid.integers[2] = early
+    grid.integers[SAMPLED] = early
     depth, rate = tip_of(equation, q, v)
     if depth > 0.0 and equation.law not in (NEWTON, DELAYED):
         grid.log[0] = [0.0, np.nan, rate, np.nan, 0.0]

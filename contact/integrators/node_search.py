@@ -2,8 +2,9 @@
 
 With |y''| <= B throughout, y lies between two nodes h apart below the greater of its values there plus
 B h^2/8: stretches at whose ends y < -m - B h^2/8 are free, which is one pass over products with constants.
-Within the others the three proofs of ``contact.crossing`` decide (a parabola with a bound of its cubic rest;
-y' > 0 throughout and a change of sign; y'' < 0 throughout and one peak), on a motion found without sines.
+Within the others the three proofs of ``contact.certificate`` decide (a parabola with a bound of its cubic
+rest; y' > 0 throughout and a change of sign; y'' < 0 throughout and one peak), on a motion found without
+sines.
 
 Directly after an impact at velocity -r <= 0 towards the wall, with the acceleration a and |y'''| <= M,
 

@@ -1,8 +1,9 @@
 """Exact motion of a spring that meets a linear stop.
 
 Off the stop the modes are uncoupled and have closed forms; in contact, the system is linear as well, and its
-matrix exponential is summed as a power series to rounding (``contact.series``). The instants between the two
-are roots certified by bounds. The error is that of rounding, and there is no step that could be too large.
+matrix exponential is summed as a power series to rounding (``contact.linear_lanes``). The instants between
+the two are roots certified by bounds. The error is that of rounding, and there is no step that could be too
+large.
 """
 
 from __future__ import annotations

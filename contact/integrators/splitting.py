@@ -73,7 +73,7 @@ def _limit(numbers: bytes, n: int, order: int, step: float, damping: float) -> f
         omega=omega, decay=decay, damped=damped, damped_low=damped_low, phi=phi, load=np.zeros(n),
         sine=np.zeros(n), cosine=np.zeros(n), offset=np.zeros(n), tip_sine=0.0, tip_cosine=0.0, level=0.0,
         drive=0.0, period=1.0, gap=0.0, compliance=float(phi @ phi), law=LINEAR, number0=0.0, number1=damping,
-        number2=0.0, table=np.empty((5, 0)),
+        table=np.empty((5, 0)),
     )  # fmt: skip
     composition = COMPOSITIONS[order]
     closed = closed_form_limit(motion, step, damping) if order == 2 else None

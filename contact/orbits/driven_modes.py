@@ -184,5 +184,5 @@ class DrivenModes:
             offset=np.zeros(self.size), tip_sine=float(self.phi @ sine), tip_cosine=float(self.phi @ cosine),
             level=-float(self.gap), drive=self.angular_frequency, period=1.0 / self.drive_frequency,
             gap=float(self.gap), compliance=float(self.phi @ self.phi), law=NEWTON,
-            number0=float(self.restitution), number1=0.0, number2=0.0, table=np.zeros((5, 0)),
+            number0=float(self.restitution), number1=0.0, table=np.zeros((5, 0)),
         )  # fmt: skip

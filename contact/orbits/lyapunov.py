@@ -51,7 +51,7 @@ from contact.simulation import simulate
 from contact.strobed_nordmark import StrobedNordmarkMap
 from contact.stroboscope import StroboscopicMap
 from contact.tangent import FLOWN, flow_from_touch
-from contact.trajectory import State
+from contact.trajectory import ImpactKind, Regime, State
 
 __all__ = ["Differentiable", "Exponents", "divergence_rate", "map_exponents", "of_nordmark", "of_oscillator",
            "orbit_exponents"]  # fmt: skip
@@ -291,20 +291,20 @@ class _OfOscillator:
     def follow(self, state: State, time: float) -> State:
         run = simulate(self.oscillator, state, duration=time)
         for _ in range(MOST_STRETCHES):
-            if run.end.regime == 0:
+            if run.end.regime == Regime.OUTSIDE:
                 return run.end
             run = simulate(self.oscillator, run.end, duration=0.05 * self.period)
         raise UnresolvedCrossing(time=run.end.time, gap=0.0, velocity=0.0)
 
     def jacobians(self, state: State, count: int) -> tuple[list[tuple[Array, int]], State]:
         n, period, motion = self.oscillator.n_modes, self.period, self.oscillator.motion()
-        if state.regime != 0:
+        if state.regime != Regime.OUTSIDE:
             raise ValueError("state is in contact; start from a strobe at which the tip is off the wall")
         response = self.oscillator.tip_response()
         for _ in range(MOST_STRETCHES):
             run = simulate(self.oscillator, replace(state, time=0.0), periods=count)
-            hits = run.impacts.kind != 1
-            if np.any(run.impacts.kind[hits] != 0):
+            hits = run.impacts.kind != ImpactKind.GRAZE
+            if np.any(run.impacts.kind[hits] != ImpactKind.IMPACT):
                 raise UnresolvedCrossing(time=state.time, gap=0.0, velocity=0.0)
             start, end = run.impacts.start[hits], run.impacts.end[hits]
             end = np.where(np.isnan(end), np.inf, end)

@@ -34,7 +34,7 @@ from contact.orbits.saltation import sorted_multipliers
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.tangent import FLOWN, flow_from_touch
-from contact.trajectory import State
+from contact.trajectory import ImpactKind, State
 
 __all__ = ["PeriodicOrbit", "Shooting"]
 
@@ -353,7 +353,7 @@ class Shooting:
         search."""
         require_kind("state", state, State, "a State")
         run = simulate(self.oscillator, state, periods=self.period + 1)
-        hits = run.impacts.kind == 0
+        hits = run.impacts.kind == ImpactKind.IMPACT
         if not np.any(hits):
             raise NotPeriodic(
                 time=state.time, gap=0.0, velocity=0.0, detail="the motion has no impact to start from"

@@ -121,7 +121,6 @@ def at_amplitude(motion: Any, amplitude: Any) -> Any:
         law=motion.law,
         number0=motion.number0,
         number1=motion.number1,
-        number2=motion.number2,
         table=motion.table,
     )
 
