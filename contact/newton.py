@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from contact.compiled import kernel
 
-__all__ = ["accumulation_time", "from_table", "lowest_hop", "newton_impact"]
+__all__ = ["accumulation_time", "lowest_hop", "newton_impact"]
 
 LOWEST_HOP = 200.0
 """Height of a hop, in rounding bounds of the tip displacement, below which hops are summed, not computed: two
@@ -37,28 +37,6 @@ def newton_impact(motion, v, approach, restitution):
     impulse = (1.0 + restitution) * approach / motion.compliance
     for k in range(motion.phi.size):
         v[k] -= motion.phi[k] * impulse
-
-
-@kernel
-def from_table(table, speed, row):
-    """Value of row `row` of a law's table at an approach speed, by the cubic through values and slopes."""
-    n = table.shape[1]
-    if speed <= table[0, 0]:
-        return table[row, 0]
-    if speed >= table[0, n - 1]:
-        return table[row, n - 1]
-    low, high = 0, n - 1
-    while high - low > 1:
-        middle = (low + high) // 2
-        if table[0, middle] <= speed:
-            low = middle
-        else:
-            high = middle
-    h = table[0, high] - table[0, low]
-    s = (speed - table[0, low]) / h
-    a, b = table[row, low], table[row, high]
-    da, db = h * table[row + 1, low], h * table[row + 1, high]
-    return a + s * (da + s * (3.0 * (b - a) - 2.0 * da - db + s * (2.0 * (a - b) + da + db)))
 
 
 @kernel

@@ -19,8 +19,8 @@ Tangents d = de(t)/de(0), columns of a (2 N + 2) x (2 N + 2) matrix:
   approach velocity; forces that start from zero need no jump (saltation matrix of Aizerman and Gantmacher;
   R. I. Leine, H. Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems, 2004, ch. 7);
 * Newton's law: d -> R d + (R f - f') (-n.d / v), R the reflection of the tip velocity, f and f' the velocity
-of
-  the flow before and after.
+  of the flow before and after;
+* a touch that waits: ``contact.waiting``.
 """
 
 from __future__ import annotations
@@ -40,9 +40,10 @@ from contact.flight import (
     tip_state,
 )
 from contact.hertz_series import HERTZ_ORDER, evaluate, hertz_series, hertz_state, hertz_step
-from contact.laws import HERTZ, LINEAR, NEWTON
+from contact.laws import DELAYED, HERTZ, LINEAR, NEWTON
 from contact.newton import newton_impact
 from contact.series import CONTACT, INSIDE, SERIES_ORDER, contact_series, series_state, series_step
+from contact.waiting import waiting_touch
 
 __all__ = ["FAILED", "FEWER_TOUCHES", "FLOWN", "flow_from_touch"]
 
@@ -227,7 +228,7 @@ def flow_from_touch(motion, response_sine, response_cosine, base, u, v, duration
         The unit matrix on entry; overwritten by the derivatives of (u, v, S, C).
     record : ndarray, shape (touches, 4 + 2 n_modes)
         Results: start and end of each contact since the first touch [s], approach and rebound velocity [m/s],
-        deviations (u, v) at its end.
+        deviations (u, v) at its end.  The rebound velocity is zero only after an impact that gives none.
 
     Returns
     -------
@@ -252,7 +253,8 @@ def flow_from_touch(motion, response_sine, response_cosine, base, u, v, duration
     steps = 0
     for touch in range(touches):
         if touch > 0:
-            outcome, s = first_crossing(motion, base + clock, u, v, duration - clock, 1, envelope)
+            order = 1 if record[touch - 1, 3] < 0.0 else 2
+            outcome, s = first_crossing(motion, base + clock, u, v, duration - clock, order, envelope)
             if outcome != CROSSES:
                 return FEWER_TOUCHES
             propagate(motion, u, v, s, u, v)
@@ -263,13 +265,19 @@ def flow_from_touch(motion, response_sine, response_cosine, base, u, v, duration
         record[touch, 0], record[touch, 2] = clock, approach
         if approach <= 0.0:
             return FAILED
-        if with_tangent:
+        rebound = -motion.number0 * approach
+        if motion.law == DELAYED:
+            wait, rebound = waiting_touch(
+                motion, response_sine, response_cosine, base + clock, u, v, approach, tangent
+            )
+            clock += wait
+        elif with_tangent:
             touch_jump(motion, response_sine, response_cosine, base + clock, u, v, approach, tangent)
         elif motion.law == NEWTON:
             newton_impact(motion, v, approach, motion.number0)
         regime = CONTACT
         root = 0.0
-        while motion.law != NEWTON:
+        while motion.law != NEWTON and motion.law != DELAYED:
             steps += 1
             if steps > MOST_STEPS or not clock <= duration:  # the latter holds for NaN as well
                 return FAILED
@@ -314,7 +322,9 @@ def flow_from_touch(motion, response_sine, response_cosine, base, u, v, duration
                 break
             regime = following
         record[touch, 1] = clock
-        record[touch, 3] = tip_state(motion, base + clock, u, v)[1]
+        if motion.law != NEWTON and motion.law != DELAYED:
+            rebound = tip_state(motion, base + clock, u, v)[1]
+        record[touch, 3] = rebound
         for k in range(n):
             record[touch, 4 + k] = u[k]
             record[touch, 4 + n + k] = v[k]

@@ -39,7 +39,8 @@ def first_polynomial_root(coefficients, start, end, margin):
     """First s in (start, end] at which a polynomial rises through zero, or -1 if there is none.
 
     The polynomial is negative at `start`, or zero there and falling.  Heights within `margin` count as none:
-    meant for forces of continuous laws, where a touch of zero has no consequence.
+    meant for forces of continuous laws, where a touch of zero has no consequence.  A step that no proof
+    gives is at least twice the one before, so that a polynomial that is zero, or no number, ends as well.
     """
     m3 = 0.0
     power = 1.0
@@ -49,6 +50,7 @@ def first_polynomial_root(coefficients, start, end, margin):
     s = start
     h = end - start
     h_min = 4.0 * EPS * end
+    least = h_min
     while s < end:
         y0, y1, y2 = horner(coefficients, s)
         if y0 >= -margin:
@@ -56,12 +58,14 @@ def first_polynomial_root(coefficients, start, end, margin):
             if s > start and y1 > 0.0:
                 return s
             out = 2.0 * max(margin, y0) / max(abs(y1), 1e-300)
-            s += max(h_min, min(end - s, out, 1e-3 * (end - start)))
+            s += max(least, min(end - s, out, 1e-3 * (end - start)))
+            least *= 2.0
             continue
         proof, step = certify(y0, y1, y2, m3, 0.0, margin, min(h, end - s), h_min)
         if proof == SKIP:
             s += step
             h = 2.0 * step
+            least = h_min
         elif proof == ROOT or (proof == PEAK and horner(coefficients, s + step)[0] > 0.0):
             return polynomial_root(coefficients, s, s + step)
         elif proof == PEAK:
@@ -75,10 +79,11 @@ def first_polynomial_root(coefficients, start, end, margin):
             if horner(coefficients, low)[0] > margin:
                 return polynomial_root(coefficients, s, low)
             s += step
-            h = step
+            h, least = step, h_min
         else:
-            s += max(step, h_min)
+            s += max(step, least)
             h = end - start
+            least *= 2.0
     return -1.0
 
 

@@ -72,8 +72,9 @@ from contact.linear_lanes import (
     linear_work,
 )
 from contact.modal_flow import carry, load_state, mode_rows, scalars_of
-from contact.newton import accumulation_time, from_table, newton_impact
+from contact.newton import accumulation_time, newton_impact
 from contact.series import CONTACT, INSIDE, OUTSIDE, SUSTAINED, WAITING
+from contact.waiting import numbers_at
 
 __all__ = ["advance"]
 
@@ -215,8 +216,8 @@ def advance(
                     continue
                 open_row(log, log_state, integers, floats, index, base, approach, IMPACT, u, v)
                 if motion.law == DELAYED:
-                    floats[REBOUND] = -from_table(motion.table, approach, 1) * approach
-                    floats[WAIT] = from_table(motion.table, approach, 3)
+                    restitution, _slope, floats[WAIT], _slope = numbers_at(motion.table, approach)
+                    floats[REBOUND] = -restitution * approach
                     floats[LOSS] = 0.5 * (approach * approach - floats[REBOUND] ** 2) / motion.compliance
                     integers[REGIME] = WAITING
                     continue

@@ -23,7 +23,7 @@ from contact.flight import Motion, damped_frequency, flow_matrix
 from contact.laws import NEWTON
 from contact.nordmark import restitution_of
 
-__all__ = ["DrivenModes", "modal_flow"]
+__all__ = ["SINGULAR", "DrivenModes", "modal_flow"]
 
 Array = NDArray[np.float64]
 SINGULAR = 1e-13  # a D below this is rounding of 1 - tr N + G, terms of size 1: the mode is back after m/f

@@ -28,10 +28,10 @@ from beam.parameters import is_whole, require_kind, require_within, shown
 from contact.crossing import CROSSES, FREE, first_crossing
 from contact.errors import NotPeriodic
 from contact.flight import Motion, steady_motion
-from contact.laws import DELAYED
 from contact.orbits.kick import KickFamily, KickOrbit
 from contact.orbits.saltation import sorted_multipliers
 from contact.oscillator import ImpactOscillator
+from contact.series import OUTSIDE
 from contact.simulation import simulate
 from contact.tangent import FLOWN, flow_from_touch
 from contact.trajectory import ImpactKind, State
@@ -140,8 +140,6 @@ class Shooting:
 
     def __post_init__(self) -> None:
         require_kind("oscillator", self.oscillator, ImpactOscillator, "an ImpactOscillator")
-        if self.oscillator.stop.law.code == DELAYED:
-            raise TypeError("law of the stop is DelayedRestitution; its orbits follow from a KickFamily")
         if not is_whole(self.impacts, 1):
             raise ValueError(f"impacts is {shown(self.impacts)}; it must be a whole number, one or more")
         _ = self.kicks
@@ -305,7 +303,8 @@ class Shooting:
         last, duration = record[-1], self.period * self.oscillator.period
         u, v = last[4 : 4 + n].copy(), last[4 + n :].copy()
         start, length = phase + last[1], duration - last[1]
-        outcome, s = first_crossing(motion, start, u, v, length * (1 + 1e-9), 1, np.empty(n + 1))
+        order = 1 if last[3] < 0.0 else 2
+        outcome, s = first_crossing(motion, start, u, v, length * (1 + 1e-9), order, np.empty(n + 1))
         # the touch that closes the orbit is met at `length`, give or take the residual
         slack = 1e-6 * self.oscillator.period + 4.0 * error * motion.gap / record[0, 2]
         return outcome == FREE or bool(outcome == CROSSES and abs(s - length) <= slack)
@@ -354,6 +353,7 @@ class Shooting:
         require_kind("state", state, State, "a State")
         run = simulate(self.oscillator, state, periods=self.period + 1)
         hits = run.impacts.kind == ImpactKind.IMPACT
+        hits[:1] &= state.regime == OUTSIDE  # a contact under way began with a touch that is not known
         if not np.any(hits):
             raise NotPeriodic(
                 time=state.time, gap=0.0, velocity=0.0, detail="the motion has no impact to start from"
