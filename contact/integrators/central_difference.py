@@ -25,7 +25,7 @@ from typing import ClassVar
 import numpy as np
 
 from contact.compiled import kernel
-from contact.flight import Motion
+from contact.flight.motion import Motion
 from contact.integrators.equation import contact_force, contact_tangent, tip_of
 from contact.integrators.grid import (
     DIVERGED,

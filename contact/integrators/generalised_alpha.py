@@ -36,7 +36,7 @@ import numpy as np
 
 from beam.parameters import brief, is_number, require_within
 from contact.compiled import kernel
-from contact.flight import Motion
+from contact.flight.motion import Motion
 from contact.integrators.amplification import Amplification
 from contact.integrators.equation import (
     contact_force,

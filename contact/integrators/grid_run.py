@@ -32,8 +32,7 @@ from contact.integrators.grid import (
 from contact.integrators.method import Run
 from contact.laws import DELAYED, LINEAR, NEWTON
 from contact.oscillator import ImpactOscillator
-from contact.series import CONTACT, OUTSIDE
-from contact.trajectory import Impacts, State, Trajectory
+from contact.trajectory import CONTACT, OUTSIDE, Impacts, State, Trajectory
 
 __all__ = ["check_step", "grid_trajectory"]
 

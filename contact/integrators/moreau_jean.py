@@ -44,7 +44,7 @@ import numpy as np
 
 from beam.parameters import require_within
 from contact.compiled import kernel
-from contact.flight import Motion
+from contact.flight.motion import Motion
 from contact.integrators.equation import force_in_flight, tip_of
 from contact.integrators.grid import (
     DIVERGED,

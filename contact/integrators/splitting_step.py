@@ -33,7 +33,8 @@ from typing import NamedTuple
 import numpy as np
 
 from contact.compiled import kernel
-from contact.flight import flow_matrix, loaded_drift, propagate
+from contact.flight.modal_flow import flow_over, propagate
+from contact.flight.motion import COSINE, LOAD, OFFSET, OMEGA, SINE, WEIGHT
 from contact.integrators.equation import contact_force, contact_tangent
 from contact.integrators.grid import (
     COUNT,
@@ -77,16 +78,10 @@ def fill_flows(motion, composition, length, flows):
 
     Each mode's matrix by rows and the drift under a constant load; last the cosine and sine of the drive.
     """
-    n = motion.omega.size
+    n = motion.size
     for j in range(composition.flows.size):
         t = composition.flows[j] * length
-        for k in range(n):
-            flows[j, k, 0], flows[j, k, 1], flows[j, k, 2], flows[j, k, 3] = flow_matrix(
-                motion.omega[k], motion.decay[k], motion.damped[k], motion.damped_low[k], t
-            )
-            flows[j, k, 4], flows[j, k, 5] = 0.0, 0.0
-            if motion.load[k] != 0.0:
-                flows[j, k, 4], flows[j, k, 5] = loaded_drift(motion.decay[k], motion.load[k], t)
+        flows[j, :n] = flow_over(motion, t)
         flows[j, n, 0], flows[j, n, 1] = math.cos(motion.drive * t), math.sin(motion.drive * t)
 
 
@@ -95,7 +90,7 @@ def tip_depth(motion, u, sine, cosine):
     """Penetration of the tip [m]; `sine`, `cosine` belong to the phase of the drive."""
     depth = motion.level + motion.tip_sine * sine + motion.tip_cosine * cosine
     for k in range(u.size):
-        depth += motion.phi[k] * u[k]
+        depth += motion.modes[WEIGHT, k] * u[k]
     return depth
 
 
@@ -104,7 +99,7 @@ def tip_rate(motion, v, sine, cosine):
     """Its rate [m/s]."""
     rate = motion.drive * (motion.tip_sine * cosine - motion.tip_cosine * sine)
     for k in range(v.size):
-        rate += motion.phi[k] * v[k]
+        rate += motion.modes[WEIGHT, k] * v[k]
     return rate
 
 
@@ -118,7 +113,7 @@ def kick(motion, depth, v, sine, cosine, length):
     x = contact_tangent(motion, depth, rate)[1] * motion.compliance * length
     impulse = force * length * (-math.expm1(-x) / x if x != 0.0 else 1.0)
     for k in range(v.size):
-        v[k] -= motion.phi[k] * impulse
+        v[k] -= motion.modes[WEIGHT, k] * impulse
     return impulse * (rate - 0.5 * motion.compliance * impulse)
 
 
@@ -148,7 +143,7 @@ def take_step(motion, composition, flows, length, depth, sine, cosine, u, v, kic
             uk, vk = u[k], v[k]
             u[k] = flow[k, 0] * uk + flow[k, 1] * vk + flow[k, 4]
             v[k] = flow[k, 2] * uk + flow[k, 3] * vk + flow[k, 5]
-            depth += motion.phi[k] * u[k]
+            depth += motion.modes[WEIGHT, k] * u[k]
     return depth, sine, cosine, taken, touches
 
 
@@ -170,8 +165,8 @@ def put_state(motion, sine, cosine, u, v, row):
     """Write the physical state, steady motion added, into the first 2 n_modes places of `row`."""
     n = u.size
     for k in range(n):
-        row[k] = u[k] + motion.offset[k] + motion.sine[k] * sine + motion.cosine[k] * cosine
-        row[n + k] = v[k] + motion.drive * (motion.sine[k] * cosine - motion.cosine[k] * sine)
+        row[k] = u[k] + motion.modes[OFFSET, k] + motion.modes[SINE, k] * sine + motion.modes[COSINE, k] * cosine
+        row[n + k] = v[k] + motion.drive * (motion.modes[SINE, k] * cosine - motion.modes[COSINE, k] * sine)
 
 
 @kernel
@@ -233,9 +228,9 @@ def clear_steps(motion, depth, u, v, h):
     """How many steps of length h the tip is sure not to reach the stop."""
     speed = motion.drive * math.sqrt(motion.tip_sine**2 + motion.tip_cosine**2)
     for k in range(u.size):
-        if motion.load[k] != 0.0:
+        if motion.modes[LOAD, k] != 0.0:
             return 0.0
-        speed += abs(motion.phi[k]) * math.sqrt(v[k] * v[k] + (motion.omega[k] * u[k]) ** 2)
+        speed += abs(motion.modes[WEIGHT, k]) * math.sqrt(v[k] * v[k] + (motion.modes[OMEGA, k] * u[k]) ** 2)
     return -depth / (speed * h) - 1.0 if speed > 0.0 else math.inf
 
 
@@ -251,8 +246,8 @@ def march(motion, composition, grid, q, v, clock, steps, h, critical):
     phase = motion.drive * (clock + i * h)
     sine, cosine = math.sin(phase), math.cos(phase)
     for k in range(n):
-        u[k] = q[k] - motion.offset[k] - motion.sine[k] * sine - motion.cosine[k] * cosine
-        v[k] -= motion.drive * (motion.sine[k] * cosine - motion.cosine[k] * sine)
+        u[k] = q[k] - motion.modes[OFFSET, k] - motion.modes[SINE, k] * sine - motion.modes[COSINE, k] * cosine
+        v[k] -= motion.drive * (motion.modes[SINE, k] * cosine - motion.modes[COSINE, k] * sine)
     depth = tip_depth(motion, u, sine, cosine)
     look, renew = i, i + RENEW
     status = FINISHED
@@ -316,6 +311,6 @@ def march(motion, composition, grid, q, v, clock, steps, h, critical):
             break
     grid.integers[STEP] = i
     for k in range(n):
-        q[k] = u[k] + motion.offset[k] + motion.sine[k] * sine + motion.cosine[k] * cosine
-        v[k] += motion.drive * (motion.sine[k] * cosine - motion.cosine[k] * sine)
+        q[k] = u[k] + motion.modes[OFFSET, k] + motion.modes[SINE, k] * sine + motion.modes[COSINE, k] * cosine
+        v[k] += motion.drive * (motion.modes[SINE, k] * cosine - motion.modes[COSINE, k] * sine)
     return status

@@ -12,9 +12,11 @@ How to add a law, say N = k d^3
 
 What a file offers; `motion` is the oscillator, `run` where it stands (``contact.event_loop.STATE``), (u, v) its
 deviations, overwritten where they move, `series` the room of one step
+    REGIMES                                            where the tip can be: ``contact.trajectory.Regime``
     room(motion) -> order, columns                     size of that room
     strike(motion, run, u, v, approach)                what the touch does at once:
-        -> regime, rebound, loss                       the regime that follows, tip velocity [m/s], energy [J]
+        -> regime, rebound, loss                       the regime that follows, tip velocity after it [m/s], NaN
+                                                       if that is not known yet, energy [J]
     step(motion, run, u, v, limit, series)             the series from (u, v), and a step of at most `limit` [s]:
         -> s, h, regime                                its length in the law's own variable and in time, and the
                                                        regime that follows; NaN if the series gives no step
@@ -26,6 +28,8 @@ deviations, overwritten where they move, `series` the room of one step
     stiffness(numbers, d, d') -> dN/dd, dN/dd'
     slopes(motion, run, series, weights) -> terms      for the tangents: series of dt/ds, dN/dd dt/ds and
                                                        dN/dd' dt/ds in three rows, and how many terms they have
+    saltation(motion, response, before, after, tangent)  for the tangents: what the touch does besides; before
+                                                       and after it, drive time, u and v
 
 A code that no file has is an error wherever a law is asked for.  Compiled code takes no functions as
 arguments: `by_law` links the files of the table into one kernel for each function.
@@ -41,7 +45,7 @@ from contact.compiled import inlined
 from contact.laws import DELAYED, HERTZ, LINEAR, NEWTON
 from contact.touch import delayed, hertz, linear, newton
 
-__all__ = ["TOUCHES", "force", "leave", "place", "room", "slopes", "state", "step", "stiffness", "strike",
+__all__ = ["TOUCHES", "force", "leave", "place", "room", "saltation", "slopes", "state", "step", "stiffness", "strike",
            "work"]  # fmt: skip
 
 TOUCHES = {NEWTON: newton, DELAYED: delayed, LINEAR: linear, HERTZ: hertz}
@@ -70,7 +74,9 @@ def by_law(name: str) -> Callable[..., Any]:
     return chosen
 
 
-room, strike, step, place, state, work, leave, force, stiffness, slopes = (
+room, strike, step, place, state, work, leave, force, stiffness, slopes, saltation = (
     by_law(name)
-    for name in ("room", "strike", "step", "place", "state", "work", "leave", "force", "stiffness", "slopes")
+    for name in (
+        "room", "strike", "step", "place", "state", "work", "leave", "force", "stiffness", "slopes", "saltation"
+    )
 )

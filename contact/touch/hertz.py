@@ -32,11 +32,13 @@ from contact.flight.elementary import EPS, sine_cosine
 from contact.flight.modal_flow import speed_scale, tip_state
 from contact.flight.motion import SQUARE, WEIGHT
 from contact.flight.polynomial_root import evaluate, first_polynomial_root, polynomial_root
-from contact.touch.series import enter, leave, reach, within_force
+from contact.touch.series import enter, leave, reach, saltation, within_force
 from contact.trajectory import CONTACT, OUTSIDE
 from contact.vector_loops import LANES, next_modes, weighted_rows
 
-__all__ = ["force", "leave", "place", "room", "slopes", "state", "step", "stiffness", "strike", "work"]
+__all__ = ["REGIMES", "force", "leave", "place", "room", "saltation", "slopes", "state", "step", "stiffness", "strike", "work"]
+
+REGIMES = (OUTSIDE, CONTACT)
 
 ORDER = 20
 """Order of the series in sigma; even.  The cost per unit of time is flat to ten per cent between 16 and 24."""

@@ -20,11 +20,13 @@ from contact.flight.elementary import EPS
 from contact.flight.modal_flow import tip_rounding
 from contact.flight.polynomial_root import first_polynomial_root
 from contact.touch import time_series
-from contact.touch.series import enter, leave
+from contact.touch.series import enter, leave, saltation
 from contact.touch.time_series import DEPTH, FORCE, begin, extend, longest_step, negative
 from contact.trajectory import CONTACT, INSIDE, OUTSIDE
 
-__all__ = ["enter", "force", "leave", "place", "room", "slopes", "state", "step", "stiffness", "work"]
+__all__ = ["REGIMES", "enter", "force", "leave", "place", "room", "saltation", "slopes", "state", "step", "stiffness", "work"]
+
+REGIMES = (OUTSIDE, CONTACT, INSIDE)
 
 strike = enter
 room, place, state, work = time_series.room, time_series.place, time_series.state, time_series.work

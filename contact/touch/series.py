@@ -26,7 +26,8 @@ from contact.compiled import inlined, kernel
 from contact.trajectory import CONTACT
 from contact.vector_loops import aligned
 
-__all__ = ["Series", "enter", "leave", "new_series", "reach", "within_force"]
+__all__ = ["Series", "enter", "leave", "new_series", "reach", "saltation",
+           "within_force"]  # fmt: skip
 
 WINDOW = 8
 """Orders of the force that are looked at."""
@@ -60,13 +61,18 @@ def new_series(order, columns):
 def enter(motion, run, u, v, approach):
     """A touch under a force law: the contact begins at d = 0.  Returns as ``contact.touch`` says."""
     run.root, run.speed = 0.0, -1.0
-    return CONTACT, 0.0, 0.0
+    return CONTACT, math.nan, 0.0
 
 
 @kernel
 def leave(motion, run, u, v):
     """The end of a contact that pushed: the next flight starts on the wall."""
     run.order = 1
+
+
+@kernel
+def saltation(motion, response, before, after, tangent):
+    """Nothing: the tangents have gone through the contact with its series."""
 
 
 @kernel
