@@ -20,7 +20,15 @@ from contact import touch
 from contact.compiled import inlined, kernel
 from contact.flight.crossing import CROSSES, FREE, UNRESOLVED, searched_flight
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import apply_flow, carry, flow_over, load_state, new_flight, propagate, tip_state
+from contact.flight.modal_flow import (
+    apply_flow,
+    carry,
+    flow_over,
+    load_state,
+    new_flight,
+    propagate,
+    tip_state,
+)
 from contact.flight.sampled_crossing import first_sampled_crossing
 from contact.recorder import (
     add_loss,

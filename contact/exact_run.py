@@ -25,7 +25,7 @@ from contact.recorder import grown, open_touch, recorder_for, trajectory_of
 from contact.touch import TOUCHES, force
 from contact.trajectory import CONTACT, IMPACT, INSIDE, OUTSIDE, SUSTAINED, WAITING, Run, State, Trajectory
 
-__all__ = ["exact_trajectory", "failure", "start_of"]
+__all__ = ["exact_trajectory", "failure", "start_of", "state_of"]
 
 HELD_WITHIN = 1e3
 """How far from the gap a tip that is said to rest on the wall may be, in rounding bounds."""
@@ -63,6 +63,15 @@ def start_of(
         regime = CONTACT if pushes else INSIDE
     runs[0] = (regime, 0, period, 0, search, clock, state.wait, state.rebound, -1.0, -1.0)
     return u, v, runs
+
+
+def state_of(motion: Motion, runs: np.ndarray, displacement: np.ndarray, velocity: np.ndarray) -> State:
+    """The state where a run stands."""
+    run = runs[0]
+    return State(
+        displacement=displacement, velocity=velocity, time=int(run["period"]) * motion.period + run["clock"],
+        regime=int(run["regime"]), wait=float(run["wait"]), rebound=float(run["rebound"]),
+    )  # fmt: skip
 
 
 def _refuse_regime(motion: Motion, regime: int, height: float, rounding: float) -> None:
@@ -129,9 +138,6 @@ def exact_trajectory(oscillator: ImpactOscillator, run: Run, *, search: int = 0)
     if status != DONE:
         raise failure(status, motion, runs, u, v)
     q, q_rate = steady_motion(motion, np.array([run.clock_end]))
-    end = State(
-        displacement=u + q[0], velocity=v + q_rate[0], time=run.last * motion.period + run.clock_end,
-        regime=int(runs[0]["regime"]), wait=float(runs[0]["wait"]), rebound=float(runs[0]["rebound"]),
-    )  # fmt: skip
+    end = state_of(motion, runs, u + q[0], v + q_rate[0])
     evaluations = int(runs[0]["evaluations"])
     return trajectory_of(recorder, run, end, motion.period, evaluations=evaluations, motion=motion)

@@ -45,7 +45,7 @@ from contact.integrators.grid_run import check_step, grid_trajectory
 from contact.integrators.method import Integrator, Run
 from contact.integrators.splitting_limit import closed_form_limit, first_instability, spectral_radius
 from contact.integrators.splitting_step import Composition, march
-from contact.laws import HERTZ, LINEAR
+from contact.laws import HERTZ, LINEAR, LinearContact
 from contact.oscillator import ImpactOscillator
 from contact.trajectory import Trajectory
 
