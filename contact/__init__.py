@@ -44,7 +44,7 @@ What cannot be followed raises one of the `ContactError` family (`UnresolvedCros
 `ContactTooStiff`, `NotPeriodic`, ...) with time, gap and velocity; no number comes out.  Units are SI
 throughout; modes are mass-normalised (q in m kg^0.5).  Every module opens with its equations: that of motion
 in ``contact.oscillator``, flights and their bounds in ``contact.flight``, the certified search for a touch in
-``contact.crossing``, motion in contact in ``contact.linear_lanes`` and ``contact.hertz_lanes``.
+``contact.flight.crossing``, motion in contact in ``contact.touch.linear`` and ``contact.touch.hertz``.
 """
 
 from contact.collision import Collision, collisions, first_collision
@@ -76,7 +76,7 @@ from contact.simulation import simulate
 from contact.stop import Stop
 from contact.strobed_nordmark import StrobedNordmarkMap
 from contact.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap, strobed_orbits
-from contact.trajectory import Impacts, State, Trajectory
+from contact.trajectory import ImpactKind, Impacts, Regime, State, Trajectory
 
 __all__ = [
     "Band",
@@ -89,6 +89,7 @@ __all__ = [
     "HarmonicDrive",
     "HertzContact",
     "HuntCrossley",
+    "ImpactKind",
     "ImpactOscillator",
     "Impacts",
     "LinearContact",
@@ -97,6 +98,7 @@ __all__ = [
     "NewtonRestitution",
     "NordmarkMap",
     "NotPeriodic",
+    "Regime",
     "SingleImpactOrbit",
     "State",
     "Stop",

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beam.parameters import require_array, require_whole, require_within
+from beam.parameters import require_array, require_within
 
 __all__ = ["HarmonicDrive", "split_time"]
 
@@ -52,10 +52,6 @@ class HarmonicDrive:
         """Base displacement at `time` [s], same shape [m]."""
         times = require_array("time", time, "s", words="a time or an array of times")
         return self.amplitude * np.sin(self.angular_frequency * times)
-
-    def strobe_times(self, count: int) -> np.ndarray:
-        """The first `count` strobe times n/f, shape (count,) [s]."""
-        return np.arange(require_whole("count", count, "strobe times", low=0)) / self.frequency
 
 
 def split_time(time: np.ndarray, period: float) -> tuple[np.ndarray, np.ndarray]:

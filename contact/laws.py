@@ -11,7 +11,7 @@ With the penetration d = x - gap [m] and its rate d' [m/s], the stop pushes the 
   d^(3/2) (H. Hertz, J. reine angew. Math. 92 (1882) 156), and ``HuntCrossley``, N = k d^(3/2) (1 + chi d')
   (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440), which vanishes only at d = 0.
 
-Each law names the kernel that handles it by a small integer, three numbers and a table (`code`, `numbers`,
+Each law names the kernel that handles it by a small integer, two numbers and a table (`code`, `numbers`,
 `table`), so that compiled code sees no objects.
 """
 
@@ -56,7 +56,7 @@ class ContactLaw:
     code: ClassVar[int] = -1
 
     @property
-    def numbers(self) -> tuple[float, float, float]:
+    def numbers(self) -> tuple[float, float]:
         """The law's parameters for the kernels."""
         raise NotImplementedError
 
@@ -94,8 +94,8 @@ class NewtonRestitution(ContactLaw):
         require(is_number(e) and 0 <= e <= 1, f"local_restitution is {brief(e)}; it must lie between 0 and 1")
 
     @property
-    def numbers(self) -> tuple[float, float, float]:
-        return (self.local_restitution, 0.0, 0.0)
+    def numbers(self) -> tuple[float, float]:
+        return (self.local_restitution, 0.0)
 
 
 def _value(function: Callable[[float], float], speed: float) -> float:
@@ -118,7 +118,12 @@ SPEEDS = 1025
 class DelayedRestitution(ContactLaw):
     """The tip stays on the wall for `delay` and leaves with -`restitution` times its approach velocity.
 
-    For one mode only: there the two numbers say all that a collision does.
+    For one mode only: there the two numbers say all that a collision does.  The wait is kept whatever pulls
+    at the tip.  Without the wall it would be back after 2 v/a, a its deceleration at the touch: a longer wait
+    holds it against that pull and gives the motion energy, so that orbits of period 1 appear far below
+    grazing (stable ones if the wait is long, ``tests/test_delayed_orbits.py``).  With a constant delay every
+    touch slower than a `delay`/2 is of this kind, and one of vanishing speed is no graze; a delay that falls
+    at least as fast as the speed has none.
 
     Parameters
     ----------
@@ -159,8 +164,8 @@ class DelayedRestitution(ContactLaw):
         )
 
     @property
-    def numbers(self) -> tuple[float, float, float]:
-        return (0.0, 0.0, 0.0)
+    def numbers(self) -> tuple[float, float]:
+        return (0.0, 0.0)
 
     @cached_property
     def table(self) -> np.ndarray:
@@ -201,8 +206,8 @@ class LinearContact(ContactLaw):
         _zero_or_more("damping of the contact", c, "N s/m")
 
     @property
-    def numbers(self) -> tuple[float, float, float]:
-        return (self.stiffness, self.damping, 0.0)
+    def numbers(self) -> tuple[float, float]:
+        return (self.stiffness, self.damping)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -263,8 +268,8 @@ class HertzContact(ContactLaw):
         return HERTZ_TIME * self.greatest_approach(mass, velocity) / velocity
 
     @property
-    def numbers(self) -> tuple[float, float, float]:
-        return (self.stiffness, 0.0, 0.0)
+    def numbers(self) -> tuple[float, float]:
+        return (self.stiffness, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -316,5 +321,5 @@ class HuntCrossley(ContactLaw):
         return HuntCrossley(stiffness=stiffness, dissipation=root / (e * velocity))
 
     @property
-    def numbers(self) -> tuple[float, float, float]:
-        return (self.stiffness, self.dissipation, 0.0)
+    def numbers(self) -> tuple[float, float]:
+        return (self.stiffness, self.dissipation)

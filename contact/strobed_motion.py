@@ -16,7 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from contact.compiled import kernel
-from contact.flight import Motion, steady_motion
+from contact.flight.modal_flow import steady_motion
+from contact.flight.motion import COSINE, OFFSET, SINE, Motion, with_drive
 from contact.oscillator import ImpactOscillator
 from contact.single_mode.loop import any_periods, one_mode_periods
 from contact.single_mode.period_table import PeriodTable, period_table, table_at
@@ -63,34 +64,6 @@ def strobed_system(oscillator: ImpactOscillator) -> StrobedSystem:
 
 
 @kernel
-def motion_at(motion, factor):
-    """`motion` at `factor` times its own base amplitude."""
-    return Motion(
-        omega=motion.omega,
-        decay=motion.decay,
-        damped=motion.damped,
-        damped_low=motion.damped_low,
-        phi=motion.phi,
-        load=motion.load,
-        sine=motion.sine * factor,
-        cosine=motion.cosine * factor,
-        offset=motion.offset,
-        tip_sine=motion.tip_sine * factor,
-        tip_cosine=motion.tip_cosine * factor,
-        level=motion.level,
-        drive=motion.drive,
-        period=motion.period,
-        gap=motion.gap,
-        compliance=motion.compliance,
-        law=motion.law,
-        number0=motion.number0,
-        number1=motion.number1,
-        number2=motion.number2,
-        table=motion.table,
-    )
-
-
-@kernel
 def _table_at(table, motion, factor):
     """`table` at `factor` times the amplitude, where `motion` is the motion; None stays None."""
     if table is None:
@@ -102,45 +75,44 @@ def _table_at(table, motion, factor):
 @kernel
 def at_amplitude(system, factor):
     """The system at `factor` times its own base amplitude."""
-    motion, n = motion_at(system.motion, factor), system.motion.omega.size
+    motion, n = with_drive(system.motion, factor), system.motion.size
     mean = np.empty(2 * n)
     for k in range(n):
-        mean[k] = motion.offset[k] + motion.cosine[k]
-        mean[n + k] = motion.drive * motion.sine[k]
+        mean[k] = motion.modes[OFFSET, k] + motion.modes[COSINE, k]
+        mean[n + k] = motion.drive * motion.modes[SINE, k]
     return StrobedSystem(motion, _table_at(system.table, motion, factor), mean, system.weight)
 
 
 @kernel
-def _periods(table, system, u, v, integers, floats, first, points, counts):
+def _periods(table, system, u, v, runs, points, counts):
     """The loop that fits: numba leaves out the branch that does not."""
     if table is None:
-        status, reached = any_periods(system.motion, u, v, integers, floats, first, points, counts)
+        status = any_periods(system.motion, u, v, runs, points, counts)
         for i in range(counts.size):
             for k in range(points.shape[1]):
                 points[i, k] = (points[i, k] + system.mean[k]) * system.weight[k]
-        return status, reached
+        return status
     else:
-        status, reached, _searched, _left = one_mode_periods(
-            table, system, u, v, integers, floats, first, points, counts
-        )
-        return status, reached
+        return one_mode_periods(table, system, u, v, runs, points, counts)[0]
 
 
 @kernel
-def strobed_motion(system, u, v, integers, floats, first, points, counts):
-    """Carry the deviation (u, v) from strobe `first` over as many drive periods as `counts` has places.
+def strobed_motion(system, u, v, runs, points, counts):
+    """Carry the deviation (u, v) from a strobe over as many drive periods as `counts` has places.
 
     Parameters
     ----------
     system : StrobedSystem
     u, v : ndarray, shape (n_modes,)
-        Overwritten, as are `integers` and `floats`, the bookkeeping of ``contact.impact_log``.
+        Overwritten.
+    runs : record array of ``contact.event_loop.STATE``, shape (1,)
+        Where the run stands; overwritten.
     points, counts : ndarray, shapes (periods, 2 n_modes) and (periods,)
         Filled with the points of the module's docstring and the impacts since the strobe before.
 
     Returns
     -------
-    status, period : int
-        As those of ``event_loop.advance``.
+    status : int
+        As that of ``event_loop.advance``.
     """
-    return _periods(system.table, system, u, v, integers, floats, first, points, counts)
+    return _periods(system.table, system, u, v, runs, points, counts)

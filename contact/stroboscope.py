@@ -12,9 +12,8 @@ import numpy as np
 
 from beam.parameters import require_kind, require_whole
 from contact.drive import split_time
-from contact.impact_log import REBOUND, REGIME, WAIT
-from contact.integrators.event_loop import DONE
-from contact.integrators.exact_run import deviations, failure
+from contact.event_loop import DONE
+from contact.exact_run import failure, start_of, state_of
 from contact.oscillator import ImpactOscillator
 from contact.strobed_map import StrobedMap, StrobedOrbit
 from contact.strobed_motion import StrobedSystem, coordinate_weights, strobed_motion, strobed_system
@@ -100,17 +99,12 @@ class StroboscopicMap:
         index, clock = split_time(np.array([state.time]), motion.period)
         if clock[0] != 0.0:
             raise ValueError(f"time of the state is {state.time} s; it must be a strobe time n/f")
-        first = int(index[0])
-        u, v, integers, floats = deviations(motion, state, 0.0)
+        u, v, runs = start_of(motion, state, int(index[0]), 0.0)
         points, impacts = np.empty((count, 2 * n)), np.empty(count, dtype=np.int64)
-        status, reached = strobed_motion(system, u, v, integers, floats, first, points, impacts)
+        status = strobed_motion(system, u, v, runs, points, impacts)
         if status != DONE:
-            raise failure(status, motion, reached, floats, u, v)
-        end = State(
-            displacement=u + system.mean[:n], velocity=v + system.mean[n:],
-            time=(first + count) * motion.period, regime=int(integers[REGIME]), wait=float(floats[WAIT]),
-            rebound=float(floats[REBOUND]),
-        )  # fmt: skip
+            raise failure(status, motion, runs, u, v)
+        end = state_of(motion, runs, u + system.mean[:n], v + system.mean[n:])
         return StrobedOrbit(end=end, points=points, impacts=impacts)
 
 

@@ -8,12 +8,44 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from enum import IntEnum
 
 import numpy as np
 
 from beam.parameters import is_number, require_whole, require_within, shown
 
-__all__ = ["Impacts", "State", "Trajectory"]
+__all__ = ["ImpactKind", "Impacts", "Regime", "Run", "State", "Trajectory"]
+
+
+class Regime(IntEnum):
+    """How the stop acts on the tip."""
+
+    OUTSIDE = 0
+    """Off the wall."""
+    CONTACT = 1
+    """Pushed by the wall."""
+    INSIDE = 2
+    """Behind the wall's rest position, without force."""
+    SUSTAINED = 3
+    """Held on the wall by the motion."""
+    WAITING = 4
+    """On the wall, waiting for a delayed rebound."""
+
+
+class ImpactKind(IntEnum):
+    """What a touch of the tip is."""
+
+    IMPACT = 0
+    """One that acts on the motion."""
+    GRAZE = 1
+    """One without effect, within rounding."""
+    STAY = 2
+    """A stay on the wall after accumulated impacts."""
+
+
+OUTSIDE, CONTACT, INSIDE, SUSTAINED, WAITING = map(int, Regime)
+IMPACT, GRAZE, STAY = map(int, ImpactKind)
+"""The same as plain integers, for the kernels."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -26,16 +58,16 @@ class State:
         Modal coordinates [m kg^0.5] and their rates [m kg^0.5 / s].
     time : float
         Time since the start of the drive, base at z = Z sin(2 pi f time) [s].
-    regime : int
-        0 off the wall, 1 in contact, 2 behind the wall without force, 3 held on the wall, 4 waiting on it.
+    regime : Regime
+        A number from 0 to 4 is taken too.
     wait, rebound : float
-        In regime 4, the time still to wait [s] and the tip velocity with which it then leaves [m/s].
+        While waiting, the time still to wait [s] and the tip velocity with which it then leaves [m/s].
     """
 
     displacement: np.ndarray
     velocity: np.ndarray
     time: float = 0.0
-    regime: int = 0
+    regime: Regime | int = Regime.OUTSIDE
     wait: float = 0.0
     rebound: float = 0.0
 
@@ -52,8 +84,10 @@ class State:
                 )
             array.setflags(write=False)
             object.__setattr__(self, name, array)
-        if not (is_number(self.regime) and self.regime in (0, 1, 2, 3, 4)):
-            raise ValueError(f"regime of the state is {shown(self.regime)}; it must be 0, 1, 2, 3 or 4")
+        if type(self.regime) is not Regime:
+            if not (is_number(self.regime) and self.regime in (0, 1, 2, 3, 4)):
+                raise ValueError(f"regime of the state is {shown(self.regime)}; it must be 0, 1, 2, 3 or 4")
+            object.__setattr__(self, "regime", Regime(self.regime))
         for name, unit in (("time", "s"), ("wait", "s"), ("rebound", "m/s")):
             value = getattr(self, name)
             if type(value) is not float or not math.isfinite(value):  # the usual case without a call
@@ -72,6 +106,36 @@ class State:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class Run:
+    """From where to where, and what is wanted on the way.
+
+    Parameters
+    ----------
+    start : State
+    length : float
+        Duration [s].
+    first, last : int
+        Numbers of the drive periods in which the run starts and ends.
+    clock, clock_end : float
+        Times since the strobes that begin them [s].
+    times : ndarray, shape (n_times,)
+        Times at which the state is wanted [s].
+    sample_period, sample_clock : ndarray, shape (n_times,)
+        The same as number of the drive period and time since its strobe [s].
+    """
+
+    start: State
+    length: float
+    first: int
+    last: int
+    clock: float
+    clock_end: float
+    times: np.ndarray
+    sample_period: np.ndarray
+    sample_clock: np.ndarray
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Impacts:
     """The touches of the tip, in the order in which they began.
 
@@ -86,7 +150,7 @@ class Impacts:
     loss : ndarray
         Energy lost in the contact itself [J].
     kind : ndarray of int
-        0 an impact, 1 a graze (no effect), 2 a stay on the wall after accumulated impacts.
+        Values of `ImpactKind`.
     displacement_start, velocity_start, displacement_end, velocity_end : ndarray, shape (n_impacts, n_modes)
         Modal states just before the touch and just after the release.
     """

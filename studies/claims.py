@@ -1,13 +1,13 @@
 """The letter's other claims, each with the numbers that decide it.
 
 Claims (letter 1996), for the Nordmark map (Eqs. (2), (3)), Eq. (1) and springs with many modes; the words of
-the letter and the mathematics are in the files of studies.instruments named here:
+the letter and the mathematics are in the files of studies.instruments.claims named here:
 
-    a   the hysteresis falls with the energy lost           claim_hysteresis_and_loss
-    b   secondary bifurcations above and below grazing      claim_second_impact, secondary_bifurcation
-    c   bands in the (alpha, gamma) plane                   claim_bands
-    d   the same for all springs and contact laws           claim_universality
-    e   period adding of the overdamped oscillator          claim_overdamped_map, overdamped_map
+    a   the hysteresis falls with the energy lost           hysteresis_and_loss
+    b   secondary bifurcations above and below grazing      second_impact, secondary_bifurcation
+    c   bands in the (alpha, gamma) plane                   bands
+    d   the same for all springs and contact laws           universality
+    e   period adding of the overdamped oscillator          overdamped_map, overdamped_windows
 
 Run time: about a minute; --quick some ten seconds.  Command: python -m studies.claims.  Outputs: summary.json
 with {"holds", "numbers", "sentence"} for each claim, and a figure (png, pdf) and a csv for each.

@@ -43,7 +43,6 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
-from studies.instruments.adequacy.fitted_scene import Need
 from studies.instruments.command_line import Request, run_study
 from studies.instruments.contact_calibration import Targets
 from studies.instruments.effective_impact.answers import (
@@ -53,7 +52,7 @@ from studies.instruments.effective_impact.answers import (
     stands_still,
     worst_of_closed_forms,
 )
-from studies.instruments.effective_impact.approaches import measure_all, select
+from studies.instruments.effective_impact.approaches import measure_all, own_contact, select
 from studies.instruments.effective_impact.curves import SCENE_MASS, all_curves
 from studies.instruments.effective_impact.figures import draw_all
 from studies.instruments.effective_impact.grid import Grid
@@ -121,7 +120,7 @@ def answers_from(rows: Sequence[dict[str, Any]], scene: Scene, grid: Grid) -> di
     lines = {
         curve: dict.fromkeys(r["series"] for r in rows if r["curve"] == curve) for curve in ("speed", "modes")
     }
-    own = [r for r in select(rows, "modes", "scene") if r["modes"] == grid.modes]
+    own = [r for r in own_contact(rows, "modes") if r["modes"] == grid.modes]
     reference = (
         own[0] if own else dict.fromkeys(("restitution", "kick", "delay_s", "arc_s", "contact_s"), math.nan)
     )
@@ -180,17 +179,12 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
     }
 
 
-NEEDS = (Need(quantity="kick", tolerance=0.005, mesh=False),)
-"""What the numbers rest on: modes and mesh are chosen for it."""
-
-
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the study from the command line."""
     return run_study(
         "effective_impact",
         "Restitution, delay and kick of one approach to the plate, against all that they may depend on.",
         run, argv,
-        needs=NEEDS,
     )
 
 

@@ -176,11 +176,14 @@ def test_studies_get_the_modes_and_the_mesh_that_they_need() -> None:
     scene, sentence = fitted(LETTER, NEEDS, pytest.fail)  # nothing is left to be found
     assert scene.modes.count == 12 < LETTER.kept_modes
     assert "fold" in sentence and scene.provenance()["modes.count"] == "needed"
+    assert sentence.startswith("model: folded U, 60 elements a leg, 12 modes")
     given, sentence = fitted(LETTER.replace({"modes.count": 9}), NEEDS, pytest.fail)
     assert given.modes.count == 9 and sentence == ""
-    meshed, _ = fitted(LETTER.replace({"spring.elements_per_leg": 33}), NEEDS, pytest.fail)
+    meshed, sentence = fitted(LETTER.replace({"spring.elements_per_leg": 33}), NEEDS, pytest.fail)
+    assert sentence.startswith("model: folded U, 33 elements a leg, 12 modes")
     assert meshed.spring.elements_per_leg == 33 and meshed.modes.count == 12
-    usual, _ = fitted(LETTER, [Need(quantity="kick", tolerance=0.005, mesh=False)], pytest.fail)
+    usual, sentence = fitted(LETTER, [Need(quantity="kick", tolerance=0.005, mesh=False)], pytest.fail)
+    assert sentence.startswith("model: folded U, 60 elements a leg, 15 modes")
     assert usual.spring.elements_per_leg == 0 and usual.modes.count == 15
 
 

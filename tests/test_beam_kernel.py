@@ -7,8 +7,6 @@ import math
 import mpmath as mp
 import numpy as np
 import pytest
-
-from contact.flight import Motion, fading, loaded_drift, sine_cosine, tip_state
 from contact.hertz_lanes import (
     ROOT,
     contact_work,
@@ -25,8 +23,12 @@ from contact.hertz_series import (
     hertz_step,
 )
 from contact.hertz_step import lane_step
-from contact.laws import HERTZ
 from contact.modal_flow import mode_rows, scalars_of
+
+from contact.flight.elementary import sine_cosine
+from contact.flight.modal_flow import loaded_drift, tip_state
+from contact.flight.motion import Motion
+from contact.laws import HERTZ
 
 
 def beam(n: int, *, chi: float = 0.0, decay: float = 0.02, load: float = 0.0) -> Motion:
@@ -41,7 +43,7 @@ def beam(n: int, *, chi: float = 0.0, decay: float = 0.02, load: float = 0.0) ->
         phi=phi, load=load * (omega == 0.0), sine=sine, cosine=-0.1 * sine, offset=0.0 * omega,
         tip_sine=float(phi @ sine), tip_cosine=float(-0.1 * phi @ sine), level=-0.01, drive=135.0,
         period=2 * math.pi / 135.0, gap=0.01, compliance=float(phi @ phi), law=HERTZ, number0=2e7,
-        number1=chi, number2=0.0, table=np.empty((0, 0)),
+        number1=chi, table=np.empty((0, 0)),
     )
 
 

@@ -357,12 +357,6 @@ def test_the_values_of_the_letter_are_marked() -> None:
         assert f"{value:.8g}" in marked
 
 
-def test_a_contact_of_the_scene_that_has_a_curve_of_its_own_is_drawn_once() -> None:
-    """The letter's scene touches by Hertz's law: one curve, not two on each other."""
-    names = set(drawn_points(_speed())["series"])
-    assert "Hertz" in names and "contact of the scene" not in names
-
-
 # planted faults
 
 

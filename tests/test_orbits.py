@@ -15,7 +15,6 @@ from contact.drive import HarmonicDrive
 from contact.errors import ContactError, NotPeriodic
 from contact.laws import (
     ContactLaw,
-    DelayedRestitution,
     HertzContact,
     HuntCrossley,
     LinearContact,
@@ -500,9 +499,6 @@ def test_wrong_input_is_refused_with_a_sentence() -> None:
         Shooting(oscillator=replace(oscillator, drive=None), period=3)
     with pytest.raises(ValueError, match="load is given"):
         KickFamily(oscillator=replace(oscillator, load=np.array([1.0])), period=3)
-    delayed = equation_1(20.90, DelayedRestitution(restitution=0.1, delay=1e-4))
-    with pytest.raises(TypeError, match="DelayedRestitution; its orbits follow from a KickFamily"):
-        Shooting(oscillator=delayed, period=3)
     family = Shooting(oscillator=oscillator, period=3)
     for speed in (0.0, -1.0, math.nan, math.inf):
         with pytest.raises(ValueError, match=r"speed is .* m/s; it must be finite and above zero"):

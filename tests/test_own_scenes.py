@@ -9,7 +9,7 @@ import pytest
 
 from contact import StroboscopicMap, first_collision, maximal_period
 from studies import time_trace
-from studies.instruments.corresponding import corresponding, letter_frequency, periods_of
+from studies.instruments.corresponding import corresponding, periods_of
 from studies.instruments.oscillators import beam_of, nordmark_of
 from studies.instruments.periodicity import settle
 from studies.instruments.scene_file import SCENES, dump_scene, read_scene
@@ -50,7 +50,6 @@ def test_the_same_period_is_born_at_the_same_f_t(name):
         strobed = StroboscopicMap(oscillator=beam_of(scene, frequency, model).with_excess(1e-3))
         settled = settle(strobed, strobed.steady(), most_cycles=4000)
         assert settled.period == period == maximal_period(nordmark_of(scene, frequency))
-        assert letter_frequency(scene, frequency) in PERIODS
 
 
 def test_the_ruler_bounces_as_its_comment_says():
@@ -64,7 +63,6 @@ def test_the_ruler_bounces_as_its_comment_says():
 def test_the_letters_frequencies_are_its_own():
     letter = read_scene("letter", [])
     assert [corresponding(letter, f) for f in PERIODS] == list(PERIODS)
-    assert letter_frequency(letter, 21.5) == 21.5 and letter_frequency(letter, 21.6) is None
 
 
 def test_a_study_of_one_frequency_takes_the_corresponding_one(tmp_path, capsys):

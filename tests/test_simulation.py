@@ -13,11 +13,11 @@ from beam.reduction import ModalModel, single_mode
 from contact.drive import HarmonicDrive
 from contact.errors import Chatter, ContactTooStiff, UnresolvedCrossing
 from contact.laws import ContactLaw, LinearContact, NewtonRestitution
-from contact.newton import accumulation_time, lowest_hop
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
-from contact.trajectory import State, Trajectory
+from contact.touch.newton import accumulation_time, lowest_hop
+from contact.trajectory import Regime, State, Trajectory
 
 OMEGA = 2 * np.pi * 24.5 * np.array([1.0, 6.1, 15.4, 29.0, 47.0, 70.0])
 PHI = 10.0 * np.array([1.0, 0.7, 0.5, 0.4, 0.3, 0.25])
@@ -781,6 +781,11 @@ def test_wrong_use_is_told_in_a_sentence():
     refused("times run from .* they must lie within", rest, duration=1.0, times=[-0.1, 0.5])
     behind = State(displacement=[0.006 / PHI[0], 0.0], velocity=[0.0, 0.0])
     refused("puts the tip 0.001 m behind the stop", behind, periods=1)
+
+
+@pytest.mark.parametrize("given", [3, 3.0, np.int64(3), Regime.SUSTAINED])
+def test_a_regime_given_as_a_number_is_the_regime(given):
+    assert State(displacement=[0.0], velocity=[0.0], regime=given).regime is Regime.SUSTAINED
 
 
 @pytest.mark.parametrize("regime", [-1, 5, 17])

@@ -111,7 +111,7 @@ def test_a_kick_solves_its_equation(law, rate):
     oscillator = spring(law)
     motion, depth, time = oscillator.motion(), 2e-4, 3e-4
     v = rate * PHI / motion.compliance
-    k, c, _zero = law.numbers
+    k, c = law.numbers
 
     def force(r: float) -> float:
         return max(0.0, k * depth + c * r) if law.code == SOFT.code else k * depth**1.5 * (1 + c * r)

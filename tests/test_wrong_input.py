@@ -829,10 +829,10 @@ RESULTS = {
 
 NO_ENTRIES = {
     "beam": {"Damping", "Support", "SuspiciousValue"},
-    "contact": {"Chatter", "ContactError", "ContactLaw", "ContactTooStiff", "NotPeriodic", "StrobedMap",
-                "UnresolvedCrossing"},
+    "contact": {"Chatter", "ContactError", "ContactLaw", "ContactTooStiff", "ImpactKind", "NotPeriodic",
+                "Regime", "StrobedMap", "UnresolvedCrossing"},
 }  # fmt: skip
-"""Protocols, abstract classes, types and errors."""
+"""Protocols, abstract classes, types, enumerations and errors."""
 
 
 # ------------------------------------------------------------------------------------------------------ tests

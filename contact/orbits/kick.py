@@ -13,6 +13,12 @@ and the steady motion has to make up the rest of gap and velocity: with p = phi 
 is the square of the steady tip amplitude, so that F/F_g - 1 = A/gap - 1.  The orbit ends (fold) where A(v) is
 smallest.  With Newton's law B is proportional to v and the result exact (``contact.orbits.single_impact``).
 
+``DelayedRestitution`` (one mode, ``contact.touch.delayed``) has its orbits in closed form.  With (p, r) the steady
+tip displacement and velocity at the touch, R their turn by the angle w delta and N the free flow over
+m/f - delta, the tip leaves with the deviation (gap, -tau v) - R (p, r) and comes back with (gap, v) - (p, r):
+
+    (I - N R) (p, r) = (gap, v) - N (gap, -tau v),      A(v)^2 = p^2 + (r/(2 pi f))^2.
+
 What this neglects is that the real collision starts with the ringing w left over from the last one and at
 another acceleration of the tip.  Both are there to be used: a second collision, simulated from w itself,
 gives another A at the same v, and the difference is the estimate of the error.
@@ -29,12 +35,14 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from beam.parameters import is_whole, require, require_array, require_kind, require_within, shown
-from contact.crossing import CROSSES, first_crossing
 from contact.errors import NotPeriodic
-from contact.flight import Motion
-from contact.orbits.driven_modes import modal_flow
+from contact.flight.crossing import CROSSES, first_crossing
+from contact.flight.motion import Motion
+from contact.laws import DELAYED
+from contact.orbits.driven_modes import SINGULAR, modal_flow
+from contact.orbits.touch_flow import FLOWN, flow_from_touch
 from contact.oscillator import ImpactOscillator
-from contact.tangent import FLOWN, flow_from_touch
+from contact.touch.delayed import numbers_at
 
 __all__ = ["Kick", "KickFamily", "KickOrbit"]
 
@@ -171,22 +179,12 @@ class KickFamily:
         amplitude, phase = self.drive_at_touch(gap - p, speed - r)
         motion = self.oscillator.with_amplitude(amplitude).motion()
         window = WINDOW * self.oscillator.period
-        envelope = np.empty(n + 1)
         touches = 1
         while True:
             u, v = w[:, 0].copy(), w[:, 1].copy()
             record = np.empty((touches, 4 + 2 * n))
             outcome = flow_from_touch(
-                motion,
-                self.response.real,
-                self.response.imag,
-                phase,
-                u,
-                v,
-                window,
-                touches,
-                np.empty((0, 0)),
-                record,
+                motion, self.response, phase, u, v, window, np.empty((0, 0)), record
             )
             end, u, v = record[-1, 1], record[-1, 4 : 4 + n].copy(), record[-1, 4 + n :].copy()
             if outcome != FLOWN or touches > MOST_TOUCHES:
@@ -194,7 +192,8 @@ class KickFamily:
                     time=phase + window, gap=0.0, velocity=speed,
                     detail="the collision does not end within half a drive period",
                 )
-            again, _time = first_crossing(motion, phase + end, u, v, window - end, 1, envelope)
+            order = 1 if record[-1, 3] < 0.0 else 2
+            again, _time = first_crossing(motion, phase + end, u, v, window - end, order)
             if again != CROSSES:
                 break
             touches += 1
@@ -218,8 +217,39 @@ class KickFamily:
         )
 
     def orbit(self, speed: float) -> KickOrbit:
-        """The orbit whose collision has approach velocity `speed` [m/s]."""
+        """The orbit whose collision has approach velocity `speed` [m/s]; exact with `DelayedRestitution`.
+
+        Raises
+        ------
+        ValueError
+            If `speed` is not finite and above zero.
+        NotPeriodic
+            If the collision does not end within half a drive period, or a delay takes up the m periods.
+        """
+        if self._motion.law == DELAYED:
+            return self.orbit_of(self._waiting_kick(speed))
         return self.orbit_of(self.kick(speed))
+
+    def _waiting_kick(self, speed: float) -> Kick:
+        """The touch of `DelayedRestitution` that repeats once in m drive periods."""
+        require_within("speed", speed, "m/s", above=0)
+        motion, gap = self._motion, self.oscillator.stop.gap
+        restitution, _slope, delay, _slope = numbers_at(motion.table, speed)
+        left = self.period * self.oscillator.period - delay
+        w, angle = motion.drive, motion.drive * delay
+        turn = np.array([[np.cos(angle), np.sin(angle) / w], [-w * np.sin(angle), np.cos(angle)]])
+        before, after = np.array([gap, speed]), np.array([gap, -restitution * speed])
+        flow = modal_flow(motion.omega, motion.decay, max(left, 0.0))[0]
+        back = np.eye(2) - flow @ turn
+        if left <= 0.0 or abs(np.linalg.det(back)) <= SINGULAR:
+            raise NotPeriodic(
+                time=delay, gap=0.0, velocity=speed,
+                detail=f"no orbit of period {self.period} has a touch that waits for {delay:g} s",
+            )
+        steady = np.linalg.solve(back, before - flow @ after)
+        met, left_with = before - steady, after - turn @ steady
+        jump = modal_flow(motion.omega, motion.decay, -delay)[0] @ left_with - met
+        return Kick(speed=speed, jump=jump[None] / motion.phi[0], touches=1, duration=float(delay))
 
     def error(self, orbit: KickOrbit) -> float:
         """Estimated error of the excess of an orbit: the change when its collision starts from its own
@@ -249,10 +279,12 @@ class KickFamily:
         w = self.oscillator.drive.angular_frequency  # type: ignore[union-attr]
         unit = w * self.oscillator.stop.gap
 
-        kick_at = self.kick if kick is None else kick
+        def orbit(log_speed: float) -> KickOrbit:
+            speed = float(np.exp(log_speed))
+            return self.orbit(speed) if kick is None else self.orbit_of(kick(speed))
 
         def excess(log_speed: float) -> float:
-            return self.orbit_of(kick_at(float(np.exp(log_speed)))).excess
+            return orbit(log_speed).excess
 
         grid = np.linspace(np.log(speeds[0] * unit), np.log(speeds[1] * unit), 33)
         values = [excess(x) for x in grid]
@@ -264,4 +296,4 @@ class KickFamily:
         best = minimize_scalar(
             excess, bracket=(grid[i - 1], grid[i], grid[i + 1]), method="brent", options={"xtol": 1e-9}
         )
-        return self.orbit_of(kick_at(float(np.exp(best.x))))
+        return orbit(best.x)

@@ -45,29 +45,23 @@ from typing import NamedTuple
 import numpy as np
 
 from contact.compiled import inlined, kernel
-from contact.impact_log import LOG_FIELDS, ORDER, REGIME
-from contact.integrators.event_loop import DONE, advance
-from contact.series import OUTSIDE
+from contact.event_loop import DONE, advance
+from contact.recorder import strobes_only
 from contact.single_mode.one_impact import guessed, one_impact
 from contact.single_mode.period_table import flow_over, through, tip_near
 from contact.single_mode.search import rising_zero, searched_period
+from contact.trajectory import OUTSIDE
 
 __all__ = ["any_periods", "one_mode_periods"]
 
 
 @kernel
-def any_periods(motion, u, v, integers, floats, first, points, counts):
-    """Drive periods from strobe `first` by ``event_loop.advance``, as many as `counts` has places.
+def any_periods(motion, u, v, runs, points, counts):
+    """Drive periods from a strobe by ``event_loop.advance``, as many as `counts` has places.
 
     `points`, shape (periods, 2 n_modes), gets the deviations at the strobes.
     """
-    n = motion.omega.size
-    # a literal as an argument would make numba compile the event loop once more
-    return advance(
-        motion, u, v, integers, floats, first, np.int64(counts.size), 0.0, points, counts,
-        np.empty((0, LOG_FIELDS)), np.empty((0, 4 * n)), np.empty(0, dtype=np.int64), np.empty(0),
-        np.empty((0, 2 * n)),
-    )  # fmt: skip
+    return advance(motion, u, v, runs, runs[0].period + counts.size, 0.0, strobes_only(points, counts))
 
 
 @inlined
@@ -125,21 +119,22 @@ def settled_period(n, rows, seen, u, v):
 
 
 @kernel
-def one_mode_periods(table, system, u, v, integers, floats, first, points, counts):
+def one_mode_periods(table, system, u, v, runs, points, counts):
     """``strobed_motion`` for the one mode of `table`, a field of `system` which numba cannot tell from None.
 
     Returns
     -------
-    status, period : int
-        As those of ``advance``.
+    status : int
+        As that of ``advance``.
     searched, left : int
         Periods that needed a search, and those left to ``advance``.
     """
     n, rows = table.mode, table.rows
     mean_u, mean_v, weight_u, weight_v = system.mean[0], system.mean[1], system.weight[0], system.weight[1]
-    searched, left = 0, 0
+    searched, left, run = 0, 0, runs[0]
+    first = run.period
     un, vn = u[0], v[0]
-    outside = integers[REGIME] == OUTSIDE and integers[ORDER] == 0
+    outside = run.regime == OUTSIDE and run.order == 0
     for i in range(counts.size):
         impacts = 0
         seen = seen_at_peak(n, un, vn)
@@ -155,17 +150,15 @@ def one_mode_periods(table, system, u, v, integers, floats, first, points, count
                 impacts, ui, vi = searched_period(table, un, vn)
             if impacts < 0:
                 left += 1
-                u[0], v[0], here = un, vn, slice(i, i + 1)
-                status, reached = any_periods(
-                    system.motion, u, v, integers, floats, np.int64(first + i), points[here], counts[here]
-                )
+                u[0], v[0], run.period = un, vn, first + i
+                status = any_periods(system.motion, u, v, runs, points[i : i + 1], counts[i : i + 1])
                 if status != DONE:
-                    return status, reached, searched, left
+                    return status, searched, left
                 impacts, ui, vi = counts[i], u[0], v[0]
-                outside = integers[REGIME] == OUTSIDE and integers[ORDER] == 0
+                outside = run.regime == OUTSIDE and run.order == 0
             un, vn = ui, vi
         points[i, 0] = (un + mean_u) * weight_u
         points[i, 1] = (vn + mean_v) * weight_v
         counts[i] = impacts
-    u[0], v[0] = un, vn
-    return DONE, first + counts.size, searched, left
+    u[0], v[0], run.period = un, vn, first + counts.size
+    return DONE, searched, left

@@ -24,7 +24,9 @@ from typing import NamedTuple
 import numpy as np
 
 from contact.compiled import inlined, kernel
-from contact.flight import EPS, Motion, flow_matrix
+from contact.flight.elementary import EPS
+from contact.flight.modal_flow import flow_matrix
+from contact.flight.motion import DAMPED, DECAY, LOW, OMEGA, WEIGHT, Motion
 from contact.laws import NEWTON
 
 __all__ = ["SMALL", "OneMode", "PeriodTable", "flow_over", "flow_to", "period_table", "short_fades",
@@ -118,8 +120,9 @@ class PeriodTable(NamedTuple):
 @kernel
 def constants_of(motion, stretches, peak, period_flow, peak_flow):
     """The `OneMode` of a motion with its steady peak at `peak` and the flows over a period and up to it."""
-    w, decay, omega, phi = motion.drive, motion.decay[0], motion.omega[0], motion.phi[0]
-    gap, high = -motion.level, motion.damped[0]
+    modes, w = motion.modes, motion.drive
+    decay, omega, phi = modes[DECAY, 0], modes[OMEGA, 0], modes[WEIGHT, 0]
+    gap, high = -motion.level, modes[DAMPED, 0]
     amplitude = math.hypot(motion.tip_sine, motion.tip_cosine)
     steady = abs(motion.level) + abs(motion.tip_sine) + abs(motion.tip_cosine) + motion.gap
     rounding, rounding_rho = SAFETY * 4.0 * EPS * steady, SAFETY * 8.0 * EPS * max(1.0, 0.5 * decay / omega)
@@ -134,7 +137,7 @@ def constants_of(motion, stretches, peak, period_flow, peak_flow):
         drive=w,
         decay=decay,
         stiffness=omega * omega,
-        determinant=math.copysign(high * (high + 2.0 * motion.damped_low[0]), omega - 0.5 * decay),
+        determinant=math.copysign(high * (high + 2.0 * modes[LOW, 0]), omega - 0.5 * decay),
         phi=phi,
         gap=gap,
         above=amplitude + motion.level,
@@ -163,16 +166,15 @@ def constants_of(motion, stretches, peak, period_flow, peak_flow):
 @kernel
 def mode_flow(motion, t):
     """The flow of the deviation over a time `t` [s]."""
-    uu, uv, vu, vv = flow_matrix(
-        motion.omega[0], motion.decay[0], motion.damped[0], motion.damped_low[0], t
-    )
+    modes = motion.modes
+    uu, uv, vu, vv = flow_matrix(modes[OMEGA, 0], modes[DECAY, 0], modes[DAMPED, 0], modes[LOW, 0], t)
     return Flow(uu, uv, vu, vv)
 
 
 @kernel
 def full_table(motion, stretches):
     """The table of a motion of one mode with `stretches` stretches."""
-    w, phi, period = motion.drive, motion.phi[0], motion.period
+    w, phi, period = motion.drive, motion.modes[WEIGHT, 0], motion.period
     rows = np.empty((stretches + 1, 6))
     for k in range(stretches + 1):
         t = k * (period / stretches)
@@ -195,7 +197,7 @@ def period_table(motion: Motion) -> PeriodTable | None:
     None for any other: one with another law or several modes, no stiffness or no drive, its node at the tip,
     or so fast that too many nodes would be needed.
     """
-    if motion.law != NEWTON or motion.omega.size != 1 or motion.phi[0] == 0:
+    if motion.law != NEWTON or motion.size != 1 or motion.phi[0] == 0:
         return None
     if not (motion.omega[0] > 0 and motion.drive > 0):
         return None

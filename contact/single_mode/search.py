@@ -2,7 +2,7 @@
 
 With |y''| <= B throughout, y lies between two nodes h apart below the greater of its values there plus
 B h^2/8: stretches at whose ends y < -m - B h^2/8 are free, which is one pass over products with constants.
-Within the others the three proofs of ``contact.certificate`` decide (a parabola with a bound of its cubic
+Within the others the three proofs of ``contact.flight.bounds`` decide (a parabola with a bound of its cubic
 rest; y' > 0 throughout and a change of sign; y'' < 0 throughout and one peak), on a motion found without
 sines.
 
@@ -20,11 +20,11 @@ import math
 
 import numpy as np
 
-from contact.certificate import PEAK, ROOT, SKIP, certify
 from contact.compiled import kernel
-from contact.flight import EPS
-from contact.newton import accumulation_time
+from contact.flight.bounds import PEAK, ROOT, SKIP, certify
+from contact.flight.elementary import EPS
 from contact.single_mode.period_table import flow_to, short_flow, tip_near
+from contact.touch.newton import accumulation_time
 
 __all__ = ["rising_zero", "searched_period"]
 

@@ -17,7 +17,7 @@ from collections.abc import Mapping
 from studies.instruments.scene import Scene
 from studies.published import FREE_PERIOD_S, PERIODS
 
-__all__ = ["corresponding", "letter_frequency", "periods_of"]
+__all__ = ["corresponding", "periods_of"]
 
 SAME_PERIOD = 1e-3
 """Relative change of T within which a spring counts as the letter's: twice the error of its 40.80 ms."""
@@ -30,11 +30,6 @@ def corresponding(scene: Scene, letter_hz: float) -> float:
     """The drive frequency of the scene's spring that has the f T of the letter's `letter_hz` [Hz]."""
     ratio = FREE_PERIOD_S / scene.single_mode.free_period_s
     return letter_hz if abs(ratio - 1.0) <= SAME_PERIOD else float(f"{letter_hz * ratio:.{DIGITS}g}")
-
-
-def letter_frequency(scene: Scene, frequency: float) -> float | None:
-    """The frequency of the letter's Fig. 2 that corresponds to `frequency` [Hz], or None."""
-    return next((f for f in PERIODS if corresponding(scene, f) == frequency), None)
 
 
 def periods_of(scene: Scene) -> Mapping[float, int]:

@@ -1,7 +1,7 @@
 """From a scene to the three descriptions that the letter compares, at one drive frequency.
 
     beam_of(scene, f)           the spring with its modes and the contact of the scene
-    single_mode_of_scene(...)   Eq. (1) of the letter with its restitution
+    single_mode_oscillator(...) Eq. (1) of the letter with its restitution
     nordmark_of(scene, f)       Eqs. (2), (3) of the letter with the coefficients of Eq. (1)
 
 The linear contact whose stiffness is left open (0) gets k = M (pi / t_c)^2, M the mass of ball and mount and

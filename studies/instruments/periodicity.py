@@ -48,11 +48,6 @@ class Settled(Generic[S]):
     cycles: int
     points: np.ndarray
 
-    @property
-    def grazing_free(self) -> bool:
-        """Whether the orbit is periodic without any impact."""
-        return self.period > 0 and self.impacts == 0
-
 
 def period_of(points: np.ndarray, impacts: np.ndarray, *, largest_period: int, tolerance: float) -> int:
     """The smallest p <= `largest_period` with which the last `largest_period` points repeat, or 0.

@@ -16,7 +16,7 @@ from contact.laws import HERTZ, LINEAR
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stroboscope import StroboscopicMap
-from contact.trajectory import State, Trajectory
+from contact.trajectory import ImpactKind, State, Trajectory
 from studies.instruments.periodicity import settle
 from studies.instruments.spring_of_scene import READOUT
 
@@ -78,7 +78,7 @@ def trace_of(oscillator: ImpactOscillator, state: State, period: int, length: in
     begin, span = state.time, length * oscillator.period
     time = span * np.arange(length * PER_PERIOD) / (length * PER_PERIOD)
     run = simulate(oscillator, state, periods=length + 2, times=begin + time)
-    touches = run.impacts.start[(run.impacts.kind == 0) & (run.impacts.start < begin + span)]
+    touches = run.impacts.start[(run.impacts.kind == ImpactKind.IMPACT) & (run.impacts.start < begin + span)]
     model = oscillator.model
     return Trace(
         period=period,
@@ -119,7 +119,7 @@ def contact_force(
 ) -> np.ndarray:
     """Force of the plate on the ball [N] at `times`, zero out of contact; not a number for an impact law."""
     law = oscillator.stop.law
-    k, loss, _ = law.numbers
+    k, loss = law.numbers
     depth = np.maximum(height, 0.0)
     if law.code == LINEAR:
         force = k * depth + loss * velocity

@@ -14,6 +14,7 @@ cannot reach the stop any more.  Near a fold, where |mu| comes close to 1, this 
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -40,9 +41,7 @@ def orbit_near(strobed: StroboscopicMap, state: State, period: int, impacts: int
     """The stable, admissible orbit next to `state`, by shooting; None if there is none."""
     try:
         family = Shooting(oscillator=strobed.oscillator, period=period, impacts=impacts)
-        orbit = family.from_state(
-            State(displacement=state.displacement, velocity=state.velocity, time=0.0, regime=state.regime)
-        )
+        orbit = family.from_state(replace(state, time=0.0))
     except (ContactError, ValueError, TypeError):
         return None
     return orbit if orbit.stable and orbit.admissible else None
@@ -50,9 +49,7 @@ def orbit_near(strobed: StroboscopicMap, state: State, period: int, impacts: int
 
 def _points_of(strobed: StroboscopicMap, orbit: PeriodicOrbit) -> StrobedOrbit[State]:
     """One period of strobed points of an orbit."""
-    start = orbit.strobe_state()
-    begin = State(displacement=start.displacement, velocity=start.velocity, time=0.0, regime=start.regime)
-    return strobed.orbit(begin, orbit.period)
+    return strobed.orbit(replace(orbit.strobe_state(), time=0.0), orbit.period)
 
 
 def _distance(points: np.ndarray, cycle: np.ndarray) -> tuple[float, int]:
@@ -123,15 +120,7 @@ def settle_on_orbit(
         if before < NEAR * strobed.scale and distance <= promised + TOLERANCE * strobed.scale:
             # go on from the orbit itself, in the phase in which the motion is
             on_orbit = strobed.orbit(_points_of(strobed, known).end, _steps_to(phase, known.period)).end
-            final = strobed.orbit(
-                State(
-                    displacement=on_orbit.displacement,
-                    velocity=on_orbit.velocity,
-                    time=state.time,
-                    regime=on_orbit.regime,
-                ),
-                block,
-            )
+            final = strobed.orbit(replace(on_orbit, time=state.time), block)
             return Settled(
                 period=known.period, impacts=known.impacts, end=final.end, cycles=cycles, points=final.points
             )

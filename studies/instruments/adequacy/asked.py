@@ -41,7 +41,7 @@ from studies.published import (
     FREE_PERIOD_S,
 )
 
-__all__ = ["QUANTITIES", "Asked", "asked_of"]
+__all__ = ["QUANTITIES", "Asked"]
 
 Answer = np.ndarray | None
 
@@ -208,8 +208,3 @@ QUANTITIES: dict[str, tuple[Callable[..., Answer], Callable[[np.ndarray, np.ndar
     "tip_trace": (_tip_trace, _best_aligned, "gap", 1e-2),
 }
 """Name -> answer, error, unit of the error, usual tolerance."""
-
-
-def asked_of(quantity: str, frequency: float) -> Asked:
-    """`quantity` at drive `frequency` [Hz]."""
-    return Asked(quantity=quantity, frequency=frequency)

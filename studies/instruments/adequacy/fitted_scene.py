@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from studies.instruments.adequacy.asked import Asked
@@ -18,6 +18,7 @@ from studies.instruments.adequacy.memory import remembered
 from studies.instruments.adequacy.model_choice import BEND_SHARE, Models, rungs_of
 from studies.instruments.adequacy.needed import Needed
 from studies.instruments.scene import Scene
+from studies.instruments.spring_of_scene import elements_of, spring_of
 
 __all__ = ["Need", "fitted"]
 
@@ -52,9 +53,10 @@ class Need:
 
 
 def fitted(scene: Scene, needs: Sequence[Need], tell: Callable[[str], None]) -> tuple[Scene, str]:
-    """The scene with modes and mesh for all `needs`, and what was chosen and why, in one line.
+    """The scene with modes and mesh for all `needs`, and in one line the model that runs and why.
 
-    The line is empty where the user has given the modes, by their number or by their data.
+    The line is empty where the user has given the modes, by their number or by their data.  Where the mesh
+    that runs is another than the least, it says both.
 
     `tell` is called with a sentence when the choice is not known yet and has to be made.
     Where no model reaches a tolerance the sharpest is taken, and the line says what error remains.
@@ -76,4 +78,17 @@ def fitted(scene: Scene, needs: Sequence[Need], tell: Callable[[str], None]) -> 
         changes["spring.elements_per_leg"] = mesh
     if mesh and not scene.spring.elements_on_arc and scene.spring.kind == "folded_u":
         changes["spring.elements_on_arc"] = math.ceil(BEND_SHARE * mesh)
-    return scene.replace(changes, provenance="needed"), f"model: {most.sentence()}"
+    scene = scene.replace(changes, provenance="needed")
+    run, least = replace(most.choice, mesh=_elements_on_a_leg(scene)), most.sentence()
+    line = least if run == most.choice else f"{run.words()}; for the accuracy required alone, {least}"
+    return scene, f"model: {line}"
+
+
+def _elements_on_a_leg(scene: Scene) -> int:
+    """Elements on a leg of the mesh that the scene gets, given or by default."""
+    if scene.spring.elements_per_leg:
+        return scene.spring.elements_per_leg
+    spring = spring_of(scene)
+    pieces = zip(spring.centreline.pieces, elements_of(scene, spring), strict=True)
+    straight = sum(count for piece, count in pieces if piece.curvature == 0.0)
+    return straight // (2 if scene.spring.kind == "folded_u" else 1)

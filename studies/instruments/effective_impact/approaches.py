@@ -23,20 +23,12 @@ import numpy as np
 
 from contact.collision import Collision, collisions, first_collision
 from contact.errors import ContactError
-from contact.laws import ContactLaw, HertzContact, HuntCrossley, LinearContact, NewtonRestitution
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.periodicity import settle
 
-__all__ = ["Approach", "measure", "measure_all", "orbit_collision", "select"]
-
-LAWS: dict[type[ContactLaw], str] = {
-    HertzContact: "hertz",
-    HuntCrossley: "hunt_crossley",
-    LinearContact: "linear",
-    NewtonRestitution: "newton",
-}
+__all__ = ["Approach", "measure", "measure_all", "orbit_collision", "own_contact", "select"]
 
 BELOW = -1e-3
 """Excess of the motion from which a settled orbit is reached."""
@@ -103,7 +95,7 @@ def measure(approach: Approach) -> dict[str, Any]:
         "modes": model.n_modes,
         "tip_mass": math.nan if model.tip_mass is None else model.tip_mass,
         "mass_ratio": approach.mass_ratio,
-        "law": LAWS[type(law)],
+        "law": type(law).__name__,
         "law_value": law.numbers[0],
         "local_restitution": approach.local_restitution,
         "gap_m": oscillator.stop.gap,
@@ -171,3 +163,8 @@ def select(rows: Sequence[dict[str, Any]], curve: str, series: str | None = None
     """The rows of a curve, or of one of its series, by rising value; failed cells are left out."""
     kept = [r for r in rows if r["curve"] == curve and series in (None, r["series"]) and not r["failure"]]
     return sorted(kept, key=lambda row: float(np.nan_to_num(row["value"], nan=math.inf)))
+
+
+def own_contact(rows: Sequence[dict[str, Any]], curve: str) -> list[dict[str, Any]]:
+    """The rows of a curve with the contact of the scene, which has no series of its own if it is Hertz's."""
+    return select(rows, curve, "scene") or select(rows, curve, "hertz")

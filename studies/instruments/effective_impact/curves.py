@@ -27,7 +27,7 @@ from studies.instruments.effective_impact.specimen import Specimen
 from studies.instruments.oscillators import contact_law_of
 from studies.published import TIME_TRACE_EXCESS
 
-__all__ = ["PLASTIC", "SCENE_MASS", "all_curves"]
+__all__ = ["PLASTIC", "SCENE_MASS", "all_curves", "contacts"]
 
 PLASTIC = Material(youngs_modulus=0.2e9, poissons_ratio=0.45, density=920.0, loss_factor=0.1)
 """Low-density polyethylene: a ball of it on steel is the softest contact considered."""
@@ -68,10 +68,15 @@ def all_curves(
     ]
 
 
+def contacts(scene: Specimen) -> list[tuple[str, Specimen, ContactLaw]]:
+    """The contact of the scene, named so where it is not Hertz's, and Hertz's."""
+    law = contact_law_of(scene.scene)
+    own = [] if law == scene.hertz else [("scene", scene, law)]
+    return [*own, ("hertz", scene, scene.hertz)]
+
+
 def _speed(scene: Specimen, bare: Specimen, grid: Grid) -> list[Approach]:
-    own = contact_law_of(scene.scene)
-    lines: list[tuple[str, Specimen, ContactLaw]] = [("scene", scene, own), ("hertz", scene, scene.hertz)]
-    lines.append(("bare tip", bare, bare.hertz))
+    lines = [*contacts(scene), ("bare tip", bare, bare.hertz)]
     return [
         Approach(
             curve="speed", series=name, varied="excess", value=excess, oscillator=specimen.with_law(law),
@@ -85,9 +90,8 @@ def _speed(scene: Specimen, bare: Specimen, grid: Grid) -> list[Approach]:
 def _modes(fine: Mapping[str, Specimen], grid: Grid) -> list[Approach]:
     newton = NewtonRestitution(local_restitution=1.0)
     scene, light, cantilever = fine["scene"], fine["light tip"], fine["bare cantilever"]
-    lines: list[tuple[str, Specimen, ContactLaw]] = [
-        ("scene", scene, contact_law_of(scene.scene)),
-        ("hertz", scene, scene.hertz),
+    lines = [
+        *contacts(scene),
         ("newton", scene, newton),
         ("light tip, hertz", light, light.hertz),
         ("bare cantilever, hertz", cantilever, cantilever.hertz),

@@ -88,20 +88,9 @@ def three(
     return figure, axes
 
 
-def _repeats(rows: Rows, curve: str, name: str, others: Sequence[str]) -> bool:
-    """Whether the contact of the scene is one that has a series of its own."""
-    if name != "scene":
-        return False
-
-    def numbers(of: str) -> list[tuple[Any, ...]]:
-        return [tuple(r[key] for key, _ in PANELS) for r in select(rows, curve, of)]
-
-    return any(numbers(other) == numbers(name) for other in others if other != name)
-
-
 def drawn(rows: Rows, curve: str, series: Sequence[str]) -> list[str]:
-    """The series that are there and do not repeat another."""
-    return [name for name in series if select(rows, curve, name) and not _repeats(rows, curve, name, series)]
+    """The series that are there."""
+    return [name for name in series if select(rows, curve, name)]
 
 
 def guide(axis: Axes, x: Sequence[float], y: Sequence[float], name: str, style: str = "--") -> None:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
-from contact.trajectory import State, Trajectory
+from contact.trajectory import ImpactKind, State, Trajectory
 from studies.instruments.motion.time_law import TimeLaw, time_law
 from studies.instruments.settled_trace import contact_force
 
@@ -118,7 +118,7 @@ def film_orbit(
 def _contacts(run: Trajectory, begin: float, duration: float) -> list[tuple[float, float]]:
     """Contacts that begin before `duration`, times from `begin`; grazes are none."""
     impacts = run.impacts
-    felt = impacts.kind != 1
+    felt = impacts.kind != ImpactKind.GRAZE
     start, end = impacts.start[felt] - begin, impacts.end[felt] - begin
     end = np.where(np.isfinite(end), end, run.end.time - begin)
     inside = start < duration

@@ -21,8 +21,7 @@ from contact.integrators.equation import contact_force
 from contact.integrators.method import Run
 from contact.laws import HERTZ, LINEAR, NEWTON
 from contact.oscillator import ImpactOscillator
-from contact.series import CONTACT, INSIDE, OUTSIDE, SUSTAINED
-from contact.trajectory import State, Trajectory
+from contact.trajectory import CONTACT, INSIDE, OUTSIDE, SUSTAINED, ImpactKind, State, Trajectory
 from studies.instruments.peers.problem import Problem, problem_of
 from studies.instruments.peers.touch_log import TouchLog
 
@@ -85,7 +84,7 @@ def _touch(problem: Problem, log: TouchLog, s: float, y: np.ndarray) -> tuple[in
     log.release(s, y, 0.5 * (approach - rebound) * (approach + rebound) / e.compliance)
     pull, lost_in_error = _pull(problem, s, y), float(np.abs(e.phi) @ problem.absolute[:n])
     if e.number0 < 1.0 and rebound * rebound <= 2.0 * pull * lost_in_error:
-        log.touch(s, y, 2, counted=False)
+        log.touch(s, y, ImpactKind.STAY, counted=False)
         return SUSTAINED, _at_the_wall(problem, y, rest=True)
     return OUTSIDE, y
 
@@ -173,7 +172,7 @@ def pieced_trajectory(
     log, advance = TouchLog(problem), solver(problem)
     y = np.zeros(problem.size)
     y[:n], y[n : 2 * n] = run.start.displacement, run.start.velocity
-    regime, y = _first_regime(problem, log, run.start.regime, y)
+    regime, y = _first_regime(problem, log, int(run.start.regime), y)
 
     passed = np.arange(run.first + 1, run.last + 1)
     strobe = np.clip((passed - run.first) * period - run.clock, 0.0, run.length)

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from contact.laws import HERTZ, LINEAR
-from contact.trajectory import Impacts
+from contact.trajectory import ImpactKind, Impacts
 from studies.instruments.peers.problem import Problem
 
 __all__ = ["TouchLog"]
@@ -35,7 +35,7 @@ class TouchLog:
         power = {LINEAR: 2.0, HERTZ: 2.5}.get(e.law)
         return 0.0 if power is None else e.number0 * max(depth, 0.0) ** power / power
 
-    def touch(self, s: float, y: np.ndarray, kind: int = 0, *, counted: bool = True) -> None:
+    def touch(self, s: float, y: np.ndarray, kind: int = ImpactKind.IMPACT, *, counted: bool = True) -> None:
         """A new row; `kind` as in ``Impacts``."""
         depth, rate = self.problem.tip(y)
         self.rows.append([s, math.nan, rate, math.nan, math.nan, float(kind)])

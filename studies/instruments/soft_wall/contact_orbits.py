@@ -22,11 +22,11 @@ import numpy as np
 from scipy.optimize import brentq, root
 
 from contact.errors import ContactError, NotPeriodic
-from contact.flight import steady_motion
+from contact.flight.modal_flow import steady_motion
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
-from contact.trajectory import State
+from contact.trajectory import ImpactKind, Regime, State
 from studies.instruments.soft_wall.soft_impact import SoftImpact
 
 __all__ = ["ContactOrbit", "SoftMap", "doubling", "fold_of"]
@@ -117,11 +117,12 @@ class SoftMap:
         oscillator, wall, m = self.oscillator.with_excess(excess), self.wall, self.period
         start = self.state(excess, deviation)
         motion = simulate(oscillator, start, periods=m)
-        touches = [i for i in range(len(motion.impacts)) if motion.impacts.kind[i] == 0]
+        touches = np.flatnonzero(motion.impacts.kind == ImpactKind.IMPACT)
         clock, derivative = 0.0, np.eye(2)
         for i in touches:
             touch, end = float(motion.impacts.start[i]), float(motion.impacts.end[i])
-            if not math.isfinite(end) or start.regime or motion.end.regime:
+            strobes = {start.regime, motion.end.regime}
+            if not math.isfinite(end) or strobes != {Regime.OUTSIDE}:
                 raise NotPeriodic(time=touch, gap=0.0, velocity=0.0, detail="the wall is touched at a strobe")
             if wall.dashpot > 0.0:
                 end = touch + self._release(oscillator, touch, motion.impacts.approach[i], end - touch)

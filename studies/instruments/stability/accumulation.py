@@ -5,7 +5,7 @@ A ball dropped from h rebounds with e times its speed; its impacts fall at
     t_n = t_0 (1 + 2 (e + ... + e^n)),   t_0 = sqrt(2 h/g),   t_inf = t_0 (1 + e)/(1 - e).                 (a)
 
 The package computes hops until their height drowns in rounding, (v e^n)^2 <= 2 g L with L the lowest hop
-(``contact.newton.lowest_hop``), sums the rest and lets the ball lie. The number of hops that are computed
+(``contact.touch.newton.lowest_hop``), sums the rest and lets the ball lie. The number of hops that are computed
 is ln(v / sqrt(2 g L)) / ln(1/e); if it exceeds the bound ``MOST_IMPACTS`` of one drive period, which with e
 below 1 needs 1 - e of some 1e-4 and less, the run ends with ``Chatter``.
 
@@ -33,15 +33,15 @@ from scipy.integrate import solve_ivp
 from beam.reduction import ModalModel
 from contact.drive import HarmonicDrive
 from contact.errors import Chatter, ContactError
-from contact.flight import tip_rounding
+from contact.event_loop import MOST_IMPACTS
+from contact.flight.modal_flow import tip_rounding
 from contact.integrators import EventDriven
-from contact.integrators.event_loop import MOST_IMPACTS
 from contact.laws import NewtonRestitution
-from contact.newton import lowest_hop
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
-from contact.trajectory import State
+from contact.touch.newton import lowest_hop
+from contact.trajectory import ImpactKind, State
 from studies.instruments.oscillators import single_mode_oscillator
 from studies.instruments.peers import lineup
 from studies.instruments.scene import Scene
@@ -57,8 +57,6 @@ __all__ = [
 NAME = EventDriven.name
 HEIGHT, GRAVITY = 1.0, 9.81
 RESTITUTIONS = (0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.999)
-STAY = 2
-"""Kind of an impact that is a stay on the wall."""
 MOST_EVENTS = 20_000
 """Bound of the events of the two loops: fifty times what e = 0.9 needs to run into rounding."""
 
@@ -81,7 +79,7 @@ def rest_time(restitution: float) -> float:
 def time_of_rest(restitution: float) -> tuple[float, int]:
     """When the package lets the ball lie [s], and how many impacts it has computed."""
     run = simulate(ball(restitution), duration=1.1 * rest_time(restitution))
-    stay = np.flatnonzero(run.impacts.kind == STAY)
+    stay = np.flatnonzero(run.impacts.kind == ImpactKind.STAY)
     if stay.size != 1:
         raise ValueError(f"restitution is {restitution}; the ball rests {stay.size} times instead of once")
     i = int(stay[0])
@@ -238,14 +236,15 @@ def _peers() -> list[Limit]:
                 )
             )  # fmt: skip
             continue
-        stay = run.impacts.start[run.impacts.kind == STAY]
+        stay = run.impacts.start[run.impacts.kind == ImpactKind.STAY]
+        hops = np.count_nonzero(run.impacts.kind == ImpactKind.IMPACT)
         off = abs(float(run.end.displacement[0]) - HEIGHT)
         limits.append(
             Limit(
                 method=name, case="bouncing ball comes to rest, e = 0.7", knob="time of rest [s]",
                 theory=theory, measured=float(stay[0]) if stay.size else None, refused=None,
-                note=f"tolerance 1e-10; {int(np.sum(run.impacts.kind == 0))} impacts, then held because hops "
-                f"are below the tolerance; in the end {off:.1e} m off the floor",
+                note=f"tolerance 1e-10; {hops} impacts, then held because hops are below the tolerance; in "
+                f"the end {off:.1e} m off the floor",
             )
         )  # fmt: skip
     return limits
@@ -263,17 +262,18 @@ def _driven(scene: Scene, periods: int) -> list[Limit]:
     amplitude = 3.0 * oscillator.model.omega[0] ** 2 * oscillator.stop.gap / push
     oscillator = oscillator.with_amplitude(amplitude)
     run = simulate(oscillator, periods=periods)
-    held = (run.impacts.kind == STAY) & np.isfinite(run.impacts.end)
+    held = (run.impacts.kind == ImpactKind.STAY) & np.isfinite(run.impacts.end)
     if not held.any():
         raise ValueError(f"the single mode at {frequency:g} Hz is not held within {periods} periods")
     phase = np.mod(run.impacts.end[held] * frequency, 1.0)
     theory = 0.5 - math.asin(1.0 / 3.0) / (2.0 * math.pi)
+    hops = np.count_nonzero(run.impacts.kind == ImpactKind.IMPACT)
     return [
         Limit(
             method=NAME, case=f"driven single mode, e = 0.7, {periods} periods: held and let go",
             knob="drive phase of the release [1]", theory=theory, measured=float(phase[-1]), refused=None,
-            note=f"{int(held.sum())} stays after {int(np.sum(run.impacts.kind == 0))} impacts; largest "
-            f"departure of a release from (b) {np.abs(phase - theory).max():.1e} periods",
+            note=f"{int(held.sum())} stays after {hops} impacts; largest departure of a release from (b) "
+            f"{np.abs(phase - theory).max():.1e} periods",
         )
     ]  # fmt: skip
 

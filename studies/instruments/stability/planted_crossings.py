@@ -12,8 +12,16 @@ of them.  A method that looks only every h sees the crossing with probability (d
     share missed = max(0, 1 - 2 sqrt(2 delta gap / a) / h),   one half at   delta = a h^2 / (32 gap).      (a)
 
 and where the spacing differs from flight to flight, the mean of that over the spacings around the peak.  With
-delta < 0 the tip stays away from the stop, and any touch is invented.  The modes have no damping, no
-drive: what is tried is the detection alone.  Units: SI.
+delta < 0 the tip stays away from the stop, and any touch is invented.
+
+A method that acts by percussions (``contact.integrators.moreau_jean``) strikes in the step from a grid point
+if d + (h/2) U >= 0 and U* + e U > 0 there.  On the parabola, s steps before the peak, these are delta gap >=
+(a h^2/2) s (s - 1) and s > 1/(1 + e); so, with x (1 + x) = 2 delta gap / (a h^2),
+
+    share missed = max(0, 1/(1 + e) - x),                                                                  (b)
+    touches invented down to   delta = -(a h^2 / (2 gap)) e/(1 + e)^2.                                     (c)
+
+The modes have no damping, no drive: what is tried is the detection alone.  Units: SI.
 """
 
 from __future__ import annotations
@@ -32,7 +40,7 @@ from contact.laws import HERTZ, LINEAR, NEWTON, ContactLaw, HertzContact, Linear
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
-from contact.trajectory import State
+from contact.trajectory import ImpactKind, State
 
 __all__ = [
     "Swing",
@@ -190,7 +198,7 @@ class Swing:
             except ContactError:
                 failed += 1
                 continue
-            touches = run.impacts.start[run.impacts.kind == 0] - lead
+            touches = run.impacts.start[run.impacts.kind == ImpactKind.IMPACT] - lead
             seen = bool(touches.size and first - slack <= touches[0] <= last + slack)
             wrong += seen if overshoot < 0.0 else not seen
         return Verdict(runs=runs, wrong=wrong, failed=failed)

@@ -50,7 +50,7 @@ def free_body() -> ModalModel:
 
 
 def rebound_ratio(frequency_step: float, part: float) -> float:
-    """v_out/v_in of a free mass on a spring for h omega_c and the part s of (b), in closed form [1]."""
+    """v_out/v_in of a free mass on a spring for h omega_c and the part s of a step, in closed form [1]."""
     turn = 2.0 * math.asin(0.5 * frequency_step)
     delay = math.atan2((1.0 - part) * math.sin(turn), part + (1.0 - part) * math.cos(turn))
     last = math.floor((math.pi + delay) / turn)

@@ -41,7 +41,7 @@ from contact.laws import LinearContact
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
-from contact.trajectory import State
+from contact.trajectory import Regime, State
 from studies.instruments.oscillators import hertz_of
 from studies.instruments.scene import Scene
 from studies.instruments.spring_of_scene import model_of
@@ -360,7 +360,7 @@ def met_in_the_contact(scene: Scene, model: ModalModel, quick: bool) -> Limit:
     hertz, gap = hertz_of(scene), 1e-3
     oscillator = ImpactOscillator(model=model, stop=Stop(gap=gap, law=hertz))
     one = np.eye(model.n_modes)[0] / model.phi[0]
-    arriving = State(displacement=gap * one, velocity=SPEED * one, regime=1)
+    arriving = State(displacement=gap * one, velocity=SPEED * one, regime=Regime.CONTACT)
     length = 2.0 * hertz.contact_time(1.0 / float(model.phi @ model.phi), SPEED)
     times = np.linspace(0.0, length, 4001)
     exact = simulate(oscillator, arriving, duration=length, times=times)

@@ -32,11 +32,11 @@ from typing import Any
 import numpy as np
 
 from contact.compiled import kernel
-from contact.flight import tip_rounding, tip_state
-from contact.impact_log import INTEGERS, REBOUND, REGIME, WAIT
-from contact.integrators.event_loop import DONE
-from contact.series import OUTSIDE
+from contact.event_loop import DONE, STATE
+from contact.flight.modal_flow import tip_rounding, tip_state
+from contact.flight.motion import OMEGA, WEIGHT
 from contact.strobed_motion import at_amplitude, strobed_motion
+from contact.trajectory import OUTSIDE
 
 __all__ = ["BEHIND", "EXTRA", "LARGEST_PERIOD", "repetition", "settled_column"]
 
@@ -99,10 +99,10 @@ def returns(points: Any, rows: Any, tolerance: Any) -> Any:
 def free_for_good(motion: Any, u: Any, v: Any) -> Any:
     """Whether the free motion left over can never bring the tip to the stop."""
     left = math.hypot(motion.tip_sine, motion.tip_cosine)
-    for k in range(motion.omega.size):
-        if not motion.omega[k] > 0.0:
+    for k in range(motion.size):
+        if not motion.modes[OMEGA, k] > 0.0:
             return False
-        left += abs(motion.phi[k]) * math.hypot(u[k], v[k] / motion.omega[k])
+        left += abs(motion.modes[WEIGHT, k]) * math.hypot(u[k], v[k] / motion.modes[OMEGA, k])
     return left < -motion.level * (1.0 - 1e-12)
 
 
@@ -126,15 +126,15 @@ def settled_column(
         Of a repetition, in the unit of the coordinates [m].
     ends, found : ndarray, shapes (n, 2 n_modes + 3) and (n, 3) of int
         States; period, impacts and drive periods spent; overwritten.
-    place : ndarray, shape (2 n_modes + 5,)
-        Deviations and clock numbers where a failure happened; overwritten.
+    place : ndarray, shape (2 n_modes + 2,)
+        Deviations, drive period and time since its strobe where a failure happened; overwritten.
 
     Returns
     -------
-    done, status, index : int
-        Amplitudes done; DONE, or why the next one failed, and the drive period in which.
+    done, status : int
+        Amplitudes done; DONE, or why the next one failed.
     """
-    n = system.motion.omega.size
+    n = system.motion.size
     capacity = 2 * LARGEST_PERIOD
     points, impacts = np.empty((capacity, 2 * n)), np.zeros(capacity, dtype=np.int64)
     strobes, counts = np.empty((BLOCK, 2 * n)), np.zeros(BLOCK, dtype=np.int64)
@@ -146,16 +146,17 @@ def settled_column(
         for k in range(n):
             u[k] = state[k] - mean[k]
             v[k] = state[n + k] - mean[n + k]
-        integers, floats = np.zeros(INTEGERS, dtype=np.int64), np.zeros(5)
-        integers[REGIME] = int(state[2 * n])
-        floats[WAIT], floats[REBOUND] = state[2 * n + 1], state[2 * n + 2]
+        runs = np.zeros(1, dtype=STATE)
+        run = runs[0]
+        run.regime, run.wait, run.rebound = int(state[2 * n]), state[2 * n + 1], state[2 * n + 2]
+        run.root, run.speed = -1.0, -1.0
         rows, cycles, period, hits = 0, np.int64(0), 0, 0
-        status, index, known = DONE, np.int64(0), False
+        status, known = DONE, False
         height, _velocity, _acceleration = tip_state(here, 0.0, u, v)
-        if integers[REGIME] == OUTSIDE and height > tip_rounding(here, u, v):
+        if run.regime == OUTSIDE and height > tip_rounding(here, u, v):
             status = BEHIND
         while status == DONE and not known:
-            if integers[REGIME] == OUTSIDE and free_for_good(here, u, v):
+            if run.regime == OUTSIDE and free_for_good(here, u, v):
                 for k in range(n):
                     u[k], v[k] = 0.0, 0.0
                 period, hits, known = 1, 0, True
@@ -165,7 +166,7 @@ def settled_column(
                 for i in range(rows - period if period > 0 else 0, rows):
                     hits += impacts[i]
                 break
-            status, index = strobed_motion(local, u, v, integers, floats, cycles, strobes, counts)
+            status = strobed_motion(local, u, v, runs, strobes, counts)
             if status != DONE:
                 break
             cycles += BLOCK
@@ -192,14 +193,13 @@ def settled_column(
         if status != DONE:
             for k in range(n):
                 place[k], place[n + k] = u[k], v[k]
-            for k in range(5):
-                place[2 * n + k] = floats[k]
-            return a, status, index
+            place[2 * n], place[2 * n + 1] = run.period, run.clock
+            return a, status
         for k in range(n):
             state[k] = u[k] + mean[k]
             state[n + k] = v[k] + mean[n + k]
-        state[2 * n], state[2 * n + 1], state[2 * n + 2] = integers[REGIME], floats[WAIT], floats[REBOUND]
+        state[2 * n], state[2 * n + 1], state[2 * n + 2] = run.regime, run.wait, run.rebound
         for k in range(2 * n + EXTRA):
             ends[a, k] = state[k]
         found[a, 0], found[a, 1], found[a, 2] = period, hits, cycles
-    return amplitudes.size, DONE, np.int64(0)
+    return amplitudes.size, DONE

@@ -23,11 +23,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact.errors import ContactError
-from contact.flight import propagate, steady_motion
+from contact.flight.modal_flow import propagate, steady_motion
 from contact.integrators import Integrator
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
-from contact.trajectory import State
+from contact.trajectory import ImpactKind, State
 
 __all__ = ["Plant", "missed_share", "plants"]
 
@@ -93,7 +93,7 @@ def missed_share(method: Integrator, planted: list[Plant]) -> tuple[float | None
     for plant in planted:
         try:
             run = simulate(plant.oscillator, plant.start, duration=plant.length, method=method)
-            found = bool(np.any(run.impacts.kind == 0))
+            found = bool(np.any(run.impacts.kind == ImpactKind.IMPACT))
         except ContactError:
             found = False
         if not found:

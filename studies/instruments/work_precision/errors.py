@@ -24,6 +24,7 @@ from contact.collision import collisions
 from contact.errors import ContactError
 from contact.integrators import Integrator
 from contact.simulation import simulate
+from contact.trajectory import ImpactKind
 from studies.instruments.work_precision.crossings import Plant, missed_share, plants
 from studies.instruments.work_precision.extended_reference import Reference, reference_of
 from studies.instruments.work_precision.fold_shift import FoldTest, fold_test
@@ -105,7 +106,7 @@ def collision_errors(yardstick: Yardstick, method: Integrator) -> dict[str, floa
     found: dict[str, float | None] = {
         "error": math.hypot(away, fast), "error_time": None, "error_restitution": None, "error_kick": None,
     }  # fmt: skip
-    touches = np.flatnonzero(run.impacts.kind == 0)
+    touches = np.flatnonzero(run.impacts.kind == ImpactKind.IMPACT)
     if touches.size:
         timed = run.impacts.end if problem.timed_end else run.impacts.start
         late = _difference(

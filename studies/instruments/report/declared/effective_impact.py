@@ -18,7 +18,8 @@ NEAR = 0.05
 
 def reference(summary: Mapping[str, Any]) -> Table:
     found, least = summary["answers"]["reference"], summary["answers"]["smallest_restitution"]
-    fade = summary["answers"]["fade"]["scene"]
+    fades = summary["answers"]["fade"]
+    fade = fades.get("scene", fades["hertz"])
     rows = [
         ("excess of the collision", significant(3)(found["excess"])),
         ("restitution tau", significant(3)(found["restitution"])),

@@ -1,0 +1,262 @@
+"""Every public call that follows a motion returns or is refused, with every law of contact.
+
+Compiled code cannot be interrupted: the calls run in a process of their own under a watchdog that names the
+one that does not come back (``python tests/test_bounded_calls.py`` from the root, with the root on the path).
+"""
+
+from __future__ import annotations
+
+import faulthandler
+import inspect
+import os
+import subprocess
+import sys
+import warnings
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import contact
+from beam import ModalModel, single_mode
+from contact import ContactLaw, HarmonicDrive, ImpactOscillator, State, Stop, StroboscopicMap
+from contact.errors import ContactError
+from contact.integrators import (
+    CentralDifference,
+    GeneralisedAlpha,
+    MoreauJean,
+    NonsmoothGeneralisedAlpha,
+    SampledFlight,
+    Splitting,
+)
+from contact.laws import (
+    DelayedRestitution,
+    HertzContact,
+    HuntCrossley,
+    LinearContact,
+    NewtonRestitution,
+)
+from contact.orbits import continuation, kick, lyapunov, shooting, single_impact
+from studies.instruments import settling
+from studies.instruments.periodicity import settle
+
+ROOT = Path(__file__).parent.parent
+LONGEST = 120.0
+"""Seconds within which each call comes back, its compilation included; most take some milliseconds."""
+
+GAP = 0.0107
+LAWS: dict[str, ContactLaw] = {
+    "newton": NewtonRestitution(local_restitution=0.1),
+    "delayed": DelayedRestitution(restitution=0.1, delay=1e-4),
+    "delayed by table": DelayedRestitution(restitution=lambda v: 0.3 / (1 + v), delay=lambda v: 2e-4 * v**0.2),
+    "linear": LinearContact(stiffness=1e7),
+    "dashpot": LinearContact(stiffness=1e7, damping=100.0),
+    "hertz": HertzContact(stiffness=1e9),
+    "hunt-crossley": HuntCrossley(stiffness=1e9, dissipation=0.3),
+}
+EXTREME: dict[str, ContactLaw] = {
+    "plastic": NewtonRestitution(local_restitution=0.0),
+    "elastic": NewtonRestitution(local_restitution=1.0),
+    "no delay": DelayedRestitution(restitution=0.9, delay=0.0),
+    "delay of rounding": DelayedRestitution(restitution=0.0, delay=1e-12),
+    "delay that holds": DelayedRestitution(restitution=0.0, delay=5e-3),
+    "delay of all periods": DelayedRestitution(restitution=0.5, delay=1.0),
+    "softest": LinearContact(stiffness=1e-300),
+    "stiffest": LinearContact(stiffness=1e18, damping=1e3),
+    "overdamped": LinearContact(stiffness=1e5, damping=1e5),
+    "softest hertz": HertzContact(stiffness=1e-300),
+    "stiffest hertz": HertzContact(stiffness=1e20),
+    "dissipative": HuntCrossley(stiffness=1e9, dissipation=1e6),
+}
+WITHOUT_A_LAW = {
+    # objects, and the closed forms of the letter's map
+    "Band", "Branch", "Chatter", "Collision", "ContactError", "ContactLaw", "ContactTooStiff",
+    "DelayedRestitution", "Differentiable", "Event", "Exponents", "HarmonicDrive", "HertzContact",
+    "HuntCrossley", "ImpactOscillator", "Impacts", "Kick", "KickOrbit", "LinearContact", "MaximalFlight",
+    "MaximalOrbit", "NewtonRestitution", "NordmarkMap", "NotPeriodic", "State", "Stop", "StrobedMap",
+    "StrobedNordmarkMap", "StrobedOrbit", "Trajectory", "UnresolvedCrossing", "band", "bands", "fold",
+    "maximal_orbits", "maximal_period", "maximal_periods", "modal_flow", "of_nordmark", "stable_range",
+}  # fmt: skip
+COMPUTING = ("KickFamily", "MaximalFamily", "PeriodicOrbit", "Shooting", "SingleImpactOrbit", "StroboscopicMap")
+
+
+def oscillator_of(law: ContactLaw, modes: int, frequency: float = 22.2) -> ImpactOscillator:
+    if modes == 1:
+        model = single_mode(free_period=40.80e-3, decay_rate=3.56)
+    else:
+        omega = np.array([154.0, 963.0])
+        model = ModalModel(
+            omega=omega, decay_rate=0.02 * omega, phi=np.array([1.0, -0.8]), participation=np.array([1.0, 0.3])
+        )
+    return ImpactOscillator(
+        model=model, stop=Stop(gap=GAP, law=law), drive=HarmonicDrive(frequency=frequency)
+    )
+
+
+def motions(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], object]]]:
+    """Calls that follow a motion."""
+    driven = oscillator.with_excess(0.02)
+    strobed = StroboscopicMap(oscillator=driven)
+    rest = State.rest(oscillator.n_modes)
+    fast = State(displacement=rest.displacement, velocity=rest.velocity + 1.0)
+    yield "StroboscopicMap.at", lambda: strobed.at(0.1)
+    yield "StroboscopicMap.steady", strobed.steady
+    for state in (strobed.steady(), fast):
+        run = contact.simulate
+        yield "simulate", lambda state=state: run(driven, state, periods=5, times=np.linspace(0.0, 0.2, 50))
+        yield "collisions", lambda state=state: contact.collisions(
+            driven, contact.simulate(driven, state, periods=5), unfinished="drop"
+        )
+        yield "first_collision", lambda state=state: contact.first_collision(driven, state, periods=5)
+        yield "StroboscopicMap.orbit", lambda state=state: strobed.orbit(state, 20)
+        yield "strobed_orbits", lambda state=state: contact.strobed_orbits([strobed] * 2, [state] * 2, 20)
+        for exponents in (lyapunov.map_exponents, lyapunov.orbit_exponents):
+            system = lyapunov.of_oscillator(strobed)
+            yield exponents.__name__, lambda state=state, e=exponents, s=system: e(s, state, 5)
+        yield "divergence_rate", lambda state=state: lyapunov.divergence_rate(
+            lyapunov.of_oscillator(strobed), state, 0.2
+        )
+        yield "settle", lambda state=state: settle(strobed, state, most_cycles=256)
+        yield "settle_on_orbit", lambda state=state: settling.settle_on_orbit(strobed, state, most_cycles=256)
+    for method in (
+        SampledFlight(points=64), Splitting(step=1e-5), CentralDifference(step=1e-5), MoreauJean(step=1e-5),
+        GeneralisedAlpha(step=1e-5), NonsmoothGeneralisedAlpha(step=1e-5, rho=0.9),
+    ):  # fmt: skip
+        yield "simulate", lambda method=method: contact.simulate(driven, fast, periods=2, method=method)
+    yield "first_collision", lambda: contact.first_collision(oscillator)
+    yield "of_oscillator", lambda: lyapunov.of_oscillator(strobed)
+    yield "StroboscopicMap.tip", lambda: strobed.tip(strobed.orbit(strobed.steady(), 3).points)
+    yield "StroboscopicMap.readout", lambda: strobed.readout(np.zeros((1, oscillator.n_modes)), "none")
+
+
+def orbits(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], object]]]:
+    """Calls that look for an orbit."""
+    kicks, family = (
+        make(oscillator=oscillator, period=5) for make in (kick.KickFamily, shooting.Shooting)
+    )
+    unit = oscillator.drive.angular_frequency * GAP
+    yield "KickFamily.drive_at_touch", lambda: kicks.drive_at_touch(GAP, 0.1)
+    for part in (1e-6, 0.05, 0.3, 20.0):
+        speed = part * unit
+        yield "KickFamily.kick", lambda v=speed: kicks.kick(v)
+        yield "KickFamily.orbit", lambda v=speed: kicks.orbit(v)
+        yield "KickFamily.orbit_of", lambda v=speed: kicks.orbit_of(kicks.kick(v))
+        yield "KickFamily.error", lambda v=speed: kicks.error(kicks.orbit(v))
+        yield "Shooting.guess", lambda v=speed: family.guess(kicks.orbit(v))
+        yield "Shooting.flow", lambda v=speed: family.flow(family.guess(kicks.orbit(v)))
+        yield "Shooting.at_speed", lambda v=speed: family.at_speed(v)
+        yield "Shooting.at_excess", lambda v=speed: family.at_excess(0.01, family.at_speed(v))
+        yield "Shooting.unknowns", lambda v=speed: family.unknowns(family.at_speed(v))
+        yield "PeriodicOrbit.state", lambda v=speed: family.at_speed(v).state()
+        yield "PeriodicOrbit.strobe_state", lambda v=speed: family.at_speed(v).strobe_state()
+        yield "follow", lambda v=speed: continuation.follow(
+            family, family.at_speed(v), low=0.5 * v, high=2.0 * v, step=0.3
+        )
+    yield "KickFamily.fold", lambda: kicks.fold()
+    yield "fold_of", lambda: continuation.fold_of(family)
+    yield "fold_of", lambda: continuation.fold_of(family, family.at_speed(0.1 * unit))
+    yield "fold_along_frequency", lambda: continuation.fold_along_frequency(family, np.array([22.2]))
+    several = shooting.Shooting(oscillator=oscillator, period=2, impacts=3)
+    yield "Shooting.at_speed", lambda: several.at_speed(0.1 * unit)
+    driven = oscillator.with_excess(0.02)
+    start = StroboscopicMap(oscillator=driven).steady()
+    yield "Shooting.from_state", lambda: shooting.Shooting(oscillator=driven, period=5).from_state(start)
+    yield "MaximalFamily.from_oscillator", lambda: closed_forms(oscillator)
+
+
+def closed_forms(oscillator: ImpactOscillator) -> None:
+    """The orbits of Newton's law; TypeError for another one."""
+    family = single_impact.MaximalFamily.from_oscillator(oscillator, period=5)
+    fold = family.fold()
+    assert fold is not None and family.orbits(0.01)
+    for name in ("state", "tip"):
+        getattr(family.orbit(0.1), name)(family.orbit(0.1).flight.start)
+    for name in ("motion", "excess"):
+        getattr(family, name)(1e-3)
+    family.single_mode(drive_frequency=22.2, free_period=0.04, decay_rate=3.56, restitution=0.1, period=5)
+    for name in ("multipliers", "monodromy", "saltation", "residual"):
+        getattr(fold, name)()
+
+
+def run_all(said: Callable[[str], None]) -> None:
+    """Every call with every law, one line each: law, modes, call, what came of it."""
+    warnings.simplefilter("ignore")  # the extreme laws are suspicious on purpose
+    for name, law in (LAWS | EXTREME).items():
+        for modes in (1,) if isinstance(law, DelayedRestitution) else (1, 2):
+            oscillator = oscillator_of(law, modes)
+            for what in (motions, orbits):
+                for call, run in what(oscillator):
+                    said(f"\n{name} | {modes} | {call} | ")
+                    faulthandler.dump_traceback_later(LONGEST, exit=True)
+                    try:
+                        run()
+                        said("returned")
+                    except np.linalg.LinAlgError as error:  # a ValueError, but none of ours
+                        said(f"failed with {error!r}")
+                    except (ContactError, ValueError, TypeError) as error:
+                        said(f"refused with {type(error).__name__}: {error}")
+                    except Exception as error:
+                        said(f"failed with {error!r}")
+                    faulthandler.cancel_dump_traceback_later()
+
+
+def public_names() -> set[str]:
+    """Public functions, and public methods of the classes that compute."""
+    names: set[str] = set()
+    for module in (contact, kick, shooting, continuation, lyapunov, single_impact):
+        for name in module.__all__:
+            found: Any = getattr(module, name)
+            if name in COMPUTING:
+                methods = inspect.getmembers(found, callable)
+                names |= {f"{name}.{method}" for method, _ in methods if not method.startswith("_")}
+            else:
+                names.add(name)
+    return names
+
+
+def test_every_public_call_comes_back() -> None:
+    path = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
+    ended = subprocess.run(
+        [sys.executable, __file__], cwd=ROOT, env=os.environ | {"PYTHONPATH": path}, text=True,
+        capture_output=True, timeout=900,
+    )  # fmt: skip
+    lines = [line for line in ended.stdout.splitlines() if line]
+    assert ended.returncode == 0, f"{lines[-1:]} did not come back\n{ended.stderr[-3000:]}"
+    rows = [[part.strip() for part in line.split("|", 3)] for line in lines]
+    assert not [row for row in rows if row[3].startswith("failed")]
+    # of the ordinary laws orbits, folds and motions are there, not refused
+    for name, law in LAWS.items():
+        returned = {row[2] for row in rows if row[0] == name and row[3] == "returned"}
+        refused = set() if isinstance(law, NewtonRestitution) else {"MaximalFamily.from_oscillator"}
+        assert {row[2] for row in rows} - returned == refused | {"StroboscopicMap.readout"}
+    # nothing public is left out
+    called = {row[2] for row in rows}
+    closed = {name for name in public_names() if name.split(".")[0] in ("MaximalFamily", "SingleImpactOrbit")}
+    assert public_names() - WITHOUT_A_LAW - closed == called - closed - {"settle", "settle_on_orbit"}
+
+
+def test_a_call_that_does_not_come_back_is_named() -> None:
+    """The watchdog ends compiled code that runs for good."""
+    code = (
+        "import faulthandler, numba\n"
+        "@numba.njit\n"
+        "def endless(x):\n"
+        "    while x > 0.0:\n"
+        "        x = 0.5 * x + 1.0\n"
+        "    return x\n"
+        "endless(-1.0)\n"
+        "faulthandler.dump_traceback_later(0.5, exit=True)\n"
+        "endless(1.0)\n"
+    )
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=300)
+    assert ended.returncode != 0 and "Timeout" in ended.stderr
+
+
+if __name__ == "__main__":
+
+    def said(words: str) -> None:
+        sys.stdout.write(words.replace("\n", " ") if not words.startswith("\n") else words)
+        sys.stdout.flush()
+
+    run_all(said)
