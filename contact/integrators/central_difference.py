@@ -28,7 +28,7 @@ from contact.compiled import kernel
 from contact.flight.motion import Motion
 from contact.integrators.equation import contact_force, tip_of
 from contact.integrators.fixed_step import check_step, fixed_step_run
-from contact.integrators.grid import DONE, begin_step, end_contact_step
+from contact.integrators.grid import DONE, end_contact_step, passes
 from contact.integrators.method import Integrator
 from contact.laws import HERTZ, LINEAR
 from contact.oscillator import ImpactOscillator
@@ -38,43 +38,40 @@ __all__ = ["CentralDifference"]
 
 
 @kernel
-def push_on(equation, grid, half, i, h, lagged):
-    """From v_{n-1/2} to v_{n+1/2} by the force at grid point n = `i` over h [s]; v becomes their mean."""
-    q, v = grid.q, grid.v
-    swing = math.sin(equation.drive * (equation.clock + i * grid.step))
-    depth, rate = tip_of(equation, q, half)
-    push = contact_force(equation, depth, rate)
-    grid.places[0].evaluations += 1
-    for k in range(q.size):
-        force = (
-            equation.constant[k] + equation.push[k] * swing - equation.stiffness[k] * q[k]
-            - equation.phi[k] * push
-        )  # fmt: skip
-        old, c = half[k], equation.decay[k] * h
-        if lagged:
-            half[k] = old + h * force - c * old
-        else:
-            half[k] = ((1.0 - 0.5 * c) * old + h * force) / (1.0 + 0.5 * c)
-        v[k] = 0.5 * (old + half[k])
-
-
-@kernel
 def central_difference(equation, grid, half, lagged):
     """March from the grid point reached; `half`, shape (n_modes,), carries v_{n+1/2}."""
-    place, h = grid.places[0], grid.step
-    if place.evaluations == 0:
-        begin_step(grid)
-        half[:] = grid.v
-        push_on(equation, grid, half, 0, 0.5 * h, True)
-        grid.v[:] = grid.v0
-    for i in range(place.step, grid.steps):
-        begin_step(grid)
-        for k in range(half.size):
-            grid.q[k] += h * half[k]
-        push_on(equation, grid, half, i + 1, h, lagged)
-        status = end_contact_step(equation, grid)
-        if status != DONE:
-            return status
+    place, h, q, v, q0, v0 = grid.places[0], grid.step, grid.q, grid.v, grid.q0, grid.v0
+    starts = place.evaluations == 0
+    for i in range(-1 if starts else place.step, grid.steps):
+        # step -1 is the half step before the first, which leaves the tip where it is
+        first = i < 0
+        length = 0.5 * h if first else h
+        for k in range(q.size):
+            q0[k], v0[k] = q[k], v[k]
+            if first:
+                half[k] = v[k]
+            else:
+                q[k] += h * half[k]
+        swing = math.sin(equation.drive * (equation.clock + (i + 1) * h))
+        depth, rate = tip_of(equation, q, half)
+        push = contact_force(equation, depth, rate)
+        place.evaluations += 1
+        for k in range(q.size):
+            force = (
+                equation.constant[k] + equation.push[k] * swing - equation.stiffness[k] * q[k]
+                - equation.phi[k] * push
+            )  # fmt: skip
+            old, c = half[k], equation.decay[k] * length
+            if lagged or first:
+                half[k] = old + length * force - c * old
+            else:
+                half[k] = ((1.0 - 0.5 * c) * old + length * force) / (1.0 + 0.5 * c)
+            if not first:
+                v[k] = 0.5 * (old + half[k])
+        if not first and not passes(grid, 1, depth, depth < 0.0):
+            status = end_contact_step(equation, grid)
+            if status != DONE:
+                return status
     return DONE
 
 

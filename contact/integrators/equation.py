@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from contact import touch
-from contact.compiled import kernel
+from contact.compiled import inlined
 from contact.oscillator import ImpactOscillator
 
 __all__ = ["Equation", "contact_force", "contact_tangent", "equation_of", "force_in_flight", "stiffness_at",
@@ -76,7 +76,7 @@ def stiffness_at(omega: np.ndarray, phi: np.ndarray, frequency: float) -> float:
     return float(1.0 / np.sum(phi**2 / ((frequency - omega) * (frequency + omega))))
 
 
-@kernel
+@inlined
 def tip_of(equation, q, v):
     """Penetration d [m] and its rate [m/s]."""
     depth, rate = -equation.gap, 0.0
@@ -86,20 +86,20 @@ def tip_of(equation, q, v):
     return depth, rate
 
 
-@kernel
+@inlined
 def force_in_flight(equation, k, swing, q, v):
     """Acceleration of mode `k` without contact; `swing` is sin(w t)."""
     push = equation.constant[k] + equation.push[k] * swing
     return push - equation.decay[k] * v[k] - equation.stiffness[k] * q[k]
 
 
-@kernel
+@inlined
 def contact_force(numbers, depth, rate):
     """Force N of the stop on the tip [N]; zero for impact laws."""
     return touch.force(numbers, depth, rate) if depth > 0.0 else 0.0
 
 
-@kernel
+@inlined
 def contact_tangent(numbers, depth, rate):
     """dN/dd [N/m] and dN/dd' [N s/m] where the contact pushes."""
     if depth <= 0.0:

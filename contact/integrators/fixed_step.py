@@ -105,8 +105,10 @@ def fixed_step_run(
     if depth > 0.0 and CONTACT in TOUCHES[equation.law].REGIMES:
         open_touch(recorder, run.first, run.clock, rate, IMPACT, q, v)
         recorder.marks["impacts"] = 0  # a touch under way
+    places = np.zeros(1, dtype=PLACE)
+    places["due"] = -math.inf  # the first step has to look
     grid = Grid(
-        places=np.zeros(1, dtype=PLACE), step=float(step), clock=float(run.clock), period=float(period),
+        places=places, step=float(step), clock=float(run.clock), period=float(period),
         first=int(run.first), steps=math.ceil(run.length / step - 1e-9), critical=float(critical), q=q, v=v,
         q0=q.copy(), v0=v.copy(), q_at=q.copy(), v_at=v.copy(), recorder=recorder,
     )  # fmt: skip

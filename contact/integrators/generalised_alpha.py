@@ -35,7 +35,7 @@ from typing import ClassVar
 import numpy as np
 
 from beam.parameters import brief, is_number, require_within
-from contact.compiled import kernel
+from contact.compiled import inlined, kernel
 from contact.flight.motion import Motion
 from contact.integrators.amplification import AlphaNumbers, factors, limit, stable
 from contact.integrators.equation import (
@@ -46,7 +46,7 @@ from contact.integrators.equation import (
     tip_of,
 )
 from contact.integrators.fixed_step import check_step, fixed_step_run
-from contact.integrators.grid import DONE, begin_step, end_contact_step
+from contact.integrators.grid import DONE, begin_step, end_contact_step, passes
 from contact.integrators.method import Integrator
 from contact.laws import HERTZ, LINEAR
 from contact.oscillator import ImpactOscillator
@@ -95,7 +95,7 @@ def force_at_end(equation, depth, rate, b, g):
     return force, ITERATIONS
 
 
-@kernel
+@inlined
 def predict(equation, grid, numbers, rows, swing):
     """The step without a contact force at its end; rows: a, f and D; `swing`: sin(w t) at the end."""
     a, f, inertia = rows[0], rows[1], rows[2]
@@ -147,9 +147,11 @@ def generalised_alpha(equation, grid, numbers, rows):
             q[k] += b * jump
             v[k] += g * jump
             f[k] = force_in_flight(equation, k, swing, q, v) - equation.phi[k] * push
-        status = end_contact_step(equation, grid)
-        if status != DONE:
-            return status
+        depth, rate = tip_of(equation, q, v)
+        if not passes(grid, 1, depth, depth < 0.0):
+            status = end_contact_step(equation, grid)
+            if status != DONE:
+                return status
     return DONE
 
 

@@ -1,7 +1,7 @@
 """The grid points of a run with a time step, and what is written down between them.
 
-A touch is seen if the penetration is positive at a grid point: whatever lies between two of them is missed, as
-the method misses it.  What lies between two grid points is told by the method (`recording`); most take a mode
+A touch is seen if the penetration is positive at a grid point: whatever lies between two of them is missed,
+as the method misses it.  What lies between two grid points is told by the method (`recording`); most take a mode
 there for the cubic through its displacements and velocities at both ends of the step,
 
     q(s) = H00 q0 + H10 h v0 + H01 q1 + H11 h v1,
@@ -33,14 +33,15 @@ from contact.recorder import (
 from contact.trajectory import IMPACT
 
 __all__ = ["DIVERGED", "DONE", "FULL", "PLACE", "TOO_LARGE", "Grid", "begin_step", "end_contact_step", "end_step",
-           "record_times", "recording"]  # fmt: skip
+           "passes", "record_times", "recording"]  # fmt: skip
 
 DONE, FULL, TOO_LARGE, DIVERGED = 0, 1, 2, 3
 """How a step or a run ends: well; with a full log; at a contact too stiff for the step; with a motion that is
 no longer finite."""
 
-PLACE = np.dtype([("step", "i8"), ("evaluations", "i8")])
-"""Grid point reached; evaluations of the force so far."""
+PLACE = np.dtype([("step", "i8"), ("evaluations", "i8"), ("touching", "i8"), ("due", "f8")])
+"""Grid point reached; evaluations of the force so far; whether the tip touched there; when the next strobe or
+sample is due, since the strobe `first` [s]."""
 
 UNBOUNDED = 1e12
 """Penetration [m] beyond which a motion counts as diverged."""
@@ -80,11 +81,26 @@ class Grid(NamedTuple):
     recorder: Recorder
 
 
-@kernel
+@inlined
 def begin_step(grid):
     """Keep the state at the grid point reached."""
     for k in range(grid.q.size):
         grid.q0[k], grid.v0[k] = grid.q[k], grid.v[k]
+
+
+@inlined
+def passes(grid, count, depth, apart):
+    """Whether `count` steps that end with penetration `depth` need no word; they are then behind the run.
+
+    `apart` tells that the stop has not acted in them.
+    """
+    place = grid.places[0]
+    end = grid.clock + (place.step + count) * grid.step
+    quiet = apart and place.touching == 0 and abs(depth) < UNBOUNDED
+    if quiet and end + ON_THE_GRID * grid.step < place.due:
+        place.step += count
+        return True
+    return False
 
 
 @kernel
@@ -138,6 +154,7 @@ def recording(between: Callable[..., Any]) -> tuple[Callable[..., Any], Callable
         marks, slack = recorder.marks[0], ON_THE_GRID * h
         while True:
             samples, strobe = sample_due(recorder, grid.first, start + h + slack), math.inf
+            more = marks.sampled < recorder.sample_clock.size
             if marks.strobed < recorder.counts.size:
                 strobe = (marks.strobed + 1) * grid.period
             if samples and recorder.sample_clock[marks.sampled] <= strobe:
@@ -145,6 +162,7 @@ def recording(between: Callable[..., Any]) -> tuple[Callable[..., Any], Callable
             elif strobe <= start + h + slack:
                 time, samples = strobe, False
             else:
+                grid.places[0].due = min(strobe, recorder.sample_clock[marks.sampled] if more else math.inf)
                 return
             x = max(0.0, (time - start) / h)
             between(numbers, grid, 1.0 if x > 1.0 - ON_THE_GRID else x, h, True)
@@ -191,6 +209,7 @@ def recording(between: Callable[..., Any]) -> tuple[Callable[..., Any], Callable
 def end_step(numbers, grid, count, depth):
     """Go on to the grid point `count` further; DONE, or why the run has to leave the loop there."""
     grid.places[0].step += count
+    grid.places[0].touching = grid.recorder.marks[0].touching
     if not abs(depth) < UNBOUNDED:
         return DIVERGED
     stiffness, _damping = contact_tangent(numbers, depth, 0.0)
@@ -209,3 +228,4 @@ def end_contact_step(equation, grid):
     d1, r1 = tip_of(equation, grid.q, grid.v)
     power = r0 * contact_force(equation, d0, r0) + r1 * contact_force(equation, d1, r1)
     return _record_contact(equation, grid, 1, (d0, d1), 0.5 * grid.step * power, False)
+

@@ -43,11 +43,11 @@ from typing import ClassVar
 import numpy as np
 
 from beam.parameters import require_within
-from contact.compiled import kernel
+from contact.compiled import inlined, kernel
 from contact.flight.motion import Motion
 from contact.integrators.equation import force_in_flight, tip_of
 from contact.integrators.fixed_step import check_step, fixed_step_run
-from contact.integrators.grid import DONE, begin_step, end_step, record_times
+from contact.integrators.grid import DONE, begin_step, end_step, passes, record_times
 from contact.integrators.method import Integrator
 from contact.laws import NEWTON
 from contact.oscillator import ImpactOscillator
@@ -98,8 +98,8 @@ def record_percussion(equation, grid, corner):
 
 
 @kernel
-def end_impact_step(equation, grid, push, corner):
-    """The end of a step, with the percussion `push` at the fraction `corner` of it if there is one."""
+def _end_impact_step(equation, grid, push, corner):
+    """`end_impact_step` where there is something to write down."""
     if push > 0.0:
         record_percussion(equation, grid, corner)
     else:
@@ -107,6 +107,13 @@ def end_impact_step(equation, grid, push, corner):
         record_times(equation, grid, grid.clock + grid.places[0].step * grid.step, grid.step)
     depth, _rate = tip_of(equation, grid.q, grid.v)
     return end_step(equation, grid, 1, depth)
+
+
+@inlined
+def end_impact_step(equation, grid, push, corner):
+    """The end of a step, with the percussion `push` at the fraction `corner` of it if there is one."""
+    depth, _rate = tip_of(equation, grid.q, grid.v)
+    return DONE if passes(grid, 1, depth, push == 0.0) else _end_impact_step(equation, grid, push, corner)
 
 
 @kernel

@@ -36,7 +36,7 @@ from contact.compiled import kernel
 from contact.flight.modal_flow import flow_over, propagate
 from contact.flight.motion import LOAD, OMEGA, WEIGHT, Motion
 from contact.integrators.equation import contact_force, contact_tangent
-from contact.integrators.grid import DONE, begin_step, recording
+from contact.integrators.grid import DONE, begin_step, passes, recording
 
 __all__ = ["Composition", "Split", "march", "split_of", "take_step"]
 
@@ -228,6 +228,8 @@ def march(split, grid):
             sine, cosine = phase_of(motion, grid.clock + (place.step + jump) * h)
             renew = place.step + jump + RENEW
             depth = tip_depth(motion, u, sine, cosine)
+        if passes(grid, jump, depth, depth <= 0.0 and touches == 0):
+            continue
         status = record_step(split, grid, jump, (before, depth), taken, touches > 0)
         if status != DONE:
             return status
