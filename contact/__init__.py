@@ -45,7 +45,7 @@ What cannot be followed raises one of the `ContactError` family (`UnresolvedCros
 `ContactTooStiff`, `NotPeriodic`, ...) with time, gap and velocity; no number comes out.  Units are SI
 throughout; modes are mass-normalised (q in m kg^0.5).  Every module opens with its equations: that of motion
 in ``contact.oscillator``, flights and their bounds in ``contact.flight``, the certified search for a touch in
-``contact.crossing``, motion in contact in ``contact.linear_lanes`` and ``contact.hertz_lanes``.
+``contact.flight.crossing``, motion in contact in ``contact.touch.linear`` and ``contact.touch.hertz``.
 """
 
 from contact.collision import Collision, collisions, first_collision

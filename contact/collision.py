@@ -33,8 +33,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from beam.parameters import require_kind, require_whole
-from contact.crossing import tip_at
-from contact.flight import Motion, propagate, steady_motion, tip_rounding
+from contact.flight.modal_flow import propagate, steady_motion, tip_rounding
+from contact.flight.motion import Motion, single_mode, without_load
+from contact.flight.tip_search import tip_at
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.trajectory import ImpactKind, State, Trajectory
@@ -162,12 +163,6 @@ def _crossing(virtual: _Virtual, peak: float, direction: float) -> float:
     return math.nan
 
 
-def _single_mode(motion: Motion) -> Motion:
-    """The same tip motion with only the first mode free."""
-    arrays = ("omega", "decay", "damped", "damped_low", "phi", "load", "sine", "cosine", "offset")
-    return motion._replace(**{name: getattr(motion, name)[:1].copy() for name in arrays})
-
-
 def _higher_energy(motion: Motion, u: np.ndarray, v: np.ndarray) -> float:
     """Energy of the free motion above the first mode [J]."""
     return float(0.5 * np.sum(v[1:] ** 2 + (motion.omega[1:] * u[1:]) ** 2))
@@ -208,7 +203,7 @@ def collisions(
     if unfinished not in ("refuse", "drop"):
         raise ValueError(f'unfinished is {unfinished!r}; it must be "refuse" or "drop"')
     motion = oscillator.motion()
-    single = _single_mode(motion)
+    single = single_mode(motion)
     impacts = trajectory.impacts
     rows = np.flatnonzero(impacts.kind != ImpactKind.GRAZE)
     found: list[Collision] = []
@@ -266,8 +261,7 @@ def _measure(
     u_free, v_free = np.empty_like(u_in), np.empty_like(v_in)
     propagate(motion, u_in, v_in, release - touch, u_free, v_free)
     jump = np.array([outgoing.u[0] - u_free[0]]), np.array([outgoing.v[0] - v_free[0]])
-    homogeneous = single._replace(load=np.zeros(1))
-    propagate(homogeneous, jump[0], jump[1], touch + s_in - release, *jump)
+    propagate(without_load(single), jump[0], jump[1], touch + s_in - release, *jump)
     shift, kick_velocity = float(single.phi[0] * jump[0][0]), -float(single.phi[0] * jump[1][0])
 
     # the outgoing hump around t_in, and its fall through the gap

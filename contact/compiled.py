@@ -22,7 +22,7 @@ from typing import Any, TypeVar, cast
 import numba
 from numba.core import config as numba_config
 
-__all__ = ["kernel"]
+__all__ = ["inlined", "kernel"]
 
 config: Any = numba_config
 
@@ -66,4 +66,11 @@ def kernel(function: Function) -> Function:
         compiled: Any = numba.njit(cache=bool(_CACHE), nogil=True, error_model="numpy")(function)
     finally:
         config.CACHE_DIR = before
+    return cast(Function, compiled)
+
+
+def inlined(function: Function) -> Function:
+    """Compile a small `function`, or one with a single caller, into the code of its callers, and keep it
+    there."""
+    compiled: Any = numba.njit(forceinline=True, nogil=True, error_model="numpy")(function)
     return cast(Function, compiled)

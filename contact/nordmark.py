@@ -49,7 +49,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from beam.parameters import require, require_array, require_whole, require_within, shown
 from contact.compiled import kernel
-from contact.flight import damped_frequency, flow_matrix
+from contact.flight.modal_flow import flow_matrix
+from contact.flight.motion import damped_frequency
 
 __all__ = ["NordmarkMap", "iterate_map"]
 

@@ -21,7 +21,7 @@ import numpy as np
 from beam import ModalModel
 from beam.parameters import require_array, require_kind, require_within, suspect
 from contact.drive import HarmonicDrive
-from contact.flight import Motion, damped_frequency
+from contact.flight.motion import Motion, motion_of
 from contact.laws import DELAYED
 from contact.stop import Stop
 
@@ -182,35 +182,12 @@ class ImpactOscillator:
 
     def motion(self) -> Motion:
         """The numbers of this oscillator, as the kernels take them."""
-        model, law = self.model, self.stop.law
-        load = np.zeros(self.n_modes) if self.load is None else self.load
         response = self.steady_response() * (0.0 if self.drive is None else self.drive.amplitude)
-        offset = self._offset()
-        pairs = [damped_frequency(w, c) for w, c in zip(model.omega, model.decay_rate, strict=True)]
-        sine, cosine = np.ascontiguousarray(response.real), np.ascontiguousarray(response.imag)
-        numbers = law.numbers
-        return Motion(
-            omega=np.array(model.omega, dtype=float),
-            decay=np.array(model.decay_rate, dtype=float),
-            damped=np.array([high for high, _ in pairs]),
-            damped_low=np.array([low for _, low in pairs]),
-            phi=np.array(model.phi, dtype=float),
-            load=np.where(model.omega > 0, 0.0, load),
-            sine=sine,
-            cosine=cosine,
-            offset=offset,
-            tip_sine=float(model.phi @ sine),
-            tip_cosine=float(model.phi @ cosine),
-            level=float(model.phi @ offset) - float(self.stop.gap),
-            drive=0.0 if self.drive is None else float(self.drive.angular_frequency),
-            period=float(self.period),
-            gap=float(self.stop.gap),
-            compliance=float(model.phi @ model.phi),
-            law=law.code,
-            number0=float(numbers[0]),
-            number1=float(numbers[1]),
-            table=law.table,
-        )
+        return motion_of(
+            self.model.omega, self.model.decay_rate, self.model.phi, law=self.stop.law, gap=self.stop.gap,
+            drive=0.0 if self.drive is None else self.drive.angular_frequency, period=self.period,
+            response=response, load=self.load,
+        )  # fmt: skip
 
     def _offset(self) -> np.ndarray:
         """Static modal displacement under the constant load, (n_modes,); zero for modes of zero frequency."""

@@ -14,7 +14,7 @@ import numpy as np
 
 from beam.parameters import is_number, require_whole, require_within, shown
 
-__all__ = ["ImpactKind", "Impacts", "Regime", "State", "Trajectory"]
+__all__ = ["ImpactKind", "Impacts", "Regime", "Run", "State", "Trajectory"]
 
 
 class Regime(IntEnum):
@@ -41,6 +41,11 @@ class ImpactKind(IntEnum):
     """One without effect, within rounding."""
     STAY = 2
     """A stay on the wall after accumulated impacts."""
+
+
+OUTSIDE, CONTACT, INSIDE, SUSTAINED, WAITING = map(int, Regime)
+IMPACT, GRAZE, STAY = map(int, ImpactKind)
+"""The same as plain integers, for the kernels."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -98,6 +103,36 @@ class State:
         """The straight spring at rest, at time zero."""
         size = require_whole("n_modes", n_modes, "modes")
         return State(displacement=np.zeros(size), velocity=np.zeros(size))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Run:
+    """From where to where, and what is wanted on the way.
+
+    Parameters
+    ----------
+    start : State
+    length : float
+        Duration [s].
+    first, last : int
+        Numbers of the drive periods in which the run starts and ends.
+    clock, clock_end : float
+        Times since the strobes that begin them [s].
+    times : ndarray, shape (n_times,)
+        Times at which the state is wanted [s].
+    sample_period, sample_clock : ndarray, shape (n_times,)
+        The same as number of the drive period and time since its strobe [s].
+    """
+
+    start: State
+    length: float
+    first: int
+    last: int
+    clock: float
+    clock_end: float
+    times: np.ndarray
+    sample_period: np.ndarray
+    sample_clock: np.ndarray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

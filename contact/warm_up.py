@@ -20,7 +20,7 @@ from contact.laws import HertzContact, NewtonRestitution
 from contact.orbits.shooting import Shooting
 from contact.oscillator import ImpactOscillator
 from contact.stop import Stop
-from contact.stroboscope import StroboscopicMap, strobed_orbits
+from contact.stroboscope import StroboscopicMap
 
 __all__ = ["compile_kernels"]
 
@@ -43,7 +43,6 @@ def _motions() -> None:
     newton = replace(oscillator, stop=Stop(gap=0.01, law=NewtonRestitution(local_restitution=0.1)))
     single = StroboscopicMap(oscillator=newton)
     single.orbit(single.steady(), 10)
-    strobed_orbits([single, single], [single.steady()] * 2, 10, workers=1)
 
 
 def _orbits() -> None:

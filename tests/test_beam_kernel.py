@@ -7,8 +7,6 @@ import math
 import mpmath as mp
 import numpy as np
 import pytest
-
-from contact.flight import Motion, fading, loaded_drift, sine_cosine, tip_state
 from contact.hertz_lanes import (
     ROOT,
     contact_work,
@@ -25,8 +23,12 @@ from contact.hertz_series import (
     hertz_step,
 )
 from contact.hertz_step import lane_step
-from contact.laws import HERTZ
 from contact.modal_flow import mode_rows, scalars_of
+
+from contact.flight.elementary import sine_cosine
+from contact.flight.modal_flow import loaded_drift, tip_state
+from contact.flight.motion import Motion
+from contact.laws import HERTZ
 
 
 def beam(n: int, *, chi: float = 0.0, decay: float = 0.02, load: float = 0.0) -> Motion:

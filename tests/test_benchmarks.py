@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact.flight import propagate
+from contact.flight.modal_flow import propagate
 from contact.stroboscope import StroboscopicMap
 from studies import benchmarks
 from studies.instruments.benchmarks.bare_heyoka import batch_of, orbit_of

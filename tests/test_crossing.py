@@ -14,21 +14,16 @@ import numpy as np
 import pytest
 
 from beam import ModalModel
-from contact.crossing import (
-    CROSSES,
-    FREE,
-    GRAZE_TOLERANCE,
-    GRAZES,
-    UNRESOLVED,
-    first_crossing,
-    first_polynomial_root,
-)
 from contact.drive import HarmonicDrive
-from contact.flight import EPS, Motion, propagate, tip_rounding, tip_state
+from contact.flight.crossing import CROSSES, FREE, GRAZE_TOLERANCE, GRAZES, UNRESOLVED, first_crossing
+from contact.flight.elementary import EPS
+from contact.flight.modal_flow import propagate, tip_rounding, tip_state
+from contact.flight.motion import Motion
+from contact.flight.polynomial_root import first_polynomial_root
 from contact.laws import NewtonRestitution
-from contact.newton import newton_impact
 from contact.oscillator import ImpactOscillator
 from contact.stop import Stop
+from contact.touch.newton import newton_impact
 
 Real = np.longdouble
 pytestmark = pytest.mark.skipif(
@@ -49,7 +44,7 @@ class Signal:
         self.motion, self.base = motion, base
         terms: list[tuple[complex, complex]] = []  # rates and coefficients of exp(rate s)
         polynomial = np.zeros(3, dtype=Real)
-        for k in range(motion.omega.size):
+        for k in range(motion.size):
             o, c = Real(motion.omega[k]), Real(motion.decay[k])
             a, b, phi = Real(u[k]), Real(v[k]), Real(motion.phi[k])
             square = (o - c / 2) * (o + c / 2)
@@ -155,7 +150,7 @@ def judge(
 
 
 def search(motion: Motion, base: float, u: np.ndarray, v: np.ndarray, duration: float, order: int = 0):
-    return first_crossing(motion, base, u, v, duration, order, np.empty(motion.omega.size + 1))
+    return first_crossing(motion, base, u, v, duration, order)
 
 
 # --------------------------------------------------------------------------------------------- random flights
@@ -183,7 +178,7 @@ def random_oscillator(
 
 def random_deviation(generator: np.random.Generator, motion: Motion, *, ringing: float) -> tuple:
     """Deviations of random phase; tip amplitudes fall with the mode number, more slowly when ringing."""
-    n = motion.omega.size
+    n = motion.size
     amplitude = 0.01 * generator.uniform(0.1, 1, n) / (1 + np.arange(n)) ** (1.0 if ringing else 2.0)
     phase = generator.uniform(0, 2 * np.pi, n)
     u = amplitude * np.cos(phase) / np.abs(motion.phi)

@@ -12,16 +12,9 @@ from hypothesis import strategies as st
 
 from beam import ModalModel
 from contact.drive import HarmonicDrive
-from contact.flight import (
-    EPS,
-    damped_frequency,
-    flow_matrix,
-    mode_acceleration,
-    propagate,
-    tip_rounding,
-    tip_state,
-    two_product,
-)
+from contact.flight.elementary import EPS, two_product
+from contact.flight.modal_flow import flow_matrix, mode_acceleration, propagate, tip_rounding, tip_state
+from contact.flight.motion import damped_frequency
 from contact.laws import NewtonRestitution
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from contact.compiled import kernel
-from contact.flight import Motion, mode_flow
-from contact.lanes import LANES, aligned, next_modes, next_order, weighted_rows
-from contact.modal_flow import U, V, flow_rows, load_state, mode_rows, scalars_of
+from contact.flight.modal_flow import START_U, START_V, U, V, flow, load_state, mode_flow, new_flight
+from contact.flight.motion import Motion, motion_of
+from contact.laws import NewtonRestitution
+from contact.vector_loops import LANES, aligned, next_modes, next_order, weighted_rows
 
 
 @kernel
@@ -76,13 +77,9 @@ def ladder(n: int, damping: float, load: float = 0.0) -> Motion:
     omega = 154.0 * (2.0 * np.arange(1.0, n + 1.0) - 1.0) ** 2
     omega[0] = 0.0 if load else omega[0]
     decay = damping * omega
-    pairs = np.sqrt(np.abs(omega**2 - (decay / 2) ** 2))
-    zeros = np.zeros(n)
-    return Motion(
-        omega=omega, decay=decay, damped=pairs, damped_low=zeros, phi=1.0 + zeros, load=load * (omega == 0),
-        sine=zeros, cosine=zeros, offset=zeros, tip_sine=0.0, tip_cosine=0.0, level=-0.01, drive=135.0,
-        period=math.tau / 135.0, gap=0.01, compliance=float(n), law=0, number0=0.5, number1=0.0,
-        table=np.empty((0, 0)),
+    return motion_of(
+        omega, decay, np.ones(n), law=NewtonRestitution(local_restitution=0.5), gap=0.01, drive=135.0,
+        period=math.tau / 135.0, load=load * (omega == 0),
     )
 
 
@@ -93,16 +90,14 @@ def ladder(n: int, damping: float, load: float = 0.0) -> Motion:
 def test_modes_carried_side_by_side_are_those_carried_one_by_one(modes, damping, load, longest):
     """Also where they are not carried side by side: over-damped or loaded modes, phases beyond 5e5."""
     motion, generator = ladder(modes, damping, load), np.random.default_rng(modes)
-    fixed, (numbers, room) = scalars_of(motion), mode_rows(motion)
+    room = new_flight(motion)
     size = np.maximum(motion.omega, 1.0)
     u, v = generator.standard_normal(modes) / size, generator.standard_normal(modes)
     load_state(room, u, v)
     for t in longest * 10 ** generator.uniform(-6, 0, 40):
-        flow_rows(fixed, numbers, room, 0, room.shape[1], t)
+        flow(motion, room[START_U], room[START_V], 0, room.shape[1], t, room[U], room[V])
         for k in range(modes):
-            x, y = mode_flow(
-                motion.omega[k], motion.decay[k], motion.damped[k], 0.0, motion.load[k], u[k], v[k], t
-            )
+            x, y = mode_flow(motion.modes, k, u[k], v[k], t)
             scale = abs(v[k]) + size[k] * abs(u[k]) + abs(motion.load[k]) * t
             assert abs(room[U, k] - x) * size[k] <= 1e-15 * scale
             assert abs(room[V, k] - y) <= 1e-15 * scale

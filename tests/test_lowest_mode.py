@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from beam import ModalModel
-from contact.crossing import CROSSES, FREE, first_crossing
 from contact.drive import HarmonicDrive
-from contact.flight import Motion
+from contact.flight.bounds import CLOSE, LowestMode, free_from, free_until, lowest_mode, without_others
+from contact.flight.crossing import CROSSES, FREE, first_crossing
+from contact.flight.modal_flow import load_state, new_flight, tip_rounding
+from contact.flight.motion import Motion
 from contact.laws import NewtonRestitution
-from contact.lowest_mode import CLOSE, LowestMode, free_from, free_until, lowest_mode, without_others
-from contact.modal_flow import load_state, mode_rows, rounding_of, scalars_of
 from contact.oscillator import ImpactOscillator
 from contact.stop import Stop
 
@@ -76,13 +76,12 @@ def beam(generator: np.random.Generator, modes: int) -> tuple[Motion, np.ndarray
 
 def claims(motion: Motion, base: float, u: np.ndarray, v: np.ndarray) -> tuple[LowestMode, tuple]:
     """What can be claimed about the flight from `base` to the strobe, and the flight for the kernels."""
-    fixed = scalars_of(motion)
-    numbers, room = mode_rows(motion)
-    load_state(room, u, v)
+    flight = new_flight(motion)
+    load_state(flight, u, v)
     rest = float(np.sum(np.abs(motion.phi[1:]) * np.hypot(u[1:], v[1:] / motion.omega[1:])))
-    margin = rounding_of(fixed, numbers, room)
-    lowest = lowest_mode(fixed, numbers, room, base, motion.period - base, rest, margin)
-    return lowest, (fixed, numbers, room)
+    margin = tip_rounding(motion, u, v)
+    lowest = lowest_mode(motion, flight, base, motion.period - base, rest, margin)
+    return lowest, (motion, flight)
 
 
 @pytest.mark.parametrize("modes, cases", [(1, 300), (2, 300), (4, 100), (9, 10)])
@@ -118,10 +117,10 @@ def test_a_planted_touch_is_found_and_a_planted_miss_settled(modes, planted):
         for sign in (1.0, -1.0):
             moved = motion._replace(level=motion.level - top + sign * planted * GAP)
             lowest, flight = claims(moved, 0.0, u, v)
-            if lowest.room == 0.0 or Tip(moved, 0.0, u, v)(0.0) > -0.1 * GAP:
+            if lowest.slack == 0.0 or Tip(moved, 0.0, u, v)(0.0) > -0.1 * GAP:
                 continue
             s = free_until(*flight, lowest, 0.0, moved.period)
-            outcome, root = first_crossing(moved, 0.0, u, v, moved.period, 0, np.empty(modes + 1))
+            outcome, root = first_crossing(moved, 0.0, u, v, moved.period, 0)
             if sign > 0.0:
                 touched += 1
                 assert s < moved.period

@@ -26,10 +26,9 @@ from contact.laws import (
     NewtonRestitution,
 )
 from contact.oscillator import ImpactOscillator
-from contact.series import CONTACT, INSIDE, OUTSIDE, SUSTAINED
 from contact.simulation import simulate
 from contact.stop import Stop
-from contact.trajectory import State, Trajectory
+from contact.trajectory import CONTACT, INSIDE, OUTSIDE, SUSTAINED, State, Trajectory
 from studies.instruments import peers
 from studies.instruments.peers import PEERS, HeyokaTaylor, ScipyMethod, SundialsCvode, available, lineup
 from studies.instruments.peers.equations import jacobian, packed, rates, surfaces

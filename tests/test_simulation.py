@@ -13,10 +13,10 @@ from beam import ModalModel, single_mode
 from contact.drive import HarmonicDrive
 from contact.errors import Chatter, ContactTooStiff, UnresolvedCrossing
 from contact.laws import ContactLaw, LinearContact, NewtonRestitution
-from contact.newton import accumulation_time, lowest_hop
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
+from contact.touch.newton import accumulation_time, lowest_hop
 from contact.trajectory import Regime, State, Trajectory
 
 OMEGA = 2 * np.pi * 24.5 * np.array([1.0, 6.1, 15.4, 29.0, 47.0, 70.0])

@@ -10,35 +10,27 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from beam import ModalModel, SuspiciousValue, single_mode
-from contact.crossing import FREE, first_crossing
+from beam import ModalModel, single_mode
+from contact import stroboscope
 from contact.drive import HarmonicDrive
 from contact.errors import ContactError
-from contact.flight import EPS, Motion, tip_rounding, tip_state
-from contact.impact_log import IN, INTEGERS, KIND, LOG_FIELDS, LOGGED, ORDER, REGIME
-from contact.integrators import orbit_batch
-from contact.integrators.event_loop import DONE, advance
-from contact.integrators.exact_run import deviations
-from contact.integrators.orbit_lanes import LANES
-from contact.integrators.single_mode_loop import strobed_motion
-from contact.integrators.strobe_nodes import flow_over, nodes_at, nodes_of, short_flow, tip_near
-from contact.integrators.struck_period import (
-    SMALL,
-    carried,
-    free_near,
-    guessed,
-    is_settled,
-    loop_numbers,
-    steady_near,
-    tip_derivatives,
-    zero_of,
-)
+from contact.event_loop import DONE, FAILED_CHATTER, advance
+from contact.exact_run import start_of
+from contact.flight.crossing import FREE, first_crossing
+from contact.flight.elementary import EPS
+from contact.flight.modal_flow import tip_rounding, tip_state
+from contact.flight.motion import Motion
 from contact.laws import DelayedRestitution, HertzContact, NewtonRestitution
 from contact.oscillator import ImpactOscillator
+from contact.recorder import LOG, strobes_only
 from contact.simulation import simulate
+from contact.single_mode.loop import one_mode_periods
+from contact.single_mode.one_impact import guessed, is_settled, one_impact, zero_of
+from contact.single_mode.period_table import SMALL, flow_over, period_table, short_flow, table_at, tip_near
 from contact.stop import Stop
+from contact.strobed_motion import strobed_system
 from contact.stroboscope import StroboscopicMap, strobed_orbits
-from contact.trajectory import State
+from contact.trajectory import IMPACT, State
 
 GAP = 0.01
 OMEGA = 2.0 * math.pi / 40.80e-3
@@ -71,32 +63,26 @@ class Period:
     """One drive period after the other, by both loops from the same deviation."""
 
     def __init__(self, single: ImpactOscillator) -> None:
-        self.motion: Motion = single.motion()
-        nodes = nodes_of(self.motion)
-        assert nodes is not None
-        self.nodes, self.numbers = nodes, loop_numbers(self.motion, nodes)
-        self.log = np.empty((110_000, LOG_FIELDS))
-        self.log_state = np.empty((110_000, 4))
+        self.system = strobed_system(single)
+        self.motion, self.table = self.system.motion, self.system.table
+        assert self.table is not None
+        self.log, self.log_state = np.empty(110_000, dtype=LOG), np.empty((110_000, 4))
 
-    def fast(self, u, v, integers, floats):
+    def fast(self, u, v, runs):
         """Status, impacts, periods searched and periods left; the arrays are overwritten."""
         counts = np.zeros(1, dtype=np.int64)
-        status, _, searched, left = strobed_motion(
-            self.motion, self.nodes, self.numbers, u, v, integers, floats, 0, 1, np.zeros(2), np.ones(2),
-            np.empty((1, 2)), counts,
+        status, searched, left = one_mode_periods(
+            self.table, self.system, u, v, runs, np.empty((1, 2)), counts
         )
         return status, int(counts[0]), searched, left
 
-    def general(self, u, v, integers, floats):
+    def general(self, u, v, runs):
         """Status, impacts and approach velocities."""
         counts = np.zeros(1, dtype=np.int64)
-        integers[LOGGED] = 0
-        status, _ = advance(
-            self.motion, u, v, integers, floats, 0, 1, 0.0, np.empty((1, 2)), counts, self.log,
-            self.log_state, np.empty(0, dtype=np.int64), np.empty(0), np.empty((0, 2)),
-        )
-        rows = self.log[: integers[LOGGED]]
-        return status, int(counts[0]), rows[rows[:, KIND] == 0, IN]
+        recorder = strobes_only(np.empty((1, 2)), counts)._replace(log=self.log, log_state=self.log_state)
+        status = advance(self.motion, u, v, runs, int(runs[0]["period"]) + 1, 0.0, recorder)
+        rows = self.log[: recorder.marks[0]["logged"]]
+        return status, int(counts[0]), rows["approach"][rows["kind"] == IMPACT]
 
     def size(self, u, v) -> float:
         """Deviation in the norm whose square never grows [m]."""
@@ -111,19 +97,19 @@ class Period:
         greatest acceleration.
         """
         m = self.motion
-        integers, floats = np.zeros(INTEGERS, dtype=np.int64), np.zeros(5)
+        runs = at_a_strobe()
         worst, impacts, searches, lefts = 0.0, 0, 0, 0
         for _ in range(periods):
-            ours = (u.copy(), v.copy(), integers.copy(), floats.copy())
+            ours = (u.copy(), v.copy(), runs.copy())
             start = self.size(u, v)
-            status, count, speeds = self.general(u, v, integers, floats)
+            status, count, speeds = self.general(u, v, runs)
             mine, mine_count, searched, left = self.fast(*ours)
             assert mine == status
             if status != DONE:
                 break
             assert mine_count == count
-            assert ours[2][REGIME] == integers[REGIME] and ours[2][ORDER] == integers[ORDER]
-            scale = max(abs(m.level) + self.nodes.amplitude, start, self.size(u, v))
+            assert all(ours[2][0][name] == runs[0][name] for name in ("regime", "order", "period", "clock"))
+            scale = max(abs(m.level) + math.hypot(m.tip_sine, m.tip_cosine), start, self.size(u, v))
             fastest = max(m.drive, m.omega[0], m.decay[0])
             growth = np.sum(np.log1p((1.0 + m.number0) * fastest * scale / speeds))
             if not left and growth < 25.0:
@@ -135,10 +121,14 @@ class Period:
         return worst, impacts, searches, lefts
 
 
-def start_of(single: ImpactOscillator) -> tuple[np.ndarray, np.ndarray]:
+def at_a_strobe() -> np.ndarray:
+    """A run that starts at a strobe, off the wall."""
+    return start_of(oscillator().motion(), State.rest(1), 0, 0.0)[2]
+
+
+def rest_of(single: ImpactOscillator) -> tuple[np.ndarray, np.ndarray]:
     """Deviation of the spring at rest."""
-    u, v, _integers, _floats = deviations(single.motion(), State.rest(1), 0.0)
-    return u, v
+    return start_of(single.motion(), State.rest(1), 0, 0.0)[:2]
 
 
 ROUNDINGS = 40.0
@@ -150,7 +140,7 @@ motion in each of a flight's parts; the worst seen in two million periods is 11.
 @pytest.mark.parametrize("frequency", FREQUENCIES)
 def test_every_period_is_that_of_the_general_loop(frequency, tau):
     single = oscillator(frequency, tau=tau)
-    worst, impacts, _searched, _left = Period(single).compare(*start_of(single), 400)
+    worst, impacts, _searched, _left = Period(single).compare(*rest_of(single), 400)
     assert worst < ROUNDINGS
     assert impacts > 20
 
@@ -160,7 +150,7 @@ def test_every_period_is_that_of_the_general_loop(frequency, tau):
 @pytest.mark.parametrize("phi, participation", [(1.0, None), (-1.3, None), (2.7, -0.4)])
 def test_so_it_is_with_any_damping_sign_of_the_mode_and_amplitude(damping, excess, phi, participation):
     single = oscillator(21.5, decay=DAMPINGS[damping], excess=excess, phi=phi, participation=participation)
-    worst, impacts, searched, _left = Period(single).compare(*start_of(single), 250)
+    worst, impacts, searched, _left = Period(single).compare(*rest_of(single), 250)
     assert worst < ROUNDINGS
     assert impacts > 0 or excess < 0 or damping == "over-damped" or excess < 1e-3
     if excess == 3.0:
@@ -171,7 +161,7 @@ def test_so_it_is_with_any_damping_sign_of_the_mode_and_amplitude(damping, exces
 def test_stays_on_the_wall_are_those_of_the_general_loop(tau, excess):
     """Low drive frequency and a large amplitude press the tip against the wall."""
     single = oscillator(6.0, tau=tau, decay=20.0, excess=excess)
-    worst, impacts, _searched, left = Period(single).compare(*start_of(single), 100)
+    worst, impacts, _searched, left = Period(single).compare(*rest_of(single), 100)
     assert worst < ROUNDINGS
     assert left > 50 and impacts > 50
 
@@ -231,16 +221,16 @@ def test_the_steady_motion_touches_at_every_overshoot(frequency, power):
         assert orbit.impacts[0] == (1 if side > 0 else 0)
 
 
-def highest(motion: Motion, nodes, u: float, v: float) -> float:
+def highest(motion: Motion, table, u: float, v: float) -> float:
     """Highest tip displacement of a period without a stop, by 2000 samples and Newton's iteration [m]."""
     times = np.linspace(0.0, motion.period, 2001)
-    flow = [np.array([*flow_over(nodes.mode, nodes.rows, t, u, v)]) for t in times]
+    flow = [np.array([*flow_over(table.mode, table.rows, t, u, v)]) for t in times]
     y = [tip_state(motion, t, state[:1], state[1:])[0] for t, state in zip(times, flow, strict=True)]
     k = int(np.argmax(y))
     t = times[k]
     best = -math.inf
     for _ in range(8):
-        un, vn = flow_over(nodes.mode, nodes.rows, t, u, v)
+        un, vn = flow_over(table.mode, table.rows, t, u, v)
         height, rate, acceleration = tip_state(motion, t, np.array([un]), np.array([vn]))
         best = max(best, height)
         if not 0 < k < 2000 or acceleration >= 0:
@@ -261,7 +251,7 @@ def test_planted_overshoots_are_found_and_none_is_invented(damping, size):
         motion = single.motion()
         u = rng.normal() * size * GAP
         v = rng.normal() * size * GAP * motion.omega[0]
-        far = nodes_of(motion)
+        far = period_table(motion)
         assert far is not None
         peak = highest(motion, far, u, v) + GAP
         begins = motion.tip_cosine + u
@@ -276,7 +266,7 @@ def test_planted_overshoots_are_found_and_none_is_invented(damping, size):
                     model=single.model, drive=drive, stop=replace(single.stop, gap=gap)
                 )
                 period = Period(here)
-                fresh = (np.array([u]), np.array([v]), np.zeros(INTEGERS, dtype=np.int64), np.zeros(5))
+                fresh = (np.array([u]), np.array([v]), at_a_strobe())
                 status, impacts, searched, left = period.fast(*fresh)
                 assert status == DONE
                 assert (impacts > 0) == (side > 0), (power, side, gap)
@@ -307,13 +297,11 @@ def test_what_is_called_free_is_free(frequency, damping, excess, u, v, flipped):
     height = tip_state(motion, 0.0, un, vn)[0]
     if height >= -tip_rounding(motion, un, vn):
         un -= height + 1e-6 * GAP
-    outcome, _s = first_crossing(motion, 0.0, un, vn, motion.period, 0, np.empty(2))
-    status, impacts, _searched, left = period.fast(
-        un.copy(), vn.copy(), np.zeros(INTEGERS, dtype=np.int64), np.zeros(5)
-    )
+    outcome, _s = first_crossing(motion, 0.0, un, vn, motion.period, 0)
+    status, impacts, _searched, left = period.fast(un.copy(), vn.copy(), at_a_strobe())
     if status == DONE and not left:
         assert (impacts == 0) == (outcome == FREE)
-        assert (impacts == 0) == (highest(motion, period.nodes, un[0], vn[0]) < 0)
+        assert (impacts == 0) == (highest(motion, period.table, un[0], vn[0]) < 0)
 
 
 @pytest.mark.parametrize("damping", ["strong", "over-damped"])
@@ -328,9 +316,8 @@ def test_a_peak_at_the_strobe_hides_no_crossing_of_the_period_before(damping):
         u = -(motion.level + motion.tip_cosine) - 10 ** rng.uniform(-6, -1.5) * GAP
         v = (rng.uniform(-0.3, 0.6)) * GAP * motion.omega[0]
         arrays = np.array([u]), np.array([v])
-        outcome, _s = first_crossing(motion, 0.0, *arrays, motion.period, 0, np.empty(2))
-        fresh = np.zeros(INTEGERS, dtype=np.int64), np.zeros(5)
-        status, impacts, _searched, _left = period.fast(*arrays, *fresh)
+        outcome, _s = first_crossing(motion, 0.0, *arrays, motion.period, 0)
+        status, impacts, _searched, _left = period.fast(*arrays, at_a_strobe())
         assert status == DONE
         assert (impacts == 0) == (outcome == FREE)
         free += impacts == 0
@@ -343,26 +330,13 @@ def test_a_peak_at_the_strobe_hides_no_crossing_of_the_period_before(damping):
 
 def struck(period: Period, u: float, v: float):
     """Whether one evaluation settles the crossing; its time, the slope, and the deviation at the strobe."""
-    n, rows = period.numbers, period.nodes.rows
-    p, q = n.g0 * u + n.g1 * v, n.g2 * u + n.g3 * v
-    t = guessed(n, p, q, n.above + p)
+    n = period.table.mode
+    p, q = (flow[0] * u + flow[1] * v for flow in (n.peak_flow[:2], n.peak_flow[2:]))
+    t = guessed(n, p, q)
     if not 0.0 <= t <= n.period:
         return False, t, 0.0, u, v
-    k = int(t * n.per_second + 0.5)
-    x = t - k * n.stretch
-    a, b, c, d = rows[k, 2:]
-    u0, v0, s0, s1 = free_near(n, x, a * u + b * v, c * u + d * v)
-    y = tip_derivatives(n, u0, v0, *steady_near(n, x, rows[k, 0], rows[k, 1]))
-    step, rest, approach = zero_of(*y)
-    ui, vi = carried(n, u0, v0, step)
-    s0, s1 = carried(n, s0, s1, -step)
-    jump = n.kick * approach
     rho = math.sqrt(n.square_u * u * u + n.square_v * v * v)
-    settled = is_settled(n, rho, ui, vi + jump, y[1], step, rest, approach)
-    j = rows.shape[0] - 1 - k
-    un = n.f0 * u + n.f1 * v + jump * (rows[j, 2] * s0 + rows[j, 3] * s1)
-    vn = n.f2 * u + n.f3 * v + jump * (rows[j, 4] * s0 + rows[j, 5] * s1)
-    return settled, t + step, approach, un, vn
+    return one_impact(n, period.table.rows, t, rho, u, v)
 
 
 @pytest.mark.parametrize("tau", [0.0, 0.1, 1.0])
@@ -375,7 +349,7 @@ def test_a_crossing_settled_at_once_is_the_zero_of_the_closed_form(damping, tau)
             rng.uniform(18.0, 24.4), decay=DAMPINGS[damping], tau=tau, excess=10 ** rng.uniform(-6, -0.5)
         )
         period = Period(single)
-        motion, n = period.motion, period.numbers
+        motion, n = period.motion, period.table.mode
         size, turn = 0.4 * GAP * rng.uniform(), rng.uniform(0.0, 2.0 * math.pi)
         u, v = size * math.cos(turn), size * math.sin(turn) * motion.omega[0]
         settled, t, approach, un, vn = struck(period, u, v)
@@ -383,13 +357,13 @@ def test_a_crossing_settled_at_once_is_the_zero_of_the_closed_form(damping, tau)
             others += 1
             continue
         settled_ones += 1
-        ui, vi = flow_over(period.nodes.mode, period.nodes.rows, t, u, v)
+        ui, vi = flow_over(n, period.table.rows, t, u, v)
         height, slope, _a = tip_state(motion, t, np.array([ui]), np.array([vi]))
         assert abs(height) < 2e-15 * GAP + SMALL * n.margin
         assert slope == pytest.approx(approach, rel=1e-12, abs=1e-13 * GAP * motion.drive)
         # the impact, and a flight to the end of the period
         vi -= (1.0 + tau) * approach / motion.phi[0]
-        after = flow_over(period.nodes.mode, period.nodes.rows, n.period - t, ui, vi)
+        after = flow_over(n, period.table.rows, n.period - t, ui, vi)
         assert period.size(np.array([after[0] - un]), np.array([after[1] - vn])) < 1e-14 * GAP
     assert settled_ones > 80 and others > 20
 
@@ -397,7 +371,7 @@ def test_a_crossing_settled_at_once_is_the_zero_of_the_closed_form(damping, tau)
 def test_what_one_evaluation_cannot_settle_is_not_taken():
     """A guess far off, from a fifth derivative that the guess does not know, and a bare graze."""
     period = Period(oscillator(21.5, excess=0.02))
-    n = period.numbers
+    n = period.table.mode
     assert 0.0 < n.reach * n.drive < 1e-3
     height, slope = -1e-3 * GAP, 0.05 * GAP * n.drive
     y = height, slope, -n.crest, 0.0, n.crest * n.drive**2
@@ -407,7 +381,7 @@ def test_what_one_evaluation_cannot_settle_is_not_taken():
     tiny = math.sqrt(3.9 * n.crest * n.margin)
     assert not is_settled(n, 0.0, 0.0, 0.0, tiny, 0.0, 0.0, tiny)
     assert is_settled(n, 0.0, 0.0, 0.0, 1.1 * tiny, 0.0, 0.0, 1.1 * tiny)
-    assert not is_settled(n, 0.0, math.sqrt(n.most / n.square_u), 0.0, slope, 0.0, 0.0, slope)
+    assert not is_settled(n, 0.0, 1.001 * n.most / math.sqrt(n.square_u), 0.0, slope, 0.0, 0.0, slope)
     for wrong in (math.nan, -slope):
         assert not is_settled(n, 0.0, 0.0, 0.0, wrong, 0.0, 0.0, wrong)
 
@@ -416,12 +390,12 @@ def test_what_one_evaluation_cannot_settle_is_not_taken():
 def test_nearly_every_impact_takes_one_evaluation(frequency):
     """What the loop of one mode is fast by: no more than one in ten of its impacts needs an iteration."""
     period = Period(oscillator(frequency, excess=0.02))
-    u, v = start_of(oscillator(frequency))
-    integers, floats = np.zeros(INTEGERS, dtype=np.int64), np.zeros(5)
+    u, v = rest_of(oscillator(frequency))
+    runs = at_a_strobe()
     impacts = at_once = 0
     for _ in range(600):
         settled, *_rest = struck(period, u[0], v[0])
-        _status, count, _searched, _left = period.fast(u, v, integers, floats)
+        _status, count, _searched, _left = period.fast(u, v, runs)
         impacts += count > 0
         at_once += bool(settled) and count > 0
     assert impacts > 60
@@ -435,12 +409,12 @@ def test_nearly_every_impact_takes_one_evaluation(frequency):
 @pytest.mark.parametrize("frequency", [3.0, 22.2])
 def test_the_motion_between_nodes_is_the_closed_form(frequency, damping):
     motion = oscillator(frequency, decay=DAMPINGS[damping]).motion()
-    nodes = nodes_of(motion)
-    assert nodes is not None
+    table = period_table(motion)
+    assert table is not None
     rng = np.random.default_rng(3)
     u, v = 0.3 * GAP, -0.2 * GAP * motion.omega[0]
     for t in rng.uniform(0.0, motion.period, 60):
-        un, vn, swing, y0, y1, y2 = tip_near(nodes.mode, nodes.rows, 0, u, v, t)
+        un, vn, swing, y0, y1, y2 = tip_near(table.mode, table.rows, 0, u, v, t)
         # the closed form through exponentials of complex numbers
         root = np.sqrt(complex(motion.decay[0] ** 2 / 4 - motion.omega[0] ** 2))
         fast, slow = -motion.decay[0] / 2 + root, -motion.decay[0] / 2 - root
@@ -458,25 +432,26 @@ def test_the_motion_between_nodes_is_the_closed_form(frequency, damping):
         turned = motion.drive * t
         rate = motion.drive * (motion.tip_sine * math.cos(turned) - motion.tip_cosine * math.sin(turned))
         assert y1 == pytest.approx(rate + free[1], abs=tiny * fastest)
-    step = 0.37 * nodes.mode.stretch
-    there = short_flow(nodes.mode, step, u, v)
-    assert short_flow(nodes.mode, -step, *there) == pytest.approx((u, v), rel=1e-13)
+    step = 0.37 * table.mode.stretch
+    there = short_flow(table.mode, step, u, v)
+    assert short_flow(table.mode, -step, *there) == pytest.approx((u, v), rel=1e-13)
 
 
 @pytest.mark.parametrize("factor", [0.3, 1.0, 7.0])
-def test_nodes_of_another_amplitude_are_scaled_ones(factor):
+def test_the_table_of_another_amplitude_is_a_scaled_one(factor):
     single = oscillator(21.5)
     assert single.drive is not None
     other = single.with_amplitude(factor * single.drive.amplitude).motion()
-    nodes, wanted = nodes_of(single.motion()), nodes_of(other)
-    assert nodes is not None and wanted is not None
-    found = nodes_at(nodes, factor, other.period)
+    table, wanted = period_table(single.motion()), period_table(other)
+    assert table is not None and wanted is not None
+    found = table_at(table, other, factor)
     assert found.rows == pytest.approx(wanted.rows, rel=1e-14, abs=1e-16 * GAP)
     assert found.level == pytest.approx(wanted.level, rel=1e-14, abs=1e-16 * GAP)
-    assert found.amplitude == pytest.approx(wanted.amplitude, rel=1e-15)
-    assert found.peak == pytest.approx(wanted.peak, rel=1e-14) and found.inner == wanted.inner
+    for name, value in wanted.mode._asdict().items():
+        assert getattr(found.mode, name) == pytest.approx(value, rel=1e-13), name
     # far beyond any amplitude the place of the peak is not good enough
-    assert not nodes_at(nodes, 1e7, other.period).inner
+    far = single.with_amplitude(1e7 * single.drive.amplitude).motion()
+    assert wanted.mode.most > 0 > table_at(table, far, 1e7).mode.most
 
 
 # --- when it is used ---------------------------------------------------------------------------------------
@@ -484,26 +459,26 @@ def test_nodes_of_another_amplitude_are_scaled_ones(factor):
 
 def test_it_is_offered_to_one_mode_under_newtons_law_only():
     single = oscillator()
-    assert StroboscopicMap(oscillator=single)._nodes is not None
+    assert period_table(single.motion()) is not None
     for law in (HertzContact(stiffness=1e9), DelayedRestitution(restitution=0.1, delay=1e-3)):
         other = replace(single, stop=Stop(gap=GAP, law=law))
-        assert StroboscopicMap(oscillator=other)._nodes is None
+        assert period_table(other.motion()) is None
     with pytest.warns(SuspiciousValue, match="frequency of the drive"):
         fast = replace(single, drive=HarmonicDrive(frequency=0.2, amplitude=0.01))
-    assert nodes_of(fast.motion()) is None
+    assert period_table(fast.motion()) is None
     two = ModalModel(
         omega=np.array([150.0, 900.0]), decay_rate=np.ones(2), phi=np.ones(2), participation=np.ones(2)
     )
-    assert nodes_of(replace(single, model=two).motion()) is None
+    assert period_table(replace(single, model=two).motion()) is None
     loose = single_mode(free_period=40.80e-3, decay_rate=3.56)
     loose = replace(loose, omega=np.zeros(1))
-    assert nodes_of(ImpactOscillator(model=loose, stop=single.stop).motion()) is None
+    assert period_table(ImpactOscillator(model=loose, stop=single.stop).motion()) is None
 
 
 def test_a_constant_load_moves_the_mean_place():
     single = replace(oscillator(22.2, excess=0.0), load=np.array([0.03 * GAP * OMEGA**2]))
     strobed = StroboscopicMap(oscillator=single)
-    assert strobed._nodes is not None
+    assert period_table(single.motion()) is not None
     ours = strobed.orbit(strobed.steady(), 300)
     points, counts = general_orbit(single, strobed.steady(), 300)
     assert counts.sum() > 10
@@ -537,12 +512,8 @@ MIXED = (
 )
 
 
-@pytest.mark.parametrize("alone", [1, 7, orbit_batch.ALONE])
-def test_an_orbit_is_the_same_in_any_company(monkeypatch, alone):
-    """Whatever the others do and wherever it leaves the lanes; the batch takes two tasks and more."""
-    monkeypatch.setattr(orbit_batch, "ALONE", alone)
+def test_an_orbit_is_the_same_in_any_company():
     maps = [StroboscopicMap(oscillator=single) for single in MIXED]
-    assert len(maps) > LANES
     starts = [State.rest(1) if i % 2 else strobed.steady() for i, strobed in enumerate(maps)]
     impacts = 0
     for workers in (1, 3):
@@ -556,17 +527,6 @@ def test_an_orbit_is_the_same_in_any_company(monkeypatch, alone):
             assert (wanted.end.time, wanted.end.regime) == (orbit.end.time, orbit.end.regime)
             impacts += int(orbit.impacts.sum())
     assert impacts > 3000
-
-
-def test_lanes_carry_settled_orbits_to_the_end_by_themselves(monkeypatch):
-    """On p_m orbits no period is given to the single loop."""
-    calls = []
-    monkeypatch.setattr(orbit_batch, "strobed_motion", lambda *arguments: calls.append(arguments))
-    maps = [StroboscopicMap(oscillator=oscillator(22.2, excess=0.02 + 1e-4 * i)) for i in range(LANES)]
-    starts = [strobed.orbit(strobed.steady(), 1000).end for strobed in maps]
-    orbits = strobed_orbits(maps, starts, 1000, workers=1)
-    assert calls == []
-    assert all(orbit.impacts.sum() == 200 for orbit in orbits)
 
 
 def test_other_oscillators_may_be_in_the_batch():
@@ -593,15 +553,15 @@ def test_failures_are_those_of_the_general_loop():
 
 def test_the_first_failure_in_their_order_ends_a_batch(monkeypatch):
     """A failure of the general loop, put in by hand: it does not occur with one mode."""
-    compiled = orbit_batch.strobed_motion
+    compiled = stroboscope.strobed_motion
 
-    def failing(motion, nodes, numbers, u, v, integers, floats, first, count, *rest):
-        if motion.number0 == 0.5:
-            floats[0] = 0.25 * motion.period
-            return 2, first + 3, 0, 0  # FAILED_CHATTER
-        return compiled(motion, nodes, numbers, u, v, integers, floats, first, count, *rest)
+    def failing(system, u, v, runs, points, counts):
+        if system.motion.number0 == 0.5:
+            runs["clock"] = 0.25 * system.motion.period
+            return FAILED_CHATTER
+        return compiled(system, u, v, runs, points, counts)
 
-    monkeypatch.setattr(orbit_batch, "strobed_motion", failing)
+    monkeypatch.setattr(stroboscope, "strobed_motion", failing)
     slow = [oscillator(6.0, tau=tau, decay=20.0, excess=3.0) for tau in (0.1, 0.5, 0.5)]
     maps = [StroboscopicMap(oscillator=single) for single in slow]
     with pytest.raises(ContactError, match="accumulate") as caught:

@@ -9,15 +9,12 @@ and so is a step beyond its limit of stability (``StepTooLarge``).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
-from contact.flight import Motion
+from contact.flight.motion import Motion
 from contact.laws import DELAYED, HERTZ, LINEAR, NEWTON
 from contact.oscillator import ImpactOscillator
-from contact.trajectory import State, Trajectory
+from contact.trajectory import Run, Trajectory
 
 __all__ = ["Integrator", "Run"]
 
@@ -27,36 +24,6 @@ LAW_NAMES = {
     LINEAR: "LinearContact",
     HERTZ: "HertzContact or HuntCrossley",
 }
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Run:
-    """From where to where, and what is wanted on the way.
-
-    Parameters
-    ----------
-    start : State
-    length : float
-        Duration [s].
-    first, last : int
-        Numbers of the drive periods in which the run starts and ends.
-    clock, clock_end : float
-        Times since the strobes that begin them [s].
-    times : ndarray, shape (n_times,)
-        Times at which the state is wanted [s].
-    sample_period, sample_clock : ndarray, shape (n_times,)
-        The same as number of the drive period and time since its strobe [s].
-    """
-
-    start: State
-    length: float
-    first: int
-    last: int
-    clock: float
-    clock_end: float
-    times: np.ndarray
-    sample_period: np.ndarray
-    sample_clock: np.ndarray
 
 
 class Integrator:

@@ -5,8 +5,8 @@ solutions for the motion between impacts" (letter 1996, note [11]): positions at
 period and at the turning points that their velocities betray.  Everything but the search is that of the exact
 methods, so that the motion is exact to rounding as long as no crossing is missed.  One is missed when the tip
 turns twice between two samples and is off the stop at both; with one mode few samples do, with the ringing of
-N modes k has to follow the highest of them (``contact.integrators.sampled_search``), and nothing tells when
-it was too small.  ``EventDriven``, ``PiecewiseLinear`` and ``ContactSeries`` prove that they miss none.
+N modes k has to follow the highest of them (``contact.flight.sampled_crossing``), and nothing tells when
+it was too small.  ``Exact`` proves that it misses none.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from numbers import Integral
 from typing import ClassVar
 
 from beam.parameters import shown
-from contact.integrators.exact_run import exact_trajectory
-from contact.integrators.method import Integrator, Run
-from contact.laws import DELAYED, HERTZ, LINEAR, NEWTON
+from contact.exact_run import exact_trajectory
+from contact.integrators.exact import Exact
+from contact.integrators.method import Integrator
 from contact.oscillator import ImpactOscillator
-from contact.trajectory import Trajectory
+from contact.trajectory import Run, Trajectory
 
 __all__ = ["SampledFlight"]
 
@@ -43,7 +43,7 @@ class SampledFlight(Integrator):
     points: int
     name: ClassVar[str] = "sampled-flight"
     order: ClassVar[float] = math.inf
-    laws: ClassVar[tuple[int, ...]] = (NEWTON, DELAYED, LINEAR, HERTZ)
+    laws: ClassVar[tuple[int, ...]] = Exact.laws
     certified: ClassVar[bool] = False
     accuracy: ClassVar[float] = 1e-12
     limit: ClassVar[str] = "none; misses crossings when the tip turns twice between two samples"

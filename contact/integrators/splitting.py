@@ -40,14 +40,14 @@ from typing import ClassVar
 
 import numpy as np
 
-from contact.flight import Motion
-from contact.integrators.grid_run import check_step, grid_trajectory
-from contact.integrators.method import Integrator, Run
+from contact.flight.motion import Motion, motion_of
+from contact.integrators.fixed_step import check_step, fixed_step_run
+from contact.integrators.method import Integrator
 from contact.integrators.splitting_limit import closed_form_limit, first_instability, spectral_radius
-from contact.integrators.splitting_step import Composition, march
-from contact.laws import HERTZ, LINEAR
+from contact.integrators.splitting_step import Composition, march, split_of
+from contact.laws import HERTZ, LINEAR, LinearContact
 from contact.oscillator import ImpactOscillator
-from contact.trajectory import Trajectory
+from contact.trajectory import Run, Trajectory
 
 __all__ = ["COMPOSITIONS", "Splitting"]
 
@@ -68,13 +68,9 @@ COMPOSITIONS = {2: STRANG, 4: BLANES_MOAN}
 @lru_cache(maxsize=256)
 def _limit(numbers: bytes, n: int, order: int, step: float, damping: float) -> float:
     """`critical_stiffness`, kept: the search takes some hundredths of a second."""
-    omega, decay, damped, damped_low, phi = np.frombuffer(numbers).reshape(5, n)
-    motion = Motion(
-        omega=omega, decay=decay, damped=damped, damped_low=damped_low, phi=phi, load=np.zeros(n),
-        sine=np.zeros(n), cosine=np.zeros(n), offset=np.zeros(n), tip_sine=0.0, tip_cosine=0.0, level=0.0,
-        drive=0.0, period=1.0, gap=0.0, compliance=float(phi @ phi), law=LINEAR, number0=0.0, number1=damping,
-        table=np.empty((5, 0)),
-    )  # fmt: skip
+    omega, decay, phi = np.frombuffer(numbers).reshape(3, n)
+    law = LinearContact(stiffness=1.0, damping=damping)
+    motion = motion_of(omega, decay, phi, law=law, gap=0.0)
     composition = COMPOSITIONS[order]
     closed = closed_form_limit(motion, step, damping) if order == 2 else None
     if closed is not None:
@@ -123,21 +119,16 @@ class Splitting(Integrator):
         With the dashpot of a linear law; for Hertz's and Hunt and Crossley's laws it is the tangent stiffness
         that counts, and their damping, which raises the limit as a dashpot does, is left out.
         """
-        numbers = np.array([motion.omega, motion.decay, motion.damped, motion.damped_low, motion.phi])
+        numbers = np.array([motion.omega, motion.decay, motion.phi])
         damping = motion.number1 if motion.law == LINEAR else 0.0
-        return _limit(numbers.tobytes(), motion.omega.size, self.order, self.step, damping)
+        return _limit(numbers.tobytes(), motion.size, self.order, self.step, damping)
 
     def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
         """The motion of `run`."""
-        motion, composition = oscillator.motion(), COMPOSITIONS[self.order]
-        critical = math.inf if self.beyond_limit else self.critical_stiffness(motion)
-        return grid_trajectory(
-            oscillator,
-            run,
-            step=self.step,
-            march=lambda _equation, grid, q, v, _carried, steps: march(
-                motion, composition, grid, q, v, run.clock, steps, self.step, critical
-            ),
-            carried=np.empty(0),
-            critical=critical,
-        )
+        motion = oscillator.motion()
+        split = split_of(motion, COMPOSITIONS[self.order])
+        return fixed_step_run(
+            oscillator, run, step=self.step, motion=motion,
+            critical=math.inf if self.beyond_limit else self.critical_stiffness(motion),
+            march=lambda _equation, grid: march(split, grid),
+        )  # fmt: skip

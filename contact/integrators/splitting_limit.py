@@ -51,7 +51,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from contact.flight import Motion, flow_matrix
+from contact.flight.modal_flow import flow_matrix
+from contact.flight.motion import Motion
 from contact.integrators.splitting_step import Composition
 
 __all__ = ["closed_form_limit", "first_instability", "passage", "spectral_radius", "step_matrix"]

@@ -19,8 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam.parameters import require, require_array, require_whole, require_within
-from contact.flight import Motion, damped_frequency, flow_matrix
-from contact.laws import NEWTON
+from contact.flight.modal_flow import flow_matrix
+from contact.flight.motion import Motion, damped_frequency, motion_of
+from contact.laws import NewtonRestitution
 from contact.nordmark import restitution_of
 
 __all__ = ["SINGULAR", "DrivenModes", "modal_flow"]
@@ -174,15 +175,8 @@ class DrivenModes:
 
     def motion(self, amplitude: float) -> Motion:
         """The numbers of the flight between impacts, driven at the base amplitude `amplitude` [m]."""
-        rates = zip(self.omega.tolist(), self.decay_rate.tolist(), strict=True)
-        pairs = [damped_frequency(w, c) for w, c in rates]
-        sine, cosine = amplitude * self.response.real, amplitude * self.response.imag
-        return Motion(
-            omega=np.array(self.omega), decay=np.array(self.decay_rate),
-            damped=np.array([high for high, _ in pairs]), damped_low=np.array([low for _, low in pairs]),
-            phi=np.array(self.phi), load=np.zeros(self.size), sine=sine, cosine=cosine,
-            offset=np.zeros(self.size), tip_sine=float(self.phi @ sine), tip_cosine=float(self.phi @ cosine),
-            level=-float(self.gap), drive=self.angular_frequency, period=1.0 / self.drive_frequency,
-            gap=float(self.gap), compliance=float(self.phi @ self.phi), law=NEWTON,
-            number0=float(self.restitution), number1=0.0, table=np.zeros((5, 0)),
+        return motion_of(
+            self.omega, self.decay_rate, self.phi, gap=self.gap, drive=self.angular_frequency,
+            law=NewtonRestitution(local_restitution=self.restitution), period=1.0 / self.drive_frequency,
+            response=amplitude * self.response,
         )  # fmt: skip

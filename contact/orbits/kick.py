@@ -13,7 +13,7 @@ and the steady motion has to make up the rest of gap and velocity: with p = phi 
 is the square of the steady tip amplitude, so that F/F_g - 1 = A/gap - 1.  The orbit ends (fold) where A(v) is
 smallest.  With Newton's law B is proportional to v and the result exact (``contact.orbits.single_impact``).
 
-``DelayedRestitution`` (one mode, ``contact.waiting``) has its orbits in closed form.  With (p, r) the steady
+``DelayedRestitution`` (one mode, ``contact.touch.delayed``) has its orbits in closed form.  With (p, r) the steady
 tip displacement and velocity at the touch, R their turn by the angle w delta and N the free flow over
 m/f - delta, the tip leaves with the deviation (gap, -tau v) - R (p, r) and comes back with (gap, v) - (p, r):
 
@@ -35,14 +35,14 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from beam.parameters import is_whole, require, require_array, require_kind, require_within, shown
-from contact.crossing import CROSSES, first_crossing
 from contact.errors import NotPeriodic
-from contact.flight import Motion
+from contact.flight.crossing import CROSSES, first_crossing
+from contact.flight.motion import Motion
 from contact.laws import DELAYED
 from contact.orbits.driven_modes import SINGULAR, modal_flow
+from contact.orbits.touch_flow import FLOWN, flow_from_touch
 from contact.oscillator import ImpactOscillator
-from contact.tangent import FLOWN, flow_from_touch
-from contact.waiting import numbers_at
+from contact.touch.delayed import numbers_at
 
 __all__ = ["Kick", "KickFamily", "KickOrbit"]
 
@@ -179,14 +179,12 @@ class KickFamily:
         amplitude, phase = self.drive_at_touch(gap - p, speed - r)
         motion = self.oscillator.with_amplitude(amplitude).motion()
         window = WINDOW * self.oscillator.period
-        envelope = np.empty(n + 1)
         touches = 1
         while True:
             u, v = w[:, 0].copy(), w[:, 1].copy()
             record = np.empty((touches, 4 + 2 * n))
             outcome = flow_from_touch(
-                motion, self.response.real, self.response.imag, phase, u, v, window, touches,
-                np.empty((0, 0)), record,
+                motion, self.response, phase, u, v, window, np.empty((0, 0)), record
             )
             end, u, v = record[-1, 1], record[-1, 4 : 4 + n].copy(), record[-1, 4 + n :].copy()
             if outcome != FLOWN or touches > MOST_TOUCHES:
@@ -195,7 +193,7 @@ class KickFamily:
                     detail="the collision does not end within half a drive period",
                 )
             order = 1 if record[-1, 3] < 0.0 else 2
-            again, _time = first_crossing(motion, phase + end, u, v, window - end, order, envelope)
+            again, _time = first_crossing(motion, phase + end, u, v, window - end, order)
             if again != CROSSES:
                 break
             touches += 1

@@ -6,7 +6,7 @@ before),
     lambda_i = < log |R_ii| >        [per drive period],  largest first.
 
 For an impact oscillator J_n is composed in physical time, from the strobe to its first touch by the free flow
-of the modes, then from touch to touch and to the next strobe by the tangents of ``contact.tangent`` (contact
+of the modes, then from touch to touch and to the next strobe by the tangents of ``contact.orbits.touch_flow`` (contact
 forces by their variational equation, Newton's law by its saltation matrix).  A strobe that falls into a
 contact is passed over: that J_n spans more than one period.  On an orbit of period m the exponents are
 log|mu_i|/m, with mu_i the eigenvalues of J_m ... J_1.  For Eq. (1) of the letter (1996) the determinants give
@@ -44,13 +44,13 @@ from numpy.typing import NDArray
 
 from beam.parameters import require_kind, require_whole, require_within, shown
 from contact.errors import NotPeriodic, UnresolvedCrossing
-from contact.flight import steady_motion
+from contact.flight.modal_flow import steady_motion
 from contact.orbits.driven_modes import modal_flow
+from contact.orbits.touch_flow import FLOWN, flow_from_touch
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.strobed_nordmark import StrobedNordmarkMap
 from contact.stroboscope import StroboscopicMap
-from contact.tangent import FLOWN, flow_from_touch
 from contact.trajectory import ImpactKind, Regime, State
 
 __all__ = ["Differentiable", "Exponents", "divergence_rate", "map_exponents", "of_nordmark", "of_oscillator",
@@ -330,15 +330,7 @@ class _OfOscillator:
                 until = min(last * period, float(start[touch + 1]) if touch + 1 < start.size else math.inf)
                 tangent = np.eye(2 * n + 2)
                 outcome = flow_from_touch(
-                    motion,
-                    response.real,
-                    response.imag,
-                    begin % period,
-                    u[touch].copy(),
-                    v[touch].copy(),
-                    until - begin,
-                    1,
-                    tangent,
+                    motion, response, begin % period, u[touch].copy(), v[touch].copy(), until - begin, tangent,
                     np.empty((1, 4 + 2 * n)),
                 )
                 if outcome != FLOWN:

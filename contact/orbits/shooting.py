@@ -1,6 +1,6 @@
 """Periodic orbits of any contact law, by shooting from touch to touch.
 
-Unknowns are the state at the first touch of the orbit and the drive: e = (u, v, S, C) (``contact.tangent``).
+Unknowns are the state at the first touch of the orbit and the drive: e = (u, v, S, C) (``contact.orbits.touch_flow``).
 An orbit with k touches in m drive periods satisfies
 
     (u, v) after m/f  =  (u, v),      y(e) = 0 (the tip is at the stop),
@@ -25,16 +25,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam.parameters import is_whole, require_kind, require_within, shown
-from contact.crossing import CROSSES, FREE, first_crossing
 from contact.errors import NotPeriodic
-from contact.flight import Motion, steady_motion
+from contact.flight.crossing import CROSSES, FREE, first_crossing
+from contact.flight.modal_flow import steady_motion
+from contact.flight.motion import Motion
 from contact.orbits.kick import KickFamily, KickOrbit
 from contact.orbits.saltation import sorted_multipliers
+from contact.orbits.touch_flow import FLOWN, flow_from_touch
 from contact.oscillator import ImpactOscillator
-from contact.series import OUTSIDE
 from contact.simulation import simulate
-from contact.tangent import FLOWN, flow_from_touch
-from contact.trajectory import ImpactKind, State
+from contact.trajectory import ImpactKind, Regime, State
 
 __all__ = ["PeriodicOrbit", "Shooting"]
 
@@ -177,10 +177,9 @@ class Shooting:
         u, v = unknown[:n].copy(), unknown[n : 2 * n].copy()
         matrix = np.eye(2 * n + 2) if tangent else np.empty((0, 0))
         record = np.empty((self.impacts, 4 + 2 * n))
-        response = self.kicks.response
+        length = self.period * self.oscillator.period
         outcome = flow_from_touch(
-            driven.motion(), response.real, response.imag, phase, u, v, self.period * self.oscillator.period,
-            self.impacts, matrix, record,
+            driven.motion(), self.kicks.response, phase, u, v, length, matrix, record
         )
         if outcome != FLOWN:
             raise NotPeriodic(
@@ -304,7 +303,7 @@ class Shooting:
         u, v = last[4 : 4 + n].copy(), last[4 + n :].copy()
         start, length = phase + last[1], duration - last[1]
         order = 1 if last[3] < 0.0 else 2
-        outcome, s = first_crossing(motion, start, u, v, length * (1 + 1e-9), order, np.empty(n + 1))
+        outcome, s = first_crossing(motion, start, u, v, length * (1 + 1e-9), order)
         # the touch that closes the orbit is met at `length`, give or take the residual
         slack = 1e-6 * self.oscillator.period + 4.0 * error * motion.gap / record[0, 2]
         return outcome == FREE or bool(outcome == CROSSES and abs(s - length) <= slack)
@@ -353,7 +352,7 @@ class Shooting:
         require_kind("state", state, State, "a State")
         run = simulate(self.oscillator, state, periods=self.period + 1)
         hits = run.impacts.kind == ImpactKind.IMPACT
-        hits[:1] &= state.regime == OUTSIDE  # a contact under way began with a touch that is not known
+        hits[:1] &= state.regime == Regime.OUTSIDE  # a contact under way began with a touch that is not known
         if not np.any(hits):
             raise NotPeriodic(
                 time=state.time, gap=0.0, velocity=0.0, detail="the motion has no impact to start from"

@@ -23,7 +23,7 @@ for every speed. If s > 0, A has a least value, the **fold** of the node (larger
 For one mode k = -w N12 (1 + e)/(1 - N11 + e N22 - e G), which is the F_m of Eq. (1) at any amplitude.
 
 Everything is exact as long as the tip does not reach the wall at another time: `SingleImpactOrbit.admissible`
-says whether it does, by the certified search of ``contact.crossing``. Multipliers of an orbit are in
+says whether it does, by the certified search of ``contact.flight.crossing``. Multipliers of an orbit are in
 ``contact.orbits.saltation``. Units: SI with mass-normalised modes (q in m kg^0.5).
 Sources: letter of 1996, Eq. (1) and Fig. 3; A. B. Nordmark, J. Sound Vib. 145 (1991) 279.
 """
@@ -38,7 +38,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from beam.parameters import require, require_array, require_within
-from contact.crossing import CROSSES, FREE, first_crossing
+from contact.flight.crossing import CROSSES, FREE, first_crossing
 from contact.orbits.driven_modes import DrivenModes, modal_flow
 from contact.orbits.saltation import monodromy, newton_saltation, sorted_multipliers
 
@@ -119,7 +119,7 @@ class SingleImpactOrbit:
         order = 1 if family.restitution > 0.0 else 2
         outcome, time = first_crossing(
             family.motion(self.amplitude), flight.start, flight.displacement.copy(), flight.velocity.copy(),
-            flight.duration * (1.0 + CLOSING), order, np.empty(family.size + 1),
+            flight.duration * (1.0 + CLOSING), order,
         )  # fmt: skip
         slack = CLOSING * flight.duration + HEIGHT * family.gap / self.speed
         return bool(outcome == FREE or (outcome == CROSSES and abs(time - flight.duration) <= slack))

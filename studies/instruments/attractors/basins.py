@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact.errors import ContactError
-from contact.flight import steady_motion
+from contact.flight.modal_flow import steady_motion
 from contact.orbits.settling import settle
 from contact.stroboscope import StroboscopicMap
 from contact.trajectory import State

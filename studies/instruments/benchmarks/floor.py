@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from contact.compiled import kernel
-from contact.flight import flow_matrix
+from contact.flight.modal_flow import flow_matrix
 from contact.oscillator import ImpactOscillator
 
 __all__ = ["carry", "flows_of"]

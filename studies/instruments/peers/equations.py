@@ -36,7 +36,7 @@ from contact.integrators.equation import (
     tip_of,
 )
 from contact.laws import HERTZ, LINEAR
-from contact.series import CONTACT, INSIDE, OUTSIDE, SUSTAINED
+from contact.trajectory import CONTACT, INSIDE, OUTSIDE, SUSTAINED
 
 __all__ = ["jacobian", "packed", "rates", "surfaces"]
 

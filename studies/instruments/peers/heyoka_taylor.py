@@ -34,8 +34,7 @@ from contact.errors import ContactError
 from contact.integrators.method import Integrator, Run
 from contact.laws import HERTZ, LINEAR, NEWTON
 from contact.oscillator import ImpactOscillator
-from contact.series import CONTACT, INSIDE, OUTSIDE, SUSTAINED
-from contact.trajectory import Trajectory
+from contact.trajectory import CONTACT, INSIDE, OUTSIDE, SUSTAINED, Trajectory
 from studies.instruments.peers.pieces import Advance, Piece, pieced_trajectory
 from studies.instruments.peers.problem import Problem, check_tolerance
 

@@ -21,8 +21,7 @@ from contact.integrators.equation import contact_force
 from contact.integrators.method import Run
 from contact.laws import HERTZ, LINEAR, NEWTON
 from contact.oscillator import ImpactOscillator
-from contact.series import CONTACT, INSIDE, OUTSIDE, SUSTAINED
-from contact.trajectory import ImpactKind, State, Trajectory
+from contact.trajectory import CONTACT, INSIDE, OUTSIDE, SUSTAINED, ImpactKind, State, Trajectory
 from studies.instruments.peers.problem import Problem, problem_of
 from studies.instruments.peers.touch_log import TouchLog
 

@@ -24,8 +24,7 @@ from contact.errors import ContactError
 from contact.integrators.method import Integrator, Run
 from contact.laws import HERTZ, LINEAR, NEWTON
 from contact.oscillator import ImpactOscillator
-from contact.series import CONTACT, INSIDE
-from contact.trajectory import Trajectory
+from contact.trajectory import CONTACT, INSIDE, Trajectory
 from studies.instruments.peers.equations import jacobian, rates, surfaces
 from studies.instruments.peers.pieces import Advance, Piece, pieced_trajectory
 from studies.instruments.peers.problem import Problem, check_tolerance

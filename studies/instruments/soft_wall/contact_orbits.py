@@ -22,7 +22,7 @@ import numpy as np
 from scipy.optimize import brentq, root
 
 from contact.errors import ContactError, NotPeriodic
-from contact.flight import steady_motion
+from contact.flight.modal_flow import steady_motion
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop

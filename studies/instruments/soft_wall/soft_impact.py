@@ -73,7 +73,8 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from contact.flight import damped_frequency, flow_matrix
+from contact.flight.modal_flow import flow_matrix
+from contact.flight.motion import damped_frequency
 from contact.laws import LinearContact
 
 __all__ = ["SoftImpact", "damping_ratio", "hard_contact", "release", "soft_contact"]

@@ -5,7 +5,7 @@ A ball dropped from h rebounds with e times its speed; its impacts fall at
     t_n = t_0 (1 + 2 (e + ... + e^n)),   t_0 = sqrt(2 h/g),   t_inf = t_0 (1 + e)/(1 - e).                 (a)
 
 The package computes hops until their height drowns in rounding, (v e^n)^2 <= 2 g L with L the lowest hop
-(``contact.newton.lowest_hop``), sums the rest and lets the ball lie. The number of hops that are computed
+(``contact.touch.newton.lowest_hop``), sums the rest and lets the ball lie. The number of hops that are computed
 is ln(v / sqrt(2 g L)) / ln(1/e); if it exceeds the bound ``MOST_IMPACTS`` of one drive period, which with e
 below 1 needs 1 - e of some 1e-4 and less, the run ends with ``Chatter``.
 
@@ -33,14 +33,14 @@ from scipy.integrate import solve_ivp
 from beam import ModalModel
 from contact.drive import HarmonicDrive
 from contact.errors import Chatter, ContactError
-from contact.flight import tip_rounding
+from contact.event_loop import MOST_IMPACTS
+from contact.flight.modal_flow import tip_rounding
 from contact.integrators import EventDriven
-from contact.integrators.event_loop import MOST_IMPACTS
 from contact.laws import NewtonRestitution
-from contact.newton import lowest_hop
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
+from contact.touch.newton import lowest_hop
 from contact.trajectory import ImpactKind, State
 from studies.instruments.oscillators import single_mode_oscillator
 from studies.instruments.peers import lineup

@@ -35,9 +35,10 @@ import scipy.linalg
 
 from beam import ModalModel
 from contact.errors import ContactTooStiff
-from contact.flight import damped_frequency, flow_matrix
+from contact.event_loop import MOST_STEPS
+from contact.flight.modal_flow import flow_matrix
+from contact.flight.motion import damped_frequency
 from contact.integrators import PiecewiseLinear
-from contact.integrators.event_loop import MOST_STEPS
 from contact.simulation import simulate
 from studies.instruments.scene import Scene
 from studies.instruments.stability.bisection import bisect

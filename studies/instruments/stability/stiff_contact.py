@@ -18,7 +18,7 @@ costs omega_c T/2, and is refused as ``ContactTooStiff`` beyond the bound of 1e6
 
 Limit. For k -> infinity the contact is over before any mode of a finite model has moved, and mode 1 loses
 (1 + e) r_N of its velocity, e = 1, r_N = phi_1^2 / sum phi^2: Newton's law for an elastic impact
-(``contact.newton``). The kick of the contact, -(jump of the mode-1 tip velocity at the touch)/v with the free
+(``contact.touch.newton``). The kick of the contact, -(jump of the mode-1 tip velocity at the touch)/v with the free
 motion of mode 1 taken out, comes there as 1/omega_c.
 
 Units: SI.
@@ -33,8 +33,8 @@ import numpy as np
 
 from beam import ModalModel
 from contact.errors import ContactTooStiff
+from contact.event_loop import MOST_STEPS
 from contact.integrators import PiecewiseLinear
-from contact.integrators.event_loop import MOST_STEPS
 from contact.simulation import simulate
 from contact.trajectory import State
 from studies.instruments.scene import Scene

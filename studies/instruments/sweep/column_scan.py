@@ -13,20 +13,17 @@ from functools import cached_property
 
 import numpy as np
 
-from contact.flight import tip_state
-from contact.integrators.event_loop import DONE
-from contact.integrators.exact_run import failure
-from contact.integrators.strobe_nodes import nodes_of
-from contact.integrators.struck_period import loop_numbers
-from contact.laws import NEWTON
+from contact.event_loop import DONE, STATE
+from contact.exact_run import failure
+from contact.flight.modal_flow import tip_state
 from contact.orbits.settling import TOLERANCE
 from contact.oscillator import ImpactOscillator
+from contact.strobed_motion import strobed_system
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.sweep.settled_column import (
     BEHIND,
     EXTRA,
     LARGEST_PERIOD,
-    SingleMode,
     settled_column,
 )
 from studies.instruments.sweep.tasks import Answer, Batch, Cell
@@ -76,24 +73,18 @@ class ColumnScan:
         began = time.perf_counter()
         oscillator = self.at_frequency(batch.frequency)
         excesses = np.array(batch.excesses, dtype=float)
-        motion = oscillator.motion()
-        nodes = nodes_of(motion) if motion.law == NEWTON else None
-        single = None if nodes is None else SingleMode(nodes=nodes, numbers=loop_numbers(motion, nodes))
+        system = strobed_system(oscillator)
         if batch.state is None:
             state = self.start(oscillator, float(excesses[0]))
         else:
             state = np.frombuffer(batch.state, dtype="<f8").astype(float)
-        speed = np.where(motion.omega > 0, motion.omega, motion.drive)
-        phi = np.where(motion.phi != 0, motion.phi, np.abs(motion.phi).max())
-        weight = np.concatenate([phi, phi / speed])
         cells: list[Cell] = []
         while len(cells) < excesses.size:
             rest = 1.0 + excesses[len(cells) :]
             ends = np.empty((rest.size, self._size + EXTRA))
-            found, place = np.zeros((rest.size, 3), dtype=np.int64), np.empty(self._size + 5)
-            done, status, index = settled_column(
-                motion, single, rest, state, weight, self.most_cycles, TOLERANCE * motion.gap, ends, found,
-                place,
+            found, place = np.zeros((rest.size, 3), dtype=np.int64), np.empty(self._size + 2)
+            done, status = settled_column(
+                system, rest, state, self.most_cycles, TOLERANCE * oscillator.stop.gap, ends, found, place
             )
             for (period, impacts, cycles), end in zip(
                 found[:done].tolist(), ends[:done].astype("<f8"), strict=True
@@ -103,21 +94,23 @@ class ColumnScan:
                 )
             if status != DONE:
                 excess = float(excesses[len(cells)])
-                reason = self._reason(oscillator, excess, status, index, place)
+                reason = self._reason(oscillator, excess, status, place)
                 # the next amplitude goes on from the last state that was reached
                 reached = state.astype("<f8").tobytes()
-                cells.append(Cell(period=0, impacts=0, cycles=index, reason=reason, state=reached))
+                cells.append(Cell(period=0, impacts=0, cycles=int(place[-2]), reason=reason, state=reached))
         return Answer(cells=cells, seconds=time.perf_counter() - began)
 
     def _reason(
-        self, oscillator: ImpactOscillator, excess: float, status: int, index: int, place: np.ndarray
+        self, oscillator: ImpactOscillator, excess: float, status: int, place: np.ndarray
     ) -> str:
         """One sentence for an amplitude that failed."""
         motion = oscillator.with_excess(excess).motion()
         n = oscillator.n_modes
-        u, v, floats = place[:n].copy(), place[n : 2 * n].copy(), place[2 * n :].copy()
+        u, v = place[:n].copy(), place[n : 2 * n].copy()
         if status == BEHIND:
             height = tip_state(motion, 0.0, u, v)[0]
             return f"the amplitude before left the tip {height:.3g} m behind the stop"
-        error = failure(status, motion, index, floats, u, v)
+        runs = np.zeros(1, dtype=STATE)
+        runs["period"], runs["clock"] = place[2 * n], place[2 * n + 1]
+        error = failure(status, motion, runs, u, v)
         return f"{type(error).__name__}: {error}"

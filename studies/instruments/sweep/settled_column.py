@@ -21,27 +21,24 @@ has left it, and is followed in blocks of `BLOCK` drive periods until it is know
 
 The amplitude enters the motion linearly, so that the loop scales the steady motion at grazing.  A
 batch may end after any amplitude: the state is carried as (q, q') between two amplitudes of one batch as
-between two batches, and the results do not depend on where a column is cut.  One mode under Newton's law is
-carried by its own loop (``contact.integrators.single_mode_loop``), everything else by ``event_loop``.
+between two batches, and the results do not depend on where a column is cut.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from contact.compiled import kernel
-from contact.flight import Motion, tip_rounding, tip_state
-from contact.impact_log import INTEGERS, LOG_FIELDS, REBOUND, REGIME, WAIT
-from contact.integrators.event_loop import DONE, advance
-from contact.integrators.single_mode_loop import strobed_motion
-from contact.integrators.strobe_nodes import StrobeNodes, nodes_at
-from contact.integrators.struck_period import LoopNumbers, loop_numbers
-from contact.series import OUTSIDE
+from contact.event_loop import DONE, STATE
+from contact.flight.modal_flow import tip_rounding, tip_state
+from contact.flight.motion import OMEGA, WEIGHT
+from contact.strobed_motion import at_amplitude, strobed_motion
+from contact.trajectory import OUTSIDE
 
-__all__ = ["BEHIND", "EXTRA", "LARGEST_PERIOD", "SingleMode", "repetition", "settled_column"]
+__all__ = ["BEHIND", "EXTRA", "LARGEST_PERIOD", "repetition", "settled_column"]
 
 LARGEST_PERIOD = 64
 """Longest period told, as in the other studies."""
@@ -99,149 +96,67 @@ def returns(points: Any, rows: Any, tolerance: Any) -> Any:
 
 
 @kernel
-def at_amplitude(motion: Any, amplitude: Any) -> Any:
-    """`motion` at `amplitude` times its own base amplitude."""
-    return Motion(
-        omega=motion.omega,
-        decay=motion.decay,
-        damped=motion.damped,
-        damped_low=motion.damped_low,
-        phi=motion.phi,
-        load=motion.load,
-        sine=motion.sine * amplitude,
-        cosine=motion.cosine * amplitude,
-        offset=motion.offset,
-        tip_sine=motion.tip_sine * amplitude,
-        tip_cosine=motion.tip_cosine * amplitude,
-        level=motion.level,
-        drive=motion.drive,
-        period=motion.period,
-        gap=motion.gap,
-        compliance=motion.compliance,
-        law=motion.law,
-        number0=motion.number0,
-        number1=motion.number1,
-        table=motion.table,
-    )
-
-
-@kernel
 def free_for_good(motion: Any, u: Any, v: Any) -> Any:
     """Whether the free motion left over can never bring the tip to the stop."""
     left = math.hypot(motion.tip_sine, motion.tip_cosine)
-    for k in range(motion.omega.size):
-        if not motion.omega[k] > 0.0:
+    for k in range(motion.size):
+        if not motion.modes[OMEGA, k] > 0.0:
             return False
-        left += abs(motion.phi[k]) * math.hypot(u[k], v[k] / motion.omega[k])
+        left += abs(motion.modes[WEIGHT, k]) * math.hypot(u[k], v[k] / motion.modes[OMEGA, k])
     return left < -motion.level * (1.0 - 1e-12)
-
-
-class SingleMode(NamedTuple):
-    """What the loop of one mode under Newton's law needs of an oscillator.
-
-    Parameters
-    ----------
-    nodes : StrobeNodes
-    numbers : LoopNumbers
-    """
-
-    nodes: StrobeNodes
-    numbers: LoopNumbers
-
-
-@kernel
-def single_mode_at(motion: Any, single: Any, amplitude: Any) -> Any:
-    """`single` at `amplitude` times its own base amplitude, for `motion` there; None stays None."""
-    if single is None:
-        return single
-    else:
-        nodes = nodes_at(single.nodes, amplitude, motion.period)
-        return SingleMode(nodes, loop_numbers(motion, nodes))
-
-
-@kernel
-def carried_block(
-    motion: Any, single: Any, u: Any, v: Any, integers: Any, floats: Any, first: Any, mean: Any, weight: Any,
-    strobes: Any, counts: Any,
-) -> Any:  # fmt: skip
-    """Carry the deviations (u, v) over `BLOCK` drive periods; status and the period reached.
-
-    `strobes` gets them plus `mean`, times `weight`; `counts` the impacts.
-    """
-    if single is None:
-        # a literal zero or BLOCK as an argument would make numba compile the event loop once more
-        n = motion.omega.size
-        status, index = advance(
-            motion, u, v, integers, floats, first, np.int64(BLOCK), 0.0, strobes, counts,
-            np.empty((0, LOG_FIELDS)), np.empty((0, 4 * n)), np.empty(0, dtype=np.int64), np.empty(0),
-            np.empty((0, 2 * n)),
-        )
-        for i in range(BLOCK):
-            for k in range(2 * n):
-                strobes[i, k] = (strobes[i, k] + mean[k]) * weight[k]
-        return status, index
-    else:
-        status, index, _searched, _left = strobed_motion(
-            motion, single.nodes, single.numbers, u, v, integers, floats, first, np.int64(BLOCK), mean,
-            weight, strobes, counts,
-        )
-        return status, index
 
 
 @kernel
 def settled_column(
-    motion: Any, single: Any, amplitudes: Any, state: Any, weight: Any, most_cycles: Any, tolerance: Any,
-    ends: Any, found: Any, place: Any,
+    system: Any, amplitudes: Any, state: Any, most_cycles: Any, tolerance: Any, ends: Any, found: Any,
+    place: Any,
 ) -> Any:  # fmt: skip
     """Settle at each of `amplitudes` in turn, or until one fails.
 
     Parameters
     ----------
-    motion : Motion
+    system : StrobedSystem
         At grazing.
-    single : SingleMode or None
-        For one mode under Newton's law; at grazing too.
     amplitudes : ndarray, shape (n,)
         Base amplitudes over that at grazing [1].
     state : ndarray, shape (2 n_modes + 3,)
         Start; overwritten by the last state that was reached.
-    weight : ndarray, shape (2 n_modes,)
-        From deviations to coordinates of the same unit [m].
     most_cycles : int
     tolerance : float
         Of a repetition, in the unit of the coordinates [m].
     ends, found : ndarray, shapes (n, 2 n_modes + 3) and (n, 3) of int
         States; period, impacts and drive periods spent; overwritten.
-    place : ndarray, shape (2 n_modes + 5,)
-        Deviations and clock numbers where a failure happened; overwritten.
+    place : ndarray, shape (2 n_modes + 2,)
+        Deviations, drive period and time since its strobe where a failure happened; overwritten.
 
     Returns
     -------
-    done, status, index : int
-        Amplitudes done; DONE, or why the next one failed, and the drive period in which.
+    done, status : int
+        Amplitudes done; DONE, or why the next one failed.
     """
-    n = motion.omega.size
+    n = system.motion.size
     capacity = 2 * LARGEST_PERIOD
     points, impacts = np.empty((capacity, 2 * n)), np.zeros(capacity, dtype=np.int64)
     strobes, counts = np.empty((BLOCK, 2 * n)), np.zeros(BLOCK, dtype=np.int64)
-    deviation = np.zeros(2 * n)
     u, v = np.empty(n), np.empty(n)
     for a in range(amplitudes.size):
-        here = at_amplitude(motion, amplitudes[a])
-        local = single_mode_at(here, single, amplitudes[a])
+        local = at_amplitude(system, amplitudes[a])
+        here, mean = local.motion, local.mean.copy()
+        local.mean[:] = 0.0  # the points are those of the deviations
         for k in range(n):
-            u[k] = state[k] - (here.offset[k] + here.cosine[k])
-            v[k] = state[n + k] - here.drive * here.sine[k]
-        integers, floats = np.zeros(INTEGERS, dtype=np.int64), np.zeros(5)
-        integers[REGIME] = int(state[2 * n])
-        floats[WAIT], floats[REBOUND] = state[2 * n + 1], state[2 * n + 2]
+            u[k] = state[k] - mean[k]
+            v[k] = state[n + k] - mean[n + k]
+        runs = np.zeros(1, dtype=STATE)
+        run = runs[0]
+        run.regime, run.wait, run.rebound = int(state[2 * n]), state[2 * n + 1], state[2 * n + 2]
+        run.root, run.speed = -1.0, -1.0
         rows, cycles, period, hits = 0, np.int64(0), 0, 0
-        status, index, known = DONE, np.int64(0), False
+        status, known = DONE, False
         height, _velocity, _acceleration = tip_state(here, 0.0, u, v)
-        if integers[REGIME] == OUTSIDE and height > tip_rounding(here, u, v):
+        if run.regime == OUTSIDE and height > tip_rounding(here, u, v):
             status = BEHIND
         while status == DONE and not known:
-            if integers[REGIME] == OUTSIDE and free_for_good(here, u, v):
+            if run.regime == OUTSIDE and free_for_good(here, u, v):
                 for k in range(n):
                     u[k], v[k] = 0.0, 0.0
                 period, hits, known = 1, 0, True
@@ -251,9 +166,7 @@ def settled_column(
                 for i in range(rows - period if period > 0 else 0, rows):
                     hits += impacts[i]
                 break
-            status, index = carried_block(
-                here, local, u, v, integers, floats, cycles, deviation, weight, strobes, counts
-            )
+            status = strobed_motion(local, u, v, runs, strobes, counts)
             if status != DONE:
                 break
             cycles += BLOCK
@@ -280,14 +193,13 @@ def settled_column(
         if status != DONE:
             for k in range(n):
                 place[k], place[n + k] = u[k], v[k]
-            for k in range(5):
-                place[2 * n + k] = floats[k]
-            return a, status, index
+            place[2 * n], place[2 * n + 1] = run.period, run.clock
+            return a, status
         for k in range(n):
-            state[k] = u[k] + (here.offset[k] + here.cosine[k])
-            state[n + k] = v[k] + here.drive * here.sine[k]
-        state[2 * n], state[2 * n + 1], state[2 * n + 2] = integers[REGIME], floats[WAIT], floats[REBOUND]
+            state[k] = u[k] + mean[k]
+            state[n + k] = v[k] + mean[n + k]
+        state[2 * n], state[2 * n + 1], state[2 * n + 2] = run.regime, run.wait, run.rebound
         for k in range(2 * n + EXTRA):
             ends[a, k] = state[k]
         found[a, 0], found[a, 1], found[a, 2] = period, hits, cycles
-    return amplitudes.size, DONE, np.int64(0)
+    return amplitudes.size, DONE

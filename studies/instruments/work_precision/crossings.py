@@ -23,7 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact.errors import ContactError
-from contact.flight import propagate, steady_motion
+from contact.flight.modal_flow import propagate, steady_motion
 from contact.integrators import Integrator
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate

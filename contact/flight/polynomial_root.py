@@ -1,50 +1,26 @@
-"""Stretches proved free of a crossing, and the crossings of polynomials.
+"""The first crossing of a polynomial: of a contact force, of the root of a penetration.
 
-A signal y(s) is known with its first two derivatives, and a bound M of its third.  A stretch h is settled by
-one of three proofs:
-
-    max over [0, h] of (y + y' s + y'' s^2/2) + M h^3/6 + R < -margin        no crossing,
-    y' > 0 throughout, and y changes sign                                    one root,
-    y'' < 0 throughout, and y' changes sign                                  one peak.
-
-R bounds what is not sampled.  For a polynomial M is the sum of the absolute terms of its third derivative at
-the far end.
+The three proofs of ``contact.flight.bounds`` settle stretch after stretch; the bound of the third derivative
+is the sum of the absolute terms at the far end.
 """
 
 # mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 from contact.compiled import kernel
-from contact.flight import EPS
+from contact.flight.bounds import PEAK, ROOT, SKIP, certify
+from contact.flight.elementary import EPS
 
-__all__ = ["NEAR", "PEAK", "ROOT", "SKIP", "STALL", "certify", "first_polynomial_root", "polynomial_root"]
-
-SKIP, ROOT, PEAK, NEAR, STALL = 0, 1, 2, 3, 4
+__all__ = ["evaluate", "first_polynomial_root", "polynomial_root"]
 
 
 @kernel
-def certify(y0, y1, y2, m3, rest, margin, h, h_min):
-    """The longest stretch of h, h/2, h/4, ... that one of the three proofs settles: (proof, stretch).
-
-    As long as some modes are only bounded (`rest` > 0), a stretch on which the others alone have a root or a
-    peak that matters is reported as near: there all modes must be sampled.
-    """
-    while h > h_min:
-        top = max(y0, y0 + h * (y1 + 0.5 * h * y2))
-        if y2 < 0.0 and y1 > 0.0 and -y1 > y2 * h:
-            top = max(top, y0 - 0.5 * y1 * y1 / y2)
-        cubic = m3 * h * h * h / 6.0
-        if top + cubic + rest < -margin:
-            return SKIP, h
-        if y1 > 0.0:
-            slope_loss = 0.5 * m3 * h * h
-            if y1 + min(0.0, y2 * h) - slope_loss > 0.0:
-                if y0 + h * (y1 + 0.5 * h * y2) - cubic > margin:
-                    return (ROOT if rest == 0.0 else NEAR), h
-            elif y2 + m3 * h < 0.0 and y1 + y2 * h + slope_loss < 0.0:
-                return (PEAK if rest == 0.0 else NEAR), h
-        h *= 0.5
-    return STALL, h
+def evaluate(coefficients, s):
+    """Value of a polynomial at `s`; coefficients in rising order."""
+    total = 0.0
+    for n in range(coefficients.size - 1, -1, -1):
+        total = total * s + coefficients[n]
+    return total
 
 
 @kernel

@@ -6,57 +6,47 @@ the stretch free:
 
     y(s + h) <= max over [0, h] of (y + y' h + y'' h^2/2) + M h^3/6 + R < -margin
 
-(``contact.certificate``, with the two proofs that end a search: one root, one peak).  R is the sum of
+(``contact.flight.bounds``, with the two proofs that end a search: one root, one peak).  R is the sum of
 amplitudes of those high modes that are bounded instead of sampled; they are taken in one by one as the gap
-closes.  The bounds of the single modes are those of ``contact.flight``.  Whole flights, the way to just
+closes.  The bounds of the single modes are those of
+``contact.flight.modal_flow``.  Whole flights, the way to just
 before a touch, and what is left of a period after one, are settled by the lowest mode alone where that can be
-done (``contact.lowest_mode``).
+done (``contact.flight.bounds``).
 
 A graze, |peak| within the rounding bound of y (at most 1e-13 of the gap), is an outcome of its own.  A
 stretch that none of this settles, with h down to rounding, is reported as unresolved and never passed.
 """
 
+# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 import math
 
-from contact.certificate import PEAK, ROOT, SKIP, certify, first_polynomial_root
 from contact.compiled import kernel
-from contact.flight import EPS
-from contact.lanes import LANES
-from contact.lowest_mode import free_from, free_until, lowest_mode
-from contact.modal_flow import (
+from contact.flight.bounds import PEAK, ROOT, SKIP, certify, free_from, free_until, lowest_mode
+from contact.flight.elementary import EPS
+from contact.flight.modal_flow import (
+    ABOVE,
     BEND,
-    DECAY,
     HEIGHT,
-    LOAD,
     RATE,
-    SLOWNESS,
-    SQUARE,
     START_U,
     START_V,
     THIRD,
-    WEIGHT,
-    flow_rows,
+    U,
+    V,
+    flow,
     load_state,
-    mode_rows,
-    rounding_of,
-    scalars_of,
-    swing_at,
-    tip_rows,
+    new_flight,
+    tip_rounding,
+    tip_steady,
 )
-from contact.tip_search import find_peak, find_root, tip_at, tip_of
+from contact.flight.motion import DECAY, LOAD, SLOWNESS, SQUARE, WEIGHT
+from contact.flight.tip_search import find_peak, find_root, tip_now
+from contact.vector_loops import LANES
 
-__all__ = [
-    "CROSSES",
-    "FREE",
-    "GRAZES",
-    "UNRESOLVED",
-    "first_crossing",
-    "first_polynomial_root",
-    "searched_flight",
-    "tip_at",
-]
+__all__ = ["CROSSES", "FREE", "GRAZES", "GRAZE_TOLERANCE", "UNRESOLVED", "first_crossing",
+           "searched_flight"]  # fmt: skip
 
 FREE, CROSSES, GRAZES, UNRESOLVED = 0, 1, 2, 3
 
@@ -65,18 +55,18 @@ GRAZE_TOLERANCE = 1e-13
 
 
 @kernel
-def depart(fixed, numbers, room, base, order, h, h_min):
+def depart(motion, flight, base, order, h, h_min):
     """The longest of h, h/2, ... on which a flight that starts on the wall is proved free; 0 if none is.
 
     `order` derivatives of the tip displacement vanish at the start, from the zeroth on: 1, 2 or 3.
     """
-    w = fixed.drive
-    _level, y1, y2 = swing_at(fixed, base)
+    w = motion.drive
+    _level, y1, y2 = tip_steady(motion, base)
     y3 = -w * w * y1
-    m4 = fixed.amplitude * w**4
-    decay, square, phi, load = numbers[DECAY], numbers[SQUARE], numbers[WEIGHT], numbers[LOAD]
-    u, v = room[START_U], room[START_V]
-    for k in range(room.shape[1]):
+    m4 = motion.amplitude * w**4
+    modes, u, v = motion.modes, flight[START_U], flight[START_V]
+    decay, square, phi, load = modes[DECAY], modes[SQUARE], modes[WEIGHT], modes[LOAD]
+    for k in range(motion.size):
         c, o2 = decay[k], square[k]
         d2 = load[k] - c * v[k] - o2 * u[k]
         d3 = -c * d2 - o2 * v[k]
@@ -101,25 +91,52 @@ def depart(fixed, numbers, room, base, order, h, h_min):
 
 
 @kernel
-def amplitudes(numbers, room, envelope):
-    """Fill `envelope` with the sums of the amplitudes of mode k and all above it [m]; returns how many modes,
-    from the first on, have none that could be bounded (those of zero frequency and all below)."""
-    n = envelope.size - 1
-    u, v, phi, slowness = room[START_U], room[START_V], numbers[WEIGHT], numbers[SLOWNESS]
-    for k in range(n):
+def amplitudes(motion, flight):
+    """Fill row ABOVE: the sum of the amplitudes of all modes above each [m].
+
+    Returns
+    -------
+    must : int
+        How many modes, from the first on, have none that could be bounded (those of zero frequency and all
+        below).
+    whole : float
+        The sum of all amplitudes [m].
+    """
+    u, v, above = flight[START_U], flight[START_V], flight[ABOVE]
+    phi, slowness = motion.modes[WEIGHT], motion.modes[SLOWNESS]
+    for k in range(above.size):
         x = v[k] * slowness[k]
-        envelope[k] = abs(phi[k]) * math.sqrt(u[k] * u[k] + x * x)
-    envelope[n] = 0.0
-    must = 0
-    for k in range(n - 1, -1, -1):
+        above[k] = abs(phi[k]) * math.sqrt(u[k] * u[k] + x * x)
+    must, whole = 0, 0.0
+    for k in range(motion.size - 1, -1, -1):
         if must == 0 and not slowness[k] > 0.0:
             must = k + 1
-        envelope[k] = envelope[k] + envelope[k + 1] if must == 0 else math.inf
-    return must
+        own = above[k] if must == 0 else math.inf
+        above[k] = whole
+        whole += own
+    return must, whole
 
 
 @kernel
-def first_crossing(motion, base, u, v, duration, order, envelope):
+def tip_rows(modes, flight, start, stop):
+    """What modes `start` to `stop` add to the tip displacement, its derivatives and bounds, in rows HEIGHT to
+    THIRD, from rows U, V."""
+    decay, square, phi, load = modes[DECAY], modes[SQUARE], modes[WEIGHT], modes[LOAD]
+    u, v, height, rate, bend, third = (
+        flight[U], flight[V], flight[HEIGHT], flight[RATE], flight[BEND], flight[THIRD]
+    )  # fmt: skip
+    for k in range(start, stop):
+        c, o2 = decay[k], square[k]
+        a = load[k] - c * v[k] - o2 * u[k]
+        height[k] = phi[k] * u[k]
+        rate[k] = phi[k] * v[k]
+        bend[k] = phi[k] * a
+        j = -c * a - o2 * v[k]
+        third[k] = abs(phi[k]) * math.sqrt(j * j + o2 * a * a)
+
+
+@kernel
+def first_crossing(motion, base, u, v, duration, order):
     """First time in (0, duration] at which a free flight crosses the stop.
 
     Parameters
@@ -135,8 +152,6 @@ def first_crossing(motion, base, u, v, duration, order, envelope):
     order : int
         How many derivatives of the tip displacement, from the zeroth on, vanish at the start by construction:
         0 for a tip off the wall, 1 after an impact, 2 after a plastic one or a graze, 3 at a release.
-    envelope : ndarray, shape (n_modes + 1,)
-        Work space.
 
     Returns
     -------
@@ -145,50 +160,49 @@ def first_crossing(motion, base, u, v, duration, order, envelope):
     s : float
         Time since the start of the flight [s].
     """
-    fixed = scalars_of(motion)
-    numbers, room = mode_rows(motion)
-    load_state(room, u, v)
-    return searched_flight(fixed, numbers, room, base, duration, order, envelope)
+    flight = new_flight(motion)
+    load_state(flight, u, v)
+    return searched_flight(motion, flight, base, duration, order)
 
 
 @kernel
-def searched_flight(fixed, numbers, room, base, duration, order, envelope):
-    """`first_crossing` with the oscillator and the start of the flight as ``contact.modal_flow`` keeps
-    them."""
-    n, w = envelope.size - 1, fixed.drive
-    margin = rounding_of(fixed, numbers, room)
-    must = amplitudes(numbers, room, envelope)  # modes that are always sampled
-    if order == 0 and fixed.level + fixed.amplitude + envelope[0] < -margin:
+def searched_flight(motion, flight, base, duration, order):
+    """`first_crossing` of the flight that starts at rows START_U and START_V of its work space."""
+    n, w = motion.size, motion.drive
+    margin = tip_rounding(motion, flight[START_U], flight[START_V])
+    must, whole = amplitudes(motion, flight)  # modes that are always sampled
+    if order == 0 and motion.level + motion.amplitude + whole < -margin:
         return FREE, duration
-    lowest = lowest_mode(fixed, numbers, room, base, duration, envelope[1], margin)
-    h = 0.05 * fixed.period
+    above = flight[ABOVE]
+    lowest = lowest_mode(motion, flight, base, duration, above[0], margin)
+    h = 0.05 * motion.period
     s = 0.0
     if order == 0:
-        s = free_until(fixed, numbers, room, lowest, base, duration)
+        s = free_until(motion, flight, lowest, base, duration)
         if s >= duration:
             return FREE, duration
     h_min = 64.0 * EPS * (base + duration)
-    if fixed.fastest > 0.0:
-        h_min += 1e-15 / fixed.fastest
+    if motion.fastest > 0.0:
+        h_min += 1e-15 / motion.fastest
     if order > 0:
-        s = depart(fixed, numbers, room, base, order, h, h_min)
+        s = depart(motion, flight, base, order, h, h_min)
         if s == 0.0:
             return UNRESOLVED, 0.0
     sampled = n if order > 0 else max(must, 1)
+    u, v, un, vn = flight[START_U], flight[START_V], flight[U], flight[V]
     distance = 0.0
-    padded = room.shape[1]
-    height, rate, bend, third = room[HEIGHT], room[RATE], room[BEND], room[THIRD]
+    height, rate, bend, third = flight[HEIGHT], flight[RATE], flight[BEND], flight[THIRD]
     while s < duration:
         if distance > 0.0:
-            while sampled > max(must, 1) and envelope[sampled - 1] < 0.125 * distance:
+            while sampled > max(must, 1) and above[sampled - 2] < 0.125 * distance:
                 sampled -= 1
-        y0, y1, y2 = swing_at(fixed, base + s)
-        m3 = fixed.amplitude * w**3
+        y0, y1, y2 = tip_steady(motion, base + s)
+        m3 = motion.amplitude * w**3
         k, ready = 0, 0
         while k < sampled:
             if k == ready:
-                flow_rows(fixed, numbers, room, ready, min(ready + LANES, padded), s)
-                tip_rows(numbers, room, ready, min(ready + LANES, padded))
+                flow(motion, u, v, ready, ready + LANES, s, un, vn)
+                tip_rows(motion.modes, flight, ready, ready + LANES)
                 ready += LANES
             y0 += height[k]
             y1 += rate[k]
@@ -197,41 +211,40 @@ def searched_flight(fixed, numbers, room, base, duration, order, envelope):
             if k == 0 and free_from(lowest, base + s, y0, y1):
                 return FREE, duration
             k += 1
-            if k == sampled and sampled < n and envelope[sampled] > 0.25 * max(-y0, 0.0):
+            if k == sampled and sampled < n and above[sampled - 1] > 0.25 * max(-y0, 0.0):
                 sampled += 1
         if sampled == n and s == 0.0 and abs(y0) <= margin:
             # on the wall within rounding although not by construction: the velocity decides
             if y1 > 0.0:
                 return CROSSES, 0.0
-            s = depart(fixed, numbers, room, base, 1 if y1 < 0.0 else 2, h, h_min)
+            s = depart(motion, flight, base, 1 if y1 < 0.0 else 2, h, h_min)
             if s == 0.0:
                 return UNRESOLVED, 0.0
             continue
-        rest = envelope[sampled]
+        rest = above[sampled - 1]
+        point = (s, y0, y1, y2)
         proof, step = certify(y0, y1, y2, m3, rest, margin, h, h_min)
         if proof == SKIP:
             s += step
             distance = -y0
             h = 2.0 * step
         elif proof == ROOT:
-            root = find_root(fixed, numbers, room, base, s, y0, y1, y2, m3, s, s + step, margin)
+            root = find_root(motion, flight, base, point, (s, s + step), m3, margin)
             if root > duration:
                 return FREE, duration
             return CROSSES, root
         elif proof == PEAK:
-            peak = find_peak(fixed, numbers, room, base, s, y1, y2, m3, s, s + step, margin)
+            peak = find_peak(motion, flight, base, point, (s, s + step), m3, margin)
             if peak > duration:
                 # the motion rises all the way to the end: its height there decides
-                if tip_of(fixed, numbers, room, base, duration)[0] > margin:
-                    return CROSSES, find_root(
-                        fixed, numbers, room, base, s, y0, y1, y2, m3, s, duration, margin
-                    )
+                if tip_now(motion, flight, base, duration)[0] > margin:
+                    return CROSSES, find_root(motion, flight, base, point, (s, duration), m3, margin)
                 return FREE, duration
-            top = tip_of(fixed, numbers, room, base, peak)[0]
+            top = tip_now(motion, flight, base, peak)[0]
             if top > margin:
-                return CROSSES, find_root(fixed, numbers, room, base, s, y0, y1, y2, m3, s, peak, margin)
+                return CROSSES, find_root(motion, flight, base, point, (s, peak), m3, margin)
             if top >= -margin:
-                if margin > GRAZE_TOLERANCE * fixed.gap:
+                if margin > GRAZE_TOLERANCE * motion.gap:
                     return UNRESOLVED, peak
                 return GRAZES, peak
             s += step
@@ -243,5 +256,3 @@ def searched_flight(fixed, numbers, room, base, duration, order, envelope):
         else:
             return UNRESOLVED, s
     return FREE, duration
-
-

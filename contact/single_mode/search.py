@@ -1,8 +1,8 @@
-"""The crossings of one mode in one drive period, searched between the nodes of ``strobe_nodes``.
+"""The crossings of one mode in one drive period, searched between the nodes of its ``period_table``.
 
 With |y''| <= B throughout, y lies between two nodes h apart below the greater of its values there plus
 B h^2/8: stretches at whose ends y < -m - B h^2/8 are free, which is one pass over products with constants.
-Within the others the three proofs of ``contact.certificate`` decide (a parabola with a bound of its cubic
+Within the others the three proofs of ``contact.flight.bounds`` decide (a parabola with a bound of its cubic
 rest; y' > 0 throughout and a change of sign; y'' < 0 throughout and one peak), on a motion found without
 sines.
 
@@ -20,19 +20,15 @@ import math
 
 import numpy as np
 
-from contact.certificate import PEAK, ROOT, SKIP, certify
 from contact.compiled import kernel
-from contact.flight import EPS
-from contact.integrators.strobe_nodes import short_flow, tip_near
-from contact.newton import accumulation_time, newton_impact
+from contact.flight.bounds import PEAK, ROOT, SKIP, certify
+from contact.flight.elementary import EPS
+from contact.single_mode.period_table import flow_to, short_flow, tip_near
+from contact.touch.newton import accumulation_time
 
-__all__ = ["SAFETY", "rising_zero", "searched_period"]
+__all__ = ["rising_zero", "searched_period"]
 
 _FREE, _CROSSES, _UNSETTLED = 0, 1, 2
-
-SAFETY = 32.0
-"""Margin m over the rounding bound of the tip displacement (4 roundings of all its terms): room for the
-roundings of the proofs themselves.  It is some 1e-13 of the gap; what lies within goes to the event loop."""
 
 MOST_STEPS = 1000
 """Bound of stretches looked at in a search; one that needs more is given to the event loop."""
@@ -45,10 +41,10 @@ NEWTON_STEPS = 60
 
 
 @kernel
-def rising_zero(mode, rows, since, u, v, t, low, high, crest, margin):
+def rising_zero(mode, rows, since, u, v, t, low, high, margin):
     """Newton's iteration from `t` for a zero of the tip displacement in (`low`, `high`) where it rises.
 
-    (u, v) is the deviation at node `since`, `crest` the greatest steady acceleration [m/s^2].
+    (u, v) is the deviation at node `since`.
 
     Returns
     -------
@@ -69,7 +65,7 @@ def rising_zero(mode, rows, since, u, v, t, low, high, crest, margin):
             un += x * vn
             vn += x * acceleration
             y1 += x * y2
-            most = crest + abs(mode.phi) * (
+            most = mode.crest + abs(mode.phi) * (
                 mode.stiffness * abs(un) + (mode.decay + math.sqrt(mode.stiffness)) * abs(vn)
             )
             return y1 * y1 > 4.0 * most * margin, t + x, un, vn, y1
@@ -104,9 +100,9 @@ def highest_point(mode, rows, since, u, v, low, high, margin):
 
 
 @kernel
-def above_limit(nodes, since, u, v, k, limit):
+def above_limit(table, since, u, v, k, limit):
     """Whether the tip displacement at node `k` exceeds `limit`."""
-    return nodes.level[k] + nodes.from_u[k - since] * u + nodes.from_v[k - since] * v > limit
+    return table.level[k] + table.from_u[k - since] * u + table.from_v[k - since] * v > limit
 
 
 @kernel
@@ -119,15 +115,15 @@ def count_above(level, from_u, from_v, u, v, limit):
 
 
 @kernel
-def third_bound(mode, steady, u, v):
-    """Bound of the tip's third derivative from (u, v) on, `steady` that of its steady part [m/s^3]."""
+def third_bound(mode, u, v):
+    """Bound of the tip's third derivative from (u, v) on [m/s^3]."""
     d2 = -mode.decay * v - mode.stiffness * u
     d3 = -mode.decay * d2 - mode.stiffness * v
-    return steady + abs(mode.phi) * math.sqrt(d3 * d3 + mode.stiffness * d2 * d2)
+    return mode.crest * mode.drive + abs(mode.phi) * math.sqrt(d3 * d3 + mode.stiffness * d2 * d2)
 
 
 @kernel
-def search(period, nodes, since, u, v, rho, first, margin):
+def search(table, since, first, u, v, rho):
     """First crossing after node `first` of the flight with the deviation (u, v) at node `since`.
 
     `rho` bounds the free tip motion from there on.
@@ -138,24 +134,23 @@ def search(period, nodes, since, u, v, rho, first, margin):
         FREE, CROSSES or UNSETTLED.
     time [s], deviation and its rate there, approach velocity [m/s].
     """
-    mode, rows = nodes.mode, nodes.rows
-    omega = math.sqrt(mode.stiffness)
+    mode, rows = table.mode, table.rows
     last = rows.shape[0] - 1
-    crest = nodes.amplitude * mode.drive**2
-    most = crest + (omega + mode.decay) * omega * rho
+    margin = mode.rounding + mode.rounding_rho * rho
+    most = mode.crest + mode.second * rho
     limit = -(margin + 0.125 * most * mode.stretch**2)
     start = first - since
-    if count_above(nodes.level[first:], nodes.from_u[start:], nodes.from_v[start:], u, v, limit) == 0:
+    if count_above(table.level[first:], table.from_u[start:], table.from_v[start:], u, v, limit) == 0:
         return _FREE, 0.0, u, v, 0.0
     t = first * mode.stretch
-    end = period * (1.0 - 4.0 * EPS)
+    end = mode.period * (1.0 - 4.0 * EPS)
     h = mode.stretch
     h_min = h / 256.0
     for _ in range(MOST_STEPS):
         # to the next stretch with a flagged end
         k = int(t * mode.per_second)
         while k < last and not (
-            above_limit(nodes, since, u, v, k, limit) or above_limit(nodes, since, u, v, k + 1, limit)
+            above_limit(table, since, u, v, k, limit) or above_limit(table, since, u, v, k + 1, limit)
         ):
             k += 1
             t = k * mode.stretch
@@ -164,15 +159,15 @@ def search(period, nodes, since, u, v, rho, first, margin):
         un, vn, _swing, y0, y1, y2 = tip_near(mode, rows, since, u, v, t)
         if y0 >= -margin:
             return _UNSETTLED, t, un, vn, y1
-        m3 = third_bound(mode, crest * mode.drive, un, vn)
-        proof, step = certify(y0, y1, y2, m3, 0.0, margin, min(h, period - t), h_min)
+        m3 = third_bound(mode, un, vn)
+        proof, step = certify(y0, y1, y2, m3, 0.0, margin, min(h, mode.period - t), h_min)
         until = t + step
         if proof == ROOT or proof == PEAK:
             # a rising zero of this stretch is the first; a parabola tells about where
             under = y1 * y1 - 2.0 * y0 * y2
             if proof == ROOT or under > 0.0:
                 near = t - 2.0 * y0 / (y1 + math.sqrt(max(0.0, under)))
-                found, at, un, vn, speed = rising_zero(mode, rows, since, u, v, near, t, until, crest, margin)
+                found, at, un, vn, speed = rising_zero(mode, rows, since, u, v, near, t, until, margin)
                 if found:
                     return _CROSSES, at, un, vn, speed
             top, height = until, 0.0
@@ -180,7 +175,7 @@ def search(period, nodes, since, u, v, rho, first, margin):
                 top, height = highest_point(mode, rows, since, u, v, t, until, margin)
             if height > margin:
                 near = t + y0 / (y0 - height) * (top - t)
-                found, at, un, vn, speed = rising_zero(mode, rows, since, u, v, near, t, top, crest, margin)
+                found, at, un, vn, speed = rising_zero(mode, rows, since, u, v, near, t, top, margin)
                 if found:
                     return _CROSSES, at, un, vn, speed
             if not height < -margin:
@@ -201,7 +196,7 @@ def departs(rebound, acceleration, m3, h):
 
 
 @kernel
-def searched_period(motion, nodes, u, v):
+def searched_period(table, u, v):
     """A period from the deviation (u, v) at its strobe, off the wall.
 
     Returns
@@ -209,35 +204,29 @@ def searched_period(motion, nodes, u, v):
     impacts : int
         Impacts of the period, or -1 if it is left to the event loop.
     u, v : float
-        The deviation at the next strobe.
+        The deviation at the next strobe, of no use if it is left.
     """
-    mode, rows = nodes.mode, nodes.rows
-    e = motion.number0
-    steady = abs(motion.level) + abs(motion.tip_sine) + abs(motion.tip_cosine) + motion.gap
-    faster = max(1.0, 0.5 * mode.decay / math.sqrt(mode.stiffness))
-    after = motion.omega * 0.0
+    mode, rows = table.mode, table.rows
+    last, e = rows.shape[0] - 1, mode.restitution
     # literal zeros would make numba compile the search twice
     since, first = np.int64(0), np.int64(0)
     rho = abs(mode.phi) * math.sqrt(u * u + v * v / mode.stiffness)
     for impacts in range(MOST_IMPACTS):
-        margin = SAFETY * 4.0 * EPS * (steady + 2.0 * faster * rho)
-        outcome, t, ui, vi, approach = search(motion.period, nodes, since, u, v, rho, first, margin)
+        outcome, t, ui, vi, approach = search(table, since, first, u, v, rho)
         if outcome == _UNSETTLED:
             return -1, u, v
         if outcome == _FREE:
-            k = rows.shape[0] - 1 - since
-            return impacts, rows[k, 2] * u + rows[k, 3] * v, rows[k, 4] * u + rows[k, 5] * v
-        after[0] = vi
-        newton_impact(motion, after, approach, e)
-        vi = after[0]
+            u, v = flow_to(rows, last - since, u, v)
+            return impacts, u, v
+        margin = mode.rounding + mode.rounding_rho * rho
+        vi += mode.kick * approach
         rho = abs(mode.phi) * math.sqrt(ui * ui + vi * vi / mode.stiffness)
         _u, _v, swing, _y0, _y1, _y2 = tip_near(mode, rows, np.int64(0), 0.0, 0.0, t)
         acceleration = -mode.drive**2 * swing - mode.phi * (mode.decay * vi + mode.stiffness * ui)
         since, first = int(t * mode.per_second + 0.5), int(t * mode.per_second) + 1
-        if first >= rows.shape[0]:
+        if first > last:
             return -1, u, v
-        m3 = third_bound(mode, nodes.amplitude * mode.drive**3, ui, vi)
-        if not departs(e * approach, acceleration, m3, first * mode.stretch - t):
+        if not departs(e * approach, acceleration, third_bound(mode, ui, vi), first * mode.stretch - t):
             return -1, u, v
         if accumulation_time(e * approach, acceleration, e, margin) >= 0.0:
             return -1, u, v

@@ -138,7 +138,7 @@ def next_modes(_context, numbers, earlier, r0, inverse, r_now, r_force, n, serie
     """Coefficients of order n + 1 of all modes in a contact, and sum_k phi_k v_k of that order.
 
     `series` holds u in columns 8 to 8 + m and v behind, `earlier` what the terms before the last give to the
-    sums of r u and r v, `numbers` the rows c, omega^2, phi and g.  See ``contact.hertz_lanes``.
+    sums of r u and r v, `numbers` the rows c, omega^2, phi and g.  See ``contact.touch.hertz``.
     """
     real = types.float64
     signature = real(numbers, earlier, real, real, real, real, types.intp, series)
@@ -175,7 +175,7 @@ def next_order(_context, numbers, factor, scale, push, lift, n, series):
     """Coefficients of order n + 2 of all modes under a force, and the sum of phi times them.
 
     Row n + 2 of `series` becomes `scale` (`lift` g - c `factor` row_(n+1) - omega^2 row_n - phi `push`), with
-    the rows c, omega^2, phi and g of `numbers`.  See ``contact.linear_lanes``.
+    the rows c, omega^2, phi and g of `numbers`.  See ``contact.touch.linear``.
     """
     real = types.float64
     signature = real(numbers, real, real, real, real, types.intp, series)

@@ -11,55 +11,36 @@ from __future__ import annotations
 import math
 
 from contact.compiled import kernel
-from contact.flight import EPS
-from contact.modal_flow import (
-    DECAY,
-    LOAD,
-    SQUARE,
-    WEIGHT,
-    U,
-    V,
-    flow_rows,
-    load_state,
-    mode_rows,
-    scalars_of,
-    swing_at,
-)
+from contact.flight.elementary import EPS
+from contact.flight.modal_flow import START_U, START_V, U, V, flow, load_state, new_flight, tip_state
 
-__all__ = ["find_peak", "find_root", "tip_at", "tip_of"]
+__all__ = ["find_peak", "find_root", "tip_at", "tip_now"]
 
 
 @kernel
-def tip_of(fixed, numbers, room, base, s):
+def tip_now(motion, flight, base, s):
     """Tip displacement relative to the stop and two derivatives, a time `s` into the flight."""
-    y0, y1, y2 = swing_at(fixed, base + s)
-    padded = room.shape[1]
-    flow_rows(fixed, numbers, room, 0, padded, s)
-    u, v = room[U], room[V]
-    decay, square, phi, load = numbers[DECAY], numbers[SQUARE], numbers[WEIGHT], numbers[LOAD]
-    for k in range(padded):
-        y0 += phi[k] * u[k]
-        y1 += phi[k] * v[k]
-        y2 += phi[k] * (load[k] - decay[k] * v[k] - square[k] * u[k])
-    return y0, y1, y2
+    flow(motion, flight[START_U], flight[START_V], 0, flight.shape[1], s, flight[U], flight[V])
+    return tip_state(motion, base + s, flight[U], flight[V])
 
 
 @kernel
 def tip_at(motion, base, u, v, s):
     """Tip displacement relative to the stop and two derivatives, a time `s` into the flight from (u, v)."""
-    fixed = scalars_of(motion)
-    numbers, room = mode_rows(motion)
-    load_state(room, u, v)
-    return tip_of(fixed, numbers, room, base, s)
+    flight = new_flight(motion)
+    load_state(flight, u, v)
+    return tip_now(motion, flight, base, s)
 
 
 @kernel
-def find_root(fixed, numbers, room, base, s, y0, y1, y2, m3, low, high, margin):
-    """The root of the tip displacement in [low, high], where it rises from below to above zero [s].
+def find_root(motion, flight, base, point, bracket, m3, margin):
+    """The root of the tip displacement in the `bracket`, where it rises from below to above zero [s].
 
-    (y0, y1, y2) are its derivatives at `s`, where the search begins, and `m3` bounds the third from `low` on
-    (or is infinite).
+    `point` is a time with the displacement and two derivatives there, where the search begins, and `m3` bounds
+    the third from the bracket's start on (or is infinite).
     """
+    s, y0, y1, y2 = point
+    low, high = bracket
     for _ in range(200):
         if abs(y0) <= 0.05 * margin:
             return s
@@ -79,17 +60,15 @@ def find_root(fixed, numbers, room, base, s, y0, y1, y2, m3, low, high, margin):
         if abs(new - s) <= 2.0 * EPS * abs(s) or high - low <= 2.0 * EPS * high:
             return new
         s = new
-        y0, y1, y2 = tip_of(fixed, numbers, room, base, s)
+        y0, y1, y2 = tip_now(motion, flight, base, s)
     return s
 
 
 @kernel
-def find_peak(fixed, numbers, room, base, s, y1, y2, m3, low, high, margin):
-    """The peak of the tip displacement in [low, high], where it is concave [s].
-
-    (y1, y2) are its slope and curvature at `s`, where the search begins, and `m3` bounds the third derivative
-    from `low` on (or is infinite).
-    """
+def find_peak(motion, flight, base, point, bracket, m3, margin):
+    """The peak of the tip displacement in the `bracket`, where it is concave [s]; as `find_root`."""
+    s, _y0, y1, y2 = point
+    low, high = bracket
     for _ in range(200):
         if y1 == 0.0:
             return s
@@ -109,5 +88,5 @@ def find_peak(fixed, numbers, room, base, s, y1, y2, m3, low, high, margin):
         if high - low <= 4.0 * EPS * (base + high):
             return new
         s = new
-        _unused, y1, y2 = tip_of(fixed, numbers, room, base, s)
+        _unused, y1, y2 = tip_now(motion, flight, base, s)
     return s

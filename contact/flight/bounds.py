@@ -1,17 +1,26 @@
-"""Long stretches of a flight proved free by its lowest mode alone.
+"""Stretches of a flight proved free of a crossing.
 
-Relative to the stop the tip is at
+Three proofs.  A signal y(s) is known with its first two derivatives, and a bound M of its third.  A stretch h
+is settled by one of
+
+    max over [0, h] of (y + y' s + y'' s^2/2) + M h^3/6 + R < -margin        no crossing,
+    y' > 0 throughout, and y changes sign                                    one root,
+    y'' < 0 throughout, and y' changes sign                                  one peak.
+
+R bounds what is not sampled.
+
+The lowest mode alone, by Sturm's comparison theorem.  Relative to the stop the tip is at
 
     y(t) = -G + A cos(w (t - t_p)) + phi u(t) + R(t),      |R| <= r,
 
 G the distance of the stop from the tip's mean place, A and t_p height and time of the steady peak, u the free
 deviation of the lowest mode and R that of all others, which is bounded by the sum r of their amplitudes
-(``contact.flight``).  Let rho = |phi| sqrt(u^2 + (v/omega)^2) at the start of the flight.  From then on
+(``contact.flight.modal_flow``).  Let rho = |phi| sqrt(u^2 + (v/omega)^2) at the start of the flight.  From then on
 
     y'' - R'' + w^2 (y - R + G) = phi (u'' + w^2 u) <= w^2 d,     d = (|w^2 - omega^2| + c omega) rho/w^2,
 
 because of u'' = -c u' - omega^2 u, |phi u| <= rho and |phi u'| <= omega rho.  Hence z = y - R + G - d obeys
-z'' + w^2 z <= 0, and lies below the swing that shares its height z_1 and slope z_1' at any t_1 of the flight
+z'' + w^2 z <= 0, and lies below the harmonic motion that shares its height z_1 and slope z_1' at any t_1 of the flight
 (the difference is an integral over sin(w (t - s)) >= 0 of something not above zero):
 
     z(t) <= z_1 cos(w (t - t_1)) + (z_1'/w) sin(w (t - t_1)),      |t - t_1| <= pi/w.                  (1)
@@ -35,13 +44,43 @@ import math
 from typing import NamedTuple
 
 from contact.compiled import kernel
-from contact.flight import mode_flow, sine_cosine
-from contact.modal_flow import DAMPED, DECAY, LOW, OMEGA, SQUARE, START_U, START_V, WEIGHT
+from contact.flight.elementary import sine_cosine
+from contact.flight.modal_flow import START_U, START_V, mode_flow
+from contact.flight.motion import DECAY, OMEGA, SQUARE, WEIGHT
 
-__all__ = ["LowestMode", "free_from", "free_until", "lowest_mode"]
+__all__ = ["NEAR", "PEAK", "ROOT", "SKIP", "STALL", "LowestMode", "certify", "free_from", "free_until",
+           "lowest_mode"]  # fmt: skip
 
-LEAST_ROOM = 1.0 / 16.0
-"""K over G below which nothing is claimed, so that squares are rounded by less than the margin allows."""
+SKIP, ROOT, PEAK, NEAR, STALL = 0, 1, 2, 3, 4
+
+
+@kernel
+def certify(y0, y1, y2, m3, rest, margin, h, h_min):
+    """The longest stretch of h, h/2, h/4, ... that one of the three proofs settles: (proof, stretch).
+
+    As long as some modes are only bounded (`rest` > 0), a stretch on which the others alone have a root or a
+    peak that matters is reported as near: there all modes must be sampled.
+    """
+    while h > h_min:
+        top = max(y0, y0 + h * (y1 + 0.5 * h * y2))
+        if y2 < 0.0 and y1 > 0.0 and -y1 > y2 * h:
+            top = max(top, y0 - 0.5 * y1 * y1 / y2)
+        cubic = m3 * h * h * h / 6.0
+        if top + cubic + rest < -margin:
+            return SKIP, h
+        if y1 > 0.0:
+            slope_loss = 0.5 * m3 * h * h
+            if y1 + min(0.0, y2 * h) - slope_loss > 0.0:
+                if y0 + h * (y1 + 0.5 * h * y2) - cubic > margin:
+                    return (ROOT if rest == 0.0 else NEAR), h
+            elif y2 + m3 * h < 0.0 and y1 + y2 * h + slope_loss < 0.0:
+                return (PEAK if rest == 0.0 else NEAR), h
+        h *= 0.5
+    return STALL, h
+
+
+LEAST_SLACK = 1.0 / 16.0
+"""K over G below which nothing is used, so that squares are rounded by less than the margin allows."""
 
 HIGHEST = 1e6
 """Steady amplitude in gaps up to which the place of its peak is good enough to tell a period's middle."""
@@ -57,14 +96,14 @@ CLOSE = 1e-4
 
 
 class LowestMode(NamedTuple):
-    """What the claims about one flight need.
+    """What the comparison bounds of one flight need.
 
     peak, quarter : float
         t_p and a quarter of the drive period [s].
     mean : float
         G - d [m]: z is the tip displacement without the other modes plus this.
-    room : float
-        K [m]; zero if nothing can be claimed.
+    slack : float
+        K [m]; zero if nothing can be proved.
     near : float
         r with its margin [m].
     """
@@ -72,18 +111,18 @@ class LowestMode(NamedTuple):
     peak: float
     quarter: float
     mean: float
-    room: float
+    slack: float
     near: float
 
 
 @kernel
-def lowest_mode(fixed, numbers, room, base, duration, rest, margin):
-    """The claims about a flight.
+def lowest_mode(motion, flight, base, duration, rest, margin):
+    """The bounds of a flight.
 
     Parameters
     ----------
-    fixed, numbers, room
-        As in ``contact.modal_flow``, with the start of the flight.
+    motion, flight
+        As in ``contact.flight.modal_flow``, with the start of the flight.
     base, duration : float
         Time since the strobe at which the flight starts, and its length [s].
     rest : float
@@ -91,62 +130,60 @@ def lowest_mode(fixed, numbers, room, base, duration, rest, margin):
     margin : float
         Rounding bound of the tip displacement [m].
     """
-    w, gap, omega, period = fixed.drive, -fixed.level, numbers[OMEGA, 0], fixed.period
-    u, v = room[START_U, 0], room[START_V, 0]
+    w, gap, omega, period = motion.drive, -motion.level, motion.modes[OMEGA, 0], motion.period
+    u, v = flight[START_U, 0], flight[START_V, 0]
     near = rest * (1.0 + 1e-12) + 8.0 * margin
     nothing = LowestMode(0.0, 0.0, 0.0, 0.0, near)
     if not (w > 0.0 and omega > 0.0 and gap > near and base + duration <= period * (1.0 + 1e-12)):
         return nothing
-    rho = abs(numbers[WEIGHT, 0]) * math.sqrt(u * u + v * v / (omega * omega))
-    deviant = (abs(w - omega) * (w + omega) + numbers[DECAY, 0] * omega) * rho / (w * w)
-    room = gap - deviant - near
-    if not (room > LEAST_ROOM * gap and rho + near + UNCERTAIN * fixed.amplitude < gap):
+    rho = abs(motion.modes[WEIGHT, 0]) * math.sqrt(u * u + v * v / (omega * omega))
+    deviant = (abs(w - omega) * (w + omega) + motion.modes[DECAY, 0] * omega) * rho / (w * w)
+    slack = gap - deviant - near
+    if not (slack > LEAST_SLACK * gap and rho + near + UNCERTAIN * motion.amplitude < gap):
         return nothing
-    angle = math.atan2(fixed.sine, fixed.cosine)
+    angle = math.atan2(motion.tip_sine, motion.tip_cosine)
     peak = (angle if angle >= 0.0 else angle + 2.0 * math.pi) / w
     quarter = 0.25 * period
-    if not (abs(peak - 2.0 * quarter) <= quarter * (1.0 + 1e-12) and fixed.amplitude <= HIGHEST * gap):
+    if not (abs(peak - 2.0 * quarter) <= quarter * (1.0 + 1e-12) and motion.amplitude <= HIGHEST * gap):
         return nothing
-    return LowestMode(peak, quarter, gap - deviant, room, near)
+    return LowestMode(peak, quarter, gap - deviant, slack, near)
 
 
 @kernel
 def free_from(lowest, t, height, rate):
     """Whether no touch can come after the drive time `t` at which the tip, without the other modes, is at
     `height` and moves at `rate`."""
-    return rate <= 0.0 and abs(height + lowest.mean) < lowest.room and t >= lowest.peak - lowest.quarter
+    return rate <= 0.0 and abs(height + lowest.mean) < lowest.slack and t >= lowest.peak - lowest.quarter
 
 
 @kernel
-def without_others(fixed, numbers, room, base, s):
+def without_others(motion, flight, base, s):
     """Tip displacement relative to the stop without the modes above the lowest, and three derivatives."""
-    w, c, o2 = fixed.drive, numbers[DECAY, 0], numbers[SQUARE, 0]
+    w, c, o2 = motion.drive, motion.modes[DECAY, 0], motion.modes[SQUARE, 0]
     sine, cosine = sine_cosine(w * (base + s), 0.0)
-    swing = fixed.sine * sine + fixed.cosine * cosine
-    swing_rate = w * (fixed.sine * cosine - fixed.cosine * sine)
-    u, v = mode_flow(
-        numbers[OMEGA, 0], c, numbers[DAMPED, 0], numbers[LOW, 0], 0.0, room[START_U, 0], room[START_V, 0], s
-    )
+    steady = motion.tip_sine * sine + motion.tip_cosine * cosine
+    steady_rate = w * (motion.tip_sine * cosine - motion.tip_cosine * sine)
+    u, v = mode_flow(motion.modes, 0, flight[START_U, 0], flight[START_V, 0], s)
     a = -c * v - o2 * u
-    phi = numbers[WEIGHT, 0]
+    phi = motion.modes[WEIGHT, 0]
     return (
-        fixed.level + swing + phi * u, swing_rate + phi * v, phi * a - w * w * swing,
-        -w * w * swing_rate - phi * (c * a + o2 * v),
+        motion.level + steady + phi * u, steady_rate + phi * v, phi * a - w * w * steady,
+        -w * w * steady_rate - phi * (c * a + o2 * v),
     )  # fmt: skip
 
 
 @kernel
-def free_until(fixed, numbers, room, lowest, base, duration):
+def free_until(motion, flight, lowest, base, duration):
     """Time from the start of the flight up to which no touch can come, `duration` if none comes [s]."""
-    if not lowest.room > 0.0:
+    if not lowest.slack > 0.0:
         return 0.0
-    w, least, end = fixed.drive, lowest.room, base + duration
-    goal = 1.25 * lowest.near + 0.5 * CLOSE * abs(fixed.level)
+    w, least, end = motion.drive, lowest.slack, base + duration
+    goal = 1.25 * lowest.near + 0.5 * CLOSE * abs(motion.level)
     t, free = min(max(lowest.peak, base), end), 0.0
     for _ in range(TRIES):
         if t - lowest.peak > lowest.quarter:
             return duration if t == base else free
-        height, rate, bend, twist = without_others(fixed, numbers, room, base, t - base)
+        height, rate, bend, twist = without_others(motion, flight, base, t - base)
         z = height + lowest.mean
         if z * z + (rate / w) ** 2 < least * least and t >= lowest.peak - lowest.quarter:
             return duration

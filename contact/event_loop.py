@@ -1,0 +1,241 @@
+"""The loop over flights and touches: flights in closed form, touches as their law has them.
+
+A run goes from strobe to strobe, with time counted from the last strobe, so that a million periods bring no
+loss of phase.  In each period a certified search (``contact.flight.crossing``) finds the first touch, or, if
+that is asked for, the letter's sampled one (``contact.flight.sampled_crossing``); an impact law acts at once, a
+force law is followed through the contact until the tip is off the wall again (``contact.touch``).  Periods
+without a touch cost one multiplication by the flow of a period and a proof, most often by the lowest mode
+alone.
+"""
+
+# mypy: allow-untyped-defs, allow-incomplete-defs
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from contact import touch
+from contact.compiled import inlined, kernel
+from contact.flight.crossing import CROSSES, FREE, UNRESOLVED, searched_flight
+from contact.flight.elementary import EPS
+from contact.flight.modal_flow import (
+    apply_flow,
+    carry,
+    flow_over,
+    load_state,
+    new_flight,
+    propagate,
+    tip_state,
+)
+from contact.flight.sampled_crossing import first_sampled_crossing
+from contact.recorder import (
+    add_loss,
+    close_touch,
+    is_full,
+    open_touch,
+    put_sample,
+    put_strobe,
+    sample_due,
+)
+from contact.touch.newton import hold
+from contact.touch.series import Series, new_series
+from contact.trajectory import GRAZE, IMPACT, OUTSIDE, STAY, SUSTAINED
+
+__all__ = ["DONE", "FAILED_CHATTER", "FAILED_CROSSING", "FAILED_SERIES", "FAILED_STEPS", "LOG_FULL", "STATE",
+           "advance"]  # fmt: skip
+
+DONE, FAILED_CROSSING, FAILED_CHATTER, FAILED_STEPS, FAILED_SERIES, LOG_FULL = range(6)
+
+MOST_IMPACTS = 100_000
+"""Bound of impacts in one drive period: accumulating impacts with e = 0.999 take about 2e4 before the hops
+drown in rounding, so a longer sequence is not on its way to rest."""
+
+MOST_STEPS = 1_000_000
+"""Bound of flights and series steps in one drive period: 1e6 steps of two radians reach modes of 3e5 drive
+frequencies."""
+
+STATE = np.dtype([
+    ("regime", "i8"), ("order", "i8"), ("period", "i8"), ("evaluations", "i8"), ("search", "i8"),
+    ("clock", "f8"), ("wait", "f8"), ("rebound", "f8"), ("root", "f8"), ("speed", "f8"),
+])  # fmt: skip
+"""Where a run stands.
+
+regime: ``contact.trajectory.Regime``; order: how many derivatives of the tip displacement vanish at the start of
+the flight; period, clock: number of the drive period and time since its strobe [s]; evaluations: flights,
+contact steps and sampled positions so far; search: 0 for certified crossings, else samples per period.
+
+Of the touch under way: wait, rebound: time until it ends by itself [s] and velocity with which the tip then
+leaves [m/s]; root: sqrt of the penetration [m^0.5]; speed: the modal speeds at its start; both below zero when
+they are to be computed anew.
+"""
+
+
+class Work(NamedTuple):
+    """Room to work.
+
+    flight : ndarray
+        Of ``contact.flight.modal_flow``.
+    whole, spaced : ndarray, shape (n_modes, 6)
+        Flow over a drive period, and over the `spacing` of a sampled search [s].
+    series : Series
+        Of a step in touch.
+    u, v : ndarray, shape (n_modes,)
+    """
+
+    flight: np.ndarray
+    whole: np.ndarray
+    spaced: np.ndarray
+    spacing: float
+    series: Series
+    u: np.ndarray
+    v: np.ndarray
+
+
+@kernel
+def new_work(motion, search):
+    """Room to work for an oscillator."""
+    spacing = motion.period / max(1, search)
+    order, columns = touch.room(motion)
+    return Work(
+        new_flight(motion), flow_over(motion, motion.period), flow_over(motion, spacing), spacing,
+        new_series(order, columns), np.empty(motion.size), np.empty(motion.size),
+    )  # fmt: skip
+
+
+@inlined
+def land(motion, u, v, run, crosses, end, work, recorder):
+    """What happens where a flight meets the stop."""
+    approach = tip_state(motion, run.clock, u, v)[1]
+    if not crosses:
+        open_touch(recorder, run.period, run.clock, 0.0, GRAZE, u, v)
+        close_touch(recorder, run.period, run.clock, 0.0, u, v)
+        run.order = 2
+        return
+    open_touch(recorder, run.period, run.clock, approach, IMPACT, u, v)
+    run.regime, rebound, loss = touch.strike(motion, run, u, v, approach)
+    add_loss(recorder, loss)
+    if run.regime == OUTSIDE or run.regime == SUSTAINED:
+        close_touch(recorder, run.period, run.clock, rebound, u, v)
+    if run.regime == SUSTAINED:
+        # the remaining hops take a time run.wait, of which what lies after the strobe is below rounding
+        open_touch(recorder, run.period, run.clock, rebound, STAY, u, v)
+        rest = min(run.wait, end - run.clock)
+        run.wait = 0.0
+        if rest > 0.0:
+            propagate(motion, u, v, rest, u, v)
+            run.clock += rest
+        hold(motion, run.clock, u, v)
+
+
+@inlined
+def fly(motion, u, v, run, end, work, recorder):
+    """A flight, and what happens where it meets the stop."""
+    base, flight = run.clock, work.flight
+    load_state(flight, u, v)
+    if run.search == 0:
+        outcome, s = searched_flight(motion, flight, base, end - base, run.order)
+    else:
+        outcome, s, count = first_sampled_crossing(
+            motion, flight, base, end - base, run.order, work.spacing, work.spaced
+        )
+        run.evaluations += count
+    until = end if outcome == FREE else base + s
+    while outcome != UNRESOLVED and sample_due(recorder, run.period, until):
+        time = recorder.sample_clock[recorder.marks[0].sampled] - base
+        propagate(motion, u, v, time, work.u, work.v)
+        put_sample(recorder, work.u, work.v)
+    if outcome == FREE and base == 0.0 and end == motion.period:
+        apply_flow(work.whole, u, v)
+    else:
+        carry(motion, flight, s, u, v)
+    run.clock = until
+    if outcome == UNRESOLVED:
+        return FAILED_CROSSING
+    run.order = 0
+    if outcome != FREE:
+        land(motion, u, v, run, outcome == CROSSES, end, work, recorder)
+    return DONE
+
+
+@inlined
+def press(motion, u, v, run, end, work, recorder):
+    """A step in touch with the stop, cut at its end."""
+    base, limit, series = run.clock, end - run.clock, work.series
+    if limit <= 4.0 * EPS * motion.period:
+        run.clock = end
+        return DONE
+    s, h, following = touch.step(motion, run, u, v, limit, series)
+    if not (0.0 <= h < math.inf):
+        return FAILED_SERIES
+    until = base + h if h < limit else end
+    while sample_due(recorder, run.period, until):
+        time = recorder.sample_clock[recorder.marks[0].sampled] - base
+        touch.state(motion, run, touch.place(motion, time, s, series), series, work.u, work.v)
+        put_sample(recorder, work.u, work.v)
+    if recorder.log.size > 0:
+        add_loss(recorder, touch.work(motion, run, s, series))
+    touch.state(motion, run, s, series, u, v)
+    run.regime, run.clock = following, until
+    if following == OUTSIDE:
+        touch.leave(motion, run, u, v)
+        velocity = tip_state(motion, until, u, v)[1]
+        close_touch(recorder, run.period, until, velocity, u, v)
+    return DONE
+
+
+@kernel
+def to_time(motion, u, v, run, end, work, recorder):
+    """Go on to a time `end` after the strobe [s]."""
+    steps = 0
+    while run.clock < end:
+        if is_full(recorder):
+            return LOG_FULL
+        steps += 1
+        run.evaluations += 1
+        if steps > MOST_STEPS:
+            return FAILED_STEPS
+        if recorder.marks[0].impacts > MOST_IMPACTS:
+            return FAILED_CHATTER
+        if run.regime == OUTSIDE:
+            status = fly(motion, u, v, run, end, work, recorder)
+        else:
+            status = press(motion, u, v, run, end, work, recorder)
+        if status != DONE:
+            return status
+    return DONE
+
+
+@kernel
+def advance(motion, u, v, runs, last, clock_end, recorder):
+    """Carry the deviations (u, v) to the time `clock_end` after strobe `last`.
+
+    Parameters
+    ----------
+    motion : Motion
+    u, v : ndarray, shape (n_modes,)
+        Deviations from the steady motion; overwritten.
+    runs : record array of `STATE`, shape (1,)
+        Where the run stands; overwritten.
+    last : int
+        Number of the last strobe.
+    clock_end : float
+        Time after it at which the run ends [s].
+    recorder : Recorder
+
+    Returns
+    -------
+    status : int
+        DONE, LOG_FULL (call again with a longer log), or one of the failures.
+    """
+    run = runs[0]
+    work = new_work(motion, run.search)
+    while True:
+        at_last = run.period == last
+        status = to_time(motion, u, v, run, clock_end if at_last else motion.period, work, recorder)
+        if status != DONE or at_last:
+            return status
+        put_strobe(recorder, u, v)
+        run.clock = 0.0
+        run.period += 1

@@ -1,0 +1,234 @@
+"""The motion of the modes between contacts, in closed form.
+
+Each mode obeys q'' + c q' + omega^2 q = g + Gamma Z w^2 sin(w t) (mass-normalised, w = 2 pi f).  Write
+q = q_s(t) + u with the steady motion
+
+    q_s(t) = g/omega^2 + S sin(w t) + C cos(w t),   S + iC = Gamma Z w^2 / (omega^2 - w^2 + i c w)
+
+(the g-term only for omega > 0).  The deviation u is free, u'' + c u' + omega^2 u = 0, and with D = omega^2 -
+(c/2)^2
+
+    u(t) = e^{-ct/2} [ Cn(t) u_0 + Sn(t) (v_0 + c u_0/2) ]
+    v(t) = e^{-ct/2} [ Cn(t) v_0 - Sn(t) (omega^2 u_0 + c v_0/2) ]
+
+where (Cn, Sn) is (cos, sin/d) of d t with d = sqrt(D) for an under-damped mode, (1, t) for a critical one and
+(cosh, sinh/k) of k t with k = sqrt(-D) for an over-damped one.  A mode of zero frequency under a constant
+load g adds g t^2 phi_2(-c t) to u, phi_2(x) = (e^x - 1 - x)/x^2.  The phase d t is a sum of two doubles.
+
+Bounds: every derivative of a free mode obeys the same equation, and v^2 + omega^2 u^2 never grows, hence for
+all later times, whatever the damping,
+
+    |u^(n)|   <= sqrt( (u^(n))^2 + (u^(n+1)/omega)^2 ) now,
+    |u^(n+1)| <= sqrt( (u^(n+1))^2 + omega^2 (u^(n))^2 ) now.
+
+Units: SI with mass-normalised modes (u in m kg^0.5).
+"""
+
+# mypy: allow-untyped-defs, allow-incomplete-defs
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from contact.compiled import kernel
+from contact.flight.elementary import EPS, FARTHEST, exponential, sine_cosine, turned, two_product
+from contact.flight.motion import (
+    DAMPED,
+    DECAY,
+    LOAD,
+    LOW,
+    OMEGA,
+    SHORTNESS,
+    SQUARE,
+    WEIGHT,
+    Motion,
+)
+from contact.vector_loops import aligned
+
+__all__ = ["flow", "flow_matrix", "mode_flow", "new_flight", "propagate", "speed_scale", "steady_motion",
+           "tip_rounding", "tip_state"]  # fmt: skip
+
+START_U, START_V, U, V, HEIGHT, RATE, BEND, THIRD, ABOVE = range(9)
+"""Rows of the work space of a flight: deviation and velocity at its start, and now; what they add to the tip
+displacement and two derivatives, and to the bound of the third; the sum of the amplitudes of all higher
+modes."""
+
+
+@kernel
+def new_flight(motion):
+    """Work space of flights, shape (9, m)."""
+    return aligned(9, motion.modes.shape[1])
+
+
+@kernel
+def load_state(flight, u, v):
+    """Take (u, v), shape (n_modes,) each, as the start of a flight."""
+    for k in range(u.size):
+        flight[START_U, k] = u[k]
+        flight[START_V, k] = v[k]
+
+
+@kernel
+def flow_matrix(omega, decay, damped, damped_low, t):
+    """The 2 x 2 flow (u, v) -> (u, v) of a free mode over a time `t` [s], as four numbers."""
+    half = 0.5 * decay
+    if damped > 0.0 and omega > half:
+        p, e = two_product(damped, t)
+        s, c = sine_cosine(p, e + damped_low * t)
+        fade = exponential(-half * t)
+        cn = fade * c
+        sn = fade * s / damped
+    elif damped > 0.0:
+        slow = omega * omega / (half + damped)
+        fade = math.exp(-slow * t)
+        lost = -math.expm1(-2.0 * damped * t)
+        cn = fade * (1.0 - 0.5 * lost)
+        sn = fade * lost / (2.0 * damped)
+    else:
+        cn = math.exp(-half * t)
+        sn = cn * t
+    return cn + half * sn, sn, -omega * omega * sn, cn - half * sn
+
+
+@kernel
+def loaded_drift(decay, load, t):
+    """Displacement and velocity that a constant `load` adds to a mode of zero frequency in a time `t`."""
+    x = -decay * t
+    if x > -1.0:
+        phi2 = 0.0
+        for n in range(20, 1, -1):
+            phi2 = (1.0 + x * phi2) / n
+        phi1 = 1.0 + x * phi2
+    else:
+        phi1 = math.expm1(x) / x
+        phi2 = (phi1 - 1.0) / x
+    return load * t * t * phi2, load * t * phi1
+
+
+@kernel
+def mode_flow(modes, k, u, v, t):
+    """Deviation (u, v) of mode `k` of a table after a time `t` [s]."""
+    a, b, c, d = flow_matrix(modes[OMEGA, k], modes[DECAY, k], modes[DAMPED, k], modes[LOW, k], t)
+    un, vn = a * u + b * v, c * u + d * v
+    if modes[LOAD, k] != 0.0:
+        du, dv = loaded_drift(modes[DECAY, k], modes[LOAD, k], t)
+        un += du
+        vn += dv
+    return un, vn
+
+
+@kernel
+def flow(motion, u, v, start, stop, t, u_out, v_out):
+    """Deviations of modes `start` to `stop` after a time `t` [s], one mode per element of the arrays."""
+    modes = motion.modes
+    if not (motion.plain and motion.phase_rate * abs(t) < FARTHEST):
+        for k in range(start, stop):
+            u_out[k], v_out[k] = mode_flow(modes, k, u[k], v[k], t)
+        return
+    decay, damped, low, square = modes[DECAY], modes[DAMPED], modes[LOW], modes[SQUARE]
+    for k in range(start, stop):  # without a branch, so that it becomes one of vector instructions
+        p, e = two_product(damped[k], t)
+        s, c = turned(p, e + low[k] * t)
+        half = 0.5 * decay[k]
+        fade = exponential(-half * t)
+        cn, sn = fade * c, fade * s / damped[k]
+        un, vn = u[k], v[k]
+        u_out[k] = cn * un + sn * (vn + half * un)
+        v_out[k] = cn * vn - sn * (square[k] * un + half * vn)
+
+
+@kernel
+def flow_over(motion, time):
+    """The flow of all modes over a `time` [s], shape (n_modes, 6): matrix by rows, drift under the load."""
+    modes, flows = motion.modes, np.zeros((motion.size, 6))
+    for k in range(motion.size):
+        flows[k, 0], flows[k, 1], flows[k, 2], flows[k, 3] = flow_matrix(
+            modes[OMEGA, k], modes[DECAY, k], modes[DAMPED, k], modes[LOW, k], time
+        )
+        if modes[LOAD, k] != 0.0:
+            flows[k, 4], flows[k, 5] = loaded_drift(modes[DECAY, k], modes[LOAD, k], time)
+    return flows
+
+
+@kernel
+def apply_flow(flows, u, v):
+    """Move all deviations on by `flows`, in place."""
+    for k in range(u.size):
+        uk = u[k]
+        u[k] = flows[k, 0] * uk + flows[k, 1] * v[k] + flows[k, 4]
+        v[k] = flows[k, 2] * uk + flows[k, 3] * v[k] + flows[k, 5]
+
+
+@kernel
+def propagate(motion, u, v, t, u_out, v_out):
+    """Deviations of all modes after a time `t` [s]; `u_out`, `v_out` may be `u`, `v` themselves."""
+    flow(motion, u, v, 0, u.size, t, u_out, v_out)
+
+
+@kernel
+def carry(motion, flight, t, u, v):
+    """Deviations (u, v) of all modes a time `t` [s] into the flight."""
+    flow(motion, flight[START_U], flight[START_V], 0, flight.shape[1], t, flight[U], flight[V])
+    for k in range(u.size):
+        u[k] = flight[U, k]
+        v[k] = flight[V, k]
+
+
+@kernel
+def mode_acceleration(motion, k, u, v):
+    """Second derivative of the deviation of mode `k` when no contact acts."""
+    modes = motion.modes
+    return modes[LOAD, k] - modes[DECAY, k] * v - modes[SQUARE, k] * u
+
+
+@kernel
+def tip_steady(motion, t):
+    """Tip displacement relative to the stop, velocity and acceleration of the steady motion at drive time
+    `t`."""
+    w = motion.drive
+    s, c = sine_cosine(w * t, 0.0)
+    x = motion.tip_sine * s + motion.tip_cosine * c
+    return motion.level + x, w * (motion.tip_sine * c - motion.tip_cosine * s), -w * w * x
+
+
+@kernel
+def tip_state(motion, t, u, v):
+    """Tip displacement relative to the stop [m], its velocity and acceleration, at drive time `t`."""
+    modes = motion.modes
+    y0, y1, y2 = tip_steady(motion, t)
+    for k in range(u.size):
+        phi = modes[WEIGHT, k]
+        y0 += phi * u[k]
+        y1 += phi * v[k]
+        y2 += phi * (modes[LOAD, k] - modes[DECAY, k] * v[k] - modes[SQUARE, k] * u[k])
+    return y0, y1, y2
+
+
+@kernel
+def tip_rounding(motion, u, v):
+    """Bound of the rounding error of the tip displacement in a flight that starts at (u, v) [m]."""
+    total = abs(motion.level) + abs(motion.tip_sine) + abs(motion.tip_cosine) + motion.gap
+    phi, shortness = motion.modes[WEIGHT], motion.modes[SHORTNESS]
+    for k in range(u.size):
+        total += abs(phi[k]) * (abs(u[k]) + abs(v[k]) * shortness[k])
+    return 4.0 * EPS * total
+
+
+@kernel
+def speed_scale(motion, u, v):
+    """The square root of twice the modal energy, of the deviation and of the steady motion [m kg^0.5/s]."""
+    energy, square = motion.steady_energy, motion.modes[SQUARE]
+    for k in range(u.size):
+        energy += v[k] * v[k] + square[k] * u[k] * u[k]
+    return math.sqrt(energy)
+
+
+def steady_motion(motion: Motion, clock: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Steady modal displacement and velocity at times `clock` since a strobe, each (n_times, n_modes)."""
+    phase = motion.drive * np.asarray(clock, dtype=float)[:, None]
+    s, c = np.sin(phase), np.cos(phase)
+    return (
+        motion.offset + motion.sine * s + motion.cosine * c,
+        motion.drive * (motion.sine * c - motion.cosine * s),
+    )

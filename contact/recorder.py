@@ -1,0 +1,213 @@
+"""What a run writes down: impacts, strobes and samples, for exact and fixed-step methods alike.
+
+Times are kept as the number of a drive period and the time since its strobe, so that a million periods bring
+no loss of phase.  A method with a time step counts from one strobe throughout (`recorder_for` with a period).
+(u, v) is the modal state as the method has it: deviations from the steady motion, or displacements and
+velocities themselves.
+"""
+
+# mypy: allow-untyped-defs, allow-incomplete-defs
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from contact.compiled import kernel
+from contact.flight.modal_flow import steady_motion
+from contact.flight.motion import Motion
+from contact.trajectory import IMPACT, Impacts, Run, State, Trajectory
+
+__all__ = ["LOG", "MARKS", "Recorder", "add_loss", "close_touch", "grown", "is_full", "open_touch", "put_sample",
+           "put_strobe", "recorder_for", "sample_due", "strobes_only", "trajectory_of"]  # fmt: skip
+
+MARKS = np.dtype([(name, "i8") for name in ("logged", "sampled", "strobed", "impacts", "touching")])
+"""Rows in use of the log, the samples and the strobes; impacts since the last strobe; whether the tip
+touches."""
+
+LOG = np.dtype([
+    ("period", "i8"), ("start", "f8"), ("end_period", "i8"), ("end", "f8"), ("approach", "f8"),
+    ("rebound", "f8"), ("loss", "f8"), ("kind", "i8"),
+])  # fmt: skip
+"""A touch: period and clock of its start and of its end [s], tip velocity at both [m/s], energy lost [J] and
+``contact.trajectory.Kind``."""
+
+
+class Recorder(NamedTuple):
+    """Where a run writes.
+
+    marks : record array of `MARKS`, shape (1,)
+    log : record array of `LOG`, shape (capacity,); empty if no impacts are wanted
+    log_state : ndarray, shape (capacity, 4 n_modes)
+        (u, v) just before the touch and just after the release.
+    strobes, counts : ndarray, shapes (n_strobes, 2 n_modes) and (n_strobes,), or (0, ...)
+        (u, v) at the strobes, and the impacts since the one before.
+    sample_period, sample_clock, samples : ndarray, shapes (n,), (n,), (n, 2 n_modes)
+        Times wanted, and (u, v) there.
+    """
+
+    marks: np.ndarray
+    log: np.ndarray
+    log_state: np.ndarray
+    strobes: np.ndarray
+    counts: np.ndarray
+    sample_period: np.ndarray
+    sample_clock: np.ndarray
+    samples: np.ndarray
+
+
+@kernel
+def strobes_only(strobes, counts):
+    """A recorder of strobes and counts alone, either of which may be empty."""
+    wide = strobes.shape[1]
+    return Recorder(
+        np.zeros(1, dtype=MARKS), np.empty(0, dtype=LOG), np.empty((0, 2 * wide)), strobes, counts,
+        np.empty(0, dtype=np.int64), np.empty(0), np.empty((0, wide)),
+    )  # fmt: skip
+
+
+@kernel
+def put_state(row, at, u, v):
+    """(u, v) into a row from column `at` on."""
+    n = u.size
+    for k in range(n):
+        row[at + k] = u[k]
+        row[at + n + k] = v[k]
+
+
+@kernel
+def is_full(recorder):
+    """Whether a touch and the stay that may follow it do not fit into the log any more."""
+    return recorder.log.size > 0 and recorder.marks[0].logged >= recorder.log.size - 1
+
+
+@kernel
+def open_touch(recorder, period, clock, approach, kind, u, v):
+    """Start a row of the log."""
+    marks = recorder.marks[0]
+    marks.touching = 1
+    marks.impacts += 1 if kind == IMPACT else 0
+    i = marks.logged
+    marks.logged += 1
+    if recorder.log.size == 0:
+        return
+    row, n = recorder.log[i], u.size
+    row.period, row.start, row.end_period, row.end = period, clock, period, math.nan
+    row.approach, row.rebound, row.loss, row.kind = approach, math.nan, 0.0, kind
+    put_state(recorder.log_state[i], 0, u, v)
+    recorder.log_state[i, 2 * n :] = math.nan
+
+
+@kernel
+def add_loss(recorder, energy):
+    """Energy that the touch under way has taken [J]."""
+    if recorder.log.size > 0:
+        recorder.log[recorder.marks[0].logged - 1].loss += energy
+
+
+@kernel
+def close_touch(recorder, period, clock, rebound, u, v):
+    """Complete the last row of the log."""
+    recorder.marks[0].touching = 0
+    if recorder.log.size == 0:
+        return
+    i = recorder.marks[0].logged - 1
+    row = recorder.log[i]
+    row.end_period, row.end, row.rebound = period, clock, rebound
+    put_state(recorder.log_state[i], 2 * u.size, u, v)
+
+
+@kernel
+def sample_due(recorder, period, until):
+    """Whether the next sample lies in this period, at or before the clock `until`."""
+    i = recorder.marks[0].sampled
+    clock = recorder.sample_clock
+    return i < clock.size and recorder.sample_period[i] == period and clock[i] <= until
+
+
+@kernel
+def put_sample(recorder, u, v):
+    """The state at the next sample time."""
+    marks = recorder.marks[0]
+    put_state(recorder.samples[marks.sampled], 0, u, v)
+    marks.sampled += 1
+
+
+@kernel
+def put_strobe(recorder, u, v):
+    """The state at the next strobe, and the impacts since the one before."""
+    marks = recorder.marks[0]
+    if recorder.counts.size > 0:
+        recorder.counts[marks.strobed] = marks.impacts
+    if recorder.strobes.shape[0] > 0:
+        put_state(recorder.strobes[marks.strobed], 0, u, v)
+    marks.strobed += 1
+    marks.impacts = 0
+
+
+def recorder_for(run: Run, n_modes: int, period: float | None = None) -> Recorder:
+    """Room for what `run` asks for; with a `period` [s] all times count from the strobe `run.first`."""
+    strobes, times, capacity = run.last - run.first, run.times.size, 64
+    sample_period, sample_clock = run.sample_period, run.sample_clock
+    if period is not None:
+        sample_clock = (sample_period - run.first) * period + sample_clock
+        sample_period = np.full(times, run.first)
+    return Recorder(
+        marks=np.zeros(1, dtype=MARKS), log=np.zeros(capacity, dtype=LOG),
+        log_state=np.empty((capacity, 4 * n_modes)), strobes=np.empty((strobes, 2 * n_modes)),
+        counts=np.zeros(strobes, dtype=np.int64), sample_period=np.asarray(sample_period, dtype=np.int64),
+        sample_clock=sample_clock, samples=np.empty((times, 2 * n_modes)),
+    )  # fmt: skip
+
+
+def grown(recorder: Recorder) -> Recorder:
+    """The same with a log twice as long."""
+    log, state = recorder.log, recorder.log_state
+    return recorder._replace(
+        log=np.concatenate([log, np.zeros_like(log)]), log_state=np.concatenate([state, np.empty_like(state)])
+    )
+
+
+def trajectory_of(
+    recorder: Recorder, run: Run, end: State, period: float, *, evaluations: int, motion: Motion | None = None
+) -> Trajectory:
+    """What was written down, as named arrays.
+
+    Parameters
+    ----------
+    recorder : Recorder
+    run : Run
+    end : State
+        Where the run ended; samples beyond what was written get this state.
+    period : float
+        The drive period [s].
+    evaluations : int
+        See ``Trajectory``.
+    motion : Motion, optional
+        If given, the rows are deviations from its steady motion.
+    """
+    n, marks = end.displacement.size, recorder.marks[0]
+    log, log_state = recorder.log[: marks["logged"]], recorder.log_state[: marks["logged"]]
+
+    def physical(rows: np.ndarray, clock: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        q, v = (0.0, 0.0) if motion is None else steady_motion(motion, clock)
+        return rows[:, :n] + q, rows[:, n:] + v
+
+    q_in, v_in = physical(log_state[:, : 2 * n], log["start"])
+    q_out, v_out = physical(log_state[:, 2 * n :], log["end"])
+    passed = run.last - run.first
+    q_strobe, v_strobe = physical(recorder.strobes, np.zeros(passed))
+    q_sample, v_sample = physical(recorder.samples, run.sample_clock)
+    q_sample[marks["sampled"] :], v_sample[marks["sampled"] :] = end.displacement, end.velocity
+    impacts = Impacts(
+        start=log["period"] * period + log["start"], end=log["end_period"] * period + log["end"],
+        approach=log["approach"].copy(), rebound=log["rebound"].copy(),
+        loss=np.where(np.isnan(log["end"]), np.nan, log["loss"]), kind=log["kind"].copy(),
+        displacement_start=q_in, velocity_start=v_in, displacement_end=q_out, velocity_end=v_out,
+    )  # fmt: skip
+    return Trajectory(
+        end=end, strobe_time=np.arange(run.first + 1, run.last + 1) * period, strobe_displacement=q_strobe,
+        strobe_velocity=v_strobe, strobe_impacts=recorder.counts, time=run.times, displacement=q_sample,
+        velocity=v_sample, impacts=impacts, evaluations=int(evaluations),
+    )  # fmt: skip

@@ -1,0 +1,54 @@
+"""Drive periods as a map: what every strobed or iterated system offers.
+
+Sampling a driven oscillator at the strobe times t_n = n/f turns its motion into the iteration of a map; its
+periodic orbits are the p_m orbits of the letter (1996, Fig. 2).  ``StroboscopicMap`` is that map for any
+impact oscillator, ``StrobedNordmarkMap`` the letter's Eqs. (2), (3): whatever scans, settles or classifies
+orbits takes either, and any other class with these methods.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Generic, Protocol, TypeVar
+
+import numpy as np
+
+__all__ = ["StrobedMap", "StrobedOrbit"]
+
+S = TypeVar("S")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class StrobedOrbit(Generic[S]):
+    """A stretch of a strobed motion.
+
+    Parameters
+    ----------
+    end : State
+        Where it ended.
+    points : ndarray, shape (n_strobes, n_coordinates)
+        Coordinates at the strobes, all in the same unit, the start excluded.
+    impacts : ndarray of int, shape (n_strobes,)
+        Impacts since the strobe before.
+    """
+
+    end: S
+    points: np.ndarray
+    impacts: np.ndarray
+
+
+class StrobedMap(Protocol[S]):
+    """What a scan needs of a strobed or iterated system."""
+
+    @property
+    def scale(self) -> float:
+        """The size of a coordinate at grazing, in the unit of `points`."""
+
+    def at(self, excess: float) -> StrobedMap[S]:
+        """The same system at another excess over grazing [1]."""
+
+    def steady(self) -> S:
+        """The orbit without impacts at a strobe; above grazing, what it would be without the stop."""
+
+    def orbit(self, state: S, count: int) -> StrobedOrbit[S]:
+        """`count` periods from `state`."""

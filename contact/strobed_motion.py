@@ -1,0 +1,118 @@
+"""The motion from strobe to strobe as compiled code: one door for any oscillator.
+
+One mode under Newton's law has a loop of its own (``contact.single_mode.loop``), which proves most periods
+free without a sine; everything else goes through ``event_loop.advance``.  The strobes of both agree within
+rounding.
+
+What a point is: phi_k q_k and phi_k q_k'/omega_k of all modes, contributions to the tip motion of one unit
+[m].  A mode of zero frequency counts with phi_k q_k'/(2 pi f), one with its node at the tip with the largest
+phi.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from contact.compiled import kernel
+from contact.flight.modal_flow import steady_motion
+from contact.flight.motion import COSINE, OFFSET, SINE, Motion, with_drive
+from contact.oscillator import ImpactOscillator
+from contact.single_mode.loop import any_periods, one_mode_periods
+from contact.single_mode.period_table import PeriodTable, period_table, table_at
+
+__all__ = ["StrobedSystem", "at_amplitude", "coordinate_weights", "strobed_motion", "strobed_system"]
+
+
+class StrobedSystem(NamedTuple):
+    """An oscillator as the loops over its drive periods take it.
+
+    motion : Motion
+    table : PeriodTable or None
+        For one mode under Newton's law.
+    mean : ndarray, shape (2 n_modes,)
+        Steady displacements and velocities at a strobe, to which the deviations are added.
+    weight : ndarray, shape (2 n_modes,)
+        By which their sums are multiplied in the points.
+    """
+
+    motion: Motion
+    table: PeriodTable | None
+    mean: np.ndarray
+    weight: np.ndarray
+
+
+def coordinate_weights(oscillator: ImpactOscillator) -> np.ndarray:
+    """What turns displacements and velocities into points, shape (2 n_modes,)."""
+    model = oscillator.model
+    phi = np.where(model.phi != 0, model.phi, np.abs(model.phi).max())
+    slow = 1.0 if oscillator.drive is None else oscillator.drive.angular_frequency
+    return np.concatenate([phi, phi / np.where(model.omega > 0, model.omega, slow)])
+
+
+def strobed_system(oscillator: ImpactOscillator) -> StrobedSystem:
+    """The numbers of an oscillator, made once for many orbits."""
+    motion = oscillator.motion()
+    q, q_rate = steady_motion(motion, np.zeros(1))
+    return StrobedSystem(
+        motion=motion,
+        table=period_table(motion),
+        mean=np.concatenate([q[0], q_rate[0]]),
+        weight=coordinate_weights(oscillator),
+    )
+
+
+@kernel
+def _table_at(table, motion, factor):
+    """`table` at `factor` times the amplitude, where `motion` is the motion; None stays None."""
+    if table is None:
+        return table
+    else:
+        return table_at(table, motion, factor)
+
+
+@kernel
+def at_amplitude(system, factor):
+    """The system at `factor` times its own base amplitude."""
+    motion, n = with_drive(system.motion, factor), system.motion.size
+    mean = np.empty(2 * n)
+    for k in range(n):
+        mean[k] = motion.modes[OFFSET, k] + motion.modes[COSINE, k]
+        mean[n + k] = motion.drive * motion.modes[SINE, k]
+    return StrobedSystem(motion, _table_at(system.table, motion, factor), mean, system.weight)
+
+
+@kernel
+def _periods(table, system, u, v, runs, points, counts):
+    """The loop that fits: numba leaves out the branch that does not."""
+    if table is None:
+        status = any_periods(system.motion, u, v, runs, points, counts)
+        for i in range(counts.size):
+            for k in range(points.shape[1]):
+                points[i, k] = (points[i, k] + system.mean[k]) * system.weight[k]
+        return status
+    else:
+        return one_mode_periods(table, system, u, v, runs, points, counts)[0]
+
+
+@kernel
+def strobed_motion(system, u, v, runs, points, counts):
+    """Carry the deviation (u, v) from a strobe over as many drive periods as `counts` has places.
+
+    Parameters
+    ----------
+    system : StrobedSystem
+    u, v : ndarray, shape (n_modes,)
+        Overwritten.
+    runs : record array of ``contact.event_loop.STATE``, shape (1,)
+        Where the run stands; overwritten.
+    points, counts : ndarray, shapes (periods, 2 n_modes) and (periods,)
+        Filled with the points of the module's docstring and the impacts since the strobe before.
+
+    Returns
+    -------
+    status : int
+        As that of ``event_loop.advance``.
+    """
+    return _periods(system.table, system, u, v, runs, points, counts)

@@ -1,0 +1,82 @@
+"""In touch with the stop: one file a law, chosen by the table at the end of this one.
+
+How to add a law, say N = k d^3
+    1. Its parameters: a frozen dataclass that is a ``contact.laws.ContactLaw``, with a `code` that no other has
+       and its `numbers`.
+    2. Its file here, with the functions below.  A force that has a power series in time takes all but four of
+       them from ``contact.touch.time_series``: it fills N[n] from d[0] ... d[n + 1] (for the cube by two
+       products of series), calls `extend` for the next order, and asks `longest_step` how far the series holds.
+       A force with a root at d = 0 needs a variable in which it has none: ``contact.touch.hertz``.
+    3. Its line in `TOUCHES`.
+    4. A test: the contact of a free mass conserves energy, and agrees with an outside solver.
+
+What a file offers; `motion` is the oscillator, `run` where it stands (``contact.event_loop.STATE``), (u, v) its
+deviations, overwritten where they move, `series` the room of one step
+    REGIMES                                            where the tip can be: ``contact.trajectory.Regime``
+    room(motion) -> order, columns                     size of that room
+    strike(motion, run, u, v, approach)                what the touch does at once:
+        -> regime, rebound, loss                       the regime that follows, tip velocity after it [m/s], NaN
+                                                       if that is not known yet, energy [J]
+    step(motion, run, u, v, limit, series)             the series from (u, v), and a step of at most `limit` [s]:
+        -> s, h, regime                                its length in the law's own variable and in time, and the
+                                                       regime that follows; NaN if the series gives no step
+    place(motion, t, s, series) -> s                   where in a step up to s a time t [s] lies
+    state(motion, run, s, series, u, v)                (u, v) there
+    work(motion, run, s, series) -> J                  what the stop has taken up to there
+    leave(motion, run, u, v)                           the release: run.order, how many derivatives of d vanish
+    force(numbers, d, d') -> N                         for the methods with a time step, at d >= 0
+    stiffness(numbers, d, d') -> dN/dd, dN/dd'
+    slopes(motion, run, series, weights) -> terms      for the tangents: series of dt/ds, dN/dd dt/ds and
+                                                       dN/dd' dt/ds in three rows, and how many terms they have
+    saltation(motion, response, before, after, tangent)  for the tangents: what the touch does besides; before
+                                                       and after it, drive time, u and v
+
+A code that no file has is an error wherever a law is asked for.  Compiled code takes no functions as
+arguments: `by_law` links the files of the table into one kernel for each function.
+"""
+
+# mypy: allow-untyped-defs, allow-incomplete-defs
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from contact.compiled import inlined
+from contact.laws import DELAYED, HERTZ, LINEAR, NEWTON
+from contact.touch import delayed, hertz, linear, newton
+
+__all__ = ["TOUCHES", "force", "leave", "place", "room", "saltation", "slopes", "state", "step", "stiffness", "strike",
+           "work"]  # fmt: skip
+
+TOUCHES = {NEWTON: newton, DELAYED: delayed, LINEAR: linear, HERTZ: hertz}
+"""The file of each law by its code."""
+
+
+def _either(code: int, function: Any, otherwise: Any) -> Any:
+    def chosen(motion, *args):
+        if motion.law == code:
+            return function(motion, *args)
+        return otherwise(motion, *args)
+
+    return inlined(chosen)
+
+
+@inlined
+def _unknown(motion, *args):
+    raise NotImplementedError("the code of the contact law is in no table: see contact.touch")
+
+
+def by_law(name: str) -> Callable[..., Any]:
+    """The function `name` of the file of motion.law."""
+    chosen: Any = _unknown
+    for code, file in TOUCHES.items():
+        chosen = _either(code, getattr(file, name), chosen)
+    return chosen
+
+
+room, strike, step, place, state, work, leave, force, stiffness, slopes, saltation = (
+    by_law(name)
+    for name in (
+        "room", "strike", "step", "place", "state", "work", "leave", "force", "stiffness", "slopes", "saltation"
+    )
+)

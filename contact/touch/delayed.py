@@ -1,0 +1,130 @@
+"""A rebound that waits: the tip stays on the wall for a time, then leaves (``DelayedRestitution``).
+
+One mode, met at time t with approach velocity v = y'(t) > 0, tau and delta the law's two numbers at this speed,
+sampled in a table with their slopes.  At t + delta the tip, y = phi u + a S + b C + level, has
+
+    y = 0,      y' = -tau(v) v,
+
+while the drive (S, C) has turned by w delta: the deviations (u, u') on the wall (regime WAITING) and after it
+are linear in the drive, and hold nothing of those before the touch but v.
+
+A neighbour whose tip stands `reach` higher at t, and moves faster by `rate`, comes to the stop later by
+dt = -reach/v, hits it faster by dv = rate + y''(t) dt, and leaves it later by d = dt + delta' dv.  Seen at
+t + delta, its tip there differs by
+
+    reach -> tau v d,      rate -> -(tau + tau' v) dv - y''(t + delta) d,
+
+the saltation matrix of this law, of determinant tau (tau + tau' v); without delay and slopes that of Newton's.
+"""
+
+# mypy: allow-untyped-defs, allow-incomplete-defs
+from __future__ import annotations
+
+import math
+
+from contact.compiled import kernel
+from contact.flight.modal_flow import tip_state, tip_steady
+from contact.flight.motion import WEIGHT
+from contact.touch import newton
+from contact.trajectory import OUTSIDE, WAITING
+
+__all__ = ["REGIMES", "force", "leave", "numbers_at", "place", "room", "saltation", "slopes", "state", "step",
+           "stiffness", "strike", "work"]  # fmt: skip
+
+REGIMES = (OUTSIDE, WAITING)
+
+force, stiffness, slopes, room, place, work = (
+    newton.force, newton.stiffness, newton.slopes, newton.room, newton.place, newton.work
+)  # fmt: skip
+
+RESTITUTION, DELAY = 1, 3
+"""Rows of the table, each with its slope behind; the first holds the approach speeds."""
+
+
+@kernel
+def hermite(table, row, low, high, h, s):
+    """Value and slope of row `row` at the part `s` of the way `h` [m/s] between two columns."""
+    a, b = table[row, low], table[row, high]
+    da, db = h * table[row + 1, low], h * table[row + 1, high]
+    square, cube = 3.0 * (b - a) - 2.0 * da - db, 2.0 * (a - b) + da + db
+    return a + s * (da + s * (square + s * cube)), (da + s * (2.0 * square + 3.0 * s * cube)) / h
+
+
+@kernel
+def numbers_at(table, speed):
+    """Restitution [1], its slope [s/m], delay [s] and its slope [s^2/m] at an approach speed [m/s].
+
+    They are those of the cubics through values and slopes of a law's table; beyond it the end values hold.
+    """
+    n = table.shape[1]
+    if speed <= table[0, 0]:
+        return table[RESTITUTION, 0], 0.0, table[DELAY, 0], 0.0
+    if speed >= table[0, n - 1]:
+        return table[RESTITUTION, n - 1], 0.0, table[DELAY, n - 1], 0.0
+    low, high = 0, n - 1
+    while high - low > 1:
+        middle = (low + high) // 2
+        if table[0, middle] <= speed:
+            low = middle
+        else:
+            high = middle
+    h = table[0, high] - table[0, low]
+    s = (speed - table[0, low]) / h
+    restitution, restitution_slope = hermite(table, RESTITUTION, low, high, h, s)
+    delay, delay_slope = hermite(table, DELAY, low, high, h, s)
+    return restitution, restitution_slope, delay, delay_slope
+
+
+@kernel
+def strike(motion, run, u, v, approach):
+    """The touch: how long the tip will wait, and with which velocity it will leave."""
+    restitution, _slope, run.wait, _slope = numbers_at(motion.table, approach)
+    run.rebound = -restitution * approach
+    return WAITING, run.rebound, 0.5 * (approach * approach - run.rebound**2) / motion.compliance
+
+
+@kernel
+def step(motion, run, u, v, limit, series):
+    """The wait, at most `limit` [s]; see ``contact.touch``."""
+    h = min(run.wait, limit)
+    run.wait -= h
+    return h, h, WAITING if run.wait > 0.0 else OUTSIDE
+
+
+@kernel
+def state(motion, run, h, series, u, v):
+    """The deviation a time `h` [s] into the wait."""
+    height, velocity, _acceleration = tip_steady(motion, run.clock + h)
+    u[0] = -height / motion.modes[WEIGHT, 0]
+    v[0] = -velocity / motion.modes[WEIGHT, 0]
+
+
+@kernel
+def leave(motion, run, u, v):
+    """The rebound."""
+    v[0] += run.rebound / motion.modes[WEIGHT, 0]
+    run.order = 1 if run.rebound < 0.0 else 2
+
+
+@kernel
+def saltation(motion, response, before, after, tangent):
+    """The tangents over the touch, with the wait; see ``contact.touch``."""
+    w, phi, a, b = motion.drive, motion.modes[WEIGHT, 0], response.real, response.imag
+    clock, u, v = before
+    _height, approach, pull_in = tip_state(motion, clock, u, v)
+    restitution, restitution_slope, delay, delay_slope = numbers_at(motion.table, approach)
+    _height, _velocity, pull_out = tip_state(motion, after[0], after[1], after[2])
+    sine, cosine = math.sin(w * delay), math.cos(w * delay)
+    for j in range(4):
+        s, c = tangent[2, j], tangent[3, j]
+        reach = phi * tangent[0, j] + a * s + b * c
+        rate = phi * tangent[1, j] + w * (a * c - b * s)
+        late = -reach / approach
+        faster = rate + pull_in * late
+        late += delay_slope * faster
+        reach = restitution * approach * late
+        rate = -(restitution + restitution_slope * approach) * faster - pull_out * late
+        s, c = cosine * s + sine * c, cosine * c - sine * s
+        tangent[0, j] = (reach - a * s - b * c) / phi
+        tangent[1, j] = (rate - w * (a * c - b * s)) / phi
+        tangent[2, j], tangent[3, j] = s, c

@@ -1,0 +1,272 @@
+"""A ball on a plate: N = k d^(3/2) (1 + chi d') for d > 0 (``HertzContact``; ``HuntCrossley`` for chi > 0).
+
+The force has no Taylor series at the touch d = 0, where every contact begins and ends.  With r = sqrt(d) as an
+unknown of its own and a variable sigma that runs slowly while the contact is shallow,
+
+    dt/dsigma = r,  dr/dsigma = d'/2,  du/dsigma = r v,  dv/dsigma = r (g - c v - omega^2 u) - phi r N,
+    dd/dsigma = r d',  r N = k (r^4 + chi r^4 d'),  d' = sum phi v + x_s'(t),
+
+all right-hand sides are polynomials: the motion is analytic right through touch and release (r changes sign
+there; the substitution is Sundman's, Acta Math. 36 (1913) 105).  Each is r times something, so that the
+coefficients of one order follow from one set of sums over the orders before,
+
+    sum_j r_(n-j) x_j    for x = d', d, r d, sin(w t), cos(w t), all u and all v,
+
+which fill the columns of one array and are taken eight at a time (``contact.vector_loops``).  The term with
+the newest x_n is added apart: nothing waits for it.  Cost per step: modes times the square of the order.
+
+A step holds up to the sigma at which the last terms, in every mode and in r, reach `TOLERANCE` of the modal
+speeds, so that the energy of a lossless contact is conserved to that order.  It ends earlier where r falls to
+zero: the release.
+"""
+
+# mypy: allow-untyped-defs, allow-incomplete-defs
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from contact.compiled import kernel
+from contact.flight.elementary import EPS, sine_cosine
+from contact.flight.modal_flow import speed_scale, tip_state
+from contact.flight.motion import SQUARE, WEIGHT
+from contact.flight.polynomial_root import evaluate, first_polynomial_root, polynomial_root
+from contact.touch.series import enter, leave, reach, saltation, within_force
+from contact.trajectory import CONTACT, OUTSIDE
+from contact.vector_loops import LANES, next_modes, weighted_rows
+
+__all__ = ["REGIMES", "force", "leave", "place", "room", "saltation", "slopes", "state", "step", "stiffness", "strike", "work"]
+
+REGIMES = (OUTSIDE, CONTACT)
+
+ORDER = 20
+"""Order of the series in sigma; even.  The cost per unit of time is flat to ten per cent between 16 and 24."""
+
+TOLERANCE = 1e-15
+"""Size of the last terms of a step, relative to the modal speeds: at the rounding of the sum of all terms."""
+
+SPEED, DEPTH, CUBE, SINE, COSINE = range(5)
+"""Columns of the series before the modes: d', d, r d, sin and cos of the drive."""
+
+ROOT, CLOCK, PUSH, POWERS, SPARE = range(5)
+"""Rows of the scalar series: r, time since the step's start, r N, powers of the sigma of a state."""
+
+_EDGE = TOLERANCE ** (1.0 / ORDER)
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(LANES)
+NODE_POWERS = (0.5 * (1.0 + _NODES)) ** np.arange(ORDER + 1.0)[:, None]
+WEIGHTS = 0.5 * _WEIGHTS
+"""Gauss's rule on [0, 1], and powers of its nodes.  If the series converges up to sigma = R and the step is
+s, its error falls as rho^-16, rho = q + sqrt(q^2 - 1), q = 2 R/s - 1: faster than the (s/R)^p of the
+series."""
+
+INVERSE = 1.0 / np.maximum(1.0, np.arange(64.0))
+"""1/n."""
+
+strike = enter
+
+
+@kernel
+def force(numbers, depth, rate):
+    """N at penetration `depth` >= 0 and its `rate` [N]."""
+    return numbers.number0 * depth * math.sqrt(depth) * (1.0 + numbers.number1 * rate)
+
+
+@kernel
+def stiffness(numbers, depth, rate):
+    """dN/dd [N/m] and dN/dd' [N s/m]."""
+    root = math.sqrt(depth)
+    return (
+        1.5 * numbers.number0 * root * (1.0 + numbers.number1 * rate),
+        numbers.number0 * depth * root * numbers.number1,
+    )
+
+
+@kernel
+def room(motion):
+    """Order and columns of the series: five scalars, u from column 8 on, v behind."""
+    return ORDER, LANES + 2 * motion.modes.shape[1]
+
+
+@kernel
+def fill(motion, base, u, v, series):
+    """The Taylor coefficients in sigma of a contact that is at (u, v) at drive time `base` [s].
+
+    On entry scalars[ROOT, 0] holds r, which the caller carries along: computed anew from the tip displacement
+    it would lose its digits at shallow depth.
+    """
+    rows, sums, modes, w = series.rows, series.sums, motion.modes, motion.drive
+    a, b, stiffness, chi = motion.tip_sine, motion.tip_cosine, motion.number0, motion.number1
+    r, clock, push = series.scalars[ROOT], series.scalars[CLOCK], series.scalars[PUSH]
+    at_v = LANES + modes.shape[1]
+    sine, cosine = sine_cosine(w * base, 0.0)
+    speed = w * (a * cosine - b * sine)
+    for k in range(u.size):
+        rows[0, LANES + k] = u[k]
+        rows[0, at_v + k] = v[k]
+        speed += modes[WEIGHT, k] * v[k]
+    r0 = r[0]
+    rows[0, SPEED], rows[0, DEPTH], rows[0, SINE], rows[0, COSINE] = speed, r0 * r0, sine, cosine
+    clock[0] = 0.0
+    for n in range(ORDER):
+        rn, inverse = r[n], INVERSE[n + 1]
+        weighted_rows(r, n, -1, rows, n, sums)
+        r[n + 1] = 0.5 * inverse * speed
+        clock[n + 1] = inverse * rn
+        depth = inverse * (sums[SPEED] + r0 * speed)
+        cube = sums[DEPTH] + r0 * rows[n, DEPTH]
+        rows[n, CUBE] = cube
+        push[n] = sums[CUBE] + r0 * cube  # r^4 for now
+        total = push[n]
+        if chi != 0.0:
+            for i in range(n + 1):
+                total += chi * push[i] * rows[n - i, SPEED]
+        tip = next_modes(modes, sums, r0, inverse, rn, stiffness * inverse * total, n, rows)
+        sine, cosine = (
+            w * inverse * (sums[COSINE] + r0 * cosine), -w * inverse * (sums[SINE] + r0 * sine)
+        )  # fmt: skip
+        speed = w * (a * cosine - b * sine) + tip
+        rows[n + 1, SPEED], rows[n + 1, DEPTH] = speed, depth
+        rows[n + 1, SINE], rows[n + 1, COSINE] = sine, cosine
+    push[ORDER] = 0.0
+    for n in range(ORDER - 1, -1, -1):  # r N from r^4
+        total = push[n]
+        if chi != 0.0:
+            for i in range(n + 1):
+                total += chi * push[i] * rows[n - i, SPEED]
+        push[n] = stiffness * total
+
+
+@kernel
+def slopes(motion, run, series, weights):
+    """The series of r, r dN/dd = (3/2) k d (1 + chi d') and r dN/dd' = k chi d^2, from those of a step."""
+    rows, k, chi = series.rows, motion.number0, motion.number1
+    for n in range(ORDER + 1):
+        weights[0, n] = series.scalars[ROOT, n]
+        weights[1, n], weights[2, n] = 1.5 * k * rows[n, DEPTH], 0.0
+        if chi != 0.0:
+            for i in range(n + 1):
+                weights[1, n] += 1.5 * k * chi * rows[i, DEPTH] * rows[n - i, SPEED]
+                weights[2, n] += k * chi * rows[i, DEPTH] * rows[n - i, DEPTH]
+    return ORDER + 1
+
+
+@kernel
+def greatest_speed(modes, rows, order):
+    """The largest coefficient of this order among all v and omega u."""
+    m, top = modes.shape[1], 0.0
+    for k in range(m):
+        u, v = rows[order, LANES + k], rows[order, LANES + m + k]
+        top = max(top, v * v, modes[SQUARE, k] * u * u)
+    return math.sqrt(top)
+
+
+@kernel
+def longest_step(motion, speed, series):
+    """The sigma up to which the series holds."""
+    p, r = ORDER, series.scalars[ROOT]
+    allowed = TOLERANCE * speed
+    power = min(
+        reach(greatest_speed(motion.modes, series.rows, p), p, allowed),
+        reach(greatest_speed(motion.modes, series.rows, p - 1), p - 1, allowed),
+    )
+    # r must be resolved as well as the modes, relative to the larger of its first two terms
+    if r[p] != 0.0 and (r[0] != 0.0 or r[1] != 0.0):
+        whole = reach(abs(r[p]), p, TOLERANCE * abs(r[0])) if r[0] != 0.0 else -math.inf
+        linear = reach(abs(r[p]), p - 1, TOLERANCE * abs(r[1])) if r[1] != 0.0 else -math.inf
+        power = min(power, max(whole, linear))
+    s = within_force(
+        math.exp(power), series.scalars[PUSH], p - 1, math.sqrt(motion.compliance), speed, _EDGE
+    )
+    if r[1] < 0.0 < r[0]:
+        # no further than well behind the release: with no force left the terms give no bound
+        s = min(s, -4.0 * r[0] / r[1])
+    return s
+
+
+@kernel
+def release_in(r, s, negative):
+    """The sigma in (0, s] at which r falls to zero, or -1."""
+    rest, power = 0.0, s
+    for n in range(2, ORDER + 1):
+        power *= s
+        rest += abs(r[n]) * power
+    start, drift = abs(r[0]), r[1] * s
+    size = start + abs(drift) + rest
+    margin = 2.0 * EPS * size
+    # r >= r_0 + (r_1 - rest/s) sigma if that grows, and r >= r_0 - |drift| - rest at any rate
+    if drift - rest > margin or start - abs(drift) - rest > margin:
+        return -1.0
+    for n in range(ORDER + 1):
+        negative[n] = -r[n]
+    return first_polynomial_root(negative, 0.0, s, EPS * size)
+
+
+@kernel
+def place(motion, t, end, series):
+    """The sigma, in a step up to `end`, at which a time `t` [s] has passed."""
+    if not t > 0.0:
+        return 0.0
+    late = series.scalars[SPARE]
+    for n in range(ORDER + 1):
+        late[n] = series.scalars[CLOCK, n]
+    late[0] -= t
+    return polynomial_root(late, 0.0, end)
+
+
+@kernel
+def step(motion, run, u, v, limit, series):
+    """One step from (u, v), at most `limit` [s]; see ``contact.touch``."""
+    r, clock = series.scalars[ROOT], series.scalars[CLOCK]
+    if run.speed < 0.0:
+        run.speed = speed_scale(motion, u, v)
+    if run.root < 0.0:
+        run.root = math.sqrt(max(0.0, tip_state(motion, run.clock, u, v)[0]))
+    r[0] = run.root
+    fill(motion, run.clock, u, v, series)
+    s = longest_step(motion, run.speed, series)
+    if not (0.0 < s < math.inf):
+        return math.nan, math.nan, CONTACT
+    end, following = release_in(r, s, series.scalars[SPARE]), CONTACT
+    if end >= 0.0:
+        s, following = end, OUTSIDE
+    length = evaluate(clock, s)
+    if length > limit:
+        s, length, following = place(motion, limit, s, series), limit, CONTACT
+    run.root = evaluate(r, s)
+    return s, length, following
+
+
+@kernel
+def state(motion, run, s, series, u, v):
+    """Deviations of all modes at sigma = `s`, in `u` and `v`."""
+    powers, power = series.scalars[POWERS], 1.0
+    for n in range(ORDER + 1):
+        powers[n] = power
+        power *= s
+    weighted_rows(powers, 0, 1, series.rows, ORDER + 1, series.sums)
+    at_v = LANES + motion.modes.shape[1]
+    for k in range(u.size):
+        u[k] = series.sums[LANES + k]
+        v[k] = series.sums[at_v + k]
+
+
+@kernel
+def work(motion, run, s, series):
+    """Work that the tip does on the stop up to sigma = `s`, the integral of r N d' [J]."""
+    powers, push = series.scalars[POWERS], series.scalars[PUSH]
+    force, rate, power = np.empty(LANES), np.empty(LANES), 1.0
+    for n in range(ORDER + 1):
+        powers[n] = power * push[n]
+        power *= s
+    weighted_rows(powers, 0, 1, NODE_POWERS, ORDER + 1, force)
+    power = 1.0
+    for n in range(ORDER + 1):
+        powers[n] = power * series.rows[n, SPEED]
+        power *= s
+    weighted_rows(powers, 0, 1, NODE_POWERS, ORDER + 1, rate)
+    done = 0.0
+    for i in range(LANES):
+        done += WEIGHTS[i] * s * force[i] * rate[i]
+    return done

@@ -1,0 +1,82 @@
+"""A linear stop: N = max(0, k d + c d') for d > 0 (``LinearContact``).
+
+With a dashpot the force vanishes before the tip has left the wall: the contact lets go inside (regime INSIDE),
+where the tip moves freely until it pushes again or leaves.  The series is that of ``contact.touch.time_series``
+with
+
+    N[n] = k d[n] + c (n+1) d[n+1].
+
+Motion in contact is linear, so that the propagation is the exponential of a matrix, summed to rounding
+(S. W. Shaw, P. J. Holmes, J. Sound Vib. 90 (1983) 129, for one mode).
+"""
+
+# mypy: allow-untyped-defs, allow-incomplete-defs
+from __future__ import annotations
+
+import math
+
+from contact.compiled import kernel
+from contact.flight.elementary import EPS
+from contact.flight.modal_flow import tip_rounding
+from contact.flight.polynomial_root import first_polynomial_root
+from contact.touch import time_series
+from contact.touch.series import enter, leave, saltation
+from contact.touch.time_series import DEPTH, FORCE, begin, extend, longest_step, negative
+from contact.trajectory import CONTACT, INSIDE, OUTSIDE
+
+__all__ = ["REGIMES", "enter", "force", "leave", "place", "room", "saltation", "slopes", "state", "step", "stiffness", "work"]
+
+REGIMES = (OUTSIDE, CONTACT, INSIDE)
+
+strike = enter
+room, place, state, work = time_series.room, time_series.place, time_series.state, time_series.work
+
+
+@kernel
+def force(numbers, depth, rate):
+    """N at penetration `depth` >= 0 and its `rate` [N]."""
+    return max(0.0, numbers.number0 * depth + numbers.number1 * rate)
+
+
+@kernel
+def stiffness(numbers, depth, rate):
+    """dN/dd [N/m] and dN/dd' [N s/m]."""
+    if numbers.number0 * depth + numbers.number1 * rate <= 0.0:
+        return 0.0, 0.0
+    return numbers.number0, numbers.number1
+
+
+@kernel
+def slopes(motion, run, series, weights):
+    """The series of dN/dd and dN/dd': constants; none where the tip is behind the wall without force."""
+    weights[0, 0] = 1.0
+    weights[1, 0] = 0.0 if run.regime == INSIDE else motion.number0
+    weights[2, 0] = 0.0 if run.regime == INSIDE else motion.number1
+    return 1
+
+
+@kernel
+def step(motion, run, u, v, limit, series):
+    """One step from (u, v), at most `limit` [s]; see ``contact.touch``."""
+    k, c = motion.number0, motion.number1
+    depth, force = series.scalars[DEPTH], series.scalars[FORCE]
+    begin(motion, run.clock, u, v, series)
+    for n in range(time_series.ORDER - 1):
+        force[n] = k * depth[n] + c * (n + 1.0) * depth[n + 1]
+        extend(motion, n, 0.0 if run.regime == INSIDE else force[n], series)
+    h = min(longest_step(motion, k * depth[0] ** 2, u, v, series), limit)
+    if not h > EPS * run.clock:
+        return math.nan, math.nan, CONTACT
+    rounding = tip_rounding(motion, u, v)
+    if run.regime == CONTACT:
+        end = first_polynomial_root(negative(FORCE, series), 0.0, h, rounding * k)
+        if end >= 0.0:
+            return end, end, OUTSIDE if c == 0.0 else INSIDE
+        return h, h, CONTACT
+    closes = first_polynomial_root(force, 0.0, h, rounding * k)
+    leaves = first_polynomial_root(negative(DEPTH, series), 0.0, h, rounding)
+    if leaves >= 0.0 and (closes < 0.0 or leaves <= closes):
+        return leaves, leaves, OUTSIDE
+    if closes >= 0.0:
+        return closes, closes, CONTACT
+    return h, h, INSIDE

@@ -1,0 +1,183 @@
+"""Newton's impact law for any number of modes, where its impacts accumulate, and the rest on the wall.
+
+The impulse of the stop acts on the tip alone, so that the modal velocities jump by
+
+    v_k -> v_k - phi_k (1 + e) x' / sum_j phi_j^2,
+
+which sends the tip velocity x' to -e x' (``NewtonRestitution``).  After an impact that leaves the tip with
+velocity -w while it is accelerated towards the wall with a > 0, the next flights last 2w/a, 2ew/a, ...: their
+sum 2w/(a(1 - e)) is finite, and when a hop has become so low that its height drowns in rounding the rest of the
+sequence is taken in one step.  Then the tip stays on the wall (regime SUSTAINED), held by the force that makes
+d'' = 0, until that force would pull; the series is that of ``contact.touch.time_series``.
+"""
+
+# mypy: allow-untyped-defs, allow-incomplete-defs
+from __future__ import annotations
+
+import math
+
+from contact.compiled import kernel
+from contact.flight.elementary import EPS
+from contact.flight.modal_flow import mode_acceleration, tip_rounding, tip_state
+from contact.flight.motion import DECAY, LOAD, SQUARE, WEIGHT
+from contact.flight.polynomial_root import first_polynomial_root
+from contact.touch import time_series
+from contact.touch.time_series import FORCE, begin, extend, free_pull, longest_step, negative
+from contact.trajectory import OUTSIDE, SUSTAINED
+
+__all__ = ["REGIMES", "accumulation_time", "force", "hold", "leave", "lowest_hop", "newton_impact", "place", "room",
+           "saltation", "slopes", "state", "step", "stiffness", "strike", "work"]  # fmt: skip
+
+REGIMES = (OUTSIDE, SUSTAINED)
+
+LOWEST_HOP = 200.0
+"""Height of a hop, in rounding bounds of the tip displacement, below which hops are summed, not computed: two
+digits of the height are then still good.  See `lowest_hop` for laws close to e = 1."""
+
+room, place = time_series.room, time_series.place
+
+
+@kernel
+def force(numbers, depth, rate):
+    """No force: the law acts at once [N]."""
+    return 0.0
+
+
+@kernel
+def stiffness(numbers, depth, rate):
+    """None [N/m, N s/m]."""
+    return 0.0, 0.0
+
+
+@kernel
+def slopes(motion, run, series, weights):
+    """None: the tip is on the wall for no time, or for good."""
+    return 0
+
+
+@kernel
+def lowest_hop(restitution, rounding):
+    """Height of the lowest hop that is computed [m], `rounding` the bound of the tip displacement's [m].
+
+    A hop loses 2(1 - e) of its height, and rounding may move its end by as much as its bound: where that is
+    not the smaller of the two, hops need not get lower, and may repeat for good.
+    """
+    return max(LOWEST_HOP, 1.0 / (1.0 - restitution)) * rounding
+
+
+@kernel
+def newton_impact(motion, v, approach, restitution):
+    """Apply the impulse that turns the tip velocity `approach` into -`restitution` times itself."""
+    impulse = (1.0 + restitution) * approach / motion.compliance
+    for k in range(v.size):
+        v[k] -= motion.modes[WEIGHT, k] * impulse
+
+
+@kernel
+def accumulation_time(rebound, acceleration, restitution, rounding):
+    """Time until accumulating impacts have come to rest [s], or -1 if the hop is still worth computing.
+
+    `rebound` is the speed with which the tip leaves [m/s], `acceleration` its acceleration towards the wall
+    [m/s^2] and `rounding` the rounding bound of the tip displacement [m].
+    """
+    if acceleration <= 0.0 or restitution >= 1.0:
+        return -1.0
+    if rebound * rebound > 2.0 * acceleration * lowest_hop(restitution, rounding):
+        return -1.0
+    return 2.0 * rebound / (acceleration * (1.0 - restitution))
+
+
+@kernel
+def strike(motion, run, u, v, approach):
+    """The impact; the regime SUSTAINED says that the tip comes to rest after a time run.wait."""
+    e, rounding = motion.number0, tip_rounding(motion, u, v)
+    newton_impact(motion, v, approach, e)
+    loss = 0.5 * (1.0 - e * e) * approach * approach / motion.compliance
+    acceleration = tip_state(motion, run.clock, u, v)[2]
+    rest = accumulation_time(e * approach, acceleration, e, rounding)
+    if rest >= 0.0:
+        run.wait = rest
+        return SUSTAINED, -e * approach, loss
+    run.order = 1 if e * approach > 0.0 else 2
+    return OUTSIDE, -e * approach, loss
+
+
+@kernel
+def hold(motion, clock, u, v):
+    """Put the tip on the wall, at rest: rounding would let it drift off over many steps."""
+    height, velocity, _acceleration = tip_state(motion, clock, u, v)
+    for k in range(u.size):
+        u[k] -= motion.modes[WEIGHT, k] * height / motion.compliance
+        v[k] -= motion.modes[WEIGHT, k] * velocity / motion.compliance
+
+
+@kernel
+def force_rounding(motion, u, v):
+    """Bound of the rounding error of the force that holds the tip at (u, v) [N]."""
+    total, modes = (abs(motion.tip_sine) + abs(motion.tip_cosine)) * motion.drive**2, motion.modes
+    for k in range(u.size):
+        pull = modes[SQUARE, k] * abs(u[k]) + modes[DECAY, k] * abs(v[k]) + abs(modes[LOAD, k])
+        total += abs(modes[WEIGHT, k]) * pull
+    return 4.0 * EPS * total / motion.compliance
+
+
+@kernel
+def step(motion, run, u, v, limit, series):
+    """One step of the rest on the wall, at most `limit` [s]; see ``contact.touch``."""
+    begin(motion, run.clock, u, v, series)
+    for n in range(time_series.ORDER - 1):
+        held = free_pull(motion, n, series) / motion.compliance
+        series.scalars[FORCE, n] = held
+        extend(motion, n, held, series)
+    h = min(longest_step(motion, 0.0, u, v, series), limit)
+    if not h > EPS * run.clock:
+        return math.nan, math.nan, SUSTAINED
+    margin = force_rounding(motion, u, v)
+    end = first_polynomial_root(negative(FORCE, series), 0.0, h, margin)
+    if end >= 0.0:
+        return end, end, OUTSIDE
+    return h, h, SUSTAINED
+
+
+@kernel
+def state(motion, run, h, series, u, v):
+    """Deviations of all modes a time `h` [s] into the step, the tip on the wall."""
+    time_series.state(motion, run, h, series, u, v)
+    hold(motion, run.clock + h, u, v)
+
+
+@kernel
+def work(motion, run, h, series):
+    """No work: the tip is at rest on the wall [J]."""
+    return 0.0
+
+
+@kernel
+def leave(motion, run, u, v):
+    """The end of the rest, where d, d' and d'' vanish."""
+    run.order = 3
+
+
+@kernel
+def saltation(motion, response, before, after, tangent):
+    """The tangents over the impact: d -> R d + (R f - f') (-y(d)/v), R the reflection of the tip velocity, f and
+    f' the velocity of the flow before and after (M. A. Aizerman, F. R. Gantmacher, Quart. J. Mech. Appl. Math.
+    11 (1958) 243; A. B. Nordmark, J. Sound Vib. 145 (1991) 279)."""
+    n, w, a, b, modes = motion.size, motion.drive, response.real, response.imag, motion.modes
+    clock, u, v = before
+    rebound = after[2]
+    _height, approach, pull = tip_state(motion, clock, u, v)
+    flip = (1.0 + motion.number0) / motion.compliance
+    for j in range(2 * n + 2):
+        s, c = tangent[2 * n, j], tangent[2 * n + 1, j]
+        reach, rate = a * s + b * c, w * (a * c - b * s)
+        for k in range(n):
+            reach += modes[WEIGHT, k] * tangent[k, j]
+            rate += modes[WEIGHT, k] * tangent[n + k, j]
+        late = -reach / approach  # by how much later this neighbour touches
+        for k in range(n):
+            push = modes[WEIGHT, k] * flip
+            slow = mode_acceleration(motion, k, u[k], v[k]) - push * pull
+            after_it = mode_acceleration(motion, k, u[k], rebound[k])
+            tangent[k, j] += (v[k] - rebound[k]) * late
+            tangent[n + k, j] += -push * rate + (slow - after_it) * late

@@ -1,0 +1,167 @@
+"""How a motion in touch changes with its start: further columns of the contact's own series.
+
+The drive is carried along as two more coordinates, S = Z sin(w t) and C = Z cos(w t), so that the motion is an
+autonomous flow of e = (u, v, S, C), 2 N + 2 numbers.  The tip is at
+
+    y(e) = phi . u + a S + b C + level,      a + i b the tip response per unit base amplitude.
+
+A tangent d = de(t)/de(0) is a column of a (2 N + 2) x (2 N + 2) matrix.  In the variable s of the law's series
+
+    du = r v,   dv = r (-c v - omega^2 u) - phi (r N_d y(d) + r N_d' y'(d)),   dS = r w C,   dC = -r w S
+
+with r = dt/ds: the sums over earlier orders, sum_j r_(n-j) x_j, are those of the motion itself, and the series
+of r, r N_d and r N_d' are all that a law has to give (`slopes`).
+"""
+
+# mypy: allow-untyped-defs, allow-incomplete-defs
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from contact.compiled import kernel
+from contact.flight.modal_flow import flow_over
+from contact.flight.motion import DECAY, SQUARE, WEIGHT
+from contact.vector_loops import LANES, aligned, weighted_rows
+
+__all__ = ["TangentRoom", "new_room", "onset", "tangent_flight", "tangent_step"]
+
+
+class TangentRoom(NamedTuple):
+    """Room for the series of all tangents.
+
+    rows : ndarray, shape (order + 1, (2 n_modes + 2) m)
+        Row n holds the coefficients of order n: the rows of the matrix one after the other, each filled up to a
+        multiple of eight numbers, m.
+    sums : ndarray, shape ((2 n_modes + 2) m,)
+    height, rate : ndarray, shape (order + 1, m)
+        y and y' of all tangents.
+    push, more : ndarray, shape (m,)
+    weights : ndarray, shape (3, order + 1)
+        Series of r, r N_d and r N_d'.
+    powers : ndarray, shape (order + 1,)
+    """
+
+    rows: np.ndarray
+    sums: np.ndarray
+    height: np.ndarray
+    rate: np.ndarray
+    push: np.ndarray
+    more: np.ndarray
+    weights: np.ndarray
+    powers: np.ndarray
+
+
+@kernel
+def new_room(order, size):
+    """Room for the tangents, `size` = 2 n_modes + 2 of them."""
+    m = (size + LANES - 1) // LANES * LANES
+    return TangentRoom(
+        aligned(order + 1, size * m), aligned(1, size * m)[0], aligned(order + 1, m), aligned(order + 1, m),
+        aligned(1, m)[0], aligned(1, m)[0], np.zeros((3, order + 1)), np.zeros(order + 1),
+    )  # fmt: skip
+
+
+@kernel
+def turn_drive(tangent, angle):
+    """Rotate the (S, C) rows of all tangents by the phase `angle`."""
+    s, c, n = math.sin(angle), math.cos(angle), tangent.shape[0]
+    for j in range(n):
+        a, b = tangent[n - 2, j], tangent[n - 1, j]
+        tangent[n - 2, j] = c * a + s * b
+        tangent[n - 1, j] = c * b - s * a
+
+
+@kernel
+def tangent_flight(motion, tangent, time):
+    """Carry the tangents through a free flight of length `time` [s]."""
+    n, flows = motion.size, flow_over(motion, time)
+    for k in range(n):
+        for j in range(2 * n + 2):
+            x, y = tangent[k, j], tangent[n + k, j]
+            tangent[k, j] = flows[k, 0] * x + flows[k, 1] * y
+            tangent[n + k, j] = flows[k, 2] * x + flows[k, 3] * y
+    turn_drive(tangent, motion.drive * time)
+
+
+@kernel
+def onset(motion, response, force, approach, tangent):
+    """A touch at which the `force` jumps from zero: d -> d - phi F y(d)/v (saltation matrix of Aizerman and
+    Gantmacher; R. I. Leine, H. Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems, 2004,
+    ch. 7)."""
+    n, phi = motion.size, motion.modes[WEIGHT]
+    for j in range(2 * n + 2):
+        reach = response.real * tangent[2 * n, j] + response.imag * tangent[2 * n + 1, j]
+        for k in range(n):
+            reach += phi[k] * tangent[k, j]
+        for k in range(n):
+            tangent[n + k, j] -= phi[k] * force * reach / approach
+
+
+@kernel
+def tips(motion, response, room, order):
+    """y and y' of all tangents at one order."""
+    n, w, m = motion.size, motion.drive, room.push.size
+    row, height, rate = room.rows[order], room.height[order], room.rate[order]
+    s, c, a, b = row[2 * n * m : (2 * n + 1) * m], row[(2 * n + 1) * m :], response.real, response.imag
+    for j in range(m):
+        height[j] = a * s[j] + b * c[j]
+        rate[j] = w * (a * c[j] - b * s[j])
+    for k in range(n):
+        phi, u, v = motion.modes[WEIGHT, k], row[k * m : (k + 1) * m], row[(n + k) * m : (n + k + 1) * m]
+        for j in range(m):
+            height[j] += phi * u[j]
+            rate[j] += phi * v[j]
+
+
+@kernel
+def sums_of(weights, terms, order, rows, out):
+    """out = sum of weights_(order - j) rows_j, of which the first `terms` weights are not zero."""
+    low = max(0, order + 1 - terms)
+    weighted_rows(weights, order - low, -1, rows[low:], order + 1 - low, out)
+
+
+@kernel
+def next_tangents(motion, room, order):
+    """The order after this one of all tangents, from the sums over all before it."""
+    n, w, m, inverse = motion.size, motion.drive, room.push.size, 1.0 / (order + 1.0)
+    sums, fresh, push = room.sums, room.rows[order + 1], room.push
+    for k in range(n):
+        c, o2, phi = motion.modes[DECAY, k], motion.modes[SQUARE, k], motion.modes[WEIGHT, k]
+        ru, rv = sums[k * m : (k + 1) * m], sums[(n + k) * m : (n + k + 1) * m]
+        u, v = fresh[k * m : (k + 1) * m], fresh[(n + k) * m : (n + k + 1) * m]
+        for j in range(m):
+            u[j] = inverse * rv[j]
+            v[j] = -inverse * (o2 * ru[j] + c * rv[j] + phi * push[j])
+    rs, rc = sums[2 * n * m : (2 * n + 1) * m], sums[(2 * n + 1) * m :]
+    s, c = fresh[2 * n * m : (2 * n + 1) * m], fresh[(2 * n + 1) * m :]
+    for j in range(m):
+        s[j] = inverse * w * rc[j]
+        c[j] = -inverse * w * rs[j]
+
+
+@kernel
+def tangent_step(motion, response, room, terms, end, tangent):
+    """Carry the tangents through a step up to s = `end`; `terms` terms of room.weights count."""
+    size, m, order = tangent.shape[0], room.push.size, room.powers.size - 1
+    for i in range(size):
+        for j in range(size):
+            room.rows[0, i * m + j] = tangent[i, j]
+    for n in range(order):
+        tips(motion, response, room, n)
+        sums_of(room.weights[1], terms, n, room.height, room.push)
+        sums_of(room.weights[2], terms, n, room.rate, room.more)
+        for j in range(m):
+            room.push[j] += room.more[j]
+        sums_of(room.weights[0], terms, n, room.rows, room.sums)
+        next_tangents(motion, room, n)
+    power = 1.0
+    for n in range(order + 1):
+        room.powers[n] = power
+        power *= end
+    weighted_rows(room.powers, 0, 1, room.rows, order + 1, room.sums)
+    for i in range(size):
+        for j in range(size):
+            tangent[i, j] = room.sums[i * m + j]
