@@ -25,11 +25,11 @@ import numpy as np
 from beam import ModalModel
 from contact.errors import ContactError
 from contact.maximal_orbits import bands
+from contact.orbits.ends import orbit_end
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.adequacy.fitted_scene import Need
 from studies.instruments.command_line import Request, run_study
 from studies.instruments.corresponding import corresponding, periods_of
-from studies.instruments.fold_scan import orbit_end
 from studies.instruments.hysteresis_causes import CAUSES, DESCRIPTIONS, Fold, folds_at, row_of
 from studies.instruments.hysteresis_figures import draw_causes, draw_curves, draw_ratios
 from studies.instruments.oscillators import beam_of

@@ -33,18 +33,17 @@ import numpy as np
 from beam import ModalModel
 from contact.errors import ContactError
 from contact.maximal_orbits import fold as map_fold
+from contact.orbits.ends import orbit_end
+from contact.orbits.scan import OrbitDiagram, orbit_diagram
+from contact.orbits.settling import settle
 from contact.orbits.single_impact import MaximalFamily
 from contact.strobed_nordmark import StrobedNordmarkMap
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.adequacy.fitted_scene import Need
 from studies.instruments.command_line import DONE, FAILED_CELLS, Request, run_study
-from studies.instruments.fold_scan import orbit_end
-from studies.instruments.orbit_scan import OrbitDiagram, orbit_diagram
 from studies.instruments.oscillators import beam_of, nordmark_of, single_mode_oscillator
-from studies.instruments.periodicity import settle
 from studies.instruments.report.writing import told_report
 from studies.instruments.scene import Scene
-from studies.instruments.settling import settle_on_orbit
 from studies.instruments.spring_of_scene import model_of
 from studies.instruments.transition_figures import draw, store_points
 from studies.published import PERIODS, SETTLE_CYCLES
@@ -170,7 +169,6 @@ def scans(
             "record_cycles": scan.record_cycles,
             "largest_period": scan.largest_period,
             "early": not full,
-            "settle_with": settle if name == "map" else settle_on_orbit,
             "after_each": tell,
         }
         up = orbit_diagram(description.strobed, values, description.strobed.at(values[0]).steady(), **common)

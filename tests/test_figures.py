@@ -22,6 +22,7 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
+from contact.orbits.scan import OrbitDiagram
 from studies import ROOT
 from studies.instruments import hysteresis_figures, trace_figure, transition_figures
 from studies.instruments.benchmarks.cost_figure import draw_costs
@@ -41,7 +42,6 @@ from studies.instruments.figures import (
     series,
 )
 from studies.instruments.hysteresis_causes import CAUSES
-from studies.instruments.orbit_scan import OrbitDiagram
 from studies.instruments.record import Record
 from studies.instruments.scene_file import read_scene
 from studies.instruments.sensitivity.noise_figures import draw_noise

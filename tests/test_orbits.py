@@ -22,7 +22,9 @@ from contact.laws import (
     NewtonRestitution,
 )
 from contact.orbits.continuation import fold_along_frequency, fold_of, follow
+from contact.orbits.ends import orbit_end
 from contact.orbits.kick import KickFamily
+from contact.orbits.settling import Settled, settle
 from contact.orbits.shooting import PeriodicOrbit, Shooting
 from contact.orbits.single_impact import MaximalFamily
 from contact.oscillator import ImpactOscillator
@@ -30,9 +32,7 @@ from contact.simulation import simulate
 from contact.stop import Stop
 from contact.stroboscope import StroboscopicMap
 from contact.trajectory import State
-from studies.instruments.fold_scan import orbit_end
 from studies.instruments.oscillators import hertz_of
-from studies.instruments.periodicity import Settled, settle
 from studies.instruments.scene_file import read_scene
 from studies.instruments.spring_of_scene import model_of
 

@@ -19,13 +19,13 @@ import numpy as np
 import pytest
 
 from contact.laws import HertzContact, NewtonRestitution
+from contact.orbits.settling import TOLERANCE, period_of
 from contact.oscillator import ImpactOscillator
 from contact.stop import Stop
 from contact.stroboscope import StroboscopicMap
 from contact.trajectory import State
 from studies import ROOT
 from studies.instruments.oscillators import single_mode_oscillator
-from studies.instruments.periodicity import TOLERANCE, period_of
 from studies.instruments.scene_file import read_scene
 from studies.instruments.sweep.column_scan import ColumnScan
 from studies.instruments.sweep.executors import Pool, pool_of

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from contact.maximal_orbits import fold
+from contact.orbits.ends import orbit_end
+from contact.orbits.settling import period_of, settle
 from contact.orbits.single_impact import MaximalFamily
 from studies import transitions
-from studies.instruments.fold_scan import orbit_end
 from studies.instruments.oscillators import nordmark_of, single_mode_oscillator
-from studies.instruments.periodicity import period_of, settle
 from studies.instruments.scene_file import read_scene
 from studies.instruments.spring_of_scene import model_of
 from studies.published import PERIODS

@@ -13,11 +13,11 @@ import numpy as np
 
 from contact.collision import Collision, collisions
 from contact.laws import HERTZ, LINEAR
+from contact.orbits.settling import settle
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stroboscope import StroboscopicMap
 from contact.trajectory import State, Trajectory
-from studies.instruments.periodicity import settle
 from studies.instruments.spring_of_scene import READOUT
 
 __all__ = ["CloseUp", "Trace", "close_up", "settled_state", "trace_of"]

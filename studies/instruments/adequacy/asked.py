@@ -27,13 +27,13 @@ import numpy as np
 from contact.collision import first_collision
 from contact.errors import ContactError
 from contact.orbits.continuation import fold_of
+from contact.orbits.settling import settle
 from contact.orbits.shooting import Shooting
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.adequacy.model_choice import ModelChoice, Models
 from studies.instruments.oscillators import REFERENCE_EXCESS, approach_speed
-from studies.instruments.periodicity import settle
 from studies.published import (
     AMPLITUDE_STABILITY_M,
     DRIVE_AMPLITUDE_M,

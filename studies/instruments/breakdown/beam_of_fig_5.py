@@ -20,13 +20,13 @@ from contact.drive import HarmonicDrive
 from contact.errors import ContactError
 from contact.laws import ContactLaw, HuntCrossley
 from contact.orbits.continuation import fold_of
+from contact.orbits.settling import settle
 from contact.orbits.shooting import Shooting
 from contact.oscillator import ImpactOscillator
 from contact.stop import Stop
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.calibration import calibrate, free_period, solve_for
 from studies.instruments.oscillators import REFERENCE_EXCESS, approach_speed, contact_law_of, hertz_of
-from studies.instruments.periodicity import settle
 from studies.instruments.scene import Scene
 from studies.instruments.spring_of_scene import model_of
 from studies.published import BREAKDOWN

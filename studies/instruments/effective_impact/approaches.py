@@ -24,10 +24,10 @@ import numpy as np
 from contact.collision import Collision, collisions, first_collision
 from contact.errors import ContactError
 from contact.laws import ContactLaw, HertzContact, HuntCrossley, LinearContact, NewtonRestitution
+from contact.orbits.settling import settle
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stroboscope import StroboscopicMap
-from studies.instruments.periodicity import settle
 
 __all__ = ["Approach", "measure", "measure_all", "orbit_collision", "select"]
 

@@ -11,8 +11,8 @@ from __future__ import annotations
 from typing import Any
 
 from contact.errors import ContactError
+from contact.orbits.settling import Settled, settle
 from contact.stroboscope import StroboscopicMap
-from studies.instruments.periodicity import Settled, settle
 from studies.published import AMPLITUDE_STABILITY_M, DRIVE_AMPLITUDE_M
 
 __all__ = [

@@ -28,10 +28,10 @@ from scipy.optimize import brentq
 from contact.collision import Collision, first_collision
 from contact.errors import ContactError
 from contact.laws import HertzContact
+from contact.orbits.settling import Settled, settle
 from contact.orbits.single_impact import modal_flow
 from contact.oscillator import ImpactOscillator
 from contact.stroboscope import StroboscopicMap
-from studies.instruments.periodicity import Settled, settle
 
 __all__ = ["HertzSmoothing", "born_orbits", "collision_above", "doubling_excess", "local_slope", "reach_of"]
 

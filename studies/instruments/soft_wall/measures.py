@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 
 from contact.errors import ContactError
+from contact.orbits.ends import orbit_end
+from contact.orbits.settling import settle
 from contact.orbits.single_impact import MaximalFamily
 from contact.oscillator import ImpactOscillator
 from contact.stroboscope import StroboscopicMap
 from contact.trajectory import State
-from studies.instruments.fold_scan import orbit_end
 from studies.instruments.oscillators import nordmark_of, single_mode_oscillator
-from studies.instruments.periodicity import settle
 from studies.instruments.scene import Scene
 from studies.instruments.soft_wall.contact_orbits import ContactOrbit, SoftMap, doubling, fold_of
 from studies.instruments.soft_wall.hertz_smoothing import (

@@ -19,9 +19,9 @@ from contact.integrators.exact_run import failure
 from contact.integrators.strobe_nodes import nodes_of
 from contact.integrators.struck_period import loop_numbers
 from contact.laws import NEWTON
+from contact.orbits.settling import TOLERANCE
 from contact.oscillator import ImpactOscillator
 from contact.stroboscope import StroboscopicMap
-from studies.instruments.periodicity import TOLERANCE
 from studies.instruments.sweep.settled_column import (
     BEHIND,
     EXTRA,
