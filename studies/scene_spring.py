@@ -24,7 +24,7 @@ from studies.scene_keys import SceneError
 from studies.scene_values import Scene, named
 
 __all__ = [
-    "READOUT", "damping_of", "elements_of", "first_modes", "model_of", "modes_of", "require_drive_below",
+    "READOUT", "damping_of", "elements_of", "first_modes", "free_period", "model_of", "modes_of", "require_drive_below",
     "sections_of", "single_mode_of", "spring_of",
 ]  # fmt: skip
 
@@ -253,3 +253,11 @@ def single_mode_of(scene: Scene) -> ModalModel:
     with named({"free_period": "single_mode.free_period_s", "decay_rate": "single_mode.decay_rate_per_s"}):
         model = beam.single_mode(free_period=keys.free_period_s, decay_rate=keys.decay_rate_per_s)
     return dataclasses.replace(model, readouts={READOUT: model.phi})
+
+
+def free_period(scene: Scene) -> float:
+    """Damped period of the first mode of the spring [s]; infinite if it does not swing."""
+    modes = modes_of(scene, 1)
+    rate, omega = float(damping_of(scene).decay_rates(modes)[-1]), float(modes.omega[-1])
+    square = omega**2 - (0.5 * rate) ** 2
+    return 2.0 * math.pi / math.sqrt(square) if square > 0.0 else math.inf
