@@ -87,8 +87,8 @@ def pool_of(place: str, workers: int) -> Iterator[Executor]:
     """
     kind, colon, address = place.partition("://")
     if kind == "dask" and address:
-        with _cluster(address) as executor:
-            yield executor
+        with _cluster(address) as cluster:
+            yield cluster
         return
     if colon or kind not in ("", "threads", "processes"):
         raise ValueError(f"executor is {place!r}; it must be threads, processes or dask://host:port")

@@ -37,6 +37,7 @@ from studies.files import (
     versions,
     write_atomically,
 )
+from studies.least_model import least_modes
 from studies.scene import Scene
 
 if TYPE_CHECKING:
@@ -46,6 +47,9 @@ __all__ = ["SCHEMA", "Run"]
 
 SCHEMA = 2
 """Number of the layout of summary.json, manifest.json and the JSON on standard output."""
+
+SAME_SPRING = 0.005
+"""Relative difference of two free periods beyond which the born period changes next to a band edge."""
 
 Verdict = Literal["agrees", "in part", "differs", "fitted", "not printed"]
 
@@ -115,7 +119,6 @@ class Run:
     def choose_modes(self, scene: Scene, needs: Mapping[str, float]) -> Scene:
         """The scene with the least number of modes for these quantities, unless it has one
         (``least_model``)."""
-        from studies.least_model import least_modes  # the letter's numbers need no orbits
 
         self.scene, self.model_choice = least_modes(scene, needs)
         if self.model_choice:

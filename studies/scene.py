@@ -48,8 +48,8 @@ from studies.scene_values import Scene, doubts, named, scene_from_text
 
 __all__ = [
     "READOUT", "Scene", "SceneError", "approach_speed", "beam_at", "contact_law_of", "corresponding",
-    "damping_of", "elements_of", "first_modes", "free_period", "harmonic", "hertz_of", "model_of", "modes_of", "nordmark_at",
-    "periods_of", "read_scene", "require_drive_below", "sections_of", "single_mode_at",
+    "damping_of", "elements_of", "first_modes", "free_period", "harmonic", "hertz_of", "model_of", "modes_of",
+    "nordmark_at", "periods_of", "read_scene", "require_drive_below", "sections_of", "single_mode_at",
     "single_mode_of", "spring_of",
 ]  # fmt: skip
 

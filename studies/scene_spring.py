@@ -24,8 +24,8 @@ from studies.scene_keys import SceneError
 from studies.scene_values import Scene, named
 
 __all__ = [
-    "READOUT", "damping_of", "elements_of", "first_modes", "free_period", "model_of", "modes_of", "require_drive_below",
-    "sections_of", "single_mode_of", "spring_of",
+    "READOUT", "damping_of", "elements_of", "first_modes", "free_period", "model_of", "modes_of",
+    "require_drive_below", "sections_of", "single_mode_of", "spring_of",
 ]  # fmt: skip
 
 READOUT = "readout"

@@ -110,8 +110,8 @@ def _begin(folder: Path, settings: Mapping[str, object], fresh: bool) -> None:
 
 
 def sweep(
-    run: Run, name: str, settings: Mapping[str, object], arguments: Sequence[A], compute: Callable[[A], Column],
-    *, shard: Shard | None = None, fresh: bool = False,
+    run: Run, name: str, settings: Mapping[str, object], arguments: Sequence[A],
+    compute: Callable[[A], Column], *, shard: Shard | None = None, fresh: bool = False,
 ) -> list[Column | None]:  # fmt: skip
     """Compute the columns of `shard` (all by default) that are not stored yet; returns all that are there,
     in order.
