@@ -21,18 +21,26 @@ from contact.laws import (
     LinearContact,
     NewtonRestitution,
 )
-from contact.orbits.continuation import fold_along_frequency, fold_of, follow
-from contact.orbits.ends import orbit_end
-from contact.orbits.kick import KickFamily
-from contact.orbits.settling import Settled, settle
-from contact.orbits.shooting import PeriodicOrbit, Shooting
-from contact.orbits.single_impact import MaximalFamily
+from contact.orbits import (
+    KickFamily,
+    MaximalFamily,
+    PeriodicOrbit,
+    Settled,
+    Shooting,
+    fold_along_frequency,
+    fold_of,
+    folds_of,
+    follow,
+    lowest_of,
+    orbit_end,
+    settle,
+)
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
 from contact.stroboscope import StroboscopicMap
 from contact.trajectory import State
-from studies.instruments.oscillators import hertz_of
+from studies.instruments.oscillators import beam_of, hertz_of
 from studies.instruments.scene_file import read_scene
 from studies.instruments.spring_of_scene import model_of
 
@@ -191,6 +199,67 @@ def test_fold_and_second_impact_of_equation_1(
         beside = family.at_speed(graze.speed * factor, graze)
         assert touches(beside) == expected
         assert beside.admissible == (expected == 1)
+
+
+def test_where_contact_is_soft_a_branch_has_several_folds() -> None:
+    """The letter's spring with 12 modes at 23.05 Hz: a pair of folds close together, found from no kick fold
+    and from any orbit; below them the branch goes on to the graze of a second touch."""
+    scene = read_scene("letter", ["modes.count=12"])
+    oscillator = beam_of(scene, 23.05, model_of(scene))
+    family = Shooting(oscillator=oscillator, period=8)
+    upper, lower = folds_of(family)
+    assert (upper.excess, lower.excess) == pytest.approx((8.944156e-6, 8.913082e-6), rel=1e-6)
+    for orbit in (upper, lower):
+        assert orbit.admissible and np.min(np.abs(orbit.multipliers - 1)) < 1e-6
+        # one solution of the equations on either side of the fold in speed, at amplitudes on one side only
+        beside = [family.at_speed(orbit.speed * factor, orbit).excess for factor in (0.99, 1.01)]
+        assert (beside[0] - orbit.excess) * (beside[1] - orbit.excess) > 0
+    assert KickFamily(oscillator=oscillator, period=8).fold() is None
+    assert fold_of(family).excess == pytest.approx(lower.excess, abs=1e-14)
+    far = family.at_speed(0.3 * unit_speed(oscillator))
+    assert fold_of(family, far).excess == pytest.approx(lower.excess, abs=1e-14)
+    # however long the steps of the branch
+    for step in (0.05, 0.21, 0.47):
+        branch = follow(family, far, low=1e-3 * unit_speed(oscillator), high=2 * far.speed, step=step)
+        assert [orbit.excess for orbit in branch.of_kind("fold")] == pytest.approx(
+            [upper.excess, lower.excess], abs=1e-14
+        )
+    lowest = lowest_of(family)
+    assert lowest.kind == "grazing" and lowest.orbit.excess == pytest.approx(1.308624e-6, rel=1e-6)
+    assert [touches(family.at_speed(lowest.orbit.speed * x, lowest.orbit)) for x in (1.001, 0.999)] == [1, 2]
+
+
+def test_below_its_lowest_fold_a_branch_can_go_on_to_a_graze() -> None:
+    """A straight leaf with a ball of 2 g, 20 modes, 23.05 Hz: p8 folds at 1.17e-6, turns at 2.99e-6 and lives
+    on, stable, to 4.6e-7; there settled motions say so, too."""
+    thickness = "spring.thickness_m=0.9439314446e-3"  # the period of the letter, 40.80 ms
+    scene = read_scene(
+        "letter", ["modes.count=20", "spring.kind=cantilever", "tip.mass_kg=0.002", thickness]
+    )
+    oscillator = beam_of(scene, 23.05, model_of(scene))
+    family = Shooting(oscillator=oscillator, period=8)
+    upper, lower = folds_of(family)
+    assert upper.speed < lower.speed and lower.excess < upper.excess
+    assert (upper.excess, lower.excess) == pytest.approx((2.98682e-6, 1.17366e-6), rel=1e-4)
+    assert fold_of(family).excess == pytest.approx(lower.excess, abs=1e-14)
+    lowest = lowest_of(family)
+    assert lowest.kind == "grazing" and lowest.orbit.excess == pytest.approx(4.6325e-7, rel=1e-4)
+    start = family.at_speed(1.02 * lowest.orbit.speed, lowest.orbit)
+    assert start.stable and lowest.orbit.excess < start.excess < lower.excess
+    strobed = StroboscopicMap(oscillator=oscillator)
+    for part, impacts in ((1.2, 1), (1.01, 1), (0.99, 2)):
+        excess = part * lowest.orbit.excess
+        run = settle(
+            strobed.at(excess), start.strobe_state(), most_cycles=4000, tolerance=1e-3 * excess, prove=False
+        )
+        assert (run.period, run.impacts) == (8, impacts)
+
+
+def test_in_the_usual_case_the_lowest_orbit_is_the_fold(spring: ModalModel) -> None:
+    family = Shooting(oscillator=beam(spring, 22.20, HERTZ), period=5)
+    fold, lowest = fold_of(family), lowest_of(family)
+    assert lowest.kind == "fold" and lowest.orbit.excess == fold.excess < -1e-4
+    assert min(orbit.excess for orbit in folds_of(family)) == pytest.approx(fold.excess, abs=1e-14)
 
 
 def test_one_amplitude_has_an_orbit_on_each_arm() -> None:

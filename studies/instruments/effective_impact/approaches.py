@@ -24,7 +24,7 @@ import numpy as np
 from contact.collision import Collision, collisions, first_collision
 from contact.errors import ContactError
 from contact.laws import ContactLaw, HertzContact, HuntCrossley, LinearContact, NewtonRestitution
-from contact.orbits.settling import settle
+from contact.orbits.settling import born
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stroboscope import StroboscopicMap
@@ -37,9 +37,6 @@ LAWS: dict[type[ContactLaw], str] = {
     LinearContact: "linear",
     NewtonRestitution: "newton",
 }
-
-BELOW = -1e-3
-"""Excess of the motion from which a settled orbit is reached."""
 
 SETTLE_CYCLES = 4000
 """An orbit with impacts settles within some hundred drive periods; a motion that has not repeated by then is
@@ -81,8 +78,7 @@ class Approach:
 
 def orbit_collision(oscillator: ImpactOscillator) -> tuple[Collision | None, int]:
     """The first collision in the settled orbit and its period; None and 0 if there is no such orbit."""
-    strobed = StroboscopicMap(oscillator=oscillator)
-    settled = settle(strobed, strobed.at(BELOW).steady(), most_cycles=SETTLE_CYCLES)
+    settled = born(StroboscopicMap(oscillator=oscillator), oscillator.excess, most_cycles=SETTLE_CYCLES)
     if not settled.period or not settled.impacts:
         return None, settled.period
     trajectory = simulate(oscillator, settled.end, periods=2 * settled.period + 2)
