@@ -38,7 +38,7 @@ from studies.files import (
     write_atomically,
 )
 from studies.least_model import least_modes
-from studies.scene import Scene
+from studies.scene import Scene, free_period
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -117,12 +117,20 @@ class Run:
             return [future.result() for future in futures]
 
     def choose_modes(self, scene: Scene, needs: Mapping[str, float]) -> Scene:
-        """The scene with the least number of modes for these quantities, unless it has one
-        (``least_model``)."""
+        """The scene with the least number of modes for these quantities, unless it says the number.
 
+        A spring whose first mode is not that of [single_mode] is told: map and Eq. (1) describe another one.
+        """
         self.scene, self.model_choice = least_modes(scene, needs)
         if self.model_choice:
             self.say(self.model_choice)
+        if scene.spring.kind != "modal_data":
+            told, found = scene.single_mode.free_period_s, free_period(scene)
+            if abs(told / found - 1.0) > SAME_SPRING:
+                doubt = (f"single_mode.free_period_s is {told:g} s, but the first mode of the spring has "
+                         f"{found:.5g} s: map and Eq. (1) describe another spring than the beam")  # fmt: skip
+                self.warnings = [*self.warnings, doubt]
+                self.say(f"warning: {doubt}")
         return self.scene
 
     # what it leaves
