@@ -22,7 +22,6 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
-from typing import cast
 
 from studies.scene_keys import (
     GIVEN,
@@ -74,6 +73,13 @@ class Scene:
         """The value of a dotted key, `scene["spring.width_m"]`."""
         section, name = split(key)
         value: Value = getattr(getattr(self, section), name)
+        return value
+
+    def number(self, key: str) -> float:
+        """The value of a dotted key that is a number."""
+        value = self[key]
+        if not isinstance(value, float | int):
+            raise SceneError(f"{key} is {shown(value)}; it must be a key that is a number")
         return value
 
     def replace(self, changes: Mapping[str, object], *, provenance: str = GIVEN) -> Scene:
@@ -251,14 +257,14 @@ def doubts(scene: Scene) -> Iterator[str]:
          "no stop"),
     ]  # fmt: skip
     for name in ("spring.width_m", "spring.bend_radius_m", "tip.ball_radius_m"):
-        value = cast(float, scene[name])
+        value = scene.number(name)
         found.append(
             (shaped and value > leg, f"{name} is {value:g} m, more than spring.leg_length_m {leg:g} m")
         )
     for name, ratio in ratios.items():
         found.append((ratio > 0.5, f"{name} makes a damping ratio of {ratio:.3g}; above 0.5 no mode swings"))
     for name in ("spring.loss_factor", "spring.tape_loss_factor"):
-        value = cast(float, scene[name])
+        value = scene.number(name)
         found.append((value > 3.0, f"{name} is {value:g}; materials stay below 3"))
     yield from (sentence for holds, sentence in found if holds)
 
