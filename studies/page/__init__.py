@@ -182,12 +182,16 @@ def write_page(results: Path) -> tuple[Path, list[Stored], list[str]]:
     missing = [name for name in names() if name not in by_name and _is_study(name)]
     points = list(_points(by_name))
     environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent), autoescape=True, trim_blocks=True, lstrip_blocks=True,
-    )  # fmt: skip
+        loader=FileSystemLoader(Path(__file__).parent), autoescape=True, trim_blocks=True, lstrip_blocks=True
+    )
     text = environment.get_template("page.html.j2").render(
-        stored=found, missing=missing, points=points,
-        tally=Counter(str(point["verdict"]) for point in points), answers=list(_answers(by_name)), made=f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC",
-    )  # fmt: skip
+        stored=found,
+        missing=missing,
+        points=points,
+        tally=Counter(str(point["verdict"]) for point in points),
+        answers=list(_answers(by_name)),
+        made=f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC",
+    )
     folder = results / "report"
     folder.mkdir(parents=True, exist_ok=True)
     return write_atomically(folder / "index.html", text.encode()), found, missing
