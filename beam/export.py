@@ -122,56 +122,6 @@ def write_mode_motion(
     return _write_frames(path, mesh, phase * period, frame_of, moved, fields)
 
 
-def write_motion(
-    path: Path,
-    modes: Modes,
-    times: ArrayLike,
-    coordinates: ArrayLike,
-    *,
-    base: ArrayLike | None = None,
-    moved: bool = True,
-    magnification: float = 1.0,
-    ball_radius: float | None = None,
-) -> tuple[Path, ...]:
-    """Write a motion given by its modal coordinates.
-
-    Parameters
-    ----------
-    path : Path
-        Ending in .pvd.
-    modes : Modes
-    times : array_like, shape (n_frames,)
-        [s].
-    coordinates : array_like, shape (n_frames, n_modes)
-        q_k [kg^(1/2) m] of all of `modes`.
-    base : array_like, shape (n_frames,), optional
-        Displacement of the base [m]; without it the base, on which the stop rides, is the frame of reference.
-    moved, ball_radius
-        As for `write_mode_motion`.
-    magnification : float
-        Of all displacements [1].
-
-    Returns
-    -------
-    tuple of Path
-        The .pvd file, then its frames.
-    """
-    t, q = np.asarray(times, dtype=np.float64), np.asarray(coordinates, dtype=np.float64)
-    z = np.zeros(t.shape) if base is None else np.asarray(base, dtype=np.float64)
-    if t.ndim != 1 or t.size == 0 or q.shape != (t.size, modes.omega.size) or z.shape != t.shape:
-        raise ValueError(
-            f"times, coordinates and base have shapes {t.shape}, {q.shape}, {z.shape}; they must be "
-            f"(n_frames,), (n_frames, {modes.omega.size}), (n_frames,)."
-        )
-    mesh = spring_mesh(modes, ball_radius=ball_radius)
-    drive = np.array([*modes.discretization.spring.drive, 0.0])
-    frame_of = (
-        magnification * (np.tensordot(row, mesh.shapes, axes=1) + shift * drive)
-        for row, shift in zip(q, z, strict=True)
-    )
-    return _write_frames(path, mesh, t, frame_of, moved, {"magnification": [magnification]})
-
-
 def write_frames(path: Path, frames: Iterable[tuple[float, Any]]) -> tuple[Path, ...]:
     """Write grids in time: NAME.pvd and NAME_frames/frame_0000.vtu and so on.
 

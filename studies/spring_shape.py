@@ -11,12 +11,12 @@ Claim
 Equations
     Centreline r(s), displacements u t + w n + v z, twist phi about t, in plane and out of it:
         (EA, u' - k w), (EI_z, w'' + k u'), (EI_n, v'' - k phi), (GJ, phi' + k v'), (EG, phi'' + k v'')
-    as stiffness and strain (`beam.spatial_element`), tied to the ball; solids of quadratic hexahedra beside
-    them (`beam.solid`). Each shape is brought to omega_1^2 = (2 pi/T)^2 + (c/2)^2 by its sheet's thickness,
-    the channel by its flanges (`studies.instruments.spring_shape.readings`). Printed: first bending, twist
-    and sideways frequencies [Hz]; phi at the ball along the stop [kg^(-1/2)], also with ball and contact off
-    the plane of symmetry; the turn of the ball in the twist mode [kg^(-1/2) m^(-1)]; f_strip/f_solid - 1 mode
-    by mode.
+    as stiffness and strain (`beam.space.element`), tied to the ball; solids of quadratic hexahedra beside
+    them (`studies.spring_shape_solids`). Each shape is brought to omega_1^2 = (2 pi/T)^2 + (c/2)^2 by its
+    sheet's thickness, the channel by its flanges (`studies.instruments.spring_shape.readings`).
+    Printed: first bending, twist and sideways frequencies [Hz]; phi at the ball along the stop [kg^(-1/2)],
+    also with ball and contact off the plane of symmetry; the turn of the ball in the twist mode
+    [kg^(-1/2) m^(-1)]; f_strip/f_solid - 1 mode by mode.
 
 Run time
     About 20 s on two cores, --quick 9 s.
@@ -43,7 +43,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from beam.spatial_frame import spatial_modes
+from beam.space import spatial_modes
 from studies.instruments.command_line import Request, run_study
 from studies.instruments.quantities import SceneError
 from studies.instruments.scene import Scene

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.collision import before_collision, collisions
 from contact.drive import HarmonicDrive
 from contact.errors import StepTooLarge

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.crossing import CROSSES, FREE, first_crossing
 from contact.drive import HarmonicDrive
 from contact.flight import Motion

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from beam.reduction import ModalModel, single_mode
+from beam import ModalModel, single_mode
 from contact.drive import HarmonicDrive
 from contact.integrators.sampled_flight import SampledFlight
 from contact.laws import (

@@ -335,7 +335,7 @@ def test_family_of_an_oscillator() -> None:
 
 
 def test_family_of_the_real_oscillator() -> None:
-    reduction = pytest.importorskip("beam.reduction")
+    reduction = pytest.importorskip("beam")
     pytest.importorskip("contact.oscillator")
     from contact.drive import HarmonicDrive
     from contact.laws import NewtonRestitution

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from beam import StripSection, Tip, UniformBeam, assemble, exact_modes, folded_u, natural_modes
-from beam.spatial_frame import spatial_modes
+from beam.space import spatial_modes
 from studies.instruments.quantities import SceneError
 from studies.instruments.scene_file import read_scene
 from studies.instruments.spring_shape.checks import plate_excess

@@ -14,7 +14,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.errors import Chatter, ContactTooStiff, StepTooLarge
 from contact.integrators import CentralDifference, PiecewiseLinear
 from contact.laws import LinearContact

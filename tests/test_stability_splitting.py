@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.integrators.splitting import COMPOSITIONS, Splitting
 from contact.integrators.splitting_limit import spectral_radius
 from studies.instruments.figures import save

@@ -26,10 +26,10 @@ from typing import Any, Literal
 
 import numpy as np
 
-from beam.solid import end_compliance, solid_modes
-from beam.solid.elasticity import Parity
-from beam.spatial_frame import SpatialModes, spatial_modes
+from beam.space import SpatialModes, spatial_modes
 from studies.instruments.spring_shape.readings import Shape, kinds_of
+from studies.spring_shape_solids import end_compliance, solid_modes
+from studies.spring_shape_solids.elasticity import Parity
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -30,12 +30,20 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from beam import Arc, Centreline, Material, Straight, StripSection, Support, Tip
-from beam.solid import SolidSpring, channel_profile, rectangle_profile, sweep
-from beam.spatial_frame import SpatialModes, spatial_modes
-from beam.spatial_section import SpatialSection, channel, channel_centroid, flat, upright
-from beam.spatial_spring import SpatialSpring, Vector
+from beam.space import (
+    SpatialModes,
+    SpatialSection,
+    SpatialSpring,
+    Vector,
+    channel,
+    channel_centroid,
+    flat,
+    spatial_modes,
+    upright,
+)
 from studies.instruments.quantities import SceneError
 from studies.instruments.scene import Scene
+from studies.spring_shape_solids import SolidSpring, channel_profile, rectangle_profile, sweep
 
 Reading = Literal["side_by_side", "channel", "folded", "plain"]
 READINGS: tuple[Reading, ...] = ("side_by_side", "channel", "folded", "plain")

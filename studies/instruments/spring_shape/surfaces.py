@@ -12,8 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from beam.spatial_frame import SpatialModes
-from beam.spatial_section import channel_centroid
+from beam.space import SpatialModes, channel_centroid
 from studies.instruments.spring_shape.readings import Shape
 
 POINTS_ACROSS = 5

@@ -20,8 +20,7 @@ from typing import Any
 import numpy as np
 
 from beam import ALUMINA, Tip
-from beam.spatial_frame import SpatialModes, spatial_modes
-from beam.spatial_section import upright
+from beam.space import SpatialModes, spatial_modes, upright
 from studies.instruments.scene import Scene
 from studies.instruments.spring_of_scene import spring_of
 from studies.instruments.spring_shape.readings import (

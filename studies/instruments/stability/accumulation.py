@@ -30,7 +30,7 @@ from typing import Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.drive import HarmonicDrive
 from contact.errors import Chatter, ContactError
 from contact.flight import tip_rounding

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.errors import Diverged
 from contact.integrators.generalised_alpha import GeneralisedAlpha
 from contact.integrators.method import Integrator

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.collision import Collision, before_collision, collisions
 from contact.integrators.method import Integrator
 from contact.oscillator import ImpactOscillator

@@ -29,7 +29,7 @@ from typing import Any
 
 import numpy as np
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.errors import StepTooLarge
 from contact.integrators import CentralDifference
 from contact.laws import LinearContact

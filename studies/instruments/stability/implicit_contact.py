@@ -30,7 +30,7 @@ import math
 
 import numpy as np
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.integrators.generalised_alpha import GeneralisedAlpha
 from contact.integrators.moreau_jean import MoreauJean
 from contact.integrators.nonsmooth_generalised_alpha import NonsmoothGeneralisedAlpha

@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.errors import StepTooLarge
 from contact.integrators.generalised_alpha import GeneralisedAlpha
 from contact.laws import LinearContact

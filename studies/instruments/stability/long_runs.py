@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.drive import HarmonicDrive
 from contact.integrators import EventDriven
 from contact.laws import NewtonRestitution

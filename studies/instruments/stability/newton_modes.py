@@ -29,8 +29,7 @@ from typing import Any
 
 import numpy as np
 
-from beam.frequency_equation import ExactModes, UniformBeam, exact_modes
-from beam.reduction import ModalModel
+from beam import ExactModes, ModalModel, UniformBeam, exact_modes
 from contact.collision import Collision, before_collision, collisions
 from contact.drive import HarmonicDrive
 from contact.errors import ContactError

@@ -33,7 +33,7 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.errors import ContactTooStiff
 from contact.flight import damped_frequency, flow_matrix
 from contact.integrators import PiecewiseLinear

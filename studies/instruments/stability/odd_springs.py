@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.laws import LinearContact
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate

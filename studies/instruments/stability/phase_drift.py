@@ -24,7 +24,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.integrators import CentralDifference, Integrator
 from contact.integrators.generalised_alpha import GeneralisedAlpha
 from contact.integrators.moreau_jean import MoreauJean

@@ -25,7 +25,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.errors import ContactError
 from contact.integrators import Integrator
 from contact.laws import HERTZ, LINEAR, NEWTON, ContactLaw, HertzContact, LinearContact, NewtonRestitution

@@ -16,7 +16,7 @@ import math
 
 import numpy as np
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.errors import Diverged
 from contact.integrators.method import Integrator
 from contact.laws import ContactLaw, HertzContact, LinearContact

@@ -22,7 +22,7 @@ import math
 
 import numpy as np
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.errors import ContactError
 from contact.integrators import CentralDifference
 from contact.laws import LinearContact

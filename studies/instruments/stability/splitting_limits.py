@@ -33,7 +33,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.errors import Diverged, StepTooLarge
 from contact.integrators.splitting import COMPOSITIONS, Splitting
 from contact.integrators.splitting_limit import closed_form_limit, spectral_radius

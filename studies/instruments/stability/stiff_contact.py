@@ -31,7 +31,7 @@ from typing import Any
 
 import numpy as np
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.errors import ContactTooStiff
 from contact.integrators import PiecewiseLinear
 from contact.integrators.event_loop import MOST_STEPS

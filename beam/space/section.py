@@ -12,7 +12,7 @@ along n and the origin in the centroid,
     I      `polar_inertia` about the centroid, int rho (y^2 + z^2) dA                       [kg m]
     a      `shear_offset`: the centroid lies at +a n from the shear centre                  [m]
 
-Strip of width b, thickness t: with EA, EI, GJ, m of `section.StripSection`,
+Strip of width b, thickness t: with EA, EI, GJ, m of `beam.StripSection`,
 
     bending about its width EI,  edgewise EA b^2/12,  EG = EI b^2/12  (a warping displacement y z),
     I = m (b^2 + t^2)/12.
@@ -35,10 +35,11 @@ edges of the strip: 0.63 t/b.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
-from .material import Material
-from .parameters import require_kind, require_number
-from .section import StripSection
+from ..material import Material
+from ..parameters import require_kind, require_within
+from ..section import StripSection
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,6 +76,9 @@ class SpatialSection:
     warping_stiffness: float = 0.0
     shear_offset: float = 0.0
 
+    axial_loss_factor: ClassVar[float] = 0.0
+    bending_loss_factor: ClassVar[float] = 0.0
+
     def __post_init__(self) -> None:
         units = {
             "axial_stiffness": "N",
@@ -85,9 +89,14 @@ class SpatialSection:
             "polar_inertia": "kg m",
         }
         for name, unit in units.items():
-            require_number(name, getattr(self, name), unit, positive=True)
-        require_number("warping_stiffness", self.warping_stiffness, "N m^4", positive=False)
-        require_number("shear_offset", self.shear_offset, "m", positive=False)
+            require_within(name, getattr(self, name), unit, above=0)
+        require_within("warping_stiffness", self.warping_stiffness, "N m^4", low=0)
+        require_within("shear_offset", self.shear_offset, "m", low=0)
+
+    @property
+    def bending_stiffness(self) -> float:
+        """EI_z, by the name that it has in the plane [N m^2]."""
+        return self.in_plane_stiffness
 
 
 def upright(section: StripSection) -> SpatialSection:
@@ -116,9 +125,9 @@ def channel(*, material: Material, width: float, flange: float, thickness: float
         t [m] of the sheet, positive, below half of the width.
     """
     require_kind("material", material, Material, "a Material, such as BRASS")
-    require_number("width", width, "m", positive=True)
-    require_number("flange", flange, "m", positive=False)
-    require_number("thickness", thickness, "m", positive=True)
+    require_within("width", width, "m", above=0)
+    require_within("flange", flange, "m", low=0)
+    require_within("thickness", thickness, "m", above=0)
     if 2.0 * thickness > width:
         raise ValueError(f"thickness is {thickness} m; it must not exceed half of the width {width} m")
     b, h, t = width, flange, thickness

@@ -81,30 +81,6 @@ def test_glued_layer_of_the_same_material_is_a_thicker_strip() -> None:
         assert getattr(glued, name) == pytest.approx(getattr(solid, name), rel=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("make", "words"),
-    [
-        (lambda: replace(BARE, width=-1.0), "width is -1.0 m"),
-        (lambda: replace(BARE, thickness=float("nan")), "thickness is nan m"),
-        (lambda: replace(BARE, thickness=0.02), "must not exceed the width"),
-        (lambda: Layer(material=BRASS, thickness=0.0), "thickness is 0.0 m"),
-        (lambda: replace(BRASS, youngs_modulus=0.0), "youngs_modulus is 0.0 Pa"),
-        (lambda: replace(BRASS, density=-1.0), "density is -1.0 kg/m"),
-        (lambda: replace(BRASS, poissons_ratio=0.5), "poissons_ratio is 0.5"),
-        (lambda: replace(BRASS, loss_factor=-0.1), "loss_factor is -0.1"),
-    ],
-)
-def test_wrong_values_are_named(make, words: str) -> None:
-    with pytest.raises(ValueError, match=words):
-        make()
-
-
 def test_shear_modulus() -> None:
-    solid = Material(youngs_modulus=200e9, poissons_ratio=0.25, density=1.0)
+    solid = Material(youngs_modulus=200e9, poissons_ratio=0.25, density=8e3)
     assert solid.shear_modulus == pytest.approx(80e9)
-
-
-@pytest.mark.parametrize("value", ["1 mm", None, True, [1.0]])
-def test_what_is_no_number_is_named(value: object) -> None:
-    with pytest.raises(TypeError, match="it must be a number in m, finite and positive"):
-        replace(BARE, width=value)

@@ -33,10 +33,9 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csc_array, csr_array
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
-from ..material import Material
-from ..parameters import require_array, require_kind, require_number
-from ..spring import Tip
-from .swept_mesh import SweptMesh
+from beam import Material, Tip
+from beam.parameters import require_array, require_kind, require_within
+from studies.spring_shape_solids.swept_mesh import SweptMesh
 
 #: Three Gauss points each way: exact for the stiffness of a brick.
 QUADRATURE_ORDER = 5
@@ -80,7 +79,7 @@ class SolidSpring:
         require_kind("material", self.material, Material, "a Material")
         require_kind("tip", self.tip, Tip, "a Tip")
         require_kind("clamped", self.clamped, (tuple, list), "two of True and False")
-        require_number("tip_at", self.tip_at, "m", positive=False)
+        require_within("tip_at", self.tip_at, "m", low=0)
         require_array("drive", self.drive, "1", shape=(3,), words="three finite numbers")
         if len(self.clamped) != 2 or not any(self.clamped):
             raise ValueError(

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.sparse import block_diag, coo_array
 from scipy.sparse.linalg import eigsh
+from straight_frame import frame_frequencies, polygon
 
 import beam
 from beam import (
@@ -24,6 +25,7 @@ from beam import (
     folded_u,
     natural_modes,
 )
+from beam.space import upright
 
 RADII = (7.5e-3, 15e-3, 30e-3)
 STRIP = StripSection(material=BRASS, width=12e-3, thickness=0.65e-3)
@@ -36,68 +38,6 @@ def u_of(radius: float, refinement: int = 1, tip: Tip = BALL) -> Modes:
     return natural_modes(assemble(spring, [refinement * n for n in default_elements(spring)]), 20)
 
 
-def planar_frame(points: np.ndarray, tip_node: int, tip: Tip, count: int) -> np.ndarray:
-    """Frequencies [Hz] of straight Euler-Bernoulli frame elements between the points, both ends clamped.
-
-    Unknowns at a node: displacement in x and y, rotation. Classical 6 x 6 stiffness and consistent mass.
-    """
-    ea, ei, m = STRIP.axial_stiffness, STRIP.bending_stiffness, STRIP.mass_per_length
-    rows, columns, stiff, heavy = [], [], [], []
-    for i, step in enumerate(np.diff(points, axis=0)):
-        h = math.hypot(*step)
-        c, s = step / h
-        bar, cube = ea / h, ei / h**3
-        k = np.zeros((6, 6))
-        k[np.ix_([0, 3], [0, 3])] = bar * np.array([[1, -1], [-1, 1]])
-        k[np.ix_([1, 2, 4, 5], [1, 2, 4, 5])] = cube * np.array(
-            [
-                [12, 6 * h, -12, 6 * h],
-                [6 * h, 4 * h * h, -6 * h, 2 * h * h],
-                [-12, -6 * h, 12, -6 * h],
-                [6 * h, 2 * h * h, -6 * h, 4 * h * h],
-            ]
-        )
-        g = np.zeros((6, 6))
-        g[np.ix_([0, 3], [0, 3])] = m * h / 6 * np.array([[2, 1], [1, 2]])
-        g[np.ix_([1, 2, 4, 5], [1, 2, 4, 5])] = (
-            m
-            * h
-            / 420
-            * np.array(
-                [
-                    [156, 22 * h, 54, -13 * h],
-                    [22 * h, 4 * h * h, 13 * h, -3 * h * h],
-                    [54, 13 * h, 156, -22 * h],
-                    [-13 * h, -3 * h * h, -22 * h, 4 * h * h],
-                ]
-            )
-        )
-        turn = np.kron(np.eye(2), np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]))
-        where = np.arange(3 * i, 3 * i + 6)
-        rows.append(np.repeat(where, 6))
-        columns.append(np.tile(where, 6))
-        stiff.append((turn.T @ k @ turn).ravel())
-        heavy.append((turn.T @ g @ turn).ravel())
-    node = 3 * tip_node + np.arange(3)
-    rows, columns = np.concatenate([*rows, node]), np.concatenate([*columns, node])
-    size = 3 * len(points)
-    lumped = [tip.mass, tip.mass, tip.rotary_inertia]
-    k = coo_array((np.concatenate([*stiff, np.zeros(3)]), (rows, columns)), shape=(size, size)).tocsc()
-    g = coo_array((np.concatenate([*heavy, lumped]), (rows, columns)), shape=(size, size)).tocsc()
-    held = slice(3, size - 3)
-    values = eigsh(k[held, held], count, M=g[held, held], sigma=0.0, v0=np.ones(size - 6))[0]
-    return np.sqrt(np.sort(values)) / (2.0 * np.pi)
-
-
-def polygon(radius: float, leg: int = 60, bend: int = 400) -> np.ndarray:
-    """Points of the U: both legs and a polygon in the bend."""
-    x = np.linspace(0.0, 0.13, leg + 1)
-    turn = np.linspace(-0.5 * np.pi, 0.5 * np.pi, bend + 1)[1:-1]
-    lower = np.stack([x, np.full_like(x, -radius)], axis=1)
-    arc = np.stack([0.13 + radius * np.cos(turn), radius * np.sin(turn)], axis=1)
-    return np.concatenate([lower, arc, lower[::-1] * [1.0, -1.0]])
-
-
 @pytest.mark.parametrize("radius", RADII)
 def test_first_ten_frequencies_against_a_mesh_four_times_finer(radius: float) -> None:
     np.testing.assert_allclose(
@@ -107,8 +47,7 @@ def test_first_ten_frequencies_against_a_mesh_four_times_finer(radius: float) ->
 
 @pytest.mark.parametrize("radius", RADII)
 def test_first_ten_frequencies_against_an_independent_frame(radius: float) -> None:
-    points = polygon(radius)
-    frame = planar_frame(points, len(points) // 2, BALL, 10)
+    frame = frame_frequencies(polygon(radius, 60, 400), upright(STRIP), BALL, 10, moves=(0, 1, 5))
     np.testing.assert_allclose(u_of(radius).frequencies_hz[:10], frame, rtol=2e-4)
 
 
@@ -120,8 +59,8 @@ def test_sharing_the_slope_instead_of_the_rotation_would_be_seen() -> None:
     assert jump.sum() == 2  # one entry -[k] u at each end of the bend
     kept = slope.data * ~jump
     wrong = coo_array((kept, (slope.row, slope.col)), shape=slope.shape).tocsr()
-    parts = [beam.assembly._parts(model.spring, piece) for piece in model.pieces]
-    stiffness, mass = (block_diag([part[i] for part in parts], format="csr") for i in (0, 2))
+    parts = [piece.matrices() for piece in model.pieces]
+    stiffness, mass = (block_diag([part[i] for part in parts], format="csr") for i in (0, 1))
     lumped = model.mass - model.ties.T @ mass @ model.ties
     value = eigsh(
         (wrong.T @ stiffness @ wrong).tocsc(),

@@ -96,21 +96,9 @@ def test_measured_decay_speaks_of_the_first_coupled_mode() -> None:
     assert rates[1] == pytest.approx(2.0, rel=1e-12) and rates[0] != pytest.approx(2.0, rel=1e-3)
 
 
-def test_wrong_values_are_named() -> None:
+def test_a_rule_that_cannot_be_scaled_is_refused() -> None:
     modes = partly_covered()
-    for make, words in (
-        (lambda: ConstantRatio(ratio=-0.1), "ratio is -0.1"),
-        (lambda: ConstantLossFactor(loss_factor=np.inf), "loss_factor is inf"),
-        (lambda: Rayleigh(mass_coefficient=-1.0, stiffness_coefficient=0.0), "mass_coefficient is -1.0 1/s"),
-        (lambda: MeasuredDecay(decay_rate=np.nan), "decay_rate is nan 1/s"),
-        (
-            lambda: MeasuredDecay(decay_rate=1.0, others=ConstantRatio(ratio=0.0)).decay_rates(modes),
-            "positive",
-        ),
-        (
-            lambda: MeasuredDecay(decay_rate=1.0).decay_rates(replace(modes, coupled=0 * modes.omega > 0)),
-            "none of which",
-        ),
-    ):
-        with pytest.raises(ValueError, match=words):
-            make()
+    with pytest.raises(ValueError, match="others"):
+        MeasuredDecay(decay_rate=1.0, others=ConstantRatio(ratio=0.0)).decay_rates(modes)
+    with pytest.raises(ValueError, match="modes"):
+        MeasuredDecay(decay_rate=1.0).decay_rates(replace(modes, coupled=0 * modes.omega > 0))

@@ -91,7 +91,8 @@ def test_static_sums(beam: UniformBeam) -> None:
     flexibility = np.cumsum(modes.phi**2 / modes.omega**2)
     sag = np.cumsum(modes.participation * modes.phi / modes.omega**2)
     assert flexibility[-1] == pytest.approx(beam.static_compliance, rel=2e-6)
-    assert sag[-1] == pytest.approx(beam.sag, rel=1e-7)
+    exact = MASS * LENGTH**4 / (8.0 * STIFFNESS) + beam.tip_mass * LENGTH**3 / (3.0 * STIFFNESS)
+    assert sag[-1] == pytest.approx(exact, rel=1e-7)
     assert np.all(np.diff(flexibility) > 0.0) and flexibility[-1] < beam.static_compliance
 
 
@@ -140,24 +141,7 @@ def test_frequency_function_is_of_order_one() -> None:
     assert 0.1 < np.abs(values).max() < 10.0
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"length": 0.0}, "length is 0.0 m"),
-        ({"supports": ("clamped", "glued")}, "supports is"),
-        ({"tip_mass": -1.0}, "tip_mass is -1.0 kg"),
-        ({"tip_mass": 1.0, "supports": ("clamped", "pinned")}, "must be 0"),
-    ],
-)
-def test_wrong_values_are_named(change: dict, words: str) -> None:
-    base = {"length": 1.0, "bending_stiffness": 1.0, "mass_per_length": 1.0}
-    with pytest.raises(ValueError, match=words):
-        UniformBeam(**(base | change))
-
-
 def test_static_forms_are_for_cantilevers_only() -> None:
     beam = UniformBeam(length=1.0, bending_stiffness=1.0, mass_per_length=1.0, supports=("free", "free"))
-    with pytest.raises(ValueError, match="sag"):
-        _ = beam.sag
-    with pytest.raises(ValueError, match="count is 0"):
-        exact_modes(beam, 0)
+    with pytest.raises(ValueError, match="static_compliance"):
+        _ = beam.static_compliance

@@ -2,6 +2,7 @@
 
 import doctest
 import pickle
+import warnings
 from dataclasses import FrozenInstanceError, replace
 
 import numpy as np
@@ -16,6 +17,7 @@ from beam import (
     Modes,
     Readout,
     StripSection,
+    SuspiciousValue,
     Tip,
     assemble,
     cantilever,
@@ -84,30 +86,17 @@ def test_truncated() -> None:
             model.truncated(count)
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"omega": [1.0, -2.0, 3.0]}, "omega holds -2.0 rad/s"),
-        ({"omega": [1.0, np.nan, 3.0]}, "omega holds nan rad/s"),
-        ({"omega": []}, "at least one mode"),
-        ({"omega": 1.0}, r"omega has shape \(\)"),
-        ({"decay_rate": [0.0, -1.0, 0.0]}, "decay_rate holds -1.0 1/s"),
-        ({"phi": [1.0, 2.0]}, r"phi has shape \(2,\)"),
-        ({"participation": [[1.0], [2.0], [3.0]]}, r"participation has shape \(3, 1\)"),
-        ({"readouts": {"laser": [1.0]}}, "laser"),
-        ({"static_compliance": -1.0}, "static_compliance is -1.0 m/N"),
-        ({"tip_mass": np.inf}, "tip_mass is inf kg"),
-    ],
-)
-def test_wrong_values_are_named(change: dict, words: str) -> None:
-    with pytest.raises(ValueError, match=words):
-        ModalModel(**(THREE | change))
+def test_readouts_have_one_value_a_mode() -> None:
+    with pytest.raises(ValueError, match="laser"):
+        ModalModel(**(THREE | {"readouts": {"laser": [1.0]}}))
 
 
-@pytest.mark.parametrize("change", [{"free_period": 0.0}, {"free_period": np.nan}, {"decay_rate": -1.0}])
-def test_single_mode_refuses(change: dict) -> None:
-    with pytest.raises(ValueError, match=next(iter(change))):
-        single_mode(**({"free_period": 0.04, "decay_rate": 3.0} | change))
+def test_a_lowest_mode_that_hardly_swings_is_told() -> None:
+    with pytest.warns(SuspiciousValue, match="decay_rate"):
+        ModalModel(**(THREE | {"decay_rate": [1.1, 0.0, 0.0]}))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ModalModel(**(THREE | {"omega": [0.0, 2.0, 3.0], "decay_rate": [1.0, 1.9, 7.0]}))
 
 
 def test_uncoupled_modes_drop_out() -> None:
@@ -121,7 +110,7 @@ def test_uncoupled_modes_drop_out() -> None:
     assert reduce(modes, ConstantRatio(ratio=0.01), 4).n_modes == 4
     everything = reduce(modes, ConstantRatio(ratio=0.01), coupled_only=False)
     assert everything.n_modes == 12 and np.count_nonzero(everything.phi) == 6
-    with pytest.raises(ValueError, match="count is 7 modes; it must lie between 1 and the 6 coupled modes"):
+    with pytest.raises(ValueError, match="count"):
         reduce(modes, ConstantRatio(ratio=0.01), 7)
 
 
@@ -160,11 +149,6 @@ def test_floating_strip_has_no_static_compliance() -> None:
 
 def test_the_package_keeps_its_word() -> None:
     assert doctest.testmod(beam).failed == 0
-    assert sorted(beam.__all__) == sorted(set(beam.__all__)) and all(
-        hasattr(beam, name) for name in beam.__all__
-    )
-
-
-def test_what_is_no_row_of_numbers_is_named() -> None:
-    with pytest.raises(TypeError, match="it must be one row of numbers in kg"):
-        ModalModel(**(THREE | {"phi": ["a", "b", "c"]}))
+    assert set(beam.__all__) <= set(dir(beam))
+    with pytest.raises(AttributeError, match="drum"):
+        _ = beam.drum

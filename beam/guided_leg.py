@@ -34,11 +34,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from .centreline import Arc, Straight
-from .parameters import require_kind
-from .reduction import ModalModel
+from .centreline import Arc, Centreline, Straight
+from .modal_model import ModalModel
+from .parameters import require, require_kind
+from .section import StripSection
 from .spring import LeafSpring, Tip
-from .spring_shapes import straight_strip
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 
@@ -57,6 +57,37 @@ def straight_equivalent(spring: LeafSpring) -> LeafSpring:
         Unless `spring` is a folded U: legs, a bend of half a turn, the same legs back, clamped, ball in the
         middle of the bend, driven across the legs.
     """
+    legs, bare, radius = _half(spring)
+    bending = [(length, section.bending_stiffness) for length, section in legs]
+    stretch = sum(length / section.axial_stiffness for length, section in legs)
+    wanted = _half_compliance(bending, bare.bending_stiffness, radius, stretch)
+
+    def surplus(extension: float) -> float:
+        return _guided_compliance([*bending, (extension, bare.bending_stiffness)]) / wanted - 1.0
+
+    extension = float(brentq(surplus, 0.0, LONGEST * radius, xtol=1e-15, rtol=1e-14))
+    length, whole = sum(piece for piece, _ in legs), spring.centreline.length
+    end = length + extension
+    surplus_mass = (0.5 * math.pi * radius - extension) * bare.mass_per_length
+    if legs[-1][1] == bare:  # one piece with what stands for the bend
+        pieces = [*legs[:-1], (legs[-1][0] + extension, bare)]
+    else:
+        pieces = [*legs, (extension, bare)]
+    return LeafSpring(
+        centreline=Centreline(pieces=tuple(Straight(length=piece) for piece, _ in pieces)),
+        sections=tuple(section for _, section in pieces),
+        supports=("clamped", "guided"),
+        tip=Tip(mass=0.5 * spring.tip.mass + surplus_mass),
+        tip_at=end,
+        readouts={
+            name: replace(point, at=min(point.at, whole - point.at, end))
+            for name, point in spring.readouts.items()
+        },
+    )
+
+
+def _half(spring: LeafSpring) -> tuple[list[tuple[float, StripSection]], StripSection, float]:
+    """Lengths and sections of a leg, support first, section and radius of the bend; ValueError if no U."""
     require_kind("spring", spring, LeafSpring, "a LeafSpring")
     pieces, sections = spring.centreline.pieces, spring.sections
     middle = len(pieces) // 2
@@ -72,53 +103,13 @@ def straight_equivalent(spring: LeafSpring) -> LeafSpring:
         and math.isclose(spring.tip_at, 0.5 * spring.centreline.length)
         and abs(spring.drive[0]) < 1e-12
     )
-    if not folded or not isinstance(bend, Arc):
-        raise ValueError(
-            f"centreline has {len(pieces)} pieces [no unit] that are no folded U; the straight "
-            "equivalent needs two equal clamped legs, a bend of half a turn with the ball amid it, and a "
-            "drive across the legs"
-        )
-    radius = bend.radius
-    legs = [
-        (piece.length, section.bending_stiffness)
-        for piece, section in zip(pieces[:middle], sections[:middle], strict=True)
-    ]
-    stretch = sum(
-        piece.length / section.axial_stiffness
-        for piece, section in zip(pieces[:middle], sections[:middle], strict=True)
+    require(
+        folded,
+        f"centreline has {len(pieces)} pieces [no unit] that are no folded U; the straight equivalent needs "
+        "two equal clamped legs, a bend of half a turn with the ball amid it, and a drive across the legs",
     )
-    wanted = _half_compliance(legs, sections[middle].bending_stiffness, radius, stretch)
-
-    def surplus(extension: float) -> float:
-        return _guided_compliance([*legs, (extension, sections[middle].bending_stiffness)]) / wanted - 1.0
-
-    extension = float(brentq(surplus, 0.0, LONGEST * radius, xtol=1e-15, rtol=1e-14))
-    length = sum(piece for piece, _ in legs)
-    mass = sections[middle].mass_per_length
-    tip = Tip(mass=0.5 * spring.tip.mass + (0.5 * math.pi * radius - extension) * mass)
-    end = length + extension
-    whole = spring.centreline.length
-    layer = next(
-        (
-            (at, at + piece, section)
-            for (piece, _), at, section in zip(legs, _starts(legs), sections[:middle], strict=True)
-            if section != sections[middle]
-        ),
-        None,
-    )
-    return straight_strip(
-        length=end,
-        section=sections[middle],
-        supports=("clamped", "guided"),
-        tip_at=end,
-        tip=tip,
-        damped_section=layer and layer[2],
-        damped_span=layer and layer[:2],
-        readouts={
-            name: replace(point, at=min(point.at, whole - point.at, end))
-            for name, point in spring.readouts.items()
-        },
-    )
+    lengths = [piece.length for piece in pieces[:middle]]
+    return list(zip(lengths, sections[:middle], strict=True)), sections[middle], 1.0 / bend.curvature
 
 
 def as_one_spring(half: ModalModel) -> ModalModel:
@@ -133,11 +124,6 @@ def as_one_spring(half: ModalModel) -> ModalModel:
         tip_mass=None if half.tip_mass is None else 2.0 * half.tip_mass,
         readouts={name: row / root for name, row in half.readouts.items()},
     )
-
-
-def _starts(legs: list[tuple[float, float]]) -> list[float]:
-    """Where each piece begins, from the support [m]."""
-    return [sum(length for length, _ in legs[:i]) for i in range(len(legs))]
 
 
 def _points(start: float, end: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -8,8 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.optimize import brentq
-from scipy.sparse import coo_array
-from scipy.sparse.linalg import eigsh
+from straight_frame import frame_frequencies, polygon
 
 from beam import (
     BRASS,
@@ -24,10 +23,16 @@ from beam import (
     folded_u,
     natural_modes,
 )
-from beam.solid import SolidSpring, channel_profile, solid_modes, sweep
-from beam.spatial_frame import SpatialModes, spatial_modes
-from beam.spatial_section import SpatialSection, channel, channel_centroid, flat, upright
-from beam.spatial_spring import SpatialSpring
+from beam.space import (
+    SpatialModes,
+    SpatialSection,
+    SpatialSpring,
+    channel,
+    channel_centroid,
+    flat,
+    spatial_modes,
+    upright,
+)
 
 STRIP = StripSection(material=BRASS, width=12e-3, thickness=0.65e-3)
 BALL = Tip(mass=4e-3, rotary_inertia=3e-8)
@@ -195,66 +200,12 @@ def test_quarter_arc_under_a_force_across_its_plane():
     assert modes.omega[first] ** -2 == pytest.approx(compliance * heavy, rel=1e-5)
 
 
-def frame_in_space(
-    points: np.ndarray, section: SpatialSection, node: int, tip: Tip, offset, count: int
-) -> np.ndarray:
-    """Frequencies [Hz] of straight 12 x 12 Euler-Bernoulli elements between points of the plane z = 0.
-
-    Both ends are clamped, the tip is a rigid body at `offset` from a node. Unknowns: displacement and
-    rotation along x, y, z.
-    """
-    rows, columns, stiff, heavy = [], [], [], []
-    ea, gj, m = section.axial_stiffness, section.torsional_stiffness, section.mass_per_length
-    for i, step in enumerate(np.diff(points, axis=0)):
-        h = math.hypot(*step)
-        k, g = np.zeros((12, 12)), np.zeros((12, 12))
-        for (first, second), stiffness, mass in (((0, 6), ea, m), ((3, 9), gj, section.polar_inertia)):
-            pair = np.ix_([first, second], [first, second])
-            k[pair] = stiffness / h * np.array([[1, -1], [-1, 1]])
-            g[pair] = mass * h / 6 * np.array([[2, 1], [1, 2]])
-        cubic = np.array([[12, 6 * h, -12, 6 * h], [6 * h, 4 * h * h, -6 * h, 2 * h * h],
-                          [-12, -6 * h, 12, -6 * h], [6 * h, 2 * h * h, -6 * h, 4 * h * h]]) / h**3
-        carried = m * h / 420 * np.array([
-            [156, 22 * h, 54, -13 * h], [22 * h, 4 * h * h, 13 * h, -3 * h * h],
-            [54, 13 * h, 156, -22 * h], [-13 * h, -3 * h * h, -22 * h, 4 * h * h]])
-        for places, sign, ei in (
-            ([1, 5, 7, 11], 1.0, section.in_plane_stiffness),
-            ([2, 4, 8, 10], -1.0, section.out_of_plane_stiffness),
-        ):
-            flip = np.diag([1.0, sign, 1.0, sign])  # a slope of v is a rotation about -n
-            k[np.ix_(places, places)] += ei * flip @ cubic @ flip
-            g[np.ix_(places, places)] += flip @ carried @ flip
-        c, s = step / h
-        turn = np.kron(np.eye(4), np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]))
-        where = np.arange(6 * i, 6 * i + 12)
-        rows.append(np.repeat(where, 12))
-        columns.append(np.tile(where, 12))
-        stiff.append((turn.T @ k @ turn).ravel())
-        heavy.append((turn.T @ g @ turn).ravel())
-    x, y, z = offset
-    arm = np.hstack([np.eye(3), np.array([[0, z, -y], [-z, 0, x], [y, -x, 0]])])  # d + theta x c
-    body = tip.mass * arm.T @ arm + np.diag([0, 0, 0] + 3 * [tip.rotary_inertia])
-    at = 6 * node + np.arange(6)
-    rows, columns = np.concatenate([*rows, np.repeat(at, 6)]), np.concatenate([*columns, np.tile(at, 6)])
-    size = 6 * len(points)
-    k, g = (
-        coo_array((np.concatenate([*values, extra]), (rows, columns)), shape=(size, size)).tocsc()
-        for values, extra in ((stiff, np.zeros(36)), (heavy, body.ravel()))
-    )
-    held = slice(6, size - 6)
-    values = eigsh(k[held, held], count, M=g[held, held], sigma=0.0, v0=np.ones(size - 12))[0]
-    return np.sqrt(np.sort(values)) / (2.0 * np.pi)
-
-
 @pytest.mark.parametrize("lying", [False, True])
 @pytest.mark.parametrize("offset", [(0.0, 0.0, 0.0), (0.0, 0.0, 2e-3), (1e-3, -2e-3, 1e-3)])
 def test_the_u_in_space_against_many_straight_elements(lying, offset):
     section = without_warping((flat if lying else upright)(STRIP))
-    x, turn = np.linspace(0.0, LENGTH, 41), np.linspace(-0.5 * np.pi, 0.5 * np.pi, 161)[1:-1]
-    lower = np.stack([x, np.full_like(x, -RADIUS)], axis=1)
-    arc = np.stack([LENGTH + RADIUS * np.cos(turn), RADIUS * np.sin(turn)], axis=1)
-    points = np.concatenate([lower, arc, lower[::-1] * [1.0, -1.0]])
-    frame = frame_in_space(points, section, len(points) // 2, BALL, offset, 10)
+    points = polygon(RADIUS, 40, 160)
+    frame = frame_frequencies(points, section, BALL, 10, offset)
     modes = spatial_modes(bent(section, tip_offset=offset), 10, [40, 96, 40])
     np.testing.assert_allclose(modes.frequencies_hz, frame, rtol=4e-4)
 
@@ -298,30 +249,6 @@ def test_shapes_are_those_of_the_section_at_the_tip_and_mass_normalised():
     np.testing.assert_allclose(np.trapezoid(energy, s, axis=1), 1.0, rtol=2e-3)
 
 
-def test_a_channel_against_a_solid():
-    sizes = {"width": 12e-3, "flange": 2e-3, "thickness": 0.3e-3}
-    section = channel(material=BRASS, **sizes)
-    modes = spatial_modes(straight(section, Tip(mass=5e-3)), 8)
-    profile = channel_profile(**sizes, centroid=channel_centroid(**sizes), cells=(1, 2))
-    line = modes.spring.centreline
-    solid = SolidSpring(
-        solid=sweep(profile, line, [20], halvings=(3, 0)),
-        material=BRASS, clamped=(True, False), tip=Tip(mass=5e-3), tip_at=LENGTH,
-    )
-    apart = out_of_plane(modes)
-    for parity, chosen in (("symmetric", ~apart), ("antisymmetric", apart)):
-        found = solid_modes(solid, parity, 2)
-        ratio = modes.frequencies_hz[chosen][:2] / found.frequencies_hz - 1.0
-        assert abs(ratio[0]) < 3e-3 and abs(ratio[1]) < 1e-2
-        np.testing.assert_allclose(
-            np.abs(modes.rotation[chosen, 0][:2]), np.abs(found.section[:, 3]), rtol=0.03, atol=1e-3
-        )
-    # the shear centre matters: with the centroid in its place the two modes out of the plane are far off
-    blind = spatial_modes(straight(replace(section, shear_offset=0.0), Tip(mass=5e-3)), 8)
-    off = blind.frequencies_hz[out_of_plane(blind)][:2] / modes.frequencies_hz[apart][:2] - 1.0
-    assert np.abs(off).max() > 0.05
-
-
 def test_a_channel_without_flanges_is_the_strip_but_for_its_edges():
     section = channel(material=BRASS, width=12e-3, flange=0.0, thickness=0.65e-3)
     strip = upright(STRIP)
@@ -352,28 +279,20 @@ def test_second_moments_of_a_channel_by_adding_up_little_squares():
 
 
 @pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"tip_at": 1.0}, "tip_at is 1.0 m"),
-        ({"drive": (0.0, 0.0, 0.0)}, "drive is"),
-        ({"tip_offset": (0.0, math.nan, 0.0)}, "tip_offset is"),
-        ({"supports": ("clamped", "glued")}, "supports is"),
-        ({"sections": ()}, "sections has 0 entries"),
-    ],
+    ("field", "value"),
+    [("tip_at", 1.0), ("drive", (0.0, 0.0, 0.0)), ("tip_offset", (0.0, math.nan, 0.0)), ("sections", ())],
 )
-def test_wrong_springs_are_refused_in_a_sentence(change, words):
-    with pytest.raises(ValueError, match=words):
-        replace(bent(upright(STRIP)), **change)
+def test_wrong_springs_are_refused(field, value):
+    with pytest.raises(ValueError, match=field):
+        replace(bent(upright(STRIP)), **{field: value})
 
 
 def test_sections_and_counts_out_of_range_are_refused():
-    with pytest.raises(ValueError, match="torsional_stiffness is -1"):
+    with pytest.raises(ValueError, match="torsional_stiffness"):
         replace(upright(STRIP), torsional_stiffness=-1.0)
-    with pytest.raises(ValueError, match="on an arc it must be 0"):
+    with pytest.raises(ValueError, match="shear_offset"):
         bent(replace(upright(STRIP), shear_offset=1e-3))
-    with pytest.raises(ValueError, match="must not exceed half of the width"):
+    with pytest.raises(ValueError, match="thickness"):
         channel(material=BRASS, width=1e-3, flange=0.0, thickness=0.6e-3)
-    with pytest.raises(ValueError, match="count is 0 modes"):
+    with pytest.raises(ValueError, match="count"):
         spatial_modes(bent(upright(STRIP)), 0)
-    with pytest.raises(ValueError, match="elements is 0"):
-        spatial_modes(bent(upright(STRIP)), 2, 0)

@@ -22,7 +22,7 @@ from beam import (
     folded_u,
     natural_modes,
 )
-from beam.export import mode_name, write_mode_motion, write_modes, write_motion
+from beam.export import mode_name, write_mode_motion, write_modes
 from beam.spring_mesh import BALL, LAYER, STRIP, spring_mesh
 
 RADIUS = 2.5e-3
@@ -162,17 +162,6 @@ def test_a_mode_in_motion_loops_without_a_seam(modes, tmp_path, moved):
     assert steps[-1] == pytest.approx(steps[0], rel=1e-9)  # from the last frame back to the first
 
 
-def test_any_motion_and_the_base(modes, tmp_path):
-    coordinates, base = np.array([[1e-3, 0.0, 2e-4, 0.0], [0.0, 5e-4, 0.0, 0.0]]), np.array([1e-3, -1e-3])
-    _, first, second = write_motion(
-        tmp_path / "motion.pvd", modes, [0.0, 1e-3], coordinates, base=base, magnification=2.0
-    )
-    mesh = spring_mesh(modes)
-    for frame, q, z in zip((first, second), coordinates, base, strict=True):
-        expected = 2.0 * (np.einsum("k,kpi->pi", q, mesh.shapes) + np.array([0.0, z, 0.0]))
-        np.testing.assert_allclose(read(frame).point_data["displacement"], expected, atol=1e-14)
-
-
 def test_wrong_use_is_refused(modes, tmp_path):
     with pytest.raises(ValueError, match=r"\.vtu"):
         write_modes(tmp_path / "modes.vtk", modes)
@@ -186,6 +175,4 @@ def test_wrong_use_is_refused(modes, tmp_path):
         write_mode_motion(tmp_path / "motion.pvd", modes, 0, frames=1)
     with pytest.raises(ValueError, match="ball_radius"):
         spring_mesh(modes, ball_radius=-1.0)
-    with pytest.raises(ValueError, match="n_frames"):
-        write_motion(tmp_path / "motion.pvd", modes, [0.0], [[0.0]])
     assert not list(tmp_path.iterdir())

@@ -19,9 +19,9 @@ import numpy as np
 import skfem as sk
 from numpy.typing import NDArray
 
-from ..assembly import element_counts
-from ..centreline import Centreline
-from ..parameters import require_array, require_kind, require_number, require_whole, require_within
+from beam import Centreline
+from beam.parameters import require_array, require_kind, require_whole, require_within
+from beam.pieces import element_counts
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -82,7 +82,7 @@ def rectangle_profile(*, along_n: float, along_z: float, cells: int, through: in
         Across the shorter side, or across half of it where that is along z.
     """
     for name, value in (("along_n", along_n), ("along_z", along_z)):
-        require_number(name, value, "m", positive=True)
+        require_within(name, value, "m", above=0)
     for name, number in (("cells", cells), ("through", through)):
         require_whole(name, number, "[1]")
     if along_z >= along_n:
@@ -100,14 +100,14 @@ def channel_profile(
     Parameters
     ----------
     width, flange, thickness : float
-        b, h and t [m] as in `spatial_section.channel`.
+        b, h and t [m] as in `beam.space.channel`.
     centroid : float
         From the middle of the web to the centreline [m].
     cells : tuple of two ints
         Along a flange and along half of the web; the sheet has one through its thickness.
     """
     for name, value in (("width", width), ("flange", flange), ("thickness", thickness)):
-        require_number(name, value, "m", positive=True)
+        require_within(name, value, "m", above=0)
     require_within("centroid", centroid, "m")
     element_counts(cells, 2)
     web = 0.5 * thickness - centroid
