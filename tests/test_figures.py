@@ -182,7 +182,8 @@ def _transitions() -> Figure:
     fives = np.where(excess[:, None] > 0, 1e-3 * np.arange(5), 0.0)
     whole = np.zeros(9, dtype=int)
     found = OrbitDiagram(
-        excess=excess, points=fives, period=np.where(excess > -9e-4, 5, 0), impacts=whole, cycles=whole, failures=(), end=None
+        excess=excess, points=fives, period=np.where(excess > -9e-4, 5, 0), impacts=whole, cycles=whole,
+        failures=(), end=None,
     )
     rows = [
         {"frequency_hz": f, "letter": m, "map": m, "single_mode": m, "beam": m, "grazing_amplitude_m": 2e-3}

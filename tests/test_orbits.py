@@ -21,12 +21,15 @@ from contact.laws import (
     LinearContact,
     NewtonRestitution,
 )
+from contact.maximal_orbits import fold
+from contact.nordmark import NordmarkMap
 from contact.orbits import (
     KickFamily,
     MaximalFamily,
     PeriodicOrbit,
     Settled,
     Shooting,
+    born,
     fold_along_frequency,
     fold_of,
     folds_of,
@@ -38,7 +41,8 @@ from contact.orbits import (
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
-from contact.stroboscope import StroboscopicMap
+from contact.strobed_nordmark import StrobedNordmarkMap
+from contact.stroboscope import StrobedOrbit, StroboscopicMap
 from contact.trajectory import State
 from studies.instruments.oscillators import beam_of, hertz_of
 from studies.instruments.scene_file import read_scene
@@ -395,10 +399,85 @@ def test_folds_against_a_downward_scan(spring: ModalModel, frequency: float, per
     )
     fold = fold_of(Shooting(oscillator=oscillator, period=period))
     assert end.lost < fold.excess < end.held
+    assert end.kind == "fold" and end.excess == pytest.approx(fold.excess, abs=1e-14)
     assert apart(fold.multipliers[:1], np.ones(1)) < 1e-7
     kick = KickFamily(oscillator=oscillator, period=period).fold()
     assert kick.excess == pytest.approx(fold.excess, rel=0.015)
     assert kick.kick.speed == pytest.approx(fold.speed, rel=0.05)
+
+
+def test_an_end_by_period_doubling_is_named_and_exact() -> None:
+    """p1 of a hard wall of restitution 0.7: the scan downwards ends where a multiplier passes -1."""
+    oscillator = equation_1(20.90, NewtonRestitution(local_restitution=0.7))
+    family, unit = Shooting(oscillator=oscillator, period=1), unit_speed(oscillator)
+    branch = follow(family, family.at_speed(1.0 * unit), low=0.5 * unit, high=1.5 * unit)
+    (doubled,) = branch.of_kind("period doubling")
+    start = family.at_speed(1.1 * doubled.speed, doubled)
+    end = orbit_end(
+        StroboscopicMap(oscillator=oscillator), start.strobe_state(), start.excess, most_cycles=4000
+    )
+    assert end.kind == "period doubling" and end.lost < end.excess < end.held
+    assert end.excess == pytest.approx(doubled.excess, rel=1e-9)
+
+
+def test_an_orbit_doubles_its_period_before_a_hard_touch_is_lost() -> None:
+    """Eq. (1), 20.90 Hz: p3 has a second touch above 0.0891 and would lose it there on the way down, but next
+    to the graze its derivative has no bound, and it doubles its period just before."""
+    oscillator = equation_1(20.90)
+    single = Shooting(oscillator=oscillator, period=3)
+    (graze,) = follow(single, single.at_speed(100.0), low=90.0, high=140.0).of_kind("grazing")
+    strobed = StroboscopicMap(oscillator=oscillator)
+    end = orbit_end(strobed, settled(oscillator, 0.1).end, 0.1, most_cycles=4000)
+    assert (end.impacts, end.kind) == (2, "period doubling") and end.lost < end.excess < end.held
+    assert 0.0 < end.excess / graze.excess - 1.0 < 0.02
+
+
+@pytest.mark.parametrize("first_step", [1e-6, 2e-4, 5e-2])
+@pytest.mark.parametrize("relative", [0.03, 1e-3])
+def test_no_bracket_closes_because_a_long_step_fell_off(first_step: float, relative: float) -> None:
+    """The exact end lies in the bracket, which one last step has made, however the scan came there."""
+    for frequency, period, excess, _second, _digit in EQUATION_1:
+        oscillator = equation_1(frequency)
+        nordmark = NordmarkMap.from_oscillator(oscillator)
+        for strobed, exact in (
+            (StroboscopicMap(oscillator=oscillator), excess),
+            (StrobedNordmarkMap(map=nordmark), nordmark.excess(fold(nordmark, period).rho)),
+        ):
+            start = born(strobed)
+            end = orbit_end(
+                strobed, start.end, 1e-3, most_cycles=1000, relative=relative, first_step=first_step
+            )
+            assert (end.period, end.impacts, end.kind) == (period, 1, "fold")
+            assert end.lost <= exact <= end.held
+            assert end.held - end.lost <= 1.0001 * max(relative * abs(end.held), 1e-7)
+            assert end.excess == pytest.approx(exact, rel=2e-10)
+
+
+def test_an_end_that_nothing_can_make_exact_is_a_bracket() -> None:
+    """x -> x^2 + c loses its fixed point with c = -3/4 (1 - excess) by a doubling, at excess 0."""
+
+    class Square:
+        scale = 1.0
+
+        def __init__(self, c: float) -> None:
+            self.c = c
+
+        def at(self, excess: float) -> Square:
+            return Square(-0.75 * (1.0 - excess))
+
+        def steady(self) -> float:
+            return -0.4
+
+        def orbit(self, state: float, count: int) -> StrobedOrbit[float]:
+            points = np.empty((count, 1))
+            for i in range(count):
+                state = state * state + self.c
+                points[i] = state
+            return StrobedOrbit(end=state, points=points, impacts=np.ones(count, dtype=int))
+
+    end = orbit_end(Square(0.0), -0.4, 0.3, most_cycles=20_000, absolute=1e-2)
+    assert (end.period, end.kind) == (1, "bracket")
+    assert end.lost < 0.0 < end.held and end.held - end.lost < 1.01e-2
 
 
 def test_one_mode_of_the_kick_is_not_the_whole_of_it(spring: ModalModel) -> None:

@@ -168,14 +168,15 @@ def fold_of(family: Shooting, near: PeriodicOrbit | None = None) -> PeriodicOrbi
     Where contact is soft, at an excess of some 1e-5 and less, a branch can have several folds, and go on
     below the lowest of them until another touch grazes.  A fold below grazing is the orbit of smallest
     amplitude: the soft stretch of the branch, which begins at excess 0 upwards, lies above it.  Any other is
-    looked for among `folds_of` the branch; `lowest_of` gives the orbit of smallest amplitude, fold or graze.
+    looked for among `folds_of` the branch, but under Newton's law, where no contact is soft; `lowest_of`
+    gives the orbit of smallest amplitude, fold or graze.
 
     Parameters
     ----------
     family : Shooting
     near : PeriodicOrbit, optional
-        An orbit close to the fold, such as that of a neighbouring frequency; otherwise the kick description
-        leads there.
+        An orbit close to the fold, such as that of a neighbouring frequency: the first fold downhill from it
+        is taken for the lowest.  Otherwise the kick description, searched over all speeds, leads there.
 
     Raises
     ------
@@ -222,9 +223,9 @@ def _whole_branch(family: Shooting, near: PeriodicOrbit | None) -> Branch | None
     for start, part in zip(starts, STARTS, strict=False):
         try:
             here = family.at_speed(part * unit if start is None else start.speed, start)
-            return follow(
-                family, here, low=LEAST_SPEED * unit, high=GREATEST_SPEED * unit, step=LONGEST_STRIDE
-            )
+            low = min(LEAST_SPEED * unit, 0.5 * here.speed)
+            high = max(GREATEST_SPEED * unit, 2.0 * here.speed)
+            return follow(family, here, low=low, high=high, step=LONGEST_STRIDE)
         except ContactError:
             continue
     return None

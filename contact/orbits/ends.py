@@ -13,12 +13,12 @@ shooting for an impact oscillator (``contact.orbits.continuation``), in closed f
 
     fold              the orbit meets an unstable one
     period doubling   a multiplier passes -1
-    torus             a pair of complex multipliers passes the unit circle
     grazing           the tip touches the stop once more, or one touch less,
 
 with the excess of that very point.  If the orbit leaves the bracket at its lower end, stable, the motion had
-been lost too early, and the scan goes on from the orbit there.  Where no such orbit is at hand (a map without
-these tools, several impacts in the map) the end is known to its "bracket" only.
+been lost too early, and the scan goes on from the orbit there.  Where nothing of this is found (a map without
+these tools, several impacts in the map, a pair of complex multipliers that passes the unit circle) the end is
+known to its "bracket" only.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class OrbitEnd(Generic[S]):
     excess : float
         F/F_g - 1 at which it ends [1]; the middle of the bracket if that is all that is known.
     kind : str
-        "fold", "period doubling", "torus" or "grazing"; "bracket" if the orbit could not be followed there.
+        "fold", "period doubling" or "grazing"; "bracket" if none of these was found in it.
     held, lost : float
         Excess at which the motion held the orbit last, and that one step below at which it lost it [1].
     state : State

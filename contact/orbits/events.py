@@ -5,7 +5,6 @@ method on log v, grazing by bisection:
 
     fold              dZ/dv changes sign: two orbits, one stable, meet
     period doubling   det(M + I) changes sign: a multiplier passes -1
-    torus             a pair of complex multipliers passes the unit circle
     grazing           the orbit gains or loses a touch of the stop (certified flights)
 """
 
@@ -35,7 +34,7 @@ and three halvings tell apart folds closer than a hundredth of a step."""
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Event:
-    """A point on a branch: "fold", "period doubling", "torus" or "grazing"."""
+    """A point on a branch: "fold", "period doubling" or "grazing"."""
 
     kind: str
     orbit: PeriodicOrbit
@@ -44,11 +43,6 @@ class Event:
 def doubling(orbit: PeriodicOrbit) -> float:
     """det(M + I): zero where a multiplier is -1."""
     return float(np.prod(orbit.multipliers + 1.0).real)
-
-
-def beyond_unity(orbit: PeriodicOrbit) -> float:
-    """|mu| - 1 of the largest multiplier."""
-    return float(abs(orbit.multipliers[0]) - 1.0)
 
 
 def locate(
@@ -109,9 +103,6 @@ def events_between(family: Shooting, a: PeriodicOrbit, b: PeriodicOrbit) -> list
         found.append(Event(kind="fold", orbit=locate(family, a, b, lambda orbit: orbit.slope)))
     if doubling(a) * doubling(b) < 0:
         found.append(Event(kind="period doubling", orbit=locate(family, a, b, doubling)))
-    unstable = a if b.stable else b
-    if a.stable != b.stable and unstable.multipliers[0].imag != 0.0 and not found:
-        found.append(Event(kind="torus", orbit=locate(family, a, b, beyond_unity)))
     if a.admissible != b.admissible:
         found.append(Event(kind="grazing", orbit=_bisect(family, a, b)))
     return sorted(found, key=lambda event: abs(math.log(event.orbit.speed / a.speed)))

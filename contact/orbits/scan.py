@@ -52,7 +52,8 @@ class OrbitDiagram(Generic[S]):
     def kind(self) -> list[str]:
         """What each amplitude shows: "periodic", "not settled" (chaos, or a transient not over), "failed"."""
         words = np.where(self.period > 0, "periodic", "not settled")
-        return list(np.where(np.isnan(self.points[:, 0]), "failed", words))
+        found: list[str] = np.where(np.isnan(self.points[:, 0]), "failed", words).tolist()
+        return found
 
 
 def orbit_diagram(

@@ -2,9 +2,11 @@
 
 **Repetition.** The motion is followed in blocks.  After each block the last points are compared with those p
 strobes earlier, p = 1 ... `largest_period`: the orbit has period p if all coordinates of the last
-`largest_period` points repeat to `TOLERANCE` of the scale and the impact counts repeat exactly.  A motion
-that has not settled after `most_cycles` periods gets period 0: chaos, a longer period, or a transient that is
-not over.  Any strobed map settles this way.
+`largest_period` points repeat to `TOLERANCE` of the scale and the impact counts repeat exactly.  (A transient
+that alternates about p_m while it dies out, next to a period doubling, repeats after 2m first: a period is
+told when a repetition `ALIKE` times as rough has the same one.)  A motion that has not settled after
+`most_cycles` periods gets period 0: chaos, a longer period, or a transient that is not over.  Any strobed map
+settles this way.
 
 **Proof.** A transient of an impact oscillator ends as soon as its orbit is known, not when it has been
 reached.  A motion that seems to repeat to a part in a thousand is compared with a periodic orbit in its
@@ -38,6 +40,10 @@ S = TypeVar("S")
 TOLERANCE = 1e-9
 """Largest change over one period of a settled orbit, relative to the scale of its coordinates.  Rounding is
 at 1e-14; the slow drift past a vanished fold at relative distance 1e-7 moves by more than this per period."""
+
+ALIKE = 1000.0
+"""Repetitions of this ratio tell the same period, or the shorter one is waited for: next to a doubling with a
+multiplier of -0.999 points m apart differ by 1000 times as much as those 2m apart."""
 
 BELOW = -1e-3
 """Excess of the motion without impacts from which the drive is raised: four times the letter's amplitude
@@ -144,6 +150,10 @@ def settle(
         period = period_of(
             run.points, run.impacts, largest_period=largest_period, tolerance=tolerance * strobed.scale
         )
+        if cycles < most_cycles and period != period_of(
+            run.points, run.impacts, largest_period=period, tolerance=ALIKE * tolerance * strobed.scale
+        ):
+            period = 0
         if period or cycles >= most_cycles:
             counted = run.impacts[-period:] if period else run.impacts
             return Settled(
@@ -212,6 +222,19 @@ class _Proof:
         self.before = np.inf
         self.failed = np.inf  # how well the motion repeated when an orbit was looked for in vain
 
+    def cycle(self, orbit: PeriodicOrbit) -> StrobedOrbit[State]:
+        """One period of an orbit."""
+        return self.strobed.orbit(replace(orbit.strobe_state(), time=0.0), orbit.period)
+
+    def single(self, orbit: PeriodicOrbit | None) -> PeriodicOrbit | None:
+        """`orbit`, but None if it is another one of a shorter period, run through more than once."""
+        if orbit is None:
+            return None
+        points, tolerance = np.tile(self.cycle(orbit).points, (2, 1)), ALIKE * self.rounding
+        counts = np.zeros(len(points), dtype=int)
+        shortest = period_of(points, counts, largest_period=orbit.period, tolerance=tolerance)
+        return orbit if shortest == orbit.period else None
+
     def after(self, run: StrobedOrbit[State]) -> tuple[int, int, State] | None:
         """Period, impacts and a state on the orbit in the phase of the motion; None while nothing is
         certain."""
@@ -232,12 +255,12 @@ class _Proof:
             self.known, self.before = None, np.inf
             open_by = float(np.max(np.abs(run.points[rough:] - run.points[:-rough])[-self.largest_period :]))
             if not CLOSER * self.failed <= open_by <= self.failed / CLOSER**3:
-                self.known = orbit_near(strobed, run.end, rough, hits)
+                self.known = self.single(orbit_near(strobed, run.end, rough, hits))
                 self.failed = open_by if self.known is None else np.inf
         if self.known is None:
             return None
         orbit = self.known
-        cycle = strobed.orbit(replace(orbit.strobe_state(), time=0.0), orbit.period)
+        cycle = self.cycle(orbit)
         distance, phase = _distance(run.points, cycle.points)
         promised = SLACK * abs(orbit.multipliers[0]) ** (len(run.points) / orbit.period) * self.before
         if self.before < NEAR * strobed.scale and distance <= promised + self.rounding:
