@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from beam.export import write_frames
-from beam.spring_mesh import spring_mesh
+from beam.spring_mesh import solid_spring
 from contact.drive import HarmonicDrive
 from contact.oscillator import ImpactOscillator
 from contact.stop import Stop
@@ -140,7 +140,7 @@ def test_a_film_without_contacts_runs_evenly_and_too_short_a_film_is_refused():
 
 
 def test_the_surface_of_the_strip_is_closed_and_faces_outwards(modes):
-    mesh = spring_mesh(modes)
+    mesh = solid_spring(modes)
     faces, part = mesh.surface()
     for kind in np.unique(part):
         corners = mesh.points[faces[part == kind]]
@@ -151,7 +151,7 @@ def test_the_surface_of_the_strip_is_closed_and_faces_outwards(modes):
 
 
 def test_enlarging_the_higher_modes_leaves_the_tip_and_the_first_mode_alone(modes):
-    mesh = spring_mesh(modes, ball_radius=RADIUS)
+    mesh = solid_spring(modes, ball_radius=RADIUS)
     kept = np.flatnonzero(modes.coupled)[:4]
     row = np.array([[1e-3, 2e-4, -1e-4, 3e-5]])
     plain = np.tensordot(row[0], mesh.shapes[kept], axes=1)
@@ -172,7 +172,7 @@ def test_enlarging_the_higher_modes_leaves_the_tip_and_the_first_mode_alone(mode
 
 
 def test_the_magnification_is_the_largest_round_number_that_has_room(modes):
-    mesh = spring_mesh(modes, ball_radius=RADIUS)
+    mesh = solid_spring(modes, ball_radius=RADIUS)
     row = np.array([[1e-3, 1e-4, 0.0, 0.0]])
     shape = magnified_shape(mesh, modes, row)
     strip = np.unique(mesh.hexahedra)
@@ -184,7 +184,7 @@ def test_the_magnification_is_the_largest_round_number_that_has_room(modes):
 
 def test_the_ball_meets_the_plate_when_the_tip_has_moved_by_the_gap(modes):
     for gap in (0.004, 0.0107):
-        mesh = spring_mesh(modes, ball_radius=RADIUS)
+        mesh = solid_spring(modes, ball_radius=RADIUS)
         bench = bench_of(mesh, modes, ball_radius=RADIUS, gap=gap, swing=gap)
         ball = mesh.points[np.unique(mesh.triangles)]
         plate = bench.stop[0].corners
@@ -304,7 +304,7 @@ def test_an_mp4_has_every_frame(tmp_path):
 
 
 def test_frames_that_were_interrupted_are_listed_as_far_as_they_are_complete(modes, tmp_path):
-    mesh = spring_mesh(modes)
+    mesh = solid_spring(modes)
 
     def grids(count, broken=False):
         for number in range(count):

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam import Modes
-from beam.spring_mesh import STRIP, SpringMesh, spring_mesh
+from beam.spring_mesh import STRIP, SpringMesh, solid_spring
 from studies.instruments.motion.bench import bench_of
 from studies.instruments.motion.filmed_orbit import FilmedOrbit
 from studies.instruments.motion.magnified_shape import MagnifiedShape, magnified_shape
@@ -119,11 +119,11 @@ def orbit_film(
 
 def smooth_mesh(modes: Modes, ball_radius: float) -> SpringMesh:
     """The solid spring with enough cells to look smooth."""
-    mesh = spring_mesh(modes, ball_radius=ball_radius)
+    mesh = solid_spring(modes, ball_radius=ball_radius)
     rows = int(np.sum(mesh.part == STRIP))
     if rows >= ROWS:
         return mesh
-    return spring_mesh(modes, ball_radius=ball_radius, points_per_element=-(-ROWS // rows))
+    return solid_spring(modes, ball_radius=ball_radius, points_per_element=-(-ROWS // rows))
 
 
 def stage_of(renderer: str, bodies: Bodies, view: View) -> Stage:
