@@ -121,6 +121,10 @@ class Scenery:
             signs = np.array([(-1, 0, -1), (1, 0, -1), (1, 1, -1), (-1, 1, -1)])
             signs = np.concatenate([signs, signs * (1, 1, -1)])
             half = 2.0 * ball_radius
+            spring = modes.discretization.spring
+            beside = ball.mean(axis=0) - np.append(spring.centreline.points(spring.tip_at)[:2], 0.0)
+            if abs(beside @ along) > abs(beside @ drive):  # a ball beyond the end: the strip passes the plate
+                face = face + np.sign(beside @ along) * (half - 0.75 * ball_radius) * along
             corners = face + signs * np.array([half, WALL, half]) @ np.array([along, drive, [0.0, 0.0, 1.0]])
         cloud = mesh.points if corners is None else np.concatenate([mesh.points, corners])
         low = np.minimum(cloud.min(axis=0), (mesh.points - swing * drive).min(axis=0))
