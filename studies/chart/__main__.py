@@ -145,8 +145,8 @@ def drawn(
     run.figure(
         f"chart_{model}",
         draw(cells, edges, folds, title=title),
-        "Period (above) and impacts in a period (below) over drive frequency and excess, in the upward "
-        "scan (left) and the downward scan (right); lines: exact folds and band edges of the map; grey: no period.",
+        "Period (above) and impacts in a period (below) over drive frequency and excess, in the upward scan "
+        "(left) and the downward scan (right); lines: exact folds and band edges of the map.",
     )
     met, seen = fold_agreement(cells, folds)
     without = float(np.mean(cells.period == 0))
