@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike
 
 from .modes import Modes
 from .parameters import require, require_array, require_whole
-from .spring_mesh import spring_mesh
+from .spring_mesh import solid_spring
 
 LIST = """<?xml version="1.0"?>
 <VTKFile type="Collection" version="0.1" byte_order="LittleEndian">
@@ -69,7 +69,7 @@ def write_modes(
         decay_rates_per_s if they are given, coupled (0 or 1), largest_displacement_m.
     """
     _require_suffix(path, ".vtu")
-    mesh = spring_mesh(modes, ball_radius=ball_radius)
+    mesh = solid_spring(modes, ball_radius=ball_radius)
     grid = mesh.grid()
     for mode, shape in enumerate(mesh.normalised(largest)):
         grid.point_data[mode_name(modes, mode)] = shape
@@ -118,7 +118,7 @@ def write_mode_motion(
     require_whole("mode", mode, "[1]", low=0, high=modes.omega.size - 1)
     require_whole("frames", frames, "[1]", low=2)
     require(frames % 2 == 0, f"frames is {frames} [1]; it must be an even number")
-    mesh = spring_mesh(modes, ball_radius=ball_radius)
+    mesh = solid_spring(modes, ball_radius=ball_radius)
     period = 2.0 * math.pi / float(modes.omega[mode]) if modes.omega[mode] > 0.0 else 1.0
     shape = mesh.normalised(largest)[mode]
     fields = {"frequency_hz": [modes.frequencies_hz[mode]], "largest_displacement_m": [largest]}
