@@ -47,9 +47,17 @@ in ``contact.oscillator``, flights and their bounds in ``contact.flight``, the c
 ``contact.crossing``, motion in contact in ``contact.linear_lanes`` and ``contact.hertz_lanes``.
 """
 
-from contact.collision import Collision, collisions, first_collision
+from contact.collision import Collision, before_collision, collisions, first_collision
 from contact.drive import HarmonicDrive
-from contact.errors import Chatter, ContactError, ContactTooStiff, NotPeriodic, UnresolvedCrossing
+from contact.errors import (
+    Chatter,
+    ContactError,
+    ContactTooStiff,
+    Diverged,
+    NotPeriodic,
+    StepTooLarge,
+    UnresolvedCrossing,
+)
 from contact.laws import (
     ContactLaw,
     DelayedRestitution,
@@ -86,6 +94,7 @@ __all__ = [
     "ContactLaw",
     "ContactTooStiff",
     "DelayedRestitution",
+    "Diverged",
     "HarmonicDrive",
     "HertzContact",
     "HuntCrossley",
@@ -101,6 +110,7 @@ __all__ = [
     "Regime",
     "SingleImpactOrbit",
     "State",
+    "StepTooLarge",
     "Stop",
     "StrobedMap",
     "StrobedNordmarkMap",
@@ -110,6 +120,7 @@ __all__ = [
     "UnresolvedCrossing",
     "band",
     "bands",
+    "before_collision",
     "collisions",
     "first_collision",
     "fold",
