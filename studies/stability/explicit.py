@@ -174,7 +174,7 @@ def measure(scene: Scene, quick: bool) -> Findings:
     contacts = [lasting(model.truncated(n), lagged) for lagged in (False, True) for n in counts]
     found = np.array([row.measured for row in single], dtype=float).reshape(2, -1)
     angles, parts = np.linspace(0.05, 2.2, 10 if quick else 30), np.geomspace(1e-1, 1e7, 10 if quick else 30)
-    fine = np.linspace(0.02, 1.999, 200)
+    fine = 2.0 - np.geomspace(1e-8, 1.98, 200)
     line = [critical_stiffness(few, x / float(few.omega[-1]), False) / modal_stiffness(few) for x in fine]
     arrays |= {
         "ratio": np.array(ratios), "centred": found[0], "lagged": found[1], "angle": angles, "part": parts,

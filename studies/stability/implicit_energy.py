@@ -230,7 +230,7 @@ def measure(scene: Scene, quick: bool) -> Findings:
 @plotting.in_house_style
 def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
     """Growth in one contact against its resolution; energy against the number of contacts."""
-    figure, axes = plotting.new_figure(1, 3, width=plotting.PAGE, height=0.075)
+    figure, axes = plotting.new_figure(1, 3, width=plotting.PAGE, height=0.090)
     for number, label in enumerate(FORCE):
         axes[0].plot(arrays["single_h_w"], arrays[f"single_{label}"], **plotting.series(number), markevery=3)
     axes[0].axhline(STIFF_GROWTH, color="0.5", linewidth=0.8, linestyle=":")
@@ -252,7 +252,7 @@ def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
                           label=label if size < 1.0 else None)  # fmt: skip
         axis.set_ylim(-30.0, 40.0)
         axis.axhline(0.0, **plotting.GUIDE)
-        axis.legend(loc="upper left")
+        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22))
         plotting.label(axis.xaxis, "contacts")
     plotting.label(axes[1].yaxis, "log$_{10}$ of energy / energy at the start")
     plotting.panel(axes[1], 1, "linear stop, k = 100 k$_{modal}$")

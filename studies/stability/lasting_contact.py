@@ -91,7 +91,7 @@ def growth(oscillator: ImpactOscillator, rest: State, method: Stepped, steps: in
     """Logarithm of the growth of a disturbance per step, infinite if it opens the contact at once [1].
 
     Taken where the disturbance grows from the root of `GROWTH` to `GROWTH` (what is there at the start need
-    not be the mode that grows), or over the whole run if it does not get there.
+    not be the mode that grows), or between the halves of a run in which it does not get there.
     """
     free = replace(method, beyond_limit=True)
     still = settled(oscillator, rest, free)
@@ -118,7 +118,8 @@ def growth(oscillator: ImpactOscillator, rest: State, method: Stepped, steps: in
             return float(np.log(away[late] / first) / marks[late])
         if touching and not (len(run.impacts) == 1 and np.isnan(run.impacts.end[0])):
             return math.inf
-    return float(np.log(max(away[-1], np.finfo(float).tiny) / first) / steps)
+    early, late = away[marks <= steps // 2].max(), away[marks > steps // 2].max()
+    return float(np.log(max(late, np.finfo(float).tiny) / early) / (steps / 2))
 
 
 def grows(oscillator: ImpactOscillator, rest: State, method: Stepped, steps: int = STEPS) -> bool:

@@ -51,7 +51,10 @@ def solved(
     Absolute tolerances are those of one energy: `tolerance` times the largest velocity, and that over omega.
     """
     n, start, stiffness = swing.omega.size, swing.start(overshoot, lead), swing.omega**2
-    speed = max(np.linalg.norm(start.velocity), np.linalg.norm(swing.omega * start.displacement))
+    speed = max(
+        swing.omega[0] * swing.gap / np.linalg.norm(swing.phi), np.linalg.norm(start.velocity),
+        np.linalg.norm(swing.omega * start.displacement),
+    )  # fmt: skip
 
     def depth(_t: float, y: np.ndarray) -> float:
         return float(swing.phi @ y[:n] - swing.gap)
