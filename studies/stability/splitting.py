@@ -83,7 +83,7 @@ def measure(scene: Scene, quick: bool) -> Findings:
     limits = [
         *(limit(model.truncated(n), angle, 2) for n in counts for angle in (1.0, 2.5)),
         *(limit(one, angle, 2) for angle in ((4.0,) if quick else (4.0, 5.5))),
-        *(limit(model.truncated(n), x, 4) for n in counts for x in (1.0, 2.5) if n == 1 or not quick),
+        *(limit(model.truncated(n), angle, 4) for n in counts for angle in (1.0, 2.5) if not quick),
     ]
     few = model.truncated(min(5, model.n_modes))
     angles, parts = np.linspace(0.2, 6.8, 5 if quick else 23), np.geomspace(1e-1, 1e6, 5 if quick else 22)

@@ -130,6 +130,7 @@ def test_a_collision_of_a_spring_with_a_degenerate_mode_keeps_its_digits(name):
     assert error_of_collision(CASES[name], 1e5)[0] < 3e-14 < PiecewiseLinear.accuracy
 
 
+@pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
 @pytest.mark.parametrize(
     "ratio", [0.0, 1e-15, 1.0 - 1e-8, 1.0, 1.0 + EPS, 1.0 + 1e-12, 1.0 + 1e-4, 1e2, 1e6]
 )
