@@ -48,9 +48,17 @@ in ``contact.oscillator``, flights and their bounds in ``contact.flight``, the c
 ``contact.flight.crossing``, motion in contact in ``contact.touch.linear`` and ``contact.touch.hertz``.
 """
 
-from contact.collision import Collision, collisions, first_collision
+from contact.collision import Collision, before_collision, collisions, first_collision
 from contact.drive import HarmonicDrive
-from contact.errors import Chatter, ContactError, ContactTooStiff, NotPeriodic, UnresolvedCrossing
+from contact.errors import (
+    Chatter,
+    ContactError,
+    ContactTooStiff,
+    Diverged,
+    NotPeriodic,
+    StepTooLarge,
+    UnresolvedCrossing,
+)
 from contact.laws import (
     ContactLaw,
     DelayedRestitution,
@@ -87,6 +95,7 @@ __all__ = [
     "ContactLaw",
     "ContactTooStiff",
     "DelayedRestitution",
+    "Diverged",
     "HarmonicDrive",
     "HertzContact",
     "HuntCrossley",
@@ -102,6 +111,7 @@ __all__ = [
     "Regime",
     "SingleImpactOrbit",
     "State",
+    "StepTooLarge",
     "Stop",
     "StrobedMap",
     "StrobedNordmarkMap",
@@ -111,6 +121,7 @@ __all__ = [
     "UnresolvedCrossing",
     "band",
     "bands",
+    "before_collision",
     "collisions",
     "first_collision",
     "fold",

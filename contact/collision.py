@@ -40,7 +40,7 @@ from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.trajectory import ImpactKind, State, Trajectory
 
-__all__ = ["Collision", "collisions", "first_collision"]
+__all__ = ["Collision", "before_collision", "collisions", "first_collision"]
 
 REAL_AGAINST_VIRTUAL = 0.01
 """Relative difference of real and virtual approach speed beyond which a collision is flagged."""
