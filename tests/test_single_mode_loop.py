@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from beam import ModalModel, single_mode
+from beam import ModalModel, SuspiciousValue, single_mode
 from contact import stroboscope
 from contact.drive import HarmonicDrive
 from contact.errors import ContactError

@@ -27,7 +27,7 @@ from scipy.integrate import solve_ivp
 
 from beam import ModalModel
 from contact import ImpactKind, ImpactOscillator, NewtonRestitution, Stop, simulate
-from contact.integrators import EventDriven
+from contact.integrators import Exact
 from studies import plotting
 from studies.scene import Scene
 from studies.stability import Findings, Limit
@@ -105,7 +105,7 @@ def measure(scene: Scene, quick: bool) -> Findings:
     restitutions = np.array([0.3, 0.7, 0.9] if quick else [0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.999])
     found = np.array([time_of_rest(float(e)) for e in restitutions])
     limits = [
-        Row(method=EventDriven.name, case=f"bouncing ball, e = {e:g}, rests after {count:.0f} impacts",
+        Row(method="event-driven", case=f"bouncing ball, e = {e:g}, rests after {count:.0f} impacts",
             parameter="time of rest [s]", theory=rest_time(float(e)), measured=float(at))
         for e, (at, count) in zip(restitutions, found, strict=True)
     ]  # fmt: skip

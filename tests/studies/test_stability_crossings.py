@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from contact import Regime, simulate
-from contact.integrators import INTEGRATORS, CentralDifference, EventDriven, GeneralisedAlpha, MoreauJean
+from contact.integrators import INTEGRATORS, CentralDifference, Exact, GeneralisedAlpha, MoreauJean
 from studies.scene import read_scene
 from studies.stability import accumulation
 from studies.stability.known_crossing import (
@@ -103,7 +103,7 @@ def test_a_solver_finds_a_deep_crossing_where_it_is():
 
 
 def test_rows_of_an_exact_method_have_nothing_to_report():
-    rows, shares = tried(of_package(ONE, EventDriven, {"step": 1.0}), ONE, "one mode", 4)
+    rows, shares = tried(of_package(ONE, Exact, {"step": 1.0}), ONE, "one mode", 4)
     assert not shares.any() and all(row.measured is None and row.refused is None for row in rows)
 
 
