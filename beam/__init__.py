@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from .assembly import Discretization, assemble, default_elements
     from .centreline import Arc, Centreline, Straight
     from .damping import ConstantLossFactor, ConstantRatio, Damping, MeasuredDecay, Rayleigh, StripDamping
+    from .export import write_frames, write_mode_motion, write_modes
     from .frequency_equation import ExactModes, UniformBeam, exact_modes, frequency_function
     from .guided_leg import as_one_spring, straight_equivalent
     from .material import ALUMINA, BRASS, DAMPING_TAPE, STEEL, Material
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
     from .reduction import reduce
     from .section import Layer, StripSection
     from .spring import LeafSpring, Readout, Support, Tip
+    from .spring_mesh import BALL, LAYER, STRIP, SpringMesh, solid_spring
     from .spring_shapes import cantilever, folded_u, straight_strip
 else:
 
@@ -58,6 +60,7 @@ _NAMES = {
     "assembly": ("Discretization", "assemble", "default_elements"),
     "centreline": ("Arc", "Centreline", "Straight"),
     "damping": _RULES,
+    "export": ("write_frames", "write_mode_motion", "write_modes"),
     "frequency_equation": ("ExactModes", "UniformBeam", "exact_modes", "frequency_function"),
     "guided_leg": ("as_one_spring", "straight_equivalent"),
     "material": ("ALUMINA", "BRASS", "DAMPING_TAPE", "Material", "STEEL"),
@@ -67,6 +70,7 @@ _NAMES = {
     "reduction": ("reduce",),
     "section": ("Layer", "StripSection"),
     "spring": ("LeafSpring", "Readout", "Support", "Tip"),
+    "spring_mesh": ("BALL", "LAYER", "STRIP", "SpringMesh", "solid_spring"),
     "spring_shapes": ("cantilever", "folded_u", "straight_strip"),
 }
 """Module -> its public names."""

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .modes import Modes
-from .spring_mesh import SpringMesh, spring_mesh
+from .spring_mesh import SpringMesh, solid_spring
 
 
 def mode_name(modes: Modes, mode: int) -> str:
@@ -61,7 +61,7 @@ def write_modes(
         decay_rates_per_s if they are given, coupled (0 or 1), largest_displacement_m.
     """
     _require_suffix(path, ".vtu")
-    mesh = spring_mesh(modes, ball_radius=ball_radius)
+    mesh = solid_spring(modes, ball_radius=ball_radius)
     grid = mesh.grid()
     for mode, shape in enumerate(mesh.normalised(largest)):
         grid.point_data[mode_name(modes, mode)] = shape
@@ -113,7 +113,7 @@ def write_mode_motion(
         raise ValueError(f"mode is {mode} [1]; it must lie between 0 and {modes.omega.size - 1}.")
     if frames < 2 or frames % 2:
         raise ValueError(f"frames is {frames} [1]; it must be an even number of at least 2.")
-    mesh = spring_mesh(modes, ball_radius=ball_radius)
+    mesh = solid_spring(modes, ball_radius=ball_radius)
     period = 2.0 * math.pi / modes.omega[mode] if modes.omega[mode] > 0.0 else 1.0
     phase = np.arange(frames) / frames
     shape = mesh.normalised(largest)[mode]

@@ -92,7 +92,9 @@ class SpringMesh:
         return grid
 
 
-def spring_mesh(modes: Modes, *, ball_radius: float | None = None, points_per_element: int = 1) -> SpringMesh:
+def solid_spring(
+    modes: Modes, *, ball_radius: float | None = None, points_per_element: int = 1
+) -> SpringMesh:
     """Return the solid that a leaf spring is, moving in its modes.
 
     Parameters

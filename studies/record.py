@@ -229,7 +229,7 @@ class Run:
         wall_time = round(self.wall_time, 3)
         summary = {
             **common, "model_choice": self.model_choice, "failures": self.failures,
-            "failed_cells": len(self.failures), "letter": self._verdicts, "answers": self._answers,
+            "failed_cells": len(self.failures), "verdicts": self._verdicts, "answers": self._answers,
             **{key: value for key, value in results.items() if key not in common},
         }  # fmt: skip
         self.json("summary", summary)

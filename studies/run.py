@@ -116,6 +116,7 @@ class Study:
             warnings.simplefilter("always", SuspiciousValue)
             scene = read_scene(given["scene"], given["overrides"])
         doubtful = [str(w.message) for w in found if issubclass(w.category, SuspiciousValue)]
+        doubtful = list(dict.fromkeys(doubtful))
         if given["dump_scene"]:
             values = {
                 "schema": SCHEMA,

@@ -275,8 +275,9 @@ class ContactKeys(Section):
     law: str = key("hertz", "", ASSUMED, "what happens at the plate", choices=("linear", "newton", "hertz"))
     stiffness_n_per_m: float = key(0.0, "N/m", ASSUMED,
         "linear: stiffness; 0 for the one that has the contact time of Hertz's law", low=0.0)
-    damping_ns_per_m: float = key(0.0, "N s/m", ASSUMED, "linear: dashpot beside it")
-    local_restitution: float = key(1.0, "1", ASSUMED, "newton: speed after over speed before one impact")
+    damping_ns_per_m: float = key(0.0, "N s/m", ASSUMED, "linear: dashpot beside it", low=0.0)
+    local_restitution: float = key(
+        1.0, "1", ASSUMED, "newton: speed after over speed before one impact", low=0.0, high=1.0)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -155,7 +155,7 @@ def _points(stored: Mapping[str, Stored]) -> Iterator[dict[str, object]]:
     """The letter point by point, with what was found."""
     for key, point in letter.POINTS.items():
         there = stored.get(point.study)
-        found = {} if there is None else _object(_object(there.summary.get("letter")).get(key))
+        found = {} if there is None else _object(_object(there.summary.get("verdicts")).get(key))
         judged = found.get("verdict", NOT_RUN if there is None else "not stored")
         yield {
             "point": point,

@@ -23,7 +23,7 @@ from beam import (
     natural_modes,
 )
 from beam.export import mode_name, write_mode_motion, write_modes
-from beam.spring_mesh import BALL, LAYER, STRIP, spring_mesh
+from beam.spring_mesh import BALL, LAYER, STRIP, solid_spring
 
 RADIUS = 2.5e-3
 BARE = StripSection(material=BRASS, width=12e-3, thickness=0.65e-3)
@@ -47,7 +47,7 @@ def read(path: Path):
 
 
 def test_the_mesh_has_the_masses_of_the_strip_and_the_surface_of_the_ball(modes):
-    mesh = spring_mesh(modes, ball_radius=RADIUS)
+    mesh = solid_spring(modes, ball_radius=RADIUS)
     sizes = mesh.grid().compute_cell_sizes()
     volume = [float(sizes["Volume"][mesh.part == part].sum()) for part in (STRIP, LAYER)]
     mass = BRASS.density * volume[0] + DAMPING_TAPE.density * volume[1]
@@ -58,7 +58,7 @@ def test_the_mesh_has_the_masses_of_the_strip_and_the_surface_of_the_ball(modes)
 
 
 def test_the_tape_lies_inside_the_u_and_the_ball_touches_the_bend_from_outside(modes):
-    mesh = spring_mesh(modes, ball_radius=RADIUS)
+    mesh = solid_spring(modes, ball_radius=RADIUS)
     tape = mesh.points[np.unique(mesh.hexahedra[mesh.part[: len(mesh.hexahedra)] == LAYER])]
     assert np.abs(tape[:, 1]).max() == pytest.approx(7.5e-3 - 0.325e-3, rel=1e-9)
     ball = mesh.points[np.unique(mesh.triangles)]
@@ -69,7 +69,7 @@ def test_the_tape_lies_inside_the_u_and_the_ball_touches_the_bend_from_outside(m
 
 
 def test_triangles_of_the_ball_face_outwards(modes):
-    mesh = spring_mesh(modes, ball_radius=RADIUS)
+    mesh = solid_spring(modes, ball_radius=RADIUS)
     centre = mesh.points[np.unique(mesh.triangles)].mean(axis=0)
     a, b, c = (mesh.points[mesh.triangles[:, i]] for i in range(3))
     assert np.all(np.einsum("ij,ij->i", np.cross(b - a, c - a), a - centre) > 0.0)
@@ -79,7 +79,7 @@ def test_triangles_of_the_ball_face_outwards(modes):
 
 def test_cross_sections_stay_plane_and_turn_with_the_strip(modes):
     """A small motion keeps the distances within a cross-section, and its middle moves as the centreline."""
-    mesh, along = spring_mesh(modes), modes.displacement_along(1)
+    mesh, along = solid_spring(modes), modes.displacement_along(1)
     corner = mesh.hexahedra[:, :4]
     for mode in range(4):
         rest, shape = mesh.points[corner], mesh.shapes[mode][corner]
@@ -97,7 +97,7 @@ def test_cross_sections_stay_plane_and_turn_with_the_strip(modes):
 
 
 def test_the_ball_moves_as_one_body_with_the_tip(modes):
-    mesh = spring_mesh(modes, ball_radius=RADIUS)
+    mesh = solid_spring(modes, ball_radius=RADIUS)
     ball = np.unique(mesh.triangles)
     spring = modes.discretization.spring
     tip = spring.centreline.points(spring.tip_at)
@@ -112,7 +112,7 @@ def test_the_ball_moves_as_one_body_with_the_tip(modes):
 
 def test_a_cantilever_has_its_ball_on_the_side_of_the_drive():
     strip = cantilever(length=0.13, section=BARE, tip=Tip(mass=4e-3))
-    mesh = spring_mesh(natural_modes(assemble(strip, 12), 2), ball_radius=RADIUS)
+    mesh = solid_spring(natural_modes(assemble(strip, 12), 2), ball_radius=RADIUS)
     ball = mesh.points[np.unique(mesh.triangles)]
     assert ball[:, 1].min() == pytest.approx(0.325e-3, abs=0.01 * RADIUS)
     assert ball[:, 0].mean() == pytest.approx(0.13, abs=1e-4)
@@ -125,7 +125,7 @@ def test_mode_shapes_read_back(modes, tmp_path):
     names = [mode_name(modes, mode) for mode in range(4)]
     assert list(grid.point_data) == names
     assert names[0].startswith("mode_01_2") and names[0].endswith("Hz")
-    mesh = spring_mesh(modes, ball_radius=RADIUS)
+    mesh = solid_spring(modes, ball_radius=RADIUS)
     for mode, name in enumerate(names):
         vectors = grid.point_data[name]
         assert vectors.shape == (len(mesh.points), 3) and vectors.dtype.kind == "f"
@@ -149,7 +149,7 @@ def test_a_mode_in_motion_loops_without_a_seam(modes, tmp_path, moved):
     period = 2.0 * math.pi / modes.omega[2]
     times = [float(entry.attrib["timestep"]) for entry in sets]
     np.testing.assert_allclose(times, period * np.arange(8) / 8, rtol=1e-14)
-    mesh = spring_mesh(modes, ball_radius=RADIUS)
+    mesh = solid_spring(modes, ball_radius=RADIUS)
     grids = [read(frame) for frame in frames]
     shape = mesh.normalised(0.01)[2]
     motion = np.array([grid.point_data["displacement"] for grid in grids])
@@ -174,5 +174,5 @@ def test_wrong_use_is_refused(modes, tmp_path):
     with pytest.raises(ValueError, match="frames"):
         write_mode_motion(tmp_path / "motion.pvd", modes, 0, frames=1)
     with pytest.raises(ValueError, match="ball_radius"):
-        spring_mesh(modes, ball_radius=-1.0)
+        solid_spring(modes, ball_radius=-1.0)
     assert not list(tmp_path.iterdir())

@@ -38,7 +38,7 @@ def study_of(name: str) -> Study:
 
 @pytest.fixture
 def run_study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Callable[..., Ran]:
-    """`run_study(name, *argv)`: the study in its own folder, on the letter's scene unless argv says otherwise."""
+    """`run_study(name, *argv)`: the study in its own folder, on the letter's scene by default."""
 
     def run(name: str, *argv: str) -> Ran:
         code = study_of(name).main([*argv, "--out", str(tmp_path)])

@@ -8,26 +8,26 @@ import numpy as np
 import pytest
 
 from beam import StripDamping, assemble, natural_modes
-from studies.instruments.calibration import (
+from studies.calibration import (
     ACCURACY,
     SHAPE_ACCURACY,
     TAPE_KEYS,
     calibrate,
     calibrate_damping,
     calibrate_thickness,
-    free_period,
     solve_for,
     strip_decay_rate,
 )
-from studies.instruments.quantities import SceneError
-from studies.instruments.scene import Scene
-from studies.instruments.scene_file import read_scene
-from studies.instruments.spring_of_scene import (
+from studies.scene import (
     READOUT,
+    Scene,
+    SceneError,
     damping_of,
     elements_of,
+    free_period,
     model_of,
     modes_of,
+    read_scene,
     single_mode_of,
     spring_of,
 )
@@ -127,12 +127,12 @@ def test_what_cannot_be_fitted_is_refused_in_one_sentence(fit, words):
 def test_a_jump_is_no_solution():
     with pytest.raises(SceneError, match="jumps across"):
         solve_for("stop.gap_m", LETTER, lambda scene: 1.0 if scene.stop.gap_m < 0.01 else 3.0, 2.0,
-                  name="step", unit="m", low=1e-3, high=0.1)
+                  name="step", unit="m", between=(1e-3, 0.1))
 
 
 def test_any_quantity_can_be_fitted_by_any_key():
     scene = solve_for("stop.gap_m", LETTER, lambda scene: scene.stop.gap_m**2, 1e-4,
-                      name="square", unit="m^2", low=1e-3, high=0.1)
+                      name="square", unit="m^2", between=(1e-3, 0.1))
     assert scene.stop.gap_m == pytest.approx(0.01, rel=1e-10)
     assert scene.provenance()["stop.gap_m"] == "calibrated"
 

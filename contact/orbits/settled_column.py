@@ -19,10 +19,10 @@ has left it, and is followed in blocks of `BLOCK` drive periods until it is know
 - Otherwise **period 0**: chaos, a period above 64, or a transient longer than `most_cycles`.  Its impacts are
   those of the last 128 strobes.
 
-The amplitude enters the motion linearly, so that the loop scales the steady motion at grazing.  A
-batch may end after any amplitude: the state is carried as (q, q') between two amplitudes of one batch as
-between two batches, and the results do not depend on where a column is cut.  One mode under Newton's law is
-carried by its own loop (``contact.integrators.single_mode_loop``), everything else by ``event_loop``.
+The amplitude enters the motion linearly, so that the loop scales the steady motion at grazing.  The state
+is carried as (q, q') from amplitude to amplitude, so that a column may be cut after any.  One mode under
+Newton's law is carried by its own loop (``contact.integrators.single_mode_loop``), everything else by
+``event_loop``.
 """
 
 from __future__ import annotations

@@ -1,24 +1,21 @@
 """What theory draws over the chart: band edges of the map, and the folds at which p_m orbits end.
 
-Bands (``contact.maximal_orbits``): frequencies at which p_m is born at grazing in the map.  Folds: in closed
-form for Eq. (1) (``contact.orbits.single_impact``), by shooting and continuation along the frequency for the
-beam (``contact.orbits.continuation``).  Only orbits with one impact, and only where no further touch spoils
+Bands (``contact.bands``): frequencies at which p_m is born at grazing in the map.  Folds: in closed
+form for Eq. (1) (``contact.MaximalFamily``), by shooting and continuation along the frequency for the
+beam (``contact.orbits``).  Only orbits with one impact, and only where no further touch spoils
 them (certified).
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
-from contact.maximal_orbits import Band, bands
-from contact.orbits.continuation import fold_along_frequency
-from contact.orbits.shooting import Shooting
-from contact.orbits.single_impact import MaximalFamily
-from contact.oscillator import ImpactOscillator
-from studies.instruments.scene import Scene
+from contact import Band, ImpactOscillator, MaximalFamily, bands
+from contact.orbits import Shooting, fold_along_frequency
+from studies.chart.cells import Fold
+from studies.scene import Scene
 
 __all__ = ["bands_in", "folds_of_beam", "folds_of_single_mode"]
 
@@ -41,13 +38,7 @@ def bands_in(scene: Scene, low: float, high: float) -> tuple[Band, ...]:
     return tuple(band for band in found if band.upper > low and band.lower < high)
 
 
-def _row(period: int, frequency: float, excess: float) -> dict[str, Any]:
-    return {"period": period, "frequency_hz": frequency, "excess": excess}
-
-
-def folds_of_single_mode(
-    oscillator: ImpactOscillator, frequencies: np.ndarray, lowest: float
-) -> list[dict[str, Any]]:
+def folds_of_single_mode(oscillator: ImpactOscillator, frequencies: np.ndarray, lowest: float) -> list[Fold]:
     """The folds of Eq. (1) at `frequencies` [Hz] above the excess `lowest`."""
     found = []
     for frequency in frequencies.tolist():
@@ -56,13 +47,13 @@ def folds_of_single_mode(
         for period in range(2, LARGEST + 1):
             fold = MaximalFamily.from_oscillator(here, period=period).fold()
             if fold is not None and fold.excess > lowest and fold.admissible:
-                found.append(_row(period, frequency, fold.excess))
+                found.append(Fold(period=period, frequency_hz=frequency, excess=fold.excess))
     return found
 
 
 def folds_of_beam(
     oscillator: ImpactOscillator, near: tuple[Band, ...], frequencies: np.ndarray, lowest: float
-) -> list[dict[str, Any]]:
+) -> list[Fold]:
     """The folds of the beam in and a little below the bands `near`, above the excess `lowest`.
 
     At those of `frequencies` [Hz] that lie there, or where these are few at some more within their range.
@@ -82,5 +73,5 @@ def folds_of_beam(
         for way in (inside[middle::-1], inside[middle + 1 :]):
             for frequency, fold in zip(way.tolist(), fold_along_frequency(family, way), strict=True):
                 if fold is not None and fold.admissible and fold.excess > lowest:
-                    found.append(_row(band.period, frequency, fold.excess))
-    return sorted(found, key=lambda row: (row["period"], row["frequency_hz"]))
+                    found.append(Fold(period=band.period, frequency_hz=frequency, excess=fold.excess))
+    return sorted(found, key=lambda one: (one.period, one.frequency_hz))

@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+import csv
 import json
 
 import numpy as np
 import pytest
 
 from contact.maximal_orbits import fold
-from contact.orbits import MaximalFamily, Shooting, born, born_period, lowest_of, orbit_end, period_of, settle
-from studies import transitions
-from studies.instruments.oscillators import nordmark_of, single_mode_oscillator
-from studies.instruments.scene_file import read_scene
-from studies.instruments.spring_of_scene import model_of
-from studies.published import PERIODS
+from contact.orbits import (
+    MaximalFamily,
+    Shooting,
+    born,
+    born_period,
+    lowest_of,
+    orbit_diagram,
+    orbit_end,
+    settle,
+)
+from studies.letter import PERIODS
+from studies.scene import model_of, nordmark_at, read_scene, single_mode_at
+from studies.transitions.descriptions import describe, row_at
 
 EXPECTED = {20.90: 3, 21.50: 4, 22.20: 5, 22.60: 6, 23.05: 8, 23.40: 11}
 """m of the map, of Eq. (1) and of the beam; the letter saw 10 at the last."""
@@ -31,12 +39,12 @@ def model(scene):
 
 @pytest.mark.parametrize("frequency", sorted(PERIODS))
 def test_all_three_descriptions_give_the_expected_period(scene, model, frequency):
-    for name, description in transitions.describe(scene, frequency, model).items():
+    for name, description in describe(scene, frequency, model).items():
         assert born_period(description.strobed, 1e-3) == EXPECTED[frequency], name
 
 
 def test_eq_1_and_the_beam_show_p10_above_grazing_where_the_letter_did(scene, model):
-    descriptions = transitions.describe(scene, 23.40, model)
+    descriptions = describe(scene, 23.40, model)
     for name in ("single_mode", "beam"):
         assert born_period(descriptions[name].strobed, 1e-2) == PERIODS[23.40]
 
@@ -45,13 +53,13 @@ def test_eq_1_and_the_beam_show_p10_above_grazing_where_the_letter_did(scene, mo
     "frequency", [20.90, *(pytest.param(f, marks=pytest.mark.slow) for f in sorted(PERIODS) if f != 20.90)]
 )
 def test_the_orbits_end_where_the_closed_forms_say(scene, model, frequency):
-    descriptions = transitions.describe(scene, frequency, model)
+    descriptions = describe(scene, frequency, model)
     m = EXPECTED[frequency]
-    nordmark = nordmark_of(scene, frequency)
+    nordmark = nordmark_at(scene, frequency)
     exact = {
         "map": nordmark.excess(fold(nordmark, m).rho),
         "single_mode": MaximalFamily.from_oscillator(
-            single_mode_oscillator(scene, frequency), period=m
+            single_mode_at(scene, frequency), period=m
         ).fold().excess,
     }
     for name, value in exact.items():
@@ -67,7 +75,7 @@ def test_the_beams_p8_ends_where_another_touch_grazes(scene, model):
     Below it the tip touches softly once in every period; its orbit is settled on when it repeats to a part in
     a thousand of the excess, as the peak over the wall is.
     """
-    strobed = transitions.describe(scene, 23.05, model)["beam"].strobed
+    strobed = describe(scene, 23.05, model)["beam"].strobed
     state = born(strobed).end
     end = orbit_end(strobed, state, 1e-3, most_cycles=1000)
     assert end.kind == "grazing" and end.lost < end.excess < end.held
@@ -91,24 +99,24 @@ def test_the_downward_scan_keeps_the_orbit_that_the_upward_scan_does_not_show(sc
     The steps are small against the distance to grazing: a sudden change of the drive by that much would make
     the tip overshoot into the stop and put the motion on p4 before its time.
     """
-    description = transitions.describe(scene, 21.50, model)["beam"]
-    row = transitions.row_at(scene, 21.50, model)
-    values = np.linspace(1.5, -0.5, 21) * row["excess_down_beam"]
+    description = describe(scene, 21.50, model)["beam"]
+    row, _ = row_at(scene, 21.50, model)
+    values = np.linspace(1.5, -0.5, 21) * row.excess_down_beam
     common = {"observe": description.observe, "settle_cycles": 3000, "record_cycles": 40}
-    up = transitions.orbit_diagram(
+    up = orbit_diagram(
         description.strobed, values, description.strobed.at(values[0]).steady(), **common
     )
-    down = transitions.orbit_diagram(description.strobed, values[::-1], up.end, **common)
+    down = orbit_diagram(description.strobed, values[::-1], up.end, **common)
     assert up.period[values < -1e-9].tolist() == [1] * 15
     assert up.impacts[values < -1e-9].tolist() == [0] * 15
     assert set(up.period[values > 1e-9]) == {4}
     falling = values[::-1]
-    assert set(down.period[falling > 0.95 * row["excess_down_beam"]]) == {4}
-    assert set(down.period[falling < 1.05 * row["excess_down_beam"]]) == {1}
+    assert set(down.period[falling > 0.95 * row.excess_down_beam]) == {4}
+    assert set(down.period[falling < 1.05 * row.excess_down_beam]) == {1}
 
 
 def test_every_strobed_map_offers_the_same_interface(scene, model):
-    for name, description in transitions.describe(scene, 22.20, model).items():
+    for name, description in describe(scene, 22.20, model).items():
         strobed = description.strobed.at(-1e-2)
         state = strobed.steady()
         orbit = strobed.orbit(state, 7)
@@ -126,71 +134,25 @@ def test_every_strobed_map_offers_the_same_interface(scene, model):
             assert np.allclose(a, b, rtol=0, atol=1e-12 * np.abs(b).max()), name
 
 
-def test_period_of_finds_the_smallest_period_and_nothing_in_a_drift():
-    n = np.arange(200)
-    impacts = (n % 6 == 0).astype(int)
-    points = np.column_stack([np.cos(2 * np.pi * n / 3), np.sin(2 * np.pi * n / 3)])
-    arguments = {"largest_period": 64, "tolerance": 1e-9}
-    assert period_of(points, 0 * impacts, **arguments) == 3
-    assert period_of(points, impacts, **arguments) == 6
-    assert period_of(points + 1e-6 * n[:, None], 0 * impacts, **arguments) == 0
-
-
-def test_the_logistic_map_goes_through_the_same_scan():
-    """Anything that is State -> State settles: known periods of x -> a x (1 - x)."""
-
-    class Logistic:
-        scale = 1.0
-
-        def __init__(self, a):
-            self.a = a
-
-        def at(self, excess):
-            return Logistic(3.0 * (1.0 + excess))
-
-        def steady(self):
-            return 0.3
-
-        def orbit(self, state, count):
-            points = np.empty((count, 1))
-            for i in range(count):
-                state = self.a * state * (1 - state)
-                points[i] = state
-            return transitions_orbit(end=state, points=points, impacts=np.zeros(count, dtype=int))
-
-    from contact.stroboscope import StrobedOrbit as transitions_orbit
-
-    for a, period in ((2.9, 1), (3.2, 2), (3.5, 4), (3.83, 3), (3.9, 0)):
-        assert settle(Logistic(a), 0.3, most_cycles=4000).period == period
-
-
-def test_json_has_the_promised_keys_and_nothing_else_is_printed(tmp_path, capsys):
-    code = transitions.main(
-        ["--json", "--quick", "--out", str(tmp_path), "--set", "drive.frequencies_hz=[22.2]"]
-    )
-    answer = json.loads(capsys.readouterr().out)
-    assert code == 0
-    (row,) = answer["rows"]
-    wanted = {
-        "frequency_hz", "letter", "map", "single_mode", "beam", "excess_down_map", "excess_down_single_mode",
-        "excess_down_beam",
-    }
-    assert wanted <= row.keys()
+def test_rows_have_the_promised_keys_and_every_amplitude_says_whether_it_settled(run_study):
+    ran = run_study("transitions", "--quick", "--json", "--set", "drive.frequencies_hz=[22.2]")
+    assert ran.code == 0 and json.loads(ran.out)["rows"] == ran.summary["rows"]
+    (row,) = ran.summary["rows"]
+    models = ("map", "single_mode", "beam")
+    wanted = {f"{key}_{name}" for key in ("excess_down", "ends_by", "bracket", "born") for name in models}
+    assert wanted | {"frequency_hz", "letter", *models, "exact_map", "exact_single_mode", "not_settled",
+                     "beam_linear", "excess_down_beam_linear", "grazing_amplitude_m"} == row.keys()
     assert (row["letter"], row["map"], row["single_mode"], row["beam"]) == (5, 5, 5, 5)
-    assert answer["modes"] == 12 and "12 modes" in answer["model_choice"]
-    assert {"schema", "wall_s"} <= answer.keys()
-    folder = tmp_path / "transitions"
-    for name in (
-        "summary.json",
-        "manifest.json",
-        "orbit_diagram.png",
-        "orbit_diagram.pdf",
-        "orbit_diagram.csv",
-    ):
-        assert (folder / name).stat().st_size > 500
+    assert row["exact_map"] == pytest.approx(row["excess_down_map"], rel=1e-9)
+    assert ran.summary["modes"] == 12 and ran.summary["verdicts"]["p5"]["verdict"] == "agrees"
+    with (ran.folder / "orbit_diagram.csv").open() as stream:
+        cells = list(csv.DictReader(stream))
+    assert len(cells) == 3 * 2 * 21
+    for cell in cells:
+        assert (cell["kind"] == "periodic") == (int(cell["period"]) > 0)
 
 
-def test_own_modes_from_a_scene_go_through_everything(tmp_path, capsys):
+def test_own_modes_from_a_scene_go_through_everything(tmp_path, run_study):
     """A spring given by its measured modes: the same numbers as the letter's spring give the same orbit."""
     scene = read_scene("letter", [])
     model = model_of(scene)
@@ -205,37 +167,7 @@ def test_own_modes_from_a_scene_go_through_everything(tmp_path, capsys):
     ]
     path = tmp_path / "own.toml"
     path.write_text("\n".join(lines))
-    code = transitions.main(["--json", "--quick", "--scene", str(path), "--out", str(tmp_path)])
-    (row,) = json.loads(capsys.readouterr().out)["rows"]
-    assert code == 0
-    assert row["beam"] == 5
-    assert row["excess_down_beam"] == pytest.approx(
-        transitions.row_at(scene, 22.2, model)["excess_down_beam"], rel=1e-2
-    )
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (
-            ["--set", "drive.frequencies_hz=[5000.0]", "--set", "modes.count=2"],
-            "above the highest of the modes kept",
-        ),
-        (["--set", "drive.kind=none"], "harmonic drive"),
-        (["--set", "stop.gap_m=0.0"], "gap_m"),
-        (["--set", "contact.local_restitution=1.5"], "local_restitution"),
-        (["--set", "scan.points=0"], "points"),
-        (["--set", "spring.leg_length_m=-0.13"], "leg_length_m"),
-        (["--set", "spring.leg_lenght_m=0.13"], "leg_length_m"),
-        (["--set", "tip.mass_kg=nan"], "mass_kg"),
-        (["--scene", "no_such_scene"], "no_such_scene"),
-        (["--workers", "0"], "workers"),
-    ],
-)
-def test_wrong_input_gets_one_sentence_and_exit_code_2(tmp_path, capsys, arguments, words):
-    code = transitions.main([*arguments, "--out", str(tmp_path)])
-    said = capsys.readouterr().err.strip()
-    assert code == 2
-    assert words in said
-    assert "Traceback" not in said
-    assert len(said.splitlines()) == 1
+    ran = run_study("transitions", "--quick", "--scene", str(path))
+    (row,) = ran.summary["rows"]
+    assert ran.code == 0 and row["beam"] == 5
+    assert row["excess_down_beam"] == pytest.approx(row_at(scene, 22.2, model)[0].excess_down_beam, rel=1e-9)

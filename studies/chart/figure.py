@@ -2,26 +2,26 @@
 
 Colours are the seven of the house style, one after the other with the period, lighter for 8 to 14, darker for
 15 to 21, darker still to 28, so that neighbouring periods and period doublings always differ; every region of
-some size says its number as well.  The upright axis is that of the grid (``plane.sheared``).
+some size says its number as well.  The upright axis is that of the grid (``cells.sheared``).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import matplotlib
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 from scipy import ndimage
 
-from contact.maximal_orbits import Band
-from studies.instruments.chart.cells import Cells
-from studies.instruments.chart.plane import sheared
-from studies.instruments.figures import PAGE, PALETTE, house_style, label, new_figure, panel
+from contact import Band
+from studies.chart.cells import Cells, Fold, sheared
+from studies.plotting import PAGE, PALETTE, house_style, label, new_figure, panel
 
 __all__ = ["colour_of_impacts", "colour_of_period", "draw"]
 
@@ -80,7 +80,7 @@ def colour_of_impacts(period: int, impacts: int) -> Colour:
 
 
 def class_name(number: int) -> str:
-    """"3", "4-5" or "9 or more"."""
+    """ "3", "4-5" or "9 or more"."""
     low = COUNTS[number]
     if number + 1 == len(COUNTS):
         return f"{low} or more"
@@ -96,7 +96,7 @@ def _image(period: np.ndarray, impacts: np.ndarray, colour: Callable[[int, int],
 
 
 def _write_numbers(
-    axis: Any, values: np.ndarray, x: np.ndarray, y: np.ndarray, text: Callable[[int], str]
+    axis: Axes, values: np.ndarray, x: np.ndarray, y: np.ndarray, text: Callable[[int], str]
 ) -> None:
     """Each region of one value says it, at its place farthest from its border."""
     taken: list[tuple[float, float]] = []
@@ -123,9 +123,7 @@ def _write_numbers(
         )  # fmt: skip
 
 
-def draw(
-    cells: Cells, edges: Sequence[Band], folds: Sequence[dict[str, Any]], *, title: str
-) -> Any:
+def draw(cells: Cells, edges: Sequence[Band], folds: Sequence[Fold], *, title: str) -> Figure:
     """The figure."""
     figure, axes = new_figure(2, 2, width=PAGE, height=0.150, sharex=True, sharey=True)
     x, y = cells.frequencies, sheared(cells.excesses)
@@ -159,30 +157,28 @@ def draw(
     return figure
 
 
-def _draw_theory(
-    axis: Any, edges: Sequence[Band], folds: Sequence[dict[str, Any]], extent: tuple[float, ...]
-) -> None:
+def _draw_theory(axis: Axes, edges: Sequence[Band], folds: Sequence[Fold], extent: tuple[float, ...]) -> None:
     grazing = float(sheared(0.0))
     axis.axhline(grazing, color="0.5", linewidth=0.4)
     around = [float(sheared(-EDGE)), float(sheared(EDGE))]
     for band in edges:
         axis.plot([band.upper] * 2, around, color="black", linewidth=0.7)
         axis.plot([band.lower] * 2, around, color="black", linewidth=0.7, linestyle=(0, (1.5, 1.0)))
-    for period in sorted({fold["period"] for fold in folds}):
-        curve = [fold for fold in folds if fold["period"] == period]
-        f = np.array([fold["frequency_hz"] for fold in curve])
-        excess = sheared([fold["excess"] for fold in curve])
+    for period in sorted({fold.period for fold in folds}):
+        curve = [fold for fold in folds if fold.period == period]
+        f = np.array([fold.frequency_hz for fold in curve])
+        excess = sheared([fold.excess for fold in curve])
         axis.plot(f, excess, color="white", linewidth=1.8)
         axis.plot(f, excess, color=PALETTE[2], linewidth=0.9)
     axis.set_xlim(extent[0], extent[1])
     axis.set_ylim(extent[2], extent[3])
 
 
-def _legend(cells: Cells, edges: Sequence[Band], folds: Sequence[dict[str, Any]]) -> list[Any]:
+def _legend(cells: Cells, edges: Sequence[Band], folds: Sequence[Fold]) -> list[Patch | Line2D]:
     def box(colour: Colour, name: str) -> Patch:
         return Patch(facecolor=colour, edgecolor="0.3", linewidth=0.4, label=name)
 
-    handles: list[Any] = [box(REST, "p$_1$ without impact")]
+    handles: list[Patch | Line2D] = [box(REST, "p$_1$ without impact")]
     if np.any(cells.period == 0):
         handles.append(box(NONE, "no period found"))
     if np.any(cells.period > 7 * len(SHADES)):
