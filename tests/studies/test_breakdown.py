@@ -164,7 +164,7 @@ def test_small_form(run_study):
     six = ran.summary["cells_with_period_6"]
     assert (0.004, 2.0) in [(cell["tip_mass_kg"], cell["higher_damping"]) for cell in six]
     assert ran.summary["found"]["tip_mass_kg"] == 0.004
-    assert {key: entry["verdict"] for key, entry in ran.summary["letter"].items()} == dict.fromkeys(
+    assert {key: entry["verdict"] for key, entry in ran.summary["verdicts"].items()} == dict.fromkeys(
         ("breakdown", "breakdown_p3", "island"), "in part"
     )
     stored = np.load(ran.folder / "breakdown.npz")

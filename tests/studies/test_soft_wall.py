@@ -278,7 +278,7 @@ def test_small_form(run_study):
     lossless, dashpot = ran.summary["doublings"]
     assert (lossless["period_below"], lossless["period_above"]) == (1, 2) and dashpot["excess"] == 0.0
     assert ran.summary["beam"]["half_excess"] < letter.AMPLITUDE_STABILITY
-    assert {key: entry["verdict"] for key, entry in ran.summary["letter"].items()} == {
+    assert {key: entry["verdict"] for key, entry in ran.summary["verdicts"].items()} == {
         "soft_wall": "agrees", "smoothing": "in part",
     }  # fmt: skip
 
