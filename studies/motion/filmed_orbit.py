@@ -136,11 +136,11 @@ def drawn_shapes(
     phi, strip = modes.phi[kept], np.unique(mesh.hexahedra)
     first = mesh.shapes[kept[0]] / phi[0]
     departures = np.tensordot(coordinates, mesh.shapes[kept] - phi[:, None, None] * first, axes=1)
-    # the ball is drawn where the tip is, and does not turn
-    ball = np.unique(mesh.triangles)
-    departures[:, ball] = 0.0
     carried = (coordinates @ phi)[:, None, None] * first
-    carried[:, ball] = carried[:, ball].mean(axis=1, keepdims=True)
+    # the ball is drawn where the tip is, and does not turn
+    ball, drive = np.unique(mesh.triangles), np.array([*modes.discretization.spring.drive, 0.0])
+    departures[:, ball] = 0.0
+    carried[:, ball] = ((coordinates @ phi)[:, None] * drive)[:, None]
     if magnification is None:
         largest = float(np.linalg.norm(departures[:, strip], axis=2).max())
         room = ROOM * float(np.ptp(mesh.points[strip], axis=0).max())

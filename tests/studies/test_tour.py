@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from studies.published import FREE_PERIOD_S, PERIODS
+from studies.letter import FREE_PERIOD_S, PERIODS
 
-SOURCE = Path(__file__).parent.parent / "studies" / "tour.py"
+SOURCE = Path(__file__).parents[2] / "studies" / "tour.py"
 
 
 @pytest.fixture(scope="module")
