@@ -20,6 +20,15 @@ from contact.orbits.continuation import (
 from contact.orbits.ends import OrbitEnd, orbit_end
 from contact.orbits.events import Event
 from contact.orbits.kick import Kick, KickFamily, KickOrbit
+from contact.orbits.lyapunov import (
+    Differentiable,
+    Exponents,
+    divergence_rate,
+    map_exponents,
+    of_nordmark,
+    of_oscillator,
+    orbit_exponents,
+)
 from contact.orbits.scan import OrbitDiagram, orbit_diagram
 from contact.orbits.settling import Settled, born, born_period, period_of, settle
 from contact.orbits.shooting import PeriodicOrbit, Shooting
@@ -28,7 +37,9 @@ from contact.orbits.single_impact import MaximalFamily, SingleImpactOrbit
 __all__ = [
     "AmplitudeScan",
     "Branch",
+    "Differentiable",
     "Event",
+    "Exponents",
     "Kick",
     "KickFamily",
     "KickOrbit",
@@ -42,14 +53,19 @@ __all__ = [
     "SingleImpactOrbit",
     "born",
     "born_period",
+    "divergence_rate",
     "first_event",
     "fold_along_frequency",
     "fold_of",
     "folds_of",
     "follow",
     "lowest_of",
+    "map_exponents",
+    "of_nordmark",
+    "of_oscillator",
     "orbit_diagram",
     "orbit_end",
+    "orbit_exponents",
     "period_of",
     "settle",
 ]

@@ -1,31 +1,26 @@
-"""Lyapunov exponents by two routes, classification and basins."""
+"""Lyapunov exponents by two routes, what a motion settles on by them, and basins."""
 
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import dataclass
 
 import numpy as np
 import pytest
 
-from contact.orbits.lyapunov import (
+from contact import State, StrobedNordmarkMap, StrobedOrbit, StroboscopicMap
+from contact.orbits import (
+    Shooting,
     divergence_rate,
     map_exponents,
     of_nordmark,
     of_oscillator,
     orbit_exponents,
+    settle,
 )
-from contact.orbits.settling import settle
-from contact.orbits.shooting import Shooting
-from contact.strobed_nordmark import StrobedNordmarkMap
-from contact.stroboscope import StrobedOrbit, StroboscopicMap
-from studies import attractors
-from studies.instruments.attractors.basins import basins
-from studies.instruments.attractors.kinds import CHAOTIC, NOT_SETTLED, PERIODIC, WITHOUT, classify
-from studies.instruments.oscillators import beam_of, nordmark_of, single_mode_oscillator
-from studies.instruments.scene_file import read_scene
-from studies.instruments.spring_of_scene import model_of
+from studies.attractors.basins import CLOSE, plane_of
+from studies.attractors.kinds import CHAOTIC, NOT_SETTLED, PERIODIC, WITHOUT, classify
+from studies.scene import beam_at, nordmark_at, read_scene, single_mode_at
 
 FREQUENCY = 21.50
 
@@ -72,17 +67,17 @@ class LogisticMap:
 
 @pytest.fixture(scope="module")
 def scene():
-    return read_scene("letter", [])
+    return read_scene("letter")
 
 
 @pytest.fixture(scope="module")
 def single(scene):
-    return StroboscopicMap(oscillator=single_mode_oscillator(scene, FREQUENCY))
+    return StroboscopicMap(oscillator=single_mode_at(scene, FREQUENCY))
 
 
 @pytest.fixture(scope="module")
 def beam(scene):
-    return StroboscopicMap(oscillator=beam_of(scene, FREQUENCY, model_of(scene)))
+    return StroboscopicMap(oscillator=beam_at(scene.replace({"modes.count": 12}), FREQUENCY))
 
 
 def test_the_logistic_map_has_ln_2_at_4_by_both_routes():
@@ -180,7 +175,7 @@ def test_chaos_of_the_beam_and_its_slow_transient_are_told_apart(beam):
 
 
 def test_the_nordmark_map_by_both_routes(scene):
-    strobed = StrobedNordmarkMap(map=nordmark_of(scene, FREQUENCY))
+    strobed = StrobedNordmarkMap(map=nordmark_at(scene, FREQUENCY))
     here = strobed.at(1e-3)
     settled = settle(here, strobed.at(-1e-3).steady(), most_cycles=2000)
     system = of_nordmark(here)
@@ -198,30 +193,49 @@ def test_wrong_use_is_refused(single):
         divergence_rate(system, single.steady(), 0.0)
 
 
+def test_starts_next_to_either_orbit_lead_to_it_between_fold_and_grazing(scene):
+    plane = plane_of(scene, FREQUENCY, -0.006, 2, close=True)
+    gap, speed = scene.stop.gap_m, 2.0 * math.pi * FREQUENCY * scene.stop.gap_m
+    assert plane.period == 4 and plane.orbit.shape == (4, 2)
+    near = 1e-3 * CLOSE
+    assert plane.leads(plane.rest[0] + near * gap, plane.rest[1] - near * speed) == 1
+    for x, velocity in plane.orbit:
+        assert plane.leads(x + 1e-6 * gap, velocity) == 4
+    assert plane.leads(1.01 * gap, 0.0) == -1
+    # within the envelope no impact is possible; second route: every strobe of a long run
+    start = State(displacement=np.array([plane.rest[0] + near * gap]), velocity=np.array([plane.rest[1]]))
+    assert plane.envelope(start) < 0.006 * gap
+    assert plane.strobed.orbit(start, 500).impacts.sum() == 0
+
+
 def test_both_orbits_have_a_basin_between_fold_and_grazing_and_one_below(scene):
-    between = basins(scene, FREQUENCY, -0.006, 12, 2, lambda: None, close=True)
-    assert between.period == 4
-    parts = between.parts()
-    assert parts["p1 without impacts"] > 0.02 and parts["p4"] > 0.5
-    # a start next to p1, and one on p4
-    below = basins(scene, FREQUENCY, -0.02, 6, 2, lambda: None)
-    assert set(np.unique(below.leads)) <= {-1, 1}  # below the fold of -0.0132 only p1 is left
+    between = plane_of(scene, FREQUENCY, -0.006, 12, close=True)
+    leads = np.array([between.line(v) for v in between.velocity.tolist()])
+    assert np.mean(leads == 1) > 0.02 and np.mean(leads == 4) > 0.5
+    below = plane_of(scene, FREQUENCY, -0.02, 6)
+    leads = np.array([below.line(v) for v in below.velocity.tolist()])
+    assert set(np.unique(leads)) <= {-1, 1}  # below the fold of -0.0132 only p1 is left
 
 
-def test_the_study_writes_rows_and_figures(tmp_path, capsys):
-    words = ["--quick", "--json", "--model", "single_mode", "--side", "8", "--cycles", "60",
-             "--out", str(tmp_path), "--workers", "2"]  # fmt: skip
-    assert attractors.main(words) == 0
-    summary = json.loads(capsys.readouterr().out)
-    rows = summary["rows"]
-    assert {"excess", "period", "impacts", "lyapunov_map", "lyapunov_flow"} <= set(rows[0])
+def test_small_form(run_study):
+    ran = run_study("attractors", "--quick", "--model", "single_mode", "--side", "8", "--cycles", "60")
+    assert ran.code == 0
+    lines = (ran.folder / "rows.csv").read_text().splitlines()
+    rows = [dict(zip(lines[0].split(","), line.split(","), strict=True)) for line in lines[1:]]
     for row in rows:
-        assert (row["kind"] in (PERIODIC, WITHOUT)) == (row["period"] > 0)
-        if row["period"]:
-            assert row["lyapunov_map"] < 0
-            assert row["lyapunov_flow"] / FREQUENCY == pytest.approx(row["lyapunov_map"], abs=0.01)
-    up = [row["excess"] for row in rows if row["direction"] == "up" and row["kind"] == WITHOUT]
-    down = [row["excess"] for row in rows if row["direction"] == "down" and row["kind"] == WITHOUT]
-    assert max(up) > max(down)  # hysteresis
-    assert (tmp_path / "attractors" / "attractors.png").exists()
-    assert (tmp_path / "attractors" / "basins.pdf").exists()
+        assert (row["kind"] in (PERIODIC, WITHOUT)) == (int(row["period"]) > 0)
+        if int(row["period"]):
+            exponent, flow = float(row["lyapunov_map"]), float(row["lyapunov_flow"]) / FREQUENCY
+            assert exponent < 0.0 and flow == pytest.approx(exponent, abs=0.01)
+    up, down = (
+        max(float(row["excess"]) for row in rows if row["direction"] == way and row["kind"] == WITHOUT)
+        for way in ("up", "down")
+    )
+    assert up > down  # hysteresis
+    assert ran.summary["verdicts"]["coexistence"]["verdict"] == "agrees"
+
+
+@pytest.mark.parametrize("argv", [("--lowest", "0.1", "--highest", "0.0"), ("--basin-excess", "0.01"),
+                                  ("--set", "drive.kind=none")])  # fmt: skip
+def test_wrong_input_is_refused(run_study, argv):
+    assert run_study("attractors", *argv).code == 2
