@@ -27,7 +27,6 @@ from scipy.integrate import solve_ivp
 
 from beam import ModalModel
 from contact import ImpactKind, ImpactOscillator, NewtonRestitution, Stop, simulate
-from contact.integrators import Exact
 from studies import plotting
 from studies.scene import Scene
 from studies.stability import Findings, Limit

@@ -21,7 +21,7 @@ import pytest
 
 from beam import ModalModel
 from contact import ContactTooStiff, ImpactOscillator, LinearContact, State, Stop, Trajectory, simulate
-from contact.integrators import PiecewiseLinear
+from contact.integrators import Exact
 
 EPS = 2.0**-52
 GAP, SPEED, DIGITS = 0.005, 0.2, 60
@@ -127,7 +127,7 @@ CASES = {
 
 @pytest.mark.parametrize("name", CASES)
 def test_a_collision_of_a_spring_with_a_degenerate_mode_keeps_its_digits(name):
-    assert error_of_collision(CASES[name], 1e5)[0] < 3e-14 < PiecewiseLinear.accuracy
+    assert error_of_collision(CASES[name], 1e5)[0] < 3e-14 < Exact.accuracy
 
 
 @pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
@@ -170,14 +170,14 @@ def test_digits_go_as_the_root_of_the_stiffness():
     for part in (1e4, 1e8, 1e12, 1e16):
         errors[part], theory = worst(spring(1), part, 6)
         assert 0.02 * theory < errors[part] < 1.5 * theory
-    assert errors[1e8] < PiecewiseLinear.accuracy < errors[1e16]
+    assert errors[1e8] < Exact.accuracy < errors[1e16]
     assert math.log10(errors[1e16] / errors[1e8]) / 8 == pytest.approx(0.5, abs=0.07)
 
 
 @pytest.mark.parametrize("part", [1e4, 1e8, 1e12])
 def test_more_modes_lose_no_more_digits(part):
     error, theory = worst(spring(5), part, 2)
-    assert error < 1.5 * theory and (error < PiecewiseLinear.accuracy or part > 1e8)
+    assert error < 1.5 * theory and (error < Exact.accuracy or part > 1e8)
 
 
 def test_a_lasting_contact_of_too_many_steps_is_refused():

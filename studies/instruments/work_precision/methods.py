@@ -14,13 +14,11 @@ import numpy as np
 
 from contact.integrators import (
     CentralDifference,
-    ContactSeries,
-    EventDriven,
+    Exact,
     GeneralisedAlpha,
     Integrator,
     MoreauJean,
     NonsmoothGeneralisedAlpha,
-    PiecewiseLinear,
     SampledFlight,
     Splitting,
 )
@@ -95,7 +93,7 @@ STEPS: dict[str, Callable[[float], Integrator]] = {
 
 def lines_for(problem: Problem, *, quick: bool = False) -> list[Line]:
     """Every method that knows the law of `problem`, over its settings."""
-    exact = (EventDriven, PiecewiseLinear, ContactSeries)
+    exact = (Exact,)
     lines = [_exact(kind) for kind in exact if problem.law in kind.laws]
     stride = 3 if quick else 1
     hard = problem.contact_time == 0.0
