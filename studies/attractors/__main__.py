@@ -18,19 +18,17 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
 from functools import partial
 from typing import Annotated, Literal
 
 import numpy as np
 
-from contact import ContactError, State, StroboscopicMap
-from contact.orbits import settle
+from contact import ContactError, StroboscopicMap
 from studies.attractors.basins import CLOSE, Basins, plane_of
-from studies.attractors.kinds import CHAOTIC, KINDS, Row, agreement, classify
+from studies.attractors.kinds import CHAOTIC, KINDS, Row, agreement
+from studies.attractors.scan import TITLES, Start, carried, row_of
 from studies.run import Run, study
 from studies.scene import (
-    READOUT,
     Scene,
     beam_at,
     corresponding,
@@ -40,28 +38,10 @@ from studies.scene import (
     single_mode_at,
 )
 
-__all__ = ["TITLES", "Start", "attractors"]
+__all__ = ["attractors"]
 
 FREQUENCY = 21.50
 """Where the letter has period 4 [Hz]."""
-
-TITLES = {"single_mode": "Eq. (1)", "beam": "beam"}
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Start:
-    """A state of a scan and what is drawn of it: `points`, its strobed read-out, shape (record_cycles,)."""
-
-    model: str
-    direction: str
-    strobed: StroboscopicMap
-    excess: float
-    state: State
-    points: np.ndarray
-
-    def __str__(self) -> str:
-        return f"{TITLES[self.model]}, excess {self.excess:.6g}, {self.direction}"
-
 
 @study(needs={"fold": 0.05}, quick={"points": 11, "cycles": 100, "side": 32})
 def attractors(
@@ -124,40 +104,6 @@ def attractors(
         "basins": {"excess": basin_excess, "period": planes[0].plane.period, "parts": planes[0].parts(),
                    "parts_close": planes[1].parts(), "close": CLOSE},
     }  # fmt: skip
-
-
-def carried(
-    named: tuple[str, StroboscopicMap], scene: Scene, values: np.ndarray
-) -> tuple[list[Start], list[str]]:
-    """Upward and downward scan of one model: the settled state is the start at the next amplitude.
-
-    On the way up a motion stays without impacts as far as it can, on the way down it stays on p_m.
-    """
-    name, strobed = named
-    found, failures = [], []
-    state = strobed.at(float(values[0])).steady()
-    for direction, ordered in (("up", values), ("down", values[::-1])):
-        for excess in ordered.tolist():
-            here = strobed.at(excess)
-            try:
-                settled = settle(here, state, most_cycles=scene.scan.settle_cycles)
-                orbit = here.orbit(settled.end, scene.scan.record_cycles)
-            except ContactError as error:
-                failures.append(f"{TITLES[name]}, excess {excess:.6g}: {error}")
-                continue
-            state = replace(settled.end, time=0.0)
-            found.append(Start(model=name, direction=direction, strobed=here, excess=excess, state=state,
-                               points=here.readout(orbit.points, READOUT)))  # fmt: skip
-    return found, failures
-
-
-def row_of(start: Start, cycles: int, most_cycles: int) -> Row | ContactError:
-    """What the motion from a start settles on, or why that is not known."""
-    try:
-        found = classify(start.strobed, start.state, cycles=cycles, most_cycles=most_cycles)
-    except ContactError as error:
-        return error
-    return Row(model=start.model, direction=start.direction, excess=start.excess, **asdict(found))
 
 
 def basins_at(run: Run, scene: Scene, frequency: float, excess: float, side: int, close: bool) -> Basins:

@@ -6,7 +6,7 @@ The exponent of the flow is drawn as lyapunov_flow / f, on that of the map: one 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,10 +17,8 @@ from matplotlib.lines import Line2D
 from studies import plotting
 from studies.attractors.basins import Basins
 from studies.attractors.kinds import CHAOTIC, NOT_SETTLED, PERIODIC, UNDECIDED, WITHOUT, Row
+from studies.attractors.scan import TITLES, Start
 from studies.plotting import BLUE, COLUMN, EXCESS, GUIDE, ORANGE, PAGE, SKY, VERMILION, tint
-
-if TYPE_CHECKING:
-    from studies.attractors.__main__ import Start
 
 __all__ = ["draw_basins", "draw_scan"]
 
@@ -46,8 +44,7 @@ def mark(marker: str, colour: str, label: str, *, face: str = "none", size: floa
 @plotting.in_house_style
 def draw_scan(starts: Sequence[Start], rows: Sequence[Row], frequency: float, quantity: str) -> Figure:
     """Strobe points and exponents against the excess, a column for each model."""
-    names = {"single_mode": "Eq. (1)", "beam": "beam"}
-    names = {key: name for key, name in names.items() if any(row.model == key for row in rows)}
+    names = {key: name for key, name in TITLES.items() if any(row.model == key for row in rows)}
     figure, axes = plotting.new_figure(
         2, max(1, len(names)), width=PAGE if len(names) > 1 else COLUMN, height=0.112, squeeze=False,
         sharex="col",

@@ -24,7 +24,6 @@ Writes:  scans.csv (a row an amplitude), outcomes.csv (a row a beam), islands.cs
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Annotated, Any
 
@@ -35,11 +34,11 @@ from contact.orbits import OrbitDiagram
 from studies import letter
 from studies.breakdown.beam import (
     BORN_PERIOD,
-    DECAY_RATE_PER_S,
-    FREE_PERIOD_S,
     FREQUENCY_HZ,
     Beam,
     Cell,
+    Errors,
+    at_errors,
     cell_of,
     fig_5,
     nearest_first,
@@ -49,7 +48,7 @@ from studies.breakdown.scans import CHAOS_AT, Island, Outcome, Scans, amplitudes
 from studies.run import Run, study
 from studies.scene import Scene, model_of, nordmark_at, single_mode_at
 
-__all__ = ["Errors", "breakdown"]
+__all__ = ["breakdown"]
 
 RESTITUTIONS, QUICK_RESTITUTIONS = (0.0, 0.05, 0.06, 0.075, 0.1), (0.05, 0.1)
 MASSES_KG = tuple(
@@ -62,16 +61,6 @@ QUICK_MASSES_KG, QUICK_FACTORS, QUICK_LOCAL = (0.0035, 0.004), (1.0, 2.0), (1.0,
 
 MOST_SCANNED = 4
 """Cells with period 6 whose scans are made: those that depart least from the scene."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Errors:
-    """What the calibrated beam is born with at an end of the letter's errors of T and mu (period 0: none)."""
-
-    free_period_s: float
-    decay_rate_per_s: float
-    period: int | None
-    impacts: int | None
 
 
 @study(needs={"kick": 0.005}, quick={"points": 21, "cycles": 500})
@@ -99,7 +88,7 @@ def breakdown(
     cells, beams = search(scene, run)
     tried = nearest_first(cells, scene.tip.mass_kg)[:MOST_SCANNED]
     jobs = [("beam", calibrated), *((f"beam {i}", beams[place]) for i, place in enumerate(tried, 1))]
-    for outcome, diagrams in run.map(partial(scanned, scans), jobs, "scans of the beam"):
+    for outcome, diagrams in run.map(scans.of_beam, jobs, "scans of the beam"):
         outcomes.append(outcome)
         ways[outcome.description] = diagrams
     # as in the letter: p3 in the downward scan; otherwise the first candidate
@@ -145,20 +134,6 @@ def search(scene: Scene, run: Run) -> tuple[list[Cell], list[Beam]]:
             run.failed(f"{1e3 * cell.tip_mass_kg:g} g, damping x {cell.higher_damping:g}", cell.failure)
     run.table("born_period", cells, "Period born at grazing over what the letter does not print.", show=())
     return cells, beams
-
-
-def scanned(scans: Scans, job: tuple[str, Beam]) -> tuple[Outcome, dict[str, OrbitDiagram[Any]]]:
-    """The scans of a beam."""
-    name, beam = job
-    return scans.of_beam(beam, name)
-
-
-def at_errors(scene: Scene, change: tuple[float, float]) -> Errors:
-    """The calibrated beam with other T and mu."""
-    period, rate = FREE_PERIOD_S + change[0], DECAY_RATE_PER_S + change[1]
-    here = scene.replace({"damping.decay_rate_per_s": rate})
-    cell = cell_of(Beam(scene=here, model=tuned(here, period=period), tip_mass_kg=scene.tip.mass_kg))
-    return Errors(free_period_s=period, decay_rate_per_s=rate, period=cell.period, impacts=cell.impacts)
 
 
 def within_errors(scene: Scene, run: Run) -> list[Errors]:

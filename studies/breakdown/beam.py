@@ -21,7 +21,7 @@ from studies import letter
 from studies.calibration import calibrate, free_period, solve_for
 from studies.scene import Scene, SceneError, approach_speed, contact_law_of, harmonic, hertz_of, model_of
 
-__all__ = ["Beam", "Cell", "cell_of", "fig_5", "fold_of_p3", "nearest_first", "tuned"]
+__all__ = ["Beam", "Cell", "Errors", "at_errors", "cell_of", "fig_5", "fold_of_p3", "nearest_first", "tuned"]
 
 FREQUENCY_HZ, FREE_PERIOD_S = letter.BREAKDOWN["frequency_hz"], letter.BREAKDOWN["free_period_s"]
 DECAY_RATE_PER_S, BORN_PERIOD = letter.BREAKDOWN["decay_rate_per_s"], letter.BREAKDOWN["born_period"]
@@ -113,6 +113,24 @@ def cell_of(beam: Beam) -> Cell:
         tip_mass_kg=numbers[0], higher_damping=numbers[1], local_restitution=numbers[2], period=period,
         impacts=impacts, fold_p3=fold, failure=failure,
     )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class Errors:
+    """What the calibrated beam is born with at an end of the letter's errors of T and mu (period 0: none)."""
+
+    free_period_s: float
+    decay_rate_per_s: float
+    period: int | None
+    impacts: int | None
+
+
+def at_errors(scene: Scene, change: tuple[float, float]) -> Errors:
+    """The calibrated beam with other T and mu."""
+    period, rate = FREE_PERIOD_S + change[0], DECAY_RATE_PER_S + change[1]
+    here = scene.replace({"damping.decay_rate_per_s": rate})
+    cell = cell_of(Beam(scene=here, model=tuned(here, period=period), tip_mass_kg=scene.tip.mass_kg))
+    return Errors(free_period_s=period, decay_rate_per_s=rate, period=cell.period, impacts=cell.impacts)
 
 
 def nearest_first(cells: Sequence[Cell], mass: float) -> list[int]:

@@ -98,8 +98,9 @@ class Scans:
         up = scan(values, strobed.at(lowest).steady())
         return {"up": up, "down": scan(values[::-1], up.end)}
 
-    def of_beam(self, beam: Beam, name: str) -> tuple[Outcome, dict[str, OrbitDiagram[Any]]]:
+    def of_beam(self, named: tuple[str, Beam]) -> tuple[Outcome, dict[str, OrbitDiagram[Any]]]:
         """What a beam is born with, and its scans down to below the fold of p3."""
+        name, beam = named
         strobed = beam.strobed()
         fold = fold_of_p3(strobed)
         lowest = 1.12 * fold if fold is not None and fold < -0.01 else -0.1

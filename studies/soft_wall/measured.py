@@ -88,7 +88,6 @@ class Doubling(Row):
     grazing_multiplier: float | None
     period_below: int | None
     period_above: int | None
-    settled: bool
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -142,7 +141,6 @@ def doubling_of(case: Case) -> Doubling:
         closed_form=None if peak is None else wall.excess_of(peak) if peak else 0.0,
         limit=None if case.zeta else leading[1], peak_closed_form=peak, grazing_multiplier=grazing,
         least_multiplier=None if orbit is None else least_of(orbit), period_below=below, period_above=above,
-        settled=bool(below and above),
     )  # fmt: skip
 
 

@@ -21,8 +21,17 @@ from contact import (
 )
 from contact.orbits import born
 from studies import letter
-from studies.breakdown.__main__ import at_errors
-from studies.breakdown.beam import FREQUENCY_HZ, Beam, Cell, cell_of, fig_5, fold_of_p3, nearest_first, tuned
+from studies.breakdown.beam import (
+    FREQUENCY_HZ,
+    Beam,
+    Cell,
+    at_errors,
+    cell_of,
+    fig_5,
+    fold_of_p3,
+    nearest_first,
+    tuned,
+)
 from studies.breakdown.scans import Scans, island, periods
 from studies.calibration import ACCURACY, decay_rate
 from studies.scene import approach_speed, free_period, model_of, nordmark_at, read_scene, single_mode_at
@@ -102,7 +111,7 @@ def test_the_beam_as_calibrated_and_eq_1_are_born_without_a_period(scene, calibr
 def test_a_ball_of_4_g_gives_the_letters_p6_and_p3_at_the_end_of_the_downward_scan(light):
     cell = cell_of(light)
     assert (cell.period, cell.impacts) == (6, 3) and -0.09 < cell.fold_p3 < -0.05
-    outcome, ways = Scans(points=45, cycles=700, early=True).of_beam(light, "light")
+    outcome, ways = Scans(points=45, cycles=700, early=True).of_beam(("light", light))
     assert (outcome.born_period, outcome.fold_p3) == (6, cell.fold_p3) and outcome.ends_on_p3
     up, down = ways["up"], ways["down"]
     below = up.excess < -1e-9
