@@ -27,12 +27,14 @@ key that is a number. The value found carries the provenance "calibrated".
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import brentq
 
+from beam import SuspiciousValue
 from contact import Collision, first_collision
 from studies import letter
 from studies.scene import Scene, SceneError, beam_at, damping_of, free_period, modes_of, spring_of
@@ -108,7 +110,9 @@ def solve_for(
         return scene.replace({key: value}, provenance=CALIBRATED)
 
     def excess(value: float) -> float:
-        return min(quantity(changed(value)) / target - 1.0, BEYOND)
+        with warnings.catch_warnings():  # nobody gave the values that a search tries
+            warnings.simplefilter("ignore", SuspiciousValue)
+            return min(quantity(changed(value)) / target - 1.0, BEYOND)
 
     at_low, at_high = excess(low), excess(high)
     if not at_low * at_high <= 0.0:
