@@ -161,12 +161,22 @@ def partial_step(motion, composition, length, sine, cosine, u0, v0, u, v, flows,
 
 
 @kernel
+def steady_of(motion, k, sine, cosine):
+    """Steady displacement and velocity of mode `k` at a phase of the drive."""
+    modes = motion.modes
+    return (
+        modes[OFFSET, k] + modes[SINE, k] * sine + modes[COSINE, k] * cosine,
+        motion.drive * (modes[SINE, k] * cosine - modes[COSINE, k] * sine),
+    )
+
+
+@kernel
 def put_state(motion, sine, cosine, u, v, row):
     """Write the physical state, steady motion added, into the first 2 n_modes places of `row`."""
     n = u.size
     for k in range(n):
-        row[k] = u[k] + motion.modes[OFFSET, k] + motion.modes[SINE, k] * sine + motion.modes[COSINE, k] * cosine
-        row[n + k] = v[k] + motion.drive * (motion.modes[SINE, k] * cosine - motion.modes[COSINE, k] * sine)
+        x, rate = steady_of(motion, k, sine, cosine)
+        row[k], row[n + k] = u[k] + x, v[k] + rate
 
 
 @kernel
@@ -246,8 +256,9 @@ def march(motion, composition, grid, q, v, clock, steps, h, critical):
     phase = motion.drive * (clock + i * h)
     sine, cosine = math.sin(phase), math.cos(phase)
     for k in range(n):
-        u[k] = q[k] - motion.modes[OFFSET, k] - motion.modes[SINE, k] * sine - motion.modes[COSINE, k] * cosine
-        v[k] -= motion.drive * (motion.modes[SINE, k] * cosine - motion.modes[COSINE, k] * sine)
+        x, rate = steady_of(motion, k, sine, cosine)
+        u[k] = q[k] - x
+        v[k] -= rate
     depth = tip_depth(motion, u, sine, cosine)
     look, renew = i, i + RENEW
     status = FINISHED
@@ -311,6 +322,7 @@ def march(motion, composition, grid, q, v, clock, steps, h, critical):
             break
     grid.integers[STEP] = i
     for k in range(n):
-        q[k] = u[k] + motion.modes[OFFSET, k] + motion.modes[SINE, k] * sine + motion.modes[COSINE, k] * cosine
-        v[k] += motion.drive * (motion.modes[SINE, k] * cosine - motion.modes[COSINE, k] * sine)
+        x, rate = steady_of(motion, k, sine, cosine)
+        q[k] = u[k] + x
+        v[k] += rate
     return status
