@@ -7,6 +7,7 @@ import math
 import mpmath as mp
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from contact.hertz_lanes import (
     ROOT,
     contact_work,
@@ -25,10 +26,14 @@ from contact.hertz_series import (
 from contact.hertz_step import lane_step
 from contact.modal_flow import mode_rows, scalars_of
 
-from contact.flight.elementary import sine_cosine
+from contact.event_loop import STATE
+from contact.flight.elementary import exponential, sine_cosine
 from contact.flight.modal_flow import loaded_drift, tip_state
-from contact.flight.motion import Motion
-from contact.laws import HERTZ
+from contact.flight.motion import Motion, motion_of
+from contact.laws import HuntCrossley
+from contact.touch import hertz
+from contact.touch.series import new_series
+from contact.trajectory import OUTSIDE
 
 
 def beam(n: int, *, chi: float = 0.0, decay: float = 0.02, load: float = 0.0) -> Motion:
@@ -36,15 +41,11 @@ def beam(n: int, *, chi: float = 0.0, decay: float = 0.02, load: float = 0.0) ->
     ladder = np.arange(1.0, n + 1.0)
     omega = 150.0 * (2.0 * ladder - 1.0) ** 2
     omega[0] = 0.0 if load else omega[0]
-    phi = 8.0 / ladder**0.7
-    sine = 1e-3 / ladder**4
-    return Motion(
-        omega=omega, decay=decay * 150.0 * (2.0 * ladder - 1.0) ** 2, damped=omega, damped_low=0.0 * omega,
-        phi=phi, load=load * (omega == 0.0), sine=sine, cosine=-0.1 * sine, offset=0.0 * omega,
-        tip_sine=float(phi @ sine), tip_cosine=float(-0.1 * phi @ sine), level=-0.01, drive=135.0,
-        period=2 * math.pi / 135.0, gap=0.01, compliance=float(phi @ phi), law=HERTZ, number0=2e7,
-        number1=chi, table=np.empty((0, 0)),
-    )
+    return motion_of(
+        omega, decay * 150.0 * (2.0 * ladder - 1.0) ** 2, 8.0 / ladder**0.7, gap=0.01, drive=135.0,
+        law=HuntCrossley(stiffness=2e7, dissipation=chi), period=2 * math.pi / 135.0,
+        response=1e-3 * (1.0 - 0.1j) / ladder**4, load=load * (omega == 0.0),
+    )  # fmt: skip
 
 
 def touching(motion: Motion, speed: float) -> tuple[np.ndarray, np.ndarray]:
@@ -59,54 +60,58 @@ def touching(motion: Motion, speed: float) -> tuple[np.ndarray, np.ndarray]:
     return u, v
 
 
-def contact_by_lanes(motion: Motion, u: np.ndarray, v: np.ndarray) -> tuple[float, float, int]:
+def contact_by_series(motion: Motion, u: np.ndarray, v: np.ndarray) -> tuple[float, float, int]:
     """Duration of the contact, work on the stop, steps; (u, v) overwritten by the state at the release."""
-    fixed, numbers = scalars_of(motion), mode_rows(motion)[0]
-    series, sums, scalars = lane_arrays(numbers)
-    late, size = np.empty(scalars.shape[1]), speed_scale(fixed, numbers, u, v)
-    clock, root, done = 0.0, 0.0, 0.0
+    series, run = new_series(*hertz.room(motion)), np.zeros(1, dtype=STATE).view(np.recarray)[0]
+    run.regime, _rebound, _loss = hertz.strike(motion, run, u, v, 1.0)
+    done = 0.0
     for step in range(1, 20_000):
-        scalars[ROOT, 0] = root
-        lane_series(fixed, numbers, clock, u, v, series, sums, scalars)
-        s, released, h = lane_step(numbers, size, series, scalars, late, 1.0)
-        done += contact_work(s, series, scalars)
-        lane_state(s, series, sums, scalars, u, v)
-        root, clock = evaluate(scalars[ROOT], s), clock + h
-        if released:
-            return clock, done, step
+        s, h, run.regime = hertz.step(motion, run, u, v, 1.0, series)
+        done += hertz.work(motion, run, s, series)
+        hertz.state(motion, run, s, series, u, v)
+        run.clock += h
+        if run.regime == OUTSIDE:
+            return run.clock, done, step
     raise AssertionError("the contact does not end")
 
 
-def contact_by_modes(motion: Motion, u: np.ndarray, v: np.ndarray) -> float:
-    """The same contact with every mode a series of its own; returns its duration."""
-    n = motion.omega.size
-    us, vs = np.empty((HERTZ_ORDER + 1, n)), np.empty((HERTZ_ORDER + 1, n))
-    scalars = np.empty((7, HERTZ_ORDER + 1))
-    clock, root = 0.0, 0.0
-    for _ in range(20_000):
-        scalars[0, 0] = root
-        hertz_series(motion, clock, u, v, us, vs, scalars)
-        s, released, h = hertz_step(motion, u, v, us, vs, scalars, 1.0)
-        hertz_state(us, vs, s, u, v)
-        root, clock = evaluate(scalars[0], s), clock + h
-        if released:
-            return clock
-    raise AssertionError("the contact does not end")
+def contact_by_solver(motion: Motion, u: np.ndarray, v: np.ndarray) -> float:
+    """The same contact by an adaptive Runge-Kutta method of order 8 in sigma; returns its duration."""
+    n, w, phi = motion.size, motion.drive, motion.phi
+
+    def rates(_sigma: float, x: np.ndarray) -> np.ndarray:
+        r, t, u, v = x[0], x[1], x[2 : 2 + n], x[2 + n :]
+        speed = phi @ v + w * (motion.tip_sine * math.cos(w * t) - motion.tip_cosine * math.sin(w * t))
+        force = motion.number0 * r**3 * (1.0 + motion.number1 * speed)
+        pull = motion.load - motion.decay * v - motion.omega**2 * u - phi * force
+        return np.concatenate([[0.5 * speed, r], r * v, r * pull])
+
+    def released(sigma: float, x: np.ndarray) -> float:
+        return x[0] if sigma > 0.0 else 1.0
+
+    released.terminal, released.direction = True, -1.0
+    scale = math.sqrt(float(np.sum(v**2 + (motion.omega * u) ** 2)))
+    size = np.concatenate([[1e-4, 1e-4], scale / np.maximum(motion.omega, 1.0), np.full(n, scale)])
+    start = np.concatenate([[0.0, 0.0], u, v])
+    found = solve_ivp(rates, (0.0, 1e3), start, "DOP853", events=released, rtol=3e-14, atol=1e-15 * size)
+    end = found.y_events[0][0]
+    u[:], v[:] = end[2 : 2 + n], end[2 + n :]
+    return float(end[1])
 
 
 @pytest.mark.parametrize("modes", [1, 2, 8, 20, 40])
 @pytest.mark.parametrize("chi", [0.0, 0.3])
 @pytest.mark.parametrize("decay", [0.02, 2.5])
-def test_modes_side_by_side_and_one_by_one_give_the_same_collision(modes, chi, decay):
-    """Two routes: all modes in the columns of one array, or a power series for each of them."""
+def test_series_and_solver_give_the_same_collision(modes, chi, decay):
+    """Two routes: the power series of the package, or an outside solver."""
     motion = beam(modes, chi=chi, decay=decay)
     for speed in (0.3, 1e-3):
         u, v = touching(motion, speed)
         other_u, other_v = u.copy(), v.copy()
         size = math.sqrt(float(np.sum(v**2 + (motion.omega * u) ** 2)))
         before = v.copy()
-        duration, _work, _steps = contact_by_lanes(motion, u, v)
-        assert duration == pytest.approx(contact_by_modes(motion, other_u, other_v), rel=1e-11)
+        duration, _work, _steps = contact_by_series(motion, u, v)
+        assert duration == pytest.approx(contact_by_solver(motion, other_u, other_v), rel=1e-11)
         assert np.max(np.abs(v - before)) > 1e-5 * size  # the collision did something
         np.testing.assert_allclose(v, other_v, rtol=0, atol=2e-13 * size)
         np.testing.assert_allclose(motion.omega * u, motion.omega * other_u, rtol=0, atol=2e-13 * size)
@@ -116,8 +121,8 @@ def test_a_contact_takes_a_loaded_mode_of_zero_frequency():
     motion = beam(4, load=3.0)
     u, v = touching(motion, 0.2)
     other_u, other_v = u.copy(), v.copy()
-    duration, _work, _steps = contact_by_lanes(motion, u, v)
-    assert duration == pytest.approx(contact_by_modes(motion, other_u, other_v), rel=1e-11)
+    duration, _work, _steps = contact_by_series(motion, u, v)
+    assert duration == pytest.approx(contact_by_solver(motion, other_u, other_v), rel=1e-11)
     np.testing.assert_allclose(v, other_v, rtol=0, atol=1e-13)
     _du, dv = loaded_drift(motion.decay[0], motion.load[0], duration)
     assert abs(dv) > 1e-6  # the load is felt
@@ -126,12 +131,12 @@ def test_a_contact_takes_a_loaded_mode_of_zero_frequency():
 def test_an_elastic_stop_gives_back_what_it_got_and_a_lossy_one_less():
     for modes in (1, 8, 20):
         u, v = touching(beam(modes), 0.3)
-        _duration, work, _steps = contact_by_lanes(beam(modes), u, v)
+        _duration, work, _steps = contact_by_series(beam(modes), u, v)
         energy = 0.5 * 0.3**2 / beam(modes).compliance
         assert abs(work) < 1e-13 * energy
         motion = beam(modes, chi=0.3)
         u, v = touching(motion, 0.3)
-        _duration, work, _steps = contact_by_lanes(motion, u, v)
+        _duration, work, _steps = contact_by_series(motion, u, v)
         assert 0.01 * energy < work < energy
 
 
@@ -151,10 +156,11 @@ def test_sine_cosine_and_exponential_are_good_to_one_unit_in_the_last_place():
                 worst[place] = max(worst[place], error / size)
             x = -float(10 ** generator.uniform(-6, 2.85))
             true = mp.exp(x)
-            worst[2] = max(worst[2], abs(float((mp.mpf(fading(x)) - true) / math.ulp(float(true)))) / 1.5)
+            worst[2] = max(worst[2], abs(float((mp.mpf(exponential(x)) - true) / math.ulp(float(true)))) /
+            1.5)
     assert np.all(worst < 1.0)
     assert sine_cosine(0.0, 0.0) == (0.0, 1.0)
-    assert fading(0.0) == 1.0 and fading(-800.0) == 0.0
+    assert exponential(0.0) == 1.0 and exponential(-800.0) == 0.0
 
 
 def test_sine_and_cosine_keep_their_quadrants():

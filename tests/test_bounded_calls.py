@@ -49,11 +49,9 @@ GAP = 0.0107
 LAWS: dict[str, ContactLaw] = {
     "newton": NewtonRestitution(local_restitution=0.1),
     "delayed": DelayedRestitution(restitution=0.1, delay=1e-4),
-    "delayed by table": DelayedRestitution(restitution=lambda v: 0.3 / (1 + v), delay=lambda v: 2e-4 * v**0.2),
-    "linear": LinearContact(stiffness=1e7),
-    "dashpot": LinearContact(stiffness=1e7, damping=100.0),
-    "hertz": HertzContact(stiffness=1e9),
-    "hunt-crossley": HuntCrossley(stiffness=1e9, dissipation=0.3),
+    "delayed by table": DelayedRestitution(restitution=lambda v: 0.3 / (1 + v), delay=lambda v: 2e-4 *
+    v**0.2), "linear": LinearContact(stiffness=1e7), "dashpot": LinearContact(stiffness=1e7, damping=100.0),
+    "hertz": HertzContact(stiffness=1e9), "hunt-crossley": HuntCrossley(stiffness=1e9, dissipation=0.3),
 }
 EXTREME: dict[str, ContactLaw] = {
     "plastic": NewtonRestitution(local_restitution=0.0),
@@ -78,7 +76,8 @@ WITHOUT_A_LAW = {
     "StrobedNordmarkMap", "StrobedOrbit", "Trajectory", "UnresolvedCrossing", "band", "bands", "fold",
     "maximal_orbits", "maximal_period", "maximal_periods", "modal_flow", "of_nordmark", "stable_range",
 }  # fmt: skip
-COMPUTING = ("KickFamily", "MaximalFamily", "PeriodicOrbit", "Shooting", "SingleImpactOrbit", "StroboscopicMap")
+COMPUTING = ("KickFamily", "MaximalFamily", "PeriodicOrbit", "Shooting", "SingleImpactOrbit",
+"StroboscopicMap")
 
 
 def oscillator_of(law: ContactLaw, modes: int, frequency: float = 22.2) -> ImpactOscillator:
@@ -87,7 +86,8 @@ def oscillator_of(law: ContactLaw, modes: int, frequency: float = 22.2) -> Impac
     else:
         omega = np.array([154.0, 963.0])
         model = ModalModel(
-            omega=omega, decay_rate=0.02 * omega, phi=np.array([1.0, -0.8]), participation=np.array([1.0, 0.3])
+            omega=omega, decay_rate=0.02 * omega, phi=np.array([1.0, -0.8]), participation=np.array([1.0,
+            0.3])
         )
     return ImpactOscillator(
         model=model, stop=Stop(gap=GAP, law=law), drive=HarmonicDrive(frequency=frequency)

@@ -155,8 +155,8 @@ def test_folds_are_those_of_the_closed_form_and_of_a_downward_scan(
     assert node.stable and node.admissible and node.excess > fold.excess
     start = StroboscopicMap(oscillator=node.oscillator).orbit(node.strobe_state(), 1).end
     end = orbit_end(
-        StroboscopicMap(oscillator=oscillator), State(displacement=start.displacement, velocity=start.velocity),
-        node.excess, most_cycles=4000, relative=1e-2,
+        StroboscopicMap(oscillator=oscillator), State(displacement=start.displacement,
+        velocity=start.velocity), node.excess, most_cycles=4000, relative=1e-2,
     )  # fmt: skip
     assert end.lost < fold.excess < end.held
 

@@ -16,7 +16,7 @@ import pytest
 
 from beam.reduction import ModalModel
 from contact.errors import Chatter, ContactTooStiff, StepTooLarge
-from contact.integrators import CentralDifference, PiecewiseLinear
+from contact.integrators import CentralDifference, Exact
 from contact.laws import LinearContact
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
@@ -309,7 +309,7 @@ def test_digits_go_as_the_root_of_the_stiffness_and_stay_below_what_is_stated(co
         theory = stiff_contact.digits_lost(model, k * modal, float(found.run.impacts.approach[0]))
         assert 0.02 * theory < errors[k] < 1.5 * theory
         assert found.run.evaluations <= 8  # however stiff
-    assert errors[1e4] < 1e-13 and errors[1e8] < PiecewiseLinear.accuracy < errors[1e16]
+    assert errors[1e4] < 1e-13 and errors[1e8] < Exact.accuracy < errors[1e16]
     assert errors[1e12] < 1e-10
     slope = math.log10(errors[1e16] / errors[1e8]) / 8
     assert slope == pytest.approx(0.5, abs=0.07)
@@ -361,7 +361,7 @@ def test_flow_of_hardly_and_of_very_strongly_damped_modes_loses_nothing(ratio):
 )  # fmt: skip
 def test_collision_of_a_spring_with_an_odd_mode_keeps_its_digits(name):
     found = collide(odd_modes.cases()[name], odd_modes.STIFFNESS)
-    assert error_of_collision(found) < 3e-14 < PiecewiseLinear.accuracy
+    assert error_of_collision(found) < 3e-14 < Exact.accuracy
 
 
 # -------------------------------------------------------------------------------------------------- long runs

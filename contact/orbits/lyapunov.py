@@ -6,9 +6,9 @@ before),
     lambda_i = < log |R_ii| >        [per drive period],  largest first.
 
 For an impact oscillator J_n is composed in physical time, from the strobe to its first touch by the free flow
-of the modes, then from touch to touch and to the next strobe by the tangents of ``contact.orbits.touch_flow`` (contact
-forces by their variational equation, Newton's law by its saltation matrix).  A strobe that falls into a
-contact is passed over: that J_n spans more than one period.  On an orbit of period m the exponents are
+of the modes, then from touch to touch and to the next strobe by the tangents of ``contact.orbits.touch_flow``
+(contact forces by their variational equation, Newton's law by its saltation matrix).  A strobe that falls
+into a contact is passed over: that J_n spans more than one period.  On an orbit of period m the exponents are
 log|mu_i|/m, with mu_i the eigenvalues of J_m ... J_1.  For Eq. (1) of the letter (1996) the determinants give
 
     sum of lambda_i = -mu/f + 2 log(tau) x impacts per period.
@@ -330,8 +330,8 @@ class _OfOscillator:
                 until = min(last * period, float(start[touch + 1]) if touch + 1 < start.size else math.inf)
                 tangent = np.eye(2 * n + 2)
                 outcome = flow_from_touch(
-                    motion, response, begin % period, u[touch].copy(), v[touch].copy(), until - begin, tangent,
-                    np.empty((1, 4 + 2 * n)),
+                    motion, response, begin % period, u[touch].copy(), v[touch].copy(), until - begin,
+                    tangent, np.empty((1, 4 + 2 * n)),
                 )
                 if outcome != FLOWN:
                     raise UnresolvedCrossing(

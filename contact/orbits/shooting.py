@@ -1,7 +1,7 @@
 """Periodic orbits of any contact law, by shooting from touch to touch.
 
-Unknowns are the state at the first touch of the orbit and the drive: e = (u, v, S, C) (``contact.orbits.touch_flow``).
-An orbit with k touches in m drive periods satisfies
+Unknowns are the state at the first touch of the orbit and the drive: e = (u, v, S, C)
+(``contact.orbits.touch_flow``). An orbit with k touches in m drive periods satisfies
 
     (u, v) after m/f  =  (u, v),      y(e) = 0 (the tip is at the stop),
 

@@ -5,9 +5,9 @@ A ball dropped from h rebounds with e times its speed; its impacts fall at
     t_n = t_0 (1 + 2 (e + ... + e^n)),   t_0 = sqrt(2 h/g),   t_inf = t_0 (1 + e)/(1 - e).                 (a)
 
 The package computes hops until their height drowns in rounding, (v e^n)^2 <= 2 g L with L the lowest hop
-(``contact.touch.newton.lowest_hop``), sums the rest and lets the ball lie. The number of hops that are computed
-is ln(v / sqrt(2 g L)) / ln(1/e); if it exceeds the bound ``MOST_IMPACTS`` of one drive period, which with e
-below 1 needs 1 - e of some 1e-4 and less, the run ends with ``Chatter``.
+(``contact.touch.newton.lowest_hop``), sums the rest and lets the ball lie. The number of hops that are
+computed is ln(v / sqrt(2 g L)) / ln(1/e); if it exceeds the bound ``MOST_IMPACTS`` of one drive period, which
+with e below 1 needs 1 - e of some 1e-4 and less, the run ends with ``Chatter``.
 
 Two loops as they are often written, for contrast, both with a bound on the events:
 
@@ -35,7 +35,6 @@ from contact.drive import HarmonicDrive
 from contact.errors import Chatter, ContactError
 from contact.event_loop import MOST_IMPACTS
 from contact.flight.modal_flow import tip_rounding
-from contact.integrators import EventDriven
 from contact.laws import NewtonRestitution
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
@@ -54,7 +53,7 @@ __all__ = [
     "time_of_rest",
 ]  # fmt: skip
 
-NAME = EventDriven.name
+NAME = "event-driven"
 HEIGHT, GRAVITY = 1.0, 9.81
 RESTITUTIONS = (0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.999)
 MOST_EVENTS = 20_000

@@ -18,7 +18,6 @@ import numpy as np
 
 from beam.reduction import ModalModel
 from contact.drive import HarmonicDrive
-from contact.integrators import EventDriven
 from contact.laws import NewtonRestitution
 from contact.orbits.single_impact import MaximalFamily, SingleImpactOrbit
 from contact.oscillator import ImpactOscillator
@@ -64,7 +63,7 @@ def _flight(periods: int) -> tuple[list[Limit], dict[str, np.ndarray]]:
         energy.append(abs(2.0 * change.real))
     limits = [
         Limit(
-            method=EventDriven.name, case=f"undamped free flight, {periods:.0e} drive periods", knob=knob,
+            method="event-driven", case=f"undamped free flight, {periods:.0e} drive periods", knob=knob,
             theory=None, measured=values[-1], refused=None,
             note=f"eps for each period, the size that the rounding of its flow lets expect, is "
             f"{EPS * periods:.1e}",
@@ -106,7 +105,7 @@ def _orbit(scene: Scene, periods: int) -> tuple[list[Limit], dict[str, np.ndarra
     off = min(float(np.abs(last - np.roll(closed, k, axis=0)).max()) for k in range(m)) / strobed.scale
     limits = [
         Limit(
-            method=EventDriven.name, case=f"p{m} node of Eq. (1), {periods:.0e} drive periods", knob=knob,
+            method="event-driven", case=f"p{m} node of Eq. (1), {periods:.0e} drive periods", knob=knob,
             theory=0.0, measured=measured, refused=None, note=note,
         )
         for knob, measured, note in (

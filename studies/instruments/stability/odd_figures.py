@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from contact.integrators import PiecewiseLinear
+from contact.integrators import Exact
 from studies.instruments.figures import NOTE, PAGE, PALETTE, in_house_style, label, new_figure, panel, series
 
 __all__ = ["draw_odd"]
@@ -43,8 +43,8 @@ def draw_odd(arrays: Mapping[str, np.ndarray]) -> Any:
     place = np.arange(arrays["collision"].size)[::-1]
     right.plot(np.maximum(arrays["collision_error"], FLOOR), place, linestyle="none", marker="o",
                color=PALETTE[0], gid="collisions")
-    right.axvline(PiecewiseLinear.accuracy, color="0.4", linestyle=":", linewidth=0.8, gid="stated accuracy")
-    right.annotate("stated", (PiecewiseLinear.accuracy, 0.0), xytext=(-2, 0), textcoords="offset points",
+    right.axvline(Exact.accuracy, color="0.4", linestyle=":", linewidth=0.8, gid="stated accuracy")
+    right.annotate("stated", (Exact.accuracy, 0.0), xytext=(-2, 0), textcoords="offset points",
                    ha="right", fontsize=NOTE)
     right.set_yticks(place, list(arrays["collision"]), fontsize=NOTE)
     right.set_xscale("log")

@@ -38,7 +38,7 @@ from contact.errors import ContactTooStiff
 from contact.event_loop import MOST_STEPS
 from contact.flight.modal_flow import flow_matrix
 from contact.flight.motion import damped_frequency
-from contact.integrators import PiecewiseLinear
+from contact.integrators import Exact
 from contact.simulation import simulate
 from studies.instruments.scene import Scene
 from studies.instruments.stability.bisection import bisect
@@ -49,7 +49,7 @@ from studies.instruments.stability.odd_springs import collide, error_of_collisio
 
 __all__ = ["by_eigenvectors", "by_pade", "cases", "draw", "flow_error", "measure", "package_flow"]
 
-NAME = PiecewiseLinear.name
+NAME = "piecewise-linear"
 EPS = 2.0**-52
 OMEGA = 150.0
 TIMES = np.geomspace(1e-3, 30.0, 24) / OMEGA
@@ -226,7 +226,7 @@ def measure(*, quick: bool, scene: Scene) -> Findings:
         Limit(
             method=NAME, case=f"one collision, {len(errors)} springs with an odd mode", knob="error [1]",
             theory=None, measured=None, refused=None,
-            note=f"largest error {errors[worst]:.1e} ({worst}); stated {PiecewiseLinear.accuracy:g}",
+            note=f"largest error {errors[worst]:.1e} ({worst}); stated {Exact.accuracy:g}",
         )
     )  # fmt: skip
     limits += overdamped(quick)

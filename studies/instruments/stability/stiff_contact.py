@@ -18,8 +18,8 @@ costs omega_c T/2, and is refused as ``ContactTooStiff`` beyond the bound of 1e6
 
 Limit. For k -> infinity the contact is over before any mode of a finite model has moved, and mode 1 loses
 (1 + e) r_N of its velocity, e = 1, r_N = phi_1^2 / sum phi^2: Newton's law for an elastic impact
-(``contact.touch.newton``). The kick of the contact, -(jump of the mode-1 tip velocity at the touch)/v with the free
-motion of mode 1 taken out, comes there as 1/omega_c.
+(``contact.touch.newton``). The kick of the contact, -(jump of the mode-1 tip velocity at the touch)/v with
+the free motion of mode 1 taken out, comes there as 1/omega_c.
 
 Units: SI.
 """
@@ -34,7 +34,7 @@ import numpy as np
 from beam.reduction import ModalModel
 from contact.errors import ContactTooStiff
 from contact.event_loop import MOST_STEPS
-from contact.integrators import PiecewiseLinear
+from contact.integrators import Exact
 from contact.simulation import simulate
 from contact.trajectory import State
 from studies.instruments.scene import Scene
@@ -54,7 +54,7 @@ from studies.instruments.stability.stiff_figures import draw_stiff
 
 __all__ = ["digits_lost", "draw", "first_kick", "measure", "newton_limit"]
 
-NAME = PiecewiseLinear.name
+NAME = "piecewise-linear"
 EPS = 2.0**-52
 COSTLY = 10.0
 """Below k/k_modal = n_modes^2/10 no error is computed: the reference needs a second and more for the many
@@ -113,7 +113,7 @@ def _accuracy(model: ModalModel, stiffness: np.ndarray, quick: bool) -> tuple[li
         theory.append(digits_lost(model, k * modal, float(found.run.impacts.approach[0])))
     errors_soft = np.array(errors)[stiffness <= 1.01e6]
     approach = float(collide(model, 1e6 * modal).run.impacts.approach[0])
-    accuracy = PiecewiseLinear.accuracy
+    accuracy = Exact.accuracy
     expected = (accuracy * approach / (EPS * GAP)) ** 2 / float(model.phi @ model.phi) / modal
     lost = bisect(
         lambda k: worst(model, k * modal, SPEEDS)[0] > accuracy, 1e-2 * expected, 1e4 * expected,

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from contact.integrators import PiecewiseLinear
+from contact.integrators import Exact
 from studies.instruments.figures import (
     PAGE,
     PALETTE,
@@ -37,7 +37,7 @@ def draw_stiff(arrays: Mapping[str, np.ndarray]) -> Any:
         right.plot(arrays["kick_stiffness"], kick, **{**series(i), "marker": ""}, gid=name)
         right.axhline(float(arrays[f"newton_{n}"][0]), color=PALETTE[i], linewidth=0.6, linestyle="--",
                       gid=f"{name}, Newton's law", label="Newton's law, 2 r$_N$" if i == 0 else None)
-    left.axhline(PiecewiseLinear.accuracy, color="0.4", linewidth=0.8, linestyle=":",
+    left.axhline(Exact.accuracy, color="0.4", linewidth=0.8, linestyle=":",
                  label="stated accuracy")
     left.set_ylim(1e-16, 1e-9)
     for number, (axis, name, title) in enumerate((
