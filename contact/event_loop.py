@@ -2,8 +2,8 @@
 
 A run goes from strobe to strobe, with time counted from the last strobe, so that a million periods bring no
 loss of phase.  In each period a certified search (``contact.flight.crossing``) finds the first touch, or, if
-that is asked for, the letter's sampled one (``contact.flight.sampled_crossing``); an impact law acts at once, a
-force law is followed through the contact until the tip is off the wall again (``contact.touch``).  Periods
+that is asked for, the letter's sampled one (``contact.flight.sampled_crossing``); an impact law acts at once,
+a force law is followed through the contact until the tip is off the wall again (``contact.touch``).  Periods
 without a touch cost one multiplication by the flow of a period and a proof, most often by the lowest mode
 alone.
 """
@@ -62,13 +62,13 @@ STATE = np.dtype([
 ])  # fmt: skip
 """Where a run stands.
 
-regime: ``contact.trajectory.Regime``; order: how many derivatives of the tip displacement vanish at the start of
-the flight; period, clock: number of the drive period and time since its strobe [s]; evaluations: flights,
+regime: ``contact.trajectory.Regime``; order: how many derivatives of the tip displacement vanish at the start
+of the flight; period, clock: number of the drive period and time since its strobe [s]; evaluations: flights,
 contact steps and sampled positions so far; search: 0 for certified crossings, else samples per period.
 
 Of the touch under way: wait, rebound: time until it ends by itself [s] and velocity with which the tip then
-leaves [m/s]; root: sqrt of the penetration [m^0.5]; speed: the modal speeds at its start; both below zero when
-they are to be computed anew.
+leaves [m/s]; root: sqrt of the penetration [m^0.5]; speed: the modal speeds at its start; both below zero
+when they are to be computed anew.
 """
 
 

@@ -19,7 +19,8 @@ from contact.flight.modal_flow import steady_motion
 from contact.flight.motion import Motion
 from contact.trajectory import IMPACT, Impacts, Run, State, Trajectory
 
-__all__ = ["LOG", "MARKS", "Recorder", "add_loss", "close_touch", "grown", "is_full", "open_touch", "put_sample",
+__all__ = ["LOG", "MARKS", "Recorder", "add_loss", "close_touch", "grown", "is_full", "open_touch",
+"put_sample",
            "put_strobe", "recorder_for", "sample_due", "strobes_only", "trajectory_of"]  # fmt: skip
 
 MARKS = np.dtype([(name, "i8") for name in ("logged", "sampled", "strobed", "impacts", "touching")])

@@ -766,14 +766,6 @@ ORBITS: dict[str, Entry] = {
         ({"align": -1.0}, "align is -1.0 s|zero or more"),
         ({"seed": -1}, "seed is -1|zero or more"),
     ),
-    "newton_saltation": entry(
-        saltation.newton_saltation,
-        dict(phi=np.ones(1), restitution=0.1, before=np.ones(1), after=np.ones(1), speed=0.1),
-        ({"phi": np.zeros(1)}, "phi is zero in every mode"),
-        ({"before": np.ones(2)}, "before has shape (2,)|of shape (1,)"),
-        ({"speed": 0.0}, "speed is 0.0 m/s|above zero"),
-        ({"restitution": 2.0}, "restitution is 2.0|between 0 and 1"),
-    ),
     "monodromy": entry(
         saltation.monodromy,
         dict(flow=np.ones((1, 2, 2)), saltation=np.eye(2)),
@@ -813,7 +805,7 @@ METHODS: dict[str, Entry] = {
     "SampledFlight": entry(
         contact.integrators.SampledFlight,
         dict(points=100),
-        ({"points": 0}, "points is 0|above zero"),
+        ({"points": 0}, "points is 0|whole number"),
         ({"points": 1.5}, "points is 1.5|whole number"),
         ({"points": "many"}, "points is 'many'|whole number"),
     ),

@@ -15,13 +15,14 @@ The lowest mode alone, by Sturm's comparison theorem.  Relative to the stop the 
 
 G the distance of the stop from the tip's mean place, A and t_p height and time of the steady peak, u the free
 deviation of the lowest mode and R that of all others, which is bounded by the sum r of their amplitudes
-(``contact.flight.modal_flow``).  Let rho = |phi| sqrt(u^2 + (v/omega)^2) at the start of the flight.  From then on
+(``contact.flight.modal_flow``).  Let rho = |phi| sqrt(u^2 + (v/omega)^2) at the start of the flight.  From
+then on
 
     y'' - R'' + w^2 (y - R + G) = phi (u'' + w^2 u) <= w^2 d,     d = (|w^2 - omega^2| + c omega) rho/w^2,
 
 because of u'' = -c u' - omega^2 u, |phi u| <= rho and |phi u'| <= omega rho.  Hence z = y - R + G - d obeys
-z'' + w^2 z <= 0, and lies below the harmonic motion that shares its height z_1 and slope z_1' at any t_1 of the flight
-(the difference is an integral over sin(w (t - s)) >= 0 of something not above zero):
+z'' + w^2 z <= 0, and lies below the harmonic motion that shares its height z_1 and slope z_1' at any t_1 of
+the flight (the difference is an integral over sin(w (t - s)) >= 0 of something not above zero):
 
     z(t) <= z_1 cos(w (t - t_1)) + (z_1'/w) sin(w (t - t_1)),      |t - t_1| <= pi/w.                  (1)
 

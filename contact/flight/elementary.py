@@ -1,10 +1,10 @@
 """Sine, cosine and exponential to one unit in the last place, and products without rounding error.
 
 Nothing here branches or calls the system's library, so that a loop over many modes into which these are
-compiled becomes one of vector instructions.  A phase is an unevaluated sum of two doubles, whose rounding error
-stays that of the result even after 1e5 rad.  Sine and cosine of it come from one reduction by multiples of
-pi/2, whose leading 33 bits make the product exact (W. J. Cody and W. Waite, Software Manual for the Elementary
-Functions, Prentice-Hall 1980), and their Taylor sums on |x| <= pi/4; the exponential likewise on
+compiled becomes one of vector instructions.  A phase is an unevaluated sum of two doubles, whose rounding
+error stays that of the result even after 1e5 rad.  Sine and cosine of it come from one reduction by multiples
+of pi/2, whose leading 33 bits make the product exact (W. J. Cody and W. Waite, Software Manual for the
+Elementary Functions, Prentice-Hall 1980), and their Taylor sums on |x| <= pi/4; the exponential likewise on
 |x| <= ln 2/2.
 """
 

@@ -1,9 +1,9 @@
 """`Motion`: the numbers of one impact oscillator, as kernels see them.
 
 All that flights, touches and orbits need stands in one container: scalars, and one table with the modes as
-columns, filled up to a multiple of eight with modes that stay zero, so that a processor carries several in one
-instruction.  (A table instead of a dozen arrays: to hand those on to a kernel takes several times as long as to
-carry eight modes.)  Its equations are those of ``contact.flight.modal_flow``.
+columns, filled up to a multiple of eight with modes that stay zero, so that a processor carries several in
+one instruction.  (A table instead of a dozen arrays: to hand those on to a kernel takes several times as long
+as to carry eight modes.)  Its equations are those of ``contact.flight.modal_flow``.
 """
 
 # mypy: allow-untyped-defs, allow-incomplete-defs
@@ -74,15 +74,50 @@ class Motion(NamedTuple):
         """A row of the table, shape (n_modes,)."""
         return self.modes[row, : self.size]
 
-    omega = property(lambda self: self.row(OMEGA), doc="omega [rad/s], shape (n_modes,)")
-    decay = property(lambda self: self.row(DECAY), doc="c [1/s], shape (n_modes,)")
-    phi = property(lambda self: self.row(WEIGHT), doc="phi [kg^-0.5], shape (n_modes,)")
-    load = property(lambda self: self.row(LOAD), doc="g of the modes of zero frequency, shape (n_modes,)")
-    sine = property(lambda self: self.row(SINE), doc="S [m kg^0.5], shape (n_modes,)")
-    cosine = property(lambda self: self.row(COSINE), doc="C [m kg^0.5], shape (n_modes,)")
-    offset = property(lambda self: self.row(OFFSET), doc="g/omega^2 [m kg^0.5], shape (n_modes,)")
-    damped = property(lambda self: self.row(DAMPED), doc="d [rad/s], shape (n_modes,)")
-    damped_low = property(lambda self: self.row(LOW), doc="the rest of d [rad/s], shape (n_modes,)")
+    @property
+    def omega(self) -> np.ndarray:
+        """omega [rad/s], shape (n_modes,)."""
+        return self.row(OMEGA)
+
+    @property
+    def decay(self) -> np.ndarray:
+        """c [1/s], shape (n_modes,)."""
+        return self.row(DECAY)
+
+    @property
+    def phi(self) -> np.ndarray:
+        """phi [kg^-0.5], shape (n_modes,)."""
+        return self.row(WEIGHT)
+
+    @property
+    def load(self) -> np.ndarray:
+        """g of the modes of zero frequency [N kg^-0.5], shape (n_modes,)."""
+        return self.row(LOAD)
+
+    @property
+    def sine(self) -> np.ndarray:
+        """S [m kg^0.5], shape (n_modes,)."""
+        return self.row(SINE)
+
+    @property
+    def cosine(self) -> np.ndarray:
+        """C [m kg^0.5], shape (n_modes,)."""
+        return self.row(COSINE)
+
+    @property
+    def offset(self) -> np.ndarray:
+        """g/omega^2 [m kg^0.5], shape (n_modes,)."""
+        return self.row(OFFSET)
+
+    @property
+    def damped(self) -> np.ndarray:
+        """d [rad/s], shape (n_modes,)."""
+        return self.row(DAMPED)
+
+    @property
+    def damped_low(self) -> np.ndarray:
+        """What the double d leaves of it [rad/s], shape (n_modes,)."""
+        return self.row(LOW)
 
 
 def motion_of(
@@ -141,9 +176,9 @@ def with_drive(motion, factor):
         modes[COSINE, k] *= factor
     m = motion
     return Motion(
-        modes, m.size, m.level, m.tip_sine * factor, m.tip_cosine * factor, m.amplitude * abs(factor), m.drive,
-        m.period, m.gap, m.compliance, m.steady_energy * factor * factor, m.law, m.number0, m.number1, m.plain,
-        m.phase_rate, m.fastest, m.table,
+        modes, m.size, m.level, m.tip_sine * factor, m.tip_cosine * factor, m.amplitude * abs(factor),
+        m.drive, m.period, m.gap, m.compliance, m.steady_energy * factor * factor, m.law, m.number0,
+        m.number1, m.plain, m.phase_rate, m.fastest, m.table,
     )  # fmt: skip
 
 

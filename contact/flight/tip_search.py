@@ -36,8 +36,8 @@ def tip_at(motion, base, u, v, s):
 def find_root(motion, flight, base, point, bracket, m3, margin):
     """The root of the tip displacement in the `bracket`, where it rises from below to above zero [s].
 
-    `point` is a time with the displacement and two derivatives there, where the search begins, and `m3` bounds
-    the third from the bracket's start on (or is infinite).
+    `point` is a time with the displacement and two derivatives there, where the search begins, and `m3`
+    bounds the third from the bracket's start on (or is infinite).
     """
     s, y0, y1, y2 = point
     low, high = bracket

@@ -1,7 +1,7 @@
 """Methods for the motion with contacts, one a file; ``INTEGRATORS`` lists them by name.
 
-``Exact`` takes no step; by name it is "event-driven", "piecewise-linear" or "contact-series" as well, as it is
-known with an impact law, a linear contact and Hertz's law.  ``SampledFlight`` is exact but for the touches
+``Exact`` takes no step; by name it is "event-driven", "piecewise-linear" or "contact-series" as well, as it
+is known with an impact law, a linear contact and Hertz's law.  ``SampledFlight`` is exact but for the touches
 that it misses (letter 1996, note [11]).  The others are made with a step, ``CentralDifference(step=1e-6)``,
 and refuse one beyond their limit of stability.
 """

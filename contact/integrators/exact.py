@@ -1,11 +1,11 @@
 """Exact motion under any contact law, event by event.
 
 Between touches every mode has a closed form (``contact.flight``), and the next touch is found by a certified
-search.  An impact law acts at once, accumulating impacts are summed to the end and followed by the stay on the
-stop (event-driven); a force law is followed through the contact by a power series to rounding, in time where
-the force is linear (piecewise-linear), else in a variable in which it is smooth (contact series)
-(``contact.touch``).  Nothing is discretised: the error is that of rounding, and there is no step that could be
-too large.
+search.  An impact law acts at once, accumulating impacts are summed to the end and followed by the stay on
+the stop (event-driven); a force law is followed through the contact by a power series to rounding, in time
+where the force is linear (piecewise-linear), else in a variable in which it is smooth (contact series)
+(``contact.touch``).  Nothing is discretised: the error is that of rounding, and there is no step that could
+be too large.
 """
 
 from __future__ import annotations
@@ -40,8 +40,8 @@ class Exact(Integrator):
     accuracy: ClassVar[float] = 1e-12
     limit: ClassVar[str] = "none"
     source: ClassVar[str] = (
-        "flights in closed form as in the letter (1996), note [11]; S. W. Shaw, P. J. Holmes, J. Sound Vib. 90 "
-        "(1983) 129, for a linear stop; the search and the series are the package's own"
+        "flights in closed form as in the letter (1996), note [11], a linear stop as in S. W. Shaw, P. J. "
+        "Holmes, J. Sound Vib. 90 (1983) 129; the search and the series are the package's own"
     )
 
     def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:

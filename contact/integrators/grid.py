@@ -1,8 +1,8 @@
 """The grid points of a run with a time step, and what is written down between them.
 
 A touch is seen if the penetration is positive at a grid point: whatever lies between two of them is missed,
-as the method misses it.  What lies between two grid points is told by the method (`recording`); most take a mode
-there for the cubic through its displacements and velocities at both ends of the step,
+as the method misses it.  What lies between two grid points is told by the method (`recording`); most take a
+mode there for the cubic through its displacements and velocities at both ends of the step,
 
     q(s) = H00 q0 + H10 h v0 + H01 q1 + H11 h v1,
 
@@ -32,8 +32,8 @@ from contact.recorder import (
 )
 from contact.trajectory import IMPACT
 
-__all__ = ["DIVERGED", "DONE", "FULL", "PLACE", "TOO_LARGE", "Grid", "begin_step", "end_contact_step", "end_step",
-           "passes", "record_times", "recording"]  # fmt: skip
+__all__ = ["DIVERGED", "DONE", "FULL", "PLACE", "TOO_LARGE", "Grid", "begin_step", "end_contact_step",
+           "end_step", "passes", "record_times", "recording"]  # fmt: skip
 
 DONE, FULL, TOO_LARGE, DIVERGED = 0, 1, 2, 3
 """How a step or a run ends: well; with a full log; at a contact too stiff for the step; with a motion that is

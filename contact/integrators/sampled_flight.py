@@ -13,10 +13,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from numbers import Integral
 from typing import ClassVar
 
-from beam.parameters import shown
+from beam.parameters import require_whole
 from contact.exact_run import exact_trajectory
 from contact.integrators.exact import Exact
 from contact.integrators.method import Integrator
@@ -50,12 +49,8 @@ class SampledFlight(Integrator):
     source: ClassVar[str] = "the letter (1996), note [11]"
 
     def __post_init__(self) -> None:
-        whole = isinstance(self.points, Integral) and not isinstance(self.points, bool)
-        if not (whole and 0 < self.points <= MOST_POINTS):
-            raise ValueError(
-                f"points is {shown(self.points)}; it must be a whole number of samples per drive period "
-                f"above zero, at most {MOST_POINTS}"
-            )
+        points = require_whole("points", self.points, "samples per drive period", high=MOST_POINTS)
+        object.__setattr__(self, "points", points)
 
     def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
         """The motion of `run`, exact to rounding if no crossing is missed."""

@@ -13,8 +13,8 @@ and the steady motion has to make up the rest of gap and velocity: with p = phi 
 is the square of the steady tip amplitude, so that F/F_g - 1 = A/gap - 1.  The orbit ends (fold) where A(v) is
 smallest.  With Newton's law B is proportional to v and the result exact (``contact.orbits.single_impact``).
 
-``DelayedRestitution`` (one mode, ``contact.touch.delayed``) has its orbits in closed form.  With (p, r) the steady
-tip displacement and velocity at the touch, R their turn by the angle w delta and N the free flow over
+``DelayedRestitution`` (one mode, ``contact.touch.delayed``) has its orbits in closed form.  With (p, r) the
+steady tip displacement and velocity at the touch, R their turn by the angle w delta and N the free flow over
 m/f - delta, the tip leaves with the deviation (gap, -tau v) - R (p, r) and comes back with (gap, v) - (p, r):
 
     (I - N R) (p, r) = (gap, v) - N (gap, -tau v),      A(v)^2 = p^2 + (r/(2 pi f))^2.
@@ -40,9 +40,9 @@ from contact.flight.crossing import CROSSES, first_crossing
 from contact.flight.motion import Motion
 from contact.laws import DELAYED
 from contact.orbits.driven_modes import SINGULAR, modal_flow
-from contact.orbits.touch_flow import FLOWN, flow_from_touch
 from contact.oscillator import ImpactOscillator
 from contact.touch.delayed import numbers_at
+from contact.touch_flow import FLOWN, flow_from_touch
 
 __all__ = ["Kick", "KickFamily", "KickOrbit"]
 

@@ -1,18 +1,9 @@
-r"""Multipliers of an orbit with one impact under Newton's law: the saltation matrix.
+"""Multipliers of an orbit with one impact: the free flow of all modes after a saltation matrix.
 
-An orbit beside this one meets the wall at another time. To first order its distance
-(dq, dq') at the impact is multiplied by the saltation matrix
-
-    S = [[1, 0], [0, P]] + [-(1 + e) phi/sum phi^2; (a+ - P a-)/v] (phi, 0)^T,
-    P = 1 - (1 + e) phi phi^T/sum phi^2
-
-with the modal accelerations a-, a+ before and after, which include the drive: the column is the mismatch of
-the motions on both sides, in q and in q'. The multipliers are the eigenvalues of Phi S, Phi the free flow of
-all modes over m/f. For one mode det(Phi S) = e^2 G. The eigenvalues of P are 1 and
--e, so that det S = e^2 for any number of modes.
-
-Sources: M. A. Aizerman and F. R. Gantmacher, Quart. J. Mech. Appl. Math. 11 (1958) 243; A. B. Nordmark,
-J. Sound Vib. 145 (1991) 279. Units: SI with mass-normalised modes (q in m kg^0.5).
+An orbit beside this one meets the wall at another time: to first order its distance (dq, dq') at the impact is
+multiplied by a saltation matrix S (under Newton's law that of ``contact.touch.newton``, of determinant e^2
+for any number of modes).  The multipliers are the eigenvalues of Phi S, Phi the free flow over m/f; for one
+mode det(Phi S) = e^2 G.  Units: SI with mass-normalised modes (q in m kg^0.5).
 """
 
 from __future__ import annotations
@@ -20,38 +11,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from beam.parameters import require, require_array, require_within
+from beam.parameters import require_array
 
-__all__ = ["monodromy", "newton_saltation", "sorted_multipliers"]
+__all__ = ["monodromy", "sorted_multipliers"]
 
 Array = NDArray[np.float64]
-
-
-def newton_saltation(phi: Array, restitution: float, before: Array, after: Array, speed: float) -> Array:
-    """S in (q, q') of all modes, shape (2 n_modes, 2 n_modes).
-
-    Parameters
-    ----------
-    phi : ndarray, shape (n_modes,)
-    restitution : float
-    before, after : ndarray, shape (n_modes,)
-        Modal accelerations just before and just after the impact [m kg^0.5/s^2].
-    speed : float
-        Approach speed v [m/s].
-    """
-    phi = require_array("phi", phi, "kg^-0.5", dimensions=1, words="a row of numbers")
-    before = require_array("before", before, "m kg^0.5/s^2", shape=phi.shape, words="a row of numbers")
-    after = require_array("after", after, "m kg^0.5/s^2", shape=phi.shape, words="a row of numbers")
-    require_within("restitution", restitution, "[1]", low=0, high=1)
-    require_within("speed", speed, "m/s", above=0)
-    require(bool(np.any(phi != 0.0)), "phi is zero in every mode; the tip must move in one of them")
-    n = phi.size
-    project = np.eye(n) - (1.0 + restitution) / (phi @ phi) * np.outer(phi, phi)
-    matrix = np.zeros((2 * n, 2 * n))
-    matrix[:n, :n] = project
-    matrix[n:, :n] = np.outer((after - project @ before) / speed, phi)
-    matrix[n:, n:] = project
-    return matrix
 
 
 def monodromy(flow: Array, saltation: Array) -> Array:

@@ -40,7 +40,8 @@ from numpy.typing import ArrayLike, NDArray
 from beam.parameters import require, require_array, require_within
 from contact.flight.crossing import CROSSES, FREE, first_crossing
 from contact.orbits.driven_modes import DrivenModes, modal_flow
-from contact.orbits.saltation import monodromy, newton_saltation, sorted_multipliers
+from contact.orbits.saltation import monodromy, sorted_multipliers
+from contact.touch import newton
 
 __all__ = ["MaximalFamily", "MaximalFlight", "SingleImpactOrbit", "modal_flow"]
 
@@ -126,15 +127,12 @@ class SingleImpactOrbit:
 
     def saltation(self) -> Array:
         """Saltation matrix of the impact in (q, q') of all modes, shape (2 n_modes, 2 n_modes)."""
-        family = self.family
-        phase = np.exp(1j * family.angular_frequency * self.flight.start)
-        steady = -family.angular_frequency**2 * self.amplitude * (family.response * phase).imag
-        pull = family.omega**2 * self.before[0]
-        before, after = (
-            steady - family.decay_rate * velocity - pull
-            for velocity in (self.before[1], self.flight.velocity)
-        )
-        return newton_saltation(family.phi, family.restitution, before, after, self.speed)
+        family, flight, size = self.family, self.flight, 2 * self.family.size
+        motion, tangent = family.motion(self.amplitude), np.eye(size + 2)
+        before = (flight.start, self.before[0].copy(), self.before[1].copy())
+        after = (flight.start, flight.displacement, flight.velocity)
+        newton.saltation(motion, family.tip_response, before, after, tangent)
+        return tangent[:size, :size]
 
     def monodromy(self) -> Array:
         """Derivative of the motion over m/f, from just before an impact to just before the next, Phi S."""

@@ -1,35 +1,38 @@
 """In touch with the stop: one file a law, chosen by the table at the end of this one.
 
 How to add a law, say N = k d^3
-    1. Its parameters: a frozen dataclass that is a ``contact.laws.ContactLaw``, with a `code` that no other has
-       and its `numbers`.
-    2. Its file here, with the functions below.  A force that has a power series in time takes all but four of
-       them from ``contact.touch.time_series``: it fills N[n] from d[0] ... d[n + 1] (for the cube by two
-       products of series), calls `extend` for the next order, and asks `longest_step` how far the series holds.
-       A force with a root at d = 0 needs a variable in which it has none: ``contact.touch.hertz``.
+    1. Its parameters: a frozen dataclass that is a ``contact.laws.ContactLaw``, with a `code` that no other
+       has and its `numbers`.
+    2. Its file here, with the names below.  A force that has a power series in time takes most of them from
+       ``contact.touch.time_series``: it fills N[n] from d[0] ... d[n] (for the cube by two products of
+       series), calls `extend` for the next order, and asks `longest_step` how far the series holds.  One
+       with a root at d = 0 needs a variable in which it has none: ``contact.touch.hertz``.
     3. Its line in `TOUCHES`.
     4. A test: the contact of a free mass conserves energy, and agrees with an outside solver.
 
-What a file offers; `motion` is the oscillator, `run` where it stands (``contact.event_loop.STATE``), (u, v) its
-deviations, overwritten where they move, `series` the room of one step
-    REGIMES                                            where the tip can be: ``contact.trajectory.Regime``
-    room(motion) -> order, columns                     size of that room
-    strike(motion, run, u, v, approach)                what the touch does at once:
-        -> regime, rebound, loss                       the regime that follows, tip velocity after it [m/s], NaN
-                                                       if that is not known yet, energy [J]
-    step(motion, run, u, v, limit, series)             the series from (u, v), and a step of at most `limit` [s]:
-        -> s, h, regime                                its length in the law's own variable and in time, and the
-                                                       regime that follows; NaN if the series gives no step
-    place(motion, t, s, series) -> s                   where in a step up to s a time t [s] lies
-    state(motion, run, s, series, u, v)                (u, v) there
-    work(motion, run, s, series) -> J                  what the stop has taken up to there
-    leave(motion, run, u, v)                           the release: run.order, how many derivatives of d vanish
-    force(numbers, d, d') -> N                         for the methods with a time step, at d >= 0
+What a file offers.  `motion` is the oscillator, `run` where it stands (``contact.event_loop.STATE``), (u, v)
+its deviations, `series` the room of one step.
+    REGIMES                                   where the tip can be: ``contact.trajectory.Regime``
+    room(motion) -> order, columns            size of the room of a step
+    strike(motion, run, u, v, approach) -> regime, rebound, loss
+                                              what the touch does at once: the regime that follows, the tip
+                                              velocity after it (NaN if not known yet) [m/s], energy lost [J]
+    step(motion, run, u, v, limit, series) -> s, h, regime
+                                              the series from (u, v), and a step of at most `limit` [s]: its
+                                              length in the law's own variable and in time, and the regime
+                                              that follows; NaN if the series gives no step
+    place(motion, t, s, series) -> s          where in a step up to s a time t [s] lies
+    state(motion, run, s, series, u, v)       puts the deviations there into (u, v)
+    work(motion, run, s, series) -> energy    what the stop has taken up to there [J]
+    leave(motion, run, u, v)                  the release: run.order, how many derivatives of d vanish
+    force(numbers, d, d') -> N                for the methods with a time step, at d >= 0
     stiffness(numbers, d, d') -> dN/dd, dN/dd'
-    slopes(motion, run, series, weights) -> terms      for the tangents: series of dt/ds, dN/dd dt/ds and
-                                                       dN/dd' dt/ds in three rows, and how many terms they have
-    saltation(motion, response, before, after, tangent)  for the tangents: what the touch does besides; before
-                                                       and after it, drive time, u and v
+    slopes(motion, run, series, weights) -> terms
+                                              for the tangents: the series of dt/ds, dN/dd dt/ds and dN/dd'
+                                              dt/ds in three rows, and how many terms they have
+    saltation(motion, response, before, after, tangent)
+                                              for the tangents: what the touch does besides; (drive time, u,
+                                              v) before and after it
 
 A code that no file has is an error wherever a law is asked for.  Compiled code takes no functions as
 arguments: `by_law` links the files of the table into one kernel for each function.
@@ -45,8 +48,8 @@ from contact.compiled import inlined
 from contact.laws import DELAYED, HERTZ, LINEAR, NEWTON
 from contact.touch import delayed, hertz, linear, newton
 
-__all__ = ["TOUCHES", "force", "leave", "place", "room", "saltation", "slopes", "state", "step", "stiffness", "strike",
-           "work"]  # fmt: skip
+__all__ = ["TOUCHES", "force", "leave", "place", "room", "saltation", "slopes", "state", "step", "stiffness",
+           "strike", "work"]  # fmt: skip
 
 TOUCHES = {NEWTON: newton, DELAYED: delayed, LINEAR: linear, HERTZ: hertz}
 """The file of each law by its code."""
@@ -77,6 +80,7 @@ def by_law(name: str) -> Callable[..., Any]:
 room, strike, step, place, state, work, leave, force, stiffness, slopes, saltation = (
     by_law(name)
     for name in (
-        "room", "strike", "step", "place", "state", "work", "leave", "force", "stiffness", "slopes", "saltation"
+        "room", "strike", "step", "place", "state", "work", "leave", "force", "stiffness", "slopes",
+        "saltation",
     )
 )

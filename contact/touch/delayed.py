@@ -1,7 +1,7 @@
 """A rebound that waits: the tip stays on the wall for a time, then leaves (``DelayedRestitution``).
 
-One mode, met at time t with approach velocity v = y'(t) > 0, tau and delta the law's two numbers at this speed,
-sampled in a table with their slopes.  At t + delta the tip, y = phi u + a S + b C + level, has
+One mode, met at time t with approach velocity v = y'(t) > 0, tau and delta the law's two numbers at this
+speed, sampled in a table with their slopes.  At t + delta the tip, y = phi u + a S + b C + level, has
 
     y = 0,      y' = -tau(v) v,
 
@@ -14,7 +14,8 @@ t + delta, its tip there differs by
 
     reach -> tau v d,      rate -> -(tau + tau' v) dv - y''(t + delta) d,
 
-the saltation matrix of this law, of determinant tau (tau + tau' v); without delay and slopes that of Newton's.
+the saltation matrix of this law, of determinant tau (tau + tau' v); without delay and slopes that of
+Newton's.
 """
 
 # mypy: allow-untyped-defs, allow-incomplete-defs

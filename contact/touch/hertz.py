@@ -1,7 +1,7 @@
 """A ball on a plate: N = k d^(3/2) (1 + chi d') for d > 0 (``HertzContact``; ``HuntCrossley`` for chi > 0).
 
-The force has no Taylor series at the touch d = 0, where every contact begins and ends.  With r = sqrt(d) as an
-unknown of its own and a variable sigma that runs slowly while the contact is shallow,
+The force has no Taylor series at the touch d = 0, where every contact begins and ends.  With r = sqrt(d) as
+an unknown of its own and a variable sigma that runs slowly while the contact is shallow,
 
     dt/dsigma = r,  dr/dsigma = d'/2,  du/dsigma = r v,  dv/dsigma = r (g - c v - omega^2 u) - phi r N,
     dd/dsigma = r d',  r N = k (r^4 + chi r^4 d'),  d' = sum phi v + x_s'(t),
@@ -36,12 +36,13 @@ from contact.touch.series import enter, leave, reach, saltation, within_force
 from contact.trajectory import CONTACT, OUTSIDE
 from contact.vector_loops import LANES, next_modes, weighted_rows
 
-__all__ = ["REGIMES", "force", "leave", "place", "room", "saltation", "slopes", "state", "step", "stiffness", "strike", "work"]
+__all__ = ["REGIMES", "force", "leave", "place", "room", "saltation", "slopes", "state", "step", "stiffness",
+"strike", "work"]
 
 REGIMES = (OUTSIDE, CONTACT)
 
 ORDER = 20
-"""Order of the series in sigma; even.  The cost per unit of time is flat to ten per cent between 16 and 24."""
+"""Order of the series in sigma, even: the cost per unit of time is flat to ten per cent from 16 to 24."""
 
 TOLERANCE = 1e-15
 """Size of the last terms of a step, relative to the modal speeds: at the rounding of the sum of all terms."""

@@ -1,8 +1,8 @@
 """A linear stop: N = max(0, k d + c d') for d > 0 (``LinearContact``).
 
-With a dashpot the force vanishes before the tip has left the wall: the contact lets go inside (regime INSIDE),
-where the tip moves freely until it pushes again or leaves.  The series is that of ``contact.touch.time_series``
-with
+With a dashpot the force vanishes before the tip has left the wall: the contact lets go inside (regime
+INSIDE), where the tip moves freely until it pushes again or leaves.  The series is that of
+``contact.touch.time_series`` with
 
     N[n] = k d[n] + c (n+1) d[n+1].
 
@@ -24,7 +24,8 @@ from contact.touch.series import enter, leave, saltation
 from contact.touch.time_series import DEPTH, FORCE, begin, extend, longest_step, negative
 from contact.trajectory import CONTACT, INSIDE, OUTSIDE
 
-__all__ = ["REGIMES", "enter", "force", "leave", "place", "room", "saltation", "slopes", "state", "step", "stiffness", "work"]
+__all__ = ["REGIMES", "enter", "force", "leave", "place", "room", "saltation", "slopes", "state", "step",
+"stiffness", "work"]
 
 REGIMES = (OUTSIDE, CONTACT, INSIDE)
 

@@ -6,9 +6,9 @@ The impulse of the stop acts on the tip alone, so that the modal velocities jump
 
 which sends the tip velocity x' to -e x' (``NewtonRestitution``).  After an impact that leaves the tip with
 velocity -w while it is accelerated towards the wall with a > 0, the next flights last 2w/a, 2ew/a, ...: their
-sum 2w/(a(1 - e)) is finite, and when a hop has become so low that its height drowns in rounding the rest of the
-sequence is taken in one step.  Then the tip stays on the wall (regime SUSTAINED), held by the force that makes
-d'' = 0, until that force would pull; the series is that of ``contact.touch.time_series``.
+sum 2w/(a(1 - e)) is finite, and when a hop has become so low that its height drowns in rounding the rest of
+the sequence is taken in one step.  Then the tip stays on the wall (regime SUSTAINED), held by the force that
+makes d'' = 0, until that force would pull; the series is that of ``contact.touch.time_series``.
 """
 
 # mypy: allow-untyped-defs, allow-incomplete-defs
@@ -25,7 +25,8 @@ from contact.touch import time_series
 from contact.touch.time_series import FORCE, begin, extend, free_pull, longest_step, negative
 from contact.trajectory import OUTSIDE, SUSTAINED
 
-__all__ = ["REGIMES", "accumulation_time", "force", "hold", "leave", "lowest_hop", "newton_impact", "place", "room",
+__all__ = ["REGIMES", "accumulation_time", "force", "hold", "leave", "lowest_hop", "newton_impact", "place",
+"room",
            "saltation", "slopes", "state", "step", "stiffness", "strike", "work"]  # fmt: skip
 
 REGIMES = (OUTSIDE, SUSTAINED)
@@ -160,9 +161,9 @@ def leave(motion, run, u, v):
 
 @kernel
 def saltation(motion, response, before, after, tangent):
-    """The tangents over the impact: d -> R d + (R f - f') (-y(d)/v), R the reflection of the tip velocity, f and
-    f' the velocity of the flow before and after (M. A. Aizerman, F. R. Gantmacher, Quart. J. Mech. Appl. Math.
-    11 (1958) 243; A. B. Nordmark, J. Sound Vib. 145 (1991) 279)."""
+    """The tangents over the impact: d -> R d + (R f - f') (-y(d)/v), R the reflection of the tip velocity, f
+    and f' the velocity of the flow before and after (M. A. Aizerman, F. R. Gantmacher, Quart. J. Mech. Appl.
+    Math. 11 (1958) 243; A. B. Nordmark, J. Sound Vib. 145 (1991) 279)."""
     n, w, a, b, modes = motion.size, motion.drive, response.real, response.imag, motion.modes
     clock, u, v = before
     rebound = after[2]

@@ -5,8 +5,8 @@ While the tip is in contact all modes are coupled through one number, the contac
     u_k'' = -c_k u_k' - omega_k^2 u_k + g_k - phi_k N(d, d'),   d(t) = sum_k phi_k u_k + x_s(t) - gap.
 
 The coefficients of a series follow from each other at a cost proportional to the number of modes, without
-eigenvectors and so without their ill-conditioning for repeated or critically damped ones.  A step is as long as
-the last terms stay below rounding, so that only rounding error remains.
+eigenvectors and so without their ill-conditioning for repeated or critically damped ones.  A step is as long
+as the last terms stay below rounding, so that only rounding error remains.
 
 A law may leave out orders: under N = k d^3 a free mass has but every fourth.  Modes of their own fill every
 second order at least, and the force moves all of them by the one series N, so that the last orders of N tell

@@ -1,16 +1,17 @@
 """How a motion in touch changes with its start: further columns of the contact's own series.
 
-The drive is carried along as two more coordinates, S = Z sin(w t) and C = Z cos(w t), so that the motion is an
-autonomous flow of e = (u, v, S, C), 2 N + 2 numbers.  The tip is at
+The drive is carried along as two more coordinates, S = Z sin(w t) and C = Z cos(w t), so that the motion is
+an autonomous flow of e = (u, v, S, C), 2 N + 2 numbers.  The tip is at
 
     y(e) = phi . u + a S + b C + level,      a + i b the tip response per unit base amplitude.
 
-A tangent d = de(t)/de(0) is a column of a (2 N + 2) x (2 N + 2) matrix.  In the variable s of the law's series
+A tangent d = de(t)/de(0) is a column of a (2 N + 2) x (2 N + 2) matrix.  In the variable s of the law's
+series
 
     du = r v,   dv = r (-c v - omega^2 u) - phi (r N_d y(d) + r N_d' y'(d)),   dS = r w C,   dC = -r w S
 
-with r = dt/ds: the sums over earlier orders, sum_j r_(n-j) x_j, are those of the motion itself, and the series
-of r, r N_d and r N_d' are all that a law has to give (`slopes`).
+with r = dt/ds: the sums over earlier orders, sum_j r_(n-j) x_j, are those of the motion itself, and the
+series of r, r N_d and r N_d' are all that a law has to give (`slopes`).
 """
 
 # mypy: allow-untyped-defs, allow-incomplete-defs
@@ -33,8 +34,8 @@ class TangentRoom(NamedTuple):
     """Room for the series of all tangents.
 
     rows : ndarray, shape (order + 1, (2 n_modes + 2) m)
-        Row n holds the coefficients of order n: the rows of the matrix one after the other, each filled up to a
-        multiple of eight numbers, m.
+        Row n holds the coefficients of order n: the rows of the matrix one after the other, each filled up to
+        a multiple of eight numbers, m.
     sums : ndarray, shape ((2 n_modes + 2) m,)
     height, rate : ndarray, shape (order + 1, m)
         y and y' of all tangents.
@@ -92,6 +93,8 @@ def onset(motion, response, force, approach, tangent):
     Gantmacher; R. I. Leine, H. Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems, 2004,
     ch. 7)."""
     n, phi = motion.size, motion.modes[WEIGHT]
+    if force == 0.0:
+        return
     for j in range(2 * n + 2):
         reach = response.real * tangent[2 * n, j] + response.imag * tangent[2 * n + 1, j]
         for k in range(n):

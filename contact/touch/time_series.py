@@ -3,9 +3,9 @@
     u[n+2] = ( g - c (n+1) u[n+1] - omega^2 u[n] - phi N[n] ) / ((n+1)(n+2))      (g for n = 0 only)
 
 A law fills N[n] from d[n] and d[n+1] and lets `extend` find the next order of all modes, eight at a time
-(``contact.vector_loops``): cost per step, modes times the order.  With order 30 a step takes some three radians
-of the fastest mode.  Terms then reach e^3 times the sum, which costs a digit in a mode that fast and nothing in
-the others; a higher order would take longer steps for less work and lose more.
+(``contact.vector_loops``): cost per step, modes times the order.  With order 30 a step takes some three
+radians of the fastest mode.  Terms then reach e^3 times the sum, which costs a digit in a mode that fast and
+nothing in the others; a higher order would take longer steps for less work and lose more.
 """
 
 # mypy: allow-untyped-defs, allow-incomplete-defs

@@ -2,8 +2,8 @@
 
 Starting at a touch, y = 0, the flow runs through a given number of contacts and then freely to the end of m
 drive periods, the wall ignored after the last of them: it is therefore smooth in the start right through
-grazing, where the strobe map has its square root.  Amplitude and phase of the drive are ordinary initial values
-(``contact.touch.tangents``).  Flights and touches are those of the simulation (``contact.flight``,
+grazing, where the strobe map has its square root.  Amplitude and phase of the drive are ordinary initial
+values (``contact.touch.tangents``).  Flights and touches are those of the simulation (``contact.flight``,
 ``contact.touch``); the tangents go through flights with the flows of the modes, through contacts with their
 series, and through what happens at once by saltation matrices.
 """
@@ -92,9 +92,9 @@ def flow_from_touch(motion, response, base, u, v, duration, tangent, record):
     tangent : ndarray, shape (2 n_modes + 2, 2 n_modes + 2), or (0, 0)
         The unit matrix on entry; overwritten by the derivatives of (u, v, S, C).
     record : ndarray, shape (touches, 4 + 2 n_modes)
-        Its length tells how many contacts to go through; in the last flight the wall is ignored.  Results: start
-        and end of each contact since the first touch [s], approach and rebound velocity [m/s], deviations
-        (u, v) at its end.  The rebound velocity is zero only after an impact that gives none.
+        Its length tells how many contacts to go through; in the last flight the wall is ignored.  Results:
+        start and end of each contact since the first touch [s], approach and rebound velocity [m/s],
+        deviations (u, v) at its end.  The rebound velocity is zero only after an impact that gives none.
 
     Returns
     -------
