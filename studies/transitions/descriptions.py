@@ -159,9 +159,12 @@ def exact_ends(
 
 
 def scans(scene: Scene, row: Row, model: ModalModel, full: bool) -> Scans:
-    """Upward and downward scan of each description, in proportion to the largest hysteresis found."""
+    """Upward and downward scan of each description, in proportion to the largest hysteresis found.
+
+    That is taken to two digits, so that the last bit of an end moves no amplitude, and none lies on a fold.
+    """
     scan, found = scene.scan, {}
-    reach = max(*map(abs, row.ends()), scan.narrowest, scan.narrowest)
+    reach = float(f"{max([*map(abs, row.ends()), scan.narrowest]):.2g}")
     values = np.linspace(-scan.reach_below * reach, scan.reach_above * reach, scan.points)
     for name, entry in describe(scene, row.frequency_hz, model).items():
 
