@@ -48,13 +48,15 @@ seen."""
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FilmedOrbit:
-    """What a film shows: `run` at the frames, `line` at even times, `strobes`; `contacts` begin and end [s].
+    """What a film shows from the strobe at `begin` [s] on: `run` at the frames, `line` at even times,
+    `strobes`; `contacts` begin and end [s].
 
     `slowed` is how many times slower than life each frame is shown [1]; `base` [m] and `force` [N] at the
     frames.
     """
 
     period: int
+    begin: float
     duration: float
     run: Trajectory
     line: Trajectory
@@ -104,6 +106,7 @@ def film_orbit(
     assert oscillator.drive is not None
     return FilmedOrbit(
         period=period,
+        begin=begin,
         duration=duration,
         run=run,
         line=at(np.linspace(0.0, duration, length * LINE_POINTS + 1, dtype=np.float64)),

@@ -28,7 +28,13 @@ SMALLER = {"motion": ["--frames", "16", "--renderer", "matplotlib"], "chart": ["
            "calibrate": ["--set", "modes.count=4", "--set", "spring.elements_per_leg=12"]}  # fmt: skip
 
 
-@pytest.mark.parametrize("name", ON_THE_FRAME)
+#: A fit takes hundreds of meshes.
+SLOW = ("calibrate",)
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ()) for name in ON_THE_FRAME]
+)
 def test_the_small_form_runs_and_leaves_a_table_a_figure_and_a_summary(run_study, name):
     ran = run_study(name, "--quick", "--json", *SMALLER.get(name, ()))
     assert ran.code == 0, ran.err
