@@ -105,15 +105,13 @@ def sensitivity(
     run.figure("fold_against_parameter", figure.draw_tornado(rows), figure.TORNADO)
     run.figure("noise", figure.draw_noise(single), figure.NOISE)
     run.figure("strobe_points", figure.draw_points(beam, arrays), figure.POINTS)
-    merged = {kind: first_m(single, kind, merges) for kind in KINDS}
-    judge(run, merged)
+    first = firsts(single)
+    judge(run, first["first_period_with_merged_points"])
     return {
         "rows": rows,
         "noise": single + beam,
         "last_frequency": last,
-        "first_period_with_merged_points": merged,
-        "first_period_that_noise_breaks": {kind: first_m(single, kind, breaks) for kind in KINDS},
-        "first_period_with_hysteresis_below_noise": first_m(single, KINDS[0], hides),
+        **first,
         "frequencies_with_hysteresis_below_noise_hz": [
             row.frequency_hz for row in base if row.m > 1 and abs(row.fold_beam or 0.0) < AMPLITUDE_STABILITY
         ],
@@ -158,24 +156,19 @@ def at_last(scene: Scene, model: ModalModel, base: Row, name: str) -> LastFreque
                          letters_period_born_from=first_birth(strobed, HIGHEST))  # fmt: skip
 
 
-def merges(found: Clouds) -> bool:
-    """Whether the closest strobe points run into one another."""
-    return (found.told_apart or 0.0) < 1.0
-
-
-def breaks(found: Clouds) -> bool:
-    """Whether noise breaks the order of the impacts."""
-    return found.regular < IRREGULAR
-
-
-def hides(found: Clouds) -> bool:
-    """Whether the hysteresis is smaller than the noise."""
-    return found.fold is not None and abs(found.fold) < AMPLITUDE_STABILITY
-
-
-def first_m(found: Sequence[Clouds], kind: str, says: Callable[[Clouds], bool]) -> int | None:
-    """The first period in this kind of noise of which this holds."""
-    return next((clouds.m for clouds in found if clouds.noise == kind and says(clouds)), None)
+def firsts(single: Sequence[Clouds]) -> dict[str, dict[str, int | None]]:
+    """By kind of noise the first period whose closest strobe points run into one another, whose order of
+    impacts is lost, and whose hysteresis is smaller than the noise."""
+    says: dict[str, Callable[[Clouds], bool]] = {
+        "first_period_with_merged_points": lambda row: (row.told_apart or 0.0) < 1.0,
+        "first_period_that_noise_breaks": lambda row: row.regular < IRREGULAR,
+        "first_period_with_hysteresis_below_noise": lambda row: abs(row.fold or 1.0) < AMPLITUDE_STABILITY,
+    }
+    by_kind = {kind: [row for row in single if row.noise == kind] for kind in KINDS}
+    return {
+        name: {kind: next((row.m for row in rows if holds(row)), None) for kind, rows in by_kind.items()}
+        for name, holds in says.items()
+    }
 
 
 def judge(run: Run, merged: Mapping[str, int | None]) -> None:

@@ -183,7 +183,7 @@ def test_small_form(run_study):
     ran = run_study("sensitivity", "--quick", "--set", "drive.frequencies_hz=[22.6, 23.4]")
     assert ran.code == 0 and len(ran.summary["rows"]) == 2 * (1 + 8)
     assert ran.summary["changes_that_give_the_letters_last_period"] == []
-    assert ran.summary["first_period_with_hysteresis_below_noise"] == 9
+    assert ran.summary["first_period_with_hysteresis_below_noise"]["jitter"] == 9
     assert ran.summary["verdicts"]["last_period"]["verdict"] == "agrees"
 
 
