@@ -46,17 +46,8 @@ from functools import partial
 from contact import ContactError
 from studies import letter
 from studies.calibration import Targets, bare_cantilever, with_mass_ratio
-from studies.effective_impact.cases import (
-    FULL,
-    HERTZ,
-    MASS_RATIOS,
-    QUICK,
-    SCENE_MASS,
-    Case,
-    Grid,
-    Spring,
-    cases_of,
-)
+from studies.effective_impact import cases
+from studies.effective_impact.cases import Case, Grid, Spring
 from studies.effective_impact.collision_rows import (
     Floor,
     Row,
@@ -64,6 +55,7 @@ from studies.effective_impact.collision_rows import (
     fade_of,
     floor_of,
     measure,
+    on_orbits,
     select,
     series_of,
     still_of,
@@ -94,7 +86,7 @@ def effective_impact(scene: Scene, run: Run) -> Mapping[str, object]:
         raise SceneError(
             "spring.kind modal_data has no tip mass to vary: this study needs a spring that is drawn"
         )
-    grid = QUICK if run.quick else FULL
+    grid = cases.QUICK if run.quick else cases.FULL
     frequency = min(scene.drive.frequencies_hz, key=lambda f: abs(f - Targets.frequency_hz))
     rows = measured(run, all_cases(run, scene, frequency, grid))
     run.table("collisions", rows, show=())
@@ -103,17 +95,19 @@ def effective_impact(scene: Scene, run: Run) -> Mapping[str, object]:
     floors = [floor for found in search if (floor := floor_of(found)) is not None]
     run.table("floors", floors, "Smallest restitution over the tip mass, by local restitution or hardness.")
     by_modes = [select(rows, "modes", name) for name in series_of(rows, "modes")]
-    still = [still_of(found, grid.modes) for found in by_modes]
+    still = [line for found in by_modes if (line := still_of(found, grid.modes)) is not None]
     run.table("modes_needed", still, "Number of modes from which on a series stands still.")
     by_speed = [select(rows, "speed", name) for name in series_of(rows, "speed")]
     fades = [fade for found in by_speed if (fade := fade_of(found, scene.scan.born_excess)) is not None]
     run.table("fading_kick", fades, "Where the kick fades towards grazing.")
     from studies.effective_impact.figure import DRAWN  # matplotlib is slow to import
 
-    for name, (figure, caption) in DRAWN.items():
-        run.figure(name, figure(rows), caption)
-    reference = next(row for row in by_modes[0] if row.modes == grid.modes)
-    judge(run, reference, on_orbits(rows), floors)
+    for draw in DRAWN:
+        run.figure(draw.__name__, draw(rows), " ".join((draw.__doc__ or "").split()))
+    reference = next((row for found in by_modes[:1] for row in found if row.modes == grid.modes), None)
+    elastic = [floor for floor in floors if (floor.curve, floor.value) == ("search", 1.0)]
+    if reference is not None and elastic:
+        judge(run, reference, on_orbits(rows), floors)
     return {
         "frequency_hz": frequency,
         "reference": reference,
@@ -121,8 +115,8 @@ def effective_impact(scene: Scene, run: Run) -> Mapping[str, object]:
         "floors": floors,
         "modes_needed": still,
         "fading_kick": fades,
-        "what_gives_the_letters_restitution": ways(rows, floors, reference),
-        "hardest_stop": select(rows, "stiffness", SCENE_MASS)[-1:],
+        "what_gives_the_letters_restitution": ways(rows, floors),
+        "hardest_stop": select(rows, "stiffness", cases.SCENE_MASS)[-1:],
         "closed_forms": closed_forms(rows),
     }
 
@@ -139,8 +133,8 @@ def all_cases(run: Run, scene: Scene, frequency: float, grid: Grid) -> list[Case
     }
     many = {name: Spring.of(make(), frequency, grid.check_modes) for name, make in springs.items()}
     of_mass = partial(spring_of_mass, scene, frequency, grid.modes)
-    masses = run.map(of_mass, MASS_RATIOS[:: grid.every], "springs")
-    return cases_of(Spring.of(scene, frequency, grid.modes), masses, many, grid)
+    masses = run.map(of_mass, cases.MASS_RATIOS[:: grid.every], "springs")
+    return cases.cases_of(Spring.of(scene, frequency, grid.modes), masses, many, grid)
 
 
 def spring_of_mass(scene: Scene, frequency: float, modes: int, ratio: float) -> Spring:
@@ -148,10 +142,10 @@ def spring_of_mass(scene: Scene, frequency: float, modes: int, ratio: float) -> 
     return Spring.of(with_mass_ratio(scene, ratio, frequency), frequency, modes)
 
 
-def measured(run: Run, cases: Sequence[Case]) -> list[Row]:
+def measured(run: Run, todo: Sequence[Case]) -> list[Row]:
     """The rows of the cases; one without a collision has failed."""
     rows = []
-    for case, found in zip(cases, run.map(tried, cases, "collisions"), strict=True):
+    for case, found in zip(todo, run.map(tried, todo, "collisions"), strict=True):
         if isinstance(found, Row):
             rows.append(found)
         else:
@@ -167,19 +161,13 @@ def tried(case: Case) -> Row | str:
         return str(error)
 
 
-def on_orbits(rows: Sequence[Row]) -> list[Row]:
-    """The collisions on settled orbits that belong to a peak of mode 1."""
-    settled = [row for row in select(rows, "orbit") if row.orbit_period and row.impacts]
-    return [row for row in settled if not row.forced_by_ringing]
-
-
-def ways(rows: Sequence[Row], floors: Sequence[Floor], reference: Row) -> Mapping[str, float]:
+def ways(rows: Sequence[Row], floors: Sequence[Floor]) -> Mapping[str, float]:
     """What would give the letter's restitution in a first collision at the excess of Fig. 4."""
     tau, hard = letter.RESTITUTION, [floor for floor in floors if floor.curve == "hardness"]
-    speed = [row for row in select(rows, "speed", HERTZ) if math.isfinite(row.restitution)]
+    speed = [row for row in select(rows, "speed", cases.HERTZ) if math.isfinite(row.restitution)]
     return {
         "hardness": crossing([floor.value for floor in hard], [floor.restitution for floor in hard], tau),
-        "contact_s": tau**2 * reference.arc_s,
+        "contact_s": tau**2 * next((row.arc_s for row in rows if row.curve == "search"), math.nan),
         "excess": crossing([row.excess for row in speed], [row.restitution for row in speed], tau),
     }
 
@@ -189,8 +177,8 @@ def closed_forms(rows: Sequence[Row]) -> Mapping[str, float]:
     kept = [row for row in rows if row.orbit_period is None and row.impacts == 1]
     kept = [row for row in kept if row.excess <= LEADING_ORDER]
     kept = [row for row in kept if math.isfinite(row.restitution) and math.isfinite(row.closed_restitution)]
-    tau = [abs(row.restitution - row.closed_restitution) for row in kept]
-    delay = [abs(row.delay_s - row.closed_delay_s) / row.arc_s for row in kept]
+    tau = [abs(row.restitution - row.closed_restitution) for row in kept] or [math.nan]
+    delay = [abs(row.delay_s - row.closed_delay_s) / row.arc_s for row in kept] or [math.nan]
     return {"collisions": len(kept), "restitution": max(tau), "delay_over_arc": max(delay)}
 
 

@@ -142,6 +142,12 @@ def series_of(rows: Sequence[Row], curve: str) -> list[str]:
     return list(dict.fromkeys(row.series for row in rows if row.curve == curve))
 
 
+def on_orbits(rows: Sequence[Row]) -> list[Row]:
+    """The collisions on settled orbits that belong to a peak of mode 1."""
+    settled = [row for row in select(rows, "orbit") if row.orbit_period and row.impacts]
+    return [row for row in settled if not row.forced_by_ringing]
+
+
 def crossing(x: Sequence[float], y: Sequence[float], level: float) -> float:
     """The first x at which y(x) goes through `level`, by a monotone spline in log x; NaN if it never does."""
     kept = [(math.log(a), b - level) for a, b in zip(x, y, strict=True) if a > 0.0 and math.isfinite(b)]
@@ -204,13 +210,15 @@ class Still:
     impacts_at_most: int
 
 
-def still_of(rows: Sequence[Row], modes: int) -> Still:
-    """`Still` of one series by rising number of modes, held against its result with `modes`.
+def still_of(rows: Sequence[Row], modes: int) -> Still | None:
+    """`Still` of one series by rising number of modes, held against its result with `modes`, if there is one.
 
     Results beyond have to agree as well: a slow drift passes for rest where it is compared with its own last
     step.
     """
-    last = next(row for row in rows if row.modes == modes)
+    last = next((row for row in rows if row.modes == modes), None)
+    if last is None:
+        return None
 
     def away(row: Row) -> float:
         off = [abs(row.restitution - last.restitution), abs(row.kick - last.kick),

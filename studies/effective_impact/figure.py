@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from studies import letter, plotting
-from studies.effective_impact.collision_rows import Row, select, series_of
+from studies.effective_impact.collision_rows import Row, on_orbits, select, series_of
 from studies.plotting import PAGE, PALETTE
 
 AXES = {
@@ -82,7 +82,8 @@ def closed(figure: Figure, axes: Sequence[Any], columns: int = 4, along: float =
 
 @plotting.in_house_style
 def speed(rows: Sequence[Row]) -> Figure:
-    """Against the excess."""
+    """Restitution, delay and kick against the excess above grazing. Kick and loss fade towards grazing, where
+    the contact takes longer than the arc beyond the plate; shaded: below the letter's amplitude stability."""
     figure, axes = panels(rows, "speed", plotting.EXCESS)
     hertz = select(rows, "speed", "Hertz")
     guide(axes[0], hertz, lambda row: math.sqrt(row.contact_s / row.arc_s), "√(contact time · a/v), Hertz")
@@ -99,18 +100,17 @@ def speed(rows: Sequence[Row]) -> Figure:
 
 @plotting.in_house_style
 def mass(rows: Sequence[Row]) -> Figure:
-    """Against the tip mass, first collisions and settled orbits."""
+    """The same against the mass of ball and mount. The restitution is smallest where the kick is near one;
+    crosses: collisions on settled orbits, bars on the axis: mode 1 does not come back to the gap."""
     shown = ("excess 0.0001", "excess 0.001", "excess 0.013", "excess 0.05")
     names = [name for name in series_of(rows, "mass") if name in shown]
     figure, axes = panels(rows, "mass", MASS, names=names, log=False)
     middle = select(rows, "mass", "excess 0.013")
     guide(axes[2], middle, lambda row: row.ball_limit, "2 M φ$_1^2$")
     guide(axes[1], middle, arc_ms, "arc v/a, excess 0.013", "-.")
-    settled = [row for row in select(rows, "orbit") if row.orbit_period and row.impacts]
-    orbits = [row for row in settled if not row.forced_by_ringing]
     looks = ((True, "x", "settled orbit, excess 0.013"), (False, "|", "the same, no return"))
     for returns, mark, name in looks:
-        chosen = [row for row in orbits if row.returns is returns]
+        chosen = [row for row in on_orbits(rows) if row.returns is returns]
         axes[0].plot(
             [row.value for row in chosen], [row.restitution if returns else 0.0 for row in chosen],
             linestyle="none", marker=mark, markersize=4.0, color=PALETTE[4], label=name, clip_on=False,
@@ -123,7 +123,8 @@ def mass(rows: Sequence[Row]) -> Figure:
 
 @plotting.in_house_style
 def modes(rows: Sequence[Row]) -> Figure:
-    """Against the number of modes."""
+    """The same against the number of modes kept, and the impacts in the collision. Springs that carry a ball
+    settle with some twenty modes; a bare tip needs more, and under Newton's law its impacts never settle."""
     figure, axes = panels(rows, "modes", "modes kept", shape=(2, 2), height=0.105)
     axes[3].set_yscale("log")
     axes[3].set_ylim(0.8, 200)
@@ -135,7 +136,8 @@ def modes(rows: Sequence[Row]) -> Figure:
 
 @plotting.in_house_style
 def stiffness(rows: Sequence[Row]) -> Figure:
-    """Against the stiffness of a linear contact; stars and crosses: balls under Hertz's law."""
+    """The same against the stiffness of the contact. The scene's restitution falls as the contact gets
+    harder, that of a bare tip does not."""
     figure, axes = panels(rows, "stiffness", "contact stiffness / tip stiffness")
     for ball, mark in zip(select(rows, "materials"), "dXP*", strict=False):
         for axis, (column, (_, _, factor)) in zip(axes, AXES.items(), strict=False):
@@ -151,19 +153,21 @@ def stiffness(rows: Sequence[Row]) -> Figure:
 
 @plotting.in_house_style
 def damping(rows: Sequence[Row]) -> Figure:
-    """Against the rates of the higher modes."""
+    """The same against the damping of the higher modes, by three rules of damping."""
     return closed(*panels(rows, "damping", "factor on the higher rates"), columns=3)
 
 
 @plotting.in_house_style
 def loss(rows: Sequence[Row]) -> Figure:
-    """Against the loss in the contact."""
+    """The same against the loss in the contact (1: none). With this ball more loss means a smaller kick, and
+    the restitution rises."""
     return closed(*panels(rows, "loss", "local restitution", log=False), along=0.02)
 
 
 @plotting.in_house_style
 def search(rows: Sequence[Row]) -> Figure:
-    """Restitution over tip mass: with loss in the contact, and with other hardness."""
+    """In search of the letter's restitution: loss in the contact (a) moves the minimum but not its depth,
+    hardness (b) lowers it."""
     figure, axes = plotting.new_figure(1, 2, width=PAGE, height=0.075, sharey=True)
     parts = {
         "search": (
@@ -188,39 +192,5 @@ def search(rows: Sequence[Row]) -> Figure:
     return figure
 
 
-DRAWN: Mapping[str, tuple[Callable[[Sequence[Row]], Figure], str]] = {
-    "speed": (
-        speed,
-        "Restitution, delay and kick against the excess above grazing. Kick and loss fade towards grazing, "
-        "where the contact takes longer than the arc beyond the plate; shaded: below the letter's amplitude "
-        "stability.",
-    ),
-    "mass": (
-        mass,
-        "The same against the mass of ball and mount. The restitution is smallest where the kick is near "
-        "one; crosses: collisions on settled orbits, bars on the axis: mode 1 does not come back to the gap.",
-    ),
-    "search": (
-        search,
-        "In search of the letter's restitution: loss in the contact (a) moves the minimum but not its depth, "
-        "hardness (b) lowers it.",
-    ),
-    "modes": (
-        modes,
-        "The same against the number of modes kept, and the impacts in the collision. Springs that carry a "
-        "ball settle with some twenty modes; a bare tip needs more, and under Newton's law its impacts never "
-        "settle.",
-    ),
-    "stiffness": (
-        stiffness,
-        "The same against the stiffness of the contact. The scene's restitution falls as the contact gets "
-        "harder, that of a bare tip does not.",
-    ),
-    "damping": (damping, "The same against the damping of the higher modes, by three rules of damping."),
-    "loss": (
-        loss,
-        "The same against the loss in the contact (1: none). With this ball more loss means a smaller kick, "
-        "and the restitution rises.",
-    ),
-}
-"""Figure -> function that draws it, caption."""
+DRAWN: tuple[Callable[[Sequence[Row]], Figure], ...] = (speed, mass, search, modes, stiffness, damping, loss)
+"""The figures; each is named by its function and has its docstring as caption."""

@@ -113,25 +113,11 @@ def hysteresis(
     run.table("accuracy", off, "Factor by which the hysteresis of a description differs from the beam's.")
     from studies.hysteresis import figure  # matplotlib is slow to import
 
-    run.figure("hysteresis", figure.draw_curves(scene, rows), CURVES)
-    run.figure("hysteresis_causes", figure.draw_causes(at_letter), BARS)
-    run.figure("hysteresis_ratio", figure.draw_ratios(scene, rows), RATIOS)
+    run.figure("hysteresis", figure.draw_curves(scene, rows), figure.CURVES)
+    run.figure("hysteresis_causes", figure.draw_causes(at_letter), figure.BARS)
+    run.figure("hysteresis_ratio", figure.draw_ratios(scene, rows), figure.RATIOS)
     judge(run, rows, {found.description: found for found in off}, causes)
     return {"rows": rows, "causes": causes, "accuracy": off, "modes": model.n_modes}
-
-
-CURVES = (
-    "The letter's Fig. 3, computed: where the p_m orbits end when the amplitude is lowered, against the "
-    "drive frequency, for m = 3 to 10; below the same on a logarithmic scale. The beam follows the bands of "
-    "the map, at another size and bent by the ringing of its second mode; crosses: folds of the equations "
-    "alone, whose orbit would touch the plate elsewhere too."
-)
-BARS = (
-    "Factor of each cause at the letter's frequencies; above one it enlarges the hysteresis. Truncation of "
-    "the map and size of the kick oppose each other everywhere; delay and ringing decide where the "
-    "hysteresis is small."
-)
-RATIOS = "Hysteresis of each description over the beam's. Only the kick of all modes stays at one throughout."
 
 
 def column(

@@ -23,6 +23,20 @@ NAMES = {
     "all_mode_kick": "kick of all modes",
     "beam": "beam",
 }
+CURVES = (
+    "The letter's Fig. 3, computed: where the p_m orbits end when the amplitude is lowered, against the "
+    "drive frequency, for m = 3 to 10; below the same on a logarithmic scale. The beam follows the bands of "
+    "the map, at another size and bent by the ringing of its second mode; crosses: folds of the equations "
+    "alone, whose orbit would touch the plate elsewhere too."
+)
+BARS = (
+    "Factor of each cause at the letter's frequencies; above one it enlarges the hysteresis. Truncation of "
+    "the map and size of the kick oppose each other everywhere; delay and ringing decide where the "
+    "hysteresis is small."
+)
+RATIOS = "Hysteresis of each description over the beam's. Only the kick of all modes stays at one throughout."
+"""Captions."""
+
 STYLES: dict[str, dict[str, Any]] = {
     "map": {"color": BLACK, "linestyle": "-"},
     "single_mode": {"color": BLUE, "linestyle": "--"},

@@ -12,9 +12,17 @@ import pytest
 
 from contact import LinearContact, NewtonRestitution
 from studies.calibration import bare_cantilever, free_period, leaf_mass, with_mass_ratio
-from studies.effective_impact.__main__ import closed_forms, on_orbits, tried
+from studies.effective_impact.__main__ import closed_forms, tried
 from studies.effective_impact.cases import Spring
-from studies.effective_impact.collision_rows import Row, crossing, fade_of, floor_of, measure, still_of
+from studies.effective_impact.collision_rows import (
+    Row,
+    crossing,
+    fade_of,
+    floor_of,
+    measure,
+    on_orbits,
+    still_of,
+)
 from studies.letter import TIME_TRACE_EXCESS
 from studies.scene import beam_at, hertz_of, read_scene
 
