@@ -52,20 +52,13 @@ KEY_TOLERANCE = 1e-13
 BEYOND = 1e9
 """Stands for an infinite deviation: the search needs its sign only."""
 
-THINNEST = 0.02
-"""The sheet is looked for from this part of its present thickness on."""
+THINNEST, LOSS_FACTORS, COVERAGES, TAPE_FACTORS = 0.02, (1e-9, 5.0), (0.02, 0.98), (0.01, 5.0)
+"""Where is looked: thickness of the sheet over the present one, from; loss factor of the tape; its part of a
+leg (a piece shorter than an element would cost digits); its thickness over the present one."""
 
-LOSS_FACTORS = (1e-9, 5.0)
-COVERAGES = (0.02, 0.98)
-TAPE_FACTORS = (0.01, 5.0)
-"""Where the tape is looked for: its loss factor, its part of a leg (a piece shorter than an element would
-cost digits), its thickness over the present one."""
-
-MOST_STEPS = 200
-"""Of Brent's method: four times the bisections that pin down a double."""
-
-MOST_ROUNDS = 40
-"""Of fitting the period and the damping in turn: each shifts the other by a small part of its own change."""
+MOST_STEPS, MOST_ROUNDS = 200, 40
+"""Of Brent's method, four times the bisections that pin down a double; of fitting period and damping in
+turn: each shifts the other by a small part of its own change."""
 
 TAPE_KEYS = ("spring.tape_loss_factor", "spring.tape_thickness_m", "spring.tape_coverage")
 """Keys that can carry the damping of mode 1."""
@@ -253,13 +246,7 @@ def collision_at(scene: Scene, frequency: float, excess: float) -> Collision:
 
 
 def calibrate_all(scene: Scene, targets: Targets) -> Scene:
-    """The scene with thickness, tape, gap and ball mass fitted to the four targets.
-
-    Raises
-    ------
-    SceneError
-        If no mass in range gives the kick, or one of the others has no solution.
-    """
+    """The scene with thickness, tape, gap and ball mass fitted to the four targets."""
 
     def others(trial: Scene) -> Scene:
         fitted = calibrate(

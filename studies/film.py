@@ -234,9 +234,9 @@ def _painter(scenery: Scenery) -> Stage:
     plate = None
     if scenery.corners is not None:
         plate = axes.fill(*(scenery.corners[:4, :2] @ plane).T, color=PLATE)[0]
-    centre, half = scenery.centre[:2] @ plane, 0.6 * np.abs(scenery.reach[:2] @ plane)
+    centre, reach = scenery.centre[:2] @ plane, np.abs(scenery.reach[:2] @ plane)
+    half = 0.56 * max(reach[0] / WIDTH, reach[1] / HEIGHT) * np.array([WIDTH, HEIGHT])
     axes.set(xlim=(centre[0] - half[0], centre[0] + half[0]), ylim=(centre[1] - half[1], centre[1] + half[1]))
-    axes.set_aspect("equal", adjustable="datalim")
     axes.axis("off")
 
     def picture(moment: Moment) -> Picture:

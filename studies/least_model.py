@@ -9,7 +9,7 @@ reference by no more than the tolerances:
     frequency K    K-th frequency of the modes that move the ball: K modes have it
     kick           of the first collision at excess 0.0065, 0.013 and 0.026, middle drive frequency; absolute
     restitution    of these collisions; absolute
-    born_period    period of the orbit settled at excess 1e-3, every drive frequency; how many differ (0)
+    born_period    period of the orbit settled at excess 1e-3, every drive frequency; whether it differs (0)
     fold           F/F_g - 1 at which p_m ends, every drive frequency; relative to it, or to the letter's
     amplitude
                    stability of 2.5e-4 where it is smaller
@@ -59,7 +59,8 @@ MOST_CYCLES = 4000
 SAMPLES = 256
 """Samples of a trace in a drive period."""
 
-Answer = NDArray[np.float64] | None
+Values = NDArray[np.float64]
+Answer = Values | None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -76,17 +77,14 @@ class Question:
         if modes not in self.answers:
             try:
                 found = QUANTITIES[self.quantity][0](models, modes, self.frequency)
-            except (
-                ContactError,
-                ValueError,
-            ):  # a drive above the highest mode, a collision that does not end
+            except (ContactError, ValueError):  # such as a drive above all modes
                 found = None
             self.answers[modes] = found
         return self.answers[modes]
 
     def error(self, models: Models, modes: int, reference: int) -> float:
         """Distance of two answers; zero where the reference has none, infinite where only the model has
-        none."""
+        not."""
         found, sharp = self.answer(models, modes), self.answer(models, reference)
         if sharp is None:
             return 0.0
@@ -180,23 +178,11 @@ def _tip_trace(models: Models, modes: int, frequency: float) -> Answer:
     oscillator = strobed.oscillator.with_excess(letter.TIME_TRACE_EXCESS)
     times = settled.end.time + np.arange(settled.period * SAMPLES) / SAMPLES * oscillator.period
     run = simulate(oscillator, settled.end, periods=settled.period, times=times)
-    trace: NDArray[np.float64] = run.displacement @ oscillator.model.phi / oscillator.stop.gap
+    trace: Values = run.displacement @ oscillator.model.phi / oscillator.stop.gap
     return trace
 
 
-def _absolute(answer: NDArray[np.float64], reference: NDArray[np.float64]) -> float:
-    return float(np.max(np.abs(answer - reference)))
-
-
-def _differing(answer: NDArray[np.float64], reference: NDArray[np.float64]) -> float:
-    return float(np.count_nonzero(answer != reference))
-
-
-def _of_fold(answer: NDArray[np.float64], reference: NDArray[np.float64]) -> float:
-    return float(abs(answer[0] - reference[0]) / max(abs(reference[0]), letter.AMPLITUDE_STABILITY))
-
-
-def _of_trace(answer: NDArray[np.float64], reference: NDArray[np.float64]) -> float:
+def _of_trace(answer: Values, reference: Values) -> float:
     """Root mean square of the difference; a p_m orbit has m phases, and any of them is the same orbit."""
     if answer.size != reference.size:
         return math.inf
@@ -204,17 +190,21 @@ def _of_trace(answer: NDArray[np.float64], reference: NDArray[np.float64]) -> fl
     return float(min(np.sqrt(np.mean((turn - reference) ** 2)) for turn in turns))
 
 
+def _largest(answer: Values, reference: Values) -> float:
+    return float(np.max(np.abs(answer - reference)))
+
+
+def _of_fold(answer: Values, reference: Values) -> float:
+    return float(abs(answer[0] - reference[0]) / max(abs(reference[0]), letter.AMPLITUDE_STABILITY))
+
+
 QUANTITIES: Mapping[
-    str,
-    tuple[
-        Callable[[Models, int, float], Answer],
-        Callable[[NDArray[np.float64], NDArray[np.float64]], float],
-        bool,
-    ],
-] = {
-    "kick": (_collisions("kick"), _absolute, False),
-    "restitution": (_collisions("restitution"), _absolute, False),
-    "born_period": (_born_period, _differing, True),
+    str, tuple[Callable[[Models, int, float], Answer], Callable[[Values, Values], float], bool]
+]
+QUANTITIES = {
+    "kick": (_collisions("kick"), _largest, False),
+    "restitution": (_collisions("restitution"), _largest, False),
+    "born_period": (_born_period, _largest, True),
     "fold": (_fold, _of_fold, True),
     "fold_middle": (_fold, _of_fold, False),
     "tip_trace": (_tip_trace, _of_trace, False),

@@ -21,6 +21,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from functools import wraps
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
@@ -54,9 +55,11 @@ NOTE = 7.0
 EXCESS, HYSTERESIS = "excess $F/F_g - 1$", "hysteresis $1 - F_m/F_g$"
 """Names of the two quantities that most axes show."""
 
-GUIDE: Any = {"color": "0.6", "linewidth": 0.6, "linestyle": "--", "zorder": 0}
-LETTER: Any = {"color": "0.25", "linewidth": 0.9, "linestyle": (0, (1, 1)), "zorder": 1}
-LETTER_POINTS: Any = {
+Style = dict[str, Any]
+
+GUIDE: Style = {"color": "0.6", "linewidth": 0.6, "linestyle": "--", "zorder": 0}
+LETTER: Style = {"color": "0.25", "linewidth": 0.9, "linestyle": (0, (1, 1)), "zorder": 1}
+LETTER_POINTS: Style = {
     "color": "black", "marker": "*", "markersize": 6.5, "markeredgecolor": "white", "markeredgewidth": 0.4,
     "linestyle": "none", "zorder": 6,
 }  # fmt: skip
@@ -87,7 +90,7 @@ STYLE: Any = {
 }
 
 
-def house_style() -> Any:
+def house_style() -> AbstractContextManager[None]:
     """Context in which titles, legends and texts that are added to a figure get the house style."""
     return matplotlib.rc_context(STYLE)
 
@@ -117,14 +120,14 @@ def new_figure(
         return figure, figure.subplots(rows, columns, **subplots)
 
 
-def series(number: int) -> dict[str, Any]:
+def series(number: int) -> Style:
     """Colour, marker and line of the series with this number; distinct for the first eight."""
     if not 0 <= number < len(PALETTE):
         raise ValueError(f"the series of a figure are numbered 0 to {len(PALETTE) - 1}, not {number}")
     return {"color": PALETTE[number], "marker": MARKERS[number], "linestyle": LINES[number]}
 
 
-def points(number: int) -> dict[str, Any]:
+def points(number: int) -> Style:
     """Like `series`, without a line."""
     return {**series(number), "linestyle": "none"}
 

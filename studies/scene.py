@@ -55,6 +55,11 @@ __all__ = [
 
 SCENES = Path(__file__).resolve().parent / "scenes"
 
+PLACES = {
+    "gap": "stop.gap_m", "frequency of the drive": "drive.frequencies_hz",
+    "local_restitution": "single_mode.restitution",
+}  # fmt: skip
+
 SAME_PERIOD = 1e-3
 """Relative change of T within which a spring counts as the letter's: twice the error of its 40.80 ms."""
 
@@ -87,9 +92,13 @@ def check(scene: Scene) -> None:
     spring, damping = scene.spring, scene.damping
     if scene.drive.kind == "harmonic" and scene.stop.gap_m == 0.0:
         raise SceneError("stop.gap_m must be greater than 0 (unit m) when there is a drive, not 0.0")
-    for frequency in scene.drive.frequencies_hz:
-        single_mode_at(scene, frequency)
-    contact_law_of(scene)
+    law = contact_law_of(scene)
+    with named(PLACES):
+        Stop(gap=scene.stop.gap_m, law=law)
+        for frequency in scene.drive.frequencies_hz:
+            HarmonicDrive(frequency=frequency)
+        NewtonRestitution(local_restitution=scene.single_mode.restitution)
+    single_mode_of(scene)
     if spring.kind == "modal_data":
         require_drive_below(scene, model_of(scene))
         return
@@ -170,7 +179,7 @@ def contact_law_of(scene: Scene) -> ContactLaw:
 
 
 def _on_stop(scene: Scene, model: ModalModel, law: ContactLaw, frequency: float) -> ImpactOscillator:
-    with named({"gap": "stop.gap_m", "frequency of the drive": "drive.frequencies_hz"}):
+    with named(PLACES):
         return ImpactOscillator(
             model=model, stop=Stop(gap=scene.stop.gap_m, law=law), drive=HarmonicDrive(frequency=frequency)
         )
@@ -183,7 +192,7 @@ def beam_at(scene: Scene, frequency: float, model: ModalModel | None = None) -> 
 
 def single_mode_at(scene: Scene, frequency: float) -> ImpactOscillator:
     """Eq. (1) of the letter at drive frequency `frequency` [Hz], with the gap of the scene."""
-    with named({"local_restitution": "single_mode.restitution"}):
+    with named(PLACES):
         law = NewtonRestitution(local_restitution=scene.single_mode.restitution)
     return _on_stop(scene, single_mode_of(scene), law, frequency)
 

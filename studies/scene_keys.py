@@ -17,7 +17,7 @@ from numbers import Real
 from types import MappingProxyType
 from typing import TypeVar
 
-__all__ = ["MODE_LISTS", "SECTIONS", "Key", "SceneError", "Section", "keys_of", "shown", "toml_value"]
+__all__ = ["MODE_LISTS", "SECTIONS", "Key", "SceneError", "Section", "keys_of", "shown"]
 
 LETTER, CALIBRATED, ASSUMED, GIVEN = "letter", "calibrated", "assumed", "given"
 
@@ -43,7 +43,7 @@ Value = float | int | str | tuple[float, ...]
 T = TypeVar("T", float, int, str, tuple[float, ...])
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Key:
     """What is known of a key; `unit` is "" where nothing is measured and "1" for a pure number."""
 
@@ -59,8 +59,9 @@ class Key:
         """What a value must be, as part of a sentence."""
         if self.choices:
             return "one of " + ", ".join(f'"{word}"' for word in self.choices)
-        words = {float: "a finite number", int: "a whole number", str: "one line of text in quotes"}.get(
-            type(self.default), "a list of finite numbers" + (", at least one" if self.default else ""))
+        listed = "a list of finite numbers" + (", at least one" if self.default else "")
+        kinds = {float: "a finite number", int: "a whole number", str: "one line of text in quotes"}
+        words = kinds.get(type(self.default), listed)
         if self.low > -math.inf:
             words += f", at least {self.low:g}"
         if self.high < math.inf:
@@ -101,8 +102,7 @@ def key(
     low: float = -math.inf, high: float = math.inf, choices: tuple[str, ...] = (),
 ) -> T:  # fmt: skip
     """The field of a section for one key."""
-    known = Key(default=default, unit=unit, provenance=provenance, meaning=meaning, low=low, high=high,
-                choices=choices)
+    known = Key(default, unit, provenance, meaning, low, high, choices)
     return field(default=default, metadata={"key": known})
 
 
@@ -117,20 +117,12 @@ class Section:
 
 
 def keys_of(section: type[Section]) -> Mapping[str, Key]:
-    """Name -> `Key` of the fields of a section, in their order."""
+    """Name -> `Key` of the fields of a section."""
     return {entry.name: entry.metadata["key"] for entry in fields(section)}
 
 
-def toml_value(value: object) -> str:
-    """A value of a scene as TOML."""
-    if isinstance(value, str):
-        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
-    return "[" + ", ".join(map(repr, value)) + "]" if isinstance(value, tuple) else repr(value)
-
-
 SUPPORTS = ("clamped", "pinned", "guided", "free")
-MOST_ELEMENTS = 2000
-"""Of a leg or a bend: a slip of the pen must not fill the memory."""
+MOST_ELEMENTS = 2000  # of a leg or a bend: a slip of the pen must not fill the memory
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -140,8 +132,7 @@ class SpringKeys(Section):
     kind: str = key("folded_u", "", ASSUMED,
         "shape of the spring, or modal_data for modes that were measured",
         choices=("folded_u", "cantilever", "straight_strip", "modal_data"))
-    leg_length_m: float = key(
-        0.13, "m", LETTER, "length of one leg; of the whole strip if straight", low=0.0)
+    leg_length_m: float = key(0.13, "m", LETTER, "length of one leg, or of a straight strip", low=0.0)
     bend_radius_m: float = key(0.0075, "m", ASSUMED, "radius of the bend of the folded strip")
     width_m: float = key(0.012, "m", ASSUMED, "width of the strip")
     thickness_m: float = key(0.00069683709067, "m", CALIBRATED,

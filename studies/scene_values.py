@@ -43,7 +43,6 @@ from studies.scene_keys import (
     Value,
     keys_of,
     shown,
-    toml_value,
 )
 
 __all__ = ["Scene", "doubts", "named", "scene_from_text"]
@@ -137,6 +136,13 @@ class Scene:
         if self.damping.kind == "measured":
             return max(1, min(USUAL_MODES, len(self.damping.measured_rates_per_s)))
         return USUAL_MODES
+
+
+def toml_value(value: object) -> str:
+    """A value of a scene as TOML."""
+    if isinstance(value, str):
+        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    return "[" + ", ".join(map(repr, value)) + "]" if isinstance(value, tuple) else repr(value)
 
 
 KEYS: dict[str, Key] = {

@@ -19,7 +19,11 @@ from studies.instruments.adequacy.needed import Search, needed
 from studies.instruments.adequacy.rows import measured_row
 from studies.instruments.scene import Scene
 from studies.instruments.scene_file import read_scene
-from studies.transitions import NEEDS
+
+NEEDS = (
+    Need(quantity="born_period", tolerance=0.0, everywhere=True),
+    Need(quantity="fold", tolerance=0.07, everywhere=True),
+)
 
 LETTER = read_scene()
 SCENES = {

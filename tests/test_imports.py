@@ -81,6 +81,8 @@ ORDER = {
         "orbits.settling",
         "orbits.scan",
         "orbits.ends",
+        "orbits.settled_column",
+        "orbits.amplitude_scan",
         "orbits.lyapunov",
         "orbits",
         "warm_up",
@@ -235,7 +237,7 @@ def test_what_is_shipped_has_the_scenes_and_the_types(tmp_path):
     here = {
         path.relative_to(ROOT).as_posix()
         for package in ("beam", "contact", "studies")
-        for pattern in ("*.py", "py.typed", "*.toml")
+        for pattern in ("*.py", "py.typed", "*.toml", "*.j2")
         for path in (ROOT / package).rglob(pattern)
     }
     assert here <= shipped

@@ -4,9 +4,10 @@
 with the multipliers of `saltation`; `kick`: one collision of any law, by linear algebra; `shooting`: any law
 and any number of touches, with exact tangents; `continuation`: branches, with the points of `events` on them;
 `settling`: on what a motion settles; `scan`: orbit diagrams, the state carried along; `ends`: where an orbit
-ends when the drive is lowered; `lyapunov`: exponents.
+ends when the drive is lowered; `amplitude_scan`: the compiled column of a chart; `lyapunov`: exponents.
 """
 
+from contact.orbits.amplitude_scan import AmplitudeScan, ScannedColumn
 from contact.orbits.continuation import (
     Branch,
     first_event,
@@ -25,6 +26,7 @@ from contact.orbits.shooting import PeriodicOrbit, Shooting
 from contact.orbits.single_impact import MaximalFamily, SingleImpactOrbit
 
 __all__ = [
+    "AmplitudeScan",
     "Branch",
     "Event",
     "Kick",
@@ -34,6 +36,7 @@ __all__ = [
     "OrbitDiagram",
     "OrbitEnd",
     "PeriodicOrbit",
+    "ScannedColumn",
     "Settled",
     "Shooting",
     "SingleImpactOrbit",

@@ -217,6 +217,7 @@ def lowest_of(family: Shooting, near: PeriodicOrbit | None = None) -> Event | No
 
 def _whole_branch(family: Shooting, near: PeriodicOrbit | None) -> Branch | None:
     """The branch over all approach velocities; None if no orbit of it is found."""
+    require_kind("near", near, (PeriodicOrbit, type(None)), "a PeriodicOrbit or None")
     require_kind("family", family, Shooting, "a Shooting family")
     unit = _unit(family)
     starts = [near] if near is not None else [None] * len(STARTS)

@@ -17,9 +17,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from beam import write_frames
-from contact import StroboscopicMap
+from contact import ImpactOscillator, StroboscopicMap
 from contact.orbits import born
 from studies import letter
 from studies.film import (
@@ -41,6 +42,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 __all__ = ["FrameRow", "StrobeRow", "motion"]
+
+Array = NDArray[np.float64]
 
 FREQUENCY = 21.50
 """Where the letter has the period 4 of its Fig. 4 [Hz]."""
@@ -98,7 +101,7 @@ def motion(
         StroboscopicMap(oscillator=oscillator), excess, most_cycles=max(scene.scan.settle_cycles, 1)
     )
     orbit = film_orbit(oscillator, settled.end, settled.period, frames=frames, rate=RATE)
-    tip, velocity = orbit.run.displacement @ model.phi, orbit.run.velocity @ model.phi
+    tip = orbit.run.displacement @ model.phi
     scenery = Scenery.of(
         modes, ball_radius=scene.tip.ball_radius_m, gap=scene.stop.gap_m, swing=float(np.abs(tip).max())
     )
@@ -108,49 +111,19 @@ def motion(
         Moment(points=points, base=shift, touched=bool(touched))
         for points, shift, touched in zip(shapes.points, base, orbit.touched, strict=True)
     ]
-    columns = (orbit.run.time - settled.end.time, orbit.slowed, tip, velocity, orbit.base, orbit.force)
-    rows = [
-        FrameRow(
-            frame=number + 1,
-            time_s=t,
-            slowed=slow,
-            tip_m=x,
-            tip_velocity_m_per_s=v,
-            base_m=b,
-            force_n=n,
-            contact=moments[number].touched,
-        )
-        for number, (t, slow, x, v, b, n) in enumerate(np.array(columns).T.tolist())
-    ]
+    rows = frame_rows(orbit, model.phi)
     run.table("frames", rows, show=())
-    strobes = zip(orbit.strobes.time - settled.end.time, orbit.strobes.displacement @ model.phi,
-                  orbit.strobes.velocity @ model.phi, strict=True)  # fmt: skip
-    strobe_rows = [
-        StrobeRow(time_s=float(t), tip_m=float(x), tip_velocity_m_per_s=float(v)) for t, x, v in strobes
-    ]
-    run.table("strobes", strobe_rows, "The orbit at its strobes.")
+    strobes = strobe_rows(orbit, model.phi)
+    run.table("strobes", strobes, "The orbit at its strobes.")
     true = drawn_shapes(scenery.mesh, modes, orbit.run.displacement, 1.0)
     write_frames(run.path("motion.pvd"), grids(scenery, moments, true, rows))
     run.path("motion_frames")
-    if renderer == "auto" and not can_render():
-        run.say(NO_RENDERING)
-    with stage_of(scenery, renderer) as stage:
-        pictures = [stage(moment) for moment in run.track(moments, "frames")]
     name = f"p{settled.period}" if settled.period else "no period up to 64"
     words = f"{name}, {drive_hz:g} Hz, excess {excess:g}"
-    framed = list(composed(orbit, pictures, model.phi, scene.stop.gap_m, words, shapes.magnification))
-    write_gif(run.path("motion.gif"), framed, RATE)
-    if can_encode():
-        write_mp4(run.path("motion.mp4"), framed, RATE)
-    else:
-        run.say("no mp4: it needs imageio-ffmpeg (pip install -e '.[video]')")
-    stills = np.linspace(0, frames - 1, STILLS).round().astype(int)
-    if orbit.touched.any():  # one of them shows the contact
-        touch = int(np.flatnonzero(orbit.touched)[0])
-        stills[1 + np.argmin(np.abs(stills[1:-1] - touch))] = touch
-    sheet = draw_sheet([pictures[number] for number in stills], [rows[number] for number in stills])
-    run.figure("motion", sheet, f"{words}; higher modes drawn {shapes.magnification:g} times; "
-               f"{'the base moves' if seen_from == 'laboratory' else 'seen from the base'}.")  # fmt: skip
+    pictures = write_film(run, orbit, scenery, moments, oscillator, renderer, words, shapes.magnification)
+    moves = "the base moves" if seen_from == "laboratory" else "seen from the base"
+    caption = f"{words}; higher modes drawn {shapes.magnification:g} times; {moves}."
+    run.figure("motion", draw_sheet(pictures, rows, orbit), caption)
     slow = f"{orbit.slowed.min():.0f} to {orbit.slowed.max():.0f} times slower than life"
     run.say(f"{words}: {len(orbit.contacts)} contacts, {slow}")
     return {
@@ -164,8 +137,50 @@ def motion(
         "seen_from": seen_from,
         "frames": frames,
         "film_s": frames / RATE,
-        "strobe_tip_m": [row.tip_m for row in strobe_rows],
+        "strobe_tip_m": [row.tip_m for row in strobes],
     }
+
+
+def write_film(
+    run: Run,
+    orbit: FilmedOrbit,
+    scenery: Scenery,
+    moments: Sequence[Moment],
+    oscillator: ImpactOscillator,
+    renderer: str,
+    words: str,
+    magnified: float,
+) -> list[Picture]:
+    """Draw every frame once and write the films; returns the pictures without time and trace."""
+    if renderer == "auto" and not can_render():
+        run.say(NO_RENDERING)
+    with stage_of(scenery, renderer) as stage:
+        pictures = [stage(moment) for moment in run.track(moments, "frames")]
+    framed = list(composed(orbit, pictures, oscillator.model.phi, oscillator.stop.gap, words, magnified))
+    write_gif(run.path("motion.gif"), framed, RATE)
+    if can_encode():
+        write_mp4(run.path("motion.mp4"), framed, RATE)
+    else:
+        run.say("no mp4: it needs imageio-ffmpeg (pip install -e '.[video]')")
+    return pictures
+
+
+def frame_rows(orbit: FilmedOrbit, phi: Array) -> list[FrameRow]:
+    """The numbers behind the film."""
+    tip, velocity = orbit.run.displacement @ phi, orbit.run.velocity @ phi
+    columns = (orbit.run.time - orbit.begin, orbit.slowed, tip, velocity, orbit.base, orbit.force)
+    return [
+        FrameRow(frame=number + 1, time_s=t, slowed=slow, tip_m=x, tip_velocity_m_per_s=v, base_m=b,
+                 force_n=n, contact=bool(orbit.touched[number]))
+        for number, (t, slow, x, v, b, n) in enumerate(np.array(columns).T.tolist())
+    ]  # fmt: skip
+
+
+def strobe_rows(orbit: FilmedOrbit, phi: Array) -> list[StrobeRow]:
+    """The orbit at its strobes."""
+    run = orbit.strobes
+    columns = (run.time - orbit.begin, run.displacement @ phi, run.velocity @ phi)
+    return [StrobeRow(time_s=t, tip_m=x, tip_velocity_m_per_s=v) for t, x, v in np.array(columns).T.tolist()]
 
 
 def grids(
@@ -181,7 +196,7 @@ def grids(
 
 
 def composed(
-    orbit: FilmedOrbit, pictures: Sequence[Picture], phi: np.ndarray, gap: float, words: str, magnified: float
+    orbit: FilmedOrbit, pictures: Sequence[Picture], phi: Array, gap: float, words: str, magnified: float
 ) -> Iterator[Picture]:
     """The frames: what is seen, the time and how it is slowed, and the tip against time with a mark."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -194,7 +209,7 @@ def composed(
     with house_style():
         figure = Figure(figsize=(width / dots, 150 / dots), dpi=dots)
         canvas, axes = FigureCanvasAgg(figure), figure.add_axes((0.075, 0.30, 0.91, 0.62))
-        begin = orbit.line.time[0]
+        begin = orbit.begin
         axes.plot(1e3 * (orbit.line.time - begin), 1e3 * (orbit.line.displacement @ phi), color=BLUE)
         axes.axhline(1e3 * gap, **GUIDE)
         axes.set_xlim(0.0, 1e3 * orbit.duration)
@@ -219,16 +234,21 @@ def composed(
         yield np.asarray(image, dtype=np.uint8)
 
 
-def draw_sheet(pictures: Sequence[Picture], rows: Sequence[FrameRow]) -> Figure:
-    """Stills, with their times."""
+def draw_sheet(pictures: Sequence[Picture], rows: Sequence[FrameRow], orbit: FilmedOrbit) -> Figure:
+    """Stills with their times, one of them with the contact."""
     from studies.plotting import PAGE, house_style, new_figure
 
+    stills = np.linspace(0, len(rows) - 1, STILLS).round().astype(int)
+    if orbit.touched.any():
+        touch = int(np.flatnonzero(orbit.touched)[0])
+        stills[1 + np.argmin(np.abs(stills[1:-1] - touch))] = touch
     with house_style():
-        lines = -(-len(pictures) // 2)
+        lines = -(-STILLS // 2)
         figure, axes = new_figure(lines, 2, width=PAGE, height=0.046 * lines, squeeze=False)
-        for axis, picture, row in zip(axes.flat, pictures, rows, strict=False):
-            axis.imshow(picture)
+        for axis, number in zip(axes.flat, stills.tolist(), strict=True):
+            axis.imshow(pictures[number])
             axis.axis("off")
+            row = rows[number]
             axis.set_title(f"{1e3 * row.time_s:.2f} ms" + (", contact" if row.contact else ""), loc="left")
     return figure
 

@@ -48,13 +48,15 @@ seen."""
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FilmedOrbit:
-    """What a film shows: `run` at the frames, `line` at even times, `strobes`; `contacts` begin and end [s].
+    """What a film shows from the strobe at `begin` [s] on: `run` at the frames, `line` at even times,
+    `strobes`; `contacts` begin and end [s].
 
     `slowed` is how many times slower than life each frame is shown [1]; `base` [m] and `force` [N] at the
     frames.
     """
 
     period: int
+    begin: float
     duration: float
     run: Trajectory
     line: Trajectory
@@ -104,6 +106,7 @@ def film_orbit(
     assert oscillator.drive is not None
     return FilmedOrbit(
         period=period,
+        begin=begin,
         duration=duration,
         run=run,
         line=at(np.linspace(0.0, duration, length * LINE_POINTS + 1, dtype=np.float64)),
@@ -136,11 +139,11 @@ def drawn_shapes(
     phi, strip = modes.phi[kept], np.unique(mesh.hexahedra)
     first = mesh.shapes[kept[0]] / phi[0]
     departures = np.tensordot(coordinates, mesh.shapes[kept] - phi[:, None, None] * first, axes=1)
-    # the ball is drawn where the tip is, and does not turn
-    ball = np.unique(mesh.triangles)
-    departures[:, ball] = 0.0
     carried = (coordinates @ phi)[:, None, None] * first
-    carried[:, ball] = carried[:, ball].mean(axis=1, keepdims=True)
+    # the ball is drawn where the tip is, and does not turn
+    ball, drive = np.unique(mesh.triangles), np.array([*modes.discretization.spring.drive, 0.0])
+    departures[:, ball] = 0.0
+    carried[:, ball] = ((coordinates @ phi)[:, None] * drive)[:, None]
     if magnification is None:
         largest = float(np.linalg.norm(departures[:, strip], axis=2).max())
         room = ROOM * float(np.ptp(mesh.points[strip], axis=0).max())

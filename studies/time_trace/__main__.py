@@ -62,6 +62,9 @@ APERIODIC = 8
 PER_PERIOD = 16_384
 """Samples in a drive period: at 21.5 Hz up to 176 kHz without folding, beyond what the spectrum shows."""
 
+TOLD = ("time_s", "approach_velocity", "restitution", "delay_s", "kick", "impacts", "contact_s", "ringing_m")
+"""Columns of a collision that are shown to a person."""
+
 Array = NDArray[np.float64]
 
 
@@ -123,20 +126,9 @@ def time_trace(
     lines_hz, amplitude = lines_of(part, length / share * oscillator.period)
     peaks = peaks_of(lines_hz, amplitude, model.frequencies_hz, drive_hz)
     found = [found_collision(collision) for collision in trace.collisions]
-    rotates = scene.readout.quantity == "rotation"
-    power = "rad" if rotates else "m"
+    power = "rad" if scene.readout.quantity == "rotation" else "m"
     run.arrays("time_trace", time_s=trace.time, tip_m=trace.tip, **{f"readout_{power}": trace.readout})
-    told = (
-        "time_s",
-        "approach_velocity",
-        "restitution",
-        "delay_s",
-        "kick",
-        "impacts",
-        "contact_s",
-        "ringing_m",
-    )
-    run.table("collisions", found, "Collisions in the stretch that is shown.", show=told)
+    run.table("collisions", found, "Collisions in the stretch that is shown.", show=TOLD)
     lines = [
         Line(frequency_hz=float(f), amplitude=float(a)) for f, a in zip(lines_hz, amplitude, strict=True)
     ]

@@ -24,11 +24,15 @@ OTHER_EXCESSES = (2.5e-4, 1e-2)
 """Where the born period is given as well: the letter's amplitude stability, and well above grazing."""
 
 
+Strobed = StrobedMap[Any]
+Diagram = OrbitDiagram[Any]
+
+
 @dataclass(frozen=True, kw_only=True)
 class Description:
     """One model at one frequency, with what is drawn of it."""
 
-    strobed: StrobedMap[Any]
+    strobed: Strobed
     observe: Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 
@@ -81,7 +85,7 @@ class Row:
         return [end for end in found if end is not None]
 
 
-Scans = Mapping[str, Mapping[str, OrbitDiagram[Any]]]
+Scans = Mapping[str, Mapping[str, Diagram]]
 """Description -> "up" or "down" -> orbit diagram, at one frequency."""
 
 
@@ -97,7 +101,7 @@ def describe(scene: Scene, frequency: float, model: ModalModel) -> dict[str, Des
     }
 
 
-def transition(strobed: StrobedMap[Any], excess: float, cycles: int) -> Transition:
+def transition(strobed: Strobed, excess: float, cycles: int) -> Transition:
     """Born periods, 0 where the motion did not settle, and the end of the orbit on the way down."""
     orbit = born(strobed, excess, most_cycles=cycles)
     also = {f"{other:g}": born_period(strobed, other, most_cycles=cycles) for other in OTHER_EXCESSES}
@@ -155,15 +159,16 @@ def exact_ends(
 
 
 def scans(scene: Scene, row: Row, model: ModalModel, full: bool) -> Scans:
-    """Upward and downward scan of each description, in proportion to the largest hysteresis found."""
+    """Upward and downward scan of each description, in proportion to the largest hysteresis found.
+
+    That is taken to two digits, so that the last bit of an end moves no amplitude, and none lies on a fold.
+    """
     scan, found = scene.scan, {}
-    reach = max(*map(abs, row.ends()), scan.narrowest, scan.narrowest)
+    reach = float(f"{max([*map(abs, row.ends()), scan.narrowest]):.2g}")
     values = np.linspace(-scan.reach_below * reach, scan.reach_above * reach, scan.points)
     for name, entry in describe(scene, row.frequency_hz, model).items():
 
-        def way(
-            excesses: NDArray[np.float64], state: object, entry: Description = entry
-        ) -> OrbitDiagram[Any]:
+        def way(excesses: NDArray[np.float64], state: object, entry: Description = entry) -> Diagram:
             return orbit_diagram(
                 entry.strobed, excesses, state, observe=entry.observe,
                 settle_cycles=letter.SETTLE_CYCLES if full else max(scan.settle_cycles, 1),

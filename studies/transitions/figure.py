@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from contact.orbits import OrbitDiagram
 from studies import letter, plotting
 from studies.plotting import BLUE, GUIDE, VERMILION
 from studies.scene import Scene, single_mode_at
-from studies.transitions.descriptions import Row, Scans
+from studies.transitions.descriptions import Diagram, Row, Scans
 
 
 def draw(scene: Scene, rows: Sequence[Row], diagrams: Sequence[Scans], name: str) -> Figure:
@@ -25,7 +24,7 @@ def draw(scene: Scene, rows: Sequence[Row], diagrams: Sequence[Scans], name: str
         figure, axes = plotting.new_figure(
             lines, columns, width=plotting.PAGE, height=0.055 * lines + 0.012, squeeze=False
         )
-        series: dict[str, Any] = {}
+        series: dict[str, Artist] = {}
         for axis in axes.flat[len(rows) :]:
             axis.set_visible(False)
         for number, (axis, row, found) in enumerate(zip(axes.flat, rows, diagrams, strict=False)):
@@ -62,7 +61,7 @@ def draw(scene: Scene, rows: Sequence[Row], diagrams: Sequence[Scans], name: str
     return figure
 
 
-def panel(axis: Axes, found: Mapping[str, OrbitDiagram[Any]], grazing: float | None) -> None:
+def panel(axis: Axes, found: Mapping[str, Diagram], grazing: float | None) -> None:
     """Both scans at one frequency, against the amplitude [mm], for the map (no amplitude) the excess
     [1e-3]."""
     moving = set[float]()
