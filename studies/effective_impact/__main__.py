@@ -43,7 +43,6 @@ import math
 from collections.abc import Mapping, Sequence
 from functools import partial
 
-from contact import ContactError
 from studies import letter
 from studies.calibration import Targets, bare_cantilever, with_mass_ratio
 from studies.effective_impact import cases
@@ -54,11 +53,11 @@ from studies.effective_impact.collision_rows import (
     crossing,
     fade_of,
     floor_of,
-    measure,
     on_orbits,
     select,
     series_of,
     still_of,
+    tried,
 )
 from studies.record import Verdict
 from studies.run import Run, study
@@ -132,14 +131,9 @@ def all_cases(run: Run, scene: Scene, frequency: float, grid: Grid) -> list[Case
         "bare cantilever": lambda: bare_cantilever(fine, frequency),
     }
     many = {name: Spring.of(make(), frequency, grid.check_modes) for name, make in springs.items()}
-    of_mass = partial(spring_of_mass, scene, frequency, grid.modes)
+    of_mass = partial(cases.spring_of_mass, scene, frequency, grid.modes)
     masses = run.map(of_mass, cases.MASS_RATIOS[:: grid.every], "springs")
     return cases.cases_of(Spring.of(scene, frequency, grid.modes), masses, many, grid)
-
-
-def spring_of_mass(scene: Scene, frequency: float, modes: int, ratio: float) -> Spring:
-    """The spring with another tip mass, `ratio` times the leaf."""
-    return Spring.of(with_mass_ratio(scene, ratio, frequency), frequency, modes)
 
 
 def measured(run: Run, todo: Sequence[Case]) -> list[Row]:
@@ -151,14 +145,6 @@ def measured(run: Run, todo: Sequence[Case]) -> list[Row]:
         else:
             run.failed(f"{case.curve}, {case.series}, {case.value:g}", found)
     return rows
-
-
-def tried(case: Case) -> Row | str:
-    """The row of a case, or why there is none."""
-    try:
-        return measure(case)
-    except (ContactError, ValueError) as error:
-        return str(error)
 
 
 def ways(rows: Sequence[Row], floors: Sequence[Floor]) -> Mapping[str, float]:

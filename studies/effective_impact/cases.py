@@ -30,7 +30,7 @@ from contact import (
     NewtonRestitution,
     Stop,
 )
-from studies.calibration import leaf_mass
+from studies.calibration import leaf_mass, with_mass_ratio
 from studies.letter import TIME_TRACE_EXCESS
 from studies.scene import Scene, approach_speed, beam_at, contact_law_of, corresponding, hertz_of, model_of
 
@@ -140,6 +140,11 @@ class Spring:
             curve=curve, series=series, value=value, excess=excess, oscillator=oscillator.with_excess(excess),
             mass_ratio=self.mass_ratio,
         )  # fmt: skip
+
+
+def spring_of_mass(scene: Scene, frequency: float, modes: int, ratio: float) -> Spring:
+    """The spring with another tip mass, `ratio` times the leaf."""
+    return Spring.of(with_mass_ratio(scene, ratio, frequency), frequency, modes)
 
 
 def cases_of(spring: Spring, masses: Sequence[Spring], fine: Mapping[str, Spring], grid: Grid) -> list[Case]:

@@ -23,7 +23,15 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from contact import Collision, ImpactOscillator, StroboscopicMap, collisions, first_collision, simulate
+from contact import (
+    Collision,
+    ContactError,
+    ImpactOscillator,
+    StroboscopicMap,
+    collisions,
+    first_collision,
+    simulate,
+)
 from contact.orbits import born
 from studies import letter
 from studies.effective_impact.cases import Case
@@ -98,6 +106,14 @@ def measure(case: Case) -> Row:
         forced_by_ringing=found is not None and found.forced_by_ringing,
         returns=found is not None and found.returns, **numbers,
     )  # fmt: skip
+
+
+def tried(case: Case) -> Row | str:
+    """The row of a case, or why there is none."""
+    try:
+        return measure(case)
+    except (ContactError, ValueError) as error:
+        return str(error)
 
 
 def orbit_collision(oscillator: ImpactOscillator) -> tuple[Collision | None, int]:

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from contact import Band, bands
 from studies import letter, plotting
+from studies.hysteresis.columns import FREQUENCIES_HZ
 from studies.hysteresis.descriptions import CAUSES, Row
 from studies.plotting import BLACK, BLUE, GREEN, GUIDE, LETTER, NOTE, PAGE, PALETTE, VERMILION
 from studies.scene import Scene, corresponding, periods_of
@@ -101,7 +102,7 @@ def letters_frequencies(axis: Axes, scene: Scene, name: str) -> None:
 
 def names_of_bands(axes: Sequence[Axes], scene: Scene, edges: Sequence[Band]) -> None:
     """m of the bands on top, and at the letter's frequencies below."""
-    lowest, highest = corresponding(scene, 19.6), corresponding(scene, 23.8)
+    lowest, highest = (corresponding(scene, f) for f in FREQUENCIES_HZ)
     axes[1].set_xlim(lowest, highest)
     for seen, m in periods_of(scene).items():
         axes[1].annotate(

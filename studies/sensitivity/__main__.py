@@ -21,26 +21,16 @@ Writes:  sensitivity.csv (a row a frequency and change), noise.csv (a row a peri
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Annotated
 
 from beam import ModalModel
 from contact import StroboscopicMap
-from studies import letter
 from studies.letter import AMPLITUDE_STABILITY
 from studies.run import Run, study
-from studies.scene import Scene, SceneError, beam_at, corresponding, harmonic, model_of, single_mode_at
-from studies.sensitivity.changes import NAMES, PARAMETERS, Row, changes_of, row_at, rows_of
-from studies.sensitivity.noise import (
-    KINDS,
-    Clouds,
-    Points,
-    beam_in_noise,
-    first_birth,
-    single_mode_in_noise,
-    upper_end,
-)
+from studies.scene import Scene, SceneError, beam_at, corresponding, harmonic, model_of
+from studies.sensitivity.changes import HIGHEST, NAMES, PARAMETERS, Row, at_last, changes_of, row_at, rows_of
+from studies.sensitivity.noise import KINDS, Clouds, Points, beam_in_noise, single_mode_in_noise
 
 __all__ = ["sensitivity"]
 
@@ -50,22 +40,8 @@ IN_THE_SMALL_FORM = 4
 SHOWN_HZ = (20.90, 22.60, 23.40)
 """Where the beam's strobe points are drawn, of the letter's frequencies."""
 
-HIGHEST = max(letter.PERIODS.values())
-"""m of the last transition that the letter saw."""
-
 IRREGULAR = 0.9
 """Part of the intervals between impacts that are m periods long below which noise has broken the orbit."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class LastFrequency:
-    """At the last frequency: the excess up to which the orbit born at 1e-3 keeps its period, and from which
-    on a start from below grazing gives the letter's period."""
-
-    description: str
-    period: int
-    lives_up_to: float | None
-    letters_period_born_from: float | None
 
 
 @study(needs={"fold": 0.05}, quick={"periods": (8, 11), "strobes": 400})
@@ -142,18 +118,6 @@ def varied(run: Run, scene: Scene, model: ModalModel) -> list[Row]:
 def stem_of(frequency: float) -> str:
     """The name of the beam's points at a frequency [Hz]."""
     return f"beam_{frequency:.2f}_hz".replace(".", "p")
-
-
-def at_last(scene: Scene, model: ModalModel, base: Row, name: str) -> LastFrequency:
-    """The row of a description: Eq. (1), the same with the shortest T within the letter's error, the beam."""
-    if name.endswith("short_period"):
-        shorter = scene.single_mode.free_period_s - letter.FREE_PERIOD_ERROR_S
-        scene = scene.replace({"single_mode.free_period_s": shorter})
-    f, period = base.frequency_hz, base.born_beam or 0
-    oscillator = beam_at(scene, f, model) if name == "beam" else single_mode_at(scene, f)
-    strobed = StroboscopicMap(oscillator=oscillator)
-    return LastFrequency(description=name, period=period, lives_up_to=upper_end(strobed, period),
-                         letters_period_born_from=first_birth(strobed, HIGHEST))  # fmt: skip
 
 
 def firsts(single: Sequence[Clouds]) -> dict[str, dict[str, int | None]]:

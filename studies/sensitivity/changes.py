@@ -14,8 +14,12 @@ from beam import ModalModel
 from contact import ContactError, MaximalFamily, StrobedNordmarkMap, StroboscopicMap, fold
 from contact.orbits import KickFamily, Shooting, born_period, fold_of
 from studies.calibration import calibrate_damping, free_period, solve_for
-from studies.letter import BREAKDOWN, FREE_PERIOD_ERROR_S
+from studies.letter import BREAKDOWN, FREE_PERIOD_ERROR_S, PERIODS
 from studies.scene import Scene, SceneError, beam_at, model_of, nordmark_at, single_mode_at
+from studies.sensitivity.noise import first_birth, upper_end
+
+HIGHEST = max(PERIODS.values())
+"""m of the last transition that the letter saw."""
 
 NAMES = {"map": "map", "single_mode": "Eq. (1)", "beam": "beam"}
 
@@ -181,3 +185,26 @@ def rows_of(scene: Scene, base: list[Row], change: Change) -> list[Row] | str:
     except SceneError as error:
         return str(error)
     return [row_at(there, model, row.frequency_hz, change, row) for row in base]
+
+
+@dataclass(frozen=True, kw_only=True)
+class LastFrequency:
+    """At the last frequency: the excess up to which the orbit born at 1e-3 keeps its period, and from which
+    on a start from below grazing gives the letter's period."""
+
+    description: str
+    period: int
+    lives_up_to: float | None
+    letters_period_born_from: float | None
+
+
+def at_last(scene: Scene, model: ModalModel, base: Row, name: str) -> LastFrequency:
+    """The row of a description: Eq. (1), the same with the shortest T within the letter's error, the beam."""
+    if name.endswith("short_period"):
+        shorter = scene.single_mode.free_period_s - FREE_PERIOD_ERROR_S
+        scene = scene.replace({"single_mode.free_period_s": shorter})
+    f, period = base.frequency_hz, base.born_beam or 0
+    oscillator = beam_at(scene, f, model) if name == "beam" else single_mode_at(scene, f)
+    strobed = StroboscopicMap(oscillator=oscillator)
+    return LastFrequency(description=name, period=period, lives_up_to=upper_end(strobed, period),
+                         letters_period_born_from=first_birth(strobed, HIGHEST))  # fmt: skip

@@ -12,7 +12,7 @@ import pytest
 
 from contact import LinearContact, NewtonRestitution
 from studies.calibration import bare_cantilever, free_period, leaf_mass, with_mass_ratio
-from studies.effective_impact.__main__ import closed_forms, tried
+from studies.effective_impact.__main__ import closed_forms
 from studies.effective_impact.cases import Spring
 from studies.effective_impact.collision_rows import (
     Row,
@@ -22,6 +22,7 @@ from studies.effective_impact.collision_rows import (
     measure,
     on_orbits,
     still_of,
+    tried,
 )
 from studies.letter import TIME_TRACE_EXCESS
 from studies.scene import beam_at, hertz_of, read_scene

@@ -9,7 +9,8 @@ import pytest
 
 from contact import NewtonRestitution
 from contact.orbits import KickFamily
-from studies.hysteresis.__main__ import accuracy, causes_at, over_all, resolved, scanned_end, with_neighbours
+from studies.hysteresis.__main__ import accuracy, causes_at, over_all, resolved, with_neighbours
+from studies.hysteresis.columns import scanned_end
 from studies.hysteresis.descriptions import CAUSES, CHAIN, OneMode, Row, folds_at
 from studies.scene import beam_at, model_of, read_scene, single_mode_of
 
