@@ -41,18 +41,21 @@ H. E. Nusse, C. Grebogi, Phys. Rev. E 50 (1994) 4427.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Any, Literal
+from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from beam.parameters import require, require_array, require_whole, require_within, shown
+from beam.parameters import require, require_array, require_kind, require_whole, require_within
 from contact.compiled import kernel
 from contact.flight.modal_flow import flow_matrix
 from contact.flight.motion import damped_frequency
+from contact.laws import NewtonRestitution
+from contact.oscillator import ImpactOscillator
+from contact.strobed_map import Jacobians, StrobedOrbit
 
-__all__ = ["NordmarkMap", "iterate_map"]
+__all__ = ["NordmarkMap", "StrobedNordmarkMap", "iterate_map"]
 
 YLine = Literal["corrected", "printed"]
 
@@ -69,14 +72,12 @@ def iterate_map(x, y, alpha, gamma, gamma_impact, rho, delay_term, out):  # type
         out[n, 1] = y
 
 
-def restitution_of(oscillator: Any) -> float:
+def restitution_of(oscillator: ImpactOscillator) -> float:
     """The `local_restitution` of an oscillator's contact law; TypeError if it has none."""
-    if not (hasattr(oscillator, "stop") and hasattr(oscillator, "model")):
-        raise TypeError(f"oscillator is {shown(oscillator)}; it must be an ImpactOscillator")
-    law = oscillator.stop.law
-    if not hasattr(law, "local_restitution"):
+    law = require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator").stop.law
+    if not isinstance(law, NewtonRestitution):
         raise TypeError(f"law of the stop is a {type(law).__name__}; it has no restitution, so give one")
-    return float(law.local_restitution)
+    return law.local_restitution
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -168,7 +169,7 @@ class NordmarkMap:
 
     @classmethod
     def from_oscillator(
-        cls, oscillator: Any, *, restitution: float | None = None,
+        cls, oscillator: ImpactOscillator, *, restitution: float | None = None,
         y_line: YLine = "corrected", delay: float = 0.0,
     ) -> NordmarkMap:
         """The map of the first mode of an `ImpactOscillator`, all higher modes ignored.
@@ -177,7 +178,8 @@ class NordmarkMap:
         and a law without one (a force law) raises TypeError.
         """
         restitution = restitution_of(oscillator) if restitution is None else restitution
-        require(oscillator.drive is not None, "drive is None; it must be a HarmonicDrive")
+        if oscillator.drive is None:
+            raise ValueError("drive is None; it must be a HarmonicDrive")
         return cls.from_mode(
             omega=float(oscillator.model.omega[0]), decay_rate=float(oscillator.model.decay_rate[0]),
             drive_frequency=float(oscillator.drive.frequency),
@@ -239,6 +241,53 @@ class NordmarkMap:
         if x > 0.0:
             return np.array([[-0.5 / math.sqrt(x), 1.0], [-self.gamma_impact, 0.0]])
         return np.array([[self.alpha, 1.0], [-self.gamma, 0.0]])
+
+
+@dataclass(frozen=True, kw_only=True)
+class StrobedNordmarkMap:
+    """A Nordmark map at its rho as a ``contact.strobed_map.StrobedMap``: one step is one drive period.
+
+    A state is the array (x, y), which is also its point; an impact occurs in the step that starts from x > 0.
+
+    Parameters
+    ----------
+    map : NordmarkMap
+    rho : float
+        The bifurcation parameter [1]; `at` sets it from the excess over grazing.
+    """
+
+    map: NordmarkMap
+    rho: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_kind("map", self.map, NordmarkMap, "a NordmarkMap")
+        require_within("rho", self.rho, "[1]")
+
+    @property
+    def scale(self) -> float:
+        """Size of the state of an orbit with impacts, from the square root's slope at |rho| = 1e-3 [1]."""
+        return 1e-3
+
+    def at(self, excess: float) -> StrobedNordmarkMap:
+        """The same map at another F/F_g - 1."""
+        return replace(self, rho=self.map.rho(excess))
+
+    def steady(self) -> NDArray[np.float64]:
+        """The fixed point of the branch without impact: x = rho / (1 - alpha + gamma), y = -gamma x."""
+        x = self.rho / (1.0 - self.map.alpha + self.map.gamma)
+        return np.array([x, -self.map.gamma * x])
+
+    def orbit(self, state: NDArray[np.float64], count: int) -> StrobedOrbit[NDArray[np.float64]]:
+        """`count` steps from `state`; the points are (x, y), shape (count, 2)."""
+        points = self.map.iterate(state, self.rho, count)
+        before = np.concatenate([[state[0]], points[:-1, 0]])
+        return StrobedOrbit(end=points[-1].copy(), points=points, impacts=(before > 0).astype(np.int64))
+
+    def jacobians(self, state: NDArray[np.float64], count: int) -> Jacobians[NDArray[np.float64]]:
+        """The derivatives along `count` steps, and the end."""
+        points = self.orbit(state, count).points
+        before = np.vstack([state, points[:-1]])
+        return [(self.map.jacobian(row), 1) for row in before], points[-1].copy()
 
 
 def _state(state: ArrayLike) -> tuple[float, float]:

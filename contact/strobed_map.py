@@ -13,9 +13,12 @@ from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
-__all__ = ["StrobedMap", "StrobedOrbit"]
+__all__ = ["Jacobians", "StrobedMap", "StrobedOrbit"]
 
 S = TypeVar("S")
+
+Jacobians = tuple[list[tuple[np.ndarray, int]], S]
+"""Derivatives along an orbit, each with the number of steps that it spans, and where the orbit ended."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -52,3 +55,6 @@ class StrobedMap(Protocol[S]):
 
     def orbit(self, state: S, count: int) -> StrobedOrbit[S]:
         """`count` periods from `state`."""
+
+    def jacobians(self, state: S, count: int) -> Jacobians[S]:
+        """Derivatives of the points with respect to those before, along at least one of `count` periods."""

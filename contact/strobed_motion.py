@@ -84,12 +84,16 @@ def at_amplitude(system, factor):
 
 
 @kernel
-def _periods(table, motion, u, v, runs, points, counts):
+def _periods(table, system, u, v, runs, points, counts):
     """The loop that fits: numba leaves out the branch that does not."""
     if table is None:
-        return any_periods(motion, u, v, runs, points, counts)
+        status = any_periods(system.motion, u, v, runs, points, counts)
+        for i in range(counts.size):
+            for k in range(points.shape[1]):
+                points[i, k] = (points[i, k] + system.mean[k]) * system.weight[k]
+        return status
     else:
-        return one_mode_periods(table, motion, u, v, runs, points, counts)[0]
+        return one_mode_periods(table, system, u, v, runs, points, counts)[0]
 
 
 @kernel
@@ -111,8 +115,4 @@ def strobed_motion(system, u, v, runs, points, counts):
     status : int
         As that of ``event_loop.advance``.
     """
-    status = _periods(system.table, system.motion, u, v, runs, points, counts)
-    for i in range(counts.size):
-        for k in range(points.shape[1]):
-            points[i, k] = (points[i, k] + system.mean[k]) * system.weight[k]
-    return status
+    return _periods(system.table, system, u, v, runs, points, counts)

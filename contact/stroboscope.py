@@ -2,24 +2,33 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from beam.parameters import require_kind, require_whole
 from contact.drive import split_time
+from contact.errors import UnresolvedCrossing
 from contact.event_loop import DONE
 from contact.exact_run import failure, start_of, state_of
+from contact.flight.modal_flow import steady_motion
 from contact.oscillator import ImpactOscillator
-from contact.strobed_map import StrobedMap, StrobedOrbit
+from contact.simulation import simulate
+from contact.strobed_map import Jacobians, StrobedMap, StrobedOrbit
 from contact.strobed_motion import StrobedSystem, coordinate_weights, strobed_motion, strobed_system
-from contact.trajectory import State
+from contact.touch.tangents import tangent_flight
+from contact.touch_flow import FLOWN, flow_from_touch
+from contact.trajectory import ImpactKind, Regime, State
 
 __all__ = ["StrobedMap", "StrobedOrbit", "StroboscopicMap", "strobed_orbits"]
+
+MOST_STRETCHES = 64
+"""Periods by which a derivative is prolonged at most; a contact lasts less than one."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -106,6 +115,61 @@ class StroboscopicMap:
             raise failure(status, motion, runs, u, v)
         end = state_of(motion, runs, u + system.mean[:n], v + system.mean[n:])
         return StrobedOrbit(end=end, points=points, impacts=impacts)
+
+    def jacobians(self, state: State, count: int) -> Jacobians[State]:
+        """Derivatives of the points along `count` drive periods from `state`, and the state at the end.
+
+        A strobe that falls into a contact is passed over: its derivative spans more than one period, and if
+        the last does, the orbit goes on to the next that does not, or ends before it.
+
+        Raises
+        ------
+        ValueError
+            If the state is in contact.
+        UnresolvedCrossing
+            If the motion comes to rest on the stop, or is in contact at every strobe.
+        """
+        if state.regime != Regime.OUTSIDE:
+            raise ValueError("state is in contact; start from a strobe at which the tip is off the wall")
+        oscillator, motion, n = self.oscillator, self._system.motion, self.oscillator.n_modes
+        period, response = motion.period, oscillator.tip_response()
+        weight = coordinate_weights(oscillator)
+        for more in range(MOST_STRETCHES):
+            run = simulate(oscillator, replace(state, time=0.0), periods=count + more)
+            hits = run.impacts.kind != ImpactKind.GRAZE
+            if np.any(run.impacts.kind[hits] != ImpactKind.IMPACT):
+                raise UnresolvedCrossing(time=state.time, gap=0.0, velocity=0.0)
+            start, end = run.impacts.start[hits], np.nan_to_num(run.impacts.end[hits], nan=np.inf)
+            strobes = [
+                j for j in range(1, count + more + 1)
+                if not np.any((start < j * period) & (end > j * period))
+            ]  # fmt: skip
+            if strobes:
+                break
+        else:
+            raise UnresolvedCrossing(time=state.time, gap=0.0, velocity=0.0)
+        q, q_rate = steady_motion(motion, start % period)
+        u = run.impacts.displacement_start[hits] - q
+        v = run.impacts.velocity_start[hits] - q_rate
+        until = np.append(start[1:], math.inf)
+        found, first, clock = [], 0, 0.0
+        for last in strobes:
+            tangent = np.eye(2 * n + 2)
+            for i in np.flatnonzero((start >= first * period) & (start < last * period)):
+                tangent_flight(motion, tangent, start[i] - clock)
+                clock = min(last * period, until[i])
+                outcome = flow_from_touch(
+                    motion, response, start[i] % period, u[i].copy(), v[i].copy(), clock - start[i],
+                    tangent, np.empty((1, 4 + 2 * n)),
+                )  # fmt: skip
+                if outcome != FLOWN:
+                    speed = float(run.impacts.approach[hits][i])
+                    raise UnresolvedCrossing(time=float(start[i]), gap=0.0, velocity=speed)
+            tangent_flight(motion, tangent, last * period - clock)
+            found.append((weight[:, None] * tangent[: 2 * n, : 2 * n] / weight, last - first))
+            first, clock = last, last * period
+        q, v = run.strobe_displacement[first - 1], run.strobe_velocity[first - 1]
+        return found, State(displacement=q, velocity=v)
 
 
 def strobed_orbits(

@@ -33,8 +33,8 @@ import numpy as np
 from beam import ModalModel
 from contact.errors import ContactError
 from contact.maximal_orbits import fold as map_fold
+from contact.nordmark import StrobedNordmarkMap
 from contact.orbits.single_impact import MaximalFamily
-from contact.strobed_nordmark import StrobedNordmarkMap
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.adequacy.fitted_scene import Need
 from studies.instruments.command_line import DONE, FAILED_CELLS, Request, run_study

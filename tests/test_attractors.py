@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from contact.nordmark import StrobedNordmarkMap
 from contact.orbits.lyapunov import (
     divergence_rate,
     map_exponents,
@@ -17,7 +18,6 @@ from contact.orbits.lyapunov import (
     orbit_exponents,
 )
 from contact.orbits.shooting import Shooting
-from contact.strobed_nordmark import StrobedNordmarkMap
 from contact.stroboscope import StrobedOrbit, StroboscopicMap
 from studies import attractors
 from studies.instruments.attractors.basins import basins

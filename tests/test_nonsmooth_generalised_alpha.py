@@ -38,7 +38,7 @@ def test_the_step_is_that_of_the_matrix_equations(rho: float) -> None:
     """All unknowns of a step (q, v, a, f, p) in one linear system, both cases of the stop tried."""
     spring, h, steps, e = oscillator(0.6, amplitude=1e-4), 4e-5, 1000, 0.6
     numbers = chung_hulbert(rho)
-    m, f, beta, gamma = (numbers[name] for name in ("alpha_m", "alpha_f", "beta", "gamma"))
+    m, f, beta, gamma = numbers
     n, one = 3, np.eye(3)
     w = 2 * np.pi * 21.5
     stiffness, damping = np.diag(OMEGA**2), np.diag(0.02 * OMEGA)

@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from contact.strobed_nordmark import StrobedNordmarkMap
+from contact.nordmark import StrobedNordmarkMap
 from contact.stroboscope import StroboscopicMap
 from studies import sensitivity
 from studies.instruments.calibration import free_period

@@ -1,4 +1,4 @@
-"""Linear stability of the generalised-alpha family, Newmark's method and that of 1977 among it.
+"""Linear stability of the generalised-alpha family, Newmark's method and HHT-alpha among it.
 
 A step multiplies the free motions of a mode q'' + c q' + omega^2 q = 0 by the roots z of
 
@@ -24,66 +24,59 @@ G. M. Hulbert, J. Appl. Mech. 60 (1993) 371).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-__all__ = ["Amplification"]
+__all__ = ["AlphaNumbers", "factors", "limit", "stable"]
 
 MARGIN = 1e-12
 """Slack of the conditions, in units of their terms: on the limit itself they cancel up to rounding."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Amplification:
-    """Linear theory of one choice of numbers.
-
-    Parameters
-    ----------
-    alpha_m, alpha_f, beta, gamma : float
-        As in ``GeneralisedAlpha`` [1].
-    """
+class AlphaNumbers(NamedTuple):
+    """The numbers of a member of the family, as in ``generalised_alpha`` [1]."""
 
     alpha_m: float
     alpha_f: float
     beta: float
     gamma: float
 
-    @property
-    def _letters(self) -> tuple[float, float, float, float]:
-        """A, F, g, b."""
-        return (
-            1.0 - 2.0 * self.alpha_m, 1.0 - 2.0 * self.alpha_f, 2.0 * self.gamma - 1.0,
-            4.0 * self.beta - 2.0 * self.gamma,
-        )  # fmt: skip
 
-    def factors(self, size: float, decay: float = 0.0) -> np.ndarray:
-        """The roots z for h omega = `size` and h c = `decay`, complex, shape (3,)."""
-        y, beta, gamma = size**2, self.beta, self.gamma
-        inertia = np.convolve([1.0 - self.alpha_m, self.alpha_m], [1.0, -2.0, 1.0])
-        spring = y * np.array([beta, 0.5 + gamma - 2.0 * beta, 0.5 - gamma + beta])
-        dashpot = decay * np.array([gamma, 1.0 - 2.0 * gamma, gamma - 1.0])
-        force = np.convolve([1.0 - self.alpha_f, self.alpha_f], spring + dashpot)
-        return np.asarray(np.roots(inertia + force))
+def _letters(numbers: AlphaNumbers) -> tuple[float, float, float, float]:
+    """A, F, g, b."""
+    alpha_m, alpha_f, beta, gamma = numbers
+    return 1.0 - 2.0 * alpha_m, 1.0 - 2.0 * alpha_f, 2.0 * gamma - 1.0, 4.0 * beta - 2.0 * gamma
 
-    def limit(self) -> float:
-        """Largest h omega without damping; infinite if there is none, 0 if any is too large [1]."""
-        a, f, g, b = self._letters
-        largest = math.inf
-        for constant, slope in (
-            (4.0 * a, f * b), (4.0, b + f * g), (0.0, g + f), (4.0 * (g + f - a), g * (b + f * g + f * f)),
-        ):  # fmt: skip
-            if constant < -MARGIN or (constant < MARGIN and slope < -MARGIN):
-                return 0.0
-            if slope < -MARGIN:
-                largest = min(largest, -constant / slope)
-        return math.sqrt(largest)
 
-    def stable(self, size: np.ndarray, decay: np.ndarray) -> np.ndarray:
-        """Whether a mode with h omega = `size` and h c = `decay` does not grow, elementwise."""
-        a, f, g, b = self._letters
-        y, x = size**2, 2.0 * decay
-        p3, p2, p1 = 4.0 * a + f * (b * y + x * g), 4.0 + b * y + x * g + f * (g * y + x), (g + f) * y + x
-        scale = MARGIN * (4.0 + y + x) * (1.0 + abs(b) + abs(g) + abs(f))
-        least = np.minimum(np.minimum(p3, p2), p1)
-        return np.asarray((least >= -scale) & (p2 * p1 - p3 * y >= -scale * (y + x)))
+def factors(numbers: AlphaNumbers, size: float, decay: float = 0.0) -> np.ndarray:
+    """The roots z for h omega = `size` and h c = `decay`, complex, shape (3,)."""
+    alpha_m, alpha_f, beta, gamma = numbers
+    inertia = np.convolve([1.0 - alpha_m, alpha_m], [1.0, -2.0, 1.0])
+    spring = size**2 * np.array([beta, 0.5 + gamma - 2.0 * beta, 0.5 - gamma + beta])
+    dashpot = decay * np.array([gamma, 1.0 - 2.0 * gamma, gamma - 1.0])
+    return np.asarray(np.roots(inertia + np.convolve([1.0 - alpha_f, alpha_f], spring + dashpot)))
+
+
+def limit(numbers: AlphaNumbers) -> float:
+    """Largest h omega without damping; infinite if there is none, 0 if any is too large [1]."""
+    a, f, g, b = _letters(numbers)
+    largest = math.inf
+    for constant, slope in (
+        (4.0 * a, f * b), (4.0, b + f * g), (0.0, g + f), (4.0 * (g + f - a), g * (b + f * g + f * f)),
+    ):  # fmt: skip
+        if constant < -MARGIN or (constant < MARGIN and slope < -MARGIN):
+            return 0.0
+        if slope < -MARGIN:
+            largest = min(largest, -constant / slope)
+    return math.sqrt(largest)
+
+
+def stable(numbers: AlphaNumbers, size: np.ndarray, decay: np.ndarray) -> np.ndarray:
+    """Whether a mode with h omega = `size` and h c = `decay` does not grow, elementwise."""
+    a, f, g, b = _letters(numbers)
+    y, x = size**2, 2.0 * decay
+    p3, p2, p1 = 4.0 * a + f * (b * y + x * g), 4.0 + b * y + x * g + f * (g * y + x), (g + f) * y + x
+    scale = MARGIN * (4.0 + y + x) * (1.0 + abs(b) + abs(g) + abs(f))
+    least = np.minimum(np.minimum(p3, p2), p1)
+    return np.asarray((least >= -scale) & (p2 * p1 - p3 * y >= -scale * (y + x)))

@@ -26,71 +26,53 @@ import numpy as np
 
 from contact.compiled import kernel
 from contact.flight.motion import Motion
-from contact.integrators.equation import contact_force, contact_tangent, tip_of
-from contact.integrators.grid import (
-    DIVERGED,
-    EVALUATIONS,
-    FINISHED,
-    FULL,
-    LOGGED,
-    STEP,
-    TOO_LARGE,
-    UNBOUNDED,
-    record_step,
-)
-from contact.integrators.grid_run import check_step, grid_trajectory
-from contact.integrators.method import Integrator, Run
+from contact.integrators.equation import contact_force, tip_of
+from contact.integrators.fixed_step import check_step, fixed_step_run
+from contact.integrators.grid import DONE, end_contact_step, passes
+from contact.integrators.method import Integrator
 from contact.laws import HERTZ, LINEAR
 from contact.oscillator import ImpactOscillator
-from contact.trajectory import Trajectory
+from contact.trajectory import Run, Trajectory
 
 __all__ = ["CentralDifference"]
 
 
 @kernel
-def central_difference(equation, grid, q, v, carried, steps, h, lagged, critical):
-    """March from the step reached to `steps`; `carried`, shape (3, n_modes), holds v_{n-1/2} in row 0."""
-    n = q.size
-    half, q0, v0 = carried[0], carried[1], carried[2]
-    for i in range(grid.integers[STEP], steps + 1):
-        # the force at grid point i completes step i - 1, whose end velocity needs it
-        s = i * h
-        swing = math.sin(equation.drive * (equation.clock + s))
-        depth, rate = tip_of(equation, q, half if i > 0 else v)
+def central_difference(equation, grid, half, lagged):
+    """March from the grid point reached; `half`, shape (n_modes,), carries v_{n+1/2}."""
+    place, h, q, v, q0, v0 = grid.places[0], grid.step, grid.q, grid.v, grid.q0, grid.v0
+    starts = place.evaluations == 0
+    for i in range(-1 if starts else place.step, grid.steps):
+        # step -1 is the half step before the first, which leaves the tip where it is
+        first = i < 0
+        length = 0.5 * h if first else h
+        for k in range(q.size):
+            q0[k], v0[k] = q[k], v[k]
+            if first:
+                half[k] = v[k]
+            else:
+                q[k] += h * half[k]
+        swing = math.sin(equation.drive * (equation.clock + (i + 1) * h))
+        depth, rate = tip_of(equation, q, half)
         push = contact_force(equation, depth, rate)
-        grid.integers[EVALUATIONS] += 1
-        length = h if i > 0 else 0.5 * h
-        for k in range(n):
+        place.evaluations += 1
+        for k in range(q.size):
             force = (
                 equation.constant[k] + equation.push[k] * swing - equation.stiffness[k] * q[k]
                 - equation.phi[k] * push
             )  # fmt: skip
-            old = half[k] if i > 0 else v[k]
-            c = equation.decay[k] * length
-            if lagged or i == 0:
-                new = old + length * force - c * old
+            old, c = half[k], equation.decay[k] * length
+            if lagged or first:
+                half[k] = old + length * force - c * old
             else:
-                new = ((1.0 - 0.5 * c) * old + length * force) / (1.0 + 0.5 * c)
-            v[k] = 0.5 * (old + new) if i > 0 else old
-            half[k] = new
-        if i > 0:
-            depth = record_step(equation, grid, s - h, h, q0, v0, q, v)
-            if not abs(depth) < UNBOUNDED:
-                grid.integers[STEP] = i
-                return DIVERGED
-            if contact_tangent(equation, depth, 0.0)[0] > critical:
-                grid.integers[STEP] = i
-                return TOO_LARGE
-        if i == steps:
-            break
-        for k in range(n):
-            q0[k], v0[k] = q[k], v[k]
-            q[k] += h * half[k]
-        if grid.integers[LOGGED] >= grid.log.shape[0] - 1:
-            grid.integers[STEP] = i + 1
-            return FULL
-    grid.integers[STEP] = steps
-    return FINISHED
+                half[k] = ((1.0 - 0.5 * c) * old + length * force) / (1.0 + 0.5 * c)
+            if not first:
+                v[k] = 0.5 * (old + half[k])
+        if not first and not passes(grid, 1, depth, depth < 0.0):
+            status = end_contact_step(equation, grid)
+            if status != DONE:
+                return status
+    return DONE
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -130,13 +112,8 @@ class CentralDifference(Integrator):
     def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
         """The motion of `run`."""
         critical = math.inf if self.beyond_limit else self.critical_stiffness(oscillator.motion())
-        return grid_trajectory(
-            oscillator,
-            run,
-            step=self.step,
-            march=lambda equation, grid, q, v, carried, steps: central_difference(
-                equation, grid, q, v, carried, steps, self.step, self.lagged, critical
-            ),
-            carried=np.zeros((3, oscillator.n_modes)),
-            critical=critical,
-        )
+        half = np.zeros(oscillator.n_modes)
+        return fixed_step_run(
+            oscillator, run, step=self.step, critical=critical,
+            march=lambda equation, grid: central_difference(equation, grid, half, self.lagged),
+        )  # fmt: skip

@@ -35,9 +35,9 @@ from typing import ClassVar
 import numpy as np
 
 from beam.parameters import brief, is_number, require_within
-from contact.compiled import kernel
+from contact.compiled import inlined, kernel
 from contact.flight.motion import Motion
-from contact.integrators.amplification import Amplification
+from contact.integrators.amplification import AlphaNumbers, factors, limit, stable
 from contact.integrators.equation import (
     contact_force,
     contact_tangent,
@@ -45,22 +45,12 @@ from contact.integrators.equation import (
     stiffness_at,
     tip_of,
 )
-from contact.integrators.grid import (
-    DIVERGED,
-    EVALUATIONS,
-    FINISHED,
-    FULL,
-    LOGGED,
-    STEP,
-    TOO_LARGE,
-    UNBOUNDED,
-    record_step,
-)
-from contact.integrators.grid_run import check_step, grid_trajectory
-from contact.integrators.method import Integrator, Run
+from contact.integrators.fixed_step import check_step, fixed_step_run
+from contact.integrators.grid import DONE, begin_step, end_contact_step, passes
+from contact.integrators.method import Integrator
 from contact.laws import HERTZ, LINEAR
 from contact.oscillator import ImpactOscillator
-from contact.trajectory import Trajectory
+from contact.trajectory import Run, Trajectory
 
 __all__ = ["GeneralisedAlpha", "chung_hulbert"]
 
@@ -105,67 +95,74 @@ def force_at_end(equation, depth, rate, b, g):
     return force, ITERATIONS
 
 
+@inlined
+def predict(equation, grid, numbers, rows, swing):
+    """The step without a contact force at its end; rows: a, f and D; `swing`: sin(w t) at the end."""
+    a, f, inertia = rows[0], rows[1], rows[2]
+    h, q, v, new = grid.step, grid.q, grid.v, 1.0 - numbers.alpha_f
+    begin_step(grid)
+    for k in range(q.size):
+        q[k] += h * v[k] + h * h * (0.5 - numbers.beta) * a[k]
+        v[k] += h * (1.0 - numbers.gamma) * a[k]
+        rest = numbers.alpha_f * f[k] - numbers.alpha_m * a[k]
+        a[k] = (rest + new * force_in_flight(equation, k, swing, q, v)) / inertia[k]
+        q[k] += numbers.beta * h * h * a[k]
+        v[k] += numbers.gamma * h * a[k]
+
+
 @kernel
-def generalised_alpha(equation, grid, q, v, carried, steps, h, alpha_m, alpha_f, beta, gamma, critical):
-    """March from the step reached to `steps`; rows of `carried`: a, f, D and the state before the step."""
-    n = q.size
-    a, f, inertia, q0, v0 = carried[0], carried[1], carried[2], carried[3], carried[4]
-    new = 1.0 - alpha_f
-    if grid.integers[STEP] == 0:
-        swing = math.sin(equation.drive * equation.clock)
-        depth, rate = tip_of(equation, q, v)
-        push = contact_force(equation, depth, rate)
-        grid.integers[EVALUATIONS] += 1
-        for k in range(n):
-            f[k] = force_in_flight(equation, k, swing, q, v) - equation.phi[k] * push
-            a[k] = f[k]
-            inertia[k] = 1.0 - alpha_m + new * h * (
-                gamma * equation.decay[k] + beta * h * equation.stiffness[k]
-            )  # fmt: skip
-    mobility = 0.0
-    for k in range(n):
+def start_rows(equation, grid, numbers, rows):
+    """a and f of a start, and D."""
+    h, new = grid.step, 1.0 - numbers.alpha_f
+    swing = math.sin(equation.drive * equation.clock)
+    depth, rate = tip_of(equation, grid.q, grid.v)
+    push = contact_force(equation, depth, rate)
+    grid.places[0].evaluations += 1
+    for k in range(grid.q.size):
+        rows[1, k] = force_in_flight(equation, k, swing, grid.q, grid.v) - equation.phi[k] * push
+        rows[0, k] = rows[1, k]
+        c, y = h * equation.decay[k], h * h * equation.stiffness[k]
+        rows[2, k] = 1.0 - numbers.alpha_m + new * (numbers.gamma * c + numbers.beta * y)
+
+
+@kernel
+def generalised_alpha(equation, grid, numbers, rows):
+    """March from the grid point reached; `rows`, shape (3, n_modes), carries a, f and D."""
+    place, h, q, v, new = grid.places[0], grid.step, grid.q, grid.v, 1.0 - numbers.alpha_f
+    if place.evaluations == 0:
+        start_rows(equation, grid, numbers, rows)
+    a, f, inertia = rows[0], rows[1], rows[2]
+    b, g, mobility = numbers.beta * h * h, numbers.gamma * h, 0.0
+    for k in range(q.size):
         mobility += new * equation.phi[k] ** 2 / inertia[k]
-    for i in range(grid.integers[STEP], steps):
-        if grid.integers[LOGGED] >= grid.log.shape[0] - 1:
-            grid.integers[STEP] = i
-            return FULL
+    for i in range(place.step, grid.steps):
         swing = math.sin(equation.drive * (equation.clock + (i + 1) * h))
-        for k in range(n):
-            q0[k], v0[k] = q[k], v[k]
-            q[k] += h * v[k] + h * h * (0.5 - beta) * a[k]
-            v[k] += h * (1.0 - gamma) * a[k]
-            rest = alpha_f * f[k] - alpha_m * a[k]
-            a[k] = (rest + new * force_in_flight(equation, k, swing, q, v)) / inertia[k]
-            q[k] += beta * h * h * a[k]
-            v[k] += gamma * h * a[k]
+        predict(equation, grid, numbers, rows, swing)
         depth, rate = tip_of(equation, q, v)
-        push, used = force_at_end(equation, depth, rate, beta * h * h * mobility, gamma * h * mobility)
-        grid.integers[EVALUATIONS] += used
-        for k in range(n):
+        push, used = force_at_end(equation, depth, rate, b * mobility, g * mobility)
+        place.evaluations += used
+        for k in range(q.size):
             jump = -new * equation.phi[k] * push / inertia[k]
             a[k] += jump
-            q[k] += beta * h * h * jump
-            v[k] += gamma * h * jump
+            q[k] += b * jump
+            v[k] += g * jump
             f[k] = force_in_flight(equation, k, swing, q, v) - equation.phi[k] * push
-        depth = record_step(equation, grid, i * h, h, q0, v0, q, v)
-        if not abs(depth) < UNBOUNDED:
-            grid.integers[STEP] = i + 1
-            return DIVERGED
-        if contact_tangent(equation, depth, 0.0)[0] > critical:
-            grid.integers[STEP] = i + 1
-            return TOO_LARGE
-    grid.integers[STEP] = steps
-    return FINISHED
+        depth, rate = tip_of(equation, q, v)
+        if not passes(grid, 1, depth, depth < 0.0):
+            status = end_contact_step(equation, grid)
+            if status != DONE:
+                return status
+    return DONE
 
 
-def chung_hulbert(rho: float) -> dict[str, float]:
-    """alpha_m, alpha_f, beta and gamma of order 2 that damp infinite frequencies by the factor `rho` a step
-    and low ones least (Chung and Hulbert 1993)."""
+def chung_hulbert(rho: float) -> AlphaNumbers:
+    """The numbers of order 2 that damp infinite frequencies by the factor `rho` a step and low ones least
+    (Chung and Hulbert 1993)."""
     if not (is_number(rho) and 0.0 <= rho <= 1.0):
         raise ValueError(f"rho is {brief(rho)}; it must lie between 0 and 1")
     alpha_m, alpha_f = (2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0)
     gamma = 0.5 + (1.0 - rho) / (1.0 + rho)
-    return {"alpha_m": alpha_m, "alpha_f": alpha_f, "beta": 0.25 * (0.5 + gamma) ** 2, "gamma": gamma}
+    return AlphaNumbers(alpha_m=alpha_m, alpha_f=alpha_f, beta=0.25 * (0.5 + gamma) ** 2, gamma=gamma)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -223,7 +220,7 @@ class GeneralisedAlpha(Integrator):
         """The method of Hilber, Hughes and Taylor; `alpha` from 0 to 1/3 is minus that of their paper."""
         if not (is_number(alpha) and 0.0 <= alpha <= 1.0 / 3.0):
             raise ValueError(
-                f"alpha is {brief(alpha)}; it must lie between 0 and 1/3 (that of the paper of 1977 with "
+                f"alpha is {brief(alpha)}; it must lie between 0 and 1/3 (that of the HHT-alpha paper with "
                 "its sign turned)"
             )
         return GeneralisedAlpha(
@@ -235,34 +232,29 @@ class GeneralisedAlpha(Integrator):
     def with_dissipation(*, step: float, rho: float, beyond_limit: bool = False) -> GeneralisedAlpha:
         """Chung and Hulbert's choice; `rho`, from 0 to 1, is the factor by which a step damps infinite
         frequencies."""
-        return GeneralisedAlpha(step=step, beyond_limit=beyond_limit, **chung_hulbert(rho))
+        return GeneralisedAlpha(step=step, beyond_limit=beyond_limit, **chung_hulbert(rho)._asdict())
 
     @property
-    def second_order(self) -> bool:
-        """Whether the numbers give order 2, not 1."""
-        return abs(self.gamma - 0.5 + self.alpha_m - self.alpha_f) <= 1e-12
-
-    @property
-    def amplification(self) -> Amplification:
-        """The linear theory of these numbers."""
-        return Amplification(
+    def numbers(self) -> AlphaNumbers:
+        """alpha_m, alpha_f, beta and gamma."""
+        return AlphaNumbers(
             alpha_m=self.alpha_m, alpha_f=self.alpha_f, beta=self.beta, gamma=self.gamma
         )
 
     def spectral_radius(self, frequency: float, decay: float = 0.0) -> float:
         """The largest factor by which a step multiplies a free motion of a mode, `frequency` in rad/s and
         `decay` = c in 1/s [1]."""
-        return float(np.max(np.abs(self.amplification.factors(self.step * frequency, self.step * decay))))
+        return float(np.max(np.abs(factors(self.numbers, self.step * frequency, self.step * decay))))
 
     def stability_limit(self) -> float:
         """Largest h omega of an undamped mode; infinite if there is none, 0 if any is too large [1]."""
-        return self.amplification.limit()
+        return limit(self.numbers)
 
     def critical_stiffness(self, motion: Motion) -> float:
         """Contact stiffness at which the highest frequency reaches the limit, formed without damping; below
         zero if a mode is beyond it [N/m]."""
         largest = self.stability_limit()
-        if not np.all(self.amplification.stable(self.step * motion.omega, self.step * motion.decay)):
+        if not np.all(stable(self.numbers, self.step * motion.omega, self.step * motion.decay)):
             return -1.0
         return math.inf if largest == math.inf else stiffness_at(
             motion.omega, motion.phi, largest / self.step
@@ -271,14 +263,8 @@ class GeneralisedAlpha(Integrator):
     def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
         """The motion of `run`."""
         critical = math.inf if self.beyond_limit else self.critical_stiffness(oscillator.motion())
-        return grid_trajectory(
-            oscillator,
-            run,
-            step=self.step,
-            march=lambda equation, grid, q, v, carried, steps: generalised_alpha(
-                equation, grid, q, v, carried, steps, self.step, self.alpha_m, self.alpha_f, self.beta,
-                self.gamma, critical,
-            ),
-            carried=np.zeros((5, oscillator.n_modes)),
-            critical=critical,
+        rows, numbers = np.zeros((3, oscillator.n_modes)), self.numbers
+        return fixed_step_run(
+            oscillator, run, step=self.step, critical=critical,
+            march=lambda equation, grid: generalised_alpha(equation, grid, numbers, rows),
         )  # fmt: skip

@@ -1,183 +1,231 @@
-"""What a run with a time step writes down: impacts, strobes and samples between its grid points.
+"""The grid points of a run with a time step, and what is written down between them.
 
-Between two grid points a step h apart a mode is the cubic through its displacements and velocities there,
+A touch is seen if the penetration is positive at a grid point: whatever lies between two of them is missed,
+as the method misses it.  What lies between two grid points is told by the method (`recording`); most take a
+mode there for the cubic through its displacements and velocities at both ends of the step,
 
     q(s) = H00 q0 + H10 h v0 + H01 q1 + H11 h v1,
 
-whose error, h^4/384 q'''', is below that of the methods that use it.  A touch is seen if the penetration is
-positive at a grid point: whatever lies between two of them is missed, as the method misses it.  Times s count
-from the start of the run.
+whose error, h^4/384 q'''', is below their own.  Touch and release are roots of the penetration on it.  Times
+count from the strobe before the run's start.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from contact.compiled import kernel
-from contact.integrators.equation import contact_force, tip_of
+from contact.compiled import inlined, kernel
+from contact.integrators.equation import contact_force, contact_tangent, tip_of
+from contact.recorder import (
+    Recorder,
+    add_loss,
+    close_touch,
+    is_full,
+    open_touch,
+    put_sample,
+    put_strobe,
+    sample_due,
+)
+from contact.trajectory import IMPACT
 
-__all__ = ["DIVERGED", "FINISHED", "FULL", "TOO_LARGE", "Grid", "record_impulse", "record_step"]
+__all__ = ["DIVERGED", "DONE", "FULL", "PLACE", "TOO_LARGE", "Grid", "begin_step", "end_contact_step",
+           "end_step", "passes", "record_times", "recording"]  # fmt: skip
 
-FINISHED, FULL, TOO_LARGE, DIVERGED = 0, 1, 2, 3
-"""How a march ends: at the end of the run; because the log is full; at a contact too stiff for the step; with
-a motion that is no longer finite."""
+DONE, FULL, TOO_LARGE, DIVERGED = 0, 1, 2, 3
+"""How a step or a run ends: well; with a full log; at a contact too stiff for the step; with a motion that is
+no longer finite."""
 
-STEP, LOGGED, SAMPLED, STROBED, COUNT, TOUCHING, EVALUATIONS = 0, 1, 2, 3, 4, 5, 6
-START, END, IN, OUT, LOST = 0, 1, 2, 3, 4
-GRID_FIELDS = 5
+PLACE = np.dtype([("step", "i8"), ("evaluations", "i8"), ("touching", "i8"), ("due", "f8")])
+"""Grid point reached; evaluations of the force so far; whether the tip touched there; when the next strobe or
+sample is due, since the strobe `first` [s]."""
+
 UNBOUNDED = 1e12
 """Penetration [m] beyond which a motion counts as diverged."""
 
+ON_THE_GRID = 1e-9
+"""Part of a step by which a time may miss a grid point and be taken for it."""
+
 
 class Grid(NamedTuple):
-    """Where a march writes.
+    """A run on its way.
 
-    Parameters
-    ----------
-    integers : ndarray of int64, shape (7,)
-        Step reached, rows logged, samples and strobes taken, impacts since the last strobe, whether the tip
-        touches, evaluations.
-    log, log_state : ndarray, shapes (capacity, 5) and (capacity, 4 n_modes)
-        Touches: start, end, both tip velocities, energy lost; modal states (q, v) at both ends.
-    strobe, strobes, counts : ndarray, shapes (n_strobes,), (n_strobes, 2 n_modes), (n_strobes,)
-    sample, samples : ndarray, shapes (n_times,), (n_times, 2 n_modes)
-        Times wanted [s], and the states there.
+    places : record array of `PLACE`, shape (1,)
+    step, clock, period : float
+        h, time of the first grid point since the strobe `first`, drive period [s].
+    first, steps : int
+        Number of the drive period in which the run starts; steps in all.
+    critical : float
+        Contact stiffness beyond which the run ends [N/m].
+    q, v, q0, v0, q_at, v_at : ndarray, shape (n_modes,)
+        The modal state that the method carries, now, at the last grid point, and somewhere between.
+    recorder : Recorder
     """
 
-    integers: np.ndarray
-    log: np.ndarray
-    log_state: np.ndarray
-    strobe: np.ndarray
-    strobes: np.ndarray
-    counts: np.ndarray
-    sample: np.ndarray
-    samples: np.ndarray
+    places: np.ndarray
+    step: float
+    clock: float
+    period: float
+    first: int
+    steps: int
+    critical: float
+    q: np.ndarray
+    v: np.ndarray
+    q0: np.ndarray
+    v0: np.ndarray
+    q_at: np.ndarray
+    v_at: np.ndarray
+    recorder: Recorder
+
+
+@inlined
+def begin_step(grid):
+    """Keep the state at the grid point reached."""
+    for k in range(grid.q.size):
+        grid.q0[k], grid.v0[k] = grid.q[k], grid.v[k]
+
+
+@inlined
+def passes(grid, count, depth, apart):
+    """Whether `count` steps that end with penetration `depth` need no word; they are then behind the run.
+
+    `apart` tells that the stop has not acted in them.
+    """
+    place = grid.places[0]
+    end = grid.clock + (place.step + count) * grid.step
+    quiet = apart and place.touching == 0 and abs(depth) < UNBOUNDED
+    if quiet and end + ON_THE_GRID * grid.step < place.due:
+        place.step += count
+        return True
+    return False
 
 
 @kernel
-def cubic(x, h, y0, r0, y1, r1):
-    """Value and rate at the fraction `x` of a step of the cubic with values `y` and rates `r` at its ends."""
+def cubic_between(equation, grid, x, h, acting):
+    """The state at the fraction `x` of a step of length h: penetration and its rate; (q, v) in q_at, v_at."""
     z = 1.0 - x
-    rise = y1 - y0
-    value = z * y0 + x * y1 + x * z * (z * (h * r0 - rise) - x * (h * r1 - rise))
-    a, b = h * r0 - rise, h * r1 - rise
-    rate = (rise + (1.0 - 2.0 * x) * (z * a - x * b) - x * z * (a + b)) / h
-    return value, rate
+    for k in range(grid.q.size):
+        rise = grid.q[k] - grid.q0[k]
+        a, b = h * grid.v0[k] - rise, h * grid.v[k] - rise
+        grid.q_at[k] = z * grid.q0[k] + x * grid.q[k] + x * z * (z * a - x * b)
+        grid.v_at[k] = (rise + (1.0 - 2.0 * x) * (z * a - x * b) - x * z * (a + b)) / h
+    return tip_of(equation, grid.q_at, grid.v_at)
 
 
-@kernel
-def crossing_of(h, d0, r0, d1, r1):
-    """Fraction of the step at which the cubic changes sign, by bisection; the ends have opposite signs."""
-    low, high = 0.0, 1.0
-    for _ in range(60):
-        x = 0.5 * (low + high)
-        d, _rate = cubic(x, h, d0, r0, d1, r1)
-        if (d > 0.0) == (d1 > 0.0):
-            high = x
-        else:
-            low = x
-    return high
+def recording(between: Callable[..., Any]) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """The end of a step under a force law, and the strobes and samples in one, for a method's own `between`.
 
-
-@kernel
-def state_between(x, h, q0, v0, q1, v1, row, at):
-    """Put the state at the fraction `x` of a step into `row` from column `at` on."""
-    n = q0.size
-    for k in range(n):
-        row[at + k], row[at + n + k] = cubic(x, h, q0[k], v0[k], q1[k], v1[k])
-
-
-@kernel
-def open_touch(grid, s, rate):
-    """A new row of the log, its state still to be filled; returns its number."""
-    i = grid.integers[LOGGED]
-    grid.integers[LOGGED] += 1
-    grid.integers[COUNT] += 1
-    grid.integers[TOUCHING] = 1
-    grid.log[i, START] = s
-    grid.log[i, END] = np.nan
-    grid.log[i, IN] = rate
-    grid.log[i, OUT] = np.nan
-    grid.log[i, LOST] = 0.0
-    for k in range(grid.log_state.shape[1] // 2, grid.log_state.shape[1]):
-        grid.log_state[i, k] = np.nan
-    return i
-
-
-@kernel
-def record_times(grid, s0, h, q0, v0, q1, v1):
-    """Strobes and samples in (s0, s0 + h]."""
-    slack = 1e-9 * h
-    while (
-        grid.integers[SAMPLED] < grid.sample.size and grid.sample[grid.integers[SAMPLED]] <= s0 + h + slack
-    ):
-        i = grid.integers[SAMPLED]
-        x = min(1.0, max(0.0, (grid.sample[i] - s0) / h))
-        if x > 1.0 - 1e-9:
-            x = 1.0
-        state_between(x, h, q0, v0, q1, v1, grid.samples[i], 0)
-        grid.integers[SAMPLED] += 1
-    while (
-        grid.integers[STROBED] < grid.strobe.size and grid.strobe[grid.integers[STROBED]] <= s0 + h + slack
-    ):
-        i = grid.integers[STROBED]
-        x = min(1.0, max(0.0, (grid.strobe[i] - s0) / h))
-        if x > 1.0 - 1e-9:
-            x = 1.0
-        state_between(x, h, q0, v0, q1, v1, grid.strobes[i], 0)
-        grid.counts[i] = grid.integers[COUNT]
-        grid.integers[COUNT] = 0
-        grid.integers[STROBED] += 1
-
-
-@kernel
-def record_step(equation, grid, s0, h, q0, v0, q1, v1):
-    """Write down what happened under a force law in the step from (q0, v0) at `s0` to (q1, v1).
-
-    Returns the penetration at its end.
+    between(numbers, grid, x, h, acting) puts the state at the fraction x of the step just made, of length h,
+    into q_at and v_at, and returns penetration and its rate; at a touch the force is not `acting` yet.
     """
-    d0, r0 = tip_of(equation, q0, v0)
-    d1, r1 = tip_of(equation, q1, v1)
-    n = q0.size
-    if grid.integers[TOUCHING] == 0 and d1 > 0.0:
-        x = crossing_of(h, d0, r0, d1, r1)
-        _d, rate = cubic(x, h, d0, r0, d1, r1)
-        i = open_touch(grid, s0 + x * h, rate)
-        state_between(x, h, q0, v0, q1, v1, grid.log_state[i], 0)
-    if grid.integers[TOUCHING] == 1:
-        i = grid.integers[LOGGED] - 1
-        grid.log[i, LOST] += (
-            0.5 * h * (r0 * contact_force(equation, d0, r0) + r1 * contact_force(equation, d1, r1))
-        )
-        if d1 <= 0.0:
-            x = crossing_of(h, d0, r0, d1, r1)
-            _d, rate = cubic(x, h, d0, r0, d1, r1)
-            grid.log[i, END] = s0 + x * h
-            grid.log[i, OUT] = rate
-            state_between(x, h, q0, v0, q1, v1, grid.log_state[i], 2 * n)
-            grid.integers[TOUCHING] = 0
-    record_times(grid, s0, h, q0, v0, q1, v1)
-    return d1
+
+    @inlined
+    def crossing(numbers, grid, h, depth0, depth1):  # type: ignore[no-untyped-def]
+        """Where in the step the penetration, of opposite signs at both ends, vanishes; and its rate there.
+
+        Regula falsi with halved end values (M. Dowell, P. Jarratt, BIT 11 (1971) 168), bisection every third
+        time.
+        """
+        low, high, at_low, at_high, x, rate, side = 0.0, 1.0, depth0, depth1, 0.5, 0.0, 0
+        for i in range(100):
+            x = 0.5 * (low + high) if i % 3 == 2 else (low * at_high - high * at_low) / (at_high - at_low)
+            if not low < x < high:
+                x = 0.5 * (low + high)
+            depth, rate = between(numbers, grid, x, h, False)
+            if depth == 0.0 or high - low <= 1e-14:
+                break
+            if (depth > 0.0) == (at_high > 0.0):
+                high, at_high = x, depth
+                at_low *= 0.5 if side == 1 else 1.0
+                side = 1
+            else:
+                low, at_low = x, depth
+                at_high *= 0.5 if side == -1 else 1.0
+                side = -1
+        return x, rate
+
+    @inlined
+    def record_times(numbers, grid, start, h):  # type: ignore[no-untyped-def]
+        """Strobes and samples up to the end of a step of length h that began at the clock `start`."""
+        recorder = grid.recorder
+        marks, slack = recorder.marks[0], ON_THE_GRID * h
+        while True:
+            samples, strobe = sample_due(recorder, grid.first, start + h + slack), math.inf
+            more = marks.sampled < recorder.sample_clock.size
+            if marks.strobed < recorder.counts.size:
+                strobe = (marks.strobed + 1) * grid.period
+            if samples and recorder.sample_clock[marks.sampled] <= strobe:
+                time = recorder.sample_clock[marks.sampled]
+            elif strobe <= start + h + slack:
+                time, samples = strobe, False
+            else:
+                grid.places[0].due = min(strobe, recorder.sample_clock[marks.sampled] if more else math.inf)
+                return
+            x = max(0.0, (time - start) / h)
+            between(numbers, grid, 1.0 if x > 1.0 - ON_THE_GRID else x, h, True)
+            if samples:
+                put_sample(recorder, grid.q_at, grid.v_at)
+            else:
+                put_strobe(recorder, grid.q_at, grid.v_at)
+
+    @inlined
+    def record_step(numbers, grid, count, depths, taken, met):  # type: ignore[no-untyped-def]
+        """The end of `count` steps at once under a force law, between the penetrations `depths`.
+
+        `taken` is the energy that the stop has taken in a step [J], `met` whether the tip has met it within.
+        """
+        depth0, depth1 = depths
+        recorder, h = grid.recorder, count * grid.step
+        start = grid.clock + grid.places[0].step * grid.step
+        touching = recorder.marks[0].touching == 1
+        opens = not touching and (depth1 > 0.0 or met)
+        closes = depth1 <= 0.0 and (touching or opens)
+        x = rate = 0.0
+        if opens or closes:
+            # a touch that begins and ends between two grid points lasts the whole step
+            if (depth0 > 0.0) != (depth1 > 0.0):
+                x, rate = crossing(numbers, grid, h, depth0, depth1)
+            else:
+                _depth, rate = between(numbers, grid, 0.0, h, False)
+        if opens:
+            open_touch(recorder, grid.first, start + x * h, rate, IMPACT, grid.q_at, grid.v_at)
+        if touching or opens:
+            add_loss(recorder, taken)
+        if closes:
+            if opens:
+                x = 1.0
+                _depth, rate = between(numbers, grid, x, h, True)
+            close_touch(recorder, grid.first, start + x * h, rate, grid.q_at, grid.v_at)
+        record_times(numbers, grid, start, h)
+        return end_step(numbers, grid, count, depth1)
+
+    return record_step, record_times
 
 
 @kernel
-def record_impulse(equation, grid, s, q, v_before, v_after):
-    """Write down that the stop has acted at `s`, in a method whose impacts are jumps of the velocity there.
+def end_step(numbers, grid, count, depth):
+    """Go on to the grid point `count` further; DONE, or why the run has to leave the loop there."""
+    grid.places[0].step += count
+    grid.places[0].touching = grid.recorder.marks[0].touching
+    if not abs(depth) < UNBOUNDED:
+        return DIVERGED
+    stiffness, _damping = contact_tangent(numbers, depth, 0.0)
+    if stiffness > grid.critical:
+        return TOO_LARGE
+    return FULL if is_full(grid.recorder) else DONE
 
-    One touch lasts as long as the stop acts at every grid point.
-    """
-    n = q.size
-    _d, before = tip_of(equation, q, v_before)
-    _d, after = tip_of(equation, q, v_after)
-    if grid.integers[TOUCHING] == 0:
-        i = open_touch(grid, s, before)
-        for k in range(n):
-            grid.log_state[i, k], grid.log_state[i, n + k] = q[k], v_before[k]
-    i = grid.integers[LOGGED] - 1
-    grid.log[i, END] = s
-    grid.log[i, OUT] = after
-    grid.log[i, LOST] += 0.5 * (before - after) * (before + after) / equation.compliance
-    for k in range(n):
-        grid.log_state[i, 2 * n + k], grid.log_state[i, 3 * n + k] = q[k], v_after[k]
+
+_record_contact, record_times = recording(cubic_between)
+
+
+@kernel
+def end_contact_step(equation, grid):
+    """The end of a step under a force law, the state between its ends on the cubic."""
+    d0, r0 = tip_of(equation, grid.q0, grid.v0)
+    d1, r1 = tip_of(equation, grid.q, grid.v)
+    power = r0 * contact_force(equation, d0, r0) + r1 * contact_force(equation, d1, r1)
+    return _record_contact(equation, grid, 1, (d0, d1), 0.5 * grid.step * power, False)
+

@@ -43,28 +43,18 @@ from typing import ClassVar
 import numpy as np
 
 from beam.parameters import require_within
-from contact.compiled import kernel
+from contact.compiled import inlined, kernel
 from contact.flight.motion import Motion
 from contact.integrators.equation import force_in_flight, tip_of
-from contact.integrators.grid import (
-    DIVERGED,
-    EVALUATIONS,
-    FINISHED,
-    FULL,
-    LOGGED,
-    STEP,
-    TOUCHING,
-    UNBOUNDED,
-    record_impulse,
-    record_times,
-)
-from contact.integrators.grid_run import check_step, grid_trajectory
-from contact.integrators.method import Integrator, Run
+from contact.integrators.fixed_step import check_step, fixed_step_run
+from contact.integrators.grid import DONE, begin_step, end_step, passes, record_times
+from contact.integrators.method import Integrator
 from contact.laws import NEWTON
 from contact.oscillator import ImpactOscillator
-from contact.trajectory import Trajectory
+from contact.recorder import add_loss, close_touch, open_touch
+from contact.trajectory import IMPACT, Run, Trajectory
 
-__all__ = ["MoreauJean", "end_step", "percussion_of"]
+__all__ = ["MoreauJean", "end_impact_step", "percussion_of"]
 
 MARGIN = 1e-12
 """Slack of the test for stability, relative: on the limit itself its two terms cancel up to rounding."""
@@ -80,74 +70,80 @@ def percussion_of(equation, h, depth, before, after, mobility):
 
 
 @kernel
-def record_percussion(equation, grid, s0, h, corner, q0, v0, q1, v1, place):
+def record_percussion(equation, grid, corner):
     """Write down a step in which the stop has acted: the path has its corner at the fraction `corner`.
 
-    `place` is a row to work in.
+    One touch lasts as long as the stop acts in every step.
     """
-    for k in range(q0.size):
-        place[k] = q0[k] + corner * h * v0[k]
-    middle = s0 + corner * h
-    if corner > 0.0:
-        record_times(grid, s0, corner * h, q0, v0, place, v0)
-    record_impulse(equation, grid, middle, place, v0, v1)
-    if corner < 1.0:
-        record_times(grid, middle, (1.0 - corner) * h, place, v1, q1, v1)
-    record_times(grid, s0, h, q0, v0, q1, v1)  # what lies within rounding behind the end of the step
-
-
-@kernel
-def end_step(equation, grid, i, h, push, corner, q0, v0, q1, v1, place):
-    """Write down step `i`, with the percussion `push` at the fraction `corner` of it if there is one.
-
-    Returns whether the motion is still finite.
-    """
-    if push > 0.0:
-        record_percussion(equation, grid, i * h, h, corner, q0, v0, q1, v1, place)
-    else:
-        grid.integers[TOUCHING] = 0
-        record_times(grid, i * h, h, q0, v0, q1, v1)
-    depth, _u = tip_of(equation, q1, v1)
-    if abs(depth) < UNBOUNDED:
-        return True
-    grid.integers[STEP] = i + 1
-    return False
-
-
-@kernel
-def moreau_jean(equation, grid, q, v, carried, steps, h, theta):
-    """March from the step reached to `steps`; `carried`, shape (4, n_modes), is room to work in."""
-    n = q.size
-    q0, v0, inertia, place = carried[0], carried[1], carried[2], carried[3]
-    old = (1.0 - theta) * h
-    new = theta * h
-    mobility = 0.0
+    recorder, h, n = grid.recorder, grid.step, grid.q.size
+    start = grid.clock + grid.places[0].step * h
+    late, q_end, v_end, place = start + corner * h, grid.q.copy(), grid.v.copy(), np.empty(n)
     for k in range(n):
+        place[k] = grid.q0[k] + corner * h * grid.v0[k]
+    if corner > 0.0:
+        grid.q[:], grid.v[:] = place, grid.v0
+        record_times(equation, grid, start, corner * h)
+    _d, before = tip_of(equation, place, grid.v0)
+    _d, after = tip_of(equation, place, v_end)
+    if recorder.marks[0].touching == 0:
+        open_touch(recorder, grid.first, late, before, IMPACT, place, grid.v0)
+    add_loss(recorder, 0.5 * (before - after) * (before + after) / equation.compliance)
+    close_touch(recorder, grid.first, late, after, place, v_end)
+    recorder.marks[0].touching = 1
+    grid.q[:], grid.v[:] = q_end, v_end
+    if corner < 1.0:
+        grid.q0[:], grid.v0[:] = place, v_end
+        record_times(equation, grid, late, (1.0 - corner) * h)
+    record_times(equation, grid, start, h)  # what lies within rounding behind the end of the step
+
+
+@kernel
+def _end_impact_step(equation, grid, push, corner):
+    """`end_impact_step` where there is something to write down."""
+    if push > 0.0:
+        record_percussion(equation, grid, corner)
+    else:
+        grid.recorder.marks[0].touching = 0
+        record_times(equation, grid, grid.clock + grid.places[0].step * grid.step, grid.step)
+    depth, _rate = tip_of(equation, grid.q, grid.v)
+    return end_step(equation, grid, 1, depth)
+
+
+@inlined
+def end_impact_step(equation, grid, push, corner):
+    """The end of a step, with the percussion `push` at the fraction `corner` of it if there is one."""
+    depth, _rate = tip_of(equation, grid.q, grid.v)
+    return DONE if passes(grid, 1, depth, push == 0.0) else _end_impact_step(equation, grid, push, corner)
+
+
+@kernel
+def moreau_jean(equation, grid, inertia, theta):
+    """March from the grid point reached; `inertia`, shape (n_modes,), is room for D."""
+    place, h, q, v, v0 = grid.places[0], grid.step, grid.q, grid.v, grid.v0
+    old, new, mobility = (1.0 - theta) * h, theta * h, 0.0
+    for k in range(q.size):
         inertia[k] = 1.0 + new * (equation.decay[k] + new * equation.stiffness[k])
         mobility += equation.phi[k] ** 2 / inertia[k]
-    for i in range(grid.integers[STEP], steps):
-        if grid.integers[LOGGED] >= grid.log.shape[0] - 1:
-            grid.integers[STEP] = i
-            return FULL
+    for i in range(place.step, grid.steps):
         swing0 = math.sin(equation.drive * (equation.clock + i * h))
         swing1 = math.sin(equation.drive * (equation.clock + (i + 1) * h))
         depth, before = tip_of(equation, q, v)
-        for k in range(n):
-            q0[k], v0[k] = q[k], v[k]
+        begin_step(grid)
+        for k in range(q.size):
             change = old * force_in_flight(equation, k, swing0, q, v)
             q[k] += h * v[k]  # where the old velocity leads; the change of velocity then counts by theta
             change += new * force_in_flight(equation, k, swing1, q, v)
             v[k] += change / inertia[k]
         _d, after = tip_of(equation, q, v)
-        grid.integers[EVALUATIONS] += 1
+        place.evaluations += 1
         push = percussion_of(equation, h, depth, before, after, mobility)
-        for k in range(n):
+        for k in range(q.size):
             v[k] -= equation.phi[k] * push / inertia[k]
             q[k] += new * (v[k] - v0[k])
-        if not end_step(equation, grid, i, h, push, 1.0 - theta, q0, v0, q, v, place):
-            return DIVERGED
-    grid.integers[STEP] = steps
-    return FINISHED
+        status = end_impact_step(equation, grid, push, 1.0 - theta)
+        if status != DONE:
+            return status
+    return DONE
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -193,13 +189,8 @@ class MoreauJean(Integrator):
     def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
         """The motion of `run`."""
         critical = math.inf if self.beyond_limit else self.critical_stiffness(oscillator.motion())
-        return grid_trajectory(
-            oscillator,
-            run,
-            step=self.step,
-            march=lambda equation, grid, q, v, carried, steps: moreau_jean(
-                equation, grid, q, v, carried, steps, self.step, self.theta
-            ),
-            carried=np.zeros((4, oscillator.n_modes)),
-            critical=critical,
-        )
+        room = np.empty(oscillator.n_modes)
+        return fixed_step_run(
+            oscillator, run, step=self.step, critical=critical,
+            march=lambda equation, grid: moreau_jean(equation, grid, room, self.theta),
+        )  # fmt: skip

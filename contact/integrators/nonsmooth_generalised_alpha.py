@@ -36,73 +36,49 @@ import numpy as np
 
 from contact.compiled import kernel
 from contact.integrators.equation import force_in_flight, tip_of
-from contact.integrators.generalised_alpha import chung_hulbert
-from contact.integrators.grid import (
-    DIVERGED,
-    EVALUATIONS,
-    FINISHED,
-    FULL,
-    LOGGED,
-    STEP,
-)
-from contact.integrators.grid_run import check_step, grid_trajectory
-from contact.integrators.method import Integrator, Run
-from contact.integrators.moreau_jean import end_step, percussion_of
+from contact.integrators.fixed_step import check_step, fixed_step_run
+from contact.integrators.generalised_alpha import chung_hulbert, predict, start_rows
+from contact.integrators.grid import DONE
+from contact.integrators.method import Integrator
+from contact.integrators.moreau_jean import end_impact_step, percussion_of
 from contact.laws import NEWTON
 from contact.oscillator import ImpactOscillator
-from contact.trajectory import Trajectory
+from contact.trajectory import Run, Trajectory
 
 __all__ = ["NonsmoothGeneralisedAlpha"]
 
 
 @kernel
-def nonsmooth_generalised_alpha(
-    equation, grid, q, v, carried, steps, h, alpha_m, alpha_f, beta, gamma
-):  # fmt: skip
-    """March from the step reached to `steps`; rows of `carried`: a, f, D, E and room to work in."""
-    n = q.size
-    a, f, inertia, share = carried[0], carried[1], carried[2], carried[3]
-    q0, v0, place = carried[4], carried[5], carried[6]
-    new = 1.0 - alpha_f
-    if grid.integers[STEP] == 0:
-        swing = math.sin(equation.drive * equation.clock)
-        for k in range(n):
-            a[k] = force_in_flight(equation, k, swing, q, v)
-            f[k] = a[k]
-            c, y = h * equation.decay[k], h * h * equation.stiffness[k]
-            inertia[k] = 1.0 - alpha_m + new * (gamma * c + beta * y)
-            share[k] = (1.0 - alpha_m + new * (beta - 0.5 * gamma) * y) / inertia[k]
+def nonsmooth_generalised_alpha(equation, grid, numbers, rows):
+    """March from the grid point reached; `rows`, shape (3, n_modes), carries a, f and D."""
+    place, h, q, v, new = grid.places[0], grid.step, grid.q, grid.v, 1.0 - numbers.alpha_f
+    if place.evaluations == 0:
+        start_rows(equation, grid, numbers, rows)
+        place.evaluations = 0
+    a, f, inertia = rows[0], rows[1], rows[2]
     mobility = 0.0
-    for k in range(n):
-        mobility += share[k] * equation.phi[k] ** 2
-    for i in range(grid.integers[STEP], steps):
-        if grid.integers[LOGGED] >= grid.log.shape[0] - 1:
-            grid.integers[STEP] = i
-            return FULL
+    for k in range(q.size):
+        y = h * h * equation.stiffness[k]
+        share = (1.0 - numbers.alpha_m + new * (numbers.beta - 0.5 * numbers.gamma) * y) / inertia[k]
+        mobility += share * equation.phi[k] ** 2
+    for i in range(place.step, grid.steps):
         swing = math.sin(equation.drive * (equation.clock + (i + 1) * h))
         depth, before = tip_of(equation, q, v)
-        for k in range(n):
-            q0[k], v0[k] = q[k], v[k]
-            q[k] += h * v[k] + h * h * (0.5 - beta) * a[k]
-            v[k] += h * (1.0 - gamma) * a[k]
-            rest = alpha_f * f[k] - alpha_m * a[k]
-            a[k] = (rest + new * force_in_flight(equation, k, swing, q, v)) / inertia[k]
-            q[k] += beta * h * h * a[k]
-            v[k] += gamma * h * a[k]
+        predict(equation, grid, numbers, rows, swing)
         _d, after = tip_of(equation, q, v)
-        grid.integers[EVALUATIONS] += 1
+        place.evaluations += 1
         push = percussion_of(equation, h, depth, before, after, mobility)
-        for k in range(n):
+        for k in range(q.size):
             jump = -equation.phi[k] * push
             change = -new * (equation.decay[k] + 0.5 * h * equation.stiffness[k]) * jump / inertia[k]
             a[k] += change
-            q[k] += beta * h * h * change + 0.5 * h * jump
-            v[k] += gamma * h * change + jump
+            q[k] += numbers.beta * h * h * change + 0.5 * h * jump
+            v[k] += numbers.gamma * h * change + jump
             f[k] = force_in_flight(equation, k, swing, q, v)
-        if not end_step(equation, grid, i, h, push, 0.5, q0, v0, q, v, place):
-            return DIVERGED
-    grid.integers[STEP] = steps
-    return FINISHED
+        status = end_impact_step(equation, grid, push, 0.5)
+        if status != DONE:
+            return status
+    return DONE
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,13 +91,10 @@ class NonsmoothGeneralisedAlpha(Integrator):
         Time step [s].
     rho : float
         Factor by which a step damps infinite frequencies, from 0 to 1 [1]; 1 damps nothing.
-    beyond_limit : bool
-        Without effect, since no step is unstable; here because every method with a step has it.
     """
 
     step: float
     rho: float
-    beyond_limit: bool = False
     name: ClassVar[str] = "nonsmooth-generalised-alpha"
     order: ClassVar[float] = 2.0
     laws: ClassVar[tuple[int, ...]] = (NEWTON,)
@@ -136,14 +109,8 @@ class NonsmoothGeneralisedAlpha(Integrator):
 
     def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
         """The motion of `run`."""
-        numbers = chung_hulbert(self.rho)
-        return grid_trajectory(
-            oscillator,
-            run,
-            step=self.step,
-            march=lambda equation, grid, q, v, carried, steps: nonsmooth_generalised_alpha(
-                equation, grid, q, v, carried, steps, self.step, numbers["alpha_m"], numbers["alpha_f"],
-                numbers["beta"], numbers["gamma"],
-            ),
-            carried=np.zeros((7, oscillator.n_modes)),
+        numbers, rows = chung_hulbert(self.rho), np.zeros((3, oscillator.n_modes))
+        return fixed_step_run(
+            oscillator, run, step=self.step,
+            march=lambda equation, grid: nonsmooth_generalised_alpha(equation, grid, numbers, rows),
         )  # fmt: skip

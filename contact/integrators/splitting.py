@@ -41,13 +41,13 @@ from typing import ClassVar
 import numpy as np
 
 from contact.flight.motion import Motion, motion_of
-from contact.integrators.grid_run import check_step, grid_trajectory
-from contact.integrators.method import Integrator, Run
+from contact.integrators.fixed_step import check_step, fixed_step_run
+from contact.integrators.method import Integrator
 from contact.integrators.splitting_limit import closed_form_limit, first_instability, spectral_radius
-from contact.integrators.splitting_step import Composition, march
+from contact.integrators.splitting_step import Composition, march, split_of
 from contact.laws import HERTZ, LINEAR, LinearContact
 from contact.oscillator import ImpactOscillator
-from contact.trajectory import Trajectory
+from contact.trajectory import Run, Trajectory
 
 __all__ = ["COMPOSITIONS", "Splitting"]
 
@@ -125,15 +125,10 @@ class Splitting(Integrator):
 
     def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
         """The motion of `run`."""
-        motion, composition = oscillator.motion(), COMPOSITIONS[self.order]
-        critical = math.inf if self.beyond_limit else self.critical_stiffness(motion)
-        return grid_trajectory(
-            oscillator,
-            run,
-            step=self.step,
-            march=lambda _equation, grid, q, v, _carried, steps: march(
-                motion, composition, grid, q, v, run.clock, steps, self.step, critical
-            ),
-            carried=np.empty(0),
-            critical=critical,
-        )
+        motion = oscillator.motion()
+        split = split_of(motion, COMPOSITIONS[self.order])
+        return fixed_step_run(
+            oscillator, run, step=self.step, motion=motion,
+            critical=math.inf if self.beyond_limit else self.critical_stiffness(motion),
+            march=lambda _equation, grid: march(split, grid),
+        )  # fmt: skip

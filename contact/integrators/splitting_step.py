@@ -34,28 +34,11 @@ import numpy as np
 
 from contact.compiled import kernel
 from contact.flight.modal_flow import flow_over, propagate
-from contact.flight.motion import COSINE, LOAD, OFFSET, OMEGA, SINE, WEIGHT
+from contact.flight.motion import LOAD, OMEGA, WEIGHT, Motion
 from contact.integrators.equation import contact_force, contact_tangent
-from contact.integrators.grid import (
-    COUNT,
-    DIVERGED,
-    END,
-    EVALUATIONS,
-    FINISHED,
-    FULL,
-    LOGGED,
-    LOST,
-    OUT,
-    SAMPLED,
-    STEP,
-    STROBED,
-    TOO_LARGE,
-    TOUCHING,
-    UNBOUNDED,
-    open_touch,
-)
+from contact.integrators.grid import DONE, begin_step, passes, recording
 
-__all__ = ["Composition", "march", "take_step"]
+__all__ = ["Composition", "Split", "march", "split_of", "take_step"]
 
 RENEW = 32
 """Steps after which sin and cos of the drive's phase are computed anew instead of turned on: their rounding
@@ -110,7 +93,8 @@ def kick(motion, depth, v, sine, cosine, length):
     force = contact_force(motion, depth, rate)
     if force == 0.0:
         return 0.0
-    x = contact_tangent(motion, depth, rate)[1] * motion.compliance * length
+    _stiffness, damping = contact_tangent(motion, depth, rate)
+    x = damping * motion.compliance * length
     impulse = force * length * (-math.expm1(-x) / x if x != 0.0 else 1.0)
     for k in range(v.size):
         v[k] -= motion.modes[WEIGHT, k] * impulse
@@ -147,90 +131,60 @@ def take_step(motion, composition, flows, length, depth, sine, cosine, u, v, kic
     return depth, sine, cosine, taken, touches
 
 
-@kernel
-def partial_step(motion, composition, length, sine, cosine, u0, v0, u, v, flows, kicks):
-    """Put the state a time `length` after (u0, v0) into (u, v); returns penetration, sine and cosine."""
-    for k in range(u0.size):
-        u[k], v[k] = u0[k], v0[k]
-    fill_flows(motion, composition, length, flows)
-    depth = tip_depth(motion, u, sine, cosine)
-    depth, sine, cosine, _taken, _touches = take_step(
-        motion, composition, flows, length, depth, sine, cosine, u, v, kicks
-    )
-    return depth, sine, cosine
+class Split(NamedTuple):
+    """What a run needs.
 
-
-@kernel
-def steady_of(motion, k, sine, cosine):
-    """Steady displacement and velocity of mode `k` at a phase of the drive."""
-    modes = motion.modes
-    return (
-        modes[OFFSET, k] + modes[SINE, k] * sine + modes[COSINE, k] * cosine,
-        motion.drive * (modes[SINE, k] * cosine - modes[COSINE, k] * sine),
-    )
-
-
-@kernel
-def put_state(motion, sine, cosine, u, v, row):
-    """Write the physical state, steady motion added, into the first 2 n_modes places of `row`."""
-    n = u.size
-    for k in range(n):
-        x, rate = steady_of(motion, k, sine, cosine)
-        row[k], row[n + k] = u[k] + x, v[k] + rate
-
-
-@kernel
-def record_times(motion, composition, grid, s0, length, sine, cosine, u0, v0, u, v, flows):
-    """Strobes and samples in (s0, s0 + length], from the state (u0, v0) at s0; u, v and `flows` are work
-    space."""
-    end = s0 + length * (1.0 + 1e-9)
-    while True:
-        i, j = grid.integers[SAMPLED], grid.integers[STROBED]
-        sample = grid.sample[i] if i < grid.sample.size else math.inf
-        strobe = grid.strobe[j] if j < grid.strobe.size else math.inf
-        time = min(sample, strobe)
-        if not time <= end:
-            return
-        _depth, s, c = partial_step(
-            motion, composition, time - s0, sine, cosine, u0, v0, u, v, flows, composition.kicks.size
-        )
-        if sample <= strobe:
-            put_state(motion, s, c, u, v, grid.samples[i])
-            grid.integers[SAMPLED] += 1
-        else:
-            put_state(motion, s, c, u, v, grid.strobes[j])
-            grid.counts[j] = grid.integers[COUNT]
-            grid.integers[COUNT] = 0
-            grid.integers[STROBED] += 1
-
-
-@kernel
-def switch(motion, composition, h, depth0, depth1, sine, cosine, u0, v0, u, v, flows):
-    """Where in a step from penetration `depth0` to `depth1`, of opposite signs, the tip passes the stop.
-
-    Regula falsi with halved end values (M. Dowell, P. Jarratt, BIT 11 (1971) 168), bisection every third
-    time.  The state just there, the force not yet acting, is left in (u, v); returns time, sine and cosine.
+    motion : Motion
+    composition : Composition
+    flows, part : ndarray, shape (stages, n_modes + 1, 6)
+        The sub-flows of a step, and of a part of one.
+    law, number0, number1 : int, float, float
+        Of the contact.
     """
-    low, high, at_low, at_high = 0.0, h, depth0, depth1
-    x, s, c, side = 0.5 * h, sine, cosine, 0
-    for i in range(100):
-        x = 0.5 * (low + high) if i % 3 == 2 else (low * at_high - high * at_low) / (at_high - at_low)
-        if not low < x < high:
-            x = 0.5 * (low + high)
-        depth, s, c = partial_step(
-            motion, composition, x, sine, cosine, u0, v0, u, v, flows, composition.flows.size
-        )
-        if depth == 0.0 or high - low <= 1e-14 * h:
-            break
-        if (depth > 0.0) == (at_high > 0.0):
-            high, at_high = x, depth
-            at_low *= 0.5 if side == 1 else 1.0
-            side = 1
-        else:
-            low, at_low = x, depth
-            at_high *= 0.5 if side == -1 else 1.0
-            side = -1
-    return x, s, c
+
+    motion: Motion
+    composition: Composition
+    flows: np.ndarray
+    part: np.ndarray
+    law: int
+    number0: float
+    number1: float
+
+
+def split_of(motion: Motion, composition: Composition) -> Split:
+    """The numbers of an oscillator, split."""
+    flows = np.zeros((composition.flows.size, motion.size + 1, 6))
+    return Split(
+        motion=motion, composition=composition, flows=flows, part=flows.copy(), law=motion.law,
+        number0=motion.number0, number1=motion.number1,
+    )  # fmt: skip
+
+
+@kernel
+def phase_of(motion, clock):
+    """sin and cos of the phase of the drive."""
+    phase = motion.drive * clock
+    return math.sin(phase), math.cos(phase)
+
+
+@kernel
+def part_of_step(split, grid, x, h, acting):
+    """The state after the fraction `x` of a step is that of a shorter one, without its last kick if the force
+    is not `acting`; see ``contact.integrators.grid``."""
+    motion, composition = split.motion, split.composition
+    for k in range(motion.size):
+        grid.q_at[k], grid.v_at[k] = grid.q0[k], grid.v0[k]
+    fill_flows(motion, composition, x * h, split.part)
+    sine, cosine = phase_of(motion, grid.clock + grid.places[0].step * grid.step)
+    depth = tip_depth(motion, grid.q_at, sine, cosine)
+    kicks = composition.kicks.size if acting else composition.flows.size
+    depth, sine, cosine, _taken, _touches = take_step(
+        motion, composition, split.part, x * h, depth, sine, cosine, grid.q_at, grid.v_at, kicks
+    )
+    return depth, tip_rate(motion, grid.v_at, sine, cosine)
+
+
+record_step, _record_times = recording(part_of_step)
 
 
 @kernel
@@ -245,84 +199,38 @@ def clear_steps(motion, depth, u, v, h):
 
 
 @kernel
-def march(motion, composition, grid, q, v, clock, steps, h, critical):
-    """March from the step reached to `steps`; q and v are physical on entry and on return."""
-    n = q.size
-    stages = composition.flows.size
-    flows, part = np.empty((stages, n + 1, 6)), np.empty((stages, n + 1, 6))
-    fill_flows(motion, composition, h, flows)
-    u, u0, v0, us, vs = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
-    i = grid.integers[STEP]
-    phase = motion.drive * (clock + i * h)
-    sine, cosine = math.sin(phase), math.cos(phase)
-    for k in range(n):
-        x, rate = steady_of(motion, k, sine, cosine)
-        u[k] = q[k] - x
-        v[k] -= rate
+def march(split, grid):
+    """March from the grid point reached; the grid carries deviations from the steady motion."""
+    motion, composition, place = split.motion, split.composition, grid.places[0]
+    h, u, v, stages = grid.step, grid.q, grid.v, composition.flows.size
+    fill_flows(motion, composition, h, split.flows)
+    sine, cosine = phase_of(motion, grid.clock + place.step * h)
     depth = tip_depth(motion, u, sine, cosine)
-    look, renew = i, i + RENEW
-    status = FINISHED
-    while i < steps:
-        if grid.integers[LOGGED] >= grid.log.shape[0] - 1:
-            status = FULL
-            break
-        s0, jump = i * h, 1
-        if i >= look and depth < 0.0 and grid.integers[TOUCHING] == 0:
+    look, renew = place.step, place.step + RENEW
+    while place.step < grid.steps:
+        jump, left = 1, grid.steps - place.step
+        if place.step >= look and depth < 0.0 and grid.recorder.marks[0].touching == 0:
             clear = clear_steps(motion, depth, u, v, h)
-            jump = steps - i if clear > steps - i else int(clear)
+            jump = left if clear > left else int(clear)
             if jump < WORTHWHILE:
-                jump, look = 1, i + WORTHWHILE // 2
-        for k in range(n):
-            u0[k], v0[k] = u[k], v[k]
-        s_in, c_in, before = sine, cosine, depth
-        taken, touches = 0.0, 0
+                jump, look = 1, place.step + WORTHWHILE // 2
+        begin_step(grid)
+        before, taken, touches = depth, 0.0, 0
         if jump == 1:
-            grid.integers[EVALUATIONS] += stages
+            place.evaluations += stages
             depth, sine, cosine, taken, touches = take_step(
-                motion, composition, flows, h, depth, sine, cosine, u, v, stages + 1
+                motion, composition, split.flows, h, depth, sine, cosine, u, v, stages + 1
             )
         else:
-            grid.integers[EVALUATIONS] += 1
+            place.evaluations += 1
             propagate(motion, u, v, jump * h, u, v)
-        i += jump
-        if i >= renew or jump > 1:
-            phase = motion.drive * (clock + i * h)
-            sine, cosine = math.sin(phase), math.cos(phase)
-            renew = i + RENEW
+        if place.step + jump >= renew or jump > 1:
+            sine, cosine = phase_of(motion, grid.clock + (place.step + jump) * h)
+            renew = place.step + jump + RENEW
             depth = tip_depth(motion, u, sine, cosine)
-        # a touch that begins and ends between two grid points, under an inner kick, lasts the whole step
-        opens = grid.integers[TOUCHING] == 0 and (depth > 0.0 or touches > 0)
-        closes = depth <= 0.0 and (grid.integers[TOUCHING] == 1 or opens)
-        x, s, c = 0.0, s_in, c_in
-        for k in range(n):
-            us[k], vs[k] = u0[k], v0[k]
-        if (opens or closes) and (before > 0.0) != (depth > 0.0):
-            x, s, c = switch(motion, composition, h, before, depth, s_in, c_in, u0, v0, us, vs, part)
-        if opens:
-            row = open_touch(grid, s0 + x, tip_rate(motion, vs, s, c))
-            put_state(motion, s, c, us, vs, grid.log_state[row])
-        if grid.integers[TOUCHING] == 1:
-            grid.log[grid.integers[LOGGED] - 1, LOST] += taken
-        if closes:
-            row = grid.integers[LOGGED] - 1
-            if opens:
-                x, s, c = h, sine, cosine
-                for k in range(n):
-                    us[k], vs[k] = u[k], v[k]
-            grid.log[row, END] = s0 + x
-            grid.log[row, OUT] = tip_rate(motion, vs, s, c)
-            put_state(motion, s, c, us, vs, grid.log_state[row, 2 * n :])
-            grid.integers[TOUCHING] = 0
-        record_times(motion, composition, grid, s0, jump * h, s_in, c_in, u0, v0, us, vs, part)
-        if not abs(depth) < UNBOUNDED:
-            status = DIVERGED
-            break
-        if contact_tangent(motion, depth, 0.0)[0] > critical:
-            status = TOO_LARGE
-            break
-    grid.integers[STEP] = i
-    for k in range(n):
-        x, rate = steady_of(motion, k, sine, cosine)
-        q[k] = u[k] + x
-        v[k] += rate
-    return status
+        if passes(grid, jump, depth, depth <= 0.0 and touches == 0):
+            continue
+        status = record_step(split, grid, jump, (before, depth), taken, touches > 0)
+        if status != DONE:
+            return status
+    return DONE

@@ -40,9 +40,9 @@ from contact.flight.crossing import CROSSES, first_crossing
 from contact.flight.motion import Motion
 from contact.laws import DELAYED
 from contact.orbits.driven_modes import SINGULAR, modal_flow
-from contact.orbits.touch_flow import FLOWN, flow_from_touch
 from contact.oscillator import ImpactOscillator
 from contact.touch.delayed import numbers_at
+from contact.touch_flow import FLOWN, flow_from_touch
 
 __all__ = ["Kick", "KickFamily", "KickOrbit"]
 

@@ -6,7 +6,7 @@ before),
     lambda_i = < log |R_ii| >        [per drive period],  largest first.
 
 For an impact oscillator J_n is composed in physical time, from the strobe to its first touch by the free flow
-of the modes, then from touch to touch and to the next strobe by the tangents of ``contact.orbits.touch_flow``
+of the modes, then from touch to touch and to the next strobe by the tangents of ``contact.touch_flow``
 (contact forces by their variational equation, Newton's law by its saltation matrix).  A strobe that falls
 into a contact is passed over: that J_n spans more than one period.  On an orbit of period m the exponents are
 log|mu_i|/m, with mu_i the eigenvalues of J_m ... J_1.  For Eq. (1) of the letter (1996) the determinants give
@@ -44,14 +44,13 @@ from numpy.typing import NDArray
 
 from beam.parameters import require_kind, require_whole, require_within, shown
 from contact.errors import NotPeriodic, UnresolvedCrossing
-from contact.flight.modal_flow import steady_motion
-from contact.orbits.driven_modes import modal_flow
-from contact.orbits.touch_flow import FLOWN, flow_from_touch
+from contact.nordmark import StrobedNordmarkMap
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
-from contact.strobed_nordmark import StrobedNordmarkMap
+from contact.strobed_map import Jacobians
+from contact.strobed_motion import coordinate_weights
 from contact.stroboscope import StroboscopicMap
-from contact.trajectory import ImpactKind, Regime, State
+from contact.trajectory import Regime, State
 
 __all__ = ["Differentiable", "Exponents", "divergence_rate", "map_exponents", "of_nordmark", "of_oscillator",
            "orbit_exponents"]  # fmt: skip
@@ -90,7 +89,7 @@ class Differentiable(Protocol[S]):
     def period(self) -> float:
         """Time of one step: the drive period [s], 1 for a map without time."""
 
-    def jacobians(self, state: S, count: int) -> tuple[list[tuple[Array, int]], S]:
+    def jacobians(self, state: S, count: int) -> Jacobians[S]:
         """Derivatives along `count` steps, each with the number of steps that it spans, and the end."""
 
     def follow(self, state: S, time: float) -> S:
@@ -250,11 +249,15 @@ def divergence_rate(
 class _OfOscillator:
     """An impact oscillator; coordinates are phi_k q_k and phi_k q_k'/omega_k [m]."""
 
-    oscillator: ImpactOscillator
+    strobed: StroboscopicMap
+
+    @property
+    def oscillator(self) -> ImpactOscillator:
+        return self.strobed.oscillator
 
     @property
     def scale(self) -> float:
-        return self.oscillator.stop.gap
+        return self.strobed.scale
 
     @property
     def period(self) -> float:
@@ -262,19 +265,7 @@ class _OfOscillator:
 
     @cached_property
     def _weight(self) -> Array:
-        model = self.oscillator.model
-        drive = self.oscillator.drive.angular_frequency  # type: ignore[union-attr]
-        phi = np.where(model.phi != 0, model.phi, np.abs(model.phi).max())
-        return np.concatenate([phi, phi / np.where(model.omega > 0, model.omega, drive)])
-
-    def _free(self, time: float) -> Array:
-        model = self.oscillator.model
-        flows = modal_flow(model.omega, model.decay_rate, time)
-        return np.block([[np.diag(flows[:, i, j]) for j in range(2)] for i in range(2)])
-
-    @cached_property
-    def _one_period(self) -> Array:
-        return self._free(self.period)
+        return coordinate_weights(self.oscillator)
 
     def clock(self, state: State) -> float:
         return state.time
@@ -296,55 +287,8 @@ class _OfOscillator:
             run = simulate(self.oscillator, run.end, duration=0.05 * self.period)
         raise UnresolvedCrossing(time=run.end.time, gap=0.0, velocity=0.0)
 
-    def jacobians(self, state: State, count: int) -> tuple[list[tuple[Array, int]], State]:
-        n, period, motion = self.oscillator.n_modes, self.period, self.oscillator.motion()
-        if state.regime != Regime.OUTSIDE:
-            raise ValueError("state is in contact; start from a strobe at which the tip is off the wall")
-        response = self.oscillator.tip_response()
-        for _ in range(MOST_STRETCHES):
-            run = simulate(self.oscillator, replace(state, time=0.0), periods=count)
-            hits = run.impacts.kind != ImpactKind.GRAZE
-            if np.any(run.impacts.kind[hits] != ImpactKind.IMPACT):
-                raise UnresolvedCrossing(time=state.time, gap=0.0, velocity=0.0)
-            start, end = run.impacts.start[hits], run.impacts.end[hits]
-            end = np.where(np.isnan(end), np.inf, end)
-            strobes = [
-                j for j in range(1, count + 1) if not np.any((start < j * period) & (end > j * period))
-            ]
-            if strobes:
-                break
-            count += 1  # all strobes so far are in contact
-        else:
-            raise UnresolvedCrossing(time=state.time, gap=0.0, velocity=0.0)
-        q, q_rate = steady_motion(motion, start % period)
-        u = run.impacts.displacement_start[hits] - q
-        v = run.impacts.velocity_start[hits] - q_rate
-        found, first, touch = [], 0, 0
-        for last in strobes:
-            if touch == start.size or start[touch] >= last * period:
-                matrix = np.linalg.matrix_power(self._one_period, last - first)
-            else:
-                matrix = self._free(float(start[touch]) - first * period)
-            while touch < start.size and start[touch] < last * period:
-                begin = float(start[touch])
-                until = min(last * period, float(start[touch + 1]) if touch + 1 < start.size else math.inf)
-                tangent = np.eye(2 * n + 2)
-                outcome = flow_from_touch(
-                    motion, response, begin % period, u[touch].copy(), v[touch].copy(), until - begin,
-                    tangent, np.empty((1, 4 + 2 * n)),
-                )
-                if outcome != FLOWN:
-                    raise UnresolvedCrossing(
-                        time=begin, gap=0.0, velocity=float(run.impacts.approach[hits][touch])
-                    )
-                matrix = tangent[: 2 * n, : 2 * n] @ matrix
-                touch += 1
-            found.append((self._weight[:, None] * matrix / self._weight, last - first))
-            first = last
-        ended = State(
-            displacement=run.strobe_displacement[first - 1], velocity=run.strobe_velocity[first - 1]
-        )
-        return found, ended
+    def jacobians(self, state: State, count: int) -> Jacobians[State]:
+        return self.strobed.jacobians(state, count)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -373,10 +317,8 @@ class _OfNordmark:
     def follow(self, state: Array, time: float) -> Array:
         return self.strobed.orbit(state, 1).end
 
-    def jacobians(self, state: Array, count: int) -> tuple[list[tuple[Array, int]], Array]:
-        points = self.strobed.orbit(state, count).points
-        before = np.vstack([state, points[:-1]])
-        return [(self.strobed.map.jacobian(row), 1) for row in before], points[-1].copy()
+    def jacobians(self, state: Array, count: int) -> Jacobians[Array]:
+        return self.strobed.jacobians(state, count)
 
 
 def of_oscillator(strobed: StroboscopicMap) -> Differentiable[State]:
@@ -384,7 +326,7 @@ def of_oscillator(strobed: StroboscopicMap) -> Differentiable[State]:
     require_kind("strobed", strobed, StroboscopicMap, "a StroboscopicMap")
     if strobed.oscillator.drive is None:
         raise ValueError("drive is None; a period map needs a HarmonicDrive")
-    return _OfOscillator(oscillator=strobed.oscillator)
+    return _OfOscillator(strobed=strobed)
 
 
 def of_nordmark(strobed: StrobedNordmarkMap) -> Differentiable[Array]:

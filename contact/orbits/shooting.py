@@ -1,7 +1,7 @@
 """Periodic orbits of any contact law, by shooting from touch to touch.
 
 Unknowns are the state at the first touch of the orbit and the drive: e = (u, v, S, C)
-(``contact.orbits.touch_flow``). An orbit with k touches in m drive periods satisfies
+(``contact.touch_flow``). An orbit with k touches in m drive periods satisfies
 
     (u, v) after m/f  =  (u, v),      y(e) = 0 (the tip is at the stop),
 
@@ -31,9 +31,9 @@ from contact.flight.modal_flow import steady_motion
 from contact.flight.motion import Motion
 from contact.orbits.kick import KickFamily, KickOrbit
 from contact.orbits.saltation import sorted_multipliers
-from contact.orbits.touch_flow import FLOWN, flow_from_touch
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
+from contact.touch_flow import FLOWN, flow_from_touch
 from contact.trajectory import ImpactKind, Regime, State
 
 __all__ = ["PeriodicOrbit", "Shooting"]

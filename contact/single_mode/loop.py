@@ -40,10 +40,11 @@ graze is left as it was and given to ``event_loop.advance``.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from contact.compiled import kernel
+from contact.compiled import inlined, kernel
 from contact.event_loop import DONE, advance
 from contact.recorder import strobes_only
 from contact.single_mode.one_impact import guessed, one_impact
@@ -63,33 +64,43 @@ def any_periods(motion, u, v, runs, points, counts):
     return advance(motion, u, v, runs, runs[0].period + counts.size, 0.0, strobes_only(points, counts))
 
 
-@kernel
-def is_free(n, z, rate, room):
-    """(*): whether a height z and its rate [m, m/s] prove the period free, `room` = G - d - m [m]."""
+@inlined
+def is_free(n, z, rate, height):
+    """(*): whether a height z and its rate [m, m/s] prove the period free; `height` = G - d [m]."""
+    room = height - n.margin
     return z * z + n.slow * rate * rate < room * room
 
 
-@kernel
-def settled_period(n, rows, u, v):
-    """A period from (u, v) with at most one impact: impacts and deviation at its end, or -1 impacts."""
-    square = n.square_u * u * u + n.square_v * v * v
-    if not square < n.most:
-        return -1, u, v
-    rho = math.sqrt(square)
+class Seen(NamedTuple):
+    """What (*) needs: rho [m], (p, q) = phi (u, u') at the steady peak, and G - d [m]."""
+
+    rho: float
+    free: float
+    slope: float
+    height: float
+
+
+@inlined
+def seen_at_peak(n, u, v):
+    """A period from (u, v), as it is seen at its steady peak."""
+    rho = math.sqrt(n.square_u * u * u + n.square_v * v * v)
     p, slope = through(n.peak_flow, u, v)
-    height = n.gap - n.detuning * rho
-    room = height - n.margin
-    if is_free(n, n.above + p + height, slope, room):
-        u, v = through(n.period_flow, u, v)
-        return 0, u, v
+    return Seen(rho, p, slope, n.gap - n.detuning * rho)
+
+
+@inlined
+def settled_period(n, rows, seen, u, v):
+    """A period from (u, v) that (*) does not settle at the peak: impacts, at most one, and the deviation at
+    its end; or -1 impacts, which leaves it open."""
+    p, slope = seen.free, seen.slope
     t = guessed(n, p, slope)
     if 0.0 <= t <= n.period:
-        settled, _time, _approach, un, vn = one_impact(n, rows, t, rho, u, v)
+        settled, _time, _approach, un, vn = one_impact(n, rows, t, seen.rho, u, v)
         if settled:
             return 1, un, vn
         found, t, un, vn, approach = rising_zero(n, rows, np.int64(0), u, v, t, 0.0, n.period, n.margin)
         vn += n.kick * approach
-        if found and n.square_u * un * un + n.square_v * vn * vn < n.most:
+        if found and n.square_u * un * un + n.square_v * vn * vn < n.most * n.most:
             u, v = flow_over(n, rows, n.period - t, un, vn)
             return 1, u, v
         return -1, u, v
@@ -101,15 +112,15 @@ def settled_period(n, rows, u, v):
     x += 0.5 * twist * x * x / (dip - twist * x)
     if dip > 0.0 and abs(x) * n.drive < 1.5:
         _u, _v, _swing, y0, y1, _y2 = tip_near(n, rows, np.int64(0), u, v, n.peak + x)
-        if is_free(n, y0 + height, y1, room):
+        if is_free(n, y0 + seen.height, y1, seen.height):
             u, v = through(n.period_flow, u, v)
             return 0, u, v
     return -1, u, v
 
 
 @kernel
-def one_mode_periods(table, motion, u, v, runs, points, counts):
-    """The same as `any_periods` for the one mode of `table`.
+def one_mode_periods(table, system, u, v, runs, points, counts):
+    """``strobed_motion`` for the one mode of `table`, a field of `system` which numba cannot tell from None.
 
     Returns
     -------
@@ -118,25 +129,36 @@ def one_mode_periods(table, motion, u, v, runs, points, counts):
     searched, left : int
         Periods that needed a search, and those left to ``advance``.
     """
+    n, rows = table.mode, table.rows
+    mean_u, mean_v, weight_u, weight_v = system.mean[0], system.mean[1], system.weight[0], system.weight[1]
     searched, left, run = 0, 0, runs[0]
-    first, u0, v0 = run.period, u[0], v[0]
+    first = run.period
+    un, vn = u[0], v[0]
+    outside = run.regime == OUTSIDE and run.order == 0
     for i in range(counts.size):
-        impacts, un, vn = -1, u0, v0
-        if run.regime == OUTSIDE and run.order == 0:
-            impacts, un, vn = settled_period(table.mode, table.rows, u0, v0)
-            if impacts < 0:
+        impacts = 0
+        seen = seen_at_peak(n, un, vn)
+        compared = outside and seen.rho < n.most
+        if compared and is_free(n, n.above + seen.free + seen.height, seen.slope, seen.height):
+            un, vn = through(n.period_flow, un, vn)
+        else:
+            impacts = -1
+            if compared:
+                impacts, ui, vi = settled_period(n, rows, seen, un, vn)
+            if outside and impacts < 0:
                 searched += 1
-                impacts, un, vn = searched_period(table, u0, v0)
-        if impacts >= 0:
-            u0, v0 = un, vn
-            points[i, 0], points[i, 1] = u0, v0
-            counts[i] = impacts
-            continue
-        left += 1
-        u[0], v[0], run.period = u0, v0, first + i
-        status = any_periods(motion, u, v, runs, points[i : i + 1], counts[i : i + 1])
-        if status != DONE:
-            return status, searched, left
-        u0, v0 = u[0], v[0]
-    u[0], v[0], run.period = u0, v0, first + counts.size
+                impacts, ui, vi = searched_period(table, un, vn)
+            if impacts < 0:
+                left += 1
+                u[0], v[0], run.period = un, vn, first + i
+                status = any_periods(system.motion, u, v, runs, points[i : i + 1], counts[i : i + 1])
+                if status != DONE:
+                    return status, searched, left
+                impacts, ui, vi = counts[i], u[0], v[0]
+                outside = run.regime == OUTSIDE and run.order == 0
+            un, vn = ui, vi
+        points[i, 0] = (un + mean_u) * weight_u
+        points[i, 1] = (vn + mean_v) * weight_v
+        counts[i] = impacts
+    u[0], v[0], run.period = un, vn, first + counts.size
     return DONE, searched, left

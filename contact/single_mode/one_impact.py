@@ -32,13 +32,13 @@ from __future__ import annotations
 
 import math
 
-from contact.compiled import kernel
+from contact.compiled import inlined
 from contact.single_mode.period_table import SMALL, flow_to, short_fades, short_turn, steady_near, through
 
 __all__ = ["guessed", "is_settled", "one_impact", "zero_of"]
 
 
-@kernel
+@inlined
 def guessed(n, p, q):
     """About when the tip meets the stop, since the strobe [s]; NaN if the parabola does not.
 
@@ -56,7 +56,7 @@ def guessed(n, p, q):
     return n.peak + x
 
 
-@kernel
+@inlined
 def free_near(n, x, u, v):
     """The deviation (u, v) of a node a time `x` after it, and what (0, 1) was at the node."""
     half = 0.5 * n.decay
@@ -71,7 +71,7 @@ def free_near(n, x, u, v):
     )  # fmt: skip
 
 
-@kernel
+@inlined
 def free_derivatives(n, u, v):
     """u'', u''' and u'''' of a free deviation."""
     u2 = -(n.decay * v + n.stiffness * u)
@@ -79,14 +79,14 @@ def free_derivatives(n, u, v):
     return u2, u3, -(n.decay * u3 + n.stiffness * u2)
 
 
-@kernel
+@inlined
 def carried(n, u, v, x):
     """The deviation (u, v) a tiny time `x` later, by its Taylor polynomial of third order."""
     u2, u3, u4 = free_derivatives(n, u, v)
     return u + x * (v + x * (0.5 * u2 + x * u3 / 6.0)), v + x * (u2 + x * (0.5 * u3 + x * u4 / 6.0))
 
 
-@kernel
+@inlined
 def tip_derivatives(n, u, v, swing, glide):
     """Tip displacement relative to the stop [m] and its first four derivatives."""
     w = n.drive
@@ -98,7 +98,7 @@ def tip_derivatives(n, u, v, swing, glide):
     )  # fmt: skip
 
 
-@kernel
+@inlined
 def zero_of(y0, y1, y2, y3, y4):
     """d [s], what the cubic is there [m], and the velocity of the tip [m/s]."""
     inverse = -1.0 / y1
@@ -110,17 +110,17 @@ def zero_of(y0, y1, y2, y3, y4):
     return d, rest, y1 + d * (2.0 * y2 + d * (3.0 * y3 + d * y4 / 6.0))
 
 
-@kernel
+@inlined
 def is_settled(n, rho, u, v, slope, d, rest, approach):
     """Whether the crossing is proved, and the rest of the period from (u, v) after the impact on free."""
     return (
         (slope > 0.0) & (approach > 0.0) & (abs(d) <= n.reach) & (abs(rest) <= SMALL * n.margin)
         & (approach * approach > 4.0 * (n.crest + n.second * rho) * n.margin)
-        & (n.square_u * u * u + n.square_v * v * v < n.most)
+        & (n.square_u * u * u + n.square_v * v * v < n.most * n.most)
     )  # fmt: skip
 
 
-@kernel
+@inlined
 def one_impact(n, rows, t, rho, u, v):
     """The period from (u, v), of size `rho`, whose crossing is next to the time `t` in [0, P].
 

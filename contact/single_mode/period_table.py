@@ -23,7 +23,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contact.compiled import kernel
+from contact.compiled import inlined, kernel
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import flow_matrix
 from contact.flight.motion import DAMPED, DECAY, LOW, OMEGA, WEIGHT, Motion
@@ -66,10 +66,10 @@ class OneMode(NamedTuple):
     distance of the stop from the tip's mean place, above = A - G [m]; crest = A w^2 [m/s^2];
     period = P, stretch = P/K, per_second = K/P, peak = t_p [s]; period_flow = F_P; peak_flow = phi F_tp;
     restitution = e [1]; kick = j/y', j the jump of v in an impact at tip velocity y'; detuning = d/rho;
-    square_u, square_v: rho^2 = square_u u^2 + square_v v^2; most = rho^2 below which (*) is used, -1 if never
-    [m^2]; slow = 1/w^2 [s^2]; second: |y''| <= crest + second rho; rounding [m], rounding_rho [1]: the
-    margin for a deviation of size rho is rounding + rounding_rho rho; margin = m, that of rho = G [m];
-    reach = greatest |d| of a step to a zero [s].
+    square_u, square_v: rho^2 = square_u u^2 + square_v v^2; most = rho below which (*) is used, not above
+    zero if never [m]; slow = 1/w^2 [s^2]; second: |y''| <= crest + second rho; rounding [m], rounding_rho
+    [1]: the margin for a deviation of size rho is rounding + rounding_rho rho; margin = m, that of rho = G
+    [m]; reach = greatest |d| of a step to a zero [s].
     """
 
     drive: float
@@ -131,7 +131,7 @@ def constants_of(motion, stretches, peak, period_flow, peak_flow):
     rho = (1.0 - LEAST_ROOM) * gap / max(1.0, detuning)
     # (*) needs the peak in the middle half of the period
     inner = abs(peak / motion.period - 0.5) <= 0.25 + 1e-12 and amplitude <= HIGHEST * abs(gap)
-    most = rho * rho if inner and rho > 0.0 else -1.0
+    most = rho if inner else -1.0
     fourth = amplitude * w**4 + omega * (omega + decay) ** 3 * abs(rho)
     return OneMode(
         drive=w,
@@ -222,19 +222,19 @@ def table_at(table, motion, factor):
     return PeriodTable(mode, rows, rows[:, 0] - mode.gap, table.from_u, table.from_v)
 
 
-@kernel
+@inlined
 def through(flow, u, v):
     """The deviation (u, v) after a flow."""
     return flow.uu * u + flow.uv * v, flow.vu * u + flow.vv * v
 
 
-@kernel
+@inlined
 def flow_to(rows, k, u, v):
     """The deviation (u, v) of a node after `k` stretches."""
     return rows[k, 2] * u + rows[k, 3] * v, rows[k, 4] * u + rows[k, 5] * v
 
 
-@kernel
+@inlined
 def short_turn(z):
     """cos sqrt(z) and sin sqrt(z)/sqrt(z) for |z| up to 0.0025."""
     even = 1.0 + z * (-1.0 / 2.0 + z * (1.0 / 24.0 + z * (-1.0 / 720.0 + z * (1.0 / 40320.0))))
@@ -242,7 +242,7 @@ def short_turn(z):
     return even, odd
 
 
-@kernel
+@inlined
 def short_fades(y):
     """cosh y and sinh y for |y| up to 0.05: e^y is their sum, e^-y their difference."""
     z = y * y
@@ -270,7 +270,7 @@ def flow_over(mode, rows, t, u, v):
     return flow_to(rows, k, u, v)
 
 
-@kernel
+@inlined
 def steady_near(mode, x, swing, glide):
     """The steady motion X, R of a node a time `x` later."""
     even, odd = short_turn(mode.drive * mode.drive * x * x)

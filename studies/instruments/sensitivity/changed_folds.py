@@ -15,11 +15,11 @@ from typing import Any
 from beam import ModalModel
 from contact.errors import ContactError
 from contact.maximal_orbits import fold as fold_of_map
+from contact.nordmark import StrobedNordmarkMap
 from contact.orbits.continuation import fold_of
 from contact.orbits.kick import KickFamily
 from contact.orbits.shooting import Shooting
 from contact.orbits.single_impact import MaximalFamily
-from contact.strobed_nordmark import StrobedNordmarkMap
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.oscillators import beam_of, nordmark_of, single_mode_oscillator
 from studies.instruments.scene import Scene
