@@ -95,8 +95,9 @@ def _uncounted(context: Any, builder: Any, kind: Any, value: Any) -> Any:
         array.parent = cgutils.get_null_value(array.parent.type)
         return array._getvalue()
     if isinstance(kind, types.BaseTuple):
-        kinds, items = list(kind), cgutils.unpack_tuple(builder, value)
-        parts = [_uncounted(context, builder, each, item) for each, item in zip(kinds, items, strict=True)]
+        whole: Any = kind
+        items = cgutils.unpack_tuple(builder, value)
+        parts = [_uncounted(context, builder, each, item) for each, item in zip(whole, items, strict=True)]
         return context.make_tuple(builder, kind, parts)
     return value
 
