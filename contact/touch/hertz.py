@@ -27,7 +27,7 @@ import math
 
 import numpy as np
 
-from contact.compiled import kernel
+from contact.compiled import kernel, part
 from contact.flight.elementary import EPS, sine_cosine
 from contact.flight.modal_flow import speed_scale, tip_state
 from contact.flight.motion import SQUARE, WEIGHT
@@ -84,13 +84,13 @@ def stiffness(numbers, depth, rate):
     )
 
 
-@kernel
+@part
 def room(motion):
     """Order and columns of the series: five scalars, u from column 8 on, v behind."""
     return ORDER, LANES + 2 * motion.modes.shape[1]
 
 
-@kernel
+@part
 def fill(motion, base, u, v, series):
     """The Taylor coefficients in sigma of a contact that is at (u, v) at drive time `base` [s].
 
@@ -131,12 +131,14 @@ def fill(motion, base, u, v, series):
         rows[n + 1, SPEED], rows[n + 1, DEPTH] = speed, depth
         rows[n + 1, SINE], rows[n + 1, COSINE] = sine, cosine
     push[ORDER] = 0.0
-    for n in range(ORDER - 1, -1, -1):  # r N from r^4
-        total = push[n]
-        if chi != 0.0:
+    if chi != 0.0:
+        for n in range(ORDER - 1, -1, -1):  # r N from r^4
+            total = push[n]
             for i in range(n + 1):
                 total += chi * push[i] * rows[n - i, SPEED]
-        push[n] = stiffness * total
+            push[n] = total
+    for n in range(ORDER):
+        push[n] *= stiffness
 
 
 @kernel
@@ -153,7 +155,7 @@ def slopes(motion, run, series, weights):
     return ORDER + 1
 
 
-@kernel
+@part
 def greatest_speed(modes, rows, order):
     """The largest coefficient of this order among all v and omega u."""
     m, top = modes.shape[1], 0.0
@@ -163,7 +165,7 @@ def greatest_speed(modes, rows, order):
     return math.sqrt(top)
 
 
-@kernel
+@part
 def longest_step(motion, speed, series):
     """The sigma up to which the series holds."""
     p, r = ORDER, series.scalars[ROOT]
@@ -186,7 +188,7 @@ def longest_step(motion, speed, series):
     return s
 
 
-@kernel
+@part
 def release_in(r, s, negative):
     """The sigma in (0, s] at which r falls to zero, or -1."""
     rest, power = 0.0, s

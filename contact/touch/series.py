@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contact.compiled import inlined, kernel
+from contact.compiled import inlined, kernel, part
 from contact.trajectory import CONTACT
 from contact.vector_loops import aligned
 
@@ -57,20 +57,20 @@ def new_series(order, columns):
     return Series(aligned(order + 1, columns), aligned(1, columns)[0], np.zeros((6, order + 1)))
 
 
-@kernel
+@part
 def enter(motion, run, u, v, approach):
     """A touch under a force law: the contact begins at d = 0.  Returns as ``contact.touch`` says."""
     run.root, run.speed = 0.0, -1.0
     return CONTACT, math.nan, 0.0
 
 
-@kernel
+@part
 def leave(motion, run, u, v):
     """The end of a contact that pushed: the next flight starts on the wall."""
     run.order = 1
 
 
-@kernel
+@part
 def saltation(motion, response, before, after, tangent):
     """Nothing: the tangents have gone through the contact with its series."""
 
