@@ -23,9 +23,9 @@ test-slow: $(READY)
 	$(ONE_THREAD) $(BIN)/python -m pytest -n 2 -m slow
 
 # LAPACK and NumPy's loops round otherwise there; kernels compiled in this way are not kept.
-NOT_NUMBERS := beam_% benchmarks.py command_line.py docstrings.py export.py figures.py generic_processor.py \
-	imports.py motion.py readme.py report.py scene.py scene_fuzz.py store.py store_export.py tour.py wrong_input.py
-NUMBERS := $(filter-out $(addprefix tests/test_,$(NOT_NUMBERS)),$(wildcard tests/test_*.py))
+NOT_NUMBERS := benchmarks docstrings every_study film generic_processor imports own_scenes page readme run scene \
+	sweep tour wrong_input
+NUMBERS := $(filter-out $(foreach name,$(NOT_NUMBERS),%/test_$(name).py),$(wildcard tests/test_*.py tests/contact/test_*.py tests/studies/test_*.py))
 SIMD := import numpy; print(*numpy.show_config("dicts")["SIMD Extensions"].get("found", []))
 test-generic: $(READY)
 	@cache=$$(mktemp -d) && trap 'rm -rf "$$cache"' EXIT && trap 'exit 130' INT TERM && \
