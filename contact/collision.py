@@ -333,7 +333,13 @@ def first_collision(
 
 
 def before_collision(oscillator: ImpactOscillator) -> State:
-    """The steady motion, at the time of its lowest tip displacement in the first drive period."""
+    """The steady motion, at the time of its lowest tip displacement in the first drive period.
+
+    Parameters
+    ----------
+    oscillator : ImpactOscillator
+        A driven one; ValueError without a drive.
+    """
     if oscillator.drive is None:
         raise ValueError("drive is None; without one there is no steady motion that touches, so give a state")
     motion = oscillator.motion()

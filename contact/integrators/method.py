@@ -42,7 +42,7 @@ class Integrator:
         Whether it proves that no touch is missed.
     accuracy : float
         Error of the state after a collision, relative to its size, that an exact method keeps for contacts up
-        to 1e8 times as stiff as the spring (it grows as the root of that); NaN for one whose step or
+        to 1e7 times as stiff as the spring (it grows as the root of that); NaN for one whose step or
         tolerance decides.
     limit : str
         Its limit of stability in words.

@@ -15,7 +15,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from contact.orbits.shooting import PeriodicOrbit, Shooting
 
@@ -49,6 +48,8 @@ def locate(
     family: Shooting, a: PeriodicOrbit, b: PeriodicOrbit, test: Callable[[PeriodicOrbit], float]
 ) -> PeriodicOrbit:
     """The orbit between neighbours a and b where `test` changes sign."""
+    from scipy.optimize import brentq  # slow to import
+
     seen = {math.log(a.speed): a, math.log(b.speed): b}
 
     def value(x: float) -> float:
