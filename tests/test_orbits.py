@@ -21,7 +21,7 @@ from contact.laws import (
     NewtonRestitution,
 )
 from contact.maximal_orbits import fold
-from contact.nordmark import NordmarkMap
+from contact.nordmark import NordmarkMap, StrobedNordmarkMap
 from contact.orbits import (
     KickFamily,
     MaximalFamily,
@@ -40,7 +40,6 @@ from contact.orbits import (
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
-from contact.strobed_nordmark import StrobedNordmarkMap
 from contact.stroboscope import StrobedOrbit, StroboscopicMap
 from contact.trajectory import State
 from studies.instruments.oscillators import beam_of, hertz_of

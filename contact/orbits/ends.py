@@ -31,7 +31,7 @@ from contact.maximal_orbits import fold, maximal_orbits, stable_range
 from contact.orbits.continuation import first_event
 from contact.orbits.settling import Settled, orbit_near, settle
 from contact.orbits.shooting import Shooting
-from contact.strobed_nordmark import StrobedNordmarkMap
+from contact.nordmark import StrobedNordmarkMap
 from contact.stroboscope import StrobedMap, StroboscopicMap
 
 __all__ = ["OrbitEnd", "orbit_end"]
