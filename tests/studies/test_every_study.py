@@ -11,12 +11,13 @@ from pathlib import Path
 import pytest
 
 import beam
+import beam.space
 import contact
 import contact.integrators
 import contact.orbits
 from studies.programs import FOLDER, names, source_of
 
-PUBLIC = {"beam": beam, "contact": contact, "contact.orbits": contact.orbits,
+PUBLIC = {"beam": beam, "beam.space": beam.space, "contact": contact, "contact.orbits": contact.orbits,
           "contact.integrators": contact.integrators}  # fmt: skip
 PROGRAMS = names()
 ON_THE_FRAME = [name for name in PROGRAMS if "\n@study(" in source_of(name).read_text()]

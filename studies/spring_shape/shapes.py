@@ -20,9 +20,8 @@ along x (breathing of two legs, else lengthwise), or it turns about x so that th
 
 from __future__ import annotations
 
-import dataclasses
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -41,9 +40,9 @@ from beam.space import (
     spatial_modes,
     upright,
 )
-from studies.instruments.quantities import SceneError
-from studies.instruments.scene import Scene
-from studies.spring_shape_solids import SolidSpring, channel_profile, rectangle_profile, sweep
+from studies.scene import Scene, SceneError
+from studies.spring_shape.elasticity import SolidSpring
+from studies.spring_shape.swept_mesh import channel_profile, rectangle_profile, sweep
 
 Reading = Literal["side_by_side", "channel", "folded", "plain"]
 READINGS: tuple[Reading, ...] = ("side_by_side", "channel", "folded", "plain")
@@ -65,23 +64,18 @@ ACCURACY = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
-class Shape:
-    """One reading with all its sizes.
+class Mesh:
+    """Elements of a solid on a leg, on the bend, across half of the width, and halvings at a clamp."""
 
-    Parameters
-    ----------
-    reading : str
-        One of `READINGS`.
-    material : Material
-    length, width, bend_radius : float
-        [m]; the radius of the two that have a bend.
-    thickness : float
-        Of the sheet [m].
-    flange : float
-        How far the flanges of the channel stand out of the web [m]; 0 for the others.
-    tip : Tip
-        Its rotary inertia counts about every axis.
-    """
+    legs: int
+    bend: int
+    across: int
+    halvings: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shape:
+    """One reading with its sizes [m]; `flange`: how far those of a channel stand out of the web, else 0."""
 
     reading: Reading
     material: Material
@@ -122,12 +116,15 @@ class Shape:
         return self.length + (0.5 * math.pi * self.bend_radius if self.bent else 0.0)
 
     @property
+    def channel_sizes(self) -> dict[str, float]:
+        """Width, flange and thickness [m] by the names of `beam.space.channel`."""
+        return {"width": self.width, "flange": self.flange, "thickness": self.thickness}
+
+    @property
     def section(self) -> SpatialSection:
         """Of the strip or channel."""
         if self.reading == "channel":
-            return channel(
-                material=self.material, width=self.width, flange=self.flange, thickness=self.thickness
-            )
+            return channel(material=self.material, **self.channel_sizes)
         strip = StripSection(material=self.material, width=self.width, thickness=self.thickness)
         return flat(strip) if self.reading == "side_by_side" else upright(strip)
 
@@ -146,23 +143,22 @@ class Shape:
             drive=self.stop,
         )
 
-    def solid(self, legs: int, bend: int, across: int, halvings: int) -> SolidSpring:
-        """The same as a solid: elements on a leg and on the bend, across half of the width, and how often
-        those at a clamp are halved."""
+    def solid(self, mesh: Mesh) -> SolidSpring:
+        """The same as a solid."""
         b, t = self.width, self.thickness
         if self.reading == "channel":
-            sizes = {"width": b, "flange": self.flange, "thickness": t}
-            profile = channel_profile(**sizes, centroid=channel_centroid(**sizes), cells=(across, 2 * across))
+            sizes, cells = self.channel_sizes, (mesh.across, 2 * mesh.across)
+            profile = channel_profile(**sizes, centroid=channel_centroid(**sizes), cells=cells)
         elif self.reading == "side_by_side":
-            profile = rectangle_profile(along_n=b, along_z=t, cells=across)
+            profile = rectangle_profile(along_n=b, along_z=t, cells=mesh.across)
         else:
-            profile = rectangle_profile(along_n=t, along_z=b, cells=across)
+            profile = rectangle_profile(along_n=t, along_z=b, cells=mesh.across)
         solid = sweep(
             profile,
             self.centreline,
-            (legs, bend, legs) if self.bent else (legs,),
+            (mesh.legs, mesh.bend, mesh.legs) if self.bent else (mesh.legs,),
             tip_at=self.tip_at,
-            halvings=(halvings, halvings if self.bent else 0),
+            halvings=(mesh.halvings, mesh.halvings if self.bent else 0),
         )
         return SolidSpring(
             solid=solid,
@@ -221,8 +217,8 @@ def brought_to(shape: Shape, omega: float) -> Shape:
         """`share` from 0 to 1: even steps of a flange, even ratios of a thickness, in which log omega is
         nearly a straight line."""
         if fitted == "flange":
-            return dataclasses.replace(shape, flange=low + share * (high - low))
-        return dataclasses.replace(shape, thickness=low * (high / low) ** share)
+            return replace(shape, flange=low + share * (high - low))
+        return replace(shape, thickness=low * (high / low) ** share)
 
     def excess(share: float) -> float:
         modes = spatial_modes(with_size(share).spring(), 6)
@@ -244,15 +240,6 @@ def first_bending(modes: SpatialModes) -> int:
 def kinds_of(shape: Shape, displacement: NDArray[np.float64], rotation: NDArray[np.float64]) -> list[str]:
     """The name of each mode, from the motion of the section at the ball, each (n_modes, 3)."""
     names = ("bending", "sideways", "twist", "breathing" if shape.bent else "lengthwise")
-    moves = np.abs(
-        np.stack(
-            [
-                displacement @ np.array(shape.stop),
-                displacement @ np.array(shape.sideways),
-                0.5 * shape.width * rotation[:, 0],
-                displacement[:, 0],
-            ],
-            axis=1,
-        )
-    )
-    return [names[place] for place in np.argmax(moves, axis=1)]
+    along, across = displacement @ np.array(shape.stop), displacement @ np.array(shape.sideways)
+    moves = np.stack([along, across, 0.5 * shape.width * rotation[:, 0], displacement[:, 0]], axis=1)
+    return [names[place] for place in np.argmax(np.abs(moves), axis=1)]

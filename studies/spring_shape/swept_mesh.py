@@ -20,20 +20,13 @@ import skfem as sk
 from numpy.typing import NDArray
 
 from beam import Centreline
-from beam.parameters import require_array, require_kind, require_whole, require_within
-from beam.pieces import element_counts
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Profile:
-    """Half of a cross-section, cut into rectangles.
+    """Half of a cross-section: grid lines y and z [m], rising, z from 0 on, that cut it into rectangles.
 
-    Parameters
-    ----------
-    y, z : ndarray
-        Grid lines [m], increasing, z from 0 on.
-    hollow : tuple of two floats, optional
-        The rectangle y > hollow[0], z < hollow[1] [m] is left out.
+    The rectangle y > hollow[0], z < hollow[1] [m] is left out, if it is given.
     """
 
     y: NDArray[np.float64]
@@ -41,50 +34,30 @@ class Profile:
     hollow: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
-        for name in ("y", "z"):
-            lines = require_array(name, getattr(self, name), "m", dimensions=1, words="grid lines")
+        for name, lines in (("y", self.y), ("z", self.z)):
             if lines.size < 2 or np.any(np.diff(lines) <= 0.0):
                 raise ValueError(f"{name} has {lines.size} grid lines [m]; it must have two or more, rising")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SweptMesh:
-    """The half z >= 0 of a swept profile.
-
-    Parameters
-    ----------
-    box : MeshHex
-        Elements and faces in the coordinates (s, y, z).
-    mesh : MeshHex2
-        The same elements in space.
-    centreline : Centreline
-    stations : ndarray
-        Arc lengths of the cross-sections between the elements [m].
-    """
+    """The half z >= 0 of a swept profile."""
 
     box: sk.MeshHex
+    """Elements and faces in the coordinates (s, y, z)."""
     mesh: sk.MeshHex2
+    """The same elements in space."""
     centreline: Centreline
     stations: NDArray[np.float64]
+    """Arc lengths of the cross-sections between the elements [m]."""
 
 
 def rectangle_profile(*, along_n: float, along_z: float, cells: int, through: int = 1) -> Profile:
     """Return half of a rectangle of these sides [m] about the centreline.
 
-    Parameters
-    ----------
-    along_n, along_z : float
-        Sides [m].
-    cells : int
-        Across half of the longer side, besides two in a margin as wide as the shorter side is: there the
-        shear of torsion turns round.
-    through : int
-        Across the shorter side, or across half of it where that is along z.
+    `cells` lie across half of the longer side, besides two in a margin as wide as the shorter side is: there
+    the shear of torsion turns round. `through` lie across the shorter side, or across half of it along z.
     """
-    for name, value in (("along_n", along_n), ("along_z", along_z)):
-        require_within(name, value, "m", above=0)
-    for name, number in (("cells", cells), ("through", through)):
-        require_whole(name, number, "[1]")
     if along_z >= along_n:
         y = np.linspace(-0.5 * along_n, 0.5 * along_n, through + 1)
         return Profile(y=y, z=_towards_edge(0.5 * along_z, along_n, cells))
@@ -95,21 +68,11 @@ def rectangle_profile(*, along_n: float, along_z: float, cells: int, through: in
 def channel_profile(
     *, width: float, flange: float, thickness: float, centroid: float, cells: tuple[int, int]
 ) -> Profile:
-    """Return half of a channel: web along z with its middle at y = -centroid, flanges towards +y.
+    """Return half of a channel: web along z with its middle at y = -centroid [m], flanges towards +y.
 
-    Parameters
-    ----------
-    width, flange, thickness : float
-        b, h and t [m] as in `beam.space.channel`.
-    centroid : float
-        From the middle of the web to the centreline [m].
-    cells : tuple of two ints
-        Along a flange and along half of the web; the sheet has one through its thickness.
+    Its sizes [m] are those of `beam.space.channel`; `cells` lie along a flange and along half of the web, one
+    through the sheet.
     """
-    for name, value in (("width", width), ("flange", flange), ("thickness", thickness)):
-        require_within(name, value, "m", above=0)
-    require_within("centroid", centroid, "m")
-    element_counts(cells, 2)
     web = 0.5 * thickness - centroid
     y = np.concatenate(([web - thickness], np.linspace(web, web + flange, cells[0] + 1)))
     inner = 0.5 * width - thickness
@@ -125,28 +88,12 @@ def sweep(
     tip_at: float | None = None,
     halvings: tuple[int, int] = (0, 0),
 ) -> SweptMesh:
-    """Return the profile swept along the centreline.
+    """Return the profile swept along the centreline, with so many elements on each of its pieces.
 
-    Parameters
-    ----------
-    profile : Profile
-    centreline : Centreline
-    elements : sequence of int
-        For each piece; inside a piece the station nearest to the tip is moved there.
-    tip_at : float, optional
-        Arc length of the tip [m].
-    halvings : tuple of two ints
-        How often the first and the last element are halved towards the ends: stresses are singular at the
-        edges of a clamp.
-
-    Raises
-    ------
-    ValueError
-        For a profile that reaches the centre of a bend.
+    Inside a piece the station nearest to the tip is moved to `tip_at` [m]. The first and the last element are
+    halved `halvings` times towards the ends: stresses are singular at the edges of a clamp. A profile that
+    reaches the centre of a bend raises ValueError.
     """
-    require_kind("profile", profile, Profile, "a Profile")
-    require_kind("centreline", centreline, Centreline, "a Centreline")
-    elements = element_counts(elements, len(centreline.pieces))
     reach = float(np.max(np.outer(centreline.curvatures, profile.y)))
     if reach >= 1.0:
         raise ValueError(f"y reaches {reach:.3g} bend radii [1]; it must stay below 1")

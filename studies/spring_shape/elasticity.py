@@ -31,11 +31,10 @@ import numpy as np
 import skfem as sk
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csc_array, csr_array
-from scipy.sparse.linalg import LinearOperator, eigsh, splu
+from scipy.sparse.linalg import LinearOperator, SuperLU, eigsh, splu
 
 from beam import Material, Tip
-from beam.parameters import require_array, require_kind, require_within
-from studies.spring_shape_solids.swept_mesh import SweptMesh
+from studies.spring_shape.swept_mesh import SweptMesh
 
 #: Three Gauss points each way: exact for the stiffness of a brick.
 QUADRATURE_ORDER = 5
@@ -46,25 +45,10 @@ MOVES: dict[str, tuple[int, ...]] = {"symmetric": (0, 1, 5), "antisymmetric": (2
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SolidSpring:
-    """A swept solid, clamped at one end or at both.
+    """A swept solid, clamped at s = 0, at the far end or at both; the tip at a station of the mesh.
 
-    Parameters
-    ----------
-    solid : SweptMesh
-    material : Material
-    clamped : tuple of two bools
-        At s = 0 and at the far end.
-    tip : Tip
-        Its rotary inertia counts about every axis.
-    tip_at : float
-        Arc length of a station of the mesh [m].
-    drive : tuple of three floats
-        The unit vector e.
-
-    Raises
-    ------
-    ValueError
-        If no end is clamped, or the tip is at no station.
+    `tip_at` is an arc length [m], `drive` the unit vector e; the rotary inertia of the tip counts about every
+    axis.
     """
 
     solid: SweptMesh
@@ -75,46 +59,23 @@ class SolidSpring:
     drive: tuple[float, float, float] = (0.0, 1.0, 0.0)
 
     def __post_init__(self) -> None:
-        require_kind("solid", self.solid, SweptMesh, "a SweptMesh")
-        require_kind("material", self.material, Material, "a Material")
-        require_kind("tip", self.tip, Tip, "a Tip")
-        require_kind("clamped", self.clamped, (tuple, list), "two of True and False")
-        require_within("tip_at", self.tip_at, "m", low=0)
-        require_array("drive", self.drive, "1", shape=(3,), words="three finite numbers")
         if len(self.clamped) != 2 or not any(self.clamped):
-            raise ValueError(
-                f"clamped is {self.clamped} [no unit]; at least one end must be clamped, of two"
-            )
+            raise ValueError(f"clamped is {self.clamped}; at least one end of two must be clamped")
         nearest = float(np.min(np.abs(self.solid.stations - self.tip_at)))
         if nearest > 1e-9 * self.solid.centreline.length:
-            raise ValueError(
-                f"tip_at is {self.tip_at} m; the nearest station of the mesh is {nearest} m off"
-            )
+            raise ValueError(f"tip_at is {self.tip_at} m; the nearest station of the mesh is {nearest} m off")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SolidModes:
-    """Mass-normalised modes of one parity, lowest first, with phi >= 0 (its sign means nothing at rounding).
-
-    Parameters
-    ----------
-    omega : ndarray, shape (n_modes,)
-        [rad/s]
-    phi : ndarray, shape (n_modes,)
-        e . d of the section at the tip [kg^(-1/2)].
-    section : ndarray, shape (n_modes, 6)
-        d along x, y, z [kg^(-1/2)] and theta about them [kg^(-1/2) m^(-1)].
-    points : ndarray, shape (n_points, 3)
-        Nodes at rest [m].
-    displacement : ndarray, shape (n_modes, n_points, 3)
-        Of the nodes [kg^(-1/2)].
-    """
+    """Mass-normalised modes of one parity, lowest first, with phi >= 0."""
 
     omega: NDArray[np.float64]
+    """[rad/s], shape (n_modes,)"""
     phi: NDArray[np.float64]
+    """e . d of the section at the tip [kg^(-1/2)], shape (n_modes,)"""
     section: NDArray[np.float64]
-    points: NDArray[np.float64]
-    displacement: NDArray[np.float64]
+    """d along x, y, z [kg^(-1/2)] and theta about them [kg^(-1/2) m^(-1)], shape (n_modes, 6)"""
 
     @property
     def frequencies_hz(self) -> NDArray[np.float64]:
@@ -124,15 +85,14 @@ class SolidModes:
 
 def solid_modes(spring: SolidSpring, parity: Parity, count: int) -> SolidModes:
     """Return the `count` lowest modes of one parity."""
-    basis, stiffness, mass = _assembled(spring)
+    basis, stiffness, mass = assembled(spring)
     free = _free(spring, basis, parity)
     rows = _section_rows(spring, basis, parity)
     lumped = np.repeat([spring.tip.mass, spring.tip.rotary_inertia], 3)
     carried = csr_array(np.sqrt(lumped)[:, None] * rows)
     mass = mass + carried.T @ carried
     k, m = (csc_array(matrix)[free][:, free] for matrix in (stiffness, mass))
-    factor = splu(k, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    inverse = LinearOperator(k.shape, factor.solve, dtype=np.float64)
+    inverse = LinearOperator(k.shape, _factor(k).solve, dtype=np.float64)
     start = np.cos(np.arange(k.shape[0]))  # fixed, so that results repeat, and orthogonal to no mode
     values, x = eigsh(k, count, M=m, sigma=0.0, OPinv=inverse, v0=start)
     order = np.argsort(values)
@@ -141,27 +101,24 @@ def solid_modes(spring: SolidSpring, parity: Parity, count: int) -> SolidModes:
     full /= np.sqrt(np.einsum("ik,ik->k", full, mass @ full))
     phi = np.array(spring.drive) @ (rows[:3] @ full)
     full *= np.where(phi < 0.0, -1.0, 1.0)
-    return SolidModes(
-        omega=np.sqrt(values[order]),
-        phi=np.abs(phi),
-        section=(rows @ full).T,
-        points=basis.doflocs.T,
-        displacement=full.T.reshape(count, basis.N, 3),
-    )
+    return SolidModes(omega=np.sqrt(values[order]), phi=np.abs(phi), section=(rows @ full).T)
 
 
 def end_compliance(spring: SolidSpring, parity: Parity) -> float:
     """Mean displacement of the section at the tip along e, for a unit force spread evenly over it [m/N]."""
-    basis, stiffness, _ = _assembled(spring)
+    basis, stiffness, _ = assembled(spring)
     free = _free(spring, basis, parity)
     load = (np.array(spring.drive) @ _section_rows(spring, basis, parity)[:3])[free]
-    k = csc_array(stiffness)[free][:, free]
-    factor = splu(k, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    return float(load @ factor.solve(load))
+    return float(load @ _factor(csc_array(stiffness)[free][:, free]).solve(load))
+
+
+def _factor(k: csc_array) -> SuperLU:
+    """L and U of a symmetric positive definite matrix, without pivoting."""
+    return splu(k, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
 
 @lru_cache(maxsize=2)  # both parities of a spring ask for them, one after the other
-def _assembled(spring: SolidSpring) -> tuple[sk.Basis, csr_array, csr_array]:
+def assembled(spring: SolidSpring) -> tuple[sk.Basis, csr_array, csr_array]:
     """Scalar basis, K and M without tip and supports; unknown 3 i + c is component c at node i.
 
     D_{ia,jb} = int d_a N_i d_b N_j dV holds everything: K_{ia,jb} = lambda D_{ia,jb} + G (D_{ib,ja} +
