@@ -32,9 +32,12 @@ HELD_WITHIN = 1e3
 
 
 def start_of(
-    motion: Motion, state: State, period: int, clock: float, *, search: int = 0
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    motion: Motion, state: State, period: int, clock: float, *, search: int = 0,
+    steady: tuple[np.ndarray, np.ndarray] | None = None,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:  # fmt: skip
     """Deviations (u, v) of `state` from the steady motion, and a run (`STATE`) that starts there.
+
+    `steady` is the steady displacement and velocity at the start, if they are known, each (n_modes,).
 
     Raises
     ------
@@ -45,8 +48,9 @@ def start_of(
         raise ValueError(
             f"displacement of the state has {state.displacement.size} modes; the model has {motion.size}"
         )
-    q, q_rate = steady_motion(motion, np.array([clock]))
-    u, v = state.displacement - q[0], state.velocity - q_rate[0]
+    if steady is None:
+        steady = tuple(x[0] for x in steady_motion(motion, np.array([clock])))
+    u, v = state.displacement - steady[0], state.velocity - steady[1]
     runs = np.zeros(1, dtype=STATE)
     regime = int(state.regime)
     height, velocity, _acceleration = tip_state(motion, clock, u, v)

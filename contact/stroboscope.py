@@ -105,10 +105,13 @@ class StroboscopicMap:
         require_kind("state", state, State, "a State")
         count = require_whole("count", count, "drive periods", low=0)
         system, motion, n = self._system, self._system.motion, self.oscillator.n_modes
-        index, clock = split_time(np.array([state.time]), motion.period)
-        if clock[0] != 0.0:
-            raise ValueError(f"time of the state is {state.time} s; it must be a strobe time n/f")
-        u, v, runs = start_of(motion, state, int(index[0]), 0.0)
+        index = round(state.time / motion.period)
+        if index * motion.period != state.time:  # within rounding it may be a strobe nevertheless
+            near, clock = split_time(np.array([state.time]), motion.period)
+            index = int(near[0])
+            if clock[0] != 0.0:
+                raise ValueError(f"time of the state is {state.time} s; it must be a strobe time n/f")
+        u, v, runs = start_of(motion, state, index, 0.0, steady=(system.mean[:n], system.mean[n:]))
         points, impacts = np.empty((count, 2 * n)), np.empty(count, dtype=np.int64)
         status = strobed_motion(system, u, v, runs, points, impacts)
         if status != DONE:
