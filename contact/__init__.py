@@ -34,8 +34,9 @@ From problem to answer
     `collisions`        what each collision does to mode 1; `first_collision` the first above grazing
     `NordmarkMap`       the letter's map, its orbits (`maximal_orbits`), folds and bands in closed form
     `MaximalFamily`     the same orbits of Eq. (1) in closed form, under Newton's law
-    ``contact.orbits``  orbits of any law: ``shooting`` finds them, ``continuation`` follows them to folds,
-                        period doublings and grazings, ``lyapunov`` tells chaos
+    ``contact.orbits``  orbits of any law: `settle`, `born` and `orbit_diagram` by following the motion,
+                        `Shooting` and `follow` as orbits, to folds, period doublings and grazings;
+                        `orbit_end` does both; ``lyapunov`` tells chaos
 
 Laws of contact: `NewtonRestitution` (at once), `DelayedRestitution` (once, after a delay; one mode),
 `LinearContact`, `HertzContact`, `HuntCrossley` (forces; followed through the contact by power series).

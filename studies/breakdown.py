@@ -27,6 +27,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 from contact.maximal_orbits import maximal_period
+from contact.orbits.scan import OrbitDiagram
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.adequacy.fitted_scene import Need
 from studies.instruments.breakdown.beam_of_fig_5 import CHAOS_AT, FREQUENCY_HZ, born, driven, scene_of_fig_5
@@ -37,7 +38,6 @@ from studies.instruments.breakdown.scans import beam_result, both_ways, periods,
 from studies.instruments.breakdown.single_mode_island import island
 from studies.instruments.breakdown.words import sentences
 from studies.instruments.command_line import Request, run_study
-from studies.instruments.orbit_scan import OrbitDiagram
 from studies.instruments.oscillators import nordmark_of, single_mode_oscillator
 from studies.instruments.scene import Scene
 from studies.instruments.spring_of_scene import model_of

@@ -32,6 +32,7 @@ from typing import Any
 
 import numpy as np
 
+from contact.orbits.settling import TOLERANCE
 from contact.oscillator import ImpactOscillator
 from studies.instruments.adequacy.fitted_scene import Need, fitted
 from studies.instruments.chart.cells import Cells, fold_agreement
@@ -41,7 +42,6 @@ from studies.instruments.chart.words import closing_lines
 from studies.instruments.command_line import Request, run_study
 from studies.instruments.corresponding import corresponding
 from studies.instruments.oscillators import beam_of, single_mode_oscillator
-from studies.instruments.periodicity import TOLERANCE
 from studies.instruments.scene import Scene
 from studies.instruments.sweep.column_scan import ColumnScan
 from studies.instruments.sweep.executors import pool_of

@@ -25,11 +25,11 @@ import numpy as np
 from beam import ModalModel
 from contact.errors import ContactError
 from contact.maximal_orbits import bands
+from contact.orbits.ends import orbit_end
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.adequacy.fitted_scene import Need
 from studies.instruments.command_line import Request, run_study
 from studies.instruments.corresponding import corresponding, periods_of
-from studies.instruments.fold_scan import orbit_end
 from studies.instruments.hysteresis_causes import CAUSES, DESCRIPTIONS, Fold, folds_at, row_of
 from studies.instruments.hysteresis_figures import draw_causes, draw_curves, draw_ratios
 from studies.instruments.oscillators import beam_of
@@ -73,7 +73,7 @@ def column(scene: Scene, period: int, step: float, model: ModalModel) -> list[Fo
 
 def confirm(scene: Scene, fold: Fold, model: ModalModel) -> float | None:
     """The end of the beam's orbit in a downward scan of the simulated motion, started on the orbit above its
-    fold."""
+    fold: the middle of a bracket of 0.1 %."""
     if fold.orbit is None:
         return None
     strobed = StroboscopicMap(oscillator=beam_of(scene, fold.frequency, model))
@@ -86,7 +86,7 @@ def confirm(scene: Scene, fold: Fold, model: ModalModel) -> float | None:
         )
     except ContactError:
         return None
-    return None if end is None or end.period != fold.period else end.excess
+    return None if end is None or end.period != fold.period else 0.5 * (end.held + end.lost)
 
 
 def _stable_state(fold: Fold, excess: float) -> Any:

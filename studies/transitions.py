@@ -8,7 +8,8 @@ Computed, at each frequency, for the Nordmark map (Eqs. (2), (3)), the single mo
 its N modes:
 
     born period      period of the settled orbit at F/F_g - 1 = 1e-3 (and 2.5e-4, 1e-2), started below grazing
-    excess_down      F/F_g - 1 at which that orbit ends when the amplitude is lowered, to 1 % or 1e-7
+    excess_down      F/F_g - 1 at which that orbit ends when the amplitude is lowered: bracketed by a scan,
+                     and then the fold, period doubling or grazing (ends_by) that is in the bracket
     orbit diagram    strobed points in an upward and a downward scan that carry the physical state along
 
 Run time: some seconds; --quick half of that; --full (10000 drive periods per amplitude, as in the experiment)
@@ -32,19 +33,14 @@ import numpy as np
 
 from beam import ModalModel
 from contact.errors import ContactError
-from contact.maximal_orbits import fold as map_fold
 from contact.nordmark import StrobedNordmarkMap
-from contact.orbits.single_impact import MaximalFamily
-from contact.stroboscope import StroboscopicMap
+from contact.orbits import OrbitDiagram, born, born_period, orbit_diagram, orbit_end
+from contact.stroboscope import StrobedMap, StroboscopicMap
 from studies.instruments.adequacy.fitted_scene import Need
 from studies.instruments.command_line import DONE, FAILED_CELLS, Request, run_study
-from studies.instruments.fold_scan import orbit_end
-from studies.instruments.orbit_scan import OrbitDiagram, orbit_diagram
 from studies.instruments.oscillators import beam_of, nordmark_of, single_mode_oscillator
-from studies.instruments.periodicity import settle
 from studies.instruments.report.writing import told_report
 from studies.instruments.scene import Scene
-from studies.instruments.settling import settle_on_orbit
 from studies.instruments.spring_of_scene import model_of
 from studies.instruments.transition_figures import draw, store_points
 from studies.published import PERIODS, SETTLE_CYCLES
@@ -53,9 +49,6 @@ MODELS = ("map", "single_mode", "beam")
 TITLES = {"map": "Nordmark map", "single_mode": "Eq. (1)", "beam": "beam"}
 OTHER_EXCESSES = (2.5e-4, 1e-2)
 """Where the born period is given as well: the letter's amplitude stability, and well above grazing."""
-
-BELOW = -1e-3
-"""Excess of the motion without impacts from which the drive is raised."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,22 +72,18 @@ def describe(scene: Scene, frequency: float, model: ModalModel) -> dict[str, Des
     }
 
 
-def born(description: Description, excess: float, cycles: int) -> tuple[int, Any]:
-    """Period of the settled orbit at `excess` and its state; the motion before is that just below grazing."""
-    strobed = description.strobed
-    settled = settle(strobed.at(excess), strobed.at(BELOW).steady(), most_cycles=cycles)
-    return settled.period, settled.end
-
-
-def transition(description: Description, excess: float, cycles: int) -> dict[str, Any]:
-    """Born periods and the end of the orbit on the way down."""
-    period, state = born(description, excess, cycles)
-    end = orbit_end(description.strobed, state, excess, most_cycles=cycles) if period > 1 else None
+def transition(strobed: StrobedMap[Any], excess: float, cycles: int) -> dict[str, Any]:
+    """Born periods, 0 where the motion did not settle, and the end of the orbit on the way down."""
+    orbit = born(strobed, excess, most_cycles=cycles)
+    end = orbit_end(strobed, orbit.end, excess, most_cycles=cycles) if orbit.period > 1 else None
     return {
-        "period": period,
+        "period": orbit.period,
         "excess_down": None if end is None else end.excess,
+        "ends_by": None if end is None else end.kind,
         "bracket": None if end is None else [end.lost, end.held],
-        "also": {f"{other:g}": born(description, other, cycles)[0] for other in OTHER_EXCESSES},
+        "also": {
+            f"{other:g}": born_period(strobed, other, most_cycles=cycles) for other in OTHER_EXCESSES
+        },
     }
 
 
@@ -105,15 +94,21 @@ def row_at(scene: Scene, frequency: float, model: ModalModel) -> dict[str, Any]:
     failures = []
     for name, description in describe(scene, frequency, model).items():
         try:
-            found = transition(description, scan.born_excess, max(scan.settle_cycles, 1))
+            found = transition(description.strobed, scan.born_excess, max(scan.settle_cycles, 1))
         except ContactError as error:
             failures.append(f"{frequency:g} Hz, {TITLES[name]}: {error}")
-            found = {"period": None, "excess_down": None, "bracket": None, "also": {}}
+            found = {"period": None, "excess_down": None, "ends_by": None, "bracket": None, "also": {}}
         row[name] = found["period"]
         row[f"excess_down_{name}"] = found["excess_down"]
+        row[f"ends_by_{name}"] = found["ends_by"]
         row[f"bracket_{name}"] = found["bracket"]
         row[f"born_{name}"] = found["also"]
-    row |= exact_ends(scene, frequency, row)
+    row["not_settled"] = [
+        f"{TITLES[name]} at {excess}"
+        for name in MODELS
+        for excess, period in ({f"{scan.born_excess:g}": row[name]} | row[f"born_{name}"]).items()
+        if period == 0
+    ]
     if scene.contact.law == "hertz":
         row |= linear_instead(scene, frequency, model, failures)
     row["failures"] = failures
@@ -126,34 +121,21 @@ def linear_instead(
     """What the beam does with linear contact of the same contact time in place of Hertz's law."""
     beam = describe(scene.replace({"contact.law": "linear"}), frequency, model)["beam"]
     try:
-        found = transition(beam, scene.scan.born_excess, max(scene.scan.settle_cycles, 1))
+        found = transition(beam.strobed, scene.scan.born_excess, max(scene.scan.settle_cycles, 1))
     except ContactError as error:
         failures.append(f"{frequency:g} Hz, beam with linear contact: {error}")
         return {"beam_linear": None, "excess_down_beam_linear": None}
     return {"beam_linear": found["period"], "excess_down_beam_linear": found["excess_down"]}
 
 
-def exact_ends(scene: Scene, frequency: float, row: Mapping[str, Any]) -> dict[str, float | None]:
-    """The ends of the p_m orbits in closed form, for the map and for Eq. (1)."""
-    found: dict[str, float | None] = {"exact_map": None, "exact_single_mode": None}
-    if (row["map"] or 0) > 1:
-        nordmark = nordmark_of(scene, frequency)
-        orbit = map_fold(nordmark, row["map"])
-        found["exact_map"] = None if orbit is None else nordmark.excess(orbit.rho)
-    if (row["single_mode"] or 0) > 1:
-        family = MaximalFamily.from_oscillator(
-            single_mode_oscillator(scene, frequency), period=row["single_mode"]
-        )
-        end = family.fold()
-        found["exact_single_mode"] = None if end is None else end.excess
-    return found
-
-
 def amplitudes(scene: Scene, row: Mapping[str, Any]) -> np.ndarray:
-    """The excesses of the scans: on both sides of grazing, in proportion to the largest hysteresis found."""
+    """The excesses of the scans: on both sides of grazing, in proportion to the largest hysteresis found.
+
+    That is taken to two digits, so that the last bit of an end moves no amplitude, and none lies on a fold.
+    """
     scan = scene.scan
     ends = [abs(row[f"excess_down_{name}"] or 0.0) for name in MODELS]
-    reach = max(*ends, scan.narrowest)
+    reach = float(f"{max(*ends, scan.narrowest):.2g}")
     return np.linspace(-scan.reach_below * reach, scan.reach_above * reach, scan.points)
 
 
@@ -170,7 +152,6 @@ def scans(
             "record_cycles": scan.record_cycles,
             "largest_period": scan.largest_period,
             "early": not full,
-            "settle_with": settle if name == "map" else settle_on_orbit,
             "after_each": tell,
         }
         up = orbit_diagram(description.strobed, values, description.strobed.at(values[0]).steady(), **common)
@@ -180,19 +161,26 @@ def scans(
 
 
 HEAD = f"{'f (Hz)':>7} {'letter':>7} {'map':>5} {'Eq. (1)':>8} {'beam':>5}   " + " ".join(
-    f"{'end, ' + TITLES[name]:>18}" for name in MODELS
+    f"{'end, ' + TITLES[name]:>20}" for name in MODELS
 )
+
+
+def word(period: int | None) -> str:
+    """How the table and the sentences name a period."""
+    return f"p{period}" if period else "-" if period is None else "not settled"
 
 
 def table_line(row: Mapping[str, Any]) -> str:
     """A row of the table on the terminal."""
-    letter = f"p{row['letter']}" if row["letter"] else "-"
-    periods = {name: f"p{row[name]}" if row[name] else "-" for name in MODELS}
-    ends = [row[f"excess_down_{name}"] for name in MODELS]
+    periods = {name: word(row[name]) for name in MODELS}
+    ends = [
+        "-" if row[f"excess_down_{name}"] is None
+        else f"{row[f'excess_down_{name}']:+.4e} {row[f'ends_by_{name}']}"
+        for name in MODELS
+    ]
     return (
-        f"{row['frequency_hz']:7.2f} {letter:>7} {periods['map']:>5} {periods['single_mode']:>8} "
-        f"{periods['beam']:>5}   "
-        + (" ".join(f"{'-' if end is None else f'{end:+.3e}':>18}" for end in ends))
+        f"{row['frequency_hz']:7.2f} {word(row['letter']):>7} {periods['map']:>5} "
+        f"{periods['single_mode']:>8} {periods['beam']:>5}   " + " ".join(f"{end:>20}" for end in ends)
     )
 
 
@@ -218,8 +206,8 @@ def closing_lines(rows: Sequence[Mapping[str, Any]], figure: str) -> list[str]:
     for row in told:
         if row in agree:
             continue
-        found = ", ".join(f"{TITLES[name]} p{row[name]}" for name in MODELS)
-        above = ", ".join(f"{TITLES[name]} p{row[f'born_{name}'].get('0.01')}" for name in MODELS)
+        found = ", ".join(f"{TITLES[name]} {word(row[name])}" for name in MODELS)
+        above = ", ".join(f"{TITLES[name]} {word(row[f'born_{name}'].get('0.01'))}" for name in MODELS)
         line = (
             f"{row['frequency_hz']:.2f} Hz: the letter saw p{row['letter']}, here {found}; "
             f"at excess 0.01 {above}"

@@ -22,6 +22,11 @@ from studies.instruments.scene_file import read_scene
 from studies.transitions import NEEDS
 
 LETTER = read_scene()
+#: Of the heavy ball and of the soft contact.
+pytestmark = pytest.mark.filterwarnings(
+    "ignore:mass of the tip:beam.SuspiciousValue", "ignore:(youngs|other)_modulus:beam.SuspiciousValue"
+)
+
 SCENES = {
     "letter": (LETTER, 22.2),
     "bare tip": (LETTER.replace({"tip.mass_kg": 0.0}), 22.2),

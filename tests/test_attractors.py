@@ -17,13 +17,13 @@ from contact.orbits.lyapunov import (
     of_oscillator,
     orbit_exponents,
 )
+from contact.orbits.settling import settle
 from contact.orbits.shooting import Shooting
 from contact.stroboscope import StrobedOrbit, StroboscopicMap
 from studies import attractors
 from studies.instruments.attractors.basins import basins
 from studies.instruments.attractors.kinds import CHAOTIC, NOT_SETTLED, PERIODIC, WITHOUT, classify
 from studies.instruments.oscillators import beam_of, nordmark_of, single_mode_oscillator
-from studies.instruments.periodicity import settle
 from studies.instruments.scene_file import read_scene
 from studies.instruments.spring_of_scene import model_of
 

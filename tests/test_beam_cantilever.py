@@ -271,6 +271,7 @@ def test_wrong_values_are_named() -> None:
             make()
 
 
+@pytest.mark.filterwarnings("ignore:mass of the tip:beam.SuspiciousValue")
 @pytest.mark.parametrize("mass", [0.0, 0.1, 10.0, 1e4])
 @pytest.mark.parametrize("inertia", [0.0, 1e-6, 1e-4, 1e-2, 1.0])
 def test_scan_misses_no_frequency(mass: float, inertia: float) -> None:

@@ -100,7 +100,7 @@ def test_wrong_values_are_named(make, words: str) -> None:
 
 
 def test_shear_modulus() -> None:
-    solid = Material(youngs_modulus=200e9, poissons_ratio=0.25, density=1.0)
+    solid = Material(youngs_modulus=200e9, poissons_ratio=0.25, density=7850.0)
     assert solid.shear_modulus == pytest.approx(80e9)
 
 

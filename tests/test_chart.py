@@ -7,6 +7,8 @@ import json
 import numpy as np
 import pytest
 
+from contact.orbits.ends import orbit_end
+from contact.orbits.settling import settle
 from contact.orbits.single_impact import MaximalFamily
 from contact.stroboscope import StroboscopicMap
 from studies import chart
@@ -14,9 +16,7 @@ from studies.instruments.chart.cells import Cells, fold_agreement
 from studies.instruments.chart.figure import colour_of_impacts, colour_of_period, draw
 from studies.instruments.chart.overlays import bands_in, folds_of_beam, folds_of_single_mode
 from studies.instruments.chart.plane import KNEE, Plane
-from studies.instruments.fold_scan import orbit_end
 from studies.instruments.oscillators import beam_of, single_mode_oscillator
-from studies.instruments.periodicity import settle
 from studies.instruments.record import Record
 from studies.instruments.scene_file import read_scene
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from contact.maximal_orbits import maximal_orbits
+from contact.orbits.settling import settle
 from contact.orbits.shooting import Shooting
 from contact.stroboscope import StroboscopicMap
 from studies import claims
@@ -19,7 +20,6 @@ from studies.instruments.claims.second_impact import secondary_claim
 from studies.instruments.claims.secondary_bifurcation import flip_speed, second_impact_speed, secondary
 from studies.instruments.claims.single_mode_leaf import Leaf
 from studies.instruments.oscillators import single_mode_oscillator
-from studies.instruments.periodicity import settle
 from studies.instruments.scene_file import read_scene
 
 

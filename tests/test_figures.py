@@ -22,6 +22,7 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
+from contact.orbits.scan import OrbitDiagram
 from studies import ROOT
 from studies.instruments import hysteresis_figures, trace_figure, transition_figures
 from studies.instruments.benchmarks.cost_figure import draw_costs
@@ -41,7 +42,6 @@ from studies.instruments.figures import (
     series,
 )
 from studies.instruments.hysteresis_causes import CAUSES
-from studies.instruments.orbit_scan import OrbitDiagram
 from studies.instruments.record import Record
 from studies.instruments.scene_file import read_scene
 from studies.instruments.sensitivity.noise_figures import draw_noise
@@ -182,7 +182,8 @@ def _transitions() -> Figure:
     fives = np.where(excess[:, None] > 0, 1e-3 * np.arange(5), 0.0)
     whole = np.zeros(9, dtype=int)
     found = OrbitDiagram(
-        excess=excess, points=fives, period=whole, impacts=whole, cycles=whole, failures=(), end=None
+        excess=excess, points=fives, period=np.where(excess > -9e-4, 5, 0), impacts=whole, cycles=whole,
+        failures=(), end=None,
     )
     rows = [
         {"frequency_hz": f, "letter": m, "map": m, "single_mode": m, "beam": m, "grazing_amplitude_m": 2e-3}

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from contact import StroboscopicMap, first_collision, maximal_period
+from contact.orbits.settling import settle
 from studies import time_trace
 from studies.instruments.corresponding import corresponding, periods_of
 from studies.instruments.oscillators import beam_of, nordmark_of
-from studies.instruments.periodicity import settle
 from studies.instruments.scene_file import SCENES, dump_scene, read_scene
 from studies.instruments.spring_of_scene import model_of
 from studies.published import PERIODS

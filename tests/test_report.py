@@ -148,9 +148,10 @@ def stored_transitions(results: Path, periods=None, **settings) -> Record:
     rows = []
     for frequency, letter in PERIODS.items():
         m = (periods or {}).get(frequency, letter)
-        row = {"frequency_hz": frequency, "letter": letter, "exact_map": -6e-4, "exact_single_mode": -1e-3}
+        row = {"frequency_hz": frequency, "letter": letter}
         for name in ("map", "single_mode", "beam"):
-            row |= {name: m, f"excess_down_{name}": -8.53e-4, f"born_{name}": {"0.01": m}}
+            row |= {name: m, f"excess_down_{name}": -8.53e-4, f"ends_by_{name}": "fold"}
+            row[f"born_{name}"] = {"0.01": m}
         rows.append(row)
     figure, axes = new_figure()
     axes.plot([0, 1], [0, 1])

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from contact.nordmark import StrobedNordmarkMap
+from contact.orbits import born
 from contact.stroboscope import StroboscopicMap
 from studies import sensitivity
 from studies.instruments.calibration import free_period
@@ -15,7 +16,7 @@ from studies.instruments.oscillators import beam_of, nordmark_of, single_mode_os
 from studies.instruments.scene_file import read_scene
 from studies.instruments.sensitivity.amplitude_noise import noise_at, noisy
 from studies.instruments.sensitivity.changed_folds import row_at
-from studies.instruments.sensitivity.grazing_births import BORN_EXCESS, NOISE, born, first_birth, upper_end
+from studies.instruments.sensitivity.grazing_births import BORN_EXCESS, NOISE, first_birth, upper_end
 from studies.instruments.sensitivity.scene_changes import changed, changes_of
 from studies.instruments.sensitivity.strobe_clouds import clouds, since_impact
 from studies.instruments.spring_of_scene import model_of

@@ -42,6 +42,9 @@ from studies.instruments.stability.pressed_contact import (
 )
 from studies.instruments.stability.short_contacts import free_body, rebound_of, rebound_ratio
 
+#: Springs in units of their own: one metre is their amplitude.
+pytestmark = pytest.mark.filterwarnings("ignore:gap is .* above 1 m:beam.SuspiciousValue")
+
 EPS = 2.0**-52
 ROOT = Path(__file__).resolve().parent.parent
 

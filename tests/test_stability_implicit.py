@@ -37,6 +37,9 @@ from studies.instruments.stability.contact_energy import (
 )
 from studies.instruments.stability.elastic_collision import ElasticCollision
 
+#: Masses in units of their own: one metre is what they move in a step.
+pytestmark = pytest.mark.filterwarnings("ignore:gap is .* above 1 m:beam.SuspiciousValue")
+
 
 @pytest.fixture(scope="module")
 def scene() -> Scene:

@@ -1,7 +1,52 @@
-"""Periodic orbits of the impact oscillator, one idea a file.
+"""Periodic orbits of a strobed motion, one idea a file.
 
 `single_impact`: one impact every m drive periods under Newton's law, in closed form, over `driven_modes` and
 with the multipliers of `saltation`; `kick`: one collision of any law, by linear algebra; `shooting`: any law
-and any number of touches, with exact tangents; `continuation`: branches and their events; `lyapunov`:
-exponents.
+and any number of touches, with exact tangents; `continuation`: branches, with the points of `events` on them;
+`settling`: on what a motion settles; `scan`: orbit diagrams, the state carried along; `ends`: where an orbit
+ends when the drive is lowered; `lyapunov`: exponents.
 """
+
+from contact.orbits.continuation import (
+    Branch,
+    first_event,
+    fold_along_frequency,
+    fold_of,
+    folds_of,
+    follow,
+    lowest_of,
+)
+from contact.orbits.ends import OrbitEnd, orbit_end
+from contact.orbits.events import Event
+from contact.orbits.kick import Kick, KickFamily, KickOrbit
+from contact.orbits.scan import OrbitDiagram, orbit_diagram
+from contact.orbits.settling import Settled, born, born_period, period_of, settle
+from contact.orbits.shooting import PeriodicOrbit, Shooting
+from contact.orbits.single_impact import MaximalFamily, SingleImpactOrbit
+
+__all__ = [
+    "Branch",
+    "Event",
+    "Kick",
+    "KickFamily",
+    "KickOrbit",
+    "MaximalFamily",
+    "OrbitDiagram",
+    "OrbitEnd",
+    "PeriodicOrbit",
+    "Settled",
+    "Shooting",
+    "SingleImpactOrbit",
+    "born",
+    "born_period",
+    "first_event",
+    "fold_along_frequency",
+    "fold_of",
+    "folds_of",
+    "follow",
+    "lowest_of",
+    "orbit_diagram",
+    "orbit_end",
+    "period_of",
+    "settle",
+]

@@ -276,8 +276,7 @@ class KickFamily:
         """
         low, high = require_array("speeds", speeds, "[1]", shape=(2,), words="two rising numbers above zero")
         require(0.0 < low < high, f"speeds is {shown(speeds)}; it must be two rising numbers above zero")
-        w = self.oscillator.drive.angular_frequency  # type: ignore[union-attr]
-        unit = w * self.oscillator.stop.gap
+        unit = self._motion.drive * self.oscillator.stop.gap
 
         def orbit(log_speed: float) -> KickOrbit:
             speed = float(np.exp(log_speed))

@@ -13,17 +13,14 @@ import numpy as np
 
 from contact.collision import Collision, collisions
 from contact.laws import HERTZ, LINEAR
+from contact.orbits.settling import born
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stroboscope import StroboscopicMap
 from contact.trajectory import ImpactKind, State, Trajectory
-from studies.instruments.periodicity import settle
 from studies.instruments.spring_of_scene import READOUT
 
 __all__ = ["CloseUp", "Trace", "close_up", "settled_state", "trace_of"]
-
-BELOW = -1e-3
-"""Excess of the motion without impacts from which the orbit is reached."""
 
 PER_PERIOD = 16_384
 """Samples in a drive period: at 21.5 Hz up to 176 kHz without folding, beyond what the spectrum shows."""
@@ -68,8 +65,7 @@ class CloseUp:
 
 def settled_state(oscillator: ImpactOscillator, cycles: int) -> tuple[int, State]:
     """Period of the orbit that settles when the drive is raised from below grazing, and its strobed state."""
-    strobed = StroboscopicMap(oscillator=oscillator)
-    settled = settle(strobed, strobed.at(BELOW).steady(), most_cycles=cycles)
+    settled = born(StroboscopicMap(oscillator=oscillator), oscillator.excess, most_cycles=cycles)
     return settled.period, settled.end
 
 

@@ -2,7 +2,8 @@
 
 Filled points are the upward scan, open ones the downward scan, against the amplitude of the base [mm] (for
 the map: against the excess); the dashed line is grazing, the grey band around it as wide as the amplitude of
-the letter was stable.
+the letter was stable.  A grey line marks an amplitude at which the motion did not settle: its points, those
+of a moment, are stored but not drawn.
 """
 
 from __future__ import annotations
@@ -46,16 +47,22 @@ def draw(
         grazing = single_mode_oscillator(scene, row["frequency_hz"]).grazing_amplitude()
         if name == "beam":
             grazing = row["grazing_amplitude_m"]
+        moving: list[float] = []
         for way, face, size in (("down", "none", 3.2), ("up", BLUE, 2.0)):
             diagram = found[name][way]
-            across = np.repeat(diagram.excess[:, None], diagram.points.shape[1], axis=1)
-            x = 1e3 * grazing * (1.0 + across) if name != "map" else 1e3 * across
-            y = 1e3 * diagram.points if name != "map" else diagram.points
+            amplitude = 1e3 * (grazing * (1.0 + diagram.excess) if name != "map" else diagram.excess)
+            settled = diagram.period > 0
+            x = np.repeat(amplitude[settled, None], diagram.points.shape[1], axis=1)
+            y = diagram.points[settled] * (1e3 if name != "map" else 1.0)
+            moving += [a for a, kind in zip(amplitude, diagram.kind, strict=True) if kind == "not settled"]
             axis.plot(
                 x.ravel(), y.ravel(), linestyle="none", marker="o", markersize=size, markeredgewidth=0.5,
                 markerfacecolor=face, markeredgecolor=BLUE if way == "up" else VERMILION,
                 label=f"{way}ward scan", rasterized=True, zorder=2 if way == "down" else 3,
             )
+        for place, unsettled in enumerate(sorted(set(moving))):
+            axis.axvline(unsettled, color="0.75", linewidth=0.5, zorder=1, gid="not settled",
+                         label="_" if place else "not settled")
         at, stable = (0.0, AMPLITUDE_STABILITY_M / DRIVE_AMPLITUDE_M)
         if name != "map":
             at, stable = grazing, AMPLITUDE_STABILITY_M
@@ -75,12 +82,16 @@ def draw(
     if name == "beam" and scene.readout.quantity == "rotation":
         quantities["beam"] = (quantities["beam"][0], ("read-out rotation", "mrad"))
     sideways, upwards = quantities[name]
-    handles, names = axes.flat[0].get_legend_handles_labels()
+    series: dict[str, Any] = {}
+    for axis in axes.flat[: len(rows)]:
+        series = dict(zip(*axis.get_legend_handles_labels()[::-1], strict=True)) | series
+    order = ("upward scan", "downward scan", "letter: stability of the amplitude", "grazing", "not settled")
+    names = [name for name in order if name in series]
     for axis in axes[-1, :]:
         label(axis.xaxis, *sideways)
     for axis in axes[:, 0]:
         label(axis.yaxis, *upwards)
-    figure.legend(handles[1::-1] + handles[2:], names[1::-1] + names[2:], loc="outside lower center", ncols=4,
+    figure.legend([series[name] for name in names], names, loc="outside lower center", ncols=len(names),
                   markerscale=1.5)
     return figure
 
@@ -91,17 +102,19 @@ def store_points(
     """The points of all scans, as npz, and periods against amplitude as csv."""
     arrays: dict[str, np.ndarray] = {}
     table: dict[str, list[Any]] = {
-        name: [] for name in ("frequency_hz", "model", "direction", "excess", "period", "impacts", "cycles")
+        name: []
+        for name in ("frequency_hz", "model", "direction", "excess", "kind", "period", "impacts", "cycles")
     }
     for row, found in zip(rows, diagrams, strict=True):
         for name, ways in found.items():
             for way, diagram in ways.items():
+                kinds = diagram.kind
                 stem = f"{name}_{row['frequency_hz']:.2f}_hz_{way}".replace(".", "p")
                 arrays[f"{stem}_excess"], arrays[f"{stem}_points"] = diagram.excess, diagram.points
                 for i in range(diagram.excess.size):
                     values = (
-                        row["frequency_hz"], name, way, float(diagram.excess[i]), int(diagram.period[i]),
-                        int(diagram.impacts[i]), int(diagram.cycles[i]),
+                        row["frequency_hz"], name, way, float(diagram.excess[i]), kinds[i],
+                        int(diagram.period[i]), int(diagram.impacts[i]), int(diagram.cycles[i]),
                     )
                     for column, value in zip(table.values(), values, strict=True):
                         column.append(value)

@@ -19,10 +19,10 @@ import numpy as np
 
 from contact.errors import ContactError
 from contact.flight.modal_flow import steady_motion
+from contact.orbits.settling import settle
 from contact.stroboscope import StroboscopicMap
 from contact.trajectory import State
 from studies.instruments.oscillators import single_mode_oscillator
-from studies.instruments.periodicity import settle
 from studies.instruments.scene import Scene
 
 __all__ = ["Basins", "CLOSE", "FAR", "MOST_PERIODS", "NEAR", "basins"]

@@ -23,8 +23,8 @@ from contact.orbits.lyapunov import (
     of_oscillator,
     orbit_exponents,
 )
+from contact.orbits.settling import settle
 from contact.stroboscope import StrobedMap
-from studies.instruments.periodicity import settle
 
 __all__ = [
     "ALIGN",

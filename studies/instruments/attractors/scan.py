@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from contact.errors import ContactError
+from contact.orbits.settling import settle
 from contact.stroboscope import StroboscopicMap
 from contact.trajectory import State
 from studies.instruments.attractors.kinds import UNDECIDED, classify
-from studies.instruments.periodicity import settle
 from studies.instruments.scene import Scene
 
 __all__ = ["Start", "TITLES", "carried", "row_of"]

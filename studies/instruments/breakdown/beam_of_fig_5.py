@@ -19,6 +19,7 @@ from beam import ModalModel
 from contact.drive import HarmonicDrive
 from contact.errors import ContactError
 from contact.laws import ContactLaw, HuntCrossley
+from contact.orbits import settling
 from contact.orbits.continuation import fold_of
 from contact.orbits.shooting import Shooting
 from contact.oscillator import ImpactOscillator
@@ -26,13 +27,11 @@ from contact.stop import Stop
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.calibration import calibrate, free_period, solve_for
 from studies.instruments.oscillators import REFERENCE_EXCESS, approach_speed, contact_law_of, hertz_of
-from studies.instruments.periodicity import settle
 from studies.instruments.scene import Scene
 from studies.instruments.spring_of_scene import model_of
 from studies.published import BREAKDOWN
 
 __all__ = [
-    "BELOW",
     "BORN_EXCESS",
     "CHAOS_AT",
     "DECAY_RATE_PER_S",
@@ -49,7 +48,7 @@ __all__ = [
 
 FREQUENCY_HZ, FREE_PERIOD_S = float(BREAKDOWN["frequency_hz"]), float(BREAKDOWN["free_period_s"])
 DECAY_RATE_PER_S, CHAOS_AT = float(BREAKDOWN["decay_rate_per_s"]), float(BREAKDOWN["chaos_at"])
-BORN_EXCESS, BELOW = 1e-3, -1e-3
+BORN_EXCESS = 1e-3
 SEARCH_CYCLES = 1500
 NEAR = 0.2
 """Relative distance from the free period of Fig. 5 within which the thickness brings a spring to it."""
@@ -119,7 +118,7 @@ def lossy(scene: Scene, restitution: float) -> ContactLaw:
 
 def born(strobed: StroboscopicMap, cycles: int = SEARCH_CYCLES) -> tuple[int, int]:
     """Period and impacts of the settled orbit at excess 1e-3, started from the motion just below grazing."""
-    settled = settle(strobed.at(BORN_EXCESS), strobed.at(BELOW).steady(), most_cycles=cycles)
+    settled = settling.born(strobed, BORN_EXCESS, most_cycles=cycles)
     return settled.period, settled.impacts
 
 

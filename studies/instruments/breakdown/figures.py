@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.patches import Rectangle
 
+from contact.orbits.scan import OrbitDiagram
 from studies.instruments.breakdown.plan import Plan
 from studies.instruments.breakdown.scans import HIGHEST
 from studies.instruments.figures import (
@@ -27,7 +28,6 @@ from studies.instruments.figures import (
     panel,
     tint,
 )
-from studies.instruments.orbit_scan import OrbitDiagram
 from studies.instruments.scene import Scene
 from studies.published import BREAKDOWN
 

@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from contact.orbits.scan import OrbitDiagram, orbit_diagram
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.breakdown.beam_of_fig_5 import born, fold_of_p3
 from studies.instruments.breakdown.plan import Plan
-from studies.instruments.orbit_scan import OrbitDiagram, orbit_diagram
 from studies.published import STROBE_POINTS
 
 __all__ = ["HIGHEST", "beam_result", "both_ways", "end_of_p3", "excesses", "periods", "rows_of", "stretches"]

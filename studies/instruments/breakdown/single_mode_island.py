@@ -11,14 +11,14 @@ from typing import Any
 
 import numpy as np
 
+from contact.orbits.scan import OrbitDiagram
+from contact.orbits.settling import settle
 from contact.orbits.shooting import Shooting
 from contact.orbits.single_impact import MaximalFamily
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.breakdown.beam_of_fig_5 import CHAOS_AT, FREQUENCY_HZ
 from studies.instruments.breakdown.scans import HIGHEST
-from studies.instruments.orbit_scan import OrbitDiagram
 from studies.instruments.oscillators import single_mode_oscillator
-from studies.instruments.periodicity import settle
 from studies.instruments.scene import Scene
 from studies.published import STROBE_POINTS
 

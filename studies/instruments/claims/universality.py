@@ -16,12 +16,12 @@ import numpy as np
 from beam import ModalModel
 from contact.errors import ContactError
 from contact.maximal_orbits import band, maximal_period, maximal_periods
+from contact.orbits import settling
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.claims.single_mode_leaf import Leaf
 from studies.instruments.claims.verdict import Claim, frequencies_of
 from studies.instruments.figures import LETTER_POINTS, NOTE, PAGE, in_house_style, label, new_figure, series
 from studies.instruments.oscillators import beam_of, single_mode_oscillator
-from studies.instruments.periodicity import settle
 from studies.instruments.scene import Scene
 from studies.instruments.spring_of_scene import model_of
 from studies.instruments.tip_mass_family import bare_cantilever, with_mass_ratio
@@ -65,7 +65,7 @@ def born_period(
     strobed = StroboscopicMap(oscillator=oscillator)
     excess = part * scene.scan.born_excess
     try:
-        return settle(strobed.at(excess), strobed.at(-excess).steady(), most_cycles=most_cycles).period
+        return settling.born_period(strobed, excess, below=-excess, most_cycles=most_cycles)
     except ContactError:
         return -1
 

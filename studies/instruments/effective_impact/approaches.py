@@ -23,15 +23,12 @@ import numpy as np
 
 from contact.collision import Collision, collisions, first_collision
 from contact.errors import ContactError
+from contact.orbits.settling import born
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stroboscope import StroboscopicMap
-from studies.instruments.periodicity import settle
 
 __all__ = ["Approach", "measure", "measure_all", "orbit_collision", "own_contact", "select"]
-
-BELOW = -1e-3
-"""Excess of the motion from which a settled orbit is reached."""
 
 SETTLE_CYCLES = 4000
 """An orbit with impacts settles within some hundred drive periods; a motion that has not repeated by then is
@@ -73,8 +70,7 @@ class Approach:
 
 def orbit_collision(oscillator: ImpactOscillator) -> tuple[Collision | None, int]:
     """The first collision in the settled orbit and its period; None and 0 if there is no such orbit."""
-    strobed = StroboscopicMap(oscillator=oscillator)
-    settled = settle(strobed, strobed.at(BELOW).steady(), most_cycles=SETTLE_CYCLES)
+    settled = born(StroboscopicMap(oscillator=oscillator), oscillator.excess, most_cycles=SETTLE_CYCLES)
     if not settled.period or not settled.impacts:
         return None, settled.period
     trajectory = simulate(oscillator, settled.end, periods=2 * settled.period + 2)

@@ -19,11 +19,12 @@ from typing import Any
 import numpy as np
 
 from contact.maximal_orbits import band
+from contact.orbits.settling import born
 from contact.orbits.single_impact import MaximalFamily
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.oscillators import single_mode_oscillator
 from studies.instruments.scene import Scene
-from studies.instruments.sensitivity.grazing_births import BORN_EXCESS, NOISE, born, upper_end
+from studies.instruments.sensitivity.grazing_births import BORN_EXCESS, NOISE, upper_end
 from studies.instruments.sensitivity.strobe_clouds import clouds
 
 __all__ = ["CORRELATION", "SEED", "SHARE_OF_BAND", "SKIPPED", "STROBES", "noise_at", "noisy"]

@@ -11,23 +11,20 @@ from __future__ import annotations
 from typing import Any
 
 from contact.errors import ContactError
+from contact.orbits.settling import born, born_period, settle
 from contact.stroboscope import StroboscopicMap
-from studies.instruments.periodicity import Settled, settle
 from studies.published import AMPLITUDE_STABILITY_M, DRIVE_AMPLITUDE_M
 
 __all__ = [
-    "BELOW",
     "BORN_EXCESS",
-    "CYCLES",
     "NOISE",
     "STEP",
-    "born",
     "first_birth",
     "period_of_birth",
     "upper_end",
 ]
 
-BORN_EXCESS, BELOW, CYCLES = 1e-3, -1e-3, 3000
+BORN_EXCESS, CYCLES = 1e-3, 3000
 NOISE = AMPLITUDE_STABILITY_M / DRIVE_AMPLITUDE_M
 """Relative rms of the amplitude: 2.5e-4."""
 
@@ -35,22 +32,17 @@ STEP = 1.1
 """Factor between excesses when the upper end of an orbit is looked for."""
 
 
-def born(strobed: Any, excess: float = BORN_EXCESS) -> Settled[Any]:
-    """The orbit at an excess, started from the motion just below grazing."""
-    return settle(strobed.at(excess), strobed.at(BELOW).steady(), most_cycles=CYCLES)
-
-
 def period_of_birth(strobed: Any) -> int | None:
-    """Its period; None where it could not be computed."""
+    """Period of the orbit that is born; None where it could not be computed."""
     try:
-        return born(strobed).period
+        return born_period(strobed, BORN_EXCESS, most_cycles=CYCLES)
     except ContactError:
         return None
 
 
 def upper_end(strobed: StroboscopicMap, period: int, highest: float = 0.1) -> float | None:
     """Highest excess, in steps of 10 %, up to which the orbit born at 1e-3 keeps its period."""
-    settled = born(strobed)
+    settled = born(strobed, BORN_EXCESS, most_cycles=CYCLES)
     if settled.period != period:
         return None
     excess, state = BORN_EXCESS, settled.end
@@ -66,7 +58,7 @@ def first_birth(strobed: StroboscopicMap, period: int, highest: float = 0.02) ->
     """Lowest excess, in steps of 10 %, at which a start from just below grazing gives this period."""
     excess = NOISE
     while excess < highest:
-        if born(strobed, excess).period == period:
+        if born_period(strobed, excess, most_cycles=CYCLES) == period:
             return excess
         excess *= STEP
     return None

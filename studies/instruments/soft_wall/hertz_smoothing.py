@@ -28,10 +28,10 @@ from scipy.optimize import brentq
 from contact.collision import Collision, first_collision
 from contact.errors import ContactError
 from contact.laws import HertzContact
+from contact.orbits.settling import Settled, settle
 from contact.orbits.single_impact import modal_flow
 from contact.oscillator import ImpactOscillator
 from contact.stroboscope import StroboscopicMap
-from studies.instruments.periodicity import Settled, settle
 
 __all__ = ["HertzSmoothing", "born_orbits", "collision_above", "doubling_excess", "local_slope", "reach_of"]
 
@@ -121,9 +121,10 @@ def _quietly(strobed: StroboscopicMap, state: Any, excess: float, cycles: int) -
     gets `cycles` more to fall further.
     """
     here, tolerance = strobed.at(excess), max(1e-5 * excess, 1e-14)
-    settled = settle(here, state, most_cycles=cycles, tolerance=tolerance)
+    settled = settle(here, state, most_cycles=cycles, tolerance=tolerance, prove=False)
     if settled.period > 1 and settled.impacts >= settled.period:
-        settled = settle(here, here.orbit(settled.end, cycles).end, most_cycles=cycles, tolerance=tolerance)
+        later = here.orbit(settled.end, cycles).end
+        settled = settle(here, later, most_cycles=cycles, tolerance=tolerance, prove=False)
     return settled
 
 

@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 
 from contact.errors import ContactError
+from contact.orbits.ends import orbit_end
+from contact.orbits.settling import settle
 from contact.orbits.single_impact import MaximalFamily
 from contact.oscillator import ImpactOscillator
 from contact.stroboscope import StroboscopicMap
 from contact.trajectory import State
-from studies.instruments.fold_scan import orbit_end
 from studies.instruments.oscillators import nordmark_of, single_mode_oscillator
-from studies.instruments.periodicity import settle
 from studies.instruments.scene import Scene
 from studies.instruments.soft_wall.contact_orbits import ContactOrbit, SoftMap, doubling, fold_of
 from studies.instruments.soft_wall.hertz_smoothing import (
@@ -185,7 +185,7 @@ def sides_of(soft: SoftMap, orbit: ContactOrbit, cycles: int = 6000) -> dict[str
             # a transient that alternates and falls by a percent a period looks like p2 until it is gone
             here = strobed.at(excess)
             gone = here.orbit(soft.state(excess, start), cycles).end
-            found[name] = settle(here, gone, most_cycles=cycles, tolerance=1e-3 * peak).period
+            found[name] = settle(here, gone, most_cycles=cycles, tolerance=1e-3 * peak, prove=False).period
         except ContactError:
             continue
     return found
@@ -269,7 +269,8 @@ def fitted_exponents(tail: Mapping[float, tuple[float, float]]) -> dict[str, flo
 
 
 def scanned(soft: SoftMap, orbit: ContactOrbit) -> float | None:
-    """End of the orbit in a downward scan that starts a little above its fold, to 0.5 %."""
+    """End of the orbit in a downward scan that starts a little above its fold, the middle of a bracket of
+    0.5 %."""
     start = orbit.excess + 0.05 * abs(orbit.excess)
     end = orbit_end(
         StroboscopicMap(oscillator=soft.oscillator),
@@ -280,7 +281,7 @@ def scanned(soft: SoftMap, orbit: ContactOrbit) -> float | None:
         absolute=1e-10,
         first_step=0.01 * abs(orbit.excess),
     )
-    return None if end is None or end.period != soft.period else end.excess
+    return None if end is None or end.period != soft.period else 0.5 * (end.held + end.lost)
 
 
 def row_of(case: Case, hysteresis: Mapping[str, Any]) -> dict[str, Any]:

@@ -16,10 +16,10 @@ import numpy as np
 from contact.event_loop import DONE, STATE
 from contact.exact_run import failure
 from contact.flight.modal_flow import tip_state
+from contact.orbits.settling import TOLERANCE
 from contact.oscillator import ImpactOscillator
 from contact.strobed_motion import strobed_system
 from contact.stroboscope import StroboscopicMap
-from studies.instruments.periodicity import TOLERANCE
 from studies.instruments.sweep.settled_column import (
     BEHIND,
     EXTRA,

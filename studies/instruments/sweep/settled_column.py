@@ -10,9 +10,9 @@ has left it, and is followed in blocks of `BLOCK` drive periods until it is know
   the tip never meets the stop again: period 1 without impacts, and the state is set on the steady motion.
 - **A periodic orbit** of period p <= L, for L = 16, 32, 64 as soon as 2 L strobes are there: all coordinates
   phi_k u_k and phi_k u_k'/omega_k of the last L strobes repeat those p before to `TOLERANCE` of the gap and
-  the impacts of each period repeat exactly.  This is ``periodicity.period_of`` with `largest_period` L on the
-  last 2 L strobes; the next state follows from the last one alone, so that one whole period that repeats is
-  all that can be asked, and short periods need not wait for the longest.
+  the impacts of each period repeat exactly.  This is `contact.orbits.period_of` with `largest_period` L on
+  the last 2 L strobes; the next state follows from the last one alone, so that one whole period that repeats
+  is all that can be asked, and short periods need not wait for the longest.
 - **Nearly periodic at the bound.**  Next to a fold the motion comes to rest on its orbit as slowly as one
   likes.  After `most_cycles` a repetition to `ROUGH` of the gap is taken for the period too; such cells have
   cycles >= most_cycles in the store.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from studies.instruments.report.digits import fixed, period, scaled
+from studies.instruments.report.digits import ABSENT, fixed, period, scaled
 from studies.instruments.report.entry import AGREES, DIFFERS, IN_PART, Entry, Finding, Point
 from studies.instruments.report.markup import Column, Table
 from studies.instruments.report.stored import Stored
@@ -67,11 +67,11 @@ def tables(summary: Mapping[str, Any]) -> list[Table]:
     def column(head: str, key: str, write: Callable[[Any], str]) -> Column:
         return Column(head=head, values=[row[key] for row in rows], write=write)
 
-    ends = scaled(1e4, 2)
+    ends, way = scaled(1e4, 4), (lambda kind: kind or ABSENT)
     return [
         Table(
             caption="Period of the settled orbit just above grazing, and F_m/F_g - 1 at which it ends when "
-            "the amplitude is lowered. In closed form: the fold of the orbit that has one impact per period.",
+            "the amplitude is lowered, by a fold, a period doubling or the grazing of another touch.",
             columns=[
                 column("f (Hz)", "frequency_hz", fixed(2)),
                 column("letter", "letter", period),
@@ -79,10 +79,11 @@ def tables(summary: Mapping[str, Any]) -> list[Table]:
                 column("Eq. (1)", "single_mode", period),
                 column("beam", "beam", period),
                 column("end: map (10^-4)", "excess_down_map", ends),
-                column("in closed form", "exact_map", ends),
+                column("by", "ends_by_map", way),
                 column("Eq. (1) (10^-4)", "excess_down_single_mode", ends),
-                column("in closed form", "exact_single_mode", ends),
+                column("by", "ends_by_single_mode", way),
                 column("beam (10^-4)", "excess_down_beam", ends),
+                column("by", "ends_by_beam", way),
             ],
         )
     ]
@@ -106,8 +107,8 @@ ENTRY = Entry(
     captions={
         "orbit_diagram": f"Beam. Strobed displacement at the read-out point {DOTS} The upward scan leaves "
         "the motion without impacts at grazing, the downward scan keeps the m points until below it: the "
-        "hysteresis of the letter's Fig. 2. Where a downward scan is a cloud, impacts go on without a "
-        "period.",
+        "hysteresis of the letter's Fig. 2. A grey line marks an amplitude at which the motion did not "
+        "settle; its points are not drawn.",
         "orbit_diagram_single_mode": f"Eq. (1). Strobed displacement {DOTS} The same transitions with one "
         "mode.",
         "orbit_diagram_map": f"Nordmark map. Its x {DOTS} Periods and band edges come out as in the other "

@@ -14,8 +14,8 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from contact.errors import ContactError
+from contact.orbits.settling import TOLERANCE, period_of, settle
 from contact.stroboscope import StrobedMap
-from studies.instruments.periodicity import TOLERANCE, Settled, period_of, settle
 
 __all__ = ["OrbitDiagram", "orbit_diagram"]
 
@@ -33,6 +33,7 @@ class OrbitDiagram(Generic[S]):
         The observed quantity at the strobes; NaN where the computation failed.
     period, impacts, cycles : ndarray of int, shape (n_amplitudes,)
         Period of the settled orbit (0: none), impacts in one such period, drive periods spent settling.
+        Where there is no period the impacts and the points are a moment of a motion that goes on changing.
     failures : tuple of str
         One sentence for each amplitude that failed.
     end : State
@@ -47,6 +48,13 @@ class OrbitDiagram(Generic[S]):
     failures: tuple[str, ...]
     end: S
 
+    @property
+    def kind(self) -> list[str]:
+        """What each amplitude shows: "periodic", "not settled" (chaos, or a transient not over), "failed"."""
+        words = np.where(self.period > 0, "periodic", "not settled")
+        found: list[str] = np.where(np.isnan(self.points[:, 0]), "failed", words).tolist()
+        return found
+
 
 def orbit_diagram(
     strobed: StrobedMap[S],
@@ -58,7 +66,6 @@ def orbit_diagram(
     record_cycles: int = 40,
     largest_period: int = 64,
     early: bool = True,
-    settle_with: Callable[..., Settled[S]] = settle,
     after_each: Callable[[], None] | None = None,
 ) -> OrbitDiagram[S]:
     """Scan the amplitudes `excesses` in the given order, starting from `state`.
@@ -78,9 +85,8 @@ def orbit_diagram(
         Strobe points recorded.
     largest_period : int
     early : bool
-        End a transient as soon as the orbit is known; otherwise every amplitude gets all `settle_cycles`.
-    settle_with : callable
-        How it gets known: ``periodicity.settle`` (it repeats) or ``settling.settle_on_orbit`` (it is proved).
+        End a transient as soon as the orbit is known (`settle`); otherwise every amplitude gets all
+        `settle_cycles`.
     after_each : callable, optional
         Called after each amplitude (progress).
     """
@@ -94,7 +100,7 @@ def orbit_diagram(
         here = strobed.at(float(excess))
         try:
             if early:
-                settled = settle_with(here, state, most_cycles=settle_cycles, largest_period=largest_period)
+                settled = settle(here, state, most_cycles=settle_cycles, largest_period=largest_period)
                 state, cycles[i] = settled.end, settled.cycles
                 period[i], impacts[i] = settled.period, settled.impacts
                 recorded = here.orbit(state, record_cycles)
