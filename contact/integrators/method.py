@@ -12,18 +12,14 @@ import math
 from typing import ClassVar
 
 from contact.flight.motion import Motion
-from contact.laws import DELAYED, HERTZ, LINEAR, NEWTON
 from contact.oscillator import ImpactOscillator
+from contact.touch import TOUCHES
 from contact.trajectory import Run, Trajectory
 
 __all__ = ["Integrator", "Run"]
 
-LAW_NAMES = {
-    NEWTON: "NewtonRestitution",
-    DELAYED: "DelayedRestitution",
-    LINEAR: "LinearContact",
-    HERTZ: "HertzContact or HuntCrossley",
-}
+LAW_NAMES = {code: file.LAW for code, file in TOUCHES.items()}
+"""The laws in words, by their codes."""
 
 
 class Integrator:

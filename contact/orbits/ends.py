@@ -28,10 +28,14 @@ from typing import Any, Generic, TypeVar
 
 from contact.errors import ContactError
 from contact.maximal_orbits import fold, maximal_orbits, stable_range
+from contact.nordmark import StrobedNordmarkMap
 from contact.orbits.continuation import first_event
 from contact.orbits.settling import Settled, orbit_near, settle
 from contact.orbits.shooting import Shooting
+<<<<<<< HEAD
 from contact.nordmark import StrobedNordmarkMap
+=======
+>>>>>>> refs/heads/core
 from contact.stroboscope import StrobedMap, StroboscopicMap
 
 __all__ = ["OrbitEnd", "orbit_end"]

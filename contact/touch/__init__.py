@@ -12,6 +12,7 @@ How to add a law, say N = k d^3
 
 What a file offers.  `motion` is the oscillator, `run` where it stands (``contact.event_loop.STATE``), (u, v)
 its deviations, `series` the room of one step.
+    LAW                                       its name in words
     REGIMES                                   where the tip can be: ``contact.trajectory.Regime``
     room(motion) -> order, columns            size of the room of a step
     strike(motion, run, u, v, approach) -> regime, rebound, loss

@@ -29,9 +29,10 @@ from contact.flight.motion import WEIGHT
 from contact.touch import newton
 from contact.trajectory import OUTSIDE, WAITING
 
-__all__ = ["REGIMES", "force", "leave", "numbers_at", "place", "room", "saltation", "slopes", "state", "step",
-           "stiffness", "strike", "work"]  # fmt: skip
+__all__ = ["LAW", "REGIMES", "force", "leave", "numbers_at", "place", "room", "saltation", "slopes", "state",
+           "step", "stiffness", "strike", "work"]  # fmt: skip
 
+LAW = "DelayedRestitution"
 REGIMES = (OUTSIDE, WAITING)
 
 force, stiffness, slopes, room, place, work = (

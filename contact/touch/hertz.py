@@ -36,9 +36,10 @@ from contact.touch.series import enter, leave, reach, saltation, within_force
 from contact.trajectory import CONTACT, OUTSIDE
 from contact.vector_loops import LANES, next_modes, weighted_rows
 
-__all__ = ["REGIMES", "force", "leave", "place", "room", "saltation", "slopes", "state", "step", "stiffness",
-"strike", "work"]
+__all__ = ["LAW", "REGIMES", "force", "leave", "place", "room", "saltation", "slopes", "state", "step",
+           "stiffness", "strike", "work"]  # fmt: skip
 
+LAW = "HertzContact or HuntCrossley"
 REGIMES = (OUTSIDE, CONTACT)
 
 ORDER = 20
@@ -46,6 +47,10 @@ ORDER = 20
 
 TOLERANCE = 1e-15
 """Size of the last terms of a step, relative to the modal speeds: at the rounding of the sum of all terms."""
+
+FAR = math.log(1.5)
+"""Logarithm of the factor by which the last term but one of r must fall short of the others' bound to count:
+where the modes take part, both ends of the series agree within it."""
 
 SPEED, DEPTH, CUBE, SINE, COSINE = range(5)
 """Columns of the series before the modes: d', d, r d, sin and cos of the drive."""
@@ -174,11 +179,14 @@ def longest_step(motion, speed, series):
         reach(greatest_speed(motion.modes, series.rows, p), p, allowed),
         reach(greatest_speed(motion.modes, series.rows, p - 1), p - 1, allowed),
     )
-    # r must be resolved as well as the modes, relative to the larger of its first two terms
-    if r[p] != 0.0 and (r[0] != 0.0 or r[1] != 0.0):
-        whole = reach(abs(r[p]), p, TOLERANCE * abs(r[0])) if r[0] != 0.0 else -math.inf
-        linear = reach(abs(r[p]), p - 1, TOLERANCE * abs(r[1])) if r[1] != 0.0 else -math.inf
-        power = min(power, max(whole, linear))
+    # r must be resolved as well as the modes, relative to the larger of its first two terms; under a contact
+    # so soft that the modes give no bound, r is odd in sigma and its last term alone gives none either
+    for n in (p, p - 1):
+        if r[n] != 0.0 and (r[0] != 0.0 or r[1] != 0.0):
+            whole = reach(abs(r[n]), n, TOLERANCE * abs(r[0])) if r[0] != 0.0 else -math.inf
+            linear = reach(abs(r[n]), n - 1, TOLERANCE * abs(r[1])) if r[1] != 0.0 else -math.inf
+            if n == p or max(whole, linear) < power - FAR:
+                power = min(power, max(whole, linear))
     s = within_force(
         math.exp(power), series.scalars[PUSH], p - 1, math.sqrt(motion.compliance), speed, _EDGE
     )

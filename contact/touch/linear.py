@@ -24,9 +24,10 @@ from contact.touch.series import enter, leave, saltation
 from contact.touch.time_series import DEPTH, FORCE, begin, extend, longest_step, negative
 from contact.trajectory import CONTACT, INSIDE, OUTSIDE
 
-__all__ = ["REGIMES", "enter", "force", "leave", "place", "room", "saltation", "slopes", "state", "step",
-"stiffness", "work"]
+__all__ = ["LAW", "REGIMES", "enter", "force", "leave", "place", "room", "saltation", "slopes", "state",
+           "step", "stiffness", "work"]  # fmt: skip
 
+LAW = "LinearContact"
 REGIMES = (OUTSIDE, CONTACT, INSIDE)
 
 strike = enter

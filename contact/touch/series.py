@@ -42,7 +42,7 @@ class Series(NamedTuple):
     rows : ndarray, shape (order + 1, columns)
         Coefficients of the modes, row n holding order n.
     sums : ndarray, shape (columns,)
-    scalars : ndarray, shape (6, order + 1)
+    scalars : ndarray, shape (8, order + 1)
         Series of single numbers, named where they are filled.
     """
 
@@ -54,7 +54,7 @@ class Series(NamedTuple):
 @kernel
 def new_series(order, columns):
     """Room for a series, of zeros."""
-    return Series(aligned(order + 1, columns), aligned(1, columns)[0], np.zeros((6, order + 1)))
+    return Series(aligned(order + 1, columns), aligned(1, columns)[0], np.zeros((8, order + 1)))
 
 
 @part
