@@ -628,6 +628,11 @@ CONTACT: dict[str, Entry] = {
         ({"trajectory": [0.1]}, "trajectory is [0.1]|a Trajectory"),
         ({"unfinished": "keep"}, "unfinished is 'keep'|refuse"),
     ),
+    "before_collision": entry(
+        contact.before_collision,
+        lambda: dict(oscillator=eq_1()),
+        ({"oscillator": dataclasses.replace(eq_1(), drive=None)}, "drive is None|give a state"),
+    ),
     "first_collision": entry(
         contact.first_collision,
         lambda: dict(oscillator=eq_1(), periods=64),

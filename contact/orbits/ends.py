@@ -32,10 +32,6 @@ from contact.nordmark import StrobedNordmarkMap
 from contact.orbits.continuation import first_event
 from contact.orbits.settling import Settled, orbit_near, settle
 from contact.orbits.shooting import Shooting
-<<<<<<< HEAD
-from contact.nordmark import StrobedNordmarkMap
-=======
->>>>>>> refs/heads/core
 from contact.stroboscope import StrobedMap, StroboscopicMap
 
 __all__ = ["OrbitEnd", "orbit_end"]

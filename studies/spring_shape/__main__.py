@@ -123,8 +123,8 @@ def spring_shape(
         errors += error_rows(shapes[name], meshes, COUNTS[name])
     solids = [solid_row(scene, shapes[name], errors) for name in checked]
     widths = width_rows(shapes["plain"], WIDTHS, COARSE[1])
-    shown = ("reading", "thickness_m", "flange_m", "first_bending_hz", "first_twist_hz", "ratio_twist", "ratio",
-             "tip_value_bending", "tip_value_twist_off_line", "turn_of_twist")  # fmt: skip
+    shown = ("reading", "thickness_m", "flange_m", "first_bending_hz", "first_twist_hz", "ratio_twist",
+             "ratio", "tip_value_bending", "tip_value_twist_off_line", "turn_of_twist")  # fmt: skip
     run.table("readings", list(readings.values()), "Four springs of one free period.", show=shown)
     compared = ("variation", "reading", "ratio_twist", "ratio")
     run.table("variations", varied, "The same, varied.", show=compared)
@@ -271,8 +271,8 @@ def draw(
     )
     others = {name: readings[name].ratio_twist for name in ("folded", "side_by_side", "plain")}
     run.figure("channels", draw_channels(channels, others),
-               "Channels of other sheets: flange that the free period needs, and where their lowest modes out "
-               "of the plane lie.")  # fmt: skip
+               "Channels of other sheets: flange that the free period needs, and where their lowest modes "
+               "out of the plane lie.")  # fmt: skip
 
 
 if __name__ == "__main__":
