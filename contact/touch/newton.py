@@ -25,8 +25,25 @@ from contact.touch import time_series
 from contact.touch.time_series import FORCE, begin, extend, free_pull, longest_step, negative
 from contact.trajectory import OUTSIDE, SUSTAINED
 
-__all__ = ["LAW", "REGIMES", "accumulation_time", "force", "hold", "leave", "lowest_hop", "newton_impact", "place",
-           "room", "saltation", "slopes", "state", "step", "stiffness", "strike", "work"]  # fmt: skip
+__all__ = [
+    "LAW",
+    "REGIMES",
+    "accumulation_time",
+    "force",
+    "hold",
+    "leave",
+    "lowest_hop",
+    "newton_impact",
+    "place",
+    "room",
+    "saltation",
+    "slopes",
+    "state",
+    "step",
+    "stiffness",
+    "strike",
+    "work",
+]
 
 LAW = "NewtonRestitution"
 REGIMES = (OUTSIDE, SUSTAINED)

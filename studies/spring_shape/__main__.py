@@ -166,7 +166,9 @@ def shapes_of(scene: Scene, tip: Tip | None = None) -> dict[str, Shape]:
     omega = angular_frequency_of(scene)
     found = {name: shape_of(scene, name) for name in READINGS}
     found = {name: replace(shape, tip=tip or shape.tip) for name, shape in found.items()}
-    fitted = {name: brought_to(shape, omega) for name, shape in found.items() if name != "channel"}
+    fitted: dict[str, Shape] = {
+        name: brought_to(shape, omega) for name, shape in found.items() if name != "channel"
+    }
     fitted["channel"] = channel_of(scene, fitted["plain"], CHANNEL_SHEET)
     return {name: fitted[name] for name in READINGS}
 
