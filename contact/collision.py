@@ -340,6 +340,7 @@ def before_collision(oscillator: ImpactOscillator) -> State:
     oscillator : ImpactOscillator
         A driven one; ValueError without a drive.
     """
+    require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
     if oscillator.drive is None:
         raise ValueError("drive is None; without one there is no steady motion that touches, so give a state")
     motion = oscillator.motion()

@@ -632,6 +632,8 @@ CONTACT: dict[str, Entry] = {
         contact.before_collision,
         lambda: dict(oscillator=eq_1()),
         ({"oscillator": dataclasses.replace(eq_1(), drive=None)}, "drive is None|give a state"),
+        ({"oscillator": None}, "oscillator is None|an ImpactOscillator"),
+        ({"oscillator": "beam"}, "oscillator is 'beam'|an ImpactOscillator"),
     ),
     "first_collision": entry(
         contact.first_collision,
