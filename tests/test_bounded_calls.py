@@ -72,13 +72,14 @@ EXTREME: dict[str, ContactLaw] = {
 }
 WITHOUT_A_LAW = {
     # objects, and the closed forms of the letter's map
-    "Band", "Branch", "Chatter", "Collision", "ContactError", "ContactLaw", "ContactTooStiff",
-    "DelayedRestitution", "Differentiable", "Event", "Exponents", "HarmonicDrive", "HertzContact",
-    "HuntCrossley", "ImpactKind", "ImpactOscillator", "Impacts", "Kick", "KickOrbit", "LinearContact",
-    "MaximalFlight", "OrbitDiagram", "OrbitEnd", "Regime", "Settled",
-    "MaximalOrbit", "NewtonRestitution", "NordmarkMap", "NotPeriodic", "State", "Stop", "StrobedMap",
-    "StrobedNordmarkMap", "StrobedOrbit", "Trajectory", "UnresolvedCrossing", "band", "bands", "fold",
-    "maximal_orbits", "maximal_period", "maximal_periods", "modal_flow", "of_nordmark", "stable_range",
+    "AmplitudeScan", "Band", "band", "bands", "before_collision", "Branch", "Chatter", "Collision",
+    "ContactError", "ContactLaw", "ContactTooStiff", "DelayedRestitution", "Differentiable", "Diverged",
+    "Event", "Exponents", "fold", "HarmonicDrive", "HertzContact", "HuntCrossley", "ImpactKind",
+    "ImpactOscillator", "Impacts", "Kick", "KickOrbit", "LinearContact", "maximal_orbits",
+    "maximal_period", "maximal_periods", "MaximalFlight", "MaximalOrbit", "modal_flow",
+    "NewtonRestitution", "NordmarkMap", "NotPeriodic", "of_nordmark", "OrbitDiagram", "OrbitEnd",
+    "Regime", "ScannedColumn", "Settled", "stable_range", "State", "StepTooLarge", "Stop", "StrobedMap",
+    "StrobedNordmarkMap", "StrobedOrbit", "Trajectory", "UnresolvedCrossing",
 }  # fmt: skip
 COMPUTING = (
     "KickFamily", "MaximalFamily", "PeriodicOrbit", "Shooting", "SingleImpactOrbit", "StroboscopicMap"
@@ -117,6 +118,7 @@ def motions(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], ob
         yield "first_collision", lambda state=state: contact.first_collision(driven, state, periods=5)
         yield "StroboscopicMap.step", lambda state=state: strobed.step(state)
         yield "StroboscopicMap.orbit", lambda state=state: strobed.orbit(state, 20)
+        yield "StroboscopicMap.jacobians", lambda state=state: strobed.jacobians(state, 5)
         yield "strobed_orbits", lambda state=state: contact.strobed_orbits([strobed] * 2, [state] * 2, 20)
         for exponents in (lyapunov.map_exponents, lyapunov.orbit_exponents):
             system = lyapunov.of_oscillator(strobed)
