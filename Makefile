@@ -1,6 +1,7 @@
 # make study   the main study on the letter's scene
 # make test    the tests, but for the long forms of some
 # make test-slow  these long forms
+# make test-generic  what computes numbers, on the instructions that every processor has
 # make lint    style and types
 # make clean   caches and build products; results/ and .venv/ stay
 
@@ -9,7 +10,7 @@ BIN := .venv/bin
 READY := .venv/.ready
 ONE_THREAD := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
 
-.PHONY: study test test-slow lint clean
+.PHONY: study test test-slow test-generic lint clean
 
 study: $(READY)
 	$(BIN)/python -m studies
@@ -20,6 +21,19 @@ test: $(READY)
 
 test-slow: $(READY)
 	$(ONE_THREAD) $(BIN)/python -m pytest -n 2 -m slow
+
+# LAPACK and NumPy's loops round otherwise there; kernels compiled in this way are not kept.
+NOT_NUMBERS := benchmarks docstrings every_study film generic_processor imports own_scenes page readme run scene \
+	sweep tour wrong_input
+NUMBERS := $(filter-out $(foreach name,$(NOT_NUMBERS),%/test_$(name).py),$(wildcard tests/test_*.py tests/contact/test_*.py tests/studies/test_*.py))
+SIMD := import numpy; print(*numpy.show_config("dicts")["SIMD Extensions"].get("found", []))
+test-generic: $(READY)
+	@cache=$$(mktemp -d) && trap 'rm -rf "$$cache"' EXIT && trap 'exit 130' INT TERM && \
+	export NUMBA_CACHE_DIR="$$cache" && \
+	export NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c '$(SIMD)')" && \
+	export NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES= OPENBLAS_CORETYPE=Prescott $(ONE_THREAD) && \
+	$(BIN)/python -m contact.warm_up && \
+	$(BIN)/python -m pytest -n 2 -m "not slow" $(NUMBERS)
 
 lint: $(READY)
 	$(BIN)/python -m ruff check beam contact studies tests

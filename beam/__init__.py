@@ -21,60 +21,62 @@ computed one. `exact_modes` solves the frequency equation of the straight beam, 
 SI units throughout; parameters are keyword-only and frozen, and `dataclasses.replace` varies them. Wrong
 values raise `ValueError` or `TypeError` with a sentence that names the field, the value, the unit and what is
 valid; valid ones that can hardly be meant bring a warning, `SuspiciousValue`. Every module opens with the
-equations it solves.
+equations it solves. A name is imported where it is first used: one who brings a `ModalModel` of measured
+modes loads no finite elements.
 """
 
-from .assembly import Discretization, assemble, default_elements
-from .centreline import Arc, Centreline, Straight
-from .damping import ConstantLossFactor, ConstantRatio, Damping, MeasuredDecay, Rayleigh, StripDamping
-from .frequency_equation import ExactModes, UniformBeam, exact_modes, frequency_function
-from .material import ALUMINA, BRASS, DAMPING_TAPE, STEEL, Material
-from .modes import Modes, ShapesAlong, natural_modes
-from .parameters import SuspiciousValue
-from .reduction import ModalModel, reduce, single_mode
-from .section import Layer, StripSection
-from .spring import LeafSpring, Readout, Support, Tip
-from .spring_shapes import cantilever, folded_u, straight_strip
-from .straight_equivalent import as_one_spring, straight_equivalent
+from importlib import import_module
+from typing import TYPE_CHECKING
 
-__all__ = [
-    "ALUMINA",
-    "Arc",
-    "BRASS",
-    "Centreline",
-    "ConstantLossFactor",
-    "ConstantRatio",
-    "DAMPING_TAPE",
-    "Damping",
-    "Discretization",
-    "ExactModes",
-    "Layer",
-    "LeafSpring",
-    "Material",
-    "MeasuredDecay",
-    "ModalModel",
-    "Modes",
-    "Rayleigh",
-    "Readout",
-    "STEEL",
-    "ShapesAlong",
-    "Straight",
-    "StripDamping",
-    "StripSection",
-    "Support",
-    "SuspiciousValue",
-    "Tip",
-    "UniformBeam",
-    "as_one_spring",
-    "assemble",
-    "cantilever",
-    "default_elements",
-    "exact_modes",
-    "folded_u",
-    "frequency_function",
-    "natural_modes",
-    "reduce",
-    "single_mode",
-    "straight_equivalent",
-    "straight_strip",
-]
+if TYPE_CHECKING:
+    from .assembly import Discretization, assemble, default_elements
+    from .centreline import Arc, Centreline, Straight
+    from .damping import ConstantLossFactor, ConstantRatio, Damping, MeasuredDecay, Rayleigh, StripDamping
+    from .export import write_frames, write_mode_motion, write_modes
+    from .frequency_equation import ExactModes, UniformBeam, exact_modes, frequency_function
+    from .guided_leg import as_one_spring, straight_equivalent
+    from .material import ALUMINA, BRASS, DAMPING_TAPE, STEEL, Material
+    from .modal_model import ModalModel, single_mode
+    from .modes import Modes, ShapesAlong, natural_modes
+    from .parameters import SuspiciousValue
+    from .reduction import reduce
+    from .section import Layer, StripSection
+    from .spring import LeafSpring, Readout, Support, Tip
+    from .spring_mesh import BALL, LAYER, STRIP, SpringMesh, solid_spring
+    from .spring_shapes import cantilever, folded_u, straight_strip
+else:
+
+    def __getattr__(name):
+        """The public name, from the module that defines it."""
+        for module, names in _NAMES.items():
+            if name in names:
+                globals()[name] = getattr(import_module(f"{__name__}.{module}"), name)
+                return globals()[name]
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+_RULES = ("ConstantLossFactor", "ConstantRatio", "Damping", "MeasuredDecay", "Rayleigh", "StripDamping")
+_NAMES = {
+    "assembly": ("Discretization", "assemble", "default_elements"),
+    "centreline": ("Arc", "Centreline", "Straight"),
+    "damping": _RULES,
+    "export": ("write_frames", "write_mode_motion", "write_modes"),
+    "frequency_equation": ("ExactModes", "UniformBeam", "exact_modes", "frequency_function"),
+    "guided_leg": ("as_one_spring", "straight_equivalent"),
+    "material": ("ALUMINA", "BRASS", "DAMPING_TAPE", "Material", "STEEL"),
+    "modal_model": ("ModalModel", "single_mode"),
+    "modes": ("Modes", "ShapesAlong", "natural_modes"),
+    "parameters": ("SuspiciousValue",),
+    "reduction": ("reduce",),
+    "section": ("Layer", "StripSection"),
+    "spring": ("LeafSpring", "Readout", "Support", "Tip"),
+    "spring_mesh": ("BALL", "LAYER", "STRIP", "SpringMesh", "solid_spring"),
+    "spring_shapes": ("cantilever", "folded_u", "straight_strip"),
+}
+"""Module -> its public names."""
+
+__all__ = sorted(name for names in _NAMES.values() for name in names)
+
+
+def __dir__() -> list[str]:
+    return __all__

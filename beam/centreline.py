@@ -13,14 +13,12 @@ width lies along z, and all motion is in the plane.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass, field
-from numbers import Real
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .parameters import brief, is_number, require_array, require_kind, require_number, require_within
+from .parameters import require, require_array, require_each, require_within
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +37,7 @@ class Straight:
     curvature: float = field(default=0.0, init=False)
 
     def __post_init__(self) -> None:
-        require_number("length", self.length, "m", positive=True)
+        require_within("length", self.length, "m", above=0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,9 +56,9 @@ class Arc:
     angle: float
 
     def __post_init__(self) -> None:
-        require_number("radius", self.radius, "m", positive=True)
-        if require_within("angle", self.angle, "rad") == 0.0:
-            raise ValueError(f"angle is {self.angle} rad; it must be finite and not zero")
+        require_within("radius", self.radius, "m", above=0)
+        angle = require_within("angle", self.angle, "rad")
+        require(angle != 0.0, f"angle is {self.angle} rad; it must be finite and not zero")
 
     @property
     def length(self) -> float:
@@ -92,17 +90,11 @@ class Centreline:
     heading: float = 0.0
 
     def __post_init__(self) -> None:
-        require_kind("pieces", self.pieces, Iterable, "a sequence of Straight and Arc")
-        object.__setattr__(self, "pieces", tuple(self.pieces))
-        for piece in self.pieces:
-            require_kind("pieces", piece, (Straight, Arc), "a sequence of Straight and Arc")
-        if not self.pieces:
-            raise ValueError("pieces is empty [no unit]; a centreline needs at least one Straight or Arc")
+        pieces = require_each("pieces", self.pieces, (Straight, Arc), "a sequence of Straight and Arc")
+        object.__setattr__(self, "pieces", pieces)
+        require(bool(pieces), "pieces is empty [no unit]; a centreline needs at least one Straight or Arc")
         require_array("start", self.start, "m", shape=(2,), words="a point (x, y), two finite numbers")
-        require_kind("heading", self.heading, Real, "a finite number in rad")
-        if not is_number(self.heading):
-            turn = brief(self.heading)
-            raise ValueError(f"start is {self.start} m and heading {turn} rad; all must be finite")
+        require_within("heading", self.heading, "rad")
 
     @property
     def joints(self) -> NDArray[np.float64]:
@@ -133,7 +125,7 @@ class Centreline:
             For an arc length off the curve (by more than rounding).
         """
         s = require_array("s", s, "m", words="arc lengths")
-        outside = (s < -1e-12 * self.length) | (s > (1.0 + 1e-12) * self.length) | ~np.isfinite(s)
+        outside = (s < -1e-12 * self.length) | (s > (1.0 + 1e-12) * self.length)
         if np.any(outside):
             raise ValueError(f"s is {s[outside].flat[0]} m; it must lie between 0 and {self.length} m")
         inside = np.searchsorted(self.joints, s, side="right") - 1
@@ -150,6 +142,11 @@ class Centreline:
         theta = self.angle(s)
         cos, sin, zero = np.cos(theta), np.sin(theta), np.zeros_like(theta)
         return np.stack([cos, sin, zero], axis=-1), np.stack([-sin, cos, zero], axis=-1)
+
+    def axes(self, s: ArrayLike) -> NDArray[np.float64]:
+        """Rows t, n and e_z of the frame, shape (..., 3, 3)."""
+        t, n = self.frame(s)
+        return np.stack([t, n, np.broadcast_to([0.0, 0.0, 1.0], t.shape)], axis=-2)
 
     def points(self, s: ArrayLike) -> NDArray[np.float64]:
         """Points in space [m], shape (..., 3).

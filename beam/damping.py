@@ -12,7 +12,7 @@ both for light damping. Rules, one a class, each with `decay_rates(modes)`, [1/s
     Rayleigh            c = alpha + beta omega^2, from a damping matrix alpha M + beta K
     MeasuredDecay       c_1 as measured; the others from one of the rules above, scaled with it or not
 
-Modal damping neglects what damping couples; see `reduction`.
+Modal damping neglects what damping couples; see `modal_model`.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .modes import Modes
-from .parameters import require_kind, require_number, shown
+from .parameters import require, require_kind, require_within, shown
 
 
 class Damping(Protocol):
@@ -64,7 +64,7 @@ class ConstantLossFactor:
     loss_factor: float
 
     def __post_init__(self) -> None:
-        require_number("loss_factor", self.loss_factor, "[1]", positive=False)
+        require_within("loss_factor", self.loss_factor, "[1]", low=0)
 
     def decay_rates(self, modes: Modes) -> NDArray[np.float64]:
         """Return eta omega_k [1/s], shape (n_modes,)."""
@@ -85,7 +85,7 @@ class ConstantRatio:
     ratio: float
 
     def __post_init__(self) -> None:
-        require_number("ratio", self.ratio, "[1]", positive=False)
+        require_within("ratio", self.ratio, "[1]", low=0)
 
     def decay_rates(self, modes: Modes) -> NDArray[np.float64]:
         """Return 2 zeta omega_k [1/s], shape (n_modes,)."""
@@ -109,8 +109,8 @@ class Rayleigh:
     stiffness_coefficient: float
 
     def __post_init__(self) -> None:
-        require_number("mass_coefficient", self.mass_coefficient, "1/s", positive=False)
-        require_number("stiffness_coefficient", self.stiffness_coefficient, "s", positive=False)
+        require_within("mass_coefficient", self.mass_coefficient, "1/s", low=0)
+        require_within("stiffness_coefficient", self.stiffness_coefficient, "s", low=0)
 
     def decay_rates(self, modes: Modes) -> NDArray[np.float64]:
         """Return alpha + beta omega_k^2 [1/s], shape (n_modes,)."""
@@ -145,7 +145,7 @@ class MeasuredDecay:
     scaled: bool = True
 
     def __post_init__(self) -> None:
-        require_number("decay_rate", self.decay_rate, "1/s", positive=False)
+        require_within("decay_rate", self.decay_rate, "1/s", low=0)
         require_rule("others", self.others)
         require_kind("scaled", self.scaled, bool, "True or False")
 
@@ -153,14 +153,12 @@ class MeasuredDecay:
         """Return c [1/s], shape (n_modes,)."""
         require_kind("modes", modes, Modes, "Modes, from natural_modes")
         candidates = np.flatnonzero(modes.coupled & (modes.omega > 0.0))
-        if candidates.size == 0:
-            raise ValueError(f"modes has {modes.omega.size} modes, none of which both couples and vibrates")
+        count = modes.omega.size
+        require(candidates.size > 0, f"modes has {count} modes, none of which both couples and vibrates")
         first, rates = candidates[0], np.array(self.others.decay_rates(modes))
         if not self.scaled:
             rates[first] = self.decay_rate
             return rates
-        if not rates[first] > 0.0:
-            raise ValueError(
-                f"others gives mode 1 a rate of {rates[first]} 1/s; to be scaled it must be positive"
-            )
+        rate = rates[first]
+        require(rate > 0.0, f"others gives mode 1 a rate of {rate} 1/s; to be scaled it must be above zero")
         return rates * (self.decay_rate / rates[first])

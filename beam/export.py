@@ -14,17 +14,25 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from .modes import Modes
-from .spring_mesh import SpringMesh, spring_mesh
+from .parameters import require, require_array, require_whole
+from .spring_mesh import solid_spring
+
+LIST = """<?xml version="1.0"?>
+<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">
+  <Collection>
+{}  </Collection>
+</VTKFile>
+"""
 
 
 def mode_name(modes: Modes, mode: int) -> str:
@@ -61,16 +69,14 @@ def write_modes(
         decay_rates_per_s if they are given, coupled (0 or 1), largest_displacement_m.
     """
     _require_suffix(path, ".vtu")
-    mesh = spring_mesh(modes, ball_radius=ball_radius)
+    mesh = solid_spring(modes, ball_radius=ball_radius)
     grid = mesh.grid()
     for mode, shape in enumerate(mesh.normalised(largest)):
         grid.point_data[mode_name(modes, mode)] = shape
     fields: dict[str, ArrayLike] = {"frequencies_hz": modes.frequencies_hz}
     if decay_rates is not None:
-        rates = np.asarray(decay_rates, dtype=np.float64)
-        if rates.shape != modes.omega.shape:
-            raise ValueError(f"decay_rates has shape {rates.shape}; it must be {modes.omega.shape} [1/s].")
-        fields["decay_rates_per_s"] = rates
+        shape = modes.omega.shape
+        fields["decay_rates_per_s"] = require_array("decay_rates", decay_rates, "1/s", shape=shape)
     fields |= {"coupled": modes.coupled.astype(np.int8), "largest_displacement_m": [largest]}
     return _write_grid(path, grid, fields)
 
@@ -109,67 +115,24 @@ def write_mode_motion(
     tuple of Path
         The .pvd file, then its frames. A rigid motion, which has no period, is given one second.
     """
-    if not 0 <= mode < modes.omega.size:
-        raise ValueError(f"mode is {mode} [1]; it must lie between 0 and {modes.omega.size - 1}.")
-    if frames < 2 or frames % 2:
-        raise ValueError(f"frames is {frames} [1]; it must be an even number of at least 2.")
-    mesh = spring_mesh(modes, ball_radius=ball_radius)
-    period = 2.0 * math.pi / modes.omega[mode] if modes.omega[mode] > 0.0 else 1.0
-    phase = np.arange(frames) / frames
+    require_whole("mode", mode, "[1]", low=0, high=modes.omega.size - 1)
+    require_whole("frames", frames, "[1]", low=2)
+    require(frames % 2 == 0, f"frames is {frames} [1]; it must be an even number")
+    mesh = solid_spring(modes, ball_radius=ball_radius)
+    period = 2.0 * math.pi / float(modes.omega[mode]) if modes.omega[mode] > 0.0 else 1.0
     shape = mesh.normalised(largest)[mode]
-    frame_of = (math.cos(2.0 * math.pi * part) * shape for part in phase)
     fields = {"frequency_hz": [modes.frequencies_hz[mode]], "largest_displacement_m": [largest]}
-    return _write_frames(path, mesh, phase * period, frame_of, moved, fields)
 
+    def grids() -> Iterator[tuple[float, Any]]:
+        for number in range(frames):
+            displacement = math.cos(2.0 * math.pi * number / frames) * shape
+            grid = mesh.grid(mesh.points + displacement if moved else None)
+            grid.point_data["displacement"] = displacement
+            for name, values in fields.items():
+                grid.field_data[name] = np.asarray(values)
+            yield period * number / frames, grid
 
-def write_motion(
-    path: Path,
-    modes: Modes,
-    times: ArrayLike,
-    coordinates: ArrayLike,
-    *,
-    base: ArrayLike | None = None,
-    moved: bool = True,
-    magnification: float = 1.0,
-    ball_radius: float | None = None,
-) -> tuple[Path, ...]:
-    """Write a motion given by its modal coordinates.
-
-    Parameters
-    ----------
-    path : Path
-        Ending in .pvd.
-    modes : Modes
-    times : array_like, shape (n_frames,)
-        [s].
-    coordinates : array_like, shape (n_frames, n_modes)
-        q_k [kg^(1/2) m] of all of `modes`.
-    base : array_like, shape (n_frames,), optional
-        Displacement of the base [m]; without it the base, on which the stop rides, is the frame of reference.
-    moved, ball_radius
-        As for `write_mode_motion`.
-    magnification : float
-        Of all displacements [1].
-
-    Returns
-    -------
-    tuple of Path
-        The .pvd file, then its frames.
-    """
-    t, q = np.asarray(times, dtype=np.float64), np.asarray(coordinates, dtype=np.float64)
-    z = np.zeros(t.shape) if base is None else np.asarray(base, dtype=np.float64)
-    if t.ndim != 1 or t.size == 0 or q.shape != (t.size, modes.omega.size) or z.shape != t.shape:
-        raise ValueError(
-            f"times, coordinates and base have shapes {t.shape}, {q.shape}, {z.shape}; they must be "
-            f"(n_frames,), (n_frames, {modes.omega.size}), (n_frames,)."
-        )
-    mesh = spring_mesh(modes, ball_radius=ball_radius)
-    drive = np.array([*modes.discretization.spring.drive, 0.0])
-    frame_of = (
-        magnification * (np.tensordot(row, mesh.shapes, axes=1) + shift * drive)
-        for row, shift in zip(q, z, strict=True)
-    )
-    return _write_frames(path, mesh, t, frame_of, moved, {"magnification": [magnification]})
+    return write_frames(path, grids())
 
 
 def write_frames(path: Path, frames: Iterable[tuple[float, Any]]) -> tuple[Path, ...]:
@@ -199,40 +162,11 @@ def write_frames(path: Path, frames: Iterable[tuple[float, Any]]) -> tuple[Path,
             files.append(file)
     finally:
         if lines:
-            _write_list(path, lines)
+            with _in_one_step(path) as temporary:
+                temporary.write_text(LIST.format("".join(lines)), encoding="utf-8")
     for left in set(folder.glob("frame_*.vtu")) - set(files):
         left.unlink()
     return path, *files
-
-
-def _write_list(path: Path, lines: Sequence[str]) -> None:
-    text = (
-        '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n'
-        "  <Collection>\n" + "".join(lines) + "  </Collection>\n</VTKFile>\n"
-    )
-    with _in_one_step(path) as temporary:
-        temporary.write_text(text, encoding="utf-8")
-
-
-def _write_frames(
-    path: Path,
-    mesh: SpringMesh,
-    times: NDArray[np.float64],
-    displacements: Iterator[NDArray[np.float64]],
-    moved: bool,
-    fields: Mapping[str, ArrayLike],
-) -> tuple[Path, ...]:
-    """Write the spring with these displacements."""
-
-    def grids() -> Iterator[tuple[float, Any]]:
-        for time, displacement in zip(times.tolist(), displacements, strict=True):
-            grid = mesh.grid(mesh.points + displacement if moved else None)
-            grid.point_data["displacement"] = displacement
-            for name, values in fields.items():
-                grid.field_data[name] = np.asarray(values)
-            yield time, grid
-
-    return write_frames(path, grids())
 
 
 def _write_grid(path: Path, grid: Any, fields: Mapping[str, ArrayLike]) -> Path:
@@ -256,5 +190,4 @@ def _in_one_step(path: Path) -> Iterator[Path]:
 
 
 def _require_suffix(path: Path, suffix: str) -> None:
-    if path.suffix != suffix:
-        raise ValueError(f"path is {path}; its name must end in {suffix}.")
+    require(path.suffix == suffix, f"path is {path}; its name must end in {suffix}")

@@ -34,8 +34,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
-from .parameters import require_array, require_kind, require_number, require_whole
-from .spring import Support, two_supports
+from .parameters import require, require_array, require_kind, require_whole, require_within
+from .spring import HELD, Support, two_supports
 
 #: Grid of beta L. Zeros lie near pi apart; a tip whose own rotation resonates with a bending mode brings two
 #: closer, to 0.077 at the least for M up to 1e6 m L and J up to 1e4 m L^3.
@@ -56,20 +56,15 @@ class UniformBeam:
     Parameters
     ----------
     length : float
-        L [m].
+        L [m], above zero.
     bending_stiffness : float
-        EI [N m^2].
+        EI [N m^2], above zero.
     mass_per_length : float
-        m [kg/m].
+        m [kg/m], above zero.
     supports : tuple of two supports
         At s = 0 and s = L: "clamped", "pinned", "guided" or "free".
     tip_mass, tip_rotary_inertia : float
         M [kg] and J [kg m^2] at s = L, only where that end is free.
-
-    Raises
-    ------
-    ValueError
-        For a value that is not positive (M and J: negative), or a tip on a held end.
     """
 
     length: float
@@ -81,34 +76,20 @@ class UniformBeam:
 
     def __post_init__(self) -> None:
         for name, unit in (("length", "m"), ("bending_stiffness", "N m^2"), ("mass_per_length", "kg/m")):
-            require_number(name, getattr(self, name), unit, positive=True)
+            require_within(name, getattr(self, name), unit, above=0)
         object.__setattr__(self, "supports", two_supports(self.supports))
         for name, unit in (("tip_mass", "kg"), ("tip_rotary_inertia", "kg m^2")):
             value = getattr(self, name)
-            require_number(name, value, unit, positive=False)
-            if value and self.supports[1] != "free":
-                raise ValueError(
-                    f"{name} is {value} {unit}; at an end that is {self.supports[1]} it must be 0"
-                )
+            require_within(name, value, unit, low=0)
+            free, words = self.supports[1] == "free", f"at an end that is {self.supports[1]} it must be 0"
+            require(free or not value, f"{name} is {value} {unit}; {words}")
 
     @property
     def static_compliance(self) -> float:
         """L^3/(3 EI) [m/N], of a beam clamped at s = 0 and free at s = L."""
-        self._require_cantilever("static_compliance")
+        ends = " and ".join(self.supports)
+        require(ends == "clamped and free", f"static_compliance is for supports clamped and free, not {ends}")
         return self.length**3 / (3.0 * self.bending_stiffness)
-
-    @property
-    def sag(self) -> float:
-        """Tip displacement under a steady unit base acceleration, m L^4/(8 EI) + M L^3/(3 EI) [s^2]."""
-        self._require_cantilever("sag")
-        distributed = self.mass_per_length * self.length**4 / (8.0 * self.bending_stiffness)
-        return distributed + self.tip_mass * self.static_compliance
-
-    def _require_cantilever(self, name: str) -> None:
-        if self.supports != ("clamped", "free"):
-            raise ValueError(
-                f"{name} is for supports clamped and free; the beam is {' and '.join(self.supports)}"
-            )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -188,10 +169,6 @@ def exact_modes(beam: UniformBeam, count: int) -> ExactModes:
     beam : UniformBeam
     count : int
         From 1 to `MOST_MODES`.
-
-    Returns
-    -------
-    ExactModes
     """
     require_kind("beam", beam, UniformBeam, "a UniformBeam")
     count = require_whole("count", count, "modes", high=MOST_MODES)
@@ -226,8 +203,7 @@ def _basis(x: NDArray[np.float64], end: float | NDArray[np.float64], derivative:
 
 def _rows(beam: UniformBeam, bl: NDArray[np.float64]) -> NDArray[np.float64]:
     """The four boundary rows at beta L = bl, each scaled to order one; shape (..., 4, 4)."""
-    held = {"clamped": (0, 1), "pinned": (0, 2), "guided": (1, 3), "free": (2, 3)}
-    rows = [_basis(0.0 * bl, bl, order) for order in held[beam.supports[0]]]
+    rows = [_basis(0.0 * bl, bl, order) for order in _vanishing(beam.supports[0])]
     if beam.supports[1] == "free":
         turning = beam.tip_rotary_inertia / (beam.mass_per_length * beam.length**3) * bl**3
         moving = beam.tip_mass / (beam.mass_per_length * beam.length) * bl
@@ -235,5 +211,11 @@ def _rows(beam: UniformBeam, bl: NDArray[np.float64]) -> NDArray[np.float64]:
         rows.append((moment - turning[..., None] * slope) / (1.0 + turning[..., None]))
         rows.append((force + moving[..., None] * w) / (1.0 + moving[..., None]))
     else:
-        rows += [_basis(bl, bl, order) for order in held[beam.supports[1]]]
+        rows += [_basis(bl, bl, order) for order in _vanishing(beam.supports[1])]
     return np.stack(rows, axis=-2)
+
+
+def _vanishing(support: Support) -> list[int]:
+    """Orders of the derivatives of w that vanish: w or the force, the rotation or the moment."""
+    _, w, turn, *_ = HELD[support]
+    return sorted((0 if w else 3, 1 if turn else 2))

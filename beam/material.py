@@ -18,12 +18,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from .parameters import require_number, require_within, suspect
+from .parameters import require_within, suspect
 
 SLOWEST_WAVE, FASTEST_WAVE = 400.0, 20_000.0
 """Speeds of sound sqrt(E/rho) [m/s] between which solids lie: 450 in soft polyethylene, 1200 in lead, 3500 in
 brass, 18 000 in diamond. E or rho wrong by 1000 changes the speed by 32, out of this range for metals,
 ceramics, glass and hard polymers."""
+
+GREATEST_LOSS = 3.0
+"""Loss factor beyond which a warning is given: the best damping polymers have 1 to 2."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,15 +44,10 @@ class Material:
     loss_factor : float
         eta [1], not negative.
 
-    Raises
-    ------
-    ValueError
-        For a value outside these ranges.
-
     Warns
     -----
     SuspiciousValue
-        For E and rho whose speed of sound is that of no solid.
+        For E and rho whose speed of sound is that of no solid, and a loss factor above `GREATEST_LOSS`.
     """
 
     youngs_modulus: float
@@ -58,9 +56,9 @@ class Material:
     loss_factor: float = 0.0
 
     def __post_init__(self) -> None:
-        require_number("youngs_modulus", self.youngs_modulus, "Pa", positive=True)
-        require_number("density", self.density, "kg/m^3", positive=True)
-        require_number("loss_factor", self.loss_factor, "[1]", positive=False)
+        require_within("youngs_modulus", self.youngs_modulus, "Pa", above=0)
+        require_within("density", self.density, "kg/m^3", above=0)
+        require_within("loss_factor", self.loss_factor, "[1]", low=0)
         require_within("poissons_ratio", self.poissons_ratio, "[1]", above=-1.0, below=0.5)
         speed = self.wave_speed
         if not SLOWEST_WAVE <= speed <= FASTEST_WAVE:
@@ -68,6 +66,9 @@ class Material:
                 f"youngs_modulus {self.youngs_modulus:g} Pa and density {self.density:g} kg/m^3 give a speed "
                 f"of sound of {speed:.3g} m/s; solids lie between {SLOWEST_WAVE:g} and {FASTEST_WAVE:g} m/s"
             )
+
+        if self.loss_factor > GREATEST_LOSS:
+            suspect(f"loss_factor is {self.loss_factor:g} [1]; materials stay below {GREATEST_LOSS:g}")
 
     @property
     def wave_speed(self) -> float:

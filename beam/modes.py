@@ -23,11 +23,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
-from scipy.sparse import block_diag
+from scipy.sparse import csr_array
 from scipy.sparse.linalg import eigsh
 
 from .assembly import Discretization
 from .parameters import require_array, require_kind, require_whole
+from .pieces import along
 
 #: phi sqrt(m_total) and Gamma/sqrt(m_total) below this count as zero: far above rounding in symmetric springs
 #: (about 1e-9), far below any coupling that matters to a motion.
@@ -115,16 +116,16 @@ class Modes:
     def displacement_along(self, points_per_element: int = 4) -> ShapesAlong:
         """Return the shapes along the centreline, `points_per_element` equal steps to an element."""
         require_whole("points_per_element", points_per_element, "[1]", low=1)
-        s, (u, w, rotation) = _along(self.discretization, self.shapes, points_per_element)
-        line = self.discretization.spring.centreline
+        line, model = self.discretization.spring.centreline, self.discretization
+        s, (moved, turned) = along(line, model.pieces, model.ties @ self.shapes, points_per_element)
         t, n = line.frame(s)
         return ShapesAlong(
             s=s,
             points=line.points(s),
             tangent=t,
             normal=n,
-            displacement=u[..., None] * t + w[..., None] * n,
-            rotation=rotation,
+            displacement=moved,
+            rotation=turned[..., 2],
         )
 
 
@@ -136,15 +137,6 @@ def natural_modes(discretization: Discretization, count: int) -> Modes:
     discretization : Discretization
     count : int
         From 1 to the number of degrees of freedom; trust the modes with four or more elements to a half wave.
-
-    Returns
-    -------
-    Modes
-
-    Raises
-    ------
-    ValueError
-        For a count out of range.
     """
     require_kind("discretization", discretization, Discretization, "a Discretization, from assemble")
     size = discretization.n_dofs
@@ -154,8 +146,10 @@ def natural_modes(discretization: Discretization, count: int) -> Modes:
         min(sec.bending_stiffness / sec.mass_per_length for sec in spring.sections)
         / spring.centreline.length**4
     )
-    inverse, shapes = _largest(discretization, shift, count)
-    omega = np.sqrt(np.maximum(1.0 / inverse - shift, 0.0))
+    squares, shapes = lowest(
+        discretization.stiffness, discretization.mass, shift, count, dense_limit=DENSE_LIMIT
+    )
+    omega = np.sqrt(np.maximum(squares, 0.0))
     omega[: spring.rigid_motions] = 0.0
     shapes = shapes / np.sqrt(np.einsum("ik,ik->k", shapes, discretization.mass @ shapes))
     total = np.sqrt(spring.strip_mass + spring.tip.mass)
@@ -179,36 +173,28 @@ def natural_modes(discretization: Discretization, count: int) -> Modes:
     )
 
 
-def _largest(
-    discretization: Discretization, shift: float, count: int
+def lowest(
+    stiffness: csr_array, mass: csr_array, shift: float, count: int, *, dense_limit: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The `count` largest mu, in falling order, and their vectors (n_dofs, count)."""
-    size, mass = discretization.n_dofs, discretization.mass
-    if size <= DENSE_LIMIT or 2 * count > size:
-        shifted = (discretization.stiffness + shift * mass).toarray()
+    """Return the `count` lowest omega^2 [1/s^2] of K x = omega^2 M x, rising, and x, (n_dofs, count).
+
+    Up to `dense_limit` unknowns, and for most of all modes, by the full matrices.
+    """
+    size = mass.shape[0]
+    if size <= dense_limit or 2 * count > size:
+        shifted = (stiffness + shift * mass).toarray()
         mu, x = eigh(mass.toarray(), shifted, subset_by_index=[size - count, size - 1])
-        return mu[::-1], x[:, ::-1]
+        return 1.0 / mu[::-1] - shift, x[:, ::-1]
     start = np.cos(np.arange(size))  # fixed, so that results repeat, and orthogonal to no mode
-    values, x = eigsh(discretization.stiffness.tocsc(), count, M=mass.tocsc(), sigma=-shift, v0=start)
+    values, x = eigsh(stiffness.tocsc(), count, M=mass.tocsc(), sigma=-shift, v0=start)
     order = np.argsort(values)
-    return 1.0 / (values[order] + shift), x[:, order]
-
-
-def _along(
-    discretization: Discretization, shapes: NDArray[np.float64], points_per_element: int
-) -> tuple[NDArray[np.float64], list[NDArray[np.float64]]]:
-    """Arc lengths (n_points,) and u, w, rotation of the shapes there, each (n_modes, n_points)."""
-    local = np.linspace(0.0, 1.0, points_per_element + 1)
-    places, matrices = zip(*(piece.sampling(local) for piece in discretization.pieces), strict=True)
-    s, unknowns = np.concatenate(places), discretization.ties @ shapes
-    kept = np.arange(s.size) % local.size < points_per_element  # an element's end is the next one's start
-    kept[-1] = True
-    fields = [(block_diag(part, format="csr") @ unknowns)[kept].T for part in zip(*matrices, strict=True)]
-    return np.clip(s[kept], 0.0, discretization.spring.centreline.length), fields
+    return values[order], x[:, order]
 
 
 def _first_swing(discretization: Discretization, shapes: NDArray[np.float64]) -> NDArray[np.float64]:
     """Displacement across the strip where, walking from s = 0, it first exceeds half its largest size."""
-    _, (_, w, _) = _along(discretization, shapes, 2)
+    line = discretization.spring.centreline
+    s, (moved, _) = along(line, discretization.pieces, discretization.ties @ shapes, 2)
+    w = np.einsum("kpc,pc->kp", moved, line.frame(s)[1])
     first = np.argmax(np.abs(w) > 0.5 * np.abs(w).max(axis=1, keepdims=True), axis=1)
     return w[np.arange(first.size), first]

@@ -15,8 +15,9 @@ from __future__ import annotations
 import math
 import sys
 import warnings
-from collections.abc import Callable
+from collections.abc import Iterable
 from numbers import Real
+from operator import ge, gt, le, lt
 from typing import Any
 
 import numpy as np
@@ -81,30 +82,6 @@ def is_whole(value: object, low: int) -> bool:
     return is_number(value) and value % 1 == 0 and value >= low  # type: ignore[operator]
 
 
-def _number(name: str, value: object, unit: str, valid: str, inside: Callable[[float], bool]) -> float:
-    """The value as a float, if it is a finite number inside its range."""
-    if isinstance(value, bool) or not isinstance(value, Real):
-        raise TypeError(f"{name} is {shown(value)}; it must be a number in {unit}, {valid}")
-    if not (is_number(value) and inside(float(value))):
-        raise ValueError(f"{name} is {shown(value)} {unit}; it must be {valid}")
-    return float(value)
-
-
-def require_number(name: str, value: object, unit: str, *, positive: bool) -> float:
-    """The value as a float, if it is a finite number, positive or at least not negative.
-
-    Raises
-    ------
-    TypeError
-        If the value is not a real number.
-    ValueError
-        If it is out of range.
-    """
-    if positive:
-        return _number(name, value, unit, "finite and positive", lambda number: number > 0.0)
-    return _number(name, value, unit, "finite and not negative", lambda number: number >= 0.0)
-
-
 def require_within(
     name: str,
     value: object,
@@ -116,22 +93,19 @@ def require_within(
     below: float | None = None,
 ) -> float:
     """The value as a float, if it is a finite number with low <= value <= high, above < value < below."""
-    bounds = [
-        (low, "{:g} or more", lambda x, b: x >= b),
-        (above, "above {:g}", lambda x, b: x > b),
-        (high, "at most {:g}", lambda x, b: x <= b),
-        (below, "below {:g}", lambda x, b: x < b),
-    ]
-    set_bounds = [(bound, words, holds) for bound, words, holds in bounds if bound is not None]
-    words = " and ".join(words.format(bound) for bound, words, _ in set_bounds)
-    words = {"0 or more": "zero or more", "above 0": "above zero"}.get(words, words)
+    lower = (low, "{} or more", ge), (above, "above {}", gt)
+    upper = (high, "at most {}", le), (below, "below {}", lt)
+    limits = [(bound, words, holds) for bound, words, holds in lower + upper if bound is not None]
+    valid = " and ".join(words.format(f"{bound:g}" if bound else "zero") for bound, words, _ in limits)
     if low is not None and high is not None:
         valid = f"between {low:g} and {high:g}"
-    elif (low is None and above is None) or (high is None and below is None):
-        valid = f"finite and {words}" if words else "finite"
-    else:
-        valid = words
-    return _number(name, value, unit, valid, lambda x: all(holds(x, b) for b, _, holds in set_bounds))
+    elif len(limits) < 2:
+        valid = f"finite and {valid}" if limits else "finite"
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise TypeError(f"{name} is {shown(value)}; it must be a number in {unit}, {valid}")
+    if not (is_number(value) and all(holds(float(value), bound) for bound, _, holds in limits)):
+        raise ValueError(f"{name} is {shown(value)} {unit}; it must be {valid}")
+    return float(value)
 
 
 def require_whole(
@@ -152,6 +126,12 @@ def require_kind(name: str, value: Any, kind: type | tuple[type, ...], words: st
     if not isinstance(value, kind):
         raise TypeError(f"{name} is {shown(value)}; it must be {words}")
     return value
+
+
+def require_each(name: str, values: Any, kind: type | tuple[type, ...], words: str) -> tuple[Any, ...]:
+    """The values as a tuple, or TypeError unless they are a sequence of this kind."""
+    require_kind(name, values, Iterable, words)
+    return tuple(require_kind(name, value, kind, words) for value in values)
 
 
 def require_array(

@@ -34,7 +34,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .material import Material
-from .parameters import require_kind, require_number
+from .parameters import require, require_kind, require_within
 
 #: Terms of Saint-Venant's series; the remainder is below 1/(4 * 59^4) = 2e-8 of kappa.
 TORSION_TERMS = 30
@@ -60,7 +60,7 @@ class Layer:
     def __post_init__(self) -> None:
         require_kind("material", self.material, Material, "a Material, such as DAMPING_TAPE")
         require_kind("both_sides", self.both_sides, bool, "True or False")
-        require_number("thickness", self.thickness, "m", positive=True)
+        require_within("thickness", self.thickness, "m", above=0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,11 +76,6 @@ class StripSection:
         Of the bare strip [m], positive and at most the width.
     layer : Layer, optional
         A glued damping layer.
-
-    Raises
-    ------
-    ValueError
-        For a width or thickness out of range.
     """
 
     material: Material
@@ -91,10 +86,10 @@ class StripSection:
     def __post_init__(self) -> None:
         require_kind("material", self.material, Material, "a Material, such as BRASS")
         require_kind("layer", self.layer, (Layer, type(None)), "a Layer or None")
-        require_number("width", self.width, "m", positive=True)
-        require_number("thickness", self.thickness, "m", positive=True)
-        if self.thickness > self.width:
-            raise ValueError(f"thickness is {self.thickness} m; it must not exceed the width {self.width} m")
+        require_within("width", self.width, "m", above=0)
+        require_within("thickness", self.thickness, "m", above=0)
+        flat = self.thickness <= self.width
+        require(flat, f"thickness is {self.thickness} m; it must not exceed the width {self.width} m")
 
     @property
     def total_thickness(self) -> float:

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
 from .modes import Modes, ShapesAlong
-from .parameters import require_number
+from .parameters import require_within
 from .section import StripSection
 
 STRIP, LAYER, BALL = 0, 1, 2
@@ -59,7 +59,7 @@ class SpringMesh:
 
     def normalised(self, largest: float) -> NDArray[np.float64]:
         """Shapes whose largest displacement is `largest` [m], shape (n_modes, n_points, 3)."""
-        require_number("largest", largest, "m", positive=True)
+        require_within("largest", largest, "m", above=0)
         size = np.linalg.norm(self.shapes, axis=2).max(axis=1)
         return self.shapes * (largest / size)[:, None, None]
 
@@ -92,7 +92,9 @@ class SpringMesh:
         return grid
 
 
-def spring_mesh(modes: Modes, *, ball_radius: float | None = None, points_per_element: int = 1) -> SpringMesh:
+def solid_spring(
+    modes: Modes, *, ball_radius: float | None = None, points_per_element: int = 1
+) -> SpringMesh:
     """Return the solid that a leaf spring is, moving in its modes.
 
     Parameters
@@ -158,7 +160,7 @@ def _turned(
 
 def _ball(modes: Modes, radius: float) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
     """Points of the sphere as seen from the tip on the centreline [m], and its triangles, facing outwards."""
-    require_number("ball_radius", radius, "m", positive=True)
+    require_within("ball_radius", radius, "m", above=0)
     spring = modes.discretization.spring
     piece = int(spring.centreline.piece_at(spring.tip_at))
     normal = spring.centreline.frame(spring.tip_at)[1]

@@ -11,9 +11,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import Any
 
 from .centreline import Arc, Centreline, Straight
-from .parameters import require_array, require_kind, require_number
+from .parameters import require, require_array, require_kind, require_within, suspect
 from .section import StripSection
 from .spring import LeafSpring, Readout, Support, Tip
 
@@ -50,6 +51,8 @@ def folded_u(
     """
     leg, sections = _leg(leg_length, section, damped_section, damped_span)
     bend = Arc(radius=bend_radius, angle=math.pi)
+    if bend_radius > leg_length:
+        suspect(f"bend_radius is {bend_radius:g} m, above the leg_length {leg_length:g} m; no folded strip")
     return LeafSpring(
         centreline=Centreline(pieces=(*leg, bend, *reversed(leg)), start=(0.0, -bend_radius)),
         sections=(*sections, section, *reversed(sections)),
@@ -98,53 +101,31 @@ def straight_strip(
     )
 
 
-def cantilever(
-    *,
-    length: float,
-    section: StripSection,
-    tip: Tip | None = None,
-    damped_section: StripSection | None = None,
-    damped_span: tuple[float, float] | None = None,
-    readouts: Mapping[str, Readout] | None = None,
-) -> LeafSpring:
-    """Return a `straight_strip` clamped at x = 0 and free at x = length, where the tip sits.
+def cantilever(*, length: float, section: StripSection, tip: Tip | None = None, **others: Any) -> LeafSpring:
+    """Return a `straight_strip` clamped at x = 0 and free at x = length [m], where the tip sits.
 
     Parameters
     ----------
-    length : float
-        [m].
-    tip : Tip, optional
-        Without mass by default.
-    section, damped_section, damped_span, readouts
+    length, section, tip, **others
         As for `straight_strip`.
     """
-    return straight_strip(
-        length=length,
-        section=section,
-        supports=("clamped", "free"),
-        tip_at=length,
-        tip=tip,
-        damped_section=damped_section,
-        damped_span=damped_span,
-        readouts=readouts,
-    )
+    supports: tuple[Support, Support] = ("clamped", "free")
+    return straight_strip(length=length, section=section, supports=supports, tip_at=length, tip=tip, **others)
 
 
 def _leg(
     length: float, bare: StripSection, damped: StripSection | None, span: tuple[float, float] | None
 ) -> tuple[tuple[Straight, ...], tuple[StripSection, ...]]:
     """Pieces and sections of a straight run, from the support outwards."""
-    require_number("length of the straight strip or leg", length, "m", positive=True)
+    require_within("length of the straight strip or leg", length, "m", above=0)
     require_kind("damped_section", damped, (StripSection, type(None)), "a StripSection or None")
     if damped is None:
-        if span is not None:
-            raise ValueError(f"damped_span is {span} m without a damped_section; give both or neither")
+        require(span is None, f"damped_span is {span} m without a damped_section; give both or neither")
         return (Straight(length=length),), (bare,)
-    if span is not None:
-        require_array("damped_span", span, "m", shape=(2,), words="its start and its end")
-    start, end = (0.0, length) if span is None else span
-    if not 0.0 <= start < end <= length:
-        raise ValueError(f"damped_span is {span} m; it must increase and lie between 0 and {length} m")
+    places = (0.0, length) if span is None else span
+    start, end = require_array("damped_span", places, "m", shape=(2,), words="its start and its end").tolist()
+    rising = 0.0 <= start < end <= length
+    require(rising, f"damped_span is {span} m; it must increase and lie between 0 and {length} m")
     cuts = [(start, bare), (end - start, damped), (length - end, bare)]
     kept = [(piece, section) for piece, section in cuts if piece > 0.0]
     return tuple(Straight(length=piece) for piece, _ in kept), tuple(section for _, section in kept)

@@ -16,8 +16,7 @@ EA [N], EI [N m^2] and m [kg/m] belong to the section. Shear and the rotary iner
 left out.
 
 w is cubic Hermite and u continuous of degree four, rich enough to cancel any cubic k w: thin arcs do not
-lock. Coordinates on a piece run from its middle, which keeps the Hermite basis, built from powers of the
-coordinate, accurate.
+lock.
 
 Rounding: an entry of the stiffness matrix is of the order EI/h^3 and carries the error eps EI/h^3, h the
 length of an element, while the whole strip resists with EI/L^3; x^T K x of a slow shape is good to some
@@ -35,16 +34,8 @@ import skfem as sk
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from .pieces import TANGENTIAL_DEGREE, Field, Piece
 from .section import StripSection
-
-#: Degree of the tangential displacement.
-TANGENTIAL_DEGREE = 4
-#: Exact for the product of two quartics.
-QUADRATURE_ORDER = 2 * TANGENTIAL_DEGREE
-#: Unknowns at a node of a piece, in this order: u, w, w'.
-NODAL = 3
-
-Field = Any  # values of a scikit-fem function at the quadrature points, with .grad and .hess
 
 
 def stretch(u: Field, w: Field, k: float) -> Field:
@@ -75,48 +66,39 @@ def inertia(u: Field, w: Field, v: Field, z: Field, p: Any) -> Field:
     return p.m * (u * v + w * z)
 
 
-@sk.LinearForm
-def base_motion(v: Field, z: Field, p: Any) -> Field:
-    """int m (e_t v + e_n z) ds."""
-    return p.m * (p.along * v + p.across * z)
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
-class PieceMesh:
-    """One piece of the centreline: from arc length `start` [m] on, `nodes` counted from there [m]."""
+class PieceMesh(Piece):
+    """A piece in the plane; unknowns: u, w, w' at the nodes, then u inside the elements."""
 
-    start: float
-    nodes: NDArray[np.float64]
-    curvature: float
+    nodal = 3
+    inner = TANGENTIAL_DEGREE - 1
+    moves = (0, 1, 5)
+    kink = (2, 0)
+
     section: StripSection
 
-    @property
-    def size(self) -> int:
-        """Number of unknowns: those at the nodes, then those inside the elements."""
-        return NODAL * self.nodes.size + (TANGENTIAL_DEGREE - 1) * (self.nodes.size - 1)
+    @staticmethod
+    def element() -> sk.Element:
+        """Of (u, w)."""
+        return sk.ElementComposite(sk.ElementLinePp(TANGENTIAL_DEGREE), sk.ElementLineHermite())
 
-    def basis(self, **points: Any) -> tuple[sk.Basis, NDArray[np.float64]]:
-        """Return the basis of (u, w) and the arc lengths of its points [m], shape (n_elements, n_points)."""
-        middle = 0.5 * self.nodes[-1]
-        element = sk.ElementComposite(sk.ElementLinePp(TANGENTIAL_DEGREE), sk.ElementLineHermite())
-        basis = sk.Basis(sk.MeshLine(self.nodes - middle), element, **points)
-        return basis, self.start + middle + np.asarray(basis.global_coordinates())[0]
+    def motion(self, *functions: Field) -> tuple[Field, ...]:
+        """u, w [m] and w' + k u [rad]."""
+        u, w = functions
+        return u + 0.0, w + 0.0, w.grad[0] + self.curvature * u
 
-    def sampling(
-        self, local: NDArray[np.float64], elements: NDArray[np.intp] | None = None
-    ) -> tuple[NDArray[np.float64], tuple[csr_array, ...]]:
-        """Arc lengths [m] and matrices of u, w and rotation at `local` points (0 to 1) of the elements."""
-        basis, s = self.basis(quadrature=(local[None, :], np.ones(local.size)), elements=elements)
-        fields = [(u + 0.0, w + 0.0, w.grad[0] + self.curvature * u) for u, w in basis.basis]
-        rows = np.tile(np.arange(s.size), basis.Nbfun)
-        columns = np.repeat(basis.element_dofs, local.size, axis=1).ravel()
-        entries = (np.concatenate([np.broadcast_to(field[i], s.shape) for field in fields]) for i in range(3))
-        shape = (s.size, basis.N)
-        return s.ravel(), tuple(csr_array((part.ravel(), (rows, columns)), shape=shape) for part in entries)
+    def matrices(self) -> tuple[csr_array, ...]:
+        """K, M and K with each stiffness times its loss factor."""
+        basis, _ = self.basis()
+        section, k = self.section, self.curvature
+        membrane = stretching.assemble(basis, EA=section.axial_stiffness, k=k)
+        flexure = bending.assemble(basis, EI=section.bending_stiffness, k=k)
+        loss = section.axial_loss_factor * membrane + section.bending_loss_factor * flexure
+        return membrane + flexure, inertia.assemble(basis, m=section.mass_per_length), loss
 
     def strain_energies(self, unknowns: NDArray[np.float64]) -> NDArray[np.float64]:
         """Strain energies in stretching and in bending [J] of `unknowns` [m], (size, n); shape (2, n)."""
-        basis, _ = self.basis(intorder=QUADRATURE_ORDER)
+        basis, _ = self.basis()
         local = unknowns[basis.element_dofs]  # (functions of an element, elements, n)
         moduli = self.section.axial_stiffness, self.section.bending_stiffness
         energies = []

@@ -34,8 +34,9 @@ From problem to answer
     `collisions`        what each collision does to mode 1; `first_collision` the first above grazing
     `NordmarkMap`       the letter's map, its orbits (`maximal_orbits`), folds and bands in closed form
     `MaximalFamily`     the same orbits of Eq. (1) in closed form, under Newton's law
-    ``contact.orbits``  orbits of any law: ``shooting`` finds them, ``continuation`` follows them to folds,
-                        period doublings and grazings, ``lyapunov`` tells chaos
+    ``contact.orbits``  orbits of any law: `settle`, `born` and `orbit_diagram` by following the motion,
+                        `Shooting` and `follow` as orbits, to folds, period doublings and grazings;
+                        `orbit_end` does both; ``lyapunov`` tells chaos
 
 Laws of contact: `NewtonRestitution` (at once), `DelayedRestitution` (once, after a delay; one mode),
 `LinearContact`, `HertzContact`, `HuntCrossley` (forces; followed through the contact by power series).
@@ -47,9 +48,17 @@ in ``contact.oscillator``, flights and their bounds in ``contact.flight``, the c
 ``contact.flight.crossing``, motion in contact in ``contact.touch.linear`` and ``contact.touch.hertz``.
 """
 
-from contact.collision import Collision, collisions, first_collision
+from contact.collision import Collision, before_collision, collisions, first_collision
 from contact.drive import HarmonicDrive
-from contact.errors import Chatter, ContactError, ContactTooStiff, NotPeriodic, UnresolvedCrossing
+from contact.errors import (
+    Chatter,
+    ContactError,
+    ContactTooStiff,
+    Diverged,
+    NotPeriodic,
+    StepTooLarge,
+    UnresolvedCrossing,
+)
 from contact.laws import (
     ContactLaw,
     DelayedRestitution,
@@ -85,6 +94,7 @@ __all__ = [
     "ContactLaw",
     "ContactTooStiff",
     "DelayedRestitution",
+    "Diverged",
     "HarmonicDrive",
     "HertzContact",
     "HuntCrossley",
@@ -100,6 +110,7 @@ __all__ = [
     "Regime",
     "SingleImpactOrbit",
     "State",
+    "StepTooLarge",
     "Stop",
     "StrobedMap",
     "StrobedNordmarkMap",
@@ -109,6 +120,7 @@ __all__ = [
     "UnresolvedCrossing",
     "band",
     "bands",
+    "before_collision",
     "collisions",
     "first_collision",
     "fold",

@@ -31,7 +31,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from beam.parameters import require_kind, require_whole
 from contact.flight.modal_flow import propagate, steady_motion, tip_rounding
@@ -41,7 +40,7 @@ from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.trajectory import ImpactKind, State, Trajectory
 
-__all__ = ["Collision", "collisions", "first_collision"]
+__all__ = ["Collision", "before_collision", "collisions", "first_collision"]
 
 REAL_AGAINST_VIRTUAL = 0.01
 """Relative difference of real and virtual approach speed beyond which a collision is flagged."""
@@ -146,6 +145,8 @@ class _Virtual:
 
 def _root(function: object, low: float, high: float) -> float:
     """A root in [low, high] to rounding (times count from the touch, so that it may lie at zero)."""
+    from scipy.optimize import brentq  # slow to import
+
     return float(brentq(function, low, high, xtol=1e-18, rtol=8.9e-16, maxiter=300))
 
 
@@ -332,7 +333,13 @@ def first_collision(
 
 
 def before_collision(oscillator: ImpactOscillator) -> State:
-    """The steady motion, at the time of its lowest tip displacement in the first drive period."""
+    """The steady motion, at the time of its lowest tip displacement in the first drive period.
+
+    Parameters
+    ----------
+    oscillator : ImpactOscillator
+        A driven one; ValueError without a drive.
+    """
     if oscillator.drive is None:
         raise ValueError("drive is None; without one there is no steady motion that touches, so give a state")
     motion = oscillator.motion()

@@ -12,12 +12,12 @@ alone.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from contact import touch
-from contact.compiled import inlined, kernel
+from contact.compiled import borrowed, held, kernel, part
 from contact.flight.crossing import CROSSES, FREE, UNRESOLVED, searched_flight
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import (
@@ -36,8 +36,8 @@ from contact.recorder import (
     is_full,
     open_touch,
     put_sample,
-    put_strobe,
     sample_due,
+    strobe,
 )
 from contact.touch.newton import hold
 from contact.touch.series import Series, new_series
@@ -47,6 +47,9 @@ __all__ = ["DONE", "FAILED_CHATTER", "FAILED_CROSSING", "FAILED_SERIES", "FAILED
            "advance"]  # fmt: skip
 
 DONE, FAILED_CROSSING, FAILED_CHATTER, FAILED_STEPS, FAILED_SERIES, LOG_FULL = range(6)
+GOING, CROSSED, GRAZED, RELEASED = range(-4, 0)
+"""How a stretch of flights, or of steps in touch, ends besides: not yet; at a touch; at a graze; off the
+wall."""
 
 MOST_IMPACTS = 100_000
 """Bound of impacts in one drive period: accumulating impacts with e = 0.999 take about 2e4 before the hops
@@ -57,14 +60,15 @@ MOST_STEPS = 1_000_000
 frequencies."""
 
 STATE = np.dtype([
-    ("regime", "i8"), ("order", "i8"), ("period", "i8"), ("evaluations", "i8"), ("search", "i8"),
-    ("clock", "f8"), ("wait", "f8"), ("rebound", "f8"), ("root", "f8"), ("speed", "f8"),
+    ("regime", "i8"), ("order", "i8"), ("period", "i8"), ("evaluations", "i8"), ("search", "i8"), ("steps",
+    "i8"), ("clock", "f8"), ("wait", "f8"), ("rebound", "f8"), ("root", "f8"), ("speed", "f8"),
 ])  # fmt: skip
 """Where a run stands.
 
 regime: ``contact.trajectory.Regime``; order: how many derivatives of the tip displacement vanish at the start
 of the flight; period, clock: number of the drive period and time since its strobe [s]; evaluations: flights,
-contact steps and sampled positions so far; search: 0 for certified crossings, else samples per period.
+contact steps and sampled positions so far; search: 0 for certified crossings, else samples per period; steps:
+flights and contact steps since the strobe.
 
 Of the touch under way: wait, rebound: time until it ends by itself [s] and velocity with which the tip then
 leaves [m/s]; root: sqrt of the penetration [m^0.5]; speed: the modal speeds at its start; both below zero
@@ -93,7 +97,7 @@ class Work(NamedTuple):
     v: np.ndarray
 
 
-@kernel
+@part
 def new_work(motion, search):
     """Room to work for an oscillator."""
     spacing = motion.period / max(1, search)
@@ -104,107 +108,138 @@ def new_work(motion, search):
     )  # fmt: skip
 
 
-@inlined
-def land(motion, u, v, run, crosses, end, work, recorder):
-    """What happens where a flight meets the stop."""
-    approach = tip_state(motion, run.clock, u, v)[1]
-    if not crosses:
-        open_touch(recorder, run.period, run.clock, 0.0, GRAZE, u, v)
-        close_touch(recorder, run.period, run.clock, 0.0, u, v)
-        run.order = 2
-        return
-    open_touch(recorder, run.period, run.clock, approach, IMPACT, u, v)
-    run.regime, rebound, loss = touch.strike(motion, run, u, v, approach)
-    add_loss(recorder, loss)
-    if run.regime == OUTSIDE or run.regime == SUSTAINED:
-        close_touch(recorder, run.period, run.clock, rebound, u, v)
-    if run.regime == SUSTAINED:
-        # the remaining hops take a time run.wait, of which what lies after the strobe is below rounding
-        open_touch(recorder, run.period, run.clock, rebound, STAY, u, v)
-        rest = min(run.wait, end - run.clock)
-        run.wait = 0.0
-        if rest > 0.0:
-            propagate(motion, u, v, rest, u, v)
-            run.clock += rest
-        hold(motion, run.clock, u, v)
-
-
-@inlined
-def fly(motion, u, v, run, end, work, recorder):
-    """A flight, and what happens where it meets the stop."""
-    base, flight = run.clock, work.flight
-    load_state(flight, u, v)
-    if run.search == 0:
-        outcome, s = searched_flight(motion, flight, base, end - base, run.order)
-    else:
-        outcome, s, count = first_sampled_crossing(
-            motion, flight, base, end - base, run.order, work.spacing, work.spaced
-        )
-        run.evaluations += count
-    until = end if outcome == FREE else base + s
-    while outcome != UNRESOLVED and sample_due(recorder, run.period, until):
-        time = recorder.sample_clock[recorder.marks[0].sampled] - base
+@kernel
+def sample_flight(motion, run, u, v, until, work, recorder):
+    """States at the sample times of a flight from (u, v) up to the clock `until`."""
+    while sample_due(recorder, run.period, until):
+        time = recorder.sample_clock[recorder.marks[0].sampled] - run.clock
         propagate(motion, u, v, time, work.u, work.v)
         put_sample(recorder, work.u, work.v)
-    if outcome == FREE and base == 0.0 and end == motion.period:
-        apply_flow(work.whole, u, v)
-    else:
-        carry(motion, flight, s, u, v)
-    run.clock = until
-    if outcome == UNRESOLVED:
-        return FAILED_CROSSING
-    run.order = 0
-    if outcome != FREE:
-        land(motion, u, v, run, outcome == CROSSES, end, work, recorder)
-    return DONE
-
-
-@inlined
-def press(motion, u, v, run, end, work, recorder):
-    """A step in touch with the stop, cut at its end."""
-    base, limit, series = run.clock, end - run.clock, work.series
-    if limit <= 4.0 * EPS * motion.period:
-        run.clock = end
-        return DONE
-    s, h, following = touch.step(motion, run, u, v, limit, series)
-    if not (0.0 <= h < math.inf):
-        return FAILED_SERIES
-    until = base + h if h < limit else end
-    while sample_due(recorder, run.period, until):
-        time = recorder.sample_clock[recorder.marks[0].sampled] - base
-        touch.state(motion, run, touch.place(motion, time, s, series), series, work.u, work.v)
-        put_sample(recorder, work.u, work.v)
-    if recorder.log.size > 0:
-        add_loss(recorder, touch.work(motion, run, s, series))
-    touch.state(motion, run, s, series, u, v)
-    run.regime, run.clock = following, until
-    if following == OUTSIDE:
-        touch.leave(motion, run, u, v)
-        velocity = tip_state(motion, until, u, v)[1]
-        close_touch(recorder, run.period, until, velocity, u, v)
-    return DONE
 
 
 @kernel
-def to_time(motion, u, v, run, end, work, recorder):
-    """Go on to a time `end` after the strobe [s]."""
-    steps = 0
-    while run.clock < end:
-        if is_full(recorder):
-            return LOG_FULL
-        steps += 1
-        run.evaluations += 1
-        if steps > MOST_STEPS:
-            return FAILED_STEPS
-        if recorder.marks[0].impacts > MOST_IMPACTS:
-            return FAILED_CHATTER
-        if run.regime == OUTSIDE:
-            status = fly(motion, u, v, run, end, work, recorder)
-        else:
-            status = press(motion, u, v, run, end, work, recorder)
-        if status != DONE:
-            return status
-    return DONE
+def sample_touch(motion, run, s, until, work, recorder):
+    """States at the sample times of a step in touch that ends at `s`, at the clock `until`."""
+    while sample_due(recorder, run.period, until):
+        time = recorder.sample_clock[recorder.marks[0].sampled] - run.clock
+        at = touch.place(motion, time, s, work.series)
+        touch.state(motion, run, at, work.series, work.u, work.v)
+        put_sample(recorder, work.u, work.v)
+
+
+@part
+def fly(motion, u, v, run, last, clock_end, work, recorder):
+    """Flights from strobe to strobe, up to the next touch or the end of the run; how it ended."""
+    flight, whole, marks = work.flight, work.whole, recorder.marks[0]
+    strobes, counts, samples = recorder.strobes, recorder.counts, recorder.sample_clock.size
+    status = GOING
+    while status == GOING:
+        base, at_last = run.clock, run.period == last
+        end = clock_end if at_last else motion.period
+        if base < end:
+            load_state(flight, u, v)
+            if run.search == 0:
+                outcome, s = searched_flight(motion, flight, base, end - base, run.order)
+            else:
+                outcome, s, count = first_sampled_crossing(
+                    motion, flight, base, end - base, run.order, work.spacing, work.spaced
+                )
+                run.evaluations += count
+            run.evaluations += 1
+            run.steps += 1
+            until = end if outcome == FREE else base + s
+            if marks.sampled < samples and outcome != UNRESOLVED:
+                sample_flight(motion, run, u, v, until, work, recorder)
+            if outcome == FREE and base == 0.0 and not at_last:
+                apply_flow(whole, u, v)
+            else:
+                carry(motion, flight, s, u, v)
+            run.clock = until
+            if outcome == UNRESOLVED:
+                status = FAILED_CROSSING
+            elif outcome != FREE:
+                status = CROSSED if outcome == CROSSES else GRAZED
+            run.order = 0
+        if status == GOING:
+            if at_last:
+                status = DONE
+            else:
+                strobe(marks, strobes, counts, u, v)
+                run.clock, run.steps = 0.0, 0
+                run.period += 1
+    return status
+
+
+@part
+def land(motion, u, v, run, crosses, end, recorder):
+    """What happens where a flight meets the stop."""
+    approach = tip_state(motion, run.clock, u, v)[1]
+    if crosses:
+        open_touch(recorder, run.period, run.clock, approach, IMPACT, u, v)
+        run.regime, rebound, loss = touch.strike(motion, run, u, v, approach)
+        add_loss(recorder, loss)
+        if run.regime == OUTSIDE or run.regime == SUSTAINED:
+            close_touch(recorder, run.period, run.clock, rebound, u, v)
+        if run.regime == SUSTAINED:
+            # the remaining hops take a time run.wait, of which what lies after the strobe is below rounding
+            open_touch(recorder, run.period, run.clock, rebound, STAY, u, v)
+            rest = min(run.wait, end - run.clock)
+            run.wait = 0.0
+            if rest > 0.0:
+                propagate(motion, u, v, rest, u, v)
+                run.clock += rest
+            hold(motion, run.clock, u, v)
+    else:
+        open_touch(recorder, run.period, run.clock, 0.0, GRAZE, u, v)
+        close_touch(recorder, run.period, run.clock, 0.0, u, v)
+        run.order = 2
+
+
+def press_of(file: Any) -> Any:
+    """The steps in touch under one law: a law is told apart once a touch, not once a step."""
+    step, state, work_done = file.step, file.state, file.work
+
+    def press(motion, u, v, run, last, clock_end, work, recorder):
+        """Steps in touch with the stop, up to the release or the end of the run; how it ended."""
+        series, marks, logged = work.series, recorder.marks[0], recorder.log.size > 0
+        strobes, counts, samples = recorder.strobes, recorder.counts, recorder.sample_clock.size
+        status, loss = GOING, 0.0
+        while status == GOING:
+            base, at_last = run.clock, run.period == last
+            end = clock_end if at_last else motion.period
+            until = end
+            if end - base > 4.0 * EPS * motion.period:
+                s, h, following = step(motion, run, u, v, end - base, series)
+                run.evaluations += 1
+                run.steps += 1
+                if run.steps > MOST_STEPS:
+                    status = FAILED_STEPS
+                elif not (0.0 <= h < math.inf):
+                    status = FAILED_SERIES
+                else:
+                    until = base + h if h < end - base else end
+                    if marks.sampled < samples:
+                        sample_touch(motion, run, s, until, work, recorder)
+                    if logged:
+                        loss += work_done(motion, run, s, series)
+                    state(motion, run, s, series, u, v)
+                    run.regime, run.clock = following, until
+                    if following == OUTSIDE:
+                        status = RELEASED
+            if status == GOING and until >= end:
+                if at_last:
+                    run.clock, status = end, DONE
+                else:
+                    strobe(marks, strobes, counts, u, v)
+                    run.clock, run.steps = 0.0, 0
+                    run.period += 1
+        add_loss(recorder, loss)
+        return status
+
+    return part(press)
+
+
+press = touch.by_law({code: press_of(file) for code, file in touch.TOUCHES.items()})
 
 
 @kernel
@@ -229,13 +264,28 @@ def advance(motion, u, v, runs, last, clock_end, recorder):
     status : int
         DONE, LOG_FULL (call again with a longer log), or one of the failures.
     """
-    run = runs[0]
-    work = new_work(motion, run.search)
-    while True:
-        at_last = run.period == last
-        status = to_time(motion, u, v, run, clock_end if at_last else motion.period, work, recorder)
-        if status != DONE or at_last:
-            return status
-        put_strobe(recorder, u, v)
-        run.clock = 0.0
-        run.period += 1
+    run, room = runs[0], new_work(motion, runs[0].search)
+    motion, u, v, recorder, work = (
+        borrowed(motion), borrowed(u), borrowed(v), borrowed(recorder), borrowed(room)
+    )  # fmt: skip
+    status = GOING
+    while status < DONE:
+        if is_full(recorder):
+            status = LOG_FULL
+        elif recorder.marks[0].impacts > MOST_IMPACTS:
+            status = FAILED_CHATTER
+        elif run.steps > MOST_STEPS:
+            status = FAILED_STEPS
+        elif run.regime == OUTSIDE:
+            status = fly(motion, u, v, run, last, clock_end, work, recorder)
+        else:
+            status = press(motion, u, v, run, last, clock_end, work, recorder)
+        if status == CROSSED or status == GRAZED:
+            end = clock_end if run.period == last else motion.period
+            land(motion, u, v, run, status == CROSSED, end, recorder)
+        elif status == RELEASED:
+            touch.leave(motion, run, u, v)
+            velocity = tip_state(motion, run.clock, u, v)[1]
+            close_touch(recorder, run.period, run.clock, velocity, u, v)
+    held(room)
+    return status

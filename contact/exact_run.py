@@ -65,7 +65,7 @@ def start_of(
             )
         pushes = INSIDE not in known or force(motion, height, velocity) > 0.0
         regime = CONTACT if pushes else INSIDE
-    runs[0] = (regime, 0, period, 0, search, clock, state.wait, state.rebound, -1.0, -1.0)
+    runs[0] = (regime, 0, period, 0, search, 0, clock, state.wait, state.rebound, -1.0, -1.0)
     return u, v, runs
 
 

@@ -42,7 +42,6 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from beam.parameters import require_kind, require_whole, require_within
 from contact.nordmark import NordmarkMap, YLine
@@ -253,6 +252,8 @@ def band(
     NordmarkMap.from_frequencies(drive_frequency=middle, free_period=free_period, decay_rate=decay_rate,
                                  restitution=restitution, y_line=y_line)  # fmt: skip
     ratio = restitution**2 if y_line == "corrected" else 1.0
+
+    from scipy.optimize import brentq  # slow to import
 
     def excess_height(past: float) -> float:  # proportional to -x_{m-1}; `past` = (m - 1) theta - pi
         angle = (math.pi + past) / (m - 1)

@@ -18,8 +18,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from beam.parameters import require_array, require_kind, require_number, require_within, suspect
-from beam.reduction import ModalModel
+from beam import ModalModel
+from beam.parameters import require_array, require_kind, require_within, suspect
 from contact.drive import HarmonicDrive
 from contact.flight.motion import Motion, motion_of
 from contact.laws import DELAYED
@@ -129,7 +129,7 @@ class ImpactOscillator:
 
         A search may pass through any amplitude: none is suspicious here.
         """
-        number = require_number("amplitude", amplitude, "m", positive=False)
+        number = require_within("amplitude", amplitude, "m", low=0)
         changed = copy.copy(self)  # all else has been checked
         object.__setattr__(changed, "drive", replace(self._driven(), amplitude=number))
         return changed

@@ -16,7 +16,7 @@ import math
 import numpy as np
 
 from contact import touch
-from contact.compiled import kernel
+from contact.compiled import borrowed, kernel, part
 from contact.event_loop import STATE
 from contact.flight.crossing import CROSSES, first_crossing
 from contact.flight.modal_flow import propagate, tip_state
@@ -33,7 +33,7 @@ MOST_STEPS = 1_500
 longest contact of the letter's beam."""
 
 
-@kernel
+@part
 def through_touch(motion, response, run, u, v, end, tangent, record):
     """From a touch to its release, at most to the drive time `end` [s]; whether it got there.
 
@@ -101,6 +101,9 @@ def flow_from_touch(motion, response, base, u, v, duration, tangent, record):
     outcome : int
         FLOWN, FEWER_TOUCHES or FAILED.
     """
+    motion, u, v, tangent, record = (
+        borrowed(motion), borrowed(u), borrowed(v), borrowed(tangent), borrowed(record)
+    )  # fmt: skip
     n, end = motion.size, base + duration
     run = np.zeros(1, dtype=STATE)[0]
     run.clock = base

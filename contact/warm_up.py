@@ -14,7 +14,7 @@ from multiprocessing import get_context
 
 import numpy as np
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.drive import HarmonicDrive
 from contact.laws import HertzContact, NewtonRestitution
 from contact.orbits.shooting import Shooting

@@ -1,32 +1,26 @@
 """Studies: one program per claim, on top of `beam` (the spring) and `contact` (the impacts).
 
-Run them from the root of the project as `python -m studies.NAME`; `python -m studies` runs the main one and
-lists the others, `studies.tour` is the whole package in one script.
+Run them from the root of the project as `python -m studies.NAME`; `python -m studies` runs the main one,
+writes the page of all results and lists the others; `studies.tour` is the whole package in one script.
 
-What they have in common
-    A *scene* (studies/scenes/letter.toml, or one's own: --scene FILE, --set section.key=value) holds the
-    physics, each value with its unit and whether it is the letter's, calibrated or assumed. A study takes
-    from it the spring, with as many modes as its question needs, computes, stores, and draws from what it
-    stored: results/NAME/ has tables (csv), arrays (npz), figures (png, pdf), what was found (summary.json)
-    and what it rests on (manifest.json). `studies.report` gathers all of it into one page.
+A *scene* (studies/scenes/letter.toml, or one's own: --scene FILE, --set section.key=value) holds the
+physics, each value with its unit and whether it is the letter's, calibrated or assumed. A study takes from
+it the spring, with as many modes as its question needs, computes, stores, and draws from what it stored:
+results/NAME/ has tables (csv), arrays (npz), figures (png, pdf), what was found (summary.json) and what it
+rests on (manifest.json). A study imports public names of `beam` and `contact` and the shared files, never
+another study:
 
-What they show
-    The letter's figures: `transitions` (the main job), `hysteresis` (Fig. 3), `time_trace` (Fig. 4),
-    `breakdown` (Fig. 5), `claims` and `chart` (the plane). What it left open: `hysteresis` (why measurement
-    and map differ), `effective_impact` (higher modes in tau and delay), `soft_wall` (the square root),
-    `attractors`, `sensitivity`. To be seen in motion: `motion`. What all of it rests on: `calibrate`,
-    `modes`, `spring_shape`, `adequacy`, `work_precision`, `stability`, `benchmarks`.
+    scene (with scene_keys, scene_values, scene_spring)   from a TOML file to spring, modes and oscillators
+    run (options, record, executors, files, programs)     command line, results, progress, exit codes
+    letter, plotting, least_model, calibration, sweep, film, page
 
-What several of them use is in `studies.instruments`; the letter's numbers are in `studies.published`.
-
-Importing this package does two things, both of which have to come before numpy is imported (and when it runs
-as a program, `start_as_program`):
+Importing this package does two things, both of which have to come before numpy is imported:
 
 - it sets the thread count of the linear algebra libraries to 1 unless the environment already says otherwise:
-  the matrices here are small, and several workers with several threads each slow one another down twentyfold;
+  several workers with several threads each slow one another down twentyfold;
 - it makes sure that `beam` and `contact` are the packages beside this one. Both names belong to other
-  people's packages on the public index, and with one of those in front every result would be an error at
-  best.
+people's
+  packages on the public index, and with one of those in front every result would be an error at best.
 """
 
 from __future__ import annotations
@@ -35,77 +29,62 @@ import importlib.util
 import os
 import sys
 import warnings
-from collections.abc import Iterable
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 """The folder in which `beam`, `contact` and `studies` lie side by side."""
 
-THREAD_VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
-
 
 def single_blas_thread() -> None:
     """One thread for linear algebra, here and in the processes started from here."""
-    for variable in THREAD_VARIABLES:
+    for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(variable, "1")
 
 
-def place_of(name: str) -> Path | None:
-    """The folder that `import NAME` would read, without importing it; None if there is none."""
-    try:
+def refuse_foreign_packages(root: Path = ROOT) -> None:
+    """ImportError unless `beam` and `contact` would be imported from the folder `root`."""
+    for name in ("beam", "contact"):
         spec = importlib.util.find_spec(name)
-    except ValueError:  # already imported, and by something that left no trace of where from
-        return None
-    if spec is None:
-        return None
-    if spec.origin is not None:
-        return Path(spec.origin).resolve().parent
-    folders = list(spec.submodule_search_locations or ())
-    return Path(folders[0]).resolve() if folders else None
-
-
-def refuse_foreign_packages(names: Iterable[str] = ("beam", "contact"), root: Path = ROOT) -> None:
-    """ImportError unless each of `names` would be imported from the folder `root`."""
-    for name in names:
-        place = place_of(name)
-        if place is None:
+        places = [] if spec is None else list(spec.submodule_search_locations or [])
+        if not places:
             raise ImportError(
                 f"the package '{name}' of grazing-spring is missing beside 'studies': run "
                 "`python -m studies` from the root of a complete checkout"
             )
-        if place != root / name:
+        if Path(places[0]).resolve() != root / name:
             raise ImportError(
-                f"the package '{name}' in {place.parent} is not that of grazing-spring but another of the "
-                "same name: run `python -m studies` from the root of the checkout, or remove the other "
-                f"package with `python -m pip uninstall {name}`"
+                f"the package '{name}' in {Path(places[0]).parent} is not that of grazing-spring but another "
+                "of the same name: run `python -m studies` from the root of the checkout, or remove the "
+                f"other package with `python -m pip uninstall {name}`"
             )
 
 
 def start_as_program() -> None:
-    """For `python -m studies...`: all streams there, Ctrl-C without a traceback, a sentence for an unknown
+    """For `python -m studies...`: Ctrl-C while importing without a traceback, a sentence for an unknown
     study."""
-    from studies.instruments.interruption import watch_start
-    from studies.instruments.programs import named_by, unknown
-    from studies.instruments.standard_output import fill_closed
+    from studies.programs import unknown, wrong_name
 
-    fill_closed()
-    watch_start()
-    name = named_by(sys.orig_argv[1:])
+    if sys.stderr is None:  # started with 2>&-: no file of results may get its number
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+        sys.stderr = open(2, "w", encoding="utf-8", closefd=False)
+    before = sys.excepthook
+
+    def told(kind, error, trace):  # type: ignore[no-untyped-def]
+        if not issubclass(kind, KeyboardInterrupt):
+            return before(kind, error, trace)
+        print("interrupted; nothing was stored: the same command begins again", file=sys.stderr, flush=True)
+        os._exit(130)
+
+    sys.excepthook = told
+    name = wrong_name(sys.orig_argv[1:])
     if name is not None:
         print(f"python -m studies.{name}: {unknown(name)}", file=sys.stderr)
         raise SystemExit(2)
-
-
-def quiet_worker() -> None:
-    """In a worker: what is suspicious about the scene has been told by the process that started it."""
-    from beam import SuspiciousValue
-
-    warnings.simplefilter("ignore", SuspiciousValue)
 
 
 if sys.argv[:1] == ["-m"]:  # as long as the interpreter looks for the module that it was told to run
     start_as_program()
 single_blas_thread()
 refuse_foreign_packages()
-if "--multiprocessing-fork" in sys.orig_argv:  # a spawned worker knows its parent only after its imports
-    quiet_worker()
+if "--multiprocessing-fork" in sys.orig_argv:  # its parent has told what is suspicious
+    warnings.filterwarnings("ignore", category=UserWarning, module=r"(beam|contact|studies)\b")

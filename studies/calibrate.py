@@ -2,48 +2,58 @@
 
 Thickness from the free period (40.80 ms), tape from the decay rate of mode 1 (3.56 1/s), gap from the base
 amplitude at grazing (2 mm at 22.2 Hz), and the mass of ball and mount from a collision that stops mode 1
-(kick 1 at excess 0.013), where the restitution is smallest.
+(kick 1 at excess 0.013), where the restitution is smallest (``studies.calibration`` has the equations).
 
-Run time: about ten seconds.  Command: python -m studies.calibrate.  Outputs: summary.json and
-calibrated.toml, a scene that every study takes with --scene.
+Run:     python -m studies.calibrate     30 s
+Writes:  keys.csv (before and after), calibrated.toml, a scene that every study takes with --scene
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Mapping
+from dataclasses import dataclass
 
-from studies.instruments.adequacy.fitted_scene import Need
-from studies.instruments.command_line import Request, run_study
-from studies.instruments.contact_calibration import Targets, calibrate_all, collision_at
-from studies.instruments.scene import Scene
-from studies.instruments.scene_file import dump_scene
-from studies.published import DRIVE_AMPLITUDE_M
+from studies import letter
+from studies.calibration import Targets, calibrate_all, collision_at
+from studies.run import Run, study
+from studies.scene import Scene, beam_at, harmonic
+
+__all__ = ["KEYS", "Fitted", "calibrate"]
 
 KEYS = ("spring.thickness_m", "spring.tape_loss_factor", "stop.gap_m", "tip.mass_kg")
 
 
-def run(scene: Scene, request: Request) -> dict[str, Any]:
+@dataclass(frozen=True, kw_only=True)
+class Fitted:
+    """One key of the scene, in its unit."""
+
+    key: str
+    before: float
+    after: float
+
+
+@study(needs={"frequency 1": 1e-5, "kick": 0.005})
+def calibrate(scene: Scene, run: Run) -> Mapping[str, object]:
     """Fit, report and write the scene."""
     targets = Targets(
-        free_period_s=scene.single_mode.free_period_s,
+        free_period_s=harmonic(scene).single_mode.free_period_s,
         decay_rate_per_s=scene.single_mode.decay_rate_per_s,
-        grazing_amplitude_m=DRIVE_AMPLITUDE_M,
+        grazing_amplitude_m=letter.DRIVE_AMPLITUDE_M,
     )
     fitted = calibrate_all(scene, targets)
-    for key in KEYS:
-        print(f"{key:<26} {scene[key]:.10g} -> {fitted[key]:.10g}", flush=True)
+    rows = [Fitted(key=key, before=scene.number(key), after=fitted.number(key)) for key in KEYS]
+    run.table("keys", rows, "Keys before and after the fit.")
+    run.text("calibrated.toml", fitted.dump())
     collision = collision_at(fitted, targets.frequency_hz, targets.excess)
-    print(
+    run.say(
         f"collision at excess {targets.excess:g}: kick {collision.kick:.9f}, restitution "
-        f"{collision.restitution:.6f}, "
-        f"delay {1e6 * collision.delay:.3f} us, contact {1e6 * collision.contact_time:.3f} us",
-        flush=True,
+        f"{collision.restitution:.6f}, delay {1e6 * collision.delay:.3f} us, contact "
+        f"{1e6 * collision.contact_time:.3f} us"
     )
-    path = request.record.write_text("calibrated.toml", dump_scene(fitted))
-    print(f"scene: {path}", flush=True)
+    amplitude = beam_at(fitted, targets.frequency_hz).grazing_amplitude()
+    run.verdict("drive_amplitude", "fitted", found=f"{1e3 * amplitude:.3f} mm at grazing, 22.2 Hz")
     return {
-        "keys": {key: fitted[key] for key in KEYS},
+        "keys": {row.key: row.after for row in rows},
         "kick": collision.kick,
         "restitution": collision.restitution,
         "delay_s": collision.delay,
@@ -51,17 +61,5 @@ def run(scene: Scene, request: Request) -> dict[str, Any]:
     }
 
 
-NEEDS = (Need(quantity="frequency 1", tolerance=1e-5), Need(quantity="kick", tolerance=0.005))
-"""What the numbers rest on: modes and mesh are chosen for it."""
-
-
-def main(argv: Sequence[str] | None = None) -> int:
-    """Run the study from the command line."""
-    return run_study(
-        "calibrate", "Fit thickness, tape, gap and ball mass to the letter's numbers.", run, argv,
-        needs=NEEDS,
-    )
-
-
 if __name__ == "__main__":
-    raise SystemExit(main())
+    raise SystemExit(calibrate.main())

@@ -1,92 +1,97 @@
 """The cells of a sweep as one file that other programs read.
 
-    python -m studies.export results/chart/single_mode-400x400.sqlite               -> the same name, .npz
-    python -m studies.export results/chart/*-of-8.sqlite --to csv --out chart.csv   shards of one sweep as one
+    python -m studies.export results/chart/single_mode-400x400               -> the same name, .csv
+    python -m studies.export results/chart/single_mode-400x400 --out chart.npz
 
-Reads while the sweep is still running, too, and then gives what is there.  Output: one .npz or .csv file; its
-columns and their units are in ``studies.instruments.sweep.columns_file``, the store itself in
-``studies.instruments.sweep.store``.  Run time: a second for 100 000 cells; memory does not depend on their
-number.  Command: python -m studies.export STORE [STORE ...] [--to csv] [--out FILE].  Exit codes: 0 done, 2
-wrong use or a file that cannot be read or written, 130 interrupted.
+A csv has one line a cell: the arrays of each column (frequency_hz, direction, excess, period, impacts,
+cycles, reason for the chart) broadcast against one another. An npz has them stacked, one entry a column
+along the first axis. What a running sweep has stored so far is given, too. Exit codes: 0 done, 2 wrong use
+or a file that cannot be read or written.
+
+Run:     python -m studies.export FOLDER [--to csv|npz] [--out FILE]     1 s for 100 000 cells
+Writes:  FILE
 """
 
 from __future__ import annotations
 
 import argparse
-import json
+import csv
+import io
 import sys
-import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from studies.instruments.command_line import DONE, INTERRUPTED, WRONG_USE
-from studies.instruments.record import SCHEMA
-from studies.instruments.sweep.columns_file import write_csv, write_npz
-from studies.instruments.sweep.store import Store
+import numpy as np
 
-FORMATS = {"npz": write_npz, "csv": write_csv}
+from studies.files import json_text, write_atomically
+from studies.record import SCHEMA
+from studies.sweep import Column, read_columns
+
 COMMAND = "python -m studies.export"
 
 
-def export(stores: Sequence[Path], path: Path, *, form: str, states: bool) -> int:
-    """Write the cells of `stores`, shards of one sweep, to `path`; returns their number."""
-    write = FORMATS[form]
-    if len(stores) == 1:
-        with Store.read(stores[0]) as store:
-            return write(store, path, states=states)
-    with Store.read(stores[0]) as first:
-        plan = first.plan()
-    with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.name}.") as folder:
-        with Store.begin(Path(folder) / "gathered.sqlite", plan) as whole:
-            for name in stores:
-                with Store.read(name) as part:
-                    whole.gather(part)
-            return write(whole, path, states=states)
+def csv_of(columns: Sequence[Column]) -> bytes:
+    """One line a cell."""
+    stream = io.StringIO(newline="")
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(columns[0])
+    for column in columns:
+        cells = np.broadcast_arrays(*column.values())
+        writer.writerows(zip(*(array.ravel().tolist() for array in cells), strict=True))
+    return stream.getvalue().encode()
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog=COMMAND, description="Write the cells of a sweep from its store.", allow_abbrev=False
-    )
-    parser.add_argument("stores", nargs="+", type=Path, metavar="STORE",
-                        help="one store, or shards of one sweep")
-    parser.add_argument("--to", choices=sorted(FORMATS), default=None,
-                        help="format (default: that of --out, or npz)")
-    parser.add_argument("--out", type=Path, default=None, metavar="FILE",
-                        help="file to write (default: the name of the first store with another ending)")
-    parser.add_argument("--states", action="store_true", help="with the end states")
-    parser.add_argument("--json", action="store_true", help="print what was done as one JSON object")
-    return parser
+def npz_of(columns: Sequence[Column]) -> bytes:
+    """The arrays of all columns, stacked."""
+    stream = io.BytesIO()
+    stacked = {name: np.stack([column[name] for column in columns]) for name in columns[0]}
+    np.savez_compressed(stream, **stacked)  # type: ignore[arg-type]
+    return stream.getvalue()
+
+
+FORMATS = {"csv": csv_of, "npz": npz_of}
+
+
+def export(folder: Path, path: Path, form: str) -> int:
+    """Write the columns of the sweep in `folder` to `path`; returns their number."""
+    _, columns = read_columns(folder)
+    if not columns:
+        raise ValueError(f"no column of the sweep in {folder} is there yet")
+    write_atomically(path, FORMATS[form]([column for _, column in columns]))
+    return len(columns)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Export from the command line."""
+    parser = argparse.ArgumentParser(
+        prog=COMMAND, description=__doc__, allow_abbrev=False,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )  # fmt: skip
+    parser.add_argument("folder", type=Path, metavar="FOLDER", help="folder of a sweep")
+    parser.add_argument("--to", choices=sorted(FORMATS), help="format (default: that of --out, or csv)")
+    parser.add_argument("--out", type=Path, metavar="FILE", help="file to write (default: beside the folder)")
+    parser.add_argument("--json", action="store_true", help="print what was done as one JSON object")
     try:
-        arguments = _parser().parse_args(argv)
+        given = parser.parse_args(argv)
     except SystemExit as leaving:
-        return DONE if leaving.code in (None, 0) else WRONG_USE
-    ending = "" if arguments.out is None else arguments.out.suffix[1:]
-    if ending and ending not in FORMATS and arguments.to is None:
-        print(f"{COMMAND}: --out ends in .{ending}; it must end in .csv or .npz, or --to say which",
-              file=sys.stderr)
-        return WRONG_USE
-    form = arguments.to or ending or "npz"
-    path = arguments.out or arguments.stores[0].with_suffix(f".{form}")
+        return 0 if leaving.code in (None, 0) else 2
+    answer: dict[str, object] = {"schema": SCHEMA, "study": "export"}
     try:
-        count = export(arguments.stores, path, form=form, states=arguments.states)
+        ending = given.out.suffix[1:] if given.out else ""
+        if ending and ending not in FORMATS and given.to is None:
+            raise ValueError(f"--out ends in .{ending}; it must end in .csv or .npz, or --to say which")
+        form = given.to or ending or "csv"
+        path = given.out or given.folder.with_name(f"{given.folder.name}.{form}")
+        count = export(given.folder, path, form)
     except (ValueError, OSError) as error:
         print(f"{COMMAND}: {error}", file=sys.stderr)
-        if arguments.json:
-            print(json.dumps({"schema": SCHEMA, "study": "export", "status": "refused", "error": str(error)}))
-        return WRONG_USE
-    except KeyboardInterrupt:
-        print(f"{COMMAND}: interrupted; nothing was written", file=sys.stderr)
-        return INTERRUPTED
-    print(f"{COMMAND}: {count} cells in {path}", file=sys.stderr)
-    if arguments.json:
-        answer = {"schema": SCHEMA, "study": "export", "status": "done", "cells": count, "file": str(path)}
-        print(json.dumps(answer))
-    return DONE
+        if given.json:
+            print(json_text({**answer, "status": "refused", "error": str(error), "exit_code": 2}))
+        return 2
+    print(f"{COMMAND}: {count} columns in {path}", file=sys.stderr)
+    if given.json:
+        print(json_text({**answer, "status": "done", "columns": count, "file": path, "exit_code": 0}))
+    return 0
 
 
 if __name__ == "__main__":

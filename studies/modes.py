@@ -1,59 +1,117 @@
 """Natural modes of the spring: what they look like, and what an impact sees of them.
 
-Claim
-    The folded strip has two kinds of modes. Sway modes move the ball towards the stop; breathing modes move
-    it along the legs at most, and take no part in the impacts.
+Claim: the folded strip has two kinds of modes. Sway modes move the ball towards the stop; breathing modes
+move it along the legs at most, and take no part in the impacts.
 
-Equations
-    K x = omega^2 M x for the elements of `beam.assembly`, shapes of unit modal mass. Of each mode the impacts
-    see the frequency f = omega/(2 pi) [Hz], the decay rate c [1/s], the tip value phi [kg^(-1/2)] and the
-    participation Gamma [kg^(1/2)] in a motion of the base. For straight strips of one section the frequencies
-    are set beside the zeros of the frequency equation (`beam.frequency_equation`).
+    K x = omega^2 M x      for the elements of the strip, shapes of unit modal mass
 
-Run time
-    Ten seconds; a few with --quick.
+Of each mode the impacts see the frequency f = omega/(2 pi) [Hz], the decay rate c [1/s], the tip value phi
+[kg^(-1/2)] and the participation Gamma [kg^(1/2)] in a motion of the base. For straight strips of one
+section the frequencies are set beside the zeros of the frequency equation (beam.exact_modes).
 
-Command
-    python -m studies.modes [--mode 3] [--at-rest] [--frames 24]
-
-Outputs (results/modes)
-    modes.csv         the table; modes.npz with the shapes along the strip
-    modes.vtu         all shapes as vectors on one mesh, frequencies and decay rates as field data
-    motion.pvd        one period of one mode, its frames in motion_frames
-    mode_1.gif, ...   one period of each of the first modes, repeated without a seam
-    modes.png, .pdf   the first modes in the plane of the strip
-    modes_3d.png, .pdf   the same in space
-
-In ParaView open modes.vtu, apply Warp By Vector and choose a mode. Or open motion.pvd and press play: the
-points move by themselves; with --at-rest they stay, and Warp By Vector by `displacement` moves them. Where
-the machine cannot draw in space, matplotlib does, and one sentence names the packages that are missing.
+Run:     python -m studies.modes [--mode 3] [--at-rest] [--frames 24]     10 s
+Writes:  modes.csv (the table), modes.npz (shapes along the strip), modes.png; for ParaView modes.vtu (Warp By
+         Vector, choose a mode) and motion.pvd with motion_frames (one period of one mode: press play; with
+         --at-rest the points stay, for Warp By Vector by displacement); mode_1.gif ... (films of the first)
 """
 
 from __future__ import annotations
 
-import argparse
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
-from beam import LeafSpring, Modes, UniformBeam, exact_modes
-from beam.export import write_mode_motion, write_modes
-from studies.instruments.adequacy.fitted_scene import Need
-from studies.instruments.command_line import Request, WrongUse, run_study
-from studies.instruments.mode_figures import DRAWN, LARGEST, draw, draw_in_space
-from studies.instruments.motion.film import write_gif
-from studies.instruments.motion.scene_bodies import choose_stage
-from studies.instruments.scene import Scene
-from studies.instruments.spring_of_scene import damping_of, model_of, modes_of
+from beam import LeafSpring, Modes, UniformBeam, exact_modes, write_mode_motion, write_modes
+from studies import letter
+from studies.film import NO_RENDERING, Moment, Scenery, can_render, stage_of, write_gif
+from studies.run import Run, study
+from studies.scene import Scene, SceneError, damping_of, free_period, model_of, modes_of
 
-FILMED, QUICK_FILMED = 6, 2
-"""Modes with a film, lowest first."""
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["Row", "exact_frequencies", "modes", "rows_of"]
+
+FILMED, DRAWN = 6, 8
+"""Modes with a film, and in the figure; lowest first."""
 
 RATE = 20.0
 """Frames a second of the films."""
+
+LARGEST = 0.05
+"""Largest displacement of a drawn shape over the greatest extent of the strip; legs do not cross yet."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """One mode; `exact_hz` from the frequency equation, None where that does not apply."""
+
+    mode: int
+    frequency_hz: float
+    exact_hz: float | None
+    decay_rate_per_s: float
+    tip_value: float
+    participation: float
+    coupled: bool
+
+
+@study(needs={"frequency 10": 1e-3}, quick={"filmed": 2})
+def modes(
+    scene: Scene,
+    run: Run,
+    *,
+    mode: Annotated[int, "mode to animate"] = 1,
+    frames: Annotated[int, "frames in one period, an even number"] = 24,
+    at_rest: Annotated[
+        bool, "leave the points of motion.pvd at rest, for Warp By Vector by displacement"
+    ] = False,
+    filmed: Annotated[int, "modes with a film, lowest first"] = FILMED,
+) -> Mapping[str, object]:
+    """Compute, store and draw."""
+    solved = None if scene.spring.kind == "modal_data" else modes_of(scene)
+    rows = rows_of(scene, solved)
+    if mode > len(rows):
+        raise SceneError(f"--mode must be at most {len(rows)}, the modes of this scene, not {mode}")
+    run.table("modes", rows, "Natural modes: f, exact f, c, phi [kg^(-1/2)], Gamma [kg^(1/2)].")
+    if solved is None:
+        run.say("measured modes have no shapes: nothing to draw or to look at in ParaView")
+    else:
+        write_shapes(scene, run, solved, mode - 1, frames, moved=not at_rest)
+        write_films(run, solved, scene.tip.ball_radius_m, min(filmed, len(rows)), frames)
+        judge(scene, run)
+    return {"rows": rows, "free_period_s": None if solved is None else free_period(scene)}
+
+
+def rows_of(scene: Scene, solved: Modes | None) -> list[Row]:
+    """The table; without shapes, of the modal data."""
+    if solved is None:
+        model = model_of(scene)
+        coupled = (model.phi != 0.0) | (model.participation != 0.0)
+        exact: Sequence[float | None] = [None] * model.n_modes
+        columns = (model.frequencies_hz, model.decay_rate, model.phi, model.participation, coupled)
+    else:
+        rates, found = (
+            damping_of(scene).decay_rates(solved),
+            exact_frequencies(solved.discretization.spring, solved.omega.size),
+        )
+        exact = [None] * solved.omega.size if found is None else found.tolist()
+        columns = (solved.frequencies_hz, rates, solved.phi, solved.participation, solved.coupled)
+    return [
+        Row(
+            mode=number,
+            frequency_hz=float(f),
+            exact_hz=known,
+            decay_rate_per_s=float(c),
+            tip_value=float(phi),
+            participation=float(gamma),
+            coupled=bool(moves),
+        )
+        for number, (known, f, c, phi, gamma, moves) in enumerate(zip(exact, *columns, strict=True), start=1)
+    ]
 
 
 def exact_frequencies(spring: LeafSpring, count: int) -> NDArray[np.float64] | None:
@@ -68,7 +126,7 @@ def exact_frequencies(spring: LeafSpring, count: int) -> NDArray[np.float64] | N
     if not line.is_straight or len(sections) > 1 or not (at_free_end or massless):
         return None
     section = spring.sections[0]
-    beam = UniformBeam(
+    uniform = UniformBeam(
         length=line.length,
         bending_stiffness=section.bending_stiffness,
         mass_per_length=section.mass_per_length,
@@ -77,174 +135,109 @@ def exact_frequencies(spring: LeafSpring, count: int) -> NDArray[np.float64] | N
         tip_rotary_inertia=tip.rotary_inertia,
     )
     rigid = np.zeros(spring.rigid_motions)
-    bent = exact_modes(beam, max(1, count - rigid.size)).omega / (2.0 * math.pi)
+    bent = exact_modes(uniform, max(1, count - rigid.size)).omega / (2.0 * math.pi)
     return np.concatenate([rigid, bent])[:count]
 
 
-def table_of(scene: Scene, modes: Modes | None) -> dict[str, NDArray[Any]]:
-    """The columns of the table, one entry for each mode; without shapes, those of the modal data."""
-    if modes is None:
-        model = model_of(scene)
-        frequencies, rates, values = model.frequencies_hz, model.decay_rate, model.phi
-        participation, coupled = model.participation, (model.phi != 0.0) | (model.participation != 0.0)
-        exact = None
-    else:
-        frequencies, rates, values = modes.frequencies_hz, damping_of(scene).decay_rates(modes), modes.phi
-        participation, coupled = modes.participation, modes.coupled
-        exact = exact_frequencies(modes.discretization.spring, frequencies.size)
-    return {
-        "frequency_hz": frequencies,
-        "exact_hz": np.full(frequencies.size, np.nan) if exact is None else exact,
-        "decay_rate_per_s": rates,
-        "tip_value_kg^-1/2": values,
-        "participation_kg^1/2": participation,
-        "coupled": coupled,
-    }
+def largest_of(solved: Modes) -> float:
+    """Largest displacement of a drawn shape [m]."""
+    return LARGEST * float(np.ptp(solved.displacement_along(2).points, axis=0).max())
 
 
-def printed(table: Mapping[str, NDArray[Any]]) -> str:
-    """The table for a person."""
-    heads = ("mode", "f (Hz)", "exact (Hz)", "error", "decay (1/s)", "damping (%)", "tip (kg^-1/2)",
-             "participation (kg^1/2)", "coupled")
-    rows = [heads]
-    for number, row in enumerate(zip(*table.values(), strict=True), start=1):
-        f, exact, rate, tip, participation, coupled = row
-        compared, damped = math.isfinite(exact), math.isfinite(rate)
-        rows.append((
-            str(number),
-            f"{f:.4f}",
-            f"{exact:.4f}" if compared else "-",
-            f"{f / exact - 1.0:+.0e}" if compared and exact > 0.0 else "-",
-            f"{rate:.4g}" if damped else "-",
-            f"{100.0 * rate / (4.0 * math.pi * f):.4f}" if damped and f > 0.0 else "-",
-            f"{tip:.5g}",
-            f"{participation:.5g}",
-            "yes" if coupled else "no",
-        ))
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return "\n".join(
-        "  ".join(f"{cell:>{width}}" for cell, width in zip(row, widths, strict=True)) for row in rows
+def write_shapes(scene: Scene, run: Run, solved: Modes, mode: int, frames: int, *, moved: bool) -> None:
+    """Arrays, meshes and the figure."""
+    along, radius, largest = solved.displacement_along(2), scene.tip.ball_radius_m, largest_of(solved)
+    run.arrays(
+        "modes", frequencies_hz=solved.frequencies_hz, coupled=solved.coupled, arc_length_m=along.s,
+        points_m=along.points, displacement=along.displacement, rotation=along.rotation,
+        tip_at_m=solved.discretization.spring.tip_at,
+    )  # fmt: skip
+    rates = np.nan_to_num(damping_of(scene).decay_rates(solved))
+    write_modes(run.path("modes.vtu"), solved, decay_rates=rates, largest=largest, ball_radius=radius)
+    write_mode_motion(run.path("motion.pvd"), solved, mode, frames=frames, moved=moved, largest=largest,
+                      ball_radius=radius)  # fmt: skip
+    run.path("motion_frames")
+    run.figure(
+        "modes",
+        draw(solved, radius),
+        "Shapes in the plane of the strip, enlarged; grey: at rest, dashed: half "
+        "a period later; orange: the ball stays beside the stop.",
     )
 
 
-def run(scene: Scene, request: Request) -> Mapping[str, Any]:
-    modes = None if scene.spring.kind == "modal_data" else modes_of(scene)
-    table = table_of(scene, modes)
-    count = table["frequency_hz"].size
-    mode = request.options.mode - 1
-    if mode >= count:
-        raise WrongUse(f"--mode must be at most {count}, the modes of this scene, not {mode + 1}")
-    if request.options.frames < 2 or request.options.frames % 2:
-        raise WrongUse(f"--frames must be an even number of at least 2, not {request.options.frames}")
-    record, folder = request.record, request.record.folder
-    columns: dict[str, Any] = {"mode": np.arange(1, count + 1), **table}
-    record.write_table("modes", columns)
-    print(printed(table))
-    if modes is None:
-        print("measured modes have no shapes: nothing to draw or to look at in ParaView")
-    else:
-        _write_shapes(scene, request, modes, table, mode)
-        print(
-            f"ParaView: open {folder / 'modes.vtu'}, apply Warp By Vector and choose a mode; or open "
-            f"{folder / 'motion.pvd'} (mode {mode + 1}) and press play"
-            + (", with Warp By Vector by displacement" if request.options.at_rest else "")
+def write_films(run: Run, solved: Modes, radius: float, count: int, frames: int) -> None:
+    """One period of each of the first modes, in space, repeated without a seam."""
+    largest = largest_of(solved)
+    scenery = Scenery.of(solved, ball_radius=radius, swing=largest)
+    if not run.quick and not can_render():
+        run.say(NO_RENDERING)
+    with stage_of(scenery, "matplotlib" if run.quick else "auto") as stage:
+        for number in run.track(range(count), "films of modes"):
+            shape = scenery.mesh.normalised(largest)[number]
+            phases = 2.0 * math.pi * np.arange(frames) / frames
+            moments = [Moment(points=math.cos(phase) * shape, base=np.zeros(3)) for phase in phases]
+            write_gif(run.path(f"mode_{number + 1}.gif"), [stage(moment) for moment in moments], RATE)
+
+
+def judge(scene: Scene, run: Run) -> None:
+    """Verdict on the free period: the thickness was fitted to it."""
+    period, told = free_period(scene), scene.provenance()["spring.thickness_m"]
+    same = abs(period - letter.FREE_PERIOD_S) <= letter.FREE_PERIOD_ERROR_S
+    verdict = "fitted" if same and told == "calibrated" else "agrees" if same else "differs"
+    run.verdict("free_period", verdict, found=f"{1e3 * period:.2f} ms")  # type: ignore[arg-type]
+
+
+def draw(solved: Modes, ball_radius: float) -> Figure:
+    """The first modes in the plane of the strip."""
+    from studies.plotting import PAGE, PALETTE, label, new_figure  # matplotlib is slow to import
+
+    along = solved.displacement_along(2)
+    points, count = 1e3 * along.points, min(DRAWN, solved.omega.size)
+    extent = np.ptp(points[:, :2], axis=0)
+    swing = LARGEST * extent.max()
+    ball = int(np.argmin(np.abs(along.s - solved.discretization.spring.tip_at)))
+    margin, columns = 1.2 * swing + 2e3 * ball_radius, min(2, count)
+    rows = math.ceil(count / columns)
+    tall = (extent[1] + 2.0 * margin) / (extent[0] + 2.0 * margin)
+    height = 0.014 + rows * (0.007 + tall * (PAGE - 0.014) / columns)
+    figure, axes = new_figure(
+        rows, columns, width=PAGE, height=height, sharex=True, sharey=True, squeeze=False
+    )
+    for number, axis in enumerate(axes.flat):
+        if number >= count:
+            axis.set_visible(False)
+            continue
+        shape = along.displacement[number]
+        step = shape * (swing / np.linalg.norm(shape, axis=1).max())
+        axis.plot(points[:, 0], points[:, 1], color="0.75", linewidth=0.8)
+        strong = PALETTE[1 if solved.coupled[number] else 2]
+        for sign, style, colour in ((-1.0, (0, (4, 2)), "0.45"), (1.0, "-", strong)):
+            place = points + sign * step
+            axis.plot(place[:, 0], place[:, 1], color=colour, linestyle=style, linewidth=1.1)
+            axis.plot(
+                *place[ball, :2],
+                marker="o",
+                color=colour,
+                markersize=4.5,
+                markerfacecolor=colour if sign > 0 else "white",
+            )
+        kind = "" if solved.coupled[number] else ", uncoupled"
+        axis.set_title(
+            f"mode {number + 1}: {solved.frequencies_hz[number]:.2f} Hz{kind}",
+            loc="left",
+            pad=2.0,
+            fontsize=8.0,
         )
-    return {
-        "frequencies_hz": table["frequency_hz"],
-        "exact_hz": table["exact_hz"],
-        "tip_values": table["tip_value_kg^-1/2"],
-        "participation": table["participation_kg^1/2"],
-        "coupled": table["coupled"],
-        "decay_rates": table["decay_rate_per_s"],
-        "files": sorted(record.files),
-    }
-
-
-def _write_shapes(
-    scene: Scene, request: Request, modes: Modes, table: Mapping[str, NDArray[Any]], mode: int
-) -> None:
-    """Arrays, meshes and figures."""
-    record, spring, along = request.record, modes.discretization.spring, modes.displacement_along(2)
-    radius = scene.tip.ball_radius_m
-    shapes = {
-        "frequencies_hz": modes.frequencies_hz,
-        "coupled": modes.coupled,
-        "arc_length_m": along.s,
-        "points_m": along.points,
-        "displacement": along.displacement,
-        "rotation": along.rotation,
-        "tip_at_m": spring.tip_at,
-    }
-    record.write_arrays("modes", **shapes)
-    largest = LARGEST * float(np.ptp(along.points, axis=0).max())
-    rates = np.nan_to_num(table["decay_rate_per_s"])
-    drawing = {"largest": largest, "ball_radius": radius}
-    mesh = write_modes(record.folder / "modes.vtu", modes, decay_rates=rates, **drawing)
-    motion, *_ = write_mode_motion(
-        record.folder / "motion.pvd",
-        modes,
-        mode,
-        frames=request.options.frames,
-        moved=not request.options.at_rest,
-        **drawing,
-    )
-    record.files += [mesh.name, motion.name, f"{motion.stem}_frames"]
-    record.write_figure(draw(shapes, radius), "modes")
-    _write_films(request, modes, largest, radius)
-
-
-def _write_films(request: Request, modes: Modes, largest: float, radius: float) -> None:
-    """The first modes in space, and their films."""
-    from studies.instruments.motion.mode_film import frames_of, mode_film  # matplotlib is slow to import
-    from studies.instruments.motion.orbit_film import stage_of
-
-    record, frames = request.record, request.options.frames
-    renderer, sentence = choose_stage("matplotlib" if request.quick else "auto")
-    if sentence:
-        print(sentence)
-    film = mode_film(modes, min(DRAWN, modes.omega.size), largest=largest, ball_radius=radius)
-    filmed = min(QUICK_FILMED if request.quick else FILMED, modes.omega.size)
-    stage = stage_of(renderer, film.bodies, film.view)
-    try:
-        record.write_figure(draw_in_space(film, stage), "modes_3d")
-        with request.progress("frames of the modes", total=filmed * frames) as progress:
-            for mode in range(filmed):
-                pictures = []
-                for picture in frames_of(film, stage, mode, frames):
-                    pictures.append(picture)
-                    progress.advance()
-                file = write_gif(record.folder / f"mode_{mode + 1}.gif", pictures, RATE)
-                record.files.append(file.name)
-    finally:
-        stage.close()
-
-
-def options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--mode", type=_number, default=1, metavar="K", help="mode to animate (default: 1)")
-    parser.add_argument("--frames", type=_number, default=24, metavar="N",
-                        help="frames in one period, an even number (default: 24)")
-    parser.add_argument("--at-rest", action="store_true",
-                        help="leave the points of motion.pvd at rest, for Warp By Vector by displacement")
-
-
-def _number(text: str) -> int:
-    try:
-        number = int(text)
-    except ValueError:
-        number = 0
-    if number < 1:
-        raise argparse.ArgumentTypeError(f"must be a whole number of at least 1, not {text!r}")
-    return number
-
-
-NEEDS = (Need(quantity="frequency 10", tolerance=1e-3),)
-"""What the numbers rest on: modes and mesh are chosen for it."""
-
-
-def main(argv: Sequence[str] | None = None) -> int:
-    return run_study("modes", "Natural modes of the spring: table, ParaView files and figure.", run, argv,
-                     options=options, needs=NEEDS)
+        axis.set_aspect("equal")
+        axis.set_xlim(points[:, 0].min() - 0.3 * margin, points[:, 0].max() + margin)
+        axis.set_ylim(points[:, 1].min() - margin, points[:, 1].max() + margin)
+        if number % columns == 0:
+            label(axis.yaxis, "y", "mm")
+        if number + columns >= count:
+            label(axis.xaxis, "x", "mm")
+            axis.tick_params(labelbottom=True)
+    return figure
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    raise SystemExit(modes.main())

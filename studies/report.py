@@ -1,91 +1,56 @@
 """Everything that the studies stored, as one page to read, print and pass on.
 
-Gathered: for each study its claim, figures and table, the points of the letter that it speaks to, command,
-run time and settings; in front of them the two answers (hysteresis; what higher modes do to a collision) and
-the letter point by point; behind them what was assumed, versions, and the studies that have not been run.
-Nothing is computed here but what a table needs, and no result is typed in: a page made from other results
-says other things.
+Gathered: the two answers (hysteresis; what higher modes do to a collision), the letter point by point, for
+each study its account, figures and tables, what was assumed, versions, and the studies that have not been
+run. Nothing is computed and no result is typed in (``studies.page``).
 
-The page is one file that needs no network: pictures, style and script are inside, and its content policy
-forbids every request. Figures open enlarged. With the extra `web` the modes of `studies.modes` can be turned
-in it. What is missing or broken in the results becomes a sentence on the page.
-
-Run time: a second. Command: python -m studies.report [--out DIR]. Output: DIR/report/index.html, DIR being
-the folder of results (default: results). Exit codes: 0 done, 2 wrong use or no results at all.
+Run:     python -m studies.report [--out DIR]     2 s; DIR is the folder of results (default: results)
+Writes:  DIR/report/index.html
 """
 
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from studies.instruments.command_line import DONE, INTERRUPTED, WRONG_USE
-from studies.instruments.record import SCHEMA
-from studies.instruments.report.writing import write_report
+from studies.files import json_text
+from studies.page import write_page
+from studies.record import SCHEMA
 
 COMMAND = "python -m studies.report"
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog=COMMAND, description="Gather the stored results in one page.", allow_abbrev=False
-    )
-    parser.add_argument(
-        "--out",
-        type=Path,
-        default=Path("results"),
-        metavar="DIR",
-        help="folder of results; the page goes into its own folder there (default: results)",
-    )
-    parser.add_argument("--json", action="store_true", help="print what was done as one JSON object")
-    return parser
-
-
 def main(argv: Sequence[str] | None = None) -> int:
-    """Write the report from the command line."""
+    """Write the page; returns 0, or 2 for wrong use and where there are no results."""
+    parser = argparse.ArgumentParser(
+        prog=COMMAND, description=__doc__, allow_abbrev=False,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )  # fmt: skip
+    parser.add_argument("--out", type=Path, default=Path("results"), metavar="DIR", help="folder of results")
+    parser.add_argument("--json", action="store_true", help="print what was done as one JSON object")
     try:
-        arguments = _parser().parse_args(argv)
+        given = parser.parse_args(argv)
     except SystemExit as leaving:
-        return DONE if leaving.code in (None, 0) else WRONG_USE
+        return 0 if leaving.code in (None, 0) else 2
+    answer: dict[str, object] = {"schema": SCHEMA, "study": "report"}
     try:
-        report = write_report(arguments.out)
+        path, found, missing = write_page(given.out)
     except (ValueError, OSError) as error:
         print(f"{COMMAND}: {error}", file=sys.stderr)
-        if arguments.json:
-            print(json.dumps({"schema": SCHEMA, "study": "report", "status": "refused", "error": str(error)}))
-        return WRONG_USE
-    except KeyboardInterrupt:
-        print(f"{COMMAND}: interrupted; nothing was written", file=sys.stderr)
-        return INTERRUPTED
-    for sentence in (*report.faults, *report.warnings):
+        if given.json:
+            print(json_text({**answer, "status": "refused", "error": str(error), "exit_code": 2}))
+        return 2
+    faults = [fault for stored in found for fault in stored.faults]
+    for sentence in [*faults, *([f"not run: {', '.join(missing)}"] if missing else [])]:
         print(sentence, file=sys.stderr)
-    if report.missing:
-        print(f"not run: {', '.join(report.missing)}", file=sys.stderr)
-    print(
-        f"{COMMAND}: {len(report.studies)} studies, {report.size / 1e6:.1f} MB in {report.path}",
-        file=sys.stderr,
-    )
-    if arguments.json:
-        print(
-            json.dumps(
-                {
-                    "schema": SCHEMA,
-                    "study": "report",
-                    "status": "done",
-                    "page": str(report.path),
-                    "bytes": report.size,
-                    "studies": report.studies,
-                    "missing": report.missing,
-                    "warnings": report.warnings,
-                    "faults": report.faults,
-                    "turnable": report.turnable,
-                }
-            )
-        )
-    return DONE
+    print(f"{COMMAND}: {len(found)} studies, {path.stat().st_size / 1e6:.1f} MB in {path}", file=sys.stderr)
+    if given.json:
+        studies = [stored.study for stored in found]
+        done = {"status": "done", "page": path, "studies": studies, "missing": missing, "faults": faults}
+        print(json_text({**answer, **done, "exit_code": 0}))
+    return 0
 
 
 if __name__ == "__main__":

@@ -51,8 +51,7 @@ hit = collisions(beam, motion)[0]
 print(f"effective restitution {hit.restitution:.2f}, delay {1e3 * hit.delay:.2f} ms, kick {hit.kick:.2f}")
 
 # %% How far below grazing the orbit lives on: followed to its fold
-from contact.orbits.continuation import fold_of
-from contact.orbits.shooting import Shooting
+from contact.orbits import Shooting, fold_of
 
 fold = fold_of(Shooting(oscillator=beam, period=4))
 assert fold is not None
@@ -61,7 +60,7 @@ print(f"p4 ends {-100 * fold.excess:.2f} % below grazing; Floquet multiplier {fo
 # %% The picture: ball and plate over one orbit
 from pathlib import Path
 
-from studies.instruments.figures import PALETTE, house_style, label, new_figure, points, save
+from studies.plotting import PALETTE, house_style, label, new_figure, points, save
 
 figure, axes = new_figure()
 axes.plot(1e3 * (times - settled.time), 1e3 * motion.displacement @ model.phi, color=PALETTE[0], label="ball")

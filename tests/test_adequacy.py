@@ -19,9 +19,18 @@ from studies.instruments.adequacy.needed import Search, needed
 from studies.instruments.adequacy.rows import measured_row
 from studies.instruments.scene import Scene
 from studies.instruments.scene_file import read_scene
-from studies.transitions import NEEDS
+
+NEEDS = (
+    Need(quantity="born_period", tolerance=0.0, everywhere=True),
+    Need(quantity="fold", tolerance=0.07, everywhere=True),
+)
 
 LETTER = read_scene()
+#: Of the heavy ball and of the soft contact.
+pytestmark = pytest.mark.filterwarnings(
+    "ignore:mass of the tip:beam.SuspiciousValue", "ignore:(youngs|other)_modulus:beam.SuspiciousValue"
+)
+
 SCENES = {
     "letter": (LETTER, 22.2),
     "bare tip": (LETTER.replace({"tip.mass_kg": 0.0}), 22.2),

@@ -8,23 +8,6 @@ import mpmath as mp
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from contact.hertz_lanes import (
-    ROOT,
-    contact_work,
-    lane_arrays,
-    lane_series,
-    lane_state,
-    speed_scale,
-)
-from contact.hertz_series import (
-    HERTZ_ORDER,
-    evaluate,
-    hertz_series,
-    hertz_state,
-    hertz_step,
-)
-from contact.hertz_step import lane_step
-from contact.modal_flow import mode_rows, scalars_of
 
 from contact.event_loop import STATE
 from contact.flight.elementary import exponential, sine_cosine

@@ -21,6 +21,7 @@ import numpy as np
 import contact
 from beam import ModalModel, single_mode
 from contact import ContactLaw, HarmonicDrive, ImpactOscillator, State, Stop, StroboscopicMap
+from contact import orbits as periodic
 from contact.errors import ContactError
 from contact.integrators import (
     CentralDifference,
@@ -38,8 +39,6 @@ from contact.laws import (
     NewtonRestitution,
 )
 from contact.orbits import continuation, kick, lyapunov, shooting, single_impact
-from studies.instruments import settling
-from studies.instruments.periodicity import settle
 
 ROOT = Path(__file__).parent.parent
 LONGEST = 120.0
@@ -49,9 +48,13 @@ GAP = 0.0107
 LAWS: dict[str, ContactLaw] = {
     "newton": NewtonRestitution(local_restitution=0.1),
     "delayed": DelayedRestitution(restitution=0.1, delay=1e-4),
-    "delayed by table": DelayedRestitution(restitution=lambda v: 0.3 / (1 + v), delay=lambda v: 2e-4 *
-    v**0.2), "linear": LinearContact(stiffness=1e7), "dashpot": LinearContact(stiffness=1e7, damping=100.0),
-    "hertz": HertzContact(stiffness=1e9), "hunt-crossley": HuntCrossley(stiffness=1e9, dissipation=0.3),
+    "delayed by table": DelayedRestitution(
+        restitution=lambda v: 0.3 / (1 + v), delay=lambda v: 2e-4 * v**0.2
+    ),
+    "linear": LinearContact(stiffness=1e7),
+    "dashpot": LinearContact(stiffness=1e7, damping=100.0),
+    "hertz": HertzContact(stiffness=1e9),
+    "hunt-crossley": HuntCrossley(stiffness=1e9, dissipation=0.3),
 }
 EXTREME: dict[str, ContactLaw] = {
     "plastic": NewtonRestitution(local_restitution=0.0),
@@ -71,13 +74,15 @@ WITHOUT_A_LAW = {
     # objects, and the closed forms of the letter's map
     "Band", "Branch", "Chatter", "Collision", "ContactError", "ContactLaw", "ContactTooStiff",
     "DelayedRestitution", "Differentiable", "Event", "Exponents", "HarmonicDrive", "HertzContact",
-    "HuntCrossley", "ImpactOscillator", "Impacts", "Kick", "KickOrbit", "LinearContact", "MaximalFlight",
+    "HuntCrossley", "ImpactKind", "ImpactOscillator", "Impacts", "Kick", "KickOrbit", "LinearContact",
+    "MaximalFlight", "OrbitDiagram", "OrbitEnd", "Regime", "Settled",
     "MaximalOrbit", "NewtonRestitution", "NordmarkMap", "NotPeriodic", "State", "Stop", "StrobedMap",
     "StrobedNordmarkMap", "StrobedOrbit", "Trajectory", "UnresolvedCrossing", "band", "bands", "fold",
     "maximal_orbits", "maximal_period", "maximal_periods", "modal_flow", "of_nordmark", "stable_range",
 }  # fmt: skip
-COMPUTING = ("KickFamily", "MaximalFamily", "PeriodicOrbit", "Shooting", "SingleImpactOrbit",
-"StroboscopicMap")
+COMPUTING = (
+    "KickFamily", "MaximalFamily", "PeriodicOrbit", "Shooting", "SingleImpactOrbit", "StroboscopicMap"
+)  # fmt: skip
 
 
 def oscillator_of(law: ContactLaw, modes: int, frequency: float = 22.2) -> ImpactOscillator:
@@ -86,8 +91,8 @@ def oscillator_of(law: ContactLaw, modes: int, frequency: float = 22.2) -> Impac
     else:
         omega = np.array([154.0, 963.0])
         model = ModalModel(
-            omega=omega, decay_rate=0.02 * omega, phi=np.array([1.0, -0.8]), participation=np.array([1.0,
-            0.3])
+            omega=omega, decay_rate=0.02 * omega, phi=np.array([1.0, -0.8]),
+            participation=np.array([1.0, 0.3]),
         )
     return ImpactOscillator(
         model=model, stop=Stop(gap=GAP, law=law), drive=HarmonicDrive(frequency=frequency)
@@ -103,12 +108,14 @@ def motions(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], ob
     yield "StroboscopicMap.at", lambda: strobed.at(0.1)
     yield "StroboscopicMap.steady", strobed.steady
     for state in (strobed.steady(), fast):
-        run = contact.simulate
-        yield "simulate", lambda state=state: run(driven, state, periods=5, times=np.linspace(0.0, 0.2, 50))
+        yield "simulate", lambda state=state: contact.simulate(
+            driven, state, periods=5, times=np.linspace(0.0, 0.2, 50)
+        )
         yield "collisions", lambda state=state: contact.collisions(
             driven, contact.simulate(driven, state, periods=5), unfinished="drop"
         )
         yield "first_collision", lambda state=state: contact.first_collision(driven, state, periods=5)
+        yield "StroboscopicMap.step", lambda state=state: strobed.step(state)
         yield "StroboscopicMap.orbit", lambda state=state: strobed.orbit(state, 20)
         yield "strobed_orbits", lambda state=state: contact.strobed_orbits([strobed] * 2, [state] * 2, 20)
         for exponents in (lyapunov.map_exponents, lyapunov.orbit_exponents):
@@ -117,8 +124,18 @@ def motions(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], ob
         yield "divergence_rate", lambda state=state: lyapunov.divergence_rate(
             lyapunov.of_oscillator(strobed), state, 0.2
         )
-        yield "settle", lambda state=state: settle(strobed, state, most_cycles=256)
-        yield "settle_on_orbit", lambda state=state: settling.settle_on_orbit(strobed, state, most_cycles=256)
+        for prove in (True, False):
+            yield "settle", lambda state=state, prove=prove: periodic.settle(
+                strobed, state, most_cycles=256, prove=prove
+            )
+        yield "orbit_diagram", lambda state=state: periodic.orbit_diagram(
+            strobed, [1e-3, -1e-3], state, observe=strobed.tip, settle_cycles=128
+        )
+        yield "orbit_end", lambda state=state: periodic.orbit_end(strobed, state, 0.02, most_cycles=256)
+    yield "born", lambda: periodic.born(strobed, most_cycles=256)
+    yield "born_period", lambda: periodic.born_period(strobed, most_cycles=256)
+    run = strobed.orbit(strobed.steady(), 20)
+    yield "period_of", lambda: periodic.period_of(run.points, run.impacts, largest_period=8, tolerance=1e-9)
     for method in (
         SampledFlight(points=64), Splitting(step=1e-5), CentralDifference(step=1e-5), MoreauJean(step=1e-5),
         GeneralisedAlpha(step=1e-5), NonsmoothGeneralisedAlpha(step=1e-5, rho=0.9),
@@ -156,6 +173,9 @@ def orbits(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], obj
     yield "KickFamily.fold", lambda: kicks.fold()
     yield "fold_of", lambda: continuation.fold_of(family)
     yield "fold_of", lambda: continuation.fold_of(family, family.at_speed(0.1 * unit))
+    yield "folds_of", lambda: periodic.folds_of(family)
+    yield "lowest_of", lambda: periodic.lowest_of(family)
+    yield "first_event", lambda: periodic.first_event(family, family.at_speed(0.1 * unit), -0.5)
     yield "fold_along_frequency", lambda: continuation.fold_along_frequency(family, np.array([22.2]))
     several = shooting.Shooting(oscillator=oscillator, period=2, impacts=3)
     yield "Shooting.at_speed", lambda: several.at_speed(0.1 * unit)
@@ -204,7 +224,7 @@ def run_all(said: Callable[[str], None]) -> None:
 def public_names() -> set[str]:
     """Public functions, and public methods of the classes that compute."""
     names: set[str] = set()
-    for module in (contact, kick, shooting, continuation, lyapunov, single_impact):
+    for module in (contact, periodic, kick, shooting, continuation, lyapunov, single_impact):
         for name in module.__all__:
             found: Any = getattr(module, name)
             if name in COMPUTING:
@@ -233,7 +253,7 @@ def test_every_public_call_comes_back() -> None:
     # nothing public is left out
     called = {row[2] for row in rows}
     closed = {name for name in public_names() if name.split(".")[0] in ("MaximalFamily", "SingleImpactOrbit")}
-    assert public_names() - WITHOUT_A_LAW - closed == called - closed - {"settle", "settle_on_orbit"}
+    assert public_names() - WITHOUT_A_LAW - closed == called - closed
 
 
 def test_a_call_that_does_not_come_back_is_named() -> None:

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from beam.frequency_equation import UniformBeam, exact_modes
-from beam.reduction import ModalModel, single_mode
+from beam import ModalModel, UniformBeam, exact_modes, single_mode
 from contact.collision import Collision, before_collision, collisions, first_collision
 from contact.drive import HarmonicDrive
 from contact.laws import (

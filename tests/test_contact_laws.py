@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from beam.reduction import ModalModel, single_mode
+from beam import ModalModel, SuspiciousValue, single_mode
 from contact.drive import HarmonicDrive
 from contact.errors import ContactTooStiff, UnresolvedCrossing
 from contact.laws import (
@@ -164,9 +164,9 @@ def test_hertz_stiffness_of_two_bodies_is_symmetric_and_adds_compliances():
     assert mixed < pure[1].stiffness
     bigger = HertzContact.of_bodies(**numbers | dict(radius=4e-3))
     assert bigger.stiffness == pytest.approx(2 * mixed, rel=1e-15)
-    assert HertzContact.of_bodies(**numbers | dict(other_modulus=1e25)).stiffness == pytest.approx(
-        4 / 3 * math.sqrt(1e-3) * 70e9 / (1 - 0.33**2), rel=1e-13
-    )
+    with pytest.warns(SuspiciousValue, match="other_modulus"):
+        rigid = HertzContact.of_bodies(**numbers | dict(other_modulus=1e25)).stiffness
+    assert rigid == pytest.approx(4 / 3 * math.sqrt(1e-3) * 70e9 / (1 - 0.33**2), rel=1e-13)
 
 
 # --------------------------------------------------------------------------------- one contact at a time
@@ -546,7 +546,7 @@ def one_sentence(error: BaseException, *words: str) -> None:
 def test_law_without_a_stiffness_is_refused(make, unit, value):
     with pytest.raises((ValueError, TypeError)) as caught:
         make(value)
-    one_sentence(caught.value, f"stiffness of the contact is {value} {unit}", "above zero")
+    one_sentence(caught.value, f"stiffness of the contact is {value!r}", unit, "above zero")
 
 
 @pytest.mark.parametrize("value", [-1e-300, *NO_NUMBERS], ids=repr)
@@ -560,17 +560,17 @@ def test_law_without_a_stiffness_is_refused(make, unit, value):
 def test_negative_damping_is_refused(make, words, value):
     with pytest.raises((ValueError, TypeError)) as caught:
         make(value)
-    one_sentence(caught.value, f"{words[0]} is {value} {words[1]}", "zero or more")
+    one_sentence(caught.value, f"{words[0]} is {value!r}", words[1], "zero or more")
 
 
 @pytest.mark.parametrize("value", [-1e-12, 1.0000001, *NO_NUMBERS], ids=repr)
 def test_restitution_outside_its_range_is_refused(value):
     with pytest.raises((ValueError, TypeError)) as caught:
         NewtonRestitution(local_restitution=value)
-    one_sentence(caught.value, f"local_restitution is {value}", "between 0 and 1")
+    one_sentence(caught.value, f"local_restitution is {value!r}", "between 0 and 1")
     with pytest.raises((ValueError, TypeError)) as caught:
         HuntCrossley.with_restitution(stiffness=1e6, restitution=value, velocity=1.0)
-    one_sentence(caught.value, f"restitution is {value}", "above 0")
+    one_sentence(caught.value, f"restitution is {value!r}", "above zero")
     with pytest.raises((ValueError, TypeError)) as caught:
         DelayedRestitution(restitution=value, delay=0.0)
     one_sentence(caught.value, "restitution")
@@ -582,11 +582,11 @@ def test_plastic_rebound_has_no_hunt_crossley_law():
     for restitution in (0.0, -0.5):
         with pytest.raises(ValueError) as caught:
             HuntCrossley.with_restitution(stiffness=1e6, restitution=restitution, velocity=1.0)
-        one_sentence(caught.value, f"restitution is {restitution}", "above 0")
+        one_sentence(caught.value, f"restitution is {restitution}", "above zero")
     for velocity in (0.0, -1.0, math.nan, "fast"):
         with pytest.raises((ValueError, TypeError)) as caught:
             HuntCrossley.with_restitution(stiffness=1e6, restitution=0.5, velocity=velocity)
-        one_sentence(caught.value, f"velocity is {velocity} m/s", "above zero")
+        one_sentence(caught.value, f"velocity is {velocity!r}", "m/s", "above zero")
 
 
 @pytest.mark.parametrize(
@@ -628,7 +628,7 @@ def test_wrong_bodies_are_named(name):
     for value in (-1.0, math.nan, "hard", 0.5000001 if ratio else 0.0):
         with pytest.raises((ValueError, TypeError)) as caught:
             HertzContact.of_bodies(**numbers | {name: value})
-        one_sentence(caught.value, f"{name} is {value}")
+        one_sentence(caught.value, f"{name} is {value!r}")
     if ratio:
         assert HertzContact.of_bodies(**numbers | {name: 0.5}).stiffness > 0
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.drive import HarmonicDrive
 from contact.flight.crossing import CROSSES, FREE, GRAZE_TOLERANCE, GRAZES, UNRESOLVED, first_crossing
 from contact.flight.elementary import EPS
@@ -614,6 +614,7 @@ def test_tip_on_the_wall_within_rounding_is_told_by_its_velocity(speed):
 # ------------------------------------------------------------------------------------- loads, and brute force
 
 
+@pytest.mark.filterwarnings("ignore:gap is 3 m:beam.SuspiciousValue")
 @pytest.mark.parametrize("decay", [0.0, 0.5, 20.0])
 def test_falling_body_reaches_the_ground(decay):
     """A mode of zero frequency under a constant load: no bound of its displacement, the search samples it."""
@@ -638,7 +639,7 @@ def test_thrown_body_turns_just_above_or_below_the_stop():
     """x = v s - g s^2/2 turns at v^2/2g: planted heights in closed form, free of the judge."""
     model = ModalModel(omega=[0.0], decay_rate=[0.0], phi=[1.0], participation=[0.0])
     for h in PLANTED:
-        gap = 2.0
+        gap = 1.0
         stop = Stop(gap=gap, law=NewtonRestitution(local_restitution=0.7))
         motion = ImpactOscillator(model=model, stop=stop, load=np.array([-8.0])).motion()
         # v^2/16 = gap (1 + h)

@@ -6,6 +6,7 @@ Eq. (1) with a gap of 10.7 mm; laws with constant and with tabulated numbers.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from contact.laws import ContactLaw, DelayedRestitution, NewtonRestitution
 from contact.maximal_orbits import band
 from contact.maximal_orbits import fold as fold_of_map
 from contact.nordmark import NordmarkMap
+from contact.orbits import orbit_end, settle
 from contact.orbits.continuation import fold_of, follow
 from contact.orbits.kick import KickFamily
 from contact.orbits.lyapunov import of_oscillator, orbit_exponents
@@ -27,8 +29,6 @@ from contact.simulation import simulate
 from contact.stop import Stop
 from contact.stroboscope import StroboscopicMap
 from contact.trajectory import State
-from studies.instruments.fold_scan import orbit_end
-from studies.instruments.settling import settle_on_orbit
 
 T, MU, TAU, GAP = 40.80e-3, 3.56, 0.1, 0.0107
 LAWS = {
@@ -153,10 +153,9 @@ def test_folds_are_those_of_the_closed_form_and_of_a_downward_scan(
         assert fold.amplitude == pytest.approx(math.sqrt(none - one * one / (4.0 * two)), rel=1e-13)
     node = family.at_speed(1.3 * fold.speed)
     assert node.stable and node.admissible and node.excess > fold.excess
-    start = StroboscopicMap(oscillator=node.oscillator).orbit(node.strobe_state(), 1).end
     end = orbit_end(
-        StroboscopicMap(oscillator=oscillator), State(displacement=start.displacement,
-        velocity=start.velocity), node.excess, most_cycles=4000, relative=1e-2,
+        StroboscopicMap(oscillator=oscillator), replace(node.strobe_state(), time=0.0), node.excess,
+        most_cycles=4000, relative=1e-2,
     )  # fmt: skip
     assert end.lost < fold.excess < end.held
 
@@ -165,19 +164,32 @@ def test_events_of_a_branch_are_seen_by_the_simulation() -> None:
     oscillator = equation_1(22.20, LAWS["constant"])
     family = Shooting(oscillator=oscillator, period=5)
     fold = fold_of(family)
-    branch = follow(family, family.at_speed(1.5 * fold.speed), low=0.5 * fold.speed, high=0.6 * unit_speed(22.2))
+    start, high = family.at_speed(1.5 * fold.speed), 0.6 * unit_speed(22.2)
+    branch = follow(family, start, low=0.5 * fold.speed, high=high)
     assert branch.of_kind("fold")[0].excess == pytest.approx(fold.excess, abs=1e-13)
     (graze,) = branch.of_kind("grazing")
     before, after = (family.at_speed(graze.speed * part, graze) for part in (0.999, 1.001))
     assert (before.admissible, after.admissible) == (True, False)
     assert (touches(before), touches(after)) == (1, 2)
-    # a strong rebound doubles the period
-    elastic = Shooting(oscillator=equation_1(21.50, LAWS["elastic"]), period=4)
-    start = elastic.at_speed(0.55 * unit_speed(21.5))
-    branch = follow(elastic, start, low=0.4 * unit_speed(21.5), high=1.2 * unit_speed(21.5))
-    assert branch.of_kind("period doubling")
-    for doubled in branch.of_kind("period doubling"):
-        assert np.min(np.abs(doubled.multipliers + 1.0)) < 1e-7
+
+
+def test_a_period_doubling_is_seen_by_the_simulation() -> None:
+    family = Shooting(oscillator=equation_1(22.20, LAWS["constant"]), period=4)
+    unit = unit_speed(22.20)
+    branch = follow(family, family.at_speed(0.36 * unit), low=0.3 * unit, high=0.45 * unit)
+    (doubled,) = branch.of_kind("period doubling")
+    assert abs(doubled.multipliers[0] + 1.0) < 1e-7
+    for part, stable in ((0.99, False), (1.01, True)):
+        orbit = family.at_speed(part * doubled.speed, doubled)
+        assert orbit.stable == stable and orbit.admissible
+        # a small change at the strobe alternates in sign from one period to the next, and grows or shrinks
+        strobed, start = StroboscopicMap(oscillator=orbit.oscillator), orbit.strobe_state()
+        begin = State(displacement=start.displacement + 1e-7 * GAP, velocity=start.velocity)
+        ends = [strobed.orbit(begin, 4 * n).end for n in (3, 4, 13, 14)]
+        steps = [float(end.displacement[0] - start.displacement[0]) for end in ends]
+        assert steps[0] * steps[1] < 0.0
+        assert (abs(steps[3]) > abs(steps[1])) == (not stable)
+        assert steps[3] / steps[2] == pytest.approx(orbit.multipliers[0].real, rel=1e-4)
 
 
 @pytest.mark.parametrize(("frequency", "part"), [(22.20, 0.8), (20.90, 0.9), (23.40, 0.9)])
@@ -189,7 +201,7 @@ def test_a_motion_settles_on_its_orbit_though_the_strobe_falls_into_the_wait(
         oscillator=equation_1(frequency, DelayedRestitution(restitution=0.1, delay=part / frequency))
     ).at(0.3)
     fast = State(displacement=np.zeros(1), velocity=np.array([2.0]))
-    settled = settle_on_orbit(strobed, fast, most_cycles=4000)
+    settled = settle(strobed, fast, most_cycles=4000)
     assert settled.period > 1 and settled.impacts == 1
     family = Shooting(oscillator=strobed.oscillator, period=settled.period)
     state = settled.end
@@ -217,7 +229,7 @@ def test_exponents_are_the_logarithms_of_the_multipliers() -> None:
 def test_two_touches_with_a_wait_each(excess: float) -> None:
     oscillator = equation_1(22.20, DelayedRestitution(restitution=0.1, delay=2e-3))
     strobed = StroboscopicMap(oscillator=oscillator)
-    settled = settle_on_orbit(strobed.at(excess), strobed.at(-1e-3).steady(), most_cycles=2000)
+    settled = settle(strobed.at(excess), strobed.at(-1e-3).steady(), most_cycles=2000)
     assert (settled.period, settled.impacts) == (6, 2)
     family = Shooting(oscillator=oscillator.with_excess(excess), period=6, impacts=2)
     orbit = family.from_state(settled.end)
@@ -231,7 +243,7 @@ def test_two_touches_with_a_wait_each(excess: float) -> None:
 
 @pytest.mark.parametrize(("frequency", "period"), PLACES)
 def test_a_short_delay_lifts_slow_orbits_as_in_the_map(frequency: float, period: int) -> None:
-    """rho(X) = (a X^2 + b (X - d))/c: at X = 0 the delay alone is left, -b d/c, up to the order of delay^2."""
+    """rho(X) = (a X^2 + b (X - d))/c: at X = 0 the delay alone is left, -b d/c, to first order."""
     nordmark = NordmarkMap.from_frequencies(
         drive_frequency=frequency, free_period=T, decay_rate=MU, restitution=TAU
     )
@@ -288,7 +300,7 @@ def test_the_fold_shifts_by_the_maps_part_of_the_hysteresis_at_a_band_edge(perio
 
 
 def test_a_wait_longer_than_the_free_return_holds_the_tip_and_feeds_the_motion() -> None:
-    """Slower than a delay/2 the tip is held while it would fly off: period 1 far below grazing, as simulated."""
+    """Slower than a delay/2 the tip is held while it would fly off: period 1 far below grazing."""
     frequency, delay = 23.40, 2e-3
     slow = 0.5 * deceleration(frequency) * delay
     family = Shooting(

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import ast
 import dataclasses
 import importlib
 import inspect
 import pkgutil
 import re
-from pathlib import Path
 
 import pytest
 
@@ -16,7 +14,6 @@ import beam
 import contact
 import studies
 
-ROOT = Path(studies.__file__).parent
 MODULES = [
     info.name
     for package in (beam, contact)
@@ -64,13 +61,3 @@ def test_fields_and_parameters_of_public_names_are_explained(package):
 @pytest.mark.parametrize("package", [beam, contact, studies], ids=lambda package: package.__name__)
 def test_help_opens_with_a_page_on_the_subject(package):
     assert len((package.__doc__ or "").split()) > 150
-
-
-@pytest.mark.parametrize("path", sorted(ROOT.glob("[a-z]*.py")), ids=lambda path: path.stem)
-def test_a_study_says_its_run_time_command_and_output(path):
-    text = path.read_text(encoding="utf-8")
-    if path.stem == "published":
-        return
-    told = " ".join((ast.get_docstring(ast.parse(text)) or "").split())
-    for word in ("run time", "command", "output"):
-        assert word in told.lower(), f"{path.name} does not tell its {word}"

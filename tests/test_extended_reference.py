@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from mpmath import mp
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.collision import before_collision, first_collision
 from contact.drive import HarmonicDrive
 from contact.laws import ContactLaw, HertzContact, HuntCrossley, LinearContact, NewtonRestitution

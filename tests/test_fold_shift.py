@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.drive import HarmonicDrive
 from contact.integrators import CentralDifference
 from contact.laws import HuntCrossley, NewtonRestitution

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.drive import HarmonicDrive
 from contact.errors import StepTooLarge
 from contact.integrators.amplification import factors, stable
@@ -172,8 +172,8 @@ def test_flight_multiplies_by_the_roots(form: int) -> None:
     model = ModalModel(
         omega=np.array([150.0]), decay_rate=np.array([9.0]), phi=np.ones(1), participation=np.ones(1)
     )
-    spring = ImpactOscillator(model=model, stop=Stop(gap=10.0, law=SPRING))
-    start = State(displacement=np.array([1.0]), velocity=np.array([30.0]))
+    spring = ImpactOscillator(model=model, stop=Stop(gap=1.0, law=SPRING))
+    start = State(displacement=np.array([0.1]), velocity=np.array([3.0]))
     times = method.step * np.arange(1, 12)
     motion = simulate(spring, start, duration=12e-3, times=times, method=method).displacement[:, 0]
     polynomial = np.poly(factors(method.numbers, 0.150, 0.009))

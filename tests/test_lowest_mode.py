@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.drive import HarmonicDrive
 from contact.flight.bounds import CLOSE, LowestMode, free_from, free_until, lowest_mode, without_others
 from contact.flight.crossing import CROSSES, FREE, first_crossing

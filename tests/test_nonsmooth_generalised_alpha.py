@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.drive import HarmonicDrive
 from contact.integrators.generalised_alpha import GeneralisedAlpha, chung_hulbert
 from contact.integrators.moreau_jean import MoreauJean

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import pairwise
-from types import SimpleNamespace
 
 import mpmath as mp
 import numpy as np
 import pytest
 
+from beam import ModalModel
+from contact import HarmonicDrive, ImpactOscillator, LinearContact, NewtonRestitution, Stop
 from contact.maximal_orbits import (
     band,
     bands,
@@ -294,15 +296,17 @@ def test_overdamped_map_adds_periods_and_has_no_fold() -> None:
 
 def test_map_of_an_oscillator() -> None:
     omega = math.hypot(2 * math.pi / T, MU / 2)
-    law = SimpleNamespace(local_restitution=TAU)
-    oscillator = SimpleNamespace(
-        model=SimpleNamespace(omega=np.array([omega, 900.0]), decay_rate=np.array([MU, 9.0])),
-        drive=SimpleNamespace(frequency=21.5),
-        stop=SimpleNamespace(gap=0.01, law=law),
+    oscillator = ImpactOscillator(
+        model=ModalModel(
+            omega=np.array([omega, 900.0]), decay_rate=np.array([MU, 9.0]), phi=np.ones(2),
+            participation=np.ones(2),
+        ),
+        drive=HarmonicDrive(frequency=21.5),
+        stop=Stop(gap=0.01, law=NewtonRestitution(local_restitution=TAU)),
     )
     assert NordmarkMap.from_oscillator(oscillator) == letter_map(21.5)
     assert NordmarkMap.from_oscillator(oscillator, restitution=0.4) == letter_map(21.5, restitution=0.4)
-    oscillator.stop.law = SimpleNamespace(stiffness=1e6)
+    oscillator = replace(oscillator, stop=Stop(gap=0.01, law=LinearContact(stiffness=1e6)))
     with pytest.raises(TypeError, match="restitution"):
         NordmarkMap.from_oscillator(oscillator)
 

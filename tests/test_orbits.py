@@ -20,18 +20,29 @@ from contact.laws import (
     LinearContact,
     NewtonRestitution,
 )
-from contact.orbits.continuation import fold_along_frequency, fold_of, follow
-from contact.orbits.kick import KickFamily
-from contact.orbits.shooting import PeriodicOrbit, Shooting
-from contact.orbits.single_impact import MaximalFamily
+from contact.maximal_orbits import fold
+from contact.nordmark import NordmarkMap, StrobedNordmarkMap
+from contact.orbits import (
+    KickFamily,
+    MaximalFamily,
+    PeriodicOrbit,
+    Settled,
+    Shooting,
+    born,
+    fold_along_frequency,
+    fold_of,
+    folds_of,
+    follow,
+    lowest_of,
+    orbit_end,
+    settle,
+)
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
-from contact.stroboscope import StroboscopicMap
+from contact.stroboscope import StrobedOrbit, StroboscopicMap
 from contact.trajectory import State
-from studies.instruments.fold_scan import orbit_end
-from studies.instruments.oscillators import hertz_of
-from studies.instruments.periodicity import Settled, settle
+from studies.instruments.oscillators import beam_of, hertz_of
 from studies.instruments.scene_file import read_scene
 from studies.instruments.spring_of_scene import model_of
 
@@ -192,6 +203,67 @@ def test_fold_and_second_impact_of_equation_1(
         assert beside.admissible == (expected == 1)
 
 
+def test_where_contact_is_soft_a_branch_has_several_folds() -> None:
+    """The letter's spring with 12 modes at 23.05 Hz: a pair of folds close together, found from no kick fold
+    and from any orbit; below them the branch goes on to the graze of a second touch."""
+    scene = read_scene("letter", ["modes.count=12"])
+    oscillator = beam_of(scene, 23.05, model_of(scene))
+    family = Shooting(oscillator=oscillator, period=8)
+    upper, lower = folds_of(family)
+    assert (upper.excess, lower.excess) == pytest.approx((8.944156e-6, 8.913082e-6), rel=1e-6)
+    for orbit in (upper, lower):
+        assert orbit.admissible and np.min(np.abs(orbit.multipliers - 1)) < 1e-6
+        # one solution of the equations on either side of the fold in speed, at amplitudes on one side only
+        beside = [family.at_speed(orbit.speed * factor, orbit).excess for factor in (0.99, 1.01)]
+        assert (beside[0] - orbit.excess) * (beside[1] - orbit.excess) > 0
+    assert KickFamily(oscillator=oscillator, period=8).fold() is None
+    assert fold_of(family).excess == pytest.approx(lower.excess, abs=1e-14)
+    far = family.at_speed(0.3 * unit_speed(oscillator))
+    assert fold_of(family, far).excess == pytest.approx(lower.excess, abs=1e-14)
+    # however long the steps of the branch
+    for step in (0.05, 0.21, 0.47):
+        branch = follow(family, far, low=1e-3 * unit_speed(oscillator), high=2 * far.speed, step=step)
+        assert [orbit.excess for orbit in branch.of_kind("fold")] == pytest.approx(
+            [upper.excess, lower.excess], abs=1e-14
+        )
+    lowest = lowest_of(family)
+    assert lowest.kind == "grazing" and lowest.orbit.excess == pytest.approx(1.308624e-6, rel=1e-6)
+    assert [touches(family.at_speed(lowest.orbit.speed * x, lowest.orbit)) for x in (1.001, 0.999)] == [1, 2]
+
+
+def test_below_its_lowest_fold_a_branch_can_go_on_to_a_graze() -> None:
+    """A straight leaf with a ball of 2 g, 20 modes, 23.05 Hz: p8 folds at 1.17e-6, turns at 2.99e-6 and lives
+    on, stable, to 4.6e-7; there settled motions say so, too."""
+    thickness = "spring.thickness_m=0.9439314446e-3"  # the period of the letter, 40.80 ms
+    scene = read_scene(
+        "letter", ["modes.count=20", "spring.kind=cantilever", "tip.mass_kg=0.002", thickness]
+    )
+    oscillator = beam_of(scene, 23.05, model_of(scene))
+    family = Shooting(oscillator=oscillator, period=8)
+    upper, lower = folds_of(family)
+    assert upper.speed < lower.speed and lower.excess < upper.excess
+    assert (upper.excess, lower.excess) == pytest.approx((2.98682e-6, 1.17366e-6), rel=1e-4)
+    assert fold_of(family).excess == pytest.approx(lower.excess, abs=1e-14)
+    lowest = lowest_of(family)
+    assert lowest.kind == "grazing" and lowest.orbit.excess == pytest.approx(4.6325e-7, rel=1e-4)
+    start = family.at_speed(1.02 * lowest.orbit.speed, lowest.orbit)
+    assert start.stable and lowest.orbit.excess < start.excess < lower.excess
+    strobed = StroboscopicMap(oscillator=oscillator)
+    for part, impacts in ((1.2, 1), (1.01, 1), (0.99, 2)):
+        excess = part * lowest.orbit.excess
+        run = settle(
+            strobed.at(excess), start.strobe_state(), most_cycles=4000, tolerance=1e-3 * excess, prove=False
+        )
+        assert (run.period, run.impacts) == (8, impacts)
+
+
+def test_in_the_usual_case_the_lowest_orbit_is_the_fold(spring: ModalModel) -> None:
+    family = Shooting(oscillator=beam(spring, 22.20, HERTZ), period=5)
+    fold, lowest = fold_of(family), lowest_of(family)
+    assert lowest.kind == "fold" and lowest.orbit.excess == fold.excess < -1e-4
+    assert min(orbit.excess for orbit in folds_of(family)) == pytest.approx(fold.excess, abs=1e-14)
+
+
 def test_one_amplitude_has_an_orbit_on_each_arm() -> None:
     oscillator = equation_1(21.50)
     family = Shooting(oscillator=oscillator, period=4)
@@ -325,10 +397,85 @@ def test_folds_against_a_downward_scan(spring: ModalModel, frequency: float, per
     )
     fold = fold_of(Shooting(oscillator=oscillator, period=period))
     assert end.lost < fold.excess < end.held
+    assert end.kind == "fold" and end.excess == pytest.approx(fold.excess, abs=1e-14)
     assert apart(fold.multipliers[:1], np.ones(1)) < 1e-7
     kick = KickFamily(oscillator=oscillator, period=period).fold()
     assert kick.excess == pytest.approx(fold.excess, rel=0.015)
     assert kick.kick.speed == pytest.approx(fold.speed, rel=0.05)
+
+
+def test_an_end_by_period_doubling_is_named_and_exact() -> None:
+    """p1 of a hard wall of restitution 0.7: the scan downwards ends where a multiplier passes -1."""
+    oscillator = equation_1(20.90, NewtonRestitution(local_restitution=0.7))
+    family, unit = Shooting(oscillator=oscillator, period=1), unit_speed(oscillator)
+    branch = follow(family, family.at_speed(1.0 * unit), low=0.5 * unit, high=1.5 * unit)
+    (doubled,) = branch.of_kind("period doubling")
+    start = family.at_speed(1.1 * doubled.speed, doubled)
+    end = orbit_end(
+        StroboscopicMap(oscillator=oscillator), start.strobe_state(), start.excess, most_cycles=4000
+    )
+    assert end.kind == "period doubling" and end.lost < end.excess < end.held
+    assert end.excess == pytest.approx(doubled.excess, rel=1e-9)
+
+
+def test_an_orbit_doubles_its_period_before_a_hard_touch_is_lost() -> None:
+    """Eq. (1), 20.90 Hz: p3 has a second touch above 0.0891 and would lose it there on the way down, but next
+    to the graze its derivative has no bound, and it doubles its period just before."""
+    oscillator = equation_1(20.90)
+    single = Shooting(oscillator=oscillator, period=3)
+    (graze,) = follow(single, single.at_speed(100.0), low=90.0, high=140.0).of_kind("grazing")
+    strobed = StroboscopicMap(oscillator=oscillator)
+    end = orbit_end(strobed, settled(oscillator, 0.1).end, 0.1, most_cycles=4000)
+    assert (end.impacts, end.kind) == (2, "period doubling") and end.lost < end.excess < end.held
+    assert 0.0 < end.excess / graze.excess - 1.0 < 0.02
+
+
+@pytest.mark.parametrize("first_step", [1e-6, 2e-4, 5e-2])
+@pytest.mark.parametrize("relative", [0.03, 1e-3])
+def test_no_bracket_closes_because_a_long_step_fell_off(first_step: float, relative: float) -> None:
+    """The exact end lies in the bracket, which one last step has made, however the scan came there."""
+    for frequency, period, excess, _second, _digit in EQUATION_1:
+        oscillator = equation_1(frequency)
+        nordmark = NordmarkMap.from_oscillator(oscillator)
+        for strobed, exact in (
+            (StroboscopicMap(oscillator=oscillator), excess),
+            (StrobedNordmarkMap(map=nordmark), nordmark.excess(fold(nordmark, period).rho)),
+        ):
+            start = born(strobed)
+            end = orbit_end(
+                strobed, start.end, 1e-3, most_cycles=1000, relative=relative, first_step=first_step
+            )
+            assert (end.period, end.impacts, end.kind) == (period, 1, "fold")
+            assert end.lost <= exact <= end.held
+            assert end.held - end.lost <= 1.0001 * max(relative * abs(end.held), 1e-7)
+            assert end.excess == pytest.approx(exact, rel=2e-10)
+
+
+def test_an_end_that_nothing_can_make_exact_is_a_bracket() -> None:
+    """x -> x^2 + c loses its fixed point with c = -3/4 (1 - excess) by a doubling, at excess 0."""
+
+    class Square:
+        scale = 1.0
+
+        def __init__(self, c: float) -> None:
+            self.c = c
+
+        def at(self, excess: float) -> Square:
+            return Square(-0.75 * (1.0 - excess))
+
+        def steady(self) -> float:
+            return -0.4
+
+        def orbit(self, state: float, count: int) -> StrobedOrbit[float]:
+            points = np.empty((count, 1))
+            for i in range(count):
+                state = state * state + self.c
+                points[i] = state
+            return StrobedOrbit(end=state, points=points, impacts=np.ones(count, dtype=int))
+
+    end = orbit_end(Square(0.0), -0.4, 0.3, most_cycles=20_000, absolute=1e-2)
+    assert (end.period, end.kind) == (1, "bracket")
+    assert end.lost < 0.0 < end.held and end.held - end.lost < 1.01e-2
 
 
 def test_one_mode_of_the_kick_is_not_the_whole_of_it(spring: ModalModel) -> None:

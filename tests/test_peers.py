@@ -12,8 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beam.frequency_equation import UniformBeam, exact_modes
-from beam.reduction import ModalModel, single_mode
+from beam import ModalModel, UniformBeam, exact_modes, single_mode
 from contact.collision import before_collision
 from contact.drive import HarmonicDrive
 from contact.errors import ContactError

@@ -8,7 +8,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.laws import HERTZ_TIME, ContactLaw, HertzContact, HuntCrossley, LinearContact, NewtonRestitution
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from contact.orbits import fold_of, period_of, settle
+from contact.orbits.shooting import Shooting
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.oscillators import beam_of, single_mode_oscillator
-from studies.instruments.periodicity import period_of, settle
 from studies.instruments.scene_file import read_scene
-from studies.instruments.settling import settle_on_orbit
 from studies.instruments.spring_of_scene import model_of
 from studies.published import SETTLE_CYCLES
 
@@ -36,7 +36,7 @@ def strobed_at(name: str, frequency: float, excess: float) -> StroboscopicMap:
 def test_same_period_and_points_as_after_ten_thousand_cycles(name, frequency, excess):
     strobed = strobed_at(name, frequency, excess)
     start = strobed_at(name, frequency, -1e-3).steady()
-    found = settle_on_orbit(strobed, start, most_cycles=SETTLE_CYCLES)
+    found = settle(strobed, start, most_cycles=SETTLE_CYCLES)
     waited = strobed.orbit(start, SETTLE_CYCLES - SETTLE_CYCLES % 128).end
     reference = strobed.orbit(waited, 128)
     period = period_of(reference.points, reference.impacts, largest_period=64, tolerance=1e-9 * strobed.scale)
@@ -53,16 +53,13 @@ def test_same_period_and_points_as_after_ten_thousand_cycles(name, frequency, ex
 def test_close_to_a_fold_the_proof_comes_long_before_the_repetition():
     """At 2e-7 above the fold of p4 the largest multiplier is within 1 % of one."""
     name, frequency = "single_mode", 21.50
-    from contact.orbits.continuation import fold_of
-    from contact.orbits.shooting import Shooting
-
     family = Shooting(oscillator=single_mode_oscillator(SCENE, frequency), period=4)
     fold = fold_of(family)
     near = family.at_speed(1.2 * fold.speed, fold)
     start = near.strobe_state()
     strobed = strobed_at(name, frequency, fold.excess + 2e-7)
-    proved = settle_on_orbit(strobed, start, most_cycles=100_000)
-    repeated = settle(strobed, start, most_cycles=100_000)
+    proved = settle(strobed, start, most_cycles=100_000)
+    repeated = settle(strobed, start, most_cycles=100_000, prove=False)
     assert proved.period == repeated.period == 4
     assert proved.cycles < repeated.cycles
     orbit = family.at_excess(fold.excess + 2e-7, family.at_speed(1.005 * fold.speed, fold))
@@ -70,27 +67,32 @@ def test_close_to_a_fold_the_proof_comes_long_before_the_repetition():
 
 
 def test_below_the_fold_nothing_is_proved_to_be_p4():
-    """The slow passage of a vanished fold looks like p4 for hundreds of periods, but there is no orbit."""
-    from contact.orbits.continuation import fold_of
-    from contact.orbits.shooting import Shooting
+    """The slow passage of a vanished fold looks like p4 for hundreds of periods, but there is no orbit.
 
-    family = Shooting(oscillator=single_mode_oscillator(SCENE, 21.50), period=4)
-    fold = fold_of(family)
-    strobed = strobed_at("single_mode", 21.50, fold.excess - 1e-6)
-    found = settle_on_orbit(strobed, fold.strobe_state(), most_cycles=20_000)
-    assert (found.period, found.impacts) == (1, 0)
+    What comes after the passage is a chaotic transient, whose end the last bit decides: nothing is said of
+    it.  As far above the fold, from the same start, p4 is what is proved.
+    """
+    fold = fold_of(Shooting(oscillator=single_mode_oscillator(SCENE, 21.50), period=4))
+    start = fold.strobe_state()
+    for distance in np.geomspace(1e-8, 1e-4, 17):
+        below, above = (
+            settle(strobed_at("single_mode", 21.50, excess), start, most_cycles=1024)
+            for excess in (fold.excess - distance, fold.excess + distance)
+        )
+        assert below.period == 0 or below.period % 4 != 0, distance
+        assert (above.period, above.impacts) == (4, 1), distance
 
 
 def test_chaos_is_not_settled():
     strobed = strobed_at("single_mode", 21.50, 0.035)
-    found = settle_on_orbit(strobed, strobed_at("single_mode", 21.50, -1e-3).steady(), most_cycles=3000)
+    found = settle(strobed, strobed_at("single_mode", 21.50, -1e-3).steady(), most_cycles=3000)
     assert found.period == 0 and found.impacts > 0 and found.cycles >= 3000
 
 
 def test_the_motion_without_impacts_is_settled_by_its_energy():
     strobed = strobed_at("beam", 22.20, -2e-2)
     start = strobed_at("beam", 22.20, -2.2e-2).steady()
-    found = settle_on_orbit(strobed, start, most_cycles=5000)
+    found = settle(strobed, start, most_cycles=5000)
     assert (found.period, found.impacts, found.cycles) == (1, 0, 128)
     steady = strobed.steady()
     assert np.allclose(found.end.displacement, steady.displacement, rtol=0, atol=1e-15)

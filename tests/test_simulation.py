@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from beam.reduction import ModalModel, single_mode
+from beam import ModalModel, single_mode
 from contact.drive import HarmonicDrive
 from contact.errors import Chatter, ContactTooStiff, UnresolvedCrossing
 from contact.laws import ContactLaw, LinearContact, NewtonRestitution

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from types import SimpleNamespace
+from dataclasses import replace
 
 import mpmath as mp
 import numpy as np
@@ -11,6 +11,8 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from beam import ModalModel
+from contact import HarmonicDrive, ImpactOscillator, LinearContact, NewtonRestitution, Stop
 from contact.maximal_orbits import fold as map_fold
 from contact.nordmark import NordmarkMap
 from contact.orbits.single_impact import MaximalFamily, SingleImpactOrbit
@@ -320,14 +322,13 @@ def test_share_of_the_first_mode_in_a_kick() -> None:
 
 def test_family_of_an_oscillator() -> None:
     plain = many_modes("three modes")
-    oscillator = SimpleNamespace(
-        model=SimpleNamespace(**{key: np.array(value) for key, value in MODES["three modes"].items()}),
-        drive=SimpleNamespace(frequency=20.5),
-        stop=SimpleNamespace(gap=0.012, law=SimpleNamespace(local_restitution=0.35)),
-        load=None,
+    oscillator = ImpactOscillator(
+        model=ModalModel(**{key: np.array(value) for key, value in MODES["three modes"].items()}),
+        drive=HarmonicDrive(frequency=20.5),
+        stop=Stop(gap=0.012, law=NewtonRestitution(local_restitution=0.35)),
     )
     assert MaximalFamily.from_oscillator(oscillator, period=3).fold().excess == plain.fold().excess
-    oscillator.stop.law = SimpleNamespace(stiffness=1e6)
+    oscillator = replace(oscillator, stop=Stop(gap=0.012, law=LinearContact(stiffness=1e6)))
     again = MaximalFamily.from_oscillator(oscillator, period=3, restitution=0.35)
     assert again.fold().excess == plain.fold().excess
     with pytest.raises(TypeError, match="restitution"):
@@ -335,7 +336,7 @@ def test_family_of_an_oscillator() -> None:
 
 
 def test_family_of_the_real_oscillator() -> None:
-    reduction = pytest.importorskip("beam.reduction")
+    reduction = pytest.importorskip("beam")
     pytest.importorskip("contact.oscillator")
     from contact.drive import HarmonicDrive
     from contact.laws import NewtonRestitution

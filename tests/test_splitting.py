@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
-from beam.reduction import ModalModel
+from beam import ModalModel
 from contact.drive import HarmonicDrive
 from contact.errors import StepTooLarge
 from contact.integrators.splitting import COMPOSITIONS, Splitting
@@ -26,7 +26,7 @@ from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
 from contact.trajectory import State
-from studies.instruments.stability.splitting_limits import growth, settled
+from studies.stability.lasting_contact import growth, settled
 
 OMEGA = np.array([154.0, 940.0, 2370.0, 4500.0])
 PHI = np.array([9.0, 8.0, 7.5, 7.0])
@@ -331,7 +331,8 @@ def test_a_lasting_contact_grows_beyond_the_limit_at_the_rate_of_the_step_matrix
     for part, grown in ((0.9995, False), (1.0005, True)):
         oscillator = spring(LinearContact(stiffness=part * limit, damping=damping), gap=0.0, load=100.0)
         rest = np.linalg.solve(np.diag(OMEGA**2) + part * limit * np.outer(PHI, PHI), 100.0 * PHI)
-        rate = growth(oscillator, Splitting(step=step, order=order, beyond_limit=True), rest)
+        pressed = State(displacement=rest, velocity=0.0 * rest)
+        rate = growth(oscillator, pressed, Splitting(step=step, order=order))
         radius = spectral_radius(motion, COMPOSITIONS[order], step, part * limit, damping)
         if grown:
             assert radius > 1.0005
@@ -375,7 +376,7 @@ def test_the_energy_of_a_closed_contact_does_not_drift(order):
     stiffness = 0.5 * method.critical_stiffness(spring(SOFT).motion())
     oscillator = spring(LinearContact(stiffness=stiffness), gap=0.0, load=100.0)
     place = np.linalg.solve(np.diag(OMEGA**2) + stiffness * np.outer(PHI, PHI), 100.0 * PHI)
-    rest, _radius = settled(oscillator, method, place)
+    rest = settled(oscillator, State(displacement=place, velocity=0.0 * place), method)
     start = State(displacement=rest.displacement * [1.3, 0.9, 1.2, 0.9], velocity=rest.velocity)
     count = 200_000
     times = method.step * np.arange(1, count + 1)

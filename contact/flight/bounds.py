@@ -44,7 +44,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from contact.compiled import kernel
+from contact.compiled import kernel, part
 from contact.flight.elementary import sine_cosine
 from contact.flight.modal_flow import START_U, START_V, mode_flow
 from contact.flight.motion import DECAY, OMEGA, SQUARE, WEIGHT
@@ -116,7 +116,7 @@ class LowestMode(NamedTuple):
     near: float
 
 
-@kernel
+@part
 def lowest_mode(motion, flight, base, duration, rest, margin):
     """The bounds of a flight.
 
@@ -150,14 +150,14 @@ def lowest_mode(motion, flight, base, duration, rest, margin):
     return LowestMode(peak, quarter, gap - deviant, slack, near)
 
 
-@kernel
+@part
 def free_from(lowest, t, height, rate):
     """Whether no touch can come after the drive time `t` at which the tip, without the other modes, is at
     `height` and moves at `rate`."""
     return rate <= 0.0 and abs(height + lowest.mean) < lowest.slack and t >= lowest.peak - lowest.quarter
 
 
-@kernel
+@part
 def without_others(motion, flight, base, s):
     """Tip displacement relative to the stop without the modes above the lowest, and three derivatives."""
     w, c, o2 = motion.drive, motion.modes[DECAY, 0], motion.modes[SQUARE, 0]
@@ -173,7 +173,7 @@ def without_others(motion, flight, base, s):
     )  # fmt: skip
 
 
-@kernel
+@part
 def free_until(motion, flight, lowest, base, duration):
     """Time from the start of the flight up to which no touch can come, `duration` if none comes [s]."""
     if not lowest.slack > 0.0:

@@ -22,7 +22,7 @@ from __future__ import annotations
 
 import math
 
-from contact.compiled import kernel
+from contact.compiled import kernel, part
 from contact.flight.bounds import PEAK, ROOT, SKIP, certify, free_from, free_until, lowest_mode
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import (
@@ -90,7 +90,7 @@ def depart(motion, flight, base, order, h, h_min):
     return 0.0
 
 
-@kernel
+@part
 def amplitudes(motion, flight):
     """Fill row ABOVE: the sum of the amplitudes of all modes above each [m].
 
@@ -117,7 +117,7 @@ def amplitudes(motion, flight):
     return must, whole
 
 
-@kernel
+@part
 def tip_rows(modes, flight, start, stop):
     """What modes `start` to `stop` add to the tip displacement, its derivatives and bounds, in rows HEIGHT to
     THIRD, from rows U, V."""

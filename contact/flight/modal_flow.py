@@ -119,15 +119,10 @@ def mode_flow(modes, k, u, v, t):
 
 
 @kernel
-def flow(motion, u, v, start, stop, t, u_out, v_out):
-    """Deviations of modes `start` to `stop` after a time `t` [s], one mode per element of the arrays."""
-    modes = motion.modes
-    if not (motion.plain and motion.phase_rate * abs(t) < FARTHEST):
-        for k in range(start, stop):
-            u_out[k], v_out[k] = mode_flow(modes, k, u[k], v[k], t)
-        return
+def ringing_flow(modes, u, v, start, stop, t, u_out, v_out):
+    """`flow` for modes that are under-damped and without load: a loop of vector instructions."""
     decay, damped, low, square = modes[DECAY], modes[DAMPED], modes[LOW], modes[SQUARE]
-    for k in range(start, stop):  # without a branch, so that it becomes one of vector instructions
+    for k in range(start, stop):
         p, e = two_product(damped[k], t)
         s, c = turned(p, e + low[k] * t)
         half = 0.5 * decay[k]
@@ -136,6 +131,16 @@ def flow(motion, u, v, start, stop, t, u_out, v_out):
         un, vn = u[k], v[k]
         u_out[k] = cn * un + sn * (vn + half * un)
         v_out[k] = cn * vn - sn * (square[k] * un + half * vn)
+
+
+@kernel
+def flow(motion, u, v, start, stop, t, u_out, v_out):
+    """Deviations of modes `start` to `stop` after a time `t` [s], one mode per element of the arrays."""
+    if motion.plain and motion.phase_rate * abs(t) < FARTHEST:
+        ringing_flow(motion.modes, u, v, start, stop, t, u_out, v_out)
+    else:
+        for k in range(start, stop):
+            u_out[k], v_out[k] = mode_flow(motion.modes, k, u[k], v[k], t)
 
 
 @kernel

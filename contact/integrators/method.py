@@ -12,18 +12,14 @@ import math
 from typing import ClassVar
 
 from contact.flight.motion import Motion
-from contact.laws import DELAYED, HERTZ, LINEAR, NEWTON
 from contact.oscillator import ImpactOscillator
+from contact.touch import TOUCHES
 from contact.trajectory import Run, Trajectory
 
 __all__ = ["Integrator", "Run"]
 
-LAW_NAMES = {
-    NEWTON: "NewtonRestitution",
-    DELAYED: "DelayedRestitution",
-    LINEAR: "LinearContact",
-    HERTZ: "HertzContact or HuntCrossley",
-}
+LAW_NAMES = {code: file.LAW for code, file in TOUCHES.items()}
+"""The laws in words, by their codes."""
 
 
 class Integrator:
@@ -42,7 +38,7 @@ class Integrator:
         Whether it proves that no touch is missed.
     accuracy : float
         Error of the state after a collision, relative to its size, that an exact method keeps for contacts up
-        to 1e8 times as stiff as the spring (it grows as the root of that); NaN for one whose step or
+        to 1e7 times as stiff as the spring (it grows as the root of that); NaN for one whose step or
         tolerance decides.
     limit : str
         Its limit of stability in words.

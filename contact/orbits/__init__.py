@@ -1,7 +1,71 @@
-"""Periodic orbits of the impact oscillator, one idea a file.
+"""Periodic orbits of a strobed motion, one idea a file.
 
 `single_impact`: one impact every m drive periods under Newton's law, in closed form, over `driven_modes` and
 with the multipliers of `saltation`; `kick`: one collision of any law, by linear algebra; `shooting`: any law
-and any number of touches, with exact tangents; `continuation`: branches and their events; `lyapunov`:
-exponents.
+and any number of touches, with exact tangents; `continuation`: branches, with the points of `events` on them;
+`settling`: on what a motion settles; `scan`: orbit diagrams, the state carried along; `ends`: where an orbit
+ends when the drive is lowered; `amplitude_scan`: the compiled column of a chart; `lyapunov`: exponents.
 """
+
+from contact.orbits.amplitude_scan import AmplitudeScan, ScannedColumn
+from contact.orbits.continuation import (
+    Branch,
+    first_event,
+    fold_along_frequency,
+    fold_of,
+    folds_of,
+    follow,
+    lowest_of,
+)
+from contact.orbits.ends import OrbitEnd, orbit_end
+from contact.orbits.events import Event
+from contact.orbits.kick import Kick, KickFamily, KickOrbit
+from contact.orbits.lyapunov import (
+    Differentiable,
+    Exponents,
+    divergence_rate,
+    map_exponents,
+    of_nordmark,
+    of_oscillator,
+    orbit_exponents,
+)
+from contact.orbits.scan import OrbitDiagram, orbit_diagram
+from contact.orbits.settling import Settled, born, born_period, period_of, settle
+from contact.orbits.shooting import PeriodicOrbit, Shooting
+from contact.orbits.single_impact import MaximalFamily, SingleImpactOrbit
+
+__all__ = [
+    "AmplitudeScan",
+    "Branch",
+    "Differentiable",
+    "Event",
+    "Exponents",
+    "Kick",
+    "KickFamily",
+    "KickOrbit",
+    "MaximalFamily",
+    "OrbitDiagram",
+    "OrbitEnd",
+    "PeriodicOrbit",
+    "ScannedColumn",
+    "Settled",
+    "Shooting",
+    "SingleImpactOrbit",
+    "born",
+    "born_period",
+    "divergence_rate",
+    "first_event",
+    "fold_along_frequency",
+    "fold_of",
+    "folds_of",
+    "follow",
+    "lowest_of",
+    "map_exponents",
+    "of_nordmark",
+    "of_oscillator",
+    "orbit_diagram",
+    "orbit_end",
+    "orbit_exponents",
+    "period_of",
+    "settle",
+]

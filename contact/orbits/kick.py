@@ -32,7 +32,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
 
 from beam.parameters import is_whole, require, require_array, require_kind, require_within, shown
 from contact.errors import NotPeriodic
@@ -274,10 +273,11 @@ class KickFamily:
             Range of approach velocities over 2 pi f gap, in which the amplitude is searched on a logarithmic
             grid and then minimised by Brent's method.
         """
+        from scipy.optimize import minimize_scalar  # slow to import
+
         low, high = require_array("speeds", speeds, "[1]", shape=(2,), words="two rising numbers above zero")
         require(0.0 < low < high, f"speeds is {shown(speeds)}; it must be two rising numbers above zero")
-        w = self.oscillator.drive.angular_frequency  # type: ignore[union-attr]
-        unit = w * self.oscillator.stop.gap
+        unit = self._motion.drive * self.oscillator.stop.gap
 
         def orbit(log_speed: float) -> KickOrbit:
             speed = float(np.exp(log_speed))

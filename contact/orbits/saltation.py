@@ -1,7 +1,7 @@
 """Multipliers of an orbit with one impact: the free flow of all modes after a saltation matrix.
 
-An orbit beside this one meets the wall at another time: to first order its distance (dq, dq') at the impact is
-multiplied by a saltation matrix S (under Newton's law that of ``contact.touch.newton``, of determinant e^2
+An orbit beside this one meets the wall at another time: to first order its distance (dq, dq') at the impact
+is multiplied by a saltation matrix S (under Newton's law that of ``contact.touch.newton``, of determinant e^2
 for any number of modes).  The multipliers are the eigenvalues of Phi S, Phi the free flow over m/f; for one
 mode det(Phi S) = e^2 G.  Units: SI with mass-normalised modes (q in m kg^0.5).
 """

@@ -44,7 +44,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contact.compiled import inlined, kernel
+from contact.compiled import inlined, kernel, part
 from contact.event_loop import DONE, advance
 from contact.recorder import strobes_only
 from contact.single_mode.one_impact import guessed, one_impact
@@ -55,7 +55,7 @@ from contact.trajectory import OUTSIDE
 __all__ = ["any_periods", "one_mode_periods"]
 
 
-@kernel
+@part
 def any_periods(motion, u, v, runs, points, counts):
     """Drive periods from a strobe by ``event_loop.advance``, as many as `counts` has places.
 

@@ -12,6 +12,7 @@ How to add a law, say N = k d^3
 
 What a file offers.  `motion` is the oscillator, `run` where it stands (``contact.event_loop.STATE``), (u, v)
 its deviations, `series` the room of one step.
+    LAW                                       its name in words
     REGIMES                                   where the tip can be: ``contact.trajectory.Regime``
     room(motion) -> order, columns            size of the room of a step
     strike(motion, run, u, v, approach) -> regime, rebound, loss
@@ -41,10 +42,10 @@ arguments: `by_law` links the files of the table into one kernel for each functi
 # mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
-from collections.abc import Callable
+import inspect
 from typing import Any
 
-from contact.compiled import inlined
+from contact.compiled import part
 from contact.laws import DELAYED, HERTZ, LINEAR, NEWTON
 from contact.touch import delayed, hertz, linear, newton
 
@@ -55,32 +56,22 @@ TOUCHES = {NEWTON: newton, DELAYED: delayed, LINEAR: linear, HERTZ: hertz}
 """The file of each law by its code."""
 
 
-def _either(code: int, function: Any, otherwise: Any) -> Any:
-    def chosen(motion, *args):
-        if motion.law == code:
-            return function(motion, *args)
-        return otherwise(motion, *args)
-
-    return inlined(chosen)
-
-
-@inlined
-def _unknown(motion, *args):
-    raise NotImplementedError("the code of the contact law is in no table: see contact.touch")
-
-
-def by_law(name: str) -> Callable[..., Any]:
-    """The function `name` of the file of motion.law."""
-    chosen: Any = _unknown
-    for code, file in TOUCHES.items():
-        chosen = _either(code, getattr(file, name), chosen)
-    return chosen
+def by_law(functions: dict[int, Any]) -> Any:
+    """The function of motion.law: `if motion.law == ...: return ...` for each code, then an error."""
+    names = {f"law_{code}": function for code, function in functions.items()}
+    arguments = list(inspect.signature(next(iter(functions.values())).py_func).parameters)
+    lines = [f"def chosen({', '.join(arguments)}):"]
+    for code in functions:
+        lines.append(f"    if {arguments[0]}.law == {code}: return law_{code}({', '.join(arguments)})")
+    lines.append('    raise NotImplementedError("the contact law is in no table: see contact.touch")')
+    exec("\n".join(lines), names)
+    return part(names["chosen"])
 
 
 room, strike, step, place, state, work, leave, force, stiffness, slopes, saltation = (
-    by_law(name)
+    by_law({code: getattr(file, name) for code, file in TOUCHES.items()})
     for name in (
         "room", "strike", "step", "place", "state", "work", "leave", "force", "stiffness", "slopes",
         "saltation",
     )
-)
+)  # fmt: skip

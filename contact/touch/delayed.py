@@ -23,15 +23,16 @@ from __future__ import annotations
 
 import math
 
-from contact.compiled import kernel
+from contact.compiled import kernel, part
 from contact.flight.modal_flow import tip_state, tip_steady
 from contact.flight.motion import WEIGHT
 from contact.touch import newton
 from contact.trajectory import OUTSIDE, WAITING
 
-__all__ = ["REGIMES", "force", "leave", "numbers_at", "place", "room", "saltation", "slopes", "state", "step",
-           "stiffness", "strike", "work"]  # fmt: skip
+__all__ = ["LAW", "REGIMES", "force", "leave", "numbers_at", "place", "room", "saltation", "slopes", "state",
+           "step", "stiffness", "strike", "work"]  # fmt: skip
 
+LAW = "DelayedRestitution"
 REGIMES = (OUTSIDE, WAITING)
 
 force, stiffness, slopes, room, place, work = (
@@ -84,7 +85,7 @@ def strike(motion, run, u, v, approach):
     return WAITING, run.rebound, 0.5 * (approach * approach - run.rebound**2) / motion.compliance
 
 
-@kernel
+@part
 def step(motion, run, u, v, limit, series):
     """The wait, at most `limit` [s]; see ``contact.touch``."""
     h = min(run.wait, limit)
@@ -92,7 +93,7 @@ def step(motion, run, u, v, limit, series):
     return h, h, WAITING if run.wait > 0.0 else OUTSIDE
 
 
-@kernel
+@part
 def state(motion, run, h, series, u, v):
     """The deviation a time `h` [s] into the wait."""
     height, velocity, _acceleration = tip_steady(motion, run.clock + h)
@@ -100,7 +101,7 @@ def state(motion, run, h, series, u, v):
     v[0] = -velocity / motion.modes[WEIGHT, 0]
 
 
-@kernel
+@part
 def leave(motion, run, u, v):
     """The rebound."""
     v[0] += run.rebound / motion.modes[WEIGHT, 0]

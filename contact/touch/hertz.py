@@ -27,7 +27,7 @@ import math
 
 import numpy as np
 
-from contact.compiled import kernel
+from contact.compiled import kernel, part
 from contact.flight.elementary import EPS, sine_cosine
 from contact.flight.modal_flow import speed_scale, tip_state
 from contact.flight.motion import SQUARE, WEIGHT
@@ -36,9 +36,10 @@ from contact.touch.series import enter, leave, reach, saltation, within_force
 from contact.trajectory import CONTACT, OUTSIDE
 from contact.vector_loops import LANES, next_modes, weighted_rows
 
-__all__ = ["REGIMES", "force", "leave", "place", "room", "saltation", "slopes", "state", "step", "stiffness",
-"strike", "work"]
+__all__ = ["LAW", "REGIMES", "force", "leave", "place", "room", "saltation", "slopes", "state", "step",
+           "stiffness", "strike", "work"]  # fmt: skip
 
+LAW = "HertzContact or HuntCrossley"
 REGIMES = (OUTSIDE, CONTACT)
 
 ORDER = 20
@@ -46,6 +47,10 @@ ORDER = 20
 
 TOLERANCE = 1e-15
 """Size of the last terms of a step, relative to the modal speeds: at the rounding of the sum of all terms."""
+
+FAR = math.log(1.5)
+"""Logarithm of the factor by which the last term but one of r must fall short of the others' bound to count:
+where the modes take part, both ends of the series agree within it."""
 
 SPEED, DEPTH, CUBE, SINE, COSINE = range(5)
 """Columns of the series before the modes: d', d, r d, sin and cos of the drive."""
@@ -84,13 +89,13 @@ def stiffness(numbers, depth, rate):
     )
 
 
-@kernel
+@part
 def room(motion):
     """Order and columns of the series: five scalars, u from column 8 on, v behind."""
     return ORDER, LANES + 2 * motion.modes.shape[1]
 
 
-@kernel
+@part
 def fill(motion, base, u, v, series):
     """The Taylor coefficients in sigma of a contact that is at (u, v) at drive time `base` [s].
 
@@ -131,12 +136,14 @@ def fill(motion, base, u, v, series):
         rows[n + 1, SPEED], rows[n + 1, DEPTH] = speed, depth
         rows[n + 1, SINE], rows[n + 1, COSINE] = sine, cosine
     push[ORDER] = 0.0
-    for n in range(ORDER - 1, -1, -1):  # r N from r^4
-        total = push[n]
-        if chi != 0.0:
+    if chi != 0.0:
+        for n in range(ORDER - 1, -1, -1):  # r N from r^4
+            total = push[n]
             for i in range(n + 1):
                 total += chi * push[i] * rows[n - i, SPEED]
-        push[n] = stiffness * total
+            push[n] = total
+    for n in range(ORDER):
+        push[n] *= stiffness
 
 
 @kernel
@@ -153,7 +160,7 @@ def slopes(motion, run, series, weights):
     return ORDER + 1
 
 
-@kernel
+@part
 def greatest_speed(modes, rows, order):
     """The largest coefficient of this order among all v and omega u."""
     m, top = modes.shape[1], 0.0
@@ -163,7 +170,7 @@ def greatest_speed(modes, rows, order):
     return math.sqrt(top)
 
 
-@kernel
+@part
 def longest_step(motion, speed, series):
     """The sigma up to which the series holds."""
     p, r = ORDER, series.scalars[ROOT]
@@ -172,11 +179,14 @@ def longest_step(motion, speed, series):
         reach(greatest_speed(motion.modes, series.rows, p), p, allowed),
         reach(greatest_speed(motion.modes, series.rows, p - 1), p - 1, allowed),
     )
-    # r must be resolved as well as the modes, relative to the larger of its first two terms
-    if r[p] != 0.0 and (r[0] != 0.0 or r[1] != 0.0):
-        whole = reach(abs(r[p]), p, TOLERANCE * abs(r[0])) if r[0] != 0.0 else -math.inf
-        linear = reach(abs(r[p]), p - 1, TOLERANCE * abs(r[1])) if r[1] != 0.0 else -math.inf
-        power = min(power, max(whole, linear))
+    # r must be resolved as well as the modes, relative to the larger of its first two terms; under a contact
+    # so soft that the modes give no bound, r is odd in sigma and its last term alone gives none either
+    for n in (p, p - 1):
+        if r[n] != 0.0 and (r[0] != 0.0 or r[1] != 0.0):
+            whole = reach(abs(r[n]), n, TOLERANCE * abs(r[0])) if r[0] != 0.0 else -math.inf
+            linear = reach(abs(r[n]), n - 1, TOLERANCE * abs(r[1])) if r[1] != 0.0 else -math.inf
+            if n == p or max(whole, linear) < power - FAR:
+                power = min(power, max(whole, linear))
     s = within_force(
         math.exp(power), series.scalars[PUSH], p - 1, math.sqrt(motion.compliance), speed, _EDGE
     )
@@ -186,7 +196,7 @@ def longest_step(motion, speed, series):
     return s
 
 
-@kernel
+@part
 def release_in(r, s, negative):
     """The sigma in (0, s] at which r falls to zero, or -1."""
     rest, power = 0.0, s

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 
-from contact.compiled import kernel
+from contact.compiled import kernel, part
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import tip_rounding
 from contact.flight.polynomial_root import first_polynomial_root
@@ -24,22 +24,23 @@ from contact.touch.series import enter, leave, saltation
 from contact.touch.time_series import DEPTH, FORCE, begin, extend, longest_step, negative
 from contact.trajectory import CONTACT, INSIDE, OUTSIDE
 
-__all__ = ["REGIMES", "enter", "force", "leave", "place", "room", "saltation", "slopes", "state", "step",
-"stiffness", "work"]
+__all__ = ["LAW", "REGIMES", "enter", "force", "leave", "place", "room", "saltation", "slopes", "state",
+           "step", "stiffness", "work"]  # fmt: skip
 
+LAW = "LinearContact"
 REGIMES = (OUTSIDE, CONTACT, INSIDE)
 
 strike = enter
 room, place, state, work = time_series.room, time_series.place, time_series.state, time_series.work
 
 
-@kernel
+@part
 def force(numbers, depth, rate):
     """N at penetration `depth` >= 0 and its `rate` [N]."""
     return max(0.0, numbers.number0 * depth + numbers.number1 * rate)
 
 
-@kernel
+@part
 def stiffness(numbers, depth, rate):
     """dN/dd [N/m] and dN/dd' [N s/m]."""
     if numbers.number0 * depth + numbers.number1 * rate <= 0.0:
@@ -47,7 +48,7 @@ def stiffness(numbers, depth, rate):
     return numbers.number0, numbers.number1
 
 
-@kernel
+@part
 def slopes(motion, run, series, weights):
     """The series of dN/dd and dN/dd': constants; none where the tip is behind the wall without force."""
     weights[0, 0] = 1.0

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 
-from contact.compiled import kernel
+from contact.compiled import kernel, part
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import mode_acceleration, tip_rounding, tip_state
 from contact.flight.motion import DECAY, LOAD, SQUARE, WEIGHT
@@ -25,10 +25,27 @@ from contact.touch import time_series
 from contact.touch.time_series import FORCE, begin, extend, free_pull, longest_step, negative
 from contact.trajectory import OUTSIDE, SUSTAINED
 
-__all__ = ["REGIMES", "accumulation_time", "force", "hold", "leave", "lowest_hop", "newton_impact", "place",
-"room",
-           "saltation", "slopes", "state", "step", "stiffness", "strike", "work"]  # fmt: skip
+__all__ = [
+    "LAW",
+    "REGIMES",
+    "accumulation_time",
+    "force",
+    "hold",
+    "leave",
+    "lowest_hop",
+    "newton_impact",
+    "place",
+    "room",
+    "saltation",
+    "slopes",
+    "state",
+    "step",
+    "stiffness",
+    "strike",
+    "work",
+]
 
+LAW = "NewtonRestitution"
 REGIMES = (OUTSIDE, SUSTAINED)
 
 LOWEST_HOP = 200.0
@@ -38,25 +55,25 @@ digits of the height are then still good.  See `lowest_hop` for laws close to e 
 room, place = time_series.room, time_series.place
 
 
-@kernel
+@part
 def force(numbers, depth, rate):
     """No force: the law acts at once [N]."""
     return 0.0
 
 
-@kernel
+@part
 def stiffness(numbers, depth, rate):
     """None [N/m, N s/m]."""
     return 0.0, 0.0
 
 
-@kernel
+@part
 def slopes(motion, run, series, weights):
     """None: the tip is on the wall for no time, or for good."""
     return 0
 
 
-@kernel
+@part
 def lowest_hop(restitution, rounding):
     """Height of the lowest hop that is computed [m], `rounding` the bound of the tip displacement's [m].
 
@@ -74,7 +91,7 @@ def newton_impact(motion, v, approach, restitution):
         v[k] -= motion.modes[WEIGHT, k] * impulse
 
 
-@kernel
+@part
 def accumulation_time(rebound, acceleration, restitution, rounding):
     """Time until accumulating impacts have come to rest [s], or -1 if the hop is still worth computing.
 
@@ -112,7 +129,7 @@ def hold(motion, clock, u, v):
         v[k] -= motion.modes[WEIGHT, k] * velocity / motion.compliance
 
 
-@kernel
+@part
 def force_rounding(motion, u, v):
     """Bound of the rounding error of the force that holds the tip at (u, v) [N]."""
     total, modes = (abs(motion.tip_sine) + abs(motion.tip_cosine)) * motion.drive**2, motion.modes
@@ -147,13 +164,13 @@ def state(motion, run, h, series, u, v):
     hold(motion, run.clock + h, u, v)
 
 
-@kernel
+@part
 def work(motion, run, h, series):
     """No work: the tip is at rest on the wall [J]."""
     return 0.0
 
 
-@kernel
+@part
 def leave(motion, run, u, v):
     """The end of the rest, where d, d' and d'' vanish."""
     run.order = 3

@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contact.compiled import inlined, kernel
+from contact.compiled import inlined, kernel, part
 from contact.trajectory import CONTACT
 from contact.vector_loops import aligned
 
@@ -42,7 +42,7 @@ class Series(NamedTuple):
     rows : ndarray, shape (order + 1, columns)
         Coefficients of the modes, row n holding order n.
     sums : ndarray, shape (columns,)
-    scalars : ndarray, shape (6, order + 1)
+    scalars : ndarray, shape (8, order + 1)
         Series of single numbers, named where they are filled.
     """
 
@@ -54,23 +54,23 @@ class Series(NamedTuple):
 @kernel
 def new_series(order, columns):
     """Room for a series, of zeros."""
-    return Series(aligned(order + 1, columns), aligned(1, columns)[0], np.zeros((6, order + 1)))
+    return Series(aligned(order + 1, columns), aligned(1, columns)[0], np.zeros((8, order + 1)))
 
 
-@kernel
+@part
 def enter(motion, run, u, v, approach):
     """A touch under a force law: the contact begins at d = 0.  Returns as ``contact.touch`` says."""
     run.root, run.speed = 0.0, -1.0
     return CONTACT, math.nan, 0.0
 
 
-@kernel
+@part
 def leave(motion, run, u, v):
     """The end of a contact that pushed: the next flight starts on the wall."""
     run.order = 1
 
 
-@kernel
+@part
 def saltation(motion, response, before, after, tangent):
     """Nothing: the tangents have gone through the contact with its series."""
 

@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 
-from contact.compiled import kernel
+from contact.compiled import kernel, part
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import speed_scale, tip_steady
 from contact.flight.motion import WEIGHT
@@ -47,13 +47,13 @@ OVERFLOW = 1e300
 spring."""
 
 
-@kernel
+@part
 def room(motion):
     """Order and columns of the series."""
     return ORDER, motion.modes.shape[1]
 
 
-@kernel
+@part
 def begin(motion, base, u, v, series):
     """The first two orders of a step from (u, v) at drive time `base` [s]."""
     rows, depth, steady, w = series.rows, series.scalars[DEPTH], series.scalars[STEADY], motion.drive
@@ -69,7 +69,7 @@ def begin(motion, base, u, v, series):
     series.scalars[FORCE, ORDER - 1 :] = 0.0
 
 
-@kernel
+@part
 def extend(motion, n, push, series):
     """Order n + 2 of all modes and of d, under the force coefficient `push` of order n."""
     scale, lift = 1.0 / ((n + 1.0) * (n + 2.0)), 1.0 if n == 0 else 0.0
@@ -77,7 +77,7 @@ def extend(motion, n, push, series):
     series.scalars[DEPTH, n + 2] = series.scalars[STEADY, n + 2] + tip
 
 
-@kernel
+@part
 def free_pull(motion, n, series):
     """Order n of the tip acceleration if no force acted."""
     divisor, lift = (n + 1.0) * (n + 2.0), 1.0 if n == 0 else 0.0
@@ -85,7 +85,7 @@ def free_pull(motion, n, series):
     return divisor * (series.scalars[STEADY, n + 2] + tip)
 
 
-@kernel
+@part
 def largest(row):
     """The largest absolute value of a row."""
     a, b = 0.0, 0.0
@@ -124,7 +124,7 @@ def negative(row, series):
     return spare
 
 
-@kernel
+@part
 def place(motion, t, end, series):
     """Where in a step of length `end` a time `t` [s] lies."""
     return t

@@ -24,11 +24,13 @@ key that is a number. The value found carries the provenance "calibrated".
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable
 
 import numpy as np
 from scipy.optimize import brentq
 
+from beam import SuspiciousValue
 from studies.instruments.quantities import CALIBRATED, SceneError, keys_of
 from studies.instruments.scene import SECTIONS, Scene, split
 from studies.instruments.spring_of_scene import damping_of, modes_of
@@ -103,7 +105,9 @@ def solve_for(
         return scene.replace({key: value}, provenance=CALIBRATED)
 
     def excess(value: float) -> float:
-        return min(quantity(changed(value)) / target - 1.0, BEYOND)
+        with warnings.catch_warnings():  # nobody gave the values that a search tries
+            warnings.simplefilter("ignore", SuspiciousValue)
+            return min(quantity(changed(value)) / target - 1.0, BEYOND)
 
     at_low, at_high = excess(low), excess(high)
     if not at_low * at_high <= 0.0:

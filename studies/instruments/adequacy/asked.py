@@ -27,13 +27,13 @@ import numpy as np
 from contact.collision import first_collision
 from contact.errors import ContactError
 from contact.orbits.continuation import fold_of
+from contact.orbits.settling import born, born_period
 from contact.orbits.shooting import Shooting
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stroboscope import StroboscopicMap
 from studies.instruments.adequacy.model_choice import ModelChoice, Models
 from studies.instruments.oscillators import REFERENCE_EXCESS, approach_speed
-from studies.instruments.periodicity import settle
 from studies.published import (
     AMPLITUDE_STABILITY_M,
     DRIVE_AMPLITUDE_M,
@@ -46,7 +46,6 @@ __all__ = ["QUANTITIES", "Asked"]
 Answer = np.ndarray | None
 
 BORN_EXCESS = 1e-3
-BELOW = -1e-3
 AMPLITUDE_STABILITY = AMPLITUDE_STABILITY_M / DRIVE_AMPLITUDE_M
 
 MOST_CYCLES = 4000
@@ -135,7 +134,7 @@ def _born_period(models: Models, choice: ModelChoice, frequency: float) -> Answe
         if oscillator is None:
             return None
         strobed = StroboscopicMap(oscillator=oscillator)
-        found.append(settle(strobed, strobed.at(BELOW).steady(), most_cycles=MOST_CYCLES).period)
+        found.append(born_period(strobed, BORN_EXCESS, most_cycles=MOST_CYCLES))
     return np.array(found, dtype=float)
 
 
@@ -144,7 +143,7 @@ def _fold(models: Models, choice: ModelChoice, frequency: float) -> Answer:
     if oscillator is None:
         return None
     strobed = StroboscopicMap(oscillator=oscillator)
-    settled = settle(strobed, strobed.at(BELOW).steady(), most_cycles=MOST_CYCLES)
+    settled = born(strobed, BORN_EXCESS, most_cycles=MOST_CYCLES)
     if settled.period < 2 or settled.impacts == 0:
         return None
     end = fold_of(Shooting(oscillator=oscillator, period=settled.period))
@@ -156,7 +155,7 @@ def _tip_trace(models: Models, choice: ModelChoice, frequency: float) -> Answer:
     if oscillator is None:
         return None
     strobed = StroboscopicMap(oscillator=oscillator)
-    settled = settle(strobed, strobed.at(BELOW).steady(), most_cycles=MOST_CYCLES)
+    settled = born(strobed, REFERENCE_EXCESS, most_cycles=MOST_CYCLES)
     if settled.period == 0 or settled.impacts == 0:
         return None
     count = settled.period * SAMPLES

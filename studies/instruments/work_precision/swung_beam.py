@@ -11,8 +11,7 @@ import math
 
 import numpy as np
 
-from beam.frequency_equation import UniformBeam, exact_modes
-from beam.reduction import ModalModel
+from beam import ModalModel, UniformBeam, exact_modes
 from contact.laws import LinearContact
 from contact.oscillator import ImpactOscillator
 from contact.stop import Stop

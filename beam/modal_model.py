@@ -1,0 +1,216 @@
+"""The spring as an impact sees it: a handful of uncoupled oscillators behind one tip.
+
+A linear structure on a moving base, with natural frequencies omega_k [rad/s] and mass-normalised mode shapes,
+obeys, mode by mode,
+
+    q_k'' + c_k q_k' + omega_k^2 q_k = -Gamma_k z'' + phi_k F,          x = sum_k phi_k q_k,
+
+with z the displacement of the base [m], F a force on the tip in the drive direction [N], x the displacement
+of the tip relative to the base [m], and
+
+    q_k      modal coordinate                                          [kg^(1/2) m]
+    c_k      `decay_rate`: amplitudes fall as exp(-c_k t / 2)           [1/s]
+    phi_k    tip value of shape k in the drive direction               [kg^(-1/2)]
+    Gamma_k  `participation` of shape k in a motion of the base         [kg^(1/2)]
+
+These four arrays, each of shape (n_modes,), are all that an impact ever sees of the structure; they may come
+from `natural_modes`, from a formula, or from a file of measured modes.
+
+Damping is taken to be modal: it does not couple the modes, which holds for light damping and separated
+frequencies (T. K. Caughey and M. E. J. O'Kelly, J. Appl. Mech. 32 (1965) 583).
+
+One mode is Eq. (1) of the letter: with unit mass, phi = Gamma = 1 and the damped period
+T = 2 pi / sqrt(omega^2 - (mu/2)^2) the equation above is  xi'' + mu xi' + omega^2 xi = -z''.
+
+What a truncation leaves out is compliance: every omitted mode follows a slow force F by phi_k^2/omega_k^2 F,
+so the tip is too stiff by the residual compliance
+
+    C - sum_{k <= n} phi_k^2/omega_k^2,      C the `static_compliance` [m/N].
+
+It also leaves out what an instant impact meets.  Over all modes
+
+    sum phi_k^2/omega_k^2 = C,   sum phi_k^2 = 1/M,   sum Gamma_k phi_k = 1,
+
+with M the lumped mass at the tip (completeness of the modes, applied to a static tip force, to an impulse on
+the tip, and to a translation of the base).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .parameters import require, require_array, require_kind, require_whole, require_within, suspect
+
+LEAST_RESIDUAL = 1e-5
+"""Residual compliance over the static one below which there is no residual mode: finite elements give statics
+to 1e-7, of which the residual is a small difference, so that 1 % of it is then left uncertain."""
+
+GREATEST_RATIO = 0.5
+"""Damping ratio of the lowest mode beyond which a warning is given: it hardly swings, and no measured spring
+is like that; damping alloys reach 0.1."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ModalModel:
+    """The structure as the contact problem sees it: n_modes uncoupled oscillators behind one tip.
+
+    Any sequence of numbers may be given; it is stored as a read-only float64 copy.
+
+    Parameters
+    ----------
+    omega : array_like, shape (n_modes,)
+        Undamped angular frequencies [rad/s], not negative; 0 is a rigid-body mode.
+    decay_rate : array_like, shape (n_modes,)
+        Coefficient of q' in each modal equation [1/s], not negative; may exceed 2 omega (overdamped).
+    phi : array_like, shape (n_modes,)
+        Mass-normalised tip values in the drive direction [kg^(-1/2)].
+    participation : array_like, shape (n_modes,)
+        Participation in a base motion along the drive direction [kg^(1/2)].
+    static_compliance : float, optional
+        Tip displacement per unit static tip force of the whole structure, all modes included [m/N].
+    tip_mass : float, optional
+        Lumped mass at the tip [kg]; the limit of 1 / sum phi_k^2.
+    readouts : mapping of str to array_like, shape (n_modes,), optional
+        Values of the mode shapes at named places, in the units of phi for displacements: the motion seen
+        there, relative to the base, is ``readouts[name] @ q``.
+
+    Warns
+    -----
+    SuspiciousValue
+        For a lowest mode that vibrates with a damping ratio above `GREATEST_RATIO`.
+    """
+
+    omega: NDArray[np.float64]
+    decay_rate: NDArray[np.float64]
+    phi: NDArray[np.float64]
+    participation: NDArray[np.float64]
+    static_compliance: float | None = None
+    tip_mass: float | None = None
+    readouts: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        units = {"omega": "rad/s", "decay_rate": "1/s", "phi": "kg^(-1/2)", "participation": "kg^(1/2)"}
+        rows = {name: _row(name, getattr(self, name), unit) for name, unit in units.items()}
+        omega = rows["omega"]
+        for name in ("omega", "decay_rate"):
+            least = rows[name].min()
+            require(least >= 0.0, f"{name} holds {least} {units[name]}; no entry may be negative")
+        require_kind("readouts", self.readouts, Mapping, "a mapping of names to rows of numbers")
+        readouts = {
+            name: _row(f"readouts[{name!r}]", row, "kg^(-1/2)") for name, row in self.readouts.items()
+        }
+        for name, row in (rows | readouts).items():
+            require(
+                row.shape == omega.shape,
+                f"{name} has shape {row.shape}; it must have the shape {omega.shape} of omega",
+            )
+        for name, row in rows.items():
+            object.__setattr__(self, name, row)
+        object.__setattr__(self, "readouts", readouts)
+        for name, unit in (("static_compliance", "m/N"), ("tip_mass", "kg")):
+            value = getattr(self, name)
+            if value is not None:
+                require_within(name, value, unit, low=0)
+                object.__setattr__(self, name, float(value))
+        lowest = int(np.argmin(np.where(omega > 0.0, omega, np.inf)))
+        ratio = 0.5 * self.decay_rate[lowest] / omega[lowest] if omega[lowest] > 0.0 else 0.0
+        if ratio > GREATEST_RATIO:
+            suspect(
+                f"decay_rate is {self.decay_rate[lowest]:g} 1/s in the lowest mode, a damping ratio of "
+                f"{ratio:.3g}; above {GREATEST_RATIO:g} it hardly swings"
+            )
+
+    @property
+    def n_modes(self) -> int:
+        """Number of modes."""
+        return self.omega.size
+
+    @property
+    def frequencies_hz(self) -> NDArray[np.float64]:
+        """Undamped natural frequencies [Hz], shape (n_modes,)."""
+        return self.omega / (2.0 * np.pi)
+
+    def truncated(self, count: int) -> ModalModel:
+        """Return the same structure with its first `count` modes only, 1 <= count <= n_modes."""
+        count = require_whole("count", count, "modes", high=self.n_modes, why=", those of the model")
+        return replace(
+            self,
+            omega=self.omega[:count],
+            decay_rate=self.decay_rate[:count],
+            phi=self.phi[:count],
+            participation=self.participation[:count],
+            readouts={name: row[:count] for name, row in self.readouts.items()},
+        )
+
+    def with_residual_mode(self) -> ModalModel:
+        """Return the same modes and one more that stands for all the modes left out.
+
+        It has what the sum rules of mass-normalised modes (see the module) find missing,
+
+            phi^2 = 1/M - sum phi_k^2,   phi^2/omega^2 = static compliance - sum phi_k^2/omega_k^2,
+            Gamma phi = 1 - sum Gamma_k phi_k,
+
+        so that statics and the tip mass M that an instant impact meets are those of the whole spring: the
+        residual flexibility of the truncation, in series with the contact, with the inertia that goes with
+        it.
+        It takes the damping ratio of the highest mode, and no part in the read-outs.
+
+        Raises
+        ------
+        ValueError
+            If the model has no static compliance or tip mass, or its modes leave nothing of one of them.
+        """
+        for name, unit in (("static_compliance", "m/N"), ("tip_mass", "kg")):
+            value = getattr(self, name)
+            require(bool(value), f"{name} is {value} {unit}; the residual mode needs it, above zero")
+        assert self.static_compliance is not None and self.tip_mass is not None
+        oscillating = self.omega > 0.0
+        squares = np.where(oscillating, self.omega, 1.0) ** 2
+        mobility = 1.0 / self.tip_mass - float(self.phi @ self.phi)
+        carried = np.where(oscillating, self.phi**2 / squares, 0.0)
+        compliance = self.static_compliance - float(carried.sum())
+        require(
+            mobility > 0.0 and compliance > LEAST_RESIDUAL * self.static_compliance,
+            f"tip_mass is {self.tip_mass} kg and static_compliance {self.static_compliance} m/N; the modes "
+            f"leave {mobility:.3g} 1/kg of the one and {compliance:.3g} m/N of the other, which must be "
+            f"above zero and above {LEAST_RESIDUAL:g} of the whole",
+        )
+        phi, omega = np.sqrt(mobility), np.sqrt(mobility / compliance)
+        ratio = self.decay_rate[-1] / self.omega[-1] if self.omega[-1] > 0.0 else 0.0
+        participation = (1.0 - float(self.phi @ self.participation)) / phi
+        return replace(
+            self,
+            omega=np.append(self.omega, omega),
+            decay_rate=np.append(self.decay_rate, ratio * omega),
+            phi=np.append(self.phi, phi),
+            participation=np.append(self.participation, participation),
+            readouts={name: np.append(row, 0.0) for name, row in self.readouts.items()},
+        )
+
+
+def _row(name: str, values: ArrayLike, unit: str) -> NDArray[np.float64]:
+    """Return a read-only float copy of shape (n,), n >= 1, all finite."""
+    row = require_array(name, values, unit, dimensions=1, words="one row of numbers")
+    require(row.size > 0, f"{name} has shape {row.shape}; it must be one row of at least one mode [{unit}]")
+    return row
+
+
+def single_mode(*, free_period: float, decay_rate: float) -> ModalModel:
+    """Return Eq. (1) of the letter: one mode of unit mass, phi = participation = 1.
+
+    Parameters
+    ----------
+    free_period : float
+        Period T of the free *damped* oscillation [s], positive; omega^2 = (2 pi / T)^2 + (decay_rate / 2)^2.
+    decay_rate : float
+        The letter's mu [1/s], not negative: amplitudes fall as exp(-mu t / 2).
+    """
+    require_within("free_period", free_period, "s", above=0)
+    require_within("decay_rate", decay_rate, "1/s", low=0)
+    omega = np.hypot(2.0 * np.pi / free_period, 0.5 * decay_rate)
+    one = np.ones(1)
+    return ModalModel(omega=omega * one, decay_rate=decay_rate * one, phi=one, participation=one)

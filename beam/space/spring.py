@@ -1,0 +1,56 @@
+"""A leaf spring in space: plane centreline, sections, supports, and a tip off the centroid of its section.
+
+The centreline lies in the x-y plane with frame t, n, z; u, w, v [m] are displacements along these and phi
+[rad] is the turn about t. Supports are those of `beam.spring`; without warping stiffness a clamp leaves phi'
+alone.
+
+The tip is a body of mass M [kg] and rotary inertia J [kg m^2], the same about every axis, fixed to one
+section at the point c [m] from its centroid.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..centreline import Centreline
+from ..parameters import require, require_array
+from ..spring import Support, Tip, check_strip
+from .section import SpatialSection
+
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpatialSpring:
+    """A strip that follows a plane centreline between two supports.
+
+    Parameters
+    ----------
+    centreline : Centreline
+    sections : tuple of SpatialSection
+        One for each piece of the centreline.
+    supports : tuple of two supports
+    tip : Tip
+        Its rotary inertia counts about every axis.
+    tip_at : float
+        Arc length where the tip sits [m].
+    tip_offset : tuple of three floats
+        c, from the centroid of the section there to the tip, along x, y and z [m].
+    drive : tuple of three floats
+        e; stored as a unit vector.
+    """
+
+    centreline: Centreline
+    sections: tuple[SpatialSection, ...]
+    supports: tuple[Support, Support]
+    tip: Tip
+    tip_at: float
+    tip_offset: Vector = (0.0, 0.0, 0.0)
+    drive: Vector = (0.0, 1.0, 0.0)
+
+    def __post_init__(self) -> None:
+        check_strip(self, SpatialSection, 3)
+        for section, piece in zip(self.sections, self.centreline.pieces, strict=True):
+            offset = section.shear_offset
+            require(not (offset and piece.curvature), f"shear_offset is {offset} m; on an arc it must be 0")
+        require_array("tip_offset", self.tip_offset, "m", shape=(3,), words="three finite numbers")

@@ -1,0 +1,181 @@
+"""Where a periodic orbit ends when the drive amplitude is lowered.
+
+**Scan.** The amplitude is lowered in steps that carry the physical state along.  A step succeeds if the
+motion settles on an orbit of the same period with the same impacts; the step is then enlarged, otherwise
+halved and tried again from the last orbit that held.  (Impacts alone would not do: below the end of a p_m
+orbit they can go on for thousands of periods.)  A long step can fall off an orbit that is still there, as its
+basin is narrow near a fold; an end is therefore only where the orbit was lost by one final step of the wanted
+width, made from an orbit that held.  That step brackets the end.
+
+**Exact end.** The orbit that held is then followed, as an orbit and not as a motion, through the bracket: by
+shooting for an impact oscillator (``contact.orbits.continuation``), in closed form for the Nordmark map
+(``contact.maximal_orbits``).  What is met first is the end,
+
+    fold              the orbit meets an unstable one
+    period doubling   a multiplier passes -1
+    grazing           the tip touches the stop once more, or one touch less,
+
+with the excess of that very point.  If the orbit leaves the bracket at its lower end, stable, the motion had
+been lost too early, and the scan goes on from the orbit there.  Where nothing of this is found (a map without
+these tools, several impacts in the map, a pair of complex multipliers that passes the unit circle) the end is
+known to its "bracket" only.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+from contact.errors import ContactError
+from contact.maximal_orbits import fold, maximal_orbits, stable_range
+from contact.nordmark import StrobedNordmarkMap
+from contact.orbits.continuation import first_event
+from contact.orbits.settling import Settled, orbit_near, settle
+from contact.orbits.shooting import Shooting
+from contact.stroboscope import StrobedMap, StroboscopicMap
+
+__all__ = ["OrbitEnd", "orbit_end"]
+
+S = TypeVar("S")
+
+MOST_STEPS = 400
+"""Bound of amplitude steps: 40 doublings reach any excess, 40 halvings any tolerance, with room to spare."""
+
+BRACKET = "bracket"
+"""Kind of an end that is known to its bracket only."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class OrbitEnd(Generic[S]):
+    """The end of a p_m orbit in a downward scan.
+
+    Parameters
+    ----------
+    period, impacts : int
+        Of the orbit that was followed.
+    excess : float
+        F/F_g - 1 at which it ends [1]; the middle of the bracket if that is all that is known.
+    kind : str
+        "fold", "period doubling" or "grazing"; "bracket" if none of these was found in it.
+    held, lost : float
+        Excess at which the motion held the orbit last, and that one step below at which it lost it [1].
+    state : State
+        On the orbit at `held`.
+    """
+
+    period: int
+    impacts: int
+    excess: float
+    kind: str
+    held: float
+    lost: float
+    state: S
+
+
+def orbit_end(
+    strobed: StrobedMap[S],
+    state: S,
+    excess: float,
+    *,
+    most_cycles: int,
+    relative: float = 0.01,
+    absolute: float = 1e-7,
+    first_step: float = 2e-4,
+    lowest: float = -0.5,
+) -> OrbitEnd[S] | None:
+    """Follow the orbit on which `state` settles at `excess` downwards until it ends.
+
+    Parameters
+    ----------
+    strobed : StrobedMap
+    state : State
+    excess : float
+        Where to start [1].
+    most_cycles : int
+        Bound of the transient at each amplitude.
+    relative, absolute : float
+        The last step is `relative` of the excess itself or `absolute`, whichever is larger.
+    first_step : float
+        First step of the excess.
+    lowest : float
+        Excess below which the search is given up.
+
+    Returns
+    -------
+    OrbitEnd, or None if the motion at `excess` is not periodic with impacts, or never ends above `lowest`.
+    """
+    start = settle(strobed.at(excess), state, most_cycles=most_cycles)
+    if start.period == 0 or start.impacts == 0:
+        return None
+
+    def kept(trial: float) -> S | None:
+        """The state on the same orbit at the excess `trial`; None if the motion lost it."""
+        try:
+            settled = settle(strobed.at(trial), state, most_cycles=most_cycles)
+        except ContactError:
+            return None
+        same = settled.period == start.period and settled.impacts == start.impacts
+        return settled.end if same else None
+
+    held, state, step = excess, start.end, first_step
+    lost = None
+    for _ in range(MOST_STEPS):
+        final = max(relative * abs(held), absolute)
+        # from next to where a longer step fell off, the last step is made anew
+        step = max(step, final) if lost is None else max(0.5 * (held - lost), final)
+        trial = held - step
+        if trial < lowest:
+            return None
+        now = kept(trial)
+        if now is None and step <= final:
+            kind, exact, below = _exact_end(strobed, state, start, held, trial)
+            if below is None:
+                return OrbitEnd(
+                    period=start.period, impacts=start.impacts, excess=exact, kind=kind, held=held,
+                    lost=trial, state=state,
+                )
+            now = below
+        if now is None:
+            lost = trial
+            continue
+        held, state, step = trial, now, 2.0 * step
+        lost = lost if lost is not None and lost < held else None
+    return None
+
+
+def _exact_end(
+    strobed: Any, state: Any, start: Settled[Any], held: float, lost: float
+) -> tuple[str, float, Any]:
+    """Kind and excess of the end in the bracket; third the state at `lost`, if the orbit is still there."""
+    if isinstance(strobed, StrobedNordmarkMap) and start.impacts == 1:
+        return _map_end(strobed, start.period, held, lost)
+    unknown = BRACKET, 0.5 * (held + lost), None
+    if not isinstance(strobed, StroboscopicMap):
+        return unknown
+    orbit = orbit_near(strobed.at(held), state, start.period, start.impacts)
+    if orbit is None:
+        return unknown
+    family = Shooting(oscillator=orbit.oscillator, period=start.period, impacts=start.impacts)
+    try:
+        event = first_event(family, orbit, lost)
+        if event is not None and event.orbit.excess >= lost:
+            return event.kind, event.orbit.excess, None
+        below = family.at_excess(lost, orbit)
+    except ContactError:
+        return unknown
+    return ("", lost, below.strobe_state()) if below.stable else unknown
+
+
+def _map_end(strobed: StrobedNordmarkMap, period: int, held: float, lost: float) -> tuple[str, float, Any]:
+    """The same for the orbit of the Nordmark map with one impact in `period` steps."""
+    nordmark, unknown = strobed.map, (BRACKET, 0.5 * (held + lost), None)
+    at_fold, stable = fold(nordmark, period), stable_range(nordmark, period)
+    if at_fold is None or stable is None or not stable[0] <= nordmark.rho(held) <= stable[1]:
+        return unknown
+    end = nordmark.excess(stable[0])
+    if end < lost:
+        return "", lost, maximal_orbits(nordmark, period, nordmark.rho(lost))[-1].states[0]
+    if stable[0] == at_fold.rho:
+        return "fold", end, None
+    doubles = maximal_orbits(nordmark, period, stable[0])[-1].multipliers.real.min() < -1.0 + 1e-6
+    return "period doubling" if doubles else "grazing", end, None

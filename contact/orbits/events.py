@@ -1,0 +1,109 @@
+"""Points on a branch of periodic orbits: what happens between two neighbouring orbits of it.
+
+Between neighbours, told apart by the approach velocity v of their first touch, these are located by Brent's
+method on log v, grazing by bisection:
+
+    fold              dZ/dv changes sign: two orbits, one stable, meet
+    period doubling   det(M + I) changes sign: a multiplier passes -1
+    grazing           the orbit gains or loses a touch of the stop (certified flights)
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from contact.orbits.shooting import PeriodicOrbit, Shooting
+
+__all__ = ["Event", "doubling", "events_between", "locate", "probed"]
+
+PLACE = 1e-10
+"""Accuracy of log v at a located point; the excess there is good to the square of it at a fold."""
+
+MOST_HALVINGS = 60
+"""Bound of the halvings of a bracket: 2^-60 of any step is below PLACE."""
+
+PROBE, MOST_PROBES = 0.25, 4
+"""An orbit is computed where the slope is expected below this part of that of both neighbours: a first probe
+and three halvings tell apart folds closer than a hundredth of a step."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Event:
+    """A point on a branch: "fold", "period doubling" or "grazing"."""
+
+    kind: str
+    orbit: PeriodicOrbit
+
+
+def doubling(orbit: PeriodicOrbit) -> float:
+    """det(M + I): zero where a multiplier is -1."""
+    return float(np.prod(orbit.multipliers + 1.0).real)
+
+
+def locate(
+    family: Shooting, a: PeriodicOrbit, b: PeriodicOrbit, test: Callable[[PeriodicOrbit], float]
+) -> PeriodicOrbit:
+    """The orbit between neighbours a and b where `test` changes sign."""
+    from scipy.optimize import brentq  # slow to import
+
+    seen = {math.log(a.speed): a, math.log(b.speed): b}
+
+    def value(x: float) -> float:
+        if x not in seen:
+            near = min(seen.values(), key=lambda orbit: abs(math.log(orbit.speed) - x))
+            seen[x] = family.at_speed(math.exp(x), near)
+        return test(seen[x])
+
+    root = brentq(value, math.log(a.speed), math.log(b.speed), xtol=PLACE, rtol=1e-14)
+    value(root)
+    return seen[root]
+
+
+def _bisect(family: Shooting, a: PeriodicOrbit, b: PeriodicOrbit) -> PeriodicOrbit:
+    """The last admissible orbit between an admissible and an inadmissible neighbour."""
+    good, bad = (a, b) if a.admissible else (b, a)
+    for _ in range(MOST_HALVINGS):
+        if abs(math.log(good.speed / bad.speed)) <= PLACE:
+            break
+        middle = family.at_speed(math.sqrt(good.speed * bad.speed), good)
+        if middle.admissible:
+            good = middle
+        else:
+            bad = middle
+    return good
+
+
+def probed(family: Shooting, a: PeriodicOrbit, b: PeriodicOrbit, depth: int = 0) -> list[PeriodicOrbit]:
+    """`a`, and the orbits between it and its neighbour `b` that tell apart two folds in between.
+
+    The cubic in log v with the amplitudes and slopes of both says where the slope is least; if it comes near
+    zero there, that orbit is computed.
+    """
+    x = math.log(b.speed / a.speed)
+    first, last, rise = a.slope * a.speed * x, b.slope * b.speed * x, b.excess - a.excess
+    bend = first + last - 2.0 * rise
+    if depth == MOST_PROBES or first * last <= 0.0 or bend == 0.0:
+        return [a]
+    # slope(t) = first + (6 rise - 4 first - 2 last) t + 3 bend t^2, t from 0 at a to 1 at b
+    t = (2.0 * first + last - 3.0 * rise) / (3.0 * bend)
+    least = first + t * (6.0 * rise - 4.0 * first - 2.0 * last) + 3.0 * t * t * bend
+    if not 0.0 < t < 1.0 or least * math.copysign(1.0, first) > PROBE * min(abs(first), abs(last)):
+        return [a]
+    middle = family.at_speed(a.speed * math.exp(t * x), a)
+    return [*probed(family, a, middle, depth + 1), *probed(family, middle, b, depth + 1)]
+
+
+def events_between(family: Shooting, a: PeriodicOrbit, b: PeriodicOrbit) -> list[Event]:
+    """What happens between neighbours, in the order in which it is met from `a` on."""
+    found = []
+    if a.slope * b.slope < 0:
+        found.append(Event(kind="fold", orbit=locate(family, a, b, lambda orbit: orbit.slope)))
+    if doubling(a) * doubling(b) < 0:
+        found.append(Event(kind="period doubling", orbit=locate(family, a, b, doubling)))
+    if a.admissible != b.admissible:
+        found.append(Event(kind="grazing", orbit=_bisect(family, a, b)))
+    return sorted(found, key=lambda event: abs(math.log(event.orbit.speed / a.speed)))

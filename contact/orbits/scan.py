@@ -1,0 +1,126 @@
+"""Orbit diagrams: strobed points against drive amplitude, the physical state carried along.
+
+The letter (1996) scans the excitation amplitude upwards and downwards in small steps, lets the spring settle
+at each and records 40 strobe points.  Carrying the state along is what shows hysteresis: the spring stays on
+the orbit that it is on until that orbit ends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from contact.errors import ContactError
+from contact.orbits.settling import TOLERANCE, period_of, settle
+from contact.stroboscope import StrobedMap
+
+__all__ = ["OrbitDiagram", "orbit_diagram"]
+
+S = TypeVar("S")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class OrbitDiagram(Generic[S]):
+    """A scan of the drive amplitude, in the order in which it was made.
+
+    Parameters
+    ----------
+    excess : ndarray, shape (n_amplitudes,)
+    points : ndarray, shape (n_amplitudes, record_cycles)
+        The observed quantity at the strobes; NaN where the computation failed.
+    period, impacts, cycles : ndarray of int, shape (n_amplitudes,)
+        Period of the settled orbit (0: none), impacts in one such period, drive periods spent settling.
+        Where there is no period the impacts and the points are a moment of a motion that goes on changing.
+    failures : tuple of str
+        One sentence for each amplitude that failed.
+    end : State
+        The state after the last amplitude.
+    """
+
+    excess: np.ndarray
+    points: np.ndarray
+    period: np.ndarray
+    impacts: np.ndarray
+    cycles: np.ndarray
+    failures: tuple[str, ...]
+    end: S
+
+    @property
+    def kind(self) -> list[str]:
+        """What each amplitude shows: "periodic", "not settled" (chaos, or a transient not over), "failed"."""
+        words = np.where(self.period > 0, "periodic", "not settled")
+        found: list[str] = np.where(np.isnan(self.points[:, 0]), "failed", words).tolist()
+        return found
+
+
+def orbit_diagram(
+    strobed: StrobedMap[S],
+    excesses: Sequence[float] | np.ndarray,
+    state: S,
+    *,
+    observe: Callable[[np.ndarray], np.ndarray],
+    settle_cycles: int,
+    record_cycles: int = 40,
+    largest_period: int = 64,
+    early: bool = True,
+    after_each: Callable[[], None] | None = None,
+) -> OrbitDiagram[S]:
+    """Scan the amplitudes `excesses` in the given order, starting from `state`.
+
+    Parameters
+    ----------
+    strobed : StrobedMap
+        Its own amplitude does not matter.
+    excesses : sequence of float
+        F/F_g - 1 at each step.
+    state : State
+    observe : callable
+        Strobed points, shape (n, n_coordinates), to the quantity recorded, shape (n,).
+    settle_cycles : int
+        Bound of the transient at each amplitude.
+    record_cycles : int
+        Strobe points recorded.
+    largest_period : int
+    early : bool
+        End a transient as soon as the orbit is known (`settle`); otherwise every amplitude gets all
+        `settle_cycles`.
+    after_each : callable, optional
+        Called after each amplitude (progress).
+    """
+    values = np.asarray(excesses, dtype=float)
+    if values.ndim != 1 or values.size == 0 or not np.all(np.isfinite(values)):
+        raise ValueError("excesses must be a non-empty list of finite numbers [1]")
+    points = np.full((values.size, record_cycles), np.nan)
+    period, impacts, cycles = (np.zeros(values.size, dtype=np.int64) for _ in range(3))
+    failures: list[str] = []
+    for i, excess in enumerate(values):
+        here = strobed.at(float(excess))
+        try:
+            if early:
+                settled = settle(here, state, most_cycles=settle_cycles, largest_period=largest_period)
+                state, cycles[i] = settled.end, settled.cycles
+                period[i], impacts[i] = settled.period, settled.impacts
+                recorded = here.orbit(state, record_cycles)
+            else:
+                state = here.orbit(state, settle_cycles).end
+                recorded = here.orbit(state, max(record_cycles, 2 * largest_period))
+                cycles[i] = settle_cycles
+                period[i] = period_of(
+                    recorded.points, recorded.impacts, largest_period=largest_period,
+                    tolerance=TOLERANCE * here.scale,
+                )
+                impacts[i] = recorded.impacts[-period[i] :].sum() if period[i] else recorded.impacts.sum()
+            state = recorded.end
+            points[i] = observe(recorded.points)[-record_cycles:]
+        except ContactError as error:
+            # the next amplitude goes on from the last state that was reached
+            failures.append(f"excess {excess:.6g}: {error}")
+        if after_each is not None:
+            after_each()
+    return OrbitDiagram(
+        excess=values, points=points, period=period, impacts=impacts, cycles=cycles, failures=tuple(failures),
+        end=state,
+    )

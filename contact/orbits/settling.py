@@ -1,0 +1,290 @@
+"""Settling on a periodic orbit and telling its period.
+
+**Repetition.** The motion is followed in blocks.  After each block the last points are compared with those p
+strobes earlier, p = 1 ... `largest_period`: the orbit has period p if all coordinates of the last
+`largest_period` points repeat to `TOLERANCE` of the scale and the impact counts repeat exactly.  (A transient
+that alternates about p_m while it dies out, next to a period doubling, repeats after 2m first: a period is
+told when a repetition `ALIKE` times as rough has the same one.)  A motion that has not settled after
+`most_cycles` periods gets period 0: chaos, a longer period, or a transient that is not over.  Any strobed map
+settles this way.
+
+**Proof.** A transient of an impact oscillator ends as soon as its orbit is known, not when it has been
+reached.  A motion that seems to repeat to a part in a thousand is compared with a periodic orbit in its
+neighbourhood, found by shooting (``contact.orbits.shooting``) from the motion itself.  If that orbit is
+stable, touches the stop only where it should (certified), and the motion has come closer to it over a whole
+block of drive periods by what its largest multiplier says,
+
+    distance(n + block) <= SLACK |mu|^(block/m) distance(n) + rounding,
+
+the motion is in the linear neighbourhood of the orbit and ends on it: the rest of the transient need not be
+computed.  The motion without impacts is settled when the free motion that is left, which can only shrink,
+cannot reach the stop any more.  Near a fold, where |mu| comes close to 1, this saves thousands of periods.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+
+from contact.errors import ContactError
+from contact.orbits.shooting import PeriodicOrbit, Shooting
+from contact.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap
+from contact.trajectory import State
+
+__all__ = ["BELOW", "TOLERANCE", "Settled", "born", "born_period", "orbit_near", "period_of", "settle"]
+
+S = TypeVar("S")
+
+TOLERANCE = 1e-9
+"""Largest change over one period of a settled orbit, relative to the scale of its coordinates.  Rounding is
+at 1e-14; the slow drift past a vanished fold at relative distance 1e-7 moves by more than this per period."""
+
+ALIKE = 1000.0
+"""Repetitions of this ratio tell the same period, or the shorter one is waited for: next to a doubling with a
+multiplier of -0.999 points m apart differ by 1000 times as much as those 2m apart."""
+
+BELOW = -1e-3
+"""Excess of the motion without impacts from which the drive is raised: four times the letter's amplitude
+stability below grazing."""
+
+FIRST_LOOK = 1e-3
+"""Repetition, relative to the gap, at which an orbit is looked for: a search costs some ten drive periods."""
+
+CLOSER = 0.5
+"""A search in vain is made again when the motion repeats better by this factor, or much worse: in the slow
+passage of a vanished fold, and in chaos next to an unstable orbit, every block would be searched."""
+
+SLACK = 1.5
+"""Factor on the decay that the multiplier promises: the other multipliers and curvature need some room."""
+
+NEAR = 1e-3
+"""Distance from the orbit, relative to the gap, within which the linear neighbourhood is looked for."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Settled(Generic[S]):
+    """What a motion settled on.
+
+    Parameters
+    ----------
+    period : int
+        Smallest period in strobes, 0 if none was found.
+    impacts : int
+        Impacts in one such period (or in the last block, if there is none).
+    end : State
+        The state reached; where the orbit was proved, a state on it.
+    cycles : int
+        Periods of the drive that it took.
+    points : ndarray, shape (block, n_coordinates)
+        The last strobed points.
+    """
+
+    period: int
+    impacts: int
+    end: S
+    cycles: int
+    points: np.ndarray
+
+
+def period_of(points: np.ndarray, impacts: np.ndarray, *, largest_period: int, tolerance: float) -> int:
+    """The smallest p <= `largest_period` with which the last `largest_period` points repeat, or 0.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n_strobes, n_coordinates)
+        At least 2 * `largest_period` strobes.
+    impacts : ndarray of int, shape (n_strobes,)
+    largest_period : int
+    tolerance : float
+        In the unit of the points.
+    """
+    last = points[-1]
+    for period in range(1, largest_period + 1):
+        if np.max(np.abs(last - points[-1 - period])) > tolerance:
+            continue
+        stretch = slice(-largest_period, None)
+        before = slice(-largest_period - period, -period)
+        if np.array_equal(impacts[stretch], impacts[before]) and (
+            np.max(np.abs(points[stretch] - points[before])) <= tolerance
+        ):
+            return period
+    return 0
+
+
+def settle(
+    strobed: StrobedMap[S],
+    state: S,
+    *,
+    most_cycles: int,
+    largest_period: int = 64,
+    tolerance: float = TOLERANCE,
+    prove: bool = True,
+) -> Settled[S]:
+    """Follow a motion until it is known to be periodic, or for `most_cycles` drive periods.
+
+    Parameters
+    ----------
+    strobed : StrobedMap
+        The beam, Eq. (1) or the Nordmark map at one drive amplitude.
+    state : State
+        Where to start.
+    most_cycles : int
+        The bound on the run; a block of 2 * `largest_period` is run in any case.
+    largest_period : int
+    tolerance : float
+        Relative to the scale of the strobed map.
+    prove : bool
+        End the transient of a StroboscopicMap where its orbit is proved; otherwise, and for any other map,
+        where it repeats.
+    """
+    block = 2 * largest_period
+    proof: Any = None
+    if prove and isinstance(strobed, StroboscopicMap):
+        proof = _Proof(strobed, largest_period, tolerance * strobed.scale)
+    cycles = 0
+    while True:
+        run = strobed.orbit(state, block)
+        state, cycles = run.end, cycles + block
+        period = period_of(
+            run.points, run.impacts, largest_period=largest_period, tolerance=tolerance * strobed.scale
+        )
+        if cycles < most_cycles and period != period_of(
+            run.points, run.impacts, largest_period=period, tolerance=ALIKE * tolerance * strobed.scale
+        ):
+            period = 0
+        if period or cycles >= most_cycles:
+            counted = run.impacts[-period:] if period else run.impacts
+            return Settled(
+                period=period, impacts=int(counted.sum()), end=state, cycles=cycles, points=run.points
+            )
+        proved = None if proof is None else proof.after(run)
+        if proved is not None:
+            period, impacts, on_orbit = proved
+            final = strobed.orbit(on_orbit, block)
+            return Settled(
+                period=period, impacts=impacts, end=final.end, cycles=cycles, points=final.points
+            )
+
+
+def born(
+    strobed: StrobedMap[S],
+    excess: float = 1e-3,
+    *,
+    below: float = BELOW,
+    most_cycles: int = 4000,
+    largest_period: int = 64,
+    prove: bool = True,
+) -> Settled[S]:
+    """What the motion without impacts at `below` turns into when the drive is raised to `excess` in one step.
+
+    Parameters
+    ----------
+    strobed : StrobedMap
+        Its own amplitude does not matter.
+    excess, below : float
+        F/F_g - 1 after and before the step [1].
+    most_cycles : int
+        Bound of the transient: orbits born at grazing settle within some hundred drive periods.
+    largest_period, prove
+        As in `settle`.
+    """
+    start = strobed.at(below).steady()
+    return settle(
+        strobed.at(excess), start, most_cycles=most_cycles, largest_period=largest_period, prove=prove
+    )
+
+
+def born_period(
+    strobed: StrobedMap[Any], excess: float = 1e-3, *, below: float = BELOW, most_cycles: int = 4000
+) -> int:
+    """Period in drive periods of what is `born` at `excess`; 0 for none up to 64."""
+    return born(strobed, excess, below=below, most_cycles=most_cycles).period
+
+
+def orbit_near(strobed: StroboscopicMap, state: State, period: int, impacts: int) -> PeriodicOrbit | None:
+    """The stable, admissible orbit next to `state`, by shooting; None if there is none."""
+    try:
+        family = Shooting(oscillator=strobed.oscillator, period=period, impacts=impacts)
+        orbit = family.from_state(replace(state, time=0.0))
+    except (ContactError, ValueError, TypeError):
+        return None
+    return orbit if orbit.stable and orbit.admissible else None
+
+
+class _Proof:
+    """Watches the blocks of a transient until it is certain on which orbit it ends; see the module."""
+
+    def __init__(self, strobed: StroboscopicMap, largest_period: int, rounding: float) -> None:
+        self.strobed, self.largest_period, self.rounding = strobed, largest_period, rounding
+        self.known: PeriodicOrbit | None = None
+        self.before = np.inf
+        self.failed = np.inf  # how well the motion repeated when an orbit was looked for in vain
+
+    def cycle(self, orbit: PeriodicOrbit) -> StrobedOrbit[State]:
+        """One period of an orbit."""
+        return self.strobed.orbit(replace(orbit.strobe_state(), time=0.0), orbit.period)
+
+    def single(self, orbit: PeriodicOrbit | None) -> PeriodicOrbit | None:
+        """`orbit`, but None if it is another one of a shorter period, run through more than once."""
+        if orbit is None:
+            return None
+        points, tolerance = np.tile(self.cycle(orbit).points, (2, 1)), ALIKE * self.rounding
+        counts = np.zeros(len(points), dtype=int)
+        shortest = period_of(points, counts, largest_period=orbit.period, tolerance=tolerance)
+        return orbit if shortest == orbit.period else None
+
+    def after(self, run: StrobedOrbit[State]) -> tuple[int, int, State] | None:
+        """Period, impacts and a state on the orbit in the phase of the motion; None while nothing is
+        certain."""
+        strobed = self.strobed
+        rough = period_of(
+            run.points, run.impacts, largest_period=self.largest_period, tolerance=FIRST_LOOK * strobed.scale
+        )
+        hits = int(run.impacts[-rough:].sum()) if rough else 0
+        if rough and hits == 0:
+            self.known = None
+            if _free_for_good(strobed, run.end):
+                return 1, 0, replace(strobed.steady(), time=run.end.time)
+            return None
+        if not rough or rough > self.largest_period // 2:
+            self.known, self.before = None, np.inf
+            return None
+        if self.known is None or (self.known.period, self.known.impacts) != (rough, hits):
+            self.known, self.before = None, np.inf
+            open_by = float(np.max(np.abs(run.points[rough:] - run.points[:-rough])[-self.largest_period :]))
+            if not CLOSER * self.failed <= open_by <= self.failed / CLOSER**3:
+                self.known = self.single(orbit_near(strobed, run.end, rough, hits))
+                self.failed = open_by if self.known is None else np.inf
+        if self.known is None:
+            return None
+        orbit = self.known
+        cycle = self.cycle(orbit)
+        distance, phase = _distance(run.points, cycle.points)
+        promised = SLACK * abs(orbit.multipliers[0]) ** (len(run.points) / orbit.period) * self.before
+        if self.before < NEAR * strobed.scale and distance <= promised + self.rounding:
+            on_orbit = strobed.orbit(cycle.end, phase % orbit.period or orbit.period).end
+            return orbit.period, orbit.impacts, replace(on_orbit, time=run.end.time)
+        self.before = distance
+        return None
+
+
+def _distance(points: np.ndarray, cycle: np.ndarray) -> tuple[float, int]:
+    """Largest distance of the last points from a cycle, in its best phase, and that phase."""
+    m = len(cycle)
+    last = points[-m:]
+    gaps = [float(np.max(np.abs(last - np.roll(cycle, -k, axis=0)))) for k in range(m)]
+    best = int(np.argmin(gaps))
+    return gaps[best], best
+
+
+def _free_for_good(strobed: StroboscopicMap, state: State) -> bool:
+    """Whether the free motion left over in `state` can never bring the tip to the stop."""
+    model, steady = strobed.oscillator.model, strobed.steady()
+    if np.any(model.omega <= 0):
+        return False
+    u, v = state.displacement - steady.displacement, state.velocity - steady.velocity
+    left = float(np.sum(np.abs(model.phi) * np.hypot(u, v / model.omega)))
+    reach = abs(strobed.oscillator.tip_response()) * strobed.oscillator.drive.amplitude  # type: ignore[union-attr]
+    return reach + left < strobed.oscillator.stop.gap * (1.0 - 1e-12)

@@ -1,0 +1,1 @@
+"""What the spring settles on, and which starts lead where."""

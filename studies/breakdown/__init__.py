@@ -1,0 +1,1 @@
+"""Where the map fails near grazing: the letter's Fig. 5."""

@@ -1,0 +1,1 @@
+"""Which period, how many impacts: the plane of drive frequency and amplitude."""

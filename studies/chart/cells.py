@@ -1,0 +1,154 @@
+"""The plane of the chart, the cells of one column, and what all of them say.
+
+Frequencies are evenly spaced. Excesses are even in
+
+    s = asinh(excess/KNEE),   KNEE = 0.005,
+
+in steps of (range of s) KNEE/(n - 1) around grazing and in proportion to the excess far from it: the
+hysteresis of the letter's transitions, 1e-4 to 1.3e-2, would be lost within a step or two of an even grid of
+400 amplitudes over -0.15 ... 0.1; here the step at grazing is 1e-4 and the last ones are 3e-3, ten to the
+width of the islands near -0.1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact.orbits import AmplitudeScan
+from studies.sweep import Column
+
+__all__ = [
+    "EXCESSES",
+    "FREQUENCIES_HZ",
+    "KNEE",
+    "Cells",
+    "Fold",
+    "Plane",
+    "Scan",
+    "fold_agreement",
+    "sheared",
+]
+
+FREQUENCIES_HZ = (19.5, 24.0)
+EXCESSES = (-0.15, 0.1)
+KNEE = 0.005
+DIRECTIONS = ("up", "down")
+
+
+def sheared(excess: float | Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:
+    """s of the module's docstring: the upright coordinate of the chart [1]."""
+    found: NDArray[np.float64] = np.arcsinh(np.asarray(excess, dtype=float) / KNEE)
+    return found
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plane:
+    """`columns` frequencies [Hz] by `rows` excesses [1] between given ends."""
+
+    columns: int
+    rows: int
+    frequencies_hz: tuple[float, float] = FREQUENCIES_HZ
+    excesses: tuple[float, float] = EXCESSES
+
+    def __post_init__(self) -> None:
+        if self.columns < 2 or self.rows < 2:
+            raise ValueError(f"points of the chart are {self.columns} by {self.rows}; each must be 2 or more")
+        for name, lowest in (("frequencies_hz", 0.0), ("excesses", -1.0)):
+            low, high = getattr(self, name)
+            if not lowest < low < high:
+                raise ValueError(
+                    f"{name} of the chart are {low} to {high}; they must rise from above {lowest:g}"
+                )
+
+    def frequencies(self) -> NDArray[np.float64]:
+        """All of them, rising [Hz]."""
+        return np.linspace(*self.frequencies_hz, self.columns)
+
+    def rising_excesses(self) -> NDArray[np.float64]:
+        """All of them, rising [1]."""
+        low, high = sheared(self.excesses).tolist()
+        excesses: NDArray[np.float64] = KNEE * np.sinh(np.linspace(low, high, self.rows))
+        excesses[[0, -1]] = self.excesses
+        return excesses
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scan:
+    """From a frequency [Hz] to its column: the amplitude raised and lowered again over `excesses`."""
+
+    scan: AmplitudeScan
+    excesses: tuple[float, ...]
+
+    def __call__(self, frequency: float) -> Column:
+        """Arrays that broadcast to (2, n_excesses): the upward scan first."""
+        found = self.scan(frequency, self.excesses)
+        return {
+            "frequency_hz": np.array(frequency), "direction": np.array(DIRECTIONS)[:, None],
+            "excess": np.array(self.excesses), "period": found.period, "impacts": found.impacts,
+            "cycles": found.cycles, "reason": found.reason,
+        }  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fold:
+    """The exact end of a p_m orbit with one impact."""
+
+    period: int
+    frequency_hz: float
+    excess: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Cells:
+    """Arrays of shape (2, n_frequencies, n_excesses), upward scan first; excesses rise in both.
+
+    `period` 0: none found; `cycles` drive periods spent; -1 everywhere where the computation failed.
+    """
+
+    frequencies: NDArray[np.float64]
+    excesses: NDArray[np.float64]
+    period: NDArray[np.int32]
+    impacts: NDArray[np.int32]
+    cycles: NDArray[np.int32]
+
+    @staticmethod
+    def of(plane: Plane, columns: Sequence[Column]) -> Cells:
+        """All columns of a plane side by side."""
+
+        def side_by_side(name: str) -> NDArray[np.int32]:
+            return np.stack([np.asarray(column[name]) for column in columns], axis=1).astype(np.int32)
+
+        return Cells(
+            frequencies=plane.frequencies(), excesses=plane.rising_excesses(), period=side_by_side("period"),
+            impacts=side_by_side("impacts"), cycles=side_by_side("cycles"),
+        )  # fmt: skip
+
+    def counts(self) -> Mapping[str, Mapping[str, int]]:
+        """Cells of each period, by direction."""
+        return {
+            way: {str(p): int(n) for p, n in zip(*np.unique(self.period[k], return_counts=True), strict=True)}
+            for k, way in enumerate(DIRECTIONS)
+        }
+
+
+def fold_agreement(cells: Cells, folds: Sequence[Fold]) -> tuple[int, int]:
+    """In how many columns the exact fold lies in the step in which p_m ends, and in how many it could.
+
+    It can where the downward scan is on p_m with one impact in the two rows above the fold.
+    """
+    agree = able = 0
+    place = {float(f): k for k, f in enumerate(cells.frequencies)}
+    for fold in folds:
+        column = place.get(fold.frequency_hz)
+        if column is None:
+            continue
+        on = (cells.period[1, column] == fold.period) & (cells.impacts[1, column] == 1)
+        above = int(np.searchsorted(cells.excesses, fold.excess))
+        if above + 1 < on.size and above > 0 and on[above + 1]:
+            able += 1
+            agree += bool(on[above] and not on[above - 1])
+    return agree, able

@@ -1,0 +1,1 @@
+"""The letter's other claims, one file a claim."""

@@ -1,0 +1,216 @@
+"""Born period against f T for several springs and contact laws, beside the bands of the Nordmark map.
+
+At equal f T, T the damped period of the lowest mode, each spring is to have just above grazing the period
+that the map has as rho -> 0+. That is a claim about the limit: over whole bands secondary bifurcations come
+before the born excess, so that it is judged in the quarter of each band next to its upper edge, where the
+hysteresis is small, and where a spring disagrees there, again at a sixteenth of the excess. Cells without a
+period count as disagreement; none is drawn as a period.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from beam import ModalModel
+from contact import ContactError, StroboscopicMap, maximal_period, maximal_periods
+from contact.orbits import born_period
+from studies import letter, plotting
+from studies.calibration import bare_cantilever, with_mass_ratio
+from studies.claims.bands import band_of
+from studies.claims.equation_one import map_at
+from studies.run import Run
+from studies.scene import Scene, beam_at, model_of, single_mode_at
+
+__all__ = ["Born", "Spring", "born_at", "springs", "universality"]
+
+SPAN = (0.802, 0.956)
+"""f T from the band of p3 to that of p11."""
+
+TOP = 3
+"""The quarter of a band next to its upper edge; the lowest is 0."""
+
+CLOSER = 1.0 / 16.0
+"""Part of the born excess at which a disagreement is looked at again."""
+
+MOST_CYCLES = 3000
+"""Bound of a transient [drive periods]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Spring:
+    """A spring with its contact law; `model` is None for Eq. (1)."""
+
+    name: str
+    scene: Scene
+    model: ModalModel | None = None
+
+    def frequency(self, position: float) -> float:
+        """Drive frequency [Hz] at f T."""
+        if self.model is None:
+            return position / self.scene.single_mode.free_period_s
+        omega, decay = float(self.model.omega[0]), float(self.model.decay_rate[0])
+        return position * math.sqrt(omega**2 - 0.25 * decay**2) / (2.0 * math.pi)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Born:
+    """One spring at one f T: `period` born (0: not settled; None: could not be followed).
+
+    `map`: periods that the map has there as rho -> 0+; `quarter` of the band, 0 to 3 upwards; `closer`:
+    period at a sixteenth of the excess, where it was asked.
+    """
+
+    spring: str
+    f_times_t: float
+    period: int | None
+    map: tuple[int, ...]
+    quarter: int
+    settled: bool
+    closer: int | None = None
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the map has this period."""
+        return self.period in self.map
+
+
+def springs(scene: Scene) -> tuple[Spring, ...]:
+    """Springs and contact laws of the comparison; Eq. (1) first."""
+    drives = sorted(scene.drive.frequencies_hz)
+    middle = drives[len(drives) // 2]
+    bare = bare_cantilever(scene, middle)
+    heavy = with_mass_ratio(scene.replace({"spring.kind": "cantilever"}), 0.5, middle)
+    u, loaded = model_of(scene), model_of(heavy)
+    laws = {law: scene.replace({"contact.law": law}) for law in ("linear", "hertz", "newton")}
+    return (
+        Spring(name="Eq. (1), Newton", scene=scene),
+        Spring(name="folded U, linear", scene=laws["linear"], model=u),
+        Spring(name="folded U, Hertz", scene=laws["hertz"], model=u),
+        Spring(name="folded U, Newton", scene=laws["newton"], model=u),
+        Spring(name="bare cantilever, Hertz", scene=bare, model=model_of(bare)),
+        Spring(name="heavy-ball cantilever, Hertz", scene=heavy, model=loaded),
+        Spring(
+            name="heavy-ball cantilever, Newton", scene=heavy.replace({"contact.law": "newton"}), model=loaded
+        ),
+    )
+
+
+def born_at(job: tuple[Spring, float, float]) -> int | None:
+    """Period of a spring at f T and an excess [1]; 0 for none, None if it could not be followed."""
+    spring, position, excess = job
+    frequency = spring.frequency(position)
+    if spring.model is None:
+        oscillator = single_mode_at(spring.scene, frequency)
+    else:
+        oscillator = beam_at(spring.scene, frequency, spring.model)
+    try:
+        strobed = StroboscopicMap(oscillator=oscillator)
+        return born_period(strobed, excess, below=-excess, most_cycles=MOST_CYCLES)
+    except ContactError:
+        return None
+
+
+def universality(scene: Scene, run: Run, *, positions: int) -> Mapping[str, object]:
+    """Compute, store, draw and judge."""
+    rows, excess = born_everywhere(scene, run, positions), scene.scan.born_excess
+    run.table(
+        "universality", rows, "Period born just above grazing, and that of the map as rho -> 0+.", show=()
+    )
+    run.figure(
+        "universality",
+        draw(scene, rows),
+        "Period born at grazing for seven springs and contact laws; grey,"
+        " the bands of the map. Near the upper edge of a band all agree with it.",
+    )
+    for row in rows:
+        if row.period is None:
+            run.failed(f"{row.spring}, f T = {row.f_times_t:.4g}", "the motion could not be followed")
+    names = list(dict.fromkeys(row.spring for row in rows))
+    agree = {n: float(np.mean([row.agrees for row in rows if row.spring == n])) for n in names}
+    quarters = {
+        name: [float(np.mean(q)) if q else None for q in (
+            [row.agrees for row in rows if row.spring == name and row.quarter == k] for k in range(TOP + 1)
+        )]
+        for name in names
+    }  # fmt: skip
+    top = [row for row in rows if row.quarter == TOP]
+    odd = [row for row in top if not row.agrees]
+    failed, holds = any(row.period is None for row in rows), all(row.closer in row.map for row in odd)
+    if top and not failed:
+        note = "over whole bands, where secondary bifurcations come first, "
+        note += f"{100 * min(agree.values()):.0f} % or more"
+        if odd:
+            who = ", ".join(dict.fromkeys(row.spring for row in odd))
+            note += f"; exceptions: {who}; at a sixteenth of the excess {'none' if holds else 'still some'}"
+        run.verdict(
+            "universality", "agrees" if holds else "in part",
+            found=f"next to the upper edges {len(top) - len(odd)} of {len(top)} pairs of frequency and"
+            f" spring have the period of the map at excess {excess:g}", note=note,
+        )  # fmt: skip
+    return {
+        "holds": None if failed else holds, "agree": agree, "agree_by_quarter_of_band": quarters,
+        "exceptions_in_top_quarter": odd, "closer_excess": CLOSER * excess,
+        "not_settled": sum(not row.settled for row in rows),
+    }  # fmt: skip
+
+
+def born_everywhere(scene: Scene, run: Run, count: int) -> list[Born]:
+    """Every spring at every f T, and the disagreements next to an upper edge once more, closer to grazing."""
+    entries, positions, excess = springs(scene), np.linspace(*SPAN, count).tolist(), scene.scan.born_excess
+    jobs = [(spring, place) for spring in entries for place in positions]
+    found = run.map(born_at, [(*job, excess) for job in jobs], "born periods")
+    rows = []
+    for (spring, place), period in zip(jobs, found, strict=True):
+        frequency = place / scene.single_mode.free_period_s
+        nordmark = map_at(scene, frequency, scene.single_mode.restitution)
+        edges = band_of(scene, maximal_period(nordmark))
+        part = (frequency - edges.lower) / (edges.upper - edges.lower)
+        rows.append(Born(
+            spring=spring.name, f_times_t=place, period=period, map=maximal_periods(nordmark),
+            quarter=min(TOP, max(0, math.floor(4.0 * part))), settled=bool(period),
+        ))  # fmt: skip
+    again = [i for i, row in enumerate(rows) if row.quarter == TOP and not row.agrees]
+    for i, period in zip(
+        again,
+        run.map(born_at, [(*jobs[i], CLOSER * excess) for i in again], "closer to grazing"),
+        strict=True,
+    ):
+        rows[i] = replace(rows[i], closer=period)
+    return rows
+
+
+@plotting.in_house_style
+def draw(scene: Scene, rows: Sequence[Born]) -> Figure:
+    """Born periods over the bands of the map; what has no period from 2 to 12 lies in the lowest row."""
+    figure, axis = plotting.new_figure(width=plotting.PAGE, height=0.085)
+    names, period = list(dict.fromkeys(row.spring for row in rows)), scene.single_mode.free_period_s
+    for number, name in enumerate(names):
+        mine = [row for row in rows if row.spring == name]
+        shift, style = 0.1 * (number - 0.5 * (len(names) - 1)), plotting.points(number)
+        heights = [row.period if row.period and 1 < row.period <= 12 else 1 for row in mine]
+        axis.plot(
+            [row.f_times_t for row in mine], [height + shift for height in heights], **style, markersize=2.6,
+            markerfacecolor="none" if style["marker"] not in "xP*" else None, markeredgewidth=0.7, label=name,
+        )  # fmt: skip
+    for m in range(2, 13):
+        edges = band_of(scene, m)
+        axis.fill_between([edges.lower * period, edges.upper * period], m - 0.42, m + 0.42, color="0.88",
+                          linewidth=0.0, zorder=0, gid=f"band of the map, m = {m}")  # fmt: skip
+    axis.set_xlim(SPAN[0] - 0.003, SPAN[1] + 0.003)
+    axis.set_ylim(0.4, 12.6)
+    axis.set_yticks([1, *range(2, 13)], ["other", *(str(m) for m in range(2, 13))])
+    axis.errorbar(
+        [f * letter.FREE_PERIOD_S for f in letter.PERIODS], list(letter.PERIODS.values()),
+        xerr=[f * letter.FREE_PERIOD_ERROR_S for f in letter.PERIODS], **plotting.LETTER_POINTS,
+        elinewidth=0.7, ecolor="black", label="letter, error of T",
+    )  # fmt: skip
+    plotting.label(axis.xaxis, "$f T$")
+    plotting.label(axis.yaxis, f"period $m$ born, excess {scene.scan.born_excess:g}")
+    figure.legend(loc="outside lower center", ncols=3, title="grey: bands of the Nordmark map",
+                  title_fontsize=plotting.NOTE)  # fmt: skip
+    return figure

@@ -1,0 +1,245 @@
+"""The approaches to the plate: one quantity varied at a time, each curve a list of cases.
+
+    speed        excess, hence approach speed v = 2 pi f gap sqrt((1 + excess)^2 - 1)
+    modes        number of modes kept, for the spring of the scene, a light tip and a bare cantilever
+    mass         tip mass over leaf, free period and drive amplitude at grazing kept, at several excesses
+    orbit        the same, but the collision of the orbit that settles at the letter's Fig. 4
+    search       tip mass and restitution of the contact itself together
+    hardness     tip mass and stiffness together
+    stiffness    linear contact of 1e2 ... 1e7 times the static stiffness of the tip
+    materials    Hertz contact of four balls, on the same axis by the linear contact of equal contact time
+    damping      rates of the modes above the first, times a factor, for three rules with the same mode 1
+    loss         restitution of the contact itself, Hunt-Crossley's law or Newton's
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from beam import ALUMINA, BRASS, STEEL, Material, ModalModel
+from contact import (
+    ContactLaw,
+    HertzContact,
+    HuntCrossley,
+    ImpactOscillator,
+    LinearContact,
+    NewtonRestitution,
+    Stop,
+)
+from studies.calibration import leaf_mass, with_mass_ratio
+from studies.letter import TIME_TRACE_EXCESS
+from studies.scene import Scene, approach_speed, beam_at, contact_law_of, corresponding, hertz_of, model_of
+
+PLASTIC = Material(youngs_modulus=0.2e9, poissons_ratio=0.45, density=920.0, loss_factor=0.1)
+"""Low-density polyethylene: a ball of it on steel is the softest contact considered."""
+
+BALLS: Mapping[str, Material] = {
+    "alumina on steel": ALUMINA,
+    "steel on steel": STEEL,
+    "brass on steel": BRASS,
+    "polyethylene on steel": PLASTIC,
+}
+
+OWN, HERTZ, SCENE_MASS = "contact of the scene", "Hertz", "tip mass of the scene"
+"""Series of the spring as it is; `OWN` is there where the scene's law is not Hertz's."""
+
+LIGHTEST = 0.05
+"""Tip mass over leaf of the lightest ball in the stiffness curves."""
+
+ORBIT_HZ = 21.50
+"""The letter's Fig. 4 [Hz]."""
+
+
+EXCESSES = (*np.geomspace(1e-5, 5e-2, 38).tolist(), *np.geomspace(5e-2, 0.4, 9)[1:].tolist())
+MASS_EXCESSES = (1e-4, 3e-4, 1e-3, 3e-3, TIME_TRACE_EXCESS, 5e-2)
+MASS_RATIOS = (0.0, 0.02, 0.05, 0.1, 0.125, 0.15, 0.175, 0.2, 0.225, 0.25, 0.275, 0.3, 0.325, 0.35, 0.4, 0.5,
+               0.7, 1.0, 1.4, 2.0, 3.0)  # fmt: skip
+STIFFNESSES = tuple(np.geomspace(1e2, 1e7, 31).tolist())
+FACTORS = tuple(np.geomspace(0.1, 10.0, 9).tolist())
+RESTITUTIONS = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1)
+HARDNESSES = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Grid:
+    """How finely the curves are sampled: every `every`-th value; `modes` are kept everywhere but on the mode
+    curve, which runs up to them and has one point more at `check_modes`: what has settled stays where it is.
+    """
+
+    every: int
+    modes: int
+    check_modes: int
+
+
+FULL, QUICK = Grid(every=1, modes=40, check_modes=60), Grid(every=4, modes=20, check_modes=28)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Case:
+    """One approach: a curve, a series of it, the value on its axis, and the oscillator at its amplitude."""
+
+    curve: str
+    series: str
+    value: float
+    excess: float
+    oscillator: ImpactOscillator
+    mass_ratio: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Spring:
+    """A spring whose modes are made once and then meet the plate in many cases."""
+
+    scene: Scene
+    model: ModalModel
+    frequency: float
+    mass_ratio: float
+
+    @staticmethod
+    def of(scene: Scene, frequency: float, modes: int) -> Spring:
+        """The spring of a scene with this many modes, driven at `frequency` [Hz]."""
+        model = model_of(scene.replace({"modes.count": modes}))
+        return Spring(
+            scene=scene, model=model, frequency=frequency, mass_ratio=scene.tip.mass_kg / leaf_mass(scene)
+        )
+
+    @property
+    def speed(self) -> float:
+        """Approach speed at the excess of Fig. 4 [m/s]."""
+        return approach_speed(self.frequency, self.scene.stop.gap_m, TIME_TRACE_EXCESS)
+
+    @property
+    def tip_stiffness(self) -> float:
+        """Static stiffness of the spring at its tip [N/m]."""
+        return 1.0 / float(self.model.static_compliance or math.nan)
+
+    def lossy(self, restitution: float) -> HuntCrossley:
+        """Hunt and Crossley's law that has this restitution with a free mass at `speed`."""
+        stiffness = hertz_of(self.scene).stiffness
+        return HuntCrossley.with_restitution(
+            stiffness=stiffness, restitution=restitution, velocity=self.speed
+        )
+
+    def equal(self, law: HertzContact, factor: float = 1.0) -> LinearContact:
+        """Linear contact `factor` times as stiff as the one with the contact time of `law` at `speed`."""
+        mass = self.scene.tip.mass_kg
+        return LinearContact(stiffness=factor * mass * (math.pi / law.contact_time(mass, self.speed)) ** 2)
+
+    def case(
+        self, curve: str, series: str, value: float, law: ContactLaw, *, excess: float = TIME_TRACE_EXCESS,
+        frequency: float | None = None, model: ModalModel | None = None,
+    ) -> Case:  # fmt: skip
+        """The spring under this law; another drive frequency [Hz] or other modes where given."""
+        oscillator = beam_at(self.scene, frequency or self.frequency, model or self.model)
+        oscillator = replace(oscillator, stop=Stop(gap=self.scene.stop.gap_m, law=law))
+        return Case(
+            curve=curve, series=series, value=value, excess=excess, oscillator=oscillator.with_excess(excess),
+            mass_ratio=self.mass_ratio,
+        )  # fmt: skip
+
+
+def spring_of_mass(scene: Scene, frequency: float, modes: int, ratio: float) -> Spring:
+    """The spring with another tip mass, `ratio` times the leaf."""
+    return Spring.of(with_mass_ratio(scene, ratio, frequency), frequency, modes)
+
+
+def cases_of(spring: Spring, masses: Sequence[Spring], fine: Mapping[str, Spring], grid: Grid) -> list[Case]:
+    """Every case of the study.
+
+    Parameters
+    ----------
+    spring : as it is, with `grid.modes` modes.
+    masses : the same with other tip masses, the bare tip first.
+    fine : the spring ("scene"), one with a light tip and a bare cantilever, with `grid.check_modes` modes.
+    """
+    return [
+        *_speed(spring, masses[0], grid),
+        *_modes(fine, grid),
+        *(case for one in masses for case in _mass(one, grid)),
+        *_stiffness(spring, masses, grid),
+        *_damping(spring, grid),
+        *_loss(spring, grid),
+    ]
+
+
+def own_laws(scene: Scene) -> dict[str, ContactLaw]:
+    """The law of the scene and Hertz's, once if they are the same."""
+    own, hertz = contact_law_of(scene), hertz_of(scene)
+    return {HERTZ: hertz} if own == hertz else {OWN: own, HERTZ: hertz}
+
+
+def _speed(spring: Spring, bare: Spring, grid: Grid) -> Iterator[Case]:
+    lines = [(name, spring, law) for name, law in own_laws(spring.scene).items()]
+    for name, one, law in [*lines, ("bare tip, Hertz", bare, hertz_of(bare.scene))]:
+        for excess in EXCESSES[:: grid.every]:
+            yield one.case("speed", name, excess, law, excess=excess)
+
+
+def _modes(fine: Mapping[str, Spring], grid: Grid) -> Iterator[Case]:
+    newton = NewtonRestitution(local_restitution=1.0)
+    lines = [(name, fine["scene"], law) for name, law in own_laws(fine["scene"].scene).items()]
+    lines += [("Newton, e = 1", fine["scene"], newton)]
+    lines += [(f"{name}, Hertz", fine[name], hertz_of(fine[name].scene)) for name in fine if name != "scene"]
+    lines += [("bare cantilever, Newton, e = 1", fine["bare cantilever"], newton)]
+    for name, one, law in lines:
+        for count in [*range(1, grid.modes + 1), grid.check_modes]:
+            yield one.case("modes", name, float(count), law, model=one.model.truncated(count))
+
+
+def _mass(spring: Spring, grid: Grid) -> Iterator[Case]:
+    ratio, hertz = spring.mass_ratio, hertz_of(spring.scene)
+    for excess in MASS_EXCESSES[:: grid.every]:
+        yield spring.case("mass", f"excess {excess:g}", ratio, hertz, excess=excess)
+    orbit_hz = corresponding(spring.scene, ORBIT_HZ)
+    yield spring.case("orbit", f"{orbit_hz:.2f} Hz", ratio, hertz, frequency=orbit_hz)
+    for local in RESTITUTIONS[:: grid.every]:
+        yield spring.case("search", f"{local:g}", ratio, spring.lossy(local))
+    for factor in HARDNESSES[:: grid.every] if ratio > 0.0 else ():
+        yield spring.case("hardness", f"{factor:g}", ratio, spring.equal(hertz, factor))
+
+
+def _stiffness(spring: Spring, masses: Sequence[Spring], grid: Grid) -> Iterator[Case]:
+    lines = [(SCENE_MASS, spring)]
+    lines += [("no tip mass", one) for one in masses if one.mass_ratio == 0.0]
+    lines += [
+        (f"tip mass {LIGHTEST:g} of the leaf", one)
+        for one in masses
+        if math.isclose(one.mass_ratio, LIGHTEST, rel_tol=1e-6)
+    ]
+    for name, one in lines:
+        for value in STIFFNESSES[:: grid.every]:
+            law = LinearContact(stiffness=value * one.tip_stiffness)
+            yield one.case("stiffness", name, value, law)
+    for name, ball in BALLS.items() if spring.mass_ratio > 0.0 else ():
+        hertz = HertzContact.of_bodies(
+            radius=spring.scene.tip.ball_radius_m, youngs_modulus=ball.youngs_modulus,
+            poissons_ratio=ball.poissons_ratio, other_modulus=STEEL.youngs_modulus,
+            other_ratio=STEEL.poissons_ratio,
+        )  # fmt: skip
+        yield spring.case("materials", name, spring.equal(hertz).stiffness / spring.tip_stiffness, hertz)
+
+
+def _damping(spring: Spring, grid: Grid) -> Iterator[Case]:
+    model = spring.model
+    relative, first = model.omega / model.omega[0], model.decay_rate[0]
+    rules = {
+        "as in the scene": model.decay_rate,
+        "constant ratio": first * relative,
+        "proportional to stiffness": first * relative**2,
+    }
+    for name, rates in rules.items():
+        for factor in FACTORS[:: grid.every]:
+            scaled = replace(model, decay_rate=np.concatenate([rates[:1], factor * rates[1:]]))
+            yield spring.case("damping", name, factor, hertz_of(spring.scene), model=scaled)
+
+
+def _loss(spring: Spring, grid: Grid) -> Iterator[Case]:
+    for local in RESTITUTIONS[:: grid.every]:
+        yield spring.case("loss", "Hunt-Crossley", local, spring.lossy(local))
+        for count in (grid.modes // 4, grid.modes // 2, grid.modes):
+            newton, model = NewtonRestitution(local_restitution=local), spring.model.truncated(count)
+            yield spring.case("loss", f"Newton, {count} modes", local, newton, model=model)

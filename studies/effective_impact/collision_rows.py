@@ -1,0 +1,281 @@
+"""A case as a row of numbers, and what is read off the rows of a curve.
+
+A first collision is that of the steady driven motion; one of a settled orbit is its first. Beside what
+`contact.collisions` measures a row holds the closed relations to leading order in v,
+
+    arc_s                v/a, the time in which the arc of the single mode beyond the gap reaches its top [s]
+    force_delay_s        mean time of the contact force after t_in: shift/(kick v) [s]
+    closed_restitution   sqrt((1 - kick)^2 + 2 a shift/v^2) [1]
+    closed_delay_s       (v/a)(1 + restitution - kick) [s]
+    ball_limit           2 M phi_1^2, the kick of the ball by itself on a hard stop [1]
+    energy_share         energy given to the higher modes over that of the approach, v^2/(2 phi_1^2) [1]
+
+Between the cases of a curve restitution has a corner where the kick is 1, its square has none: smallest
+values over the tip mass are read off monotone splines through the kick and through the second term.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from contact import (
+    Collision,
+    ContactError,
+    ImpactOscillator,
+    StroboscopicMap,
+    collisions,
+    first_collision,
+    simulate,
+)
+from contact.orbits import born
+from studies import letter
+from studies.effective_impact.cases import Case
+
+SETTLE_CYCLES = 4000
+"""An orbit with impacts settles within some hundred drive periods; a motion that has not by then is told as
+period 0."""
+
+STILL = 1e-3
+"""How closely a result must agree with that of the most modes: absolute in restitution and kick, in the delay
+relative to the arc v/a."""
+
+FLAT = 0.9
+"""Part of its largest value that a kick on its plateau has."""
+
+FINE = 2001
+"""Points at which a spline is looked through: the smallest value is good to 1e-6 of itself."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """One approach; what does not exist is not a number.
+
+    `orbit_period` is None for a first collision and 0 where the motion did not settle: then there are no
+    numbers.
+    """
+
+    curve: str
+    series: str
+    value: float
+    excess: float
+    modes: int
+    law: str
+    mass_ratio: float
+    tip_mass_kg: float
+    gap_m: float
+    orbit_period: int | None
+    approach_m_s: float = math.nan
+    restitution: float = math.nan
+    delay_s: float = math.nan
+    kick: float = math.nan
+    shift_m: float = math.nan
+    contact_s: float = math.nan
+    arc_s: float = math.nan
+    force_delay_s: float = math.nan
+    closed_restitution: float = math.nan
+    closed_delay_s: float = math.nan
+    ball_limit: float
+    energy_to_higher_modes_j: float = math.nan
+    energy_share: float = math.nan
+    energy_lost_j: float = math.nan
+    impacts: int = 0
+    forced_by_ringing: bool = False
+    returns: bool = False
+
+
+def measure(case: Case) -> Row:
+    """The row of a case; ContactError or ValueError if there is no collision."""
+    oscillator = case.oscillator
+    model, found, period = oscillator.model, None, None
+    if case.curve == "orbit":
+        found, period = orbit_collision(oscillator)
+    else:
+        found = first_collision(oscillator)
+    mass, phi = float(model.tip_mass or 0.0), float(model.phi[0])
+    numbers = {} if found is None else numbers_of(found, phi)
+    return Row(
+        curve=case.curve, series=case.series, value=case.value, excess=case.excess, modes=model.n_modes,
+        law=type(oscillator.stop.law).__name__, mass_ratio=case.mass_ratio,
+        tip_mass_kg=mass, gap_m=oscillator.stop.gap, orbit_period=period,
+        ball_limit=2.0 * mass * phi**2, impacts=0 if found is None else found.impacts,
+        forced_by_ringing=found is not None and found.forced_by_ringing,
+        returns=found is not None and found.returns, **numbers,
+    )  # fmt: skip
+
+
+def tried(case: Case) -> Row | str:
+    """The row of a case, or why there is none."""
+    try:
+        return measure(case)
+    except (ContactError, ValueError) as error:
+        return str(error)
+
+
+def orbit_collision(oscillator: ImpactOscillator) -> tuple[Collision | None, int]:
+    """The first collision of the settled orbit and its period; None where it has none or did not settle."""
+    settled = born(StroboscopicMap(oscillator=oscillator), oscillator.excess, most_cycles=SETTLE_CYCLES)
+    if not settled.period or not settled.impacts:
+        return None, settled.period
+    trajectory = simulate(oscillator, settled.end, periods=2 * settled.period + 2)
+    found = collisions(oscillator, trajectory, unfinished="drop")
+    return (found[0] if found else None), settled.period
+
+
+def numbers_of(found: Collision, phi: float) -> dict[str, float]:
+    """What a collision contributes to its row; `phi` is the first mode at the tip [kg^-0.5]."""
+    v, a = found.approach, found.deceleration
+    square = (1.0 - found.kick) ** 2 + 2.0 * a * found.shift / v**2
+    return {
+        "approach_m_s": v,
+        "restitution": found.restitution,
+        "delay_s": found.delay,
+        "kick": found.kick,
+        "shift_m": found.shift,
+        "contact_s": found.contact_time,
+        "arc_s": v / a,
+        "force_delay_s": found.shift / found.kick_velocity if found.kick_velocity else math.nan,
+        "closed_restitution": math.sqrt(square) if square >= 0.0 else math.nan,
+        "closed_delay_s": v / a * (1.0 + found.restitution - found.kick),
+        "energy_to_higher_modes_j": found.energy_to_higher_modes,
+        "energy_share": found.energy_to_higher_modes * 2.0 * phi**2 / v**2,
+        "energy_lost_j": found.energy_lost,
+    }
+
+
+def select(rows: Sequence[Row], curve: str, series: str | None = None) -> list[Row]:
+    """The rows of a curve, or of one of its series, by rising value."""
+    chosen = [row for row in rows if row.curve == curve and series in (None, row.series)]
+    return sorted(chosen, key=lambda row: row.value)
+
+
+def series_of(rows: Sequence[Row], curve: str) -> list[str]:
+    """The series of a curve, in their order."""
+    return list(dict.fromkeys(row.series for row in rows if row.curve == curve))
+
+
+def on_orbits(rows: Sequence[Row]) -> list[Row]:
+    """The collisions on settled orbits that belong to a peak of mode 1."""
+    settled = [row for row in select(rows, "orbit") if row.orbit_period and row.impacts]
+    return [row for row in settled if not row.forced_by_ringing]
+
+
+def crossing(x: Sequence[float], y: Sequence[float], level: float) -> float:
+    """The first x at which y(x) goes through `level`, by a monotone spline in log x; NaN if it never does."""
+    kept = [(math.log(a), b - level) for a, b in zip(x, y, strict=True) if a > 0.0 and math.isfinite(b)]
+    if len(kept) < 2:
+        return math.nan
+    where, what = np.array(kept).T
+    turns = np.flatnonzero(what[:-1] * what[1:] <= 0.0)
+    if not turns.size:
+        return math.nan
+    roots = PchipInterpolator(where, what).roots(extrapolate=False)
+    inside = roots[(roots >= where[turns[0]] - 1e-9) & (roots <= where[turns[0] + 1] + 1e-9)]
+    return float(math.exp(inside[0])) if inside.size else math.nan
+
+
+@dataclass(frozen=True, kw_only=True)
+class Floor:
+    """The smallest restitution over the tip mass, for one local restitution ("search") or one factor on the
+    stiffness ("hardness"): where it is, whether the range ends there, and the masses that give tau = 0.1."""
+
+    curve: str
+    value: float
+    restitution: float
+    mass_ratio: float
+    kick: float
+    at_edge: bool
+    letter_at: tuple[float, ...]
+
+
+def floor_of(rows: Sequence[Row], target: float = letter.RESTITUTION) -> Floor | None:
+    """The floor of one series over tip mass; None with fewer than three collisions of one impact."""
+    kept = [row for row in rows if row.impacts == 1 and row.mass_ratio > 0.0]
+    kept = [row for row in kept if math.isfinite(row.restitution)]
+    if len(kept) < 3:
+        return None
+    where = np.log([row.mass_ratio for row in kept])
+    kick = PchipInterpolator(where, [row.kick for row in kept])
+    rest = PchipInterpolator(where, [row.restitution**2 - (1.0 - row.kick) ** 2 for row in kept])
+    fine = np.linspace(where[0], where[-1], FINE)
+    square = np.maximum((1.0 - kick(fine)) ** 2 + rest(fine), 0.0)
+    least = int(np.argmin(square))
+    turns = np.flatnonzero((square[:-1] - target**2) * (square[1:] - target**2) < 0.0)
+    return Floor(
+        curve=kept[0].curve, value=float(kept[0].series), restitution=math.sqrt(square[least]),
+        mass_ratio=math.exp(fine[least]), kick=float(kick(fine[least])), at_edge=least in (0, FINE - 1),
+        letter_at=tuple(math.exp(0.5 * (fine[i] + fine[i + 1])) for i in turns),
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class Still:
+    """From how many modes on a series stands still, and how far its results at the most modes, kept as a
+    check, are off; None modes if it never does."""
+
+    series: str
+    modes: int | None
+    drift: float
+    restitution: float
+    kick: float
+    impacts: int
+    impacts_at_most: int
+
+
+def still_of(rows: Sequence[Row], modes: int) -> Still | None:
+    """`Still` of one series by rising number of modes, held against its result with `modes`, if there is one.
+
+    Results beyond have to agree as well: a slow drift passes for rest where it is compared with its own last
+    step.
+    """
+    last = next((row for row in rows if row.modes == modes), None)
+    if last is None:
+        return None
+
+    def away(row: Row) -> float:
+        off = [abs(row.restitution - last.restitution), abs(row.kick - last.kick),
+               abs(row.delay_s - last.delay_s) / abs(last.arc_s)]  # fmt: skip
+        return max(math.inf if math.isnan(value) else value for value in off)
+
+    drift, still = max(away(row) for row in rows if row.modes >= modes), None
+    for row in reversed([row for row in rows if row.modes <= modes and drift <= STILL]):
+        if away(row) > STILL:
+            break
+        still = row.modes
+    return Still(
+        series=last.series, modes=still, drift=drift, restitution=last.restitution, kick=last.kick,
+        impacts=last.impacts, impacts_at_most=rows[-1].impacts,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fade:
+    """The plateau of the kick, the excess at which half of it is left, and what is left of it at the letter's
+    amplitude stability and where born periods are read."""
+
+    series: str
+    plateau: float
+    half_excess: float
+    share_at_stability: float
+    share_at_born_excess: float
+
+
+def fade_of(rows: Sequence[Row], born_excess: float) -> Fade | None:
+    """`Fade` of one series by rising excess; None for a kick still below `FLAT` of its largest at Fig. 4."""
+    excess, kick = [row.excess for row in rows], [row.kick for row in rows]
+    if len(rows) < 2:
+        return None
+    at_fig_4 = min(rows, key=lambda row: abs(math.log(row.excess / letter.TIME_TRACE_EXCESS)))
+    plateau = max(value for value in kick if math.isfinite(value))
+    if not at_fig_4.kick >= FLAT * plateau:
+        return None
+    share = PchipInterpolator(np.log(excess), np.array(kick) / plateau, extrapolate=False)
+    return Fade(
+        series=rows[0].series, plateau=plateau, half_excess=crossing(excess, kick, 0.5 * plateau),
+        share_at_stability=float(share(math.log(letter.AMPLITUDE_STABILITY))),
+        share_at_born_excess=float(share(math.log(born_excess))),
+    )  # fmt: skip

@@ -1,0 +1,126 @@
+"""Where cells are computed, and how far they have come: executors and progress."""
+
+from __future__ import annotations
+
+import multiprocessing
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import contextmanager
+
+__all__ = ["duration", "pool_of", "progress", "say"]
+
+INTERVAL = 30.0
+"""Seconds between two lines of progress where there is no terminal."""
+
+PATIENCE = 20.0
+"""Seconds to wait for the scheduler of a cluster."""
+
+
+def say(sentence: str) -> None:
+    """A line for a person."""
+    print(sentence, file=sys.stderr, flush=True)
+
+
+def duration(seconds: float) -> str:
+    """Seconds in the units in which a person waits: 8 s, 3 min 20 s, 2 h 05 min."""
+    whole = round(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    if whole < 3600:
+        return f"{whole // 60} min {whole % 60:02d} s"
+    return f"{whole // 3600} h {whole % 3600 // 60:02d} min"
+
+
+@contextmanager
+def progress(label: str, total: int | None = None) -> Iterator[Callable[..., None]]:
+    """Count steps: a bar with rate and time left on a terminal, a line every half minute elsewhere.
+
+    Yields a function that counts one step, or as many as it is given, from any thread.
+    """
+    begun, done, told, lock = time.monotonic(), 0, time.monotonic(), threading.Lock()
+    if sys.stderr.isatty():
+        from rich.console import Console
+        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+        columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(),
+                   TextColumn("{task.fields[rate]}"), TimeRemainingColumn())  # fmt: skip
+        with Progress(*columns, console=Console(file=sys.stderr)) as bar:
+            task = bar.add_task(label, total=total, rate="")
+
+            def advance(steps: int = 1) -> None:
+                nonlocal done
+                with lock:
+                    done += steps
+                    bar.update(task, advance=steps, rate=_rate(done, time.monotonic() - begun))
+
+            yield advance
+        return
+
+    def count(steps: int = 1) -> None:
+        nonlocal done, told
+        with lock:
+            done, now = done + steps, time.monotonic()
+            if now - told < INTERVAL:
+                return
+            told = now
+        left = "" if not total else f", {duration((now - begun) * max(total - done, 0) / done)} left"
+        say(f"{label}: {done} of {total or '?'}, {_rate(done, now - begun)}{left}")
+
+    yield count
+
+
+def _rate(done: int, seconds: float) -> str:
+    """Steps per second, or seconds per step when that reads better."""
+    if done == 0 or seconds <= 0.0:
+        return ""
+    return f"{done / seconds:.3g} per s" if done >= seconds else f"{seconds / done:.3g} s each"
+
+
+@contextmanager
+def pool_of(place: str, workers: int) -> Iterator[Executor]:
+    """The executor at `place`, threads, processes or dask://host:port, with so many threads or processes.
+
+    If the body is left by an exception, what has not begun is dropped.
+    """
+    kind, colon, address = place.partition("://")
+    if kind == "dask" and address:
+        with _cluster(address) as cluster:
+            yield cluster
+        return
+    if colon or kind not in ("", "threads", "processes"):
+        raise ValueError(f"executor is {place!r}; it must be threads, processes or dask://host:port")
+    if kind == "processes":
+        context = multiprocessing.get_context("spawn")
+        executor: Executor = ProcessPoolExecutor(workers, mp_context=context)
+    else:
+        executor = ThreadPoolExecutor(workers, thread_name_prefix="study")
+    try:
+        yield executor
+    except BaseException:
+        executor.shutdown(wait=kind == "processes", cancel_futures=True)
+        raise
+    executor.shutdown()
+
+
+@contextmanager
+def _cluster(address: str) -> Iterator[Executor]:
+    """The workers of a dask scheduler, which must have the same program and packages (extra `cluster`)."""
+    try:
+        from distributed import Client
+    except ImportError as error:
+        raise ValueError(
+            "a cluster needs the package distributed: python -m pip install 'grazing-spring[cluster]'"
+        ) from error
+    try:
+        client = Client(f"tcp://{address}", timeout=PATIENCE)
+    except (OSError, ValueError) as error:
+        raise ValueError(f"no scheduler answers at {address} within {PATIENCE:g} s") from error
+    with client:
+        if not client.nthreads():
+            raise ValueError(
+                f"the scheduler at {address} has no workers: start some with `dask worker {address}`"
+            )
+        yield client.get_executor(pure=False)

@@ -1,0 +1,156 @@
+"""Files of results: complete or absent, JSON without NaN, tables of typed rows, and where a result comes
+from.
+
+The bytes go into a hidden file of the same folder, reach the disk, and then take the final name in one step:
+a reader, a crash or an interruption never sees half a file.
+"""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import io
+import json
+import math
+import os
+import platform
+import subprocess
+import tempfile
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+import numpy as np
+
+from studies import ROOT
+
+__all__ = [
+    "columns_of",
+    "csv_text",
+    "git_state",
+    "json_text",
+    "make_folder",
+    "plain",
+    "versions",
+    "write_atomically",
+]
+
+PACKAGES = (
+    "grazing-spring", "numpy", "scipy", "scikit-fem", "meshio", "pyvista", "numba", "matplotlib", "mpmath",
+    "rich", "jinja2", "heyoka", "scikit-sundae", "distributed", "imageio-ffmpeg", "trame-vtk",
+)  # fmt: skip
+"""Packages whose versions go into a manifest, if they are installed."""
+
+
+def make_folder(folder: Path) -> Path:
+    """The folder, made if need be and seen to accept files; better told before a computation than after."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        reason = error.strerror or "the system gives no reason"
+        raise OSError(f"results cannot be written to the folder {folder}: {reason}") from error
+    return folder
+
+
+def write_atomically(path: Path, content: bytes) -> Path:
+    """Write or replace the file at `path`."""
+    temporary: Path | None = None
+    try:
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        temporary = Path(name)
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(content)
+            stream.flush()
+            os.fsync(stream.fileno())
+        mask = os.umask(0)
+        os.umask(mask)
+        os.chmod(temporary, 0o666 & ~mask)
+        os.replace(temporary, path)
+    except BaseException as error:
+        if temporary is not None:
+            with suppress(OSError):
+                temporary.unlink()
+        if isinstance(error, OSError):
+            raise OSError(
+                f"{path} cannot be written: {error.strerror or 'the system gives no reason'}"
+            ) from error
+        raise
+    return path
+
+
+def plain(value: object) -> object:
+    """The value in terms of JSON: numbers, texts, lists and objects; what is not finite becomes None."""
+    if value is None or isinstance(value, bool | str | int):
+        return value
+    if isinstance(value, float):
+        return float(value) if math.isfinite(value) else None
+    if isinstance(value, np.ndarray | np.generic):
+        return plain(value.tolist())
+    if isinstance(value, Path):
+        return str(value)
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if dataclasses.is_dataclass(value):
+        return {entry.name: plain(getattr(value, entry.name)) for entry in dataclasses.fields(value)}
+    raise TypeError(
+        f"a {type(value).__name__} has no place in a summary: give numbers, texts, lists, mappings or rows"
+    )
+
+
+def json_text(value: object, *, indent: int | None = 2) -> str:
+    """The value as JSON."""
+    return json.dumps(plain(value), indent=indent, allow_nan=False, ensure_ascii=False)
+
+
+def columns_of(rows: Sequence[object]) -> list[str]:
+    """The names of the columns of a table whose rows are instances of one dataclass."""
+    kinds = {type(row) for row in rows}
+    if len(kinds) != 1 or not dataclasses.is_dataclass(rows[0]):
+        raise TypeError(
+            f"a table needs rows of one dataclass, at least one, not {[kind.__name__ for kind in kinds]}"
+        )
+    return [entry.name for entry in dataclasses.fields(rows[0])]
+
+
+def csv_text(rows: Sequence[object]) -> str:
+    """A table of rows, headings first; empty cells for None and not a number, JSON for lists and mappings."""
+    names, stream = columns_of(rows), io.StringIO(newline="")
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(names)
+    for row in rows:
+        cells = [plain(getattr(row, name)) for name in names]
+        writer.writerow(json.dumps(cell) if isinstance(cell, list | dict) else cell for cell in cells)
+    return stream.getvalue()
+
+
+def versions() -> dict[str, str]:
+    """Versions of Python and of the packages that results may depend on."""
+    found = {"python": platform.python_version()}
+    for name in PACKAGES:
+        with suppress(PackageNotFoundError):
+            found[name] = version(name)
+    return found
+
+
+def git_state(root: Path = ROOT) -> dict[str, object]:
+    """Commit and dirty flag if `root` is the top of a git checkout, else both None."""
+
+    def git(*words: str) -> str | None:
+        try:
+            answer = subprocess.run(
+                ["git", "-C", str(root), *words], capture_output=True, text=True, timeout=10, check=False
+            )
+        except (OSError, subprocess.SubprocessError):
+            return None
+        return answer.stdout.strip() if answer.returncode == 0 else None
+
+    top = git("rev-parse", "--show-toplevel")
+    if top is None or Path(top).resolve() != root.resolve():
+        return {"commit": None, "dirty": None}
+    status = git("status", "--porcelain")
+    return {"commit": git("rev-parse", "--verify", "HEAD"), "dirty": None if status is None else status != ""}

@@ -1,0 +1,292 @@
+"""A spring in motion, seen in space: one picture after another, as gif, as mp4 and as meshes for ParaView.
+
+    scenery = Scenery.of(modes, ball_radius=2.5e-3, gap=0.0107, swing=0.012)
+    with stage_of(scenery, "auto") as stage:
+        pictures = [stage(moment) for moment in moments]
+    write_gif(run.path("motion.gif"), pictures, rate=20.0)
+
+`Moment` says where everything is: displacements of the points of the strip, of the ball and of the base, and
+whether the plate is touched. pyvista draws off the screen where that works. Without the libraries of OpenGL
+that ends in a segmentation fault which no program can catch, so that it is tried once in a process of its
+own; where it does not work matplotlib draws the spring in its plane, and one sentence names the packages
+that are missing.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import io
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beam import BALL, LAYER, STRIP, Modes, SpringMesh, solid_spring
+from studies.files import write_atomically
+
+__all__ = [
+    "NO_RENDERING",
+    "Moment",
+    "Picture",
+    "Scenery",
+    "can_encode",
+    "can_render",
+    "stage_of",
+    "write_gif",
+    "write_mp4",
+]
+
+Array = NDArray[np.float64]
+Picture = NDArray[np.uint8]
+"""Rows, columns, and red, green, blue."""
+
+NO_RENDERING = (
+    "matplotlib draws the spring in its plane: off-screen rendering does not work here (on Debian it needs "
+    "libegl1 libegl-mesa0 libgl1-mesa-dri)"
+)
+
+TRIAL = (
+    "import pyvista; plotter = pyvista.Plotter(off_screen=True, window_size=(32, 32)); "
+    "plotter.add_mesh(pyvista.Sphere()); "
+    "raise SystemExit(int(plotter.screenshot(return_img=True).std() == 0.0))"
+)
+PATIENCE = 120.0
+"""Seconds for the trial: importing pyvista from a cold disk takes half a minute at worst."""
+
+WIDTH, HEIGHT = 880, 400
+"""Of a picture, in points; both even, as video wants them."""
+
+ROWS = 120
+"""Rows of cells along the spring, at least: a bend looks round."""
+
+WALL = 0.004
+"""Thickness of the plate [m]."""
+
+TOWARDS_VIEWER = (0.20, -0.35, 0.91)
+"""Shares of the directions along the spring, of the drive and across the strip: from above, a little from
+the side on which the plate is not, so that the gap is seen open."""
+
+COLOURS = {STRIP: "#D0A62B", LAYER: "#4A4A4A", BALL: "#E9EDF2"}
+PLATE, TOUCHED = "#8C9AA8", "#FF7A1A"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Moment:
+    """Displacements of the points of the mesh relative to the base, shape (n_points, 3), and of the base
+    [m]."""
+
+    points: Array
+    base: Array
+    touched: bool = False
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Scenery:
+    """What is drawn: the solid spring at rest, the corners of the plate (None without one), and how it is
+    seen.
+
+    `corners` has shape (8, 3) [m]; `drive` and `along` are unit vectors; `centre` and `reach` [m] hold
+    everything.
+    """
+
+    mesh: SpringMesh
+    corners: Array | None
+    drive: Array
+    along: Array
+    centre: Array
+    reach: Array
+
+    @staticmethod
+    def of(modes: Modes, *, ball_radius: float, swing: float, gap: float | None = None) -> Scenery:
+        """The scenery of a spring that swings by `swing` [m], with a plate at `gap` [m] from the ball."""
+        mesh = solid_spring(modes, ball_radius=ball_radius)
+        rows = int(np.sum(mesh.part == STRIP))
+        if rows < ROWS:
+            mesh = solid_spring(modes, ball_radius=ball_radius, points_per_element=-(-ROWS // rows))
+        drive = np.array([*modes.discretization.spring.drive, 0.0])
+        along = np.array([drive[1], -drive[0], 0.0])
+        corners = None
+        if gap is not None:
+            ball = mesh.points[np.unique(mesh.triangles)]
+            face = ball.mean(axis=0) + (ball_radius + gap) * drive
+            signs = np.array([(-1, 0, -1), (1, 0, -1), (1, 1, -1), (-1, 1, -1)])
+            signs = np.concatenate([signs, signs * (1, 1, -1)])
+            half = 2.0 * ball_radius
+            spring = modes.discretization.spring
+            beside = ball.mean(axis=0) - np.append(spring.centreline.points(spring.tip_at)[:2], 0.0)
+            if abs(beside @ along) > abs(beside @ drive):  # a ball beyond the end: the strip passes the plate
+                face = face + np.sign(beside @ along) * (half - 0.75 * ball_radius) * along
+            corners = face + signs * np.array([half, WALL, half]) @ np.array([along, drive, [0.0, 0.0, 1.0]])
+        cloud = mesh.points if corners is None else np.concatenate([mesh.points, corners])
+        low = np.minimum(cloud.min(axis=0), (mesh.points - swing * drive).min(axis=0))
+        high = np.maximum(cloud.max(axis=0), (mesh.points + swing * drive).max(axis=0))
+        return Scenery(mesh=mesh, corners=corners, drive=drive, along=along, centre=0.5 * (low + high),
+                       reach=high - low)  # fmt: skip
+
+
+Stage = Callable[[Moment], Picture]
+
+
+@contextmanager
+def stage_of(scenery: Scenery, renderer: str = "auto") -> Iterator[Stage]:
+    """What turns a moment into a picture: by "vtk", by "matplotlib", or "auto", the first that works.
+
+    Raises
+    ------
+    ValueError
+        For "vtk" where it cannot draw.
+    """
+    if renderer == "vtk" and not can_render():
+        raise ValueError(NO_RENDERING)
+    if renderer == "matplotlib" or not can_render():
+        yield _painter(scenery)
+        return
+    with _plotter(scenery) as stage:
+        yield stage
+
+
+def prepare_off_screen() -> None:
+    """Set what VTK has to know before it is imported."""
+    os.environ.setdefault("PYVISTA_OFF_SCREEN", "true")
+    if not os.environ.get("DISPLAY"):
+        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+
+
+@cache
+def can_render() -> bool:
+    """Whether a picture could be drawn without a window; tried once."""
+    prepare_off_screen()
+    try:
+        trial = subprocess.run(
+            [sys.executable, "-c", TRIAL], capture_output=True, timeout=PATIENCE, check=False
+        )
+    except (OSError, subprocess.SubprocessError):
+        return False
+    return trial.returncode == 0
+
+
+@contextmanager
+def _plotter(scenery: Scenery) -> Iterator[Stage]:
+    """Pictures by pyvista, in parallel projection: equal lengths in a plane across the view stay equal."""
+    prepare_off_screen()
+    import pyvista
+
+    mesh = scenery.mesh
+    plotter: Any = pyvista.Plotter(off_screen=True, window_size=[WIDTH, HEIGHT])
+    plotter.set_background("white")
+    grid = mesh.grid(mesh.points.copy())
+    colours = np.array([pyvista.Color(COLOURS[part]).int_rgb for part in mesh.part.tolist()], dtype=np.uint8)
+    grid.cell_data["colour"] = colours
+    plotter.add_mesh(grid, scalars="colour", rgb=True, ambient=0.4, diffuse=0.6)
+    plate = None
+    if scenery.corners is not None:
+        faces = np.array([(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)])
+        box = pyvista.PolyData.from_regular_faces(scenery.corners, faces)
+        plate = plotter.add_mesh(box, color=PLATE, ambient=0.4, diffuse=0.6)
+    towards = TOWARDS_VIEWER @ np.array([scenery.along, scenery.drive, [0.0, 0.0, 1.0]])
+    camera = plotter.camera
+    camera.position, camera.focal_point = tuple(scenery.centre + towards), tuple(scenery.centre)
+    camera.up, camera.parallel_projection = tuple(scenery.drive), True
+    wide, tall = (abs(float(scenery.reach @ np.abs(axis))) for axis in (scenery.along, scenery.drive))
+    camera.parallel_scale = 0.58 * max(tall + 0.4 * scenery.reach[2], wide * HEIGHT / WIDTH)
+    plotter.show(auto_close=False)
+
+    def picture(moment: Moment) -> Picture:
+        grid.points = mesh.points + moment.points + moment.base
+        if plate is not None:
+            plate.position, plate.prop.color = tuple(moment.base), TOUCHED if moment.touched else PLATE
+        plotter.render()
+        return np.asarray(plotter.screenshot(return_img=True), dtype=np.uint8)[..., :3].copy()
+
+    try:
+        yield picture
+    finally:
+        plotter.close()
+
+
+def _painter(scenery: Scenery) -> Stage:
+    """Pictures by matplotlib: the strip in its plane, ball and plate as outlines."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    mesh, dots = scenery.mesh, 100
+    figure = Figure(figsize=(WIDTH / dots, HEIGHT / dots), dpi=dots)
+    canvas, axes = FigureCanvasAgg(figure), figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    plane = np.array([scenery.along, scenery.drive])[:, :2].T
+    rows = mesh.hexahedra[mesh.part[: len(mesh.hexahedra)] == STRIP]
+    ball = np.unique(mesh.triangles)
+
+    def outline(points: Array) -> Array:
+        line: Array = points[rows].mean(axis=1)[:, :2] @ plane
+        return line
+
+    (strip,) = axes.plot(*outline(mesh.points).T, color=COLOURS[STRIP], linewidth=2.5)
+    (spot,) = axes.plot(*(mesh.points[ball].mean(axis=0)[:2] @ plane), "o", color="0.5", markersize=9.0)
+    plate = None
+    if scenery.corners is not None:
+        plate = axes.fill(*(scenery.corners[:4, :2] @ plane).T, color=PLATE)[0]
+    centre, reach = scenery.centre[:2] @ plane, np.abs(scenery.reach[:2] @ plane)
+    half = 0.56 * max(reach[0] / WIDTH, reach[1] / HEIGHT) * np.array([WIDTH, HEIGHT])
+    axes.set(xlim=(centre[0] - half[0], centre[0] + half[0]), ylim=(centre[1] - half[1], centre[1] + half[1]))
+    axes.axis("off")
+
+    def picture(moment: Moment) -> Picture:
+        points = mesh.points + moment.points + moment.base
+        strip.set_data(*outline(points).T)
+        spot.set_data(*(points[ball].mean(axis=0)[:2] @ plane)[:, None])
+        if plate is not None and scenery.corners is not None:
+            plate.set_xy((scenery.corners[:4, :2] + moment.base[:2]) @ plane)
+            plate.set_facecolor(TOUCHED if moment.touched else PLATE)
+        canvas.draw()
+        return np.asarray(canvas.buffer_rgba(), dtype=np.uint8)[..., :3].copy()
+
+    return picture
+
+
+def can_encode() -> bool:
+    """Whether mp4 can be written (extra `video`)."""
+    return importlib.util.find_spec("imageio_ffmpeg") is not None
+
+
+def write_gif(path: Path, pictures: Sequence[Picture], rate: float) -> Path:
+    """Write pictures at `rate` a second, repeated for ever, with one palette: what does not move does not
+    flicker."""
+    from PIL import Image
+
+    typical = Image.fromarray(np.concatenate([pictures[0], pictures[len(pictures) // 2], pictures[-1]]))
+    palette = typical.quantize(127, dither=Image.Dither.NONE)
+    images = [Image.fromarray(one).quantize(palette=palette, dither=Image.Dither.NONE) for one in pictures]
+    stream = io.BytesIO()
+    images[0].save(stream, format="GIF", save_all=True, append_images=images[1:], loop=0, optimize=False,
+                   duration=10 * max(2, round(100.0 / rate)))  # fmt: skip
+    return write_atomically(path, stream.getvalue())
+
+
+def write_mp4(path: Path, pictures: Iterable[Picture], rate: float) -> Path:
+    """Write pictures, their rows and columns even, at `rate` a second in the H.264 format that browsers
+    play."""
+    import imageio_ffmpeg
+
+    known = list(pictures)
+    rows, columns, _ = known[0].shape
+    with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.name}.") as folder:
+        temporary = Path(folder) / path.name
+        writer = imageio_ffmpeg.write_frames(
+            str(temporary), (columns, rows), fps=rate, codec="libx264", pix_fmt_out="yuv420p", quality=8,
+            macro_block_size=2, ffmpeg_log_level="error",
+        )  # fmt: skip
+        writer.send(None)
+        for one in known:
+            writer.send(np.ascontiguousarray(one))
+        writer.close()
+        os.replace(temporary, path)
+    return path

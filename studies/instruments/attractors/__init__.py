@@ -1,1 +1,0 @@
-"""Attractors along a scan: their kind, exponents and basins."""

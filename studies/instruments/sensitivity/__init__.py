@@ -1,1 +1,0 @@
-"""What the letter's errors and the assumptions change: folds, births, noise."""

@@ -1,0 +1,1 @@
+"""One period of a settled orbit as a film, slow at the collision."""

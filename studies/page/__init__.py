@@ -1,0 +1,212 @@
+"""One page of everything that the studies stored, to read, print and pass on: results/report/index.html.
+
+The template (page.html.j2) has generic sections: the answers to the letter's two questions, the letter point
+by point, then each study with its docstring, figures and tables, and last what the results rest on. Nothing
+is said here of any study: titles and accounts are docstrings, figures and captions come from its manifest,
+tables from its csv files, verdicts and answers from its summary. A page made from other results says other
+things.
+
+The page is one file that needs no network: pictures, style and script are inside, and its content policy
+forbids every request. What is missing or broken in the results becomes a sentence on the page.
+"""
+
+from __future__ import annotations
+
+import base64
+import csv
+import json
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+
+from jinja2 import Environment, FileSystemLoader
+
+from studies import letter
+from studies.files import write_atomically
+from studies.programs import MAIN, account_of, names
+
+__all__ = ["Stored", "Table", "read_results", "told_page", "write_page"]
+
+NOT_RUN = "not run"
+MOST_ROWS, MOST_COLUMNS = 40, 12
+"""Of a table on the page; a longer one is named and left to its file."""
+
+LARGEST_PICTURE = 4_000_000
+"""Bytes of a picture or film that goes into the page; a larger one is linked."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Table:
+    """A table that fits on the page: headings and cells as texts."""
+
+    name: str
+    caption: str
+    head: list[str]
+    rows: list[list[str]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Picture:
+    """A figure or film: its bytes as a data URI, or a link."""
+
+    name: str
+    caption: str
+    source: str
+
+
+@dataclass(kw_only=True)
+class Stored:
+    """What a study left, as far as it can be read."""
+
+    study: str
+    summary: Mapping[str, object] = field(default_factory=dict)
+    manifest: Mapping[str, object] = field(default_factory=dict)
+    pictures: list[Picture] = field(default_factory=list)
+    tables: list[Table] = field(default_factory=list)
+    files: list[str] = field(default_factory=list)
+    faults: list[str] = field(default_factory=list)
+
+    @property
+    def account(self) -> list[tuple[str, str]]:
+        """The docstring of the study, "prose" or "as it is" with each paragraph."""
+        blocks = account_of(self.study).split("\n\n")
+        return [("as it is" if _set_out(block) else "prose", block) for block in blocks]
+
+
+def _set_out(block: str) -> bool:
+    """Whether a paragraph is a formula, a table or a list of commands, whose lines are not to be filled."""
+    lines = block.split("\n")
+    return any(line.startswith("    ") for line in lines) or lines[0].partition(":")[0] in ("Run", "Writes")
+
+
+def _object(value: object) -> Mapping[str, object]:
+    return value if isinstance(value, dict) else {}
+
+
+def read_stored(folder: Path) -> Stored:
+    """What lies in the folder of one study."""
+    stored = Stored(study=folder.name)
+    for name in ("summary", "manifest"):
+        try:
+            setattr(stored, name, _object(json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))))
+        except (OSError, ValueError) as error:
+            stored.faults.append(f"{folder.name}/{name}.json cannot be read: {error}")
+    captions = _object(stored.manifest.get("captions"))
+    listed = stored.manifest.get("files")
+    stored.files = [str(name) for name in listed] if isinstance(listed, list) else []
+    for name in stored.files:
+        path, caption = folder / name, str(captions.get(name) or "")
+        try:
+            if path.suffix in (".png", ".gif"):
+                stored.pictures.append(Picture(name=name, caption=caption, source=_source(path)))
+            elif path.suffix == ".csv":
+                table = _table(path, caption)
+                stored.tables += [table] if table else []
+        except (OSError, ValueError, csv.Error) as error:
+            stored.faults.append(f"{folder.name}/{name} cannot be read: {error}")
+    return stored
+
+
+def _source(path: Path) -> str:
+    """A picture as part of the page, or where it lies beside it."""
+    if path.stat().st_size > LARGEST_PICTURE:
+        return f"../{path.parent.name}/{path.name}"
+    return f"data:image/{path.suffix[1:]};base64,{base64.b64encode(path.read_bytes()).decode('ascii')}"
+
+
+def _table(path: Path, caption: str) -> Table | None:
+    """The table in a csv file; None if it is too large for the page."""
+    with path.open(newline="", encoding="utf-8") as stream:
+        rows = [row for row, _ in zip(csv.reader(stream), range(MOST_ROWS + 2), strict=False)]
+    if not rows or len(rows) > MOST_ROWS + 1 or len(rows[0]) > MOST_COLUMNS:
+        return None
+    shown = [[_shortened(cell) for cell in row] for row in rows[1:]]
+    return Table(
+        name=path.name, caption=caption, head=[cell.replace("_", " ") for cell in rows[0]], rows=shown
+    )
+
+
+def _shortened(cell: str) -> str:
+    """A number to five digits, anything else as it is."""
+    try:
+        return cell if cell.lstrip("-").isdigit() else f"{float(cell):.5g}"
+    except ValueError:
+        return cell
+
+
+def read_results(results: Path) -> list[Stored]:
+    """The results of all studies that have any, the main one first.
+
+    Raises
+    ------
+    ValueError
+        If there are none.
+    """
+    order = [MAIN, *(name for name in names() if name != MAIN)]
+    found = [read_stored(results / name) for name in order if (results / name / "summary.json").exists()]
+    if not found:
+        raise ValueError(f"there are no results in {results}: run python -m studies first")
+    return found
+
+
+def _points(stored: Mapping[str, Stored]) -> Iterator[dict[str, object]]:
+    """The letter point by point, with what was found."""
+    for key, point in letter.POINTS.items():
+        there = stored.get(point.study)
+        found = {} if there is None else _object(_object(there.summary.get("verdicts")).get(key))
+        judged = found.get("verdict", NOT_RUN if there is None else "not stored")
+        yield {
+            "point": point,
+            "verdict": judged,
+            "found": found.get("found", ""),
+            "note": found.get("note", ""),
+        }
+
+
+def _answers(stored: Mapping[str, Stored]) -> Iterator[tuple[str, list[tuple[str, str]]]]:
+    """The two questions, each with the studies that answer it and what they say."""
+    for key, (question, answering) in letter.QUESTIONS.items():
+        parts = []
+        for study in answering:
+            said = _object(stored[study].summary.get("answers")).get(key) if study in stored else None
+            parts.append((study, str(said) if said else f"Not computed yet: python -m studies.{study}."))
+        yield question, parts
+
+
+def write_page(results: Path) -> tuple[Path, list[Stored], list[str]]:
+    """Write results/report/index.html; returns its path, what is on it, and which studies are not."""
+    found = read_results(results)
+    by_name = {stored.study: stored for stored in found}
+    missing = [name for name in names() if name not in by_name and _is_study(name)]
+    points = list(_points(by_name))
+    environment = Environment(
+        loader=FileSystemLoader(Path(__file__).parent), autoescape=True, trim_blocks=True, lstrip_blocks=True
+    )
+    text = environment.get_template("page.html.j2").render(
+        stored=found,
+        missing=missing,
+        points=points,
+        tally=Counter(str(point["verdict"]) for point in points),
+        answers=list(_answers(by_name)),
+        made=f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC",
+    )
+    folder = results / "report"
+    folder.mkdir(parents=True, exist_ok=True)
+    return write_atomically(folder / "index.html", text.encode()), found, missing
+
+
+def _is_study(name: str) -> bool:
+    """Whether the program of this name leaves results; the report, the export and the tour leave none
+    here."""
+    return name not in ("report", "export", "tour")
+
+
+def told_page(results: Path) -> str:
+    """Write the page and say so; a page that cannot be written is no reason for a study to fail."""
+    try:
+        path, found, _ = write_page(results)
+    except (OSError, ValueError) as error:
+        return f"no page: {error}"
+    return f"page of {len(found)} studies: {path}"

@@ -1,0 +1,266 @@
+"""A study as a program: the decorator, its command line, exit codes and interruptions.
+
+    @study(needs={"fold": 0.05}, quick={"points": 21})
+    def ends(scene: Scene, run: Run, *, points: Annotated[int, "amplitudes"] = 61) -> Mapping[str, object]:
+        ...
+
+    if __name__ == "__main__":
+        raise SystemExit(ends.main())
+
+Keyword-only arguments are the options; `--help` prints the docstring of the module. Exit codes: 0 done; 2
+wrong use, told in one sentence; 3 finished with failed cells (`run.failed`, or a ContactError that escapes);
+130 interrupted, with what was stored kept and the command that goes on. With --json standard output carries
+one JSON object and nothing else; everything for a person goes to standard error. GRAZING_SPRING_TRACEBACK=1
+shows where a refused input was noticed.
+
+The first Ctrl-C or SIGTERM raises KeyboardInterrupt. A study that has not ended `PATIENCE` seconds later
+(its threads compute on, or a callback of the compiler swallowed it) is ended from a timer, a second Ctrl-C
+does so at once.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shlex
+import signal
+import sys
+import threading
+import traceback
+import types
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TextIO, cast
+
+from beam import SuspiciousValue
+from contact import ContactError
+from studies.executors import duration
+from studies.files import json_text
+from studies.options import add_options, parser_of
+from studies.record import SCHEMA, Run
+from studies.scene import Scene, read_scene
+
+__all__ = ["Run", "study"]
+
+DONE, WRONG_USE, FAILED_CELLS, INTERRUPTED = 0, 2, 3, 130
+TRACEBACK = "GRAZING_SPRING_TRACEBACK"
+PATIENCE = 5.0
+
+Function = Callable[..., Mapping[str, object]]
+
+
+def study(
+    *, needs: Mapping[str, float] | None = None, quick: Mapping[str, object] | None = None
+) -> Callable[[Function], Study]:
+    """Decorator of the one function of a study.
+
+    Parameters
+    ----------
+    needs : mapping of quantity to tolerance
+        What its numbers rest on: where the scene leaves modes.count open it gets the least number of modes
+        that gives these quantities (``least_model``).
+    quick : mapping of option to value
+        Defaults of the small form, --quick.
+    """
+    return lambda function: Study(function=function, needs=dict(needs or {}), quick=dict(quick or {}))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Study:
+    """A study; `main` is its command line, calling it runs its function."""
+
+    function: Function
+    needs: Mapping[str, float]
+    quick: Mapping[str, object]
+
+    def __call__(self, scene: Scene, run: Run, **options: object) -> Mapping[str, object]:
+        """Run the function."""
+        return self.function(scene, run, **options)
+
+    @property
+    def name(self) -> str:
+        """The name of the study, of its file and of its folder of results."""
+        return self.function.__name__
+
+    def main(self, argv: Sequence[str] | None = None, *, module: str | None = None) -> int:
+        """Read the arguments, run the study, store and report; returns the exit code."""
+        arguments = list(sys.argv[1:] if argv is None else argv)
+        command = f"python -m {module or f'studies.{self.name}'}"
+        with _clean_output() as output:
+            try:
+                return self._perform(command, arguments, output)
+            except SystemExit:  # --help
+                return DONE
+            except KeyboardInterrupt:
+                whole = shlex.join([*command.split(), *arguments])
+                print(f"{command}: interrupted; nothing was stored; go on with: {whole}", file=sys.stderr)
+                return INTERRUPTED
+            except (ValueError, TypeError, OSError) as error:
+                if os.environ.get(TRACEBACK) == "1":
+                    traceback.print_exc()
+                sentence = " ".join(str(error).split()) or f"{type(error).__name__} without a message"
+                print(f"{command}: {sentence}", file=sys.stderr)
+                if "--json" in arguments:
+                    refusal = {"schema": SCHEMA, "study": self.name, "status": "refused", "error": sentence}
+                    _tell(json_text({**refusal, "exit_code": WRONG_USE}), output)
+                return WRONG_USE
+
+    def _perform(self, command: str, argv: list[str], output: TextIO) -> int:
+        parser = parser_of(command, sys.modules[self.function.__module__].__doc__ or "")
+        options = add_options(parser, self.function)
+        with contextlib.redirect_stdout(output):
+            given = vars(parser.read(argv))
+        with warnings.catch_warnings(record=True) as found:
+            warnings.simplefilter("always", SuspiciousValue)
+            scene = read_scene(given["scene"], given["overrides"])
+        doubtful = [str(w.message) for w in found if issubclass(w.category, SuspiciousValue)]
+        doubtful = list(dict.fromkeys(doubtful))
+        if given["dump_scene"]:
+            values = {
+                "schema": SCHEMA,
+                "study": self.name,
+                "scene": scene.values(),
+                "provenance": scene.provenance(),
+            }
+            _tell(json_text(values) if given["json"] else scene.dump().rstrip(), output)
+            return DONE
+        chosen = {**options, **(self.quick if given["quick"] else {})}
+        chosen |= {name: given[name] for name in options if name in given}
+        chosen = {name: tuple(v) if isinstance(v, list) else v for name, v in chosen.items()}
+        for sentence in doubtful:
+            print(f"warning: {sentence}", file=sys.stderr)
+        run = Run(
+            study=self.name, folder=Path(given["out"]) / self.name, scene=scene, quick=given["quick"],
+            workers=given["workers"], executor=given["executor"], options=chosen, warnings=doubtful,
+            command=shlex.join([*command.split(), *argv]),
+        )  # fmt: skip
+
+        def close(code: int, status: str, results: Mapping[str, object]) -> None:
+            summary = run.close(status, results)
+            took = (
+                f"{command}: {status} {'after' if code == INTERRUPTED else 'in'} {duration(run.wall_time)}; "
+            )
+            if code == INTERRUPTED:
+                run.say(f"{took}what was stored is in {run.folder}; go on with: {run.command}")
+            else:
+                failed = f"; {len(run.failures)} failed: {run.failures[0]}" if run.failures else ""
+                run.say(f"{took}{len(run.files)} files in {run.folder}{failed}")
+            if given["json"]:
+                _tell(json_text({**summary, "exit_code": code}), output)
+
+        with _signals(lambda: close(INTERRUPTED, "interrupted", {})) as over:
+            code, status, results = self._compute(run, chosen)
+            over.set()
+            close(code, status, results)
+        if code == INTERRUPTED and as_program():
+            _end(code)
+        return code
+
+    def _compute(self, run: Run, options: Mapping[str, object]) -> tuple[int, str, Mapping[str, object]]:
+        """Exit code, status and results of the run."""
+        try:
+            with warnings.catch_warnings():  # a study varies the scene on purpose; what the user gave is told
+                warnings.simplefilter("ignore", SuspiciousValue)
+                scene = run.choose_modes(run.scene, self.needs) if self.needs else run.scene
+                results = self.function(scene, run, **options)
+        except KeyboardInterrupt:
+            return INTERRUPTED, "interrupted", {}
+        except ContactError as error:
+            run.failed(type(error).__name__, error)
+            return FAILED_CELLS, "failed", {}
+        if run.failures:
+            return FAILED_CELLS, "finished with failed cells", results
+        return DONE, "done", results
+
+
+def as_program() -> bool:
+    """Whether this process was started as `python -m studies...`."""
+    spec = getattr(sys.modules["__main__"], "__spec__", None)
+    return spec is not None and str(spec.name).partition(".")[0] == "studies"
+
+
+@contextlib.contextmanager
+def _clean_output() -> Iterator[TextIO]:
+    """Yield standard output; whatever else is printed meanwhile, even by a library, goes to standard
+    error."""
+    wanted = sys.stdout
+    if not as_program():
+        with contextlib.redirect_stdout(sys.stderr):
+            yield wanted
+        return
+    wanted.flush()
+    kept = os.dup(1)
+    os.dup2(2, 1)
+    try:
+        with contextlib.redirect_stdout(sys.stderr), open(os.dup(kept), "w", encoding="utf-8") as output:
+            yield output
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
+
+
+def _tell(text: str, output: TextIO) -> None:
+    """Print the answer; a pipe whose reader has seen enough (head) is no error."""
+    try:
+        print(text, file=output, flush=True)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), output.fileno())
+
+
+@contextlib.contextmanager
+def _signals(leave: Callable[[], None]) -> Iterator[threading.Event]:
+    """Ctrl-C and SIGTERM as KeyboardInterrupt, once; `leave` stores what there is if the study does not end
+    by itself.
+
+    Yields an event to be set as soon as the study has ended and its results are being written.
+    """
+    over, before = threading.Event(), dict[int, object]()
+    lost = sys.unraisablehook
+
+    def stop() -> None:
+        if not over.is_set():
+            with contextlib.suppress(Exception):
+                leave()
+            _end(INTERRUPTED)
+
+    timer = threading.Timer(PATIENCE, stop)
+    timer.daemon = True
+
+    def signalled(number: int, frame: types.FrameType | None) -> None:
+        if timer.is_alive():
+            stop()
+        if not over.is_set():
+            if as_program():
+                timer.start()
+            raise KeyboardInterrupt
+
+    if threading.current_thread() is threading.main_thread():
+        for number in (signal.SIGINT, signal.SIGTERM):
+            if signal.getsignal(number) is not signal.SIG_IGN:  # nohup and background jobs of a shell
+                before[number] = signal.signal(number, signalled)
+    # an interruption within a callback of the compiler cannot be raised; the timer ends the study
+    sys.unraisablehook = lambda told: None if issubclass(told.exc_type, KeyboardInterrupt) else lost(told)
+    try:
+        yield over
+    finally:
+        timer.cancel()
+        sys.unraisablehook = lost
+        for kept, handler in before.items():
+            signal.signal(kept, cast("signal.Handlers", handler))
+
+
+def _end(code: int) -> None:
+    """End at once, without waiting for threads and processes that still compute."""
+    import multiprocessing
+
+    for process in multiprocessing.active_children():
+        process.terminate()
+    for stream in (sys.stdout, sys.stderr):
+        with contextlib.suppress(AttributeError, OSError, ValueError):
+            stream.write(
+                "\x1b[?25h" if stream.isatty() else ""
+            )  # a progress bar that is cut off has hidden the cursor
+            stream.flush()
+    os._exit(code)

@@ -1,0 +1,216 @@
+"""From a TOML file to spring, modes, model and oscillators: what a study starts from.
+
+    scene = read_scene("letter", ["drive.frequencies_hz=[22.2]"])    # a scene of ours by name, or any file
+    spring_of(scene) -> modes_of(scene) -> model_of(scene)           # beam: drawing, modes, what impacts see
+    beam_at(scene, f)                                                # the spring on its stop, driven at f
+    [Hz]
+    single_mode_at(scene, f), nordmark_at(scene, f)                  # Eq. (1) and Eqs. (2), (3) of the letter
+
+Whatever is wrong is a `SceneError` of one sentence that names the key: the constructors of `beam` and
+`contact` refuse, and their names are put into those of the scene here. What is legal and can hardly be meant
+brings a `SuspiciousValue` warning. Reading a scene solves no eigenvalue problem.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+from beam import ModalModel, SuspiciousValue
+from contact import (
+    ContactLaw,
+    HarmonicDrive,
+    HertzContact,
+    ImpactOscillator,
+    LinearContact,
+    NewtonRestitution,
+    NordmarkMap,
+    Stop,
+)
+from studies import letter
+from studies.scene_keys import SceneError, shown
+from studies.scene_spring import (
+    READOUT,
+    damping_of,
+    elements_of,
+    first_modes,
+    free_period,
+    model_of,
+    modes_of,
+    require_drive_below,
+    sections_of,
+    single_mode_of,
+    spring_of,
+)
+from studies.scene_values import Scene, doubts, named, scene_from_text
+
+__all__ = [
+    "READOUT", "Scene", "SceneError", "approach_speed", "beam_at", "contact_law_of", "corresponding",
+    "damping_of", "elements_of", "first_modes", "free_period", "harmonic", "hertz_of", "model_of", "modes_of",
+    "nordmark_at", "periods_of", "read_scene", "require_drive_below", "sections_of", "single_mode_at",
+    "single_mode_of", "spring_of",
+]  # fmt: skip
+
+SCENES = Path(__file__).resolve().parent / "scenes"
+
+PLACES = {
+    "gap": "stop.gap_m", "frequency of the drive": "drive.frequencies_hz",
+    "local_restitution": "single_mode.restitution",
+}  # fmt: skip
+
+SAME_PERIOD = 1e-3
+"""Relative change of T within which a spring counts as the letter's: twice the error of its 40.80 ms."""
+
+
+def read_scene(name: str | Path = "letter", overrides: Iterable[str] = ()) -> Scene:
+    """The scene in a file, or of a name in studies/scenes, with overrides `section.key=value`; the last
+    wins."""
+    path = Path(name)
+    if path.suffix == "" and path.name == str(name) and not path.exists():
+        known = sorted(file.stem for file in SCENES.glob("*.toml"))
+        if path.name not in known:
+            raise SceneError(
+                f"there is no scene {shown(name)}: name a TOML file or one of {', '.join(known)}"
+            )
+        path = SCENES / f"{name}.toml"
+    try:
+        text = path.read_bytes().decode("utf-8-sig")
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "it is not text in UTF-8"
+        raise SceneError(f"the scene {shown(str(path))} cannot be read: {reason}") from error
+    scene = scene_from_text(text, name=str(path), overrides=overrides, folder=path.parent)
+    check(scene)
+    for sentence in doubts(scene):
+        warnings.warn(sentence, SuspiciousValue, stacklevel=2)
+    return scene
+
+
+def check(scene: Scene) -> None:
+    """SceneError unless everything but the modes can be built from the scene."""
+    spring, damping = scene.spring, scene.damping
+    if scene.drive.kind == "harmonic" and scene.stop.gap_m == 0.0:
+        raise SceneError("stop.gap_m must be greater than 0 (unit m) when there is a drive, not 0.0")
+    law = contact_law_of(scene)
+    with named(PLACES):
+        Stop(gap=scene.stop.gap_m, law=law)
+        for frequency in scene.drive.frequencies_hz:
+            HarmonicDrive(frequency=frequency)
+        NewtonRestitution(local_restitution=scene.single_mode.restitution)
+    single_mode_of(scene)
+    if spring.kind == "modal_data":
+        require_drive_below(scene, model_of(scene))
+        return
+    spring_of(scene)
+    damping_of(scene)
+    if damping.kind == "strips" and 0.0 in (spring.tape_thickness_m, spring.tape_loss_factor):
+        raise SceneError(
+            "damping.kind strips needs a tape that dissipates, spring.tape_thickness_m and "
+            "spring.tape_loss_factor greater than 0: give both or choose another damping.kind"
+        )
+    if damping.kind == "measured" and len(damping.measured_rates_per_s) < scene.kept_modes:
+        raise SceneError(
+            f"damping.kind measured needs a rate for each mode, {scene.kept_modes} (modes.count), but "
+            f"damping.measured_rates_per_s (unit 1/s) has {len(damping.measured_rates_per_s)}"
+        )
+
+
+def harmonic(scene: Scene) -> Scene:
+    """The scene itself, or SceneError if its base is at rest."""
+    if scene.drive.kind != "harmonic":
+        raise SceneError(f"drive.kind is {scene.drive.kind}; this study needs a harmonic drive")
+    return scene
+
+
+def approach_speed(frequency: float, gap: float, excess: float) -> float:
+    """Tip velocity at the stop, steady motion at excess e above 0: 2 pi f gap sqrt((1 + e)^2 - 1) [m/s]."""
+    return 2.0 * math.pi * frequency * gap * math.sqrt(excess * (2.0 + excess))
+
+
+def hertz_of(scene: Scene) -> HertzContact:
+    """Hertz's law for the ball and the plate of the scene."""
+    tip = scene.tip
+    with named(
+        {
+            "radius": "tip.ball_radius_m",
+            "youngs_modulus": "tip.ball_young_modulus_pa",
+            "poissons_ratio": "tip.ball_poisson_ratio",
+            "other_modulus": "tip.plate_young_modulus_pa",
+            "other_ratio": "tip.plate_poisson_ratio",
+        }
+    ):
+        return HertzContact.of_bodies(
+            radius=tip.ball_radius_m, youngs_modulus=tip.ball_young_modulus_pa,
+            poissons_ratio=tip.ball_poisson_ratio, other_modulus=tip.plate_young_modulus_pa,
+            other_ratio=tip.plate_poisson_ratio,
+        )  # fmt: skip
+
+
+def contact_law_of(scene: Scene) -> ContactLaw:
+    """The contact law of the scene.
+
+    A linear contact whose stiffness is left open (0) gets k = M (pi/t_c)^2, M the mass of ball and mount and
+    t_c its contact time under Hertz's law at the approach speed of the letter's Fig. 4.
+    """
+    keys, stiffness = scene.contact, scene.contact.stiffness_n_per_m
+    if keys.law == "hertz":
+        return hertz_of(scene)
+    if keys.law == "newton":
+        with named({"local_restitution": "contact.local_restitution"}):
+            return NewtonRestitution(local_restitution=keys.local_restitution)
+    if stiffness == 0.0:
+        mass = scene.modal_data.tip_mass_kg if scene.spring.kind == "modal_data" else scene.tip.mass_kg
+        if not mass > 0:
+            raise SceneError(
+                "contact.stiffness_n_per_m is 0, to be found from the contact time of the ball, but the "
+                "ball has no mass: give the stiffness or the mass above zero"
+            )
+        middle = sorted(scene.drive.frequencies_hz)[len(scene.drive.frequencies_hz) // 2]
+        speed = approach_speed(middle, scene.stop.gap_m, letter.TIME_TRACE_EXCESS)
+        stiffness = mass * (math.pi / hertz_of(scene).contact_time(mass, speed)) ** 2
+    with named(
+        {
+            "stiffness of the contact": "contact.stiffness_n_per_m",
+            "damping of the contact": "contact.damping_ns_per_m",
+        }
+    ):
+        return LinearContact(stiffness=stiffness, damping=keys.damping_ns_per_m)
+
+
+def _on_stop(scene: Scene, model: ModalModel, law: ContactLaw, frequency: float) -> ImpactOscillator:
+    with named(PLACES):
+        return ImpactOscillator(
+            model=model, stop=Stop(gap=scene.stop.gap_m, law=law), drive=HarmonicDrive(frequency=frequency)
+        )
+
+
+def beam_at(scene: Scene, frequency: float, model: ModalModel | None = None) -> ImpactOscillator:
+    """The spring of the scene at drive `frequency` [Hz]; `model` saves computing its modes again."""
+    return _on_stop(scene, model_of(scene) if model is None else model, contact_law_of(scene), frequency)
+
+
+def single_mode_at(scene: Scene, frequency: float) -> ImpactOscillator:
+    """Eq. (1) of the letter at drive frequency `frequency` [Hz], with the gap of the scene."""
+    with named(PLACES):
+        law = NewtonRestitution(local_restitution=scene.single_mode.restitution)
+    return _on_stop(scene, single_mode_of(scene), law, frequency)
+
+
+def nordmark_at(scene: Scene, frequency: float) -> NordmarkMap:
+    """Eqs. (2), (3) of the letter, corrected, at drive frequency `frequency` [Hz]."""
+    return NordmarkMap.from_oscillator(single_mode_at(scene, frequency))
+
+
+def corresponding(scene: Scene, letter_hz: float) -> float:
+    """The drive frequency of the scene's spring that has the f T of the letter's `letter_hz` [Hz].
+
+    By the letter's claim of universality the born period depends on f T alone, T the damped free period.
+    """
+    ratio = letter.FREE_PERIOD_S / scene.single_mode.free_period_s
+    return letter_hz if abs(ratio - 1.0) <= SAME_PERIOD else float(f"{letter_hz * ratio:.5g}")
+
+
+def periods_of(scene: Scene) -> Mapping[float, int]:
+    """The letter's frequencies, as those of the scene's spring [Hz], with the letter's periods."""
+    return {corresponding(scene, f): m for f, m in letter.PERIODS.items()}

@@ -1,0 +1,263 @@
+"""From a scene to the spring, its modes and the modal model that the impacts see.
+
+The names are public in `studies.scene`.
+
+Every model has one read-out, `READOUT`: what the laser sees, displacement [m] or rotation [rad]. Modes that
+were measured and Eq. (1) have no shape but at the tip, so that their read-out is the tip. The tape covers
+each leg from its support by the part `spring.tape_coverage`; with damping.kind strips the modes decay as the
+strain energies of sheet and tape say, scaled by one factor that gives mode 1 `damping.decay_rate_per_s`.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import dataclass
+from typing import Literal, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+import beam
+from beam import LeafSpring, ModalModel, Modes, StripSection
+from studies.scene_keys import SceneError
+from studies.scene_values import Scene, named
+
+__all__ = [
+    "READOUT", "damping_of", "elements_of", "first_modes", "free_period", "model_of", "modes_of",
+    "require_drive_below", "sections_of", "single_mode_of", "spring_of",
+]  # fmt: skip
+
+READOUT = "readout"
+"""Name of the read-out in every model."""
+
+SECTION_KEYS = {
+    "length of the straight strip or leg": "spring.leg_length_m", "width": "spring.width_m",
+    "thickness": "spring.thickness_m", "youngs_modulus": "spring.young_modulus_pa",
+    "poissons_ratio": "spring.poisson_ratio", "density": "spring.density_kg_m3",
+    "loss_factor": "spring.loss_factor", "radius": "spring.bend_radius_m", "mass": "tip.mass_kg",
+    "bend_radius": "spring.bend_radius_m", "rotary_inertia": "tip.rotary_inertia_kg_m2",
+    "damped_span": "spring.tape_coverage",
+}  # fmt: skip
+TAPE_KEYS = {
+    "thickness": "spring.tape_thickness_m", "youngs_modulus": "spring.tape_modulus_pa",
+    "poissons_ratio": "spring.tape_poisson_ratio", "density": "spring.tape_density_kg_m3",
+    "loss_factor": "spring.tape_loss_factor",
+}  # fmt: skip
+
+
+def sections_of(scene: Scene) -> tuple[StripSection, StripSection | None]:
+    """The bare sheet, and the sheet with its tape (None without tape)."""
+    keys = scene.spring
+    with named(SECTION_KEYS):
+        sheet = beam.Material(
+            youngs_modulus=keys.young_modulus_pa, poissons_ratio=keys.poisson_ratio,
+            density=keys.density_kg_m3, loss_factor=keys.loss_factor,
+        )  # fmt: skip
+        bare = StripSection(material=sheet, width=keys.width_m, thickness=keys.thickness_m)
+    if keys.tape_thickness_m == 0.0:
+        return bare, None
+    with named(TAPE_KEYS):
+        tape = beam.Material(
+            youngs_modulus=keys.tape_modulus_pa, poissons_ratio=keys.tape_poisson_ratio,
+            density=keys.tape_density_kg_m3, loss_factor=keys.tape_loss_factor,
+        )  # fmt: skip
+        layer = beam.Layer(material=tape, thickness=keys.tape_thickness_m, both_sides=keys.tape_sides == 2)
+        return bare, dataclasses.replace(bare, layer=layer)
+
+
+def spring_of(scene: Scene) -> LeafSpring:
+    """The leaf spring with its read-out; SceneError for spring.kind modal_data, which has no shape."""
+    keys = scene.spring
+    if keys.kind == "modal_data":
+        raise SceneError(
+            "spring.kind modal_data gives modes without their shapes: this needs a spring that is drawn"
+        )
+    bare, taped = sections_of(scene)
+    folded, leg = keys.kind == "folded_u", keys.leg_length_m
+    if folded and keys.bend_radius_m <= keys.thickness_m / 2:
+        raise SceneError(
+            f"spring.bend_radius_m is {keys.bend_radius_m} m; it must be greater than half of "
+            f"spring.thickness_m, {keys.thickness_m / 2:g} m"
+        )
+    length = 2.0 * leg + math.pi * keys.bend_radius_m if folded else leg
+    quantity: Literal["rotation", "displacement"] = (
+        "rotation" if scene.readout.quantity == "rotation" else "displacement"
+    )
+    with named(SECTION_KEYS):
+        tip = beam.Tip(mass=scene.tip.mass_kg, rotary_inertia=scene.tip.rotary_inertia_kg_m2)
+        span = None if taped is None else (0.0, keys.tape_coverage * leg)
+        readouts = {READOUT: beam.Readout(at=scene.readout.arc_fraction * length, quantity=quantity)}
+        if folded:
+            return beam.folded_u(
+                leg_length=leg,
+                bend_radius=keys.bend_radius_m,
+                section=bare,
+                tip=tip,
+                damped_section=taped,
+                damped_span=span,
+                readouts=readouts,
+            )
+        if keys.kind == "cantilever":
+            return beam.cantilever(
+                length=leg, section=bare, tip=tip, damped_section=taped, damped_span=span, readouts=readouts
+            )
+        for end, place, support in (("start", 0.0, keys.start_support), ("end", 1.0, keys.end_support)):
+            if scene.tip.arc_fraction == place and support in ("clamped", "pinned"):
+                raise SceneError(
+                    f"tip.arc_fraction must not be {place:g} while spring.{end}_support is {support}: "
+                    "the tip could not move there"
+                )
+        supports = (cast(beam.Support, keys.start_support), cast(beam.Support, keys.end_support))
+        return beam.straight_strip(
+            length=leg,
+            supports=supports,
+            tip_at=scene.tip.arc_fraction * leg,
+            section=bare,
+            tip=tip,
+            damped_section=taped,
+            damped_span=span,
+            readouts=readouts,
+        )
+
+
+def elements_of(scene: Scene, spring: LeafSpring) -> tuple[int, ...]:
+    """Number of elements on each piece: those asked for, shared by length on a leg, or the default."""
+    keys, counts = scene.spring, []
+    for piece, usual in zip(spring.centreline.pieces, beam.default_elements(spring), strict=True):
+        straight = piece.curvature == 0.0
+        wanted = keys.elements_per_leg if straight else keys.elements_on_arc
+        share = piece.length / keys.leg_length_m if straight else 1.0
+        counts.append(max(1, math.ceil(wanted * share - 1e-9)) if wanted else usual)
+    return tuple(counts)
+
+
+def modes_of(scene: Scene, count: int | None = None) -> Modes:
+    """The lowest modes up to the coupled one with number `count` (modes.count by default).
+
+    Frequencies come from the strain energies of the shapes, omega^2 = 2 energy (Rayleigh's quotient): the
+    solver leaves 1e-8 of rounding on the first, and an error of the shape enters the quotient squared.
+    """
+    wanted = scene.kept_modes if count is None else count
+    spring = spring_of(scene)
+    discretization = beam.assemble(spring, elements_of(scene, spring))
+    asked = min(discretization.n_dofs, wanted if spring.centreline.is_straight else 2 * wanted + 1)
+    while True:
+        modes = beam.natural_modes(discretization, asked)
+        coupled = np.flatnonzero(modes.coupled)
+        if coupled.size >= wanted:
+            break
+        if asked == discretization.n_dofs:
+            raise SceneError(
+                f"modes.count must be at most {coupled.size}, the coupled modes of this mesh, not {wanted}: "
+                "keep fewer or give spring.elements_per_leg and spring.elements_on_arc more elements"
+            )
+        asked = min(2 * asked, discretization.n_dofs)
+    modes = first_modes(modes, int(coupled[wanted - 1]) + 1)
+    energies = discretization.strain_energies(modes.shapes).sum(axis=(0, 1))
+    return dataclasses.replace(modes, omega=np.where(modes.omega > 0.0, np.sqrt(2.0 * energies), 0.0))
+
+
+def first_modes(modes: Modes, count: int) -> Modes:
+    """The `count` lowest of these modes."""
+    return dataclasses.replace(
+        modes, omega=modes.omega[:count], shapes=modes.shapes[:, :count], phi=modes.phi[:count],
+        participation=modes.participation[:count], coupled=modes.coupled[:count],
+        readouts={name: row[:count] for name, row in modes.readouts.items()},
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeasuredRates:
+    """Decay rates c [1/s] as measured, one a coupled mode, lowest first; not a number for the other modes."""
+
+    rates: tuple[float, ...]
+
+    def decay_rates(self, modes: Modes) -> NDArray[np.float64]:
+        """Return c [1/s], shape (n_modes,)."""
+        found = np.full(modes.omega.size, np.nan)
+        places = np.flatnonzero(modes.coupled)[: len(self.rates)]
+        found[places] = self.rates[: places.size]
+        return found
+
+
+def damping_of(scene: Scene) -> beam.Damping:
+    """The rule that gives each mode its decay rate."""
+    keys = scene.damping
+    with named(
+        {
+            "ratio": "damping.ratio",
+            "loss_factor": "damping.loss_factor",
+            "decay_rate": "damping.decay_rate_per_s",
+            "mass_coefficient": "damping.rayleigh_alpha_per_s",
+            "stiffness_coefficient": "damping.rayleigh_beta_s",
+        }
+    ):
+        if keys.kind == "constant_ratio":
+            return beam.ConstantRatio(ratio=keys.ratio)
+        if keys.kind == "constant_loss_factor":
+            return beam.ConstantLossFactor(loss_factor=keys.loss_factor)
+        if keys.kind == "rayleigh":
+            return beam.Rayleigh(
+                mass_coefficient=keys.rayleigh_alpha_per_s, stiffness_coefficient=keys.rayleigh_beta_s
+            )
+        if keys.kind == "measured":
+            return MeasuredRates(rates=keys.measured_rates_per_s)
+        return beam.MeasuredDecay(decay_rate=keys.decay_rate_per_s, others=beam.StripDamping(), scaled=True)
+
+
+def model_of(scene: Scene) -> ModalModel:
+    """The modal model: `modes.count` coupled modes, or at most as many of those that were measured."""
+    if scene.spring.kind != "modal_data":
+        model = beam.reduce(modes_of(scene), damping_of(scene), scene.kept_modes)
+        require_drive_below(scene, model)
+        return model
+    data = scene.modal_data
+    order = np.argsort(data.frequencies_hz, kind="stable")[: scene.kept_modes]
+    with named(
+        {
+            "omega": "modal_data.frequencies_hz",
+            "decay_rate": "modal_data.decay_rates_per_s",
+            "phi": "modal_data.tip_values",
+        }
+    ):
+        lists = [
+            np.array(values)
+            for values in (data.frequencies_hz, data.decay_rates_per_s, data.tip_values, data.participation)
+        ]
+        if len({values.size for values in lists}) > 1 or not order.size:
+            raise SceneError(
+                "spring.kind modal_data needs lists of equal length, one entry a mode, in modal_data"
+            )
+        frequencies, rates, tip_values, participation = (values[order] for values in lists)
+        return ModalModel(
+            omega=2.0 * np.pi * frequencies, decay_rate=rates, phi=tip_values, participation=participation,
+            static_compliance=data.static_compliance_m_per_n or None, tip_mass=data.tip_mass_kg or None,
+            readouts={READOUT: tip_values},
+        )  # fmt: skip
+
+
+def require_drive_below(scene: Scene, model: ModalModel, frequency: float | None = None) -> None:
+    """SceneError if a drive frequency, or `frequency` [Hz], lies above the highest mode of the model."""
+    fastest, highest = frequency or max(scene.drive.frequencies_hz), float(model.frequencies_hz.max())
+    if scene.drive.kind == "harmonic" and fastest > highest:
+        raise SceneError(
+            f"drive.frequencies_hz has {fastest:g} Hz, above the highest of the modes kept ({highest:.6g} "
+            "Hz): drive more slowly or raise modes.count"
+        )
+
+
+def single_mode_of(scene: Scene) -> ModalModel:
+    """Eq. (1) of the letter: one mode of unit mass with the period and the decay rate in [single_mode]."""
+    keys = scene.single_mode
+    with named({"free_period": "single_mode.free_period_s", "decay_rate": "single_mode.decay_rate_per_s"}):
+        model = beam.single_mode(free_period=keys.free_period_s, decay_rate=keys.decay_rate_per_s)
+    return dataclasses.replace(model, readouts={READOUT: model.phi})
+
+
+def free_period(scene: Scene) -> float:
+    """Damped period of the first mode of the spring [s]; infinite if it does not swing."""
+    modes = modes_of(scene, 1)
+    rate, omega = float(damping_of(scene).decay_rates(modes)[-1]), float(modes.omega[-1])
+    square = omega**2 - (0.5 * rate) ** 2
+    return 2.0 * math.pi / math.sqrt(square) if square > 0.0 else math.inf

@@ -1,0 +1,1 @@
+"""The six transitions under errors, noise and open assumptions."""

@@ -1,0 +1,232 @@
+r"""A collision with a soft wall, and the orbit of period 1 that survives it: closed forms.
+
+The wall multiplies the spring constant by K (letter of 1996, Ref. [10]): behind the gap the contact adds
+kappa = (K - 1) Omega^2 [1/s^2] and a dashpot c = 2 zeta s [1/s], s = sqrt(kappa). It only pushes: it lets go
+where kappa d + c d' falls to zero.
+
+**One collision.** Next to a peak of height h over the gap the incoming motion is a parabola of deceleration
+a = omega^2 gap, and meets the wall at v = sqrt(2 a h). With tau = s t and D = d kappa/a
+
+    D'' + 2 zeta D' + D = -1,   D(0) = 0,   D'(0) = z = s v/a = sqrt(2 kappa h/a)
+
+until D + 2 zeta D' = 0 at tau_c. Without the wall the velocity would fall by tau_c, so that the kick is
+J = (a/s) [z - tau_c - D'(tau_c)]. Without dashpot
+
+    J = (2 a/s)(z - atan z):   (4/3) kappa sqrt(2/a) h^(3/2) [1 - (3/5) z^2 + ...],   2 v - pi a/s + ...
+
+for small and large z: two power laws that cross at z^2 = 3, h = (3/2) a/kappa. With a dashpot the force sets
+in with c v at once, and J = c h + ... is linear in h.
+
+**Restitution of a hard approach** (z >> 1): exp(-(pi - 2 beta) tan beta) with zeta = sin beta; beyond
+zeta = 1: exp(-2 eta coth eta), zeta = cosh eta. At zeta = 1 it is exp(-2) = 0.135, so that the letter's 0.1
+needs an overdamped contact.
+
+**p1 with one touch.** A touch at height h that changes the velocity of the tip, per unit of phi^2, by J(h)
+leaves to leading order
+
+    excess gap = h + S_- J(h),   a multiplier -1 at  S_+ dJ/dh = 1,
+    S_-, S_+ = sum_k phi_k^2 M12_k/(1 -+ alpha_k + gamma_k)   [s/kg]
+
+with M_k the free flow of mode k over 1/f, alpha its trace, gamma its determinant. For one mode without
+dashpot dJ/dh = 2 s z/(1 + z^2), hence with Lambda = 1/S_+
+
+    z_f = (s/Lambda) [1 - sqrt(1 - (Lambda/s)^2)] -> Lambda/(2 s),   h_f = (a/2) z_f^2/kappa
+
+and no doubling near grazing if s < Lambda. As K grows, h_f -> (a/2) [Lambda/(2 K Omega^2)]^2 and the
+excess -> (h_f/gap)(1 + r), r = (2/3) S_-/S_+, which is too small by
+
+    [2 + (Lambda/(2 Omega))^2 (2 + (12/5) r)/(1 + r)]/K      of itself, plus order K^(-2).
+
+With a dashpot dJ/dh = c from the start: for c > Lambda p1 is unstable as soon as it touches, with the
+multipliers of trace alpha - M12 c and determinant gamma, as with a hard wall.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from scipy.optimize import brentq
+
+from contact import ImpactOscillator, LinearContact, Stop
+from contact.orbits import KickFamily
+
+__all__ = ["SoftWall", "damping_ratio", "hard_restitution", "survival_sums"]
+
+CRITICAL = 1e-7
+"""eta below which the critically damped limit is used: the error is its square."""
+
+HALF = 2.331122370414423
+"""z at which z - atan z = z/2: the kick without dashpot is half of the hard wall's."""
+
+
+def hard_restitution(zeta: float) -> float:
+    """Restitution of a contact that is short against the motion, at damping ratio `zeta` >= 0."""
+    if not zeta >= 0.0:
+        raise ValueError(f"zeta is {zeta}; it must be zero or more")
+    if zeta < 1.0:
+        beta = math.asin(zeta)
+        return math.exp(-(math.pi - 2.0 * beta) * math.tan(beta))
+    eta = math.acosh(zeta)
+    return math.exp(-2.0 * (eta / math.tanh(eta) if eta > CRITICAL else 1.0))
+
+
+def damping_ratio(restitution: float) -> float:
+    """zeta at which a hard approach leaves with `restitution`, above 0 and at most 1."""
+    if not 0.0 < restitution <= 1.0:
+        raise ValueError(f"single_mode.restitution is {restitution}; a wall with spring and dashpot needs "
+                         "one above 0 and not above 1")  # fmt: skip
+    # exp(-2 eta coth eta) < exp(-2 eta) bounds eta, and with it zeta
+    high = math.cosh(max(1.0, -0.5 * math.log(restitution)) + 1.0)
+    return float(brentq(lambda zeta: hard_restitution(zeta) - restitution, 0.0, high, xtol=1e-15, rtol=1e-14))
+
+
+def survival_sums(oscillator: ImpactOscillator) -> tuple[float, float]:
+    """(S_-, S_+) of the module [s/kg]."""
+    flow, model = KickFamily(oscillator=oscillator, period=1).flow, oscillator.model
+    trace, determinant = flow[:, 0, 0] + flow[:, 1, 1], np.linalg.det(flow)
+    parts = model.phi**2 * flow[:, 0, 1]
+    less, more = (float(np.sum(parts / (1.0 + sign * trace + determinant))) for sign in (-1.0, 1.0))
+    return less, more
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SoftWall:
+    """The wall of `hardness` K and damping ratio `zeta` in place of the stop of Eq. (1), `oscillator`."""
+
+    oscillator: ImpactOscillator
+    hardness: float
+    zeta: float = 0.0
+
+    def __post_init__(self) -> None:
+        model = self.oscillator.model
+        if model.n_modes != 1 or model.phi[0] != 1.0:
+            raise ValueError(f"oscillator has {model.n_modes} modes; a soft wall is for one, of unit mass")
+        if not 1.0 < self.hardness < math.inf:
+            raise ValueError(f"hardness is {self.hardness}; the wall's K must be finite and above 1")
+        if not 0.0 <= self.zeta < math.inf:
+            raise ValueError(f"zeta is {self.zeta}; it must be finite and zero or more")
+
+    @property
+    def name(self) -> str:
+        """ "lossless" or "dashpot"."""
+        return "dashpot" if self.zeta > 0.0 else "lossless"
+
+    @property
+    def gap(self) -> float:
+        """[m]."""
+        return self.oscillator.stop.gap
+
+    @property
+    def omega(self) -> float:
+        """Omega of the mode [rad/s]."""
+        return float(self.oscillator.model.omega[0])
+
+    @property
+    def deceleration(self) -> float:
+        """a = omega^2 gap [m/s^2]."""
+        return (2.0 * math.pi / self.oscillator.period) ** 2 * self.gap
+
+    @property
+    def rate(self) -> float:
+        """s = sqrt((K - 1) Omega^2) [1/s]."""
+        return math.sqrt(self.hardness - 1.0) * self.omega
+
+    @property
+    def dashpot(self) -> float:
+        """c = 2 zeta s, per unit mass [1/s]."""
+        return 2.0 * self.zeta * self.rate
+
+    @cached_property
+    def struck(self) -> ImpactOscillator:
+        """Eq. (1) with this wall as its stop."""
+        law = LinearContact(stiffness=self.rate**2, damping=self.dashpot)
+        return replace(self.oscillator, stop=Stop(gap=self.gap, law=law))
+
+    @property
+    def restitution(self) -> float:
+        """Of a hard approach [1]."""
+        return hard_restitution(self.zeta)
+
+    @cached_property
+    def sums(self) -> tuple[float, float]:
+        """(S_-, S_+) [s]."""
+        return survival_sums(self.oscillator)
+
+    def z(self, peak: float) -> float:
+        """z at a peak of `peak` gaps over the wall [1]."""
+        return self.rate * math.sqrt(2.0 * peak * self.gap / self.deceleration)
+
+    def kick(self, peak: float) -> float:
+        """J, without dashpot, of a collision whose incoming peak stands `peak` gaps above the wall [m/s]."""
+        if self.zeta > 0.0:
+            raise ValueError(f"zeta is {self.zeta}; the kick is known in closed form without dashpot")
+        z = self.rate * math.sqrt(2.0 * peak * self.gap / self.deceleration)
+        lost = z**3 * (1 / 3 - z * z * (1 / 5 - z * z / 7)) if z < 1e-2 else z - math.atan(z)
+        return 2.0 * self.deceleration / self.rate * lost
+
+    def soft_law(self, peak: float) -> float:
+        """Leading power law of small peaks: (4/3) kappa sqrt(2/a) h^(3/2), or c h with a dashpot [m/s]."""
+        h = peak * self.gap
+        if self.zeta > 0.0:
+            return self.dashpot * h
+        return 4.0 / 3.0 * self.rate**2 * math.sqrt(2.0 / self.deceleration) * h**1.5
+
+    def hard_law(self, peak: float) -> float:
+        """(1 + tau) sqrt(2 a h), the kick of the hard wall [m/s]."""
+        return (1.0 + self.restitution) * math.sqrt(2.0 * self.deceleration * peak * self.gap)
+
+    def peak_of(self, z: float) -> float:
+        """Peak in gaps at which z has this value."""
+        return 0.5 * z * z * self.deceleration / (self.rate**2 * self.gap)
+
+    @property
+    def crossover(self) -> float:
+        """Peak in gaps where the two power laws cross."""
+        return self.peak_of(math.sqrt(3.0) if self.zeta == 0.0 else (1.0 + self.restitution) / self.zeta)
+
+    @property
+    def half_peak(self) -> float:
+        """Peak in gaps where the kick without dashpot is half of the hard wall's."""
+        return self.peak_of(HALF)
+
+    @property
+    def least_hardness(self) -> float:
+        """K below which p1 does not double without dashpot near grazing at all: there s = Lambda."""
+        return 1.0 + (self.omega * self.sums[1]) ** -2
+
+    def excess_of(self, peak: float) -> float:
+        """F/F_g - 1 at which p1 has this peak (in gaps) over the wall, to leading order."""
+        return peak + self.sums[0] * self.kick(peak) / self.gap
+
+    def doubling_peak(self) -> float | None:
+        """h_f/gap; 0 where p1 is unstable from its first touch on, None where the closed forms know none."""
+        wanted = 1.0 / (self.sums[1] * self.rate)
+        if 2.0 * self.zeta >= wanted:
+            return 0.0
+        if self.zeta > 0.0 or wanted > 1.0:
+            return None
+        return self.peak_of(wanted / (1.0 + math.sqrt(1.0 - wanted**2)))
+
+    def leading_doubling(self) -> tuple[float, float]:
+        """(h_f/gap, excess) without dashpot as K -> infinity."""
+        less, more = self.sums
+        w = 2.0 * math.pi / self.oscillator.period
+        peak = 0.5 * (w / (2.0 * more * self.hardness * self.omega**2)) ** 2
+        return peak, peak * (1.0 + 2.0 / 3.0 * less / more)
+
+    @property
+    def leading_shortfall(self) -> float:
+        """K times the relative distance of the excess at the doubling from its limit, as K -> infinity."""
+        less, more = self.sums
+        r = 2.0 / 3.0 * less / more
+        return 2.0 + (0.5 / (more * self.omega)) ** 2 * (2.0 + 2.4 * r) / (1.0 + r)
+
+    @property
+    def grazing_multiplier(self) -> float:
+        """Real part of the larger multiplier of p1 at its first touch."""
+        flow = KickFamily(oscillator=self.oscillator, period=1).flow[0]
+        trace = np.trace(flow) - flow[0, 1] * self.dashpot
+        return float(max(np.roots([1.0, -trace, np.linalg.det(flow)]), key=abs).real)

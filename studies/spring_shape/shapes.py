@@ -1,0 +1,245 @@
+"""The readings of "U shaped", each as a strip in space and as a solid, brought to one free period.
+
+    side_by_side   a U cut out of the sheet: the legs lie side by side in its plane, the ball sits at the bend
+                   and moves across the sheet
+    channel        a straight strip with two flanges, the ball at its free end moves across the web
+    folded         a strip folded into a U, both ends clamped, the ball at the bend moves across the legs
+    plain          a straight strip, not U shaped at all: what the others are measured by
+
+All have the length, width, sheet and ball of the scene, without its tape. What is left free, the thickness of
+the sheet (of the channel: how far the flanges stand out, for a given sheet), is fitted to the damped period
+T [s] with the decay rate c [1/s],
+
+    omega_1^2 = (2 pi/T)^2 + (c/2)^2,        omega_1 of the first mode that moves the ball along the stop.
+
+Vectors: x along the legs, from the clamp to the ball; e the direction of the stop; f across both, sideways.
+A mode is named by what the section at the ball does most: it moves along e (bending), along f (sideways),
+along x (breathing of two legs, else lengthwise), or it turns about x so that the edges, b/2 off, move most
+(twist).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from beam import Arc, Centreline, Material, Straight, StripSection, Support, Tip
+from beam.space import (
+    SpatialModes,
+    SpatialSection,
+    SpatialSpring,
+    Vector,
+    channel,
+    channel_centroid,
+    flat,
+    spatial_modes,
+    upright,
+)
+from studies.scene import Scene, SceneError
+from studies.spring_shape.elasticity import SolidSpring
+from studies.spring_shape.swept_mesh import channel_profile, rectangle_profile, sweep
+
+Reading = Literal["side_by_side", "channel", "folded", "plain"]
+READINGS: tuple[Reading, ...] = ("side_by_side", "channel", "folded", "plain")
+TITLES = {
+    "side_by_side": "legs side by side",
+    "channel": "channel",
+    "folded": "folded",
+    "plain": "plain strip",
+}
+
+THINNEST, THICKEST = 5e-4, 0.05
+"""The sheet is looked for between these parts of the length."""
+
+FLANGE_REACH = 1.0
+"""Flanges are looked for up to this part of the width."""
+
+ACCURACY = 1e-9
+"""Of the fitted size, as a part of its range (of its logarithm for a thickness)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mesh:
+    """Elements of a solid on a leg, on the bend, across half of the width, and halvings at a clamp."""
+
+    legs: int
+    bend: int
+    across: int
+    halvings: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shape:
+    """One reading with its sizes [m]; `flange`: how far those of a channel stand out of the web, else 0."""
+
+    reading: Reading
+    material: Material
+    length: float
+    width: float
+    bend_radius: float
+    thickness: float
+    flange: float = 0.0
+    tip: Tip
+
+    @property
+    def bent(self) -> bool:
+        """Whether the centreline is a U."""
+        return self.reading in ("side_by_side", "folded")
+
+    @property
+    def stop(self) -> Vector:
+        """e, the direction in which the ball meets the stop."""
+        return (0.0, 0.0, 1.0) if self.reading == "side_by_side" else (0.0, 1.0, 0.0)
+
+    @property
+    def sideways(self) -> Vector:
+        """f, across the plane of symmetry."""
+        return (0.0, 1.0, 0.0) if self.reading == "side_by_side" else (0.0, 0.0, 1.0)
+
+    @property
+    def centreline(self) -> Centreline:
+        """From clamp to clamp, or from the clamp to the free end."""
+        leg = Straight(length=self.length)
+        if not self.bent:
+            return Centreline(pieces=(leg,))
+        bend = Arc(radius=self.bend_radius, angle=math.pi)
+        return Centreline(pieces=(leg, bend, leg), start=(0.0, -self.bend_radius))
+
+    @property
+    def tip_at(self) -> float:
+        """Arc length of the ball [m]."""
+        return self.length + (0.5 * math.pi * self.bend_radius if self.bent else 0.0)
+
+    @property
+    def channel_sizes(self) -> dict[str, float]:
+        """Width, flange and thickness [m] by the names of `beam.space.channel`."""
+        return {"width": self.width, "flange": self.flange, "thickness": self.thickness}
+
+    @property
+    def section(self) -> SpatialSection:
+        """Of the strip or channel."""
+        if self.reading == "channel":
+            return channel(material=self.material, **self.channel_sizes)
+        strip = StripSection(material=self.material, width=self.width, thickness=self.thickness)
+        return flat(strip) if self.reading == "side_by_side" else upright(strip)
+
+    def spring(self, off_line: float = 0.0) -> SpatialSpring:
+        """The strip in space, the ball off the plane of symmetry by `off_line` [m]."""
+        line = self.centreline
+        supports: tuple[Support, Support] = ("clamped", "clamped" if self.bent else "free")
+        x, y, z = (off_line * part for part in self.sideways)
+        return SpatialSpring(
+            centreline=line,
+            sections=(self.section,) * len(line.pieces),
+            supports=supports,
+            tip=self.tip,
+            tip_at=self.tip_at,
+            tip_offset=(x, y, z),
+            drive=self.stop,
+        )
+
+    def solid(self, mesh: Mesh) -> SolidSpring:
+        """The same as a solid."""
+        b, t = self.width, self.thickness
+        if self.reading == "channel":
+            sizes, cells = self.channel_sizes, (mesh.across, 2 * mesh.across)
+            profile = channel_profile(**sizes, centroid=channel_centroid(**sizes), cells=cells)
+        elif self.reading == "side_by_side":
+            profile = rectangle_profile(along_n=b, along_z=t, cells=mesh.across)
+        else:
+            profile = rectangle_profile(along_n=t, along_z=b, cells=mesh.across)
+        solid = sweep(
+            profile,
+            self.centreline,
+            (mesh.legs, mesh.bend, mesh.legs) if self.bent else (mesh.legs,),
+            tip_at=self.tip_at,
+            halvings=(mesh.halvings, mesh.halvings if self.bent else 0),
+        )
+        return SolidSpring(
+            solid=solid,
+            material=self.material,
+            clamped=(True, self.bent),
+            tip=self.tip,
+            tip_at=self.tip_at,
+            drive=self.stop,
+        )
+
+
+def shape_of(scene: Scene, reading: Reading) -> Shape:
+    """The reading with the sizes of the scene, its sheet still as thick as the scene's."""
+    keys = scene.spring
+    if reading == "side_by_side" and 2.0 * keys.bend_radius_m <= keys.width_m:
+        raise SceneError(
+            "spring.bend_radius_m must be greater than half of spring.width_m, "
+            f"{keys.width_m / 2:g} (unit m), for legs side by side, not {keys.bend_radius_m}"
+        )
+    material = Material(
+        youngs_modulus=keys.young_modulus_pa, poissons_ratio=keys.poisson_ratio, density=keys.density_kg_m3
+    )
+    return Shape(
+        reading=reading,
+        material=material,
+        length=keys.leg_length_m,
+        width=keys.width_m,
+        bend_radius=keys.bend_radius_m,
+        thickness=keys.thickness_m,
+        tip=Tip(mass=scene.tip.mass_kg, rotary_inertia=scene.tip.rotary_inertia_kg_m2),
+    )
+
+
+def angular_frequency_of(scene: Scene) -> float:
+    """omega_1 [rad/s] of the free damped period in [single_mode]."""
+    keys = scene.single_mode
+    return math.hypot(2.0 * math.pi / keys.free_period_s, 0.5 * keys.decay_rate_per_s)
+
+
+def brought_to(shape: Shape, omega: float) -> Shape:
+    """The shape whose first bending mode has the angular frequency `omega` [rad/s].
+
+    The flanges of a channel are fitted, the sheet of the others.
+
+    Raises
+    ------
+    SceneError
+        If no size within reach does it.
+    """
+    if shape.reading == "channel":
+        fitted, low, high = "flange", 0.0, FLANGE_REACH * shape.width
+    else:
+        fitted, low, high = "thickness", THINNEST * shape.length, min(THICKEST * shape.length, shape.width)
+
+    def with_size(share: float) -> Shape:
+        """`share` from 0 to 1: even steps of a flange, even ratios of a thickness, in which log omega is
+        nearly a straight line."""
+        if fitted == "flange":
+            return replace(shape, flange=low + share * (high - low))
+        return replace(shape, thickness=low * (high / low) ** share)
+
+    def excess(share: float) -> float:
+        modes = spatial_modes(with_size(share).spring(), 6)
+        return math.log(float(modes.omega[first_bending(modes)]) / omega)
+
+    if not excess(0.0) < 0.0 < excess(1.0):
+        raise SceneError(
+            f"no {fitted} between {low:.4g} and {high:.4g} (unit m) brings the reading {shape.reading} to "
+            f"{omega / (2.0 * math.pi):.4g} Hz: its other sizes must change"
+        )
+    return with_size(float(brentq(excess, 0.0, 1.0, xtol=ACCURACY)))
+
+
+def first_bending(modes: SpatialModes) -> int:
+    """Number of the first mode that moves the ball along the stop."""
+    return int(np.argmax(np.abs(modes.phi) > 1e-3 * np.abs(modes.phi).max()))
+
+
+def kinds_of(shape: Shape, displacement: NDArray[np.float64], rotation: NDArray[np.float64]) -> list[str]:
+    """The name of each mode, from the motion of the section at the ball, each (n_modes, 3)."""
+    names = ("bending", "sideways", "twist", "breathing" if shape.bent else "lengthwise")
+    along, across = displacement @ np.array(shape.stop), displacement @ np.array(shape.sideways)
+    moves = np.stack([along, across, 0.5 * shape.width * rotation[:, 0], displacement[:, 0]], axis=1)
+    return [names[place] for place in np.argmax(np.abs(moves), axis=1)]

@@ -1,0 +1,169 @@
+r"""Accumulating impacts: infinitely many in a finite time, and what becomes of loops that count them.
+
+A ball dropped from h rebounds with e times its speed; its impacts fall at
+
+    t_n = t_0 (1 + 2 (e + ... + e^n)),   t_0 = sqrt(2 h/g),   t_inf = t_0 (1 + e)/(1 - e).                 (a)
+
+The package computes hops until their height drowns in rounding, sums the rest and lets the ball lie. Two
+loops as they are often written, for contrast, both with a bound on the events:
+
+* closed form, no sum: flight times 2 v e^n/g are added up to the clock until they no longer move it, which
+  happens at 2 v e^n/g < eps t_inf/2; from then on events go on at a standing clock (Zeno).
+* solve_ivp with a terminal event, restarted with -e times the velocity: once a hop is shorter than what
+  the event detection resolves, no change of sign is seen and the ball falls through the floor.
+
+Number to compare with: h = 1 m, g = 9.81 m/s^2, e = 0.7 gives t_inf = 2.55863 s.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import partial
+
+import numpy as np
+from matplotlib.figure import Figure
+from scipy.integrate import solve_ivp
+
+from beam import ModalModel
+from contact import ImpactKind, ImpactOscillator, NewtonRestitution, Stop, simulate
+from studies import plotting
+from studies.scene import Scene
+from studies.stability import Findings, Limit
+
+__all__ = ["ball", "counting_loop", "draw", "event_loop", "measure", "rest_time", "time_of_rest"]
+
+HEIGHT, GRAVITY = 1.0, 9.81
+MOST_EVENTS = 20_000
+"""Bound of the events of the two loops: fifty times what e = 0.9 needs to run into rounding."""
+SHOWN = 0.7
+"""Restitution of the events that the figure shows one by one."""
+
+Row = partial(Limit, family="accumulation")
+
+
+def ball(restitution: float) -> ImpactOscillator:
+    """Unit mass that falls through `HEIGHT` onto a floor."""
+    none, one = np.zeros(1), np.ones(1)
+    model = ModalModel(omega=none, decay_rate=none, phi=one, participation=none)
+    stop = Stop(gap=HEIGHT, law=NewtonRestitution(local_restitution=restitution))
+    return ImpactOscillator(model=model, stop=stop, load=GRAVITY * one)
+
+
+def rest_time(restitution: float) -> float:
+    """t_inf of (a) [s]."""
+    return math.sqrt(2.0 * HEIGHT / GRAVITY) * (1.0 + restitution) / (1.0 - restitution)
+
+
+def time_of_rest(restitution: float) -> tuple[float, int]:
+    """When the package lets the ball lie [s], and how many impacts it has computed."""
+    impacts = simulate(ball(restitution), duration=1.1 * rest_time(restitution)).impacts
+    (stay,) = np.flatnonzero(impacts.kind == ImpactKind.STAY)
+    left = 2.0 * abs(float(impacts.approach[stay])) / (GRAVITY * (1.0 - restitution))
+    return float(impacts.start[stay]) + left, int(stay)
+
+
+def counting_loop(restitution: float) -> np.ndarray:
+    """The clock after each event of the loop in closed form until it stops moving [s]."""
+    speed = math.sqrt(2.0 * GRAVITY * HEIGHT)
+    clocks = [speed / GRAVITY]
+    while len(clocks) < MOST_EVENTS:
+        speed *= restitution
+        after = clocks[-1] + 2.0 * speed / GRAVITY
+        if after == clocks[-1]:
+            break
+        clocks.append(after)
+    return np.array(clocks[1:])
+
+
+def event_loop(restitution: float, tolerance: float) -> tuple[str, np.ndarray]:
+    """How solve_ivp, restarted at its events, ends, and the times of its events [s]."""
+
+    def height(_t: float, y: np.ndarray) -> float:
+        return float(y[0])
+
+    height.terminal, height.direction = True, -1  # type: ignore[attr-defined]
+    times: list[float] = []
+    end, t, y = 1.5 * rest_time(restitution), 0.0, np.array([HEIGHT, 0.0])
+    while len(times) < MOST_EVENTS:
+        found = solve_ivp(
+            lambda _t, y: [y[1], -GRAVITY], (t, end), y, events=height, rtol=tolerance, atol=tolerance
+        )
+        if found.status == 0:
+            return ("falls through" if found.y[0, -1] < -1e-6 * HEIGHT else "lies"), np.array(times)
+        t = float(found.t[-1])
+        times.append(t)
+        if len(times) > 50 and t == times[-50]:
+            return "stands still", np.array(times)
+        y = np.array([found.y[0, -1], -restitution * found.y[1, -1]])
+    return "runs out of events", np.array(times)
+
+
+def measure(scene: Scene, quick: bool) -> Findings:
+    """Times of rest of the package, and how far loops without a sum get; nothing depends on the scene."""
+    restitutions = np.array([0.3, 0.7, 0.9] if quick else [0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.999])
+    found = np.array([time_of_rest(float(e)) for e in restitutions])
+    limits = [
+        Row(method="event-driven", case=f"bouncing ball, e = {e:g}, rests after {count:.0f} impacts",
+            parameter="time of rest [s]", theory=rest_time(float(e)), measured=float(at))
+        for e, (at, count) in zip(restitutions, found, strict=True)
+    ]  # fmt: skip
+    arrays = {"restitution": restitutions, "rest": found[:, 0], "count": found[:, 1]}
+    for e in (SHOWN,) if quick else (0.5, SHOWN, 0.9):
+        clocks, fall = counting_loop(e), math.sqrt(2.0 * HEIGHT / GRAVITY)
+        half_step = 0.5 * math.ulp(rest_time(e))
+        limits.append(Row(
+            method="loop in closed form, no sum", case=f"bouncing ball, e = {e:g}: the clock stops",
+            parameter="number of the event [1]", theory=math.log(half_step / (2.0 * fall)) / math.log(e),
+            measured=float(clocks.size), refused=False,
+        ))  # fmt: skip
+        arrays[f"closed_{e:g}"] = rest_time(e) - clocks
+        for tolerance in (1e-6, 1e-12):
+            how, times = event_loop(e, tolerance)
+            arrays[f"events_{tolerance:g}_{e:g}"] = rest_time(e) - times
+            limits.append(Row(
+                method="scipy RK45, restarted at events",
+                case=f"bouncing ball, e = {e:g}, tolerance {tolerance:g}: {how}",
+                parameter="number of the last event [1]", theory=None, measured=float(times.size),
+                refused=False,
+            ))  # fmt: skip
+    return Findings(limits=limits, arrays=arrays)
+
+
+@plotting.in_house_style
+def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
+    """Time of rest and number of impacts over 1 - e; time left to the accumulation over the events."""
+    figure, (left, right) = plotting.new_figure(1, 2, width=plotting.PAGE, height=0.072)
+    lost = 1.0 - arrays["restitution"]
+    exact = np.array([rest_time(1.0 - x) for x in lost])
+    left.plot(lost, exact, color=plotting.BLUE, label="time of rest, theory (s)")
+    for number, (values, words) in enumerate((
+        (np.maximum(np.abs(arrays["rest"] / exact - 1.0), 1e-17), "relative error of the time of rest"),
+        (arrays["rest"], "time of rest (s)"),
+        (arrays["count"], "impacts computed"),
+    )):  # fmt: skip
+        left.plot(lost, values, **plotting.points(number), markerfacecolor="none", label=words)
+    left.set_xscale("log")
+    left.set_yscale("log")
+    plotting.label(left.xaxis, "1 − e")
+    plotting.label(left.yaxis, "time of rest (s); number; relative error")
+    plotting.panel(left, 0, "the package: hops summed")
+    left.legend(loc="center right", bbox_to_anchor=(1.0, 0.47))
+    for number, (name, words) in enumerate((
+        ("closed", "closed form, no sum"),
+        ("events_1e-12", "solve_ivp restarted, tolerance 1e-12"),
+        ("events_1e-06", "solve_ivp restarted, tolerance 1e-6"),
+    )):  # fmt: skip
+        values = np.maximum(np.abs(arrays[f"{name}_{SHOWN:g}"]), 1e-16)
+        n, style = np.arange(1, values.size + 1), plotting.series(number)
+        right.plot(n, values, **style, markevery=(number, 5), markerfacecolor="none", label=words)
+        right.plot(n[-1:], values[-1:], color=style["color"], marker="Xdv"[number], markersize=8)
+    right.set_yscale("log")
+    plotting.label(right.xaxis, "number of the event")
+    plotting.label(right.yaxis, "time left to the accumulation", "s")
+    plotting.panel(right, 1, f"loops without a sum, e = {SHOWN:g}")
+    right.legend(loc="upper right")
+    return figure, (
+        "A bouncing ball. (a) Time of rest and impacts computed by the package; (b) loops without a sum: the "
+        "large mark is the last event before the clock stands still, or the ball falls through."
+    )

@@ -1,0 +1,120 @@
+r"""Splitting: the stiffest stop and the longest step of a contact that lasts.
+
+The tip is pressed on the stop. A step of order 2 is kick, flight, kick: v -> v - phi (h/2) k phi.u, the flow
+(A, B; C, D) of each mode over h with determinant e = exp(-c h), and the kick again. An eigenvector to the
+eigenvalue -1 satisfies for each mode, with J = h k phi.u, u = phi J B/(1 + A + D + e), hence
+
+    k_crit = 1/X,   X = h sum_k phi_k^2 B_k/(1 + A_k + D_k + e_k),                                         (a)
+    without damping X = h sum_k phi_k^2 tan(omega_k h/2)/(2 omega_k).
+
+It is the first eigenvalue to leave the circle if omega h < pi for all modes: for c = 0 the eigenvalues
+exp(i psi) are the roots z = cos(psi) of 1 + k h sum_k phi_k^2 sin(theta_k)/(2 omega_k (z - cos(theta_k))) =
+0, theta_k = omega_k h; all residues have one sign, so that all roots are real, fall as k rises, and only the
+lowest can pass -1. For h -> 0 the limit is 4/(h^2 sum phi^2), that of central difference on a free body.
+
+Beyond pi a resonance of step and contact opens a tongue of instability that closes again for a longer step;
+of one undamped mode with sin(theta) < 0 the root leaves upwards, at
+
+    k = 2 omega (1 - cos(theta))/(h phi^2 |sin(theta)|).                                                   (b)
+
+For order 4 the limit is the lowest root of det(M(k) + I), M the matrix of the step, by which the package
+refuses (``Splitting.critical_stiffness``). It is a limit of M alone: an inner kick of a long step may find
+the tip off the stop even at rest; the motion then is affine in pieces, M not its slope, and it is unstable
+from up to 2.2 % below that limit at h omega_N = 2.5.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from beam import ModalModel
+from contact.integrators import Splitting
+from studies import plotting
+from studies.scene import Scene, model_of
+from studies.stability import Findings, Limit
+from studies.stability.lasting_contact import STEPS, modal_stiffness, plane, pressed, show_plane, stiffest
+
+__all__ = ["closed_form_stiffness", "draw", "limit", "measure"]
+
+NARROW = (1.0011, 1.0024, 1.01, 1.015, 1.03, 1.05)
+"""Stiffnesses over the limit that are tried at order 4, where the first instability may be a narrow one."""
+
+
+def closed_form_stiffness(model: ModalModel, step: float) -> float:
+    """Equation (a) for omega h < pi, and (b) for one undamped mode between pi and 2 pi [N/m]."""
+    half = 0.5 * model.decay_rate
+    damped = np.sqrt(model.omega**2 - half**2)
+    if damped[-1] * step > math.pi:
+        omega, phi = float(model.omega[-1]), float(model.phi[-1])
+        room = 2.0 * omega * (1.0 - math.cos(omega * step))
+        return room / (step * phi**2 * abs(math.sin(omega * step)))
+    fade = np.exp(-half * step)
+    sine, trace = fade * np.sin(damped * step) / damped, 2.0 * fade * np.cos(damped * step)
+    return 1.0 / (step * float(np.sum(model.phi**2 * sine / (1.0 + trace + fade**2))))
+
+
+def limit(model: ModalModel, angle: float, order: int) -> Limit:
+    """Largest stiffness of a lasting contact at h omega_N = `angle`."""
+    method = Splitting(step=angle / float(model.omega[-1]), order=order)
+    if order == 2:
+        theory = closed_form_stiffness(model, method.step)
+        found, refused = stiffest(model, method, theory)
+    else:
+        theory = method.critical_stiffness(pressed(model, 1.0)[0].motion())
+        found, refused = stiffest(model, method, theory, NARROW, 5 * STEPS)
+    damping = "" if model.decay_rate.any() else ", undamped"
+    return Limit(
+        family="splitting", method=Splitting.name, parameter="contact stiffness [N/m]", theory=theory,
+        case=f"order {order}, lasting contact, modes: {model.n_modes}{damping}, h omega_N = {angle:g}",
+        measured=found, refused=refused,
+    )  # fmt: skip
+
+
+def measure(scene: Scene, quick: bool) -> Findings:
+    """Limits on the modes of the scene, and the plane of step and stiffness for both orders."""
+    model = model_of(scene)
+    one = replace(model.truncated(1), decay_rate=np.zeros(1))
+    counts = sorted({min(n, model.n_modes) for n in ((1, 3) if quick else (1, 2, 5, 15))})
+    limits = [
+        *(limit(model.truncated(n), angle, 2) for n in counts for angle in (1.0, 2.5)),
+        *(limit(one, angle, 2) for angle in ((4.0,) if quick else (4.0, 5.5))),
+        *(limit(model.truncated(n), angle, 4) for n in counts for angle in (1.0, 2.5) if not quick),
+    ]
+    few = model.truncated(min(5, model.n_modes))
+    angles, parts = np.linspace(0.2, 6.8, 5 if quick else 23), np.geomspace(1e-1, 1e6, 5 if quick else 22)
+    fine, motion = np.linspace(0.1, 7.0, 40 if quick else 280), pressed(few, 1.0)[0].motion()
+    arrays = {"angle": angles, "part": parts, "fine": fine}
+    for order in (2, 4):
+
+        def made(step: float, order: int = order) -> Splitting:
+            return Splitting(step=step, order=order)
+
+        arrays[f"rate_{order}"] = plane(few, made, angles, parts)
+        line = [made(x / float(few.omega[-1])).critical_stiffness(motion) for x in fine]
+        arrays[f"limit_{order}"] = np.array(line) / modal_stiffness(few)
+    return Findings(limits=limits, arrays=arrays)
+
+
+@plotting.in_house_style
+def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
+    """Where the pressed modes are bounded over stiffness and step, both orders, and the limits."""
+    figure, axes = plotting.new_figure(1, 2, width=plotting.PAGE, height=0.080, sharey=True)
+    for number, (axis, order) in enumerate(zip(axes, (2, 4), strict=True)):
+        show_plane(axis, arrays["angle"], arrays["part"], arrays[f"rate_{order}"])
+        axis.plot(arrays[f"limit_{order}"], arrays["fine"], color="black", label="limit of refusal")
+        axis.axhline(math.pi, color="black", linewidth=0.6, linestyle=":", label="h ω$_N$ = π")
+        axis.set_xlim(0.7 * arrays["part"][0], 1.4 * arrays["part"][-1])
+        axis.set_ylim(0.0, 7.05)
+        plotting.panel(axis, number, f"order {order}")
+    plotting.label(axes[0].yaxis, "h ω$_N$, step × highest free frequency")
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    return figure, (
+        "Splitting, five modes pressed on the stop: where the motion stays bounded, over contact stiffness "
+        "and step, and the limit by which a step is refused; beyond h omega_N = pi the instabilities are "
+        "resonances of step and contact."
+    )

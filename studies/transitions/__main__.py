@@ -1,0 +1,149 @@
+"""The letter's six transitions p1 <-> pm: Nordmark map, Eq. (1) and the beam side by side.
+
+Claim (letter 1996, Fig. 2): when the drive amplitude passes grazing, the motion without impacts gives way to
+an orbit of period m with one impact, m = 3, 4, 5, 6, 8, 10 at 20.90 ... 23.40 Hz; when the amplitude is
+lowered again, that orbit lives on until some way below grazing.
+
+Computed, at each frequency, for the Nordmark map (Eqs. (2), (3)), the single mode (Eq. (1)) and the beam with
+its N modes:
+
+    born period      period of the settled orbit at F/F_g - 1 = 1e-3 (and 2.5e-4, 1e-2), started below grazing
+    excess_down      F/F_g - 1 at which that orbit ends when the amplitude is lowered: bracketed by a scan,
+                     and then the fold, period doubling or grazing (ends_by) that is in the bracket
+    exact            the fold of p_m in closed form, of the map and of Eq. (1)
+    orbit diagram    strobed points in an upward and a downward scan that carry the physical state along
+
+In the figures filled points are the upward scan, open ones the downward scan; the dashed line is grazing,
+the band around it as wide as the letter's amplitude was stable; a grey line marks an amplitude at which the
+motion did not settle: its points, those of a moment, are stored but not drawn.
+
+Run:     python -m studies, or python -m studies.transitions [--quick] [--full]     15 s; --full some minutes
+Writes:  transitions.csv (a row a frequency), orbit_diagram.csv (a row an amplitude: period, and whether the
+         motion settled), orbit_diagram.npz (points), orbit_diagram.png (beam, at its read-out point),
+         orbit_diagram_single_mode.png, orbit_diagram_map.png
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+
+from studies.record import Verdict
+from studies.run import Run, study
+from studies.scene import Scene, harmonic, model_of
+from studies.transitions.descriptions import TITLES, Row, Scans, row_at, scans
+
+__all__ = ["Cell", "transitions"]
+
+QUICK_POINTS = 21
+"""Amplitudes of a scan in the small form, at most."""
+
+AT_THE_EDGE = (
+    "the edge between p10 and p11 lies where f T = 20/21, at 23.343 Hz for T = 40.80 ms: p10 at grazing "
+    "needs T below 40.70 ms, five times the printed error of 0.02 ms"
+)
+"""Why 23.40 Hz is p11."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cell:
+    """One amplitude of one scan; `kind` is "periodic", "not settled" or "failed"."""
+
+    frequency_hz: float
+    model: str
+    direction: str
+    excess: float
+    kind: str
+    period: int
+    impacts: int
+    cycles: int
+
+
+@study(needs={"born_period": 0.0, "fold": 0.07})
+def transitions(
+    scene: Scene,
+    run: Run,
+    *,
+    full: Annotated[bool, "as the experiment did: 10000 drive periods per amplitude, never fewer"] = False,
+) -> Mapping[str, object]:
+    """Compute, store and draw."""
+    if run.quick:
+        scene = scene.replace({"scan.points": min(scene.scan.points, QUICK_POINTS)}, provenance="quick")
+    model = model_of(harmonic(scene))
+    rows: list[Row] = []
+    with run.pool() as pool:
+        at = partial(row_at, scene, model=model)
+        for row, failures in pool.map(at, sorted(scene.drive.frequencies_hz)):
+            rows.append(row)
+            run.say(sentence(row))
+            for where, reason in failures:
+                run.failed(where, reason)
+    run.json("rows", rows)
+    shown = ["frequency_hz", "letter", *TITLES]
+    shown += [f"{name}_{model}" for model in TITLES for name in ("excess_down", "ends_by")]
+    run.table("transitions", rows, "Born period, and excess F/F_g - 1 at which the orbit ends.", show=shown)
+    diagrams = run.map(partial(scans, scene, model=model, full=full), rows, "orbit diagrams")
+    store(run, rows, diagrams)
+    caption = "Strobed points against the amplitude; filled: upward scan, open: downward scan. "
+    from studies.transitions.figure import draw  # matplotlib is slow to import
+
+    for name in TITLES:
+        stem = "orbit_diagram" if name == "beam" else f"orbit_diagram_{name}"
+        run.figure(stem, draw(scene, rows, diagrams, name), caption + TITLES[name] + ".")
+    agrees = [row.frequency_hz for row in rows if row.letter is not None and judge(run, row)]
+    return {
+        "rows": rows, "modes": model.n_modes, "contact": scene.contact.law, "agrees_hz": agrees
+    }  # fmt: skip
+
+
+def word(period: int | None) -> str:
+    """How table and sentences name a period."""
+    return f"p{period}" if period else "-" if period is None else "not settled"
+
+
+def sentence(row: Row) -> str:
+    """A row as a line, as soon as it is known."""
+    found = ", ".join(f"{TITLES[name]} {word(period)}" for name, period in row.periods().items())
+    return f"{row.frequency_hz:.2f} Hz: letter {word(row.letter)}; {found}"
+
+
+def judge(run: Run, row: Row) -> bool:
+    """Verdict on the transition at a frequency; returns whether all three agree."""
+    same = [period == row.letter for period in row.periods().values()]
+    above = [word(also.get("0.01")) for also in (row.born_map, row.born_single_mode, row.born_beam)]
+    note = "" if all(same) else f"at excess 0.01 {', '.join(above)}"
+    if note and row.frequency_hz == 23.40:
+        note += f"; {AT_THE_EDGE}"
+    verdict: Verdict = "agrees" if all(same) else "in part" if any(same) else "differs"
+    found = ", ".join(f"{TITLES[name]} {word(period)}" for name, period in row.periods().items())
+    run.verdict(f"p{row.letter}", verdict, found=found, note=note)
+    return all(same)
+
+
+def store(run: Run, rows: Iterable[Row], diagrams: Iterable[Scans]) -> None:
+    """The points of all scans as npz, period and kind of each amplitude as csv."""
+    arrays, cells = dict[str, NDArray[np.float64]](), list[Cell]()
+    for row, found in zip(rows, diagrams, strict=True):
+        for name, ways in found.items():
+            for way, diagram in ways.items():
+                stem = f"{name}_{row.frequency_hz:.2f}_hz_{way}".replace(".", "p")
+                arrays[f"{stem}_excess"], arrays[f"{stem}_points"] = diagram.excess, diagram.points
+                columns = (diagram.excess, diagram.kind, diagram.period, diagram.impacts, diagram.cycles)
+                for excess, kind, period, impacts, cycles in zip(*columns, strict=True):
+                    cells.append(Cell(
+                        frequency_hz=row.frequency_hz, model=name, direction=way, excess=float(excess),
+                        kind=kind, period=int(period), impacts=int(impacts), cycles=int(cycles),
+                    ))  # fmt: skip
+                for reason in diagram.failures:
+                    run.failed(f"{row.frequency_hz:g} Hz, {TITLES[name]}, {way}ward scan", reason)
+    run.arrays("orbit_diagram", **arrays)
+    run.table("orbit_diagram", cells, show=())
+
+
+if __name__ == "__main__":
+    raise SystemExit(transitions.main())

@@ -1,0 +1,87 @@
+"""Orbit diagrams of the transitions, as in the letter's Fig. 2."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from studies import letter, plotting
+from studies.plotting import BLUE, GUIDE, VERMILION
+from studies.scene import Scene, single_mode_at
+from studies.transitions.descriptions import Diagram, Row, Scans
+
+
+def draw(scene: Scene, rows: Sequence[Row], diagrams: Sequence[Scans], name: str) -> Figure:
+    """The panels of the letter's Fig. 2 for one description."""
+    columns = min(3, len(rows))
+    lines = math.ceil(len(rows) / columns)
+    with plotting.house_style():
+        figure, axes = plotting.new_figure(
+            lines, columns, width=plotting.PAGE, height=0.055 * lines + 0.012, squeeze=False
+        )
+        series: dict[str, Artist] = {}
+        for axis in axes.flat[len(rows) :]:
+            axis.set_visible(False)
+        for number, (axis, row, found) in enumerate(zip(axes.flat, rows, diagrams, strict=False)):
+            grazing = row.grazing_amplitude_m
+            if name == "single_mode":
+                grazing = single_mode_at(scene, row.frequency_hz).grazing_amplitude()
+            panel(axis, found[name], None if name == "map" else grazing)
+            seen = "" if row.letter is None else f" (letter: p$_{{{row.letter}}}$)"
+            period = row.periods()[name]
+            words = f"p$_{{{period}}}$" if period else "no period"
+            plotting.panel(axis, number, f"{row.frequency_hz:.2f} Hz: {words}{seen}")
+            series = dict(zip(*axis.get_legend_handles_labels()[::-1], strict=True)) | series
+        sideways = (plotting.EXCESS, "10$^{-3}$") if name == "map" else ("excitation amplitude", "mm")
+        read = scene.readout.quantity
+        upwards = {
+            "map": ("$x$ of the map", "1"),
+            "single_mode": ("tip displacement $ξ$", "mm"),
+            "beam": (f"read-out {read}", "mm" if read == "displacement" else "mrad"),
+        }[name]
+        for axis in axes[-1, :]:
+            plotting.label(axis.xaxis, *sideways)
+        for axis in axes[:, 0]:
+            plotting.label(axis.yaxis, *upwards)
+        names = (
+            "upward scan",
+            "downward scan",
+            "letter: stability of the amplitude",
+            "grazing",
+            "not settled",
+        )
+        there = [entry for entry in names if entry in series]
+        figure.legend([series[entry] for entry in there], there, loc="outside lower center", ncols=len(there),
+                      markerscale=1.5)  # fmt: skip
+    return figure
+
+
+def panel(axis: Axes, found: Mapping[str, Diagram], grazing: float | None) -> None:
+    """Both scans at one frequency, against the amplitude [mm], for the map (no amplitude) the excess
+    [1e-3]."""
+    moving = set[float]()
+    for way, face, size in (("down", "none", 3.2), ("up", BLUE, 2.0)):
+        diagram = found[way]
+        amplitude = 1e3 * (diagram.excess if grazing is None else grazing * (1.0 + diagram.excess))
+        settled = diagram.period > 0
+        x = np.repeat(amplitude[settled, None], diagram.points.shape[1], axis=1)
+        y = diagram.points[settled] * (1.0 if grazing is None else 1e3)
+        moving |= {a for a, kind in zip(amplitude, diagram.kind, strict=True) if kind == "not settled"}
+        axis.plot(
+            x.ravel(), y.ravel(), linestyle="none", marker="o", markersize=size, markeredgewidth=0.5,
+            markerfacecolor=face, markeredgecolor=BLUE if way == "up" else VERMILION, label=f"{way}ward scan",
+            rasterized=True, zorder=2 if way == "down" else 3,
+        )  # fmt: skip
+    for place, value in enumerate(sorted(moving)):
+        axis.axvline(value, color="0.75", linewidth=0.5, zorder=1, label="_" if place else "not settled")
+    at = 0.0 if grazing is None else 1e3 * grazing
+    stable = 1e3 * (letter.AMPLITUDE_STABILITY if grazing is None else letter.AMPLITUDE_STABILITY_M)
+    axis.axvspan(at - stable, at + stable, color="0.88", linewidth=0, zorder=0,
+                 label="letter: stability of the amplitude")  # fmt: skip
+    axis.axvline(at, **GUIDE, label="grazing")
+    axis.locator_params(axis="x", nbins=4)

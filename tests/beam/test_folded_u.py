@@ -1,0 +1,227 @@
+"""The folded U against an independent planar frame, a finer mesh, closed rings and Castigliano's theorem."""
+
+import functools
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.sparse import block_diag, coo_array
+from scipy.sparse.linalg import eigsh
+from straight_frame import frame_frequencies, polygon
+
+import beam
+from beam import (
+    BRASS,
+    Arc,
+    Centreline,
+    LeafSpring,
+    Modes,
+    Straight,
+    StripSection,
+    Tip,
+    assemble,
+    default_elements,
+    folded_u,
+    natural_modes,
+)
+from beam.space import upright
+
+RADII = (7.5e-3, 15e-3, 30e-3)
+STRIP = StripSection(material=BRASS, width=12e-3, thickness=0.65e-3)
+BALL = Tip(mass=4e-3, rotary_inertia=3e-8)
+
+
+@functools.cache
+def u_of(radius: float, refinement: int = 1, tip: Tip = BALL) -> Modes:
+    spring = folded_u(leg_length=0.13, bend_radius=radius, section=STRIP, tip=tip)
+    return natural_modes(assemble(spring, [refinement * n for n in default_elements(spring)]), 20)
+
+
+@pytest.mark.parametrize("radius", RADII)
+def test_first_ten_frequencies_against_a_mesh_four_times_finer(radius: float) -> None:
+    np.testing.assert_allclose(
+        u_of(radius).frequencies_hz[:10], u_of(radius, refinement=4).frequencies_hz[:10], rtol=1e-4
+    )
+
+
+@pytest.mark.parametrize("radius", RADII)
+def test_first_ten_frequencies_against_an_independent_frame(radius: float) -> None:
+    frame = frame_frequencies(polygon(radius, 60, 400), upright(STRIP), BALL, 10, moves=(0, 1, 5))
+    np.testing.assert_allclose(u_of(radius).frequencies_hz[:10], frame, rtol=2e-4)
+
+
+def test_sharing_the_slope_instead_of_the_rotation_would_be_seen() -> None:
+    """Where the curvature jumps, tying w' itself moves the first frequency more than the frame allows."""
+    model = assemble(folded_u(leg_length=0.13, bend_radius=7.5e-3, section=STRIP, tip=BALL))
+    slope = model.ties.tocoo()
+    jump = np.abs(np.abs(slope.data) - 1.0 / 7.5e-3) < 1e-9 / 7.5e-3
+    assert jump.sum() == 2  # one entry -[k] u at each end of the bend
+    kept = slope.data * ~jump
+    wrong = coo_array((kept, (slope.row, slope.col)), shape=slope.shape).tocsr()
+    parts = [piece.matrices() for piece in model.pieces]
+    stiffness, mass = (block_diag([part[i] for part in parts], format="csr") for i in (0, 1))
+    lumped = model.mass - model.ties.T @ mass @ model.ties
+    value = eigsh(
+        (wrong.T @ stiffness @ wrong).tocsc(),
+        1,
+        M=(wrong.T @ mass @ wrong + lumped).tocsc(),
+        sigma=0.0,
+        v0=np.ones(model.n_dofs),
+    )[0][0]
+    true = u_of(7.5e-3).omega[0]
+    assert abs(math.sqrt(value) / true - 1.0) > 4e-4
+
+
+@pytest.mark.parametrize("radius", RADII)
+def test_sway_couples_and_breathing_does_not(radius: float) -> None:
+    modes = u_of(radius)
+    model = modes.discretization
+    total = model.spring.strip_mass + BALL.mass
+    assert modes.coupled.sum() == 10
+    still = ~modes.coupled
+    assert np.abs(model.tip @ modes.shapes[:, still]).max() * math.sqrt(total) < 1e-7
+    assert np.abs(model.base_load @ modes.shapes[:, still]).max() / math.sqrt(total) < 1e-7
+    assert np.abs(modes.phi[modes.coupled]).min() * math.sqrt(total) > 1e-2
+
+
+@pytest.mark.parametrize("radius", RADII)
+def test_symmetry_of_the_two_families(radius: float) -> None:
+    """Mirrored in the axis of the U, sway modes keep their y displacement, breathing modes reverse it."""
+    modes = u_of(radius)
+    along = modes.displacement_along(2)
+    np.testing.assert_allclose(along.s + along.s[::-1], along.s[-1], rtol=1e-12)
+    y = along.displacement[:, :, 1]
+    parity = np.where(modes.coupled, 1.0, -1.0)[:, None]
+    np.testing.assert_allclose(y[:, ::-1], parity * y, atol=1e-5 * np.abs(y).max())
+
+
+def test_driving_along_the_legs_couples_the_other_family() -> None:
+    across = folded_u(leg_length=0.13, bend_radius=15e-3, section=STRIP, tip=BALL)
+    along = replace(across, drive=(2.0, 0.0))
+    assert along.drive == (1.0, 0.0)
+    sway, breathing = (natural_modes(assemble(spring), 10) for spring in (across, along))
+    np.testing.assert_allclose(sway.omega, breathing.omega, rtol=1e-6)
+    np.testing.assert_array_equal(sway.coupled, ~breathing.coupled)
+
+
+def test_prototype_of_the_letter() -> None:
+    modes = u_of(7.5e-3, tip=Tip(mass=4e-3))
+    sway = modes.frequencies_hz[modes.coupled]
+    assert 1.0 / sway[0] == pytest.approx(40.80e-3, rel=2e-3)
+    np.testing.assert_allclose(sway[:5], [24.5, 149.0, 378.0, 717.0, 1170.0], rtol=3e-3)
+
+
+def test_participation_sum_is_the_moving_mass() -> None:
+    """sum Gamma^2 grows to strip plus ball; what is left after 20 modes is small and positive."""
+    modes = u_of(30e-3)
+    total = modes.discretization.spring.strip_mass + BALL.mass
+    assert 0.0 < total - np.sum(modes.participation**2) < 0.05 * total
+
+
+def test_static_compliance_of_the_u_by_castigliano() -> None:
+    """Bending and stretching energy of one half of the U, cut at the ball, under half the force.
+
+    By symmetry of sway the cut carries no moment, a force 1/2 along y and a force along x that keeps the ball
+    from moving along x, i.e. the one that makes the energy of the half least. The compliance is 4 times that.
+    """
+    radius, leg = 15e-3, 0.13
+    turn, x = np.linspace(0.0, 0.5 * np.pi, 4001), np.linspace(0.0, leg, 4001)  # from the ball to the support
+
+    def energy(fx: float, fy: float) -> float:
+        in_bend = (
+            radius * (fy * (1.0 - np.cos(turn)) - fx * np.sin(turn)),
+            fy * np.cos(turn) + fx * np.sin(turn),
+        )
+        in_leg = fy * (radius + x) - fx * radius, np.full_like(x, fx)
+        moment, force = (
+            radius * np.trapezoid(in_bend[i] ** 2, turn) + np.trapezoid(in_leg[i] ** 2, x) for i in range(2)
+        )
+        return 0.5 * (moment / STRIP.bending_stiffness + force / STRIP.axial_stiffness)
+
+    along, across = energy(1.0, 0.0), energy(0.0, 1.0)
+    least = 0.25 * (across - (energy(1.0, 1.0) - along - across) ** 2 / (4.0 * along))
+    model = assemble(folded_u(leg_length=leg, bend_radius=radius, section=STRIP, tip=BALL))
+    assert model.static_compliance() == pytest.approx(4.0 * least, rel=1e-5)
+
+
+@pytest.mark.parametrize("turn", [math.pi, math.pi / 2])
+def test_ring_segment_between_guides(turn: float) -> None:
+    """Ends that slide along the normal are planes of symmetry: exact modes u = A sin(n a), w = B cos(n a).
+
+    Each n gives a 2 x 2 problem with strain (n A - B)/R and change of curvature n (A - n B)/R^2.
+    """
+    radius = 0.05
+    spring = LeafSpring(
+        centreline=Centreline(pieces=(Arc(radius=radius, angle=turn),)),
+        sections=(STRIP,),
+        supports=("guided", "guided"),
+        tip=Tip(),
+        tip_at=0.0,
+    )
+    expected = []
+    for n in np.pi / turn * np.arange(30):
+        stretch, bend = np.array([n, -1.0]) / radius, n * np.array([1.0, -n]) / radius**2
+        k = STRIP.axial_stiffness * np.outer(stretch, stretch) + STRIP.bending_stiffness * np.outer(
+            bend, bend
+        )
+        expected += list(np.linalg.eigvalsh(k / STRIP.mass_per_length)[0 if n else 1 :])
+    bent = np.sort([value for value in expected if value > 1.0])
+    modes = natural_modes(assemble(spring, 120), 8)
+    rigid = spring.rigid_motions
+    assert rigid == (1 if turn == math.pi else 0)
+    np.testing.assert_allclose(modes.omega[rigid:] ** 2, bent[: 8 - rigid], rtol=2e-5)
+
+
+def test_elements_converge_at_fourth_order_on_the_arc() -> None:
+    spring = folded_u(leg_length=0.13, bend_radius=15e-3, section=STRIP, tip=BALL)
+    finest = natural_modes(assemble(spring, [60, 160, 60]), 1).omega[0]
+    errors = [natural_modes(assemble(spring, [60, n, 60]), 1).omega[0] / finest - 1.0 for n in (8, 16)]
+    assert math.log2(errors[0] / errors[1]) == pytest.approx(4.0, abs=0.1)
+
+
+def test_shapes_along_the_centreline() -> None:
+    modes = u_of(15e-3)
+    along = modes.displacement_along(4)
+    spring = modes.discretization.spring
+    assert along.displacement.shape == (20, along.s.size, 3) and along.rotation.shape == (20, along.s.size)
+    assert np.all(np.diff(along.s) > 0.0) and along.s[0] == 0.0 and along.s[-1] == spring.centreline.length
+    np.testing.assert_allclose(along.displacement[:, [0, -1]], 0.0, atol=1e-9)
+    ball = np.argmin(np.abs(along.s - spring.tip_at))
+    np.testing.assert_allclose(along.displacement[:, ball, 1], modes.phi, atol=1e-7)
+    np.testing.assert_allclose(along.points[ball], [0.145, 0.0, 0.0], atol=1e-15)
+    # the rotation is the part of dr/ds across the strip, smooth also where the curvature jumps
+    slope = np.gradient(along.displacement, along.s, axis=1, edge_order=2)
+    across = np.einsum("kpi,pi->kp", slope, along.normal)
+    np.testing.assert_allclose(across[:4], along.rotation[:4], atol=2e-3 * np.abs(along.rotation[:4]).max())
+
+
+def test_sign_rule() -> None:
+    modes = u_of(15e-3)
+    assert np.all(modes.phi >= 0.0)
+    along = modes.displacement_along(2)
+    w = np.einsum("kpi,pi->kp", along.displacement, along.normal)[~modes.coupled]
+    first = np.argmax(np.abs(w) > 0.5 * np.abs(w).max(axis=1, keepdims=True), axis=1)
+    assert np.all(w[np.arange(len(first)), first] > 0.0)
+
+
+def test_mode_40_of_the_u() -> None:
+    spring = folded_u(leg_length=0.13, bend_radius=7.5e-3, section=STRIP, tip=BALL)
+    coarse = natural_modes(assemble(spring), 40).omega
+    fine = natural_modes(assemble(spring, [2 * n for n in default_elements(spring)]), 40).omega
+    np.testing.assert_allclose(coarse, fine, rtol=5e-4)
+
+
+def test_straight_pieces_alone_need_no_bend() -> None:
+    line = Centreline(pieces=(Straight(length=0.1),), heading=0.3)
+    spring = LeafSpring(
+        centreline=line,
+        sections=(STRIP,),
+        supports=("clamped", "free"),
+        tip=BALL,
+        tip_at=0.1,
+        drive=(-math.sin(0.3), math.cos(0.3)),
+    )
+    level = beam.cantilever(length=0.1, section=STRIP, tip=BALL)
+    tilted, flat = natural_modes(assemble(spring), 4), natural_modes(assemble(level), 4)
+    np.testing.assert_allclose(tilted.phi, flat.phi, rtol=1e-9)

@@ -1,0 +1,154 @@
+"""The modal model: what it holds, what it refuses, and what reduction keeps of the spring."""
+
+import doctest
+import pickle
+import warnings
+from dataclasses import FrozenInstanceError, replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import beam
+from beam import (
+    BRASS,
+    ConstantRatio,
+    ModalModel,
+    Modes,
+    Readout,
+    StripSection,
+    SuspiciousValue,
+    Tip,
+    assemble,
+    cantilever,
+    folded_u,
+    natural_modes,
+    reduce,
+    single_mode,
+    straight_strip,
+)
+
+STRIP = StripSection(material=BRASS, width=12e-3, thickness=0.65e-3)
+THREE = {
+    "omega": [1.0, 2.0, 3.0],
+    "decay_rate": [0.1, 0.2, 0.0],
+    "phi": [1, 2, 3],
+    "participation": [3, 2, 1],
+}
+
+
+def u_modes(count: int = 12) -> Modes:
+    readouts = {
+        "ball": Readout(at=0.13 + 0.5 * np.pi * 7.5e-3),
+        "laser": Readout(at=0.1, quantity="rotation"),
+    }
+    spring = folded_u(
+        leg_length=0.13, bend_radius=7.5e-3, section=STRIP, tip=Tip(mass=4e-3), readouts=readouts
+    )
+    return natural_modes(assemble(spring), count)
+
+
+def test_single_mode_is_equation_1() -> None:
+    """Integrated numerically, the free motion returns after T, smaller by exp(-mu T / 2)."""
+    model = single_mode(free_period=40.80e-3, decay_rate=3.56)
+    assert model.n_modes == 1 and model.phi[0] == model.participation[0] == 1.0
+    c, k = model.decay_rate[0], model.omega[0] ** 2
+    path = solve_ivp(
+        lambda t, y: [y[1], -c * y[1] - k * y[0]], (0.0, 40.80e-3), [1e-3, 0.2], rtol=1e-11, atol=1e-14
+    )
+    np.testing.assert_allclose(
+        path.y[:, -1], np.exp(-0.5 * 3.56 * 40.80e-3) * np.array([1e-3, 0.2]), rtol=1e-7
+    )
+
+
+def test_arrays_are_copied_and_read_only() -> None:
+    source = np.array([1.0, 2.0, 3.0])
+    model = ModalModel(**(THREE | {"omega": source}), readouts={"laser": source})
+    source[0] = 9.0
+    assert model.omega[0] == model.readouts["laser"][0] == 1.0 and model.phi.dtype == np.float64
+    for row in (model.omega, model.decay_rate, model.phi, model.participation, model.readouts["laser"]):
+        with pytest.raises(ValueError, match="read-only"):
+            row[0] = 5.0
+    with pytest.raises(FrozenInstanceError):
+        model.omega = source  # type: ignore[misc]
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(model)).phi, model.phi)
+    np.testing.assert_allclose(model.frequencies_hz * 2 * np.pi, model.omega)
+
+
+def test_truncated() -> None:
+    model = ModalModel(**THREE, readouts={"laser": [4, 5, 6]}, static_compliance=1.0, tip_mass=2.0)
+    short = model.truncated(2)
+    assert short.n_modes == 2 and short.static_compliance == 1.0 and short.tip_mass == 2.0
+    np.testing.assert_array_equal(short.readouts["laser"], [4, 5])
+    np.testing.assert_array_equal(short.phi, [1, 2])
+    for count in (0, 4):
+        with pytest.raises(ValueError, match=f"count is {count} modes"):
+            model.truncated(count)
+
+
+def test_readouts_have_one_value_a_mode() -> None:
+    with pytest.raises(ValueError, match="laser"):
+        ModalModel(**(THREE | {"readouts": {"laser": [1.0]}}))
+
+
+def test_a_lowest_mode_that_hardly_swings_is_told() -> None:
+    with pytest.warns(SuspiciousValue, match="decay_rate"):
+        ModalModel(**(THREE | {"decay_rate": [1.1, 0.0, 0.0]}))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ModalModel(**(THREE | {"omega": [0.0, 2.0, 3.0], "decay_rate": [1.0, 1.9, 7.0]}))
+
+
+def test_uncoupled_modes_drop_out() -> None:
+    modes = u_modes()
+    model = reduce(modes, ConstantRatio(ratio=0.01))
+    assert model.n_modes == 6
+    np.testing.assert_array_equal(model.omega, modes.omega[modes.coupled])
+    np.testing.assert_allclose(model.decay_rate, 0.02 * model.omega)
+    np.testing.assert_allclose(model.readouts["ball"], model.phi, rtol=1e-9)
+    assert set(model.readouts) == {"ball", "laser"} and model.tip_mass == 4e-3
+    assert reduce(modes, ConstantRatio(ratio=0.01), 4).n_modes == 4
+    everything = reduce(modes, ConstantRatio(ratio=0.01), coupled_only=False)
+    assert everything.n_modes == 12 and np.count_nonzero(everything.phi) == 6
+    with pytest.raises(ValueError, match="count"):
+        reduce(modes, ConstantRatio(ratio=0.01), 7)
+
+
+def test_uncoupled_modes_take_no_part_in_the_motion_of_the_tip() -> None:
+    """The response of the full matrices to a base motion and a tip force is that of the coupled modes."""
+    modes = u_modes(60)
+    full = modes.discretization
+    model = reduce(modes, ConstantRatio(ratio=0.0))
+    for frequency in (20.0, 80.0, 300.0):
+        square = (2.0 * np.pi * frequency) ** 2
+        dynamic = (full.stiffness - square * full.mass).toarray()
+        forced, driven = full.tip @ np.linalg.solve(dynamic, np.stack([full.tip, full.base_load], axis=1))
+        gain = model.phi / (model.omega**2 - square)
+        residual = model.static_compliance - np.sum(model.phi**2 / model.omega**2)
+        assert gain @ model.phi + residual == pytest.approx(
+            forced, rel=1e-5, abs=1e-6 * model.static_compliance
+        )
+        assert gain @ model.participation == pytest.approx(driven, rel=1e-5)
+
+
+def test_residual_compliance_falls_as_the_cube_of_the_number_of_modes() -> None:
+    """Its terms fall as omega^-2, i.e. as the fourth power of the mode number."""
+    spring = cantilever(length=0.13, section=STRIP)
+    model = reduce(natural_modes(assemble(spring, 60), 16), ConstantRatio(ratio=0.01))
+    residual = model.static_compliance - np.cumsum(model.phi**2 / model.omega**2)
+    assert np.all(residual > 0.0)
+    assert np.log2(residual[7] / residual[15]) == pytest.approx(3.0, abs=0.15)
+
+
+def test_floating_strip_has_no_static_compliance() -> None:
+    spring = straight_strip(length=0.1, section=STRIP, supports=("pinned", "free"), tip_at=0.1)
+    model = reduce(natural_modes(assemble(spring, 10), 3), ConstantRatio(ratio=0.01))
+    assert model.static_compliance is None and model.omega[0] == model.decay_rate[0] == 0.0
+    assert replace(model, static_compliance=1.0).static_compliance == 1.0
+
+
+def test_the_package_keeps_its_word() -> None:
+    assert doctest.testmod(beam).failed == 0
+    assert set(beam.__all__) <= set(dir(beam))
+    with pytest.raises(AttributeError, match="drum"):
+        _ = beam.drum

@@ -1,0 +1,165 @@
+"""Long runs: phase and energy of the exact methods, accumulation to rest, and the drift of fixed steps.
+
+A flight is the exact flow of a drive period: what remains is its rounding, the same in every period, of about
+eps each. An orbit that repeats every m periods repeats to rounding. A method with a step multiplies a free
+mode by the principal root z of its polynomial in every step: phase error per radian arg(z)/x - 1, x = h
+omega, is x^2/24 for central difference, -x^2/12 for the trapezoidal rule and Moreau and Jean's with theta =
+1/2, 0 for splitting. Central difference lets the energy of elastic contacts walk: ln E changes in each by
+f(s) - f(s'), f = ln(1 - X s(1 - s)), X = (h omega_c)^2, with the phases s, s' of the grid at touch and
+release, s' = r - s up to whole numbers, r the part of a contact beyond a whole number of steps. For evenly
+spread s and small X the standard deviation after n contacts is X sqrt(n (r^4 - 2 r^3 + r^2)/3).
+"""
+
+from __future__ import annotations
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+
+from beam import ModalModel, single_mode
+from contact import (
+    Chatter,
+    ContactLaw,
+    HarmonicDrive,
+    HertzContact,
+    ImpactKind,
+    ImpactOscillator,
+    LinearContact,
+    MaximalFamily,
+    NewtonRestitution,
+    Regime,
+    State,
+    Stop,
+    StroboscopicMap,
+    simulate,
+)
+from contact.integrators import CentralDifference, GeneralisedAlpha, MoreauJean, Splitting
+
+EPS, OMEGA, GRAVITY = 2.0**-52, 2.0 * math.pi * 24.5, 9.81
+
+
+def one_mode(law: ContactLaw, gap: float, *, omega: float = OMEGA, load: float = 0.0) -> ImpactOscillator:
+    """An undamped mode of unit mass."""
+    one = np.ones(1)
+    model = ModalModel(omega=omega * one, decay_rate=0.0 * one, phi=one, participation=one)
+    return ImpactOscillator(model=model, stop=Stop(gap=gap, law=law), load=load * one)
+
+
+def letters_mode(restitution: float, frequency: float) -> ImpactOscillator:
+    """Eq. (1) of the letter."""
+    return ImpactOscillator(
+        model=single_mode(free_period=40.80e-3, decay_rate=3.56), drive=HarmonicDrive(frequency=frequency),
+        stop=Stop(gap=0.0107, law=NewtonRestitution(local_restitution=restitution)),
+    )  # fmt: skip
+
+
+def test_free_flight_keeps_phase_and_energy_for_1e5_periods():
+    oscillator = one_mode(NewtonRestitution(local_restitution=0.5), 0.1)
+    start = State(displacement=np.full(1, 0.01), velocity=np.zeros(1))
+    run = simulate(oscillator, start, periods=100_000)
+    for n in (1, 100, 10_000, 100_000):
+        with mpmath.workdps(30):
+            angle = mpmath.mpf(OMEGA) * n * mpmath.mpf(oscillator.period)
+            turn = complex(mpmath.cos(angle), mpmath.sin(angle))
+        found = complex(run.strobe_displacement[n - 1, 0], -run.strobe_velocity[n - 1, 0] / OMEGA) / 0.01
+        change = np.log(found / turn)
+        assert abs(change.imag) < 10 * EPS * (n + 1) and abs(change.real) < 5 * EPS * (n + 1)
+
+
+def test_a_periodic_orbit_repeats_to_rounding_and_is_the_closed_form():
+    """p5 of Eq. (1) at 22.2 Hz, followed for 20 000 drive periods."""
+    oscillator = letters_mode(0.1, 22.2)
+    orbits = MaximalFamily.from_oscillator(oscillator, period=5).orbits(1e-3)
+    (orbit,) = [o for o in orbits if o.stable and o.admissible]
+    strobed = StroboscopicMap(oscillator=oscillator.with_amplitude(orbit.amplitude))
+    settled = strobed.orbit(strobed.steady(), 10_000).end
+    start = State(displacement=settled.displacement, velocity=settled.velocity)
+    points = strobed.orbit(start, 20_000).points
+    apart = np.abs(points.reshape(-1, 5, 2) - points[-5:]).max() / strobed.scale
+    assert apart < 10 * EPS
+    times = (math.ceil(orbit.flight.start * 22.2) + np.arange(5)) / 22.2
+    q, v = orbit.state(times)
+    closed = np.column_stack([q[0], v[0] / oscillator.model.omega[0]])
+    off = min(float(np.abs(points[-5:] - np.roll(closed, k, axis=0)).max()) for k in range(5))
+    assert off < 1e-13 * strobed.scale
+
+
+@pytest.mark.parametrize(
+    ("law", "contacts"), [(LinearContact(stiffness=1e6), 4000), (HertzContact(stiffness=1e8), 800)]
+)
+def test_elastic_contacts_keep_the_energy(law, contacts):
+    oscillator, speed = one_mode(law, 0.01), 0.03 * OMEGA
+    run = simulate(oscillator, State(displacement=np.zeros(1), velocity=np.full(1, speed)), periods=contacts)
+    free = np.flatnonzero(run.strobe_displacement[:, 0] < 0.01)[-1]
+    now = float(oscillator.energy(run.strobe_displacement[free], run.strobe_velocity[free]))
+    assert len(run.impacts) > contacts
+    assert abs(now / (0.5 * speed**2) - 1.0) < 10 * EPS * contacts
+
+
+def test_too_elastic_a_law_is_refused_as_chatter_and_a_lesser_one_comes_to_rest():
+    """Hops of a ball that rests after half a period: 1e5, as many as one may hold, at 1 - e = 4.69e-5."""
+    for left, refused in ((4.9e-5, False), (4.5e-5, True)):
+        ball = one_mode(NewtonRestitution(local_restitution=1.0 - left), 1e-3, omega=0.0, load=GRAVITY)
+        start = State(displacement=np.array([1e-3]), velocity=np.array([-0.25 * GRAVITY * left]))
+        if refused:
+            with pytest.raises(Chatter):
+                simulate(ball, start, duration=0.9)
+        else:
+            run = simulate(ball, start, duration=0.9)
+            assert run.end.regime == Regime.SUSTAINED and 0.9e5 < len(run.impacts) < 1e5
+
+
+def test_a_driven_mode_is_let_go_when_the_force_that_holds_it_vanishes():
+    """Driven slowly and three times as far as the stop: released at sin(w t) = 1/3 on the falling side."""
+    slow = 0.2 * float(letters_mode(0.7, 1.0).model.omega[0]) / (2.0 * math.pi)
+    oscillator = letters_mode(0.7, slow)
+    push = float(oscillator.model.participation[0]) * (2.0 * math.pi * slow) ** 2
+    reach = 3.0 * float(oscillator.model.omega[0]) ** 2 * oscillator.stop.gap / float(oscillator.model.phi[0])
+    run = simulate(oscillator.with_amplitude(reach / push), periods=20)
+    held = (run.impacts.kind == ImpactKind.STAY) & np.isfinite(run.impacts.end)
+    phase = np.mod(run.impacts.end[held] * slow, 1.0)
+    assert held.sum() >= 19
+    assert phase == pytest.approx(0.5 - math.asin(1.0 / 3.0) / (2.0 * math.pi), abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("method", "error"),
+    [
+        (CentralDifference, 1 / 24), (GeneralisedAlpha.newmark, -1 / 12), (MoreauJean, -1 / 12),
+        (Splitting, 0.0),
+    ],
+)
+def test_the_phase_of_a_free_mode_drifts_as_theory_says(method, error):
+    """From the angle after 20 periods, h omega = 0.1; the amplitude stays."""
+    x, steps = 0.1, 1257
+    chosen = method(step=x / OMEGA)
+    law = NewtonRestitution(local_restitution=0.5) if method is MoreauJean else LinearContact(stiffness=1e-9)
+    times = chosen.step * np.arange(1, steps + 1)
+    run = simulate(
+        one_mode(law, 0.5), State(displacement=np.full(1, 0.01), velocity=np.zeros(1)),
+        duration=float(times[-1]), times=times, method=chosen,
+    )  # fmt: skip
+    scale = math.sqrt(1.0 - 0.25 * x * x) if method is CentralDifference else 1.0  # its velocities are means
+    turn = np.unwrap(np.angle(run.displacement[:, 0] * scale - 1j * run.velocity[:, 0] / OMEGA))
+    rate = abs(turn[-1] - turn[0]) / (x * (steps - 1)) - 1.0
+    assert rate == pytest.approx(error * x * x, abs=2e-3 * x * x if error else 1e-13)
+
+
+def test_a_stable_step_lets_the_energy_of_contacts_walk_at_random():
+    """Central difference, a body that bounces on a spring; 64 starts are good to 1/sqrt(128)."""
+    contact, contacts, starts = 4000.0, 20, 64
+    step = math.pi / (contact * 7.37)  # a whole number of steps a contact would hide the error
+    body = one_mode(LinearContact(stiffness=contact**2), 0.0, omega=0.0, load=GRAVITY)
+    changes = []
+    for v in 1.0 + 0.05 * (np.arange(starts) + 0.5) / starts:
+        start = State(displacement=np.array([-1e-3]), velocity=np.array([v]))
+        duration = 1.6 * contacts * (2.0 * v / GRAVITY + math.pi / contact)
+        impacts = simulate(body, start, duration=duration, method=CentralDifference(step=step)).impacts
+        flights = impacts.start[1:] - impacts.end[:-1]  # a flight lasts 2 v/g
+        changes.append(2.0 * math.log(flights[contacts] / flights[0]))
+    x = contact * step
+    r = math.fmod((math.pi + 2.0 * math.atan(GRAVITY / contact)) / (2.0 * math.asin(0.5 * x)), 1.0)
+    walk = x * x * math.sqrt(contacts * (r**4 - 2.0 * r**3 + r**2) / 3.0)
+    assert np.std(changes) == pytest.approx(walk, rel=3 / math.sqrt(2 * starts))

@@ -1,0 +1,57 @@
+"""Studies as a person runs them, in this process."""
+
+from __future__ import annotations
+
+import importlib
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from studies.run import Study
+from studies.scene import Scene, read_scene
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ran:
+    """What a run left: exit code, summary and manifest (empty if there are none), folder, both streams."""
+
+    code: int
+    summary: dict
+    manifest: dict
+    folder: Path
+    out: str
+    err: str
+
+
+def study_of(name: str) -> Study:
+    """The study with this name."""
+    module = importlib.import_module(f"studies.{name}")
+    if hasattr(module, "__path__"):
+        module = importlib.import_module(f"studies.{name}.__main__")
+    found = getattr(module, name)
+    assert isinstance(found, Study)
+    return found
+
+
+@pytest.fixture
+def run_study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Callable[..., Ran]:
+    """`run_study(name, *argv)`: the study in its own folder, on the letter's scene by default."""
+
+    def run(name: str, *argv: str) -> Ran:
+        code = study_of(name).main([*argv, "--out", str(tmp_path)])
+        out, err = capsys.readouterr()
+        folder, found = tmp_path / name, []
+        for file in ("summary.json", "manifest.json"):
+            found.append(json.loads((folder / file).read_text()) if (folder / file).exists() else {})
+        return Ran(code=code, summary=found[0], manifest=found[1], folder=folder, out=out, err=err)
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def letter_scene() -> Scene:
+    """The letter's scene."""
+    return read_scene("letter")

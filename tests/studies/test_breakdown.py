@@ -1,0 +1,187 @@
+"""The letter's Fig. 5: where the state born at grazing is not p3, and p3 is the end of the downward scan."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from beam import ModalModel
+from contact import (
+    ImpactOscillator,
+    MaximalFamily,
+    State,
+    Stop,
+    StroboscopicMap,
+    maximal_period,
+    simulate,
+    stable_range,
+)
+from contact.orbits import born
+from studies import letter
+from studies.breakdown.beam import (
+    FREQUENCY_HZ,
+    Beam,
+    Cell,
+    at_errors,
+    cell_of,
+    fig_5,
+    fold_of_p3,
+    nearest_first,
+    tuned,
+)
+from studies.breakdown.scans import Scans, island, periods
+from studies.calibration import ACCURACY, decay_rate
+from studies.scene import approach_speed, free_period, model_of, nordmark_at, read_scene, single_mode_at
+
+BEFORE = read_scene("letter")
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return fig_5(BEFORE)
+
+
+@pytest.fixture(scope="module")
+def calibrated(scene):
+    return Beam(scene=scene, model=model_of(scene), tip_mass_kg=scene.tip.mass_kg)
+
+
+@pytest.fixture(scope="module")
+def light(scene):
+    """Ball and damping of the higher modes with which the state born at grazing has period 6."""
+    return Beam(scene=scene, model=tuned(scene, 0.004), tip_mass_kg=0.004, higher_damping=2.0,
+                local_restitution=1.0)  # fmt: skip
+
+
+def test_the_beam_of_fig_5_has_its_period_and_damping_and_keeps_ball_and_gap(scene):
+    assert free_period(scene) == pytest.approx(letter.BREAKDOWN["free_period_s"], rel=2 * ACCURACY)
+    assert decay_rate(scene) == pytest.approx(letter.BREAKDOWN["decay_rate_per_s"], rel=2 * ACCURACY)
+    assert (scene.tip, scene.stop) == (BEFORE.tip, BEFORE.stop)
+    assert scene.spring.thickness_m < BEFORE.spring.thickness_m  # a slower spring is a thinner one
+
+
+def test_the_map_puts_fig_5_in_the_region_of_a_stable_p3(scene):
+    nordmark = nordmark_at(scene, FREQUENCY_HZ)
+    low, high = stable_range(nordmark, 3)
+    assert maximal_period(nordmark) == 3 and low < 0 < high
+    # and the letter's rho of the chaos is not its excess
+    chaos = letter.BREAKDOWN["chaos_at"]
+    assert nordmark.excess(chaos) / chaos == pytest.approx(0.787, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("restitution", "fold", "second_impact", "end"),
+    [(0.1, -0.13207, -0.13097, -0.084), (0.05, -0.11574, -0.11282, -0.061)],
+)
+def test_the_island_of_eq_1_starts_at_the_fold_and_outlives_the_single_impact_p3(
+    scene, restitution, fold, second_impact, end
+):
+    found, diagram = island(scene, restitution, step=1e-3)
+    assert found.fold_p3 == pytest.approx(fold, abs=2e-5)
+    on_p3 = (diagram.period == 3) & (diagram.impacts == 1)
+    assert on_p3[0] and diagram.excess[on_p3].max() < second_impact + 2e-5
+    # chaos is a transient beyond the end, which a scan of finite length overruns by a few steps at most
+    assert found.end == pytest.approx(end, abs=4e-3)
+    assert np.mean(diagram.period == 0) > 0.5
+    # the letter's chaos at -0.0707 is there for the smaller tau only
+    assert found.alive_at_letters_chaos == (restitution == 0.05)
+    # not connected to grazing: the motion without impacts is stable all along
+    assert found.end < -0.05
+
+
+def test_the_fold_of_p3_of_eq_1_from_shooting_is_that_of_the_closed_form_for_either_tau(scene):
+    """Closed form and shooting agree at both; by 1 + tau alone the folds would differ less."""
+    folds = []
+    for tau in (0.05, 0.1):
+        oscillator = single_mode_at(scene.replace({"single_mode.restitution": tau}), FREQUENCY_HZ)
+        folds.append(MaximalFamily.from_oscillator(oscillator, period=3).fold().excess)
+        assert fold_of_p3(StroboscopicMap(oscillator=oscillator)) == pytest.approx(folds[-1], rel=1e-8)
+    assert folds[1] / folds[0] == pytest.approx(1.141, abs=2e-3)
+
+
+def test_the_beam_as_calibrated_and_eq_1_are_born_without_a_period(scene, calibrated):
+    for strobed in (StroboscopicMap(oscillator=single_mode_at(scene, FREQUENCY_HZ)), calibrated.strobed()):
+        settled = born(strobed, 1e-3, most_cycles=1500)
+        assert settled.period == 0 and settled.impacts > 20
+
+
+def test_a_ball_of_4_g_gives_the_letters_p6_and_p3_at_the_end_of_the_downward_scan(light):
+    cell = cell_of(light)
+    assert (cell.period, cell.impacts) == (6, 3) and -0.09 < cell.fold_p3 < -0.05
+    outcome, ways = Scans(points=45, cycles=700, early=True).of_beam(("light", light))
+    assert (outcome.born_period, outcome.fold_p3) == (6, cell.fold_p3) and outcome.ends_on_p3
+    up, down = ways["up"], ways["down"]
+    below = up.excess < -1e-9
+    assert np.all(periods(up)[below] == 1) and np.all(up.impacts[below] == 0)
+    # p3 with one impact is met once, and after it there is only the motion without impacts
+    last = int(np.flatnonzero((periods(down) == 3) & (down.impacts == 1))[-1])
+    step = down.excess[last] - down.excess[last + 1]
+    assert 0.0 <= outcome.p3_last - outcome.fold_p3 + 1e-9 <= 2 * step
+    assert np.all(down.impacts[last + 1 :] == 0) and np.all(down.impacts[: last + 1] > 0)
+    assert outcome.p3_first < 0.6 * outcome.fold_p3  # far from grazing, at the end of the scan
+
+
+def test_the_search_keeps_the_period_of_the_beam_and_scales_the_higher_modes_only(light):
+    omega, rate = light.model.omega[0], light.model.decay_rate[0]
+    period = 2 * math.pi / math.sqrt(omega**2 - 0.25 * rate**2)
+    assert period == pytest.approx(letter.BREAKDOWN["free_period_s"], rel=1e-9)
+    more = replace(light, higher_damping=3.0).strobed().oscillator.model
+    assert more.decay_rate[0] == rate
+    assert more.decay_rate[1:] == pytest.approx(3.0 * light.model.decay_rate[1:], rel=1e-15)
+
+
+def test_a_lossy_ball_leaves_with_the_restitution_asked_for(scene, light):
+    law = replace(light, local_restitution=0.7).strobed().oscillator.stop.law
+    speed = approach_speed(FREQUENCY_HZ, scene.stop.gap_m, letter.TIME_TRACE_EXCESS)
+    mass = 0.006
+    free = ModalModel(
+        omega=[0.0], decay_rate=[0.0], phi=[1 / math.sqrt(mass)], participation=[math.sqrt(mass)]
+    )
+    ball = ImpactOscillator(model=free, stop=Stop(gap=1e-4, law=law), drive=None)
+    start = State(displacement=np.zeros(1), velocity=np.array([speed * math.sqrt(mass)]))
+    run = simulate(ball, start, duration=0.01)
+    assert run.end.velocity[0] / start.velocity[0] == pytest.approx(-0.7, abs=1e-6)
+
+
+def test_cells_are_tried_by_what_they_ask_for():
+    cells = [
+        Cell(tip_mass_kg=m, higher_damping=k, local_restitution=e, period=p, impacts=1)
+        for m, k, e, p in (
+            (0.005, 1.0, 0.7, 6),
+            (0.004, 4.0, 1.0, 6),
+            (0.0045, 0.5, 1.0, 6),
+            (0.006, 1.0, 1.0, 12),
+        )
+    ]
+    assert nearest_first(cells, 0.00616) == [2, 1, 0]
+    assert nearest_first(cells[-1:], 0.00616) == []
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_errors_of_the_letter_do_not_give_period_6_to_the_calibrated_beam(scene, side):
+    t, c = letter.BREAKDOWN["free_period_error_s"], letter.BREAKDOWN["decay_rate_error_per_s"]
+    assert at_errors(scene, (side * t, 0.0)).period != 6
+    assert at_errors(scene, (0.0, side * c)).period != 6
+
+
+def test_small_form(run_study):
+    ran = run_study("breakdown", "--quick")
+    assert ran.code == 0
+    six = ran.summary["cells_with_period_6"]
+    assert (0.004, 2.0) in [(cell["tip_mass_kg"], cell["higher_damping"]) for cell in six]
+    assert ran.summary["found"]["tip_mass_kg"] == 0.004
+    assert {key: entry["verdict"] for key, entry in ran.summary["verdicts"].items()} == dict.fromkeys(
+        ("breakdown", "breakdown_p3", "island"), "in part"
+    )
+    stored = np.load(ran.folder / "breakdown.npz")
+    assert stored["beam_up_points"].shape == (stored["beam_up_excess"].size, letter.STROBE_POINTS)
+
+
+@pytest.mark.parametrize(
+    "change", ["drive.kind=none", "spring.kind=modal_data", "single_mode.free_period_s=0.06"]
+)
+def test_wrong_input_is_refused(run_study, change):
+    assert run_study("breakdown", "--set", change).code == 2

@@ -1,0 +1,206 @@
+"""Springs from scenes, and the keys that are fitted to measured numbers."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from beam import StripDamping, assemble, natural_modes
+from studies.calibration import (
+    ACCURACY,
+    SHAPE_ACCURACY,
+    TAPE_KEYS,
+    calibrate,
+    calibrate_damping,
+    calibrate_thickness,
+    solve_for,
+    strip_decay_rate,
+)
+from studies.scene import (
+    READOUT,
+    Scene,
+    SceneError,
+    damping_of,
+    elements_of,
+    free_period,
+    model_of,
+    modes_of,
+    read_scene,
+    single_mode_of,
+    spring_of,
+)
+
+LETTER = read_scene("letter")
+PERIOD, RATE = 40.80e-3, 3.56
+COARSE = {"spring.elements_per_leg": 12, "spring.elements_on_arc": 12, "modes.count": 4}
+
+
+def test_the_letters_scene_is_calibrated_to_the_digits_it_is_written_with():
+    """Thickness and loss factor have eight digits; the period goes with a power of the thickness near -1."""
+    assert free_period(LETTER) == pytest.approx(PERIOD, rel=1e-7)
+    assert strip_decay_rate(LETTER) == pytest.approx(RATE, rel=1e-7)
+    fitted = calibrate(LETTER, free_period_s=PERIOD, decay_rate_per_s=RATE)
+    for key in ("spring.thickness_m", "spring.tape_loss_factor"):
+        assert LETTER[key] == pytest.approx(fitted[key], rel=1e-7)
+        assert LETTER.provenance()[key] == fitted.provenance()[key] == "calibrated"
+
+
+def test_the_model_has_the_period_and_the_decay_that_were_measured():
+    scene = calibrate(LETTER.replace(COARSE), free_period_s=41.2e-3, decay_rate_per_s=4.0)
+    model = model_of(scene)
+    damped = math.sqrt(model.omega[0] ** 2 - (0.5 * model.decay_rate[0]) ** 2)
+    assert abs(2.0 * math.pi / damped / 41.2e-3 - 1.0) <= ACCURACY
+    assert abs(model.decay_rate[0] / 4.0 - 1.0) <= ACCURACY
+    assert abs(strip_decay_rate(scene) / 4.0 - 1.0) <= ACCURACY
+    undamped = abs(2.0 * math.pi / model.omega[0] / 41.2e-3 - 1.0)
+    assert undamped > 100.0 * ACCURACY  # the damped and the undamped period are told apart
+
+
+def test_without_scaling_the_modes_decay_as_the_strain_energies_say():
+    """Two routes: energies of the strains, and the loss-weighted stiffness matrix of the beam package."""
+    modes = modes_of(LETTER)
+    scaled, bare = damping_of(LETTER).decay_rates(modes), StripDamping().decay_rates(modes)
+    np.testing.assert_allclose(scaled, bare, rtol=1e-6)
+    assert strip_decay_rate(LETTER) == pytest.approx(bare[0], rel=1e-6)
+
+
+@pytest.mark.parametrize("key", TAPE_KEYS)
+def test_each_key_of_the_tape_can_carry_the_damping(key):
+    scene = LETTER.replace({**COARSE, "spring.tape_loss_factor": 0.6})
+    fitted = calibrate_damping(scene, 3.0, key)
+    assert abs(strip_decay_rate(fitted) / 3.0 - 1.0) <= SHAPE_ACCURACY
+    changed = {k for k in fitted.provenance() if fitted[k] != scene[k]}
+    assert changed == {key, "damping.decay_rate_per_s"}
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"damping.kind": "constant_ratio"},
+        {"damping.kind": "constant_loss_factor"},
+        {"damping.kind": "rayleigh", "damping.rayleigh_beta_s": 1e-5},
+        {"damping.kind": "measured", "damping.measured_rates_per_s": [3.0, 20.0, 50.0, 100.0]},
+    ],
+)
+def test_other_kinds_of_damping_are_scaled_as_a_whole(changes):
+    scene = LETTER.replace({**COARSE, **changes})
+    fitted = calibrate_damping(scene, 2.0 * RATE)
+    before, after = model_of(scene).decay_rate, model_of(fitted).decay_rate
+    assert abs(after[0] / (2.0 * RATE) - 1.0) <= ACCURACY
+    np.testing.assert_allclose(after / before, after[0] / before[0], rtol=1e-12)
+
+
+def test_thickness_of_a_straight_spring_agrees_with_the_scaling_law():
+    """Without tape and tip mass every frequency is proportional to the thickness."""
+    bare = {"spring.kind": "cantilever", "spring.tape_thickness_m": 0.0, "tip.mass_kg": 0.0,
+            "damping.kind": "constant_ratio", "damping.ratio": 0.0, "modes.count": 3}
+    scene = LETTER.replace(bare)
+    fitted = calibrate_thickness(scene, 0.02)
+    expected = scene.spring.thickness_m * free_period(scene) / 0.02
+    assert fitted.spring.thickness_m == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("fit", "words"),
+    [
+        (lambda scene: calibrate_thickness(scene, 1e-5), ["spring.thickness_m", "free period", "1e-05 s"]),
+        (lambda scene: calibrate_thickness(scene, 10.0), ["free period of 10 s", "unit m"]),
+        (lambda scene: calibrate_thickness(scene, math.nan), ["free period", "finite"]),
+        (lambda scene: calibrate_damping(scene, 1e3), ["spring.tape_loss_factor", "1000 1/s"]),
+        (lambda scene: calibrate_damping(scene, 0.01), ["spring.tape_loss_factor", "0.01 1/s"]),
+        (lambda scene: calibrate_damping(scene, -1.0), ["decay rate of mode 1", "not -1.0"]),
+        (lambda scene: calibrate_damping(scene, 3.0, "tip.mass_kg"), ["tip.mass_kg", TAPE_KEYS[0]]),
+        (lambda scene: calibrate_damping(
+            scene.replace({"damping.kind": "constant_ratio", "damping.ratio": 0.0}), 3.0), ["damping.ratio"]),
+    ],
+)
+def test_what_cannot_be_fitted_is_refused_in_one_sentence(fit, words):
+    with pytest.raises(SceneError) as caught:
+        fit(LETTER.replace(COARSE))
+    assert "\n" not in str(caught.value)
+    for word in words:
+        assert word in str(caught.value)
+
+
+def test_a_jump_is_no_solution():
+    with pytest.raises(SceneError, match="jumps across"):
+        solve_for("stop.gap_m", LETTER, lambda scene: 1.0 if scene.stop.gap_m < 0.01 else 3.0, 2.0,
+                  name="step", unit="m", between=(1e-3, 0.1))
+
+
+def test_any_quantity_can_be_fitted_by_any_key():
+    scene = solve_for("stop.gap_m", LETTER, lambda scene: scene.stop.gap_m**2, 1e-4,
+                      name="square", unit="m^2", between=(1e-3, 0.1))
+    assert scene.stop.gap_m == pytest.approx(0.01, rel=1e-10)
+    assert scene.provenance()["stop.gap_m"] == "calibrated"
+
+
+def test_frequencies_repeat_to_rounding_where_the_solver_leaves_more():
+    """A change of the thickness by 1e-13 moves the first frequency by some 1e-13, and not by 1e-8."""
+    scenes = [LETTER.replace({"spring.thickness_m": 0.00068 * (1.0 + i * 1e-13)}) for i in range(6)]
+    sharp = np.array([modes_of(scene, 1).omega[0] for scene in scenes])
+    assert np.ptp(sharp) < 1e-11 * sharp[0]
+    spring = spring_of(scenes[0])
+    raw = natural_modes(assemble(spring, elements_of(scenes[0], spring)), 1).omega[0]
+    assert raw == pytest.approx(sharp[0], rel=3e-7)
+
+
+def test_the_model_keeps_the_coupled_modes_only():
+    modes, model = modes_of(LETTER), model_of(LETTER)
+    assert model.n_modes == modes.coupled.sum() == LETTER.kept_modes < modes.omega.size
+    assert modes.coupled[-1] and np.all(model.phi > 0.0)
+    np.testing.assert_array_equal(model.omega, modes.omega[modes.coupled])
+    assert model.tip_mass == LETTER.tip.mass_kg and model.static_compliance > 0.0
+    assert modes_of(LETTER, 3).coupled.sum() == 3
+
+
+def test_default_elements_are_those_of_the_beam_package():
+    spring = spring_of(LETTER)
+    assert elements_of(LETTER, spring) == (60, 48, 60)
+    partly = LETTER.replace({"spring.tape_coverage": 0.5, "spring.elements_per_leg": 30})
+    assert elements_of(partly, spring_of(partly)) == (15, 15, 48, 15, 15)
+
+
+def test_every_kind_of_spring_makes_a_model_with_a_readout():
+    for kind in ("folded_u", "cantilever", "straight_strip"):
+        model = model_of(LETTER.replace({**COARSE, "spring.kind": kind}))
+        assert model.n_modes == 4 and model.readouts[READOUT].shape == (4,)
+    data = {"frequencies_hz": [150.0, 24.5], "decay_rates_per_s": [20.0, 3.5], "tip_values": [5.0, 8.0],
+            "participation": [-0.05, 0.14]}
+    lists = {f"modal_data.{name}": values for name, values in data.items()}
+    measured = LETTER.replace({"spring.kind": "modal_data", **lists})
+    model = model_of(measured)
+    np.testing.assert_allclose(model.frequencies_hz, [24.5, 150.0])
+    np.testing.assert_array_equal(model.readouts[READOUT], [8.0, 5.0])
+    with pytest.raises(SceneError, match="without their shapes"):
+        spring_of(measured)
+    single = single_mode_of(LETTER)
+    assert single.readouts[READOUT].tolist() == [1.0] == single.phi.tolist()
+
+
+def test_the_readout_sees_the_ball_where_the_ball_is_and_rotation_where_it_is_asked_for():
+    at_ball = model_of(LETTER.replace({**COARSE, "readout.arc_fraction": 0.5}))
+    np.testing.assert_allclose(at_ball.readouts[READOUT], at_ball.phi, rtol=1e-9)
+    tilted = LETTER.replace({**COARSE, "spring.kind": "cantilever", "readout.arc_fraction": 1.0,
+                             "readout.quantity": "rotation", "tip.mass_kg": 0.0})
+    model = model_of(tilted)
+    assert model.readouts[READOUT][0] / model.phi[0] == pytest.approx(1.37650543 / 0.13, rel=1e-6)
+
+
+def test_a_mode_number_beyond_the_mesh_and_a_held_tip_are_refused():
+    few = {"spring.elements_per_leg": 1, "spring.elements_on_arc": 1, "modes.count": 30}
+    with pytest.raises(SceneError, match=r"modes\.count must be at most"):
+        modes_of(LETTER.replace(few))
+    with pytest.raises(SceneError, match=r"tip\.arc_fraction"):
+        spring_of(LETTER.replace({"spring.kind": "straight_strip", "spring.end_support": "pinned"}))
+    with pytest.raises(SceneError, match=r"drive\.frequencies_hz"):
+        model_of(LETTER.replace({"drive.frequencies_hz": [1e5]}))
+
+
+def test_scenes_without_tape_have_one_section():
+    scene = LETTER.replace({"spring.tape_thickness_m": 0.0, "damping.kind": "constant_ratio"})
+    assert len(set(spring_of(scene).sections)) == 1
+    both = spring_of(LETTER.replace({"spring.tape_sides": 2})).sections[0]
+    assert both.total_thickness == pytest.approx(Scene().spring.thickness_m + 2 * 0.00045)

@@ -1,0 +1,144 @@
+"""The letter's other claims: closed forms against simulation and shooting, windows against exponents."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from contact import StroboscopicMap, maximal_orbits
+from contact.orbits import Shooting, settle
+from studies.claims.bands import band_of, inside_band, path_of
+from studies.claims.below_grazing import first_at
+from studies.claims.equation_one import (
+    RESTITUTIONS,
+    falls,
+    family_at,
+    flip_speed,
+    second_impact_speed,
+    secondary_of,
+)
+from studies.claims.loss import fold_at, trends
+from studies.claims.overdamped_map import exponents, outside_windows, overdamped_map, window
+from studies.claims.universality import Spring, born_at
+from studies.scene import single_mode_at
+
+
+def strobed_at(scene, frequency, restitution):
+    changed = scene.replace({"single_mode.restitution": restitution})
+    return StroboscopicMap(oscillator=single_mode_at(changed, frequency))
+
+
+def followed(strobed, values):
+    """The motion carried from excess to excess; period and impacts at the last."""
+    state = strobed.at(float(values[0])).steady()
+    for excess in values:
+        found = settle(strobed.at(float(excess)), state, most_cycles=6000)
+        state = found.end
+    return found.period, found.impacts
+
+
+@pytest.mark.parametrize(("frequency", "tau", "m"), [(20.90, 0.3, 3), (21.50, 0.0, 4), (22.20, 0.4, 5)])
+def test_the_node_keeps_one_impact_up_to_its_secondary_bifurcation(letter_scene, frequency, tau, m):
+    found = secondary_of(family_at(letter_scene, frequency, tau, m))
+    assert found.admissible and found.excess > 1e-3
+    strobed = strobed_at(letter_scene, frequency, tau)
+    below = np.linspace(5e-4, found.excess * 0.99, 25)
+    assert followed(strobed, below) == (m, 1)
+    assert followed(strobed, [*below, found.excess * 1.01]) != (m, 1)
+
+
+@pytest.mark.parametrize(("frequency", "tau", "m"), [(21.50, 0.3, 4), (20.90, 0.5, 3)])
+def test_the_second_impact_is_where_shooting_finds_it(letter_scene, frequency, tau, m):
+    """The certified flights of shooting agree on the speed."""
+    speed = second_impact_speed(family_at(letter_scene, frequency, tau, m)) * letter_scene.stop.gap_m
+    shooting = Shooting(oscillator=strobed_at(letter_scene, frequency, tau).oscillator, period=m)
+    inside, outside = (shooting.at_speed(part * speed) for part in (0.999, 1.001))
+    assert inside.admissible and not outside.admissible
+
+
+@pytest.mark.parametrize(("frequency", "tau", "m"), [(15.0, 0.3, 2), (15.0, 0.6, 5), (18.0, 0.3, 1)])
+def test_at_the_flip_a_multiplier_is_minus_one(letter_scene, frequency, tau, m):
+    """Away from the letter's frequencies: at those p3 to p11 end at a second impact."""
+    family = family_at(letter_scene, frequency, tau, m)
+    multipliers = family.orbit(flip_speed(family)).multipliers()
+    assert np.min(np.abs(multipliers + 1.0)) < 1e-9
+
+
+def test_a_secondary_bifurcation_below_grazing_lets_another_state_be_born(letter_scene):
+    """21.50 Hz: below grazing at tau = 0.3, above at 0.1; the born motion is p4 with one impact only then."""
+    low, high = (first_at(letter_scene, 21.50, tau).eq1 for tau in (0.1, 0.3))
+    assert low > 0.0 > high
+    born = [followed(strobed_at(letter_scene, 21.50, tau), [-1e-3, 1e-3]) for tau in (0.1, 0.3)]
+    assert born[0] == (4, 1) and born[1] != (4, 1)
+
+
+def test_hysteresis_falls_with_the_energy_lost_and_rho_of_the_map_does_not(letter_scene):
+    rows = [fold_at(letter_scene, f, tau) for f in letter_scene.drive.frequencies_hz for tau in RESTITUTIONS]
+    assert trends(rows) == {"map": True, "eq1": True, "rho": False}
+    assert all(row.eq1 < row.map < 0.0 for row in rows)  # the map is too small throughout
+    at = {(row.frequency_hz, row.restitution): (row.map, row.eq1) for row in rows}
+    assert at[20.90, 0.1] == pytest.approx((-6.272937252e-4, -1.2784409283e-3), rel=1e-8)
+    assert at[23.05, 0.1] == pytest.approx((-7.691764860e-5, -1.2823017008e-4), rel=1e-8)
+
+
+def test_secondary_bifurcations_of_the_map_come_above_grazing(letter_scene):
+    rows = [first_at(letter_scene, f, tau) for f in (20.90, 22.60, 23.40) for tau in RESTITUTIONS]
+    assert min(row.map for row in rows) > 0.0 > min(row.eq1 for row in rows)
+
+
+def test_the_hysteresis_starts_from_zero_at_the_upper_edge_of_each_band(letter_scene):
+    for m in range(3, 9):
+        edges, rows = band_of(letter_scene, m), inside_band(letter_scene, m, 13)
+        assert edges.upper == pytest.approx(2 * m / ((2 * m + 1) * 40.80e-3), rel=1e-12)
+        assert band_of(letter_scene, m + 1).lower < edges.upper  # neighbours overlap
+        assert max(rows[-1].map, rows[-1].eq1) < 1e-12
+        assert falls([row.map for row in rows]) and falls([row.eq1 for row in rows])
+    path = path_of(letter_scene, np.linspace(19.6, 23.8, 60).tolist())
+    assert {3, 4, 5, 6, 8, 11} <= {place.period for place in path}
+
+
+@pytest.mark.parametrize("position", [0.85, 0.905])
+def test_eq_1_has_the_period_of_the_map_near_the_upper_edge_of_a_band(letter_scene, position):
+    spring = Spring(name="Eq. (1)", scene=letter_scene)
+    (place,) = path_of(letter_scene, [spring.frequency(position)])
+    assert born_at((spring, position, 1e-4)) == place.period
+
+
+@pytest.mark.parametrize("alpha", [0.2, 0.45, 0.6])
+def test_windows_of_the_overdamped_map_have_their_limits(alpha):
+    m = 14
+    low, high = window(overdamped_map(alpha), m)
+    size = alpha ** (2 * m - 2)
+    # z = 1/2 and z = (1 - l)/l; what is neglected is of the order alpha^m
+    assert low / size == pytest.approx(0.75 * (1.0 - alpha), rel=20 * alpha**m + 1e-12)
+    assert high / size == pytest.approx(((1.0 - alpha) / alpha) ** 2, rel=20 * alpha**m + 1e-12)
+    gap = math.log(low / window(overdamped_map(alpha), m + 1)[1]) / (2.0 * math.log(1.0 / alpha))
+    assert outside_windows(alpha) == pytest.approx(max(gap, 0.0), abs=20 * alpha**m + 1e-12)
+
+
+def test_between_the_windows_there_is_chaos_and_above_two_thirds_nothing_else():
+    assert window(overdamped_map(0.70), 14) is None
+    alpha, m = 0.45, 8
+    low, top = window(overdamped_map(alpha), m)
+    high = window(overdamped_map(alpha), m + 1)[1]
+    assert high < low  # a gap
+    inside = np.geomspace(high * 1.02, low * 0.98, 40)
+    assert np.mean(exponents(alpha, inside, 1000, 2000)[0] > 0.0) > 0.9
+    found, x = exponents(alpha, np.geomspace(low * 1.02, top * 0.98, 40), 1000, 2000)
+    assert np.all(found < 0.0)
+    middle = slice(5, -5)  # at the very edge the motion takes its time
+    assert np.all(np.abs(x[-1] - x[-1 - m])[middle] < 1e-12)  # and it is p_m
+    assert np.all(np.abs(x[-1] - x[-m])[middle] > 1e-9)
+    everywhere = np.geomspace(1e-6, 1e-5, 60)
+    assert np.all(exponents(0.8, everywhere, 1000, 2000)[0] > 0.0)
+    assert np.all(exponents(0.2, everywhere, 1000, 2000)[0] < 0.0)
+
+
+def test_the_exponent_of_the_map_is_the_multiplier_of_p_m():
+    alpha, m = 0.45, 8
+    rho = math.sqrt(math.prod(window(overdamped_map(alpha), m)))
+    (node,) = (o for o in maximal_orbits(overdamped_map(alpha), m, rho) if o.stable and o.admissible)
+    found, _x = exponents(alpha, np.array([rho]), 2000, 50 * m)
+    assert found[0] == pytest.approx(math.log(abs(node.multipliers[0])) / m, rel=1e-6)

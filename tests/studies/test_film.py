@@ -1,0 +1,141 @@
+"""Films: where ball and plate are drawn, the frames of an orbit, and the files; with and without graphics."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from beam import BALL
+from contact import StroboscopicMap
+from contact.orbits import born
+from studies import film
+from studies.film import Moment, Scenery, can_encode, stage_of, write_gif, write_mp4
+from studies.motion.filmed_orbit import drawn_shapes, film_orbit, frame_times
+from studies.scene import beam_at, modes_of
+
+COARSE = {"spring.elements_per_leg": 20, "spring.elements_on_arc": 12, "modes.count": 12}
+
+
+@pytest.fixture(scope="module")
+def scene(letter_scene):
+    return letter_scene.replace(COARSE)
+
+
+@pytest.fixture(scope="module")
+def modes(scene):
+    return modes_of(scene)
+
+
+def at_rest(scenery: Scenery) -> Moment:
+    return Moment(points=np.zeros_like(scenery.mesh.points), base=np.zeros(3))
+
+
+def test_the_drawn_ball_meets_the_drawn_plate_when_the_tip_has_moved_by_the_gap(scene, modes):
+    gap, radius = scene.stop.gap_m, scene.tip.ball_radius_m
+    scenery = Scenery.of(modes, ball_radius=radius, gap=gap, swing=gap)
+    ball = scenery.mesh.points[np.unique(scenery.mesh.triangles)]
+    face = min(scenery.corners @ scenery.drive)
+    # the sphere is a polyhedron
+    assert face - max(ball @ scenery.drive) == pytest.approx(gap, abs=0.02 * radius)
+    inside = (scenery.corners @ scenery.along).min() < (ball @ scenery.along).mean()
+    assert inside and (ball @ scenery.along).mean() < (scenery.corners @ scenery.along).max()
+    assert Scenery.of(modes, ball_radius=radius, swing=gap).corners is None
+
+
+def test_higher_modes_are_enlarged_and_the_tip_stays_where_it_is(scene, modes):
+    scenery = Scenery.of(modes, ball_radius=scene.tip.ball_radius_m, gap=0.01, swing=0.01)
+    coordinates = np.random.default_rng(1).normal(scale=[1e-3, 1e-4, 1e-5, 1e-5], size=(5, 4))
+    tip = coordinates @ modes.phi[modes.coupled][:4]
+    ball = np.unique(scenery.mesh.triangles)
+    drawn = {m: drawn_shapes(scenery.mesh, modes, coordinates, m).points for m in (1.0, 10.0)}
+    for points in drawn.values():
+        np.testing.assert_allclose(points[:, ball].mean(axis=1) @ scenery.drive, tip, rtol=1e-9)
+        assert np.ptp(points[:, ball], axis=1).max() < 1e-15  # it does not turn
+    assert np.abs(drawn[10.0] - drawn[1.0]).max() > 1e-5
+    chosen = drawn_shapes(scenery.mesh, modes, coordinates).magnification
+    assert chosen >= 1.0 and chosen / 10.0 ** math.floor(math.log10(chosen)) in (1.0, 2.0, 5.0)
+
+
+def test_time_is_slow_at_the_contact_and_the_film_begins_again_without_a_seam():
+    contacts = [(0.1, 0.10005)]
+    times = frame_times(0.186, contacts, 240)
+    steps = np.diff(times, append=0.186)
+    assert times[0] == 0.0 and np.all(steps > 0.0) and times.size == 240
+    assert np.sum((times >= 0.1) & (times <= 0.10005)) >= 5
+    assert steps.max() < 0.186 / 40 and np.argmin(steps) == pytest.approx(np.searchsorted(times, 0.1), abs=12)
+    assert np.abs(np.diff(np.log(steps))).max() < math.log(1.6)  # no jumps of the pace
+    assert np.ptp(np.diff(frame_times(1.0, [], 60))) < 1e-9
+
+
+def test_the_frames_of_an_orbit_show_its_contact(scene):
+    oscillator = beam_at(scene, 21.5).with_excess(0.013)
+    settled = born(StroboscopicMap(oscillator=oscillator), 0.013)
+    orbit = film_orbit(oscillator, settled.end, settled.period, frames=80, rate=20.0)
+    assert settled.period == 4 and len(orbit.contacts) == settled.impacts >= 1
+    tip, gap = orbit.run.displacement @ oscillator.model.phi, oscillator.stop.gap
+    assert orbit.touched.any() and np.all(tip[orbit.touched] >= gap * (1 - 1e-12))
+    assert np.all(orbit.force[orbit.touched] >= 0.0) and np.all(orbit.force[~orbit.touched] == 0.0)
+    assert orbit.slowed[orbit.touched].min() > 20.0 * orbit.slowed.min()
+    assert orbit.base == pytest.approx(oscillator.drive.displacement(orbit.run.time - settled.end.time))
+
+
+@pytest.mark.parametrize("renderer", ["matplotlib", "auto"])
+def test_a_picture_shows_what_moves(scene, modes, renderer):
+    scenery = Scenery.of(modes, ball_radius=scene.tip.ball_radius_m, gap=0.01, swing=0.01)
+    rest = at_rest(scenery)
+    swung = Moment(points=scenery.mesh.normalised(0.008)[0], base=np.zeros(3))
+    touched = Moment(points=rest.points, base=rest.base, touched=True)
+    with stage_of(scenery, renderer) as stage:
+        pictures = [stage(moment) for moment in (rest, swung, touched, rest)]
+    assert {picture.shape for picture in pictures} == {(film.HEIGHT, film.WIDTH, 3)}
+    assert (pictures[0] == pictures[3]).all()
+    for other in pictures[1:3]:
+        assert 50 < np.any(pictures[0] != other, axis=2).sum() < 0.5 * film.WIDTH * film.HEIGHT
+    # nothing is cut off: the border is white
+    for picture in pictures:
+        assert picture[0].min() == picture[-1].min() == picture[:, 0].min() == picture[:, -1].min() == 255
+
+
+def test_without_graphics_matplotlib_draws_and_vtk_is_refused(scene, modes, monkeypatch):
+    monkeypatch.setattr(film, "can_render", lambda: False)
+    scenery = Scenery.of(modes, ball_radius=scene.tip.ball_radius_m, swing=0.01)
+    with stage_of(scenery, "auto") as stage:
+        assert stage(at_rest(scenery)).std() > 1.0
+    with pytest.raises(ValueError, match="libegl1"), stage_of(scenery, "vtk"):
+        pass
+
+
+def test_a_crash_of_the_trial_means_no_graphics(monkeypatch):
+    monkeypatch.setattr(subprocess, "run", lambda *a, **k: subprocess.CompletedProcess(a, returncode=-11))
+    film.can_render.cache_clear()
+    assert not film.can_render()
+    film.can_render.cache_clear()
+
+
+def test_gif_and_mp4_hold_every_frame(tmp_path):
+    stripes = np.repeat(np.linspace(40, 240, 6), 10).astype(np.uint8)
+    pictures = [np.broadcast_to(np.roll(stripes, 10 * n)[None, :, None], (40, 60, 3)) for n in range(6)]
+    with Image.open(write_gif(tmp_path / "film.gif", pictures, rate=20.0)) as found:
+        assert (found.n_frames, found.size, found.info["loop"]) == (6, (60, 40), 0)
+        for number, picture in enumerate(pictures):
+            found.seek(number)
+            assert found.info["duration"] == 50
+            assert np.abs(np.asarray(found.convert("L"), dtype=int)[20] - picture[20, :, 0]).max() < 12
+    if can_encode():
+        assert write_mp4(tmp_path / "film.mp4", pictures, rate=20.0).stat().st_size > 500
+    assert sorted(path.suffix for path in tmp_path.iterdir()) == [".gif", *([".mp4"] if can_encode() else [])]
+
+
+def test_the_small_form_of_the_motion_writes_a_film_and_meshes(run_study):
+    argv = [f"--set={key}={value}" for key, value in COARSE.items()]
+    ran = run_study("motion", "--quick", "--frames", "24", "--renderer", "matplotlib", *argv)
+    assert ran.code == 0 and ran.summary["period"] == 4 and ran.summary["impacts"] >= 1
+    assert len(list((ran.folder / "motion_frames").glob("*.vtu"))) == 24
+    with Image.open(ran.folder / "motion.gif") as found:
+        assert found.n_frames == 24
+    assert {"motion.gif", "motion.pvd", "motion.png", "frames.csv"} <= set(ran.manifest["files"])
+    assert BALL == 2  # the cell array `part` that ParaView shows

@@ -1,0 +1,87 @@
+"""The least number of modes: as good as is asked, no more, and checked against following the orbits."""
+
+from __future__ import annotations
+
+import pytest
+
+from contact import StroboscopicMap
+from contact.orbits import Shooting, born, fold_of
+from studies.least_model import LADDER, Models, Question, least_modes, questions
+from studies.scene import beam_at, read_scene
+
+#: What a search over modes, meshes and laws that followed every orbit found for the letter's scene.
+BY_SEARCH = [
+    ({"born_period": 0.0, "fold": 0.07}, 12),
+    ({"fold": 0.05}, 15),
+    ({"kick": 0.005}, 15),
+    ({"tip_trace": 2e-3}, 15),
+    ({"born_period": 0.0, "fold_middle": 0.07}, 12),
+    ({"frequency 10": 1e-3}, 10),
+    ({"frequency 1": 1e-5, "kick": 0.005}, 15),
+]
+
+
+@pytest.mark.parametrize(("needs", "modes"), BY_SEARCH)
+def test_the_choice_is_that_of_the_long_search(letter_scene, needs, modes):
+    scene, sentence = least_modes(letter_scene, needs)
+    assert scene.modes.count == modes and f" {modes} " in sentence
+    assert scene.provenance()["modes.count"] == "least"
+
+
+def test_one_rung_less_is_not_enough(letter_scene):
+    models = Models(letter_scene)
+    asked = list(questions(letter_scene, {"fold": 0.05}))
+    assert len(asked) == 6
+    errors = {n: max(question.error(models, n, 40) for question in asked) for n in (12, 15, 18)}
+    assert errors[12] > 0.05 > errors[15] > errors[18] > 0.0
+
+
+@pytest.mark.parametrize("frequency", [20.90, 21.50, 22.20])
+def test_errors_of_folds_from_kicks_are_those_of_the_orbits_themselves(letter_scene, frequency):
+    """Folds by shooting and continuation, an independent route, with 12 and 40 modes."""
+    models = Models(letter_scene)
+    found = {}
+    for modes in (12, 40):
+        oscillator = beam_at(letter_scene, frequency, models.whole.truncated(modes)).with_excess(1e-3)
+        period = born(StroboscopicMap(oscillator=oscillator)).period
+        found[modes] = fold_of(Shooting(oscillator=oscillator, period=period)).excess
+    error = abs(found[12] / found[40] - 1.0)
+    asked = Question(quantity="fold", frequency=frequency, tolerance=0.0)
+    assert asked.error(models, 12, 40) == pytest.approx(error, rel=0.12)
+
+
+def test_the_reference_is_good_to_the_third_of_a_percent(letter_scene, monkeypatch):
+    """40 modes against 60: the folds differ by less than what the loosest and the tightest study asks for."""
+    monkeypatch.setattr("studies.least_model.REFERENCE", 60)
+    models = Models(letter_scene)
+    assert models.whole.n_modes == 60
+    for question in questions(letter_scene, {"fold": 0.05}):
+        assert question.error(models, 40, 60) < 3e-3
+
+
+def test_what_the_scene_says_itself_is_not_changed(letter_scene):
+    needs = {"fold": 0.05}
+    for scene in (letter_scene.replace({"modes.count": 7}), letter_scene.replace({"drive.kind": "none"}),
+                  read_scene("measured_modes")):  # fmt: skip
+        assert least_modes(scene, needs) == (scene, "")
+
+
+def test_a_spring_of_ones_own_gets_its_own_number_and_a_tolerance_too_tight_is_told():
+    ruler = read_scene("steel_ruler")
+    scene, _ = least_modes(ruler, {"fold": 0.05})
+    assert scene.modes.count in LADDER and scene.modes.count > 15
+    scene, sentence = least_modes(ruler, {"kick": 1e-12})
+    assert scene.modes.count == 40 and "all that were tried" in sentence
+
+
+def test_a_coarse_mesh_or_few_measured_rates_bound_the_reference(letter_scene):
+    rates = {"damping.kind": "measured", "damping.measured_rates_per_s": [3.56, 20.0, 50.0]}
+    few = letter_scene.replace(rates)
+    assert least_modes(few, {"kick": 1e-12})[0].modes.count == 3
+    coarse = letter_scene.replace({"spring.elements_per_leg": 2, "spring.elements_on_arc": 1})
+    assert Models(coarse).whole.n_modes < 40
+
+
+def test_an_unknown_quantity_is_refused(letter_scene):
+    with pytest.raises(ValueError, match="colour"):
+        least_modes(letter_scene, {"colour": 0.1})

@@ -1,0 +1,133 @@
+"""The page: what is stored is on it, what is missing or broken is told, nothing is loaded from elsewhere."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import dataclass
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from studies import letter, plotting, report
+from studies.page import read_results, write_page
+from studies.record import Run
+from studies.scene import Scene
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row whose text would be markup."""
+
+    word: str
+    value: float
+
+
+def stored(results: Path, scene: Scene, study: str = "transitions") -> Run:
+    """Results of a study with a table, a figure, a verdict and a failed cell."""
+    run = Run(study=study, folder=results / study, scene=scene, command=f"python -m studies.{study} --quick")
+    run.table("rows", [Row("<b>bold</b>", 0.123456789)], "A caption & more", show=())
+    run.table("long", [Row("x", float(n)) for n in range(100)], show=())
+    figure, axes = plotting.new_figure()
+    axes.plot([0.0, 1.0], **plotting.series(0))
+    run.figure("picture", figure, "What is drawn.")
+    if study == "transitions":
+        run.verdict("p3", "agrees", found="p3")
+        run.verdict("p10", "differs", found="p11", note="the edge lies where f T = 20/21")
+    if study == "hysteresis":
+        run.answer("hysteresis", "A product of causes.")
+    run.failed("cell 1", "<script>no</script>")
+    run.close("done", {"rows": []})
+    return run
+
+
+class Elements(HTMLParser):
+    """Tags in order, checked for balance, and the attributes that load something."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.sources: list[str] = []
+        self.ids: list[str] = []
+
+    def handle_starttag(self, tag, attrs):
+        if tag not in ("meta", "link", "img", "br"):
+            self.open.append(tag)
+        found = dict(attrs)
+        self.sources += [found[name] for name in ("src",) if name in found]
+        self.sources += [found["href"]] if tag == "link" else []
+        self.ids += [found["id"]] if "id" in found else []
+
+    def handle_endtag(self, tag):
+        assert self.open and self.open.pop() == tag, tag
+
+
+def parsed(text: str) -> Elements:
+    elements = Elements()
+    elements.feed(text)
+    assert elements.open == []
+    return elements
+
+
+def test_the_page_holds_what_is_stored_and_loads_nothing(tmp_path, letter_scene):
+    for study in ("transitions", "hysteresis"):
+        stored(tmp_path, letter_scene, study)
+    path, found, missing = write_page(tmp_path)
+    text = path.read_text()
+    assert path == tmp_path / "report" / "index.html"
+    assert [one.study for one in found] == ["transitions", "hysteresis"]
+    assert "chart" in missing and "tour" not in missing
+    elements = parsed(text)
+    assert {"study-transitions", "study-hysteresis", "answers", "letter"} <= set(elements.ids)
+    assert elements.sources and all(source.startswith("data:") for source in elements.sources)
+    assert "default-src 'none'" in text
+    for words in (
+        "A caption &amp; more", "What is drawn.", "&lt;b&gt;bold", "0.12346", "A product of causes.",
+        "&lt;script&gt;no", "python -m studies.transitions --quick", "f T = 20/21",
+    ):  # fmt: skip
+        assert words in text, words
+    assert "<b>bold" not in text and "<script>no" not in text
+    assert text.count("<tr><td>x</td>") == 0  # a table of a hundred rows is left to its file
+
+
+def test_docstrings_are_the_account_of_a_study(tmp_path, letter_scene):
+    stored(tmp_path, letter_scene)
+    text = write_page(tmp_path)[0].read_text()
+    prose = " ".join(re.sub("<[^>]*>", " ", text).split())
+    assert "an orbit of period m with one impact" in prose
+    assert "excess_down F/F_g - 1 at which that orbit ends" in prose
+
+
+def test_every_point_of_the_letter_has_a_verdict_or_says_what_to_run(tmp_path, letter_scene):
+    stored(tmp_path, letter_scene)
+    text = write_page(tmp_path)[0].read_text()
+    for point in letter.POINTS.values():
+        assert point.says.replace("'", "&#39;") in text
+    assert text.count('class="verdict agrees"') == 1 and text.count('class="verdict differs"') == 1
+    assert text.count('class="verdict not-stored"') == 4  # of the transitions
+    assert text.count('class="verdict not-run"') == len(letter.POINTS) - 6
+
+
+@pytest.mark.parametrize("damage", [b"", b"{", b"[1]", b"\xff\xfe", b'{"verdicts": 3, "answers": [1]}'])
+@pytest.mark.parametrize("name", ["summary.json", "manifest.json", "rows.csv", "picture.png"])
+def test_a_damaged_file_is_no_reason_to_fail(tmp_path, letter_scene, name, damage):
+    folder = stored(tmp_path, letter_scene).folder
+    (folder / name).write_bytes(damage)
+    parsed(write_page(tmp_path)[0].read_text())
+
+
+def test_a_missing_file_is_told(tmp_path, letter_scene):
+    folder = stored(tmp_path, letter_scene).folder
+    (folder / "picture.png").unlink()
+    assert any("picture.png" in fault for fault in read_results(tmp_path)[0].faults)
+
+
+def test_the_command_writes_the_page_or_says_why_not(tmp_path, letter_scene, capsys):
+    assert report.main(["--out", str(tmp_path), "--json"]) == 2
+    assert json.loads(capsys.readouterr().out)["status"] == "refused"
+    stored(tmp_path, letter_scene)
+    assert report.main(["--out", str(tmp_path), "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["studies"] == ["transitions"] and Path(answer["page"]).exists()
+    assert report.main(["--nonsense"]) == 2

@@ -1,0 +1,269 @@
+"""A study as a program: options, exit codes, streams, results, and what an interruption leaves."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+import pytest
+
+from contact import NotPeriodic
+from studies import ROOT
+from studies.files import json_text, write_atomically
+from studies.programs import names, title_of, wrong_name
+from studies.run import Run, study
+from studies.scene import Scene
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """A row with every kind of cell."""
+
+    number: int
+    value: float | None
+    word: str
+    good: bool
+    pair: tuple[float, float]
+
+
+@study(quick={"points": 2})
+def small(
+    scene: Scene,
+    run: Run,
+    *,
+    points: Annotated[int, "rows of the table"] = 3,
+    excess: float = 0.1,
+    frequency: float | None = None,
+    colour: Literal["red", "blue"] = "red",
+    span: tuple[float, float] = (0.0, 1.0),
+    fail: bool = False,
+    what: str = "",
+):
+    """A study that stores something of every kind."""
+    if what == "value":
+        raise ValueError("the value is\nwrong")
+    if what == "contact":
+        raise NotPeriodic(time=0.0, gap=0.0, velocity=0.0, detail="no orbit")
+    if what == "interrupt":
+        run.text("kept.txt", "kept")
+        raise KeyboardInterrupt
+    rows = [
+        Row(number=n, value=None if n else np.float64(np.nan), word="a,b", good=n > 0, pair=(0.0, float(n)))
+        for n in run.track(range(points), "rows")
+    ]
+    run.table("rows", rows, "Rows.")
+    run.arrays("numbers", x=np.arange(3.0))
+    if fail:
+        run.failed("cell 1", ValueError("no number"))
+    print("a line of a careless library")
+    return {"options": [points, excess, frequency, colour, span], "rows": rows, "bad": float("nan")}
+
+
+def start(*argv: str, out: Path) -> tuple[int, Path]:
+    """Exit code, and the folder of results."""
+    return small.main([*argv, "--out", str(out)]), out / "small"
+
+
+def summary_of(folder: Path) -> dict:
+    return json.loads((folder / "summary.json").read_text())
+
+
+def test_a_run_leaves_summary_manifest_tables_and_arrays(tmp_path):
+    code, folder = start(out=tmp_path)
+    assert code == 0
+    summary, manifest = summary_of(folder), json.loads((folder / "manifest.json").read_text())
+    assert (summary["status"], summary["failed_cells"], summary["bad"]) == ("done", 0, None)
+    assert summary["settings"]["points"] == 3 and summary["provenance"]["stop.gap_m"] == "calibrated"
+    assert set(manifest["files"]) == {path.name for path in folder.iterdir()}
+    assert manifest["parameters"]["stop"]["gap_m"] == 0.0106993324
+    assert manifest["captions"]["rows.csv"] == "Rows."
+    assert manifest["versions"]["numpy"] and {"commit", "dirty"} == set(manifest["git"])
+    with (folder / "rows.csv").open() as stream:
+        rows = list(csv.DictReader(stream))
+    assert list(rows[0]) == ["number", "value", "word", "good", "pair"]
+    assert rows[1] == {"number": "1", "value": "", "word": "a,b", "good": "True", "pair": "[0.0, 1.0]"}
+    assert np.load(folder / "numbers.npz")["x"].tolist() == [0.0, 1.0, 2.0]
+
+
+def test_keyword_arguments_are_options(tmp_path):
+    argv = ["--points", "4", "--excess=-0.5", "--frequency", "22.2", "--colour", "blue", "--span", "1", "2"]
+    _, folder = start(*argv, out=tmp_path)
+    assert summary_of(folder)["options"] == [4, -0.5, 22.2, "blue", [1.0, 2.0]]
+    _, folder = start("--quick", out=tmp_path)
+    assert summary_of(folder)["options"] == [2, 0.1, None, "red", [0.0, 1.0]]
+    _, folder = start("--quick", "--points", "5", out=tmp_path)
+    assert summary_of(folder)["options"][0] == 5
+
+
+@pytest.mark.parametrize(
+    ("argv", "named"),
+    [
+        (["--pionts", "3"], "--points"),
+        (["--points", "0"], "--points"),
+        (["--points", "2.5"], "--points"),
+        (["--excess", "nan"], "--excess"),
+        (["--colour", "green"], "--colour"),
+        (["--span", "1"], "--span"),
+        (["--workers", "0"], "--workers"),
+        (["stray"], "stray"),
+        (["--set", "stop.gpa_m=1"], "stop.gap_m"),
+        (["--scene", "lettre"], "letter"),
+        (["--what", "value"], "the value is wrong"),
+    ],
+)
+def test_wrong_use_is_one_sentence_and_exit_code_2(tmp_path, capsys, argv, named):
+    code, _ = start(*argv, out=tmp_path)
+    out, err = capsys.readouterr()
+    assert code == 2 and named in err and err.count("\n") == 1 and out == ""
+
+
+def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_computed(tmp_path, capsys):
+    (tmp_path / "file").write_text("")
+    assert small.main(["--out", str(tmp_path / "file")]) == 2
+    assert "file" in capsys.readouterr().err
+
+
+def test_failed_cells_are_told_kept_and_exit_code_3(tmp_path):
+    code, folder = start("--fail", out=tmp_path)
+    assert code == 3 and summary_of(folder)["failures"] == ["cell 1: no number"]
+    code, folder = start("--what", "contact", out=tmp_path)
+    assert code == 3 and summary_of(folder)["failed_cells"] == 1 and summary_of(folder)["status"] == "failed"
+
+
+def test_an_interrupted_run_keeps_what_it_stored_and_says_how_to_go_on(tmp_path, capsys):
+    code, folder = start("--what", "interrupt", out=tmp_path)
+    err = capsys.readouterr().err
+    assert code == 130 and (folder / "kept.txt").read_text() == "kept"
+    assert summary_of(folder)["status"] == "interrupted"
+    assert f"python -m studies.small --what interrupt --out {tmp_path}" in err
+
+
+@pytest.mark.parametrize(
+    ("argv", "code"), [([], 0), (["--fail"], 3), (["--what", "value"], 2), (["--what", "interrupt"], 130)]
+)
+def test_json_is_one_object_and_nothing_else_on_standard_output(tmp_path, capsys, argv, code):
+    assert start("--json", *argv, out=tmp_path)[0] == code
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["schema"] == 2 and answer["exit_code"] == code
+
+
+def test_suspicious_values_are_told_and_kept(tmp_path, capsys):
+    _, folder = start("--set", "scan.born_excess=0.5", out=tmp_path)
+    assert "warning: scan.born_excess" in capsys.readouterr().err
+    assert len(summary_of(folder)["warnings"]) == 1
+
+
+def test_help_prints_the_docstring_and_the_dump_the_scene(tmp_path, capsys):
+    assert small.main(["--help"]) == 0
+    assert __doc__ in capsys.readouterr().out
+    assert small.main(["--dump-scene", "--set", "stop.gap_m=0.011"]) == 0
+    assert "gap_m = 0.011\n" in capsys.readouterr().out
+    assert small.main(["--dump-scene", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["scene"]["stop"]["gap_m"] == 0.0106993324
+
+
+def test_a_traceback_is_there_for_who_asks_for_it(tmp_path, capsys, monkeypatch):
+    monkeypatch.setenv("GRAZING_SPRING_TRACEBACK", "1")
+    assert start("--what", "value", out=tmp_path)[0] == 2
+    assert "Traceback" in capsys.readouterr().err
+
+
+def test_a_verdict_belongs_to_the_study_that_the_point_names(tmp_path, letter_scene):
+    run = Run(study="transitions", folder=tmp_path, scene=letter_scene, command="")
+    run.verdict("p3", "agrees", found="p3")
+    with pytest.raises(KeyError):
+        run.verdict("torsion", "agrees", found="")
+    with pytest.raises(KeyError):
+        run.answer("hysteresis", "because")
+    assert run.close("done", {})["verdicts"] == {"p3": {"verdict": "agrees", "found": "p3", "note": ""}}
+
+
+def test_files_are_complete_or_absent(tmp_path, monkeypatch):
+    path = tmp_path / "result.txt"
+    write_atomically(path, b"old")
+
+    def fails(*arguments):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", fails)
+    with pytest.raises(OSError, match=r"result\.txt"):
+        write_atomically(path, b"new")
+    assert path.read_bytes() == b"old" and list(tmp_path.iterdir()) == [path]
+
+
+def test_json_takes_what_a_study_finds():
+    row = Row(number=1, value=float("inf"), word="x", good=True, pair=(0.0, 1.0))
+    found = json.loads(json_text({"row": row, "array": np.array([1.0, np.nan]), "path": Path("a")}))
+    assert found == {"row": {"number": 1, "value": None, "word": "x", "good": True, "pair": [0.0, 1.0]},
+                     "array": [1.0, None], "path": "a"}  # fmt: skip
+    with pytest.raises(TypeError, match="set"):
+        json_text({1})
+
+
+@pytest.mark.parametrize("place", ["threads", "processes"])
+def test_a_map_is_the_same_on_every_executor(tmp_path, letter_scene, place):
+    run = Run(study="x", folder=tmp_path, scene=letter_scene, command="", workers=2, executor=place)
+    assert run.map(abs, [-1, 2, -3], "numbers") == [1, 2, 3]
+
+
+@pytest.mark.parametrize("place", ["moon", "ssh://there", "dask://127.0.0.1:1"])
+def test_an_executor_that_is_not_there_is_refused(tmp_path, letter_scene, place, monkeypatch):
+    monkeypatch.setattr("studies.executors.PATIENCE", 0.2)
+    run = Run(study="x", folder=tmp_path, scene=letter_scene, command="", executor=place)
+    with pytest.raises(ValueError), run.pool():
+        pass
+
+
+def test_every_study_is_found_and_says_what_it_is():
+    assert {"transitions", "chart", "report", "export", "tour"} <= set(names())
+    assert not {"run", "scene", "programs", "film", "page"} & set(names())
+    for name in names():
+        assert title_of(name).endswith(".") and len(title_of(name)) < 200, name
+
+
+def test_an_unknown_study_is_answered_with_the_nearest():
+    assert wrong_name(["-m", "studies.transitons"]) == "transitons"
+    assert wrong_name(["-m", "studies.transitions"]) is wrong_name(["-m", "studies"]) is None
+    command = [sys.executable, "-m", "studies.transitons"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 2 and "studies.transitions" in done.stderr and done.stderr.count("\n") == 1
+
+
+def test_a_foreign_package_of_the_same_name_is_refused(tmp_path):
+    (tmp_path / "beam").mkdir()
+    (tmp_path / "beam" / "__init__.py").write_text("")
+    code = f"import sys; sys.path[:0] = [{str(tmp_path)!r}, {str(ROOT)!r}]; import studies"
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 1 and "pip uninstall beam" in done.stderr
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_a_program_with_what_it_stored(tmp_path, number):
+    """A chart that would take minutes; interrupted when its first column is there, it stores a summary."""
+    argv = ["-m", "studies.chart", "--points", "4000", "60", "--cycles", "4096", "--json"]
+    argv += ["--out", str(tmp_path)]
+    program = subprocess.Popen(
+        [sys.executable, *argv], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    store = tmp_path / "chart" / "single_mode-4000x60"
+    for _ in range(1200):
+        if list(store.glob("[0-9]*.npz")) or program.poll() is not None:
+            break
+        time.sleep(0.1)
+    program.send_signal(number)
+    out, err = program.communicate(timeout=60)
+    assert program.returncode == 130, err
+    assert json.loads(out)["status"] == "interrupted" and "Traceback" not in err
+    assert "go on with: python -m studies.chart --points 4000 60" in err
+    assert summary_of(tmp_path / "chart")["status"] == "interrupted"
+    for path in store.glob("[0-9]*.npz"):
+        assert np.load(path)["period"].shape == (2, 60)

@@ -1,0 +1,274 @@
+"""Scenes: every key with unit and provenance, one sentence for whatever is wrong, nothing in between."""
+
+from __future__ import annotations
+
+import math
+import pickle
+import tomllib
+import warnings
+from dataclasses import FrozenInstanceError
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import beam
+from beam import SuspiciousValue
+from studies.scene import SCENES, Scene, SceneError, check, model_of, read_scene, require_drive_below
+from studies.scene_keys import MODE_LISTS
+from studies.scene_values import KEYS, doubts, parse_override, scene_from_text
+
+DELIVERED = sorted(file.stem for file in SCENES.glob("*.toml"))
+
+
+def refusal(*overrides: str, scene: str = "letter") -> str:
+    """The sentence with which these values are refused."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", SuspiciousValue)
+        with pytest.raises(SceneError) as caught:
+            read_scene(scene, overrides)
+    sentence = str(caught.value)
+    assert sentence and "\n" not in sentence
+    return sentence
+
+
+def test_the_letters_scene_is_the_default():
+    assert read_scene() == read_scene("letter") == read_scene(SCENES / "letter.toml") == Scene()
+
+
+def test_provenance_says_what_is_the_letters_and_what_was_fitted():
+    provenance = Scene().provenance()
+    printed = {key for key, origin in provenance.items() if origin == "letter"}
+    assert {"spring.leg_length_m", "drive.frequencies_hz", "single_mode.free_period_s"} <= printed
+    fitted = {key for key, origin in provenance.items() if origin == "calibrated"}
+    assert fitted == {"spring.thickness_m", "spring.tape_loss_factor", "tip.mass_kg", "stop.gap_m"}
+    assert set(provenance.values()) == {"letter", "calibrated", "assumed"}
+    scene = Scene().replace({"spring.thickness_m": 0.00061}, provenance="calibrated")
+    scene = scene.replace({"spring.width_m": 0.011, "tip.mass_kg": Scene().tip.mass_kg})
+    provenance = scene.provenance()
+    assert provenance["spring.thickness_m"] == "calibrated" and provenance["spring.width_m"] == "given"
+    assert provenance["tip.mass_kg"] == "calibrated"  # the value is still the default
+
+
+@pytest.mark.parametrize("name", DELIVERED)
+def test_every_scene_that_is_delivered_reads_without_doubt_and_dumps_to_itself(name):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", SuspiciousValue)
+        scene = read_scene(name)
+    text = scene.dump()
+    assert scene_from_text(text) == scene
+    dumped = tomllib.loads(text)
+    assert [f"{section}.{key}" for section in dumped for key in dumped[section]] == list(KEYS)
+
+
+def test_a_dump_says_meaning_unit_default_and_provenance_of_every_key():
+    lines = Scene().replace({"spring.width_m": 0.02}).dump().splitlines()
+    for key, known in KEYS.items():
+        name = key.partition(".")[2]
+        places = [i for i, line in enumerate(lines) if line.startswith(f"{name} = ")]
+        told = [lines[i - 2 : i] for i in places]
+        assert any(known.meaning in meaning and known.provenance in says for meaning, says in told), key
+        assert known.unit in ("", "1") or any(f"unit {known.unit}" in says for _, says in told), key
+    assert any("here given" in line for line in lines)
+
+
+def test_scenes_are_values():
+    scene = Scene().replace({"stop.gap_m": 0.012})
+    assert pickle.loads(pickle.dumps(scene)) == scene
+    assert hash(scene) == hash(Scene().replace({"stop.gap_m": 0.012}))
+    with pytest.raises(FrozenInstanceError):
+        scene.stop.gap_m = 1.0  # type: ignore[misc]
+    text = "[tip]\nrotary_inertia_kg_m2 = -0.0\n[spring]\ndensity_kg_m3 = 8500\n[scan]\npoints = 1e2"
+    read = scene_from_text(text)
+    assert math.copysign(1.0, read.tip.rotary_inertia_kg_m2) == 1.0
+    assert isinstance(read.spring.density_kg_m3, float) and read.scan.points == 100
+
+
+def test_reading_solves_no_eigenvalue_problem(monkeypatch):
+    def never(*arguments, **named):
+        raise AssertionError("modes were solved")
+
+    monkeypatch.setattr(beam, "natural_modes", never)
+    for name in DELIVERED:
+        read_scene(name)
+
+
+#: Values outside of what makes sense, with the key that the sentence has to name.
+WRONG = [
+    "spring.width_m=-1", "spring.width_m=0", "spring.width_m=nan", "spring.young_modulus_pa=-inf",
+    "spring.young_modulus_pa=true", "spring.young_modulus_pa=brass",
+    "spring.young_modulus_pa=1" + "0" * 400, "spring.thickness_m=0.013", "spring.bend_radius_m=0.0003",
+    "spring.poisson_ratio=0.5", "spring.tape_sides=3", "spring.tape_coverage=1.5",
+    "spring.tape_modulus_pa=0", "spring.tape_poisson_ratio=-1", "spring.tape_density_kg_m3=0",
+    "spring.tape_thickness_m=-1e-4", "spring.density_kg_m3=0", "spring.loss_factor=-0.1",
+    "spring.elements_per_leg=2.5", "spring.elements_on_arc=3000", "spring.kind=folded_v",
+    "spring.leg_length_m=-0.1", "tip.mass_kg=-1", "tip.ball_radius_m=0", "tip.ball_poisson_ratio=0.6",
+    "tip.ball_young_modulus_pa=-1", "tip.plate_young_modulus_pa=0", "tip.plate_poisson_ratio=-1",
+    "tip.rotary_inertia_kg_m2=-1", "tip.arc_fraction=2", "readout.arc_fraction=-0.1",
+    "readout.quantity=colour", "damping.kind=none", "damping.decay_rate_per_s=-1", "damping.ratio=-1",
+    "damping.measured_rates_per_s=3", "modes.count=501", "modes.count=-1", "single_mode.free_period_s=0",
+    "single_mode.decay_rate_per_s=-1", "single_mode.restitution=1.5", "drive.frequencies_hz=[]",
+    "drive.frequencies_hz=22.2", "drive.frequencies_hz=[22.2, 0]", "drive.frequencies_hz=[[22.2]]",
+    "stop.gap_m=0", "stop.gap_m=-0.01", "contact.law=glue", "contact.local_restitution=1.5",
+    "contact.stiffness_n_per_m=-1", "contact.damping_ns_per_m=-1", "scan.points=40.5", "scan.points=1",
+    "scan.record_cycles=0", "scan.born_excess=0", "scan.largest_period=0", "scan.settle_cycles=inf",
+    "modal_data.tip_values=[1.0, inf]",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("override", WRONG)
+def test_a_wrong_value_is_refused_with_its_key(override):
+    key = override.partition("=")[0]
+    assert key in refusal(override)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "named"),
+    [
+        (["spring.tape_thickness_m=0"], "spring.tape_thickness_m"),
+        (["damping.kind=measured"], "damping.measured_rates_per_s"),
+        (["spring.kind=modal_data"], "modal_data"),
+        (["contact.law=linear", "tip.mass_kg=0"], "contact.stiffness_n_per_m"),
+        (["spring.kind=straight_strip", "spring.end_support=pinned"], "tip.arc_fraction"),
+    ],
+)
+def test_what_does_not_go_together_is_refused(overrides, named):
+    assert named in refusal(*overrides)
+
+
+@pytest.mark.parametrize(
+    ("override", "nearest"),
+    [
+        ("spring.thicknes_m=1", "spring.thickness_m"),
+        ("spring.mass_kg=1", "tip.mass_kg"),
+        ("sprng.width_m=1", "spring.width_m"),
+        ("stop.gap=1", "stop.gap_m"),
+        ("scan.record_cycle=3", "scan.record_cycles"),
+    ],
+)
+def test_an_unknown_key_is_answered_with_the_nearest(override, nearest):
+    assert refusal(override).endswith(nearest)
+    section, _, rest = override.partition(".")
+    with pytest.raises(SceneError, match=nearest.replace(".", r"\.") + "$"):
+        scene_from_text(f"[{section}]\n{rest}")
+
+
+@pytest.mark.parametrize(
+    "text", ["[scans]\n", "gap_m = 0.01", "stop = 3", "[spring\nkind = 3", "a = " + "[" * 9999]
+)
+def test_a_text_that_is_no_scene_is_refused_in_one_line(text):
+    with pytest.raises(SceneError) as caught:
+        scene_from_text(text)
+    assert "\n" not in str(caught.value)
+
+
+@settings(max_examples=150, deadline=None)
+@given(
+    st.sampled_from(sorted(KEYS.keys() - {"modal_data.file"})),
+    st.text() | st.floats() | st.integers() | st.lists(st.floats(), max_size=3),
+)
+def test_any_value_of_any_key_is_taken_or_refused(key, value):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", SuspiciousValue)
+        try:
+            scene = Scene().replace({key: value})
+            check(scene)
+        except SceneError as error:
+            assert "\n" not in str(error)
+        else:
+            assert scene_from_text(scene.dump()) == scene
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("stop.gap_m = 1e-2 ", 0.01),
+        ("drive.frequencies_hz=[22.2, 23]", [22.2, 23]),
+        ("spring.kind=cantilever", "cantilever"),
+        ('spring.kind="cantilever"', "cantilever"),
+        ("modal_data.file=a=b.csv", "a=b.csv"),
+        ("spring.kind=1\n[stop]", "1\n[stop]"),
+    ],
+)
+def test_override_values_are_toml_or_bare_text(text, value):
+    assert parse_override(text) == (text.partition("=")[0].strip(), value)
+
+
+@pytest.mark.parametrize("text", ["stop.gap_m", "gap_m=1", "", "=", "stop.gap_m 3"])
+def test_an_override_needs_a_dotted_key_and_a_value(text):
+    assert "section.key=value" in refusal(text)
+
+
+def test_the_last_override_wins_and_no_drive_needs_no_gap():
+    assert read_scene("letter", ["stop.gap_m=0.011", "stop.gap_m=0.012"]).stop.gap_m == 0.012
+    assert read_scene("letter", ["drive.kind=none", "stop.gap_m=0"]).stop.gap_m == 0.0
+
+
+def test_files_that_cannot_be_read(tmp_path: Path):
+    (tmp_path / "latin.toml").write_bytes(b"# caf\xe9")
+    for name in (tmp_path / "latin.toml", tmp_path / "absent.toml", tmp_path):
+        assert str(name)[:20] in refusal(scene=str(name))
+    assert "letter" in refusal(scene="lettre")
+
+
+WRONG_ROWS = ("1,2,3", "1,2,three,4", "1,2,nan,4")
+
+
+def test_measured_modes_from_a_file_beside_the_scene(tmp_path: Path):
+    heading = "participation, tip_values, frequencies_hz, decay_rates_per_s"
+    (tmp_path / "modes.csv").write_text(f"{heading}\n# mode 1\n0.11,8.2,24.5,3.56\n\n0.06,-7,149,20\n")
+    own = tmp_path / "own.toml"
+    own.write_text('[spring]\nkind = "modal_data"\n[modal_data]\nfile = "modes.csv"\n')
+    scene = read_scene(own)
+    assert scene.modal_data.frequencies_hz == (24.5, 149.0) and scene.modal_data.tip_values == (8.2, -7.0)
+    assert scene.modal_data.file == ""  # the scene has become independent of the file
+    assert "twice" in refusal("modal_data.tip_values=[1.0]", scene=str(own))
+    assert "150 Hz" in refusal("drive.frequencies_hz=[150]", scene=str(own))
+    assert "30 Hz" in refusal("drive.frequencies_hz=[30]", "modes.count=1", scene=str(own))
+    lists = ",".join(MODE_LISTS)
+    for content in ("", "frequencies_hz,tip_values", lists, *(f"{lists}\n{row}" for row in WRONG_ROWS)):
+        (tmp_path / "modes.csv").write_text(content)
+        assert "modal_data" in refusal(scene=str(own))
+
+
+def test_a_drive_above_the_modes_is_refused(letter_scene):
+    scene = letter_scene.replace({"modes.count": 2})
+    require_drive_below(scene, model_of(scene))
+    with pytest.raises(SceneError, match=r"1000 Hz"):
+        require_drive_below(scene, model_of(scene), 1000.0)
+
+
+#: A slip of a unit or a value beyond the theory, and a word of the warning that it brings.
+SLIPS = {
+    "stop.gap_m=10.7": "gap", "stop.gap_m=0.02": "small motion", "spring.leg_length_m=130": "weight",
+    "spring.width_m=12": "width", "spring.thickness_m=0.006": "bar",
+    "spring.bend_radius_m=7.5": "bend_radius", "spring.young_modulus_pa=105": "speed of sound",
+    "spring.density_kg_m3=8.5": "speed of sound", "spring.tape_modulus_pa=1": "speed of sound",
+    "spring.tape_thickness_m=0.45": "thickness", "spring.tape_loss_factor=49": "loss_factor",
+    "tip.mass_kg=6.16": "tip", "tip.ball_radius_m=2.5": "ball_radius",
+    "tip.ball_young_modulus_pa=370": "youngs_modulus", "tip.plate_young_modulus_pa=210e3": "other_modulus",
+    "drive.frequencies_hz=[0.0222]": "first mode", "drive.frequencies_hz=[22.2, 139.5]": "first mode",
+    "single_mode.free_period_s=1": "first mode", "single_mode.decay_rate_per_s=3560": "damping ratio",
+    "damping.decay_rate_per_s=3560": "damping ratio", "scan.born_excess=1": "grazing",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("override", SLIPS)
+def test_a_slip_of_a_unit_is_taken_with_a_warning(override):
+    with pytest.warns(SuspiciousValue) as found:
+        read_scene("letter", [override])
+    assert any(SLIPS[override] in str(warning.message) for warning in found)
+
+
+@pytest.mark.parametrize(
+    ("changes", "named"),
+    [
+        ({"damping.kind": "constant_ratio", "damping.ratio": 1.16}, "damping.ratio"),
+        ({"damping.kind": "constant_loss_factor", "damping.loss_factor": 2.3}, "damping.loss_factor"),
+        ({"damping.kind": "rayleigh", "damping.rayleigh_beta_s": 0.1}, "damping.rayleigh_beta_s"),
+        ({"contact.law": "linear", "contact.stiffness_n_per_m": 1000.0}, "contact.stiffness_n_per_m"),
+    ],
+)
+def test_other_laws_are_judged_by_their_own_numbers(changes, named):
+    assert any(named in sentence for sentence in doubts(Scene().replace(changes)))

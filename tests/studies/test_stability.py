@@ -1,0 +1,298 @@
+"""Where methods fail: one limit a method, theory against the motion, and where the package refuses."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from beam import ModalModel
+from contact import (
+    ImpactOscillator,
+    LinearContact,
+    NewtonRestitution,
+    State,
+    StepTooLarge,
+    Stop,
+    simulate,
+)
+from contact.integrators import (
+    CentralDifference,
+    Exact,
+    GeneralisedAlpha,
+    MoreauJean,
+    Splitting,
+)
+from studies.scene import Scene, beam_at, model_of, read_scene
+from studies.stability import explicit, splitting, threshold
+from studies.stability.__main__ import FAMILIES
+from studies.stability.false_restitution import ElasticCollision, outcomes, reached
+from studies.stability.implicit_energy import (
+    FORCE,
+    STIFF_GROWTH,
+    evenly,
+    history,
+    kept,
+    single_contact,
+    stiff_contacts,
+    stop_of,
+    undamped,
+)
+from studies.stability.lasting_contact import grows, growth, modal_stiffness, plane, pressed, settled
+
+MODEL = ModalModel(
+    omega=[154.0, 960.0, 2450.0], decay_rate=[3.56, 20.0, 55.0], phi=[8.0, 4.7, 3.6],
+    participation=[0.1, 0.05, 0.03],
+)  # fmt: skip
+STILL = undamped(MODEL)
+
+
+@pytest.fixture(scope="module")
+def scene() -> Scene:
+    return read_scene("letter")
+
+
+# what all families rest on
+
+
+def test_a_threshold_is_found_over_many_decades_and_only_if_it_was_seen_on_both_sides():
+    assert threshold(lambda x: x * x > 2.0, 1e-8, 1e8, relative=1e-12) == pytest.approx(2**0.5, rel=1e-12)
+    assert threshold(lambda x: x < 1e-5, 1.0, 1e-9) == pytest.approx(1e-5, rel=1e-6)
+    assert threshold(lambda x: True, 1.0, 2.0) is None and threshold(lambda x: False, 1.0, 2.0) is None
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_every_family_derives_its_limits(name):
+    assert len(FAMILIES[name].__doc__ or "") > 500
+
+
+# central difference
+
+
+@pytest.mark.parametrize(
+    ("lagged", "ratio"), [(False, 0.0), (False, 0.3), (True, 0.0), (True, 0.1), (True, 1.0)]
+)
+def test_central_difference_in_flight_grows_beyond_its_limit_and_is_refused_there(lagged, ratio):
+    """n steps see an excess of ln(1e5)/n over the damping's share: 2e-4 at 2e4 steps and zeta = 0.3."""
+    row = explicit.flight(ratio, lagged, 20_000)
+    assert row.measured == pytest.approx(row.theory, rel=1e-3) and row.measured > row.theory * (1 - 1e-9)
+    assert row.refused is True
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_a_lasting_contact_grows_where_the_highest_frequency_of_the_closed_contact_says(count):
+    """h^2 omega_max^2 = 4 with the largest eigenvalue of K + k phi phi^T."""
+    model = MODEL.truncated(count)
+    row = explicit.lasting(model, lagged=False)
+    assert row.theory is not None and row.measured == pytest.approx(row.theory, rel=1e-4)
+    matrix = np.diag(model.omega**2) + row.theory * np.outer(model.phi, model.phi)
+    assert np.linalg.eigvalsh(matrix)[-1] / model.omega[-1] ** 2 == pytest.approx(4.0, rel=1e-12)
+    # the default is not affected: a disturbance stays what it was
+    oscillator, rest = pressed(model, 1.1 * row.theory)
+    start = replace(rest, displacement=rest.displacement * (1 + 1e-6))
+    run = simulate(oscillator, start, duration=0.1, times=np.linspace(0, 0.1, 50))
+    assert np.abs(run.displacement - rest.displacement).max() < 1e-5 * np.abs(rest.displacement).max()
+
+
+def test_lagged_damping_has_a_sharp_limit_in_contact_and_the_package_refuses_at_it():
+    """The largest eigenvalue of h^2 (K + k phi phi^T) + 2 h C is 4."""
+    model = replace(MODEL, decay_rate=10.0 * MODEL.decay_rate)
+    row = explicit.lasting(model, lagged=True)
+    step = 1.0 / float(model.omega[-1])
+    matrix = step**2 * (np.diag(model.omega**2) + row.theory * np.outer(model.phi, model.phi))
+    matrix += 2 * step * np.diag(model.decay_rate)
+    assert np.linalg.eigvalsh(matrix)[-1] == pytest.approx(4, rel=1e-12)
+    assert row.measured == pytest.approx(row.theory, rel=1e-4)
+    oscillator, _rest = pressed(model, 1.0)
+    bound = CentralDifference(step=step, lagged=True).critical_stiffness(oscillator.motion())
+    assert bound == pytest.approx(row.theory, rel=1e-10)
+
+
+def test_in_the_plane_of_step_and_stiffness_the_motion_agrees_with_theory():
+    angles, parts = np.linspace(0.1, 2.3, 7), np.geomspace(1e-1, 1e6, 6)
+    rate = plane(MODEL, lambda h: CentralDifference(step=h), angles, parts)
+    for x, row in zip(angles, rate, strict=True):
+        limit = explicit.critical_stiffness(MODEL, float(x / MODEL.omega[-1]), False) if x < 2 else 0.0
+        clear = np.abs(parts * modal_stiffness(MODEL) / max(limit, 1e-9) - 1) > 0.02
+        assert np.array_equal((row > 1e-3)[clear], (parts * modal_stiffness(MODEL) > limit)[clear])
+
+
+@pytest.mark.parametrize("x", [0.9, 1.2, 1.8])
+def test_energy_of_a_short_contact_is_that_of_the_closed_form_and_can_be_made(x):
+    omega_c = 1000.0
+    body = explicit.free_body(LinearContact(stiffness=explicit.MASS * omega_c**2))
+    parts = (np.arange(16) + 0.5) / 16
+    found = np.array([explicit.rebound(body, x / omega_c, s, math.pi / omega_c) for s in parts])
+    assert found == pytest.approx([explicit.rebound_ratio(x, s) for s in parts], rel=1e-10)
+    bound = 1.0 / (1.0 - 0.25 * x * x)
+    assert 1.0 + 0.3 * (bound - 1.0) < np.max(found**2) <= bound * (1 + 1e-12)
+    assert 1.0 / bound * (1 - 1e-12) <= np.min(found**2) < 0.9
+    root = math.sqrt(explicit.MASS)
+    start = State(displacement=np.array([5e-4 * root]), velocity=np.array([0.1 * root]))
+    assert abs(simulate(body, start, duration=0.05).end.velocity[0] / (0.1 * root) + 1.0) < 1e-12
+
+
+@pytest.mark.parametrize("steps", [3, 8])
+def test_commensurate_steps_hide_the_error_of_energy(steps):
+    omega_c = 1000.0
+    body = explicit.free_body(LinearContact(stiffness=explicit.MASS * omega_c**2))
+
+    def worst(count: float) -> float:
+        step = 2.0 * math.sin(0.5 * math.pi / count) / omega_c
+        parts = (np.arange(8) + 0.5) / 8
+        return max(abs(explicit.rebound(body, step, s, math.pi / omega_c) - 1.0) for s in parts)
+
+    assert worst(steps) < 1e-10 and worst(steps + 0.5) > 0.01 / steps
+
+
+# splitting
+
+
+@pytest.mark.parametrize("order", [2, 4])
+def test_a_settled_tip_stays_near_but_off_the_rest_position(order):
+    method = Splitting(step=1.0 / float(MODEL.omega[-1]), order=order)
+    oscillator, rest = pressed(MODEL, 0.3 * method.critical_stiffness(pressed(MODEL, 1.0)[0].motion()))
+    still = settled(oscillator, rest, method)
+    end = simulate(oscillator, still, duration=method.step, method=method).end
+    near = 1e-10 * np.abs(MODEL.omega * still.displacement).max()
+    assert np.abs(MODEL.omega * (end.displacement - still.displacement)).max() < near
+    assert np.abs(end.velocity - still.velocity).max() < near
+    far = np.abs(still.displacement - rest.displacement).max() / np.abs(rest.displacement).max()
+    assert 1e-5 < far < 1.0
+
+
+@pytest.mark.parametrize(("count", "angle"), [(1, 1.0), (3, 1.0), (3, 2.5)])
+def test_order_2_fails_where_the_closed_form_says_and_is_refused_there(count, angle):
+    """By the closed form, the motion, and the spectral radius by which the package refuses."""
+    model = MODEL.truncated(count)
+    row = splitting.limit(model, angle, 2)
+    assert row.measured == pytest.approx(row.theory, rel=2e-4) and row.refused is True
+    method = Splitting(step=angle / float(model.omega[-1]))
+    assert method.critical_stiffness(pressed(model, 1.0)[0].motion()) == pytest.approx(row.theory, rel=1e-9)
+    simulate(*pressed(model, 0.99 * row.theory), duration=40 * method.step, method=method)
+
+
+def test_beyond_pi_a_resonance_of_step_and_contact_sets_the_limit():
+    row = splitting.limit(STILL.truncated(1), 4.0, 2)
+    assert row.measured == pytest.approx(row.theory, rel=1e-6) and row.refused is True
+
+
+def test_order_4_fails_by_little_in_a_narrow_band_above_its_limit():
+    """One undamped mode, h omega = 1, inner kicks in contact: a band less than 4 % wide in stiffness."""
+    model = STILL.truncated(1)
+    method = Splitting(step=1.0 / float(model.omega[0]), order=4)
+    limit = method.critical_stiffness(pressed(model, 1.0)[0].motion())
+    unstable = [grows(*pressed(model, part * limit), method, 40_000) for part in (0.999, 1.0024, 1.05)]
+    assert unstable == [False, True, False]
+
+
+@pytest.mark.parametrize("order", [2, 4])
+def test_the_motion_within_the_limit_of_refusal_is_bounded_at_any_step(order):
+    """Steps up to twice pi, at half the stiffness that the package bears; order 4 where its kicks stay in."""
+    model = MODEL.truncated(2)
+    for angle in (0.5, 2.0, 4.0, 6.0) if order == 2 else (0.5, 1.0):
+        method = Splitting(step=angle / float(model.omega[-1]), order=order)
+        limit = method.critical_stiffness(pressed(model, 1.0)[0].motion())
+        assert growth(*pressed(model, 0.5 * limit), method, 3000) < math.log(1e5) / 3000
+
+
+def test_a_step_beyond_its_limit_is_refused_before_a_number_comes_out(scene):
+    oscillator, rest = pressed(model_of(scene).truncated(5), 1e12)
+    for method in (CentralDifference(step=1e-5), Splitting(step=1e-5), Splitting(step=1e-5, order=4)):
+        with pytest.raises(StepTooLarge):
+            simulate(oscillator, rest, duration=1e-3, method=method)
+
+
+# implicit methods
+
+
+def test_an_infinitely_stiff_contact_multiplies_the_speed_as_derived():
+    """(3 - 4u) v below u = 2/3, (8u - 5) v above, from a linear complementarity problem solved by hand."""
+    places = (np.arange(97) + 0.5) / 97
+    after = single_contact(FORCE["trapezoidal"], np.full(places.size, 1e10), places)
+    speed = np.where(places < 2 / 3, 3 - 4 * places, 8 * places - 5)
+    assert np.sqrt(after) == pytest.approx(speed, rel=1e-3)
+    assert float(np.mean(np.log(speed**2))) == pytest.approx(2.5 * math.log(3) - 2, abs=2e-3)
+
+
+def test_the_trapezoidal_rule_multiplies_the_energy_of_a_stiff_contact_by_e_to_the_0_7465():
+    growing, largest, resolved = stiff_contacts(1000)
+    assert round(STIFF_GROWTH, 4) == 0.7465
+    assert growing.measured == pytest.approx(STIFF_GROWTH, abs=1e-4)
+    assert 8.98 < largest.measured < 9.0 and resolved.measured == pytest.approx(resolved.theory, rel=0.02)
+
+
+def test_a_resolved_contact_gains_nothing_in_the_mean_and_its_places_are_evenly_spread():
+    stiffness, places = evenly(0.1, 600)
+    relative = single_contact(FORCE["trapezoidal"], stiffness, places) - 1.0
+    rms = math.sqrt(float(np.mean(relative**2)))
+    assert rms == pytest.approx(0.01 / math.sqrt(90), rel=0.02) and abs(float(np.mean(relative))) < 0.05 * rms
+    steps = math.pi / np.sqrt(stiffness)
+    covered, _, _ = np.histogram2d(steps % 1.0, places, bins=5, range=[[0, 1], [0, 1]])
+    assert covered.min() > 15 and np.ptp(steps) == pytest.approx(1.0, abs=0.01)
+
+
+def test_the_exact_motion_keeps_the_energy_that_the_trapezoidal_rule_raises():
+    """The beam on a stiff linear stop: growth beyond linear theory is the method's, not the motion's."""
+    law, step = stop_of(STILL, 100.0), 1.0 / float(STILL.omega.max())
+    beam = ImpactOscillator(model=STILL, stop=Stop(gap=0.0, law=law))
+    compliance = float(STILL.phi @ STILL.phi)
+    start = State(displacement=np.zeros(3), velocity=-1.0 / compliance * STILL.phi)
+    length = math.ceil(60 * math.pi / float(STILL.omega.min()) / step) * step
+    energies = []
+    for method in (Exact(), GeneralisedAlpha.newmark(step=step)):
+        end = simulate(beam, start, duration=length, method=method).end
+        stored = 0.5 * law.stiffness * max(0.0, float(STILL.phi @ end.displacement)) ** 2
+        energies.append((float(beam.energy(end.displacement, end.velocity)) + stored) * 2.0 * compliance)
+    assert energies[0] == pytest.approx(1.0, rel=1e-9) and energies[1] > 10.0
+    run = history(STILL, law, FORCE["trapezoidal"], 1.0, 60)
+    assert not run.diverged and run.contacts[-1] > 40
+    # the same run 2^332 times smaller, rounded alike
+    assert run.log_energy[-1] == pytest.approx(math.log(energies[1]), rel=1e-12)
+
+
+def test_a_history_ends_where_the_numbers_do():
+    run = history(STILL, stop_of(STILL, 1e4), FORCE["trapezoidal"], 1.0, 4000)
+    assert run.diverged and np.all(np.isfinite(run.log_energy)) and run.log_energy[-1] > 300
+
+
+def test_schemes_for_impacts_keep_the_energy_or_lose_some():
+    for label, bound in (("Moreau-Jean 1/2", 1e-11), ("nonsmooth 1", 1e-9), ("Moreau-Jean 1", 0.0)):
+        assert kept(label, STILL, 300).measured <= bound
+    law = NewtonRestitution(local_restitution=1.0)
+    lost = history(STILL, law, lambda h: MoreauJean(step=h, theta=1.0), 0.1, 300)
+    assert lost.log_energy[-1] < -5
+
+
+# false restitution
+
+
+def test_a_step_of_one_contact_time_fakes_a_restitution(scene):
+    """0.45 where there is 0.24, by the generalised-alpha method with the strongest damping, ten modes."""
+    frequency = sorted(scene.drive.frequencies_hz)[3]
+    ten = scene.replace({"modes.count": 10, "contact.law": "hertz"})
+    case = ElasticCollision.of(beam_at(ten, frequency).with_excess(0.013))
+    assert case.exact.restitution == pytest.approx(0.24, abs=0.005)
+    table = outcomes(case, lambda h: GeneralisedAlpha.with_dissipation(step=h, rho=0.0), np.ones(1), 4)
+    assert table[0, 0] == pytest.approx(0.45, abs=0.02)
+
+
+def test_the_kick_is_right_at_a_fine_step_and_pretends_a_loss_at_a_coarse_one(scene):
+    case = ElasticCollision.of(
+        beam_at(scene.replace({"modes.count": 4, "contact.law": "hertz"}), 22.2).with_excess(0.013)
+    )
+    assert case.exact.impacts == 1
+    fine, coarse = (
+        case.outcome(GeneralisedAlpha.with_dissipation(step=size * case.unit, rho=0.0))[1]
+        for size in (1 / 64, 1 / 4)
+    )
+    assert fine == pytest.approx(case.exact.kick, abs=5e-3) and coarse < case.exact.kick - 0.05
+
+
+def test_where_an_error_passes_a_bound():
+    sizes = np.array([0.1, 1.0, 10.0, 100.0])
+    assert reached(sizes, sizes**2, 4.0) == pytest.approx(2.0)
+    assert reached(sizes, np.array([0.0, 0.0, math.nan, math.nan]), 1.0) == 10.0
+    assert reached(sizes, np.zeros(4), 1.0) is None and reached(sizes, np.ones(4), 0.5) is None

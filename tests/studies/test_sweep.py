@@ -1,0 +1,194 @@
+"""Sweeps: stored as they are made, gone on with after any end, the same on every executor; their export."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import random
+import signal
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from beam import single_mode
+from contact import HarmonicDrive, ImpactOscillator, LinearContact, NewtonRestitution, Stop, StroboscopicMap
+from contact.orbits import AmplitudeScan, settle
+from studies import export
+from studies.record import Run
+from studies.scene import read_scene
+from studies.sweep import Shard, read_columns, sweep
+
+SETTINGS = {"model": "toy", "rows": 3}
+
+
+@dataclass(frozen=True)
+class Powers:
+    """A column that anyone can check; slow, so that a kill meets it."""
+
+    seconds: float = 0.0
+
+    def __call__(self, x: float) -> dict[str, np.ndarray]:
+        time.sleep(self.seconds)
+        return {"x": np.array(x), "power": x ** np.arange(3.0), "row": np.arange(3)}
+
+
+def run_in(folder: Path, executor: str = "", workers: int = 2) -> Run:
+    scene = read_scene("letter")
+    return Run(study="toy", folder=folder, scene=scene, command="", executor=executor, workers=workers)
+
+
+def powers_in(columns) -> list[list[float]]:
+    return [column["power"].tolist() for column in columns]
+
+
+ARGUMENTS = [0.5 * k for k in range(24)]
+EXPECTED = [[x**0, x, x**2] for x in ARGUMENTS]
+
+
+@pytest.mark.parametrize("executor", ["threads", "processes"])
+def test_columns_are_the_same_on_every_executor(tmp_path, executor):
+    columns = sweep(run_in(tmp_path, executor), "toy", SETTINGS, ARGUMENTS, Powers())
+    assert powers_in(columns) == EXPECTED
+
+
+def test_columns_are_the_same_on_a_cluster(tmp_path):
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(n_workers=1, threads_per_worker=2, processes=False, protocol="tcp",
+                                  dashboard_address=None) as cluster:  # fmt: skip
+        address = cluster.scheduler_address.removeprefix("tcp://")
+        columns = sweep(run_in(tmp_path, f"dask://{address}"), "toy", SETTINGS, ARGUMENTS, Powers())
+    assert powers_in(columns) == EXPECTED
+
+
+def test_what_is_there_is_not_computed_again(tmp_path):
+    made: list[float] = []
+
+    def counted(x: float) -> dict[str, np.ndarray]:
+        made.append(x)
+        return Powers()(x)
+
+    run = run_in(tmp_path)
+    sweep(run, "toy", SETTINGS, ARGUMENTS[:5], counted, shard=Shard.of("2/2"))
+    assert sorted(made) == ARGUMENTS[1:5:2]
+    (tmp_path / "toy" / "00003.npz").write_bytes(b"damaged")
+    columns = sweep(run, "toy", SETTINGS, ARGUMENTS[:5], counted)
+    assert sorted(made) == sorted([*ARGUMENTS[:5], ARGUMENTS[3]]) and powers_in(columns) == EXPECTED[:5]
+
+
+def test_shards_make_the_whole_and_leave_gaps_until_they_are_there(tmp_path):
+    run = run_in(tmp_path)
+    first = sweep(run, "toy", SETTINGS, ARGUMENTS, Powers(), shard=Shard.of("1/3"))
+    assert [k for k, column in enumerate(first) if column is not None] == list(range(0, 24, 3))
+    for part in ("2/3", "3/3"):
+        columns = sweep(run, "toy", SETTINGS, ARGUMENTS, Powers(), shard=Shard.of(part))
+    assert powers_in(columns) == EXPECTED
+
+
+@pytest.mark.parametrize("text", ["0/2", "3/2", "1", "a/b", "1/0", "-1/2"])
+def test_a_shard_that_is_none_is_refused(text):
+    with pytest.raises(ValueError, match="shard"):
+        Shard.of(text)
+
+
+def test_another_sweep_in_the_same_folder_is_refused_unless_it_begins_anew(tmp_path):
+    run = run_in(tmp_path)
+    sweep(run, "toy", SETTINGS, ARGUMENTS[:2], Powers())
+    with pytest.raises(ValueError, match="rows"):
+        sweep(run, "toy", {**SETTINGS, "rows": 4}, ARGUMENTS[:2], Powers())
+    sweep(run, "toy", {**SETTINGS, "rows": 4}, ARGUMENTS[:2], Powers(), fresh=True)
+    assert read_columns(tmp_path / "toy")[0]["rows"] == 4
+
+
+def test_a_failure_of_the_program_ends_the_sweep_and_keeps_what_is_there(tmp_path):
+    def fails(x: float) -> dict[str, np.ndarray]:
+        if x == ARGUMENTS[4]:
+            raise RuntimeError("out of luck")
+        return Powers()(x)
+
+    run = run_in(tmp_path, workers=1)
+    with pytest.raises(RuntimeError):
+        sweep(run, "toy", SETTINGS, ARGUMENTS[:8], fails)
+    assert len(read_columns(tmp_path / "toy")[1]) >= 3
+    assert powers_in(sweep(run, "toy", SETTINGS, ARGUMENTS[:8], Powers())) == EXPECTED[:8]
+
+
+def test_ten_kills_are_survived(tmp_path):
+    """A child process sweeps and is killed at random, ten times; then it is left to finish.
+
+    Two threads need 1.8 s for all columns, the ten lives end within 1.5 s: none can finish on any machine.
+    """
+    rng = random.Random(5)
+    for kill in range(11):
+        child = os.fork()
+        if child == 0:
+            code = 1
+            try:
+                sweep(run_in(tmp_path), "toy", SETTINGS, ARGUMENTS, Powers(seconds=0.15))
+                code = 0
+            finally:
+                os._exit(code)
+        if kill < 10:
+            time.sleep(rng.uniform(0.0, 0.15))
+            os.kill(child, signal.SIGKILL)
+        assert os.waitpid(child, 0)[1] == (signal.SIGKILL if kill < 10 else 0)
+        for path in (tmp_path / "toy").glob("[0-9]*.npz"):
+            assert set(np.load(path)) == {"x", "power", "row"}
+    assert powers_in(column for _, column in read_columns(tmp_path / "toy")[1]) == EXPECTED
+
+
+def test_the_export_has_one_line_a_cell(tmp_path, capsys):
+    sweep(run_in(tmp_path), "toy", SETTINGS, ARGUMENTS[:4], Powers())
+    assert export.main([str(tmp_path / "toy"), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["columns"] == 4
+    with (tmp_path / "toy.csv").open() as stream:
+        rows = [{key: float(cell) for key, cell in row.items()} for row in csv.DictReader(stream)]
+    assert len(rows) == 12 and all(row["power"] == row["x"] ** row["row"] for row in rows)
+    assert export.main([str(tmp_path / "toy"), "--out", str(tmp_path / "all.npz")]) == 0
+    assert np.load(tmp_path / "all.npz")["power"].tolist() == EXPECTED[:4]
+
+
+@pytest.mark.parametrize("argv", [["nowhere"], ["toy", "--out", "toy.xls"], ["toy", "--to", "xls"], []])
+def test_an_export_that_makes_no_sense_is_refused(tmp_path, argv):
+    sweep(run_in(tmp_path), "toy", SETTINGS, ARGUMENTS[:1], Powers())
+    assert export.main([str(tmp_path / word) if not word.startswith("-") and word != "xls" else word
+                        for word in argv]) == 2  # fmt: skip
+
+
+def driven(law) -> ImpactOscillator:
+    model = single_mode(free_period=40.8e-3, decay_rate=3.56)
+    return ImpactOscillator(model=model, stop=Stop(gap=0.0107, law=law), drive=HarmonicDrive(frequency=22.2))
+
+
+@pytest.mark.parametrize("law", [NewtonRestitution(local_restitution=0.1), LinearContact(stiffness=2e7)])
+def test_a_column_settles_where_the_same_motion_settles_step_by_step(law):
+    """The compiled column against `settle` with the state carried on by hand, up and down."""
+    oscillator, excesses = driven(law), np.linspace(-3e-3, 4e-3, 9)
+    column = AmplitudeScan(oscillator=oscillator, most_cycles=4096)(22.2, excesses)
+    strobed = StroboscopicMap(oscillator=oscillator)
+    state = strobed.at(float(excesses[0])).steady()
+    for way, order in ((0, range(9)), (1, range(8, -1, -1))):
+        for k in order:
+            found = settle(strobed.at(float(excesses[k])), state, most_cycles=4096, prove=False)
+            state = found.end
+            if found.period and column.period[way, k]:
+                cell = (column.period[way, k], column.impacts[way, k])
+                assert cell == (found.period, found.impacts), (way, k)
+    assert column.period[0, 0] == 1 and column.impacts[0, 0] == 0
+    assert np.any(column.period[1] != column.period[0])  # hysteresis
+    assert np.all(column.reason == "")
+
+
+def test_a_chart_is_the_same_by_shards_and_whole(run_study, tmp_path):
+    argv = ["--points", "6", "8", "--cycles", "256"]
+    whole = run_study("chart", *argv)
+    cells = dict(np.load(whole.folder / "chart_single_mode.npz"))
+    for part in ("1/2", "2/2"):
+        assert run_study("chart", *argv, "--fresh" if part == "1/2" else "--quick", "--shard", part).code == 0
+    again = run_study("chart", *argv)
+    for key, values in dict(np.load(again.folder / "chart_single_mode.npz")).items():
+        np.testing.assert_array_equal(values, cells[key])
+    assert again.summary["folds"] == whole.summary["folds"] > 0

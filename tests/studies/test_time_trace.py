@@ -1,0 +1,122 @@
+"""The settled orbit against time: its period, its collision, its spectrum, and what the study writes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from beam import single_mode
+from contact import (
+    HarmonicDrive,
+    ImpactOscillator,
+    LinearContact,
+    NewtonRestitution,
+    Stop,
+    StroboscopicMap,
+    first_collision,
+)
+from contact.collision import before_collision
+from contact.orbits import born
+from studies.time_trace.__main__ import trace_of
+from studies.time_trace.close_up import close_up
+from studies.time_trace.spectrum import lines_of, peaks_of
+
+
+def test_the_orbit_of_figure_4_and_the_ringing_of_its_impact(run_study):
+    ran = run_study("time_trace")
+    summary = ran.summary
+    assert (ran.code, summary["period"], summary["impacts"]) == (0, 4, 1)
+    times = summary["impact_times_s"]
+    assert len(times) == 2 and times[1] - times[0] == pytest.approx(4 / 21.5, rel=1e-8)
+    assert summary["collisions"][0]["energy_to_higher_modes"] > 0.0
+    modes = {peak["mode"]: peak for peak in summary["peaks"] if peak["mode"]}
+    for number, peak in modes.items():
+        assert abs(peak["frequency_hz"] - summary["modes_hz"][number - 1]) <= 21.5
+        # all lines are multiples of the inverse orbit period
+        line = peak["frequency_hz"] * 4 / 21.5
+        assert line == pytest.approx(round(line), abs=1e-6)
+    amplitudes = [modes[number]["amplitude"] for number in (1, 2, 3, 4, 5)]
+    assert amplitudes == sorted(amplitudes, reverse=True)
+    readout = np.load(ran.folder / "time_trace.npz")["readout_m"]
+    half = readout.size // 2
+    # the second orbit period repeats the first: a settled orbit, and a spectrum without leakage
+    assert np.max(np.abs(readout[half:] - readout[:half])) < 1e-8 * np.max(np.abs(readout))
+    assert {summary["verdicts"][point]["verdict"] for point in ("time_trace", "many_modes")} == {"agrees"}
+
+
+def test_below_grazing_there_is_no_impact_and_one_line(run_study):
+    found = run_study("time_trace", "--excess", "-0.01").summary
+    assert (found["period"], found["impacts"], found["collisions"]) == (1, 0, [])
+    assert [round(peak["frequency_hz"], 6) for peak in found["peaks"]] == [21.5]
+
+
+def driven(law, excess):
+    """Eq. (1) with this contact law at 21.50 Hz, its tip as read-out point."""
+    model = single_mode(free_period=40.8e-3, decay_rate=3.56)
+    return ImpactOscillator(
+        model=replace(model, readouts={"readout": model.phi}), stop=Stop(gap=0.0107, law=law),
+        drive=HarmonicDrive(frequency=21.5),
+    ).with_excess(excess)
+
+
+def test_the_close_up_shows_the_force_of_the_law():
+    stiffness = 1e8
+    oscillator = driven(LinearContact(stiffness=stiffness), 0.013)
+    state = before_collision(oscillator)
+    collision = first_collision(oscillator)
+    near = close_up(oscillator, state, collision)
+    assert near.spans[0][0] == pytest.approx(0.0, abs=1e-12)
+    touching = near.height > 1e-12
+    assert np.allclose(near.force[touching], stiffness * near.height[touching], rtol=1e-9)
+    assert np.all(near.force[near.height < -1e-12] == 0.0)
+    # momentum: what the force takes from the unit mass is the kick
+    step = near.time[1] - near.time[0]
+    assert step * near.force.sum() == pytest.approx(collision.kick_velocity, rel=2e-3)
+
+
+def test_an_impact_law_has_no_force():
+    oscillator = driven(NewtonRestitution(local_restitution=0.1), 0.005)
+    settled = born(StroboscopicMap(oscillator=oscillator), 0.005)
+    state = settled.end
+    assert settled.period == 4
+    trace = trace_of(oscillator, state, 4, 8)
+    near = close_up(oscillator, state, trace.collisions[0])
+    assert np.all(np.isnan(near.force))
+    assert near.spans == [(0.0, 0.0)]
+
+
+def test_lines_of_a_known_sum():
+    time = np.arange(4096) / 4096 * 2.0
+    signal = 0.5 + 3.0 * np.cos(2 * np.pi * 5.0 * time) + 0.2 * np.sin(2 * np.pi * 40.0 * time)
+    frequency, amplitude = lines_of(signal, 2.0)
+    assert amplitude[0] == pytest.approx(0.5)
+    assert amplitude[frequency == 5.0][0] == pytest.approx(3.0)
+    assert amplitude[frequency == 40.0][0] == pytest.approx(0.2)
+    assert np.sum(amplitude > 1e-9) == 3
+
+
+def test_a_peak_belongs_to_the_mode_next_to_it():
+    frequency = np.arange(0.0, 200.0, 1.0)
+    amplitude = np.full(200, 1e-9)
+    amplitude[[20, 95, 104, 150]] = [1.0, 0.1, 0.3, 0.5]
+    told = peaks_of(frequency, amplitude, np.array([21.0, 100.0]), 6.0)
+    assert [(peak.frequency_hz, peak.mode) for peak in told] == [
+        (20.0, 1),
+        (95.0, None),
+        (104.0, 2),
+        (150.0, None),
+    ]
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [("--set", "contact.law=foo"), ("--excess", "-1"), ("--excess", "nan"), ("--frequency", "0"),
+     ("--frequency", "1e6"), ("--set", "drive.kind=none"), ("--colour", "red")],
+)
+def test_wrong_use_is_refused_in_one_sentence(run_study, wrong):
+    ran = run_study("time_trace", *wrong)
+    assert ran.code == 2
+    assert ran.err.splitlines()[-1].startswith("python -m studies.time_trace: ")
+    assert "Traceback" not in ran.err

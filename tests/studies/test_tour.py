@@ -1,0 +1,62 @@
+"""The tour runs from top to bottom, and what it prints is what the physics asks for."""
+
+from __future__ import annotations
+
+import runpy
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from studies.letter import FREE_PERIOD_S, PERIODS
+
+SOURCE = Path(__file__).parents[2] / "studies" / "tour.py"
+
+
+@pytest.fixture(scope="module")
+def names(tmp_path_factory):
+    """What the script leaves behind, run in a folder of its own."""
+    folder = tmp_path_factory.mktemp("tour")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        found = runpy.run_path(str(SOURCE))
+    return {**found, "run_in": folder}
+
+
+def test_the_spring_has_the_period_of_the_letter(names):
+    assert names["free_period"] == pytest.approx(FREE_PERIOD_S, rel=1e-3)
+
+
+def test_the_orbit_is_that_of_the_letter(names):
+    """One impact in four periods, a motion that repeats then and not before."""
+    period = PERIODS[21.50]
+    again = names["again"]
+    assert sorted(again.impacts[:period]) == [0] * (period - 1) + [1]
+    assert np.array_equal(again.impacts[period:], again.impacts[:period])
+    steps = np.abs(again.points[period:] - again.points[:period]).max(axis=1)
+    assert steps.max() < 1e-12
+    assert np.abs(again.points[2] - again.points[0]).max() > 1e-4
+
+
+def test_it_ends_at_a_fold_below_grazing(names):
+    fold = names["fold"]
+    assert -0.02 < fold.excess < -0.005
+    assert abs(fold.multipliers[0] - 1.0) < 1e-5
+    assert all(abs(m) < 1.0 for m in fold.multipliers[1:])
+
+
+def test_the_sampled_motion_stays_before_the_plate_but_for_the_dent_of_the_contact(names):
+    height = names["motion"].displacement @ names["model"].phi
+    gap = names["beam"].stop.gap
+    assert 0.98 * gap < height.max() < gap + 1e-4
+    assert names["hit"].impacts == 1 and 0.0 < names["hit"].restitution < 0.4
+
+
+def test_it_draws_where_it_is_run(names):
+    for suffix in ("png", "pdf"):
+        assert (names["run_in"] / "results" / f"tour.{suffix}").stat().st_size > 5000
+
+
+def test_it_is_about_sixty_lines():
+    lines = [line for line in SOURCE.read_text(encoding="utf-8").splitlines() if line.strip()]
+    assert len(lines) <= 70
