@@ -251,7 +251,7 @@ def short_fades(y):
     return even, y * odd
 
 
-@kernel
+@inlined
 def short_flow(mode, x, u, v):
     """Deviation (u, v) after a time |x| <= P/(2K) [s]."""
     half = 0.5 * mode.decay
@@ -262,7 +262,7 @@ def short_flow(mode, x, u, v):
     return cn * u + sn * (v + half * u), cn * v - sn * (mode.stiffness * u + half * v)
 
 
-@kernel
+@inlined
 def flow_over(mode, rows, t, u, v):
     """Deviation (u, v) after a time `t` of at most a period [s]."""
     k = int(t * mode.per_second + 0.5)
@@ -278,7 +278,7 @@ def steady_near(mode, x, swing, glide):
     return swing * even + glide * odd, glide * even - swing * odd
 
 
-@kernel
+@inlined
 def tip_near(mode, rows, since, u, v, t):
     """The motion at time `t` since the strobe; (u, v) is the deviation at node `since`, not after `t`'s node.
 

@@ -20,7 +20,7 @@ import math
 
 import numpy as np
 
-from contact.compiled import kernel
+from contact.compiled import inlined, kernel
 from contact.flight.bounds import PEAK, ROOT, SKIP, certify
 from contact.flight.elementary import EPS
 from contact.single_mode.period_table import flow_to, short_flow, tip_near
@@ -99,7 +99,7 @@ def highest_point(mode, rows, since, u, v, low, high, margin):
     return t, math.nan
 
 
-@kernel
+@inlined
 def above_limit(table, since, u, v, k, limit):
     """Whether the tip displacement at node `k` exceeds `limit`."""
     return table.level[k] + table.from_u[k - since] * u + table.from_v[k - since] * v > limit
@@ -114,7 +114,7 @@ def count_above(level, from_u, from_v, u, v, limit):
     return count
 
 
-@kernel
+@inlined
 def third_bound(mode, u, v):
     """Bound of the tip's third derivative from (u, v) on [m/s^3]."""
     d2 = -mode.decay * v - mode.stiffness * u
@@ -187,7 +187,7 @@ def search(table, since, first, u, v, rho):
     return _UNSETTLED, t, u, v, 0.0
 
 
-@kernel
+@inlined
 def departs(rebound, acceleration, m3, h):
     """Whether a flight that leaves the wall with -`rebound` is proved free for a time `h`."""
     if rebound > h * max(0.0, 0.5 * acceleration + m3 * h / 6.0):
