@@ -29,7 +29,6 @@ from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
 from contact.trajectory import State, Trajectory
-from studies.instruments.peers import PEERS, available
 
 LAWS: dict[int, tuple[ContactLaw, ...]] = {
     NEWTON: (NewtonRestitution(local_restitution=0.6),),
@@ -44,8 +43,7 @@ PERIOD = 1 / 22.2
 
 def _fields(name: str) -> set[str]:
     """Parameters of a method."""
-    known = {**INTEGRATORS, **PEERS}
-    return {field.name for field in dataclasses.fields(known[name])}  # type: ignore[arg-type]
+    return {field.name for field in dataclasses.fields(INTEGRATORS[name])}  # type: ignore[arg-type]
 
 
 def oscillator_with(law: ContactLaw, modes: int = 3, gap: float = 0.01) -> ImpactOscillator:
@@ -68,13 +66,10 @@ FINEST = {
     "nonsmooth-generalised-alpha": lambda fine: INTEGRATORS["nonsmooth-generalised-alpha"](
         step=PERIOD / (40000 * fine), rho=0.8
     ),
-    "scipy": lambda fine: PEERS["scipy"](solver="DOP853", tolerance=1e-7 / fine**3),
-    "heyoka": lambda fine: PEERS["heyoka"](tolerance=1e-8 / fine**3),
-    "sundials": lambda fine: PEERS["sundials"](tolerance=1e-6 / fine**3),
 }
 """Every method that is not exact, by how fine it is made: a new one has to be entered here."""
 
-ALL: dict[str, type[Integrator]] = {**INTEGRATORS, **{name: PEERS[name] for name in available()}}
+ALL: dict[str, type[Integrator]] = INTEGRATORS
 
 
 def made(name: str, fine: float = 1) -> Integrator:

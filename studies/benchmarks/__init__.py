@@ -1,0 +1,1 @@
+"""What a drive period costs."""

@@ -1,1 +1,0 @@
-"""Error against cost: problems, a reference in extended precision, measures, the front, figures."""

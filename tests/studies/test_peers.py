@@ -1,0 +1,320 @@
+"""Outside solvers against the exact methods, each held to what its tolerance promises."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from beam import ModalModel, single_mode
+from contact import (
+    Chatter,
+    ContactError,
+    ContactLaw,
+    DelayedRestitution,
+    HarmonicDrive,
+    HertzContact,
+    HuntCrossley,
+    ImpactOscillator,
+    LinearContact,
+    NewtonRestitution,
+    State,
+    Stop,
+    Trajectory,
+    simulate,
+)
+from contact.integrators import Integrator, Run
+from studies import peers
+from studies.peers import CvodeSolver, HeyokaTaylor, ScipySolver, all_solvers, missing_solvers, solvers
+from studies.peers.equations import Equations
+from studies.work_precision.problems import DURATION, steady_at, swung_beam
+
+LABELS = {
+    "scipy RK45": "scipy", "scipy DOP853": "scipy", "scipy Radau": "scipy", "scipy LSODA": "scipy",
+    "heyoka Taylor": "heyoka", "CVODE BDF": "sundials", "CVODE Adams": "sundials",
+}  # fmt: skip
+FAST = ("scipy DOP853", "heyoka Taylor", "CVODE Adams")
+PROMISE = {"CVODE BDF": 2000.0, "CVODE Adams": 2000.0, "scipy RK45": 100.0, "scipy LSODA": 300.0}
+"""Error of the state over the tolerance that a solver may gather in a run of some ten periods of its fastest
+mode; 30 for those not named.  The tolerance is that of one step, and multistep methods start anew."""
+
+every = pytest.mark.parametrize("label", LABELS)
+fast = pytest.mark.parametrize("label", FAST)
+
+
+def solver(label: str, tolerance: float) -> Integrator:
+    """The solver with this label; skips the test only if its library is missing."""
+    if LABELS[label] in missing_solvers():
+        pytest.skip(f"{LABELS[label]} is not installed")
+    return all_solvers(tolerance)[label]
+
+
+def spring(n_modes: int, law: ContactLaw, *, excess: float = 0.02) -> ImpactOscillator:
+    """The first modes of a driven spring of 24.5 Hz; the stop 5 mm away."""
+    k = np.arange(n_modes)
+    omega = 154.0 * (1.0 + 2.0 * k) ** 1.5
+    model = ModalModel(
+        omega=omega, decay_rate=0.02 * omega, phi=10.0 / (1.0 + 0.4 * k), participation=0.09 / (1.0 + k)
+    )
+    stop = Stop(gap=0.005, law=law)
+    return ImpactOscillator(model=model, stop=stop, drive=HarmonicDrive(frequency=22.2)).with_excess(excess)
+
+
+def equation_1(excess: float = 0.2) -> ImpactOscillator:
+    """Eq. (1) with the stop 1 m away."""
+    return ImpactOscillator(
+        model=single_mode(free_period=0.0408, decay_rate=3.56),
+        stop=Stop(gap=1.0, law=NewtonRestitution(local_restitution=0.1)),
+        drive=HarmonicDrive(frequency=22.2),
+    ).with_excess(excess)
+
+
+@dataclass(frozen=True)
+class Case:
+    """A motion from a state over a length [s]."""
+
+    oscillator: ImpactOscillator
+    start: State
+    length: float
+
+    def follow(self, method: Integrator | None = None) -> Trajectory:
+        times = self.start.time + np.linspace(0.0, self.length, 41)
+        return simulate(self.oscillator, self.start, duration=self.length, times=times, method=method)
+
+
+def collision(oscillator: ImpactOscillator, periods: float) -> Case:
+    """From the lowest point of the steady motion."""
+    return Case(oscillator, steady_at(oscillator, math.pi), periods * oscillator.period)
+
+
+CASES = {
+    "hard wall, Eq. (1)": collision(equation_1(), 6.3),
+    "linear, 4 modes": collision(spring(4, LinearContact(stiffness=3e5)), 1.2),
+    "Hertz, 4 modes": collision(spring(4, HertzContact(stiffness=1e9)), 1.2),
+}
+
+
+def distance(run: Trajectory, exact: Trajectory, oscillator: ImpactOscillator) -> float:
+    """Largest difference of the states at the samples and the end, as energy, over that of the motion [1]."""
+    omega = np.maximum(oscillator.model.omega, 2 * math.pi / oscillator.period)
+
+    def size(displacement: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+        return np.sqrt(np.sum((omega * displacement) ** 2 + velocity**2, axis=-1))
+
+    largest = size(exact.displacement, exact.velocity).max()
+    apart = size(run.displacement - exact.displacement, run.velocity - exact.velocity).max()
+    ends = size(run.end.displacement - exact.end.displacement, run.end.velocity - exact.end.velocity)
+    return float(max(apart, ends) / largest)
+
+
+@every
+@pytest.mark.parametrize("name", CASES)
+def test_meets_its_tolerance_with_the_same_touches(label: str, name: str) -> None:
+    case = CASES[name]
+    exact = case.follow()
+    assert len(exact.impacts) >= 1
+    tolerance = 1e-6 if label == "scipy Radau" else 1e-9
+    within = PROMISE.get(label, 30.0) * tolerance
+    run = case.follow(solver(label, tolerance))
+    assert distance(run, exact, case.oscillator) < within
+    np.testing.assert_array_equal(run.strobe_impacts, exact.strobe_impacts)
+    np.testing.assert_allclose(run.strobe_displacement, exact.strobe_displacement, rtol=0,
+                               atol=within * np.abs(exact.displacement).max())  # fmt: skip
+    fastest = 2 * math.pi / case.oscillator.model.omega.max()
+    speed = np.abs(exact.impacts.approach).max()
+    lost = 0.5 * speed**2 / float(case.oscillator.model.phi @ case.oscillator.model.phi)
+    for part, room in (("start", 30 * fastest), ("end", 30 * fastest), ("approach", 100 * speed),
+                       ("rebound", 100 * speed), ("loss", 300 * lost)):  # fmt: skip
+        found, truth = getattr(run.impacts, part), getattr(exact.impacts, part)
+        np.testing.assert_allclose(found, truth, rtol=0, atol=room * within)
+    assert run.end.time == exact.end.time and run.evaluations > 50
+
+
+@every
+def test_error_falls_with_the_tolerance(label: str) -> None:
+    """Three decades of tolerance bring at least one and a half of error, also through a Hertz contact."""
+    case = CASES["Hertz, 4 modes"]
+    exact = case.follow()
+    coarse, fine = (1e-4, 1e-7) if label == "scipy Radau" else (1e-6, 1e-9)
+    errors = [distance(case.follow(solver(label, tol)), exact, case.oscillator) for tol in (coarse, fine)]
+    assert errors[1] < errors[0] / 30
+
+
+@every
+def test_sets_out_from_the_stop_moving_in(label: str) -> None:
+    """The beam swung on a spring (gap 0): rigid turning and 9 bending modes, no drive."""
+    oscillator, start = swung_beam(45000.0)
+    case = Case(oscillator, start, DURATION)
+    exact = case.follow()
+    tolerance = 1e-7 if label == "scipy Radau" else 1e-9
+    run = case.follow(solver(label, tolerance))
+    assert run.impacts.start[0] == 0.0 and run.impacts.end[0] == pytest.approx(exact.impacts.end[0], rel=1e-5)
+    assert distance(run, exact, oscillator) < PROMISE.get(label, 30.0) * tolerance
+
+
+@fast
+def test_times_wanted_anywhere(label: str) -> None:
+    """States at the start, at strobes, twice at one time, within contacts and at the end."""
+    case = CASES["Hertz, 4 modes"]
+    exact = case.follow()
+    inside = np.linspace(exact.impacts.start[0], exact.impacts.end[0], 9)
+    first, last = case.start.time, case.start.time + case.length
+    times = np.sort(np.concatenate([inside, [first, last, last], exact.strobe_time, exact.strobe_time]))
+    truth, found = (
+        simulate(case.oscillator, case.start, duration=case.length, times=times, method=method)
+        for method in (None, solver(label, 1e-11))
+    )
+    scale = np.abs(truth.displacement).max()
+    np.testing.assert_allclose(found.displacement, truth.displacement, atol=1e-7 * scale, rtol=0)
+    np.testing.assert_array_equal(found.displacement[-1], found.end.displacement)
+    np.testing.assert_array_equal(found.displacement[0], case.start.displacement)
+    assert np.count_nonzero(found.displacement @ case.oscillator.model.phi - 0.005 > 1e-9) >= 7
+
+
+@fast
+@pytest.mark.parametrize("law", [LinearContact(stiffness=3e5), NewtonRestitution(local_restitution=0.6)])
+def test_a_flight_is_a_flight_and_a_run_goes_on(label: str, law: ContactLaw) -> None:
+    """Without a touch the closed form; with touches a run in two pieces is the same motion."""
+    method, n = solver(label, 1e-10), 1 if isinstance(law, NewtonRestitution) else 3
+    free = spring(n, law, excess=-0.3)
+    exact, found = (simulate(free, periods=2, method=chosen) for chosen in (None, method))
+    scale = np.abs(exact.strobe_displacement).max()
+    np.testing.assert_allclose(
+        found.strobe_displacement, exact.strobe_displacement, rtol=0, atol=1e-7 * scale
+    )
+    case = collision(spring(n, law), 3.0)
+    whole = simulate(case.oscillator, case.start, periods=3, method=method)
+    half = simulate(case.oscillator, case.start, duration=0.9 * case.oscillator.period, method=method)
+    rest = simulate(case.oscillator, half.end, duration=2.1 * case.oscillator.period, method=method)
+    np.testing.assert_allclose(rest.end.displacement, whole.end.displacement, rtol=0, atol=1e-6 * scale)
+    assert whole.strobe_impacts.sum() == len(whole.impacts) >= 1
+
+
+@pytest.mark.parametrize("law", [LinearContact(stiffness=3e5), HertzContact(stiffness=1e9)])
+def test_jacobian_is_the_derivative_of_the_rates(law: ContactLaw) -> None:
+    """Against central differences, tip behind the stop; what is watched begins below zero."""
+    oscillator = spring(3, law)
+    caught: list[Equations] = []
+
+    class Caught(Integrator):
+        name, order, laws = "caught", 1.0, (law.code,)
+
+        def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
+            caught.append(Equations(oscillator, run, 1e-9))
+            return simulate(oscillator, run.start, duration=run.length)
+
+    simulate(
+        oscillator,
+        State(displacement=np.zeros(3), velocity=np.zeros(3), time=0.003),
+        periods=1,
+        method=Caught(),
+    )
+    e, y = caught[0], np.array([6e-4, 1e-5, -2e-5, 0.05, -0.1, 0.2])
+    assert e.tip(y)[0] > 0.0
+    for contact in (False, True):
+        found = e.jacobian(contact, y)
+        for j in range(6):
+            step = np.zeros(6)
+            step[j] = 1e-8 if j < 3 else 1e-6
+            plus, minus = (e.rates(contact, 0.01, y + sign * step, np.empty(6)) for sign in (1.0, -1.0))
+            column = (plus - minus) / (2 * step[j])
+            np.testing.assert_allclose(
+                found[:, j], column, rtol=1e-5, atol=1e-5 * np.abs(column).max() + 1e-9
+            )
+    assert e.surface(True, 0.5, 0.5, y) < 0.0 and e.surface(False, 0.5, 0.5, y) < 0.0
+    assert e.surface(False, 0.5, 0.6, y) == pytest.approx(e.tip(y)[0]) == -e.surface(True, 0.5, 0.6, y)
+
+
+def test_threads_do_not_share_a_compiled_integrator() -> None:
+    """Two motions at once come out as they do one after the other."""
+    method = solver("heyoka Taylor", 1e-12)
+    oscillators = [spring(4, HertzContact(stiffness=1e9), excess=e) for e in (0.02, 0.05, 0.1, 0.2)]
+
+    def end(oscillator: ImpactOscillator) -> np.ndarray:
+        return simulate(oscillator, periods=20, method=method).end.displacement
+
+    alone = [end(oscillator) for oscillator in oscillators]
+    with ThreadPoolExecutor(4) as pool:
+        together = list(pool.map(end, oscillators))
+    np.testing.assert_array_equal(together, alone)
+
+
+def test_wrong_use_is_refused() -> None:
+    late = replace(equation_1(), stop=Stop(gap=1.0, law=DelayedRestitution(restitution=0.1, delay=1e-4)))
+    with pytest.raises(TypeError):
+        simulate(late, periods=1, method=ScipySolver())
+    for law in (LinearContact(stiffness=3e5, damping=20.0), HuntCrossley(stiffness=1e9, dissipation=0.3)):
+        with pytest.raises(TypeError, match="law of the stop"):
+            simulate(spring(2, law), periods=1, method=ScipySolver())
+    with pytest.raises(ValueError, match="tolerance"):
+        ScipySolver(tolerance=1e-15)
+    with pytest.raises(ValueError, match="solver"):
+        ScipySolver(solver="RK23")
+    with pytest.raises(ValueError, match="family"):
+        CvodeSolver(family="Euler")
+    for state in (
+        State(displacement=[1.1], velocity=[0.0]),
+        State(displacement=[1.0], velocity=[0.0], regime=3),
+    ):
+        with pytest.raises(ValueError, match="regime of the state"):
+            simulate(equation_1(), state, periods=1, method=ScipySolver())
+
+
+@pytest.mark.parametrize("label", [label for label in LABELS if label != "heyoka Taylor"])
+def test_a_solver_that_gives_up_gives_no_number(label: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Accelerations that stop being numbers half way."""
+    method, case, whole = solver(label, 1e-6), CASES["hard wall, Eq. (1)"], Equations.rates
+
+    def broken(self: Equations, contact: bool, t: float, y: np.ndarray, out: np.ndarray) -> np.ndarray:
+        whole(self, contact, t, y, out)
+        if t > 0.5 * case.length:
+            out[:] = np.nan
+        return out
+
+    monkeypatch.setattr(Equations, "rates", broken)
+    monkeypatch.setattr(solvers, "MOST_STEPS", 1000)  # CVODE goes on among numbers that are none
+    with pytest.raises(ContactError) as caught:
+        case.follow(method)
+    assert 0.4 * case.length < caught.value.time - case.start.time <= case.length
+
+
+def test_what_cannot_be_followed_gives_no_number(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Impacts that accumulate to a stay on the stop, and a series of too many steps."""
+    ringing = replace(spring(5, NewtonRestitution(local_restitution=0.3)), drive=None)
+    start = State(displacement=np.zeros(5), velocity=np.array([0.3, 0.12, 0.1, 0.05, 0.02]))
+    assert 2 in simulate(ringing, start, duration=0.06).impacts.kind
+    with pytest.raises(Chatter):
+        simulate(ringing, start, duration=0.06, method=ScipySolver(solver="RK45", tolerance=1e-8))
+    method = solver("heyoka Taylor", 1e-9)
+    monkeypatch.setattr(solvers, "MOST_STEPS", 2)
+    with pytest.raises(ContactError, match="step_limit"):
+        CASES["linear, 4 modes"].follow(method)
+
+
+def test_a_missing_package_is_named_and_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(solvers, "find_spec", lambda name: None)
+    for made in (HeyokaTaylor, CvodeSolver):
+        with pytest.raises(ImportError, match="not installed"):
+            made()
+    monkeypatch.undo()
+    monkeypatch.setattr(peers, "find_spec", lambda name: object() if name == "scipy" else None)
+    assert missing_solvers() == ["heyoka", "sundials"]
+    assert set(all_solvers(1e-6)) == {label for label, library in LABELS.items() if library == "scipy"}
+
+
+def test_importing_the_peers_imports_no_library() -> None:
+    code = (
+        "import studies.peers as p, sys; p.missing_solvers(); "
+        "print('heyoka' in sys.modules, 'sksundae' in sys.modules)"
+    )
+    root = Path(__file__).resolve().parents[2]
+    answer = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=root
+    )
+    assert answer.stdout.split() == ["False", "False"]

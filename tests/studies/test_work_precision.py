@@ -1,0 +1,377 @@
+"""Work and precision: reference by closed forms and a second route, orders, front, known crossings."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from mpmath import mp
+
+from beam import ModalModel
+from contact import (
+    ContactLaw,
+    HarmonicDrive,
+    HertzContact,
+    HuntCrossley,
+    ImpactOscillator,
+    LinearContact,
+    NewtonRestitution,
+    State,
+    Stop,
+    first_collision,
+    simulate,
+)
+from contact.integrators import CentralDifference, method_for
+from studies.scene import read_scene, single_mode_at
+from studies.work_precision.__main__ import judgement_of
+from studies.work_precision.crossings import OVERSHOOTS, known_crossings, missed_share
+from studies.work_precision.measures import (
+    Reference,
+    Row,
+    cheapest,
+    front,
+    measured_order,
+    reference_of,
+    rows_of,
+)
+from studies.work_precision.methods import EXACT, OUTSIDE, STEPPED, Setting, Sweep, sweeps_for
+from studies.work_precision.model_error import StepError, balanced_step
+from studies.work_precision.problems import (
+    EXCESS,
+    FREQUENCY,
+    driven_problem,
+    hertz_beam,
+    linear_beam,
+    steady_at,
+    swung_problem,
+)
+from studies.work_precision.reference import DIGITS, ExtendedTouch, NoReference, extended_motion
+
+SCENE = read_scene("letter", [])
+FEW_MODES = SCENE.replace({"modes.count": 4})
+
+
+def row(error: float | None, cost: float | None, **more: object) -> Row:
+    """A row with the numbers that matter for the front."""
+    fields = {"problem": "", "method": "", "family": STEPPED, "setting": "", "value": None, "order": None,
+              "certified": False}  # fmt: skip
+    return Row(**{**fields, "error": error, "us_per_period": cost, **more})  # type: ignore[arg-type]
+
+
+# -------------------------------------------------------------------------------------------- the reference
+
+
+def free_mass(mass: float, law: ContactLaw) -> ImpactOscillator:
+    """A mass that touches the stop at t = 0."""
+    phi = np.array([1 / math.sqrt(mass)])
+    model = ModalModel(omega=np.zeros(1), decay_rate=np.zeros(1), phi=phi, participation=np.zeros(1))
+    return ImpactOscillator(model=model, stop=Stop(gap=0.0, law=law))
+
+
+def leaf(law: ContactLaw, excess: float = 0.013) -> ImpactOscillator:
+    """Three modes near those of the letter's spring."""
+    model = ModalModel(
+        omega=2 * np.pi * np.array([24.5, 152.0, 390.0]), decay_rate=np.array([3.56, 21.0, 55.0]),
+        phi=np.array([8.1, 4.7, 3.6]), participation=np.array([0.1, 0.03, 0.02]),
+    )  # fmt: skip
+    stop, drive = Stop(gap=0.0107, law=law), HarmonicDrive(frequency=21.5)
+    return ImpactOscillator(model=model, stop=stop, drive=drive).with_excess(excess)
+
+
+def only_touch(oscillator: ImpactOscillator, velocity: float, until: float, digits: int) -> ExtendedTouch:
+    """The contact of a free mass."""
+    start = State(displacement=[0.0], velocity=[velocity])
+    (touch,) = extended_motion(oscillator, start, [until], digits).touches
+    return touch
+
+
+@pytest.mark.parametrize("digits", DIGITS)
+def test_contact_of_a_free_mass_with_a_spring(digits: int) -> None:
+    """Half a period of the mass on the spring, and the speed reversed, to the digits set."""
+    oscillator = free_mass(0.75, LinearContact(stiffness=3.0e4))
+    touch = only_touch(oscillator, 0.5 * math.sqrt(0.75), 0.05, digits)
+    with mp.workdps(digits):
+        half = mp.pi / mp.sqrt(3.0e4) / mp.mpf(float(oscillator.model.phi[0]))
+        assert abs(mp.mpf(str(touch.end)) / half - 1) < mp.mpf(10) ** (4 - digits)
+        assert abs(touch.after[0] / touch.before[0] + 1) < mp.mpf(10) ** (4 - digits)
+
+
+@pytest.mark.parametrize("digits", DIGITS)
+def test_contact_of_a_free_mass_under_hertz(digits: int) -> None:
+    """2 int dx/sqrt(1 - x^(5/2)) = (4/5) B(2/5, 1/2) times greatest approach over speed."""
+    oscillator, velocity = free_mass(0.006, HertzContact(stiffness=9.6e9)), 0.25 * math.sqrt(0.006)
+    touch = only_touch(oscillator, velocity, 1e-3, digits)
+    with mp.workdps(digits):
+        phi = mp.mpf(float(oscillator.model.phi[0]))
+        v = phi * mp.mpf(velocity)
+        greatest = (mp.mpf(5) / 4 * v**2 / (mp.mpf(9.6e9) * phi**2)) ** mp.mpf("0.4")
+        expected = mp.mpf(4) / 5 * mp.beta(mp.mpf(2) / 5, mp.mpf(1) / 2) * greatest / v
+        assert abs(mp.mpf(str(touch.end)) / expected - 1) < mp.mpf(10) ** (5 - digits)
+        assert abs(touch.after[0] / touch.before[0] + 1) < mp.mpf(10) ** (5 - digits)
+
+
+def second_route(
+    oscillator: ImpactOscillator, start: State, probe: float, guess: tuple[float, float]
+) -> tuple:
+    """The same motion by mpmath alone: (touch, release, modal states at the probe).
+
+    Flights and a linear contact: exponentials of the matrix of (q, v, sin wt, cos wt, 1). Hertz's contact:
+    ``mpmath.odefun`` in sigma, dt = r dsigma, r = sqrt(d), its release by findroot. `guess`: times of touch
+    and release in doubles.
+    """
+    model, drive, law, n = oscillator.model, oscillator.drive, oscillator.stop.law, oscillator.n_modes
+    assert drive is not None
+    w, gap, k = 2 * mp.pi * mp.mpf(drive.frequency), mp.mpf(oscillator.stop.gap), mp.mpf(law.numbers[0])
+    phi = [mp.mpf(float(x)) for x in model.phi]
+    push = [mp.mpf(float(x)) * mp.mpf(drive.amplitude) * w**2 for x in model.participation]
+
+    def matrix(stiffness: mp.mpf) -> mp.matrix:
+        a = mp.zeros(2 * n + 3)
+        for i in range(n):
+            a[i, n + i], a[n + i, n + i] = 1, -mp.mpf(float(model.decay_rate[i]))
+            a[n + i, i] = -(mp.mpf(float(model.omega[i])) ** 2)
+            a[n + i, 2 * n], a[n + i, 2 * n + 2] = push[i], phi[i] * stiffness * gap
+            for j in range(n):
+                a[n + i, j] -= phi[i] * stiffness * phi[j]
+        a[2 * n, 2 * n + 1], a[2 * n + 1, 2 * n] = w, -w
+        return a
+
+    def depth(y: mp.matrix) -> mp.mpf:
+        return mp.fdot(phi, y[:n]) - gap
+
+    def root(function: Callable[[mp.mpf], mp.mpf], near: float) -> mp.mpf:
+        return mp.findroot(
+            function, (mp.mpf(near) * (1 - mp.mpf("1e-9")), mp.mpf(near)), tol=mp.mpf(10) ** (-2 * mp.dps + 8)
+        )
+
+    free, t0 = matrix(mp.mpf(0)), mp.mpf(start.time)
+    modes = [mp.mpf(float(x)) for x in (*start.displacement, *start.velocity)]
+    y = mp.matrix([*modes, mp.sin(w * t0), mp.cos(w * t0), 1])
+    touch = root(lambda t: depth(mp.expm(free * t) * y), guess[0] - start.time)
+    y = mp.expm(free * touch) * y
+    lasts = mp.mpf(0)
+    if isinstance(law, NewtonRestitution):
+        jump = (1 + k) * mp.fdot(phi, y[n : 2 * n]) / mp.fdot(phi, phi)
+        for i in range(n):
+            y[n + i] -= phi[i] * jump
+    elif isinstance(law, LinearContact):
+        stiff = matrix(k)
+        lasts = root(lambda t: depth(mp.expm(stiff * t) * y), guess[1] - guess[0])
+        y = mp.expm(stiff * lasts) * y
+    else:
+
+        def rates(_s: mp.mpf, z: list) -> list:
+            q, v, sine, cosine, r = z[:n], z[n : 2 * n], z[2 * n], z[2 * n + 1], z[2 * n + 2]
+            pulls = [
+                mp.fdot(list(free[n + i, : 2 * n + 1]), [*q, *v, sine]) - phi[i] * k * r**3 for i in range(n)
+            ]
+            rate = mp.fdot(phi, v) / 2
+            return [*(r * x for x in v), *(r * x for x in pulls), w * r * cosine, -w * r * sine, rate, r]
+
+        flow = mp.odefun(rates, 0, [*y[: 2 * n + 2], mp.mpf(0), mp.mpf(0)])
+        # r falls to zero where the contact ends; of a sine arch of length T it is int dt/r = 2.96 sqrt(T/v)
+        high = mp.mpf("2.5") * mp.sqrt(mp.mpf(guess[1] - guess[0]) / mp.fdot(phi, y[n : 2 * n]))
+        while flow(high)[2 * n + 2] > 0:
+            high *= mp.mpf("1.1")
+        end = mp.findroot(lambda s: flow(s)[2 * n + 2], (high / mp.mpf("1.1"), high), solver="anderson")
+        z = flow(end)
+        lasts, y = z[2 * n + 3], mp.matrix([*z[: 2 * n + 2], 1])
+    y = mp.expm(free * (mp.mpf(probe) - t0 - touch - lasts)) * y
+    return t0 + touch, t0 + touch + lasts, list(y[:n]), list(y[n : 2 * n])
+
+
+@pytest.mark.parametrize(
+    "law",
+    [NewtonRestitution(local_restitution=0.1), LinearContact(stiffness=2e5), HertzContact(stiffness=1e8)],
+    ids=["newton", "linear", "hertz"],
+)
+def test_a_second_route_and_the_exact_method_agree_with_the_reference(law: ContactLaw) -> None:
+    """Matrix exponentials and mpmath's own integrator to 19 digits; `simulate` to its rounding."""
+    oscillator = leaf(law)
+    start = steady_at(oscillator, math.pi)
+    probe = start.time + oscillator.period
+    run = simulate(oscillator, start, duration=1.3 * oscillator.period, times=np.array([probe]))
+    found = extended_motion(oscillator, start, [probe])
+    (q, v), touch = found.states[0], found.touches[0]
+    size = oscillator.stop.gap / oscillator.model.phi[0]
+    speed = size * 2 * math.pi / oscillator.period
+    with mp.workdps(28):
+        begun, ended, q2, v2 = second_route(
+            oscillator, start, probe, (run.impacts.start[0], run.impacts.end[0])
+        )
+        within = mp.mpf("1e-19")
+        assert abs(mp.mpf(str(touch.start)) - begun) < within * oscillator.period
+        assert abs(mp.mpf(str(touch.end)) - ended) < within * oscillator.period
+        assert max(abs(mp.mpf(str(a)) - b) for a, b in zip(q, q2, strict=True)) < within * size
+        assert max(abs(mp.mpf(str(a)) - b) for a, b in zip(v, v2, strict=True)) < within * speed * 20
+    assert float(touch.start) == pytest.approx(run.impacts.start[0], rel=1e-14)
+    assert float(touch.end) == pytest.approx(run.impacts.end[0], rel=1e-14)
+    np.testing.assert_allclose([float(x) for x in q], run.displacement[0], atol=1e-13 * size)
+    np.testing.assert_allclose([float(x) for x in v], run.velocity[0], atol=1e-13 * speed)
+
+
+def test_what_the_reference_cannot_follow_is_refused() -> None:
+    for law in (HuntCrossley(stiffness=1e8, dissipation=0.5), LinearContact(stiffness=1e5, damping=1.0)):
+        with pytest.raises(ValueError, match="law of the stop"):
+            extended_motion(leaf(law), steady_at(leaf(law), math.pi), [0.1])
+    shallow, deep = leaf(HertzContact(stiffness=1e8), excess=-1e-9), leaf(HertzContact(stiffness=1e8))
+    start = steady_at(shallow, math.pi)
+    with pytest.raises(NoReference, match="too near a graze"):
+        extended_motion(shallow, start, [start.time + shallow.period])
+    start = steady_at(deep, math.pi)
+    touch = simulate(deep, start, periods=1).impacts
+    with pytest.raises(NoReference, match="in a contact"):
+        extended_motion(deep, start, [0.5 * (touch.start[0] + touch.end[0])])
+
+
+# --------------------------------------------------------------------------------- the front and the orders
+
+
+def test_front_of_planted_rows() -> None:
+    best = [row(1e-2, 1.0), row(1e-5, 3.0), row(1e-5, 3.0), row(1e-9, 40.0)]
+    beaten = [row(1e-2, 1.1), row(1e-1, 9.99), row(1e-5, 4.0), row(1e-9, 41.0), row(1.0, 39.0)]
+    nothing = [row(None, 1e-3), row(1e-12, None), row(math.nan, 1e-3)]
+    assert front([*nothing, *beaten, *best]) == best and front(nothing) == []
+    costs = [
+        found and found.us_per_period
+        for found in (cheapest([*beaten, *best], e) for e in (1e-4, 1e-2, 1e-10))
+    ]
+    assert costs == [3.0, 1.0, None]
+
+
+@given(st.lists(st.tuples(st.floats(1e-16, 1.0), st.floats(1e-6, 10.0)), min_size=1, max_size=40))
+def test_front_by_its_definition(points: list[tuple[float, float]]) -> None:
+    found = {(r.error, r.us_per_period) for r in front([row(error, cost) for error, cost in points])}
+    for e, c in set(points):
+        dominated = any(a <= e and b <= c and (a < e or b < c) for a, b in points)
+        assert ((e, c) in found) != dominated
+
+
+def test_balanced_step_of_a_power_law() -> None:
+    steps = [1e-4 / 4**k for k in range(5)]
+    errors = [
+        StepError(step_s=h, error=None if h == 1e-4 else 30.0 * h**2, us_per_period=None) for h in steps
+    ]
+    assert balanced_step(errors, 30.0 * (7e-6) ** 2) == pytest.approx(7e-6)
+    assert balanced_step(errors, 1.0) is None
+
+
+@pytest.fixture(scope="module")
+def swung() -> Reference:
+    """The swung beam touches where its run begins, on the grid: nothing scatters about the stated order."""
+    return reference_of(swung_problem())
+
+
+@pytest.mark.parametrize(
+    ("label", "stated", "shown"),
+    [("central difference", 2.0, 2.0), ("splitting, order 2", 2.0, 2.0), ("splitting, order 4", 4.0, 2.0),
+     ("Newmark, 1/4, 1/2", 2.0, 2.0), ("generalised alpha, rho 0.8", 2.0, 2.0)],
+)  # fmt: skip
+def test_rows_show_the_order_stated(swung: Reference, label: str, stated: float, shown: float) -> None:
+    """The order of smooth motion, but for the release between two grid points, which leaves h^2."""
+    (sweep,) = [one for one in sweeps_for(swung.problem) if one.label == label]
+    rows = rows_of(swung, replace(sweep, settings=sweep.settings[1:5]), repeats=1)
+    assert not any(r.failed for r in rows) and {r.order for r in rows} == {stated}
+    assert measured_order(rows) == pytest.approx(shown, abs=0.15)
+    if label == "central difference":
+        assert measured_order(rows, "error_time") == pytest.approx(shown, abs=0.15)
+        counts = np.array([r.evaluations_per_period for r in rows], dtype=float)
+        np.testing.assert_allclose(counts[1:] / counts[:-1], 4.0, rtol=0.01)
+
+
+# --------------------------------------------------------------------------------------- problems and rows
+
+
+def test_linear_contact_lasts_as_long_as_that_of_hertz() -> None:
+    oscillator, hertz = linear_beam(FEW_MODES), hertz_beam(FEW_MODES)
+    assert isinstance(oscillator.stop.law, LinearContact) and oscillator.excess == pytest.approx(
+        EXCESS, rel=1e-9
+    )
+    wanted = first_collision(hertz).contact_time
+    assert first_collision(oscillator).contact_time == pytest.approx(wanted, rel=1e-11)
+
+
+@pytest.fixture(scope="module")
+def few() -> Reference:
+    """Four modes, linear contact."""
+    return reference_of(driven_problem("linear", "four modes", linear_beam(FEW_MODES)))
+
+
+def test_the_exact_method_is_at_rounding_and_judged(few: Reference) -> None:
+    (sweep,) = [one for one in sweeps_for(few.problem) if one.family == EXACT]
+    (exact,) = rows_of(few, sweep, repeats=1)
+    method = method_for(few.problem.oscillator.stop.law.code)
+    assert exact.certified and exact.default and exact.missed == 0.0
+    assert exact.error is not None and exact.error_time is not None
+    assert max(exact.error, exact.error_time) < 1e-13 < method.accuracy
+    assert max(few.own_error, few.own_error_time) < 1e-19
+    fixed = replace(exact, error=1e-12, us_per_period=10.0)
+    slower = row(1e-13, 50.0, problem="linear", method="a")
+    faster = row(1e-12, 7.0, problem="linear", method="b", family=OUTSIDE)
+    alone, beaten = judgement_of(few, [fixed, slower]), judgement_of(few, [fixed, slower, faster])
+    assert alone is not None and alone.faster == [] and alone.outside is None and alone.next_ratio == 5.0
+    assert (
+        beaten is not None and beaten.faster == [faster.named] and beaten.outside_ratio == pytest.approx(0.7)
+    )
+
+
+def test_a_refused_or_slow_setting_is_a_row_with_its_sentence(few: Reference) -> None:
+    settings = tuple(
+        Setting(value=h, text=f"{h:g}", method=CentralDifference(step=h)) for h in (6e-5, 1e-5, 1e-6, 1e-10)
+    )
+    sweep = Sweep(label="x", family=STEPPED, growth=1e4, settings=settings)
+    refused, first, *rest = rows_of(few, sweep, slowest=1e-3, repeats=1)
+    assert refused.failed.startswith("StepTooLarge") and first.failed == "" and len(rest) == 2
+    assert all(one.failed.startswith("not run") for one in rest)
+    assert all(
+        one.error is None and one.missed is None and one.us_per_period is None for one in (refused, *rest)
+    )
+
+
+def test_every_setting_fits_the_law_of_its_problem() -> None:
+    one = single_mode_at(SCENE, FREQUENCY).with_excess(EXCESS)
+    labels = set()
+    for problem in (
+        driven_problem("single mode", "", one),
+        driven_problem("hertz", "", hertz_beam(FEW_MODES)),
+    ):
+        law = problem.oscillator.stop.law.code
+        for quick in (False, True):
+            sweeps = sweeps_for(problem, quick=quick)
+            assert len({sweep.label for sweep in sweeps}) == len(sweeps)
+            assert [sweep.family for sweep in sweeps].count(EXACT) == 1
+            for sweep in sweeps:
+                assert all(setting.method.accepts(law) for setting in sweep.settings)
+                values = [setting.value for setting in sweep.settings]
+                assert len(values) == 1 or all(np.diff(np.array(values, dtype=float)) < 0)
+            labels |= {setting.method.name for sweep in sweeps for setting in sweep.settings}
+    assert {"splitting", "central-difference", "generalised-alpha", "moreau-jean", "sampled-flight",
+            "nonsmooth-generalised-alpha", "scipy"} <= labels  # fmt: skip
+
+
+def test_known_crossings_are_there_and_wide_ones_are_not_missed() -> None:
+    """Certified flights find each once; a grid can only miss what is narrower than its step."""
+    oscillator = linear_beam(FEW_MODES)
+    known = known_crossings(oscillator)
+    assert {one.overshoot for one in known} == set(OVERSHOOTS)
+    exact = method_for(oscillator.stop.law.code)
+    assert missed_share(exact, known) == (0.0, 0.0)
+    counts = [len(simulate(c.oscillator, c.start, duration=c.length, method=exact).impacts) for c in known]
+    assert counts == [1] * len(known)
+    soft = Stop(gap=oscillator.stop.gap, law=LinearContact(stiffness=10.0))
+    known = [replace(one, oscillator=replace(one.oscillator, stop=soft)) for one in known]
+    assert oscillator.drive is not None
+    w = oscillator.drive.angular_frequency
+    shares = []
+    for step in (1e-3, 1e-4, 1e-5):
+        share, largest = missed_share(CentralDifference(step=step), known)
+        assert share is not None and largest is not None
+        shares.append(share)
+        # 2 sqrt(2 h)/w is the widest crossing of that overshoot; the ringing ones are narrower
+        assert 2 * math.sqrt(2 * largest / (w**2 + oscillator.model.omega[1] ** 2)) < 1.5 * step
+    assert shares == sorted(shares, reverse=True) and shares[0] > shares[-1]
