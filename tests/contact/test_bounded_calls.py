@@ -1,7 +1,7 @@
 """Every public call that follows a motion returns or is refused, with every law of contact.
 
 Compiled code cannot be interrupted: the calls run in a process of their own under a watchdog that names the
-one that does not come back (``python tests/test_bounded_calls.py`` from the root, with the root on the path).
+one that does not come back (``python tests/contact/test_bounded_calls.py`` from the root, with the root on the path).
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from contact.laws import (
 )
 from contact.orbits import continuation, kick, lyapunov, shooting, single_impact
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parent.parent.parent
 LONGEST = 120.0
 """Seconds within which each call comes back, its compilation included; most take some milliseconds."""
 
