@@ -40,7 +40,7 @@ from scipy.optimize import minimize_scalar
 
 from beam import ModalModel
 from contact import ContactError, StroboscopicMap, first_collision, simulate
-from contact.orbits import KickFamily, KickOrbit, born
+from contact.orbits import KickFamily, SingleImpactOrbit, born
 from studies import letter
 from studies.scene import Scene, SceneError, beam_at, model_of
 
@@ -103,14 +103,14 @@ class Models:
         self.scene = scene
         self.whole = _reference(scene)
         self._periods: dict[float, int] = {}
-        self._folds: dict[float, KickOrbit | None] = {}
+        self._folds: dict[float, SingleImpactOrbit | None] = {}
 
     def oscillator(self, modes: int, frequency: float) -> StroboscopicMap:
         """The strobed motion of the spring with so many modes, 1e-3 above grazing."""
         model = self.whole.truncated(modes)
         return StroboscopicMap(oscillator=beam_at(self.scene, frequency, model)).at(BORN_EXCESS)
 
-    def fold(self, frequency: float) -> KickOrbit | None:
+    def fold(self, frequency: float) -> SingleImpactOrbit | None:
         """The fold of the reference."""
         if frequency not in self._folds:
             oscillator = self.oscillator(self.whole.n_modes, frequency).oscillator

@@ -52,7 +52,7 @@ def test_the_node_keeps_one_impact_up_to_its_secondary_bifurcation(letter_scene,
 @pytest.mark.parametrize(("frequency", "tau", "m"), [(21.50, 0.3, 4), (20.90, 0.5, 3)])
 def test_the_second_impact_is_where_shooting_finds_it(letter_scene, frequency, tau, m):
     """The certified flights of shooting agree on the speed."""
-    speed = second_impact_speed(family_at(letter_scene, frequency, tau, m)) * letter_scene.stop.gap_m
+    speed = second_impact_speed(family_at(letter_scene, frequency, tau, m))
     shooting = Shooting(oscillator=strobed_at(letter_scene, frequency, tau).oscillator, period=m)
     inside, outside = (shooting.at_speed(part * speed) for part in (0.999, 1.001))
     assert inside.admissible and not outside.admissible
@@ -62,7 +62,7 @@ def test_the_second_impact_is_where_shooting_finds_it(letter_scene, frequency, t
 def test_at_the_flip_a_multiplier_is_minus_one(letter_scene, frequency, tau, m):
     """Away from the letter's frequencies: at those p3 to p11 end at a second impact."""
     family = family_at(letter_scene, frequency, tau, m)
-    multipliers = family.orbit(flip_speed(family)).multipliers()
+    multipliers = family.orbit(flip_speed(family)).multipliers
     assert np.min(np.abs(multipliers + 1.0)) < 1e-9
 
 
