@@ -108,6 +108,8 @@ def draw(rows: Sequence[Row], tried: Sequence[Tried]) -> Figure:
             if row.tolerance:
                 ax.axhline(row.tolerance, **plotting.GUIDE)
                 ax.set_yscale("log")
+            else:
+                ax.set_ylim(bottom=-0.2)
             ax.set(xscale="log", xlim=(1.5, 40.0), xticks=(2, 5, 10, 20), xticklabels=("2", "5", "10", "20"))
             ax.minorticks_off()
             plotting.panel(ax, number, f"{row.quantity}, {row.frequency_hz:.2f} Hz".replace("_", " "))

@@ -55,7 +55,8 @@ class Choice:
             return LEVELS[self.level]
         mesh = f", {self.mesh} elements a leg" if self.mesh else ""
         more = " and a residual one" if self.residual else ""
-        return f"{LEVELS[self.level]}{mesh}, {self.modes} modes{more}, {self.law} contact"
+        modes = f"{self.modes} mode{'s' if self.modes > 1 else ''}{more}"
+        return f"{LEVELS[self.level]}{mesh}, {modes}, {self.law} contact"
 
     @property
     def cost(self) -> float:
