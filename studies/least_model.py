@@ -11,12 +11,10 @@ reference by no more than the tolerances:
     restitution    of these collisions; absolute
     born_period    period of the orbit settled at excess 1e-3, every drive frequency; whether it differs (0)
     fold           F/F_g - 1 at which p_m ends, every drive frequency; relative to it, or to the letter's
-    amplitude
-                   stability of 2.5e-4 where it is smaller
+                   amplitude stability of 2.5e-4 where it is smaller
     fold_middle    the same at the middle drive frequency
     tip_trace      tip over one period of the orbit settled at excess 0.013, middle drive frequency; root
-    mean square
-                   of the difference over the gap
+                   mean square of the difference over the gap
 
 Folds are those of the collision as a kick of all modes (``contact.orbits.KickFamily``), which has them to
 0.2 % (median; 1 % at worst) at a hundredth of the price of following the orbits; those of fewer modes are
@@ -39,12 +37,16 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from beam import ModalModel
-from contact import ContactError, StroboscopicMap, first_collision, simulate
-from contact.orbits import KickFamily, SingleImpactOrbit, born
+from contact import ContactError, ImpactOscillator, StroboscopicMap, first_collision, simulate
+from contact.orbits import KickFamily, Settled, SingleImpactOrbit, born
 from studies import letter
 from studies.scene import Scene, SceneError, beam_at, model_of
 
-__all__ = ["LADDER", "QUANTITIES", "REFERENCE", "Question", "least_modes", "questions"]
+__all__ = [
+    "COLLISIONS", "LADDER", "QUANTITIES", "REFERENCE", "Answer", "Question", "Values", "collisions",
+    "error_of_fold", "error_of_trace", "largest_error", "least_modes", "middle_of", "questions", "settled",
+    "tip_trace",
+]  # fmt: skip
 
 REFERENCE = 40
 """Coupled modes of the reference: for the letter's spring 30 have its folds to 2e-4, 60 to 1e-4."""
@@ -52,7 +54,10 @@ REFERENCE = 40
 LADDER = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 15, 18, 21, 25, 30)
 """Numbers of modes that are tried."""
 
-BORN_EXCESS = 1e-3
+BORN_EXCESS, TRACE_EXCESS = 1e-3, letter.TIME_TRACE_EXCESS
+COLLISIONS = (0.5 * TRACE_EXCESS, TRACE_EXCESS, 2.0 * TRACE_EXCESS)
+"""Excesses of the collisions that are asked for: three, lest errors that cancel at one pass for accuracy."""
+
 MOST_CYCLES = 4000
 """Bound of a transient [drive periods]: the slowest at the letter's frequencies takes about 1000."""
 
@@ -83,8 +88,7 @@ class Question:
         return self.answers[modes]
 
     def error(self, models: Models, modes: int, reference: int) -> float:
-        """Distance of two answers; zero where the reference has none, infinite where only the model has
-        not."""
+        """Distance of two answers; 0 where the reference has none, infinite where only the model has none."""
         found, sharp = self.answer(models, modes), self.answer(models, reference)
         if sharp is None:
             return 0.0
@@ -105,15 +109,14 @@ class Models:
         self._periods: dict[float, int] = {}
         self._folds: dict[float, SingleImpactOrbit | None] = {}
 
-    def oscillator(self, modes: int, frequency: float) -> StroboscopicMap:
-        """The strobed motion of the spring with so many modes, 1e-3 above grazing."""
-        model = self.whole.truncated(modes)
-        return StroboscopicMap(oscillator=beam_at(self.scene, frequency, model)).at(BORN_EXCESS)
+    def oscillator(self, modes: int, frequency: float) -> ImpactOscillator:
+        """The spring with so many modes, 1e-3 above grazing."""
+        return beam_at(self.scene, frequency, self.whole.truncated(modes)).with_excess(BORN_EXCESS)
 
     def fold(self, frequency: float) -> SingleImpactOrbit | None:
         """The fold of the reference."""
         if frequency not in self._folds:
-            oscillator = self.oscillator(self.whole.n_modes, frequency).oscillator
+            oscillator = self.oscillator(self.whole.n_modes, frequency)
             family = KickFamily(oscillator=oscillator, period=self.period(frequency))
             self._folds[frequency] = family.fold() if family.period > 1 else None
         return self._folds[frequency]
@@ -121,8 +124,7 @@ class Models:
     def period(self, frequency: float) -> int:
         """The born period of the reference."""
         if frequency not in self._periods:
-            strobed = self.oscillator(self.whole.n_modes, frequency)
-            self._periods[frequency] = born(strobed, BORN_EXCESS, most_cycles=MOST_CYCLES).period
+            self._periods[frequency] = settled(self.oscillator(self.whole.n_modes, frequency)).period
         return self._periods[frequency]
 
 
@@ -140,28 +142,34 @@ def _reference(scene: Scene) -> ModalModel:
             most = max(1, most // 2)
 
 
-def _collisions(name: str) -> Callable[[Models, int, float], Answer]:
-    def answer(models: Models, modes: int, frequency: float) -> Answer:
-        oscillator = models.oscillator(modes, frequency).oscillator
-        excesses = [factor * letter.TIME_TRACE_EXCESS for factor in (0.5, 1.0, 2.0)]
-        values = [getattr(first_collision(oscillator.with_excess(excess)), name) for excess in excesses]
-        return np.array(values) if np.all(np.isfinite(values)) else None
+def middle_of(scene: Scene) -> float:
+    """The drive frequency [Hz] in the middle of those of the scene."""
+    drives = sorted(scene.drive.frequencies_hz)
+    return drives[(len(drives) - 1) // 2]
 
-    return answer
+
+def settled(oscillator: ImpactOscillator, excess: float = BORN_EXCESS) -> Settled:
+    """The orbit settled from below grazing at this excess."""
+    return born(StroboscopicMap(oscillator=oscillator), excess, most_cycles=MOST_CYCLES)
+
+
+def collisions(oscillator: ImpactOscillator, name: str) -> Answer:
+    """`restitution`, `delay` or `kick` of the first collision at each of `COLLISIONS`."""
+    values = [getattr(first_collision(oscillator.with_excess(excess)), name) for excess in COLLISIONS]
+    return np.array(values) if np.all(np.isfinite(values)) else None
 
 
 def _born_period(models: Models, modes: int, frequency: float) -> Answer:
     if modes == models.whole.n_modes:
         return np.array([float(models.period(frequency))])
-    strobed = models.oscillator(modes, frequency)
-    return np.array([float(born(strobed, BORN_EXCESS, most_cycles=MOST_CYCLES).period)])
+    return np.array([float(settled(models.oscillator(modes, frequency)).period)])
 
 
 def _fold(models: Models, modes: int, frequency: float) -> Answer:
     sharp = models.fold(frequency)
     if sharp is None or modes == models.whole.n_modes:
         return None if sharp is None else np.array([sharp.excess])
-    family = KickFamily(oscillator=models.oscillator(modes, frequency).oscillator, period=sharp.period)
+    family = KickFamily(oscillator=models.oscillator(modes, frequency), period=sharp.period)
     middle = math.log(sharp.kick.speed)
     best = minimize_scalar(
         lambda x: family.orbit(math.exp(x)).excess, bounds=(middle - 1.0, middle + 1.0), method="bounded",
@@ -170,19 +178,18 @@ def _fold(models: Models, modes: int, frequency: float) -> Answer:
     return None if abs(best.x - middle) > 0.99 else np.array([float(best.fun)])
 
 
-def _tip_trace(models: Models, modes: int, frequency: float) -> Answer:
-    strobed = models.oscillator(modes, frequency)
-    settled = born(strobed, letter.TIME_TRACE_EXCESS, most_cycles=MOST_CYCLES)
-    if settled.period == 0 or settled.impacts == 0:
+def tip_trace(oscillator: ImpactOscillator) -> Answer:
+    """Tip over gap during one period of the orbit settled at excess 0.013; None without an orbit."""
+    orbit, driven = settled(oscillator, TRACE_EXCESS), oscillator.with_excess(TRACE_EXCESS)
+    if orbit.period == 0 or orbit.impacts == 0:
         return None
-    oscillator = strobed.oscillator.with_excess(letter.TIME_TRACE_EXCESS)
-    times = settled.end.time + np.arange(settled.period * SAMPLES) / SAMPLES * oscillator.period
-    run = simulate(oscillator, settled.end, periods=settled.period, times=times)
-    trace: Values = run.displacement @ oscillator.model.phi / oscillator.stop.gap
+    times = orbit.end.time + np.arange(orbit.period * SAMPLES) / SAMPLES * driven.period
+    run = simulate(driven, orbit.end, periods=orbit.period, times=times)
+    trace: Values = run.displacement @ driven.model.phi / driven.stop.gap
     return trace
 
 
-def _of_trace(answer: Values, reference: Values) -> float:
+def error_of_trace(answer: Values, reference: Values) -> float:
     """Root mean square of the difference; a p_m orbit has m phases, and any of them is the same orbit."""
     if answer.size != reference.size:
         return math.inf
@@ -190,31 +197,36 @@ def _of_trace(answer: Values, reference: Values) -> float:
     return float(min(np.sqrt(np.mean((turn - reference) ** 2)) for turn in turns))
 
 
-def _largest(answer: Values, reference: Values) -> float:
-    return float(np.max(np.abs(answer - reference)))
-
-
-def _of_fold(answer: Values, reference: Values) -> float:
+def error_of_fold(answer: Values, reference: Values) -> float:
+    """Relative to the fold, or to the letter's amplitude stability where it is smaller."""
     return float(abs(answer[0] - reference[0]) / max(abs(reference[0]), letter.AMPLITUDE_STABILITY))
+
+
+def largest_error(answer: Values, reference: Values) -> float:
+    """The largest absolute difference."""
+    return float(np.max(np.abs(answer - reference)))
 
 
 QUANTITIES: Mapping[
     str, tuple[Callable[[Models, int, float], Answer], Callable[[Values, Values], float], bool]
 ]
 QUANTITIES = {
-    "kick": (_collisions("kick"), _largest, False),
-    "restitution": (_collisions("restitution"), _largest, False),
-    "born_period": (_born_period, _largest, True),
-    "fold": (_fold, _of_fold, True),
-    "fold_middle": (_fold, _of_fold, False),
-    "tip_trace": (_tip_trace, _of_trace, False),
+    "kick": (lambda models, modes, f: collisions(models.oscillator(modes, f), "kick"), largest_error, False),
+    "restitution": (
+        lambda models, modes, f: collisions(models.oscillator(modes, f), "restitution"),
+        largest_error,
+        False,
+    ),
+    "born_period": (_born_period, largest_error, True),
+    "fold": (_fold, error_of_fold, True),
+    "fold_middle": (_fold, error_of_fold, False),
+    "tip_trace": (lambda models, modes, f: tip_trace(models.oscillator(modes, f)), error_of_trace, False),
 }
 """Name -> answer, distance of two answers, whether it is asked at every drive frequency."""
 
 
 def questions(scene: Scene, needs: Mapping[str, float]) -> Iterator[Question]:
     """What the needs come to; those of frequencies are no questions, the number of the mode is the answer."""
-    drives = sorted(scene.drive.frequencies_hz)
     for quantity, tolerance in needs.items():
         if quantity.startswith("frequency "):
             continue
@@ -222,7 +234,8 @@ def questions(scene: Scene, needs: Mapping[str, float]) -> Iterator[Question]:
             raise ValueError(
                 f"quantity is {quantity!r}; it must be one of {', '.join(QUANTITIES)}, frequency K"
             )
-        for frequency in drives if QUANTITIES[quantity][2] else [drives[(len(drives) - 1) // 2]]:
+        asked = scene.drive.frequencies_hz if QUANTITIES[quantity][2] else [middle_of(scene)]
+        for frequency in sorted(asked):
             yield Question(quantity=quantity, frequency=frequency, tolerance=tolerance)
 
 

@@ -23,7 +23,6 @@ cells
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
@@ -81,18 +80,8 @@ def chart(
         scene = run.choose_modes(scene, NEEDS)
     oscillator = (beam_at if model == "beam" else single_mode_at)(scene, 0.5 * (low + high))
     scan = AmplitudeScan(oscillator=oscillator, most_cycles=bound)
-    grid = {
-        "points": [columns, rows],
-        "frequencies_hz": [low, high],
-        "excesses": list(excesses),
-        "knee": KNEE,
-    }
-    settings = {"model": model, "plane": grid, "most_cycles": bound, "scene": scene.values()}
-    work, name, began = (
-        Scan(scan=scan, excesses=tuple(plane.rising_excesses())),
-        f"{model}-{columns}x{rows}",
-        time.time(),
-    )
+    settings = {"model": model, "plane": plane, "knee": KNEE, "most_cycles": bound, "scene": scene.values()}
+    work, name = Scan(scan=scan, excesses=tuple(plane.rising_excesses())), f"{model}-{columns}x{rows}"
     found = sweep(run, name, settings, plane.frequencies().tolist(), work, shard=part, fresh=fresh)
     there = [column for column in found if column is not None]
     tell_failures(run, there)
@@ -101,11 +90,9 @@ def chart(
         "modes": oscillator.n_modes,
         "points": [columns, rows],
         "most_cycles": bound,
-        "largest_period": LARGEST_PERIOD,
         "shard": shard,
         "store": name,
         "cells": 2 * rows * len(range(part.number - 1, columns, part.count)),
-        "sweep_s": time.time() - began,
     }
     if part.count > 1 or len(there) < columns:
         run.say(f"shard {shard}: {len(there)} of {columns} columns are in {run.folder / name}")
