@@ -42,9 +42,7 @@ from contact.simulation import simulate
 from contact.stop import Stop
 from contact.stroboscope import StrobedOrbit, StroboscopicMap
 from contact.trajectory import State
-from studies.instruments.oscillators import beam_of, hertz_of
-from studies.instruments.scene_file import read_scene
-from studies.instruments.spring_of_scene import model_of
+from studies.scene import beam_at, hertz_of, model_of, read_scene
 
 T, MU, TAU = 40.80e-3, 3.56, 0.1
 HERTZ = HertzContact(stiffness=9.6154e9)
@@ -207,7 +205,7 @@ def test_where_contact_is_soft_a_branch_has_several_folds() -> None:
     """The letter's spring with 12 modes at 23.05 Hz: a pair of folds close together, found from no kick fold
     and from any orbit; below them the branch goes on to the graze of a second touch."""
     scene = read_scene("letter", ["modes.count=12"])
-    oscillator = beam_of(scene, 23.05, model_of(scene))
+    oscillator = beam_at(scene, 23.05, model_of(scene))
     family = Shooting(oscillator=oscillator, period=8)
     upper, lower = folds_of(family)
     assert (upper.excess, lower.excess) == pytest.approx((8.944156e-6, 8.913082e-6), rel=1e-6)
@@ -238,7 +236,7 @@ def test_below_its_lowest_fold_a_branch_can_go_on_to_a_graze() -> None:
     scene = read_scene(
         "letter", ["modes.count=20", "spring.kind=cantilever", "tip.mass_kg=0.002", thickness]
     )
-    oscillator = beam_of(scene, 23.05, model_of(scene))
+    oscillator = beam_at(scene, 23.05, model_of(scene))
     family = Shooting(oscillator=oscillator, period=8)
     upper, lower = folds_of(family)
     assert upper.speed < lower.speed and lower.excess < upper.excess
