@@ -1,7 +1,7 @@
 """Every public call that follows a motion returns or is refused, with every law of contact.
 
 Compiled code cannot be interrupted: the calls run in a process of their own under a watchdog that names the
-one that does not come back (``python tests/contact/test_bounded_calls.py`` from the root, with the root on the path).
+one that does not come back (``python tests/contact/test_bounded_calls.py``, with the root on the path).
 """
 
 from __future__ import annotations
