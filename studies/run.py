@@ -37,9 +37,9 @@ from typing import TextIO, cast
 from beam import SuspiciousValue
 from contact import ContactError
 from studies.executors import duration
-from studies.files import json_text
+from studies.files import SCHEMA, json_text
 from studies.options import add_options, parser_of
-from studies.record import SCHEMA, Run
+from studies.record import Run
 from studies.scene import Scene, read_scene
 
 __all__ = ["Run", "study"]

@@ -13,7 +13,6 @@ ranges.
 from __future__ import annotations
 
 import contextlib
-import csv
 import dataclasses
 import math
 import re
@@ -22,6 +21,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
+
+import numpy as np
 
 from studies.scene_keys import (
     GIVEN,
@@ -209,28 +210,25 @@ def with_measured_modes(scene: Scene) -> Scene:
     The file has the names of the four lists of [modal_data] as its heading, in any order, and one line of
     comma-separated numbers in the units of the keys for each mode; lines that begin with # are skipped.
     """
-    path, name = Path(scene.modal_data.file), f"modal_data.file {shown(scene.modal_data.file)}"
+    name = f"modal_data.file {shown(scene.modal_data.file)}"
     if any(getattr(scene.modal_data, entry) for entry in MODE_LISTS):
         raise SceneError("modal_data gives its modes twice, as lists and as a file: drop one of them")
     try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-        wanted = [line for line in lines if line.strip() and not line.lstrip().startswith("#")]
-        rows = [[cell.strip() for cell in row] for row in csv.reader(wanted)]
-    except (OSError, ValueError, csv.Error) as error:
-        reason = getattr(error, "strerror", None) or "it is no table of numbers in UTF-8"
-        raise SceneError(f"{name} cannot be read: {reason}") from error
-    if not rows or sorted(rows[0]) != sorted(MODE_LISTS):
-        raise SceneError(f"{name} must begin with the heading {','.join(MODE_LISTS)} (in any order)")
-    columns: dict[str, object] = {"modal_data.file": ""}
-    for number, row in enumerate(rows[1:], start=1):
-        if len(row) != len(MODE_LISTS):
-            raise SceneError(f"{name} has {len(row)} values, not {len(MODE_LISTS)}, for mode {number}")
-    for place, column in enumerate(rows[0]):
-        try:
-            columns[f"modal_data.{column}"] = [float(row[place]) for row in rows[1:]]
-        except ValueError as error:
-            raise SceneError(f"{name}, {column}: {error}") from None
-    return scene.replace(columns)
+        text = Path(scene.modal_data.file).read_text(encoding="utf-8-sig")
+        heading, *rows = (line for line in text.splitlines() if line.strip()[:1] not in ("", "#"))
+        if not rows:
+            raise ValueError("it holds no mode")
+        columns = np.loadtxt(rows, delimiter=",", ndmin=2).T
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or " ".join(str(error).split())
+        raise SceneError(f"{name} cannot be read as a table of numbers: {reason}") from error
+    found = [word.strip() for word in heading.split(",")]
+    if sorted(found) != sorted(MODE_LISTS) or len(columns) != len(found):
+        raise SceneError(f"{name} must have the columns {','.join(MODE_LISTS)} (in any order)")
+    lists: dict[str, object] = {
+        f"modal_data.{key}": tuple(c) for key, c in zip(found, columns.tolist(), strict=True)
+    }
+    return scene.replace({"modal_data.file": "", **lists})
 
 
 def doubts(scene: Scene) -> Iterator[str]:
