@@ -15,15 +15,16 @@ from studies.plotting import BLUE, GUIDE, VERMILION
 from studies.scene import Scene, single_mode_at
 from studies.transitions.descriptions import Diagram, Row, Scans
 
+LEGEND = ("upward scan", "downward scan", "letter: stability of the amplitude", "grazing", "not settled")
+
 
 def draw(scene: Scene, rows: Sequence[Row], diagrams: Sequence[Scans], name: str) -> Figure:
     """The panels of the letter's Fig. 2 for one description."""
     columns = min(3, len(rows))
     lines = math.ceil(len(rows) / columns)
     with plotting.house_style():
-        figure, axes = plotting.new_figure(
-            lines, columns, width=plotting.PAGE, height=0.055 * lines + 0.012, squeeze=False
-        )
+        size = {"width": plotting.PAGE, "height": 0.055 * lines + 0.012}
+        figure, axes = plotting.new_figure(lines, columns, squeeze=False, **size)
         series: dict[str, Artist] = {}
         for axis in axes.flat[len(rows) :]:
             axis.set_visible(False)
@@ -48,15 +49,8 @@ def draw(scene: Scene, rows: Sequence[Row], diagrams: Sequence[Scans], name: str
             plotting.label(axis.xaxis, *sideways)
         for axis in axes[:, 0]:
             plotting.label(axis.yaxis, *upwards)
-        names = (
-            "upward scan",
-            "downward scan",
-            "letter: stability of the amplitude",
-            "grazing",
-            "not settled",
-        )
-        there = [entry for entry in names if entry in series]
-        figure.legend([series[entry] for entry in there], there, loc="outside lower center", ncols=len(there),
+        there = [name for name in LEGEND if name in series]
+        figure.legend([series[name] for name in there], there, loc="outside lower center", ncols=len(there),
                       markerscale=1.5)  # fmt: skip
     return figure
 
