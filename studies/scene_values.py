@@ -1,13 +1,11 @@
-"""A scene as values: sections of plain numbers, read from TOML, changed by dotted keys, printed with
-comments.
+"""A scene as values: sections of plain numbers, from TOML, changed by dotted keys, printed with comments.
 
     scene = scene_from_text(text, overrides=["stop.gap_m=0.011"])
     thinner = scene.replace({"spring.thickness_m": 0.00060})
     scene.spring.thickness_m, scene["spring.thickness_m"]
     print(scene.dump())                                    # reads back as the same scene
 
-Values are of the right type here; `studies.scene` builds spring, law and drive from them and so checks
-ranges.
+Values are of the right type here; `studies.scene` builds spring, law and drive of them and so checks ranges.
 """
 
 from __future__ import annotations
@@ -24,27 +22,8 @@ from pathlib import Path
 
 import numpy as np
 
-from studies.scene_keys import (
-    GIVEN,
-    MODE_LISTS,
-    SECTIONS,
-    ContactKeys,
-    DampingKeys,
-    DriveKeys,
-    Key,
-    ModalDataKeys,
-    ModesKeys,
-    ReadoutKeys,
-    ScanKeys,
-    SceneError,
-    SingleModeKeys,
-    SpringKeys,
-    StopKeys,
-    TipKeys,
-    Value,
-    keys_of,
-    shown,
-)
+from studies import scene_keys
+from studies.scene_keys import GIVEN, MODE_LISTS, SECTIONS, Key, SceneError, Value, keys_of, shown
 
 __all__ = ["Scene", "doubts", "named", "scene_from_text"]
 
@@ -56,17 +35,17 @@ USUAL_MODES = 15
 class Scene:
     """The sections, and in `origins` the provenance of values that are no defaults (not part of equality)."""
 
-    spring: SpringKeys = field(default_factory=SpringKeys)
-    tip: TipKeys = field(default_factory=TipKeys)
-    readout: ReadoutKeys = field(default_factory=ReadoutKeys)
-    damping: DampingKeys = field(default_factory=DampingKeys)
-    modes: ModesKeys = field(default_factory=ModesKeys)
-    modal_data: ModalDataKeys = field(default_factory=ModalDataKeys)
-    single_mode: SingleModeKeys = field(default_factory=SingleModeKeys)
-    drive: DriveKeys = field(default_factory=DriveKeys)
-    stop: StopKeys = field(default_factory=StopKeys)
-    contact: ContactKeys = field(default_factory=ContactKeys)
-    scan: ScanKeys = field(default_factory=ScanKeys)
+    spring: scene_keys.SpringKeys = field(default_factory=scene_keys.SpringKeys)
+    tip: scene_keys.TipKeys = field(default_factory=scene_keys.TipKeys)
+    readout: scene_keys.ReadoutKeys = field(default_factory=scene_keys.ReadoutKeys)
+    damping: scene_keys.DampingKeys = field(default_factory=scene_keys.DampingKeys)
+    modes: scene_keys.ModesKeys = field(default_factory=scene_keys.ModesKeys)
+    modal_data: scene_keys.ModalDataKeys = field(default_factory=scene_keys.ModalDataKeys)
+    single_mode: scene_keys.SingleModeKeys = field(default_factory=scene_keys.SingleModeKeys)
+    drive: scene_keys.DriveKeys = field(default_factory=scene_keys.DriveKeys)
+    stop: scene_keys.StopKeys = field(default_factory=scene_keys.StopKeys)
+    contact: scene_keys.ContactKeys = field(default_factory=scene_keys.ContactKeys)
+    scan: scene_keys.ScanKeys = field(default_factory=scene_keys.ScanKeys)
     origins: tuple[tuple[str, str], ...] = field(default=(), compare=False, repr=False)
 
     def __getitem__(self, key: str) -> Value:
