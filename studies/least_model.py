@@ -22,15 +22,17 @@ looked for within a factor e of the approach velocity at the fold of the referen
 collision through their compliance, sum phi_k^2/omega_k^2 over the modes beyond, so that errors fall steadily
 along the ladder: the least number is found by bisection, and the next one is asked as well, lest errors
 cancel by chance. A quantity that the reference does not have at a frequency (no orbit, no fold) asks nothing
-there.
+there. `studies.adequacy` holds this choice against a search that follows every orbit.
 """
 
 from __future__ import annotations
 
 import math
 from bisect import bisect
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cache
+from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,7 +45,7 @@ from studies import letter
 from studies.scene import Scene, SceneError, beam_at, model_of
 
 __all__ = [
-    "COLLISIONS", "LADDER", "QUANTITIES", "REFERENCE", "Answer", "Question", "Values", "collisions",
+    "COLLISIONS", "LADDER", "QUANTITIES", "REFERENCE", "Answer", "Models", "Question", "Values", "collisions",
     "error_of_fold", "error_of_trace", "largest_error", "least_modes", "middle_of", "questions", "settled",
     "tip_trace",
 ]  # fmt: skip
@@ -66,38 +68,37 @@ SAMPLES = 256
 
 Values = NDArray[np.float64]
 Answer = Values | None
+Distance = Callable[[Values, Values], float]
+Choice = TypeVar("Choice", bound=Hashable)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Question:
-    """A quantity at a drive frequency [Hz], with its tolerance; answers are kept by number of modes."""
+class Question(Generic[Choice]):
+    """What is asked of models, here numbers of modes, and how far their answers may be from the reference's.
 
-    quantity: str
-    frequency: float
+    `ask` gives None, or raises ContactError or ValueError, where a model has no answer.
+    """
+
+    words: str
+    ask: Callable[[Choice], Answer]
+    distance: Distance
+    reference: Choice
     tolerance: float
-    answers: dict[int, Answer] = field(default_factory=dict, repr=False)
+    answers: dict[Choice, Answer] = field(default_factory=dict, repr=False)
 
-    def answer(self, models: Models, modes: int) -> Answer:
-        """What the model with so many modes says; None if it has no answer."""
-        if modes not in self.answers:
+    def answer(self, choice: Choice) -> Answer:
+        """What a model says, computed once; None if it has no answer."""
+        if choice not in self.answers:
             try:
-                found = QUANTITIES[self.quantity][0](models, modes, self.frequency)
+                self.answers[choice] = self.ask(choice)
             except (ContactError, ValueError):  # such as a drive above all modes
-                found = None
-            self.answers[modes] = found
-        return self.answers[modes]
+                self.answers[choice] = None
+        return self.answers[choice]
 
-    def error(self, models: Models, modes: int, reference: int) -> float:
-        """Distance of two answers; 0 where the reference has none, infinite where only the model has none."""
-        found, sharp = self.answer(models, modes), self.answer(models, reference)
-        if sharp is None:
-            return 0.0
-        return math.inf if found is None else QUANTITIES[self.quantity][1](found, sharp)
-
-    @property
-    def words(self) -> str:
-        """As part of a sentence."""
-        return f"{self.quantity.removesuffix('_middle')} at {self.frequency:g} Hz"
+    def off(self, choice: Choice, reference: Choice | None = None) -> float:
+        """Distance of a model from the reference, or from another; infinite if one has no answer."""
+        found, sharp = self.answer(choice), self.answer(self.reference if reference is None else reference)
+        return math.inf if found is None or sharp is None else self.distance(found, sharp)
 
 
 class Models:
@@ -106,26 +107,20 @@ class Models:
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
         self.whole = _reference(scene)
-        self._periods: dict[float, int] = {}
-        self._folds: dict[float, SingleImpactOrbit | None] = {}
+        self.period, self.fold = cache(self._period), cache(self._fold)
 
     def oscillator(self, modes: int, frequency: float) -> ImpactOscillator:
         """The spring with so many modes, 1e-3 above grazing."""
         return beam_at(self.scene, frequency, self.whole.truncated(modes)).with_excess(BORN_EXCESS)
 
-    def fold(self, frequency: float) -> SingleImpactOrbit | None:
-        """The fold of the reference."""
-        if frequency not in self._folds:
-            oscillator = self.oscillator(self.whole.n_modes, frequency)
-            family = KickFamily(oscillator=oscillator, period=self.period(frequency))
-            self._folds[frequency] = family.fold() if family.period > 1 else None
-        return self._folds[frequency]
-
-    def period(self, frequency: float) -> int:
+    def _period(self, frequency: float) -> int:
         """The born period of the reference."""
-        if frequency not in self._periods:
-            self._periods[frequency] = settled(self.oscillator(self.whole.n_modes, frequency)).period
-        return self._periods[frequency]
+        return settled(self.oscillator(self.whole.n_modes, frequency)).period
+
+    def _fold(self, frequency: float) -> SingleImpactOrbit | None:
+        """The fold of the reference."""
+        oscillator, period = self.oscillator(self.whole.n_modes, frequency), self.period(frequency)
+        return KickFamily(oscillator=oscillator, period=period).fold() if period > 1 else None
 
 
 def _reference(scene: Scene) -> ModalModel:
@@ -159,10 +154,15 @@ def collisions(oscillator: ImpactOscillator, name: str) -> Answer:
     return np.array(values) if np.all(np.isfinite(values)) else None
 
 
-def _born_period(models: Models, modes: int, frequency: float) -> Answer:
-    if modes == models.whole.n_modes:
-        return np.array([float(models.period(frequency))])
-    return np.array([float(settled(models.oscillator(modes, frequency)).period)])
+def tip_trace(oscillator: ImpactOscillator) -> Answer:
+    """Tip over gap during one period of the orbit settled at excess 0.013; None without an orbit."""
+    orbit, driven = settled(oscillator, TRACE_EXCESS), oscillator.with_excess(TRACE_EXCESS)
+    if orbit.period == 0 or orbit.impacts == 0:
+        return None
+    times = orbit.end.time + np.arange(orbit.period * SAMPLES) / SAMPLES * driven.period
+    run = simulate(driven, orbit.end, periods=orbit.period, times=times)
+    trace: Values = run.displacement @ driven.model.phi / driven.stop.gap
+    return trace
 
 
 def _fold(models: Models, modes: int, frequency: float) -> Answer:
@@ -178,15 +178,10 @@ def _fold(models: Models, modes: int, frequency: float) -> Answer:
     return None if abs(best.x - middle) > 0.99 else np.array([float(best.fun)])
 
 
-def tip_trace(oscillator: ImpactOscillator) -> Answer:
-    """Tip over gap during one period of the orbit settled at excess 0.013; None without an orbit."""
-    orbit, driven = settled(oscillator, TRACE_EXCESS), oscillator.with_excess(TRACE_EXCESS)
-    if orbit.period == 0 or orbit.impacts == 0:
-        return None
-    times = orbit.end.time + np.arange(orbit.period * SAMPLES) / SAMPLES * driven.period
-    run = simulate(driven, orbit.end, periods=orbit.period, times=times)
-    trace: Values = run.displacement @ driven.model.phi / driven.stop.gap
-    return trace
+def _born_period(models: Models, modes: int, frequency: float) -> Answer:
+    whole = modes == models.whole.n_modes
+    found = models.period(frequency) if whole else settled(models.oscillator(modes, frequency)).period
+    return np.array([float(found)])
 
 
 def error_of_trace(answer: Values, reference: Values) -> float:
@@ -207,36 +202,35 @@ def largest_error(answer: Values, reference: Values) -> float:
     return float(np.max(np.abs(answer - reference)))
 
 
-QUANTITIES: Mapping[
-    str, tuple[Callable[[Models, int, float], Answer], Callable[[Values, Values], float], bool]
-]
-QUANTITIES = {
-    "kick": (lambda models, modes, f: collisions(models.oscillator(modes, f), "kick"), largest_error, False),
-    "restitution": (
-        lambda models, modes, f: collisions(models.oscillator(modes, f), "restitution"),
-        largest_error,
-        False,
-    ),
-    "born_period": (_born_period, largest_error, True),
+def _collision(name: str) -> Callable[[Models, int, float], Answer]:
+    return lambda models, modes, frequency: collisions(models.oscillator(modes, frequency), name)
+
+
+QUANTITIES: Mapping[str, tuple[Callable[[Models, int, float], Answer], Distance, bool]] = {
+    "kick": (_collision("kick"), largest_error, False),
+    "restitution": (_collision("restitution"), largest_error, False),
     "fold": (_fold, error_of_fold, True),
     "fold_middle": (_fold, error_of_fold, False),
-    "tip_trace": (lambda models, modes, f: tip_trace(models.oscillator(modes, f)), error_of_trace, False),
+    "tip_trace": (lambda models, n, f: tip_trace(models.oscillator(n, f)), error_of_trace, False),
+    "born_period": (_born_period, largest_error, True),
 }
-"""Name -> answer, distance of two answers, whether it is asked at every drive frequency."""
+"""Name -> answer, distance, whether it is asked at every drive frequency. Born periods are asked last:
+transients are long where modes are missing."""
 
 
-def questions(scene: Scene, needs: Mapping[str, float]) -> Iterator[Question]:
-    """What the needs come to; those of frequencies are no questions, the number of the mode is the answer."""
-    for quantity, tolerance in needs.items():
-        if quantity.startswith("frequency "):
-            continue
-        if quantity not in QUANTITIES:
-            raise ValueError(
-                f"quantity is {quantity!r}; it must be one of {', '.join(QUANTITIES)}, frequency K"
-            )
-        asked = scene.drive.frequencies_hz if QUANTITIES[quantity][2] else [middle_of(scene)]
-        for frequency in sorted(asked):
-            yield Question(quantity=quantity, frequency=frequency, tolerance=tolerance)
+def questions(models: Models, needs: Mapping[str, float]) -> Iterator[Question[int]]:
+    """What the needs come to, where the reference has an answer."""
+    scene = models.scene
+    for quantity in sorted(needs, key=list(QUANTITIES).index):
+        ask, distance, everywhere = QUANTITIES[quantity]
+        for frequency in sorted(scene.drive.frequencies_hz) if everywhere else [middle_of(scene)]:
+            question = Question(
+                words=f"{quantity.removesuffix('_middle')} at {frequency:g} Hz", distance=distance,
+                ask=lambda modes, ask=ask, frequency=frequency: ask(models, modes, frequency),  # type: ignore[misc]
+                reference=models.whole.n_modes, tolerance=needs[quantity],
+            )  # fmt: skip
+            if question.answer(question.reference) is not None:
+                yield question
 
 
 def least_modes(scene: Scene, needs: Mapping[str, float]) -> tuple[Scene, str]:
@@ -252,17 +246,23 @@ def least_modes(scene: Scene, needs: Mapping[str, float]) -> tuple[Scene, str]:
     if scene.modes.count or scene.spring.kind == "modal_data" or scene.drive.kind != "harmonic":
         return scene, ""
     numbers = [int(quantity.split()[1]) for quantity in needs if quantity.startswith("frequency ")]
-    # born periods last: transients are long where modes are missing
-    asked = sorted(questions(scene, needs), key=lambda question: question.quantity == "born_period")
+    others = {quantity: needs[quantity] for quantity in needs if not quantity.startswith("frequency ")}
+    if not others.keys() <= QUANTITIES.keys():
+        known = ", ".join(QUANTITIES)
+        raise ValueError(f"quantities are {', '.join(others)}; they must be of {known}, frequency K")
     least = max(numbers, default=1)
     reason = f"frequency {least}" if numbers else "the least there is"
-    if asked:
+    if others:
         models = Models(scene)
         sharp = models.whole.n_modes
         rungs = sorted({*(n for n in LADDER if least < n < sharp), min(least, sharp), sharp})
         low, worst = 0, None
-        for question in asked:
-            enough = _enough(question, models, rungs)
+        for question in questions(models, others):
+
+            def enough(place: int, question: Question[int] = question) -> bool:
+                """Whether the rung with this number and the next one are near enough."""
+                return all(question.off(n) <= question.tolerance for n in rungs[place : place + 2])
+
             if not enough(low):
                 # the first rung above `low` that is good enough; the reference itself is
                 low, worst = bisect(range(low, len(rungs)), False, key=enough) + low, question
@@ -270,15 +270,5 @@ def least_modes(scene: Scene, needs: Mapping[str, float]) -> tuple[Scene, str]:
         if least == sharp:
             reason = f"all that were tried; fewer do not give {worst.words if worst else 'what is asked'}"
         elif worst is not None:
-            reason = f"{worst.words}, good to {worst.error(models, least, sharp):.1e} against {sharp} modes"
+            reason = f"{worst.words}, good to {worst.off(least):.1e} against {sharp} modes"
     return scene.replace({"modes.count": least}, provenance="least"), f"modes kept: {least} ({reason})"
-
-
-def _enough(question: Question, models: Models, rungs: Sequence[int]) -> Callable[[int], bool]:
-    """Whether the rung with this number and the next one answer the question within its tolerance."""
-
-    def enough(place: int) -> bool:
-        pair = rungs[place : place + 2]
-        return all(question.error(models, n, models.whole.n_modes) <= question.tolerance for n in pair)
-
-    return enough

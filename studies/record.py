@@ -30,6 +30,7 @@ from contact import ContactError
 from studies import letter
 from studies.executors import pool_of, progress, say
 from studies.files import (
+    SCHEMA,
     columns_of,
     csv_text,
     git_state,
@@ -38,17 +39,14 @@ from studies.files import (
     plain,
     versions,
     write_atomically,
-)
+)  # fmt: skip
 from studies.least_model import least_modes
 from studies.scene import Scene, free_period
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["SCHEMA", "Run"]
-
-SCHEMA = 2
-"""Number of the layout of summary.json, manifest.json and the JSON on standard output."""
+__all__ = ["Run"]
 
 SAME_SPRING = 0.005
 """Relative difference of two free periods beyond which the born period changes next to a band edge."""

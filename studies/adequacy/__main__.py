@@ -52,15 +52,15 @@ def adequacy(scene: Scene, run: Run) -> Mapping[str, object]:
     """Compute, store and draw."""
     models, rows, tried = Models(harmonic(scene)), list[Row](), list[Tried]()
     for quantity, frequency in run.track(questions(scene, run.quick), "questions"):
-        search = Search(models=models, quantity=quantity, frequency=frequency, sharp=models.sharp)
-        row = search.least(search.kind[3])
+        search = Search(models, quantity, frequency)
+        row = search.least(search.tolerance)
         rows.append(row)
         tried += [
             Tried(
                 **asdict(one), quantity=quantity, frequency_hz=frequency, cost_us=one.cost,
                 error=search.off(one), chosen=one.words == row.least,
             )
-            for one in tuple(search.answers)
+            for one in tuple(search.question.answers)
         ]  # fmt: skip
         if not row.reached:
             run.say(

@@ -19,17 +19,18 @@ from __future__ import annotations
 import math
 from bisect import bisect
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
-from contact import ContactError, ImpactOscillator
+from contact import ImpactOscillator
 from contact.orbits import Shooting, fold_of
 from studies import letter
 from studies.adequacy.models import EQ_1, LAWS, MESHES, MODES, Choice, Models
 from studies.least_model import (
     COLLISIONS,
     Answer,
+    Question,
     Values,
     collisions,
     error_of_fold,
@@ -37,7 +38,7 @@ from studies.least_model import (
     largest_error,
     settled,
     tip_trace,
-)
+)  # fmt: skip
 from studies.scene import approach_speed
 
 __all__ = ["QUANTITIES", "Row", "Search", "first"]
@@ -77,13 +78,14 @@ def _of_fold(answer: Values, reference: Values) -> float:
     return 0.0 if math.isnan(reference[0]) else error_of_fold(answer, reference)
 
 
-def _relative(answer: Values, reference: Values) -> float:
-    return float(np.max(np.abs(answer / reference - 1.0)))
-
-
 QUANTITIES: Mapping[str, tuple[Callable[[At, float], Answer], Callable[[Values, Values], float], str, float]]
 QUANTITIES = {
-    "frequency": (lambda at, f: at(f).model.frequencies_hz, _relative, "relative", 1e-3),
+    "frequency": (
+        lambda at, f: at(f).model.frequencies_hz,
+        lambda a, b: largest_error(a / b, b / b),
+        "relative",
+        1e-3,
+    ),
     "restitution": (lambda at, f: collisions(at(f), "restitution"), largest_error, "1", 1e-2),
     "delay": (_delays, largest_error, "v/a", 2e-2),
     "kick": (lambda at, f: collisions(at(f), "kick"), largest_error, "1", 1e-2),
@@ -114,49 +116,31 @@ class Row(Choice):
     least: str
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
 class Search:
     """One question to the models of one scene; each answer is computed once.
 
     `quantity` is a key of `QUANTITIES`, "frequency" followed by the number of the mode; `frequency` that of
-    the drive [Hz]; `sharp` the reference.
+    the drive [Hz]; `sharp` the reference, that of the models by default.
     """
 
-    models: Models
-    quantity: str
-    frequency: float
-    sharp: Choice
-    answers: dict[Choice, Answer] = field(default_factory=dict, repr=False)
-
-    def __post_init__(self) -> None:
-        name, _, number = self.quantity.partition(" ")
+    def __init__(self, models: Models, quantity: str, frequency: float, sharp: Choice | None = None) -> None:
+        name, _, number = quantity.partition(" ")
         if name not in QUANTITIES or (name == "frequency") != (number.isdigit() and int(number) > 0):
-            raise ValueError(
-                f"quantity is {self.quantity!r}; it must be one of {', '.join(QUANTITIES)} (with K)"
-            )
+            raise ValueError(f"quantity is {quantity!r}; it must be one of {', '.join(QUANTITIES)} (with K)")
+        self.models, self.quantity, self.frequency = models, quantity, frequency
+        ask, distance, self.unit, self.tolerance = QUANTITIES[name]
+        self.sharp = sharp or models.sharp
 
-    @property
-    def kind(self) -> tuple[Callable[[At, float], Answer], Callable[[Values, Values], float], str, float]:
-        """The entry of `QUANTITIES`."""
-        return QUANTITIES[self.quantity.partition(" ")[0]]
+        def answer(choice: Choice) -> Answer:
+            found = ask(lambda f: models.oscillator(choice, f), frequency)
+            if not number or found is None:
+                return found
+            return found[int(number) - 1 : int(number)] if int(number) <= choice.modes else None
 
-    def answer(self, choice: Choice) -> Answer:
-        """What the model says; None if it has no answer."""
-        if choice not in self.answers:
-            number = int(self.quantity.partition(" ")[2] or 0)
-            try:
-                found = self.kind[0](lambda f: self.models.oscillator(choice, f), self.frequency)
-            except (ContactError, ValueError):
-                found = None
-            if number and found is not None:
-                found = found[number - 1 : number] if number <= choice.modes else None
-            self.answers[choice] = found
-        return self.answers[choice]
-
-    def off(self, choice: Choice, reference: Choice | None = None) -> float:
-        """Distance of a model from the reference, or from another."""
-        found, sharp = self.answer(choice), self.answer(reference or self.sharp)
-        return math.inf if found is None or sharp is None else self.kind[1](found, sharp)
+        self.question = Question(
+            words=quantity, ask=answer, distance=distance, reference=self.sharp, tolerance=self.tolerance
+        )
+        self.off = self.question.off
 
     def own_error(self) -> float:
         """Of the reference: what one step less in modes changes, and what is left of what one in mesh does.
@@ -187,7 +171,7 @@ class Search:
     def error(self, choice: Choice) -> float:
         """The largest of distance and parts, so that errors that happen to cancel get no credit."""
         direct = self.off(choice)
-        return max(direct, *self.parts(choice).values()) if 0.0 < direct < math.inf else direct
+        return max([direct, *self.parts(choice).values()]) if math.isfinite(direct) else direct
 
     def smaller(self, choice: Choice) -> Iterator[Choice]:
         """The models one step smaller in one thing: level, law, residual mode, modes or mesh."""
@@ -216,7 +200,7 @@ class Search:
             choice = min(found, key=lambda one: one.cost)
             found = [one for one in self.smaller(choice) if enough(one)]
         return Row(
-            **asdict(choice), quantity=self.quantity, frequency_hz=self.frequency, unit=self.kind[2],
+            **asdict(choice), quantity=self.quantity, frequency_hz=self.frequency, unit=self.unit,
             tolerance=tolerance, reached=reached, error=self.error(choice) + own,
             error_one_less=min(map(self.error, self.smaller(choice)), default=None),
             parts={**self.parts(choice), "reference": own}, least=choice.words,

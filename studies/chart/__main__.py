@@ -86,14 +86,9 @@ def chart(
     there = [column for column in found if column is not None]
     tell_failures(run, there)
     result: dict[str, object] = {
-        "model": model,
-        "modes": oscillator.n_modes,
-        "points": [columns, rows],
-        "most_cycles": bound,
+        "model": model, "modes": oscillator.n_modes, "points": [columns, rows], "most_cycles": bound,
         "shard": shard,
-        "store": name,
-        "cells": 2 * rows * len(range(part.number - 1, columns, part.count)),
-    }
+    }  # fmt: skip
     if part.count > 1 or len(there) < columns:
         run.say(f"shard {shard}: {len(there)} of {columns} columns are in {run.folder / name}")
         return result
@@ -129,27 +124,20 @@ def drawn(
     )  # fmt: skip
     run.table(f"folds_{model}", folds, "Exact folds of p_m orbits with one impact.", show=())
     title = f"{TITLES[model]}, {cells.frequencies.size} × {cells.excesses.size}"
-    run.figure(
-        f"chart_{model}",
-        draw(cells, edges, folds, title=title),
+    caption = (
         "Period (above) and impacts in a period (below) over drive frequency and excess, in the upward scan "
-        "(left) and the downward scan (right); lines: exact folds and band edges of the map.",
+        "(left) and the downward scan (right); lines: exact folds and band edges of the map."
     )
+    run.figure(f"chart_{model}", draw(cells, edges, folds, title=title), caption)
     met, seen = fold_agreement(cells, folds)
     without = float(np.mean(cells.period == 0))
     run.say(
         f"{100 * without:.1f} % of the cells without a period up to {LARGEST_PERIOD}; the exact fold lies in "
         f"the very step of the grid in which p_m ends in {met} of the {seen} columns that come down on p_m"
     )
-    return {
-        "bands": [{"period": b.period, "lower_hz": b.lower, "upper_hz": b.upper} for b in edges],
-        "counts": cells.counts(),
-        "share_without_period": without,
-        "drive_periods": int(cells.cycles[cells.cycles > 0].sum()),
-        "folds": len(folds),
-        "folds_seen": seen,
-        "folds_met": met,
-    }
+    bands = [{"period": band.period, "lower_hz": band.lower, "upper_hz": band.upper} for band in edges]
+    told = {"share_without_period": without, "folds": len(folds), "folds_seen": seen, "folds_met": met}
+    return {"bands": bands, "counts": cells.counts(), **told}
 
 
 if __name__ == "__main__":

@@ -43,7 +43,8 @@ Integers = NDArray[np.int32]
 
 
 def _darker(colour: str, share: float) -> str:
-    return to_hex([(1.0 - share) * part for part in to_rgb(colour)])
+    red, green, blue = ((1.0 - share) * part for part in to_rgb(colour))
+    return to_hex((red, green, blue))
 
 
 PERIODS = [REST, *PALETTE[1:8], *(tint(one, 0.45) for one in PALETTE[1:8])]

@@ -30,8 +30,7 @@ SCENES = {
 
 
 def search_of(quantity: str, frequency: float = 22.2, scene: Scene = LETTER) -> Search:
-    models = Models(scene)
-    return Search(models=models, quantity=quantity, frequency=frequency, sharp=models.sharp)
+    return Search(Models(scene), quantity, frequency)
 
 
 def chosen(row: object) -> Choice:
@@ -41,11 +40,11 @@ def chosen(row: object) -> Choice:
 def check(scene: Scene, quantity: str, frequency: float) -> Choice:
     """The least model and all that are one step smaller, against 100 modes and 200 elements on a leg."""
     search = search_of(quantity, frequency, scene)
-    tolerance = search.kind[3]
+    tolerance = search.tolerance
     row = search.least(tolerance)
     assert row.reached
     least = chosen(row)
-    larger = replace(search, sharp=replace(search.sharp, modes=100, mesh=200), answers={})
+    larger = Search(search.models, quantity, frequency, replace(search.sharp, modes=100, mesh=200))
     error = larger.error(least)
     assert error <= tolerance
     assert row.error == pytest.approx(error, rel=0.1, abs=0.1 * tolerance)
