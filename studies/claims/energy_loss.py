@@ -31,7 +31,7 @@ from scipy.optimize import minimize_scalar
 from contact import MaximalFamily, NordmarkMap, fold, maximal_period, stable_range
 from studies import letter, plotting
 from studies.run import Run
-from studies.scene import Scene, corresponding
+from studies.scene import Scene, corresponding, single_mode_at
 
 __all__ = ["RESTITUTIONS", "Node", "energy_loss", "falls", "family_at", "flip_speed", "map_at", "node_at",
            "second_impact_speed", "trends"]  # fmt: skip
@@ -87,25 +87,24 @@ def map_at(scene: Scene, frequency: float, restitution: float) -> NordmarkMap:
 
 def family_at(scene: Scene, frequency: float, restitution: float, period: int) -> MaximalFamily:
     """The orbits p_m of Eq. (1), m = `period`, at a drive frequency [Hz]."""
-    mode = scene.single_mode
-    return MaximalFamily.single_mode(
-        drive_frequency=frequency, free_period=mode.free_period_s, decay_rate=mode.decay_rate_per_s,
-        restitution=restitution, period=period,
-    )  # fmt: skip
+    return MaximalFamily.from_oscillator(
+        single_mode_at(scene, frequency), period=period, restitution=restitution
+    )
 
 
 def second_impact_speed(family: MaximalFamily) -> float:
     """v_2 [m/s] of a family of one mode, infinity if there is none."""
-    duration, w = family.period / family.drive_frequency, family.angular_frequency
-    half = 0.5 * float(family.decay_rate[0])
-    damped = math.sqrt(float(family.omega[0]) ** 2 - half**2)
-    height, rate = (float(row[0]) * float(family.phi[0]) for row in family.deviations[1])
+    model, gap = family.oscillator.model, family.oscillator.stop.gap
+    duration, w = family.period * family.oscillator.period, family.oscillator.driven.angular_frequency
+    half = 0.5 * float(model.decay_rate[0])
+    damped = math.sqrt(float(model.omega[0]) ** 2 - half**2)
+    height, rate = (float(entry) * float(model.phi[0]) for entry in family.orbit(1.0).after[0])
     s0, b = family.arms
 
     def ratio(s: NDArray[np.float64]) -> NDArray[np.float64]:
         free = height * np.cos(damped * s) + (rate + half * height) / damped * np.sin(damped * s)
         reach = np.exp(-half * s) * free - s0 * np.cos(w * s) + b * np.sin(w * s)
-        held = family.gap * (1.0 - np.cos(w * s))
+        held = gap * (1.0 - np.cos(w * s))
         return np.where(reach > 0.0, held / np.where(reach > 0.0, reach, 1.0), np.inf)
 
     # the ends are the impact itself, where both sides vanish and rounding decides
@@ -124,7 +123,7 @@ def second_impact_speed(family: MaximalFamily) -> float:
 
 def flip_speed(family: MaximalFamily) -> float:
     """Approach speed [m/s] of the multiplier -1 of a family of one mode, infinity if there is none."""
-    unit = family.gap * family.angular_frequency
+    unit = family.oscillator.unit_speed
     slow, fast = (family.orbit(v).monodromy() for v in (1e-3 * unit, unit))
     q = float(np.trace(slow) - np.trace(fast)) * unit / 999.0
     size = 1.0 + float(np.linalg.det(fast)) + float(np.trace(fast)) - q / unit
@@ -164,7 +163,8 @@ def energy_loss(scene: Scene, run: Run, *, across: int, restitutions: int) -> Ma
     drives = sorted(scene.drive.frequencies_hz)
     lines = run.map(partial(line_of, scene, drives), RESTITUTIONS, "p_m against loss")
     rows = [node for f in zip(*lines, strict=True) for node in f]
-    frequencies = np.linspace(*(corresponding(scene, f) for f in SCANNED_HZ), across)
+    low, high = (corresponding(scene, f) for f in SCANNED_HZ)
+    frequencies = np.linspace(low, high, across)
     tau = np.linspace(0.0, 0.9, restitutions)
     plane = run.map(partial(line_of, scene, frequencies.tolist()), tau.tolist(), "plane of f and tau")
     where = np.array([[place_of(node) for node in line] for line in plane])
