@@ -20,7 +20,7 @@ from contact.integrators.splitting import (
     spectral_radius,
     step_matrix,
 )
-from contact.integrators.splitting_step import Composition, kick, tip_depth, tip_rate
+from contact.integrators.splitting_step import Composition, kick, tip_at, tip_rate
 from contact.laws import ContactLaw, HertzContact, HuntCrossley, LinearContact, NewtonRestitution
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
@@ -460,5 +460,7 @@ def test_kicks_see_depth_and_rate_of_the_driven_tip():
     angle = motion.drive * clock
     q = u + motion.sine * math.sin(angle) + motion.cosine * math.cos(angle)
     rate = v + motion.drive * (motion.sine * math.cos(angle) - motion.cosine * math.sin(angle))
-    assert tip_depth(motion, u, math.sin(angle), math.cos(angle)) == pytest.approx(PHI @ q - 0.002, rel=1e-12)
+    assert tip_at(motion, u, clock) == pytest.approx(
+        (PHI @ q - 0.002, math.sin(angle), math.cos(angle)), rel=1e-12
+    )
     assert tip_rate(motion, v, math.sin(angle), math.cos(angle)) == pytest.approx(PHI @ rate, rel=1e-12)
