@@ -69,6 +69,7 @@ from contact.laws import (
 )
 from contact.maximal_orbits import (
     Band,
+    MapFamily,
     MaximalOrbit,
     band,
     bands,
@@ -78,7 +79,7 @@ from contact.maximal_orbits import (
     maximal_periods,
     stable_range,
 )
-from contact.nordmark import NordmarkMap, StrobedNordmarkMap
+from contact.nordmark import NordmarkMap
 from contact.orbits.single_impact import MaximalFamily, SingleImpactOrbit
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
@@ -102,6 +103,7 @@ __all__ = [
     "ImpactOscillator",
     "Impacts",
     "LinearContact",
+    "MapFamily",
     "MaximalFamily",
     "MaximalOrbit",
     "NewtonRestitution",
@@ -113,7 +115,6 @@ __all__ = [
     "StepTooLarge",
     "Stop",
     "StrobedMap",
-    "StrobedNordmarkMap",
     "StrobedOrbit",
     "StroboscopicMap",
     "Trajectory",

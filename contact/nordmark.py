@@ -55,7 +55,7 @@ from contact.laws import NewtonRestitution
 from contact.oscillator import ImpactOscillator
 from contact.strobed_map import Jacobians, StrobedOrbit
 
-__all__ = ["NordmarkMap", "StrobedNordmarkMap", "iterate_map"]
+__all__ = ["NordmarkMap"]
 
 YLine = Literal["corrected", "printed"]
 
@@ -82,8 +82,9 @@ def restitution_of(oscillator: ImpactOscillator) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class NordmarkMap:
-    """Eqs. (2), (3) of the letter with their coefficients; rho is given to each call.
+    """Eqs. (2), (3) of the letter as a ``contact.strobed_map.StrobedMap``: one step is one drive period.
 
+    A state is the array (x, y), which is also its point; an impact occurs in the step that starts from x > 0.
     Raises ValueError for a field outside its range.
 
     Parameters
@@ -98,6 +99,8 @@ class NordmarkMap:
         d, zero or more [1].
     whole_turns : int
         Integer part of 1/(f T), 1 in the letter; only rho <-> excess of an oscillating mode uses it [1].
+    rho : float
+        The bifurcation parameter [1]; `at` sets it from the excess over grazing.
     """
 
     alpha: float
@@ -106,6 +109,7 @@ class NordmarkMap:
     y_line: YLine = "corrected"
     delay_term: float = 0.0
     whole_turns: int = 1
+    rho: float = 0.0
 
     def __post_init__(self) -> None:
         gamma, tau, line, turns = self.gamma, self.restitution, self.y_line, self.whole_turns
@@ -116,6 +120,7 @@ class NordmarkMap:
         require(abs(self.alpha) < 1.0 + gamma, f"alpha is {self.alpha}; its size must be below 1 + gamma")
         require(line in ("corrected", "printed"), f'y_line is {line!r}; it must be "corrected" or "printed"')
         require_whole("whole_turns", turns, "turns", low=0)
+        require_within("rho", self.rho, "[1]")
 
     @classmethod
     def from_mode(
@@ -215,25 +220,13 @@ class NordmarkMap:
         response = 2.0 * math.pi * root * ratio
         return (1.0 - self.alpha + self.gamma) / (2.0 * (response * (1.0 + self.restitution)) ** 2)
 
-    def rho(self, excess: float) -> float:
-        """rho at the excess F/F_g - 1 [1]."""
-        return self.rho_per_excess * require_within("excess", excess, "[1]")
-
     def excess(self, rho: float) -> float:
-        """The excess F/F_g - 1 [1] at rho."""
+        """The excess F/F_g - 1 [1] at `rho`."""
         return require_within("rho", rho, "[1]") / self.rho_per_excess
 
-    def step(self, state: ArrayLike, rho: float) -> NDArray[np.float64]:
-        """The state (x, y), shape (2,), one drive period later."""
-        return self.iterate(state, rho, 1)[0]
-
-    def iterate(self, state: ArrayLike, rho: float, count: int) -> NDArray[np.float64]:
-        """The `count` states that follow `state`, shape (count, 2); row 0 is one period later."""
-        x, y = _state(state)
-        out = np.empty((require_whole("count", count, "periods", low=0), 2))
-        value = require_within("rho", rho, "[1]")
-        iterate_map(x, y, self.alpha, self.gamma, self.gamma_impact, value, self.delay_term, out)
-        return out
+    def at(self, excess: float) -> NordmarkMap:
+        """The same map at F/F_g - 1 = `excess` [1]."""
+        return replace(self, rho=self.rho_per_excess * require_within("excess", excess, "[1]"))
 
     def jacobian(self, state: ArrayLike) -> NDArray[np.float64]:
         """Derivative of one step with respect to (x, y), shape (2, 2); unbounded as x -> 0+."""
@@ -242,52 +235,46 @@ class NordmarkMap:
             return np.array([[-0.5 / math.sqrt(x), 1.0], [-self.gamma_impact, 0.0]])
         return np.array([[self.alpha, 1.0], [-self.gamma, 0.0]])
 
-
-@dataclass(frozen=True, kw_only=True)
-class StrobedNordmarkMap:
-    """A Nordmark map at its rho as a ``contact.strobed_map.StrobedMap``: one step is one drive period.
-
-    A state is the array (x, y), which is also its point; an impact occurs in the step that starts from x > 0.
-
-    Parameters
-    ----------
-    map : NordmarkMap
-    rho : float
-        The bifurcation parameter [1]; `at` sets it from the excess over grazing.
-    """
-
-    map: NordmarkMap
-    rho: float = 0.0
-
-    def __post_init__(self) -> None:
-        require_kind("map", self.map, NordmarkMap, "a NordmarkMap")
-        require_within("rho", self.rho, "[1]")
-
     @property
     def scale(self) -> float:
         """Size of the state of an orbit with impacts, from the square root's slope at |rho| = 1e-3 [1]."""
         return 1e-3
 
-    def at(self, excess: float) -> StrobedNordmarkMap:
-        """The same map at another F/F_g - 1."""
-        return replace(self, rho=self.map.rho(excess))
+    @property
+    def period(self) -> float:
+        """The time of one step, 1: the map has no clock."""
+        return 1.0
 
     def steady(self) -> NDArray[np.float64]:
         """The fixed point of the branch without impact: x = rho / (1 - alpha + gamma), y = -gamma x."""
-        x = self.rho / (1.0 - self.map.alpha + self.map.gamma)
-        return np.array([x, -self.map.gamma * x])
+        x = self.rho / (1.0 - self.alpha + self.gamma)
+        return np.array([x, -self.gamma * x])
 
-    def orbit(self, state: NDArray[np.float64], count: int) -> StrobedOrbit[NDArray[np.float64]]:
+    def orbit(self, state: ArrayLike, count: int) -> StrobedOrbit[NDArray[np.float64]]:
         """`count` steps from `state`; the points are (x, y), shape (count, 2)."""
-        points = self.map.iterate(state, self.rho, count)
-        before = np.concatenate([[state[0]], points[:-1, 0]])
-        return StrobedOrbit(end=points[-1].copy(), points=points, impacts=(before > 0).astype(np.int64))
+        start = _state(state)
+        points = np.empty((require_whole("count", count, "periods", low=0) + 1, 2))
+        points[0] = start
+        iterate_map(*start, self.alpha, self.gamma, self.gamma_impact, self.rho, self.delay_term, points[1:])
+        impacts = (points[:-1, 0] > 0).astype(np.int64)
+        return StrobedOrbit(end=points[-1].copy(), points=points[1:], impacts=impacts)
 
-    def jacobians(self, state: NDArray[np.float64], count: int) -> Jacobians[NDArray[np.float64]]:
+    def jacobians(self, state: ArrayLike, count: int) -> Jacobians[NDArray[np.float64]]:
         """The derivatives along `count` steps, and the end."""
-        points = self.orbit(state, count).points
-        before = np.vstack([state, points[:-1]])
-        return [(self.map.jacobian(row), 1) for row in before], points[-1].copy()
+        points = np.vstack([_state(state), self.orbit(state, count).points])
+        return [(self.jacobian(row), 1) for row in points[:-1]], points[-1].copy()
+
+    def coordinates(self, state: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The state itself."""
+        return state
+
+    def moved(self, state: NDArray[np.float64], change: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The state with its coordinates changed."""
+        return state + change
+
+    def advance(self, state: NDArray[np.float64], time: float) -> tuple[NDArray[np.float64], float]:
+        """One step, whatever the time."""
+        return self.orbit(state, 1).end, 1.0
 
 
 def _state(state: ArrayLike) -> tuple[float, float]:

@@ -18,8 +18,7 @@ from beam.parameters import require_array, require_kind, require_within
 from contact.errors import ContactError
 from contact.laws import NEWTON
 from contact.orbits.events import Event, events_between, locate, probed
-from contact.orbits.kick import KickFamily
-from contact.orbits.shooting import PeriodicOrbit, Shooting
+from contact.orbits.periodic_orbit import Followed, PeriodicOrbit
 
 __all__ = [
     "Branch",
@@ -30,6 +29,7 @@ __all__ = [
     "folds_of",
     "follow",
     "lowest_of",
+    "orbits_at",
 ]
 
 GREATEST_STEP = 10.0
@@ -57,6 +57,7 @@ LEAST_SPEED, GREATEST_SPEED = 1e-6, 2.0
 """Approach velocities, over 2 pi f gap, between which a fold is looked for: faster ones than 2 pi f gap
 belong to amplitudes far beyond the letter's."""
 
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Branch:
     """A branch of periodic orbits in the order of the approach velocity.
@@ -79,7 +80,14 @@ class Branch:
         return [event.orbit for event in self.events if event.kind == kind]
 
 
-def follow(family: Shooting, start: PeriodicOrbit, *, low: float, high: float, step: float = 0.1) -> Branch:
+def require_followed(family: object, start: object, *, optional: bool = False) -> None:
+    """TypeError unless this is a family to follow from this orbit."""
+    require_kind("family", family, Followed, "a Shooting family")
+    name, words = ("near", "a PeriodicOrbit or None") if optional else ("start", "a PeriodicOrbit")
+    require_kind(name, start, (PeriodicOrbit, *([type(None)] if optional else [])), words)
+
+
+def follow(family: Followed, start: PeriodicOrbit, *, low: float, high: float, step: float = 0.1) -> Branch:
     """The branch through `start`, between the approach velocities `low` and `high` [m/s].
 
     Parameters
@@ -90,8 +98,7 @@ def follow(family: Shooting, start: PeriodicOrbit, *, low: float, high: float, s
     step : float
         Largest step of log v.
     """
-    require_kind("family", family, Shooting, "a Shooting family")
-    require_kind("start", start, PeriodicOrbit, "a PeriodicOrbit")
+    require_followed(family, start)
     for name, value in (("low", low), ("high", high)):
         require_within(name, value, "m/s")
     require_within("step", step, "[1]", low=SMALLEST_STEP, high=GREATEST_STEP)
@@ -125,7 +132,7 @@ def follow(family: Shooting, start: PeriodicOrbit, *, low: float, high: float, s
     return Branch(orbits=tuple(orbits), events=tuple(events), ended_low=reasons[0], ended_high=reasons[1])
 
 
-def first_event(family: Shooting, start: PeriodicOrbit, lowest: float) -> Event | None:
+def first_event(family: Followed, start: PeriodicOrbit, lowest: float) -> Event | None:
     """The event that ends the orbit `start` when the amplitude is lowered.
 
     The branch is followed towards lower amplitudes until an event is met, or until the excess is below
@@ -137,8 +144,7 @@ def first_event(family: Shooting, start: PeriodicOrbit, lowest: float) -> Event 
     NotPeriodic
         If the branch is lost for another reason.
     """
-    require_kind("family", family, Shooting, "a Shooting family")
-    require_kind("start", start, PeriodicOrbit, "a PeriodicOrbit")
+    require_followed(family, start)
     require_within("lowest", lowest, "[1]", above=-1)
     here, stride, direction = start, FIRST_STRIDE, -math.copysign(1.0, start.slope)
     for _ in range(MOST_STEPS):
@@ -162,7 +168,7 @@ def first_event(family: Shooting, start: PeriodicOrbit, lowest: float) -> Event 
     return None
 
 
-def fold_of(family: Shooting, near: PeriodicOrbit | None = None) -> PeriodicOrbit | None:
+def fold_of(family: Followed, near: PeriodicOrbit | None = None) -> PeriodicOrbit | None:
     """The fold of smallest amplitude, where the family's downward scan ends; None if there is no fold.
 
     Where contact is soft, at an excess of some 1e-5 and less, a branch can have several folds, and go on
@@ -190,7 +196,7 @@ def fold_of(family: Shooting, near: PeriodicOrbit | None = None) -> PeriodicOrbi
     return min(folds, key=lambda orbit: (not orbit.admissible, orbit.excess), default=None)
 
 
-def folds_of(family: Shooting, near: PeriodicOrbit | None = None) -> tuple[PeriodicOrbit, ...]:
+def folds_of(family: Followed, near: PeriodicOrbit | None = None) -> tuple[PeriodicOrbit, ...]:
     """All folds of the branch, by rising approach velocity from 1e-6 to 2 times 2 pi f gap.
 
     The branch is followed through `near`, or else through the first orbit that the kick description leads to;
@@ -200,7 +206,7 @@ def folds_of(family: Shooting, near: PeriodicOrbit | None = None) -> tuple[Perio
     return () if branch is None else tuple(branch.of_kind("fold"))
 
 
-def lowest_of(family: Shooting, near: PeriodicOrbit | None = None) -> Event | None:
+def lowest_of(family: Followed, near: PeriodicOrbit | None = None) -> Event | None:
     """The admissible orbit of smallest amplitude: a "fold", or the "grazing" that ends the branch below it.
 
     Parameters and errors are those of `fold_of`.  None if the branch has no such orbit, as where amplitude
@@ -215,11 +221,22 @@ def lowest_of(family: Shooting, near: PeriodicOrbit | None = None) -> Event | No
     return min(ends, key=lambda event: event.orbit.excess, default=None)
 
 
-def _whole_branch(family: Shooting, near: PeriodicOrbit | None) -> Branch | None:
+def orbits_at(family: Followed, excess: float) -> tuple[PeriodicOrbit, ...]:
+    """The orbits of the branch of `folds_of` at F/F_g - 1 = `excess`, by rising approach velocity."""
+    require_within("excess", excess, "[1]", above=-1)
+    branch = _whole_branch(family, None)
+    orbits = [] if branch is None else [*branch.orbits, *branch.of_kind("fold")]
+    return tuple(
+        locate(family, a, b, lambda orbit: orbit.excess - excess)
+        for a, b in pairwise(sorted(orbits, key=lambda orbit: orbit.speed))
+        if (a.excess - excess) * (b.excess - excess) < 0.0
+    )
+
+
+def _whole_branch(family: Followed, near: PeriodicOrbit | None) -> Branch | None:
     """The branch over all approach velocities; None if no orbit of it is found."""
-    require_kind("near", near, (PeriodicOrbit, type(None)), "a PeriodicOrbit or None")
-    require_kind("family", family, Shooting, "a Shooting family")
-    unit = _unit(family)
+    require_followed(family, near, optional=True)
+    unit = family.oscillator.unit_speed
     starts = [near] if near is not None else [None] * len(STARTS)
     for start, part in zip(starts, STARTS, strict=False):
         try:
@@ -232,23 +249,13 @@ def _whole_branch(family: Shooting, near: PeriodicOrbit | None) -> Branch | None
     return None
 
 
-def _unit(family: Shooting) -> float:
-    """2 pi f gap [m/s]."""
-    return family.oscillator.drive.angular_frequency * family.oscillator.stop.gap  # type: ignore[union-attr]
-
-
-def _fold_near(family: Shooting, near: PeriodicOrbit | None) -> PeriodicOrbit | None:
+def _fold_near(family: Followed, near: PeriodicOrbit | None) -> PeriodicOrbit | None:
     """The first fold downhill from `near`, or from the fold of the kick description."""
-    require_kind("family", family, Shooting, "a Shooting family")
-    require_kind("near", near, (PeriodicOrbit, type(None)), "a PeriodicOrbit or None")
-    if near is None:
-        kick = KickFamily(oscillator=family.oscillator, period=family.period).fold()
-        if kick is None:
-            return None
-        here = family.at_speed(kick.kick.speed)
-    else:
-        here = family.at_speed(near.speed, near)
-    stride, unit = FIRST_STRIDE, _unit(family)
+    require_followed(family, near, optional=True)
+    guess = near or family.kicks.fold()
+    if guess is None:
+        return None
+    here, stride, unit = family.at_speed(guess.speed, near), FIRST_STRIDE, family.oscillator.unit_speed
     for _ in range(MOST_STRIDES):
         if not LEAST_SPEED * unit < here.speed < GREATEST_SPEED * unit:
             break
@@ -261,22 +268,20 @@ def _fold_near(family: Shooting, near: PeriodicOrbit | None) -> PeriodicOrbit | 
 
 
 def fold_along_frequency(
-    family: Shooting, frequencies: np.ndarray, near: PeriodicOrbit | None = None
+    family: Followed, frequencies: np.ndarray, near: PeriodicOrbit | None = None
 ) -> list[PeriodicOrbit | None]:
     """The folds at `frequencies` [Hz], each started from the one before; None where there is none."""
-    require_kind("family", family, Shooting, "a Shooting family")
+    require_followed(family, near, optional=True)
     found: list[PeriodicOrbit | None] = []
     for frequency in require_array("frequencies", frequencies, "Hz", dimensions=1, words="drive frequencies"):
-        drive = replace(family.oscillator.drive, frequency=float(frequency))  # type: ignore[type-var]
-        here = replace(family, oscillator=replace(family.oscillator, drive=drive))
+        drive = replace(family.oscillator.driven, frequency=float(frequency))
+        here = family.of(replace(family.oscillator, drive=drive))
         fold = None
-        for start in (near, None):
+        for start in dict.fromkeys((near, None)):
             try:
-                fold = fold_of(here, start)
+                fold = fold or fold_of(here, start)
             except ContactError:
-                fold = None
-            if fold is not None or start is None:
-                break
+                continue
         found.append(fold)
         near = fold
     return found

@@ -27,8 +27,8 @@ from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 from contact.errors import ContactError
-from contact.maximal_orbits import fold, maximal_orbits, stable_range
-from contact.nordmark import StrobedNordmarkMap
+from contact.maximal_orbits import MapFamily
+from contact.nordmark import NordmarkMap
 from contact.orbits.continuation import first_event
 from contact.orbits.settling import Settled, orbit_near, settle
 from contact.orbits.shooting import Shooting
@@ -147,9 +147,9 @@ def _exact_end(
     strobed: Any, state: Any, start: Settled[Any], held: float, lost: float
 ) -> tuple[str, float, Any]:
     """Kind and excess of the end in the bracket; third the state at `lost`, if the orbit is still there."""
-    if isinstance(strobed, StrobedNordmarkMap) and start.impacts == 1:
-        return _map_end(strobed, start.period, held, lost)
     unknown = BRACKET, 0.5 * (held + lost), None
+    if isinstance(strobed, NordmarkMap) and start.impacts == 1:
+        return _map_end(MapFamily(strobed, start.period), held, lost) or unknown
     if not isinstance(strobed, StroboscopicMap):
         return unknown
     orbit = orbit_near(strobed.at(held), state, start.period, start.impacts)
@@ -166,16 +166,15 @@ def _exact_end(
     return ("", lost, below.strobe_state()) if below.stable else unknown
 
 
-def _map_end(strobed: StrobedNordmarkMap, period: int, held: float, lost: float) -> tuple[str, float, Any]:
-    """The same for the orbit of the Nordmark map with one impact in `period` steps."""
-    nordmark, unknown = strobed.map, (BRACKET, 0.5 * (held + lost), None)
-    at_fold, stable = fold(nordmark, period), stable_range(nordmark, period)
-    if at_fold is None or stable is None or not stable[0] <= nordmark.rho(held) <= stable[1]:
-        return unknown
-    end = nordmark.excess(stable[0])
+def _map_end(family: MapFamily, held: float, lost: float) -> tuple[str, float, Any] | None:
+    """The same for the orbit of the Nordmark map with one impact in a period; None if it is not known."""
+    at_fold, stable = family.fold(), family.stable_range()
+    if at_fold is None or stable is None or not stable[0] <= family.map.at(held).rho <= stable[1]:
+        return None
+    end = family.map.excess(stable[0])
     if end < lost:
-        return "", lost, maximal_orbits(nordmark, period, nordmark.rho(lost))[-1].states[0]
+        return "", lost, family.orbits(lost)[-1].states[0]
     if stable[0] == at_fold.rho:
         return "fold", end, None
-    doubles = maximal_orbits(nordmark, period, stable[0])[-1].multipliers.real.min() < -1.0 + 1e-6
+    doubles = family.at_rho(stable[0])[-1].multipliers.real.min() < -1.0 + 1e-6
     return "period doubling" if doubles else "grazing", end, None

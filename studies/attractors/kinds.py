@@ -10,21 +10,14 @@ Both exponents are one number, lyapunov_map = lyapunov_flow / f.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
 from contact import StrobedMap
-from contact.orbits import (
-    Differentiable,
-    divergence_rate,
-    map_exponents,
-    of_oscillator,
-    orbit_exponents,
-    settle,
-)
+from contact.orbits import divergence_rate, map_exponents, orbit_exponents, settle
 
 __all__ = ["ALIGN", "CHAOTIC", "KINDS", "NOT_SETTLED", "PERIODIC", "UNDECIDED", "WITHOUT", "Attractor", "Row",
            "agreement", "classify"]  # fmt: skip
@@ -72,7 +65,6 @@ class Row(Attractor):
 def classify(
     strobed: StrobedMap[S],
     state: S,
-    derivatives: Callable[[Any], Differentiable[Any]] = of_oscillator,
     *,
     most_cycles: int = 4000,
     cycles: int = 600,
@@ -85,8 +77,6 @@ def classify(
     strobed : StrobedMap
         At its amplitude.
     state : State
-    derivatives : callable
-        From the strobed map to its derivatives.
     most_cycles : int
         Bound of settling.
     cycles : int
@@ -94,20 +84,19 @@ def classify(
     flow : bool
         Whether the second route is taken as well.
     """
-    system = derivatives(strobed)
     settled = settle(strobed, state, most_cycles=most_cycles)
     if settled.period:
-        exponents = orbit_exponents(system, settled.end, settled.period)
+        exponents = orbit_exponents(strobed, settled.end, settled.period)
         impacts, mean = settled.impacts, settled.impacts / settled.period
         kind = PERIODIC if impacts else WITHOUT
     else:
-        exponents, _end = map_exponents(system, settled.end, cycles, align=ALIGN)
+        exponents, _end = map_exponents(strobed, settled.end, cycles, align=ALIGN)
         impacts, mean = 0, float(strobed.orbit(settled.end, cycles).impacts.mean())
         clear = abs(exponents.largest) > SIGNIFICANT * exponents.error
         kind = UNDECIDED if not clear else CHAOTIC if exponents.largest > 0 else NOT_SETTLED
     rate = error = float("nan")
     if flow:
-        found = divergence_rate(system, settled.end, cycles * system.period, align=ALIGN * system.period)
+        found = divergence_rate(strobed, settled.end, cycles * strobed.period, align=ALIGN * strobed.period)
         rate, error = found.largest, found.error
     return Attractor(
         kind=kind, period=settled.period, impacts=impacts, impacts_per_period=mean,

@@ -25,7 +25,7 @@ import numpy as np
 
 from beam import ModalModel
 from contact import ContactError, MaximalFamily, NordmarkMap, fold
-from contact.orbits import Kick, KickFamily, KickOrbit, PeriodicOrbit, Shooting, fold_of
+from contact.orbits import Kick, KickFamily, PeriodicOrbit, Shooting, SingleImpactOrbit, fold_of
 from studies.scene import Scene, beam_at, nordmark_at, single_mode_at
 
 CHAIN = (
@@ -137,11 +137,11 @@ class OneMode:
         """A kick that leaves the other modes in peace."""
         jump = np.zeros((self.kicks.oscillator.n_modes, 2))
         jump[0] = self.jump(speed)
-        return Kick(speed=speed, jump=jump, touches=1, duration=0.0)
+        return Kick(speed=speed, jump=jump)
 
-    def fold(self) -> KickOrbit | None:
+    def fold(self) -> SingleImpactOrbit | None:
         """The fold."""
-        return self.kicks.fold(kick=self.kick)
+        return replace(self.kicks, collision=self.kick).fold()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from beam import ModalModel
-from contact import ContactError, MaximalFamily, StrobedNordmarkMap, StroboscopicMap, fold
+from contact import ContactError, MaximalFamily, NordmarkMap, StroboscopicMap, fold
 from contact.orbits import KickFamily, Shooting, born_period, fold_of
 from studies.calibration import calibrate_damping, free_period, solve_for
 from studies.letter import BREAKDOWN, FREE_PERIOD_ERROR_S, PERIODS
@@ -143,7 +143,7 @@ def row_at(
     nordmark, single = nordmark_at(scene, frequency), single_mode_at(scene, frequency)
     beam = beam_at(scene, frequency, model)
     born = {
-        "map": birth(StrobedNordmarkMap(map=nordmark)),
+        "map": birth(nordmark),
         "single_mode": birth(StroboscopicMap(oscillator=single)),
         "beam": birth(StroboscopicMap(oscillator=beam)),
     }
@@ -170,7 +170,7 @@ def row_at(
     )  # fmt: skip
 
 
-def birth(strobed: StrobedNordmarkMap | StroboscopicMap) -> int | None:
+def birth(strobed: NordmarkMap | StroboscopicMap) -> int | None:
     """Born period; None where it could not be computed."""
     try:
         return born_period(strobed)

@@ -23,10 +23,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-from typing import Annotated, Protocol, cast
-
-import numpy as np
-from matplotlib.figure import Figure
+from typing import Annotated
 
 from contact import ContactError
 from studies.run import Run, study
@@ -44,34 +41,21 @@ from studies.stability import (
 
 __all__ = ["FAMILIES", "stability"]
 
-
-class Family(Protocol):
-    """What a file of a family offers."""
-
-    def measure(self, scene: Scene, quick: bool) -> Findings:
-        """The rows, and the arrays of the figure."""
-
-    def draw(self, arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
-        """The figure and its caption."""
-
-
 FAMILIES = {
-    name: cast(Family, module)
-    for name, module in (
-        ("explicit", explicit), ("splitting", splitting), ("implicit_energy", implicit_energy),
-        ("false_restitution", false_restitution), ("missed_crossings", missed_crossings),
-        ("accumulation", accumulation),
-    )
-}  # fmt: skip
-"""The families in the order of the table."""
+    module.__name__.rpartition(".")[2]: module
+    for module in (explicit, splitting, implicit_energy, false_restitution, missed_crossings, accumulation)
+}
+"""The families in the order of the table: files with measure(scene, quick) -> Findings, and
+draw(arrays) -> figure and its caption."""
 
 
 def findings(name: str, scene: Scene, quick: bool) -> Findings | Exception:
     """What the family finds, or why it does not."""
     try:
-        return FAMILIES[name].measure(scene, quick)
+        found: Findings = FAMILIES[name].measure(scene, quick)
     except (ContactError, ArithmeticError, ValueError) as error:
         return error
+    return found
 
 
 @study()

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from beam import ModalModel
-from contact import ContactError, MaximalFamily, StrobedMap, StrobedNordmarkMap, StroboscopicMap, fold
+from contact import ContactError, MaximalFamily, StrobedMap, StroboscopicMap, fold
 from contact.orbits import OrbitDiagram, born, born_period, orbit_diagram, orbit_end
 from studies import letter
 from studies.scene import READOUT, Scene, beam_at, nordmark_at, single_mode_at
@@ -28,9 +29,8 @@ Strobed = StrobedMap[Any]
 Diagram = OrbitDiagram[Any]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Description:
-    """One model at one frequency, with what is drawn of it."""
+class Description(NamedTuple):
+    """One model at one frequency, and what is drawn of it."""
 
     strobed: Strobed
     observe: Callable[[NDArray[np.float64]], NDArray[np.float64]]
@@ -93,11 +93,10 @@ def describe(scene: Scene, frequency: float, model: ModalModel) -> dict[str, Des
     """The three descriptions at `frequency` [Hz]; displacements are observed in metres."""
     single = StroboscopicMap(oscillator=single_mode_at(scene, frequency))
     beam = StroboscopicMap(oscillator=beam_at(scene, frequency, model))
-    nordmark = StrobedNordmarkMap(map=nordmark_at(scene, frequency))
     return {
-        "map": Description(strobed=nordmark, observe=lambda points: points[:, 0]),
-        "single_mode": Description(strobed=single, observe=single.tip),
-        "beam": Description(strobed=beam, observe=lambda points: beam.readout(points, READOUT)),
+        "map": Description(nordmark_at(scene, frequency), lambda points: points[:, 0]),
+        "single_mode": Description(single, single.tip),
+        "beam": Description(beam, lambda points: beam.readout(points, READOUT)),
     }
 
 
@@ -116,7 +115,7 @@ def transition(strobed: Strobed, excess: float, cycles: int) -> Transition:
 def row_at(scene: Scene, frequency: float, model: ModalModel) -> tuple[Row, list[tuple[str, str]]]:
     """One row of the table, and what failed: where, why."""
     cycles, failures = max(scene.scan.settle_cycles, 1), list[tuple[str, str]]()
-    described = {name: entry.strobed for name, entry in describe(scene, frequency, model).items()}
+    described = {name: strobed for name, (strobed, _) in describe(scene, frequency, model).items()}
     if scene.contact.law == "hertz":  # linear contact of the same contact time in place of Hertz's law
         linear = scene.replace({"contact.law": "linear"})
         described["beam_linear"] = StroboscopicMap(oscillator=beam_at(linear, frequency, model))
@@ -166,15 +165,12 @@ def scans(scene: Scene, row: Row, model: ModalModel, full: bool) -> Scans:
     scan, found = scene.scan, {}
     reach = float(f"{max([*map(abs, row.ends()), scan.narrowest]):.2g}")
     values = np.linspace(-scan.reach_below * reach, scan.reach_above * reach, scan.points)
-    for name, entry in describe(scene, row.frequency_hz, model).items():
-
-        def way(excesses: NDArray[np.float64], state: object, entry: Description = entry) -> Diagram:
-            return orbit_diagram(
-                entry.strobed, excesses, state, observe=entry.observe,
-                settle_cycles=letter.SETTLE_CYCLES if full else max(scan.settle_cycles, 1),
-                record_cycles=scan.record_cycles, largest_period=scan.largest_period, early=not full,
-            )  # fmt: skip
-
-        up = way(values, entry.strobed.at(float(values[0])).steady())
+    for name, (strobed, observe) in describe(scene, row.frequency_hz, model).items():
+        way = partial(
+            orbit_diagram, strobed, observe=observe, record_cycles=scan.record_cycles, early=not full,
+            settle_cycles=letter.SETTLE_CYCLES if full else max(scan.settle_cycles, 1),
+            largest_period=scan.largest_period,
+        )  # fmt: skip
+        up = way(values, strobed.at(float(values[0])).steady())
         found[name] = {"up": up, "down": way(values[::-1], up.end)}
     return found

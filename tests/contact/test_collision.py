@@ -25,8 +25,7 @@ from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
 from contact.trajectory import Impacts, State
-from studies.instruments.oscillators import beam_of
-from studies.instruments.scene_file import read_scene
+from studies.scene import beam_at, read_scene
 
 GAP = 0.005
 OMEGA = 2 * np.pi * 24.5 * np.array([1.0, 6.1, 15.4, 29.0, 47.0, 70.0])
@@ -392,7 +391,7 @@ def test_each_impact_belongs_to_one_collision() -> None:
 
 @pytest.fixture(scope="module")
 def letter_with_hertz() -> ImpactOscillator:
-    return beam_of(read_scene("letter", ['contact.law="hertz"']), 22.2)
+    return beam_at(read_scene("letter", ['contact.law="hertz"']), 22.2)
 
 
 @pytest.mark.parametrize("frequency", [20.90, 22.20, 23.40])

@@ -79,7 +79,7 @@ def test_a_periodic_orbit_repeats_to_rounding_and_is_the_closed_form():
     points = strobed.orbit(start, 20_000).points
     apart = np.abs(points.reshape(-1, 5, 2) - points[-5:]).max() / strobed.scale
     assert apart < 10 * EPS
-    times = (math.ceil(orbit.flight.start * 22.2) + np.arange(5)) / 22.2
+    times = (math.ceil(orbit.phase * 22.2) + np.arange(5)) / 22.2
     q, v = orbit.state(times)
     closed = np.column_stack([q[0], v[0] / oscillator.model.omega[0]])
     off = min(float(np.abs(points[-5:] - np.roll(closed, k, axis=0)).max()) for k in range(5))

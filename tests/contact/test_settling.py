@@ -8,10 +8,8 @@ import pytest
 from contact.orbits import fold_of, period_of, settle
 from contact.orbits.shooting import Shooting
 from contact.stroboscope import StroboscopicMap
-from studies.instruments.oscillators import beam_of, single_mode_oscillator
-from studies.instruments.scene_file import read_scene
-from studies.instruments.spring_of_scene import model_of
-from studies.published import SETTLE_CYCLES
+from studies.letter import SETTLE_CYCLES
+from studies.scene import beam_at, model_of, read_scene, single_mode_at
 
 SCENE = read_scene("letter", [])
 MODEL = model_of(SCENE)
@@ -27,7 +25,7 @@ CASES = [
 
 def strobed_at(name: str, frequency: float, excess: float) -> StroboscopicMap:
     oscillator = (
-        beam_of(SCENE, frequency, MODEL) if name == "beam" else single_mode_oscillator(SCENE, frequency)
+        beam_at(SCENE, frequency, MODEL) if name == "beam" else single_mode_at(SCENE, frequency)
     )
     return StroboscopicMap(oscillator=oscillator).at(excess)
 
@@ -53,7 +51,7 @@ def test_same_period_and_points_as_after_ten_thousand_cycles(name, frequency, ex
 def test_close_to_a_fold_the_proof_comes_long_before_the_repetition():
     """At 2e-7 above the fold of p4 the largest multiplier is within 1 % of one."""
     name, frequency = "single_mode", 21.50
-    family = Shooting(oscillator=single_mode_oscillator(SCENE, frequency), period=4)
+    family = Shooting(oscillator=single_mode_at(SCENE, frequency), period=4)
     fold = fold_of(family)
     near = family.at_speed(1.2 * fold.speed, fold)
     start = near.strobe_state()
@@ -72,7 +70,7 @@ def test_below_the_fold_nothing_is_proved_to_be_p4():
     What comes after the passage is a chaotic transient, whose end the last bit decides: nothing is said of
     it.  As far above the fold, from the same start, p4 is what is proved.
     """
-    fold = fold_of(Shooting(oscillator=single_mode_oscillator(SCENE, 21.50), period=4))
+    fold = fold_of(Shooting(oscillator=single_mode_at(SCENE, 21.50), period=4))
     start = fold.strobe_state()
     for distance in np.geomspace(1e-8, 1e-4, 17):
         below, above = (

@@ -8,13 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from contact import State, StrobedNordmarkMap, StrobedOrbit, StroboscopicMap
+from contact import State, StrobedOrbit, StroboscopicMap
 from contact.orbits import (
     Shooting,
     divergence_rate,
     map_exponents,
-    of_nordmark,
-    of_oscillator,
     orbit_exponents,
     settle,
 )
@@ -27,7 +25,7 @@ FREQUENCY = 21.50
 
 @dataclass(frozen=True, kw_only=True)
 class LogisticMap:
-    """x' = a x (1 - x), with its derivative: both a strobed motion and `Differentiable`."""
+    """x' = a x (1 - x), with its derivative: a strobed map."""
 
     a: float
     scale: float = 1.0
@@ -52,11 +50,8 @@ class LogisticMap:
         before = np.vstack([state, points[:-1]])
         return [(np.array([[self.a * (1.0 - 2.0 * x)]]), 1) for x in before[:, 0]], points[-1].copy()
 
-    def follow(self, state, time):
-        return self.orbit(state, 1).end
-
-    def clock(self, state):
-        return 0.0
+    def advance(self, state, time):
+        return self.orbit(state, 1).end, self.period
 
     def coordinates(self, state):
         return state
@@ -99,17 +94,17 @@ def test_the_logistic_map_on_its_period_two_has_the_multiplier_of_the_formula():
 
 
 def test_classify_takes_the_logistic_map_and_tells_its_chaos():
-    assert classify(LogisticMap(a=4.0), np.array([0.3]), lambda s: s, flow=False).kind == CHAOTIC
-    assert classify(LogisticMap(a=3.5), np.array([0.3]), lambda s: s, flow=False).period == 4
+    assert classify(LogisticMap(a=4.0), np.array([0.3]), flow=False).kind == CHAOTIC
+    assert classify(LogisticMap(a=3.5), np.array([0.3]), flow=False).period == 4
     # at a period doubling the approach is algebraic: slow, and no chaos
-    slow = classify(LogisticMap(a=3.0), np.array([0.3]), lambda s: s, flow=False, most_cycles=1000)
+    slow = classify(LogisticMap(a=3.0), np.array([0.3]), flow=False, most_cycles=1000)
     assert slow.kind == NOT_SETTLED and slow.period == 0
 
 
 def test_the_jacobians_are_the_differences_of_the_period_map(single, beam):
     for strobed, excess in ((single, 0.02), (beam, 1e-3), (beam, 0.02)):
         here = strobed.at(excess)
-        system = of_oscillator(here)
+        system = here
         state = settle(here, strobed.steady(), most_cycles=2000).end
         found, _end = system.jacobians(state, 4)
         matrix = np.linalg.multi_dot([m for m, _span in found][::-1])
@@ -128,7 +123,7 @@ def test_without_impacts_the_exponent_is_minus_half_the_decay_rate(single, beam)
     for strobed in (single, beam):
         here = strobed.at(-0.02)
         rate = float(here.oscillator.model.decay_rate[0])
-        system = of_oscillator(here)
+        system = here
         found = orbit_exponents(system, here.steady(), 1)
         assert found.largest * FREQUENCY == pytest.approx(-0.5 * rate, rel=1e-9)
         flow = divergence_rate(system, here.steady(), 200.0 / FREQUENCY, align=20.0 / FREQUENCY)
@@ -144,7 +139,7 @@ def test_a_settled_orbit_has_the_multipliers_of_shooting(single, beam, excess):
         assert settled.period == 4
         shot = Shooting(oscillator=here.oscillator, period=4, impacts=settled.impacts).from_state(settled.end)
         wanted = math.log(abs(shot.multipliers[0])) / 4
-        system = of_oscillator(here)
+        system = here
         assert orbit_exponents(system, settled.end, 4).largest == pytest.approx(wanted, abs=1e-7)
         flow = divergence_rate(system, settled.end, 150.0 / FREQUENCY, align=20.0 / FREQUENCY)
         assert flow.largest / FREQUENCY == pytest.approx(wanted, abs=3e-3)
@@ -159,7 +154,7 @@ def test_chaos_has_one_exponent_by_both_routes_and_the_sum_of_the_determinants(s
     assert abs(found.lyapunov_map - found.lyapunov_flow / FREQUENCY) < 4.0 * spread
     # determinant of a period: exp(-mu/f) tau^2 for each impact, whatever the motion
     state = settle(here, single.steady(), most_cycles=1500).end
-    matrices, _end = of_oscillator(here).jacobians(state, 64)
+    matrices, _end = here.jacobians(state, 64)
     impacts = here.orbit(state, 64).impacts.sum()
     logs = sum(np.linalg.slogdet(m)[1] for m, _span in matrices)
     mode, tau = scene.single_mode, scene.single_mode.restitution
@@ -175,18 +170,17 @@ def test_chaos_of_the_beam_and_its_slow_transient_are_told_apart(beam):
 
 
 def test_the_nordmark_map_by_both_routes(scene):
-    strobed = StrobedNordmarkMap(map=nordmark_at(scene, FREQUENCY))
+    strobed = nordmark_at(scene, FREQUENCY)
     here = strobed.at(1e-3)
     settled = settle(here, strobed.at(-1e-3).steady(), most_cycles=2000)
-    system = of_nordmark(here)
-    orbit = orbit_exponents(system, settled.end, settled.period)
-    flow = divergence_rate(system, settled.end, 400.0, align=20.0)
+    orbit = orbit_exponents(here, settled.end, settled.period)
+    flow = divergence_rate(here, settled.end, 400.0, align=20.0)
     assert settled.period == 4 and orbit.largest < 0
     assert flow.largest == pytest.approx(orbit.largest, abs=3e-3)
 
 
 def test_wrong_use_is_refused(single):
-    system = of_oscillator(single.at(0.01))
+    system = single.at(0.01)
     with pytest.raises(ValueError, match="count is 1 "):
         map_exponents(system, single.steady(), 1)
     with pytest.raises(ValueError, match="duration is 0"):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contact import StrobedNordmarkMap, StroboscopicMap
+from contact import StroboscopicMap
 from contact.orbits import born, born_period
 from studies.calibration import free_period
 from studies.letter import AMPLITUDE_STABILITY, FREE_PERIOD_ERROR_S
@@ -69,7 +69,7 @@ def test_the_free_period_at_which_p10_is_born(scene):
     """The band edge f T = 20/21 in the map itself, on both sides of it."""
     for period, wanted in ((40.71e-3, 11), (40.69e-3, 10)):
         there = scene.replace({"single_mode.free_period_s": period})
-        assert born_period(StrobedNordmarkMap(map=nordmark_at(there, 23.40)), 1e-5) == wanted
+        assert born_period(nordmark_at(there, 23.40), 1e-5) == wanted
     assert 20.0 / (21.0 * 23.40) == pytest.approx(40.70e-3, abs=5e-6)
 
 

@@ -1,0 +1,178 @@
+"""Right calls of `beam` and wrong values for their arguments, and how such a table is written.
+
+    of(call, right arguments, kind=dict(field=value), value=dict(field=each(value, value)))
+
+`kind` are values of a wrong kind (TypeError), `value` such as are out of range, not finite or of a wrong
+shape (ValueError).  The sentence names the field and the value; where it names others, `told` has the words.
+`test_wrong_input.py` makes the calls.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+import beam
+
+NAN, INF = math.nan, math.inf
+
+
+class each(tuple[Any, ...]):
+    """Several wrong values of one field."""
+
+    def __new__(cls, *values: object) -> each:
+        return super().__new__(cls, values)
+
+
+@dataclasses.dataclass(frozen=True)
+class told:
+    """A wrong value and the words of the sentence about it."""
+
+    value: object
+    words: str
+
+
+@dataclasses.dataclass(frozen=True)
+class Entry:
+    """A callable, the arguments of a right call, and (field, wrong value, type of the error)."""
+
+    name: str
+    call: Callable[..., Any]
+    right: Callable[[], dict[str, Any]]
+    wrong: tuple[tuple[str, Any, type[Exception]], ...]
+
+    @property
+    def numbers(self) -> list[str]:
+        """Fields that hold a plain number."""
+        return [field for field, value in self.right().items() if type(value) in (float, int)]
+
+
+def of(call: Callable[..., Any], right: Any, name: str = "", *, kind: Any = None, value: Any = None) -> Entry:
+    """An entry of a table; a function of no arguments gives the right ones where they take time to make."""
+    wrong = []
+    for error, fields in ((TypeError, kind or {}), (ValueError, value or {})):
+        for field, values in fields.items():
+            wrong += [(field, one, error) for one in (values if isinstance(values, each) else [values])]
+    arguments = right if callable(right) else lambda: dict(right)
+    return Entry(name or call.__qualname__, call, arguments, tuple(wrong))
+
+
+def fields_of(instance: Any) -> dict[str, Any]:
+    """The arguments that make this instance of a dataclass."""
+    return {entry.name: getattr(instance, entry.name) for entry in dataclasses.fields(instance)}
+
+
+@cache
+def strip() -> beam.StripSection:
+    return beam.StripSection(material=beam.BRASS, width=0.012, thickness=0.00065)
+
+
+@cache
+def spring() -> beam.LeafSpring:
+    return beam.folded_u(leg_length=0.13, bend_radius=0.0075, section=strip(), tip=beam.Tip(mass=0.004))
+
+
+@cache
+def mesh() -> beam.Discretization:
+    return beam.assemble(spring(), 4)
+
+
+@cache
+def modes() -> beam.Modes:
+    return beam.natural_modes(mesh(), 6)
+
+
+@cache
+def uniform() -> beam.UniformBeam:
+    return beam.UniformBeam(length=0.13, bending_stiffness=0.03, mass_per_length=0.07)
+
+
+MODAL = dict(omega=[150.0, 900.0], decay_rate=[3.0, 9.0], phi=[10.0, 9.0], participation=[0.1, 0.05])
+
+# fmt: off
+BEAM = (
+    of(beam.Material, dict(youngs_modulus=105e9, poissons_ratio=0.34, density=8500.0, loss_factor=1e-3),
+       kind=dict(density="8500"), value=dict(youngs_modulus=-1.0, poissons_ratio=0.5, loss_factor=-1e-3)),
+    of(beam.StripSection, dict(material=beam.BRASS, width=0.012, thickness=0.00065),
+       kind=dict(material="brass", layer=0.00045), value=dict(width=0.0, thickness=0.65)),
+    of(beam.Layer, dict(material=beam.DAMPING_TAPE, thickness=0.00045),
+       kind=dict(material=None, both_sides=2), value=dict(thickness=-0.00045)),
+    of(beam.Straight, dict(length=0.13),
+       kind=dict(length="0.13"), value=dict(length=each(-0.13, NAN))),
+    of(beam.Arc, dict(radius=0.0075, angle=math.pi),
+       kind=dict(angle="pi"), value=dict(radius=0.0, angle=0.0)),
+    of(beam.Centreline, dict(pieces=(beam.Straight(length=0.1),), start=(0.0, 0.0), heading=0.0),
+       kind=dict(pieces=each(3, (0.1,)), start=("a", "b"), heading="east"),
+       value=dict(pieces=told((), "is empty"), start=(0.0,))),
+    of(beam.Tip, dict(mass=0.004, rotary_inertia=0.0),
+       kind=dict(mass="4 g"), value=dict(mass=-0.004, rotary_inertia=NAN)),
+    of(beam.Readout, dict(at=0.05),
+       kind=dict(at="middle"), value=dict(at=-0.05, quantity="velocity")),
+    of(beam.LeafSpring, lambda: fields_of(spring()),
+       kind=dict(centreline=0.28, sections=3, tip=0.004, drive=("x", "y"), readouts={"laser": 0.1}),
+       value=dict(sections=(), supports=each("clamped", ("clamped", ["free"])), tip_at=each(1.0, 0.0),
+       drive=(0.0, 0.0))),
+    of(beam.folded_u,
+       lambda: dict(leg_length=0.13, bend_radius=0.0075, section=strip(), tip=beam.Tip(mass=0.004)),
+       kind=dict(bend_radius=told("tight", "radius is 'tight'"), tip=None, damped_section=0.45e-3,
+                 section=told(beam.BRASS, "sections is Material")),
+       value=dict(leg_length=told(0.0, "length of the straight strip or leg is 0.0 m"),
+                  bend_radius=told(0.0003, "radius is 0.0003 m"), damped_span=(0.0, 0.1))),
+    of(beam.straight_strip,
+       lambda: dict(length=0.13, section=strip(), supports=("clamped", "free"), tip_at=0.13),
+       value=dict(length=-1.0, tip_at=130.0, supports=("glued", "free"))),
+    of(beam.straight_strip, lambda: dict(length=0.13, section=strip(), supports=("clamped", "free"),
+                                         tip_at=0.13, damped_section=strip(), damped_span=(0.05, 0.1)),
+       name="straight_strip, damped",
+       kind=dict(damped_span=(0.0, "end")), value=dict(damped_span=(0.1, 0.05))),
+    of(beam.cantilever, lambda: dict(length=0.13, section=strip()),
+       kind=dict(section=told(None, "sections is None"), tip=0.004, readouts=[0.1]),
+       value=dict(length=0)),
+    of(beam.assemble, lambda: dict(spring=spring(), elements=4),
+       kind=dict(spring=strip()), value=dict(elements=each(0, [4, 4], [4, 2.5, 4], 10**9))),
+    of(beam.default_elements, lambda: dict(spring=spring()),
+       kind=dict(spring=each(None, 3, "folded_u"))),
+    of(beam.Discretization, lambda: fields_of(mesh()),
+       kind=dict(spring=None),
+       value=dict(tip=[NAN], mass=np.eye(2), stiffness=told(3.0, "stiffness has shape None"))),
+    of(beam.natural_modes, lambda: dict(discretization=mesh(), count=4),
+       kind=dict(discretization=spring()), value=dict(count=each(0, 10**6, 2.5))),
+    of(beam.Modes, lambda: fields_of(modes()),
+       kind=dict(discretization=None, participation=["a"] * 6), value=dict(omega=[[1.0]], phi=[1.0])),
+    of(lambda modes: beam.StripDamping().decay_rates(modes), lambda: dict(modes=modes()), name="StripDamping",
+       kind=dict(modes=each(None, [24.5, 149.0], "all"))),
+    of(beam.ConstantLossFactor, dict(loss_factor=0.02),
+       kind=dict(loss_factor="2 %"), value=dict(loss_factor=each(-0.02, NAN))),
+    of(beam.ConstantRatio, dict(ratio=0.0116),
+       kind=dict(ratio=[0.01]), value=dict(ratio=each(-0.1, INF))),
+    of(beam.Rayleigh, dict(mass_coefficient=3.56, stiffness_coefficient=1e-6),
+       kind=dict(stiffness_coefficient=None), value=dict(mass_coefficient=-1.0, stiffness_coefficient=NAN)),
+    of(beam.MeasuredDecay, dict(decay_rate=3.56),
+       kind=dict(others=each("strips", beam.StripDamping), scaled=1), value=dict(decay_rate=-3.56)),
+    of(beam.reduce, lambda: dict(modes=modes(), damping=beam.ConstantRatio(ratio=0.01), count=2),
+       kind=dict(modes=mesh(), damping=0.01, coupled_only="yes"), value=dict(count=each(0, 50))),
+    of(beam.ModalModel, MODAL | dict(static_compliance=1e-3, tip_mass=0.004),
+       kind=dict(omega=each("150", [150.0, 1j], [True, False]), readouts=[1.0, 2.0]),
+       value=dict(omega=[], decay_rate=[-3.0, 9.0], phi=[10.0], participation=[NAN, 1.0], tip_mass=-1.0)),
+    of(beam.single_mode, dict(free_period=40.8e-3, decay_rate=3.56),
+       kind=dict(free_period="40.8 ms"), value=dict(free_period=0.0, decay_rate=-3.56)),
+    of(beam.UniformBeam, lambda: fields_of(uniform()),
+       value=dict(length=0.0, bending_stiffness=NAN, supports=each(("clamped",), 2))),
+    of(beam.UniformBeam, lambda: fields_of(uniform()) | dict(supports=("free", "clamped")),
+       name="UniformBeam, clamped at its tip", value=dict(tip_mass=1.0)),
+    of(beam.exact_modes, lambda: dict(beam=uniform(), count=2),
+       kind=dict(beam=spring()), value=dict(count=each(0, 10**7))),
+    of(beam.frequency_function, lambda: dict(beam=uniform(), beta_length=[1.0, 2.0]),
+       kind=dict(beam=None, beta_length=["1"]), value=dict(beta_length=each([-1.0], [NAN]))),
+    of(beam.as_one_spring, lambda: dict(half=beam.ModalModel(**MODAL)),
+       kind=dict(half=each(None, 0.5, "leg"))),
+    of(beam.straight_equivalent, lambda: dict(spring=spring()),
+       kind=dict(spring=each(None, strip())),
+       value=dict(spring=told(beam.cantilever(length=0.1, section=strip()), "centreline has 1 pieces"))),
+)
+# fmt: on

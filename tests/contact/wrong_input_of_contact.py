@@ -1,0 +1,221 @@
+"""Right calls of `contact` and wrong values for their arguments; how it is written: wrong_input_of_beam."""
+
+from __future__ import annotations
+
+import dataclasses
+from functools import cache
+from typing import Any
+
+import numpy as np
+from wrong_input_of_beam import INF, MODAL, NAN, each, fields_of, of, told
+
+import beam
+import contact
+from contact import integrators
+from contact.orbits import continuation, kick, lyapunov, saltation, shooting
+
+
+@cache
+def eq_1(law: contact.ContactLaw | None = None) -> contact.ImpactOscillator:
+    return contact.ImpactOscillator(
+        model=beam.single_mode(free_period=40.8e-3, decay_rate=3.56),
+        stop=contact.Stop(gap=0.0107, law=law or contact.NewtonRestitution(local_restitution=0.1)),
+        drive=contact.HarmonicDrive(frequency=22.2),
+    ).with_excess(1e-3)
+
+
+@cache
+def strobed() -> contact.StroboscopicMap:
+    oscillator = eq_1()
+    model = dataclasses.replace(oscillator.model, readouts={"laser": [1.0]})
+    return contact.StroboscopicMap(oscillator=dataclasses.replace(oscillator, model=model))
+
+
+@cache
+def nordmark() -> contact.NordmarkMap:
+    return contact.NordmarkMap(alpha=0.5, gamma=0.8, restitution=0.1)
+
+
+@cache
+def closed() -> contact.MaximalFamily:
+    return contact.MaximalFamily.from_oscillator(eq_1(), period=5)
+
+
+@cache
+def family() -> shooting.Shooting:
+    return shooting.Shooting(oscillator=eq_1(contact.HertzContact(stiffness=8e9)), period=5)
+
+
+@cache
+def orbit() -> shooting.PeriodicOrbit:
+    return family().at_speed(0.1)
+
+
+@cache
+def system() -> Any:
+    return lyapunov.of_nordmark(contact.StrobedNordmarkMap(map=nordmark(), rho=0.01))
+
+
+UNDRIVEN = dataclasses.replace(eq_1(), drive=None)
+PAIR = dict(radius=0.0025, youngs_modulus=370e9, poissons_ratio=0.22, other_modulus=210e9, other_ratio=0.29)
+BAND = dict(free_period=40.8e-3, decay_rate=3.56, restitution=0.1)
+FROM_F = dict(drive_frequency=22.2, **BAND)
+START = dict(displacement=[0.0], velocity=[0.0])
+
+# fmt: off
+CONTACT = (
+    of(contact.HarmonicDrive, dict(frequency=22.2, amplitude=1e-3),
+       kind=dict(frequency="22.2 Hz"), value=dict(frequency=0.0, amplitude=-1e-3)),
+    of(contact.Stop, dict(gap=0.0107, law=contact.NewtonRestitution(local_restitution=0.1)),
+       kind=dict(gap="10.7 mm", law=each(0.1, contact.HertzContact)), value=dict(gap=-0.01)),
+    of(contact.NewtonRestitution, dict(local_restitution=0.1),
+       kind=dict(local_restitution="0.1"), value=dict(local_restitution=each(1.1, NAN))),
+    of(contact.DelayedRestitution, dict(restitution=0.1, delay=1e-4),
+       kind=dict(restitution=told(lambda v: "soft", "gives 'soft'"), speeds=3.0),
+       value=dict(restitution=2.0, delay="late", speeds=(1.0,))),
+    of(contact.LinearContact, dict(stiffness=1e6, damping=0.0),
+       kind=dict(stiffness=None), value=dict(stiffness=0.0, damping=-1.0)),
+    of(contact.HertzContact, dict(stiffness=8e9),
+       kind=dict(stiffness="hard"), value=dict(stiffness=each(-8e9, INF))),
+    of(contact.HertzContact.of_bodies, PAIR,
+       value=dict(radius=0.0, youngs_modulus=-1.0, other_ratio=0.6)),
+    of(contact.HuntCrossley, dict(stiffness=8e9, dissipation=0.5),
+       value=dict(stiffness=0, dissipation=each(-0.5, NAN))),
+    of(contact.HuntCrossley.with_restitution, dict(stiffness=8e9, restitution=0.5, velocity=0.1),
+       kind=dict(restitution="half"), value=dict(restitution=0.0, velocity=-0.1)),
+    of(contact.ImpactOscillator, lambda: fields_of(eq_1()),
+       kind=dict(model=None, stop=0.0107, drive=22.2, load=["a"]),
+       value=dict(drive=told(contact.HarmonicDrive(frequency=22200.0), "drive is 22200 Hz"),
+                  stop=told(dataclasses.replace(family().oscillator.stop, gap=0.0), "gap is 0.0 m"),
+                  load=[1.0, 2.0])),
+    of(lambda excess: eq_1().with_excess(excess), dict(excess=1e-3), name="ImpactOscillator.with_excess",
+       kind=dict(excess="0.1 %"), value=dict(excess=each(-1.0, NAN))),
+    of(lambda amplitude: eq_1().with_amplitude(amplitude), dict(amplitude=1e-3),
+       name="ImpactOscillator.with_amplitude",
+       kind=dict(amplitude=None), value=dict(amplitude=each(-1e-3, INF))),
+    of(contact.State, START | dict(time=0.0, regime=0, wait=0.0, rebound=0.0),
+       value=dict(displacement=each([], "rest"), velocity=[0.0, 1.0], regime=7, time=NAN)),
+    of(contact.State.rest, dict(n_modes=2),
+       kind=dict(n_modes="two"), value=dict(n_modes=each(0, 1.5))),
+    of(contact.simulate, lambda: dict(oscillator=eq_1(), periods=2),
+       kind=dict(oscillator=None, state=[0.0, 0.0], times="now", method=3),
+       value=dict(periods=each(told(0, "duration is 0.0 s"), 1.5, told(None, "duration and periods")),
+                  times=told([0.02, 0.01], "times must be"), method="magic",
+                  state=told(contact.State.rest(3), "displacement of the state has 3 modes"))),
+    of(contact.simulate, lambda: dict(oscillator=eq_1(), duration=0.1), name="simulate for a duration",
+       kind=dict(duration="1 s"), value=dict(duration=each(-1.0, told(1e12, "duration is 1e+12 s")))),
+    of(contact.StroboscopicMap, lambda: dict(oscillator=eq_1()), kind=dict(oscillator=3)),
+    of(lambda excess: strobed().at(excess), dict(excess=1e-3), name="StroboscopicMap.at",
+       value=dict(excess=-2.0)),
+    of(lambda time, count: strobed().orbit(contact.State(**START, time=time), count), dict(time=0.0, count=1),
+       name="StroboscopicMap.orbit", value=dict(count=each(-5, 2.5), time=1e-3)),
+    of(lambda name: strobed().readout(np.zeros((1, 2)), name), dict(name="laser"),
+       name="StroboscopicMap.readout", value=dict(name="no such point")),
+    of(lambda maps, states, workers: contact.strobed_orbits(
+           [strobed()] * maps, [contact.State(**START)] * states, 1, workers=workers),
+       dict(maps=2, states=2, workers=2), name="strobed_orbits",
+       value=dict(workers=0, maps=told(1, "states has 2 entries"),
+                  states=each(told(0, "states has 0 entries"), told(3, "states has 3 entries")))),
+    of(contact.NordmarkMap, dict(alpha=0.5, gamma=0.8, restitution=0.1, delay_term=0.0, whole_turns=1),
+       kind=dict(restitution="0.1"), value=dict(alpha=1.9, gamma=1.5, y_line="wrong", whole_turns=0.5)),
+    of(contact.NordmarkMap.from_frequencies, FROM_F,
+       kind=dict(decay_rate="3.56"), value=dict(drive_frequency=25.0, free_period=0.0)),
+    of(contact.NordmarkMap.from_mode,
+       dict(omega=154.0, decay_rate=3.56, drive_frequency=22.2, restitution=0.1, delay=0.0),
+       value=dict(omega=-154.0, delay=-1e-3, restitution=NAN)),
+    of(contact.NordmarkMap.from_oscillator, lambda: dict(oscillator=eq_1()),
+       kind=dict(oscillator=each(3, told(family().oscillator, "law of the stop is a HertzContact"))),
+       value=dict(oscillator=told(UNDRIVEN, "drive is None"))),
+    of(lambda state, rho, count: nordmark().iterate(state, rho, count),
+       dict(state=[0.0, 0.0], rho=0.01, count=3), name="NordmarkMap.iterate",
+       kind=dict(rho="0.01"), value=dict(state=each([0.0], [NAN, 0.0]), count=-1)),
+    of(contact.StrobedNordmarkMap, lambda: dict(map=nordmark(), rho=0.01),
+       kind=dict(map=each(None, "Nordmark")), value=dict(rho=NAN)),
+    of(contact.band, BAND | dict(period=4),
+       kind=dict(period="p4"), value=dict(period=1, free_period=-1.0, whole_turns=-1, y_line=3)),
+    of(contact.bands, BAND | dict(periods=(3, 4)),
+       kind=dict(periods=3), value=dict(periods=told((3, 1), "period is 1 drive periods"), restitution=1.5)),
+    of(contact.fold, lambda: dict(nordmark=nordmark(), period=4),
+       kind=dict(nordmark=None), value=dict(period=each(0, 10**9))),
+    of(contact.maximal_orbits, lambda: dict(nordmark=nordmark(), period=4, rho=0.01),
+       kind=dict(nordmark=0.5), value=dict(period=2.5, rho=NAN)),
+    of(contact.stable_range, lambda: dict(nordmark=nordmark(), period=4),
+       kind=dict(nordmark="map", period=None), value=dict(period=-4)),
+    of(contact.maximal_period, lambda: dict(nordmark=nordmark()),
+       kind=dict(nordmark=each(None, 4, [nordmark()]))),
+    of(contact.maximal_periods, lambda: dict(nordmark=nordmark()),
+       kind=dict(nordmark=each(None, 0.5, "map"))),
+    of(contact.collisions,
+       lambda: dict(oscillator=eq_1(), trajectory=contact.simulate(eq_1(), periods=3), unfinished="drop"),
+       kind=dict(oscillator=None, trajectory=[0.1]), value=dict(unfinished="keep")),
+    of(contact.before_collision, lambda: dict(oscillator=eq_1()),
+       kind=dict(oscillator=each(None, "beam")), value=dict(oscillator=told(UNDRIVEN, "drive is None"))),
+    of(contact.first_collision, lambda: dict(oscillator=eq_1(), periods=64),
+       kind=dict(oscillator=3, state="rest"),
+       value=dict(periods=0, oscillator=told(eq_1().with_excess(-0.5), "periods is 64"))),
+    of(contact.MaximalFamily, MODAL | dict(drive_frequency=22.2, gap=0.0107, restitution=0.1, period=3),
+       kind=dict(omega=["a", "b"]), value=dict(phi=[1.0], gap=0.0, period=0, restitution=-0.1)),
+    of(contact.MaximalFamily.single_mode, FROM_F | dict(period=5, gap=1.0),
+       kind=dict(free_period="T"), value=dict(decay_rate=-1.0, drive_frequency=NAN)),
+    of(lambda speed: closed().orbit(speed), dict(speed=0.1), name="MaximalFamily.orbit",
+       kind=dict(speed="fast"), value=dict(speed=each(0.0, NAN))),
+    of(lambda excess: closed().orbits(excess), dict(excess=1e-3), name="MaximalFamily.orbits",
+       kind=dict(excess=[1e-3]), value=dict(excess=each(-1.0, INF))),
+)
+
+ORBITS = (
+    of(kick.KickFamily, lambda: dict(oscillator=eq_1(), period=5),
+       kind=dict(oscillator=None), value=dict(period=0, modes=2)),
+    of(lambda speeds: kick.KickFamily(oscillator=eq_1(), period=5).fold(speeds), dict(speeds=(0.01, 0.5)),
+       name="KickFamily.fold",
+       kind=dict(speeds="all"), value=dict(speeds=each((0.5, 0.01), (0.0, 1.0)))),
+    of(shooting.Shooting, lambda: dict(oscillator=family().oscillator, period=5),
+       kind=dict(oscillator="eq_1"), value=dict(period=1.5, impacts=0)),
+    of(lambda **given: family().at_speed(**given), dict(speed=0.1), name="Shooting.at_speed",
+       kind=dict(speed=None, near=3), value=dict(speed=-0.1)),
+    of(lambda **given: family().at_excess(**given),
+       lambda: dict(excess=orbit().excess * 1.01, near=orbit()), name="Shooting.at_excess",
+       kind=dict(near=None), value=dict(excess=each(-1.5, NAN))),
+    of(continuation.follow, lambda: dict(family=family(), start=orbit(), low=0.09, high=0.11, step=0.1),
+       kind=dict(family=None, start=0.1),
+       value=dict(low=told(0.2, "low and high are 0.2 and"), step=told(0.0, "step is 0.0 [1]"))),
+    of(continuation.first_event, lambda: dict(family=family(), start=orbit(), lowest=-0.1),
+       kind=dict(family=None, start=0.1), value=dict(lowest=-1.5)),
+    of(continuation.fold_of, lambda: dict(family=family()),
+       kind=dict(family=each(None, eq_1()), near=0.1)),
+    of(continuation.folds_of, lambda: dict(family=family()),
+       kind=dict(family=each(None, eq_1()), near=0.1)),
+    of(continuation.lowest_of, lambda: dict(family=family()),
+       kind=dict(family=each(None, eq_1()), near=0.1)),
+    of(continuation.fold_along_frequency, lambda: dict(family=family(), frequencies=[22.2]),
+       kind=dict(family=5, frequencies=["22.2"]), value=dict(frequencies=each(22.2, [NAN]))),
+    of(lyapunov.of_oscillator, lambda: dict(strobed=contact.StroboscopicMap(oscillator=eq_1())),
+       kind=dict(strobed=each(eq_1(), None)),
+       value=dict(strobed=told(contact.StroboscopicMap(oscillator=UNDRIVEN), "drive is None"))),
+    of(lyapunov.of_nordmark, lambda: dict(strobed=contact.StrobedNordmarkMap(map=nordmark())),
+       kind=dict(strobed=each(nordmark(), None, 0.1))),
+    of(lyapunov.map_exponents, lambda: dict(system=system(), state=np.array([0.0, 0.0]), count=10, align=0),
+       kind=dict(system=nordmark()), value=dict(count=1, align=-1)),
+    of(lyapunov.orbit_exponents, lambda: dict(system=system(), state=np.array([0.0, 0.0]), period=1),
+       kind=dict(system=None), value=dict(period=each(0, 1.5))),
+    of(lyapunov.divergence_rate,
+       lambda: dict(system=system(), state=np.array([0.0, 0.0]), duration=5.0, align=0.0, seed=1),
+       kind=dict(system=3), value=dict(duration=0.0, align=-1.0, seed=-1)),
+    of(saltation.monodromy, dict(flow=np.ones((1, 2, 2)), saltation=np.eye(2)),
+       kind=dict(saltation=[["a", "b"], ["c", "d"]]), value=dict(flow=np.ones(2), saltation=np.eye(3))),
+    of(saltation.sorted_multipliers, dict(matrix=np.eye(2)),
+       kind=dict(matrix="eye"), value=dict(matrix=each(np.ones((2, 3)), [NAN]))),
+)
+
+STEPS = each(0.0, NAN, told("1 us", "step is "))
+
+METHODS = (
+    of(integrators.CentralDifference, dict(step=1e-6), value=dict(step=STEPS)),
+    of(integrators.Splitting, dict(step=1e-6), value=dict(step=STEPS, order=3)),
+    of(integrators.GeneralisedAlpha, dict(step=1e-6, beta=0.25), value=dict(step=STEPS, beta=-1.0)),
+    of(integrators.MoreauJean, dict(step=1e-6, theta=0.5), value=dict(step=STEPS, theta=2.0)),
+    of(integrators.NonsmoothGeneralisedAlpha, dict(step=1e-6, rho=0.8), value=dict(step=STEPS, rho=1.5)),
+    of(integrators.SampledFlight, dict(points=100),
+       kind=dict(points="many"), value=dict(points=each(0, 1.5))),
+)
+# fmt: on
