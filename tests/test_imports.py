@@ -38,8 +38,7 @@ def name_of(path: Path, root: Path) -> str:
 
 
 def modules(package: str, root: Path = ROOT) -> dict[str, Path]:
-    found = {name_of(path, root): path for path in sorted((root / package).rglob("*.py"))}
-    return {name: path for name, path in found.items() if not name.startswith("studies.instruments")}
+    return {name_of(path, root): path for path in sorted((root / package).rglob("*.py"))}
 
 
 def imports_of(name: str, path: Path) -> Iterator[tuple[str, str]]:
