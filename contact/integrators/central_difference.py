@@ -55,11 +55,11 @@ def central_difference(grid, numbers):
         place.evaluations += 1
         for k in range(q.size):
             old = half[k]
-            half[k] += h * (force_in_flight(grid, k, swing, q, half) - motion.modes[WEIGHT, k] * push)
+            new = old + h * (force_in_flight(grid, k, swing, q, half) - motion.modes[WEIGHT, k] * push)
             if not lagged:
                 c = 0.5 * h * motion.modes[DECAY, k]
-                half[k] = (half[k] + c * old) / (1.0 + c)
-            v[k] = 0.5 * (old + half[k])
+                new = (new + c * old) / (1.0 + c)
+            half[k], v[k] = new, 0.5 * (old + new)
         status = end_contact_step(grid, depth)
         if status != DONE:
             return status

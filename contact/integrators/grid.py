@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from contact import touch
-from contact.compiled import inlined, kernel
+from contact.compiled import inlined, kernel, part
 from contact.flight.motion import DECAY, SQUARE, WEIGHT, Motion
 from contact.recorder import Recorder, add_loss, close_touch, is_full, open_touch, put_sample, sample_due
 from contact.trajectory import IMPACT
@@ -160,7 +160,7 @@ def ending(between: Between, write: Write) -> Callable[..., int]:
             return TOO_LARGE
         return FULL if is_full(recorder) else DONE
 
-    @inlined
+    @part
     def end_step(grid, method, count, depth, apart, done):
         """Go on to the grid point `count` further; `apart` tells that the stop has not acted on the way."""
         place, status = grid.places[0], DONE
@@ -254,7 +254,7 @@ def _write_contact(grid, method, span, depth, _done):
 _end_contact_step = ending(cubic_between, _write_contact)
 
 
-@inlined
+@part
 def end_contact_step(grid, depth):
     """The end of a step under a force law, the state between its ends on the cubic."""
     return _end_contact_step(grid, None, 1, depth, depth < 0.0, None)

@@ -43,7 +43,7 @@ from typing import ClassVar
 import numpy as np
 
 from beam.parameters import require_within
-from contact.compiled import inlined, kernel
+from contact.compiled import inlined, kernel, part
 from contact.flight.motion import DECAY, SQUARE, WEIGHT, Motion
 from contact.integrators.fixed_step import check_step, fixed_step_run
 from contact.integrators.grid import (
@@ -107,7 +107,7 @@ def write_percussion(grid, corner, span, _depth, push):
 _end_impact_step = ending(path_between, write_percussion)
 
 
-@inlined
+@part
 def end_impact_step(grid, corner, push):
     """The end of a step, with the percussion `push` at the fraction `corner` of it if there is one."""
     depth, _rate = tip_of(grid.motion, grid.q, grid.v)

@@ -43,7 +43,7 @@ from contact.integrators.grid import (
     touches,
 )
 
-__all__ = ["Composition", "Split", "kick", "march", "sub_flows", "tip_depth", "tip_rate"]
+__all__ = ["Composition", "Split", "kick", "march", "sub_flows", "tip_at", "tip_rate"]
 
 RENEW = 32
 """Steps after which sin and cos of the drive's phase are computed anew instead of turned on: their rounding
@@ -83,24 +83,18 @@ def sub_flows(motion, composition, length):
 
 
 @kernel
-def phase_at(grid, step):
-    """sin and cos of the phase of the drive at a grid point."""
-    phase = grid.motion.drive * (grid.clock + step * grid.step)
-    return math.sin(phase), math.cos(phase)
-
-
-@kernel
-def tip_depth(motion, u, sine, cosine):
-    """Penetration of the tip [m]; `sine`, `cosine` belong to the phase of the drive."""
+def tip_at(motion, u, clock):
+    """Penetration of the tip [m] at a time since a strobe [s], sine and cosine of the drive's phase there."""
+    sine, cosine = math.sin(motion.drive * clock), math.cos(motion.drive * clock)
     depth = motion.level + motion.tip_sine * sine + motion.tip_cosine * cosine
     for k in range(u.size):
         depth += motion.modes[WEIGHT, k] * u[k]
-    return depth
+    return depth, sine, cosine
 
 
 @kernel
 def tip_rate(motion, v, sine, cosine):
-    """Its rate [m/s]."""
+    """Rate of the penetration [m/s]; `sine`, `cosine` belong to the phase of the drive."""
     rate = motion.drive * (motion.tip_sine * cosine - motion.tip_cosine * sine)
     for k in range(v.size):
         rate += motion.modes[WEIGHT, k] * v[k]
@@ -161,8 +155,7 @@ def part_of_step(grid, split, x, h, acting):
     motion, u, v = grid.motion, grid.q_at, grid.v_at
     for k in range(u.size):
         u[k], v[k] = grid.q0[k], grid.v0[k]
-    sine, cosine = phase_at(grid, grid.places[0].step)
-    tip = tip_depth(motion, u, sine, cosine), sine, cosine
+    tip = tip_at(motion, u, grid.clock + grid.places[0].step * grid.step)
     shorter = Split(split.composition, sub_flows(motion, split.composition, x * h))
     (depth, sine, cosine), _taken, _met = take_step(motion, shorter, x * h, tip, u, v, acting)
     return depth, tip_rate(motion, v, sine, cosine)
@@ -186,9 +179,7 @@ def clear_steps(motion, depth, u, v, h):
 def march(grid, split):
     """March from the grid point reached; the grid carries deviations from the steady motion."""
     motion, place, h, u, v = grid.motion, grid.places[0], grid.step, grid.q, grid.v
-    sine, cosine = phase_at(grid, place.step)
-    tip = tip_depth(motion, u, sine, cosine), sine, cosine
-    look = place.step
+    tip, look = tip_at(motion, u, grid.clock + place.step * h), place.step
     while place.step < grid.steps:
         count, before, taken, met = 1, tip[0], 0.0, False
         if place.step >= look and before < 0.0 and grid.recorder.marks[0].touching == 0:
@@ -202,8 +193,7 @@ def march(grid, split):
             place.evaluations += 1
             propagate(motion, u, v, count * h, u, v)
         if count > 1 or (place.step + 1) % RENEW == 0:
-            sine, cosine = phase_at(grid, place.step + count)
-            tip = tip_depth(motion, u, sine, cosine), sine, cosine
+            tip = tip_at(motion, u, grid.clock + (place.step + count) * h)
         apart = tip[0] <= 0.0 and not met
         status = end_split_step(grid, split, count, tip[0], apart, (before, taken, met))
         if status != DONE:
