@@ -78,6 +78,7 @@ ORDER = {
         "strobed_motion",
         "touch_flow",
         "stroboscope",
+        "virtual_motion",
         "collision",
         "nordmark",
         "maximal_orbits",

@@ -398,8 +398,8 @@ CONTACT: dict[str, Entry] = {
         ({"restitution": 2.0}, "restitution runs from 2.0|between 0 and 1"),
         ({"delay": "late"}, "delay is 'late'|function of the approach speed"),
         ({"restitution": lambda v: "soft"}, "'soft'|it must give a number"),
-        ({"speeds": (1.0,)}, "speeds is (1.0,)|two rising numbers"),
-        ({"speeds": 3.0}, "speeds is 3.0|two rising numbers"),
+        ({"speeds": (1.0,)}, "speeds has shape (1,)|two rising numbers"),
+        ({"speeds": 3.0}, "speeds has shape ()|two rising numbers"),
     ),
     "LinearContact": entry(
         contact.LinearContact,
