@@ -9,6 +9,7 @@ that fails is halved.  Between neighbours folds, period doublings and grazings a
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -38,11 +39,8 @@ GREATEST_STEP = 10.0
 SMALLEST_STEP = 1e-6
 """Step of log v at which a branch is given up: the orbit then changes its character, not its size."""
 
-MOST_STRIDES = 30
-"""Bound of steps towards a fold: they cover three decades of the approach velocity."""
-
-MOST_STEPS = 1000
-"""Bound of steps towards an event, those included that failed and were halved: a branch has some hundred."""
+FARTHEST = 1e30
+"""Ratio of approach velocities over which an event is looked for: some hundred of the longest steps."""
 
 FIRST_STRIDE, LONGEST_STRIDE = 0.02, 0.3
 """Steps of log v on the way to an event: the first, as it may be close, and the longest."""
@@ -109,27 +107,44 @@ def follow(family: Followed, start: PeriodicOrbit, *, low: float, high: float, s
     arms, reasons = [], []
     for limit in (low, high):
         arm, reason = [start], "range"
-        stride = step
-        # ends: a step reaches the limit, or halvings reach SMALLEST_STEP; no step succeeds below that
-        while True:
-            far = math.log(limit / arm[-1].speed)
-            target = limit if abs(far) <= stride else arm[-1].speed * math.exp(math.copysign(stride, far))
-            try:
-                there = family.at_speed(target, arm[-1])
-                arm += [*probed(family, arm[-1], there)[1:], there]
-                stride = min(step, 1.5 * stride)
-                if target == limit:
-                    break
-            except ContactError as error:
-                stride *= 0.5
-                if stride < SMALLEST_STEP:
-                    reason = f"{error}; last orbit at {arm[-1].speed:.6g} m/s, excess {arm[-1].excess:.6g}"
-                    break
+        try:
+            for orbits in _walk(family, start, limit, first=step, longest=step):
+                arm += orbits[1:]
+        except ContactError as error:
+            reason = f"{error}; last orbit at {arm[-1].speed:.6g} m/s, excess {arm[-1].excess:.6g}"
         arms.append(arm)
         reasons.append(reason)
     orbits = [*arms[0][:0:-1], *arms[1]]
     events = [event for a, b in pairwise(orbits) for event in events_between(family, a, b)]
     return Branch(orbits=tuple(orbits), events=tuple(events), ended_low=reasons[0], ended_high=reasons[1])
+
+
+def _walk(
+    family: Followed, here: PeriodicOrbit, limit: float, *, first: float, longest: float
+) -> Iterator[list[PeriodicOrbit]]:
+    """Steps along a branch up to the approach velocity `limit` [m/s]: the orbits from one end of each to the
+    other.
+
+    A step of log v grows from `first` to `longest`, and is halved where it fails; the ContactError of one
+    that has become `SMALLEST_STEP` is raised.
+    """
+    stride = first
+    # ends: a step reaches the limit, or halvings reach SMALLEST_STEP; no step succeeds below that
+    while here.speed != limit:
+        far = math.log(limit / here.speed)
+        target = limit if abs(far) <= stride else here.speed * math.exp(math.copysign(stride, far))
+        try:
+            there = family.at_speed(target, here)
+            orbits = [*probed(family, here, there), there]
+        except ContactError:
+            stride *= 0.5
+            if stride < SMALLEST_STEP:
+                raise
+            continue
+        yield orbits
+        if target == limit:
+            return
+        here, stride = there, min(1.5 * stride, longest)
 
 
 def first_event(family: Followed, start: PeriodicOrbit, lowest: float) -> Event | None:
@@ -146,25 +161,20 @@ def first_event(family: Followed, start: PeriodicOrbit, lowest: float) -> Event 
     """
     require_followed(family, start)
     require_within("lowest", lowest, "[1]", above=-1)
-    here, stride, direction = start, FIRST_STRIDE, -math.copysign(1.0, start.slope)
-    for _ in range(MOST_STEPS):
-        try:
-            there = family.at_speed(here.speed * math.exp(direction * stride), here)
-            orbits = [*probed(family, here, there), there]
-        except ContactError:
-            stride *= 0.5
-            if stride < SMALLEST_STEP:
-                if here.approach.min() < GRAZED * here.approach.max():
-                    return Event(kind="grazing", orbit=here)
-                raise
-            continue
-        for a, b in pairwise(orbits):
-            events = events_between(family, a, b)
-            if events:
-                return events[0]
-        if there.excess < lowest:
-            return None
-        here, stride = there, min(1.5 * stride, LONGEST_STRIDE)
+    here, limit = start, start.speed * FARTHEST ** -math.copysign(1.0, start.slope)
+    try:
+        for orbits in _walk(family, start, limit, first=FIRST_STRIDE, longest=LONGEST_STRIDE):
+            for a, b in pairwise(orbits):
+                events = events_between(family, a, b)
+                if events:
+                    return events[0]
+            here = orbits[-1]
+            if here.excess < lowest:
+                return None
+    except ContactError:
+        if here.approach.min() < GRAZED * here.approach.max():
+            return Event(kind="grazing", orbit=here)
+        raise
     return None
 
 
@@ -255,15 +265,14 @@ def _fold_near(family: Followed, near: PeriodicOrbit | None) -> PeriodicOrbit | 
     guess = near or family.kicks.fold()
     if guess is None:
         return None
-    here, stride, unit = family.at_speed(guess.speed, near), FIRST_STRIDE, family.oscillator.unit_speed
-    for _ in range(MOST_STRIDES):
-        if not LEAST_SPEED * unit < here.speed < GREATEST_SPEED * unit:
-            break
-        direction = -math.copysign(1.0, here.slope)
-        there = family.at_speed(here.speed * math.exp(direction * stride), here)
-        if there.slope * here.slope <= 0:
-            return locate(family, here, there, lambda orbit: orbit.slope)
-        here, stride = there, min(1.5 * stride, LONGEST_STRIDE)
+    start, unit = family.at_speed(guess.speed, near), family.oscillator.unit_speed
+    if not LEAST_SPEED * unit < start.speed < GREATEST_SPEED * unit:
+        return None
+    limit = (LEAST_SPEED if start.slope > 0.0 else GREATEST_SPEED) * unit
+    for orbits in _walk(family, start, limit, first=FIRST_STRIDE, longest=LONGEST_STRIDE):
+        for a, b in pairwise(orbits):
+            if a.slope * b.slope <= 0:
+                return locate(family, a, b, lambda orbit: orbit.slope)
     return None
 
 

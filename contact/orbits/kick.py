@@ -140,7 +140,8 @@ class KickFamily(SingleImpactFamily):
     def error(self, orbit: SingleImpactOrbit) -> float:
         """Estimated error of the excess of an orbit: the change when its collision starts from its own
         ringing."""
-        return self.orbit_of(self.kick(orbit.speed, orbit.before)).excess - orbit.excess
+        ringing = np.column_stack([orbit.displacement, orbit.velocity])
+        return self.orbit_of(self.kick(orbit.speed, ringing)).excess - orbit.excess
 
     def _at(self, log_speed: float) -> SingleImpactOrbit:
         return self.orbit(math.exp(log_speed))

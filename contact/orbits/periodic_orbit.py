@@ -8,86 +8,58 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from contact.flight.modal_flow import steady_motion
+from contact.orbits.family import Release, TouchOrbit
 from contact.orbits.kick import KickFamily
 from contact.oscillator import ImpactOscillator
-from contact.simulation import simulate
-from contact.trajectory import State
 
 __all__ = ["Followed", "PeriodicOrbit"]
 
 Array = NDArray[np.float64]
+SLACK = 1e-6
+"""Part of a drive period by which the touch that closes an orbit may miss it, beside the residual."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class PeriodicOrbit:
-    """A periodic orbit with impacts.
+class PeriodicOrbit(TouchOrbit):
+    """An orbit from shooting; beside the fields of `TouchOrbit`:
 
     Parameters
     ----------
-    oscillator : ImpactOscillator
-        At the drive amplitude of the orbit.
-    period : int
-        m, in drive periods.
-    excess : float
-        F/F_g - 1.
-    speed : float
-        Approach velocity of the first touch [m/s].
-    approach : ndarray, shape (impacts,)
-        Approach velocities of all touches in one period [m/s].
-    phase : float
-        Drive time of the first touch [s].
-    displacement, velocity : ndarray, shape (n_modes,)
-        Deviations from the steady motion there.
-    multipliers : ndarray of complex, shape (2 n_modes,)
-        Floquet multipliers, the largest first.
+    record : ndarray, shape (impacts, 4 + 2 n_modes)
+        Its touches, as in ``contact.touch_flow``.
+    tangent : ndarray, shape (2 n_modes, 2 n_modes)
+        Its monodromy matrix.
     slope : float
         Change of the excess with the approach velocity along the family [s/m].
     residual : float
         What is left of the equations, in units of the gap.
-    admissible : bool
-        The tip touches the stop at these impacts only (certified).
     """
 
-    oscillator: ImpactOscillator = field(repr=False)
-    period: int
-    excess: float
-    speed: float
-    approach: Array
-    phase: float
-    displacement: Array
-    velocity: Array
-    multipliers: NDArray[np.complex128]
+    record: Array = field(repr=False)
+    tangent: Array = field(repr=False)
     slope: float
     residual: float
-    admissible: bool
 
     @property
     def impacts(self) -> int:
         """Touches in one period."""
-        return self.approach.size
+        return len(self.record)
 
     @property
-    def amplitude(self) -> float:
-        """Base amplitude [m]."""
-        return self.oscillator.driven.amplitude
+    def approach(self) -> Array:
+        """Approach velocities of all touches in one period, shape (impacts,) [m/s]."""
+        return self.record[:, 2]
 
-    @property
-    def stable(self) -> bool:
-        """Whether all multipliers lie inside the unit circle."""
-        return bool(np.abs(self.multipliers[0]) < 1.0)
+    def monodromy(self) -> Array:
+        """The field `tangent`."""
+        return self.tangent
 
-    def state(self) -> State:
-        """The physical state just before the first touch."""
-        q, q_rate = steady_motion(self.oscillator.motion(), np.array([self.phase]))
-        return State(
-            displacement=self.displacement + q[0], velocity=self.velocity + q_rate[0], time=self.phase
-        )
-
-    def strobe_state(self) -> State:
-        """The state at the strobe that follows the first touch."""
-        period = self.oscillator.period
-        return simulate(self.oscillator, self.state(), duration=period - self.phase % period).end
+    def release(self) -> Release:
+        """That of the last touch; the residual moves the touch that closes the orbit."""
+        n, last = self.oscillator.n_modes, self.record[-1]
+        off = 4.0 * self.residual * self.oscillator.stop.gap / self.record[0, 2]
+        slack = SLACK * self.oscillator.period + off
+        return Release(float(last[1]), last[4 : 4 + n], last[4 + n :], bool(last[3] < 0.0), slack)
 
 
 @runtime_checkable

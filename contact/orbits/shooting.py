@@ -30,7 +30,7 @@ from beam.parameters import is_whole, require, require_kind, require_within, sho
 from contact.errors import NotPeriodic
 from contact.flight.modal_flow import steady_motion
 from contact.orbits.continuation import fold_of, orbits_at
-from contact.orbits.family import ends_in_touch, sorted_multipliers
+from contact.orbits.family import TouchOrbit
 from contact.orbits.kick import KickFamily
 from contact.orbits.periodic_orbit import PeriodicOrbit
 from contact.oscillator import ImpactOscillator
@@ -220,23 +220,14 @@ class Shooting:
         closing, right, unit = found.jacobian.copy(), np.zeros(2 * n + 2), self.oscillator.unit_speed
         closing[-1], right[-1] = rate * self._scale / unit, 1.0 / unit
         change = self._scale * np.linalg.solve(closing, right)
-        # free of the stop from the last release to the touch that closes the orbit, give or take the residual
-        motion, last, duration = driven.motion(), found.record[-1], self.period * driven.period
-        admissible = ends_in_touch(
-            motion, phase + last[1], (last[4 : 4 + n], last[4 + n :]), duration - last[1],
-            leaves=bool(last[3] < 0.0),
-            slack=1e-6 * driven.period + 4.0 * found.error * motion.gap / found.record[0, 2],
-        )  # fmt: skip
         return PeriodicOrbit(
             oscillator=driven, period=self.period, excess=amplitude / grazing - 1.0,
-            speed=float(rate @ unknown), approach=found.record[:, 2].copy(), phase=phase,
-            displacement=unknown[:n].copy(), velocity=unknown[n : 2 * n].copy(),
-            multipliers=sorted_multipliers(found.matrix[: 2 * n, : 2 * n]),
+            speed=float(rate @ unknown), phase=phase, displacement=unknown[:n].copy(),
+            velocity=unknown[n : 2 * n].copy(), record=found.record, tangent=found.matrix[: 2 * n, : 2 * n],
             slope=float(unknown[-2:] @ change[-2:]) / amplitude / grazing, residual=found.error,
-            admissible=admissible,
         )  # fmt: skip
 
-    def _beside(self, orbit: PeriodicOrbit) -> Array:
+    def _beside(self, orbit: TouchOrbit) -> Array:
         """Unknowns of an orbit, to start a neighbouring one from."""
         deviations = np.concatenate([orbit.displacement, orbit.velocity])
         return self._unknown(deviations, orbit.amplitude, orbit.phase)
@@ -257,10 +248,7 @@ class Shooting:
         """
         require_within("speed", speed, "m/s", above=0)
         require_kind("near", near, (PeriodicOrbit, type(None)), "a PeriodicOrbit or None")
-        if near is not None:
-            return self._solve(self._beside(near), speed=speed)
-        kick = self.kicks.orbit(speed)
-        return self._solve(self._unknown(kick.before.T.ravel(), kick.amplitude, kick.phase), speed=speed)
+        return self._solve(self._beside(near or self.kicks.orbit(speed)), speed=speed)
 
     def at_excess(self, excess: float, near: PeriodicOrbit) -> PeriodicOrbit:
         """The orbit at F/F_g - 1 = `excess` that is next to `near`."""

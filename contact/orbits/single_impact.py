@@ -34,20 +34,19 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from beam.parameters import require, require_array, require_kind, require_whole, require_within
+from beam.parameters import require, require_kind, require_whole, require_within
 from contact.errors import NotPeriodic
-from contact.flight.modal_flow import steady_motion
 from contact.flight.motion import Motion
 from contact.laws import NewtonRestitution
 from contact.nordmark import restitution_of
-from contact.orbits.family import ends_in_touch, modal_flow, sorted_multipliers
+from contact.orbits.family import Release, TouchOrbit, modal_flow
 from contact.oscillator import ImpactOscillator
 from contact.stop import Stop
 from contact.touch_flow import FLOWN, flow_from_touch
@@ -86,91 +85,25 @@ class Kick:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class SingleImpactOrbit:
-    """An orbit with one collision in m drive periods.
+class SingleImpactOrbit(TouchOrbit):
+    """An orbit with one collision in m drive periods, built from the `Kick` of that collision."""
 
-    Parameters
-    ----------
-    oscillator : ImpactOscillator
-        At the drive amplitude of the orbit.
-    period : int
-        m.
-    kick : Kick
-        The collision that it was built from.
-    excess : float
-        F/F_g - 1 [1].
-    phase : float
-        Drive time of the first touch [s].
-    before : ndarray, shape (n_modes, 2)
-        Deviations (u, u') just before it.
-    """
-
-    oscillator: ImpactOscillator = field(repr=False)
-    period: int
     kick: Kick
-    excess: float
-    phase: float
-    before: Array
-
-    @property
-    def speed(self) -> float:
-        """Approach speed v [m/s]."""
-        return self.kick.speed
-
-    @property
-    def amplitude(self) -> float:
-        """Base amplitude [m]."""
-        return self.oscillator.driven.amplitude
-
-    @property
-    def duration(self) -> float:
-        """m/f [s]."""
-        return self.period * self.oscillator.period
 
     @property
     def after(self) -> Array:
         """Deviations (u, u') just after the collision, referred to its first touch, shape (n_modes, 2)."""
-        return self.before + self.kick.jump
+        return np.column_stack([self.displacement, self.velocity]) + self.kick.jump
 
-    @cached_property
-    def _motion(self) -> Motion:
-        return self.oscillator.motion()
-
-    def state(self, time: ArrayLike) -> Array:
-        """Modal (q, q') at drive times from the touch to the next [s], shape (2, n_modes) + shape of `time`.
-
-        At the start it is the state after the collision, at the end that before the next one.
-        """
-        times, slack = require_array("time", time, "s", words="times"), 1e-9 * self.duration
-        since = times.ravel() - self.phase  # with the rounding of the caller's times
-        inside = np.all((since >= -slack) & (since <= self.duration + slack))
-        require(bool(inside), f"time leaves the flight; it must lie within {self.duration} s of its start")
-        flows = np.array([modal_flow(self._motion, t) for t in since.tolist()])
-        free = np.einsum("tkij,kj->ikt", flows.reshape(-1, self.oscillator.n_modes, 2, 2), self.after)
-        steady = np.array(steady_motion(self._motion, times.ravel())).transpose(0, 2, 1)
-        return (steady + free).reshape((2, self.oscillator.n_modes, *times.shape))
-
-    def tip(self, time: ArrayLike) -> tuple[Array, Array]:
-        """Tip displacement [m] and velocity [m/s] relative to the base at drive times within the flight."""
-        phi = self.oscillator.model.phi
-        x, v = (np.tensordot(phi, rows, 1) for rows in self.state(time))
-        return x, v
-
-    @cached_property
-    def admissible(self) -> bool:
-        """Whether the flight meets the wall at its end only (certified; a graze counts as a meeting)."""
-        wait, motion = self.kick.duration, self._motion
+    def release(self) -> Release:
+        """The end of the collision."""
+        motion, wait = self.oscillator.motion(), self.kick.duration
         u, v = np.einsum("kij,kj->ik", modal_flow(motion, wait), self.after)
-        return ends_in_touch(
-            motion, self.phase + wait, (u, v), self.duration - wait, leaves=self.kick.leaves,
-            slack=CLOSING * self.duration + HEIGHT * motion.gap / self.speed,
-        )  # fmt: skip
+        slack = CLOSING * self.duration + HEIGHT * motion.gap / self.speed
+        return Release(wait, u, v, self.kick.leaves, slack)
 
     def monodromy(self) -> Array:
-        """Derivative of (u, u') over m/f, from just before a touch to just before the next.
-
-        It is that of the oscillator's own collision (``contact.touch_flow``), met as this orbit meets it;
-        shape (2 n_modes, 2 n_modes).
+        """That of the oscillator's own collision (``contact.touch_flow``), met as this orbit meets it.
 
         Raises
         ------
@@ -178,26 +111,15 @@ class SingleImpactOrbit:
             If that collision has fewer touches than the kick, or does not end.
         """
         n, tangent = self.oscillator.n_modes, np.eye(2 * self.oscillator.n_modes + 2)
-        u, v = self.before.T.copy()
         outcome = flow_from_touch(
-            self._motion, self.oscillator.tip_response(), self.phase, u, v, self.duration, tangent,
-            np.empty((self.kick.touches, 4 + 2 * n)),
+            self.oscillator.motion(), self.oscillator.tip_response(), self.phase, self.displacement.copy(),
+            self.velocity.copy(), self.duration, tangent, np.empty((self.kick.touches, 4 + 2 * n)),
         )  # fmt: skip
         if outcome != FLOWN:
             raise NotPeriodic(
                 time=self.phase, gap=0.0, velocity=self.speed, detail="the collision was lost on its orbit"
             )
         return tangent[: 2 * n, : 2 * n]
-
-    @cached_property
-    def multipliers(self) -> NDArray[np.complex128]:
-        """Eigenvalues of `monodromy`, shape (2 n_modes,), largest modulus first."""
-        return sorted_multipliers(self.monodromy())
-
-    @property
-    def stable(self) -> bool:
-        """Whether all multipliers lie inside the unit circle."""
-        return bool(np.abs(self.multipliers[0]) < 1.0)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -259,8 +181,9 @@ class SingleImpactFamily(ABC):
         rate = kick.speed - r
         amplitude, phase = self.oscillator.drive_at(gap - p, rate)
         return SingleImpactOrbit(
-            oscillator=self.oscillator.with_amplitude(amplitude), period=self.period, kick=kick,
-            excess=excess_of(p / gap, rate / self.oscillator.unit_speed), phase=phase, before=before,
+            oscillator=self.oscillator.with_amplitude(amplitude), period=self.period,
+            excess=excess_of(p / gap, rate / self.oscillator.unit_speed), speed=kick.speed, phase=phase,
+            displacement=before[:, 0].copy(), velocity=before[:, 1].copy(), kick=kick,
         )  # fmt: skip
 
     def orbit(self, speed: float) -> SingleImpactOrbit:

@@ -166,6 +166,8 @@ def orbits(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], obj
         yield "Shooting.at_speed", lambda v=speed: family.at_speed(v)
         yield "Shooting.at_excess", lambda v=speed: family.at_excess(0.01, family.at_speed(v))
         yield "PeriodicOrbit.state", lambda v=speed: family.at_speed(v).state()
+        yield "PeriodicOrbit.monodromy", lambda v=speed: family.at_speed(v).monodromy()
+        yield "PeriodicOrbit.release", lambda v=speed: family.at_speed(v).release()
         yield "PeriodicOrbit.strobe_state", lambda v=speed: family.at_speed(v).strobe_state()
         yield "follow", lambda v=speed: continuation.follow(
             family, family.at_speed(v), low=0.5 * v, high=2.0 * v, step=0.3
@@ -195,8 +197,7 @@ def closed_forms(oscillator: ImpactOscillator) -> None:
     family = single_impact.MaximalFamily.from_oscillator(oscillator, period=5)
     fold = family.fold()
     assert fold is not None and family.orbits(0.01)
-    for name in ("state", "tip"):
-        getattr(family.orbit(0.1), name)(family.orbit(0.1).phase)
+    assert family.orbit(0.1).state().time == family.orbit(0.1).phase
     assert family.excess(1e-3) < 1.0
     assert fold.monodromy().shape == (2 * oscillator.n_modes, 2 * oscillator.n_modes)
 
@@ -205,7 +206,7 @@ def unknown_of(orbit: single_impact.SingleImpactOrbit) -> np.ndarray:
     """Deviations and drive at the touch of an orbit."""
     angle = orbit.oscillator.drive.angular_frequency * orbit.phase
     drive = orbit.amplitude * np.array([np.sin(angle), np.cos(angle)])
-    return np.concatenate([orbit.before.T.ravel(), drive])
+    return np.concatenate([orbit.displacement, orbit.velocity, drive])
 
 
 def run_all(said: Callable[[str], None]) -> None:

@@ -28,6 +28,7 @@ from contact.orbits import (
     PeriodicOrbit,
     Settled,
     Shooting,
+    SingleImpactOrbit,
     born,
     fold_along_frequency,
     fold_of,
@@ -126,6 +127,10 @@ def apart(a: np.ndarray, b: np.ndarray) -> float:
     return float(distance[linear_sum_assignment(distance)].max())
 
 
+def deviations(orbit: PeriodicOrbit | SingleImpactOrbit) -> np.ndarray:
+    return np.concatenate([orbit.displacement, orbit.velocity])
+
+
 def touches(orbit: PeriodicOrbit) -> int:
     """Touches of the simulated motion from just before the first one to just before it comes again."""
     duration = orbit.period * orbit.oscillator.period * (1 - 1e-6)
@@ -164,7 +169,7 @@ def test_under_newtons_law_shooting_is_the_closed_form(spring: ModalModel, modes
     assert orbit.excess == pytest.approx(closed.excess, abs=1e-14)
     assert orbit.speed == pytest.approx(closed.speed, rel=1e-12)
     assert apart(orbit.multipliers, closed.multipliers) < 1e-11 * max(1.0, abs(orbit.multipliers[0]))
-    place = np.concatenate([orbit.displacement, orbit.velocity]) - closed.before.T.ravel()
+    place = deviations(orbit) - deviations(closed)
     assert np.max(np.abs(place) / sizes(oscillator)) < 1e-16 * max(10.0, 1 / part)
     wave = np.exp(2j * np.pi * oscillator.drive.frequency * np.array([orbit.phase, closed.phase]))
     assert abs(wave[0] - wave[1]) < 1e-12
@@ -361,7 +366,7 @@ def test_kicks_are_exact_under_newtons_law(spring: ModalModel, modes: int) -> No
         found, expected = kicks.orbit(speed), closed.orbit(speed)
         assert found.excess == pytest.approx(expected.excess, abs=1e-14)
         assert found.phase == pytest.approx(expected.phase, abs=1e-13)
-        assert np.max(np.abs(found.before - expected.before).T.ravel() / sizes(oscillator)) < 1e-14
+        assert np.max(np.abs(deviations(found) - deviations(expected)) / sizes(oscillator)) < 1e-14
         assert abs(kicks.error(found)) < 1e-14
         assert found.kick.touches == 1 and found.kick.duration == 0.0
     assert kicks.fold().excess == pytest.approx(closed.fold().excess, abs=1e-13)

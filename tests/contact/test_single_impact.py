@@ -9,6 +9,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.linalg import expm
 from scipy.optimize import brentq
 
 from beam import ModalModel, single_mode
@@ -68,10 +69,26 @@ def family_of(modes: dict, frequency: float, period: int, restitution: float, ga
     return MaximalFamily(oscillator=oscillator, period=period)
 
 
+def flown(orbit: SingleImpactOrbit, times: np.ndarray | float) -> np.ndarray:
+    """Modal (q, q') at drive times from the touch to the next, by exponentials, shape (2, n_modes, ...)."""
+    model, w, times = orbit.oscillator.model, orbit.oscillator.drive.angular_frequency, np.asarray(times)
+    rows = []
+    for k, (omega, c) in enumerate(zip(model.omega, model.decay_rate, strict=True)):
+        since = times.ravel() - orbit.phase
+        free = np.array([expm(np.array([[0.0, 1.0], [-(omega**2), -c]]) * s) @ orbit.after[k] for s in since])
+        phase = orbit.amplitude * orbit.oscillator.steady_response()[k] * np.exp(1j * w * times.ravel())
+        rows.append([phase.imag + free[:, 0], w * phase.real + free[:, 1]])
+    return np.array(rows).transpose(1, 0, 2).reshape((2, len(rows), *times.shape))
+
+
+def tip(orbit: SingleImpactOrbit, times: np.ndarray) -> tuple:
+    return tuple(np.tensordot(orbit.oscillator.model.phi, part, 1) for part in flown(orbit, times))
+
+
 def residual(orbit: SingleImpactOrbit) -> float:
     """Largest relative mismatch of the closed orbit: gap, speed, Newton's law, return of modes."""
     model, stop = orbit.oscillator.model, orbit.oscillator.stop
-    after, arrival = orbit.state(orbit.phase), orbit.state(orbit.phase + orbit.duration)
+    after, arrival = flown(orbit, orbit.phase), flown(orbit, orbit.phase + orbit.duration)
     x, v = model.phi @ arrival[0], model.phi @ arrival[1]
     jump = arrival[1] - (1 + stop.law.local_restitution) * model.phi / (model.phi @ model.phi) * v
     mismatch = [abs(x / stop.gap - 1), abs(v / orbit.speed - 1)]
@@ -228,10 +245,10 @@ def test_orbits_close_under_integration(name: str) -> None:
     for speed in (1.3 * at_fold.speed, 0.7 * at_fold.speed):
         orbit = family.orbit(speed)
         assert residual(orbit) < 1e-9
-        start = orbit.state(orbit.phase).ravel()
+        start = flown(orbit, orbit.phase).ravel()
         end = orbit.phase + orbit.duration
         before, none = integrate(family, orbit.amplitude, start, orbit.phase, end - 1e-9)
-        assert none == [] and np.allclose(orbit.state(end - 1e-9).ravel(), before, rtol=1e-6, atol=1e-9)
+        assert none == [] and np.allclose(flown(orbit, end - 1e-9).ravel(), before, rtol=1e-6, atol=1e-9)
         _, impacts = integrate(family, orbit.amplitude, start, orbit.phase, end + 1e-4)
         assert len(impacts) == 1
         assert impacts[0][0] == pytest.approx(end, abs=1e-10)
@@ -247,7 +264,7 @@ def test_multipliers_are_those_of_integrated_neighbours(name: str, factor: float
     omega = family.oscillator.model.omega
     n = len(omega)
     middle = orbit.phase + 0.5 * orbit.duration
-    centre = orbit.state(middle).ravel()
+    centre = flown(orbit, middle).ravel()
     sizes = np.concatenate([np.full(n, 1.0), np.maximum(omega, 1.0)]) * 1e-6 * np.abs(centre[0])
     columns = []
     for k, size in enumerate(sizes):
@@ -322,7 +339,7 @@ def test_second_impact_ends_the_orbits_of_equation_1() -> None:
 def highest(orbit) -> float:
     """Largest tip height over the wall away from the ends of the flight, relative to the gap."""
     share = np.linspace(1e-3, 1 - 1e-3, 3001)
-    x, v = orbit.tip(orbit.phase + share * orbit.duration)
+    x, v = tip(orbit, orbit.phase + share * orbit.duration)
     assert x.shape == v.shape == share.shape
     return float(np.max(x) / orbit.oscillator.stop.gap - 1)
 
@@ -330,10 +347,8 @@ def highest(orbit) -> float:
 def test_tip_velocity_is_the_rate_of_the_tip() -> None:
     orbit = many_modes("three modes").fold()
     times = orbit.phase + np.linspace(0.1, 0.9, 7) * orbit.duration
-    rate = (orbit.tip(times + 1e-6)[0] - orbit.tip(times - 1e-6)[0]) / 2e-6
-    assert np.allclose(rate, orbit.tip(times)[1], rtol=1e-4, atol=1e-4 * orbit.speed)
-    with pytest.raises(ValueError, match="time"):
-        orbit.tip(orbit.phase - 1e-3)
+    rate = (tip(orbit, times + 1e-6)[0] - tip(orbit, times - 1e-6)[0]) / 2e-6
+    assert np.allclose(rate, tip(orbit, times)[1], rtol=1e-4, atol=1e-4 * orbit.speed)
 
 
 def test_share_of_the_first_mode_in_a_kick() -> None:
@@ -341,7 +356,7 @@ def test_share_of_the_first_mode_in_a_kick() -> None:
     family = many_modes("three modes")
     orbit = family.orbit(0.2)
     phi = family.oscillator.model.phi
-    jump = phi * (orbit.after - orbit.before)[:, 1]
+    jump = phi * orbit.kick.jump[:, 1]
     share = phi**2 / np.sum(phi**2)
     assert np.allclose(jump, -1.35 * share * 0.2, rtol=1e-10)
 
@@ -418,7 +433,7 @@ def test_wrong_calls_are_named() -> None:
 def highest_between(orbit: SingleImpactOrbit) -> float:
     """Largest tip displacement over gap at interior peaks of the flight, by dense sampling and parabolas."""
     times = np.linspace(orbit.phase, orbit.phase + orbit.duration, 300 * orbit.period)
-    x = orbit.tip(times)[0] / orbit.oscillator.stop.gap
+    x = tip(orbit, times)[0] / orbit.oscillator.stop.gap
     inner = np.flatnonzero((x[1:-1] > x[:-2]) & (x[1:-1] >= x[2:])) + 1
     before, at, after = x[inner - 1], x[inner], x[inner + 1]
     return float(np.max(at - (after - before) ** 2 / (8 * (before - 2 * at + after))))
@@ -467,7 +482,7 @@ def test_certified_flights_of_many_modes_agree_with_dense_sampling(name: str, re
         for speed in np.geomspace(1e-3, 3.0, 7) * family.oscillator.unit_speed:
             orbit = family.orbit(speed)
             times = orbit.phase + orbit.duration * np.linspace(1e-3, 1 - 1e-3, 2001)
-            top = float(np.max(orbit.tip(times)[0])) / family.oscillator.stop.gap - 1
+            top = float(np.max(tip(orbit, times)[0])) / family.oscillator.stop.gap - 1
             if abs(top) < 1e-4:
                 continue  # sampling cannot tell
             assert orbit.admissible == (top < 0), (period, speed)
