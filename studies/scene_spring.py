@@ -95,8 +95,10 @@ def spring_of(scene: Scene) -> LeafSpring:
         "rotation" if scene.readout.quantity == "rotation" else "displacement"
     )
     with named(SECTION_KEYS):
-        draw: Callable[..., LeafSpring] = partial(
-            {"folded_u": beam.folded_u, "cantilever": beam.cantilever}.get(keys.kind, beam.straight_strip),
+        shapes: dict[str, Callable[..., LeafSpring]]
+        shapes = {"folded_u": beam.folded_u, "cantilever": beam.cantilever}
+        draw = partial(
+            shapes.get(keys.kind, beam.straight_strip),
             section=bare, damped_section=taped,
             damped_span=None if taped is None else (0.0, keys.tape_coverage * leg),
             tip=beam.Tip(mass=scene.tip.mass_kg, rotary_inertia=scene.tip.rotary_inertia_kg_m2),
