@@ -32,16 +32,9 @@ from studies.work_precision.problems import Problem
 from studies.work_precision.reference import DIGITS, extended_motion
 
 __all__ = [
-    "REPEATS",
-    "RINGING",
-    "SLOWEST",
-    "Reference",
-    "Row",
-    "cheapest",
-    "cost_of",
-    "reference_of",
-    "rows_of",
-]
+    "REPEATS", "RINGING", "SLOWEST", "Reference", "Row", "cheapest", "cost_of", "missed_share",
+    "reference_of", "rows_of",
+]  # fmt: skip
 
 REPEATS = 9
 """Timed runs of a point."""
