@@ -24,13 +24,11 @@ from contact.integrators import Integrator
 __all__ = ["Swing"]
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
-RINGING = 0.2
-"""Part of the peak that the modes above the first make up [1]."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Swing:
-    """Free modes that peak together before a stop: mode 1 alone, or with a fifth of the peak in the others.
+    """Free modes that peak together before a stop.
 
     The peak lies `lead` to `lead + spread` after a run starts, `tail` before it ends [s]; the others are in
     step with mode 1 at the peak alone.
@@ -44,11 +42,12 @@ class Swing:
     tail: float
 
     @staticmethod
-    def of(model: ModalModel, stop: Stop) -> Swing:
-        """All modes of the model, without their damping."""
+    def of(model: ModalModel, stop: Stop, ringing: float) -> Swing:
+        """All modes of the model, without their damping; those above the first make up the part `ringing` of
+        the peak [1]."""
         n, period = model.omega.size, 2.0 * math.pi / float(model.omega[0])
         lead, spread, tail = (0.6, 0.25, 0.4) if n == 1 else (0.05, 0.02, 0.02)
-        height = np.ones(1) if n == 1 else np.array([1.0 - RINGING, *[RINGING / (n - 1)] * (n - 1)])
+        height = np.ones(1) if n == 1 else np.array([1.0 - ringing, *[ringing / (n - 1)] * (n - 1)])
         free = ImpactOscillator(model=replace(model, decay_rate=0.0 * model.decay_rate), stop=stop)
         return Swing(oscillator=free, height=height, lead=lead * period, spread=spread * period,
                      tail=tail * period)  # fmt: skip

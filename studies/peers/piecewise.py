@@ -183,10 +183,8 @@ def pieced(
     y = np.concatenate([start.displacement, start.velocity])
     depth, rate = e.tip(y)
     if start.regime != 0 or depth > e.rounding:
-        raise ValueError(
-            f"regime of the state is {start.regime}, {depth:.3g} m behind the stop; outside solvers begin "
-            "off the stop"
-        )
+        raise ValueError(f"regime of the state is {start.regime}, {depth:.3g} m behind the stop; outside "
+                         "solvers begin off the stop")  # fmt: skip
     touches, releases = list[tuple[float, Array]](), list[tuple[float, Array]]()
 
     def touched(s: float, y: Array) -> tuple[bool, Array]:

@@ -150,7 +150,8 @@ def history(model: ModalModel, make: Maker, size: float, contacts: int) -> np.nd
     run = simulate(beam, start, duration=steps * h, times=every * h, method=make(h))
     energy = beam.energy(run.displacement / SCALE, run.velocity / SCALE)
     begun = np.searchsorted(run.impacts.start, every * h, side="right")
-    return np.array([begun.astype(float), np.log(2.0 * compliance * energy)])
+    with np.errstate(divide="ignore"):  # it may be lost altogether
+        return np.array([begun.astype(float), np.log(2.0 * compliance * energy)])
 
 
 def kept(label: str, model: ModalModel, contacts: int) -> Limit:

@@ -135,8 +135,9 @@ def cheapest_of(rows: Sequence[Row]) -> list[Cheapest]:
         coarse, fine = cheapest(mine, 1e-4), cheapest(mine, 1e-8)
         found.append(Cheapest(
             problem=problem, method=method,
-            us_for_1e_4=coarse and coarse.us_per_period, missed_at_1e_4=coarse and coarse.missed,
-            us_for_1e_8=fine and fine.us_per_period, missed_at_1e_8=fine and fine.missed,
+            us_for_1e_4=coarse.us_per_period if coarse else None,
+            missed_at_1e_4=coarse.missed if coarse else None,
+            us_for_1e_8=fine.us_per_period if fine else None, missed_at_1e_8=fine.missed if fine else None,
         ))  # fmt: skip
     return found
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -52,8 +53,7 @@ STEPS: dict[str, Callable[[float], Integrator]] = {
 """Methods with a step [s] by their labels."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Setting:
+class Setting(NamedTuple):
     """One point of a sweep: step [s], samples' spacing over the period or tolerance; its text; the method."""
 
     value: float | None
@@ -81,23 +81,19 @@ def sweeps_for(problem: Problem, *, quick: bool = False) -> list[Sweep]:
     """Every method that knows the law of `problem`, over its settings."""
     law, stride, found = problem.oscillator.stop.law.code, 3 if quick else 1, list[Sweep]()
 
-    def add(
-        label: str, family: str, growth: float, settings: list[tuple[float | None, str, Integrator]]
-    ) -> None:
-        if settings[0][2].accepts(law):
-            kept = [Setting(value=value, text=text, method=method) for value, text, method in settings]
-            found.append(Sweep(label=label, family=family, growth=growth**stride, settings=kept))
+    def add(label: str, family: str, growth: float, settings: list[Setting]) -> None:
+        if settings[0].method.accepts(law):
+            found.append(Sweep(label=label, family=family, growth=growth**stride, settings=settings))
 
-    add("exact method", EXACT, 1.0, [(None, "exact", Exact())])
+    add("exact method", EXACT, 1.0, [Setting(None, "exact", Exact())])
     finest = FINEST_HARD if problem.contact_time == 0.0 else FINEST
     steps = (coarsest_step(problem) * 4.0 ** -np.arange(0, finest, stride)).tolist()
     for label, made in STEPS.items():
-        add(label, STEPPED, 4.0, [(h, f"step {h:.3g} s", made(h)) for h in steps])
-    points = [(1.0 / n, f"{n} points per period", SampledFlight(points=n)) for n in POINTS[::stride]]
-    add(SAMPLED, STEPPED, 4.0, [*points])
-    solvers = {tolerance: all_solvers(tolerance) for tolerance in (TOLERANCES[1::3] if quick else TOLERANCES)}
-    for label in next(iter(solvers.values())):
-        add(
-            label, OUTSIDE, 3.0, [(tol, f"tolerance {tol:.0e}", made[label]) for tol, made in solvers.items()]
-        )
+        add(label, STEPPED, 4.0, [Setting(h, f"step {h:.3g} s", made(h)) for h in steps])
+    add(SAMPLED, STEPPED, 4.0, [Setting(1.0 / n, f"{n} points per period", SampledFlight(points=n))
+                                for n in POINTS[::stride]])  # fmt: skip
+    solvers = {tol: all_solvers(tol) for tol in (TOLERANCES[1::3] if quick else TOLERANCES)}
+    for label in solvers[TOLERANCES[1]]:
+        add(label, OUTSIDE, 3.0, [Setting(tol, f"tolerance {tol:.0e}", made[label])
+                                  for tol, made in solvers.items()])  # fmt: skip
     return found

@@ -27,7 +27,7 @@ from contact.integrators import (
 from studies.scene import Scene, beam_at, model_of, read_scene
 from studies.stability import explicit, splitting, threshold
 from studies.stability.__main__ import FAMILIES
-from studies.stability.false_restitution import ElasticCollision, outcomes, reached
+from studies.stability.false_restitution import ElasticCollision, outcomes
 from studies.stability.implicit_energy import (
     FORCE,
     STIFF_GROWTH,
@@ -291,10 +291,3 @@ def test_the_kick_is_right_at_a_fine_step_and_pretends_a_loss_at_a_coarse_one(sc
         for size in (1 / 64, 1 / 4)
     )
     assert fine == pytest.approx(case.exact.kick, abs=5e-3) and coarse < case.exact.kick - 0.05
-
-
-def test_where_an_error_passes_a_bound():
-    sizes = np.array([0.1, 1.0, 10.0, 100.0])
-    assert reached(sizes, sizes**2, 4.0) == pytest.approx(2.0)
-    assert reached(sizes, np.array([0.0, 0.0, math.nan, math.nan]), 1.0) == 10.0
-    assert reached(sizes, np.zeros(4), 1.0) is None and reached(sizes, np.ones(4), 0.5) is None

@@ -21,7 +21,6 @@ from studies.stability.missed_crossings import (
     of_scipy,
     share_missed,
     share_wrong,
-    solved,
     swing_of,
     tried,
 )
@@ -103,9 +102,9 @@ def test_dop853_misses_half_of_all_crossings_of_one_per_cent_of_the_gap(toleranc
 
 
 def test_a_solver_finds_a_deep_crossing_where_it_is():
-    lead = float(ONE.leads(1)[0])
-    at = -math.acos(1 / 1.2) / float(ONE.oscillator.model.omega[0])
-    assert solved(ONE, "DOP853", 1e-10, 0.2, lead)[1] == pytest.approx(at, rel=1e-7)
+    lead, omega = float(ONE.leads(1)[0]), float(ONE.oscillator.model.omega[0])
+    touch = of_scipy(SCENE, "one mode", "DOP853", 1e-10).touch(0.2, lead)
+    assert touch == pytest.approx(-math.acos(1 / 1.2) / omega, rel=1e-7)
 
 
 def test_rows_of_an_exact_method_have_nothing_to_report():
