@@ -152,19 +152,6 @@ def stiffness(rows: Sequence[Row]) -> Figure:
 
 
 @plotting.in_house_style
-def damping(rows: Sequence[Row]) -> Figure:
-    """The same against the damping of the higher modes, by three rules of damping."""
-    return closed(*panels(rows, "damping", "factor on the higher rates"), columns=3)
-
-
-@plotting.in_house_style
-def loss(rows: Sequence[Row]) -> Figure:
-    """The same against the loss in the contact (1: none). With this ball more loss means a smaller kick, and
-    the restitution rises."""
-    return closed(*panels(rows, "loss", "local restitution", log=False), along=0.02)
-
-
-@plotting.in_house_style
 def search(rows: Sequence[Row]) -> Figure:
     """In search of the letter's restitution: loss in the contact (a) moves the minimum but not its depth,
     hardness (b) lowers it."""
@@ -192,5 +179,5 @@ def search(rows: Sequence[Row]) -> Figure:
     return figure
 
 
-DRAWN: tuple[Callable[[Sequence[Row]], Figure], ...] = (speed, mass, search, modes, stiffness, damping, loss)
+DRAWN: tuple[Callable[[Sequence[Row]], Figure], ...] = (speed, mass, search, modes, stiffness)
 """The figures; each is named by its function and has its docstring as caption."""
