@@ -11,8 +11,8 @@ Computed: the first collision of the steady driven motion at an excess above gra
     tau^2 = (1 - kick)^2 + 2 a shift / v^2,   delay = (v/a)(1 + tau - kick)         to leading order in v,
 
 v the approach speed, v/a the time to the top of the arc beyond the gap, a = (2 pi f)^2 gap. Varied, one at a
-time: excess, number of modes, tip mass (free period and drive amplitude at grazing kept), stiffness and
-material of the contact; and tip mass together with loss in the contact and with stiffness, in search of the
+time: excess, number of modes, tip mass (free period and drive amplitude at grazing kept), stiffness of the
+contact; and tip mass together with loss in the contact and with stiffness, in search of the
 letter's tau.
 
 What comes out for the folded spring with its tape:

@@ -7,7 +7,7 @@
     search       tip mass and restitution of the contact itself together
     hardness     tip mass and stiffness together
     stiffness    linear contact of 1e2 ... 1e7 times the static stiffness of the tip
-    materials    Hertz contact of four balls, on the same axis by the linear contact of equal contact time
+    ball         Hertz contact of the ball, on the same axis by the linear contact of equal contact time
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from beam import ALUMINA, BRASS, STEEL, Material, ModalModel
+from beam import ModalModel
 from contact import (
     ContactLaw,
     HertzContact,
@@ -31,16 +31,6 @@ from contact import (
 from studies.calibration import leaf_mass
 from studies.letter import TIME_TRACE_EXCESS
 from studies.scene import Scene, approach_speed, beam_at, contact_law_of, corresponding, hertz_of, model_of
-
-PLASTIC = Material(youngs_modulus=0.2e9, poissons_ratio=0.45, density=920.0, loss_factor=0.1)
-"""Low-density polyethylene: a ball of it on steel is the softest contact considered."""
-
-BALLS: Mapping[str, Material] = {
-    "alumina on steel": ALUMINA,
-    "steel on steel": STEEL,
-    "brass on steel": BRASS,
-    "polyethylene on steel": PLASTIC,
-}
 
 OWN, HERTZ, SCENE_MASS = "contact of the scene", "Hertz", "tip mass of the scene"
 """Series of the spring as it is; `OWN` is there where the scene's law is not Hertz's."""
@@ -196,10 +186,6 @@ def _stiffness(spring: Spring, bare: Spring, grid: Grid) -> Iterator[Case]:
         for value in STIFFNESSES[:: grid.every]:
             law = LinearContact(stiffness=value * one.tip_stiffness)
             yield one.case("stiffness", name, value, law)
-    for name, ball in BALLS.items() if spring.mass_ratio > 0.0 else ():
-        hertz = HertzContact.of_bodies(
-            radius=spring.scene.tip.ball_radius_m, youngs_modulus=ball.youngs_modulus,
-            poissons_ratio=ball.poissons_ratio, other_modulus=STEEL.youngs_modulus,
-            other_ratio=STEEL.poissons_ratio,
-        )  # fmt: skip
-        yield spring.case("materials", name, spring.equal(hertz).stiffness / spring.tip_stiffness, hertz)
+    hertz = hertz_of(spring.scene)
+    if spring.mass_ratio > 0.0:
+        yield spring.case("ball", HERTZ, spring.equal(hertz).stiffness / spring.tip_stiffness, hertz)

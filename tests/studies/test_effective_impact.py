@@ -206,7 +206,7 @@ def test_the_answers_agree_with_what_is_known(run_study):
     with (ran.folder / "collisions.csv").open(newline="") as file:
         curves = {row["curve"] for row in csv.DictReader(file)}
     assert curves == {
-        "speed", "modes", "mass", "orbit", "stiffness", "materials", "search", "hardness"
+        "speed", "modes", "mass", "orbit", "stiffness", "ball", "search", "hardness"
     }  # fmt: skip
     search = [floor["restitution"] for floor in ran.summary["floors"] if floor["curve"] == "search"]
     assert all(0.2 < tau < 0.24 for tau in search)  # whatever the loss in the contact
