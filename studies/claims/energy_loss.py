@@ -164,7 +164,8 @@ def energy_loss(scene: Scene, run: Run, *, across: int, restitutions: int) -> Ma
     drives = sorted(scene.drive.frequencies_hz)
     lines = run.map(partial(line_of, scene, drives), RESTITUTIONS, "p_m against loss")
     rows = [node for f in zip(*lines, strict=True) for node in f]
-    frequencies = np.linspace(*(corresponding(scene, f) for f in SCANNED_HZ), across)
+    low, high = (corresponding(scene, f) for f in SCANNED_HZ)
+    frequencies = np.linspace(low, high, across)
     tau = np.linspace(0.0, 0.9, restitutions)
     plane = run.map(partial(line_of, scene, frequencies.tolist()), tau.tolist(), "plane of f and tau")
     where = np.array([[place_of(node) for node in line] for line in plane])

@@ -15,11 +15,9 @@ from studies.calibration import bare_cantilever, free_period, leaf_mass, with_ma
 from studies.effective_impact.cases import Spring
 from studies.effective_impact.collision_rows import (
     Row,
-    crossing,
     floor_of,
     measure,
     on_orbits,
-    still_of,
 )
 from studies.letter import TIME_TRACE_EXCESS
 from studies.scene import beam_at, hertz_of, read_scene
@@ -161,26 +159,6 @@ def made(curve: str, values, **columns) -> list[Row]:
         replace(row, value=float(value), **{name: column[i] for name, column in columns.items()})
         for i, value in enumerate(values)
     ]
-
-
-def test_crossings_are_found_in_the_logarithm():
-    x = np.geomspace(1e-5, 1.0, 11).tolist()
-    assert crossing(x, np.log10(x).tolist(), -2.25) == pytest.approx(10**-2.25, rel=1e-9)
-    assert math.isnan(crossing(x, np.log10(x).tolist(), 1.0))
-    assert math.isnan(crossing([1.0], [1.0], 0.5))
-
-
-def by_modes(restitution, beyond: float) -> list[Row]:
-    counts = [*range(1, 41), 60]
-    value = [*(restitution(n) for n in counts[:-1]), beyond]
-    return made("modes", counts, modes=counts, restitution=value, kick=value, delay_s=[1e-3] * 41)
-
-
-def test_what_stands_still_is_told_from_what_drifts():
-    settled = still_of(by_modes(lambda n: 0.2 + math.exp(-0.5 * n), 0.2), 40)
-    assert settled.modes == math.ceil(2 * math.log(1e3))
-    drifting = still_of(by_modes(lambda n: 1.0 / n, 1.0 / 60), 40)
-    assert drifting.modes is None and drifting.drift == pytest.approx(1 / 40 - 1 / 60)
 
 
 def test_the_smallest_restitution_lies_between_the_cases():
