@@ -20,7 +20,6 @@ from studies.soft_wall.closed_forms import (
     hertz_doubling,
     hertz_kick,
     impulse_per_square,
-    survival_sums,
 )
 from studies.soft_wall.rows import doubling_near, doubling_of, end_of
 
@@ -39,44 +38,23 @@ def measured_kick(wall: SoftWall, peak: float) -> float:
 # one collision
 
 
-def contact_by_steps(z: float, zeta: float, steps: int = 4000) -> tuple[float, float]:
-    """(kick in units of a/s, velocity at the end over that at the touch) of D'' + 2 zeta D' + D = -1, by
-    Runge-Kutta steps until the force changes sign, the last one halved down to the place."""
-
-    def rate(y: np.ndarray) -> np.ndarray:
-        return np.array([y[1], -1.0 - 2.0 * zeta * y[1] - y[0]])
-
-    def step(y: np.ndarray, h: float) -> np.ndarray:
-        a = rate(y)
-        b = rate(y + 0.5 * h * a)
-        c = rate(y + 0.5 * h * b)
-        return y + h / 6.0 * (a + 2.0 * b + 2.0 * c + rate(y + h * c))
-
-    y, tau, h = np.array([0.0, z]), 0.0, 4.0 / steps
-    while True:
-        after = step(y, h)
-        if after[0] + 2.0 * zeta * after[1] <= 0.0 and tau > 0.0:
-            low, high = 0.0, h
-            for _ in range(60):
-                middle = 0.5 * (low + high)
-                trial = step(y, middle)
-                low, high = (middle, high) if trial[0] + 2.0 * zeta * trial[1] > 0.0 else (low, middle)
-            end = step(y, low)
-            return z - (tau + low) - end[1], end[1] / z
-        y, tau = after, tau + h
-
-
-@pytest.mark.parametrize("z", [0.003, 0.05, 1.0, 20.0])
-def test_kick_without_dashpot_against_an_integration_of_its_equation(z):
-    wall = wall_at(22.2, 1e4)
-    kick = wall.kick(wall.peak_of(z)) * wall.rate / wall.deceleration
-    assert kick == pytest.approx(contact_by_steps(z, 0.0)[0], rel=1e-7, abs=1e-13)
+@pytest.mark.parametrize("z", [0.05, 1.0, 20.0])
+def test_kick_without_dashpot_against_simulated_collisions(z):
+    """The closed form leaves out what the parabola leaves out, of the order of the root of the peak."""
+    off = []
+    for hardness in (1e5, 1e7):
+        wall = wall_at(22.2, hardness)
+        off.append(abs(measured_kick(wall, wall.peak_of(z)) / wall.kick(wall.peak_of(z)) - 1.0))
+    assert off[0] < 0.05 and off[1] < 0.15 * off[0] + 1e-6
 
 
 @pytest.mark.parametrize("zeta", [0.2, 0.591, 1.0, 1.2431878510, 2.0])
-def test_restitution_of_a_hard_approach_against_an_integration(zeta):
-    found = [hard_restitution(zeta) + contact_by_steps(z, zeta)[1] for z in (1e4, 1e5)]
-    assert abs(found[1]) < 2e-5 and abs(found[1]) < 0.15 * abs(found[0])
+def test_restitution_of_a_hard_approach_against_simulated_collisions(zeta):
+    off = []
+    for hardness in (1e6, 1e8):
+        found = first_collision(wall_at(22.2, hardness, zeta).struck.with_excess(0.01))
+        off.append(abs(found.restitution - hard_restitution(zeta)))
+    assert off[1] < 0.2 * off[0] < 0.01  # of the order of the contact time
 
 
 def test_the_dashpot_of_the_letters_restitution_is_overdamped():
@@ -85,10 +63,6 @@ def test_the_dashpot_of_the_letters_restitution_is_overdamped():
     for restitution in (0.01, 0.1, 0.1353352832, 0.5, 0.99):
         assert hard_restitution(damping_ratio(restitution)) == pytest.approx(restitution, rel=1e-12)
     assert pytest.approx(1.24319, abs=1e-5) == ZETA
-    # the simulated collision has it, to the order of the contact time
-    gaps = [abs(first_collision(wall_at(22.2, K, ZETA).struck.with_excess(0.01)).restitution - 0.1)
-            for K in (1e6, 1e8)]  # fmt: skip
-    assert gaps[1] < 0.2 * gaps[0] < 0.01
 
 
 @pytest.mark.parametrize("hardness", [1e2, 1e4, 1e6])
@@ -187,19 +161,6 @@ def test_motions_settle_on_one_period_below_the_doubling_and_on_two_above(side, 
     assert settle(here, gone, most_cycles=6000, tolerance=tolerance, prove=False).period == period
 
 
-def test_leading_formula_as_it_is_published():
-    wall = wall_at(22.2, 1e4)
-    model = wall.oscillator.model
-    f, mu, omega = 22.2, float(model.decay_rate[0]), float(model.omega[0])
-    gamma, damped = math.exp(-mu / f), math.sqrt(omega**2 - 0.25 * mu**2)
-    theta = damped / f - 2.0 * math.pi
-    alpha, m12 = 2.0 * math.sqrt(gamma) * math.cos(theta), math.sqrt(gamma) * math.sin(theta) / damped
-    steepness = (1 + gamma + alpha) / (2 * m12 * wall.hardness * omega**2)
-    h_f = 0.5 * (2 * math.pi * f) ** 2 * steepness**2
-    excess = h_f * (1 + 2 / 3 * (1 + gamma + alpha) / (1 - alpha + gamma))
-    assert wall.limit() == pytest.approx((h_f, excess), rel=1e-10)
-
-
 def test_a_soft_enough_wall_keeps_p1_stable():
     wall = wall_at(22.2, 2.0)
     least = 1.0 + (float(wall.oscillator.model.omega[0]) * wall.sums[1]) ** -2  # there s = Lambda
@@ -277,21 +238,6 @@ def test_beam_with_hertz_contact():
         run = strobed.orbit(moved, 2000).points
         drift = float(np.max(np.abs(run[-1] - run[-2]))), float(np.max(np.abs(run[1] - run[0])))
         assert (drift[0] < 0.1 * drift[1]) is stays
-
-
-def test_beam_formula_is_that_of_one_mode_when_there_is_one():
-    oscillator = beam_at(SCENE.replace({"contact.law": "hertz", "modes.count": 1}), 22.2)
-    less, more = survival_sums(oscillator)
-    omega, mu = float(oscillator.model.omega[0]), float(oscillator.model.decay_rate[0])
-    gamma, damped = math.exp(-mu / 22.2), math.sqrt(omega**2 - 0.25 * mu**2)
-    alpha = 2.0 * math.sqrt(gamma) * math.cos(damped / 22.2)
-    m12 = math.sqrt(gamma) * math.sin(damped / 22.2) / damped
-    weight = float(oscillator.model.phi[0]) ** 2
-    assert more == pytest.approx(weight * m12 / (1.0 + alpha + gamma), rel=1e-9)
-    peak = (1.0 + alpha + gamma) / (2.0 * m12 * weight * impulse_per_square(oscillator)) / oscillator.stop.gap
-    ratio = (1.0 + gamma + alpha) / (1.0 - alpha + gamma)
-    assert hertz_doubling(oscillator) == pytest.approx((peak, peak * (1.0 + 0.5 * ratio)), rel=1e-9)
-    assert less / more == pytest.approx(ratio, rel=1e-9)
 
 
 # the study

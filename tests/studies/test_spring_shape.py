@@ -26,9 +26,8 @@ from beam import (
 )
 from beam.space import SpatialSpring, spatial_modes, upright
 from studies.scene import SceneError
-from studies.spring_shape.__main__ import COARSE, agreeing, shapes_of, varied_shapes
+from studies.spring_shape.__main__ import COARSE, shapes_of, varied_shapes
 from studies.spring_shape.elasticity import SolidSpring, assembled, solid_modes
-from studies.spring_shape.figures import net_of
 from studies.spring_shape.rows import error_rows, reading_row
 from studies.spring_shape.shapes import angular_frequency_of, brought_to, kinds_of, shape_of
 from studies.spring_shape.swept_mesh import channel_profile, rectangle_profile, sweep
@@ -173,13 +172,6 @@ def test_a_clamped_strip_is_between_strip_and_plate(shapes):
     assert excess[1] == pytest.approx(0.0118, abs=1.5e-3)
 
 
-def test_which_reading_is_highest_follows_the_numbers(rows):
-    readings = [replace(row, variation="a") for row in rows.values()]
-    assert agreeing(readings, "folded") == ["a"]
-    turned = [replace(row, ratio_twist=40.0) if row.reading == "channel" else row for row in readings]
-    assert agreeing(turned, "folded") == [] and agreeing(turned, "channel") == ["a"]
-
-
 def test_a_channel_gets_as_high_as_the_folded_strip_with_hardly_a_flange(letter_scene, rows):
     thin, thick = (
         reading_row(varied_shapes(letter_scene, f"channel of {part} the sheet")["channel"], 5e-4)
@@ -194,15 +186,6 @@ def test_shapes_that_cannot_be_are_refused(letter_scene):
         shape_of(letter_scene.replace({"spring.width_m": 0.016}), "side_by_side")
     with pytest.raises(SceneError, match="no flange between"):
         brought_to(shape_of(letter_scene, "channel"), 2.0 * math.pi * 5.0)
-
-
-def test_the_net_moves_as_far_as_it_is_told(shapes):
-    for name, across in (("folded", 5), ("channel", 7)):
-        modes = spatial_modes(shapes[name].spring(), 8)
-        rest, moved = net_of(shapes[name], modes, 0, 0.1)
-        assert rest.shape == moved.shape and rest.shape[1:] == (across, 3)
-        assert np.linalg.norm(moved - rest, axis=2).max() == pytest.approx(0.013, rel=1e-9)
-        np.testing.assert_allclose(moved[0], rest[0], atol=1e-12)  # clamped
 
 
 @pytest.mark.parametrize("text", ["0", "-1"])
