@@ -79,7 +79,7 @@ from contact.maximal_orbits import (
     maximal_periods,
     stable_range,
 )
-from contact.nordmark import NordmarkMap
+from contact.nordmark import NordmarkMap, StrobedNordmarkMap
 from contact.orbits.single_impact import MaximalFamily, SingleImpactOrbit
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
@@ -115,6 +115,7 @@ __all__ = [
     "StepTooLarge",
     "Stop",
     "StrobedMap",
+    "StrobedNordmarkMap",
     "StrobedOrbit",
     "StroboscopicMap",
     "Trajectory",

@@ -37,7 +37,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -58,21 +58,17 @@ MOST_PERIODS = 100_000
 class MaximalOrbit:
     """A periodic solution of the map with its impact at states[0].
 
-    Fields: `map` at the rho of the orbit; `period` m; `root` X = sqrt(x_0); `states`, shape (m, 2), the (x,
-    y) in order of time; `trace` and `determinant` of the derivative of m steps. All pure numbers.
+    Fields: `map` and `rho`; `period` m; `root` X = sqrt(x_0); `states`, shape (m, 2), the (x, y) in order of
+    time; `trace` and `determinant` of the derivative of m steps. All pure numbers.
     """
 
     map: NordmarkMap
+    rho: float
     period: int
     root: float
     states: NDArray[np.float64]
     trace: float
     determinant: float
-
-    @property
-    def rho(self) -> float:
-        """rho of the map [1]."""
-        return self.map.rho
 
     @property
     def excess(self) -> float:
@@ -102,10 +98,7 @@ class MaximalOrbit:
 
 
 class MapFamily:
-    """The orbits p_m of a map, m = `period`: p, G and what follows from them in the module's docstring.
-
-    The rho of the map does not matter.
-    """
+    """The orbits p_m of a map, m = `period`: p, G and what follows from them in the module's docstring."""
 
     def __init__(self, nordmark: NordmarkMap, period: int) -> None:
         require_kind("nordmark", nordmark, NordmarkMap, "a NordmarkMap")
@@ -142,7 +135,7 @@ class MapFamily:
         y = -self.map.gamma * np.roll(x, 1)
         y[1 % m] = -self.map.gamma_impact * square
         return MaximalOrbit(
-            map=replace(self.map, rho=rho), period=m, root=root, states=np.column_stack([x, y]),
+            map=self.map, rho=rho, period=m, root=root, states=np.column_stack([x, y]),
             trace=-self.last / (2.0 * root) + self.trace_limit, determinant=self.determinant,
         )  # fmt: skip
 
@@ -154,7 +147,7 @@ class MapFamily:
 
     def orbits(self, excess: float) -> tuple[MaximalOrbit, ...]:
         """The same at F/F_g - 1 = `excess` [1]."""
-        return self.at_rho(self.map.at(excess).rho)
+        return self.at_rho(self.map.rho(excess))
 
     def fold(self) -> MaximalOrbit | None:
         """The orbit at which node and saddle meet, its `rho` being rho_m; None for b >= 0 or a <= 0."""

@@ -82,9 +82,8 @@ def restitution_of(oscillator: ImpactOscillator) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class NordmarkMap:
-    """Eqs. (2), (3) of the letter as a ``contact.strobed_map.StrobedMap``: one step is one drive period.
+    """Eqs. (2), (3) of the letter: one step is one drive period, its state the array (x, y).
 
-    A state is the array (x, y), which is also its point; an impact occurs in the step that starts from x > 0.
     Raises ValueError for a field outside its range.
 
     Parameters
@@ -99,8 +98,6 @@ class NordmarkMap:
         d, zero or more [1].
     whole_turns : int
         Integer part of 1/(f T), 1 in the letter; only rho <-> excess of an oscillating mode uses it [1].
-    rho : float
-        The bifurcation parameter [1]; `at` sets it from the excess over grazing.
     """
 
     alpha: float
@@ -109,7 +106,6 @@ class NordmarkMap:
     y_line: YLine = "corrected"
     delay_term: float = 0.0
     whole_turns: int = 1
-    rho: float = 0.0
 
     def __post_init__(self) -> None:
         gamma, tau, line, turns = self.gamma, self.restitution, self.y_line, self.whole_turns
@@ -120,7 +116,6 @@ class NordmarkMap:
         require(abs(self.alpha) < 1.0 + gamma, f"alpha is {self.alpha}; its size must be below 1 + gamma")
         require(line in ("corrected", "printed"), f'y_line is {line!r}; it must be "corrected" or "printed"')
         require_whole("whole_turns", turns, "turns", low=0)
-        require_within("rho", self.rho, "[1]")
 
     @classmethod
     def from_mode(
@@ -220,13 +215,26 @@ class NordmarkMap:
         response = 2.0 * math.pi * root * ratio
         return (1.0 - self.alpha + self.gamma) / (2.0 * (response * (1.0 + self.restitution)) ** 2)
 
+    def rho(self, excess: float) -> float:
+        """rho at the excess F/F_g - 1 [1]."""
+        return self.rho_per_excess * require_within("excess", excess, "[1]")
+
     def excess(self, rho: float) -> float:
         """The excess F/F_g - 1 [1] at `rho`."""
         return require_within("rho", rho, "[1]") / self.rho_per_excess
 
-    def at(self, excess: float) -> NordmarkMap:
-        """The same map at F/F_g - 1 = `excess` [1]."""
-        return replace(self, rho=self.rho_per_excess * require_within("excess", excess, "[1]"))
+    def step(self, state: ArrayLike, rho: float) -> NDArray[np.float64]:
+        """The state (x, y), shape (2,), one drive period later."""
+        return self.iterate(state, rho, 1)[0]
+
+    def iterate(self, state: ArrayLike, rho: float, count: int) -> NDArray[np.float64]:
+        """The `count` states that follow `state`, shape (count, 2); row 0 is one period later."""
+        out = np.empty((require_whole("count", count, "periods", low=0), 2))
+        value = require_within("rho", rho, "[1]")
+        iterate_map(
+            *_state(state), self.alpha, self.gamma, self.gamma_impact, value, self.delay_term, out
+        )
+        return out
 
     def jacobian(self, state: ArrayLike) -> NDArray[np.float64]:
         """Derivative of one step with respect to (x, y), shape (2, 2); unbounded as x -> 0+."""
@@ -234,6 +242,27 @@ class NordmarkMap:
         if x > 0.0:
             return np.array([[-0.5 / math.sqrt(x), 1.0], [-self.gamma_impact, 0.0]])
         return np.array([[self.alpha, 1.0], [-self.gamma, 0.0]])
+
+
+@dataclass(frozen=True, kw_only=True)
+class StrobedNordmarkMap:
+    """A Nordmark map at its rho as a ``contact.strobed_map.StrobedMap``.
+
+    A state is the array (x, y), which is also its point; an impact occurs in the step that starts from x > 0.
+
+    Parameters
+    ----------
+    map : NordmarkMap
+    rho : float
+        The bifurcation parameter [1]; `at` sets it from the excess over grazing.
+    """
+
+    map: NordmarkMap
+    rho: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_kind("map", self.map, NordmarkMap, "a NordmarkMap")
+        require_within("rho", self.rho, "[1]")
 
     @property
     def scale(self) -> float:
@@ -245,24 +274,25 @@ class NordmarkMap:
         """The time of one step, 1: the map has no clock."""
         return 1.0
 
+    def at(self, excess: float) -> StrobedNordmarkMap:
+        """The same map at F/F_g - 1 = `excess` [1]."""
+        return replace(self, rho=self.map.rho(excess))
+
     def steady(self) -> NDArray[np.float64]:
         """The fixed point of the branch without impact: x = rho / (1 - alpha + gamma), y = -gamma x."""
-        x = self.rho / (1.0 - self.alpha + self.gamma)
-        return np.array([x, -self.gamma * x])
+        x = self.rho / (1.0 - self.map.alpha + self.map.gamma)
+        return np.array([x, -self.map.gamma * x])
 
     def orbit(self, state: ArrayLike, count: int) -> StrobedOrbit[NDArray[np.float64]]:
         """`count` steps from `state`; the points are (x, y), shape (count, 2)."""
-        start = _state(state)
-        points = np.empty((require_whole("count", count, "periods", low=0) + 1, 2))
-        points[0] = start
-        iterate_map(*start, self.alpha, self.gamma, self.gamma_impact, self.rho, self.delay_term, points[1:])
+        points = np.vstack([_state(state), self.map.iterate(state, self.rho, count)])
         impacts = (points[:-1, 0] > 0).astype(np.int64)
         return StrobedOrbit(end=points[-1].copy(), points=points[1:], impacts=impacts)
 
     def jacobians(self, state: ArrayLike, count: int) -> Jacobians[NDArray[np.float64]]:
         """The derivatives along `count` steps, and the end."""
         points = np.vstack([_state(state), self.orbit(state, count).points])
-        return [(self.jacobian(row), 1) for row in points[:-1]], points[-1].copy()
+        return [(self.map.jacobian(row), 1) for row in points[:-1]], points[-1].copy()
 
     def coordinates(self, state: NDArray[np.float64]) -> NDArray[np.float64]:
         """The state itself."""

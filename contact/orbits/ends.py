@@ -28,7 +28,7 @@ from typing import Any, Generic, TypeVar
 
 from contact.errors import ContactError
 from contact.maximal_orbits import MapFamily
-from contact.nordmark import NordmarkMap
+from contact.nordmark import StrobedNordmarkMap
 from contact.orbits.continuation import first_event
 from contact.orbits.settling import Settled, orbit_near, settle
 from contact.orbits.shooting import Shooting
@@ -148,8 +148,8 @@ def _exact_end(
 ) -> tuple[str, float, Any]:
     """Kind and excess of the end in the bracket; third the state at `lost`, if the orbit is still there."""
     unknown = BRACKET, 0.5 * (held + lost), None
-    if isinstance(strobed, NordmarkMap) and start.impacts == 1:
-        return _map_end(MapFamily(strobed, start.period), held, lost) or unknown
+    if isinstance(strobed, StrobedNordmarkMap) and start.impacts == 1:
+        return _map_end(MapFamily(strobed.map, start.period), held, lost) or unknown
     if not isinstance(strobed, StroboscopicMap):
         return unknown
     orbit = orbit_near(strobed.at(held), state, start.period, start.impacts)
@@ -169,7 +169,7 @@ def _exact_end(
 def _map_end(family: MapFamily, held: float, lost: float) -> tuple[str, float, Any] | None:
     """The same for the orbit of the Nordmark map with one impact in a period; None if it is not known."""
     at_fold, stable = family.fold(), family.stable_range()
-    if at_fold is None or stable is None or not stable[0] <= family.map.at(held).rho <= stable[1]:
+    if at_fold is None or stable is None or not stable[0] <= family.map.rho(held) <= stable[1]:
         return None
     end = family.map.excess(stable[0])
     if end < lost:

@@ -94,7 +94,7 @@ def describe(scene: Scene, frequency: float, model: ModalModel) -> dict[str, Des
     single = StroboscopicMap(oscillator=single_mode_at(scene, frequency))
     beam = StroboscopicMap(oscillator=beam_at(scene, frequency, model))
     return {
-        "map": Description(nordmark_at(scene, frequency), lambda points: points[:, 0]),
+        "map": Description(StrobedNordmarkMap(map=nordmark_at(scene, frequency)), lambda points: points[:, 0]),
         "single_mode": Description(single, single.tip),
         "beam": Description(beam, lambda points: beam.readout(points, READOUT)),
     }
