@@ -20,11 +20,12 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, TypeVar
+from typing import TYPE_CHECKING, Generic, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from contact import ContactError
 from studies import letter
 from studies.executors import pool_of, progress, say
 from studies.files import (
@@ -38,7 +39,7 @@ from studies.files import (
     write_atomically,
 )
 from studies.least_model import least_modes
-from studies.scene import Scene, free_period
+from studies.scene import Scene, SceneError, free_period
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -115,6 +116,15 @@ class Run:
             for future in futures:
                 future.add_done_callback(lambda _: tick())
             return [future.result() for future in futures]
+
+    def attempt(self, function: Callable[[S], T], items: Iterable[S], label: str) -> list[T | None]:
+        """Like `map`, but an item whose computation fails is a failed cell, told by its str(), and None."""
+        known = list(items)
+        found = self.map(_Attempt(function), known, label)
+        for item, (_, reason) in zip(known, found, strict=True):
+            if reason:
+                self.failed(str(item), reason)
+        return [value for value, _ in found]
 
     def choose_modes(self, scene: Scene, needs: Mapping[str, float]) -> Scene:
         """The scene with the least number of modes for these quantities, unless it says the number.
@@ -242,6 +252,19 @@ class Run:
         told = plain({**summary, "folder": self.folder, "wall_time_s": wall_time})
         assert isinstance(told, dict)
         return told
+
+
+@dataclass(frozen=True)
+class _Attempt(Generic[S, T]):
+    """A function whose ContactError or SceneError becomes a sentence, also on another machine."""
+
+    function: Callable[[S], T]
+
+    def __call__(self, item: S) -> tuple[T | None, str]:
+        try:
+            return self.function(item), ""
+        except (ContactError, SceneError) as error:
+            return None, str(error) or type(error).__name__
 
 
 def _cell(value: object) -> str:

@@ -26,15 +26,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
+from beam.parameters import require_kind
 from contact.errors import ContactError
+from contact.laws import NEWTON
 from contact.maximal_orbits import fold, maximal_orbits, stable_range
 from contact.nordmark import StrobedNordmarkMap
-from contact.orbits.continuation import first_event
+from contact.orbits.continuation import first_event, fold_of
+from contact.orbits.kick import KickFamily
 from contact.orbits.settling import Settled, orbit_near, settle
 from contact.orbits.shooting import Shooting
+from contact.orbits.single_impact import MaximalFamily
 from contact.stroboscope import StrobedMap, StroboscopicMap
 
-__all__ = ["OrbitEnd", "orbit_end"]
+__all__ = ["OrbitEnd", "fold_excess", "orbit_end"]
 
 S = TypeVar("S")
 
@@ -131,8 +135,13 @@ def orbit_end(
             kind, exact, below = _exact_end(strobed, state, start, held, trial)
             if below is None:
                 return OrbitEnd(
-                    period=start.period, impacts=start.impacts, excess=exact, kind=kind, held=held,
-                    lost=trial, state=state,
+                    period=start.period,
+                    impacts=start.impacts,
+                    excess=exact,
+                    kind=kind,
+                    held=held,
+                    lost=trial,
+                    state=state,
                 )
             now = below
         if now is None:
@@ -179,3 +188,39 @@ def _map_end(strobed: StrobedNordmarkMap, period: int, held: float, lost: float)
         return "fold", end, None
     doubles = maximal_orbits(nordmark, period, stable[0])[-1].multipliers.real.min() < -1.0 + 1e-6
     return "period doubling" if doubles else "grazing", end, None
+
+
+def fold_excess(strobed: StrobedMap[Any], period: int) -> float | None:
+    """F_m/F_g - 1 at the fold of the p_m orbit with one collision, whatever the description.
+
+    The Nordmark map and Newton's law have it in closed form; under any other law it is found by shooting,
+    with the touches of the collision at the fold of the kick description.  None without a fold, or for
+    m < 2.
+
+    Parameters
+    ----------
+    strobed : StrobedMap
+        A StrobedNordmarkMap or a StroboscopicMap; its own amplitude does not matter.
+    period : int
+        m, in drive periods.
+
+    Raises
+    ------
+    NotPeriodic
+        If the orbits around the place where the fold should be are not found.
+    """
+    if period < 2:
+        return None
+    if isinstance(strobed, StrobedNordmarkMap):
+        found = fold(strobed.map, period)
+        return None if found is None else strobed.map.excess(found.rho)
+    words = "a StroboscopicMap or a StrobedNordmarkMap"
+    oscillator = require_kind("strobed", strobed, StroboscopicMap, words).oscillator
+    if oscillator.stop.law.code == NEWTON:
+        orbit = MaximalFamily.from_oscillator(oscillator, period=period).fold()
+        return None if orbit is None else orbit.excess
+    kick = KickFamily(oscillator=oscillator, period=period).fold()
+    if kick is None:
+        return None
+    at_fold = fold_of(Shooting(oscillator=oscillator, period=period, impacts=kick.kick.touches))
+    return None if at_fold is None else at_fold.excess
