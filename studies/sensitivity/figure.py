@@ -71,7 +71,8 @@ def draw_tornado(rows: Sequence[Row]) -> Figure:
 def draw_change(axis: Axes, row: Row, base: Row, place: int) -> None:
     """One change at one frequency."""
     way, colour, marker, shift = WAYS[row.sign]
-    y, look = place + shift, {"markersize": 3.0, "markeredgecolor": BLACK, "markerfacecolor": "white"}
+    look: dict[str, Any] = {"markersize": 3.0, "markeredgecolor": BLACK, "markerfacecolor": "white"}
+    y = place + shift
     if row.fold_beam is None and base.fold_beam is not None:
         axis.plot(LEFT, y, "x", **look, clip_on=False, label=f"{way}: none left in the beam")
     elif row.fold_beam is not None and base.fold_beam is not None and row.fold_beam * base.fold_beam > 0.0:
