@@ -27,11 +27,13 @@ from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
 import matplotlib
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis, XAxis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from studies.files import write_atomically
 
@@ -52,10 +54,17 @@ LINES = ("-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1)), (0, (1, 2)), (0, 
 NOTE = 7.0
 """Size of ticks, legends and notes inside a panel [pt]."""
 
+UP, DOWN = (BLUE, BLUE, 1.3, 3), (VERMILION, "none", 2.6, 2)
+"""Strobe points while the amplitude is raised and lowered: edge, face, size, order."""
+
+PALE = 0.35
+"""Share of the colour that is left where a motion did not settle: its points are those of a moment."""
+
 EXCESS, HYSTERESIS = "excess $F/F_g - 1$", "hysteresis $1 - F_m/F_g$"
 """Names of the two quantities that most axes show."""
 
 Style = dict[str, Any]
+Array = NDArray[np.float64]
 
 GUIDE: Style = {"color": "0.6", "linewidth": 0.6, "linestyle": "--", "zorder": 0}
 LETTER: Style = {"color": "0.25", "linewidth": 0.9, "linestyle": (0, (1, 1)), "zorder": 1}
@@ -130,6 +139,21 @@ def series(number: int) -> Style:
 def points(number: int) -> Style:
     """Like `series`, without a line."""
     return {**series(number), "linestyle": "none"}
+
+
+def strobe_points(
+    axes: Axes, amplitude: Array, points: Array, settled: NDArray[np.bool_],
+    look: tuple[str, str, float, int], words: str,
+) -> None:  # fmt: skip
+    """Strobe `points`, shape (n_amplitudes, n_strobes), of a scan: `UP` or `DOWN`; pale where not settled."""
+    edge, face, size, order = look
+    for kept, share in ((settled, 1.0), (~settled, PALE)):
+        axes.plot(
+            np.repeat(amplitude[kept], points.shape[1]), points[kept].ravel(), linestyle="none", marker="o",
+            markersize=size, markeredgewidth=0.4, markeredgecolor=tint(edge, share), rasterized=True,
+            markerfacecolor=face if face == "none" else tint(face, share), zorder=order * share,
+            label=words if share == 1.0 else f"_{words}",
+        )  # fmt: skip
 
 
 def tint(colour: str, share: float) -> str:
