@@ -7,19 +7,15 @@ kind             periodic, chaotic (exponent above zero by three standard errors
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
-from typing import Any, TypeVar
 
 import numpy as np
 
-from contact import ContactError, State, StrobedMap, StroboscopicMap
-from contact.orbits import Differentiable, map_exponents, of_oscillator, orbit_exponents, settle
+from contact import ContactError, State, StroboscopicMap
+from contact.orbits import map_exponents, of_oscillator, orbit_exponents, settle
 from studies.scene import READOUT, Scene
 
 __all__ = ["CHAOTIC", "KINDS", "TITLES", "Attractor", "Row", "Start", "carried", "classify", "row_of"]
-
-S = TypeVar("S")
 
 TITLES = {"single_mode": "Eq. (1)", "beam": "beam"}
 
@@ -57,12 +53,11 @@ class Row(Attractor):
 
 
 def classify(
-    strobed: StrobedMap[S], state: S, derivatives: Callable[[Any], Differentiable[Any]] = of_oscillator, *,
-    most_cycles: int = 4000, cycles: int = 600,
-) -> Attractor:  # fmt: skip
+    strobed: StroboscopicMap, state: State, *, most_cycles: int = 4000, cycles: int = 600
+) -> Attractor:
     """Settle from `state` within `most_cycles`, then tell chaos from a long period or a slow transient by the
     exponents, averages over `cycles` drive periods."""
-    system = derivatives(strobed)
+    system = of_oscillator(strobed)
     settled = settle(strobed, state, most_cycles=most_cycles)
     if settled.period:
         exponents = orbit_exponents(system, settled.end, settled.period)

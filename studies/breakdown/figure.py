@@ -60,7 +60,7 @@ def draw_scans(panels: Sequence[tuple[Outcome, Mapping[str, Diagram]]]) -> Figur
                 settled = (periods(diagram) > 0) | (way == "island")
                 plotting.strobe_points(axis, 1e2 * diagram.excess, 1e3 * diagram.points, settled, look, words)
             axis.axvline(0.0, **GUIDE)
-        pair[0].set_xlim(1e2 * lowest - 0.3, 0.2)
+        pair[0].set_xlim(1e2 * lowest - 0.3, 0.02)
         pair[1].set_xlim(-0.03, 1e2 * HIGHEST + 0.03)
         plotting.panel(pair[0], number, title_of(outcome))
         plotting.label(pair[0].yaxis, "tip displacement" if number == 0 else "read-out", "mm")
