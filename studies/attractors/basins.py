@@ -19,7 +19,7 @@ from functools import cached_property
 import numpy as np
 
 from contact import ContactError, State, StroboscopicMap
-from contact.orbits import born, orbit_diagram, settle
+from contact.orbits import born, settle
 from studies.scene import Scene, single_mode_at
 
 __all__ = ["CLOSE", "Plane", "parts", "plane_of"]
@@ -33,9 +33,6 @@ NEAR = 1e-5
 MOST_PERIODS, STRETCH = 4000, 32
 """Bound of a motion in the basins (what has not been told by then is something else); strobes looked at
 together."""
-
-STEPS = 9
-"""Amplitudes from excess 1e-3 down, on which p_m is carried along."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -98,11 +95,7 @@ def plane_of(scene: Scene, frequency: float, excess: float, side: int, *, close:
     """`side` by `side` starts at drive `frequency` [Hz], on all of the strobe plane or `close` to p1."""
     strobed = StroboscopicMap(oscillator=single_mode_at(scene, frequency))
     here = strobed.at(excess)
-    carried = orbit_diagram(
-        strobed, np.linspace(1e-3, excess, STEPS), born(strobed, 1e-3, most_cycles=MOST_PERIODS).end,
-        observe=strobed.tip, settle_cycles=MOST_PERIODS,
-    )  # fmt: skip
-    end = settle(here, carried.end, most_cycles=MOST_PERIODS)
+    end = settle(here, born(strobed, most_cycles=MOST_PERIODS).end, most_cycles=MOST_PERIODS)
     orbit = end.points[-max(end.period, 1) :] * (1.0, float(here.oscillator.model.omega[0]))
     gap, speed = here.scale, 2.0 * math.pi * frequency * here.scale
     rest, grid = here.steady(), np.linspace(-1.0, 1.0, side)

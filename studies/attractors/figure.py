@@ -40,7 +40,6 @@ def draw_scan(starts: Sequence[Start], rows: Sequence[Row], frequency: float, qu
         sharex="col",
     )  # fmt: skip
     periodic = {(row.model, row.direction, row.excess) for row in rows if row.period}
-    named: dict[str, object] = {}
     for column, (name, title) in enumerate(names.items()):
         upper, lower = axes[:, column]
         for way, look in (("up", UP), ("down", DOWN)):
@@ -56,13 +55,12 @@ def draw_scan(starts: Sequence[Start], rows: Sequence[Row], frequency: float, qu
         lower.axhline(0.0, **GUIDE)
         for axis in (upper, lower):
             axis.axvline(0.0, **GUIDE)
-            named |= dict(zip(*axis.get_legend_handles_labels()[::-1], strict=True))
         plotting.panel(upper, column, f"{title}, {frequency:.2f} Hz")
         plotting.panel(lower, column + len(names))
         plotting.label(lower.xaxis, EXCESS, "%")
     plotting.label(axes[0, 0].yaxis, quantity, "mrad" if quantity == "rotation" else "mm")
     plotting.label(axes[1, 0].yaxis, "exponent per drive period")
-    figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=3 if len(names) > 1 else 2)
+    plotting.legend_below(figure, axes.flat, 3 if len(names) > 1 else 2, markerscale=1.5)
     return figure
 
 

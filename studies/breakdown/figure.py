@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -38,11 +37,8 @@ def title_of(outcome: Outcome) -> str:
     words = f"beam, {1e3 * outcome.tip_mass_kg:.2f} g"
     if outcome.description == "beam":
         return f"{words}, as calibrated"
-    if outcome.higher_damping != 1.0:
-        words += f", damping of the higher modes × {outcome.higher_damping:g}"
-    if outcome.local_restitution not in (None, 1.0):
-        words += f", local restitution {outcome.local_restitution:g}"
-    return words
+    lossy = f", local restitution {outcome.local_restitution:g}" if outcome.local_restitution != 1.0 else ""
+    return f"{words}, damping of the higher modes × {outcome.higher_damping:g}{lossy}"
 
 
 @plotting.in_house_style
@@ -73,10 +69,7 @@ def draw_scans(panels: Sequence[tuple[Outcome, Mapping[str, Diagram]]]) -> Figur
                          turn=True, level=True)  # fmt: skip
     for axis in axes[-1]:
         plotting.label(axis.xaxis, EXCESS, "%")
-    named: dict[str, Any] = {}
-    for axis in axes[:, 0]:
-        named |= dict(zip(*axis.get_legend_handles_labels()[::-1], strict=True))
-    figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=4, markerscale=2.0)
+    plotting.legend_below(figure, axes[:, 0], 4, markerscale=2.0)
     return figure
 
 

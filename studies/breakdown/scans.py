@@ -76,7 +76,7 @@ class Scans:
         self, name: str, strobed: StroboscopicMap, lowest: float, fold: float | None,
         observe: Callable[[np.ndarray], np.ndarray],
     ) -> tuple[Outcome, dict[str, Diagram]]:  # fmt: skip
-        """What is born, and both scans from the excess `lowest` to `HIGHEST` and back."""
+        """What is born, and both scans between the excess `lowest` and `HIGHEST`."""
         below = np.linspace(lowest, 0.0, self.points)[:-1]
         values = np.concatenate([below, np.linspace(0.0, HIGHEST, self.points // 2 + 1)[1:]])
         scan = partial(

@@ -63,9 +63,7 @@ def draw_curves(scene: Scene, rows: Sequence[Row]) -> Figure:
     plotting.label(axes[0].yaxis, "$F_m/F_g - 1$")
     plotting.label(axes[1].yaxis, plotting.HYSTERESIS)
     plotting.label(axes[1].xaxis, "excitation frequency", "Hz")
-    handles, names = axes[0].get_legend_handles_labels()
-    named = dict(zip(names, handles, strict=True))
-    figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=3)
+    plotting.legend_below(figure, axes[:1], 3)
     return figure
 
 

@@ -61,10 +61,7 @@ def draw_tornado(rows: Sequence[Row]) -> Figure:
         plotting.label(axis.xaxis, "hysteresis / (hysteresis before)")
     for axis in axes[:, 0]:
         plotting.label(axis.yaxis, "what is changed")
-    named: dict[str, Any] = {}
-    for axis in axes.flat:
-        named |= dict(zip(*axis.get_legend_handles_labels()[::-1], strict=True))
-    figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=3)
+    plotting.legend_below(figure, axes.flat, 3)
     return figure
 
 
