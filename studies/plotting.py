@@ -20,7 +20,7 @@ reads. The same data give the same bytes: neither format carries a date or a ver
 from __future__ import annotations
 
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import AbstractContextManager
 from functools import wraps
 from pathlib import Path
@@ -170,6 +170,14 @@ def label(axis: Axis, quantity: str, unit: str = "1") -> None:
 def panel(axes: Axes, number: int, words: str = "") -> None:
     """Letter of a panel, (a) for number 0, and what it shows."""
     axes.set_title(f"({chr(ord('a') + number)}) {words}".rstrip(), loc="left")
+
+
+def legend_below(figure: Figure, axes: Iterable[Axes], columns: int, **looks: Any) -> None:
+    """One legend below all panels, each name once."""
+    named: dict[str, Any] = {}
+    for axis in axes:
+        named |= dict(zip(*axis.get_legend_handles_labels()[::-1], strict=True))
+    figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=columns, **looks)
 
 
 def mark_letter(

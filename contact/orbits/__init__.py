@@ -4,7 +4,8 @@
 Newton's law in closed form; `kick`: one collision of any law, by linear algebra; `shooting`: any law and any
 number of touches, with exact tangents; `continuation`: branches, with the points of `events` on them;
 `settling`: on what a motion settles; `scan`: orbit diagrams, the state carried along; `ends`: where an orbit
-ends when the drive is lowered; `amplitude_scan`: the compiled column of a chart; `lyapunov`: exponents.
+ends when the drive is lowered, by a scan and by its fold; `amplitude_scan`: the compiled column of a chart;
+`lyapunov`: exponents.
 """
 
 from contact.orbits.amplitude_scan import AmplitudeScan, ScannedColumn
@@ -17,7 +18,7 @@ from contact.orbits.continuation import (
     follow,
     lowest_of,
 )
-from contact.orbits.ends import OrbitEnd, orbit_end
+from contact.orbits.ends import OrbitEnd, fold_excess, orbit_end
 from contact.orbits.events import Event
 from contact.orbits.family import Family, Orbit
 from contact.orbits.kick import KickFamily
@@ -50,6 +51,7 @@ __all__ = [
     "divergence_rate",
     "first_event",
     "fold_along_frequency",
+    "fold_excess",
     "fold_of",
     "folds_of",
     "follow",
