@@ -130,7 +130,8 @@ def first_event(family: Shooting, start: PeriodicOrbit, lowest: float) -> Event 
 
     The branch is followed towards lower amplitudes until an event is met, or until the excess is below
     `lowest` [1]: then the answer is None.
-    An orbit that can be followed no further because one of its touches has become a graze ends by "grazing".
+    An orbit that can be followed no further because one of its touches has become a graze ends by "grazing";
+    so does one whose only touch falls below `LEAST_SPEED`, as under a contact so soft that no fold is left.
 
     Raises
     ------
@@ -141,7 +142,10 @@ def first_event(family: Shooting, start: PeriodicOrbit, lowest: float) -> Event 
     require_kind("start", start, PeriodicOrbit, "a PeriodicOrbit")
     require_within("lowest", lowest, "[1]", above=-1)
     here, stride, direction = start, FIRST_STRIDE, -math.copysign(1.0, start.slope)
+    least = min(LEAST_SPEED * _unit(family), start.speed)
     for _ in range(MOST_STEPS):
+        if here.speed < least:
+            return Event(kind="grazing", orbit=here)
         try:
             there = family.at_speed(here.speed * math.exp(direction * stride), here)
             orbits = [*probed(family, here, there), there]
@@ -216,7 +220,10 @@ def lowest_of(family: Shooting, near: PeriodicOrbit | None = None) -> Event | No
 
 
 def _whole_branch(family: Shooting, near: PeriodicOrbit | None) -> Branch | None:
-    """The branch over all approach velocities; None if no orbit of it is found."""
+    """The branch over all approach velocities; None if no orbit of it is found.
+
+    Raises NotPeriodic if an event on it is not located: from another start it would be the same one.
+    """
     require_kind("near", near, (PeriodicOrbit, type(None)), "a PeriodicOrbit or None")
     require_kind("family", family, Shooting, "a Shooting family")
     unit = _unit(family)
@@ -224,11 +231,11 @@ def _whole_branch(family: Shooting, near: PeriodicOrbit | None) -> Branch | None
     for start, part in zip(starts, STARTS, strict=False):
         try:
             here = family.at_speed(part * unit if start is None else start.speed, start)
-            low = min(LEAST_SPEED * unit, 0.5 * here.speed)
-            high = max(GREATEST_SPEED * unit, 2.0 * here.speed)
-            return follow(family, here, low=low, high=high, step=LONGEST_STRIDE)
         except ContactError:
             continue
+        low = min(LEAST_SPEED * unit, 0.5 * here.speed)
+        high = max(GREATEST_SPEED * unit, 2.0 * here.speed)
+        return follow(family, here, low=low, high=high, step=LONGEST_STRIDE)
     return None
 
 
