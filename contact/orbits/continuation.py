@@ -39,8 +39,7 @@ GREATEST_STEP = 10.0
 SMALLEST_STEP = 1e-6
 """Step of log v at which a branch is given up: the orbit then changes its character, not its size."""
 
-FARTHEST = 1e30
-"""Ratio of approach velocities over which an event is looked for: some hundred of the longest steps."""
+FARTHEST = 1e30  # ratio of approach velocities up to which an event is looked for: some hundred long steps
 
 FIRST_STRIDE, LONGEST_STRIDE = 0.02, 0.3
 """Steps of log v on the way to an event: the first, as it may be close, and the longest."""
@@ -152,7 +151,8 @@ def first_event(family: Followed, start: PeriodicOrbit, lowest: float) -> Event 
 
     The branch is followed towards lower amplitudes until an event is met, or until the excess is below
     `lowest` [1]: then the answer is None.
-    An orbit that can be followed no further because one of its touches has become a graze ends by "grazing".
+    An orbit that can be followed no further because one of its touches has become a graze ends by "grazing";
+    so does one whose only touch falls below `LEAST_SPEED`, as under a contact so soft that no fold is left.
 
     Raises
     ------
@@ -161,7 +161,8 @@ def first_event(family: Followed, start: PeriodicOrbit, lowest: float) -> Event 
     """
     require_followed(family, start)
     require_within("lowest", lowest, "[1]", above=-1)
-    here, limit = start, start.speed * FARTHEST ** -math.copysign(1.0, start.slope)
+    here, falls, least = start, start.slope > 0.0, LEAST_SPEED * family.oscillator.unit_speed
+    limit = min(least, 0.5 * start.speed) if falls else FARTHEST * start.speed
     try:
         for orbits in _walk(family, start, limit, first=FIRST_STRIDE, longest=LONGEST_STRIDE):
             for a, b in pairwise(orbits):
@@ -175,7 +176,7 @@ def first_event(family: Followed, start: PeriodicOrbit, lowest: float) -> Event 
         if here.approach.min() < GRAZED * here.approach.max():
             return Event(kind="grazing", orbit=here)
         raise
-    return None
+    return Event(kind="grazing", orbit=here) if falls else None
 
 
 def fold_of(family: Followed, near: PeriodicOrbit | None = None) -> PeriodicOrbit | None:
@@ -244,18 +245,21 @@ def orbits_at(family: Followed, excess: float) -> tuple[PeriodicOrbit, ...]:
 
 
 def _whole_branch(family: Followed, near: PeriodicOrbit | None) -> Branch | None:
-    """The branch over all approach velocities; None if no orbit of it is found."""
+    """The branch over all approach velocities; None if no orbit of it is found.
+
+    Raises NotPeriodic if an event on it is not located: from another start it would be the same one.
+    """
     require_followed(family, near, optional=True)
     unit = family.oscillator.unit_speed
     starts = [near] if near is not None else [None] * len(STARTS)
     for start, part in zip(starts, STARTS, strict=False):
         try:
             here = family.at_speed(part * unit if start is None else start.speed, start)
-            low = min(LEAST_SPEED * unit, 0.5 * here.speed)
-            high = max(GREATEST_SPEED * unit, 2.0 * here.speed)
-            return follow(family, here, low=low, high=high, step=LONGEST_STRIDE)
         except ContactError:
             continue
+        low = min(LEAST_SPEED * unit, 0.5 * here.speed)
+        high = max(GREATEST_SPEED * unit, 2.0 * here.speed)
+        return follow(family, here, low=low, high=high, step=LONGEST_STRIDE)
     return None
 
 

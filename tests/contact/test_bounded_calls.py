@@ -68,7 +68,8 @@ EXTREME: dict[str, ContactLaw] = {
     "overdamped": LinearContact(stiffness=1e5, damping=1e5),
     "softest hertz": HertzContact(stiffness=1e-300),
     "stiffest hertz": HertzContact(stiffness=1e20),
-    "dissipative": HuntCrossley(stiffness=1e9, dissipation=1e6),
+    "dissipative": HuntCrossley(stiffness=1e9, dissipation=100.0),
+    "dissipative and soft": HuntCrossley(stiffness=1e5, dissipation=1e6),
 }
 WITHOUT_A_LAW = {
     # objects, and the closed forms of the letter's map
@@ -133,7 +134,7 @@ def motions(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], ob
         yield "orbit_diagram", lambda state=state: periodic.orbit_diagram(
             strobed, [1e-3, -1e-3], state, observe=strobed.tip, settle_cycles=128
         )
-        yield "orbit_end", lambda state=state: periodic.orbit_end(strobed, state, 0.02, most_cycles=256)
+    yield "orbit_end", lambda: periodic.orbit_end(strobed, fast, 0.02, most_cycles=128)
     yield "born", lambda: periodic.born(strobed, most_cycles=256)
     yield "born_period", lambda: periodic.born_period(strobed, most_cycles=256)
     run = strobed.orbit(strobed.steady(), 20)
