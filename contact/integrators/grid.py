@@ -149,8 +149,8 @@ def ending(between: Between, write: Write) -> Callable[..., int]:
         start, marks, clock = grid.clock + place.step * grid.step, recorder.marks[0], recorder.sample_clock
         write(grid, method, (start, h), depth, done)
         while sample_due(recorder, grid.first, start + h + ON_THE_GRID * h):
-            x = (clock[marks.sampled] - start) / h
-            between(grid, method, min(max(x, 0.0), 1.0), h, True)
+            x = max(0.0, (clock[marks.sampled] - start) / h)
+            between(grid, method, 1.0 if x > 1.0 - ON_THE_GRID else x, h, True)
             put_sample(recorder, grid.q_at, grid.v_at)
         place.due = clock[marks.sampled] if marks.sampled < clock.size else math.inf
         if not abs(depth) < UNBOUNDED:
