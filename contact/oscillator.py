@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import copy
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -163,6 +164,10 @@ class ImpactOscillator:
 
     def tip_response(self) -> complex:
         """Tip displacement per base amplitude without contact, complex [1]."""
+        return self._tip_response
+
+    @cached_property
+    def _tip_response(self) -> complex:
         return complex(self.model.phi @ self.steady_response())
 
     def drive_at(self, reach: float, rate: float) -> tuple[float, float]:

@@ -39,7 +39,11 @@ GREATEST_STEP = 10.0
 SMALLEST_STEP = 1e-6
 """Step of log v at which a branch is given up: the orbit then changes its character, not its size."""
 
-FARTHEST = 1e30  # ratio of approach velocities up to which an event is looked for: some hundred long steps
+MOST_STEPS = 1000
+"""Bound of steps along a branch beside twice those that it takes: they are halved where they fail."""
+
+FASTEST = 100.0
+"""Approach velocity, over 2 pi f gap, up to which an event is looked for, or twice the one of the start."""
 
 FIRST_STRIDE, LONGEST_STRIDE = 0.02, 0.3
 """Steps of log v on the way to an event: the first, as it may be close, and the longest."""
@@ -128,8 +132,7 @@ def _walk(
     that has become `SMALLEST_STEP` is raised.
     """
     stride = first
-    # ends: a step reaches the limit, or halvings reach SMALLEST_STEP; no step succeeds below that
-    while here.speed != limit:
+    for _ in range(MOST_STEPS + round(2.0 * abs(math.log(limit / here.speed)) / longest)):
         far = math.log(limit / here.speed)
         target = limit if abs(far) <= stride else here.speed * math.exp(math.copysign(stride, far))
         try:
@@ -153,16 +156,13 @@ def first_event(family: Followed, start: PeriodicOrbit, lowest: float) -> Event 
     `lowest` [1]: then the answer is None.
     An orbit that can be followed no further because one of its touches has become a graze ends by "grazing";
     so does one whose only touch falls below `LEAST_SPEED`, as under a contact so soft that no fold is left.
-
-    Raises
-    ------
-    NotPeriodic
-        If the branch is lost for another reason.
+    NotPeriodic is raised if the branch is lost for another reason.
     """
     require_followed(family, start)
     require_within("lowest", lowest, "[1]", above=-1)
-    here, falls, least = start, start.slope > 0.0, LEAST_SPEED * family.oscillator.unit_speed
-    limit = min(least, 0.5 * start.speed) if falls else FARTHEST * start.speed
+    here, unit = start, family.oscillator.unit_speed
+    slow, fast = min(LEAST_SPEED * unit, 0.5 * start.speed), max(FASTEST * unit, 2.0 * start.speed)
+    limit = slow if start.slope > 0.0 else fast
     try:
         for orbits in _walk(family, start, limit, first=FIRST_STRIDE, longest=LONGEST_STRIDE):
             for a, b in pairwise(orbits):
@@ -176,7 +176,7 @@ def first_event(family: Followed, start: PeriodicOrbit, lowest: float) -> Event 
         if here.approach.min() < GRAZED * here.approach.max():
             return Event(kind="grazing", orbit=here)
         raise
-    return Event(kind="grazing", orbit=here) if falls else None
+    return Event(kind="grazing", orbit=here) if limit == slow else None
 
 
 def fold_of(family: Followed, near: PeriodicOrbit | None = None) -> PeriodicOrbit | None:

@@ -21,6 +21,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -143,16 +144,13 @@ class KickFamily(SingleImpactFamily):
         ringing = np.column_stack([orbit.displacement, orbit.velocity])
         return self.orbit_of(self.kick(orbit.speed, ringing)).excess - orbit.excess
 
-    def _at(self, log_speed: float) -> SingleImpactOrbit:
-        return self.orbit(math.exp(log_speed))
-
     def _grid(self, speeds: tuple[float, float]) -> tuple[Array, list[float]]:
         """Logarithms of velocities in a range over 2 pi f gap, and the excess of their orbits."""
         low, high = require_array("speeds", speeds, "[1]", shape=(2,), words="two rising numbers above zero")
         require(0.0 < low < high, f"speeds is {shown(speeds)}; it must be two rising numbers above zero")
         unit = self.oscillator.unit_speed
         grid = np.linspace(math.log(low * unit), math.log(high * unit), GRID)
-        return grid, [self._at(x).excess for x in grid]
+        return grid, [self.excess(math.exp(x)) for x in grid]
 
     def _lowest(self, grid: Array, values: list[float]) -> float | None:
         """The logarithm of the velocity at which the excess is least inside the grid."""
@@ -164,7 +162,7 @@ class KickFamily(SingleImpactFamily):
             return None
         i = min(inside, key=lambda k: values[k])
         best = minimize_scalar(
-            lambda x: self._at(x).excess, bracket=tuple(grid[i - 1 : i + 2]), method="brent",
+            lambda x: self.excess(math.exp(x)), bracket=tuple(grid[i - 1 : i + 2]), method="brent",
             options={"xtol": 1e-9},
         )  # fmt: skip
         return float(best.x)
@@ -177,12 +175,12 @@ class KickFamily(SingleImpactFamily):
         grid, values = self._grid(speeds)
         lowest = self._lowest(grid, values)
         places = sorted([*grid.tolist(), *([] if lowest is None else [lowest])])
-        above = [self._at(x).excess - excess for x in places]
-        roots = [
-            brentq(lambda x: self._at(x).excess - excess, places[i], places[i + 1], xtol=1e-12)
-            for i in range(len(places) - 1) if above[i] * above[i + 1] < 0.0
-        ]  # fmt: skip
-        return tuple(self._at(root) for root in roots)
+
+        def above(x: float) -> float:
+            return self.excess(math.exp(x)) - excess
+
+        roots = [brentq(above, a, b, xtol=1e-12) for a, b in pairwise(places) if above(a) * above(b) < 0.0]
+        return tuple(self.orbit(math.exp(root)) for root in roots)
 
     def fold(self, speeds: tuple[float, float] = SPEEDS) -> SingleImpactOrbit | None:
         """The orbit of smallest amplitude, where the p_m orbit ends; None if it is not inside the range.
@@ -194,4 +192,4 @@ class KickFamily(SingleImpactFamily):
             grid and then minimised by Brent's method.
         """
         lowest = self._lowest(*self._grid(speeds))
-        return None if lowest is None else self._at(lowest)
+        return None if lowest is None else self.orbit(math.exp(lowest))

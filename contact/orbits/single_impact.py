@@ -156,23 +156,35 @@ class SingleImpactFamily(ABC):
         """N, mode by mode, shape (n_modes, 2, 2)."""
         return modal_flow(self._motion, self.period * self.oscillator.period)
 
+    @cached_property
+    def _closing(self) -> tuple[Array, NDArray[np.bool_]]:
+        """(N - G I)/D mode by mode, and which modes return to themselves after m/f (D = 0)."""
+        shrink = np.exp(-self._motion.decay * self.period * self.oscillator.period)
+        distance = np.abs(1.0 - self.flow[:, 0, 0] - self.flow[:, 1, 1] + shrink)
+        trapped = distance <= SINGULAR
+        sizes = np.where(trapped, 1.0, distance)[:, None, None]
+        return (self.flow - shrink[:, None, None] * np.eye(2)) / sizes, trapped
+
     def closed(self, jump: Array) -> Array:
         """(N - G I) B/D: deviations before a collision that repeats, from its jump B; both (n_modes, 2).
 
         ValueError if a mode that is kicked returns to itself after m/f: then nothing is periodic.
         """
-        moved, flow = np.any(jump != 0.0, axis=1), self.flow  # a mode that is not kicked stays at rest
-        shrink = np.exp(-self._motion.decay * self.period * self.oscillator.period)
-        distance = np.abs(1.0 - flow[:, 0, 0] - flow[:, 1, 1] + shrink)
-        trapped = np.flatnonzero((distance <= SINGULAR) & moved)
-        if trapped.size:
+        matrices, trapped = self._closing
+        back = np.flatnonzero(trapped & np.any(jump != 0.0, axis=1))  # one that is not kicked stays at rest
+        if back.size:
             raise ValueError(
-                f"omega[{trapped[0]}] is {self._motion.omega[trapped[0]]} rad/s, a mode that is back after "
+                f"omega[{back[0]}] is {self._motion.omega[back[0]]} rad/s, a mode that is back after "
                 f"{self.period} drive periods; it must have damping or another frequency"
             )
-        before = np.einsum("kij,kj->ki", flow - shrink[:, None, None] * np.eye(2), jump)
-        closed: Array = before / np.where(moved, distance, 1.0)[:, None]
+        closed: Array = np.einsum("kij,kj->ki", matrices, jump)
         return closed
+
+    def excess(self, speed: float) -> float:
+        """F/F_g - 1 of the orbit that meets the wall at `speed`, above zero [m/s]; errors as of `orbit`."""
+        kick, gap = self.kick(require_within("speed", speed, "m/s", above=0)), self.oscillator.stop.gap
+        p, r = self._motion.phi @ self.closed(kick.jump)
+        return excess_of(p / gap, (kick.speed - r) / self.oscillator.unit_speed)
 
     def orbit_of(self, kick: Kick) -> SingleImpactOrbit:
         """The orbit on which `kick` happens once in m drive periods."""
@@ -237,11 +249,6 @@ class MaximalFamily(SingleImpactFamily):
         """(s, b): p and (v - r)/w of Eq. (a) per unit approach speed [s]."""
         s, r = self._motion.phi @ self.closed(self.kick(1.0).jump)
         return float(s), float((1.0 - r) / self._motion.drive)
-
-    def excess(self, speed: float) -> float:
-        """F/F_g - 1 of the orbit with approach speed `speed` [m/s]."""
-        (s, b), v = self.arms, require_within("speed", speed, "m/s", low=0) / self.oscillator.stop.gap
-        return excess_of(s * v, b * v)
 
     def orbits(self, excess: float) -> tuple[SingleImpactOrbit, ...]:
         """The orbits at F/F_g - 1 = `excess` > -1, 0 to 2, by rising speed (of two, saddle, then node)."""

@@ -161,6 +161,7 @@ def orbits(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], obj
         yield "KickFamily.orbit", lambda v=speed: kicks.orbit(v)
         yield "KickFamily.orbit_of", lambda v=speed: kicks.orbit_of(kicks.kick(v))
         yield "KickFamily.error", lambda v=speed: kicks.error(kicks.orbit(v))
+        yield "KickFamily.excess", lambda v=speed: kicks.excess(v)
         yield "KickFamily.closed", lambda v=speed: kicks.closed(kicks.kick(v).jump)
         yield "Shooting.flow", lambda v=speed: family.flow(unknown_of(kicks.orbit(v)))
         yield "Shooting.orbit", lambda v=speed: family.orbit(v)
