@@ -125,35 +125,31 @@ def row_at(scene: Scene, frequency: float, model: ModalModel) -> tuple[Row, list
             found[name] = transition(strobed, scene.scan.born_excess, cycles)
         except ContactError as error:
             failures.append((f"{frequency:g} Hz, {name}", str(error)))
-    maps, single, beam, linear_beam = found["map"], found["single_mode"], found["beam"], found["beam_linear"]
-    exact_map, exact_single = exact_ends(scene, frequency, maps.period or 0, single.period or 0)
-    born_excess = f"{scene.scan.born_excess:g}"
+    exact_map, exact_single = exact_ends(scene, frequency, found["map"].period, found["single_mode"].period)
+    columns, not_settled = dict[str, Any](), list[str]()
+    for name, title in TITLES.items():
+        one = found[name]
+        columns |= {name: one.period, f"excess_down_{name}": one.excess_down, f"ends_by_{name}": one.ends_by}
+        columns |= {f"bracket_{name}": one.bracket, f"born_{name}": one.also}
+        periods = {f"{scene.scan.born_excess:g}": one.period, **one.also}
+        not_settled += [f"{title} at {excess}" for excess, period in periods.items() if period == 0]
     row = Row(
-        frequency_hz=frequency, letter=letter.PERIODS.get(frequency),
-        map=maps.period, single_mode=single.period, beam=beam.period,
-        excess_down_map=maps.excess_down, excess_down_single_mode=single.excess_down,
-        excess_down_beam=beam.excess_down, ends_by_map=maps.ends_by, ends_by_single_mode=single.ends_by,
-        ends_by_beam=beam.ends_by, exact_map=exact_map, exact_single_mode=exact_single,
-        beam_linear=linear_beam.period, excess_down_beam_linear=linear_beam.excess_down,
-        bracket_map=maps.bracket, bracket_single_mode=single.bracket, bracket_beam=beam.bracket,
-        born_map=maps.also, born_single_mode=single.also, born_beam=beam.also,
-        not_settled=[
-            f"{TITLES[name]} at {excess}" for name in TITLES
-            for excess, period in {born_excess: found[name].period, **found[name].also}.items() if period == 0
-        ],
+        frequency_hz=frequency, letter=letter.PERIODS.get(frequency), **columns, exact_map=exact_map,
+        exact_single_mode=exact_single, beam_linear=found["beam_linear"].period,
+        excess_down_beam_linear=found["beam_linear"].excess_down, not_settled=not_settled,
         grazing_amplitude_m=beam_at(scene, frequency, model).grazing_amplitude(),
     )  # fmt: skip
     return row, failures
 
 
 def exact_ends(
-    scene: Scene, frequency: float, map_period: int, period: int
+    scene: Scene, frequency: float, of_map: int | None, of_single: int | None
 ) -> tuple[float | None, float | None]:
-    """The folds of the p_m orbits in closed form, of the map and of Eq. (1) [1]."""
+    """The folds of the p_m orbits in closed form, of the map and of Eq. (1) [1]; no orbit for None, 0, 1."""
     nordmark = nordmark_at(scene, frequency)
-    orbit = fold(nordmark, map_period) if map_period > 1 else None
-    family = MaximalFamily.from_oscillator(single_mode_at(scene, frequency), period=max(period, 2))
-    end = family.fold() if period > 1 else None
+    orbit = fold(nordmark, of_map) if of_map and of_map > 1 else None
+    family = MaximalFamily.from_oscillator(single_mode_at(scene, frequency), period=max(of_single or 0, 2))
+    end = family.fold() if of_single and of_single > 1 else None
     return None if orbit is None else nordmark.excess(orbit.rho), None if end is None else end.excess
 
 
