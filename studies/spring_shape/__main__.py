@@ -18,7 +18,7 @@ width, bend radius, sheet material, ball and period; its tape and its spring.kin
 inertia of ball and mount counts about every axis; it is 0 in the letter's scene, and "compact mount" is the
 least that one body of the sheet's material would have.
 
-Run:     python -m studies.spring_shape [--off-line 0.0005] [--quick]     15 s; --quick 5 s
+Run:     python -m studies.spring_shape [--off-line 0.0005] [--quick]     20 s; --quick 7 s
 Writes:  readings.csv, variations.csv (one row a shape), theory_error.csv (one row a mode), shapes.npz;
          figures shapes and theory_error
 """
