@@ -20,7 +20,7 @@ a hard approach the letter's restitution, at each drive frequency and K = 10 ...
 and for the beam with Hertz contact the excess at which the kick leaves the square root, the period doubling
 below it, and whether the letter could have seen that. The equations are derived in `closed_forms`.
 
-Run:     python -m studies.soft_wall [--decades 1 6] [--quick]     15 s; --quick 7 s
+Run:     python -m studies.soft_wall [--decades 1 6] [--quick]     10 s; --quick 5 s
 Writes:  kicks.csv, doublings.csv, ends.csv; figures kick and orbits
 """
 

@@ -3,10 +3,10 @@
 Claim (letter 1996, Fig. 1 and text): the spring is U shaped to suppress torsional modes. Of the three U's
 that the words allow, legs side by side in the plane of the sheet, a channel, and a strip folded into a U, the
 folded strip has its first twist mode highest above the first bending mode: that makes it the default reading.
-(A channel gets there only with flanges hardly higher than its sheet is thick.) A plain strip of the same
-width and period has it higher still. In every reading the ball sees a twist mode only as far as it sits off
-the plane of symmetry. Against solids, strip theory gives the bending modes of the folded U 1.2 to 1.5 % too
-low, those of the plain strip 0.6 to 1.2 %, and their twist modes within 1.5 %.
+(A channel gets there only with flanges less than twice as high as its sheet is thick.) A plain strip of the
+same width and period has it higher still. In every reading the ball sees a twist mode only as far as it sits
+off the plane of symmetry. Against solids, strip theory gives the bending modes of the folded U 1.2 to 1.5 %
+too low, those of the plain strip 0.6 to 1.2 %, and their twist modes within 1.5 %.
 
 Centreline r(s), displacements u t + w n + v z, twist phi about t, in plane and out of it, tied to the ball:
 
@@ -18,7 +18,7 @@ width, bend radius, sheet material, ball and period; its tape and its spring.kin
 inertia of ball and mount counts about every axis; it is 0 in the letter's scene, and "compact mount" is the
 least that one body of the sheet's material would have.
 
-Run:     python -m studies.spring_shape [--off-line 0.0005] [--quick]     15 s; --quick 5 s
+Run:     python -m studies.spring_shape [--off-line 0.0005] [--quick]     20 s; --quick 7 s
 Writes:  readings.csv, variations.csv (one row a shape), theory_error.csv (one row a mode), shapes.npz;
          figures shapes and theory_error
 """

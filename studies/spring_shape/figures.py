@@ -77,7 +77,8 @@ def draw_shapes(nets: Mapping[str, Points], rows: Sequence[ReadingRow]) -> Figur
         ax.set_box_aspect([np.ptp(span) for span in (ax.get_xlim(), ax.get_ylim(), ax.get_zlim())], zoom=2.5)
         ax.set_axis_off()
         for artist in (*ax.lines, *ax.collections):
-            artist.set_clip_on(False)  # axes in space are square, springs are long
+            artist.set_clip_on(False)  # axes in space are square, springs are long and reach beyond them
+            artist.set_in_layout(False)
     length = 1e3 * np.ptp(nets["plain_rest"][..., 0])
     figure.supxlabel(
         f"grey: outline at rest, {length:.0f} mm long; net: first twist mode, enlarged; dot: the ball; "
