@@ -2,8 +2,8 @@
 
 Sampling a driven oscillator at the strobe times t_n = n/f turns its motion into the iteration of a map; its
 periodic orbits are the p_m orbits of the letter (1996, Fig. 2).  ``StroboscopicMap`` is that map for any
-impact oscillator, ``StrobedNordmarkMap`` the letter's Eqs. (2), (3): whatever scans, settles or classifies orbits
-takes either, and any other class with these methods.
+impact oscillator, ``StrobedNordmarkMap`` the letter's Eqs. (2), (3): whatever scans, settles or classifies
+orbits takes either, and any other class with these methods.
 """
 
 from __future__ import annotations

@@ -25,37 +25,12 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Annotated
 
-from contact import ContactError
 from studies.run import Run, study
 from studies.scene import Scene
-from studies.stability import (
-    Findings,
-    Limit,
-    accumulation,
-    explicit,
-    false_restitution,
-    implicit_energy,
-    missed_crossings,
-    splitting,
-)
+from studies.stability import Limit
+from studies.stability.families import FAMILIES, findings
 
 __all__ = ["FAMILIES", "stability"]
-
-FAMILIES = {
-    module.__name__.rpartition(".")[2]: module
-    for module in (explicit, splitting, implicit_energy, false_restitution, missed_crossings, accumulation)
-}
-"""The families in the order of the table: files with measure(scene, quick) -> Findings, and
-draw(arrays) -> figure and its caption."""
-
-
-def findings(name: str, scene: Scene, quick: bool) -> Findings | Exception:
-    """What the family finds, or why it does not."""
-    try:
-        found: Findings = FAMILIES[name].measure(scene, quick)
-    except (ContactError, ArithmeticError, ValueError) as error:
-        return error
-    return found
 
 
 @study()

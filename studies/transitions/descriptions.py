@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam import ModalModel
-from contact import ContactError, MaximalFamily, StrobedMap, StroboscopicMap, fold
+from contact import ContactError, MaximalFamily, StrobedMap, StrobedNordmarkMap, StroboscopicMap, fold
 from contact.orbits import OrbitDiagram, born, born_period, orbit_diagram, orbit_end
 from studies import letter
 from studies.scene import READOUT, Scene, beam_at, nordmark_at, single_mode_at
@@ -93,8 +93,9 @@ def describe(scene: Scene, frequency: float, model: ModalModel) -> dict[str, Des
     """The three descriptions at `frequency` [Hz]; displacements are observed in metres."""
     single = StroboscopicMap(oscillator=single_mode_at(scene, frequency))
     beam = StroboscopicMap(oscillator=beam_at(scene, frequency, model))
+    nordmark = StrobedNordmarkMap(map=nordmark_at(scene, frequency))
     return {
-        "map": Description(StrobedNordmarkMap(map=nordmark_at(scene, frequency)), lambda points: points[:, 0]),
+        "map": Description(nordmark, lambda points: points[:, 0]),
         "single_mode": Description(single, single.tip),
         "beam": Description(beam, lambda points: beam.readout(points, READOUT)),
     }
