@@ -7,10 +7,12 @@ import itertools
 import math
 
 import numpy as np
+import oscillators
 import pytest
+from oscillators import GAP, OMEGA
 from scipy.optimize import brentq
 
-from beam import ModalModel, UniformBeam, exact_modes, single_mode
+from beam import ModalModel, UniformBeam, exact_modes
 from contact.collision import Collision, before_collision, collisions, first_collision
 from contact.drive import HarmonicDrive
 from contact.laws import (
@@ -27,10 +29,7 @@ from contact.stop import Stop
 from contact.trajectory import Impacts, State
 from studies.scene import beam_at, read_scene
 
-GAP = 0.005
-OMEGA = 2 * np.pi * 24.5 * np.array([1.0, 6.1, 15.4, 29.0, 47.0, 70.0])
 PHI = 10.0 * np.array([1.0, 0.9, 0.8, 0.7, 0.6, 0.5])
-GAMMA = np.array([0.09, 0.05, -0.03, 0.02, -0.015, 0.01])
 
 
 def real_differs(collision: Collision) -> bool:
@@ -47,23 +46,14 @@ def spring(
     frequency: float = 21.5,
 ) -> ImpactOscillator:
     """The first modes of a spring of 24.5 Hz with a light tip; undriven if `excess` is None."""
-    omega = OMEGA[:n_modes]
-    model = ModalModel(
-        omega=omega, decay_rate=damping * omega, phi=PHI[:n_modes], participation=GAMMA[:n_modes]
-    )
-    stop = Stop(gap=GAP, law=law)
     if excess is None:
-        return ImpactOscillator(model=model, stop=stop)
-    driven = ImpactOscillator(model=model, stop=stop, drive=HarmonicDrive(frequency=frequency))
+        return oscillators.spring(n_modes, law, damping=damping, phi=PHI)
+    driven = oscillators.spring(n_modes, law, damping=damping, phi=PHI, drive=(frequency, 0.0))
     return driven.with_excess(excess)
 
 
 def equation_1(frequency: float, law: ContactLaw, excess: float) -> ImpactOscillator:
-    oscillator = ImpactOscillator(
-        model=single_mode(free_period=0.0408, decay_rate=3.56), stop=Stop(gap=0.0107, law=law),
-        drive=HarmonicDrive(frequency=frequency),
-    )  # fmt: skip
-    return oscillator.with_excess(excess)
+    return oscillators.equation_1(frequency, law, gap=0.0107, excess=excess)
 
 
 def newton(e: float) -> NewtonRestitution:
@@ -261,9 +251,10 @@ def test_every_number_is_what_its_definition_says(n_modes: int, law: ContactLaw,
         def virtual(time, at, displacement, velocity, oscillator=oscillator):
             q, rate = steady(oscillator, at)
             u, v = flow(oscillator, displacement[0] - q[0], velocity[0] - rate[0], time - at)
-            qs, vs = steady(oscillator, time)
-            tip = oscillator.model.phi
-            return float(tip @ qs + tip[0] * u) - GAP, float(tip @ vs + tip[0] * v)
+            w, tip = oscillator.drive.angular_frequency, oscillator.model.phi
+            size = oscillator.drive.amplitude * (tip @ oscillator.steady_response())
+            turning = size * np.exp(1j * w * time)
+            return turning.imag + tip[0] * u - GAP, (1j * w * turning).imag + tip[0] * v
 
         def incoming(time, virtual=virtual, i=first):
             return virtual(time, impacts.start[i], impacts.displacement_start[i], impacts.velocity_start[i])
@@ -273,7 +264,7 @@ def test_every_number_is_what_its_definition_says(n_modes: int, law: ContactLaw,
 
         def hump(motion, near):
             grid = near + np.linspace(-0.6, 0.6, 241) * period
-            speed = np.array([motion(t)[1] for t in grid])
+            speed = motion(grid)[1]
             tops = [brentq(lambda t: motion(t)[1], grid[i], grid[i + 1], xtol=1e-16)
                     for i in np.flatnonzero((speed[:-1] > 0) & (speed[1:] <= 0))]  # fmt: skip
             return min(tops, key=lambda t: abs(t - near))

@@ -9,10 +9,10 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import oscillators
 import pytest
+from oscillators import apart
 
-from beam import single_mode
-from contact.drive import HarmonicDrive
 from contact.errors import NotPeriodic
 from contact.laws import ContactLaw, DelayedRestitution, NewtonRestitution
 from contact.maximal_orbits import band
@@ -26,7 +26,6 @@ from contact.orbits.shooting import PeriodicOrbit, Shooting
 from contact.orbits.single_impact import MaximalFamily
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
-from contact.stop import Stop
 from contact.stroboscope import StroboscopicMap
 from contact.trajectory import State
 
@@ -42,10 +41,7 @@ PLACES = [(20.90, 3), (21.50, 4), (22.20, 5), (23.40, 11)]
 
 
 def equation_1(frequency: float, law: ContactLaw) -> ImpactOscillator:
-    return ImpactOscillator(
-        model=single_mode(free_period=T, decay_rate=MU), stop=Stop(gap=GAP, law=law),
-        drive=HarmonicDrive(frequency=frequency),
-    )  # fmt: skip
+    return oscillators.equation_1(frequency, law, gap=GAP)
 
 
 def unit_speed(frequency: float) -> float:
@@ -79,11 +75,6 @@ def differences(orbit: PeriodicOrbit) -> tuple[np.ndarray, float]:
     step = 1e-7 * np.diag(scale)
     columns = [(after(point + h) - after(point - h)) / 2e-7 / scale for h in step]
     return np.linalg.eigvals(np.column_stack(columns)), float(np.max(np.abs(after(point) - point) / scale))
-
-
-def apart(a: np.ndarray, b: np.ndarray) -> float:
-    """Largest distance between two pairs of multipliers, matched."""
-    return float(min(np.max(np.abs(a - b)), np.max(np.abs(a - b[::-1]))))
 
 
 @pytest.mark.parametrize(("frequency", "period"), PLACES)

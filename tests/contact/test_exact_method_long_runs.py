@@ -17,13 +17,13 @@ import math
 import mpmath
 import numpy as np
 import pytest
+from oscillators import equation_1
 from scipy.linalg import expm
 
-from beam import ModalModel, single_mode
+from beam import ModalModel
 from contact import (
     Chatter,
     ContactLaw,
-    HarmonicDrive,
     HertzContact,
     ImpactKind,
     ImpactOscillator,
@@ -50,10 +50,7 @@ def one_mode(law: ContactLaw, gap: float, *, omega: float = OMEGA, load: float =
 
 def letters_mode(restitution: float, frequency: float) -> ImpactOscillator:
     """Eq. (1) of the letter."""
-    return ImpactOscillator(
-        model=single_mode(free_period=40.80e-3, decay_rate=3.56), drive=HarmonicDrive(frequency=frequency),
-        stop=Stop(gap=0.0107, law=NewtonRestitution(local_restitution=restitution)),
-    )  # fmt: skip
+    return equation_1(frequency, NewtonRestitution(local_restitution=restitution), gap=0.0107)
 
 
 def test_free_flight_keeps_phase_and_energy_for_1e5_periods():

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from beam import ModalModel
 from contact.drive import HarmonicDrive
-from contact.flight.elementary import EPS, two_product
+from contact.flight.elementary import EPS
 from contact.flight.modal_flow import flow_matrix, mode_acceleration, propagate, tip_rounding, tip_state
 from contact.flight.motion import damped_frequency
 from contact.laws import NewtonRestitution
@@ -123,26 +123,6 @@ def test_branches_are_told_apart_by_one_rounding():
             high, low = damped_frequency(150.0, decay)
             assert high > 0
             assert abs((mp.mpf(high) + mp.mpf(low)) / exact - 1) < 1e-29
-
-
-def test_damped_frequency_has_32_digits():
-    generator = np.random.default_rng(1)
-    for _ in range(200):
-        omega, decay = 10 ** generator.uniform(-3, 5), 10 ** generator.uniform(-6, 5)
-        with mp.workdps(60):
-            exact = mp.sqrt(abs(mp.mpf(omega) ** 2 - (mp.mpf(decay) / 2) ** 2))
-            high, low = damped_frequency(omega, decay)
-            assert abs(low) <= EPS * high
-            assert abs((mp.mpf(high) + mp.mpf(low)) / exact - 1) < 1e-28
-
-
-def test_product_and_error_are_the_exact_product():
-    generator = np.random.default_rng(2)
-    for _ in range(200):
-        a, b = (float(x) for x in generator.uniform(-1, 1, 2) * 10.0 ** generator.integers(-8, 8, 2))
-        product, error = two_product(a, b)
-        with mp.workdps(60):
-            assert mp.mpf(product) + mp.mpf(error) == mp.mpf(a) * mp.mpf(b)
 
 
 @pytest.mark.parametrize("decay", [0.0, 1e-4, 0.02])
@@ -293,14 +273,6 @@ def test_constant_load_on_a_free_body_with_drag(product):
         c, t, g = mp.mpf(product / time), mp.mpf(time), mp.mpf(9.81)
         assert v[0] == pytest.approx(float(g * (1 - mp.exp(-c * t)) / c), rel=4 * EPS)
         assert u[0] == pytest.approx(float(g * (t - (1 - mp.exp(-c * t)) / c) / c), rel=4 * EPS)
-
-
-def test_parabola_of_a_falling_body():
-    system = oscillator([0.0], [0.0], load=[9.81], phi=[1.0], participation=[1.0])
-    u, v = np.array([0.3]), np.array([-2.0])
-    propagate(system.motion(), u, v, 0.5, u, v)
-    assert u[0] == pytest.approx(0.3 - 1.0 + 0.5 * 9.81 * 0.25, rel=4 * EPS)
-    assert v[0] == pytest.approx(-2.0 + 9.81 * 0.5, rel=4 * EPS)
 
 
 def test_static_load_moves_the_tip_by_its_static_displacement():

@@ -7,12 +7,12 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from wrong_input_of_beam import INF, MODAL, NAN, each, fields_of, of, told
+from wrong_input_of_beam import INF, NAN, each, fields_of, of, told
 
 import beam
 import contact
-from contact import integrators
-from contact.orbits import continuation, kick, lyapunov, saltation, shooting
+from contact import Regime, integrators
+from contact.orbits import continuation, kick, lyapunov, shooting
 
 
 @cache
@@ -53,9 +53,17 @@ def orbit() -> shooting.PeriodicOrbit:
 
 @cache
 def system() -> Any:
-    return lyapunov.of_nordmark(contact.StrobedNordmarkMap(map=nordmark(), rho=0.01))
+    return contact.StrobedNordmarkMap(map=nordmark(), rho=0.01)
 
 
+def at(displacement: float, regime: Regime = Regime.OUTSIDE) -> contact.State:
+    """A resting state of Eq. (1), [m]."""
+    phi = float(eq_1().model.phi[0])
+    return contact.State(displacement=[displacement / phi], velocity=[0.0], regime=regime)
+
+
+GAP = eq_1().stop.gap
+LOADED = dataclasses.replace(eq_1(), load=np.array([1.0]))
 UNDRIVEN = dataclasses.replace(eq_1(), drive=None)
 PAIR = dict(radius=0.0025, youngs_modulus=370e9, poissons_ratio=0.22, other_modulus=210e9, other_ratio=0.29)
 BAND = dict(free_period=40.8e-3, decay_rate=3.56, restitution=0.1)
@@ -67,22 +75,36 @@ CONTACT = (
     of(contact.HarmonicDrive, dict(frequency=22.2, amplitude=1e-3),
        kind=dict(frequency="22.2 Hz"), value=dict(frequency=0.0, amplitude=-1e-3)),
     of(contact.Stop, dict(gap=0.0107, law=contact.NewtonRestitution(local_restitution=0.1)),
-       kind=dict(gap="10.7 mm", law=each(0.1, contact.HertzContact)), value=dict(gap=-0.01)),
+       kind=dict(gap="10.7 mm", law=each(None, 0.1, "newton", contact.HertzContact)), value=dict(gap=-0.01)),
     of(contact.NewtonRestitution, dict(local_restitution=0.1),
-       kind=dict(local_restitution="0.1"), value=dict(local_restitution=each(1.1, NAN))),
+
+       kind=dict(local_restitution=each("0.1", None)),
+       value=dict(local_restitution=each(1.1, 1.0000001, -1e-12, NAN))),
     of(contact.DelayedRestitution, dict(restitution=0.1, delay=1e-4),
-       kind=dict(restitution=told(lambda v: "soft", "gives 'soft'"), speeds=3.0),
-       value=dict(restitution=2.0, delay="late", speeds=(1.0,))),
+       kind=dict(restitution=told(lambda v: "soft", "gives 'soft'")),
+       value=dict(restitution=each(2.0, 1.0000001, -0.01, -1e-12, NAN, "soft", None,
+                                   told(lambda v: 1.2 - v, "restitution runs from"),
+                                   told(lambda v: 0.5 if v < 1 else NAN, "restitution")),
+                  delay=each(-1e-9, NAN, INF, "late", None, [1e-4], told(lambda v: 1e-4 - v, "delay"),
+                             told(lambda v: INF, "delay")),
+                  speeds=each(told(3.0, "speeds has shape ()"), (1.0,), (1.0, 1.0), (0.0, 1.0), (1.0, NAN)))),
     of(contact.LinearContact, dict(stiffness=1e6, damping=0.0),
-       kind=dict(stiffness=None), value=dict(stiffness=0.0, damping=-1.0)),
+       kind=dict(stiffness=None, damping=None),
+       value=dict(stiffness=each(0, 0.0, -1.0), damping=each(-1.0, -1e-300))),
     of(contact.HertzContact, dict(stiffness=8e9),
-       kind=dict(stiffness="hard"), value=dict(stiffness=each(-8e9, INF))),
+       kind=dict(stiffness=each("hard", None)), value=dict(stiffness=each(0, 0.0, -8e9, INF))),
     of(contact.HertzContact.of_bodies, PAIR,
-       value=dict(radius=0.0, youngs_modulus=-1.0, other_ratio=0.6)),
+       value=dict(radius=each(0.0, -1.0), youngs_modulus=each(0.0, -1.0), other_modulus=each(0.0, -1.0),
+                  poissons_ratio=each(0.5000001, -1.0), other_ratio=each(0.6, 0.5000001, -1.0))),
     of(contact.HuntCrossley, dict(stiffness=8e9, dissipation=0.5),
-       value=dict(stiffness=0, dissipation=each(-0.5, NAN))),
+       kind=dict(stiffness=None, dissipation=None),
+       value=dict(stiffness=each(0, 0.0, -1.0), dissipation=each(-0.5, -1e-300, NAN))),
     of(contact.HuntCrossley.with_restitution, dict(stiffness=8e9, restitution=0.5, velocity=0.1),
-       kind=dict(restitution="half"), value=dict(restitution=0.0, velocity=-0.1)),
+       kind=dict(stiffness=None, restitution=each("half", None), velocity="fast"),
+       value=dict(stiffness=each(0, -1.0), restitution=each(0.0, -0.5, -1e-12, 1.0000001),
+                  velocity=each(0.0, -0.1, NAN))),
+    of(contact.HuntCrossley.with_restitution, dict(stiffness=8e9, restitution=1.0, velocity=0.1),
+       name="HuntCrossley.with_restitution, elastic", value=dict(stiffness=each(0, -1.0))),
     of(contact.ImpactOscillator, lambda: fields_of(eq_1()),
        kind=dict(model=None, stop=0.0107, drive=22.2, load=["a"]),
        value=dict(drive=told(contact.HarmonicDrive(frequency=22200.0), "drive is 22200 Hz"),
@@ -94,16 +116,26 @@ CONTACT = (
        name="ImpactOscillator.with_amplitude",
        kind=dict(amplitude=None), value=dict(amplitude=each(-1e-3, INF))),
     of(contact.State, START | dict(time=0.0, regime=0, wait=0.0, rebound=0.0),
-       value=dict(displacement=each([], "rest"), velocity=[0.0, 1.0], regime=7, time=NAN)),
+       value=dict(displacement=each([], "rest", [NAN]),
+                  velocity=each([0.0, 1.0], told([[0.0]], "velocity of the state")),
+                  regime=each(7, -1, 5, 17), time=NAN)),
     of(contact.State.rest, dict(n_modes=2),
        kind=dict(n_modes="two"), value=dict(n_modes=each(0, 1.5))),
     of(contact.simulate, lambda: dict(oscillator=eq_1(), periods=2),
        kind=dict(oscillator=None, state=[0.0, 0.0], times="now", method=3),
-       value=dict(periods=each(told(0, "duration is 0.0 s"), 1.5, told(None, "duration and periods")),
+       value=dict(periods=each(told(0, "duration is 0.0 s"), told(-2, "duration is -"), 1.5,
+                               told(None, "duration and periods")),
                   times=told([0.02, 0.01], "times must be"), method="magic",
-                  state=told(contact.State.rest(3), "displacement of the state has 3 modes"))),
-    of(contact.simulate, lambda: dict(oscillator=eq_1(), duration=0.1), name="simulate for a duration",
-       kind=dict(duration="1 s"), value=dict(duration=each(-1.0, told(1e12, "duration is 1e+12 s")))),
+                  state=each(told(contact.State.rest(3), "displacement of the state has 3 modes"),
+                             told(at(1.0), "m behind the stop"), told(at(0.0, Regime.SUSTAINED), "regime"),
+                             told(at(GAP, Regime.CONTACT), "regime"),
+                             told(at(GAP, Regime.INSIDE), "regime")))),
+    of(contact.simulate, lambda: dict(oscillator=eq_1(), duration=1.0), name="simulate for a duration",
+       kind=dict(duration="1 s"),
+       value=dict(duration=each(0.0, -1.0, NAN, told(1e12, "duration is 1e+12 s")),
+                  periods=told(3, "duration and periods"),
+                  times=each(told([0.2, NAN], "times must be"), told([[0.2]], "times must be"),
+                             told([0.5, 1.1], "times run from"), told([-0.1, 0.5], "times run from")))),
     of(contact.StroboscopicMap, lambda: dict(oscillator=eq_1()), kind=dict(oscillator=3)),
     of(lambda excess: strobed().at(excess), dict(excess=1e-3), name="StroboscopicMap.at",
        value=dict(excess=-2.0)),
@@ -153,10 +185,16 @@ CONTACT = (
     of(contact.first_collision, lambda: dict(oscillator=eq_1(), periods=64),
        kind=dict(oscillator=3, state="rest"),
        value=dict(periods=0, oscillator=told(eq_1().with_excess(-0.5), "periods is 64"))),
-    of(contact.MaximalFamily, MODAL | dict(drive_frequency=22.2, gap=0.0107, restitution=0.1, period=3),
-       kind=dict(omega=["a", "b"]), value=dict(phi=[1.0], gap=0.0, period=0, restitution=-0.1)),
-    of(contact.MaximalFamily.single_mode, FROM_F | dict(period=5, gap=1.0),
-       kind=dict(free_period="T"), value=dict(decay_rate=-1.0, drive_frequency=NAN)),
+    of(contact.MaximalFamily.from_oscillator, lambda: dict(oscillator=eq_1(), period=3, restitution=0.1),
+       name="MaximalFamily", kind=dict(oscillator=None),
+       value=dict(period=0, restitution=told(-0.1, "restitution is -0.1"),
+                  oscillator=each(told(UNDRIVEN, "drive is None"), told(LOADED, "load is given")))),
+    of(lambda period, speed, rho, excess: (
+           contact.MapFamily(nordmark(), period).orbit(speed),
+           contact.MapFamily(nordmark(), period).at_rho(rho),
+           contact.MapFamily(nordmark(), period).orbits(excess)),
+       dict(period=4, speed=0.1, rho=0.01, excess=0.01), name="MapFamily",
+       kind=dict(excess="1"), value=dict(period=0, speed=told(0.0, "speed is 0.0 [1]"), rho=NAN)),
     of(lambda speed: closed().orbit(speed), dict(speed=0.1), name="MaximalFamily.orbit",
        kind=dict(speed="fast"), value=dict(speed=each(0.0, NAN))),
     of(lambda excess: closed().orbits(excess), dict(excess=1e-3), name="MaximalFamily.orbits",
@@ -165,20 +203,25 @@ CONTACT = (
 
 ORBITS = (
     of(kick.KickFamily, lambda: dict(oscillator=eq_1(), period=5),
-       kind=dict(oscillator=None), value=dict(period=0, modes=2)),
+       kind=dict(oscillator=None),
+       value=dict(period=each(0, 2.5), oscillator=told(LOADED, "load is given"))),
     of(lambda speeds: kick.KickFamily(oscillator=eq_1(), period=5).fold(speeds), dict(speeds=(0.01, 0.5)),
        name="KickFamily.fold",
        kind=dict(speeds="all"), value=dict(speeds=each((0.5, 0.01), (0.0, 1.0)))),
     of(shooting.Shooting, lambda: dict(oscillator=family().oscillator, period=5),
-       kind=dict(oscillator="eq_1"), value=dict(period=1.5, impacts=0)),
+       kind=dict(oscillator="eq_1"),
+       value=dict(period=each(0, 1.5), impacts=0, oscillator=told(UNDRIVEN, "drive is None"))),
+    of(lambda speed: kick.KickFamily(oscillator=eq_1(), period=5).kick(speed), dict(speed=0.1),
+       name="KickFamily.kick", kind=dict(speed="fast"), value=dict(speed=each(0.0, -1.0, INF))),
     of(lambda **given: family().at_speed(**given), dict(speed=0.1), name="Shooting.at_speed",
-       kind=dict(speed=None, near=3), value=dict(speed=-0.1)),
+       kind=dict(speed=None, near=3), value=dict(speed=each(0.0, -0.1))),
     of(lambda **given: family().at_excess(**given),
        lambda: dict(excess=orbit().excess * 1.01, near=orbit()), name="Shooting.at_excess",
        kind=dict(near=None), value=dict(excess=each(-1.5, NAN))),
     of(continuation.follow, lambda: dict(family=family(), start=orbit(), low=0.09, high=0.11, step=0.1),
        kind=dict(family=None, start=0.1),
-       value=dict(low=told(0.2, "low and high are 0.2 and"), step=told(0.0, "step is 0.0 [1]"))),
+       value=dict(low=each(told(0.2, "low and high are 0.2 and"), told(0.0, "low and high are 0.0 and")),
+                  high=told(0.095, "low and high are 0.09 and 0.095"), step=told(0.0, "step is 0.0 [1]"))),
     of(continuation.first_event, lambda: dict(family=family(), start=orbit(), lowest=-0.1),
        kind=dict(family=None, start=0.1), value=dict(lowest=-1.5)),
     of(continuation.fold_of, lambda: dict(family=family()),
@@ -189,22 +232,15 @@ ORBITS = (
        kind=dict(family=each(None, eq_1()), near=0.1)),
     of(continuation.fold_along_frequency, lambda: dict(family=family(), frequencies=[22.2]),
        kind=dict(family=5, frequencies=["22.2"]), value=dict(frequencies=each(22.2, [NAN]))),
-    of(lyapunov.of_oscillator, lambda: dict(strobed=contact.StroboscopicMap(oscillator=eq_1())),
-       kind=dict(strobed=each(eq_1(), None)),
-       value=dict(strobed=told(contact.StroboscopicMap(oscillator=UNDRIVEN), "drive is None"))),
-    of(lyapunov.of_nordmark, lambda: dict(strobed=contact.StrobedNordmarkMap(map=nordmark())),
-       kind=dict(strobed=each(nordmark(), None, 0.1))),
-    of(lyapunov.map_exponents, lambda: dict(system=system(), state=np.array([0.0, 0.0]), count=10, align=0),
-       kind=dict(system=nordmark()), value=dict(count=1, align=-1)),
-    of(lyapunov.orbit_exponents, lambda: dict(system=system(), state=np.array([0.0, 0.0]), period=1),
-       kind=dict(system=None), value=dict(period=each(0, 1.5))),
+    of(continuation.orbits_at, lambda: dict(family=family(), excess=0.01),
+       kind=dict(family=None), value=dict(excess=each(-1.5, NAN))),
+    of(lyapunov.map_exponents, lambda: dict(strobed=system(), state=np.array([0.0, 0.0]), count=10, align=0),
+       kind=dict(strobed=each(nordmark(), eq_1())), value=dict(count=1, align=-1)),
+    of(lyapunov.orbit_exponents, lambda: dict(strobed=system(), state=np.array([0.0, 0.0]), period=1),
+       kind=dict(strobed=None), value=dict(period=each(0, 1.5))),
     of(lyapunov.divergence_rate,
-       lambda: dict(system=system(), state=np.array([0.0, 0.0]), duration=5.0, align=0.0, seed=1),
-       kind=dict(system=3), value=dict(duration=0.0, align=-1.0, seed=-1)),
-    of(saltation.monodromy, dict(flow=np.ones((1, 2, 2)), saltation=np.eye(2)),
-       kind=dict(saltation=[["a", "b"], ["c", "d"]]), value=dict(flow=np.ones(2), saltation=np.eye(3))),
-    of(saltation.sorted_multipliers, dict(matrix=np.eye(2)),
-       kind=dict(matrix="eye"), value=dict(matrix=each(np.ones((2, 3)), [NAN]))),
+       lambda: dict(strobed=system(), state=np.array([0.0, 0.0]), duration=5.0, align=0.0, seed=1),
+       kind=dict(strobed=3), value=dict(duration=0.0, align=-1.0, seed=-1)),
 )
 
 STEPS = each(0.0, NAN, told("1 us", "step is "))

@@ -36,6 +36,15 @@ def study_of(name: str) -> Study:
     return found
 
 
+def assert_complete(name: str, folder: Path, summary: dict, manifest: dict) -> None:
+    """A study that ends well leaves every file that it lists, a table, a figure and a summary."""
+    files = [folder / file for file in manifest.get("files", [])]
+    assert all(path.exists() for path in files)
+    assert any(path.suffix == ".csv" and path.stat().st_size > 20 for path in files)
+    assert any(path.suffix == ".png" and path.stat().st_size > 5000 for path in files) or name == "calibrate"
+    assert summary["study"] == name and not any(key.startswith("wall") for key in summary)
+
+
 @pytest.fixture
 def run_study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Callable[..., Ran]:
     """`run_study(name, *argv)`: the study in its own folder, on the letter's scene by default."""
@@ -46,6 +55,8 @@ def run_study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Callable[..
         folder, found = tmp_path / name, []
         for file in ("summary.json", "manifest.json"):
             found.append(json.loads((folder / file).read_text()) if (folder / file).exists() else {})
+        if code == 0 and found[0]:  # nothing is run for --help and --dump-scene
+            assert_complete(name, folder, *found)
         return Ran(code=code, summary=found[0], manifest=found[1], folder=folder, out=out, err=err)
 
     return run

@@ -1,0 +1,55 @@
+"""Oscillators that several tests of contact take: a spring of six modes, Eq. (1) of the letter."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from beam import ModalModel, single_mode
+from contact import ContactLaw, HarmonicDrive, ImpactOscillator, NewtonRestitution, Stop
+
+OMEGA = 2 * np.pi * 24.5 * np.array([1.0, 6.1, 15.4, 29.0, 47.0, 70.0])
+PHI = 10.0 * np.array([1.0, 0.7, 0.5, 0.4, 0.3, 0.25])
+GAMMA = np.array([0.09, 0.05, -0.03, 0.02, -0.015, 0.01])
+GAP = 0.005
+FREQUENCY = 21.5
+
+
+def spring(
+    n_modes: int, law: ContactLaw, *, damping: float = 0.02, drive: tuple[float, float] | None = None,
+    phi: np.ndarray = PHI, load: np.ndarray | None = None, turned: bool = False,
+) -> ImpactOscillator:  # fmt: skip
+    """The first modes of a spring of 24.5 Hz with a stop at 5 mm; drive = (frequency [Hz], amplitude [m]).
+
+    `turned` is the same spring half a drive period later.
+    """
+    omega = OMEGA[:n_modes]
+    model = ModalModel(
+        omega=omega, decay_rate=damping * omega, phi=phi[:n_modes],
+        participation=(-1 if turned else 1) * GAMMA[:n_modes],
+    )  # fmt: skip
+    base = None if drive is None else HarmonicDrive(frequency=drive[0], amplitude=drive[1])
+    return ImpactOscillator(model=model, stop=Stop(gap=GAP, law=law), drive=base, load=load)
+
+
+def equation_1(
+    frequency: float, law: ContactLaw | None = None, *, gap: float = 1.0, excess: float | None = None
+) -> ImpactOscillator:
+    """Eq. (1) of the letter, with its restitution of 0.1 by default; in gaps unless `gap` [m] is given."""
+    oscillator = ImpactOscillator(
+        model=single_mode(free_period=40.80e-3, decay_rate=3.56),
+        stop=Stop(gap=gap, law=law or NewtonRestitution(local_restitution=0.1)),
+        drive=HarmonicDrive(frequency=frequency),
+    )
+    return oscillator if excess is None else oscillator.with_excess(excess)
+
+
+def heights(oscillator: ImpactOscillator, displacement: np.ndarray) -> np.ndarray:
+    """Of the tip over the stop [m]."""
+    return displacement @ oscillator.model.phi - oscillator.stop.gap
+
+
+def apart(a: np.ndarray, b: np.ndarray) -> float:
+    """Largest distance between two sets of multipliers, matched."""
+    distance = np.abs(np.asarray(a)[:, None] - np.asarray(b)[None, :])
+    return float(distance[linear_sum_assignment(distance)].max())
