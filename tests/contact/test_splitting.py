@@ -376,7 +376,7 @@ def test_the_energy_of_a_closed_contact_does_not_drift(order):
     stiffness = 0.5 * method.critical_stiffness(spring(SOFT).motion())
     oscillator = spring(LinearContact(stiffness=stiffness), gap=0.0, load=100.0)
     place = np.linalg.solve(np.diag(OMEGA**2) + stiffness * np.outer(PHI, PHI), 100.0 * PHI)
-    rest = settled(oscillator, State(displacement=place, velocity=0.0 * place), method)
+    rest, _slopes = settled(oscillator, State(displacement=place, velocity=0.0 * place), method)
     start = State(displacement=rest.displacement * [1.3, 0.9, 1.2, 0.9], velocity=rest.velocity)
     count = 200_000
     times = method.step * np.arange(1, count + 1)
