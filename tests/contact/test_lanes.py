@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from contact.compiled import kernel
-from contact.flight.modal_flow import START_U, START_V, U, V, flow, load_state, mode_flow, new_flight
+from contact.flight.modal_flow import U, V, flow, load_state, mode_flow, new_flight
 from contact.flight.motion import Motion, motion_of
 from contact.laws import NewtonRestitution
 from contact.vector_loops import LANES, aligned, next_modes, next_order, weighted_rows
