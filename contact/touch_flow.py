@@ -74,6 +74,39 @@ def through_touch(motion, response, run, u, v, end, tangent, record):
 
 
 @kernel
+def through_touches(motion, response, runs, u, v, end, tangent, record):
+    """The flow of `flow_from_touch` from runs[0] to the drive time `end` [s].
+
+    A record is a place in its array and does not keep it: whoever makes `runs` holds it meanwhile.
+    """
+    n, run, base = motion.size, runs[0], runs[0].clock
+    for i in range(record.shape[0]):
+        if i > 0:
+            outcome, s = first_crossing(motion, run.clock, u, v, end - run.clock, run.order)
+            if outcome != CROSSES:
+                return FEWER_TOUCHES
+            propagate(motion, u, v, s, u, v)
+            if tangent.shape[0] > 0:
+                tangent_flight(motion, tangent, s)
+            run.clock += s
+        row = record[i]
+        row[0] = run.clock - base
+        if not through_touch(motion, response, run, u, v, end, tangent, row):
+            return FAILED
+        row[1] = run.clock - base
+        for k in range(n):
+            row[4 + k] = u[k]
+            row[4 + n + k] = v[k]
+    left = end - run.clock
+    if left < 0.0:
+        return FAILED
+    propagate(motion, u, v, left, u, v)
+    if tangent.shape[0] > 0:
+        tangent_flight(motion, tangent, left)
+    return FLOWN
+
+
+@kernel
 def flow_from_touch(motion, response, base, u, v, duration, tangent, record):
     """Flow for `duration` from a touch at time `base` after a strobe.
 
@@ -101,33 +134,9 @@ def flow_from_touch(motion, response, base, u, v, duration, tangent, record):
     outcome : int
         FLOWN, FEWER_TOUCHES or FAILED.
     """
-    motion, u, v, tangent, record = (
-        borrowed(motion), borrowed(u), borrowed(v), borrowed(tangent), borrowed(record)
+    runs = np.zeros(1, dtype=STATE)
+    runs[0].clock = base
+    return through_touches(
+        borrowed(motion), response, runs, borrowed(u), borrowed(v), base + duration, borrowed(tangent),
+        borrowed(record),
     )  # fmt: skip
-    n, end = motion.size, base + duration
-    run = np.zeros(1, dtype=STATE)[0]
-    run.clock = base
-    for i in range(record.shape[0]):
-        if i > 0:
-            outcome, s = first_crossing(motion, run.clock, u, v, end - run.clock, run.order)
-            if outcome != CROSSES:
-                return FEWER_TOUCHES
-            propagate(motion, u, v, s, u, v)
-            if tangent.shape[0] > 0:
-                tangent_flight(motion, tangent, s)
-            run.clock += s
-        row = record[i]
-        row[0] = run.clock - base
-        if not through_touch(motion, response, run, u, v, end, tangent, row):
-            return FAILED
-        row[1] = run.clock - base
-        for k in range(n):
-            row[4 + k] = u[k]
-            row[4 + n + k] = v[k]
-    left = end - run.clock
-    if left < 0.0:
-        return FAILED
-    propagate(motion, u, v, left, u, v)
-    if tangent.shape[0] > 0:
-        tangent_flight(motion, tangent, left)
-    return FLOWN

@@ -31,7 +31,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from beam.parameters import require_array
-from contact.compiled import kernel
+from contact.compiled import held, kernel
 from contact.event_loop import DONE, STATE
 from contact.exact_run import failure
 from contact.flight.modal_flow import tip_rounding, tip_state
@@ -161,11 +161,13 @@ def settled_column(
             for k in range(n):
                 place[k], place[n + k] = u[k], v[k]
             place[2 * n], place[2 * n + 1] = run.period, run.clock
+            held(runs)
             return a, status
         for k in range(n):
             state[k] = u[k] + mean[k]
             state[n + k] = v[k] + mean[n + k]
         state[2 * n], state[2 * n + 1], state[2 * n + 2] = run.regime, run.wait, run.rebound
+        held(runs)  # a record is a place in its array and does not keep it
         found[a, 0], found[a, 1], found[a, 2] = period, hits, cycles
     return amplitudes.size, DONE
 
