@@ -625,7 +625,7 @@ def test_orbits_with_several_touches(
 
 def test_orbits_repeat_bit_for_bit_beside_other_threads(spring: ModalModel) -> None:
     """Compiled code owns the memory it works in: eight of a thousand orbits once differed in their digits."""
-    oscillator = beam(spring, 20.90, HERTZ)
+    oscillator = beam(spring, 20.90, HERTZ, modes=12)
     start = Shooting(oscillator=oscillator, period=3).at_speed(0.1 * unit_speed(oscillator))
 
     def again(_number: int) -> tuple[float, float, bytes]:
