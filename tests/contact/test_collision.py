@@ -1,4 +1,4 @@
-"""Restitution, delay, kick and shift of a collision: synthetic ones come back; special kinds of collisions."""
+"""Restitution, delay, kick and shift of a collision: synthetic ones come back; special collisions."""
 
 from __future__ import annotations
 
