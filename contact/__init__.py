@@ -69,6 +69,7 @@ from contact.laws import (
 )
 from contact.maximal_orbits import (
     Band,
+    MapFamily,
     MaximalOrbit,
     band,
     bands,
@@ -102,6 +103,7 @@ __all__ = [
     "ImpactOscillator",
     "Impacts",
     "LinearContact",
+    "MapFamily",
     "MaximalFamily",
     "MaximalOrbit",
     "NewtonRestitution",

@@ -32,23 +32,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beam.parameters import require_kind, require_whole
+from beam.parameters import require, require_kind, require_whole
 from contact.flight.modal_flow import propagate, steady_motion, tip_rounding
 from contact.flight.motion import Motion, single_mode, without_load
-from contact.flight.tip_search import tip_at
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
-from contact.trajectory import ImpactKind, State, Trajectory
+from contact.trajectory import ImpactKind, Impacts, State, Trajectory
+from contact.virtual_motion import VirtualMotion, deviations
 
 __all__ = ["Collision", "before_collision", "collisions", "first_collision"]
-
-REAL_AGAINST_VIRTUAL = 0.01
-"""Relative difference of real and virtual approach speed beyond which a collision is flagged."""
-
-_SAMPLES = 96
-"""Samples per drive period in which the peaks and minima of the virtual motion are bracketed: it moves at
-the drive frequency and that of mode 1, which is of the same order, so a bracket holds one extremum."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class Collision:
@@ -111,69 +103,13 @@ class Collision:
     forced_by_ringing: bool
     returns: bool
 
-    @property
-    def real_differs(self) -> bool:
-        """Whether real and virtual approach speed differ by more than 1 %."""
-        return not abs(self.real_approach / self.approach - 1.0) <= REAL_AGAINST_VIRTUAL
 
-
-class _Virtual:
-    """The virtual motion through the mode-1 deviation (u, v) at `clock` after a strobe; times s count from
-    there."""
-
-    def __init__(self, motion: Motion, clock: float, u: float, v: float) -> None:
-        self.motion, self.clock = motion, clock
-        self.u, self.v = np.array([u]), np.array([v])
-
-    def height(self, s: float) -> float:
-        return float(tip_at(self.motion, self.clock, self.u, self.v, s)[0])
-
-    def velocity(self, s: float) -> float:
-        return float(tip_at(self.motion, self.clock, self.u, self.v, s)[1])
-
-    def acceleration(self, s: float) -> float:
-        return float(tip_at(self.motion, self.clock, self.u, self.v, s)[2])
-
-    def extrema(self, low: float, high: float, sign: float) -> list[float]:
-        """Times in [low, high] where the velocity goes through zero from `sign` to -`sign`."""
-        count = max(2, math.ceil(_SAMPLES * (high - low) / self.motion.period))
-        grid = np.linspace(low, high, count + 1)
-        speed = np.array([sign * self.velocity(s) for s in grid])
-        turns = np.flatnonzero((speed[:-1] > 0) & (speed[1:] <= 0))
-        return [_root(self.velocity, grid[i], grid[i + 1]) for i in turns]
-
-
-def _root(function: object, low: float, high: float) -> float:
-    """A root in [low, high] to rounding (times count from the touch, so that it may lie at zero)."""
-    from scipy.optimize import brentq  # slow to import
-
-    return float(brentq(function, low, high, xtol=1e-18, rtol=8.9e-16, maxiter=300))
-
-
-def _crossing(virtual: _Virtual, peak: float, direction: float) -> float:
-    """The crossing of the gap next to `peak` on its rising (-1) or falling (+1) side [s]."""
-    if virtual.height(peak) <= 0.0:
-        return peak
-    step = virtual.motion.period / _SAMPLES
-    near, far = peak, peak + direction * step
-    for _ in range(_SAMPLES):
-        if virtual.height(far) < 0.0:
-            return _root(virtual.height, min(near, far), max(near, far))
-        near, far = far, far + direction * step
-    return math.nan
-
-
-def _higher_energy(motion: Motion, u: np.ndarray, v: np.ndarray) -> float:
-    """Energy of the free motion above the first mode [J]."""
-    return float(0.5 * np.sum(v[1:] ** 2 + (motion.omega[1:] * u[1:]) ** 2))
-
-
-def _ringing(motion: Motion, u: np.ndarray, v: np.ndarray) -> float:
-    """Amplitude of the free motion of the higher modes at the tip [m]."""
-    omega = motion.omega[1:]
-    oscillating = omega > 0
-    amplitude = np.hypot(u[1:], np.where(oscillating, v[1:] / np.where(oscillating, omega, 1.0), 0.0))
-    return float(np.sum(np.abs(motion.phi[1:]) * amplitude))
+def _higher_modes(motion: Motion, u: np.ndarray, v: np.ndarray) -> tuple[float, float]:
+    """Energy of the free motion above the first mode [J], and its amplitude at the tip [m]."""
+    omega, u, v = motion.omega[1:], u[1:], v[1:]
+    slow = np.where(omega > 0, omega, np.inf)  # of zero frequency, the displacement alone
+    amplitude = float(np.sum(np.abs(motion.phi[1:]) * np.hypot(u, v / slow)))
+    return float(0.5 * np.sum(v**2 + (omega * u) ** 2)), amplitude
 
 
 def collisions(
@@ -205,29 +141,14 @@ def collisions(
     motion = oscillator.motion()
     single = single_mode(motion)
     impacts = trajectory.impacts
-    rows = np.flatnonzero(impacts.kind != ImpactKind.GRAZE)
+    rows = np.flatnonzero(impacts.kind != ImpactKind.GRAZE).tolist()
     found: list[Collision] = []
-    position = 0
-    while position < rows.size:
-        first = last = rows[position]
-        position += 1
-        while True:
-            if not math.isfinite(impacts.end[last]):
-                minimum = math.inf
-            else:
-                clock = math.fmod(impacts.end[last], motion.period)
-                q, q_rate = steady_motion(motion, np.array([clock]))
-                outgoing = _Virtual(
-                    single, clock,
-                    impacts.displacement_end[last, 0] - q[0, 0], impacts.velocity_end[last, 0] - q_rate[0, 0],
-                )
-                minima = outgoing.extrema(0.0, 2.0 * motion.period, -1.0)
-                minimum = impacts.end[last] + (minima[0] if minima else math.inf)
-            if position < rows.size and impacts.start[rows[position]] < minimum:
-                last = rows[position]
-                position += 1
-                continue
-            break
+    while rows:
+        first = last = rows.pop(0)
+        outgoing, minimum = _outgoing(motion, single, impacts, last)
+        while rows and impacts.start[rows[0]] < minimum:
+            last = rows.pop(0)
+            outgoing, minimum = _outgoing(motion, single, impacts, last)
         if minimum > trajectory.end.time:
             if unfinished == "drop":
                 break
@@ -235,70 +156,61 @@ def collisions(
                 f"trajectory ends at {trajectory.end.time:.6g} s, before the collision that began at "
                 f"{impacts.start[first]:.6g} s is final; run it about one drive period longer"
             )
-        found.append(_measure(motion, single, trajectory, int(first), int(last), outgoing))
+        found.append(_measure(motion, impacts, slice(first, last + 1), outgoing))
     return found
 
 
-def _measure(
-    motion: Motion, single: Motion, trajectory: Trajectory, first: int, last: int, outgoing: _Virtual
-) -> Collision:
-    """The numbers of the collision from impact `first` to impact `last`."""
-    impacts, period = trajectory.impacts, motion.period
+def _outgoing(motion: Motion, single: Motion, impacts: Impacts, last: int) -> tuple[VirtualMotion, float]:
+    """The virtual motion after an impact, and the time of its next minimum [s]; infinity where it is not
+    known."""
+    end = impacts.end[last]
+    after = deviations(motion, end, impacts.displacement_end[last], impacts.velocity_end[last])
+    virtual = VirtualMotion(single, math.fmod(end, motion.period), *after[:, 0])
+    minima = virtual.extrema(0.0, 2.0 * motion.period, -1.0) if math.isfinite(end) else []
+    return virtual, end + minima[0] if minima else math.inf
+
+
+def _measure(motion: Motion, impacts: Impacts, rows: slice, outgoing: VirtualMotion) -> Collision:
+    """The numbers of the collision of these impacts."""
+    first, last, single = rows.start, rows.stop - 1, outgoing.motion
     touch, release = float(impacts.start[first]), float(impacts.end[last])
-    clock = math.fmod(touch, period)
-    q, q_rate = steady_motion(motion, np.array([clock]))
-    u_in, v_in = impacts.displacement_start[first] - q[0], impacts.velocity_start[first] - q_rate[0]
-    incoming = _Virtual(single, clock, u_in[0], v_in[0])
+    u_in, v_in = deviations(motion, touch, impacts.displacement_start[first], impacts.velocity_start[first])
+    u_out, v_out = deviations(motion, release, impacts.displacement_end[last], impacts.velocity_end[last])
+    incoming = VirtualMotion(single, math.fmod(touch, motion.period), u_in[0], v_in[0])
 
     # the hump of the incoming virtual motion that belongs to the touch
-    peaks = incoming.extrema(-0.6 * period, 0.6 * period, 1.0)
-    peak = min(peaks, key=abs) if peaks else math.nan
-    forced = not (peaks and incoming.height(peak) > 0.0)
-    s_in = 0.0 if forced else _crossing(incoming, peak, -1.0)
+    peak = incoming.peak_near(0.0)
+    forced = math.isnan(peak) or not incoming.height(peak) > 0.0
+    s_in = 0.0 if forced else incoming.crossing(peak, -1.0)
     speed = math.nan if forced else incoming.velocity(s_in)
 
     # jump of mode 1 over the collision, carried back to t_in
-    u_free, v_free = np.empty_like(u_in), np.empty_like(v_in)
+    u_free, v_free, back = np.empty_like(u_in), np.empty_like(v_in), touch + s_in - release
     propagate(motion, u_in, v_in, release - touch, u_free, v_free)
     jump = np.array([outgoing.u[0] - u_free[0]]), np.array([outgoing.v[0] - v_free[0]])
-    propagate(without_load(single), jump[0], jump[1], touch + s_in - release, *jump)
+    propagate(without_load(single), *jump, back, *jump)
     shift, kick_velocity = float(single.phi[0] * jump[0][0]), -float(single.phi[0] * jump[1][0])
 
     # the outgoing hump around t_in, and its fall through the gap
-    back = touch + s_in - release
-    peaks_out = outgoing.extrema(back - 0.6 * period, back + 0.6 * period, 1.0)
-    peak_out = min(peaks_out, key=lambda s: abs(s - back)) if peaks_out else math.nan
-    returns = bool(peaks_out) and outgoing.height(peak_out) >= -tip_rounding(single, outgoing.u, outgoing.v)
+    peak = outgoing.peak_near(back)
+    reach = -tip_rounding(single, outgoing.u, outgoing.v)
+    returns = not math.isnan(peak) and outgoing.height(peak) >= reach
     restitution = delay = math.nan
     if returns and not forced:
-        s_out = _crossing(outgoing, peak_out, 1.0)
+        s_out = outgoing.crossing(peak, 1.0)
         restitution, delay = -outgoing.velocity(s_out) / speed, s_out - back
 
-    q_end, q_end_rate = steady_motion(motion, np.array([math.fmod(release, period)]))
-    u_out = impacts.displacement_end[last] - q_end[0]
-    v_out = impacts.velocity_end[last] - q_end_rate[0]
-    between = slice(first, last + 1)
-    counted = impacts.kind[between] == ImpactKind.IMPACT
+    ringing = _higher_modes(motion, u_in, v_in)[1]
+    gained = _higher_modes(motion, u_out, v_out)[0] - _higher_modes(motion, u_free, v_free)[0]
     return Collision(
-        time=touch + s_in,
-        end=release,
-        approach=speed,
-        restitution=restitution,
-        delay=delay,
-        kick=kick_velocity / speed,
-        kick_velocity=kick_velocity,
-        shift=shift,
-        deceleration=-incoming.acceleration(s_in),
-        impacts=int(np.count_nonzero(counted)),
-        contact_time=float(np.sum((impacts.end - impacts.start)[between])),
-        first_touch=touch,
-        real_approach=float(impacts.approach[first]),
-        ringing=_ringing(motion, u_in, v_in),
-        energy_to_higher_modes=_higher_energy(motion, u_out, v_out) - _higher_energy(motion, u_free, v_free),
-        energy_lost=float(np.sum(impacts.loss[between])),
-        forced_by_ringing=forced,
-        returns=returns,
-    )
+        time=touch + s_in, end=release, approach=speed, restitution=restitution, delay=delay,
+        kick=kick_velocity / speed, kick_velocity=kick_velocity, shift=shift,
+        deceleration=-incoming.at(s_in)[2],
+        impacts=int(np.count_nonzero(impacts.kind[rows] == ImpactKind.IMPACT)),
+        contact_time=float(np.sum((impacts.end - impacts.start)[rows])), first_touch=touch,
+        real_approach=float(impacts.approach[first]), ringing=ringing, energy_to_higher_modes=gained,
+        energy_lost=float(np.sum(impacts.loss[rows])), forced_by_ringing=forced, returns=returns,
+    )  # fmt: skip
 
 
 def first_collision(
@@ -341,8 +253,7 @@ def before_collision(oscillator: ImpactOscillator) -> State:
         A driven one; ValueError without a drive.
     """
     require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
-    if oscillator.drive is None:
-        raise ValueError("drive is None; without one there is no steady motion that touches, so give a state")
+    require(oscillator.drive is not None, "drive is None; there is no steady motion then, so give a state")
     motion = oscillator.motion()
     lowest = math.atan2(-motion.tip_sine, -motion.tip_cosine) % (2 * math.pi) / motion.drive
     q, q_rate = steady_motion(motion, np.array([lowest]))

@@ -109,11 +109,11 @@ def new_work(motion, search):
 
 
 @kernel
-def sample_flight(motion, run, u, v, until, work, recorder):
-    """States at the sample times of a flight from (u, v) up to the clock `until`."""
+def sample_flight(motion, run, until, work, recorder):
+    """States at the sample times of a flight up to the clock `until`."""
     while sample_due(recorder, run.period, until):
         time = recorder.sample_clock[recorder.marks[0].sampled] - run.clock
-        propagate(motion, u, v, time, work.u, work.v)
+        carry(motion, work.flight, time, work.u, work.v)
         put_sample(recorder, work.u, work.v)
 
 
@@ -149,7 +149,7 @@ def fly(motion, u, v, run, last, clock_end, work, recorder):
             run.steps += 1
             until = end if outcome == FREE else base + s
             if marks.sampled < samples and outcome != UNRESOLVED:
-                sample_flight(motion, run, u, v, until, work, recorder)
+                sample_flight(motion, run, until, work, recorder)
             if outcome == FREE and base == 0.0 and not at_last:
                 apply_flow(whole, u, v)
             else:

@@ -25,7 +25,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from beam.parameters import brief, is_number, require, require_kind, require_within, shown, suspect
+from beam.parameters import brief, is_number, require, require_array, require_within, shown, suspect
 
 __all__ = [
     "ContactLaw",
@@ -49,14 +49,25 @@ GPa or MPa a modulus is far below."""
 
 
 class ContactLaw:
-    """What all laws offer to the compiled motion."""
+    """What all laws offer to the compiled motion.
+
+    `units` names the plain numbers of a law, two at most, and their units. In a force law the first, its
+    stiffness, is above zero and the other zero or more.
+    """
 
     code: ClassVar[int] = -1
+    units: ClassVar[dict[str, str]] = {}
+
+    def __post_init__(self) -> None:
+        for name, unit in self.units.items():
+            above, low = (0.0, None) if name == "stiffness" else (None, 0.0)
+            require_within(f"{name} of the contact", getattr(self, name), unit, above=above, low=low)
 
     @property
     def numbers(self) -> tuple[float, float]:
-        """The law's parameters for the kernels."""
-        raise NotImplementedError
+        """The law's plain numbers for the kernels, filled up with zero."""
+        first, second = (*(getattr(self, name) for name in self.units), 0.0, 0.0)[:2]
+        return first, second
 
     @property
     def table(self) -> np.ndarray:
@@ -76,13 +87,10 @@ class NewtonRestitution(ContactLaw):
 
     local_restitution: float
     code: ClassVar[int] = NEWTON
+    units: ClassVar[dict[str, str]] = {"local_restitution": "[1]"}
 
     def __post_init__(self) -> None:
         require_within("local_restitution", self.local_restitution, "[1]", low=0, high=1)
-
-    @property
-    def numbers(self) -> tuple[float, float]:
-        return (self.local_restitution, 0.0)
 
 
 def _value(function: Callable[[float], float], speed: float) -> float:
@@ -91,9 +99,8 @@ def _value(function: Callable[[float], float], speed: float) -> float:
     try:
         return float(value)
     except (TypeError, ValueError):
-        raise TypeError(
-            f"function of the approach speed gives {value!r} at {speed:g} m/s; it must give a number"
-        ) from None
+        words = "it must give a number"
+        raise TypeError(f"function of the approach speed gives {value!r} at {speed:g} m/s; {words}") from None
 
 
 SPEEDS = 1025
@@ -128,12 +135,9 @@ class DelayedRestitution(ContactLaw):
     code: ClassVar[int] = DELAYED
 
     def __post_init__(self) -> None:
-        require_kind("speeds", self.speeds, (tuple, list), "two rising numbers above zero, in m/s")
-        rising = len(self.speeds) == 2 and all(map(is_number, self.speeds))
-        require(
-            rising and 0 < self.speeds[0] < self.speeds[1],
-            f"speeds is {brief(self.speeds)} m/s; it must be two rising numbers above zero",
-        )
+        words = "two rising numbers above zero"
+        low, high = require_array("speeds", self.speeds, "m/s", shape=(2,), words=words)
+        require(0 < low < high, f"speeds is {brief(self.speeds)} m/s; it must be {words}")
         for name in ("restitution", "delay"):
             given = getattr(self, name)
             require(
@@ -149,10 +153,6 @@ class DelayedRestitution(ContactLaw):
             bool(np.all(np.isfinite(delay)) and np.all(delay >= 0)),
             f"delay runs from {delay.min()} to {delay.max()} s; it must be finite and zero or more",
         )
-
-    @property
-    def numbers(self) -> tuple[float, float]:
-        return (0.0, 0.0)
 
     @cached_property
     def table(self) -> np.ndarray:
@@ -188,14 +188,7 @@ class LinearContact(ContactLaw):
     stiffness: float
     damping: float = 0.0
     code: ClassVar[int] = LINEAR
-
-    def __post_init__(self) -> None:
-        require_within("stiffness of the contact", self.stiffness, "N/m", above=0)
-        require_within("damping of the contact", self.damping, "N s/m", low=0)
-
-    @property
-    def numbers(self) -> tuple[float, float]:
-        return (self.stiffness, self.damping)
+    units: ClassVar[dict[str, str]] = {"stiffness": "N/m", "damping": "N s/m"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -210,19 +203,13 @@ class HertzContact(ContactLaw):
 
     stiffness: float
     code: ClassVar[int] = HERTZ
-
-    def __post_init__(self) -> None:
-        require_within("stiffness of the contact", self.stiffness, "N/m^1.5", above=0)
+    units: ClassVar[dict[str, str]] = {"stiffness": "N/m^1.5"}
 
     @staticmethod
     def of_bodies(
-        *,
-        radius: float,
-        youngs_modulus: float,
-        poissons_ratio: float,
-        other_modulus: float,
+        *, radius: float, youngs_modulus: float, poissons_ratio: float, other_modulus: float,
         other_ratio: float,
-    ) -> HertzContact:
+    ) -> HertzContact:  # fmt: skip
         """A ball of `radius` [m] on a plate: k = (4/3) sqrt(R) / ((1 - nu^2)/E + (1 - nu'^2)/E')
         [N/m^1.5]."""
         for name, value, unit in (
@@ -251,10 +238,6 @@ class HertzContact(ContactLaw):
         """Duration of the contact of a free `mass` [kg] at approach `velocity` [m/s] [s]."""
         return HERTZ_TIME * self.greatest_approach(mass, velocity) / velocity
 
-    @property
-    def numbers(self) -> tuple[float, float]:
-        return (self.stiffness, 0.0)
-
 
 @dataclass(frozen=True, kw_only=True)
 class HuntCrossley(ContactLaw):
@@ -275,10 +258,7 @@ class HuntCrossley(ContactLaw):
     stiffness: float
     dissipation: float
     code: ClassVar[int] = HERTZ
-
-    def __post_init__(self) -> None:
-        require_within("stiffness of the contact", self.stiffness, "N/m^1.5", above=0)
-        require_within("dissipation of the contact", self.dissipation, "s/m", low=0)
+    units: ClassVar[dict[str, str]] = {"stiffness": "N/m^1.5", "dissipation": "s/m"}
 
     @staticmethod
     def with_restitution(*, stiffness: float, restitution: float, velocity: float) -> HuntCrossley:
@@ -302,7 +282,3 @@ class HuntCrossley(ContactLaw):
         low = 0.5 * min(1.0, 1.5 * e * (1.0 - e * e) / (1.0 + e**3))
         root = -math.expm1(-float(brentq(balance, low, 1.0 / e + 2.0, xtol=1e-300, rtol=1e-15, maxiter=500)))
         return HuntCrossley(stiffness=stiffness, dissipation=root / (e * velocity))
-
-    @property
-    def numbers(self) -> tuple[float, float]:
-        return (self.stiffness, self.dissipation)

@@ -46,7 +46,7 @@ from numpy.typing import NDArray
 from beam.parameters import require_kind, require_whole, require_within
 from contact.nordmark import NordmarkMap, YLine
 
-__all__ = ["Band", "MaximalOrbit", "band", "bands", "fold", "maximal_orbits", "maximal_period",
+__all__ = ["Band", "MapFamily", "MaximalOrbit", "band", "bands", "fold", "maximal_orbits", "maximal_period",
            "maximal_periods", "stable_range"]  # fmt: skip
 
 
@@ -58,16 +58,27 @@ MOST_PERIODS = 100_000
 class MaximalOrbit:
     """A periodic solution of the map with its impact at states[0].
 
-    Fields: `period` m; `rho`; `root` X = sqrt(x_0); `states`, shape (m, 2), the (x, y) in order of time;
-    `trace` and `determinant` of the derivative of m steps. All pure numbers.
+    Fields: `map` and `rho`; `period` m; `root` X = sqrt(x_0); `states`, shape (m, 2), the (x, y) in order of
+    time; `trace` and `determinant` of the derivative of m steps. All pure numbers.
     """
 
-    period: int
+    map: NordmarkMap
     rho: float
+    period: int
     root: float
     states: NDArray[np.float64]
     trace: float
     determinant: float
+
+    @property
+    def excess(self) -> float:
+        """F/F_g - 1 [1]."""
+        return self.map.excess(self.rho)
+
+    @property
+    def speed(self) -> float:
+        """The root X, in proportion to the approach speed [1]."""
+        return self.root
 
     @property
     def multipliers(self) -> NDArray[np.complex128]:
@@ -86,8 +97,8 @@ class MaximalOrbit:
         return bool(np.all(self.states[1:, 0] <= 0.0))
 
 
-class _Impulses:
-    """p and G of the module's docstring for one map and period, and what follows from them."""
+class MapFamily:
+    """The orbits p_m of a map, m = `period`: p, G and what follows from them in the module's docstring."""
 
     def __init__(self, nordmark: NordmarkMap, period: int) -> None:
         require_kind("nordmark", nordmark, NordmarkMap, "a NordmarkMap")
@@ -106,25 +117,60 @@ class _Impulses:
         self.trace_limit = -(nordmark.gamma_impact + gamma) * before
         self.determinant = gamma ** (m - 1) * nordmark.gamma_impact
 
-    def rho(self, root: float) -> float:
-        return (self.a * root * root + self.b * (root - self.map.delay_term)) / self.c
-
-    def height(self, k: int) -> tuple[float, float, float]:
+    def _height(self, k: int) -> tuple[float, float, float]:
         """Coefficients of X^2, X and 1 in x_k."""
         m, first = self.period, float(self.periodic[(k - 1) % self.period]) - self.b
         second = float(self.periodic[(k - 2) % m] - self.periodic[(m - 2) % m])
         return 1.0 - self.map.alpha * first + self.loss * second, -first, self.map.delay_term * first
 
-    def orbit(self, root: float, rho: float) -> MaximalOrbit:
+    def orbit(self, speed: float) -> MaximalOrbit:
+        """The orbit with root X = `speed`, above zero [1]."""
+        root = require_within("speed", speed, "[1]", above=0)
+        return self._orbit(root, (self.a * root * root + self.b * (root - self.map.delay_term)) / self.c)
+
+    def _orbit(self, root: float, rho: float) -> MaximalOrbit:
         m, square = self.period, root * root
-        later = [self.height(k) for k in range(1, m)]
+        later = [self._height(k) for k in range(1, m)]
         x = np.array([square] + [two * square + one * root + none for two, one, none in later])
         y = -self.map.gamma * np.roll(x, 1)
         y[1 % m] = -self.map.gamma_impact * square
         return MaximalOrbit(
-            period=m, rho=rho, root=root, states=np.column_stack([x, y]),
+            map=self.map, rho=rho, period=m, root=root, states=np.column_stack([x, y]),
             trace=-self.last / (2.0 * root) + self.trace_limit, determinant=self.determinant,
         )  # fmt: skip
+
+    def at_rho(self, rho: float) -> tuple[MaximalOrbit, ...]:
+        """The orbits at `rho`, 0 to 2, X rising: of two, the first is the saddle and the second the node."""
+        require_within("rho", rho, "[1]")
+        roots = _positive_roots(self.a, self.b, -(self.c * rho + self.b * self.map.delay_term))
+        return tuple(self._orbit(root, rho) for root in roots)
+
+    def orbits(self, excess: float) -> tuple[MaximalOrbit, ...]:
+        """The same at F/F_g - 1 = `excess` [1]."""
+        return self.at_rho(self.map.rho(excess))
+
+    def fold(self) -> MaximalOrbit | None:
+        """The orbit at which node and saddle meet, its `rho` being rho_m; None for b >= 0 or a <= 0."""
+        return self.orbit(-self.b / (2.0 * self.a)) if self.b < 0.0 < self.a else None
+
+    def stable_range(self) -> tuple[float, float] | None:
+        """The first interval of rho, from the fold upwards, in which the node is stable and admissible.
+
+        Its lower end is rho_m, or the rho of a second impact; its upper end that of a second impact or of a
+        multiplier -1, or infinity. None where there is no fold or no such interval.
+        """
+        at_fold = self.fold()
+        if at_fold is None:
+            return None
+        ends = [root for k in range(1, self.period) for root in _positive_roots(*self._height(k))]
+        flip = 1.0 + self.determinant + self.trace_limit
+        ends += [self.last / (2.0 * flip)] if flip < 0.0 else []
+        marks = [at_fold.root, *sorted(root for root in ends if root > at_fold.root), math.inf]
+        for low, high in pairwise(marks):
+            orbit = self.orbit(0.5 * (low + high) if high < math.inf else 2.0 * low)
+            if orbit.stable and orbit.admissible:
+                return self.orbit(low).rho, self.orbit(high).rho if high < math.inf else math.inf
+        return None
 
 
 def _positive_roots(two: float, one: float, none: float) -> list[float]:
@@ -141,58 +187,22 @@ def _positive_roots(two: float, one: float, none: float) -> list[float]:
 
 
 def maximal_orbits(nordmark: NordmarkMap, period: int, rho: float) -> tuple[MaximalOrbit, ...]:
-    """Solutions of the map `nordmark` with one impact every `period` steps at `rho`, 0 to 2, X rising.
-
-    Of two, the first is the saddle and the second the node. They solve the equations of the branches; ask
-    each for `admissible` and `stable`.
-    """
-    require_within("rho", rho, "[1]")
-    parts = _Impulses(nordmark, period)
-    roots = _positive_roots(parts.a, parts.b, -(parts.c * rho + parts.b * nordmark.delay_term))
-    return tuple(parts.orbit(root, rho) for root in roots)
+    """`MapFamily.at_rho` of a map; ask each orbit for `admissible` and `stable`."""
+    return MapFamily(nordmark, period).at_rho(rho)
 
 
 def fold(nordmark: NordmarkMap, period: int) -> MaximalOrbit | None:
-    """The orbit p_m of the map `nordmark` at its fold, m = `period`, its `rho` being rho_m.
-
-    None where there is no fold (b >= 0 or a <= 0).
-    """
-    parts = _Impulses(nordmark, period)
-    if not (parts.b < 0.0 < parts.a):
-        return None
-    root = -parts.b / (2.0 * parts.a)
-    return parts.orbit(root, parts.rho(root))
+    """`MapFamily.fold` of a map."""
+    return MapFamily(nordmark, period).fold()
 
 
 def stable_range(nordmark: NordmarkMap, period: int) -> tuple[float, float] | None:
-    """The first interval of rho, from the fold upwards, in which the node p_m is stable and admissible.
-
-    m = `period`, in the map `nordmark`.
-
-    Its lower end is rho_m, or the rho of a second impact; its upper end that of a second impact or of a
-    multiplier -1, or infinity. None where there is no fold or no such interval.
-    """
-    at_fold = fold(nordmark, period)
-    if at_fold is None:
-        return None
-    parts = _Impulses(nordmark, period)
-    ends = [root for k in range(1, parts.period) for root in _positive_roots(*parts.height(k))]
-    flip = 1.0 + parts.determinant + parts.trace_limit
-    ends += [parts.last / (2.0 * flip)] if flip < 0.0 else []
-    marks = [at_fold.root, *sorted(root for root in ends if root > at_fold.root), math.inf]
-    for low, high in pairwise(marks):
-        middle = 0.5 * (low + high) if high < math.inf else 2.0 * low
-        orbit = parts.orbit(middle, parts.rho(middle))
-        if orbit.stable and orbit.admissible:
-            return parts.rho(low), parts.rho(high) if high < math.inf else math.inf
-    return None
+    """`MapFamily.stable_range` of a map."""
+    return MapFamily(nordmark, period).stable_range()
 
 
 def maximal_period(nordmark: NordmarkMap) -> int:
-    """The m with pi/m < theta <= pi/(m-1), theta the angle of the map `nordmark`; 0 without oscillation.
-
-    Its upper band edge is the next above.
-    """
+    """The m with pi/m < theta <= pi/(m-1), theta the angle of the map `nordmark`; 0 without oscillation."""
     angle = require_kind("nordmark", nordmark, NordmarkMap, "a NordmarkMap").angle
     return math.floor(math.pi / angle) + 1 if angle > 0.0 else 0
 
@@ -205,7 +215,7 @@ def maximal_periods(nordmark: NordmarkMap) -> tuple[int, ...]:
     m = maximal_period(nordmark)
     if m == 0:
         return ()
-    parts, gamma = _Impulses(nordmark, m), nordmark.gamma
+    parts, gamma = MapFamily(nordmark, m), nordmark.gamma
     overlap = parts.last + nordmark.gamma_impact * gamma ** (m - 1) >= 0.0  # x_m <= 0 on p_{m+1}
     return (m, m + 1) if overlap else (m,)
 

@@ -55,7 +55,7 @@ from contact.laws import NewtonRestitution
 from contact.oscillator import ImpactOscillator
 from contact.strobed_map import Jacobians, StrobedOrbit
 
-__all__ = ["NordmarkMap", "StrobedNordmarkMap", "iterate_map"]
+__all__ = ["NordmarkMap"]
 
 YLine = Literal["corrected", "printed"]
 
@@ -82,7 +82,7 @@ def restitution_of(oscillator: ImpactOscillator) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class NordmarkMap:
-    """Eqs. (2), (3) of the letter with their coefficients; rho is given to each call.
+    """Eqs. (2), (3) of the letter: one step is one drive period, its state the array (x, y).
 
     Raises ValueError for a field outside its range.
 
@@ -220,7 +220,7 @@ class NordmarkMap:
         return self.rho_per_excess * require_within("excess", excess, "[1]")
 
     def excess(self, rho: float) -> float:
-        """The excess F/F_g - 1 [1] at rho."""
+        """The excess F/F_g - 1 [1] at `rho`."""
         return require_within("rho", rho, "[1]") / self.rho_per_excess
 
     def step(self, state: ArrayLike, rho: float) -> NDArray[np.float64]:
@@ -229,10 +229,11 @@ class NordmarkMap:
 
     def iterate(self, state: ArrayLike, rho: float, count: int) -> NDArray[np.float64]:
         """The `count` states that follow `state`, shape (count, 2); row 0 is one period later."""
-        x, y = _state(state)
         out = np.empty((require_whole("count", count, "periods", low=0), 2))
         value = require_within("rho", rho, "[1]")
-        iterate_map(x, y, self.alpha, self.gamma, self.gamma_impact, value, self.delay_term, out)
+        iterate_map(
+            *_state(state), self.alpha, self.gamma, self.gamma_impact, value, self.delay_term, out
+        )
         return out
 
     def jacobian(self, state: ArrayLike) -> NDArray[np.float64]:
@@ -245,7 +246,7 @@ class NordmarkMap:
 
 @dataclass(frozen=True, kw_only=True)
 class StrobedNordmarkMap:
-    """A Nordmark map at its rho as a ``contact.strobed_map.StrobedMap``: one step is one drive period.
+    """A Nordmark map at its rho as a ``contact.strobed_map.StrobedMap``.
 
     A state is the array (x, y), which is also its point; an impact occurs in the step that starts from x > 0.
 
@@ -268,8 +269,13 @@ class StrobedNordmarkMap:
         """Size of the state of an orbit with impacts, from the square root's slope at |rho| = 1e-3 [1]."""
         return 1e-3
 
+    @property
+    def period(self) -> float:
+        """The time of one step, 1: the map has no clock."""
+        return 1.0
+
     def at(self, excess: float) -> StrobedNordmarkMap:
-        """The same map at another F/F_g - 1."""
+        """The same map at F/F_g - 1 = `excess` [1]."""
         return replace(self, rho=self.map.rho(excess))
 
     def steady(self) -> NDArray[np.float64]:
@@ -277,17 +283,28 @@ class StrobedNordmarkMap:
         x = self.rho / (1.0 - self.map.alpha + self.map.gamma)
         return np.array([x, -self.map.gamma * x])
 
-    def orbit(self, state: NDArray[np.float64], count: int) -> StrobedOrbit[NDArray[np.float64]]:
+    def orbit(self, state: ArrayLike, count: int) -> StrobedOrbit[NDArray[np.float64]]:
         """`count` steps from `state`; the points are (x, y), shape (count, 2)."""
-        points = self.map.iterate(state, self.rho, count)
-        before = np.concatenate([[state[0]], points[:-1, 0]])
-        return StrobedOrbit(end=points[-1].copy(), points=points, impacts=(before > 0).astype(np.int64))
+        points = np.vstack([_state(state), self.map.iterate(state, self.rho, count)])
+        impacts = (points[:-1, 0] > 0).astype(np.int64)
+        return StrobedOrbit(end=points[-1].copy(), points=points[1:], impacts=impacts)
 
-    def jacobians(self, state: NDArray[np.float64], count: int) -> Jacobians[NDArray[np.float64]]:
+    def jacobians(self, state: ArrayLike, count: int) -> Jacobians[NDArray[np.float64]]:
         """The derivatives along `count` steps, and the end."""
-        points = self.orbit(state, count).points
-        before = np.vstack([state, points[:-1]])
-        return [(self.map.jacobian(row), 1) for row in before], points[-1].copy()
+        points = np.vstack([_state(state), self.orbit(state, count).points])
+        return [(self.map.jacobian(row), 1) for row in points[:-1]], points[-1].copy()
+
+    def coordinates(self, state: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The state itself."""
+        return state
+
+    def moved(self, state: NDArray[np.float64], change: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The state with its coordinates changed."""
+        return state + change
+
+    def advance(self, state: NDArray[np.float64], time: float) -> tuple[NDArray[np.float64], float]:
+        """One step, whatever the time."""
+        return self.orbit(state, 1).end, 1.0
 
 
 def _state(state: ArrayLike) -> tuple[float, float]:

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import copy
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -124,6 +125,18 @@ class ImpactOscillator:
         oscillating = self.model.omega[self.model.omega > 0]
         return float(2 * np.pi / oscillating.min()) if oscillating.size else 1.0
 
+    @property
+    def driven(self) -> HarmonicDrive:
+        """The drive; ValueError for a base at rest."""
+        if self.drive is None:
+            raise ValueError("drive is None; this needs a spring on a moving base, so give a HarmonicDrive")
+        return self.drive
+
+    @property
+    def unit_speed(self) -> float:
+        """2 pi f gap: the speed to which approach speeds compare [m/s]."""
+        return self.driven.angular_frequency * self.stop.gap
+
     def with_amplitude(self, amplitude: float) -> ImpactOscillator:
         """The same oscillator driven with another base amplitude [m].
 
@@ -131,7 +144,7 @@ class ImpactOscillator:
         """
         number = require_within("amplitude", amplitude, "m", low=0)
         changed = copy.copy(self)  # all else has been checked
-        object.__setattr__(changed, "drive", replace(self._driven(), amplitude=number))
+        object.__setattr__(changed, "drive", replace(self.driven, amplitude=number))
         return changed
 
     def with_excess(self, excess: float) -> ImpactOscillator:
@@ -151,11 +164,23 @@ class ImpactOscillator:
 
     def tip_response(self) -> complex:
         """Tip displacement per base amplitude without contact, complex [1]."""
+        return self._tip_response
+
+    @cached_property
+    def _tip_response(self) -> complex:
         return complex(self.model.phi @ self.steady_response())
+
+    def drive_at(self, reach: float, rate: float) -> tuple[float, float]:
+        """Base amplitude [m] and drive time [s] at which the steady tip motion has displacement `reach` [m]
+        and velocity `rate` [m/s]."""
+        w = self.driven.angular_frequency
+        # x = Z Im(H e^{i w t}), x' = Z w Re(H e^{i w t})
+        turned = (rate / w + 1j * reach) / self.tip_response()
+        return abs(turned), float(np.angle(turned) % (2.0 * np.pi)) / w
 
     def grazing_amplitude(self) -> float:
         """Base amplitude Z_g at which the steady tip motion just touches the stop [m]."""
-        self._driven()
+        _ = self.driven
         static = float(self.model.phi @ self._offset())
         if static >= self.stop.gap:
             raise ValueError(
@@ -172,7 +197,7 @@ class ImpactOscillator:
     @property
     def excess(self) -> float:
         """F/F_g - 1 [1]."""
-        return self._driven().amplitude / self.grazing_amplitude() - 1.0
+        return self.driven.amplitude / self.grazing_amplitude() - 1.0
 
     def energy(self, displacement: np.ndarray, velocity: np.ndarray) -> np.ndarray:
         """Kinetic and elastic energy of modal states, arrays (..., n_modes) -> (...) [J]; contact
@@ -195,8 +220,3 @@ class ImpactOscillator:
             return np.zeros(self.n_modes)
         stiff = self.model.omega > 0
         return np.where(stiff, self.load / np.where(stiff, self.model.omega, 1.0) ** 2, 0.0)
-
-    def _driven(self) -> HarmonicDrive:
-        if self.drive is None:
-            raise ValueError("drive is None; this needs a spring on a moving base, so give a HarmonicDrive")
-        return self.drive

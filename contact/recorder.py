@@ -1,7 +1,8 @@
 """What a run writes down: impacts, strobes and samples, for exact and fixed-step methods alike.
 
 Times are kept as the number of a drive period and the time since its strobe, so that a million periods bring
-no loss of phase.  A method with a time step counts from one strobe throughout (`recorder_for` with a period).
+no loss of phase.  A method with a time step counts from one strobe throughout, and has its strobes among the
+samples (``contact.integrators.fixed_step``).
 (u, v) is the modal state as the method has it: deviations from the steady motion, or displacements and
 velocities themselves.
 """
@@ -20,8 +21,7 @@ from contact.flight.motion import Motion
 from contact.trajectory import IMPACT, Impacts, Run, State, Trajectory
 
 __all__ = ["LOG", "MARKS", "Recorder", "add_loss", "close_touch", "grown", "is_full", "open_touch",
-"put_sample",
-           "put_strobe", "recorder_for", "sample_due", "strobe", "strobes_only", "trajectory_of"]  # fmt: skip
+           "put_sample", "recorder_for", "sample_due", "strobe", "strobes_only", "trajectory_of"]  # fmt: skip
 
 MARKS = np.dtype([(name, "i8") for name in ("logged", "sampled", "strobed", "impacts", "touching")])
 """Rows in use of the log, the samples and the strobes; impacts since the last strobe; whether the tip
@@ -137,8 +137,8 @@ def put_sample(recorder, u, v):
 
 @inlined
 def strobe(marks, strobes, counts, u, v):
-    """The state at the next strobe, and the impacts since the one before: `put_strobe` in narrower terms,
-    since each array in a tuple costs some nanoseconds a call."""
+    """The state at the next strobe, and the impacts since the one before; not in terms of a recorder, since
+    each array in a tuple costs some nanoseconds a call."""
     if counts.size > 0:
         counts[marks.strobed] = marks.impacts
     if strobes.shape[0] > 0:
@@ -147,24 +147,14 @@ def strobe(marks, strobes, counts, u, v):
     marks.impacts = 0
 
 
-@part
-def put_strobe(recorder, u, v):
-    """The state at the next strobe, and the impacts since the one before."""
-    strobe(recorder.marks[0], recorder.strobes, recorder.counts, u, v)
-
-
-def recorder_for(run: Run, n_modes: int, period: float | None = None) -> Recorder:
-    """Room for what `run` asks for; with a `period` [s] all times count from the strobe `run.first`."""
+def recorder_for(run: Run, n_modes: int) -> Recorder:
+    """Room for what `run` asks for."""
     strobes, times, capacity = run.last - run.first, run.times.size, 64
-    sample_period, sample_clock = run.sample_period, run.sample_clock
-    if period is not None:
-        sample_clock = (sample_period - run.first) * period + sample_clock
-        sample_period = np.full(times, run.first)
     return Recorder(
         marks=np.zeros(1, dtype=MARKS), log=np.zeros(capacity, dtype=LOG),
         log_state=np.empty((capacity, 4 * n_modes)), strobes=np.empty((strobes, 2 * n_modes)),
-        counts=np.zeros(strobes, dtype=np.int64), sample_period=np.asarray(sample_period, dtype=np.int64),
-        sample_clock=sample_clock, samples=np.empty((times, 2 * n_modes)),
+        counts=np.zeros(strobes, dtype=np.int64), sample_period=np.asarray(run.sample_period, dtype=np.int64),
+        sample_clock=run.sample_clock, samples=np.empty((times, 2 * n_modes)),
     )  # fmt: skip
 
 

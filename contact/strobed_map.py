@@ -9,7 +9,7 @@ orbits takes either, and any other class with these methods.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Generic, Protocol, TypeVar
+from typing import Generic, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
@@ -40,12 +40,17 @@ class StrobedOrbit(Generic[S]):
     impacts: np.ndarray
 
 
+@runtime_checkable
 class StrobedMap(Protocol[S]):
-    """What a scan needs of a strobed or iterated system."""
+    """A strobed or iterated system; its coordinates have one unit and a common `scale`."""
 
     @property
     def scale(self) -> float:
         """The size of a coordinate at grazing, in the unit of `points`."""
+
+    @property
+    def period(self) -> float:
+        """Time of one step: the drive period [s], 1 for a map without time."""
 
     def at(self, excess: float) -> StrobedMap[S]:
         """The same system at another excess over grazing [1]."""
@@ -58,3 +63,12 @@ class StrobedMap(Protocol[S]):
 
     def jacobians(self, state: S, count: int) -> Jacobians[S]:
         """Derivatives of the points with respect to those before, along at least one of `count` periods."""
+
+    def advance(self, state: S, time: float) -> tuple[S, float]:
+        """The motion after about `time` [s], at any phase but out of contact, and the time that passed."""
+
+    def coordinates(self, state: S) -> np.ndarray:
+        """Coordinates of a state, those of `points`, shape (n_coordinates,)."""
+
+    def moved(self, state: S, change: np.ndarray) -> S:
+        """The state with its coordinates changed."""

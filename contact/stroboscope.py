@@ -20,7 +20,7 @@ from contact.flight.modal_flow import steady_motion
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.strobed_map import Jacobians, StrobedMap, StrobedOrbit
-from contact.strobed_motion import StrobedSystem, coordinate_weights, strobed_motion, strobed_system
+from contact.strobed_motion import StrobedSystem, strobed_motion, strobed_system
 from contact.touch.tangents import tangent_flight
 from contact.touch_flow import FLOWN, flow_from_touch
 from contact.trajectory import ImpactKind, Regime, State
@@ -28,7 +28,10 @@ from contact.trajectory import ImpactKind, Regime, State
 __all__ = ["StrobedMap", "StrobedOrbit", "StroboscopicMap", "strobed_orbits"]
 
 MOST_STRETCHES = 64
-"""Periods by which a derivative is prolonged at most; a contact lasts less than one."""
+"""Bound on how often a stretch that ends in contact is prolonged; a contact lasts less than a period."""
+
+PROLONGED = 0.05
+"""Drive periods by which it is."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -50,6 +53,11 @@ class StroboscopicMap:
     def scale(self) -> float:
         """The gap [m]."""
         return self.oscillator.stop.gap
+
+    @property
+    def period(self) -> float:
+        """The drive period [s]; ValueError without a drive."""
+        return self.oscillator.driven.period
 
     def at(self, excess: float) -> StroboscopicMap:
         """The period map of the same oscillator driven at F/F_g - 1 = `excess`."""
@@ -74,7 +82,16 @@ class StroboscopicMap:
     def _sum(self, weights: np.ndarray, points: np.ndarray) -> np.ndarray:
         """The sum of the modal displacements times `weights`."""
         n = self.oscillator.n_modes
-        return points[:, :n] @ (weights / coordinate_weights(self.oscillator)[:n])
+        return points[:, :n] @ (weights / self._system.weight[:n])
+
+    def coordinates(self, state: State) -> np.ndarray:
+        """phi_k q_k and phi_k q_k'/omega_k of a state, as in the points of an orbit [m]."""
+        return self._system.weight * np.concatenate([state.displacement, state.velocity])
+
+    def moved(self, state: State, change: np.ndarray) -> State:
+        """The state with its coordinates changed [m]."""
+        q, v = np.split(change / self._system.weight, 2)
+        return replace(state, displacement=state.displacement + q, velocity=state.velocity + v)
 
     @cached_property
     def _system(self) -> StrobedSystem:
@@ -84,6 +101,21 @@ class StroboscopicMap:
     def step(self, state: State) -> State:
         """One drive period."""
         return self.orbit(state, 1).end
+
+    def advance(self, state: State, time: float) -> tuple[State, float]:
+        """The motion after `time` [s] or, as long as it is in contact then, somewhat later; the time passed.
+
+        Raises
+        ------
+        UnresolvedCrossing
+            If it is in contact all the time.
+        """
+        end = simulate(self.oscillator, state, duration=time).end
+        for _ in range(MOST_STRETCHES):
+            if end.regime == Regime.OUTSIDE:
+                return end, end.time - state.time
+            end = simulate(self.oscillator, end, duration=PROLONGED * self.period).end
+        raise UnresolvedCrossing(time=end.time, gap=0.0, velocity=0.0)
 
     def orbit(self, state: State, count: int) -> StrobedOrbit[State]:
         """`count` drive periods from `state`, which must lie at a strobe.
@@ -136,7 +168,7 @@ class StroboscopicMap:
             raise ValueError("state is in contact; start from a strobe at which the tip is off the wall")
         oscillator, motion, n = self.oscillator, self._system.motion, self.oscillator.n_modes
         period, response = motion.period, oscillator.tip_response()
-        weight = coordinate_weights(oscillator)
+        weight = self._system.weight
         for more in range(MOST_STRETCHES):
             run = simulate(oscillator, replace(state, time=0.0), periods=count + more)
             hits = run.impacts.kind != ImpactKind.GRAZE

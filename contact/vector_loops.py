@@ -65,6 +65,13 @@ class _Rows:
         self.builder.store(value, where, align=8)
 
 
+def _fused(builder: Any, a: Any, b: Any, c: Any) -> Any:
+    """a b + c, in one operation and with one rounding where the processor has it."""
+    kind = ir.FunctionType(_EIGHT, [_EIGHT] * 3)
+    function = cgutils.get_or_insert_function(builder.module, kind, f"llvm.fmuladd.v{LANES}f64")
+    return builder.call(function, [a, b, c])
+
+
 def _spread(builder: Any, value: Any) -> Any:
     """`value` eight times."""
     one = builder.insert_element(ir.Constant(_EIGHT, ir.Undefined), value, ir.Constant(ir.IntType(32), 0))
@@ -107,8 +114,7 @@ def weighted_rows(_context, weights, top, step, rows, count, out):
                 place = weight.place(None, builder.add(top, builder.mul(step, j)))
                 factor = _spread(builder, builder.load(place))
                 for total, at in zip(totals[parity], columns, strict=True):
-                    term = builder.fmul(factor, row.eight(j, at))
-                    builder.store(builder.fadd(builder.load(total), term), total)
+                    builder.store(_fused(builder, factor, row.eight(j, at), builder.load(total)), total)
 
             with cgutils.for_range(builder, builder.ashr(count, one), intp=kind) as pair:
                 j = builder.shl(pair.index, one)
@@ -155,16 +161,16 @@ def next_modes(_context, numbers, earlier, r0, inverse, r_now, r_force, n, serie
             decay, square, phi, load = (number.eight(ir.Constant(kind, i), k) for i in range(4))
             at_u = builder.add(k, lanes)
             at_v = builder.add(at_u, number.length)
-            ru = builder.fadd(sums.eight(None, at_u), builder.fmul(r0, row.eight(n, at_u)))
-            rv = builder.fadd(sums.eight(None, at_v), builder.fmul(r0, row.eight(n, at_v)))
+            ru = _fused(builder, r0, row.eight(n, at_u), sums.eight(None, at_u))
+            rv = _fused(builder, r0, row.eight(n, at_v), sums.eight(None, at_v))
             u = builder.fmul(inverse, rv)
-            pull = builder.fadd(builder.fmul(decay, u), builder.fmul(phi, r_force))
+            pull = _fused(builder, decay, u, builder.fmul(phi, r_force))
             drive = builder.fsub(builder.fmul(load, r_now), builder.fmul(square, ru))
             v = builder.fsub(builder.fmul(inverse, drive), pull)
             later = builder.add(n, one)
             row.put(later, at_u, u)
             row.put(later, at_v, v)
-            builder.store(builder.fadd(builder.load(tip), builder.fmul(phi, v)), tip)
+            builder.store(_fused(builder, phi, v, builder.load(tip)), tip)
         return _total(builder, builder.load(tip))
 
     return signature, build
@@ -192,11 +198,11 @@ def next_order(_context, numbers, factor, scale, push, lift, n, series):
             k = builder.mul(block.index, ir.Constant(kind, LANES))
             decay, square, phi, load = (number.eight(ir.Constant(kind, i), k) for i in range(4))
             drag = builder.fmul(decay, builder.fmul(factor, row.eight(after, k)))
-            pull = builder.fadd(builder.fmul(square, row.eight(n, k)), builder.fmul(phi, push))
+            pull = _fused(builder, square, row.eight(n, k), builder.fmul(phi, push))
             sum_ = builder.fsub(builder.fsub(builder.fmul(lift, load), drag), pull)
             value = builder.fmul(scale, sum_)
             row.put(fresh, k, value)
-            builder.store(builder.fadd(builder.load(tip), builder.fmul(phi, value)), tip)
+            builder.store(_fused(builder, phi, value, builder.load(tip)), tip)
         return _total(builder, builder.load(tip))
 
     return signature, build

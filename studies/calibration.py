@@ -3,7 +3,7 @@
 Each number that was measured fixes one key of the scene:
 
     free period T = 2 pi / sqrt(omega_1^2 - (c_1/2)^2)    ->  thickness of the sheet
-    decay rate c_1 of mode 1                              ->  loss factor, thickness or coverage of the tape
+    decay rate c_1 of mode 1                              ->  loss factor of the tape
     a collision that stops mode 1 (kick 1)                ->  mass of ball and mount      (needs collisions)
     drive amplitude at grazing                            ->  gap                         (needs the drive)
 
@@ -44,26 +44,19 @@ from studies.scene_values import KEYS
 ACCURACY = 1e-10
 """Largest relative deviation of a calibrated quantity from its target; computed ones repeat to 1e-12."""
 
-SHAPE_ACCURACY = 5e-8
-"""The same for a tape fitted by thickness or coverage: its share of the energy has the error of the mode
-shape, not its square."""
-
 KEY_TOLERANCE = 1e-13
 """Relative tolerance of Brent's method on the key; quantities vary with a low power of it."""
 
 BEYOND = 1e9
 """Stands for an infinite deviation: the search needs its sign only."""
 
-THINNEST, LOSS_FACTORS, COVERAGES, TAPE_FACTORS = 0.02, (1e-9, 5.0), (0.02, 0.98), (0.01, 5.0)
-"""Where is looked: thickness of the sheet over the present one, from; loss factor of the tape; its part of a
-leg (a piece shorter than an element would cost digits); its thickness over the present one."""
+THINNEST, LOSS_FACTORS, MASSES = 0.02, (1e-9, 5.0), (0.3, 3.0)
+"""Where is looked: thickness of the sheet over the present one, from; loss factor of the tape; mass of the
+ball over the present one."""
 
 MOST_STEPS, MOST_ROUNDS = 200, 40
 """Of Brent's method, four times the bisections that pin down a double; of fitting period and damping in
 turn: each shifts the other by a small part of its own change."""
-
-TAPE_KEYS = ("spring.tape_loss_factor", "spring.tape_thickness_m", "spring.tape_coverage")
-"""Keys that can carry the damping of mode 1."""
 
 RATE_KEYS = {
     "constant_ratio": ("damping.ratio",),
@@ -73,12 +66,8 @@ RATE_KEYS = {
 }
 """For each other damping.kind the keys to which the rates are proportional."""
 
-
 KICK_ACCURACY = 1e-9
 """Relative accuracy of the fitted kick: a collision repeats to 1e-11, the spring behind it to 1e-10."""
-
-MASSES = (0.3, 3.0)
-"""The mass is looked for between these multiples of its present value."""
 
 
 def solve_for(
@@ -128,11 +117,9 @@ def strip_decay_rate(scene: Scene) -> float:
     modes = modes_of(scene, 1)
     pieces = modes.discretization.pieces
     energies = modes.discretization.strain_energies(modes.shapes[:, -1:])[..., 0]
-    loss_factors = [
-        [piece.section.axial_loss_factor for piece in pieces],
-        [piece.section.bending_loss_factor for piece in pieces],
-    ]
-    return float(modes.omega[-1] * np.sum(loss_factors * energies) / np.sum(energies))
+    stretching = [piece.section.axial_loss_factor for piece in pieces]
+    bending = [piece.section.bending_loss_factor for piece in pieces]
+    return float(modes.omega[-1] * np.sum([stretching, bending] * energies) / np.sum(energies))
 
 
 def decay_rate(scene: Scene) -> float:
@@ -155,36 +142,34 @@ def thicknesses(scene: Scene) -> tuple[float, float]:
     return min(keys.thickness_m, thickest) * THINNEST, thickest
 
 
-def calibrate_damping(scene: Scene, decay_rate_per_s: float, key: str = TAPE_KEYS[0]) -> Scene:
+def calibrate_damping(scene: Scene, decay_rate_per_s: float) -> Scene:
     """The scene in which mode 1 decays at this rate [1/s].
 
-    With damping.kind strips the tape is chosen by `key`, one of `TAPE_KEYS`, such that the strain energies
-    give the rate without further scaling. For any other kind all its rates are scaled by one factor.
+    With damping.kind strips the loss factor of the tape is chosen such that the strain energies give the
+    rate without further scaling. For any other kind all its rates are scaled by one factor.
     """
     name, unit = "decay rate of mode 1", "1/s"
     _require_target(name, decay_rate_per_s, unit)
     if scene.damping.kind != "strips":
         return _scaled_rates(scene, decay_rate_per_s)
-    if key not in TAPE_KEYS:
-        raise SceneError(f"the damping of mode 1 is calibrated by {', '.join(TAPE_KEYS)}, not by {key}")
-    between = _tape_range(scene, key)
+    if scene.spring.tape_thickness_m == 0.0:
+        raise SceneError("there is no tape to calibrate: spring.tape_thickness_m must be greater than 0")
     scene = scene.replace({"damping.decay_rate_per_s": decay_rate_per_s}, provenance=CALIBRATED)
-    accuracy = ACCURACY if key == TAPE_KEYS[0] else SHAPE_ACCURACY
-    return solve_for(key, scene, decay_rate, decay_rate_per_s, name=name, unit=unit, between=between,
-                     accuracy=accuracy)  # fmt: skip
+    return solve_for(
+        "spring.tape_loss_factor", scene, strip_decay_rate, decay_rate_per_s, name=name, unit=unit,
+        between=LOSS_FACTORS,
+    )  # fmt: skip
 
 
-def calibrate(
-    scene: Scene, *, free_period_s: float, decay_rate_per_s: float, key: str = TAPE_KEYS[0]
-) -> Scene:
+def calibrate(scene: Scene, *, free_period_s: float, decay_rate_per_s: float) -> Scene:
     """The scene with both, thickness and damping fitted in turn until neither moves the other."""
     for _ in range(MOST_ROUNDS):
-        scene = calibrate_damping(calibrate_thickness(scene, free_period_s), decay_rate_per_s, key)
+        scene = calibrate_damping(calibrate_thickness(scene, free_period_s), decay_rate_per_s)
         if abs(free_period(scene) / free_period_s - 1.0) <= ACCURACY:
             return scene
     raise SceneError(
-        f"spring.thickness_m and {key} cannot be calibrated together: a free period of {free_period_s:.10g} "
-        f"s and a decay rate of {decay_rate_per_s:.10g} 1/s do not settle in {MOST_ROUNDS} rounds"
+        f"thickness and damping cannot be calibrated together: a free period of {free_period_s:.10g} s and a "
+        f"decay rate of {decay_rate_per_s:.10g} 1/s do not settle in {MOST_ROUNDS} rounds"
     )
 
 
@@ -195,26 +180,8 @@ def _scaled_rates(scene: Scene, target: float) -> Scene:
             f"damping.kind {scene.damping.kind} gives mode 1 a decay rate of {rate:.6g} 1/s, which no "
             f"scaling turns into {target:.10g} 1/s: change {' or '.join(RATE_KEYS[scene.damping.kind])}"
         )
-    changes: dict[str, object] = {}
-    for key in RATE_KEYS[scene.damping.kind]:
-        value, factor = scene[key], target / rate
-        if isinstance(value, tuple):
-            changes[key] = tuple(factor * rate for rate in value)
-        else:
-            changes[key] = factor * scene.number(key)
-    return scene.replace(changes, provenance=CALIBRATED)
-
-
-def _tape_range(scene: Scene, key: str) -> tuple[float, float]:
-    """Where a key of the tape is looked for."""
-    if scene.spring.tape_thickness_m == 0.0:
-        raise SceneError("there is no tape to calibrate: spring.tape_thickness_m must be greater than 0")
-    present = scene.spring.tape_thickness_m
-    return {
-        "spring.tape_loss_factor": LOSS_FACTORS,
-        "spring.tape_coverage": COVERAGES,
-        "spring.tape_thickness_m": (TAPE_FACTORS[0] * present, TAPE_FACTORS[1] * present),
-    }[key]
+    scaled = {key: (np.array(scene[key]) * (target / rate)).tolist() for key in RATE_KEYS[scene.damping.kind]}
+    return scene.replace(scaled, provenance=CALIBRATED)
 
 
 def _require_target(name: str, target: float, unit: str) -> None:

@@ -26,15 +26,12 @@ import numpy as np
 from studies import ROOT
 
 __all__ = [
-    "columns_of",
-    "csv_text",
-    "git_state",
-    "json_text",
-    "make_folder",
-    "plain",
-    "versions",
+    "SCHEMA", "columns_of", "csv_text", "git_state", "json_text", "make_folder", "plain", "versions",
     "write_atomically",
-]
+]  # fmt: skip
+
+SCHEMA = 2
+"""Number of the layout of summary.json, manifest.json and the JSON on standard output."""
 
 PACKAGES = (
     "grazing-spring", "numpy", "scipy", "scikit-fem", "meshio", "pyvista", "numba", "matplotlib", "mpmath",

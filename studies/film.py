@@ -34,16 +34,9 @@ from beam import BALL, LAYER, STRIP, Modes, SpringMesh, solid_spring
 from studies.files import write_atomically
 
 __all__ = [
-    "NO_RENDERING",
-    "Moment",
-    "Picture",
-    "Scenery",
-    "can_encode",
-    "can_render",
-    "stage_of",
-    "write_gif",
+    "NO_RENDERING", "Moment", "Picture", "Scenery", "can_encode", "can_render", "stage_of", "write_gif",
     "write_mp4",
-]
+]  # fmt: skip
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]

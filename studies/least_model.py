@@ -11,12 +11,10 @@ reference by no more than the tolerances:
     restitution    of these collisions; absolute
     born_period    period of the orbit settled at excess 1e-3, every drive frequency; whether it differs (0)
     fold           F/F_g - 1 at which p_m ends, every drive frequency; relative to it, or to the letter's
-    amplitude
-                   stability of 2.5e-4 where it is smaller
+                   amplitude stability of 2.5e-4 where it is smaller
     fold_middle    the same at the middle drive frequency
     tip_trace      tip over one period of the orbit settled at excess 0.013, middle drive frequency; root
-    mean square
-                   of the difference over the gap
+                   mean square of the difference over the gap
 
 Folds are those of the collision as a kick of all modes (``contact.orbits.KickFamily``), which has them to
 0.2 % (median; 1 % at worst) at a hundredth of the price of following the orbits; those of fewer modes are
@@ -24,27 +22,33 @@ looked for within a factor e of the approach velocity at the fold of the referen
 collision through their compliance, sum phi_k^2/omega_k^2 over the modes beyond, so that errors fall steadily
 along the ladder: the least number is found by bisection, and the next one is asked as well, lest errors
 cancel by chance. A quantity that the reference does not have at a frequency (no orbit, no fold) asks nothing
-there.
+there. `studies.adequacy` holds this choice against a search that follows every orbit.
 """
 
 from __future__ import annotations
 
 import math
 from bisect import bisect
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cache
+from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from beam import ModalModel
-from contact import ContactError, StroboscopicMap, first_collision, simulate
-from contact.orbits import KickFamily, KickOrbit, born
+from contact import ContactError, ImpactOscillator, StroboscopicMap, first_collision, simulate
+from contact.orbits import KickFamily, Settled, SingleImpactOrbit, born
 from studies import letter
 from studies.scene import Scene, SceneError, beam_at, model_of
 
-__all__ = ["LADDER", "QUANTITIES", "REFERENCE", "Question", "least_modes", "questions"]
+__all__ = [
+    "COLLISIONS", "LADDER", "QUANTITIES", "REFERENCE", "Answer", "Models", "Question", "Values", "collisions",
+    "error_of_fold", "error_of_trace", "largest_error", "least_modes", "middle_of", "questions", "settled",
+    "tip_trace",
+]  # fmt: skip
 
 REFERENCE = 40
 """Coupled modes of the reference: for the letter's spring 30 have its folds to 2e-4, 60 to 1e-4."""
@@ -52,7 +56,10 @@ REFERENCE = 40
 LADDER = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 15, 18, 21, 25, 30)
 """Numbers of modes that are tried."""
 
-BORN_EXCESS = 1e-3
+BORN_EXCESS, TRACE_EXCESS = 1e-3, letter.TIME_TRACE_EXCESS
+COLLISIONS = (0.5 * TRACE_EXCESS, TRACE_EXCESS, 2.0 * TRACE_EXCESS)
+"""Excesses of the collisions that are asked for: three, lest errors that cancel at one pass for accuracy."""
+
 MOST_CYCLES = 4000
 """Bound of a transient [drive periods]: the slowest at the letter's frequencies takes about 1000."""
 
@@ -61,39 +68,37 @@ SAMPLES = 256
 
 Values = NDArray[np.float64]
 Answer = Values | None
+Distance = Callable[[Values, Values], float]
+Choice = TypeVar("Choice", bound=Hashable)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Question:
-    """A quantity at a drive frequency [Hz], with its tolerance; answers are kept by number of modes."""
+class Question(Generic[Choice]):
+    """What is asked of models, here numbers of modes, and how far their answers may be from the reference's.
 
-    quantity: str
-    frequency: float
+    `ask` gives None, or raises ContactError or ValueError, where a model has no answer.
+    """
+
+    words: str
+    ask: Callable[[Choice], Answer]
+    distance: Distance
+    reference: Choice
     tolerance: float
-    answers: dict[int, Answer] = field(default_factory=dict, repr=False)
+    answers: dict[Choice, Answer] = field(default_factory=dict, repr=False)
 
-    def answer(self, models: Models, modes: int) -> Answer:
-        """What the model with so many modes says; None if it has no answer."""
-        if modes not in self.answers:
+    def answer(self, choice: Choice) -> Answer:
+        """What a model says, computed once; None if it has no answer."""
+        if choice not in self.answers:
             try:
-                found = QUANTITIES[self.quantity][0](models, modes, self.frequency)
+                self.answers[choice] = self.ask(choice)
             except (ContactError, ValueError):  # such as a drive above all modes
-                found = None
-            self.answers[modes] = found
-        return self.answers[modes]
+                self.answers[choice] = None
+        return self.answers[choice]
 
-    def error(self, models: Models, modes: int, reference: int) -> float:
-        """Distance of two answers; zero where the reference has none, infinite where only the model has
-        not."""
-        found, sharp = self.answer(models, modes), self.answer(models, reference)
-        if sharp is None:
-            return 0.0
-        return math.inf if found is None else QUANTITIES[self.quantity][1](found, sharp)
-
-    @property
-    def words(self) -> str:
-        """As part of a sentence."""
-        return f"{self.quantity.removesuffix('_middle')} at {self.frequency:g} Hz"
+    def off(self, choice: Choice, reference: Choice | None = None) -> float:
+        """Distance of a model from the reference, or from another; infinite if one has no answer."""
+        found, sharp = self.answer(choice), self.answer(self.reference if reference is None else reference)
+        return math.inf if found is None or sharp is None else self.distance(found, sharp)
 
 
 class Models:
@@ -102,28 +107,20 @@ class Models:
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
         self.whole = _reference(scene)
-        self._periods: dict[float, int] = {}
-        self._folds: dict[float, KickOrbit | None] = {}
+        self.period, self.fold = cache(self._period), cache(self._fold)
 
-    def oscillator(self, modes: int, frequency: float) -> StroboscopicMap:
-        """The strobed motion of the spring with so many modes, 1e-3 above grazing."""
-        model = self.whole.truncated(modes)
-        return StroboscopicMap(oscillator=beam_at(self.scene, frequency, model)).at(BORN_EXCESS)
+    def oscillator(self, modes: int, frequency: float) -> ImpactOscillator:
+        """The spring with so many modes, 1e-3 above grazing."""
+        return beam_at(self.scene, frequency, self.whole.truncated(modes)).with_excess(BORN_EXCESS)
 
-    def fold(self, frequency: float) -> KickOrbit | None:
-        """The fold of the reference."""
-        if frequency not in self._folds:
-            oscillator = self.oscillator(self.whole.n_modes, frequency).oscillator
-            family = KickFamily(oscillator=oscillator, period=self.period(frequency))
-            self._folds[frequency] = family.fold() if family.period > 1 else None
-        return self._folds[frequency]
-
-    def period(self, frequency: float) -> int:
+    def _period(self, frequency: float) -> int:
         """The born period of the reference."""
-        if frequency not in self._periods:
-            strobed = self.oscillator(self.whole.n_modes, frequency)
-            self._periods[frequency] = born(strobed, BORN_EXCESS, most_cycles=MOST_CYCLES).period
-        return self._periods[frequency]
+        return settled(self.oscillator(self.whole.n_modes, frequency)).period
+
+    def _fold(self, frequency: float) -> SingleImpactOrbit | None:
+        """The fold of the reference."""
+        oscillator, period = self.oscillator(self.whole.n_modes, frequency), self.period(frequency)
+        return KickFamily(oscillator=oscillator, period=period).fold() if period > 1 else None
 
 
 def _reference(scene: Scene) -> ModalModel:
@@ -140,28 +137,39 @@ def _reference(scene: Scene) -> ModalModel:
             most = max(1, most // 2)
 
 
-def _collisions(name: str) -> Callable[[Models, int, float], Answer]:
-    def answer(models: Models, modes: int, frequency: float) -> Answer:
-        oscillator = models.oscillator(modes, frequency).oscillator
-        excesses = [factor * letter.TIME_TRACE_EXCESS for factor in (0.5, 1.0, 2.0)]
-        values = [getattr(first_collision(oscillator.with_excess(excess)), name) for excess in excesses]
-        return np.array(values) if np.all(np.isfinite(values)) else None
-
-    return answer
+def middle_of(scene: Scene) -> float:
+    """The drive frequency [Hz] in the middle of those of the scene."""
+    drives = sorted(scene.drive.frequencies_hz)
+    return drives[(len(drives) - 1) // 2]
 
 
-def _born_period(models: Models, modes: int, frequency: float) -> Answer:
-    if modes == models.whole.n_modes:
-        return np.array([float(models.period(frequency))])
-    strobed = models.oscillator(modes, frequency)
-    return np.array([float(born(strobed, BORN_EXCESS, most_cycles=MOST_CYCLES).period)])
+def settled(oscillator: ImpactOscillator, excess: float = BORN_EXCESS) -> Settled:
+    """The orbit settled from below grazing at this excess."""
+    return born(StroboscopicMap(oscillator=oscillator), excess, most_cycles=MOST_CYCLES)
+
+
+def collisions(oscillator: ImpactOscillator, name: str) -> Answer:
+    """`restitution`, `delay` or `kick` of the first collision at each of `COLLISIONS`."""
+    values = [getattr(first_collision(oscillator.with_excess(excess)), name) for excess in COLLISIONS]
+    return np.array(values) if np.all(np.isfinite(values)) else None
+
+
+def tip_trace(oscillator: ImpactOscillator) -> Answer:
+    """Tip over gap during one period of the orbit settled at excess 0.013; None without an orbit."""
+    orbit, driven = settled(oscillator, TRACE_EXCESS), oscillator.with_excess(TRACE_EXCESS)
+    if orbit.period == 0 or orbit.impacts == 0:
+        return None
+    times = orbit.end.time + np.arange(orbit.period * SAMPLES) / SAMPLES * driven.period
+    run = simulate(driven, orbit.end, periods=orbit.period, times=times)
+    trace: Values = run.displacement @ driven.model.phi / driven.stop.gap
+    return trace
 
 
 def _fold(models: Models, modes: int, frequency: float) -> Answer:
     sharp = models.fold(frequency)
     if sharp is None or modes == models.whole.n_modes:
         return None if sharp is None else np.array([sharp.excess])
-    family = KickFamily(oscillator=models.oscillator(modes, frequency).oscillator, period=sharp.period)
+    family = KickFamily(oscillator=models.oscillator(modes, frequency), period=sharp.period)
     middle = math.log(sharp.kick.speed)
     best = minimize_scalar(
         lambda x: family.orbit(math.exp(x)).excess, bounds=(middle - 1.0, middle + 1.0), method="bounded",
@@ -170,19 +178,13 @@ def _fold(models: Models, modes: int, frequency: float) -> Answer:
     return None if abs(best.x - middle) > 0.99 else np.array([float(best.fun)])
 
 
-def _tip_trace(models: Models, modes: int, frequency: float) -> Answer:
-    strobed = models.oscillator(modes, frequency)
-    settled = born(strobed, letter.TIME_TRACE_EXCESS, most_cycles=MOST_CYCLES)
-    if settled.period == 0 or settled.impacts == 0:
-        return None
-    oscillator = strobed.oscillator.with_excess(letter.TIME_TRACE_EXCESS)
-    times = settled.end.time + np.arange(settled.period * SAMPLES) / SAMPLES * oscillator.period
-    run = simulate(oscillator, settled.end, periods=settled.period, times=times)
-    trace: Values = run.displacement @ oscillator.model.phi / oscillator.stop.gap
-    return trace
+def _born_period(models: Models, modes: int, frequency: float) -> Answer:
+    whole = modes == models.whole.n_modes
+    found = models.period(frequency) if whole else settled(models.oscillator(modes, frequency)).period
+    return np.array([float(found)])
 
 
-def _of_trace(answer: Values, reference: Values) -> float:
+def error_of_trace(answer: Values, reference: Values) -> float:
     """Root mean square of the difference; a p_m orbit has m phases, and any of them is the same orbit."""
     if answer.size != reference.size:
         return math.inf
@@ -190,40 +192,45 @@ def _of_trace(answer: Values, reference: Values) -> float:
     return float(min(np.sqrt(np.mean((turn - reference) ** 2)) for turn in turns))
 
 
-def _largest(answer: Values, reference: Values) -> float:
-    return float(np.max(np.abs(answer - reference)))
-
-
-def _of_fold(answer: Values, reference: Values) -> float:
+def error_of_fold(answer: Values, reference: Values) -> float:
+    """Relative to the fold, or to the letter's amplitude stability where it is smaller."""
     return float(abs(answer[0] - reference[0]) / max(abs(reference[0]), letter.AMPLITUDE_STABILITY))
 
 
-QUANTITIES: Mapping[
-    str, tuple[Callable[[Models, int, float], Answer], Callable[[Values, Values], float], bool]
-]
-QUANTITIES = {
-    "kick": (_collisions("kick"), _largest, False),
-    "restitution": (_collisions("restitution"), _largest, False),
-    "born_period": (_born_period, _largest, True),
-    "fold": (_fold, _of_fold, True),
-    "fold_middle": (_fold, _of_fold, False),
-    "tip_trace": (_tip_trace, _of_trace, False),
+def largest_error(answer: Values, reference: Values) -> float:
+    """The largest absolute difference."""
+    return float(np.max(np.abs(answer - reference)))
+
+
+def _collision(name: str) -> Callable[[Models, int, float], Answer]:
+    return lambda models, modes, frequency: collisions(models.oscillator(modes, frequency), name)
+
+
+QUANTITIES: Mapping[str, tuple[Callable[[Models, int, float], Answer], Distance, bool]] = {
+    "kick": (_collision("kick"), largest_error, False),
+    "restitution": (_collision("restitution"), largest_error, False),
+    "fold": (_fold, error_of_fold, True),
+    "fold_middle": (_fold, error_of_fold, False),
+    "tip_trace": (lambda models, n, f: tip_trace(models.oscillator(n, f)), error_of_trace, False),
+    "born_period": (_born_period, largest_error, True),
 }
-"""Name -> answer, distance of two answers, whether it is asked at every drive frequency."""
+"""Name -> answer, distance, whether it is asked at every drive frequency. Born periods are asked last:
+transients are long where modes are missing."""
 
 
-def questions(scene: Scene, needs: Mapping[str, float]) -> Iterator[Question]:
-    """What the needs come to; those of frequencies are no questions, the number of the mode is the answer."""
-    drives = sorted(scene.drive.frequencies_hz)
-    for quantity, tolerance in needs.items():
-        if quantity.startswith("frequency "):
-            continue
-        if quantity not in QUANTITIES:
-            raise ValueError(
-                f"quantity is {quantity!r}; it must be one of {', '.join(QUANTITIES)}, frequency K"
-            )
-        for frequency in drives if QUANTITIES[quantity][2] else [drives[(len(drives) - 1) // 2]]:
-            yield Question(quantity=quantity, frequency=frequency, tolerance=tolerance)
+def questions(models: Models, needs: Mapping[str, float]) -> Iterator[Question[int]]:
+    """What the needs come to, where the reference has an answer."""
+    scene = models.scene
+    for quantity in sorted(needs, key=list(QUANTITIES).index):
+        ask, distance, everywhere = QUANTITIES[quantity]
+        for frequency in sorted(scene.drive.frequencies_hz) if everywhere else [middle_of(scene)]:
+            question = Question(
+                words=f"{quantity.removesuffix('_middle')} at {frequency:g} Hz", distance=distance,
+                ask=lambda modes, ask=ask, frequency=frequency: ask(models, modes, frequency),  # type: ignore[misc]
+                reference=models.whole.n_modes, tolerance=needs[quantity],
+            )  # fmt: skip
+            if question.answer(question.reference) is not None:
+                yield question
 
 
 def least_modes(scene: Scene, needs: Mapping[str, float]) -> tuple[Scene, str]:
@@ -239,17 +246,23 @@ def least_modes(scene: Scene, needs: Mapping[str, float]) -> tuple[Scene, str]:
     if scene.modes.count or scene.spring.kind == "modal_data" or scene.drive.kind != "harmonic":
         return scene, ""
     numbers = [int(quantity.split()[1]) for quantity in needs if quantity.startswith("frequency ")]
-    # born periods last: transients are long where modes are missing
-    asked = sorted(questions(scene, needs), key=lambda question: question.quantity == "born_period")
+    others = {quantity: needs[quantity] for quantity in needs if not quantity.startswith("frequency ")}
+    if not others.keys() <= QUANTITIES.keys():
+        known = ", ".join(QUANTITIES)
+        raise ValueError(f"quantities are {', '.join(others)}; they must be of {known}, frequency K")
     least = max(numbers, default=1)
     reason = f"frequency {least}" if numbers else "the least there is"
-    if asked:
+    if others:
         models = Models(scene)
         sharp = models.whole.n_modes
         rungs = sorted({*(n for n in LADDER if least < n < sharp), min(least, sharp), sharp})
         low, worst = 0, None
-        for question in asked:
-            enough = _enough(question, models, rungs)
+        for question in questions(models, others):
+
+            def enough(place: int, question: Question[int] = question) -> bool:
+                """Whether the rung with this number and the next one are near enough."""
+                return all(question.off(n) <= question.tolerance for n in rungs[place : place + 2])
+
             if not enough(low):
                 # the first rung above `low` that is good enough; the reference itself is
                 low, worst = bisect(range(low, len(rungs)), False, key=enough) + low, question
@@ -257,15 +270,5 @@ def least_modes(scene: Scene, needs: Mapping[str, float]) -> tuple[Scene, str]:
         if least == sharp:
             reason = f"all that were tried; fewer do not give {worst.words if worst else 'what is asked'}"
         elif worst is not None:
-            reason = f"{worst.words}, good to {worst.error(models, least, sharp):.1e} against {sharp} modes"
+            reason = f"{worst.words}, good to {worst.off(least):.1e} against {sharp} modes"
     return scene.replace({"modes.count": least}, provenance="least"), f"modes kept: {least} ({reason})"
-
-
-def _enough(question: Question, models: Models, rungs: Sequence[int]) -> Callable[[int], bool]:
-    """Whether the rung with this number and the next one answer the question within its tolerance."""
-
-    def enough(place: int) -> bool:
-        pair = rungs[place : place + 2]
-        return all(question.error(models, n, models.whole.n_modes) <= question.tolerance for n in pair)
-
-    return enough

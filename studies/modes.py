@@ -9,16 +9,16 @@ Of each mode the impacts see the frequency f = omega/(2 pi) [Hz], the decay rate
 [kg^(-1/2)] and the participation Gamma [kg^(1/2)] in a motion of the base. For straight strips of one
 section the frequencies are set beside the zeros of the frequency equation (beam.exact_modes).
 
-Run:     python -m studies.modes [--mode 3] [--at-rest] [--frames 24]     10 s
+Run:     python -m studies.modes [--mode 3] [--frames 24]     10 s
 Writes:  modes.csv (the table), modes.npz (shapes along the strip), modes.png; for ParaView modes.vtu (Warp By
-         Vector, choose a mode) and motion.pvd with motion_frames (one period of one mode: press play; with
-         --at-rest the points stay, for Warp By Vector by displacement); mode_1.gif ... (films of the first)
+         Vector, choose a mode) and motion.pvd with motion_frames (one period of one mode: press play);
+         mode_1.gif ... (films of the first)
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
@@ -66,9 +66,6 @@ def modes(
     *,
     mode: Annotated[int, "mode to animate"] = 1,
     frames: Annotated[int, "frames in one period, an even number"] = 24,
-    at_rest: Annotated[
-        bool, "leave the points of motion.pvd at rest, for Warp By Vector by displacement"
-    ] = False,
     filmed: Annotated[int, "modes with a film, lowest first"] = FILMED,
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
@@ -80,7 +77,7 @@ def modes(
     if solved is None:
         run.say("measured modes have no shapes: nothing to draw or to look at in ParaView")
     else:
-        write_shapes(scene, run, solved, mode - 1, frames, moved=not at_rest)
+        write_shapes(scene, run, solved, mode - 1, frames)
         write_films(run, solved, scene.tip.ball_radius_m, min(filmed, len(rows)), frames)
         judge(scene, run)
     return {"rows": rows, "free_period_s": None if solved is None else free_period(scene)}
@@ -88,30 +85,21 @@ def modes(
 
 def rows_of(scene: Scene, solved: Modes | None) -> list[Row]:
     """The table; without shapes, of the modal data."""
+    known = None
     if solved is None:
         model = model_of(scene)
         coupled = (model.phi != 0.0) | (model.participation != 0.0)
-        exact: Sequence[float | None] = [None] * model.n_modes
         columns = (model.frequencies_hz, model.decay_rate, model.phi, model.participation, coupled)
     else:
-        rates, found = (
-            damping_of(scene).decay_rates(solved),
-            exact_frequencies(solved.discretization.spring, solved.omega.size),
-        )
-        exact = [None] * solved.omega.size if found is None else found.tolist()
+        known = exact_frequencies(solved.discretization.spring, solved.omega.size)
+        rates = damping_of(scene).decay_rates(solved)
         columns = (solved.frequencies_hz, rates, solved.phi, solved.participation, solved.coupled)
+    exact = [None] * columns[0].size if known is None else known.tolist()
     return [
-        Row(
-            mode=number,
-            frequency_hz=float(f),
-            exact_hz=known,
-            decay_rate_per_s=float(c),
-            tip_value=float(phi),
-            participation=float(gamma),
-            coupled=bool(moves),
-        )
-        for number, (known, f, c, phi, gamma, moves) in enumerate(zip(exact, *columns, strict=True), start=1)
-    ]
+        Row(mode=number, frequency_hz=float(f), exact_hz=at, decay_rate_per_s=float(c), tip_value=float(phi),
+            participation=float(gamma), coupled=bool(moves))
+        for number, (at, f, c, phi, gamma, moves) in enumerate(zip(exact, *columns, strict=True), start=1)
+    ]  # fmt: skip
 
 
 def exact_frequencies(spring: LeafSpring, count: int) -> NDArray[np.float64] | None:
@@ -127,13 +115,10 @@ def exact_frequencies(spring: LeafSpring, count: int) -> NDArray[np.float64] | N
         return None
     section = spring.sections[0]
     uniform = UniformBeam(
-        length=line.length,
-        bending_stiffness=section.bending_stiffness,
-        mass_per_length=section.mass_per_length,
-        supports=spring.supports,
-        tip_mass=tip.mass,
+        length=line.length, bending_stiffness=section.bending_stiffness, tip_mass=tip.mass,
+        mass_per_length=section.mass_per_length, supports=spring.supports,
         tip_rotary_inertia=tip.rotary_inertia,
-    )
+    )  # fmt: skip
     rigid = np.zeros(spring.rigid_motions)
     bent = exact_modes(uniform, max(1, count - rigid.size)).omega / (2.0 * math.pi)
     return np.concatenate([rigid, bent])[:count]
@@ -144,7 +129,7 @@ def largest_of(solved: Modes) -> float:
     return LARGEST * float(np.ptp(solved.displacement_along(2).points, axis=0).max())
 
 
-def write_shapes(scene: Scene, run: Run, solved: Modes, mode: int, frames: int, *, moved: bool) -> None:
+def write_shapes(scene: Scene, run: Run, solved: Modes, mode: int, frames: int) -> None:
     """Arrays, meshes and the figure."""
     along, radius, largest = solved.displacement_along(2), scene.tip.ball_radius_m, largest_of(solved)
     run.arrays(
@@ -154,15 +139,12 @@ def write_shapes(scene: Scene, run: Run, solved: Modes, mode: int, frames: int, 
     )  # fmt: skip
     rates = np.nan_to_num(damping_of(scene).decay_rates(solved))
     write_modes(run.path("modes.vtu"), solved, decay_rates=rates, largest=largest, ball_radius=radius)
-    write_mode_motion(run.path("motion.pvd"), solved, mode, frames=frames, moved=moved, largest=largest,
-                      ball_radius=radius)  # fmt: skip
-    run.path("motion_frames")
-    run.figure(
-        "modes",
-        draw(solved, radius),
-        "Shapes in the plane of the strip, enlarged; grey: at rest, dashed: half "
-        "a period later; orange: the ball stays beside the stop.",
+    write_mode_motion(
+        run.path("motion.pvd"), solved, mode, frames=frames, largest=largest, ball_radius=radius
     )
+    run.path("motion_frames")
+    caption = "Shapes in the plane of the strip, enlarged; grey: at rest, dashed: half a period later."
+    run.figure("modes", draw(solved, radius), caption)
 
 
 def write_films(run: Run, solved: Modes, radius: float, count: int, frames: int) -> None:
@@ -200,9 +182,8 @@ def draw(solved: Modes, ball_radius: float) -> Figure:
     rows = math.ceil(count / columns)
     tall = (extent[1] + 2.0 * margin) / (extent[0] + 2.0 * margin)
     height = 0.014 + rows * (0.007 + tall * (PAGE - 0.014) / columns)
-    figure, axes = new_figure(
-        rows, columns, width=PAGE, height=height, sharex=True, sharey=True, squeeze=False
-    )
+    shared = {"sharex": True, "sharey": True, "squeeze": False}
+    figure, axes = new_figure(rows, columns, width=PAGE, height=height, **shared)
     for number, axis in enumerate(axes.flat):
         if number >= count:
             axis.set_visible(False)
@@ -212,22 +193,12 @@ def draw(solved: Modes, ball_radius: float) -> Figure:
         axis.plot(points[:, 0], points[:, 1], color="0.75", linewidth=0.8)
         strong = PALETTE[1 if solved.coupled[number] else 2]
         for sign, style, colour in ((-1.0, (0, (4, 2)), "0.45"), (1.0, "-", strong)):
-            place = points + sign * step
+            place, face = points + sign * step, colour if sign > 0 else "white"
             axis.plot(place[:, 0], place[:, 1], color=colour, linestyle=style, linewidth=1.1)
-            axis.plot(
-                *place[ball, :2],
-                marker="o",
-                color=colour,
-                markersize=4.5,
-                markerfacecolor=colour if sign > 0 else "white",
-            )
+            axis.plot(*place[ball, :2], "o", color=colour, markersize=4.5, markerfacecolor=face)
         kind = "" if solved.coupled[number] else ", uncoupled"
-        axis.set_title(
-            f"mode {number + 1}: {solved.frequencies_hz[number]:.2f} Hz{kind}",
-            loc="left",
-            pad=2.0,
-            fontsize=8.0,
-        )
+        words = f"mode {number + 1}: {solved.frequencies_hz[number]:.2f} Hz{kind}"
+        axis.set_title(words, loc="left", pad=2.0, fontsize=8.0)
         axis.set_aspect("equal")
         axis.set_xlim(points[:, 0].min() - 0.3 * margin, points[:, 0].max() + margin)
         axis.set_ylim(points[:, 1].min() - margin, points[:, 1].max() + margin)

@@ -8,6 +8,7 @@ import contextlib
 import inspect
 import math
 import os
+import sys
 import types
 import typing
 from collections.abc import Callable, Mapping, Sequence
@@ -15,7 +16,11 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated, Literal, NoReturn, Union, get_args, get_origin
 
-__all__ = ["Parser", "WrongUse", "add_options", "parser_of"]
+from studies.files import SCHEMA, json_text
+
+__all__ = ["Parser", "WrongUse", "add_options", "parser_of", "tool"]
+
+Answer = Mapping[str, object]
 
 
 class WrongUse(ValueError):
@@ -24,6 +29,13 @@ class WrongUse(ValueError):
 
 class Parser(argparse.ArgumentParser):
     """A parser that refuses with `WrongUse` and names the nearest option to an unknown one."""
+
+    def __init__(self, command: str, account: str) -> None:
+        super().__init__(
+            prog=command, description=account, usage=f"{command} [options]", allow_abbrev=False,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )  # fmt: skip
+        self.add_argument("--json", action="store_true", help="print the summary as one JSON object")
 
     def error(self, message: str) -> NoReturn:
         """Refuse."""
@@ -40,53 +52,48 @@ class Parser(argparse.ArgumentParser):
 
 def parser_of(command: str, account: str) -> Parser:
     """The options that all studies share."""
-    parser = Parser(
-        prog=command, description=account, usage=f"{command} [options]", allow_abbrev=False,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )  # fmt: skip
-    scene = parser.add_argument_group("the scene")
-    scene.add_argument(
-        "--scene",
-        default="letter",
-        metavar="FILE.toml",
-        help="a file, or the name of one in studies/scenes (default: letter)",
+    parser = Parser(command, account)
+    scene = parser.add_argument_group("the scene").add_argument
+    scene(
+        "--scene", default="letter", metavar="FILE.toml", help="a file, or the name of one in studies/scenes"
     )
-    scene.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="section.key=value",
-        dest="overrides",
-        help="change one key of the scene; may be repeated",
+    scene("--set", action="append", default=[], metavar="section.key=value", dest="overrides",
+          help="change one key of the scene; may be repeated")  # fmt: skip
+    scene("--dump-scene", action="store_true", help="print every key with unit, default and provenance")
+    runs, cores = (
+        parser.add_argument_group("how it runs, and where the results go").add_argument,
+        os.cpu_count(),
     )
-    scene.add_argument(
-        "--dump-scene",
-        action="store_true",
-        help="print every key with unit, default and provenance, and stop",
-    )
-    running = parser.add_argument_group("how it runs, and where the results go")
-    running.add_argument("--quick", action="store_true", help="a small form of the study, for a first look")
-    running.add_argument(
+    runs("--quick", action="store_true", help="a small form of the study, for a first look")
+    runs(
         "--workers",
         type=_count,
-        default=os.cpu_count() or 1,
+        default=cores or 1,
         metavar="N",
-        help="threads or processes (default: one for each core)",
+        help="threads or processes (default: cores)",
     )
-    running.add_argument(
-        "--executor",
-        default="",
-        metavar="URL",
-        help="where cells are computed: threads (default), processes or dask://host:port",
-    )
-    running.add_argument(
-        "--out",
-        default="results",
-        metavar="DIR",
-        help="folder in which the study makes its own (default: results)",
-    )
-    running.add_argument("--json", action="store_true", help="print the summary as one JSON object")
+    runs("--executor", default="", metavar="URL", help="threads (default), processes or dask://host:port")
+    runs("--out", default="results", metavar="DIR", help="folder in which the study makes its own")
     return parser
+
+
+def tool(parser: Parser, argv: Sequence[str] | None, perform: Callable[..., tuple[str, Answer]]) -> int:
+    """Run a program without a scene: one sentence to a person, --json, exit code 0, or 2 for wrong use.
+
+    `perform` takes the arguments and returns the sentence and what --json gives.
+    """
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    try:
+        sentence, done = perform(parser.read(arguments))
+        answer = {"status": "done", **done, "exit_code": 0}
+    except SystemExit:  # --help
+        return 0
+    except (ValueError, OSError) as error:
+        sentence, answer = str(error), {"status": "refused", "error": str(error), "exit_code": 2}
+    print(f"{parser.prog}: {sentence}", file=sys.stderr)
+    if "--json" in arguments:
+        print(json_text({"schema": SCHEMA, "study": parser.prog.rpartition(".")[2], **answer}))
+    return 2 if answer["status"] == "refused" else 0
 
 
 def add_options(parser: Parser, function: Callable[..., object]) -> dict[str, object]:
@@ -103,28 +110,19 @@ def add_options(parser: Parser, function: Callable[..., object]) -> dict[str, ob
         if get_origin(kind) in (Union, types.UnionType):  # T | None
             kind = next(part for part in get_args(kind) if part is not types.NoneType)
         default = defaults[name] = entry.default
-        flag, told = (
-            f"--{name.replace('_', '-')}",
-            f"{words} (default: {default})" if default is not None else words,
-        )
+        flag, told = f"--{name.replace('_', '-')}", words
+        if default is not None and kind is not bool:
+            told += f" (default: {default})"
+        about: dict[str, object] = {"default": argparse.SUPPRESS, "help": told}
         if kind is bool:
-            group.add_argument(flag, action="store_true", default=argparse.SUPPRESS, help=words)
+            about["action"] = "store_true"
         elif get_origin(kind) is Literal:
-            group.add_argument(flag, choices=get_args(kind), default=argparse.SUPPRESS, help=told)
-        elif get_origin(kind) is tuple:
-            first = get_args(kind)[0]
-            group.add_argument(
-                flag,
-                nargs=len(get_args(kind)),
-                type=READERS[first],
-                default=argparse.SUPPRESS,
-                metavar=first.__name__.upper(),
-                help=told,
-            )
+            about["choices"] = get_args(kind)
         else:
-            group.add_argument(
-                flag, type=READERS[kind], default=argparse.SUPPRESS, metavar=kind.__name__.upper(), help=told
-            )
+            if get_origin(kind) is tuple:
+                about["nargs"], kind = len(get_args(kind)), get_args(kind)[0]
+            about |= {"type": READERS[kind], "metavar": kind.__name__.upper()}
+        group.add_argument(flag, **about)  # type: ignore[arg-type]
     return defaults
 
 

@@ -20,18 +20,20 @@ reads. The same data give the same bytes: neither format carries a date or a ver
 from __future__ import annotations
 
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import AbstractContextManager
 from functools import wraps
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
 import matplotlib
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis, XAxis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from studies.files import write_atomically
 
@@ -52,10 +54,17 @@ LINES = ("-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1)), (0, (1, 2)), (0, 
 NOTE = 7.0
 """Size of ticks, legends and notes inside a panel [pt]."""
 
+UP, DOWN = (BLUE, BLUE, 1.3, 3), (VERMILION, "none", 2.6, 2)
+"""Strobe points while the amplitude is raised and lowered: edge, face, size, order."""
+
+PALE = 0.35
+"""Share of the colour that is left where a motion did not settle: its points are those of a moment."""
+
 EXCESS, HYSTERESIS = "excess $F/F_g - 1$", "hysteresis $1 - F_m/F_g$"
 """Names of the two quantities that most axes show."""
 
 Style = dict[str, Any]
+Array = NDArray[np.float64]
 
 GUIDE: Style = {"color": "0.6", "linewidth": 0.6, "linestyle": "--", "zorder": 0}
 LETTER: Style = {"color": "0.25", "linewidth": 0.9, "linestyle": (0, (1, 1)), "zorder": 1}
@@ -132,6 +141,21 @@ def points(number: int) -> Style:
     return {**series(number), "linestyle": "none"}
 
 
+def strobe_points(
+    axes: Axes, amplitude: Array, points: Array, settled: NDArray[np.bool_],
+    look: tuple[str, str, float, int], words: str,
+) -> None:  # fmt: skip
+    """Strobe `points`, shape (n_amplitudes, n_strobes), of a scan: `UP` or `DOWN`; pale where not settled."""
+    edge, face, size, order = look
+    for kept, share in ((settled, 1.0), (~settled, PALE)):
+        axes.plot(
+            np.repeat(amplitude[kept], points.shape[1]), points[kept].ravel(), linestyle="none", marker="o",
+            markersize=size, markeredgewidth=0.4, markeredgecolor=tint(edge, share), rasterized=True,
+            markerfacecolor=face if face == "none" else tint(face, share), zorder=order * share,
+            label=words if share == 1.0 else f"_{words}",
+        )  # fmt: skip
+
+
 def tint(colour: str, share: float) -> str:
     """The colour with so much of it left in white, for areas."""
     red, green, blue = (1.0 - share * (1.0 - part) for part in to_rgb(colour))
@@ -146,6 +170,14 @@ def label(axis: Axis, quantity: str, unit: str = "1") -> None:
 def panel(axes: Axes, number: int, words: str = "") -> None:
     """Letter of a panel, (a) for number 0, and what it shows."""
     axes.set_title(f"({chr(ord('a') + number)}) {words}".rstrip(), loc="left")
+
+
+def legend_below(figure: Figure, axes: Iterable[Axes], columns: int, **looks: Any) -> None:
+    """One legend below all panels, each name once."""
+    named: dict[str, Any] = {}
+    for axis in axes:
+        named |= dict(zip(*axis.get_legend_handles_labels()[::-1], strict=True))
+    figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=columns, **looks)
 
 
 def mark_letter(

@@ -19,15 +19,18 @@ from concurrent.futures import Executor
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from contact import ContactError
 from studies import letter
 from studies.executors import pool_of, progress, say
 from studies.files import (
+    SCHEMA,
     columns_of,
     csv_text,
     git_state,
@@ -36,17 +39,14 @@ from studies.files import (
     plain,
     versions,
     write_atomically,
-)
+)  # fmt: skip
 from studies.least_model import least_modes
 from studies.scene import Scene, free_period
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["SCHEMA", "Run"]
-
-SCHEMA = 2
-"""Number of the layout of summary.json, manifest.json and the JSON on standard output."""
+__all__ = ["Run"]
 
 SAME_SPRING = 0.005
 """Relative difference of two free periods beyond which the born period changes next to a band edge."""
@@ -115,6 +115,15 @@ class Run:
             for future in futures:
                 future.add_done_callback(lambda _: tick())
             return [future.result() for future in futures]
+
+    def attempt(self, function: Callable[[S], T], items: Iterable[S], label: str) -> list[T | None]:
+        """Like `map`; an item that ends with a ContactError or ValueError is told as failed, and is None."""
+        known = list(items)
+        tried = self.map(partial(_tried, function), known, label)
+        for item, (_, error) in zip(known, tried, strict=True):
+            if error:
+                self.failed(f"{label}, {item}", error)
+        return [found for found, _ in tried]
 
     def choose_modes(self, scene: Scene, needs: Mapping[str, float]) -> Scene:
         """The scene with the least number of modes for these quantities, unless it says the number.
@@ -242,6 +251,14 @@ class Run:
         told = plain({**summary, "folder": self.folder, "wall_time_s": wall_time})
         assert isinstance(told, dict)
         return told
+
+
+def _tried(function: Callable[[S], T], item: S) -> tuple[T | None, str]:
+    """The value of an item, or None and why there is none."""
+    try:
+        return function(item), ""
+    except (ContactError, ValueError) as error:
+        return None, str(error) or type(error).__name__
 
 
 def _cell(value: object) -> str:

@@ -10,47 +10,29 @@ Writes:  DIR/report/index.html
 
 from __future__ import annotations
 
-import argparse
-import sys
-from collections.abc import Sequence
+from argparse import Namespace
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from studies.files import json_text
+from studies.options import Parser, tool
 from studies.page import write_page
-from studies.record import SCHEMA
 
-COMMAND = "python -m studies.report"
+
+def report(given: Namespace) -> tuple[str, Mapping[str, object]]:
+    """Write the page."""
+    path, found, missing = write_page(given.out)
+    faults = [fault for stored in found for fault in stored.faults]
+    lines = [*faults, *([f"not run: {', '.join(missing)}"] if missing else [])]
+    lines += [f"{len(found)} studies, {path.stat().st_size / 1e6:.1f} MB in {path}"]
+    studies = [stored.study for stored in found]
+    return "\n".join(lines), {"page": path, "studies": studies, "missing": missing, "faults": faults}
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Write the page; returns 0, or 2 for wrong use and where there are no results."""
-    parser = argparse.ArgumentParser(
-        prog=COMMAND, description=__doc__, allow_abbrev=False,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )  # fmt: skip
+    parser = Parser("python -m studies.report", __doc__ or "")
     parser.add_argument("--out", type=Path, default=Path("results"), metavar="DIR", help="folder of results")
-    parser.add_argument("--json", action="store_true", help="print what was done as one JSON object")
-    try:
-        given = parser.parse_args(argv)
-    except SystemExit as leaving:
-        return 0 if leaving.code in (None, 0) else 2
-    answer: dict[str, object] = {"schema": SCHEMA, "study": "report"}
-    try:
-        path, found, missing = write_page(given.out)
-    except (ValueError, OSError) as error:
-        print(f"{COMMAND}: {error}", file=sys.stderr)
-        if given.json:
-            print(json_text({**answer, "status": "refused", "error": str(error), "exit_code": 2}))
-        return 2
-    faults = [fault for stored in found for fault in stored.faults]
-    for sentence in [*faults, *([f"not run: {', '.join(missing)}"] if missing else [])]:
-        print(sentence, file=sys.stderr)
-    print(f"{COMMAND}: {len(found)} studies, {path.stat().st_size / 1e6:.1f} MB in {path}", file=sys.stderr)
-    if given.json:
-        studies = [stored.study for stored in found]
-        done = {"status": "done", "page": path, "studies": studies, "missing": missing, "faults": faults}
-        print(json_text({**answer, **done, "exit_code": 0}))
-    return 0
+    return tool(parser, argv, report)
 
 
 if __name__ == "__main__":

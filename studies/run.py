@@ -37,9 +37,9 @@ from typing import TextIO, cast
 from beam import SuspiciousValue
 from contact import ContactError
 from studies.executors import duration
-from studies.files import json_text
+from studies.files import SCHEMA, json_text
 from studies.options import add_options, parser_of
-from studies.record import SCHEMA, Run
+from studies.record import Run
 from studies.scene import Scene, read_scene
 
 __all__ = ["Run", "study"]
@@ -115,16 +115,11 @@ class Study:
         with warnings.catch_warnings(record=True) as found:
             warnings.simplefilter("always", SuspiciousValue)
             scene = read_scene(given["scene"], given["overrides"])
-        doubtful = [str(w.message) for w in found if issubclass(w.category, SuspiciousValue)]
-        doubtful = list(dict.fromkeys(doubtful))
+        doubtful = list(dict.fromkeys(str(w.message) for w in found if w.category is SuspiciousValue))
         if given["dump_scene"]:
-            values = {
-                "schema": SCHEMA,
-                "study": self.name,
-                "scene": scene.values(),
-                "provenance": scene.provenance(),
-            }
-            _tell(json_text(values) if given["json"] else scene.dump().rstrip(), output)
+            values = {"scene": scene.values(), "provenance": scene.provenance()}
+            whole = json_text({"schema": SCHEMA, "study": self.name, **values})
+            _tell(whole if given["json"] else scene.dump().rstrip(), output)
             return DONE
         chosen = {**options, **(self.quick if given["quick"] else {})}
         chosen |= {name: given[name] for name in options if name in given}
@@ -139,14 +134,12 @@ class Study:
 
         def close(code: int, status: str, results: Mapping[str, object]) -> None:
             summary = run.close(status, results)
-            took = (
-                f"{command}: {status} {'after' if code == INTERRUPTED else 'in'} {duration(run.wall_time)}; "
-            )
+            took = f"{command}: {status} after {duration(run.wall_time)}"
             if code == INTERRUPTED:
-                run.say(f"{took}what was stored is in {run.folder}; go on with: {run.command}")
+                run.say(f"{took}; what was stored is in {run.folder}; go on with: {run.command}")
             else:
                 failed = f"; {len(run.failures)} failed: {run.failures[0]}" if run.failures else ""
-                run.say(f"{took}{len(run.files)} files in {run.folder}{failed}")
+                run.say(f"{took}; {len(run.files)} files in {run.folder}{failed}")
             if given["json"]:
                 _tell(json_text({**summary, "exit_code": code}), output)
 
@@ -183,8 +176,7 @@ def as_program() -> bool:
 
 @contextlib.contextmanager
 def _clean_output() -> Iterator[TextIO]:
-    """Yield standard output; whatever else is printed meanwhile, even by a library, goes to standard
-    error."""
+    """Yield standard output; what is printed meanwhile, even by a library, goes to standard error."""
     wanted = sys.stdout
     if not as_program():
         with contextlib.redirect_stdout(sys.stderr):
@@ -259,8 +251,7 @@ def _end(code: int) -> None:
         process.terminate()
     for stream in (sys.stdout, sys.stderr):
         with contextlib.suppress(AttributeError, OSError, ValueError):
-            stream.write(
-                "\x1b[?25h" if stream.isatty() else ""
-            )  # a progress bar that is cut off has hidden the cursor
+            # a progress bar that is cut off has hidden the cursor
+            stream.write("\x1b[?25h" if stream.isatty() else "")
             stream.flush()
     os._exit(code)

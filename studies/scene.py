@@ -59,6 +59,16 @@ PLACES = {
     "gap": "stop.gap_m", "frequency of the drive": "drive.frequencies_hz",
     "local_restitution": "single_mode.restitution",
 }  # fmt: skip
+BODIES = {
+    "radius": "tip.ball_radius_m", "youngs_modulus": "tip.ball_young_modulus_pa",
+    "poissons_ratio": "tip.ball_poisson_ratio", "other_modulus": "tip.plate_young_modulus_pa",
+    "other_ratio": "tip.plate_poisson_ratio",
+}  # fmt: skip
+LINEAR = {
+    "stiffness of the contact": "contact.stiffness_n_per_m",
+    "damping of the contact": "contact.damping_ns_per_m",
+}
+"""What a constructor calls a value -> its key."""
 
 SAME_PERIOD = 1e-3
 """Relative change of T within which a spring counts as the letter's: twice the error of its 40.80 ms."""
@@ -131,15 +141,7 @@ def approach_speed(frequency: float, gap: float, excess: float) -> float:
 def hertz_of(scene: Scene) -> HertzContact:
     """Hertz's law for the ball and the plate of the scene."""
     tip = scene.tip
-    with named(
-        {
-            "radius": "tip.ball_radius_m",
-            "youngs_modulus": "tip.ball_young_modulus_pa",
-            "poissons_ratio": "tip.ball_poisson_ratio",
-            "other_modulus": "tip.plate_young_modulus_pa",
-            "other_ratio": "tip.plate_poisson_ratio",
-        }
-    ):
+    with named(BODIES):
         return HertzContact.of_bodies(
             radius=tip.ball_radius_m, youngs_modulus=tip.ball_young_modulus_pa,
             poissons_ratio=tip.ball_poisson_ratio, other_modulus=tip.plate_young_modulus_pa,
@@ -169,12 +171,7 @@ def contact_law_of(scene: Scene) -> ContactLaw:
         middle = sorted(scene.drive.frequencies_hz)[len(scene.drive.frequencies_hz) // 2]
         speed = approach_speed(middle, scene.stop.gap_m, letter.TIME_TRACE_EXCESS)
         stiffness = mass * (math.pi / hertz_of(scene).contact_time(mass, speed)) ** 2
-    with named(
-        {
-            "stiffness of the contact": "contact.stiffness_n_per_m",
-            "damping of the contact": "contact.damping_ns_per_m",
-        }
-    ):
+    with named(LINEAR):
         return LinearContact(stiffness=stiffness, damping=keys.damping_ns_per_m)
 
 

@@ -12,7 +12,9 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal, cast
 
 import numpy as np
@@ -20,7 +22,7 @@ from numpy.typing import NDArray
 
 import beam
 from beam import LeafSpring, ModalModel, Modes, StripSection
-from studies.scene_keys import SceneError
+from studies.scene_keys import MODE_LISTS, SceneError
 from studies.scene_values import Scene, named
 
 __all__ = [
@@ -43,6 +45,14 @@ TAPE_KEYS = {
     "thickness": "spring.tape_thickness_m", "youngs_modulus": "spring.tape_modulus_pa",
     "poissons_ratio": "spring.tape_poisson_ratio", "density": "spring.tape_density_kg_m3",
     "loss_factor": "spring.tape_loss_factor",
+}  # fmt: skip
+DAMPING_KEYS = {
+    "ratio": "damping.ratio", "loss_factor": "damping.loss_factor", "decay_rate": "damping.decay_rate_per_s",
+    "mass_coefficient": "damping.rayleigh_alpha_per_s", "stiffness_coefficient": "damping.rayleigh_beta_s",
+}  # fmt: skip
+MODAL_KEYS = {
+    "omega": "modal_data.frequencies_hz", "decay_rate": "modal_data.decay_rates_per_s",
+    "phi": "modal_data.tip_values",
 }  # fmt: skip
 
 
@@ -85,23 +95,19 @@ def spring_of(scene: Scene) -> LeafSpring:
         "rotation" if scene.readout.quantity == "rotation" else "displacement"
     )
     with named(SECTION_KEYS):
-        tip = beam.Tip(mass=scene.tip.mass_kg, rotary_inertia=scene.tip.rotary_inertia_kg_m2)
-        span = None if taped is None else (0.0, keys.tape_coverage * leg)
-        readouts = {READOUT: beam.Readout(at=scene.readout.arc_fraction * length, quantity=quantity)}
+        shapes: dict[str, Callable[..., LeafSpring]]
+        shapes = {"folded_u": beam.folded_u, "cantilever": beam.cantilever}
+        draw = partial(
+            shapes.get(keys.kind, beam.straight_strip),
+            section=bare, damped_section=taped,
+            damped_span=None if taped is None else (0.0, keys.tape_coverage * leg),
+            tip=beam.Tip(mass=scene.tip.mass_kg, rotary_inertia=scene.tip.rotary_inertia_kg_m2),
+            readouts={READOUT: beam.Readout(at=scene.readout.arc_fraction * length, quantity=quantity)},
+        )  # fmt: skip
         if folded:
-            return beam.folded_u(
-                leg_length=leg,
-                bend_radius=keys.bend_radius_m,
-                section=bare,
-                tip=tip,
-                damped_section=taped,
-                damped_span=span,
-                readouts=readouts,
-            )
+            return draw(leg_length=leg, bend_radius=keys.bend_radius_m)
         if keys.kind == "cantilever":
-            return beam.cantilever(
-                length=leg, section=bare, tip=tip, damped_section=taped, damped_span=span, readouts=readouts
-            )
+            return draw(length=leg)
         for end, place, support in (("start", 0.0, keys.start_support), ("end", 1.0, keys.end_support)):
             if scene.tip.arc_fraction == place and support in ("clamped", "pinned"):
                 raise SceneError(
@@ -109,16 +115,7 @@ def spring_of(scene: Scene) -> LeafSpring:
                     "the tip could not move there"
                 )
         supports = (cast(beam.Support, keys.start_support), cast(beam.Support, keys.end_support))
-        return beam.straight_strip(
-            length=leg,
-            supports=supports,
-            tip_at=scene.tip.arc_fraction * leg,
-            section=bare,
-            tip=tip,
-            damped_section=taped,
-            damped_span=span,
-            readouts=readouts,
-        )
+        return draw(length=leg, supports=supports, tip_at=scene.tip.arc_fraction * leg)
 
 
 def elements_of(scene: Scene, spring: LeafSpring) -> tuple[int, ...]:
@@ -184,15 +181,7 @@ class MeasuredRates:
 def damping_of(scene: Scene) -> beam.Damping:
     """The rule that gives each mode its decay rate."""
     keys = scene.damping
-    with named(
-        {
-            "ratio": "damping.ratio",
-            "loss_factor": "damping.loss_factor",
-            "decay_rate": "damping.decay_rate_per_s",
-            "mass_coefficient": "damping.rayleigh_alpha_per_s",
-            "stiffness_coefficient": "damping.rayleigh_beta_s",
-        }
-    ):
+    with named(DAMPING_KEYS):
         if keys.kind == "constant_ratio":
             return beam.ConstantRatio(ratio=keys.ratio)
         if keys.kind == "constant_loss_factor":
@@ -214,22 +203,11 @@ def model_of(scene: Scene) -> ModalModel:
         return model
     data = scene.modal_data
     order = np.argsort(data.frequencies_hz, kind="stable")[: scene.kept_modes]
-    with named(
-        {
-            "omega": "modal_data.frequencies_hz",
-            "decay_rate": "modal_data.decay_rates_per_s",
-            "phi": "modal_data.tip_values",
-        }
-    ):
-        lists = [
-            np.array(values)
-            for values in (data.frequencies_hz, data.decay_rates_per_s, data.tip_values, data.participation)
-        ]
-        if len({values.size for values in lists}) > 1 or not order.size:
-            raise SceneError(
-                "spring.kind modal_data needs lists of equal length, one entry a mode, in modal_data"
-            )
-        frequencies, rates, tip_values, participation = (values[order] for values in lists)
+    lists = [np.array(getattr(data, name)) for name in MODE_LISTS]
+    if len({values.size for values in lists}) > 1 or not order.size:
+        raise SceneError("spring.kind modal_data needs lists of equal length in modal_data, one entry a mode")
+    frequencies, rates, tip_values, participation = (values[order] for values in lists)
+    with named(MODAL_KEYS):
         return ModalModel(
             omega=2.0 * np.pi * frequencies, decay_rate=rates, phi=tip_values, participation=participation,
             static_compliance=data.static_compliance_m_per_n or None, tip_mass=data.tip_mass_kg or None,

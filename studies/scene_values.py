@@ -1,19 +1,16 @@
-"""A scene as values: sections of plain numbers, read from TOML, changed by dotted keys, printed with
-comments.
+"""A scene as values: sections of plain numbers, from TOML, changed by dotted keys, printed with comments.
 
     scene = scene_from_text(text, overrides=["stop.gap_m=0.011"])
     thinner = scene.replace({"spring.thickness_m": 0.00060})
     scene.spring.thickness_m, scene["spring.thickness_m"]
     print(scene.dump())                                    # reads back as the same scene
 
-Values are of the right type here; `studies.scene` builds spring, law and drive from them and so checks
-ranges.
+Values are of the right type here; `studies.scene` builds spring, law and drive of them and so checks ranges.
 """
 
 from __future__ import annotations
 
 import contextlib
-import csv
 import dataclasses
 import math
 import re
@@ -23,27 +20,10 @@ from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
 
-from studies.scene_keys import (
-    GIVEN,
-    MODE_LISTS,
-    SECTIONS,
-    ContactKeys,
-    DampingKeys,
-    DriveKeys,
-    Key,
-    ModalDataKeys,
-    ModesKeys,
-    ReadoutKeys,
-    ScanKeys,
-    SceneError,
-    SingleModeKeys,
-    SpringKeys,
-    StopKeys,
-    TipKeys,
-    Value,
-    keys_of,
-    shown,
-)
+import numpy as np
+
+from studies import scene_keys
+from studies.scene_keys import GIVEN, MODE_LISTS, SECTIONS, Key, SceneError, Value, keys_of, shown
 
 __all__ = ["Scene", "doubts", "named", "scene_from_text"]
 
@@ -55,17 +35,17 @@ USUAL_MODES = 15
 class Scene:
     """The sections, and in `origins` the provenance of values that are no defaults (not part of equality)."""
 
-    spring: SpringKeys = field(default_factory=SpringKeys)
-    tip: TipKeys = field(default_factory=TipKeys)
-    readout: ReadoutKeys = field(default_factory=ReadoutKeys)
-    damping: DampingKeys = field(default_factory=DampingKeys)
-    modes: ModesKeys = field(default_factory=ModesKeys)
-    modal_data: ModalDataKeys = field(default_factory=ModalDataKeys)
-    single_mode: SingleModeKeys = field(default_factory=SingleModeKeys)
-    drive: DriveKeys = field(default_factory=DriveKeys)
-    stop: StopKeys = field(default_factory=StopKeys)
-    contact: ContactKeys = field(default_factory=ContactKeys)
-    scan: ScanKeys = field(default_factory=ScanKeys)
+    spring: scene_keys.SpringKeys = field(default_factory=scene_keys.SpringKeys)
+    tip: scene_keys.TipKeys = field(default_factory=scene_keys.TipKeys)
+    readout: scene_keys.ReadoutKeys = field(default_factory=scene_keys.ReadoutKeys)
+    damping: scene_keys.DampingKeys = field(default_factory=scene_keys.DampingKeys)
+    modes: scene_keys.ModesKeys = field(default_factory=scene_keys.ModesKeys)
+    modal_data: scene_keys.ModalDataKeys = field(default_factory=scene_keys.ModalDataKeys)
+    single_mode: scene_keys.SingleModeKeys = field(default_factory=scene_keys.SingleModeKeys)
+    drive: scene_keys.DriveKeys = field(default_factory=scene_keys.DriveKeys)
+    stop: scene_keys.StopKeys = field(default_factory=scene_keys.StopKeys)
+    contact: scene_keys.ContactKeys = field(default_factory=scene_keys.ContactKeys)
+    scan: scene_keys.ScanKeys = field(default_factory=scene_keys.ScanKeys)
     origins: tuple[tuple[str, str], ...] = field(default=(), compare=False, repr=False)
 
     def __getitem__(self, key: str) -> Value:
@@ -209,28 +189,25 @@ def with_measured_modes(scene: Scene) -> Scene:
     The file has the names of the four lists of [modal_data] as its heading, in any order, and one line of
     comma-separated numbers in the units of the keys for each mode; lines that begin with # are skipped.
     """
-    path, name = Path(scene.modal_data.file), f"modal_data.file {shown(scene.modal_data.file)}"
+    name = f"modal_data.file {shown(scene.modal_data.file)}"
     if any(getattr(scene.modal_data, entry) for entry in MODE_LISTS):
         raise SceneError("modal_data gives its modes twice, as lists and as a file: drop one of them")
     try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-        wanted = [line for line in lines if line.strip() and not line.lstrip().startswith("#")]
-        rows = [[cell.strip() for cell in row] for row in csv.reader(wanted)]
-    except (OSError, ValueError, csv.Error) as error:
-        reason = getattr(error, "strerror", None) or "it is no table of numbers in UTF-8"
-        raise SceneError(f"{name} cannot be read: {reason}") from error
-    if not rows or sorted(rows[0]) != sorted(MODE_LISTS):
-        raise SceneError(f"{name} must begin with the heading {','.join(MODE_LISTS)} (in any order)")
-    columns: dict[str, object] = {"modal_data.file": ""}
-    for number, row in enumerate(rows[1:], start=1):
-        if len(row) != len(MODE_LISTS):
-            raise SceneError(f"{name} has {len(row)} values, not {len(MODE_LISTS)}, for mode {number}")
-    for place, column in enumerate(rows[0]):
-        try:
-            columns[f"modal_data.{column}"] = [float(row[place]) for row in rows[1:]]
-        except ValueError as error:
-            raise SceneError(f"{name}, {column}: {error}") from None
-    return scene.replace(columns)
+        text = Path(scene.modal_data.file).read_text(encoding="utf-8-sig")
+        heading, *rows = (line for line in text.splitlines() if line.strip()[:1] not in ("", "#"))
+        if not rows:
+            raise ValueError("it holds no mode")
+        columns = np.loadtxt(rows, delimiter=",", ndmin=2).T
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or " ".join(str(error).split())
+        raise SceneError(f"{name} cannot be read as a table of numbers: {reason}") from error
+    found = [word.strip() for word in heading.split(",")]
+    if sorted(found) != sorted(MODE_LISTS) or len(columns) != len(found):
+        raise SceneError(f"{name} must have the columns {','.join(MODE_LISTS)} (in any order)")
+    lists: dict[str, object] = {
+        f"modal_data.{key}": tuple(c) for key, c in zip(found, columns.tolist(), strict=True)
+    }
+    return scene.replace({"modal_data.file": "", **lists})
 
 
 def doubts(scene: Scene) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""The structure of the packages: who imports whom, what importing costs, what is public, what is shipped."""
+"""Who imports whom, what importing costs, what is public, what is shipped."""
 
 from __future__ import annotations
 
@@ -8,206 +8,133 @@ import json
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
 from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
 
+from studies import programs
+
 ROOT = Path(__file__).resolve().parent.parent
+PACKAGES = ("beam", "contact", "studies")
+DOORS = ("beam", "beam.space", "contact", "contact.orbits", "contact.integrators")
+"""Where studies get names from: what these export, and nothing behind them."""
 
-#: A file imports only files above it. A name that ends in .* stands for every file of a subpackage.
-ORDER = {
-    "beam": (
-        "parameters",
-        "material",
-        "section",
-        "centreline",
-        "spring",
-        "spring_shapes",
-        "pieces",
-        "strip_element",
-        "assembly",
-        "frequency_equation",
-        "modes",
-        "damping",
-        "modal_model",
-        "reduction",
-        "guided_leg",
-        "space.section",
-        "space.spring",
-        "space.element",
-        "space.modes",
-        "space",
-        "spring_mesh",
-        "export",
-    ),
-    "contact": (
-        "compiled",
-        "errors",
-        "vector_loops",
-        "trajectory",
-        "drive",
-        "laws",
-        "stop",
-        "flight.elementary",
-        "flight.motion",
-        "flight.modal_flow",
-        "flight.bounds",
-        "flight.polynomial_root",
-        "flight.tip_search",
-        "flight.crossing",
-        "flight.sampled_crossing",
-        "flight",
-        "oscillator",
-        "recorder",
-        "touch.series",
-        "touch.time_series",
-        "touch.newton",
-        "touch.delayed",
-        "touch.linear",
-        "touch.hertz",
-        "touch",
-        "touch.tangents",
-        "event_loop",
-        "exact_run",
-        "integrators.*",
-        "simulation",
-        "single_mode.*",
-        "single_mode",
-        "strobed_map",
-        "strobed_motion",
-        "touch_flow",
-        "stroboscope",
-        "collision",
-        "nordmark",
-        "maximal_orbits",
-        "orbits.driven_modes",
-        "orbits.saltation",
-        "orbits.single_impact",
-        "orbits.kick",
-        "orbits.shooting",
-        "orbits.events",
-        "orbits.continuation",
-        "orbits.settling",
-        "orbits.scan",
-        "orbits.ends",
-        "orbits.settled_column",
-        "orbits.amplitude_scan",
-        "orbits.lyapunov",
-        "orbits",
-        "warm_up",
-    ),
-}
+FLOW = {
+    "beam": ("parameters", "material", "section", "centreline", "spring", "assembly", "modes", "reduction",
+             "space", "spring_mesh", "export"),
+    "contact": ("trajectory", "laws", "flight", "oscillator", "recorder", "touch", "event_loop", "exact_run",
+                "integrators", "simulation", "stroboscope", "collision", "orbits", "warm_up"),
+}  # fmt: skip
+"""Files and folders in the order in which they build on each other: none needs a later one."""
 
-SLOW = ("pyvista", "vtkmodules", "matplotlib", "meshio")
+SLOW = ("matplotlib", "meshio", "pyvista", "skfem", "vtkmodules")
 
 
-def name_of(path: Path, root: Path = ROOT) -> str:
+def name_of(path: Path, root: Path) -> str:
     """Dotted name of a module."""
-    parts = path.relative_to(root).with_suffix("").parts
-    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+    return ".".join(path.relative_to(root).with_suffix("").parts).removesuffix(".__init__")
 
 
 def modules(package: str, root: Path = ROOT) -> dict[str, Path]:
     return {name_of(path, root): path for path in sorted((root / package).rglob("*.py"))}
 
 
-def imports_of(name: str, path: Path) -> set[tuple[str, str]]:
+def imports_of(name: str, path: Path) -> Iterator[tuple[str, str]]:
     """(module, name in it or "") of every import in a file, also of those inside functions."""
     base = name.split(".") if path.name == "__init__.py" else name.split(".")[:-1]
-    found: set[tuple[str, str]] = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            found |= {(alias.name, "") for alias in node.names}
+            yield from ((alias.name, "") for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             start = base[: len(base) + 1 - node.level] if node.level else []
             module = ".".join([*start, *([node.module] if node.module else [])])
-            found |= {(module, alias.name) for alias in node.names}
-    return found
+            yield from ((module, alias.name) for alias in node.names)
 
 
 def graph(package: str, root: Path = ROOT) -> dict[str, set[str]]:
-    """Module -> the modules of the same package that it imports."""
+    """Module -> the modules of the same package that it imports; the package itself gathers them all."""
     known = modules(package, root)
-    edges: dict[str, set[str]] = {}
-    for name, path in known.items():
-        targets = set()
-        for module, imported in imports_of(name, path):
-            full = f"{module}.{imported}" if imported else module
-            targets.add(full if full in known else module)
-        edges[name] = {target for target in targets if target in known and target != name}
+    inner = known.keys() - {package}
+    edges = {}
+    for name in inner:
+        pairs = [(module, f"{module}.{imported}") for module, imported in imports_of(name, known[name])]
+        edges[name] = {full if full in known else module for module, full in pairs} & (inner - {name})
     return edges
 
 
-def rank(package: str, name: str) -> int:
-    """Place of a module in `ORDER`; the package itself comes last, it gathers the others."""
-    if name == package:
-        return len(ORDER[package])
-    short = name.removeprefix(f"{package}.")
-    slot = short if short in ORDER[package] else f"{short.split('.')[0]}.*"
-    if slot not in ORDER[package]:
-        raise AssertionError(f"{name} has no place in the order of {package}: add it where it belongs")
-    return ORDER[package].index(slot)
+def upward(package: str, root: Path = ROOT) -> list[str]:
+    """Files of the flow that need a later one, directly or through others."""
+    edges, flow = graph(package, root), [f"{package}.{name}" for name in FLOW[package]]
+    needs: dict[str, set[str]] = {}
+    for name in TopologicalSorter(edges).static_order():  # raises where imports go round in a circle
+        needs[name] = edges[name].union(*(needs[other] for other in edges[name]))
+    place = {name: i for name in edges for i, part in enumerate(flow) if f"{name}.".startswith(f"{part}.")}
+    assert set(place.values()) == set(range(len(flow))), "a part of the flow has no file"
+    later = [(name, other) for name in place for other in needs[name] if place.get(other, -1) > place[name]]
+    return [f"{name} needs {other}" for name, other in later]
 
 
-def breaches(package: str, root: Path = ROOT) -> list[str]:
-    found = []
-    for name, targets in graph(package, root).items():
-        for target in targets:
-            here, there = rank(package, name), rank(package, target)
-            inside = here == there < len(ORDER[package]) and ORDER[package][here].endswith(".*")
-            if not (there < here or inside):
-                found.append(f"{name} imports {target}")
-    return found
+@pytest.mark.parametrize("package", FLOW)
+def test_imports_never_run_up(package):
+    assert upward(package) == []
 
 
-@pytest.mark.parametrize("package", sorted(ORDER))
-def test_files_import_only_files_above_them(package):
-    assert not breaches(package)
-    tuple(TopologicalSorter(graph(package)).static_order())  # no cycles, not even inside a subpackage
-
-
-def test_the_order_would_notice_a_file_that_imports_downwards(tmp_path):
+def test_an_import_that_runs_up_would_be_noticed(tmp_path, monkeypatch):
+    monkeypatch.setitem(FLOW, "beam", ("material", "section"))
     (tmp_path / "beam").mkdir()
-    (tmp_path / "beam" / "material.py").write_text("def f():\n    from .section import StripSection\n")
-    (tmp_path / "beam" / "section.py").write_text("import beam.material\n")
-    assert breaches("beam", tmp_path) == ["beam.material imports beam.section"]
-    (tmp_path / "beam" / "helpers.py").write_text("")
-    with pytest.raises(AssertionError, match="no place"):
-        rank("beam", "beam.helpers")
+    (tmp_path / "beam" / "material.py").write_text("def f():\n    from .pieces import Piece\n")
+    (tmp_path / "beam" / "pieces.py").write_text("import beam.section\n")
+    (tmp_path / "beam" / "section.py").write_text("")
+    assert upward("beam", tmp_path) == ["beam.material needs beam.section"]
 
 
-def foreign(package: str, others: tuple[str, ...]) -> set[tuple[str, str]]:
+def foreign(package: str) -> set[tuple[str, str, str]]:
+    """(who, module, name) of the imports from the other packages."""
     return {
-        (module, imported)
+        (name, module, imported)
         for name, path in modules(package).items()
         for module, imported in imports_of(name, path)
-        if module.split(".")[0] in others
+        if module.split(".")[0] in {*PACKAGES, "tests"} - {package}
     }
 
 
-def test_the_beam_knows_nothing_of_contact_and_studies():
-    assert not foreign("beam", ("contact", "studies", "tests"))
+def test_the_beam_knows_nothing_of_the_others_and_contact_little_of_the_beam():
+    """Contact sees the modal model, made by hand or reduced, and the words of refusal."""
+    assert foreign("beam") == set()
+    seen = {(module, name) for _, module, name in foreign("contact") if module != "beam.parameters"}
+    assert seen <= {("beam", "ModalModel"), ("beam", "single_mode")}
 
 
-def test_contact_sees_of_the_beam_only_the_modal_model():
-    seen = {entry for entry in foreign("contact", ("beam",)) if entry[0] != "beam.parameters"}  # refusals
-    assert seen <= {("beam", "ModalModel")}
-    assert not foreign("contact", ("studies", "tests"))
+def test_studies_import_public_names_only():
+    public = {(door, name) for door in DOORS for name in importlib.import_module(door).__all__}
+    public |= {(door.rpartition(".")[0], door.rpartition(".")[2]) for door in DOORS}
+    public |= {(door, "") for door in DOORS}
+    used = foreign("studies")
+    for who, door in [(who, module) for who, module, name in used if not name]:
+        tree = ast.parse(modules("studies")[who].read_text(encoding="utf-8"))
+        reached = {ast.unparse(node) for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
+        used |= {(who, *one.rsplit(".", 1)) for one in reached if one.rpartition(".")[0] == door}
+    assert {entry for entry in used if entry[1:] not in public} == set()
 
 
-def test_studies_import_no_private_names():
-    private = {(m, n) for m, n in foreign("studies", ("beam", "contact")) if n.startswith("_")}
-    assert not private
+def test_no_study_and_no_shared_file_imports_a_study():
+    """Only ``python -m studies`` does, which runs the main one."""
+    studies = set(programs.names())
+    assert studies
+    for name, targets in graph("studies").items():
+        own = name.split(".")[1]
+        others = {target for target in targets if target.split(".")[1] in studies - {own}}
+        assert not others or name == "studies.__main__", f"{name} imports {others}"
 
 
 @pytest.mark.parametrize(
     ("statement", "unwanted"),
     [
-        ("import beam", ("numpy", "scipy", "skfem")),
-        ("import contact", ("skfem", "scipy.optimize", *SLOW)),
-        ("import beam.export, beam.space", SLOW),
-        ("import studies.modes", SLOW),
+        ("import beam", ("numpy", "scipy", *SLOW)),
+        ("import contact", ("scipy.optimize", *SLOW)),
+        ("import beam.export, beam.space, studies.modes", ("matplotlib", "meshio", "pyvista", "vtkmodules")),
     ],
 )
 def test_slow_packages_are_imported_only_where_they_are_used(statement, unwanted):
@@ -217,39 +144,29 @@ def test_slow_packages_are_imported_only_where_they_are_used(statement, unwanted
     assert not set(json.loads(answer.stdout)) & set(unwanted)
 
 
-@pytest.mark.parametrize("package", ["beam", "contact"])
-def test_public_names_exist_and_are_sorted(package):
-    module = importlib.import_module(package)
-    names = list(module.__all__)
-    assert names == sorted(names) and len(names) == len(set(names)) > 0
-    for name in names:
-        assert getattr(module, name) is not None
-    seen_by_type_checkers = {
-        node.asname or node.name
-        for statement in ast.walk(ast.parse((ROOT / package / "__init__.py").read_text(encoding="utf-8")))
-        if isinstance(statement, ast.ImportFrom) and (statement.level or statement.module.startswith(package))
-        for node in statement.names
-    }
-    assert seen_by_type_checkers == set(names)
+@pytest.mark.parametrize("door", DOORS)
+def test_public_names_exist_and_type_checkers_see_them(door):
+    module = importlib.import_module(door)
+    assert len(module.__all__) == len(set(module.__all__)) > 0
+    assert all(getattr(module, name) is not None for name in module.__all__)
+    tree = ast.parse(Path(str(module.__file__)).read_text(encoding="utf-8"))
+    told = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+    told |= {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef | ast.alias)}
+    assert set(module.__all__) <= told
 
 
 def test_what_is_shipped_has_the_scenes_and_the_types(tmp_path):
     """The content of a wheel: what setuptools' build_py copies."""
     source, built = tmp_path / "source", tmp_path / "built"
-    source.mkdir()
-    for package in ("beam", "contact", "studies"):
+    for package in PACKAGES:
         shutil.copytree(ROOT / package, source / package, ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copy(ROOT / "pyproject.toml", source)
     (source / "README.md").write_text("")
     command = [sys.executable, "-c", "import setuptools; setuptools.setup()", "-q", "build_py"]
     subprocess.run([*command, "--build-lib", str(built)], cwd=source, check=True, capture_output=True)
     shipped = {path.relative_to(built).as_posix() for path in built.rglob("*") if path.is_file()}
-    here = {
-        path.relative_to(ROOT).as_posix()
-        for package in ("beam", "contact", "studies")
-        for pattern in ("*.py", "py.typed", "*.toml", "*.j2")
-        for path in (ROOT / package).rglob(pattern)
-    }
-    assert here <= shipped
+    patterns = ("*.py", "py.typed", "*.toml", "*.j2")
+    here = {path for package in PACKAGES for pattern in patterns for path in (ROOT / package).rglob(pattern)}
+    assert {path.relative_to(ROOT).as_posix() for path in here} <= shipped
     assert {"beam/py.typed", "contact/py.typed", "studies/py.typed", "studies/scenes/letter.toml"} <= shipped
     assert not any(name.startswith(("tests", "results")) for name in shipped)

@@ -189,7 +189,6 @@ def searched_flight(motion, flight, base, duration, order):
         if s == 0.0:
             return UNRESOLVED, 0.0
     sampled = n if order > 0 else max(must, 1)
-    u, v, un, vn = flight[START_U], flight[START_V], flight[U], flight[V]
     distance = 0.0
     height, rate, bend, third = flight[HEIGHT], flight[RATE], flight[BEND], flight[THIRD]
     while s < duration:
@@ -201,7 +200,7 @@ def searched_flight(motion, flight, base, duration, order):
         k, ready = 0, 0
         while k < sampled:
             if k == ready:
-                flow(motion, u, v, ready, ready + LANES, s, un, vn)
+                flow(motion, flight, ready, ready + LANES, s)
                 tip_rows(motion.modes, flight, ready, ready + LANES)
                 ready += LANES
             y0 += height[k]

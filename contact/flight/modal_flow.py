@@ -31,7 +31,7 @@ import math
 
 import numpy as np
 
-from contact.compiled import kernel
+from contact.compiled import inlined, kernel
 from contact.flight.elementary import EPS, FARTHEST, exponential, sine_cosine, turned, two_product
 from contact.flight.motion import (
     DAMPED,
@@ -119,10 +119,14 @@ def mode_flow(modes, k, u, v, t):
 
 
 @kernel
-def ringing_flow(modes, u, v, start, stop, t, u_out, v_out):
-    """`flow` for modes that are under-damped and without load: a loop of vector instructions."""
+def ringing_flow(modes, flight, start, stop, t):
+    """`flow` for modes that are under-damped and without load: a loop of vector instructions.
+
+    It has vector loads as well because its index has no sign to look at.
+    """
     decay, damped, low, square = modes[DECAY], modes[DAMPED], modes[LOW], modes[SQUARE]
-    for k in range(start, stop):
+    u, v, u_out, v_out = flight[START_U], flight[START_V], flight[U], flight[V]
+    for k in range(np.uintp(start), np.uintp(stop)):
         p, e = two_product(damped[k], t)
         s, c = turned(p, e + low[k] * t)
         half = 0.5 * decay[k]
@@ -133,14 +137,16 @@ def ringing_flow(modes, u, v, start, stop, t, u_out, v_out):
         v_out[k] = cn * vn - sn * (square[k] * un + half * vn)
 
 
-@kernel
-def flow(motion, u, v, start, stop, t, u_out, v_out):
-    """Deviations of modes `start` to `stop` after a time `t` [s], one mode per element of the arrays."""
+@inlined
+def flow(motion, flight, start, stop, t):
+    """Deviations of modes `start` to `stop` a time `t` [s] into the flight, in its rows U and V."""
     if motion.plain and motion.phase_rate * abs(t) < FARTHEST:
-        ringing_flow(motion.modes, u, v, start, stop, t, u_out, v_out)
+        ringing_flow(motion.modes, flight, start, stop, t)
     else:
         for k in range(start, stop):
-            u_out[k], v_out[k] = mode_flow(motion.modes, k, u[k], v[k], t)
+            flight[U, k], flight[V, k] = mode_flow(
+                motion.modes, k, flight[START_U, k], flight[START_V, k], t
+            )
 
 
 @kernel
@@ -166,18 +172,20 @@ def apply_flow(flows, u, v):
 
 
 @kernel
-def propagate(motion, u, v, t, u_out, v_out):
-    """Deviations of all modes after a time `t` [s]; `u_out`, `v_out` may be `u`, `v` themselves."""
-    flow(motion, u, v, 0, u.size, t, u_out, v_out)
-
-
-@kernel
 def carry(motion, flight, t, u, v):
     """Deviations (u, v) of all modes a time `t` [s] into the flight."""
-    flow(motion, flight[START_U], flight[START_V], 0, flight.shape[1], t, flight[U], flight[V])
+    flow(motion, flight, 0, flight.shape[1], t)
     for k in range(u.size):
         u[k] = flight[U, k]
         v[k] = flight[V, k]
+
+
+@kernel
+def propagate(motion, u, v, t, u_out, v_out):
+    """Deviations of all modes after a time `t` [s]; `u_out`, `v_out` may be `u`, `v` themselves."""
+    flight = new_flight(motion)
+    load_state(flight, u, v)
+    carry(motion, flight, t, u_out, v_out)
 
 
 @kernel

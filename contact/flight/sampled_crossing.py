@@ -21,7 +21,7 @@ import math
 
 from contact.compiled import kernel
 from contact.flight.crossing import CROSSES, FREE
-from contact.flight.modal_flow import START_U, START_V, apply_flow, propagate, tip_rounding, tip_state
+from contact.flight.modal_flow import START_U, START_V, apply_flow, carry, tip_rounding, tip_state
 from contact.flight.tip_search import find_peak, find_root, tip_now
 
 __all__ = ["first_sampled_crossing"]
@@ -86,7 +86,7 @@ def first_sampled_crossing(motion, flight, base, duration, order, spacing, flows
         if abs(until - s - spacing) <= ALIGNED * spacing:
             apply_flow(flows, su, sv)
         else:
-            propagate(motion, u, v, until, su, sv)
+            carry(motion, flight, until, su, sv)
         height, new_rate, _acceleration = tip_state(motion, base + until, su, sv)
         if height > margin:
             return CROSSES, root_between(motion, flight, base, s, until, margin), count

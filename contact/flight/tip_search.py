@@ -12,7 +12,7 @@ import math
 
 from contact.compiled import kernel
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import START_U, START_V, U, V, flow, load_state, new_flight, tip_state
+from contact.flight.modal_flow import U, V, flow, load_state, new_flight, tip_state
 
 __all__ = ["find_peak", "find_root", "tip_at", "tip_now"]
 
@@ -20,7 +20,7 @@ __all__ = ["find_peak", "find_root", "tip_at", "tip_now"]
 @kernel
 def tip_now(motion, flight, base, s):
     """Tip displacement relative to the stop and two derivatives, a time `s` into the flight."""
-    flow(motion, flight[START_U], flight[START_V], 0, flight.shape[1], s, flight[U], flight[V])
+    flow(motion, flight, 0, flight.shape[1], s)
     return tip_state(motion, base + s, flight[U], flight[V])
 
 

@@ -31,20 +31,11 @@ __all__ = [
     "method_for",
 ]
 
+STEPPED = (Splitting, CentralDifference, GeneralisedAlpha, MoreauJean, NonsmoothGeneralisedAlpha)
+
 INTEGRATORS: dict[str, type[Integrator]] = {
     **dict.fromkeys(EXACT_NAMES.values(), Exact),
-    **{
-        method.name: method
-        for method in (
-            Exact,
-            SampledFlight,
-            Splitting,
-            CentralDifference,
-            GeneralisedAlpha,
-            MoreauJean,
-            NonsmoothGeneralisedAlpha,
-        )
-    },
+    **{method.name: method for method in (Exact, SampledFlight, *STEPPED)},
 }
 """Every method of the package by its name."""
 

@@ -22,13 +22,17 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
 from contact.compiled import kernel
-from contact.flight.motion import Motion
-from contact.integrators.equation import contact_force, tip_of
-from contact.integrators.fixed_step import check_step, fixed_step_run
-from contact.integrators.grid import DONE, end_contact_step, passes
+from contact.flight.motion import DECAY, WEIGHT, Motion
+from contact.integrators.fixed_step import check_step, fixed_step_run, stiffness_at
+from contact.integrators.grid import (
+    DONE,
+    accelerations,
+    contact_force,
+    end_contact_step,
+    force_in_flight,
+    tip_of,
+)
 from contact.integrators.method import Integrator
 from contact.laws import HERTZ, LINEAR
 from contact.oscillator import ImpactOscillator
@@ -38,40 +42,27 @@ __all__ = ["CentralDifference"]
 
 
 @kernel
-def central_difference(equation, grid, half, lagged):
-    """March from the grid point reached; `half`, shape (n_modes,), carries v_{n+1/2}."""
-    place, h, q, v, q0, v0 = grid.places[0], grid.step, grid.q, grid.v, grid.q0, grid.v0
-    starts = place.evaluations == 0
-    for i in range(-1 if starts else place.step, grid.steps):
-        # step -1 is the half step before the first, which leaves the tip where it is
-        first = i < 0
-        length = 0.5 * h if first else h
+def central_difference(grid, numbers):
+    """March from the grid point reached; numbers: v_{n+1/2}, shape (n_modes,), and whether damping lags."""
+    half, lagged = numbers
+    place, h, q, v, motion = grid.places[0], grid.step, grid.q, grid.v, grid.motion
+    while place.step < grid.steps:
         for k in range(q.size):
-            q0[k], v0[k] = q[k], v[k]
-            if first:
-                half[k] = v[k]
-            else:
-                q[k] += h * half[k]
-        swing = math.sin(equation.drive * (equation.clock + (i + 1) * h))
-        depth, rate = tip_of(equation, q, half)
-        push = contact_force(equation, depth, rate)
+            q[k] += h * half[k]
+        swing = math.sin(motion.drive * (grid.clock + (place.step + 1) * h))
+        depth, rate = tip_of(motion, q, half)
+        push = contact_force(motion, depth, rate)
         place.evaluations += 1
         for k in range(q.size):
-            force = (
-                equation.constant[k] + equation.push[k] * swing - equation.stiffness[k] * q[k]
-                - equation.phi[k] * push
-            )  # fmt: skip
-            old, c = half[k], equation.decay[k] * length
-            if lagged or first:
-                half[k] = old + length * force - c * old
-            else:
-                half[k] = ((1.0 - 0.5 * c) * old + length * force) / (1.0 + 0.5 * c)
-            if not first:
-                v[k] = 0.5 * (old + half[k])
-        if not first and not passes(grid, 1, depth, depth < 0.0):
-            status = end_contact_step(equation, grid)
-            if status != DONE:
-                return status
+            old = half[k]
+            new = old + h * (force_in_flight(grid, k, swing, q, half) - motion.modes[WEIGHT, k] * push)
+            if not lagged:
+                c = 0.5 * h * motion.modes[DECAY, k]
+                new = (new + c * old) / (1.0 + c)
+            half[k], v[k] = new, 0.5 * (old + new)
+        status = end_contact_step(grid, depth)
+        if status != DONE:
+            return status
     return DONE
 
 
@@ -104,16 +95,13 @@ class CentralDifference(Integrator):
     def critical_stiffness(self, motion: Motion) -> float:
         """Contact stiffness at which the highest frequency reaches the limit, below zero if a mode is beyond
         it [N/m]."""
-        h = self.step
-        squares = 4.0 / h**2 - (2.0 * motion.decay / h if self.lagged else 0.0)
-        room = squares - motion.omega**2
-        return float(1.0 / np.sum(motion.phi**2 / room)) if np.all(room > 0.0) else -1.0
+        lag = 2.0 * motion.decay / self.step if self.lagged else 0.0
+        return stiffness_at(motion, 4.0 / self.step**2 - lag)
 
     def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
         """The motion of `run`."""
-        critical = math.inf if self.beyond_limit else self.critical_stiffness(oscillator.motion())
-        half = np.zeros(oscillator.n_modes)
         return fixed_step_run(
-            oscillator, run, step=self.step, critical=critical,
-            march=lambda equation, grid: central_difference(equation, grid, half, self.lagged),
+            oscillator, run, step=self.step, march=central_difference,
+            method=lambda grid: (grid.v + 0.5 * self.step * accelerations(grid), self.lagged),
+            critical=math.inf if self.beyond_limit else self.critical_stiffness(oscillator.motion()),
         )  # fmt: skip

@@ -11,15 +11,14 @@ from beam.parameters import brief, is_number, require
 from contact.errors import Diverged, StepTooLarge
 from contact.flight.modal_flow import steady_motion
 from contact.flight.motion import Motion
-from contact.integrators.equation import Equation, equation_of, tip_of
 from contact.integrators.grid import DIVERGED, DONE, FULL, PLACE, Grid
 from contact.laws import LINEAR
 from contact.oscillator import ImpactOscillator
-from contact.recorder import grown, open_touch, put_sample, recorder_for, sample_due, trajectory_of
+from contact.recorder import Recorder, grown, open_touch, recorder_for, trajectory_of
 from contact.touch import TOUCHES
 from contact.trajectory import CONTACT, IMPACT, OUTSIDE, Run, State, Trajectory
 
-__all__ = ["check_step", "fixed_step_run"]
+__all__ = ["check_step", "fixed_step_run", "stiffness_at"]
 
 
 def check_step(step: float) -> None:
@@ -27,9 +26,15 @@ def check_step(step: float) -> None:
     require(is_number(step) and step > 0, f"step is {brief(step)} s; it must be finite and above zero")
 
 
-def _place(equation: Equation, time: float, q: np.ndarray, v: np.ndarray) -> dict[str, float]:
-    depth, rate = tip_of(equation, q, v)
-    return {"time": time, "gap": -float(depth), "velocity": float(rate)}
+def stiffness_at(motion: Motion, square: float | np.ndarray) -> float:
+    """Stiffness of a lasting contact at which the highest squared frequency reaches `square` [N/m].
+
+    The frequencies of K + k phi phi^T are the roots of 1 + k sum phi^2/(omega^2 - lambda) = 0, so that k =
+    1/sum phi^2/(lambda - omega^2); below zero if a mode lies higher already.  `square` [rad^2/s^2] may differ
+    from mode to mode, shape (n_modes,).
+    """
+    room = square - motion.omega**2
+    return float(1.0 / np.sum(motion.phi**2 / room)) if np.all(room > 0.0) else -1.0
 
 
 def _too_large(step: float, detail: str, place: dict[str, float]) -> StepTooLarge:
@@ -38,25 +43,50 @@ def _too_large(step: float, detail: str, place: dict[str, float]) -> StepTooLarg
     return error
 
 
-def _refuse(equation: Equation, run: Run, step: float, critical: float) -> None:
+def _refuse(motion: Motion, run: Run, step: float, critical: float, place: dict[str, float]) -> None:
     """ValueError for a start behind the stop, StepTooLarge for a step that cannot be stable."""
-    q, v = run.start.displacement, run.start.velocity
-    place = _place(equation, run.start.time, q, v)
-    within = step * float(np.abs(equation.phi * v).sum()) + 1e-12 * max(equation.gap, 1e-6)
-    if CONTACT not in TOUCHES[equation.law].REGIMES and -place["gap"] > within:
+    within = step * float(np.abs(motion.phi * run.start.velocity).sum()) + 1e-12 * max(motion.gap, 1e-6)
+    if CONTACT not in TOUCHES[motion.law].REGIMES and -place["gap"] > within:
         raise ValueError(
             f"displacement of the state puts the tip {-place['gap']:.3g} m behind the stop; with an impact "
             "law it must start on the near side"
         )
-    stiff = equation.number0 if equation.law == LINEAR else 0.0
+    stiff = motion.number0 if motion.law == LINEAR else 0.0
     if critical <= 0.0 or stiff > critical:
         bears = "it is unstable even in flight" if critical <= 0.0 else f"it bears {critical:.4g} N/m"
         raise _too_large(step, f", contact stiffness {stiff:.4g} N/m: {bears}", place)
 
 
+def _in_order(recorder: Recorder, run: Run, period: float) -> tuple[Recorder, np.ndarray]:
+    """Strobes and the end of the run as samples among the others, and their places in the new order.
+
+    The strobes come first, then what was asked for, the end last.
+    """
+    strobes = period * np.arange(1, run.last - run.first + 1)
+    wanted = (run.sample_period - run.first) * period + run.sample_clock
+    clock = np.concatenate([strobes, wanted, [run.clock + run.length]])
+    order = np.argsort(clock, kind="stable")
+    return recorder._replace(
+        sample_period=np.full(clock.size, run.first), sample_clock=clock[order],
+        samples=np.empty((clock.size, recorder.samples.shape[1])),
+    ), np.argsort(order)  # fmt: skip
+
+
+def _sorted_out(recorder: Recorder, run: Run, order: np.ndarray, period: float, begun: bool) -> Recorder:
+    """The opposite: strobes, with the touches that began since the one before, and samples.
+
+    The first touch counts for none if it was `begun` when the run began.
+    """
+    passed, rows = run.last - run.first, recorder.samples[order]
+    began = recorder.log["start"][int(begun) : recorder.marks[0]["logged"]]
+    edges = np.concatenate([[-math.inf], period * np.arange(1, passed + 1)])
+    counts = np.diff(np.searchsorted(began, edges, side="right"))
+    return recorder._replace(strobes=rows[:passed], counts=counts, samples=rows[passed:-1])
+
+
 def fixed_step_run(
-    oscillator: ImpactOscillator, run: Run, *, step: float, march: Callable[[Equation, Grid], int],
-    critical: float = math.inf, motion: Motion | None = None,
+    oscillator: ImpactOscillator, run: Run, *, step: float, march: Callable[..., int],
+    method: Callable[[Grid], object], critical: float = math.inf, deviations: bool = False,
 ) -> Trajectory:  # fmt: skip
     """The motion of `run` on a grid of steps.
 
@@ -66,12 +96,14 @@ def fixed_step_run(
     run : Run
     step : float
         Time step [s]; strobes, samples and the end of the run need not lie on the grid.
-    march : callable
-        march(equation, grid) -> status: the method's own loop, from grid point places[0].step to `steps`.
+    march : compiled function
+        march(grid, numbers) -> status: the method's own loop, from grid point places[0].step to `steps`.
+    method : callable
+        method(grid) -> numbers: what the march needs besides, made for the grid before it starts.
     critical : float
         Largest contact stiffness that the step bears [N/m].
-    motion : Motion, optional
-        If given, the method carries deviations from its steady motion.
+    deviations : bool
+        Whether the method carries deviations from the steady motion.
 
     Raises
     ------
@@ -80,56 +112,51 @@ def fixed_step_run(
     StepTooLarge, Diverged
         See ``contact.errors``.
     """
-    n, period, start = oscillator.n_modes, oscillator.period, run.start
-    equation = equation_of(oscillator, run.clock)
-    _refuse(equation, run, step, critical)
+    n, period, start, motion = oscillator.n_modes, oscillator.period, run.start, oscillator.motion()
+    forced = CONTACT in TOUCHES[motion.law].REGIMES
 
-    def steady(clock: float) -> tuple[np.ndarray, np.ndarray]:
-        if motion is None:
-            return np.zeros(n), np.zeros(n)
-        q, v = steady_motion(motion, np.array([clock]))
-        return q[0], v[0]
+    def steady(clock: float) -> np.ndarray:
+        """What the method leaves out of (q, v), shape (2, n_modes)."""
+        return np.squeeze(steady_motion(motion, np.array([clock])), 1) if deviations else np.zeros((2, n))
 
-    mean_q, mean_v = steady(run.clock)
-    q, v = start.displacement - mean_q, start.velocity - mean_v
-    recorder = recorder_for(run, n, period)
-    end_clock = run.clock + run.length
-    recorder = recorder._replace(  # the end of the run is one more sample
-        sample_period=np.append(recorder.sample_period, run.first),
-        sample_clock=np.append(recorder.sample_clock, end_clock),
-        samples=np.empty((run.times.size + 1, 2 * n)),
-    )
-    while recorder.marks[0]["sampled"] < run.times.size and sample_due(recorder, run.first, run.clock):
-        put_sample(recorder, q, v)
-    depth, rate = tip_of(equation, start.displacement, start.velocity)
-    if depth > 0.0 and CONTACT in TOUCHES[equation.law].REGIMES:
-        open_touch(recorder, run.first, run.clock, rate, IMPACT, q, v)
-        recorder.marks["impacts"] = 0  # a touch under way
+    def place(time: float, q: np.ndarray, v: np.ndarray) -> dict[str, float]:
+        return {"time": time, "gap": motion.gap - float(motion.phi @ q), "velocity": float(motion.phi @ v)}
+
+    here = place(start.time, start.displacement, start.velocity)
+    _refuse(motion, run, step, critical, here)
+    q, v = np.array([start.displacement, start.velocity]) - steady(run.clock)
+    recorder, order = _in_order(recorder_for(run, n), run, period)
+    under_way = forced and here["gap"] < 0.0
+    if under_way:
+        open_touch(recorder, run.first, run.clock, here["velocity"], IMPACT, q, v)
     places = np.zeros(1, dtype=PLACE)
     places["due"] = -math.inf  # the first step has to look
+    drive = oscillator.drive
+    base = 0.0 if drive is None else drive.amplitude * drive.angular_frequency**2
     grid = Grid(
-        places=places, step=float(step), clock=float(run.clock), period=float(period),
-        first=int(run.first), steps=math.ceil(run.length / step - 1e-9), critical=float(critical), q=q, v=v,
-        q0=q.copy(), v0=v.copy(), q_at=q.copy(), v_at=v.copy(), recorder=recorder,
+        places=places, motion=motion, push=oscillator.model.participation * base,
+        constant=np.zeros(n) if oscillator.load is None else np.array(oscillator.load), step=float(step),
+        clock=float(run.clock), first=int(run.first), steps=math.ceil(run.length / step - 1e-9),
+        critical=float(critical), q=q, v=v, q0=q.copy(), v0=v.copy(), q_at=q.copy(), v_at=v.copy(),
+        recorder=recorder,
     )  # fmt: skip
-    while (status := march(equation, grid)) == FULL:
+    numbers = method(grid)
+    while (status := march(grid, numbers)) == FULL:
         grid = grid._replace(recorder=grown(grid.recorder))
     if status != DONE:
         reached = run.clock + grid.places[0]["step"] * step
-        mean_q, mean_v = steady(reached)
-        place = _place(equation, start.time - run.clock + reached, grid.q + mean_q, grid.v + mean_v)
+        here = place(start.time - run.clock + reached, *(np.array([grid.q, grid.v]) + steady(reached)))
         if status == DIVERGED:
-            raise Diverged(**place)  # type: ignore[arg-type]
-        raise _too_large(step, ": the contact has become too stiff for it", place)
+            raise Diverged(**here)  # type: ignore[arg-type]
+        raise _too_large(step, ": the contact has become too stiff for it", here)
     recorder = grid.recorder
-    last, (mean_q, mean_v) = recorder.samples[-1], steady(end_clock)
-    q, v = last[:n] + mean_q, last[n:] + mean_v
-    touching = CONTACT in TOUCHES[equation.law].REGIMES and recorder.marks[0]["touching"] == 1
+    q, v = recorder.samples[-1].reshape(2, n) + steady(run.clock + run.length)
+    touching = forced and recorder.marks[0]["touching"] == 1
     end = State(
         displacement=q, velocity=v, time=run.last * period + run.clock_end,
-        regime=CONTACT if touching and equation.phi @ q > equation.gap else OUTSIDE,
+        regime=CONTACT if touching and motion.phi @ q > motion.gap else OUTSIDE,
     )  # fmt: skip
     return trajectory_of(
-        recorder._replace(samples=recorder.samples[:-1]), run, end, period,
-        evaluations=int(grid.places[0]["evaluations"]), motion=motion,
+        _sorted_out(recorder, run, order, period, under_way), run, end, period,
+        evaluations=int(grid.places[0]["evaluations"]), motion=motion if deviations else None,
     )  # fmt: skip

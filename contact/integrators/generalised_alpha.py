@@ -20,39 +20,61 @@ so that one number is unknown: N = N(d* - B N, d'* - G N).  The right side falls
 one root; at the edge d = 0, where a dashpot makes the force jump, N takes the value in between that puts the
 tip there.
 
-Order 2 if gamma = 1/2 - alpha_m + alpha_f, else 1.  Stability: ``amplification``; without damping h omega <=
-(gamma/2 - beta)^(-1/2) for Newmark's method, and no limit at all if 2 beta >= gamma >= 1/2.  This is linear
-theory: a contact that opens and closes can feed energy to an unconditionally stable method, a finding of
-``studies.stability`` and no ground to refuse a step.
+Order 2 if gamma = 1/2 - alpha_m + alpha_f, else 1.
+
+Stability.  A step multiplies the free motions of a mode q'' + c q' + omega^2 q = 0 by the roots z of
+
+    (z - 1)^2 (alpha_m + (1 - alpha_m) z) + (alpha_f + (1 - alpha_f) z) [ c h (1 - gamma + gamma z)(z - 1)
+        + y (beta z^2 + (1/2 + gamma - 2 beta) z + 1/2 - gamma + beta) ] = 0,   y = h^2 omega^2
+
+(from the equations above with q, v, a ~ z^n).  With z = (1 + s)/(1 - s), A = 1 - 2 alpha_m, F = 1 - 2
+alpha_f, g = 2 gamma - 1, b = 4 beta - 2 gamma and X = 2 c h this is p3 s^3 + p2 s^2 + p1 s + y = 0,
+
+    p3 = 4 A + F (b y + X g),   p2 = 4 + b y + X g + F (g y + X),   p1 = (g + F) y + X,
+
+stable if none is below zero and p2 p1 >= p3 y (Routh and Hurwitz).  Without damping all four conditions are
+linear in y,
+
+    4 A + F b y,   4 + (b + F g) y,   (g + F) y,   4 (g + F - A) + g (b + F g + F^2) y   >= 0,
+
+hence the limit: for Newmark's method (A = F = 1) y <= 1/(gamma/2 - beta), none if 2 beta >= gamma >= 1/2; for
+the others of order 2 none if alpha_m <= alpha_f <= 1/2 and beta >= 1/4 + (alpha_f - alpha_m)/2.  This is
+linear theory: a contact that opens and closes can feed energy to an unconditionally stable method, a finding
+of ``studies.stability`` and no ground to refuse a step.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from beam.parameters import brief, is_number, require_within
 from contact.compiled import inlined, kernel
-from contact.flight.motion import Motion
-from contact.integrators.amplification import AlphaNumbers, factors, limit, stable
-from contact.integrators.equation import (
+from contact.flight.motion import WEIGHT, Motion
+from contact.integrators.fixed_step import check_step, fixed_step_run, stiffness_at
+from contact.integrators.grid import (
+    DONE,
+    Grid,
+    accelerations,
     contact_force,
     contact_tangent,
+    end_contact_step,
     force_in_flight,
-    stiffness_at,
     tip_of,
 )
-from contact.integrators.fixed_step import check_step, fixed_step_run
-from contact.integrators.grid import DONE, begin_step, end_contact_step, passes
 from contact.integrators.method import Integrator
 from contact.laws import HERTZ, LINEAR
 from contact.oscillator import ImpactOscillator
 from contact.trajectory import Run, Trajectory
 
-__all__ = ["GeneralisedAlpha", "chung_hulbert"]
+__all__ = ["AlphaNumbers", "GeneralisedAlpha", "carried_by", "chung_hulbert", "limit", "predict", "stable"]
+
+MARGIN = 1e-12
+"""Slack of the conditions of stability, in units of their terms: on the limit itself they cancel up to
+rounding."""
 
 ROUNDING = 16 * 2.220446049250313e-16
 """Relative change of the contact force at which the iteration ends: d* carries a rounding error of its own,
@@ -64,102 +86,124 @@ from zero never pass it; each cuts d (in a power of at most 5/2) to 3/5 or less 
 quadratically: 75 such steps span the digits of a double.  Where Hunt and Crossley's law pulls, each step
 halves the bracket or the residual: 130 for the digits of both."""
 
+
+class AlphaNumbers(NamedTuple):
+    """The numbers of a member of the family [1]."""
+
+    alpha_m: float
+    alpha_f: float
+    beta: float
+    gamma: float
+
+    def letters(self) -> tuple[float, float, float, float]:
+        """A, F, g, b."""
+        alpha_m, alpha_f, beta, gamma = self
+        return 1.0 - 2.0 * alpha_m, 1.0 - 2.0 * alpha_f, 2.0 * gamma - 1.0, 4.0 * beta - 2.0 * gamma
+
+
+def limit(numbers: AlphaNumbers) -> float:
+    """Largest h omega without damping; infinite if there is none, 0 if any is too large [1]."""
+    a, f, g, b = numbers.letters()
+    largest = math.inf
+    for constant, slope in (
+        (4.0 * a, f * b), (4.0, b + f * g), (0.0, g + f), (4.0 * (g + f - a), g * (b + f * g + f * f)),
+    ):  # fmt: skip
+        if constant < -MARGIN or (constant < MARGIN and slope < -MARGIN):
+            return 0.0
+        if slope < -MARGIN:
+            largest = min(largest, -constant / slope)
+    return math.sqrt(largest)
+
+
+def stable(numbers: AlphaNumbers, size: np.ndarray, decay: np.ndarray) -> np.ndarray:
+    """Whether a mode with h omega = `size` and h c = `decay` does not grow, elementwise."""
+    a, f, g, b = numbers.letters()
+    y, x = size**2, 2.0 * decay
+    p3, p2, p1 = 4.0 * a + f * (b * y + x * g), 4.0 + b * y + x * g + f * (g * y + x), (g + f) * y + x
+    scale = MARGIN * (4.0 + y + x) * (1.0 + abs(b) + abs(g) + abs(f))
+    least = np.minimum(np.minimum(p3, p2), p1)
+    return np.asarray((least >= -scale) & (p2 * p1 - p3 * y >= -scale * (y + x)))
+
+
 @kernel
-def force_at_end(equation, depth, rate, b, g):
+def force_at_end(motion, depth, rate, b, g):
     """The contact force N with N = N(depth - b N, rate - g N), and how often the law was evaluated."""
-    start = contact_force(equation, depth, rate)
+    start = contact_force(motion, depth, rate)
     if start == 0.0:
         return 0.0, 1
     low, high = 0.0, start
     if start < 0.0:
-        low, high = (rate + 1.0 / equation.number1) / g, 0.0
+        low, high = (rate + 1.0 / motion.number1) / g, 0.0
     elif b > 0.0:
         high = min(high, depth / b)
-    force, residual, before = 0.0, -start, math.inf
+    force, before = 0.0, math.inf
     for i in range(ITERATIONS):
-        stiffness, damping = contact_tangent(equation, depth - b * force, rate - g * force)
+        residual = force - contact_force(motion, depth - b * force, rate - g * force)
+        low, high = (low, force) if residual > 0.0 else (force, high)
+        stiffness, damping = contact_tangent(motion, depth - b * force, rate - g * force)
         new = force - residual / (1.0 + b * stiffness + g * damping)
-        if start > 0.0:
-            if new >= high:
-                return high, i + 1
-        elif not low < new < high or abs(residual) > 0.5 * before:
+        if start > 0.0 and new >= high:
+            return high, i + 1
+        if start < 0.0 and (not low < new < high or abs(residual) > 0.5 * before):
             new = 0.5 * (low + high)
         if abs(new - force) <= ROUNDING * abs(new):
             return new, i + 1
         force, before = new, abs(residual)
-        residual = force - contact_force(equation, depth - b * force, rate - g * force)
-        if residual > 0.0:
-            high = force
-        else:
-            low = force
     return force, ITERATIONS
 
 
+def carried_by(numbers: AlphaNumbers, grid: Grid) -> tuple[AlphaNumbers, tuple[np.ndarray, ...]]:
+    """What the march carries from step to step: its numbers, and a, f (at the start a too) and D."""
+    (alpha_m, alpha_f, beta, gamma), h, start = numbers, grid.step, accelerations(grid)
+    implicit = gamma * (h * grid.motion.decay) + beta * (h * grid.motion.omega) ** 2
+    return numbers, (start, start.copy(), 1.0 - alpha_m + (1.0 - alpha_f) * implicit)
+
+
 @inlined
-def predict(equation, grid, numbers, rows, swing):
-    """The step without a contact force at its end; rows: a, f and D; `swing`: sin(w t) at the end."""
-    a, f, inertia = rows[0], rows[1], rows[2]
+def predict(grid, carried, swing):
+    """The step without a contact force at its end; `swing`: sin(w t) there."""
+    numbers, (a, f, inertia) = carried
     h, q, v, new = grid.step, grid.q, grid.v, 1.0 - numbers.alpha_f
-    begin_step(grid)
     for k in range(q.size):
         q[k] += h * v[k] + h * h * (0.5 - numbers.beta) * a[k]
         v[k] += h * (1.0 - numbers.gamma) * a[k]
         rest = numbers.alpha_f * f[k] - numbers.alpha_m * a[k]
-        a[k] = (rest + new * force_in_flight(equation, k, swing, q, v)) / inertia[k]
+        a[k] = (rest + new * force_in_flight(grid, k, swing, q, v)) / inertia[k]
         q[k] += numbers.beta * h * h * a[k]
         v[k] += numbers.gamma * h * a[k]
 
 
 @kernel
-def start_rows(equation, grid, numbers, rows):
-    """a and f of a start, and D."""
-    h, new = grid.step, 1.0 - numbers.alpha_f
-    swing = math.sin(equation.drive * equation.clock)
-    depth, rate = tip_of(equation, grid.q, grid.v)
-    push = contact_force(equation, depth, rate)
-    grid.places[0].evaluations += 1
-    for k in range(grid.q.size):
-        rows[1, k] = force_in_flight(equation, k, swing, grid.q, grid.v) - equation.phi[k] * push
-        rows[0, k] = rows[1, k]
-        c, y = h * equation.decay[k], h * h * equation.stiffness[k]
-        rows[2, k] = 1.0 - numbers.alpha_m + new * (numbers.gamma * c + numbers.beta * y)
-
-
-@kernel
-def generalised_alpha(equation, grid, numbers, rows):
-    """March from the grid point reached; `rows`, shape (3, n_modes), carries a, f and D."""
-    place, h, q, v, new = grid.places[0], grid.step, grid.q, grid.v, 1.0 - numbers.alpha_f
-    if place.evaluations == 0:
-        start_rows(equation, grid, numbers, rows)
-    a, f, inertia = rows[0], rows[1], rows[2]
-    b, g, mobility = numbers.beta * h * h, numbers.gamma * h, 0.0
+def generalised_alpha(grid, carried):
+    """March from the grid point reached; see `carried_by`."""
+    numbers, (a, f, inertia) = carried
+    place, h, q, v, motion = grid.places[0], grid.step, grid.q, grid.v, grid.motion
+    modes, new, mobility = motion.modes, 1.0 - numbers.alpha_f, 0.0
+    b, g = numbers.beta * h * h, numbers.gamma * h
     for k in range(q.size):
-        mobility += new * equation.phi[k] ** 2 / inertia[k]
-    for i in range(place.step, grid.steps):
-        swing = math.sin(equation.drive * (equation.clock + (i + 1) * h))
-        predict(equation, grid, numbers, rows, swing)
-        depth, rate = tip_of(equation, q, v)
-        push, used = force_at_end(equation, depth, rate, b * mobility, g * mobility)
+        mobility += new * modes[WEIGHT, k] ** 2 / inertia[k]
+    while place.step < grid.steps:
+        swing = math.sin(motion.drive * (grid.clock + (place.step + 1) * h))
+        predict(grid, carried, swing)
+        depth, rate = tip_of(motion, q, v)
+        push, used = force_at_end(motion, depth, rate, b * mobility, g * mobility)
         place.evaluations += used
         for k in range(q.size):
-            jump = -new * equation.phi[k] * push / inertia[k]
+            jump = -new * modes[WEIGHT, k] * push / inertia[k]
             a[k] += jump
             q[k] += b * jump
             v[k] += g * jump
-            f[k] = force_in_flight(equation, k, swing, q, v) - equation.phi[k] * push
-        depth, rate = tip_of(equation, q, v)
-        if not passes(grid, 1, depth, depth < 0.0):
-            status = end_contact_step(equation, grid)
-            if status != DONE:
-                return status
+            f[k] = force_in_flight(grid, k, swing, q, v) - modes[WEIGHT, k] * push
+        status = end_contact_step(grid, tip_of(motion, q, v)[0])
+        if status != DONE:
+            return status
     return DONE
 
 
 def chung_hulbert(rho: float) -> AlphaNumbers:
     """The numbers of order 2 that damp infinite frequencies by the factor `rho` a step and low ones least
     (Chung and Hulbert 1993)."""
-    if not (is_number(rho) and 0.0 <= rho <= 1.0):
-        raise ValueError(f"rho is {brief(rho)}; it must lie between 0 and 1")
+    require_within("rho", rho, "[1]", low=0, high=1)
     alpha_m, alpha_f = (2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0)
     gamma = 0.5 + (1.0 - rho) / (1.0 + rho)
     return AlphaNumbers(alpha_m=alpha_m, alpha_f=alpha_f, beta=0.25 * (0.5 + gamma) ** 2, gamma=gamma)
@@ -237,34 +281,20 @@ class GeneralisedAlpha(Integrator):
     @property
     def numbers(self) -> AlphaNumbers:
         """alpha_m, alpha_f, beta and gamma."""
-        return AlphaNumbers(
-            alpha_m=self.alpha_m, alpha_f=self.alpha_f, beta=self.beta, gamma=self.gamma
-        )
-
-    def spectral_radius(self, frequency: float, decay: float = 0.0) -> float:
-        """The largest factor by which a step multiplies a free motion of a mode, `frequency` in rad/s and
-        `decay` = c in 1/s [1]."""
-        return float(np.max(np.abs(factors(self.numbers, self.step * frequency, self.step * decay))))
-
-    def stability_limit(self) -> float:
-        """Largest h omega of an undamped mode; infinite if there is none, 0 if any is too large [1]."""
-        return limit(self.numbers)
+        return AlphaNumbers(self.alpha_m, self.alpha_f, self.beta, self.gamma)
 
     def critical_stiffness(self, motion: Motion) -> float:
         """Contact stiffness at which the highest frequency reaches the limit, formed without damping; below
         zero if a mode is beyond it [N/m]."""
-        largest = self.stability_limit()
         if not np.all(stable(self.numbers, self.step * motion.omega, self.step * motion.decay)):
             return -1.0
-        return math.inf if largest == math.inf else stiffness_at(
-            motion.omega, motion.phi, largest / self.step
-        )  # fmt: skip
+        largest = limit(self.numbers)
+        return math.inf if largest == math.inf else stiffness_at(motion, (largest / self.step) ** 2)
 
     def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
         """The motion of `run`."""
-        critical = math.inf if self.beyond_limit else self.critical_stiffness(oscillator.motion())
-        rows, numbers = np.zeros((3, oscillator.n_modes)), self.numbers
         return fixed_step_run(
-            oscillator, run, step=self.step, critical=critical,
-            march=lambda equation, grid: generalised_alpha(equation, grid, numbers, rows),
+            oscillator, run, step=self.step, march=generalised_alpha,
+            method=lambda grid: carried_by(self.numbers, grid),
+            critical=math.inf if self.beyond_limit else self.critical_stiffness(oscillator.motion()),
         )  # fmt: skip

@@ -43,11 +43,16 @@ from typing import ClassVar
 import numpy as np
 
 from beam.parameters import require_within
-from contact.compiled import inlined, kernel
-from contact.flight.motion import Motion
-from contact.integrators.equation import force_in_flight, tip_of
+from contact.compiled import inlined, kernel, part
+from contact.flight.motion import DECAY, SQUARE, WEIGHT, Motion
 from contact.integrators.fixed_step import check_step, fixed_step_run
-from contact.integrators.grid import DONE, begin_step, end_step, passes, record_times
+from contact.integrators.grid import (
+    DONE,
+    cubic_between,
+    ending,
+    force_in_flight,
+    tip_of,
+)
 from contact.integrators.method import Integrator
 from contact.laws import NEWTON
 from contact.oscillator import ImpactOscillator
@@ -61,86 +66,79 @@ MARGIN = 1e-12
 
 
 @kernel
-def percussion_of(equation, h, depth, before, after, mobility):
+def percussion_of(motion, h, depth, before, after, mobility):
     """Percussion p of the stop [N s] in a step from penetration `depth` and tip velocity `before` that would
     end, untouched, with tip velocity `after`; `mobility` is the velocity that a unit of it takes away."""
     if depth + 0.5 * h * before < 0.0:
         return 0.0
-    return max(0.0, (after + equation.number0 * before) / mobility)
-
-
-@kernel
-def record_percussion(equation, grid, corner):
-    """Write down a step in which the stop has acted: the path has its corner at the fraction `corner`.
-
-    One touch lasts as long as the stop acts in every step.
-    """
-    recorder, h, n = grid.recorder, grid.step, grid.q.size
-    start = grid.clock + grid.places[0].step * h
-    late, q_end, v_end, place = start + corner * h, grid.q.copy(), grid.v.copy(), np.empty(n)
-    for k in range(n):
-        place[k] = grid.q0[k] + corner * h * grid.v0[k]
-    if corner > 0.0:
-        grid.q[:], grid.v[:] = place, grid.v0
-        record_times(equation, grid, start, corner * h)
-    _d, before = tip_of(equation, place, grid.v0)
-    _d, after = tip_of(equation, place, v_end)
-    if recorder.marks[0].touching == 0:
-        open_touch(recorder, grid.first, late, before, IMPACT, place, grid.v0)
-    add_loss(recorder, 0.5 * (before - after) * (before + after) / equation.compliance)
-    close_touch(recorder, grid.first, late, after, place, v_end)
-    recorder.marks[0].touching = 1
-    grid.q[:], grid.v[:] = q_end, v_end
-    if corner < 1.0:
-        grid.q0[:], grid.v0[:] = place, v_end
-        record_times(equation, grid, late, (1.0 - corner) * h)
-    record_times(equation, grid, start, h)  # what lies within rounding behind the end of the step
-
-
-@kernel
-def _end_impact_step(equation, grid, push, corner):
-    """`end_impact_step` where there is something to write down."""
-    if push > 0.0:
-        record_percussion(equation, grid, corner)
-    else:
-        grid.recorder.marks[0].touching = 0
-        record_times(equation, grid, grid.clock + grid.places[0].step * grid.step, grid.step)
-    depth, _rate = tip_of(equation, grid.q, grid.v)
-    return end_step(equation, grid, 1, depth)
+    return max(0.0, (after + motion.number0 * before) / mobility)
 
 
 @inlined
-def end_impact_step(equation, grid, push, corner):
+def path_between(grid, corner, x, h, acting):
+    """The state at the fraction `x` of a step; where the stop has struck, the path has a corner at the
+    fraction `corner`: the old velocity before it, the new one after it."""
+    if grid.recorder.marks[0].touching == 0:
+        return cubic_between(grid, corner, x, h, acting)
+    for k in range(grid.q.size):
+        if x <= corner:
+            grid.q_at[k], grid.v_at[k] = grid.q0[k] + x * h * grid.v0[k], grid.v0[k]
+        else:
+            grid.q_at[k], grid.v_at[k] = grid.q[k] - (1.0 - x) * h * grid.v[k], grid.v[k]
+    return tip_of(grid.motion, grid.q_at, grid.v_at)
+
+
+@inlined
+def write_percussion(grid, corner, span, _depth, push):
+    """A touch at the corner, if there was a percussion; it lasts as long as the stop acts in every step."""
+    recorder, (start, h) = grid.recorder, span
+    marks, opens = recorder.marks[0], recorder.marks[0].touching == 0
+    marks.touching = 1 if push > 0.0 else 0
+    if push > 0.0:
+        _d, before = path_between(grid, corner, corner, h, True)
+        _d, after = tip_of(grid.motion, grid.q_at, grid.v)
+        if opens:
+            open_touch(recorder, grid.first, start + corner * h, before, IMPACT, grid.q_at, grid.v_at)
+        add_loss(recorder, 0.5 * (before - after) * (before + after) / grid.motion.compliance)
+        close_touch(recorder, grid.first, start + corner * h, after, grid.q_at, grid.v)
+        marks.touching = 1
+
+
+_end_impact_step = ending(path_between, write_percussion)
+
+
+@part
+def end_impact_step(grid, corner, push):
     """The end of a step, with the percussion `push` at the fraction `corner` of it if there is one."""
-    depth, _rate = tip_of(equation, grid.q, grid.v)
-    return DONE if passes(grid, 1, depth, push == 0.0) else _end_impact_step(equation, grid, push, corner)
+    depth, _rate = tip_of(grid.motion, grid.q, grid.v)
+    return _end_impact_step(grid, corner, 1, depth, push == 0.0, push)
 
 
 @kernel
-def moreau_jean(equation, grid, inertia, theta):
-    """March from the grid point reached; `inertia`, shape (n_modes,), is room for D."""
-    place, h, q, v, v0 = grid.places[0], grid.step, grid.q, grid.v, grid.v0
+def moreau_jean(grid, theta):
+    """March from the grid point reached."""
+    place, h, q, v, v0, motion = grid.places[0], grid.step, grid.q, grid.v, grid.v0, grid.motion
     old, new, mobility = (1.0 - theta) * h, theta * h, 0.0
+    inertia = np.empty(q.size)
     for k in range(q.size):
-        inertia[k] = 1.0 + new * (equation.decay[k] + new * equation.stiffness[k])
-        mobility += equation.phi[k] ** 2 / inertia[k]
-    for i in range(place.step, grid.steps):
-        swing0 = math.sin(equation.drive * (equation.clock + i * h))
-        swing1 = math.sin(equation.drive * (equation.clock + (i + 1) * h))
-        depth, before = tip_of(equation, q, v)
-        begin_step(grid)
+        inertia[k] = 1.0 + new * (motion.modes[DECAY, k] + new * motion.modes[SQUARE, k])
+        mobility += motion.modes[WEIGHT, k] ** 2 / inertia[k]
+    while place.step < grid.steps:
+        swing0 = math.sin(motion.drive * (grid.clock + place.step * h))
+        swing1 = math.sin(motion.drive * (grid.clock + (place.step + 1) * h))
+        depth, before = tip_of(motion, q, v)
         for k in range(q.size):
-            change = old * force_in_flight(equation, k, swing0, q, v)
+            change = old * force_in_flight(grid, k, swing0, q, v)
             q[k] += h * v[k]  # where the old velocity leads; the change of velocity then counts by theta
-            change += new * force_in_flight(equation, k, swing1, q, v)
+            change += new * force_in_flight(grid, k, swing1, q, v)
             v[k] += change / inertia[k]
-        _d, after = tip_of(equation, q, v)
+        _d, after = tip_of(motion, q, v)
         place.evaluations += 1
-        push = percussion_of(equation, h, depth, before, after, mobility)
+        push = percussion_of(motion, h, depth, before, after, mobility)
         for k in range(q.size):
-            v[k] -= equation.phi[k] * push / inertia[k]
+            v[k] -= motion.modes[WEIGHT, k] * push / inertia[k]
             q[k] += new * (v[k] - v0[k])
-        status = end_impact_step(equation, grid, push, 1.0 - theta)
+        status = end_impact_step(grid, 1.0 - theta, push)
         if status != DONE:
             return status
     return DONE
@@ -188,9 +186,7 @@ class MoreauJean(Integrator):
 
     def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
         """The motion of `run`."""
-        critical = math.inf if self.beyond_limit else self.critical_stiffness(oscillator.motion())
-        room = np.empty(oscillator.n_modes)
         return fixed_step_run(
-            oscillator, run, step=self.step, critical=critical,
-            march=lambda equation, grid: moreau_jean(equation, grid, room, self.theta),
+            oscillator, run, step=self.step, march=moreau_jean, method=lambda grid: float(self.theta),
+            critical=math.inf if self.beyond_limit else self.critical_stiffness(oscillator.motion()),
         )  # fmt: skip

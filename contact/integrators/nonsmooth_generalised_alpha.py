@@ -32,13 +32,11 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
 from contact.compiled import kernel
-from contact.integrators.equation import force_in_flight, tip_of
+from contact.flight.motion import DECAY, SQUARE, WEIGHT
 from contact.integrators.fixed_step import check_step, fixed_step_run
-from contact.integrators.generalised_alpha import chung_hulbert, predict, start_rows
-from contact.integrators.grid import DONE
+from contact.integrators.generalised_alpha import carried_by, chung_hulbert, predict
+from contact.integrators.grid import DONE, force_in_flight, tip_of
 from contact.integrators.method import Integrator
 from contact.integrators.moreau_jean import end_impact_step, percussion_of
 from contact.laws import NEWTON
@@ -49,33 +47,30 @@ __all__ = ["NonsmoothGeneralisedAlpha"]
 
 
 @kernel
-def nonsmooth_generalised_alpha(equation, grid, numbers, rows):
-    """March from the grid point reached; `rows`, shape (3, n_modes), carries a, f and D."""
-    place, h, q, v, new = grid.places[0], grid.step, grid.q, grid.v, 1.0 - numbers.alpha_f
-    if place.evaluations == 0:
-        start_rows(equation, grid, numbers, rows)
-        place.evaluations = 0
-    a, f, inertia = rows[0], rows[1], rows[2]
-    mobility = 0.0
+def nonsmooth_generalised_alpha(grid, carried):
+    """March from the grid point reached; see `carried_by`."""
+    numbers, (a, f, inertia) = carried
+    place, h, q, v, motion = grid.places[0], grid.step, grid.q, grid.v, grid.motion
+    modes, new, mobility = motion.modes, 1.0 - numbers.alpha_f, 0.0
     for k in range(q.size):
-        y = h * h * equation.stiffness[k]
+        y = h * h * modes[SQUARE, k]
         share = (1.0 - numbers.alpha_m + new * (numbers.beta - 0.5 * numbers.gamma) * y) / inertia[k]
-        mobility += share * equation.phi[k] ** 2
-    for i in range(place.step, grid.steps):
-        swing = math.sin(equation.drive * (equation.clock + (i + 1) * h))
-        depth, before = tip_of(equation, q, v)
-        predict(equation, grid, numbers, rows, swing)
-        _d, after = tip_of(equation, q, v)
+        mobility += share * modes[WEIGHT, k] ** 2
+    while place.step < grid.steps:
+        swing = math.sin(motion.drive * (grid.clock + (place.step + 1) * h))
+        depth, before = tip_of(motion, q, v)
+        predict(grid, carried, swing)
+        _d, after = tip_of(motion, q, v)
         place.evaluations += 1
-        push = percussion_of(equation, h, depth, before, after, mobility)
+        push = percussion_of(motion, h, depth, before, after, mobility)
         for k in range(q.size):
-            jump = -equation.phi[k] * push
-            change = -new * (equation.decay[k] + 0.5 * h * equation.stiffness[k]) * jump / inertia[k]
+            jump = -modes[WEIGHT, k] * push
+            change = -new * (modes[DECAY, k] + 0.5 * h * modes[SQUARE, k]) * jump / inertia[k]
             a[k] += change
             q[k] += numbers.beta * h * h * change + 0.5 * h * jump
             v[k] += numbers.gamma * h * change + jump
-            f[k] = force_in_flight(equation, k, swing, q, v)
-        status = end_impact_step(equation, grid, push, 0.5)
+            f[k] = force_in_flight(grid, k, swing, q, v)
+        status = end_impact_step(grid, 0.5, push)
         if status != DONE:
             return status
     return DONE
@@ -109,8 +104,7 @@ class NonsmoothGeneralisedAlpha(Integrator):
 
     def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
         """The motion of `run`."""
-        numbers, rows = chung_hulbert(self.rho), np.zeros((3, oscillator.n_modes))
         return fixed_step_run(
-            oscillator, run, step=self.step,
-            march=lambda equation, grid: nonsmooth_generalised_alpha(equation, grid, numbers, rows),
+            oscillator, run, step=self.step, march=nonsmooth_generalised_alpha,
+            method=lambda grid: carried_by(chung_hulbert(self.rho), grid),
         )  # fmt: skip

@@ -28,7 +28,24 @@ the energy of a lossless motion, which symplecticity keeps from drifting in a co
 flight, takes at every touch and release a step of that order h^(p + 1), of either sign: over many contacts
 it wanders as a random walk does, with the square root of their number, and without drift.
 
-The limit of stability is that of ``contact.integrators.splitting_limit``; in flight there is none.
+Limit of stability of a contact that stays closed, N = k d + c d'.  A step is then a linear map M of (u, v),
+stable as long as no eigenvalue lies outside the unit circle.  Each kick adds a matrix of rank one times k,
+and the first and the last are one kick, so that
+
+    det(M(k) + I)  and  det(M(k) - I)  are polynomials in k of degree s, the number of sub-flows,
+
+known from s + 1 values; their lowest positive root is where an eigenvalue passes -1 or 1.  At order 2 it is
+1/k = h sum phi^2 tan(omega h/2)/(2 omega) without damping, for h -> 0 that of central difference on a free
+body of mass 1/Phi: the frequencies of the spring itself set no limit.  For omega h < pi and no damping
+nothing fails before: at k = 0 all eigenvalues in the upper half plane have the same signature (M. G. Krein),
+and such eigenvalues may meet, but not leave the circle, until they meet their conjugates.  Order 4 fails
+there by little: at h sqrt(k Phi) = 3.163 to 3.169 for a free body, by 1.0024 a step, and by much only from
+5.03 on.  The lower value is the limit.
+
+With damping, and beyond omega h = pi, pairs may leave the circle elsewhere: beyond pi near the resonances of
+step and contact, theta_j + theta_k = 2 pi m.  There the first k below that root at which the spectral radius
+exceeds one is searched for; resonances narrower than the search may be passed over.  In flight there is no
+limit.
 """
 
 from __future__ import annotations
@@ -39,17 +56,27 @@ from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from contact.flight.modal_flow import flow_over
 from contact.flight.motion import Motion, motion_of
 from contact.integrators.fixed_step import check_step, fixed_step_run
 from contact.integrators.method import Integrator
-from contact.integrators.splitting_limit import closed_form_limit, first_instability, spectral_radius
-from contact.integrators.splitting_step import Composition, march, split_of
+from contact.integrators.splitting_step import Composition, Split, march, sub_flows
 from contact.laws import HERTZ, LINEAR, LinearContact
 from contact.oscillator import ImpactOscillator
 from contact.trajectory import Run, Trajectory
 
-__all__ = ["COMPOSITIONS", "Splitting"]
+__all__ = ["COMPOSITIONS", "Splitting", "first_instability", "spectral_radius", "step_matrix"]
+
+SEARCH, SEARCH_BEYOND_PI, EACH = 1, 6, 100
+"""Decades of k below the lowest root that are searched, for omega h < pi and beyond, and values in each."""
+
+JUST_BEYOND = 1e-5
+"""How far beyond a root its instability is looked for, relative."""
+
+EXCEEDS = 1e-7
+"""By how much the spectral radius must exceed one: at a double eigenvalue rounding alone makes 1e-8."""
 
 STRANG = Composition(flows=np.array([1.0]), kicks=np.array([0.5, 0.5]))
 
@@ -65,19 +92,99 @@ COMPOSITIONS = {2: STRANG, 4: BLANES_MOAN}
 """The coefficients of one step by order."""
 
 
+def step_matrix(
+    motion: Motion, composition: Composition, step: float, stiffness: ArrayLike, damping: float = 0.0
+) -> np.ndarray:
+    """The map (u, v) -> (u, v) of one step with the contact closed, shape (..., 2 n_modes, 2 n_modes).
+
+    `stiffness` may be an array, of the shape (...) [N/m].
+    """
+    n, phi, rate = motion.size, motion.phi, damping * motion.compliance
+    stiff = np.asarray(stiffness, dtype=float)[..., None]
+    upper = np.broadcast_to(np.eye(n, 2 * n), (*stiff.shape[:-1], n, 2 * n))
+    lower = np.broadcast_to(np.eye(n, 2 * n, n), upper.shape)
+    for j, part in enumerate(composition.kicks * step):
+        acts = -math.expm1(-rate * part) / rate if rate > 0.0 else part  # with its initial force [s]
+        pull = acts * (stiff * (phi @ upper) + damping * (phi @ lower))
+        lower = lower - phi[:, None] * pull[..., None, :]
+        if j < composition.flows.size:
+            a, b, c, d = flow_over(motion, composition.flows[j] * step)[:, :4, None].swapaxes(0, 1)
+            upper, lower = a * upper + b * lower, c * upper + d * lower
+    return np.concatenate([upper, lower], axis=-2)
+
+
+def spectral_radius(
+    motion: Motion, composition: Composition, step: float, stiffness: ArrayLike, damping: float = 0.0
+) -> np.ndarray:
+    """Largest modulus of an eigenvalue of `step_matrix`, of the shape of `stiffness`."""
+    speed = np.where(motion.omega > 0, motion.omega, 1.0 / step)
+    scale = np.concatenate([speed, np.ones(motion.size)])  # (omega u, v): the flow is then a rotation
+    matrix = step_matrix(motion, composition, step, stiffness, damping)
+    return np.abs(np.linalg.eigvals(scale[:, None] * matrix / scale)).max(axis=-1)
+
+
+def _passage(motion: Motion, composition: Composition, step: float, damping: float) -> float:
+    """The lowest contact stiffness at which an eigenvalue passes -1 or 1, infinite if there is none [N/m].
+
+    A root counts if the step is unstable just beyond it: rounding may add one to det(M - I), which is small
+    where the frequencies are.  It is found anew from values closer to it.
+    """
+    degree = composition.flows.size
+    nodes = 0.5 - 0.5 * np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1))
+
+    def roots(sign: float, width: float) -> np.ndarray:
+        matrices = step_matrix(motion, composition, step, width * nodes, damping)
+        values = np.linalg.det(matrices + sign * np.eye(2 * motion.size))
+        found = np.polynomial.Polynomial.fit(nodes, values, degree, domain=[0.0, 1.0]).roots()
+        real = np.abs(found.imag) <= 1e-9 * np.abs(found)
+        return width * np.sort(found.real[real & (found.real > 0.0)])
+
+    lowest = math.inf
+    for sign in (1.0, -1.0):
+        for coarse in roots(sign, 4.0 * degree**2 / (step**2 * motion.compliance)):
+            near = roots(sign, 2.0 * coarse)
+            root = float(near[np.argmin(np.abs(near - coarse))]) if near.size else float(coarse)
+            beyond = spectral_radius(motion, composition, step, (1.0 + JUST_BEYOND) * root, damping)
+            if beyond > 1.0 + EXCEEDS:
+                lowest = min(lowest, root)
+                break
+    return lowest
+
+
+def first_instability(
+    motion: Motion, composition: Composition, step: float, damping: float = 0.0
+) -> float:
+    """The lowest contact stiffness at which a lasting contact is unstable [N/m]."""
+
+    def unstable(stiffness: ArrayLike) -> np.ndarray:
+        return spectral_radius(motion, composition, step, stiffness, damping) > 1.0 + EXCEEDS
+
+    high = _passage(motion, composition, step, damping)
+    under = motion.omega > 0.5 * motion.decay
+    beyond_pi = bool(np.any(motion.damped[under] * step >= math.pi))
+    if not (beyond_pi or damping > 0.0 or np.any(motion.decay > 0.0)):
+        return high
+    if not math.isfinite(high):
+        high = 40.0 * composition.flows.size**2 / (step**2 * motion.compliance)
+    decades = SEARCH_BEYOND_PI if beyond_pi else SEARCH
+    values = high * 10.0 ** np.linspace(-decades, 0.0, decades * EACH + 1)
+    for chunk in np.split(np.arange(decades * EACH), decades):
+        found = chunk[unstable(values[chunk])]
+        if found.size:
+            low, high = float(values[max(found[0] - 1, 0)]), float(values[found[0]])
+            while high - low > 1e-9 * high:
+                middle = 0.5 * (low + high)
+                low, high = (low, middle) if unstable(middle) else (middle, high)
+            return low
+    return high
+
+
 @lru_cache(maxsize=256)
 def _limit(numbers: bytes, n: int, order: int, step: float, damping: float) -> float:
-    """`critical_stiffness`, kept: the search takes some hundredths of a second."""
+    """`first_instability`, kept: the search takes some hundredths of a second."""
     omega, decay, phi = np.frombuffer(numbers).reshape(3, n)
-    law = LinearContact(stiffness=1.0, damping=damping)
-    motion = motion_of(omega, decay, phi, law=law, gap=0.0)
-    composition = COMPOSITIONS[order]
-    closed = closed_form_limit(motion, step, damping) if order == 2 else None
-    if closed is not None:
-        undamped = damping == 0.0 and not np.any(decay > 0.0)
-        if undamped or spectral_radius(motion, composition, step, 0.999 * closed, damping) <= 1.0:
-            return closed
-    return first_instability(motion, composition, step, damping)
+    motion = motion_of(omega, decay, phi, law=LinearContact(stiffness=1.0, damping=damping), gap=0.0)
+    return first_instability(motion, COMPOSITIONS[order], step, damping)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -125,10 +232,9 @@ class Splitting(Integrator):
 
     def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
         """The motion of `run`."""
-        motion = oscillator.motion()
-        split = split_of(motion, COMPOSITIONS[self.order])
+        composition = COMPOSITIONS[self.order]
         return fixed_step_run(
-            oscillator, run, step=self.step, motion=motion,
-            critical=math.inf if self.beyond_limit else self.critical_stiffness(motion),
-            march=lambda _equation, grid: march(split, grid),
+            oscillator, run, step=self.step, march=march, deviations=True,
+            method=lambda grid: Split(composition, sub_flows(grid.motion, composition, self.step)),
+            critical=math.inf if self.beyond_limit else self.critical_stiffness(oscillator.motion()),
         )  # fmt: skip

@@ -32,13 +32,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contact.compiled import kernel
+from contact.compiled import inlined, kernel
 from contact.flight.modal_flow import flow_over, propagate
-from contact.flight.motion import LOAD, OMEGA, WEIGHT, Motion
-from contact.integrators.equation import contact_force, contact_tangent
-from contact.integrators.grid import DONE, begin_step, passes, recording
+from contact.flight.motion import LOAD, OMEGA, WEIGHT
+from contact.integrators.grid import (
+    DONE,
+    contact_force,
+    contact_tangent,
+    ending,
+    touches,
+)
 
-__all__ = ["Composition", "Split", "march", "split_of", "take_step"]
+__all__ = ["Composition", "Split", "kick", "march", "sub_flows", "tip_at", "tip_rate"]
 
 RENEW = 32
 """Steps after which sin and cos of the drive's phase are computed anew instead of turned on: their rounding
@@ -55,31 +60,41 @@ class Composition(NamedTuple):
     kicks: np.ndarray
 
 
+class Split(NamedTuple):
+    """A composition, and its sub-flows over a whole step, shape (stages, n_modes + 1, 6)."""
+
+    composition: Composition
+    flows: np.ndarray
+
+
 @kernel
-def fill_flows(motion, composition, length, flows):
-    """`flows`, shape (stages, n_modes + 1, 6): the sub-flows of a step of `length` [s].
+def sub_flows(motion, composition, length):
+    """The sub-flows of a step of `length` [s], shape (stages, n_modes + 1, 6).
 
     Each mode's matrix by rows and the drift under a constant load; last the cosine and sine of the drive.
     """
     n = motion.size
+    flows = np.zeros((composition.flows.size, n + 1, 6))
     for j in range(composition.flows.size):
         t = composition.flows[j] * length
         flows[j, :n] = flow_over(motion, t)
         flows[j, n, 0], flows[j, n, 1] = math.cos(motion.drive * t), math.sin(motion.drive * t)
+    return flows
 
 
 @kernel
-def tip_depth(motion, u, sine, cosine):
-    """Penetration of the tip [m]; `sine`, `cosine` belong to the phase of the drive."""
+def tip_at(motion, u, clock):
+    """Penetration of the tip [m] at a time since a strobe [s], sine and cosine of the drive's phase there."""
+    sine, cosine = math.sin(motion.drive * clock), math.cos(motion.drive * clock)
     depth = motion.level + motion.tip_sine * sine + motion.tip_cosine * cosine
     for k in range(u.size):
         depth += motion.modes[WEIGHT, k] * u[k]
-    return depth
+    return depth, sine, cosine
 
 
 @kernel
 def tip_rate(motion, v, sine, cosine):
-    """Its rate [m/s]."""
+    """Rate of the penetration [m/s]; `sine`, `cosine` belong to the phase of the drive."""
     rate = motion.drive * (motion.tip_sine * cosine - motion.tip_cosine * sine)
     for k in range(v.size):
         rate += motion.modes[WEIGHT, k] * v[k]
@@ -87,8 +102,12 @@ def tip_rate(motion, v, sine, cosine):
 
 
 @kernel
-def kick(motion, depth, v, sine, cosine, length):
-    """The contact acts for a time `length` [s] on velocities alone; returns the energy it has taken [J]."""
+def kick(motion, tip, v, length):
+    """The contact acts for a time `length` [s] on velocities alone; returns the energy it has taken [J].
+
+    `tip`: penetration, sine and cosine of the drive's phase.
+    """
+    depth, sine, cosine = tip
     rate = tip_rate(motion, v, sine, cosine)
     force = contact_force(motion, depth, rate)
     if force == 0.0:
@@ -102,21 +121,19 @@ def kick(motion, depth, v, sine, cosine, length):
 
 
 @kernel
-def take_step(motion, composition, flows, length, depth, sine, cosine, u, v, kicks):
-    """One step of `length` [s] from penetration `depth`, with the sub-flows that `fill_flows` made for it.
+def take_step(motion, split, length, tip, u, v, acting):
+    """One step of `length` [s] from `tip` (see `kick`), with the sub-flows made for it.
 
-    `kicks` is the number of kicks, one less than there are for the state just before the last.
-
-    Returns penetration, sine and cosine of the drive's phase at the end, the energy taken by the contact, and
-    the number of kicks that found the tip in it.
+    Returns the tip at the end, the energy taken by the contact, and whether a kick found the tip in it; where
+    the force is not `acting` at the end, the state is that just before the last kick.
     """
-    n = u.size
-    taken, touches = 0.0, 0
-    stages = composition.flows.size
+    composition, flows = split
+    n, stages, taken, met = u.size, composition.flows.size, 0.0, False
+    depth, sine, cosine = tip
     for j in range(stages + 1):
-        if depth > 0.0 and j < kicks:
-            taken += kick(motion, depth, v, sine, cosine, composition.kicks[j] * length)
-            touches += 1
+        if depth > 0.0 and (acting or j < stages):
+            taken += kick(motion, (depth, sine, cosine), v, composition.kicks[j] * length)
+            met = True
         if j == stages:
             break
         flow = flows[j]
@@ -128,63 +145,23 @@ def take_step(motion, composition, flows, length, depth, sine, cosine, u, v, kic
             u[k] = flow[k, 0] * uk + flow[k, 1] * vk + flow[k, 4]
             v[k] = flow[k, 2] * uk + flow[k, 3] * vk + flow[k, 5]
             depth += motion.modes[WEIGHT, k] * u[k]
-    return depth, sine, cosine, taken, touches
+    return (depth, sine, cosine), taken, met
 
 
-class Split(NamedTuple):
-    """What a run needs.
-
-    motion : Motion
-    composition : Composition
-    flows, part : ndarray, shape (stages, n_modes + 1, 6)
-        The sub-flows of a step, and of a part of one.
-    law, number0, number1 : int, float, float
-        Of the contact.
-    """
-
-    motion: Motion
-    composition: Composition
-    flows: np.ndarray
-    part: np.ndarray
-    law: int
-    number0: float
-    number1: float
-
-
-def split_of(motion: Motion, composition: Composition) -> Split:
-    """The numbers of an oscillator, split."""
-    flows = np.zeros((composition.flows.size, motion.size + 1, 6))
-    return Split(
-        motion=motion, composition=composition, flows=flows, part=flows.copy(), law=motion.law,
-        number0=motion.number0, number1=motion.number1,
-    )  # fmt: skip
-
-
-@kernel
-def phase_of(motion, clock):
-    """sin and cos of the phase of the drive."""
-    phase = motion.drive * clock
-    return math.sin(phase), math.cos(phase)
-
-
-@kernel
-def part_of_step(split, grid, x, h, acting):
+@inlined
+def part_of_step(grid, split, x, h, acting):
     """The state after the fraction `x` of a step is that of a shorter one, without its last kick if the force
     is not `acting`; see ``contact.integrators.grid``."""
-    motion, composition = split.motion, split.composition
-    for k in range(motion.size):
-        grid.q_at[k], grid.v_at[k] = grid.q0[k], grid.v0[k]
-    fill_flows(motion, composition, x * h, split.part)
-    sine, cosine = phase_of(motion, grid.clock + grid.places[0].step * grid.step)
-    depth = tip_depth(motion, grid.q_at, sine, cosine)
-    kicks = composition.kicks.size if acting else composition.flows.size
-    depth, sine, cosine, _taken, _touches = take_step(
-        motion, composition, split.part, x * h, depth, sine, cosine, grid.q_at, grid.v_at, kicks
-    )
-    return depth, tip_rate(motion, grid.v_at, sine, cosine)
+    motion, u, v = grid.motion, grid.q_at, grid.v_at
+    for k in range(u.size):
+        u[k], v[k] = grid.q0[k], grid.v0[k]
+    tip = tip_at(motion, u, grid.clock + grid.places[0].step * grid.step)
+    shorter = Split(split.composition, sub_flows(motion, split.composition, x * h))
+    (depth, sine, cosine), _taken, _met = take_step(motion, shorter, x * h, tip, u, v, acting)
+    return depth, tip_rate(motion, v, sine, cosine)
 
 
-record_step, _record_times = recording(part_of_step)
+end_split_step = ending(part_of_step, touches(part_of_step))
 
 
 @kernel
@@ -199,38 +176,26 @@ def clear_steps(motion, depth, u, v, h):
 
 
 @kernel
-def march(split, grid):
+def march(grid, split):
     """March from the grid point reached; the grid carries deviations from the steady motion."""
-    motion, composition, place = split.motion, split.composition, grid.places[0]
-    h, u, v, stages = grid.step, grid.q, grid.v, composition.flows.size
-    fill_flows(motion, composition, h, split.flows)
-    sine, cosine = phase_of(motion, grid.clock + place.step * h)
-    depth = tip_depth(motion, u, sine, cosine)
-    look, renew = place.step, place.step + RENEW
+    motion, place, h, u, v = grid.motion, grid.places[0], grid.step, grid.q, grid.v
+    tip, look = tip_at(motion, u, grid.clock + place.step * h), place.step
     while place.step < grid.steps:
-        jump, left = 1, grid.steps - place.step
-        if place.step >= look and depth < 0.0 and grid.recorder.marks[0].touching == 0:
-            clear = clear_steps(motion, depth, u, v, h)
-            jump = left if clear > left else int(clear)
-            if jump < WORTHWHILE:
-                jump, look = 1, place.step + WORTHWHILE // 2
-        begin_step(grid)
-        before, taken, touches = depth, 0.0, 0
-        if jump == 1:
-            place.evaluations += stages
-            depth, sine, cosine, taken, touches = take_step(
-                motion, composition, split.flows, h, depth, sine, cosine, u, v, stages + 1
-            )
+        count, before, taken, met = 1, tip[0], 0.0, False
+        if place.step >= look and before < 0.0 and grid.recorder.marks[0].touching == 0:
+            count = int(min(clear_steps(motion, before, u, v, h), grid.steps - place.step))
+            if count < WORTHWHILE:
+                count, look = 1, place.step + WORTHWHILE // 2
+        if count == 1:
+            place.evaluations += split.composition.flows.size
+            tip, taken, met = take_step(motion, split, h, tip, u, v, True)
         else:
             place.evaluations += 1
-            propagate(motion, u, v, jump * h, u, v)
-        if place.step + jump >= renew or jump > 1:
-            sine, cosine = phase_of(motion, grid.clock + (place.step + jump) * h)
-            renew = place.step + jump + RENEW
-            depth = tip_depth(motion, u, sine, cosine)
-        if passes(grid, jump, depth, depth <= 0.0 and touches == 0):
-            continue
-        status = record_step(split, grid, jump, (before, depth), taken, touches > 0)
+            propagate(motion, u, v, count * h, u, v)
+        if count > 1 or (place.step + 1) % RENEW == 0:
+            tip = tip_at(motion, u, grid.clock + (place.step + count) * h)
+        apart = tip[0] <= 0.0 and not met
+        status = end_split_step(grid, split, count, tip[0], apart, (before, taken, met))
         if status != DONE:
             return status
     return DONE

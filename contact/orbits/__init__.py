@@ -1,10 +1,11 @@
 """Periodic orbits of a strobed motion, one idea a file.
 
-`single_impact`: one impact every m drive periods under Newton's law, in closed form, over `driven_modes` and
-with the multipliers of `saltation`; `kick`: one collision of any law, by linear algebra; `shooting`: any law
-and any number of touches, with exact tangents; `continuation`: branches, with the points of `events` on them;
+`family`: what all families of orbits offer; `single_impact`: one collision every m drive periods, under
+Newton's law in closed form; `kick`: one collision of any law, by linear algebra; `shooting`: any law and any
+number of touches, with exact tangents; `continuation`: branches, with the points of `events` on them;
 `settling`: on what a motion settles; `scan`: orbit diagrams, the state carried along; `ends`: where an orbit
-ends when the drive is lowered; `amplitude_scan`: the compiled column of a chart; `lyapunov`: exponents.
+ends when the drive is lowered, by a scan and by its fold; `amplitude_scan`: the compiled column of a chart;
+`lyapunov`: exponents.
 """
 
 from contact.orbits.amplitude_scan import AmplitudeScan, ScannedColumn
@@ -17,33 +18,27 @@ from contact.orbits.continuation import (
     follow,
     lowest_of,
 )
-from contact.orbits.ends import OrbitEnd, orbit_end
+from contact.orbits.ends import OrbitEnd, fold_excess, orbit_end
 from contact.orbits.events import Event
-from contact.orbits.kick import Kick, KickFamily, KickOrbit
-from contact.orbits.lyapunov import (
-    Differentiable,
-    Exponents,
-    divergence_rate,
-    map_exponents,
-    of_nordmark,
-    of_oscillator,
-    orbit_exponents,
-)
+from contact.orbits.family import Family, Orbit
+from contact.orbits.kick import KickFamily
+from contact.orbits.lyapunov import Exponents, divergence_rate, map_exponents, orbit_exponents
+from contact.orbits.repetition import period_of
 from contact.orbits.scan import OrbitDiagram, orbit_diagram
-from contact.orbits.settling import Settled, born, born_period, period_of, settle
+from contact.orbits.settling import Settled, born, born_period, settle
 from contact.orbits.shooting import PeriodicOrbit, Shooting
-from contact.orbits.single_impact import MaximalFamily, SingleImpactOrbit
+from contact.orbits.single_impact import Kick, MaximalFamily, SingleImpactOrbit
 
 __all__ = [
     "AmplitudeScan",
     "Branch",
-    "Differentiable",
     "Event",
     "Exponents",
+    "Family",
     "Kick",
     "KickFamily",
-    "KickOrbit",
     "MaximalFamily",
+    "Orbit",
     "OrbitDiagram",
     "OrbitEnd",
     "PeriodicOrbit",
@@ -56,13 +51,12 @@ __all__ = [
     "divergence_rate",
     "first_event",
     "fold_along_frequency",
+    "fold_excess",
     "fold_of",
     "folds_of",
     "follow",
     "lowest_of",
     "map_exponents",
-    "of_nordmark",
-    "of_oscillator",
     "orbit_diagram",
     "orbit_end",
     "orbit_exponents",

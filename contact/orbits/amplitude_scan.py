@@ -1,31 +1,173 @@
-"""One column of a chart: the amplitude raised and lowered again at one drive frequency, in a compiled loop.
+r"""One column of a chart: the amplitude raised and lowered again at one drive frequency, in a compiled loop.
 
     column = AmplitudeScan(oscillator=oscillator, most_cycles=1024)(frequency=22.2, excesses=excesses)
     column.period[0], column.period[1]        # upward and downward scan, over the excesses in rising order
 
-The physical state is carried from amplitude to amplitude, and from the end of the upward scan into the
-downward one (``settled_column`` says when a motion is settled). An amplitude that fails is marked with its
-reason, and the next one goes on from the last state that was reached.
+At each amplitude the motion starts from the physical state (q, q') in which the amplitude before has left it,
+and is followed in blocks of `BLOCK` drive periods until it is known (``contact.orbits.repetition``), at most
+for `most_cycles`:
+
+- **No impact any more**: period 1 without impacts, and the state is set on the steady motion.
+- **A periodic orbit** of period p <= L, for L = 16, 32, 64 as soon as 2 L strobes are there, to `TOLERANCE`
+  of the gap.  The next state follows from the last one alone, so that one whole period that repeats is all
+  that can be asked, and short periods need not wait for the longest.
+- **Nearly periodic at the bound.**  Next to a fold the motion comes to rest on its orbit as slowly as one
+  likes.  After `most_cycles` a repetition to `ROUGH` of that is taken for the period too; such cells have
+  cycles >= most_cycles.
+- Otherwise **period 0**: chaos, a period above 64, or a transient longer than `most_cycles`.  Its impacts are
+  those of the last 128 strobes.
+
+The end of the upward scan starts the downward one.  An amplitude that fails is marked with its reason, and
+the next one goes on from the last state that was reached.  The amplitude enters the motion linearly, so that
+the loop scales the steady motion at grazing.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from beam.parameters import require_array
+from contact.compiled import kernel
 from contact.event_loop import DONE, STATE
 from contact.exact_run import failure
-from contact.flight.modal_flow import tip_state
-from contact.orbits.settled_column import BEHIND, EXTRA, LARGEST_PERIOD, settled_column
+from contact.flight.modal_flow import tip_rounding, tip_state
+from contact.orbits.repetition import free_for_good, repetition
 from contact.orbits.settling import TOLERANCE
 from contact.oscillator import ImpactOscillator
-from contact.strobed_motion import strobed_system
+from contact.strobed_motion import at_amplitude, strobed_motion, strobed_system
 from contact.stroboscope import StroboscopicMap
+from contact.trajectory import OUTSIDE
 
 __all__ = ["AmplitudeScan", "ScannedColumn"]
+
+LARGEST_PERIOD = 64
+"""Longest period told, as in the other studies."""
+
+SHORTEST = 16
+"""Strobes that have to repeat at least: a quarter of LARGEST_PERIOD, twice the letter's common periods."""
+
+ROUGH = 1e4
+"""Tolerance at the bound over the usual one, i.e. 1e-5 of the gap: after 512 drive periods an orbit of period
+3 whose multiplier is 0.97 still changes by 1e-6 per period."""
+
+BLOCK = 32
+"""Drive periods between two looks: the least that tells a period, 2 SHORTEST."""
+
+BEHIND = -1
+"""Status of a state that the amplitude before has left behind the stop, where no flight can start."""
+
+EXTRA = 3
+"""Numbers of a state beside (q, q'): regime, wait, rebound."""
+
+
+@kernel
+def returns(points: Any, rows: Any, tolerance: Any) -> Any:
+    """Whether a strobe before the last of `rows` is as close to it as a repetition asks for."""
+    close = 0
+    last = points[rows - 1, 0]
+    for i in range(max(0, rows - 1 - LARGEST_PERIOD), rows - 1):
+        close += 1 if abs(points[i, 0] - last) <= tolerance else 0
+    return close > 0
+
+
+@kernel
+def settled_column(
+    system: Any, amplitudes: Any, state: Any, most_cycles: Any, tolerance: Any, found: Any, place: Any
+) -> Any:
+    """Settle at each of `amplitudes` in turn, or until one fails.
+
+    Parameters
+    ----------
+    system : StrobedSystem
+        At grazing.
+    amplitudes : ndarray, shape (n,)
+        Base amplitudes over that at grazing [1].
+    state : ndarray, shape (2 n_modes + 3,)
+        Start; overwritten by the last state that was reached.
+    most_cycles : int
+    tolerance : float
+        Of a repetition, in the unit of the coordinates [m].
+    found : ndarray of int, shape (n, 3)
+        Period, impacts and drive periods spent; overwritten.
+    place : ndarray, shape (2 n_modes + 2,)
+        Deviations, drive period and time since its strobe where a failure happened; overwritten.
+
+    Returns
+    -------
+    done, status : int
+        Amplitudes done; DONE, or why the next one failed.
+    """
+    n = system.motion.size
+    capacity = 2 * LARGEST_PERIOD
+    points, impacts = np.empty((capacity, 2 * n)), np.zeros(capacity, dtype=np.int64)
+    strobes, counts = np.empty((BLOCK, 2 * n)), np.zeros(BLOCK, dtype=np.int64)
+    u, v = np.empty(n), np.empty(n)
+    for a in range(amplitudes.size):
+        local = at_amplitude(system, amplitudes[a])
+        here, mean = local.motion, local.mean.copy()
+        local.mean[:] = 0.0  # the points are those of the deviations
+        for k in range(n):
+            u[k] = state[k] - mean[k]
+            v[k] = state[n + k] - mean[n + k]
+        runs = np.zeros(1, dtype=STATE)
+        run = runs[0]
+        run.regime, run.wait, run.rebound = int(state[2 * n]), state[2 * n + 1], state[2 * n + 2]
+        run.root, run.speed = -1.0, -1.0
+        rows, cycles, period, hits = 0, np.int64(0), 0, 0
+        status, known = DONE, False
+        height, _velocity, _acceleration = tip_state(here, 0.0, u, v)
+        if run.regime == OUTSIDE and height > tip_rounding(here, u, v):
+            status = BEHIND
+        while status == DONE and not known:
+            if run.regime == OUTSIDE and free_for_good(here, u, v):
+                for k in range(n):
+                    u[k], v[k] = 0.0, 0.0
+                period, hits, known = 1, 0, True
+                break
+            if cycles >= most_cycles:
+                period = repetition(points, impacts, rows, np.int64(LARGEST_PERIOD), ROUGH * tolerance)
+                for i in range(rows - period if period > 0 else 0, rows):
+                    hits += impacts[i]
+                break
+            status = strobed_motion(local, u, v, runs, strobes, counts)
+            if status != DONE:
+                break
+            cycles += BLOCK
+            if rows == capacity:
+                for i in range(capacity - BLOCK):
+                    impacts[i] = impacts[i + BLOCK]
+                    for k in range(2 * n):
+                        points[i, k] = points[i + BLOCK, k]
+                rows -= BLOCK
+            for i in range(BLOCK):
+                impacts[rows + i] = counts[i]
+                for k in range(2 * n):
+                    points[rows + i, k] = strobes[i, k]
+            rows += BLOCK
+            stretch = np.int64(SHORTEST)
+            back = returns(points, rows, tolerance)
+            while back and not known and 2 * stretch <= rows:
+                period = repetition(points, impacts, rows, stretch, tolerance)
+                known = period > 0
+                stretch *= 2
+            if known:
+                for i in range(rows - period, rows):
+                    hits += impacts[i]
+        if status != DONE:
+            for k in range(n):
+                place[k], place[n + k] = u[k], v[k]
+            place[2 * n], place[2 * n + 1] = run.period, run.clock
+            return a, status
+        for k in range(n):
+            state[k] = u[k] + mean[k]
+            state[n + k] = v[k] + mean[n + k]
+        state[2 * n], state[2 * n + 1], state[2 * n + 2] = run.regime, run.wait, run.rebound
+        found[a, 0], found[a, 1], found[a, 2] = period, hits, cycles
+    return amplitudes.size, DONE
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -72,8 +214,7 @@ class AmplitudeScan:
 
     def at_frequency(self, frequency: float) -> ImpactOscillator:
         """The oscillator at grazing and drive `frequency` [Hz]."""
-        assert self.oscillator.drive is not None
-        drive = replace(self.oscillator.drive, frequency=frequency)
+        drive = replace(self.oscillator.driven, frequency=frequency)
         return replace(self.oscillator, drive=drive).with_excess(0.0)
 
     def __call__(self, frequency: float, excesses: ArrayLike) -> ScannedColumn:
@@ -102,13 +243,11 @@ class AmplitudeScan:
         columns, reasons = np.full((excesses.size, 3), -1, dtype=np.int64), [""] * excesses.size
         at = 0
         while at < excesses.size:
-            rest = 1.0 + excesses[at:]
-            ends = np.empty((rest.size, size + EXTRA))
-            found, place = np.zeros((rest.size, 3), dtype=np.int64), np.empty(size + 2)
+            place = np.empty(size + 2)
             done, status = settled_column(
-                system, rest, state, self.most_cycles, TOLERANCE * oscillator.stop.gap, ends, found, place
-            )
-            columns[at : at + done] = found[:done]
+                system, 1.0 + excesses[at:], state, self.most_cycles, TOLERANCE * oscillator.stop.gap,
+                columns[at:], place,
+            )  # fmt: skip
             at += done
             if status != DONE:
                 # the next amplitude goes on from the last state that was reached

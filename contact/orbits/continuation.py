@@ -9,6 +9,7 @@ that fails is halved.  Between neighbours folds, period doublings and grazings a
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -18,8 +19,7 @@ from beam.parameters import require_array, require_kind, require_within
 from contact.errors import ContactError
 from contact.laws import NEWTON
 from contact.orbits.events import Event, events_between, locate, probed
-from contact.orbits.kick import KickFamily
-from contact.orbits.shooting import PeriodicOrbit, Shooting
+from contact.orbits.periodic_orbit import Followed, PeriodicOrbit
 
 __all__ = [
     "Branch",
@@ -30,6 +30,7 @@ __all__ = [
     "folds_of",
     "follow",
     "lowest_of",
+    "orbits_at",
 ]
 
 GREATEST_STEP = 10.0
@@ -38,11 +39,11 @@ GREATEST_STEP = 10.0
 SMALLEST_STEP = 1e-6
 """Step of log v at which a branch is given up: the orbit then changes its character, not its size."""
 
-MOST_STRIDES = 30
-"""Bound of steps towards a fold: they cover three decades of the approach velocity."""
-
 MOST_STEPS = 1000
-"""Bound of steps towards an event, those included that failed and were halved: a branch has some hundred."""
+"""Bound of steps along a branch beside twice those that it takes: they are halved where they fail."""
+
+FASTEST = 100.0
+"""Approach velocity, over 2 pi f gap, up to which an event is looked for, or twice the one of the start."""
 
 FIRST_STRIDE, LONGEST_STRIDE = 0.02, 0.3
 """Steps of log v on the way to an event: the first, as it may be close, and the longest."""
@@ -56,6 +57,7 @@ STARTS = (0.1, 0.03, 0.3, 0.01)
 LEAST_SPEED, GREATEST_SPEED = 1e-6, 2.0
 """Approach velocities, over 2 pi f gap, between which a fold is looked for: faster ones than 2 pi f gap
 belong to amplitudes far beyond the letter's."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Branch:
@@ -79,7 +81,14 @@ class Branch:
         return [event.orbit for event in self.events if event.kind == kind]
 
 
-def follow(family: Shooting, start: PeriodicOrbit, *, low: float, high: float, step: float = 0.1) -> Branch:
+def require_followed(family: object, start: object, *, optional: bool = False) -> None:
+    """TypeError unless this is a family to follow from this orbit."""
+    require_kind("family", family, Followed, "a Shooting family")
+    name, words = ("near", "a PeriodicOrbit or None") if optional else ("start", "a PeriodicOrbit")
+    require_kind(name, start, (PeriodicOrbit, *([type(None)] if optional else [])), words)
+
+
+def follow(family: Followed, start: PeriodicOrbit, *, low: float, high: float, step: float = 0.1) -> Branch:
     """The branch through `start`, between the approach velocities `low` and `high` [m/s].
 
     Parameters
@@ -90,8 +99,7 @@ def follow(family: Shooting, start: PeriodicOrbit, *, low: float, high: float, s
     step : float
         Largest step of log v.
     """
-    require_kind("family", family, Shooting, "a Shooting family")
-    require_kind("start", start, PeriodicOrbit, "a PeriodicOrbit")
+    require_followed(family, start)
     for name, value in (("low", low), ("high", high)):
         require_within(name, value, "m/s")
     require_within("step", step, "[1]", low=SMALLEST_STEP, high=GREATEST_STEP)
@@ -102,22 +110,11 @@ def follow(family: Shooting, start: PeriodicOrbit, *, low: float, high: float, s
     arms, reasons = [], []
     for limit in (low, high):
         arm, reason = [start], "range"
-        stride = step
-        # ends: a step reaches the limit, or halvings reach SMALLEST_STEP; no step succeeds below that
-        while True:
-            far = math.log(limit / arm[-1].speed)
-            target = limit if abs(far) <= stride else arm[-1].speed * math.exp(math.copysign(stride, far))
-            try:
-                there = family.at_speed(target, arm[-1])
-                arm += [*probed(family, arm[-1], there)[1:], there]
-                stride = min(step, 1.5 * stride)
-                if target == limit:
-                    break
-            except ContactError as error:
-                stride *= 0.5
-                if stride < SMALLEST_STEP:
-                    reason = f"{error}; last orbit at {arm[-1].speed:.6g} m/s, excess {arm[-1].excess:.6g}"
-                    break
+        try:
+            for orbits in _walk(family, start, limit, first=step, longest=step):
+                arm += orbits[1:]
+        except ContactError as error:
+            reason = f"{error}; last orbit at {arm[-1].speed:.6g} m/s, excess {arm[-1].excess:.6g}"
         arms.append(arm)
         reasons.append(reason)
     orbits = [*arms[0][:0:-1], *arms[1]]
@@ -125,48 +122,64 @@ def follow(family: Shooting, start: PeriodicOrbit, *, low: float, high: float, s
     return Branch(orbits=tuple(orbits), events=tuple(events), ended_low=reasons[0], ended_high=reasons[1])
 
 
-def first_event(family: Shooting, start: PeriodicOrbit, lowest: float) -> Event | None:
+def _walk(
+    family: Followed, here: PeriodicOrbit, limit: float, *, first: float, longest: float
+) -> Iterator[list[PeriodicOrbit]]:
+    """Steps along a branch up to the approach velocity `limit` [m/s]: the orbits from one end of each to the
+    other.
+
+    A step of log v grows from `first` to `longest`, and is halved where it fails; the ContactError of one
+    that has become `SMALLEST_STEP` is raised.
+    """
+    stride = first
+    for _ in range(MOST_STEPS + round(2.0 * abs(math.log(limit / here.speed)) / longest)):
+        far = math.log(limit / here.speed)
+        target = limit if abs(far) <= stride else here.speed * math.exp(math.copysign(stride, far))
+        try:
+            there = family.at_speed(target, here)
+            orbits = [*probed(family, here, there), there]
+        except ContactError:
+            stride *= 0.5
+            if stride < SMALLEST_STEP:
+                raise
+            continue
+        yield orbits
+        if target == limit:
+            return
+        here, stride = there, min(1.5 * stride, longest)
+
+
+def first_event(family: Followed, start: PeriodicOrbit, lowest: float) -> Event | None:
     """The event that ends the orbit `start` when the amplitude is lowered.
 
     The branch is followed towards lower amplitudes until an event is met, or until the excess is below
     `lowest` [1]: then the answer is None.
     An orbit that can be followed no further because one of its touches has become a graze ends by "grazing";
     so does one whose only touch falls below `LEAST_SPEED`, as under a contact so soft that no fold is left.
-
-    Raises
-    ------
-    NotPeriodic
-        If the branch is lost for another reason.
+    NotPeriodic is raised if the branch is lost for another reason.
     """
-    require_kind("family", family, Shooting, "a Shooting family")
-    require_kind("start", start, PeriodicOrbit, "a PeriodicOrbit")
+    require_followed(family, start)
     require_within("lowest", lowest, "[1]", above=-1)
-    here, stride, direction = start, FIRST_STRIDE, -math.copysign(1.0, start.slope)
-    least = min(LEAST_SPEED * _unit(family), start.speed)
-    for _ in range(MOST_STEPS):
-        if here.speed < least:
+    here, unit = start, family.oscillator.unit_speed
+    slow, fast = min(LEAST_SPEED * unit, 0.5 * start.speed), max(FASTEST * unit, 2.0 * start.speed)
+    limit = slow if start.slope > 0.0 else fast
+    try:
+        for orbits in _walk(family, start, limit, first=FIRST_STRIDE, longest=LONGEST_STRIDE):
+            for a, b in pairwise(orbits):
+                events = events_between(family, a, b)
+                if events:
+                    return events[0]
+            here = orbits[-1]
+            if here.excess < lowest:
+                return None
+    except ContactError:
+        if here.approach.min() < GRAZED * here.approach.max():
             return Event(kind="grazing", orbit=here)
-        try:
-            there = family.at_speed(here.speed * math.exp(direction * stride), here)
-            orbits = [*probed(family, here, there), there]
-        except ContactError:
-            stride *= 0.5
-            if stride < SMALLEST_STEP:
-                if here.approach.min() < GRAZED * here.approach.max():
-                    return Event(kind="grazing", orbit=here)
-                raise
-            continue
-        for a, b in pairwise(orbits):
-            events = events_between(family, a, b)
-            if events:
-                return events[0]
-        if there.excess < lowest:
-            return None
-        here, stride = there, min(1.5 * stride, LONGEST_STRIDE)
-    return None
+        raise
+    return Event(kind="grazing", orbit=here) if limit == slow else None
 
 
-def fold_of(family: Shooting, near: PeriodicOrbit | None = None) -> PeriodicOrbit | None:
+def fold_of(family: Followed, near: PeriodicOrbit | None = None) -> PeriodicOrbit | None:
     """The fold of smallest amplitude, where the family's downward scan ends; None if there is no fold.
 
     Where contact is soft, at an excess of some 1e-5 and less, a branch can have several folds, and go on
@@ -194,7 +207,7 @@ def fold_of(family: Shooting, near: PeriodicOrbit | None = None) -> PeriodicOrbi
     return min(folds, key=lambda orbit: (not orbit.admissible, orbit.excess), default=None)
 
 
-def folds_of(family: Shooting, near: PeriodicOrbit | None = None) -> tuple[PeriodicOrbit, ...]:
+def folds_of(family: Followed, near: PeriodicOrbit | None = None) -> tuple[PeriodicOrbit, ...]:
     """All folds of the branch, by rising approach velocity from 1e-6 to 2 times 2 pi f gap.
 
     The branch is followed through `near`, or else through the first orbit that the kick description leads to;
@@ -204,7 +217,7 @@ def folds_of(family: Shooting, near: PeriodicOrbit | None = None) -> tuple[Perio
     return () if branch is None else tuple(branch.of_kind("fold"))
 
 
-def lowest_of(family: Shooting, near: PeriodicOrbit | None = None) -> Event | None:
+def lowest_of(family: Followed, near: PeriodicOrbit | None = None) -> Event | None:
     """The admissible orbit of smallest amplitude: a "fold", or the "grazing" that ends the branch below it.
 
     Parameters and errors are those of `fold_of`.  None if the branch has no such orbit, as where amplitude
@@ -219,14 +232,25 @@ def lowest_of(family: Shooting, near: PeriodicOrbit | None = None) -> Event | No
     return min(ends, key=lambda event: event.orbit.excess, default=None)
 
 
-def _whole_branch(family: Shooting, near: PeriodicOrbit | None) -> Branch | None:
+def orbits_at(family: Followed, excess: float) -> tuple[PeriodicOrbit, ...]:
+    """The orbits of the branch of `folds_of` at F/F_g - 1 = `excess`, by rising approach velocity."""
+    require_within("excess", excess, "[1]", above=-1)
+    branch = _whole_branch(family, None)
+    orbits = [] if branch is None else [*branch.orbits, *branch.of_kind("fold")]
+    return tuple(
+        locate(family, a, b, lambda orbit: orbit.excess - excess)
+        for a, b in pairwise(sorted(orbits, key=lambda orbit: orbit.speed))
+        if (a.excess - excess) * (b.excess - excess) < 0.0
+    )
+
+
+def _whole_branch(family: Followed, near: PeriodicOrbit | None) -> Branch | None:
     """The branch over all approach velocities; None if no orbit of it is found.
 
     Raises NotPeriodic if an event on it is not located: from another start it would be the same one.
     """
-    require_kind("near", near, (PeriodicOrbit, type(None)), "a PeriodicOrbit or None")
-    require_kind("family", family, Shooting, "a Shooting family")
-    unit = _unit(family)
+    require_followed(family, near, optional=True)
+    unit = family.oscillator.unit_speed
     starts = [near] if near is not None else [None] * len(STARTS)
     for start, part in zip(starts, STARTS, strict=False):
         try:
@@ -239,51 +263,38 @@ def _whole_branch(family: Shooting, near: PeriodicOrbit | None) -> Branch | None
     return None
 
 
-def _unit(family: Shooting) -> float:
-    """2 pi f gap [m/s]."""
-    return family.oscillator.drive.angular_frequency * family.oscillator.stop.gap  # type: ignore[union-attr]
-
-
-def _fold_near(family: Shooting, near: PeriodicOrbit | None) -> PeriodicOrbit | None:
+def _fold_near(family: Followed, near: PeriodicOrbit | None) -> PeriodicOrbit | None:
     """The first fold downhill from `near`, or from the fold of the kick description."""
-    require_kind("family", family, Shooting, "a Shooting family")
-    require_kind("near", near, (PeriodicOrbit, type(None)), "a PeriodicOrbit or None")
-    if near is None:
-        kick = KickFamily(oscillator=family.oscillator, period=family.period).fold()
-        if kick is None:
-            return None
-        here = family.at_speed(kick.kick.speed)
-    else:
-        here = family.at_speed(near.speed, near)
-    stride, unit = FIRST_STRIDE, _unit(family)
-    for _ in range(MOST_STRIDES):
-        if not LEAST_SPEED * unit < here.speed < GREATEST_SPEED * unit:
-            break
-        direction = -math.copysign(1.0, here.slope)
-        there = family.at_speed(here.speed * math.exp(direction * stride), here)
-        if there.slope * here.slope <= 0:
-            return locate(family, here, there, lambda orbit: orbit.slope)
-        here, stride = there, min(1.5 * stride, LONGEST_STRIDE)
+    require_followed(family, near, optional=True)
+    guess = near or family.kicks.fold()
+    if guess is None:
+        return None
+    start, unit = family.at_speed(guess.speed, near), family.oscillator.unit_speed
+    if not LEAST_SPEED * unit < start.speed < GREATEST_SPEED * unit:
+        return None
+    limit = (LEAST_SPEED if start.slope > 0.0 else GREATEST_SPEED) * unit
+    for orbits in _walk(family, start, limit, first=FIRST_STRIDE, longest=LONGEST_STRIDE):
+        for a, b in pairwise(orbits):
+            if a.slope * b.slope <= 0:
+                return locate(family, a, b, lambda orbit: orbit.slope)
     return None
 
 
 def fold_along_frequency(
-    family: Shooting, frequencies: np.ndarray, near: PeriodicOrbit | None = None
+    family: Followed, frequencies: np.ndarray, near: PeriodicOrbit | None = None
 ) -> list[PeriodicOrbit | None]:
     """The folds at `frequencies` [Hz], each started from the one before; None where there is none."""
-    require_kind("family", family, Shooting, "a Shooting family")
+    require_followed(family, near, optional=True)
     found: list[PeriodicOrbit | None] = []
     for frequency in require_array("frequencies", frequencies, "Hz", dimensions=1, words="drive frequencies"):
-        drive = replace(family.oscillator.drive, frequency=float(frequency))  # type: ignore[type-var]
-        here = replace(family, oscillator=replace(family.oscillator, drive=drive))
+        drive = replace(family.oscillator.driven, frequency=float(frequency))
+        here = family.of(replace(family.oscillator, drive=drive))
         fold = None
-        for start in (near, None):
+        for start in dict.fromkeys((near, None)):
             try:
-                fold = fold_of(here, start)
+                fold = fold or fold_of(here, start)
             except ContactError:
-                fold = None
-            if fold is not None or start is None:
-                break
+                continue
         found.append(fold)
         near = fold
     return found

@@ -26,15 +26,20 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
+from beam.parameters import require_kind
 from contact.errors import ContactError
-from contact.maximal_orbits import fold, maximal_orbits, stable_range
+from contact.laws import NEWTON
+from contact.maximal_orbits import MapFamily
 from contact.nordmark import StrobedNordmarkMap
 from contact.orbits.continuation import first_event
+from contact.orbits.family import Family
+from contact.orbits.kick import KickFamily
 from contact.orbits.settling import Settled, orbit_near, settle
 from contact.orbits.shooting import Shooting
+from contact.orbits.single_impact import MaximalFamily
 from contact.stroboscope import StrobedMap, StroboscopicMap
 
-__all__ = ["OrbitEnd", "orbit_end"]
+__all__ = ["OrbitEnd", "fold_excess", "orbit_end"]
 
 S = TypeVar("S")
 
@@ -131,8 +136,13 @@ def orbit_end(
             kind, exact, below = _exact_end(strobed, state, start, held, trial)
             if below is None:
                 return OrbitEnd(
-                    period=start.period, impacts=start.impacts, excess=exact, kind=kind, held=held,
-                    lost=trial, state=state,
+                    period=start.period,
+                    impacts=start.impacts,
+                    excess=exact,
+                    kind=kind,
+                    held=held,
+                    lost=trial,
+                    state=state,
                 )
             now = below
         if now is None:
@@ -147,9 +157,9 @@ def _exact_end(
     strobed: Any, state: Any, start: Settled[Any], held: float, lost: float
 ) -> tuple[str, float, Any]:
     """Kind and excess of the end in the bracket; third the state at `lost`, if the orbit is still there."""
-    if isinstance(strobed, StrobedNordmarkMap) and start.impacts == 1:
-        return _map_end(strobed, start.period, held, lost)
     unknown = BRACKET, 0.5 * (held + lost), None
+    if isinstance(strobed, StrobedNordmarkMap) and start.impacts == 1:
+        return _map_end(MapFamily(strobed.map, start.period), held, lost) or unknown
     if not isinstance(strobed, StroboscopicMap):
         return unknown
     orbit = orbit_near(strobed.at(held), state, start.period, start.impacts)
@@ -166,16 +176,53 @@ def _exact_end(
     return ("", lost, below.strobe_state()) if below.stable else unknown
 
 
-def _map_end(strobed: StrobedNordmarkMap, period: int, held: float, lost: float) -> tuple[str, float, Any]:
-    """The same for the orbit of the Nordmark map with one impact in `period` steps."""
-    nordmark, unknown = strobed.map, (BRACKET, 0.5 * (held + lost), None)
-    at_fold, stable = fold(nordmark, period), stable_range(nordmark, period)
-    if at_fold is None or stable is None or not stable[0] <= nordmark.rho(held) <= stable[1]:
-        return unknown
-    end = nordmark.excess(stable[0])
+def _map_end(family: MapFamily, held: float, lost: float) -> tuple[str, float, Any] | None:
+    """The same for the orbit of the Nordmark map with one impact in a period; None if it is not known."""
+    at_fold, stable = family.fold(), family.stable_range()
+    if at_fold is None or stable is None or not stable[0] <= family.map.rho(held) <= stable[1]:
+        return None
+    end = family.map.excess(stable[0])
     if end < lost:
-        return "", lost, maximal_orbits(nordmark, period, nordmark.rho(lost))[-1].states[0]
+        return "", lost, family.orbits(lost)[-1].states[0]
     if stable[0] == at_fold.rho:
         return "fold", end, None
-    doubles = maximal_orbits(nordmark, period, stable[0])[-1].multipliers.real.min() < -1.0 + 1e-6
+    doubles = family.at_rho(stable[0])[-1].multipliers.real.min() < -1.0 + 1e-6
     return "period doubling" if doubles else "grazing", end, None
+
+
+def fold_excess(strobed: StrobedMap[Any], period: int) -> float | None:
+    """F_m/F_g - 1 at the fold of the p_m orbit with one collision, whatever the description.
+
+    The Nordmark map and Newton's law have it in closed form; under any other law it is found by shooting,
+    with the touches of the collision at the fold of the kick description.  None without a fold, or for
+    m < 2.
+
+    Parameters
+    ----------
+    strobed : StrobedMap
+        A StrobedNordmarkMap or a StroboscopicMap; its own amplitude does not matter.
+    period : int
+        m, in drive periods.
+
+    Raises
+    ------
+    NotPeriodic
+        If the orbits around the place where the fold should be are not found.
+    """
+    if period < 2:
+        return None
+    family: Family
+    if isinstance(strobed, StrobedNordmarkMap):
+        family = MapFamily(strobed.map, period)
+    else:
+        words = "a StroboscopicMap or a StrobedNordmarkMap"
+        oscillator = require_kind("strobed", strobed, StroboscopicMap, words).oscillator
+        if oscillator.stop.law.code == NEWTON:
+            family = MaximalFamily.from_oscillator(oscillator, period=period)
+        else:
+            kick = KickFamily(oscillator=oscillator, period=period).fold()
+            if kick is None:
+                return None
+            family = Shooting(oscillator=oscillator, period=period, impacts=kick.kick.touches)
+    at_fold = family.fold()
+    return None if at_fold is None else at_fold.excess

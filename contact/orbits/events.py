@@ -16,9 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contact.orbits.shooting import PeriodicOrbit, Shooting
+from contact.orbits.periodic_orbit import Followed, PeriodicOrbit
 
-__all__ = ["Event", "doubling", "events_between", "locate", "probed"]
+__all__ = ["Event", "events_between", "locate", "probed"]
 
 PLACE = 1e-10
 """Accuracy of log v at a located point; the excess there is good to the square of it at a fold."""
@@ -45,7 +45,7 @@ def doubling(orbit: PeriodicOrbit) -> float:
 
 
 def locate(
-    family: Shooting, a: PeriodicOrbit, b: PeriodicOrbit, test: Callable[[PeriodicOrbit], float]
+    family: Followed, a: PeriodicOrbit, b: PeriodicOrbit, test: Callable[[PeriodicOrbit], float]
 ) -> PeriodicOrbit:
     """The orbit between neighbours a and b where `test` changes sign."""
     from scipy.optimize import brentq  # slow to import
@@ -63,7 +63,7 @@ def locate(
     return seen[root]
 
 
-def _bisect(family: Shooting, a: PeriodicOrbit, b: PeriodicOrbit) -> PeriodicOrbit:
+def _bisect(family: Followed, a: PeriodicOrbit, b: PeriodicOrbit) -> PeriodicOrbit:
     """The last admissible orbit between an admissible and an inadmissible neighbour."""
     good, bad = (a, b) if a.admissible else (b, a)
     for _ in range(MOST_HALVINGS):
@@ -77,7 +77,7 @@ def _bisect(family: Shooting, a: PeriodicOrbit, b: PeriodicOrbit) -> PeriodicOrb
     return good
 
 
-def probed(family: Shooting, a: PeriodicOrbit, b: PeriodicOrbit, depth: int = 0) -> list[PeriodicOrbit]:
+def probed(family: Followed, a: PeriodicOrbit, b: PeriodicOrbit, depth: int = 0) -> list[PeriodicOrbit]:
     """`a`, and the orbits between it and its neighbour `b` that tell apart two folds in between.
 
     The cubic in log v with the amplitudes and slopes of both says where the slope is least; if it comes near
@@ -97,7 +97,7 @@ def probed(family: Shooting, a: PeriodicOrbit, b: PeriodicOrbit, depth: int = 0)
     return [*probed(family, a, middle, depth + 1), *probed(family, middle, b, depth + 1)]
 
 
-def events_between(family: Shooting, a: PeriodicOrbit, b: PeriodicOrbit) -> list[Event]:
+def events_between(family: Followed, a: PeriodicOrbit, b: PeriodicOrbit) -> list[Event]:
     """What happens between neighbours, in the order in which it is met from `a` on."""
     found = []
     if a.slope * b.slope < 0:

@@ -29,31 +29,23 @@ motions they converge faster than any power of its length (S. Das, Y. Saiki, E. 
 Nonlinearity 30 (2017) 4111), on chaos like a plain average.  The standard error comes from the scatter of
 blocks.
 
-Whatever has the methods of `Differentiable` can be asked; `of_oscillator` and `of_nordmark` make one.
+Any ``contact.strobed_map.StrobedMap`` can be asked.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import Protocol, TypeVar
+from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from beam.parameters import require_kind, require_whole, require_within, shown
+from beam.parameters import require_kind, require_whole, require_within
 from contact.errors import NotPeriodic, UnresolvedCrossing
-from contact.nordmark import StrobedNordmarkMap
-from contact.oscillator import ImpactOscillator
-from contact.simulation import simulate
-from contact.strobed_map import Jacobians
-from contact.strobed_motion import coordinate_weights
-from contact.stroboscope import StroboscopicMap
-from contact.trajectory import Regime, State
+from contact.strobed_map import StrobedMap
 
-__all__ = ["Differentiable", "Exponents", "divergence_rate", "map_exponents", "of_nordmark", "of_oscillator",
-           "orbit_exponents"]  # fmt: skip
+__all__ = ["Exponents", "divergence_rate", "map_exponents", "orbit_exponents"]
 
 Array = NDArray[np.float64]
 S = TypeVar("S")
@@ -78,33 +70,6 @@ SMALLEST = 1e-300
 """In place of a zero on the diagonal of R, where an impact without rebound has erased a direction."""
 
 
-class Differentiable(Protocol[S]):
-    """A strobed motion with derivatives; coordinates have one unit and a common `scale`."""
-
-    @property
-    def scale(self) -> float:
-        """The size of a coordinate."""
-
-    @property
-    def period(self) -> float:
-        """Time of one step: the drive period [s], 1 for a map without time."""
-
-    def jacobians(self, state: S, count: int) -> Jacobians[S]:
-        """Derivatives along `count` steps, each with the number of steps that it spans, and the end."""
-
-    def follow(self, state: S, time: float) -> S:
-        """The motion after about `time` [s], out of contact; its own clock is read with `clock`."""
-
-    def clock(self, state: S) -> float:
-        """Time of a state [s]; for a map, 0."""
-
-    def coordinates(self, state: S) -> Array:
-        """Coordinates, shape (n_coordinates,)."""
-
-    def moved(self, state: S, change: Array) -> S:
-        """The state with its coordinates changed."""
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Exponents:
     """Lyapunov exponents.
@@ -126,12 +91,10 @@ class Exponents:
         return float(self.values[0])
 
 
-def require_system(system: object) -> None:
-    """TypeError unless `system` has derivatives."""
-    if isinstance(system, type) or not callable(getattr(system, "jacobians", None)):
-        raise TypeError(
-            f"system is {shown(system)}; it must be a strobed motion with derivatives, as of_oscillator gives"
-        )
+def require_strobed(strobed: object) -> None:
+    """TypeError unless this is a strobed map."""
+    words = "a strobed map with derivatives, such as a StroboscopicMap"
+    require_kind("strobed", strobed, StrobedMap, words)
 
 
 def _weighted(rates: Array, spans: Array) -> tuple[Array, float]:
@@ -148,12 +111,12 @@ def _weighted(rates: Array, spans: Array) -> tuple[Array, float]:
     return mean, error
 
 
-def map_exponents(system: Differentiable[S], state: S, count: int, *, align: int = 0) -> tuple[Exponents, S]:
+def map_exponents(strobed: StrobedMap[S], state: S, count: int, *, align: int = 0) -> tuple[Exponents, S]:
     """All exponents per step from Jacobians, and the state at the end.
 
     Parameters
     ----------
-    system : Differentiable
+    strobed : StrobedMap
     state : State
         On the attractor.
     count : int
@@ -166,12 +129,12 @@ def map_exponents(system: Differentiable[S], state: S, count: int, *, align: int
     ContactError
         If the motion could not be followed, or the tip came to rest on the wall.
     """
-    require_system(system)
+    require_strobed(strobed)
     count = require_whole("count", count, "steps", low=2, why=": an average needs them")
     align = require_whole("align", align, "steps", low=0)
-    frame, rates, spans, done = np.eye(system.coordinates(state).size), [], [], 0
+    frame, rates, spans, done = np.eye(strobed.coordinates(state).size), [], [], 0
     while done < align + count:
-        found, state = system.jacobians(state, min(BLOCK, align + count - done))
+        found, state = strobed.jacobians(state, min(BLOCK, align + count - done))
         for matrix, span in found:
             frame, triangle = np.linalg.qr(matrix @ frame)
             done += span
@@ -182,18 +145,18 @@ def map_exponents(system: Differentiable[S], state: S, count: int, *, align: int
     return Exponents(values=np.sort(mean)[::-1], error=error), state
 
 
-def orbit_exponents(system: Differentiable[S], state: S, period: int) -> Exponents:
+def orbit_exponents(strobed: StrobedMap[S], state: S, period: int) -> Exponents:
     """Exponents log|mu_i|/m of the periodic orbit of `period` m on which `state` lies, per step."""
-    require_system(system)
+    require_strobed(strobed)
     period = require_whole("period", period, "drive periods")
-    matrix = np.eye(system.coordinates(state).size)
+    matrix = np.eye(strobed.coordinates(state).size)
     done = 0
     while done % period or done == 0:  # a strobe in contact is never the last: m periods later it is again
         if done > MOST_STRETCHES * period:
             raise NotPeriodic(
                 time=0.0, gap=0.0, velocity=0.0, detail="every strobe of the orbit is in contact"
             )
-        found, state = system.jacobians(state, period - done % period)
+        found, state = strobed.jacobians(state, period - done % period)
         for step, span in found:
             matrix, done = step @ matrix, done + span
     sizes = np.maximum(np.abs(np.linalg.eigvals(matrix)), SMALLEST)
@@ -201,13 +164,13 @@ def orbit_exponents(system: Differentiable[S], state: S, period: int) -> Exponen
 
 
 def divergence_rate(
-    system: Differentiable[S], state: S, duration: float, *, align: float = 0.0, seed: int = 1996
+    strobed: StrobedMap[S], state: S, duration: float, *, align: float = 0.0, seed: int = 1996
 ) -> Exponents:
     """The largest exponent [1/s] from two neighbouring motions.
 
     Parameters
     ----------
-    system : Differentiable
+    strobed : StrobedMap
     state : State
         On the attractor.
     duration, align : float
@@ -215,121 +178,29 @@ def divergence_rate(
     seed : int
         Of the direction in which the second motion starts.
     """
-    require_system(system)
+    require_strobed(strobed)
     require_within("duration", duration, "s", above=0)
     require_within("align", align, "s", low=0)
     require_whole("seed", seed, "[1]", low=0)
-    size = SEPARATION * system.scale
-    start = np.random.default_rng(seed).standard_normal(system.coordinates(state).size)
-    beside = system.moved(state, size * start / np.linalg.norm(start))
+    size = SEPARATION * strobed.scale
+    start = np.random.default_rng(seed).standard_normal(strobed.coordinates(state).size)
+    beside = strobed.moved(state, size * start / np.linalg.norm(start))
     clock, rates, spans = 0.0, [], []
     while clock < align + duration:
-        target, before = STRETCH * system.period, system.clock(state)
+        target = STRETCH * strobed.period
         for _ in range(MOST_STRETCHES):
-            end = system.follow(state, target)
-            other = system.follow(beside, target)
-            span = system.clock(end) - before or system.period
-            if abs(system.clock(other) - before - (system.clock(end) - before)) <= 1e-9 * system.period:
+            (end, span), (other, as_long) = (strobed.advance(here, target) for here in (state, beside))
+            if abs(as_long - span) <= 1e-9 * strobed.period:
                 break
             target *= 1.0 + 0.5 * STRETCH  # one of the two was in contact
         else:
-            raise UnresolvedCrossing(time=before, gap=0.0, velocity=0.0)
-        gap = system.coordinates(other) - system.coordinates(end)
+            raise UnresolvedCrossing(time=clock, gap=0.0, velocity=0.0)
+        gap = strobed.coordinates(other) - strobed.coordinates(end)
         distance = max(float(np.linalg.norm(gap)), SMALLEST)
         clock += span
         if clock > align:
             rates.append([math.log(distance / size) / span])
             spans.append(span)
-        state, beside = end, system.moved(end, gap * (size / distance))
+        state, beside = end, strobed.moved(end, gap * (size / distance))
     mean, error = _weighted(np.array(rates), np.array(spans))
     return Exponents(values=mean, error=error)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _OfOscillator:
-    """An impact oscillator; coordinates are phi_k q_k and phi_k q_k'/omega_k [m]."""
-
-    strobed: StroboscopicMap
-
-    @property
-    def oscillator(self) -> ImpactOscillator:
-        return self.strobed.oscillator
-
-    @property
-    def scale(self) -> float:
-        return self.strobed.scale
-
-    @property
-    def period(self) -> float:
-        return self.oscillator.period
-
-    @cached_property
-    def _weight(self) -> Array:
-        return coordinate_weights(self.oscillator)
-
-    def clock(self, state: State) -> float:
-        return state.time
-
-    def coordinates(self, state: State) -> Array:
-        return self._weight * np.concatenate([state.displacement, state.velocity])
-
-    def moved(self, state: State, change: Array) -> State:
-        n, shift = self.oscillator.n_modes, change / self._weight
-        return replace(
-            state, displacement=state.displacement + shift[:n], velocity=state.velocity + shift[n:]
-        )
-
-    def follow(self, state: State, time: float) -> State:
-        run = simulate(self.oscillator, state, duration=time)
-        for _ in range(MOST_STRETCHES):
-            if run.end.regime == Regime.OUTSIDE:
-                return run.end
-            run = simulate(self.oscillator, run.end, duration=0.05 * self.period)
-        raise UnresolvedCrossing(time=run.end.time, gap=0.0, velocity=0.0)
-
-    def jacobians(self, state: State, count: int) -> Jacobians[State]:
-        return self.strobed.jacobians(state, count)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _OfNordmark:
-    """A Nordmark map at its rho; coordinates are x and y."""
-
-    strobed: StrobedNordmarkMap
-
-    @property
-    def scale(self) -> float:
-        return self.strobed.scale
-
-    @property
-    def period(self) -> float:
-        return 1.0
-
-    def clock(self, state: Array) -> float:
-        return 0.0
-
-    def coordinates(self, state: Array) -> Array:
-        return state
-
-    def moved(self, state: Array, change: Array) -> Array:
-        return state + change
-
-    def follow(self, state: Array, time: float) -> Array:
-        return self.strobed.orbit(state, 1).end
-
-    def jacobians(self, state: Array, count: int) -> Jacobians[Array]:
-        return self.strobed.jacobians(state, count)
-
-
-def of_oscillator(strobed: StroboscopicMap) -> Differentiable[State]:
-    """The derivatives of the period map of an oscillator at its amplitude."""
-    require_kind("strobed", strobed, StroboscopicMap, "a StroboscopicMap")
-    if strobed.oscillator.drive is None:
-        raise ValueError("drive is None; a period map needs a HarmonicDrive")
-    return _OfOscillator(strobed=strobed)
-
-
-def of_nordmark(strobed: StrobedNordmarkMap) -> Differentiable[Array]:
-    """The derivatives of a Nordmark map."""
-    require_kind("strobed", strobed, StrobedNordmarkMap, "a StrobedNordmarkMap")
-    return _OfNordmark(strobed=strobed)

@@ -14,7 +14,8 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from contact.errors import ContactError
-from contact.orbits.settling import TOLERANCE, period_of, settle
+from contact.orbits.repetition import period_of
+from contact.orbits.settling import TOLERANCE, settle
 from contact.stroboscope import StrobedMap
 
 __all__ = ["OrbitDiagram", "orbit_diagram"]

@@ -1,10 +1,9 @@
 """Settling on a periodic orbit and telling its period.
 
-**Repetition.** The motion is followed in blocks.  After each block the last points are compared with those p
-strobes earlier, p = 1 ... `largest_period`: the orbit has period p if all coordinates of the last
-`largest_period` points repeat to `TOLERANCE` of the scale and the impact counts repeat exactly.  (A transient
-that alternates about p_m while it dies out, next to a period doubling, repeats after 2m first: a period is
-told when a repetition `ALIKE` times as rough has the same one.)  A motion that has not settled after
+**Repetition.** The motion is followed in blocks.  After each block the last points are compared with those
+before them (``contact.orbits.repetition``), to `TOLERANCE` of the scale.  (A transient that alternates about
+p_m while it dies out, next to a period doubling, repeats after 2m first: a period is told when a repetition
+`ALIKE` times as rough has the same one.)  A motion that has not settled after
 `most_cycles` periods gets period 0: chaos, a longer period, or a transient that is not over.  Any strobed map
 settles this way.
 
@@ -17,8 +16,8 @@ block of drive periods by what its largest multiplier says,
     distance(n + block) <= SLACK |mu|^(block/m) distance(n) + rounding,
 
 the motion is in the linear neighbourhood of the orbit and ends on it: the rest of the transient need not be
-computed.  The motion without impacts is settled when the free motion that is left, which can only shrink,
-cannot reach the stop any more.  Near a fold, where |mu| comes close to 1, this saves thousands of periods.
+computed.  The motion without impacts is settled when the free motion that is left cannot reach the stop any
+more.  Near a fold, where |mu| comes close to 1, this saves thousands of periods.
 """
 
 from __future__ import annotations
@@ -29,11 +28,13 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 
 from contact.errors import ContactError
-from contact.orbits.shooting import PeriodicOrbit, Shooting
+from contact.orbits.periodic_orbit import PeriodicOrbit
+from contact.orbits.repetition import free_for_good, period_of
+from contact.orbits.shooting import Shooting
 from contact.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap
 from contact.trajectory import State
 
-__all__ = ["BELOW", "TOLERANCE", "Settled", "born", "born_period", "orbit_near", "period_of", "settle"]
+__all__ = ["BELOW", "TOLERANCE", "Settled", "born", "born_period", "orbit_near", "settle"]
 
 S = TypeVar("S")
 
@@ -86,31 +87,6 @@ class Settled(Generic[S]):
     end: S
     cycles: int
     points: np.ndarray
-
-
-def period_of(points: np.ndarray, impacts: np.ndarray, *, largest_period: int, tolerance: float) -> int:
-    """The smallest p <= `largest_period` with which the last `largest_period` points repeat, or 0.
-
-    Parameters
-    ----------
-    points : ndarray, shape (n_strobes, n_coordinates)
-        At least 2 * `largest_period` strobes.
-    impacts : ndarray of int, shape (n_strobes,)
-    largest_period : int
-    tolerance : float
-        In the unit of the points.
-    """
-    last = points[-1]
-    for period in range(1, largest_period + 1):
-        if np.max(np.abs(last - points[-1 - period])) > tolerance:
-            continue
-        stretch = slice(-largest_period, None)
-        before = slice(-largest_period - period, -period)
-        if np.array_equal(impacts[stretch], impacts[before]) and (
-            np.max(np.abs(points[stretch] - points[before])) <= tolerance
-        ):
-            return period
-    return 0
 
 
 def settle(
@@ -245,8 +221,10 @@ class _Proof:
         hits = int(run.impacts[-rough:].sum()) if rough else 0
         if rough and hits == 0:
             self.known = None
-            if _free_for_good(strobed, run.end):
-                return 1, 0, replace(strobed.steady(), time=run.end.time)
+            steady, end = strobed.steady(), run.end
+            u, v = end.displacement - steady.displacement, end.velocity - steady.velocity
+            if free_for_good(strobed.oscillator.motion(), u, v):
+                return 1, 0, replace(steady, time=end.time)
             return None
         if not rough or rough > self.largest_period // 2:
             self.known, self.before = None, np.inf
@@ -277,14 +255,3 @@ def _distance(points: np.ndarray, cycle: np.ndarray) -> tuple[float, int]:
     gaps = [float(np.max(np.abs(last - np.roll(cycle, -k, axis=0)))) for k in range(m)]
     best = int(np.argmin(gaps))
     return gaps[best], best
-
-
-def _free_for_good(strobed: StroboscopicMap, state: State) -> bool:
-    """Whether the free motion left over in `state` can never bring the tip to the stop."""
-    model, steady = strobed.oscillator.model, strobed.steady()
-    if np.any(model.omega <= 0):
-        return False
-    u, v = state.displacement - steady.displacement, state.velocity - steady.velocity
-    left = float(np.sum(np.abs(model.phi) * np.hypot(u, v / model.omega)))
-    reach = abs(strobed.oscillator.tip_response()) * strobed.oscillator.drive.amplitude  # type: ignore[union-attr]
-    return reach + left < strobed.oscillator.stop.gap * (1.0 - 1e-12)

@@ -18,19 +18,21 @@ converges quadratically; floquet multipliers are the eigenvalues of d(u, v)(m/f)
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import math
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from beam.parameters import is_whole, require_kind, require_within, shown
+from beam.parameters import is_whole, require, require_kind, require_within, shown
 from contact.errors import NotPeriodic
-from contact.flight.crossing import CROSSES, FREE, first_crossing
 from contact.flight.modal_flow import steady_motion
-from contact.flight.motion import Motion
-from contact.orbits.kick import KickFamily, KickOrbit
-from contact.orbits.saltation import sorted_multipliers
+from contact.orbits.continuation import fold_of, orbits_at
+from contact.orbits.family import TouchOrbit
+from contact.orbits.kick import KickFamily
+from contact.orbits.periodic_orbit import PeriodicOrbit
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.touch_flow import FLOWN, flow_from_touch
@@ -54,73 +56,20 @@ ROUNDED = 1e-9
 """Residual below which iterates that no longer improve count as an orbit: rounding, 1e-16, times the largest
 multiplier, which grows as 1/v towards grazing."""
 
+OFF_THE_STOP = 1e-9
+"""Distance of a first guess from the stop, over the gap, beyond which the drive is set anew."""
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class PeriodicOrbit:
-    """A periodic orbit with impacts.
 
-    Parameters
-    ----------
-    period : int
-        m, in drive periods.
-    impacts : int
-        Touches in one period.
-    amplitude : float
-        Base amplitude [m].
-    excess : float
-        F/F_g - 1.
-    speed : float
-        Approach velocity of the first touch [m/s].
-    approach : ndarray, shape (impacts,)
-        Approach velocities of all touches [m/s].
-    phase : float
-        Drive time of the first touch [s].
-    displacement, velocity : ndarray, shape (n_modes,)
-        Deviations from the steady motion there.
-    multipliers : ndarray of complex, shape (2 n_modes,)
-        Floquet multipliers, the largest first.
-    slope : float
-        Change of the excess with the approach velocity along the family [s/m].
-    residual : float
-        What is left of the equations, in units of the gap.
-    admissible : bool
-        The tip touches the stop at these impacts only (certified).
-    """
+class _Iterate(NamedTuple):
+    """An iterate of Newton's method: the unknowns, the tangent of their flow, the record of its touches, the
+    scaled residual and Jacobian of the equations, and the largest residual."""
 
-    period: int
-    impacts: int
-    amplitude: float
-    excess: float
-    speed: float
-    approach: Array
-    phase: float
-    displacement: Array
-    velocity: Array
-    multipliers: NDArray[np.complex128]
-    slope: float
-    residual: float
-    admissible: bool
-    oscillator: ImpactOscillator = field(repr=False)
-
-    @property
-    def stable(self) -> bool:
-        """All multipliers inside the unit circle."""
-        return bool(np.abs(self.multipliers[0]) < 1.0)
-
-    def state(self) -> State:
-        """The physical state just before the first touch."""
-        motion = self.oscillator.motion()
-        q, q_rate = steady_motion(motion, np.array([self.phase]))
-        return State(
-            displacement=self.displacement + q[0], velocity=self.velocity + q_rate[0], time=self.phase
-        )
-
-    def strobe_state(self) -> State:
-        """The state at the strobe that follows the first touch."""
-        motion = self.oscillator.motion()
-        before = self.state()
-        run = simulate(self.oscillator, before, duration=motion.period - self.phase % motion.period)
-        return run.end
+    unknown: Array
+    matrix: Array
+    record: Array
+    residual: Array
+    jacobian: Array
+    error: float
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -139,32 +88,56 @@ class Shooting:
     impacts: int = 1
 
     def __post_init__(self) -> None:
-        require_kind("oscillator", self.oscillator, ImpactOscillator, "an ImpactOscillator")
-        if not is_whole(self.impacts, 1):
-            raise ValueError(f"impacts is {shown(self.impacts)}; it must be a whole number, one or more")
+        require(is_whole(self.impacts, 1),
+                f"impacts is {shown(self.impacts)}; it must be a whole number, one or more")  # fmt: skip
         _ = self.kicks
+
+    def of(self, oscillator: ImpactOscillator) -> Shooting:
+        """The same family of another oscillator."""
+        return replace(self, oscillator=oscillator)
 
     @cached_property
     def kicks(self) -> KickFamily:
         """The description by kicks, from which the search starts."""
         return KickFamily(oscillator=self.oscillator, period=self.period)
 
-    @property
+    @cached_property
     def _scale(self) -> Array:
         """Sizes of the unknowns (u, v, S, C)."""
         model, gap = self.oscillator.model, self.oscillator.stop.gap
-        w = self.oscillator.drive.angular_frequency  # type: ignore[union-attr]
         size = gap / np.abs(model.phi).max()
-        speed = np.maximum(model.omega, w)
+        speed = np.maximum(model.omega, self.oscillator.driven.angular_frequency)
         return np.concatenate([np.full(model.omega.size, size), size * speed, [gap, gap]])
 
-    def _driven(self, unknown: Array) -> tuple[ImpactOscillator, float, float]:
-        """The oscillator at the amplitude of `unknown`, that amplitude and the drive time of the touch."""
-        amplitude, angle = float(np.hypot(*unknown[-2:])), float(np.arctan2(unknown[-2], unknown[-1]))
-        w = self.oscillator.drive.angular_frequency  # type: ignore[union-attr]
-        return self.oscillator.with_amplitude(amplitude), amplitude, angle % (2.0 * np.pi) / w
+    @cached_property
+    def _tip_rows(self) -> tuple[Array, Array]:
+        """Gradients of tip displacement and tip velocity in (u, v, S, C)."""
+        n, response, phi = self.oscillator.n_modes, self.oscillator.tip_response(), self.oscillator.model.phi
+        w = self.oscillator.driven.angular_frequency
+        place, rate = np.zeros(2 * n + 2), np.zeros(2 * n + 2)
+        place[:n], rate[n : 2 * n] = phi, phi
+        place[-2:] = response.real, response.imag
+        rate[-2:] = -w * response.imag, w * response.real
+        return place, rate
 
-    def flow(self, unknown: Array, *, tangent: bool = True) -> tuple[Array, Array, Array]:
+    def _unknown(self, deviations: Array, amplitude: float, phase: float) -> Array:
+        """The unknowns of a touch: deviations (u, v), shape (2 n_modes,), base amplitude and drive time."""
+        angle = self.oscillator.driven.angular_frequency * phase
+        return np.concatenate([deviations, amplitude * np.array([math.sin(angle), math.cos(angle)])])
+
+    def _at_the_stop(self, unknown: Array, speed: float) -> Array:
+        """The same deviations with the drive that puts the tip on the stop with approach velocity `speed`."""
+        deviations, (place, rate) = unknown[:-2], self._tip_rows
+        p, r = float(place[:-2] @ deviations), float(rate[:-2] @ deviations)
+        return self._unknown(deviations, *self.oscillator.drive_at(self.oscillator.stop.gap - p, speed - r))
+
+    def _driven(self, unknown: Array) -> tuple[ImpactOscillator, float]:
+        """The oscillator at the amplitude of `unknown`, and the drive time of the touch."""
+        amplitude, angle = math.hypot(*unknown[-2:]), math.atan2(*unknown[-2:])
+        w = self.oscillator.driven.angular_frequency
+        return self.oscillator.with_amplitude(amplitude), angle % (2.0 * math.pi) / w
+
+    def flow(self, unknown: Array) -> tuple[Array, Array, Array]:
         """End of the flow (u, v), its tangent (2 N + 2, 2 N + 2) and the record of the touches.
 
         Raises
@@ -173,14 +146,11 @@ class Shooting:
             If the motion has fewer touches, or a contact does not end.
         """
         n = self.oscillator.n_modes
-        driven, _amplitude, phase = self._driven(unknown)
+        driven, phase = self._driven(unknown)
         u, v = unknown[:n].copy(), unknown[n : 2 * n].copy()
-        matrix = np.eye(2 * n + 2) if tangent else np.empty((0, 0))
-        record = np.empty((self.impacts, 4 + 2 * n))
-        length = self.period * self.oscillator.period
-        outcome = flow_from_touch(
-            driven.motion(), self.kicks.response, phase, u, v, length, matrix, record
-        )
+        matrix, record = np.eye(2 * n + 2), np.empty((self.impacts, 4 + 2 * n))
+        response, length = self.oscillator.tip_response(), self.period * self.oscillator.period
+        outcome = flow_from_touch(driven.motion(), response, phase, u, v, length, matrix, record)
         if outcome != FLOWN:
             raise NotPeriodic(
                 time=phase, gap=0.0, velocity=float(record[0, 2]),
@@ -188,137 +158,79 @@ class Shooting:
             )
         return np.concatenate([u, v]), matrix, record
 
-    def _tip_rows(self) -> tuple[Array, Array]:
-        """Gradients of tip displacement and tip velocity in (u, v, S, C)."""
-        n, response = self.oscillator.n_modes, self.kicks.response
-        w = self.oscillator.drive.angular_frequency  # type: ignore[union-attr]
-        phi = self.oscillator.model.phi
-        place, rate = np.zeros(2 * n + 2), np.zeros(2 * n + 2)
-        place[:n], rate[n : 2 * n] = phi, phi
-        place[-2:] = response.real, response.imag
-        rate[-2:] = -w * response.imag, w * response.real
-        return place, rate
+    def _iterate(self, unknown: Array, speed: float | None, amplitude: float | None) -> _Iterate:
+        """The equations at `unknown`: closed, at the stop, and with this speed or this amplitude."""
+        place, rate = self._tip_rows
+        gap, size = self.oscillator.stop.gap, math.hypot(*unknown[-2:])
+        end, matrix, record = self.flow(unknown)
+        if speed is not None:
+            picked, gradient, unit = float(rate @ unknown) - speed, rate, self.oscillator.unit_speed
+        else:
+            picked, gradient, unit = size - (amplitude or 0.0), np.zeros(unknown.size), gap
+            gradient[-2:] = unknown[-2:] / size
+        jacobian = matrix - np.eye(unknown.size)
+        jacobian[-2:] = place, gradient
+        weight = np.concatenate([self._scale[:-2], [gap, unit]])
+        residual = np.concatenate([end - unknown[:-2], [place @ unknown - gap, picked]]) / weight
+        scaled = jacobian * self._scale / weight[:, None]
+        return _Iterate(unknown, matrix, record, residual, scaled, float(np.max(np.abs(residual))))
 
-    def _at_the_stop(self, unknown: Array, speed: float) -> Array:
-        """The same deviations with the drive that puts the tip on the stop with approach velocity `speed`."""
-        n = self.oscillator.n_modes
-        phi = self.oscillator.model.phi
-        p, r = float(phi @ unknown[:n]), float(phi @ unknown[n : 2 * n])
-        amplitude, phase = self.kicks.drive_at_touch(self.oscillator.stop.gap - p, speed - r)
-        angle = self.oscillator.drive.angular_frequency * phase  # type: ignore[union-attr]
-        return np.concatenate([unknown[: 2 * n], amplitude * np.array([np.sin(angle), np.cos(angle)])])
-
-    def _solve(self, guess: Array, *, speed: float | None, amplitude: float | None) -> PeriodicOrbit:
-        n, gap = self.oscillator.n_modes, self.oscillator.stop.gap
-        w = self.oscillator.drive.angular_frequency  # type: ignore[union-attr]
-        place, rate = self._tip_rows()
-        scale, unknown = self._scale, guess.copy()
-        if speed is not None and abs(place @ guess - gap) > 1e-9 * gap:
+    def _solve(
+        self, guess: Array, *, speed: float | None = None, amplitude: float | None = None
+    ) -> PeriodicOrbit:
+        """The orbit next to `guess` with this approach velocity [m/s] or this base amplitude [m]."""
+        gap, unknown, found = self.oscillator.stop.gap, guess, None
+        if speed is not None and abs(self._tip_rows[0] @ guess - gap) > OFF_THE_STOP * gap:
             unknown = self._at_the_stop(guess, speed)  # a neighbour at another frequency misses the stop
-        weight = np.concatenate([scale[: 2 * n], [gap, w * gap if amplitude is None else gap]])
-        found: tuple[Array, Array, Array, Array, Array, float] | None = None
         for iteration in range(MOST_ITERATIONS):
-            end, matrix, record = self.flow(unknown)
-            residual = np.empty(2 * n + 2)
-            residual[: 2 * n] = end - unknown[: 2 * n]
-            residual[2 * n] = place @ unknown - gap
-            jacobian = np.empty((2 * n + 2, 2 * n + 2))
-            jacobian[: 2 * n] = matrix[: 2 * n]
-            jacobian[: 2 * n, : 2 * n] -= np.eye(2 * n)
-            jacobian[2 * n] = place
-            if speed is not None:
-                residual[2 * n + 1] = rate @ unknown - speed
-                jacobian[2 * n + 1] = rate
-            elif amplitude is not None:
-                size = np.hypot(*unknown[-2:])
-                residual[2 * n + 1] = size - amplitude
-                jacobian[2 * n + 1] = 0.0
-                jacobian[2 * n + 1, -2:] = unknown[-2:] / size
-            error = float(np.max(np.abs(residual / weight)))
-            scaled = jacobian * scale / weight[:, None]
+            here = self._iterate(unknown, speed, amplitude)
             # one step in any case: near grazing a neighbour can lie within the tolerance, and is another
             # orbit
             if iteration > 0:
-                if found is None or error < found[-1]:
-                    found = unknown, matrix, record, scaled, weight, error
-                    if error < CONVERGED:
-                        return self._orbit(*found)
-                elif found[-1] < ROUNDED:
-                    return self._orbit(*found)
+                if found is None or here.error < found.error:
+                    found = here
+                    if here.error < CONVERGED:
+                        return self._orbit(found)
+                elif found.error < ROUNDED:
+                    return self._orbit(found)
             try:
-                change = np.linalg.solve(scaled, residual / weight)
+                change = np.linalg.solve(here.jacobian, here.residual)
             except np.linalg.LinAlgError:
                 break
             longest = float(np.max(np.abs(change)))
-            unknown = unknown - scale * change * min(1.0, LONGEST_STEP / max(longest, 1e-300))
+            unknown = unknown - self._scale * change * min(1.0, LONGEST_STEP / max(longest, 1e-300))
             if speed is not None and longest > LONGEST_STEP:
                 unknown = self._at_the_stop(unknown, speed)
             if not np.all(np.isfinite(unknown)):
                 break
         raise NotPeriodic(
-            time=0.0,
-            gap=0.0,
-            velocity=record[0, 2],
+            time=0.0, gap=0.0, velocity=here.record[0, 2],
             detail=(
-                f"Newton's method did not converge to an orbit of period {self.period} (residual {error:.1e})"
+                f"Newton's method did not converge to an orbit of period {self.period} "
+                f"(residual {here.error:.1e})"
             ),
         )
 
-    def _orbit(
-        self, unknown: Array, matrix: Array, record: Array, scaled: Array, weight: Array, error: float
-    ) -> PeriodicOrbit:
-        n = self.oscillator.n_modes
-        driven, amplitude, phase = self._driven(unknown)
-        _place, rate = self._tip_rows()
-        grazing = self.oscillator.grazing_amplitude()
+    def _orbit(self, found: _Iterate) -> PeriodicOrbit:
+        n, unknown, rate = self.oscillator.n_modes, found.unknown, self._tip_rows[1]
+        driven, phase = self._driven(unknown)
+        amplitude, grazing = driven.driven.amplitude, self.oscillator.grazing_amplitude()
         # the tangent of the curve: null vector of the first 2 N + 1 equations, unit change of the approach
         # velocity
-        closing = scaled.copy()
-        unit = self._scale[-1] * self.oscillator.drive.angular_frequency  # type: ignore[union-attr]
-        closing[2 * n + 1] = rate * self._scale / unit
-        right = np.zeros(2 * n + 2)
-        right[2 * n + 1] = 1.0 / unit
+        closing, right, unit = found.jacobian.copy(), np.zeros(2 * n + 2), self.oscillator.unit_speed
+        closing[-1], right[-1] = rate * self._scale / unit, 1.0 / unit
         change = self._scale * np.linalg.solve(closing, right)
         return PeriodicOrbit(
-            period=self.period,
-            impacts=self.impacts,
-            amplitude=amplitude,
-            excess=amplitude / grazing - 1.0,
-            speed=float(rate @ unknown),
-            approach=record[:, 2].copy(),
-            phase=phase,
-            displacement=unknown[:n].copy(),
-            velocity=unknown[n : 2 * n].copy(),
-            multipliers=sorted_multipliers(matrix[: 2 * n, : 2 * n]),
-            slope=float(unknown[-2:] @ change[-2:]) / amplitude / grazing,
-            residual=error,
-            admissible=self._admissible(driven.motion(), phase, record, error),
-            oscillator=driven,
-        )
+            oscillator=driven, period=self.period, excess=amplitude / grazing - 1.0,
+            speed=float(rate @ unknown), phase=phase, displacement=unknown[:n].copy(),
+            velocity=unknown[n : 2 * n].copy(), record=found.record, tangent=found.matrix[: 2 * n, : 2 * n],
+            slope=float(unknown[-2:] @ change[-2:]) / amplitude / grazing, residual=found.error,
+        )  # fmt: skip
 
-    def _admissible(self, motion: Motion, phase: float, record: Array, error: float) -> bool:
-        """Whether the last flight is free of the stop up to the touch that closes the orbit (certified)."""
-        n = self.oscillator.n_modes
-        last, duration = record[-1], self.period * self.oscillator.period
-        u, v = last[4 : 4 + n].copy(), last[4 + n :].copy()
-        start, length = phase + last[1], duration - last[1]
-        order = 1 if last[3] < 0.0 else 2
-        outcome, s = first_crossing(motion, start, u, v, length * (1 + 1e-9), order)
-        # the touch that closes the orbit is met at `length`, give or take the residual
-        slack = 1e-6 * self.oscillator.period + 4.0 * error * motion.gap / record[0, 2]
-        return outcome == FREE or bool(outcome == CROSSES and abs(s - length) <= slack)
-
-    def guess(self, orbit: KickOrbit) -> Array:
-        """Unknowns from an orbit of the kick description."""
-        w = self.oscillator.drive.angular_frequency  # type: ignore[union-attr]
-        drive = orbit.amplitude * np.array([np.sin(w * orbit.phase), np.cos(w * orbit.phase)])
-        return np.concatenate([orbit.deviations[:, 0], orbit.deviations[:, 1], drive])
-
-    def unknowns(self, orbit: PeriodicOrbit) -> Array:
+    def _beside(self, orbit: TouchOrbit) -> Array:
         """Unknowns of an orbit, to start a neighbouring one from."""
-        w = self.oscillator.drive.angular_frequency  # type: ignore[union-attr]
-        drive = orbit.amplitude * np.array([np.sin(w * orbit.phase), np.cos(w * orbit.phase)])
-        return np.concatenate([orbit.displacement, orbit.velocity, drive])
+        deviations = np.concatenate([orbit.displacement, orbit.velocity])
+        return self._unknown(deviations, orbit.amplitude, orbit.phase)
 
     def at_speed(self, speed: float, near: PeriodicOrbit | None = None) -> PeriodicOrbit:
         """The orbit whose first touch has approach velocity `speed` [m/s].
@@ -336,15 +248,14 @@ class Shooting:
         """
         require_within("speed", speed, "m/s", above=0)
         require_kind("near", near, (PeriodicOrbit, type(None)), "a PeriodicOrbit or None")
-        start = self.guess(self.kicks.orbit(speed)) if near is None else self.unknowns(near)
-        return self._solve(start, speed=speed, amplitude=None)
+        return self._solve(self._beside(near or self.kicks.orbit(speed)), speed=speed)
 
     def at_excess(self, excess: float, near: PeriodicOrbit) -> PeriodicOrbit:
         """The orbit at F/F_g - 1 = `excess` that is next to `near`."""
         require_within("excess", excess, "[1]", above=-1)
         require_kind("near", near, PeriodicOrbit, "a PeriodicOrbit")
         amplitude = (1.0 + excess) * self.oscillator.grazing_amplitude()
-        return self._solve(self.unknowns(near), speed=None, amplitude=amplitude)
+        return self._solve(self._beside(near), amplitude=amplitude)
 
     def from_state(self, state: State) -> PeriodicOrbit:
         """The orbit on which a simulated motion has settled: its first touch from `state` starts the
@@ -358,16 +269,20 @@ class Shooting:
                 time=state.time, gap=0.0, velocity=0.0, detail="the motion has no impact to start from"
             )
         i = int(np.flatnonzero(hits)[0])
-        motion = self.oscillator.motion()
-        clock = float(run.impacts.start[i] % motion.period)
-        q, q_rate = steady_motion(motion, np.array([clock]))
-        amplitude = self.oscillator.drive.amplitude  # type: ignore[union-attr]
-        angle = motion.drive * clock
-        unknown = np.concatenate(
-            [
-                run.impacts.displacement_start[i] - q[0],
-                run.impacts.velocity_start[i] - q_rate[0],
-                amplitude * np.array([np.sin(angle), np.cos(angle)]),
-            ]
-        )
-        return self._solve(unknown, speed=None, amplitude=amplitude)
+        phase = float(run.impacts.start[i] % self.oscillator.period)
+        steady = np.concatenate(steady_motion(self.oscillator.motion(), np.array([phase])), axis=1)[0]
+        met = np.concatenate([run.impacts.displacement_start[i], run.impacts.velocity_start[i]])
+        amplitude = self.oscillator.driven.amplitude
+        return self._solve(self._unknown(met - steady, amplitude, phase), amplitude=amplitude)
+
+    def orbit(self, speed: float) -> PeriodicOrbit:
+        """`at_speed`, from the kick description."""
+        return self.at_speed(speed)
+
+    def orbits(self, excess: float) -> tuple[PeriodicOrbit, ...]:
+        """The orbits at F/F_g - 1 = `excess` > -1, by rising speed (``continuation.orbits_at``)."""
+        return orbits_at(self, excess)
+
+    def fold(self) -> PeriodicOrbit | None:
+        """The orbit of least amplitude at which two meet (``continuation.fold_of``)."""
+        return fold_of(self)

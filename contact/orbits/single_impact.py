@@ -1,229 +1,267 @@
-r"""Maximal orbits of an impact oscillator: one impact every m drive periods, Newton's law, in closed form.
+r"""Orbits with one collision every m drive periods: closed by linear algebra, exact under Newton's law.
 
-    q_k'' + c_k q_k' + omega_k^2 q_k = -Gamma_k z'' + phi_k J delta(t - t_0),   x = sum_k phi_k q_k,
-    z = Z sin(w t),  w = 2 pi f;   at the wall x = gap:  x' -> -e x'.
+    q_k = Z Im(H_k exp(i w t)) + u_k,   H_k = Gamma_k w^2/(omega_k^2 - w^2 + i c_k w),   w = 2 pi f
 
-**Kick.** Let q_k = Z Im(H_k exp(i w t)) + u_k, H_k = Gamma_k w^2/(omega_k^2 - w^2 + i c_k w); u_k is free. An
-impact at approach speed v changes u_k' by B_k v, B_k = -(1 + e) phi_k/sum phi^2. With N the free flow of mode
-k over m/f, G = det N = exp(-c_k m/f) and D = 1 - tr N + G, the deviations that repeat after m/f are
+u_k is free. A collision at approach speed v changes the deviations (u_k, u_k') by B_k(v), referred to its
+first touch. With N the free flow of mode k over m/f, G = det N = exp(-c_k m/f) and D = det(I - N) = 1 - tr N
++ G, the deviations that repeat after m/f are, just before the touch,
 
-    before the impact:  u_k = N12 B_k v/D,  u_k' = (N22 - G) B_k v/D
-    after the impact:   u_k = N12 B_k v/D,  u_k' = (1 - N11) B_k v/D
+    (I - N)^-1 N B = (N - G I) B/D,      and B more just after it.
 
-**Amplitude against impact.** Before the impact let s = sum phi_k u_k/v [s], r = sum phi_k u_k'/v [1] and
-b = (1 - r)/w [s]. With the steady tip amplitude A = Z |sum phi_k H_k| [m], the conditions x = gap, x' = v are
+**Amplitude against speed.** With p = sum phi_k u_k, r = sum phi_k u_k' before the touch, and the steady tip
+amplitude A = Z |sum phi_k H_k|, the conditions x = gap, x' = v are
 
-    A sin(psi) = gap - s v,   A cos(psi) = b v,   psi = w t_0 + arg sum phi_k H_k
-    A(v)^2 = (gap - s v)^2 + (b v)^2                                                                     (a)
+    A sin(psi) = gap - p,   A cos(psi) = (v - r)/w,   psi = w t_0 + arg sum phi_k H_k.
 
-for every speed. If s > 0, A has a least value, the **fold** of the node (larger v) and the saddle:
+Hence
+
+    A^2 = (gap - p)^2 + ((v - r)/w)^2,      F/F_g - 1 = A/gap - 1.                                      (a)
+
+**Newton's law.** x' -> -e x' at once is the kick B_k = (0, -(1 + e) phi_k v/sum phi^2), linear in v, so that
+p = s v and (v - r)/w = b v: (a) is a quadratic. If s > 0, A has a least value, the **fold** of the node
+(larger v) and the saddle:
 
     v = s gap/(s^2 + b^2),   A_m/gap = F_m/F_g = 1/sqrt(1 + k^2),   k = s/b.
 
 For one mode k = -w N12 (1 + e)/(1 - N11 + e N22 - e G), which is the F_m of Eq. (1) at any amplitude.
 
-Everything is exact as long as the tip does not reach the wall at another time: `SingleImpactOrbit.admissible`
-says whether it does, by the certified search of ``contact.flight.crossing``. Multipliers of an orbit are in
-``contact.orbits.saltation``. Units: SI with mass-normalised modes (q in m kg^0.5).
+All this is exact as long as the tip does not reach the wall at another time: `SingleImpactOrbit.admissible`
+says whether it does. Units: SI with mass-normalised modes (q in m kg^0.5).
 Sources: letter of 1996, Eq. (1) and Fig. 3; A. B. Nordmark, J. Sound Vib. 145 (1991) 279.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from beam.parameters import require, require_array, require_within
-from contact.flight.crossing import CROSSES, FREE, first_crossing
-from contact.orbits.driven_modes import DrivenModes, modal_flow
-from contact.orbits.saltation import monodromy, sorted_multipliers
-from contact.touch import newton
+from beam.parameters import require, require_kind, require_whole, require_within
+from contact.errors import NotPeriodic
+from contact.flight.motion import Motion
+from contact.laws import NewtonRestitution
+from contact.nordmark import restitution_of
+from contact.orbits.family import Release, TouchOrbit, modal_flow
+from contact.oscillator import ImpactOscillator
+from contact.stop import Stop
+from contact.touch_flow import FLOWN, flow_from_touch
 
-__all__ = ["MaximalFamily", "MaximalFlight", "SingleImpactOrbit", "modal_flow"]
+__all__ = ["Kick", "MaximalFamily", "SingleImpactFamily", "SingleImpactOrbit"]
 
 Array = NDArray[np.float64]
+SINGULAR = 1e-13  # a D below this is rounding of 1 - tr N + G, terms of size 1: the mode is back after m/f
 CLOSING = 1e-9  # part of the flight within which a crossing is the impact that ends it
 HEIGHT = 1e-13  # the same in units of the gap: rounding of the height at which the flight ends
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class MaximalFlight:
-    """The free flight of a maximal orbit from its impact to the next, as initial data.
-
-    `start`: drive time of the impact [s]; `duration` m/f [s]; `displacement`, `velocity`: deviations u, u'
-    from the steady motion just after the impact, shape (n_modes,) [m kg^0.5, m kg^0.5/s].
-    """
-
-    start: float
-    duration: float
-    displacement: Array
-    velocity: Array
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class SingleImpactOrbit:
-    """One orbit of a `MaximalFamily`, its `family`.
-
-    `speed` v of approach [m/s]; `amplitude` Z of the base [m]; `excess` F/F_g - 1 [1]; `flight` from the
-    impact on; `before`: deviations (u, u') just before the impact, shape (2, n_modes).
-    """
-
-    family: MaximalFamily
-    speed: float
-    amplitude: float
-    excess: float
-    flight: MaximalFlight
-    before: Array
-
-    def state(self, time: ArrayLike) -> Array:
-        """Modal (q, q') at drive times within the flight [s], shape (2, n_modes) + shape of `time`.
-
-        At the start of the flight it is the state after the impact, at its end that before the next one.
-        """
-        family, flight, times = self.family, self.flight, require_array("time", time, "s", words="times")
-        since, slack = times.ravel() - flight.start, 1e-9 * flight.duration  # rounding of the caller's times
-        inside = np.all((since >= -slack) & (since <= flight.duration + slack))
-        require(bool(inside), f"time leaves the flight; it must lie within {flight.duration} s of its start")
-        flows = np.array([modal_flow(family.omega, family.decay_rate, t) for t in since.tolist()])
-        start = np.column_stack([flight.displacement, flight.velocity])
-        free = np.einsum("tkij,kj->ikt", flows.reshape(-1, family.size, 2, 2), start)
-        w = family.angular_frequency
-        phase = self.amplitude * family.response[:, None] * np.exp(1j * w * times.ravel())
-        return (np.array([phase.imag, w * phase.real]) + free).reshape((2, family.size, *times.shape))
-
-    def tip(self, time: ArrayLike) -> tuple[Array, Array]:
-        """Tip displacement [m] and velocity [m/s] relative to the base at drive times within the flight."""
-        q, v = self.state(time)
-        return np.tensordot(self.family.phi, q, 1), np.tensordot(self.family.phi, v, 1)
-
-    def residual(self) -> float:
-        """Largest relative mismatch of the closed orbit: gap, speed, Newton's law, return of modes [1]."""
-        family, flight = self.family, self.flight
-        after, arrival = self.state(flight.start), self.state(flight.start + flight.duration)
-        x, v = family.phi @ arrival[0], family.phi @ arrival[1]
-        jump = arrival[1] - (1.0 + family.restitution) * family.phi / (family.phi @ family.phi) * v
-        mismatch = [abs(x / family.gap - 1.0), abs(v / self.speed - 1.0)]
-        for found, wanted in ((arrival[0], after[0]), (jump, after[1])):
-            mismatch.append(float(np.max(np.abs(found - wanted)) / np.max(np.abs(wanted))))
-        return float(max(mismatch))
-
-    @cached_property
-    def admissible(self) -> bool:
-        """Whether the flight meets the wall at its end only (certified; a graze counts as a meeting)."""
-        family, flight = self.family, self.flight
-        # the tip leaves with velocity -e v, or is at rest on the wall: one or two derivatives vanish at the
-        # start
-        order = 1 if family.restitution > 0.0 else 2
-        outcome, time = first_crossing(
-            family.motion(self.amplitude), flight.start, flight.displacement.copy(), flight.velocity.copy(),
-            flight.duration * (1.0 + CLOSING), order,
-        )  # fmt: skip
-        slack = CLOSING * flight.duration + HEIGHT * family.gap / self.speed
-        return bool(outcome == FREE or (outcome == CROSSES and abs(time - flight.duration) <= slack))
-
-    def saltation(self) -> Array:
-        """Saltation matrix of the impact in (q, q') of all modes, shape (2 n_modes, 2 n_modes)."""
-        family, flight, size = self.family, self.flight, 2 * self.family.size
-        motion, tangent = family.motion(self.amplitude), np.eye(size + 2)
-        before = (flight.start, self.before[0].copy(), self.before[1].copy())
-        after = (flight.start, flight.displacement, flight.velocity)
-        newton.saltation(motion, family.tip_response, before, after, tangent)
-        return tangent[:size, :size]
-
-    def monodromy(self) -> Array:
-        """Derivative of the motion over m/f, from just before an impact to just before the next, Phi S."""
-        return monodromy(self.family.flow, self.saltation())
-
-    def multipliers(self) -> NDArray[np.complex128]:
-        """Eigenvalues of `monodromy`, shape (2 n_modes,), largest modulus first."""
-        return sorted_multipliers(self.monodromy())
-
-    @property
-    def stable(self) -> bool:
-        """Whether all multipliers lie inside the unit circle."""
-        return bool(np.abs(self.multipliers()[0]) < 1.0)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class MaximalFamily(DrivenModes):
-    """All orbits with one impact every `period` drive periods, by approach speed.
+class Kick:
+    """What one collision does to all modes.
 
     Parameters
     ----------
-    omega, decay_rate, phi, participation : array_like, shape (n_modes,)
-        omega_k [rad/s], c_k [1/s], phi_k [kg^-0.5], Gamma_k [kg^0.5].
-    drive_frequency : float
-        f [Hz].
-    gap : float
-        Distance of the wall, above zero [m].
-    restitution : float
-        e of the law, from 0 to 1 [1].
-    period : int
-        m, one or more [1].
-
-    Raises
-    ------
-    ValueError
-        For numbers outside these ranges; if the drive is at the frequency of an undamped mode; or if a mode
-        that the impact excites returns to itself after m/f (zero frequency, or undamped and in resonance),
-        for then no orbit is periodic.
+    speed : float
+        Approach speed v of the tip [m/s].
+    jump : ndarray, shape (n_modes, 2)
+        B: jumps of displacement and velocity of the modes, referred to the first touch.
+    touches : int
+        Contacts in the collision.
+    duration : float
+        From first touch to last release [s].
+    leaves : bool
+        Whether the tip then has a velocity away from the wall, or is at rest on it.
     """
 
+    speed: float
+    jump: Array
+    touches: int = 1
+    duration: float = 0.0
+    leaves: bool = True
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SingleImpactOrbit(TouchOrbit):
+    """An orbit with one collision in m drive periods, built from the `Kick` of that collision."""
+
+    kick: Kick
+
+    @property
+    def after(self) -> Array:
+        """Deviations (u, u') just after the collision, referred to its first touch, shape (n_modes, 2)."""
+        return np.column_stack([self.displacement, self.velocity]) + self.kick.jump
+
+    def release(self) -> Release:
+        """The end of the collision."""
+        motion, wait = self.oscillator.motion(), self.kick.duration
+        u, v = np.einsum("kij,kj->ik", modal_flow(motion, wait), self.after)
+        slack = CLOSING * self.duration + HEIGHT * motion.gap / self.speed
+        return Release(wait, u, v, self.kick.leaves, slack)
+
+    def monodromy(self) -> Array:
+        """That of the oscillator's own collision (``contact.touch_flow``), met as this orbit meets it.
+
+        Raises
+        ------
+        NotPeriodic
+            If that collision has fewer touches than the kick, or does not end.
+        """
+        n, tangent = self.oscillator.n_modes, np.eye(2 * self.oscillator.n_modes + 2)
+        outcome = flow_from_touch(
+            self.oscillator.motion(), self.oscillator.tip_response(), self.phase, self.displacement.copy(),
+            self.velocity.copy(), self.duration, tangent, np.empty((self.kick.touches, 4 + 2 * n)),
+        )  # fmt: skip
+        if outcome != FLOWN:
+            raise NotPeriodic(
+                time=self.phase, gap=0.0, velocity=self.speed, detail="the collision was lost on its orbit"
+            )
+        return tangent[: 2 * n, : 2 * n]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SingleImpactFamily(ABC):
+    """The orbits with one collision in m drive periods, from the kick of that collision.
+
+    Parameters
+    ----------
+    oscillator : ImpactOscillator
+        Without constant load; its drive amplitude does not matter.
+    period : int
+        m, one or more.
+    """
+
+    oscillator: ImpactOscillator
+    period: int
+
+    def __post_init__(self) -> None:
+        require_kind("oscillator", self.oscillator, ImpactOscillator, "an ImpactOscillator")
+        _ = self.oscillator.driven
+        require(self.oscillator.load is None, "load is given; it must be None for orbits with one collision")
+        require_whole("period", self.period, "drive periods")
+
+    @abstractmethod
+    def kick(self, speed: float) -> Kick:
+        """The collision with approach speed `speed`, above zero [m/s]."""
+
     @cached_property
-    def deviations(self) -> tuple[Array, Array]:
-        """(u, u') per unit approach speed, just before and just after the impact, each (2, n_modes)."""
-        moved = self.phi != 0.0  # a mode that the impact does not reach stays at rest
-        kick = -(1.0 + self.restitution) * self.phi / (self.phi @ self.phi)
-        kick = np.where(moved, kick / np.where(moved, self.distance_from_return, 1.0), 0.0)
-        height = self.flow[:, 0, 1] * kick
-        before = (self.flow[:, 1, 1] - self.determinant) * kick
-        return np.array([height, before]), np.array([height, (1.0 - self.flow[:, 0, 0]) * kick])
+    def _motion(self) -> Motion:
+        return self.oscillator.motion()
+
+    @cached_property
+    def flow(self) -> Array:
+        """N, mode by mode, shape (n_modes, 2, 2)."""
+        return modal_flow(self._motion, self.period * self.oscillator.period)
+
+    @cached_property
+    def _closing(self) -> tuple[Array, NDArray[np.bool_]]:
+        """(N - G I)/D mode by mode, and which modes return to themselves after m/f (D = 0)."""
+        shrink = np.exp(-self._motion.decay * self.period * self.oscillator.period)
+        distance = np.abs(1.0 - self.flow[:, 0, 0] - self.flow[:, 1, 1] + shrink)
+        trapped = distance <= SINGULAR
+        sizes = np.where(trapped, 1.0, distance)[:, None, None]
+        return (self.flow - shrink[:, None, None] * np.eye(2)) / sizes, trapped
+
+    def closed(self, jump: Array) -> Array:
+        """(N - G I) B/D: deviations before a collision that repeats, from its jump B; both (n_modes, 2).
+
+        ValueError if a mode that is kicked returns to itself after m/f: then nothing is periodic.
+        """
+        matrices, trapped = self._closing
+        back = np.flatnonzero(trapped & np.any(jump != 0.0, axis=1))  # one that is not kicked stays at rest
+        if back.size:
+            raise ValueError(
+                f"omega[{back[0]}] is {self._motion.omega[back[0]]} rad/s, a mode that is back after "
+                f"{self.period} drive periods; it must have damping or another frequency"
+            )
+        closed: Array = np.einsum("kij,kj->ki", matrices, jump)
+        return closed
+
+    def excess(self, speed: float) -> float:
+        """F/F_g - 1 of the orbit that meets the wall at `speed`, above zero [m/s]; errors as of `orbit`."""
+        kick, gap = self.kick(require_within("speed", speed, "m/s", above=0)), self.oscillator.stop.gap
+        p, r = self._motion.phi @ self.closed(kick.jump)
+        return excess_of(p / gap, (kick.speed - r) / self.oscillator.unit_speed)
+
+    def orbit_of(self, kick: Kick) -> SingleImpactOrbit:
+        """The orbit on which `kick` happens once in m drive periods."""
+        before, gap = self.closed(kick.jump), self.oscillator.stop.gap
+        p, r = self._motion.phi @ before
+        rate = kick.speed - r
+        amplitude, phase = self.oscillator.drive_at(gap - p, rate)
+        return SingleImpactOrbit(
+            oscillator=self.oscillator.with_amplitude(amplitude), period=self.period,
+            excess=excess_of(p / gap, rate / self.oscillator.unit_speed), speed=kick.speed, phase=phase,
+            displacement=before[:, 0].copy(), velocity=before[:, 1].copy(), kick=kick,
+        )  # fmt: skip
+
+    def orbit(self, speed: float) -> SingleImpactOrbit:
+        """The orbit that meets the wall at `speed`, above zero [m/s].
+
+        Raises
+        ------
+        ValueError
+            If `speed` is not finite and above zero.
+        NotPeriodic
+            If the collision does not end, or has no orbit.
+        """
+        return self.orbit_of(self.kick(require_within("speed", speed, "m/s", above=0)))
+
+
+def excess_of(p: float, rate: float) -> float:
+    """A/gap - 1 of Eq. (a), from p and (v - r)/w over the gap, without the cancellation."""
+    square = p * (p - 2.0) + rate * rate
+    return float(square / (1.0 + math.sqrt(max(1.0 + square, 0.0))))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MaximalFamily(SingleImpactFamily):
+    """The orbits under Newton's law, in closed form; TypeError for an oscillator with another law."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        restitution_of(self.oscillator)
+        self.oscillator.grazing_amplitude()  # the drive moves the tip
+        _ = self.arms  # and every mode that is kicked comes to rest
+
+    @classmethod
+    def from_oscillator(
+        cls, oscillator: ImpactOscillator, *, period: int, restitution: float | None = None
+    ) -> Self:
+        """The orbits of an oscillator; `restitution` [1] replaces its law."""
+        if restitution is not None:
+            require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
+            law = NewtonRestitution(local_restitution=restitution)
+            oscillator = replace(oscillator, stop=Stop(gap=oscillator.stop.gap, law=law))
+        return cls(oscillator=oscillator, period=period)
+
+    def kick(self, speed: float) -> Kick:
+        """B of Newton's law."""
+        phi, e = self._motion.phi, self._motion.number0
+        velocity = -(1.0 + e) * phi / self._motion.compliance * speed
+        return Kick(speed=speed, jump=np.column_stack([np.zeros(phi.size), velocity]), leaves=e > 0.0)
 
     @cached_property
     def arms(self) -> tuple[float, float]:
-        """(s, b) of Eq. (a) [s]."""
-        before = self.deviations[0]
-        return float(self.phi @ before[0]), float((1.0 - self.phi @ before[1]) / self.angular_frequency)
-
-    def excess(self, speed: float) -> float:
-        """F/F_g - 1 of the orbit with approach speed `speed` [m/s]."""
-        s, b = self.arms
-        v = require_within("speed", speed, "m/s", low=0) / self.gap
-        square = v * ((s * s + b * b) * v - 2.0 * s)  # (A/gap)^2 - 1, without the cancellation
-        return square / (1.0 + math.sqrt(max(1.0 + square, 0.0)))
-
-    def orbit(self, speed: float) -> SingleImpactOrbit:
-        """The orbit that meets the wall at `speed`, above zero [m/s]."""
-        require_within("speed", speed, "m/s", above=0)
-        s, b = self.arms
-        phase = math.atan2(self.gap - s * speed, b * speed) - float(np.angle(self.tip_response))
-        excess = self.excess(speed)
-        before, after = (rows * speed for rows in self.deviations)
-        flight = MaximalFlight(
-            start=(phase % (2.0 * math.pi)) / self.angular_frequency,
-            duration=self.period / self.drive_frequency, displacement=after[0], velocity=after[1],
-        )  # fmt: skip
-        return SingleImpactOrbit(
-            family=self, speed=speed, amplitude=(1.0 + excess) * self.grazing_amplitude, excess=excess,
-            flight=flight, before=before,
-        )  # fmt: skip
+        """(s, b): p and (v - r)/w of Eq. (a) per unit approach speed [s]."""
+        s, r = self._motion.phi @ self.closed(self.kick(1.0).jump)
+        return float(s), float((1.0 - r) / self._motion.drive)
 
     def orbits(self, excess: float) -> tuple[SingleImpactOrbit, ...]:
         """The orbits at F/F_g - 1 = `excess` > -1, 0 to 2, by rising speed (of two, saddle, then node)."""
         require_within("excess", excess, "[1]", above=-1)
-        s, b = self.arms
+        (s, b), gap = self.arms, self.oscillator.stop.gap
         square, above = s * s + b * b, excess * (2.0 + excess)
         if s * s + square * above < 0.0:
             return ()
         half = s + math.copysign(math.sqrt(s * s + square * above), s)  # v/gap: half/square and -above/half
-        speeds = sorted((self.gap * half / square, -self.gap * above / half if half != 0.0 else 0.0))
+        speeds = sorted((gap * half / square, -gap * above / half if half != 0.0 else 0.0))
         return tuple(self.orbit(v) for v in speeds if v > 0.0)
 
     def fold(self) -> SingleImpactOrbit | None:
         """The orbit of least amplitude, at which node and saddle meet; None if s <= 0 (no fold)."""
         s, b = self.arms
-        return self.orbit(s * self.gap / (s * s + b * b)) if s > 0.0 else None
+        return self.orbit(s * self.oscillator.stop.gap / (s * s + b * b)) if s > 0.0 else None

@@ -44,7 +44,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contact.compiled import inlined, kernel, part
+from contact.compiled import borrowed, inlined, kernel, part
 from contact.event_loop import DONE, advance
 from contact.recorder import strobes_only
 from contact.single_mode.one_impact import guessed, one_impact
@@ -129,7 +129,8 @@ def one_mode_periods(table, system, u, v, runs, points, counts):
     searched, left : int
         Periods that needed a search, and those left to ``advance``.
     """
-    n, rows = table.mode, table.rows
+    table, u, v, points = borrowed(table), borrowed(u), borrowed(v), borrowed(points)
+    counts, n, rows = borrowed(counts), table.mode, table.rows
     mean_u, mean_v, weight_u, weight_v = system.mean[0], system.mean[1], system.weight[0], system.weight[1]
     searched, left, run = 0, 0, runs[0]
     first = run.period

@@ -6,10 +6,10 @@ and below grazing p_m and the motion without impacts coexist.
 Computed at one drive frequency (--frequency, 21.50 Hz) for Eq. (1) and for the beam with its N modes:
 
     period, impacts     of the settled orbit in an upward and a downward scan that carry the state along
-    exponents, kind     largest Lyapunov exponent by two routes, and periodic or chaotic by it
+    exponent, kind      largest Lyapunov exponent per drive period, and periodic or chaotic by it
     basins              for Eq. (1) at --basin-excess (-0.006): where each start on the strobe plane leads
 
-Run:     python -m studies.attractors [--model single_mode] [--quick]     two minutes; --quick ten seconds
+Run:     python -m studies.attractors [--model single_mode] [--quick]     a minute; --quick ten seconds
 Writes:  rows.csv (a row an amplitude), attractors.npz (strobe points), basins.npz, basins_close.npz;
          attractors, basins (png, pdf)
 """
@@ -17,16 +17,15 @@ Writes:  rows.csv (a row an amplitude), attractors.npz (strobe points), basins.n
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import partial
 from typing import Annotated, Literal
 
 import numpy as np
 
-from contact import ContactError, StroboscopicMap
-from studies.attractors.basins import CLOSE, Basins, plane_of
-from studies.attractors.kinds import CHAOTIC, KINDS, Row, agreement
-from studies.attractors.scan import TITLES, Start, carried, row_of
+from contact import StroboscopicMap
+from studies.attractors.basins import CLOSE, Plane, parts, plane_of
+from studies.attractors.scan import CHAOTIC, KINDS, TITLES, Start, carried, row_of
 from studies.run import Run, study
 from studies.scene import (
     Scene,
@@ -42,6 +41,7 @@ __all__ = ["attractors"]
 
 FREQUENCY = 21.50
 """Where the letter has period 4 [Hz]."""
+
 
 @study(needs={"fold": 0.05}, quick={"points": 11, "cycles": 100, "side": 32})
 def attractors(
@@ -76,59 +76,46 @@ def attractors(
         starts += scan
         for reason in failures:
             run.failed("scan", reason)
-    rows = list[Row]()
     classified = partial(row_of, cycles=cycles, most_cycles=scene.scan.settle_cycles)
-    for start, row in zip(starts, run.map(classified, starts, "exponents"), strict=True):
-        if isinstance(row, ContactError):
-            run.failed(str(start), row)
-        else:
-            rows.append(row)
+    rows = [row for row in run.attempt(classified, starts, "exponents") if row is not None]
     run.table("rows", rows, "Settled motions; kind by the largest Lyapunov exponent.",
               show=("model", "direction", "excess", "kind", "period", "impacts", "lyapunov_map", "error_map"),
               )  # fmt: skip
     run.arrays("attractors", points=np.array([s.points for s in starts]), excess=[s.excess for s in starts])
-    planes = [basins_at(run, scene, f, basin_excess, side, close) for close in (False, True)]
+    found = [basins_at(run, scene, f, basin_excess, side, close) for close in (False, True)]
     from studies.attractors import figure
 
-    run.figure("attractors", figure.draw_scan(starts, rows, f, scene.readout.quantity), "Strobe points and "
-               "largest Lyapunov exponent against the excess, for Eq. (1) and the beam. Filled: amplitude "
-               "raised; open: lowered; pale: not periodic.")  # fmt: skip
-    run.figure("basins", figure.draw_basins(planes, f), "Where starts on the strobe plane of Eq. (1) lead "
-               "below grazing: the motion without impacts has a small basin, p_m the rest.")  # fmt: skip
+    quantity, period = scene.readout.quantity, found[0][0].period
+    run.figure("attractors", figure.draw_scan(starts, rows, f, quantity), figure.SCAN)
+    run.figure("basins", figure.draw_basins(found, f), figure.BASINS)
+    whole, close = (parts(leads, period) for _, leads in found)
     counts = Counter((row.model, row.kind) for row in rows)
     kinds = {name: {kind: counts[name, kind] for kind in KINDS} for name in maps}
     chaotic = {name: [r.excess for r in rows if (r.model, r.kind) == (name, CHAOTIC)] for name in maps}
-    judge(run, f, basin_excess, planes, chaotic)
-    return {
-        "frequency_hz": f, "kinds": kinds, "chaotic": chaotic, "agreement": agreement(rows, f),
-        "basins": {"excess": basin_excess, "period": planes[0].plane.period, "parts": planes[0].parts(),
-                   "parts_close": planes[1].parts(), "close": CLOSE},
-    }  # fmt: skip
-
-
-def basins_at(run: Run, scene: Scene, frequency: float, excess: float, side: int, close: bool) -> Basins:
-    """Compute and store the basins of one plane."""
-    plane = plane_of(scene, frequency, excess, side, close=close)
-    found = Basins(plane=plane, leads=np.array(run.map(plane.line, plane.velocity.tolist(), "basins")))
-    run.arrays("basins_close" if close else "basins", x=plane.x, velocity=plane.velocity, leads=found.leads,
-               orbit=plane.orbit)  # fmt: skip
-    return found
-
-
-def judge(
-    run: Run, frequency: float, excess: float, planes: Sequence[Basins], chaotic: Mapping[str, list[float]]
-) -> None:
-    """Whether p_m and the motion without impacts coexist below grazing, and whether there is chaos."""
-    period = planes[0].plane.period
-    whole, close = (found.parts() for found in planes)
     free = whole["p1 without impacts"] + close["p1 without impacts"]
     both = period > 1 and whole[f"p{period}"] > 0.0 and free > 0.0
     run.verdict("coexistence", "agrees" if both else "differs",
                 found=f"Eq. (1): p1 and p{period}" if both else "Eq. (1): one of them alone",
-                note=f"at excess {excess:g} the start decides which of them is reached")  # fmt: skip
+                note=f"at excess {basin_excess:g} the start decides which of them is reached")  # fmt: skip
     spans = [f"{TITLES[name]}: {min(at):.3g} to {max(at):.3g}" for name, at in chaotic.items() if at]
     run.verdict("chaos", "agrees" if spans else "differs", found="; ".join(spans) or "none",
-                note=f"excess with a positive Lyapunov exponent at {frequency:.2f} Hz")  # fmt: skip
+                note=f"excess with a positive Lyapunov exponent at {f:.2f} Hz")  # fmt: skip
+    return {
+        "frequency_hz": f, "kinds": kinds, "chaotic": chaotic,
+        "basins": {"excess": basin_excess, "period": period, "parts": whole, "parts_close": close,
+                   "close": CLOSE},
+    }  # fmt: skip
+
+
+def basins_at(
+    run: Run, scene: Scene, frequency: float, excess: float, side: int, close: bool
+) -> tuple[Plane, np.ndarray]:
+    """Compute and store where the starts of one plane lead, shape (velocities, x)."""
+    plane = plane_of(scene, frequency, excess, side, close=close)
+    leads = np.array(run.map(plane.line, plane.velocity.tolist(), "basins"))
+    run.arrays("basins_close" if close else "basins", x=plane.x, velocity=plane.velocity, leads=leads,
+               orbit=plane.orbit)  # fmt: skip
+    return plane, leads
 
 
 if __name__ == "__main__":

@@ -19,10 +19,10 @@ from functools import cached_property
 import numpy as np
 
 from contact import ContactError, State, StroboscopicMap
-from contact.orbits import born, orbit_diagram, settle
+from contact.orbits import born, settle
 from studies.scene import Scene, single_mode_at
 
-__all__ = ["CLOSE", "Basins", "Plane", "plane_of"]
+__all__ = ["CLOSE", "Plane", "parts", "plane_of"]
 
 FAR, CLOSE = 1.5, 0.03
 """Half the sides of the two planes of starts, in x/gap and x'/(2 pi f gap): all of it, and around p1."""
@@ -33,9 +33,6 @@ NEAR = 1e-5
 MOST_PERIODS, STRETCH = 4000, 32
 """Bound of a motion in the basins (what has not been told by then is something else); strobes looked at
 together."""
-
-STEPS = 9
-"""Amplitudes from excess 1e-3 down, on which p_m is carried along."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -66,7 +63,7 @@ class Plane:
 
     def leads(self, x: float, velocity: float) -> int:
         """Where a start leads: 1 motion without impacts, m for p_m, 0 something else, -1 behind the wall."""
-        gap, omega = self.strobed.oscillator.stop.gap, float(self.strobed.oscillator.model.omega[0])
+        gap, omega = self.strobed.scale, float(self.strobed.oscillator.model.omega[0])
         if x >= gap:
             return -1
         state = State(displacement=np.array([x]), velocity=np.array([velocity]))
@@ -87,32 +84,21 @@ class Plane:
         return [self.leads(float(x), velocity) for x in self.x]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Basins:
-    """A plane of starts and where they lead, shape (velocities, x)."""
-
-    plane: Plane
-    leads: np.ndarray
-
-    def parts(self) -> dict[str, float]:
-        """Part of the starts before the wall that leads to each motion."""
-        before = self.leads[self.leads >= 0]
-        names = {1: "p1 without impacts", self.plane.period: f"p{self.plane.period}", 0: "something else"}
-        return {name: float(np.mean(before == code)) for code, name in names.items()}
+def parts(leads: np.ndarray, period: int) -> dict[str, float]:
+    """Part of the starts before the wall that leads to each motion, p_m that of `period`."""
+    before = leads[leads >= 0]
+    names = {1: "p1 without impacts", period: f"p{period}", 0: "something else"}
+    return {name: float(np.mean(before == code)) for code, name in names.items()}
 
 
 def plane_of(scene: Scene, frequency: float, excess: float, side: int, *, close: bool = False) -> Plane:
     """`side` by `side` starts at drive `frequency` [Hz], on all of the strobe plane or `close` to p1."""
     strobed = StroboscopicMap(oscillator=single_mode_at(scene, frequency))
     here = strobed.at(excess)
-    carried = orbit_diagram(
-        strobed, np.linspace(1e-3, excess, STEPS), born(strobed, 1e-3, most_cycles=MOST_PERIODS).end,
-        observe=strobed.tip, settle_cycles=MOST_PERIODS,
-    )  # fmt: skip
-    end = settle(here, carried.end, most_cycles=MOST_PERIODS)
-    omega, gap = float(here.oscillator.model.omega[0]), here.oscillator.stop.gap
-    orbit = end.points[-max(end.period, 1) :] * (1.0, omega)
-    rest, speed, grid = here.steady(), 2.0 * math.pi * frequency * gap, np.linspace(-1.0, 1.0, side)
+    end = settle(here, born(strobed, most_cycles=MOST_PERIODS).end, most_cycles=MOST_PERIODS)
+    orbit = end.points[-max(end.period, 1) :] * (1.0, float(here.oscillator.model.omega[0]))
+    gap, speed = here.scale, 2.0 * math.pi * frequency * here.scale
+    rest, grid = here.steady(), np.linspace(-1.0, 1.0, side)
     x, velocity = np.linspace(-FAR, 1.0, side) * gap, FAR * speed * grid
     if close:
         x = rest.displacement[0] + CLOSE * gap * grid

@@ -1,4 +1,9 @@
-"""A scan of the drive amplitude that carries the state along, upwards and downwards, and its rows."""
+"""A scan of the drive amplitude that carries the state along, and what its motions settle on.
+
+lyapunov_map     largest Lyapunov exponent per drive period, from the Jacobians of the period map
+kind             periodic, chaotic (exponent above zero by three standard errors), not settled (below zero
+                 by as much: a long period or a slow transient), or undecided
+"""
 
 from __future__ import annotations
 
@@ -7,13 +12,65 @@ from dataclasses import asdict, dataclass, replace
 import numpy as np
 
 from contact import ContactError, State, StroboscopicMap
-from contact.orbits import settle
-from studies.attractors.kinds import Row, classify
+from contact.orbits import map_exponents, orbit_exponents, settle
 from studies.scene import READOUT, Scene
 
-__all__ = ["TITLES", "Start", "carried", "row_of"]
+__all__ = ["CHAOTIC", "KINDS", "TITLES", "Attractor", "Row", "Start", "carried", "classify", "row_of"]
 
 TITLES = {"single_mode": "Eq. (1)", "beam": "beam"}
+
+SIGNIFICANT = 3.0
+"""Standard errors by which an exponent must differ from zero to be told from it."""
+
+ALIGN = 20
+"""Periods in which tangents find their direction: the slowest contraction between two of them is e^-0.08."""
+
+KINDS = WITHOUT, PERIODIC, CHAOTIC, NOT_SETTLED, UNDECIDED = (
+    "without impacts", "periodic", "chaotic", "not settled", "undecided"
+)  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class Attractor:
+    """What a motion settled on: `period` in drive periods, 0 for none; `impacts` in one such period, or
+    `impacts_per_period` on average; `lyapunov_map` per drive period with its standard error."""
+
+    kind: str
+    period: int
+    impacts: int
+    impacts_per_period: float
+    lyapunov_map: float
+    error_map: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row(Attractor):
+    """One amplitude of a scan."""
+
+    model: str
+    direction: str
+    excess: float
+
+
+def classify(
+    strobed: StroboscopicMap, state: State, *, most_cycles: int = 4000, cycles: int = 600
+) -> Attractor:
+    """Settle from `state` within `most_cycles`, then tell chaos from a long period or a slow transient by the
+    exponents, averages over `cycles` drive periods."""
+    settled = settle(strobed, state, most_cycles=most_cycles)
+    if settled.period:
+        exponents = orbit_exponents(strobed, settled.end, settled.period)
+        impacts, mean = settled.impacts, settled.impacts / settled.period
+        kind = PERIODIC if impacts else WITHOUT
+    else:
+        exponents, _end = map_exponents(strobed, settled.end, cycles, align=ALIGN)
+        impacts, mean = 0, float(strobed.orbit(settled.end, cycles).impacts.mean())
+        clear = abs(exponents.largest) > SIGNIFICANT * exponents.error
+        kind = UNDECIDED if not clear else CHAOTIC if exponents.largest > 0 else NOT_SETTLED
+    return Attractor(
+        kind=kind, period=settled.period, impacts=impacts, impacts_per_period=mean,
+        lyapunov_map=exponents.largest, error_map=exponents.error,
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -56,10 +113,7 @@ def carried(
     return found, failures
 
 
-def row_of(start: Start, cycles: int, most_cycles: int) -> Row | ContactError:
-    """What the motion from a start settles on, or why that is not known."""
-    try:
-        found = classify(start.strobed, start.state, cycles=cycles, most_cycles=most_cycles)
-    except ContactError as error:
-        return error
+def row_of(start: Start, cycles: int, most_cycles: int) -> Row:
+    """What the motion from a start settles on."""
+    found = classify(start.strobed, start.state, cycles=cycles, most_cycles=most_cycles)
     return Row(model=start.model, direction=start.direction, excess=start.excess, **asdict(found))

@@ -9,7 +9,7 @@ the thickness that keeps T; a factor on the damping of the modes above the first
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,7 +21,7 @@ from studies import letter
 from studies.calibration import calibrate, free_period, solve_for
 from studies.scene import Scene, SceneError, approach_speed, contact_law_of, harmonic, hertz_of, model_of
 
-__all__ = ["Beam", "Cell", "Errors", "at_errors", "cell_of", "fig_5", "fold_of_p3", "nearest_first", "tuned"]
+__all__ = ["Beam", "Cell", "cell_of", "fig_5", "fold_of_p3", "nearest_first", "tuned"]
 
 FREQUENCY_HZ, FREE_PERIOD_S = letter.BREAKDOWN["frequency_hz"], letter.BREAKDOWN["free_period_s"]
 DECAY_RATE_PER_S, BORN_PERIOD = letter.BREAKDOWN["decay_rate_per_s"], letter.BREAKDOWN["born_period"]
@@ -51,12 +51,13 @@ def fig_5(scene: Scene) -> Scene:
     )
 
 
-def tuned(scene: Scene, mass: float | None = None, period: float = FREE_PERIOD_S) -> ModalModel:
-    """Modes of the spring with another ball [kg], its sheet so thick that mode 1 has this period [s]."""
-    here = scene if mass is None else scene.replace({"tip.mass_kg": mass})
-    between = (THICKNESSES[0] * scene.spring.thickness_m, THICKNESSES[1] * scene.spring.thickness_m)
-    return model_of(solve_for("spring.thickness_m", here, free_period, period, name="free period", unit="s",
-                              between=between))  # fmt: skip
+def tuned(scene: Scene, mass: float) -> ModalModel:
+    """Modes of the spring with another ball [kg], its sheet so thick that mode 1 keeps its period."""
+    thickness = scene.spring.thickness_m
+    between = (THICKNESSES[0] * thickness, THICKNESSES[1] * thickness)
+    here = scene.replace({"tip.mass_kg": mass})
+    return model_of(solve_for("spring.thickness_m", here, free_period, FREE_PERIOD_S, name="free period",
+                              unit="s", between=between))  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,6 +69,9 @@ class Beam:
     tip_mass_kg: float
     higher_damping: float = 1.0
     local_restitution: float | None = None
+
+    def __str__(self) -> str:
+        return f"{1e3 * self.tip_mass_kg:g} g, damping x {self.higher_damping:g}"
 
     def strobed(self) -> StroboscopicMap:
         """Driven as in Fig. 5."""
@@ -87,62 +91,26 @@ class Beam:
 
 @dataclass(frozen=True, kw_only=True)
 class Cell:
-    """What a beam is born with at grazing: period (0: none up to 64, None: failed), impacts,
-    fold of p3."""
+    """What a beam is born with at grazing: period (0: none up to 64), impacts, fold of p3 (where the period
+    is the letter's)."""
 
     tip_mass_kg: float
     higher_damping: float
     local_restitution: float | None
-    period: int | None
-    impacts: int | None
+    period: int
+    impacts: int
     fold_p3: float | None = None
-    failure: str = ""
 
 
 def cell_of(beam: Beam) -> Cell:
-    """One cell of the search; the fold is known where the period is the letter's."""
-    numbers = (beam.tip_mass_kg, beam.higher_damping, beam.local_restitution)
-    period, impacts, fold, failure = None, None, None, ""
-    try:
-        settled = born(beam.strobed(), BORN_EXCESS, most_cycles=SEARCH_CYCLES)
-        period, impacts = settled.period, settled.impacts
-        fold = fold_of_p3(beam.strobed()) if period == BORN_PERIOD else None
-    except ContactError as error:
-        failure = str(error)
+    """One cell of the search."""
+    strobed = beam.strobed()
+    settled = born(strobed, BORN_EXCESS, most_cycles=SEARCH_CYCLES)
     return Cell(
-        tip_mass_kg=numbers[0], higher_damping=numbers[1], local_restitution=numbers[2], period=period,
-        impacts=impacts, fold_p3=fold, failure=failure,
+        tip_mass_kg=beam.tip_mass_kg, higher_damping=beam.higher_damping,
+        local_restitution=beam.local_restitution, period=settled.period, impacts=settled.impacts,
+        fold_p3=fold_of_p3(strobed) if settled.period == BORN_PERIOD else None,
     )  # fmt: skip
-
-
-@dataclass(frozen=True, kw_only=True)
-class Errors:
-    """What the calibrated beam is born with at an end of the letter's errors of T and mu (period 0: none)."""
-
-    free_period_s: float
-    decay_rate_per_s: float
-    period: int | None
-    impacts: int | None
-
-
-def at_errors(scene: Scene, change: tuple[float, float]) -> Errors:
-    """The calibrated beam with other T and mu."""
-    period, rate = FREE_PERIOD_S + change[0], DECAY_RATE_PER_S + change[1]
-    here = scene.replace({"damping.decay_rate_per_s": rate})
-    cell = cell_of(Beam(scene=here, model=tuned(here, period=period), tip_mass_kg=scene.tip.mass_kg))
-    return Errors(free_period_s=period, decay_rate_per_s=rate, period=cell.period, impacts=cell.impacts)
-
-
-def nearest_first(cells: Sequence[Cell], mass: float) -> list[int]:
-    """Places of the cells with the letter's period, by what they ask for: contact elastic, damping as the
-    strips', the mass nearest to `mass` [kg]."""
-
-    def asks(place: int) -> tuple[float, float, float]:
-        cell = cells[place]
-        lost = 1.0 - (1.0 if cell.local_restitution is None else cell.local_restitution)
-        return lost, abs(math.log(cell.higher_damping)), abs(math.log(cell.tip_mass_kg / mass))
-
-    return sorted((i for i, cell in enumerate(cells) if cell.period == BORN_PERIOD), key=asks)
 
 
 def fold_of_p3(strobed: StroboscopicMap) -> float | None:
@@ -152,3 +120,13 @@ def fold_of_p3(strobed: StroboscopicMap) -> float | None:
     except ContactError:
         return None
     return None if orbit is None else orbit.excess
+
+
+def nearest_first(beams: Iterable[Beam], mass: float) -> list[Beam]:
+    """Sorted by what they ask for: contact elastic, damping as the strips', mass nearest to `mass` [kg]."""
+
+    def asks(beam: Beam) -> tuple[float, float, float]:
+        lost = 1.0 - (1.0 if beam.local_restitution is None else beam.local_restitution)
+        return lost, abs(math.log(beam.higher_damping)), abs(math.log(beam.tip_mass_kg / mass))
+
+    return sorted(beams, key=asks)

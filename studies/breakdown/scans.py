@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -15,8 +15,7 @@ from studies import letter
 from studies.breakdown.beam import BORN_EXCESS, FREQUENCY_HZ, Beam, fold_of_p3
 from studies.scene import READOUT, Scene, single_mode_at
 
-__all__ = ["CHAOS_AT", "HIGHEST", "Amplitude", "Island", "Outcome", "Scans", "amplitudes", "island",
-           "periods"]  # fmt: skip
+__all__ = ["CHAOS_AT", "HIGHEST", "Island", "Outcome", "Scans", "island", "periods"]
 
 CHAOS_AT = letter.BREAKDOWN["chaos_at"]
 HIGHEST = 0.012
@@ -28,6 +27,8 @@ ISLAND_STEP, ISLAND_CYCLES = 5e-4, 1500
 LAST = 0.05
 """Impacts may go on below p3 for this part of its excess and still end with it."""
 
+Diagram = OrbitDiagram[Any]
+
 
 @dataclass(frozen=True, kw_only=True)
 class Island:
@@ -36,20 +37,6 @@ class Island:
     restitution: float
     fold_p3: float
     end: float
-    alive_at_letters_chaos: bool
-    period_at_letters_chaos: int | None
-
-
-@dataclass(frozen=True, kw_only=True)
-class Amplitude:
-    """One amplitude of a scan; `kind` is "periodic", "not settled" or "failed"."""
-
-    description: str
-    direction: str
-    excess: float
-    kind: str
-    period: int
-    impacts: int
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,9 +45,9 @@ class Outcome:
     on p3 with one impact, and the excess at which that scan has its last impacts."""
 
     description: str
-    tip_mass_kg: float | None
-    higher_damping: float
-    local_restitution: float | None
+    tip_mass_kg: float | None = None
+    higher_damping: float = 1.0
+    local_restitution: float | None = None
     born_period: int
     born_impacts: int
     fold_p3: float | None
@@ -86,9 +73,10 @@ class Scans:
     early: bool
 
     def of(
-        self, strobed: StroboscopicMap, lowest: float, observe: Callable[[np.ndarray], np.ndarray]
-    ) -> dict[str, OrbitDiagram[Any]]:
-        """Both, from the excess `lowest` to `HIGHEST` and back."""
+        self, name: str, strobed: StroboscopicMap, lowest: float, fold: float | None,
+        observe: Callable[[np.ndarray], np.ndarray],
+    ) -> tuple[Outcome, dict[str, Diagram]]:  # fmt: skip
+        """What is born, and both scans between the excess `lowest` and `HIGHEST`."""
         below = np.linspace(lowest, 0.0, self.points)[:-1]
         values = np.concatenate([below, np.linspace(0.0, HIGHEST, self.points // 2 + 1)[1:]])
         scan = partial(
@@ -96,54 +84,37 @@ class Scans:
             record_cycles=letter.STROBE_POINTS, early=self.early,
         )  # fmt: skip
         up = scan(values, strobed.at(lowest).steady())
-        return {"up": up, "down": scan(values[::-1], up.end)}
-
-    def of_beam(self, named: tuple[str, Beam]) -> tuple[Outcome, dict[str, OrbitDiagram[Any]]]:
-        """What a beam is born with, and its scans down to below the fold of p3."""
-        name, beam = named
-        strobed = beam.strobed()
-        fold = fold_of_p3(strobed)
-        lowest = 1.12 * fold if fold is not None and fold < -0.01 else -0.1
-        ways = self.of(strobed, lowest, lambda points: strobed.readout(points, READOUT))
-        return self.outcome(strobed, ways["down"], name, fold, beam), ways
-
-    def outcome(
-        self, strobed: StroboscopicMap, down: OrbitDiagram[Any], name: str, fold: float | None,
-        beam: Beam | None = None,
-    ) -> Outcome:  # fmt: skip
-        """What is born, and how the downward scan ends."""
+        down = scan(values[::-1], up.end)
         settled = born(strobed, BORN_EXCESS, most_cycles=self.cycles)
         on_p3 = down.excess[(periods(down) == 3) & (down.impacts == 1)]
         struck = down.excess[down.impacts > 0]
-        return Outcome(
-            description=name, tip_mass_kg=None if beam is None else beam.tip_mass_kg,
-            higher_damping=1.0 if beam is None else beam.higher_damping,
-            local_restitution=None if beam is None else beam.local_restitution,
-            born_period=settled.period, born_impacts=settled.impacts, fold_p3=fold,
+        outcome = Outcome(
+            description=name, born_period=settled.period, born_impacts=settled.impacts, fold_p3=fold,
             p3_first=float(on_p3[0]) if on_p3.size else None,
             p3_last=float(on_p3[-1]) if on_p3.size else None,
             impacts_end=float(struck[-1]) if struck.size else None,
         )  # fmt: skip
+        return outcome, {"up": up, "down": down}
+
+    def of_beam(self, named: tuple[str, Beam]) -> tuple[Outcome, dict[str, Diagram]]:
+        """The same for a beam, down to below the fold of p3."""
+        name, beam = named
+        strobed = beam.strobed()
+        fold = fold_of_p3(strobed)
+        lowest = 1.12 * fold if fold is not None and fold < -0.01 else -0.1
+        outcome, ways = self.of(name, strobed, lowest, fold, partial(strobed.readout, name=READOUT))
+        return replace(
+            outcome, tip_mass_kg=beam.tip_mass_kg, higher_damping=beam.higher_damping,
+            local_restitution=beam.local_restitution,
+        ), ways  # fmt: skip
 
 
-def periods(diagram: OrbitDiagram[Any]) -> np.ndarray:
+def periods(diagram: Diagram) -> np.ndarray:
     """Periods of a scan; a motion without impacts is p1, even while it has not quite come to rest."""
     return np.where((diagram.impacts == 0) & (np.array(diagram.kind) != "failed"), 1, diagram.period)
 
 
-def amplitudes(description: str, direction: str, diagram: OrbitDiagram[Any]) -> list[Amplitude]:
-    """A scan as rows."""
-    columns = (diagram.excess, diagram.kind, periods(diagram), diagram.impacts)
-    return [
-        Amplitude(description=description, direction=direction, excess=float(excess), period=int(period),
-                  impacts=int(impacts), kind="periodic" if period else kind)
-        for excess, kind, period, impacts in zip(*columns, strict=True)
-    ]  # fmt: skip
-
-
-def island(
-    scene: Scene, restitution: float, *, step: float = ISLAND_STEP
-) -> tuple[Island, OrbitDiagram[Any]]:
+def island(scene: Scene, restitution: float, *, step: float = ISLAND_STEP) -> tuple[Island, Diagram]:
     """The p3 of Eq. (1) and what it turns into, followed upwards from its fold until the motion is free.
 
     The motion without impacts is stable all along, so that the island is not connected to what is born at
@@ -160,13 +131,6 @@ def island(
     )  # fmt: skip
     free = np.flatnonzero((whole.impacts == 0) & (np.array(whole.kind) != "failed"))
     kept = slice(0, int(free[0]) if free.size else None)
-    diagram = OrbitDiagram(
-        excess=whole.excess[kept], points=whole.points[kept], period=whole.period[kept],
-        impacts=whole.impacts[kept], cycles=whole.cycles[kept], failures=whole.failures, end=whole.end,
-    )  # fmt: skip
-    end = float(diagram.excess[-1])
-    around = np.flatnonzero(np.abs(diagram.excess - CHAOS_AT) <= step)
-    return Island(
-        restitution=restitution, fold_p3=fold.excess, end=end, alive_at_letters_chaos=end >= CHAOS_AT,
-        period_at_letters_chaos=int(diagram.period[around[0]]) if around.size else None,
-    ), diagram  # fmt: skip
+    columns = ("excess", "points", "period", "impacts", "cycles")
+    diagram = replace(whole, **{name: getattr(whole, name)[kept] for name in columns})
+    return Island(restitution=restitution, fold_p3=fold.excess, end=float(diagram.excess[-1])), diagram

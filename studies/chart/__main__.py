@@ -23,7 +23,6 @@ cells
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
@@ -81,32 +80,15 @@ def chart(
         scene = run.choose_modes(scene, NEEDS)
     oscillator = (beam_at if model == "beam" else single_mode_at)(scene, 0.5 * (low + high))
     scan = AmplitudeScan(oscillator=oscillator, most_cycles=bound)
-    grid = {
-        "points": [columns, rows],
-        "frequencies_hz": [low, high],
-        "excesses": list(excesses),
-        "knee": KNEE,
-    }
-    settings = {"model": model, "plane": grid, "most_cycles": bound, "scene": scene.values()}
-    work, name, began = (
-        Scan(scan=scan, excesses=tuple(plane.rising_excesses())),
-        f"{model}-{columns}x{rows}",
-        time.time(),
-    )
+    settings = {"model": model, "plane": plane, "knee": KNEE, "most_cycles": bound, "scene": scene.values()}
+    work, name = Scan(scan=scan, excesses=tuple(plane.rising_excesses())), f"{model}-{columns}x{rows}"
     found = sweep(run, name, settings, plane.frequencies().tolist(), work, shard=part, fresh=fresh)
     there = [column for column in found if column is not None]
     tell_failures(run, there)
     result: dict[str, object] = {
-        "model": model,
-        "modes": oscillator.n_modes,
-        "points": [columns, rows],
-        "most_cycles": bound,
-        "largest_period": LARGEST_PERIOD,
+        "model": model, "modes": oscillator.n_modes, "points": [columns, rows], "most_cycles": bound,
         "shard": shard,
-        "store": name,
-        "cells": 2 * rows * len(range(part.number - 1, columns, part.count)),
-        "sweep_s": time.time() - began,
-    }
+    }  # fmt: skip
     if part.count > 1 or len(there) < columns:
         run.say(f"shard {shard}: {len(there)} of {columns} columns are in {run.folder / name}")
         return result
@@ -142,27 +124,20 @@ def drawn(
     )  # fmt: skip
     run.table(f"folds_{model}", folds, "Exact folds of p_m orbits with one impact.", show=())
     title = f"{TITLES[model]}, {cells.frequencies.size} × {cells.excesses.size}"
-    run.figure(
-        f"chart_{model}",
-        draw(cells, edges, folds, title=title),
+    caption = (
         "Period (above) and impacts in a period (below) over drive frequency and excess, in the upward scan "
-        "(left) and the downward scan (right); lines: exact folds and band edges of the map.",
+        "(left) and the downward scan (right); lines: exact folds and band edges of the map."
     )
+    run.figure(f"chart_{model}", draw(cells, edges, folds, title=title), caption)
     met, seen = fold_agreement(cells, folds)
     without = float(np.mean(cells.period == 0))
     run.say(
         f"{100 * without:.1f} % of the cells without a period up to {LARGEST_PERIOD}; the exact fold lies in "
         f"the very step of the grid in which p_m ends in {met} of the {seen} columns that come down on p_m"
     )
-    return {
-        "bands": [{"period": b.period, "lower_hz": b.lower, "upper_hz": b.upper} for b in edges],
-        "counts": cells.counts(),
-        "share_without_period": without,
-        "drive_periods": int(cells.cycles[cells.cycles > 0].sum()),
-        "folds": len(folds),
-        "folds_seen": seen,
-        "folds_met": met,
-    }
+    bands = [{"period": band.period, "lower_hz": band.lower, "upper_hz": band.upper} for band in edges]
+    told = {"share_without_period": without, "folds": len(folds), "folds_seen": seen, "folds_met": met}
+    return {"bands": bands, "counts": cells.counts(), **told}
 
 
 if __name__ == "__main__":

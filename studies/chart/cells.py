@@ -21,17 +21,7 @@ from numpy.typing import NDArray
 from contact.orbits import AmplitudeScan
 from studies.sweep import Column
 
-__all__ = [
-    "EXCESSES",
-    "FREQUENCIES_HZ",
-    "KNEE",
-    "Cells",
-    "Fold",
-    "Plane",
-    "Scan",
-    "fold_agreement",
-    "sheared",
-]
+__all__ = ["Cells", "Fold", "Plane", "Scan", "fold_agreement", "sheared"]
 
 FREQUENCIES_HZ = (19.5, 24.0)
 EXCESSES = (-0.15, 0.1)
@@ -141,14 +131,12 @@ def fold_agreement(cells: Cells, folds: Sequence[Fold]) -> tuple[int, int]:
     It can where the downward scan is on p_m with one impact in the two rows above the fold.
     """
     agree = able = 0
-    place = {float(f): k for k, f in enumerate(cells.frequencies)}
     for fold in folds:
-        column = place.get(fold.frequency_hz)
-        if column is None:
-            continue
-        on = (cells.period[1, column] == fold.period) & (cells.impacts[1, column] == 1)
+        (columns,) = np.nonzero(cells.frequencies == fold.frequency_hz)
         above = int(np.searchsorted(cells.excesses, fold.excess))
-        if above + 1 < on.size and above > 0 and on[above + 1]:
-            able += 1
-            agree += bool(on[above] and not on[above - 1])
+        if columns.size and 0 < above < cells.excesses.size - 1:
+            cell = 1, columns[0], slice(above - 1, above + 2)
+            below, on, further = (cells.period[cell] == fold.period) & (cells.impacts[cell] == 1)
+            able += int(further)
+            agree += int(further and on and not below)
     return agree, able

@@ -30,11 +30,9 @@ def bands_in(scene: Scene, low: float, high: float) -> tuple[Band, ...]:
     """The bands of p_2 ... p_24 that reach into `low` ... `high` [Hz]."""
     keys = scene.single_mode
     found = bands(
-        range(2, LARGEST + 1),
-        free_period=keys.free_period_s,
-        decay_rate=keys.decay_rate_per_s,
+        range(2, LARGEST + 1), free_period=keys.free_period_s, decay_rate=keys.decay_rate_per_s,
         restitution=keys.restitution,
-    )
+    )  # fmt: skip
     return tuple(band for band in found if band.upper > low and band.lower < high)
 
 
@@ -42,13 +40,17 @@ def folds_of_single_mode(oscillator: ImpactOscillator, frequencies: np.ndarray, 
     """The folds of Eq. (1) at `frequencies` [Hz] above the excess `lowest`."""
     found = []
     for frequency in frequencies.tolist():
-        drive = replace(oscillator.drive, frequency=frequency)  # type: ignore[type-var]
-        here = replace(oscillator, drive=drive)
+        here = _driven(oscillator, frequency)
         for period in range(2, LARGEST + 1):
             fold = MaximalFamily.from_oscillator(here, period=period).fold()
             if fold is not None and fold.excess > lowest and fold.admissible:
                 found.append(Fold(period=period, frequency_hz=frequency, excess=fold.excess))
     return found
+
+
+def _driven(oscillator: ImpactOscillator, frequency: float) -> ImpactOscillator:
+    assert oscillator.drive is not None
+    return replace(oscillator, drive=replace(oscillator.drive, frequency=frequency))
 
 
 def folds_of_beam(
@@ -68,8 +70,7 @@ def folds_of_beam(
         if inside.size < FEWEST:
             inside = np.union1d(inside, np.linspace(low, high, FEWEST))
         middle = inside.size // 2
-        drive = replace(oscillator.drive, frequency=float(inside[middle]))  # type: ignore[type-var]
-        family = Shooting(oscillator=replace(oscillator, drive=drive), period=band.period)
+        family = Shooting(oscillator=_driven(oscillator, float(inside[middle])), period=band.period)
         for way in (inside[middle::-1], inside[middle + 1 :]):
             for frequency, fold in zip(way.tolist(), fold_along_frequency(family, way), strict=True):
                 if fold is not None and fold.admissible and fold.excess > lowest:

@@ -15,9 +15,9 @@ Equations: fold of p_m and its first bifurcation in closed form, of the map and 
 (contact.maximal_orbits, MaximalFamily; x'' + mu x' + omega^2 x = ..., x' -> -tau x' at the wall); the born
 period of the beams by following their motion; Lyapunov exponents of the overdamped map.
 
-Run:     python -m studies.claims [--positions N]     1 min; --quick 20 s
-Writes:  loss, secondary, bands, universality, overdamped: .csv, .png and .pdf of each; secondary_plane.npz,
-         bands_path.npz, overdamped_cascade.npz (what else is drawn)
+Run:     python -m studies.claims [--positions N]     half a minute; --quick 8 s
+Writes:  loss, bands, universality, overdamped (.csv); loss, secondary, bands, universality, overdamped (.png,
+         .pdf); secondary_plane.npz, overdamped_cascade.npz (what else is drawn)
 """
 
 from __future__ import annotations
@@ -26,8 +26,7 @@ from collections.abc import Mapping
 from typing import Annotated
 
 from studies.claims.bands import bands
-from studies.claims.below_grazing import secondary
-from studies.claims.loss import loss
+from studies.claims.energy_loss import energy_loss
 from studies.claims.overdamped import overdamped
 from studies.claims.universality import universality
 from studies.run import Run, study
@@ -53,8 +52,7 @@ def claims(
     """Compute, store and draw, one claim after the other."""
     harmonic(scene)
     return {
-        "loss": loss(scene, run),
-        "secondary": secondary(scene, run, across=across, restitutions=restitutions),
+        **energy_loss(scene, run, across=across, restitutions=restitutions),
         "bands": bands(scene, run, inside=inside),
         "universality": universality(scene, run, positions=positions),
         "overdamped": overdamped(run, alphas=alphas),

@@ -1,11 +1,8 @@
 """Bands of p_m in the (alpha, gamma) plane, and the hysteresis across each of them.
 
-With alpha = 2 sqrt(gamma) cos(theta) the band of p_m has its upper edge in frequency at theta = pi/m and its
-lower one at
-
-    sin((m - 1) theta)/sin(theta) = -tau^2 gamma^(m/2).
-
-In frequency both are those of ``contact.band``; the hysteresis is the fold of p_m of the map and of Eq. (1).
+With alpha = 2 sqrt(gamma) cos(theta) and gamma = exp(-mu/f) the edges in frequency of ``contact.band`` are
+curves in that plane, drawn with mu as parameter; the experiment crosses them along its own mu. The hysteresis
+is the fold of p_m of the map and of Eq. (1).
 """
 
 from __future__ import annotations
@@ -17,15 +14,14 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from scipy.optimize import brentq
 
-from contact import Band, band, fold, maximal_period
+from contact import Band, NordmarkMap, band, fold, maximal_period
 from studies import letter, plotting
-from studies.claims.equation_one import falls, family_at, map_at
+from studies.claims.energy_loss import falls, family_at, map_at
 from studies.run import Run
 from studies.scene import Scene, corresponding
 
-__all__ = ["Inside", "Path", "band_of", "bands", "inside_band", "lower_angle", "path_of"]
+__all__ = ["Inside", "band_of", "bands", "inside_band", "path_of"]
 
 SPAN_HZ = (19.6, 23.8)
 """Where the letter measured, by its Figs. 3 and 5."""
@@ -47,33 +43,11 @@ class Inside:
     eq1: float
 
 
-@dataclass(frozen=True, kw_only=True)
-class Path:
-    """What the drive frequency crosses: alpha and gamma of the map, and the m of its band."""
-
-    frequency_hz: float
-    alpha: float
-    gamma: float
-    period: int
-
-
 def band_of(scene: Scene, period: int) -> Band:
     """The band of p_m of the scene's mode."""
     mode = scene.single_mode
     return band(period, free_period=mode.free_period_s, decay_rate=mode.decay_rate_per_s,
                 restitution=mode.restitution)  # fmt: skip
-
-
-def lower_angle(period: int, gamma: float, restitution: float) -> float:
-    """theta at the lower edge of a band at fixed gamma [rad]."""
-    m, ratio = period, restitution**2 * gamma ** (0.5 * period)
-    if m == 2:
-        return math.pi
-
-    def height(past: float) -> float:
-        return ratio * math.sin((math.pi + past) / (m - 1)) - math.sin(past)
-
-    return (math.pi + float(brentq(height, 0.0, 0.5 * math.pi, xtol=1e-15))) / (m - 1)
 
 
 def inside_band(scene: Scene, period: int, count: int) -> list[Inside]:
@@ -91,13 +65,9 @@ def inside_band(scene: Scene, period: int, count: int) -> list[Inside]:
     return rows
 
 
-def path_of(scene: Scene, frequencies: Sequence[float]) -> list[Path]:
-    """The path of the experiment through the plane."""
-    maps = [map_at(scene, f, scene.single_mode.restitution) for f in frequencies]
-    return [
-        Path(frequency_hz=f, alpha=one.alpha, gamma=one.gamma, period=maximal_period(one))
-        for f, one in zip(frequencies, maps, strict=True)
-    ]
+def path_of(scene: Scene, frequencies: Sequence[float]) -> list[NordmarkMap]:
+    """The maps that the experiment passes through."""
+    return [map_at(scene, f, scene.single_mode.restitution) for f in frequencies]
 
 
 def bands(scene: Scene, run: Run, *, inside: int) -> Mapping[str, object]:
@@ -106,89 +76,79 @@ def bands(scene: Scene, run: Run, *, inside: int) -> Mapping[str, object]:
     low, high = (corresponding(scene, f) for f in SPAN_HZ)
     path = path_of(scene, np.linspace(low, high, 200).tolist())
     run.table("bands", rows, "Hysteresis 1 - F_m/F_g across the bands of p_m.", show=())
-    run.arrays("bands_path", frequency_hz=[p.frequency_hz for p in path], alpha=[p.alpha for p in path],
-               gamma=[p.gamma for p in path])  # fmt: skip
-    run.figure(
-        "bands",
-        draw(scene, rows, path),
-        "Bands of p_m in the plane of alpha and gamma with the path of the"
-        " experiment, and the hysteresis along that path.",
-    )
-    grows = {"map": True, "eq1": True}
-    for m in PERIODS:
-        grows["map"] &= falls([row.map for row in rows if row.period == m])
-        grows["eq1"] &= falls([row.eq1 for row in rows if row.period == m])
-    edges = [band_of(scene, m) for m in PERIODS]
-    lowest = [next(row for row in rows if row.period == m) for m in PERIODS]
-    uppermost = [[row for row in rows if row.period == m][-1] for m in PERIODS]
-    zero = max(max(row.map, row.eq1) for row in uppermost)
-    crossed = sorted({place.period for place in path})
+    run.figure("bands", draw(scene, rows, path, (low, high)), "Bands of p_m in the plane of alpha and "
+               "gamma with the path of the experiment, and the hysteresis along that path.")  # fmt: skip
+    of_band = {m: [row for row in rows if row.period == m] for m in PERIODS}
+    grows = {
+        "map": all(falls([row.map for row in own]) for own in of_band.values()),
+        "eq1": all(falls([row.eq1 for row in own]) for own in of_band.values()),
+    }
+    zero = max(max(own[-1].map, own[-1].eq1) for own in of_band.values())
+    crossed = sorted({maximal_period(place) for place in path})
     holds = zero < 1e-9 and all(grows.values())
     run.verdict(
         "bands", "agrees" if holds else "differs",
-        found=f"m = {crossed[0]} to {crossed[-1]} from {low:g} to {high:g} Hz; hysteresis at the upper"
-        f" edges of p3 to p11 at most {zero:.1g}, growing towards the lower:"
+        found=f"m = {crossed[0]} to {crossed[-1]} from {low:g} to {high:g} Hz;"
+        f" hysteresis at the upper edges of p3 to p11 at most {zero:.1g}, growing towards the lower:"
         f" {'yes' if all(grows.values()) else 'no'}",
         note=f"alpha from {path[0].alpha:.2f} to {path[-1].alpha:.2f}, gamma from {path[0].gamma:.3f} to"
         f" {path[-1].gamma:.3f}: the bands are crossed at almost constant gamma",
     )  # fmt: skip
     return {
-        "holds": holds, "bands": edges, "at_lower_edge": lowest, "largest_at_upper_edge": zero,
-        "crossed": crossed, "grows": grows, "path": [path[0], path[-1]],
+        "holds": holds, "bands": [band_of(scene, m) for m in PERIODS],
+        "at_lower_edge": [own[0] for own in of_band.values()], "largest_at_upper_edge": zero,
+        "crossed": crossed, "grows": grows,
     }  # fmt: skip
 
 
 @plotting.in_house_style
-def draw(scene: Scene, rows: Sequence[Inside], path: Sequence[Path]) -> Figure:
+def draw(
+    scene: Scene, rows: Sequence[Inside], path: Sequence[NordmarkMap], span: tuple[float, float]
+) -> Figure:
     """The plane and the hysteresis."""
     figure, axes = plotting.new_figure(1, 2, width=plotting.PAGE, height=0.070)
-    _plane(axes[0], scene, path)
-    low, high = path[0].frequency_hz, path[-1].frequency_hz
-    for name, colour, line, title in (
-        ("map", plotting.BLACK, "-", "Nordmark map"), ("eq1", plotting.BLUE, "--", "Eq. (1)"),
-    ):  # fmt: skip
-        for m in PERIODS:
-            shown = [row for row in rows if row.period == m and low <= row.frequency_hz <= high]
-            axes[1].plot(
-                [row.frequency_hz for row in shown], [1e2 * getattr(row, name) for row in shown],
-                color=colour, linestyle=line, linewidth=1.1, label=title if m == PERIODS[0] else None,
-                gid=f"{title}, m = {m}",
-            )  # fmt: skip
-    for m in PERIODS[:-2]:
-        edges = band_of(scene, m)
-        first = next(row for row in rows if row.period == m)
-        axes[1].text(
-            0.3 * edges.upper + 0.7 * max(edges.lower, low), 105.0 * first.eq1 if edges.lower > low else 3.2,
-            f"{m}", fontsize=plotting.NOTE, ha="left",
-        )  # fmt: skip
+    draw_plane(axes[0], scene, path)
+    low, high = span
+    axes[0].annotate(f"{low:g} to {high:g} Hz", (path[60].alpha, path[60].gamma), xytext=(0.05, 0.62),
+                     fontsize=plotting.NOTE, arrowprops={"arrowstyle": "-", "linewidth": 0.6})  # fmt: skip
+    for m in PERIODS:
+        shown = [row for row in rows if row.period == m and low <= row.frequency_hz <= high]
+        frequency, names = [row.frequency_hz for row in shown], m == PERIODS[0]
+        axes[1].plot(frequency, [1e2 * row.map for row in shown], color=plotting.BLACK, linewidth=1.1,
+                     label="Nordmark map" if names else None)  # fmt: skip
+        axes[1].plot(frequency, [1e2 * row.eq1 for row in shown], color=plotting.BLUE, linestyle="--",
+                     linewidth=1.1, label="Eq. (1)" if names else None)  # fmt: skip
+        if shown and m < PERIODS[-2]:
+            whole = rows[[row.period for row in rows].index(m)].frequency_hz >= low
+            axes[1].text(0.7 * frequency[0] + 0.3 * frequency[-1], 105.0 * shown[0].eq1 if whole else 3.2,
+                         f"{m}", fontsize=plotting.NOTE)  # fmt: skip
     for f in letter.PERIODS:
-        first_one = f == min(letter.PERIODS)
-        axes[1].axvline(f, **plotting.LETTER, gid="letter", label="letter, Fig. 2" if first_one else None)
+        axes[1].axvline(f, **plotting.LETTER, label="letter, Fig. 2" if f == min(letter.PERIODS) else None)
     plotting.panel(axes[1], 1, "hysteresis along the path\n")
     plotting.label(axes[1].xaxis, "drive frequency", "Hz")
     plotting.label(axes[1].yaxis, plotting.HYSTERESIS, "%")
-    axes[0].legend(loc="lower right")
     axes[1].legend(loc="upper right", frameon=True, framealpha=1.0, edgecolor="white")
     return figure
 
 
-def _plane(axis: Axes, scene: Scene, path: Sequence[Path]) -> None:
+def draw_plane(axis: Axes, scene: Scene, path: Sequence[NordmarkMap]) -> None:
     """The bands as rho -> 0 and the path of the experiment."""
-    gammas, tau = np.linspace(0.02, 1.0, 80), scene.single_mode.restitution
+    mode, rates = scene.single_mode, np.geomspace(100.0, 1e-3, 80).tolist()
     for m in range(3, 9):
-        upper = 2.0 * np.sqrt(gammas) * math.cos(math.pi / m)
-        lower = [2.0 * math.sqrt(g) * math.cos(lower_angle(m, g, tau)) for g in gammas.tolist()]
-        axis.fill_betweenx(gammas, lower, upper, color=plotting.PALETTE[m % 6 + 1], alpha=0.35, linewidth=0.4,
-                           gid=f"band of p$_{{{m}}}$")  # fmt: skip
-        middle = 0.5 * (upper[-1] + lower[-1])
-        axis.text(middle, 1.015, f"{m}", fontsize=plotting.NOTE, ha="center", va="bottom")
-    axis.plot([p.alpha for p in path], [p.gamma for p in path], color="black", linewidth=1.4, gid="path")
-    places = path_of(scene, sorted(scene.drive.frequencies_hz))
-    axis.plot([p.alpha for p in places], [p.gamma for p in places], **plotting.LETTER_POINTS, label="letter")
-    axis.annotate(
-        f"{path[0].frequency_hz:g} to {path[-1].frequency_hz:g} Hz", (path[60].alpha, path[60].gamma),
-        xytext=(0.05, 0.62), fontsize=plotting.NOTE, arrowprops={"arrowstyle": "-", "linewidth": 0.6},
-    )  # fmt: skip
+        edges = [band(m, free_period=mode.free_period_s, decay_rate=mu, restitution=mode.restitution)
+                 for mu in rates]  # fmt: skip
+        places = [[(mu, one.upper) for mu, one in zip(rates, edges, strict=True)],
+                  [(mu, one.lower) for mu, one in zip(rates, edges, strict=True)][::-1]]  # fmt: skip
+        mu, f = np.array([*places[0], *places[1]]).T
+        gamma = np.exp(-mu / f)
+        alpha = 2.0 * np.sqrt(gamma) * np.cos(2.0 * math.pi / (f * mode.free_period_s))
+        axis.fill(alpha, gamma, color=plotting.PALETTE[m % 6 + 1], alpha=0.35, linewidth=0.4)
+        axis.text(0.5 * (alpha[79] + alpha[80]), 1.015, f"{m}", fontsize=plotting.NOTE, ha="center")
+    axis.plot([p.alpha for p in path], [p.gamma for p in path], color="black", linewidth=1.4)
+    own = path_of(scene, sorted(scene.drive.frequencies_hz))
+    axis.plot([p.alpha for p in own], [p.gamma for p in own], **plotting.LETTER_POINTS, label="letter")
+    axis.set_ylim(bottom=0.02)
     plotting.panel(axis, 0, "bands of p$_m$ as ρ → 0\n")
     plotting.label(axis.xaxis, "α")
     plotting.label(axis.yaxis, "γ")
+    axis.legend(loc="lower right")

@@ -12,27 +12,28 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from beam import ModalModel
-from contact import ContactError, StroboscopicMap, maximal_period, maximal_periods
+from contact import StroboscopicMap, maximal_period, maximal_periods
 from contact.orbits import born_period
 from studies import letter, plotting
 from studies.calibration import bare_cantilever, with_mass_ratio
 from studies.claims.bands import band_of
-from studies.claims.equation_one import map_at
+from studies.claims.energy_loss import map_at
 from studies.run import Run
 from studies.scene import Scene, beam_at, model_of, single_mode_at
 
-__all__ = ["Born", "Spring", "born_at", "springs", "universality"]
+__all__ = ["Born", "Job", "Spring", "born_at", "springs", "universality"]
 
 SPAN = (0.802, 0.956)
 """f T from the band of p3 to that of p11."""
 
-TOP = 3
-"""The quarter of a band next to its upper edge; the lowest is 0."""
+TOP = 0.75
+"""Part of a band above which a frequency is next to its upper edge."""
 
 CLOSER = 1.0 / 16.0
 """Part of the born excess at which a disagreement is looked at again."""
@@ -61,15 +62,15 @@ class Spring:
 class Born:
     """One spring at one f T: `period` born (0: not settled; None: could not be followed).
 
-    `map`: periods that the map has there as rho -> 0+; `quarter` of the band, 0 to 3 upwards; `closer`:
-    period at a sixteenth of the excess, where it was asked.
+    `map`: periods that the map has there as rho -> 0+; `next_to_edge`: in the upper quarter of the band;
+    `closer`: period at a sixteenth of the excess, where it was asked.
     """
 
     spring: str
     f_times_t: float
     period: int | None
     map: tuple[int, ...]
-    quarter: int
+    next_to_edge: bool
     settled: bool
     closer: int | None = None
 
@@ -100,47 +101,43 @@ def springs(scene: Scene) -> tuple[Spring, ...]:
     )
 
 
-def born_at(job: tuple[Spring, float, float]) -> int | None:
-    """Period of a spring at f T and an excess [1]; 0 for none, None if it could not be followed."""
-    spring, position, excess = job
-    frequency = spring.frequency(position)
+class Job(NamedTuple):
+    """A spring at f T and an excess [1]."""
+
+    spring: Spring
+    f_times_t: float
+    excess: float
+
+    def __str__(self) -> str:
+        return f"{self.spring.name}, f T = {self.f_times_t:.4g}"
+
+
+def born_at(job: Job) -> int:
+    """Period that is born; 0 for none."""
+    spring, frequency = job.spring, job.spring.frequency(job.f_times_t)
     if spring.model is None:
         oscillator = single_mode_at(spring.scene, frequency)
     else:
         oscillator = beam_at(spring.scene, frequency, spring.model)
-    try:
-        strobed = StroboscopicMap(oscillator=oscillator)
-        return born_period(strobed, excess, below=-excess, most_cycles=MOST_CYCLES)
-    except ContactError:
-        return None
+    strobed = StroboscopicMap(oscillator=oscillator)
+    return born_period(strobed, job.excess, below=-job.excess, most_cycles=MOST_CYCLES)
 
 
 def universality(scene: Scene, run: Run, *, positions: int) -> Mapping[str, object]:
     """Compute, store, draw and judge."""
     rows, excess = born_everywhere(scene, run, positions), scene.scan.born_excess
-    run.table(
-        "universality", rows, "Period born just above grazing, and that of the map as rho -> 0+.", show=()
-    )
-    run.figure(
-        "universality",
-        draw(scene, rows),
-        "Period born at grazing for seven springs and contact laws; grey,"
-        " the bands of the map. Near the upper edge of a band all agree with it.",
-    )
-    for row in rows:
-        if row.period is None:
-            run.failed(f"{row.spring}, f T = {row.f_times_t:.4g}", "the motion could not be followed")
-    names = list(dict.fromkeys(row.spring for row in rows))
-    agree = {n: float(np.mean([row.agrees for row in rows if row.spring == n])) for n in names}
-    quarters = {
-        name: [float(np.mean(q)) if q else None for q in (
-            [row.agrees for row in rows if row.spring == name and row.quarter == k] for k in range(TOP + 1)
-        )]
-        for name in names
-    }  # fmt: skip
-    top = [row for row in rows if row.quarter == TOP]
+    run.table("universality", rows, "Period born just above grazing, and that of the map as rho -> 0+.",
+              show=())  # fmt: skip
+    run.figure("universality", draw(scene, rows), "Period born at grazing for seven springs and contact laws"
+               "; grey, the bands of the map. Near the upper edge of a band all agree with it.")  # fmt: skip
+    failed = any(row.period is None for row in rows)
+    agree = {
+        name: float(np.mean([row.agrees for row in rows if row.spring == name]))
+        for name in dict.fromkeys(row.spring for row in rows)
+    }
+    top = [row for row in rows if row.next_to_edge]
     odd = [row for row in top if not row.agrees]
-    failed, holds = any(row.period is None for row in rows), all(row.closer in row.map for row in odd)
+    holds = all(row.closer in row.map for row in odd)
     if top and not failed:
         note = "over whole bands, where secondary bifurcations come first, "
         note += f"{100 * min(agree.values()):.0f} % or more"
@@ -153,33 +150,30 @@ def universality(scene: Scene, run: Run, *, positions: int) -> Mapping[str, obje
             f" spring have the period of the map at excess {excess:g}", note=note,
         )  # fmt: skip
     return {
-        "holds": None if failed else holds, "agree": agree, "agree_by_quarter_of_band": quarters,
+        "holds": None if failed else holds, "agree": agree,
         "exceptions_in_top_quarter": odd, "closer_excess": CLOSER * excess,
         "not_settled": sum(not row.settled for row in rows),
     }  # fmt: skip
 
 
 def born_everywhere(scene: Scene, run: Run, count: int) -> list[Born]:
-    """Every spring at every f T, and the disagreements next to an upper edge once more, closer to grazing."""
-    entries, positions, excess = springs(scene), np.linspace(*SPAN, count).tolist(), scene.scan.born_excess
-    jobs = [(spring, place) for spring in entries for place in positions]
-    found = run.map(born_at, [(*job, excess) for job in jobs], "born periods")
+    """Every spring at every f T; the disagreements next to an upper edge once more, closer to grazing."""
+    excess = scene.scan.born_excess
+    places = np.linspace(*SPAN, count).tolist()
+    jobs = [Job(spring, place, excess) for spring in springs(scene) for place in places]
     rows = []
-    for (spring, place), period in zip(jobs, found, strict=True):
-        frequency = place / scene.single_mode.free_period_s
+    for job, period in zip(jobs, run.attempt(born_at, jobs, "born periods"), strict=True):
+        frequency = job.f_times_t / scene.single_mode.free_period_s
         nordmark = map_at(scene, frequency, scene.single_mode.restitution)
         edges = band_of(scene, maximal_period(nordmark))
         part = (frequency - edges.lower) / (edges.upper - edges.lower)
         rows.append(Born(
-            spring=spring.name, f_times_t=place, period=period, map=maximal_periods(nordmark),
-            quarter=min(TOP, max(0, math.floor(4.0 * part))), settled=bool(period),
+            spring=job.spring.name, f_times_t=job.f_times_t, period=period, map=maximal_periods(nordmark),
+            next_to_edge=part >= TOP, settled=bool(period),
         ))  # fmt: skip
-    again = [i for i, row in enumerate(rows) if row.quarter == TOP and not row.agrees]
-    for i, period in zip(
-        again,
-        run.map(born_at, [(*jobs[i], CLOSER * excess) for i in again], "closer to grazing"),
-        strict=True,
-    ):
+    again = [i for i, row in enumerate(rows) if row.next_to_edge and not row.agrees]
+    nearer = [jobs[i]._replace(excess=CLOSER * excess) for i in again]
+    for i, period in zip(again, run.attempt(born_at, nearer, "closer to grazing"), strict=True):
         rows[i] = replace(rows[i], closer=period)
     return rows
 

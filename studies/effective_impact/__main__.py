@@ -11,9 +11,9 @@ Computed: the first collision of the steady driven motion at an excess above gra
     tau^2 = (1 - kick)^2 + 2 a shift / v^2,   delay = (v/a)(1 + tau - kick)         to leading order in v,
 
 v the approach speed, v/a the time to the top of the arc beyond the gap, a = (2 pi f)^2 gap. Varied, one at a
-time: excess, number of modes, tip mass (free period and drive amplitude at grazing kept), stiffness and
-material of the contact, damping of the higher modes, loss in the contact; and tip mass together with loss and
-with stiffness, in search of the letter's tau.
+time: excess, number of modes, tip mass (free period and drive amplitude at grazing kept), stiffness of the
+contact; and tip mass together with loss in the contact and with stiffness, in search of the
+letter's tau.
 
 What comes out for the folded spring with its tape:
 
@@ -22,19 +22,16 @@ What comes out for the folded spring with its tape:
   the contact, each at its own tip mass. tau = 0.1 asks for thirtyfold stiffness or for an excess of 0.19; or
   for a settled orbit, where what is left of the ringing shifts the touch: there tau lies anywhere from 0.15
   to 0.99, or does not exist, as mode 1 does not come back to the gap.
-- Half of the kick is gone at an excess near 7e-5 under Hertz's law: below the amplitude stability of the
-  experiment, 2.5e-4, where 76 % of the kick are left.
 - 18 modes are enough at the tip mass of the scene, 24 at a tenth of the leaf, 30 for a bare cantilever under
   Hertz's law. A bare tip has tau = 0.7 and a delay longer than v/a. Under Newton's law the count of its
   impacts grows with the modes without end; tau and delay hardly change, but to 1e-3 they do not stand still.
 - That the kick on a hard stop is 2 M phi_1^2 is a limit far off: the bend, a quarter of the mass of the ball,
   goes along with it. Real contacts have a kick of 0.99, a stop of 1e7 times the tip stiffness 0.95, and the
-  ball by itself has 0.82.
+  ball by itself has 0.82. (How the kick fades towards grazing: studies.soft_wall.)
 
-Run:     python -m studies.effective_impact [--quick]     a minute; --quick ten seconds
+Run:     python -m studies.effective_impact [--quick]     half a minute; --quick ten seconds
 Writes:  collisions.csv (a row an approach), floors.csv (smallest restitution over the tip mass),
-         modes_needed.csv, fading_kick.csv, and the figures speed, mass, search, modes, stiffness, damping,
-         loss
+         modes_needed.csv, and the figures speed, mass, search, modes, stiffness
 """
 
 from __future__ import annotations
@@ -51,13 +48,12 @@ from studies.effective_impact.collision_rows import (
     Floor,
     Row,
     crossing,
-    fade_of,
     floor_of,
+    measure,
     on_orbits,
     select,
     series_of,
     still_of,
-    tried,
 )
 from studies.record import Verdict
 from studies.run import Run, study
@@ -74,9 +70,6 @@ LIGHT = 0.1
 NEAR = 0.05
 """How far a restitution may be from "about 0.1"."""
 
-LEADING_ORDER = 0.05
-"""Greatest excess at which the closed relations are held against collisions."""
-
 
 @study()
 def effective_impact(scene: Scene, run: Run) -> Mapping[str, object]:
@@ -87,37 +80,27 @@ def effective_impact(scene: Scene, run: Run) -> Mapping[str, object]:
         )
     grid = cases.QUICK if run.quick else cases.FULL
     frequency = min(scene.drive.frequencies_hz, key=lambda f: abs(f - Targets.frequency_hz))
-    rows = measured(run, all_cases(run, scene, frequency, grid))
+    found = run.attempt(measure, all_cases(run, scene, frequency, grid), "collisions")
+    rows = [row for row in found if row is not None]
     run.table("collisions", rows, show=())
-    search = [select(rows, "search", name) for name in series_of(rows, "search")]
-    search += [select(rows, "hardness", name) for name in series_of(rows, "hardness")]
-    floors = [floor for found in search if (floor := floor_of(found)) is not None]
+    searches = [(curve, name) for curve in ("search", "hardness") for name in series_of(rows, curve)]
+    floors = [floor for search in searches if (floor := floor_of(select(rows, *search))) is not None]
     run.table("floors", floors, "Smallest restitution over the tip mass, by local restitution or hardness.")
     by_modes = [select(rows, "modes", name) for name in series_of(rows, "modes")]
-    still = [line for found in by_modes if (line := still_of(found, grid.modes)) is not None]
+    still = [line for curve in by_modes if (line := still_of(curve, grid.modes)) is not None]
     run.table("modes_needed", still, "Number of modes from which on a series stands still.")
-    by_speed = [select(rows, "speed", name) for name in series_of(rows, "speed")]
-    fades = [fade for found in by_speed if (fade := fade_of(found, scene.scan.born_excess)) is not None]
-    run.table("fading_kick", fades, "Where the kick fades towards grazing.")
     from studies.effective_impact.figure import DRAWN  # matplotlib is slow to import
 
     for draw in DRAWN:
         run.figure(draw.__name__, draw(rows), " ".join((draw.__doc__ or "").split()))
-    reference = next((row for found in by_modes[:1] for row in found if row.modes == grid.modes), None)
+    reference = next((row for curve in by_modes[:1] for row in curve if row.modes == grid.modes), None)
     elastic = [floor for floor in floors if (floor.curve, floor.value) == ("search", 1.0)]
     if reference is not None and elastic:
         judge(run, reference, on_orbits(rows), floors)
     return {
-        "frequency_hz": frequency,
-        "reference": reference,
-        "on_settled_orbits": on_orbits(rows),
-        "floors": floors,
-        "modes_needed": still,
-        "fading_kick": fades,
-        "what_gives_the_letters_restitution": ways(rows, floors),
-        "hardest_stop": select(rows, "stiffness", cases.SCENE_MASS)[-1:],
-        "closed_forms": closed_forms(rows),
-    }
+        "frequency_hz": frequency, "reference": reference, "on_settled_orbits": on_orbits(rows),
+        "floors": floors, "modes_needed": still, "what_gives_the_letters_restitution": ways(rows, floors),
+    }  # fmt: skip
 
 
 def all_cases(run: Run, scene: Scene, frequency: float, grid: Grid) -> list[Case]:
@@ -126,25 +109,18 @@ def all_cases(run: Run, scene: Scene, frequency: float, grid: Grid) -> list[Case
     if not (scene.spring.elements_per_leg or scene.spring.elements_on_arc):
         fine = scene.replace(FINE_MESH)
     springs = {
-        "scene": lambda: fine,
-        "light tip": lambda: with_mass_ratio(fine, LIGHT, frequency),
-        "bare cantilever": lambda: bare_cantilever(fine, frequency),
-    }
-    many = {name: Spring.of(make(), frequency, grid.check_modes) for name, make in springs.items()}
-    of_mass = partial(cases.spring_of_mass, scene, frequency, grid.modes)
+        "scene": fine, "light tip": with_mass_ratio(fine, LIGHT, frequency),
+        "bare cantilever": bare_cantilever(fine, frequency),
+    }  # fmt: skip
+    many = {name: Spring.of(one, frequency, grid.check_modes) for name, one in springs.items()}
+    of_mass = partial(spring_of_mass, scene, frequency, grid.modes)
     masses = run.map(of_mass, cases.MASS_RATIOS[:: grid.every], "springs")
     return cases.cases_of(Spring.of(scene, frequency, grid.modes), masses, many, grid)
 
 
-def measured(run: Run, todo: Sequence[Case]) -> list[Row]:
-    """The rows of the cases; one without a collision has failed."""
-    rows = []
-    for case, found in zip(todo, run.map(tried, todo, "collisions"), strict=True):
-        if isinstance(found, Row):
-            rows.append(found)
-        else:
-            run.failed(f"{case.curve}, {case.series}, {case.value:g}", found)
-    return rows
+def spring_of_mass(scene: Scene, frequency: float, modes: int, ratio: float) -> Spring:
+    """The spring with another tip mass, `ratio` times the leaf."""
+    return Spring.of(with_mass_ratio(scene, ratio, frequency), frequency, modes)
 
 
 def ways(rows: Sequence[Row], floors: Sequence[Floor]) -> Mapping[str, float]:
@@ -158,16 +134,6 @@ def ways(rows: Sequence[Row], floors: Sequence[Floor]) -> Mapping[str, float]:
     }
 
 
-def closed_forms(rows: Sequence[Row]) -> Mapping[str, float]:
-    """Largest deviation of the closed relations in first collisions of one impact; delays in arcs v/a."""
-    kept = [row for row in rows if row.orbit_period is None and row.impacts == 1]
-    kept = [row for row in kept if row.excess <= LEADING_ORDER]
-    kept = [row for row in kept if math.isfinite(row.restitution) and math.isfinite(row.closed_restitution)]
-    tau = [abs(row.restitution - row.closed_restitution) for row in kept] or [math.nan]
-    delay = [abs(row.delay_s - row.closed_delay_s) / row.arc_s for row in kept] or [math.nan]
-    return {"collisions": len(kept), "restitution": max(tau), "delay_over_arc": max(delay)}
-
-
 def judge(run: Run, at: Row, orbits: Sequence[Row], floors: Sequence[Floor]) -> None:
     """Verdicts on restitution and delay, and this study's part of the answer on higher modes."""
     loss = {floor.value: floor.restitution for floor in floors if floor.curve == "search"}
@@ -179,13 +145,12 @@ def judge(run: Run, at: Row, orbits: Sequence[Row], floors: Sequence[Floor]) -> 
     near = least <= letter.RESTITUTION + NEAR
     verdict: Verdict = "agrees" if near else "in part" if reached else "differs"
     run.verdict(
-        "restitution",
-        verdict,
+        "restitution", verdict,
         found=f"{least:.2f} at least in a first collision; {span} on settled orbits",
         note="the time that the contact takes sets a floor which loss in the contact does not lower; on "
         f"settled orbits the ringing of the collision before moves the touch, and in {lost} of {len(orbits)} "
         "mode 1 does not come back to the gap",
-    )
+    )  # fmt: skip
     delay, share = f"{1e3 * at.delay_s:.3f} ms", f"{at.delay_s / at.arc_s:.2f} of the time"
     found = f"{delay} at excess {at.excess:g}"
     run.verdict(

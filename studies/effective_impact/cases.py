@@ -7,9 +7,7 @@
     search       tip mass and restitution of the contact itself together
     hardness     tip mass and stiffness together
     stiffness    linear contact of 1e2 ... 1e7 times the static stiffness of the tip
-    materials    Hertz contact of four balls, on the same axis by the linear contact of equal contact time
-    damping      rates of the modes above the first, times a factor, for three rules with the same mode 1
-    loss         restitution of the contact itself, Hunt-Crossley's law or Newton's
+    ball         Hertz contact of the ball, on the same axis by the linear contact of equal contact time
 """
 
 from __future__ import annotations
@@ -20,7 +18,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from beam import ALUMINA, BRASS, STEEL, Material, ModalModel
+from beam import ModalModel
 from contact import (
     ContactLaw,
     HertzContact,
@@ -30,36 +28,21 @@ from contact import (
     NewtonRestitution,
     Stop,
 )
-from studies.calibration import leaf_mass, with_mass_ratio
+from studies.calibration import leaf_mass
 from studies.letter import TIME_TRACE_EXCESS
 from studies.scene import Scene, approach_speed, beam_at, contact_law_of, corresponding, hertz_of, model_of
-
-PLASTIC = Material(youngs_modulus=0.2e9, poissons_ratio=0.45, density=920.0, loss_factor=0.1)
-"""Low-density polyethylene: a ball of it on steel is the softest contact considered."""
-
-BALLS: Mapping[str, Material] = {
-    "alumina on steel": ALUMINA,
-    "steel on steel": STEEL,
-    "brass on steel": BRASS,
-    "polyethylene on steel": PLASTIC,
-}
 
 OWN, HERTZ, SCENE_MASS = "contact of the scene", "Hertz", "tip mass of the scene"
 """Series of the spring as it is; `OWN` is there where the scene's law is not Hertz's."""
 
-LIGHTEST = 0.05
-"""Tip mass over leaf of the lightest ball in the stiffness curves."""
-
 ORBIT_HZ = 21.50
 """The letter's Fig. 4 [Hz]."""
-
 
 EXCESSES = (*np.geomspace(1e-5, 5e-2, 38).tolist(), *np.geomspace(5e-2, 0.4, 9)[1:].tolist())
 MASS_EXCESSES = (1e-4, 3e-4, 1e-3, 3e-3, TIME_TRACE_EXCESS, 5e-2)
 MASS_RATIOS = (0.0, 0.02, 0.05, 0.1, 0.125, 0.15, 0.175, 0.2, 0.225, 0.25, 0.275, 0.3, 0.325, 0.35, 0.4, 0.5,
                0.7, 1.0, 1.4, 2.0, 3.0)  # fmt: skip
 STIFFNESSES = tuple(np.geomspace(1e2, 1e7, 31).tolist())
-FACTORS = tuple(np.geomspace(0.1, 10.0, 9).tolist())
 RESTITUTIONS = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1)
 HARDNESSES = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0)
 
@@ -89,6 +72,9 @@ class Case:
     oscillator: ImpactOscillator
     mass_ratio: float
 
+    def __str__(self) -> str:
+        return f"{self.curve}, {self.series}, {self.value:g}"
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Spring:
@@ -117,6 +103,12 @@ class Spring:
         """Static stiffness of the spring at its tip [N/m]."""
         return 1.0 / float(self.model.static_compliance or math.nan)
 
+    @property
+    def laws(self) -> dict[str, ContactLaw]:
+        """The law of the scene and Hertz's, once if they are the same."""
+        own, hertz = contact_law_of(self.scene), hertz_of(self.scene)
+        return {HERTZ: hertz} if own == hertz else {OWN: own, HERTZ: hertz}
+
     def lossy(self, restitution: float) -> HuntCrossley:
         """Hunt and Crossley's law that has this restitution with a free mass at `speed`."""
         stiffness = hertz_of(self.scene).stiffness
@@ -142,11 +134,6 @@ class Spring:
         )  # fmt: skip
 
 
-def spring_of_mass(scene: Scene, frequency: float, modes: int, ratio: float) -> Spring:
-    """The spring with another tip mass, `ratio` times the leaf."""
-    return Spring.of(with_mass_ratio(scene, ratio, frequency), frequency, modes)
-
-
 def cases_of(spring: Spring, masses: Sequence[Spring], fine: Mapping[str, Spring], grid: Grid) -> list[Case]:
     """Every case of the study.
 
@@ -160,20 +147,12 @@ def cases_of(spring: Spring, masses: Sequence[Spring], fine: Mapping[str, Spring
         *_speed(spring, masses[0], grid),
         *_modes(fine, grid),
         *(case for one in masses for case in _mass(one, grid)),
-        *_stiffness(spring, masses, grid),
-        *_damping(spring, grid),
-        *_loss(spring, grid),
+        *_stiffness(spring, masses[0], grid),
     ]
 
 
-def own_laws(scene: Scene) -> dict[str, ContactLaw]:
-    """The law of the scene and Hertz's, once if they are the same."""
-    own, hertz = contact_law_of(scene), hertz_of(scene)
-    return {HERTZ: hertz} if own == hertz else {OWN: own, HERTZ: hertz}
-
-
 def _speed(spring: Spring, bare: Spring, grid: Grid) -> Iterator[Case]:
-    lines = [(name, spring, law) for name, law in own_laws(spring.scene).items()]
+    lines = [(name, spring, law) for name, law in spring.laws.items()]
     for name, one, law in [*lines, ("bare tip, Hertz", bare, hertz_of(bare.scene))]:
         for excess in EXCESSES[:: grid.every]:
             yield one.case("speed", name, excess, law, excess=excess)
@@ -181,7 +160,7 @@ def _speed(spring: Spring, bare: Spring, grid: Grid) -> Iterator[Case]:
 
 def _modes(fine: Mapping[str, Spring], grid: Grid) -> Iterator[Case]:
     newton = NewtonRestitution(local_restitution=1.0)
-    lines = [(name, fine["scene"], law) for name, law in own_laws(fine["scene"].scene).items()]
+    lines = [(name, fine["scene"], law) for name, law in fine["scene"].laws.items()]
     lines += [("Newton, e = 1", fine["scene"], newton)]
     lines += [(f"{name}, Hertz", fine[name], hertz_of(fine[name].scene)) for name in fine if name != "scene"]
     lines += [("bare cantilever, Newton, e = 1", fine["bare cantilever"], newton)]
@@ -202,44 +181,11 @@ def _mass(spring: Spring, grid: Grid) -> Iterator[Case]:
         yield spring.case("hardness", f"{factor:g}", ratio, spring.equal(hertz, factor))
 
 
-def _stiffness(spring: Spring, masses: Sequence[Spring], grid: Grid) -> Iterator[Case]:
-    lines = [(SCENE_MASS, spring)]
-    lines += [("no tip mass", one) for one in masses if one.mass_ratio == 0.0]
-    lines += [
-        (f"tip mass {LIGHTEST:g} of the leaf", one)
-        for one in masses
-        if math.isclose(one.mass_ratio, LIGHTEST, rel_tol=1e-6)
-    ]
-    for name, one in lines:
+def _stiffness(spring: Spring, bare: Spring, grid: Grid) -> Iterator[Case]:
+    for name, one in ((SCENE_MASS, spring), ("no tip mass", bare)):
         for value in STIFFNESSES[:: grid.every]:
             law = LinearContact(stiffness=value * one.tip_stiffness)
             yield one.case("stiffness", name, value, law)
-    for name, ball in BALLS.items() if spring.mass_ratio > 0.0 else ():
-        hertz = HertzContact.of_bodies(
-            radius=spring.scene.tip.ball_radius_m, youngs_modulus=ball.youngs_modulus,
-            poissons_ratio=ball.poissons_ratio, other_modulus=STEEL.youngs_modulus,
-            other_ratio=STEEL.poissons_ratio,
-        )  # fmt: skip
-        yield spring.case("materials", name, spring.equal(hertz).stiffness / spring.tip_stiffness, hertz)
-
-
-def _damping(spring: Spring, grid: Grid) -> Iterator[Case]:
-    model = spring.model
-    relative, first = model.omega / model.omega[0], model.decay_rate[0]
-    rules = {
-        "as in the scene": model.decay_rate,
-        "constant ratio": first * relative,
-        "proportional to stiffness": first * relative**2,
-    }
-    for name, rates in rules.items():
-        for factor in FACTORS[:: grid.every]:
-            scaled = replace(model, decay_rate=np.concatenate([rates[:1], factor * rates[1:]]))
-            yield spring.case("damping", name, factor, hertz_of(spring.scene), model=scaled)
-
-
-def _loss(spring: Spring, grid: Grid) -> Iterator[Case]:
-    for local in RESTITUTIONS[:: grid.every]:
-        yield spring.case("loss", "Hunt-Crossley", local, spring.lossy(local))
-        for count in (grid.modes // 4, grid.modes // 2, grid.modes):
-            newton, model = NewtonRestitution(local_restitution=local), spring.model.truncated(count)
-            yield spring.case("loss", f"Newton, {count} modes", local, newton, model=model)
+    hertz = hertz_of(spring.scene)
+    if spring.mass_ratio > 0.0:
+        yield spring.case("ball", HERTZ, spring.equal(hertz).stiffness / spring.tip_stiffness, hertz)

@@ -1,31 +1,28 @@
 """A case as a row of numbers, and what is read off the rows of a curve.
 
 A first collision is that of the steady driven motion; one of a settled orbit is its first. Beside what
-`contact.collisions` measures a row holds the closed relations to leading order in v,
+`contact.collisions` measures a row holds
 
-    arc_s                v/a, the time in which the arc of the single mode beyond the gap reaches its top [s]
-    force_delay_s        mean time of the contact force after t_in: shift/(kick v) [s]
-    closed_restitution   sqrt((1 - kick)^2 + 2 a shift/v^2) [1]
-    closed_delay_s       (v/a)(1 + restitution - kick) [s]
-    ball_limit           2 M phi_1^2, the kick of the ball by itself on a hard stop [1]
-    energy_share         energy given to the higher modes over that of the approach, v^2/(2 phi_1^2) [1]
+    arc_s          v/a, the time in which the arc of the single mode beyond the gap reaches its top [s]
+    ball_limit     2 M phi_1^2, the kick of the ball by itself on a hard stop [1]
+    energy_share   energy given to the higher modes over that of the approach, v^2/(2 phi_1^2) [1]
 
 Between the cases of a curve restitution has a corner where the kick is 1, its square has none: smallest
-values over the tip mass are read off monotone splines through the kick and through the second term.
+values over the tip mass are read off monotone splines through the kick and through
+restitution^2 - (1 - kick)^2 = 2 a shift/v^2.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from contact import (
     Collision,
-    ContactError,
     ImpactOscillator,
     StroboscopicMap,
     collisions,
@@ -33,7 +30,6 @@ from contact import (
     simulate,
 )
 from contact.orbits import born
-from studies import letter
 from studies.effective_impact.cases import Case
 
 SETTLE_CYCLES = 4000
@@ -43,9 +39,6 @@ period 0."""
 STILL = 1e-3
 """How closely a result must agree with that of the most modes: absolute in restitution and kick, in the delay
 relative to the arc v/a."""
-
-FLAT = 0.9
-"""Part of its largest value that a kick on its plateau has."""
 
 FINE = 2001
 """Points at which a spline is looked through: the smallest value is good to 1e-6 of itself."""
@@ -64,10 +57,7 @@ class Row:
     value: float
     excess: float
     modes: int
-    law: str
     mass_ratio: float
-    tip_mass_kg: float
-    gap_m: float
     orbit_period: int | None
     approach_m_s: float = math.nan
     restitution: float = math.nan
@@ -76,13 +66,8 @@ class Row:
     shift_m: float = math.nan
     contact_s: float = math.nan
     arc_s: float = math.nan
-    force_delay_s: float = math.nan
-    closed_restitution: float = math.nan
-    closed_delay_s: float = math.nan
     ball_limit: float
-    energy_to_higher_modes_j: float = math.nan
     energy_share: float = math.nan
-    energy_lost_j: float = math.nan
     impacts: int = 0
     forced_by_ringing: bool = False
     returns: bool = False
@@ -90,30 +75,26 @@ class Row:
 
 def measure(case: Case) -> Row:
     """The row of a case; ContactError or ValueError if there is no collision."""
-    oscillator = case.oscillator
-    model, found, period = oscillator.model, None, None
+    oscillator, period = case.oscillator, None
+    found: Collision | None
     if case.curve == "orbit":
         found, period = orbit_collision(oscillator)
     else:
         found = first_collision(oscillator)
+    model = oscillator.model
     mass, phi = float(model.tip_mass or 0.0), float(model.phi[0])
-    numbers = {} if found is None else numbers_of(found, phi)
-    return Row(
+    row = Row(
         curve=case.curve, series=case.series, value=case.value, excess=case.excess, modes=model.n_modes,
-        law=type(oscillator.stop.law).__name__, mass_ratio=case.mass_ratio,
-        tip_mass_kg=mass, gap_m=oscillator.stop.gap, orbit_period=period,
-        ball_limit=2.0 * mass * phi**2, impacts=0 if found is None else found.impacts,
-        forced_by_ringing=found is not None and found.forced_by_ringing,
-        returns=found is not None and found.returns, **numbers,
+        mass_ratio=case.mass_ratio, orbit_period=period, ball_limit=2.0 * mass * phi**2,
     )  # fmt: skip
-
-
-def tried(case: Case) -> Row | str:
-    """The row of a case, or why there is none."""
-    try:
-        return measure(case)
-    except (ContactError, ValueError) as error:
-        return str(error)
+    if found is None:
+        return row
+    return replace(
+        row, approach_m_s=found.approach, restitution=found.restitution, delay_s=found.delay, kick=found.kick,
+        shift_m=found.shift, contact_s=found.contact_time, arc_s=found.approach / found.deceleration,
+        energy_share=found.energy_to_higher_modes * 2.0 * phi**2 / found.approach**2, impacts=found.impacts,
+        forced_by_ringing=found.forced_by_ringing, returns=found.returns,
+    )  # fmt: skip
 
 
 def orbit_collision(oscillator: ImpactOscillator) -> tuple[Collision | None, int]:
@@ -124,27 +105,6 @@ def orbit_collision(oscillator: ImpactOscillator) -> tuple[Collision | None, int
     trajectory = simulate(oscillator, settled.end, periods=2 * settled.period + 2)
     found = collisions(oscillator, trajectory, unfinished="drop")
     return (found[0] if found else None), settled.period
-
-
-def numbers_of(found: Collision, phi: float) -> dict[str, float]:
-    """What a collision contributes to its row; `phi` is the first mode at the tip [kg^-0.5]."""
-    v, a = found.approach, found.deceleration
-    square = (1.0 - found.kick) ** 2 + 2.0 * a * found.shift / v**2
-    return {
-        "approach_m_s": v,
-        "restitution": found.restitution,
-        "delay_s": found.delay,
-        "kick": found.kick,
-        "shift_m": found.shift,
-        "contact_s": found.contact_time,
-        "arc_s": v / a,
-        "force_delay_s": found.shift / found.kick_velocity if found.kick_velocity else math.nan,
-        "closed_restitution": math.sqrt(square) if square >= 0.0 else math.nan,
-        "closed_delay_s": v / a * (1.0 + found.restitution - found.kick),
-        "energy_to_higher_modes_j": found.energy_to_higher_modes,
-        "energy_share": found.energy_to_higher_modes * 2.0 * phi**2 / v**2,
-        "energy_lost_j": found.energy_lost,
-    }
 
 
 def select(rows: Sequence[Row], curve: str, series: str | None = None) -> list[Row]:
@@ -181,19 +141,18 @@ def crossing(x: Sequence[float], y: Sequence[float], level: float) -> float:
 @dataclass(frozen=True, kw_only=True)
 class Floor:
     """The smallest restitution over the tip mass, for one local restitution ("search") or one factor on the
-    stiffness ("hardness"): where it is, whether the range ends there, and the masses that give tau = 0.1."""
+    stiffness ("hardness")."""
 
     curve: str
     value: float
     restitution: float
     mass_ratio: float
     kick: float
-    at_edge: bool
-    letter_at: tuple[float, ...]
 
 
-def floor_of(rows: Sequence[Row], target: float = letter.RESTITUTION) -> Floor | None:
-    """The floor of one series over tip mass; None with fewer than three collisions of one impact."""
+def floor_of(rows: Sequence[Row]) -> Floor | None:
+    """The floor of one series over tip mass; None with fewer than three collisions of one impact, and if
+    restitution falls up to the end of the range."""
     kept = [row for row in rows if row.impacts == 1 and row.mass_ratio > 0.0]
     kept = [row for row in kept if math.isfinite(row.restitution)]
     if len(kept) < 3:
@@ -204,11 +163,11 @@ def floor_of(rows: Sequence[Row], target: float = letter.RESTITUTION) -> Floor |
     fine = np.linspace(where[0], where[-1], FINE)
     square = np.maximum((1.0 - kick(fine)) ** 2 + rest(fine), 0.0)
     least = int(np.argmin(square))
-    turns = np.flatnonzero((square[:-1] - target**2) * (square[1:] - target**2) < 0.0)
+    if least in (0, FINE - 1):
+        return None
     return Floor(
         curve=kept[0].curve, value=float(kept[0].series), restitution=math.sqrt(square[least]),
-        mass_ratio=math.exp(fine[least]), kick=float(kick(fine[least])), at_edge=least in (0, FINE - 1),
-        letter_at=tuple(math.exp(0.5 * (fine[i] + fine[i + 1])) for i in turns),
+        mass_ratio=math.exp(fine[least]), kick=float(kick(fine[least])),
     )  # fmt: skip
 
 
@@ -249,33 +208,4 @@ def still_of(rows: Sequence[Row], modes: int) -> Still | None:
     return Still(
         series=last.series, modes=still, drift=drift, restitution=last.restitution, kick=last.kick,
         impacts=last.impacts, impacts_at_most=rows[-1].impacts,
-    )  # fmt: skip
-
-
-@dataclass(frozen=True, kw_only=True)
-class Fade:
-    """The plateau of the kick, the excess at which half of it is left, and what is left of it at the letter's
-    amplitude stability and where born periods are read."""
-
-    series: str
-    plateau: float
-    half_excess: float
-    share_at_stability: float
-    share_at_born_excess: float
-
-
-def fade_of(rows: Sequence[Row], born_excess: float) -> Fade | None:
-    """`Fade` of one series by rising excess; None for a kick still below `FLAT` of its largest at Fig. 4."""
-    excess, kick = [row.excess for row in rows], [row.kick for row in rows]
-    if len(rows) < 2:
-        return None
-    at_fig_4 = min(rows, key=lambda row: abs(math.log(row.excess / letter.TIME_TRACE_EXCESS)))
-    plateau = max(value for value in kick if math.isfinite(value))
-    if not at_fig_4.kick >= FLAT * plateau:
-        return None
-    share = PchipInterpolator(np.log(excess), np.array(kick) / plateau, extrapolate=False)
-    return Fade(
-        series=rows[0].series, plateau=plateau, half_excess=crossing(excess, kick, 0.5 * plateau),
-        share_at_stability=float(share(math.log(letter.AMPLITUDE_STABILITY))),
-        share_at_born_excess=float(share(math.log(born_excess))),
     )  # fmt: skip

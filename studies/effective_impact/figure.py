@@ -139,29 +139,16 @@ def stiffness(rows: Sequence[Row]) -> Figure:
     """The same against the stiffness of the contact. The scene's restitution falls as the contact gets
     harder, that of a bare tip does not."""
     figure, axes = panels(rows, "stiffness", "contact stiffness / tip stiffness")
-    for ball, mark in zip(select(rows, "materials"), "dXP*", strict=False):
+    for ball in select(rows, "ball"):
         for axis, (column, (_, _, factor)) in zip(axes, AXES.items(), strict=False):
-            axis.plot(ball.value, factor * getattr(ball, column), marker=mark, markersize=5, linestyle="none",
+            axis.plot(ball.value, factor * getattr(ball, column), marker="*", markersize=7, linestyle="none",
                       color=PALETTE[5], markeredgecolor="black", markeredgewidth=0.4, zorder=5,
-                      label=f"Hertz, {ball.series}")  # fmt: skip
+                      label="Hertz, ball of the scene")  # fmt: skip
     first = select(rows, "stiffness", series_of(rows, "stiffness")[0])
     guide(axes[1], first, arc_ms, "arc v/a", "-.")
     guide(axes[2], first, lambda row: row.ball_limit, "2 M φ$_1^2$, scene")
     axes[0].set_ylim(0.0, 1.0)
     return closed(figure, axes, 3, along=0.02)
-
-
-@plotting.in_house_style
-def damping(rows: Sequence[Row]) -> Figure:
-    """The same against the damping of the higher modes, by three rules of damping."""
-    return closed(*panels(rows, "damping", "factor on the higher rates"), columns=3)
-
-
-@plotting.in_house_style
-def loss(rows: Sequence[Row]) -> Figure:
-    """The same against the loss in the contact (1: none). With this ball more loss means a smaller kick, and
-    the restitution rises."""
-    return closed(*panels(rows, "loss", "local restitution", log=False), along=0.02)
 
 
 @plotting.in_house_style
@@ -192,5 +179,5 @@ def search(rows: Sequence[Row]) -> Figure:
     return figure
 
 
-DRAWN: tuple[Callable[[Sequence[Row]], Figure], ...] = (speed, mass, search, modes, stiffness, damping, loss)
+DRAWN: tuple[Callable[[Sequence[Row]], Figure], ...] = (speed, mass, search, modes, stiffness)
 """The figures; each is named by its function and has its docstring as caption."""

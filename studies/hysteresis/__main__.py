@@ -10,8 +10,8 @@ nine descriptions (studies.hysteresis.descriptions)
     map, Eq. (1), one mode with the kick of the beam, with its change with velocity, with loss and delay,
     kick of all modes, beam; and the map as printed, and with the beam's kick for 1 + tau
 
-The beam's fold is found by shooting and confirmed by downward scans of its motion. Neighbours in that chain
-differ in one thing, so that the beam's hysteresis over the map's is a product of causes:
+The beam's fold is found by shooting (the main job confirms it by downward scans of the motion). Neighbours in
+that chain differ in one thing, so that the beam's hysteresis over the map's is a product of causes:
 
     F_beam/F_map = truncation of the map * size of the kick * its change with velocity * delay
                    * higher modes in the flight * ringing met by the next collision
@@ -19,24 +19,23 @@ differ in one thing, so that the beam's hysteresis over the map's is a product o
 Statistics are of folds below the letter's amplitude stability, 2.5e-4: next to a band edge hysteresis
 vanishes, and its ratios say nothing.
 
-Run:     python -m studies.hysteresis [--step HZ] [--scans N]     half a minute; --quick some seconds
+Run:     python -m studies.hysteresis [--step HZ]     half a minute; --quick some seconds
 Writes:  hysteresis.csv (a row a frequency and period), causes.csv (factors at the letter's frequencies and
          over all folds), accuracy.csv (how far each description is off), and the figures hysteresis (as
-         Fig. 3), hysteresis_ratio, hysteresis_causes
+         Fig. 3), hysteresis_causes
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import Annotated
 
 import numpy as np
 
-from studies.hysteresis.columns import column
-from studies.hysteresis.descriptions import CAUSES, DESCRIPTIONS, Row
+from studies.hysteresis.descriptions import CAUSES, DESCRIPTIONS, Row, column
 from studies.letter import AMPLITUDE_STABILITY
 from studies.record import Verdict
 from studies.run import Run, study
@@ -51,8 +50,8 @@ NEARLY = 1.1
 
 @dataclass(frozen=True, kw_only=True)
 class Causes:
-    """What each cause multiplies the hysteresis by, at one frequency or over all folds; a row multiplies to
-    the beam's hysteresis over the map's."""
+    """What each cause multiplies the hysteresis by, at one frequency or in the median; a row at one frequency
+    multiplies to the beam's hysteresis over the map's."""
 
     at: str
     truncation_of_the_map: float | None
@@ -65,64 +64,45 @@ class Causes:
 
 @dataclass(frozen=True, kw_only=True)
 class Accuracy:
-    """By what factor a description is off the beam, up or down: over all folds, and over those alone that are
-    admissible."""
+    """By what factor a description is off the beam, up or down, over `folds`: all, or the admissible ones."""
 
     description: str
-    median: float
-    nine_tenths: float
-    worst: float
+    over: str
     folds: int
-    median_admissible: float
-    worst_admissible: float
-    folds_admissible: int
+    median: float
+    worst: float
 
 
-@study(needs={"fold": 0.05}, quick={"step": 0.35, "scans": 2})
+@study(needs={"fold": 0.05}, quick={"step": 0.35})
 def hysteresis(
-    scene: Scene,
-    run: Run,
-    *,
-    step: Annotated[float, "of the drive frequency (Hz)"] = 0.05,
-    scans: Annotated[int, "frequencies of the letter at which downward scans confirm the folds"] = 6,
+    scene: Scene, run: Run, *, step: Annotated[float, "of the drive frequency (Hz)"] = 0.05
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
     if step <= 0.0:
         raise ValueError(f"step is {step:g} Hz; it must be greater than 0")
     model, seen = model_of(harmonic(scene)), periods_of(scene)
     require_drive_below(scene, model)
-    confirmed = sorted(seen)[:scans]
-    columns = run.map(partial(column, scene, model, step, confirmed), PERIODS, "periods")
-    rows = with_neighbours([row for found in columns for row in found])
-    at_letter = [row for row in rows if seen.get(row.frequency_hz) == row.m]
+    columns = run.map(partial(column, scene, model, step), PERIODS, "periods")
+    rows = [row for found in columns for row in found]
     run.table(
         "hysteresis", rows, "Fold F_m/F_g - 1 of the orbits in nine descriptions.",
         show=("frequency_hz", "m", *DESCRIPTIONS) if run.quick else (),
     )  # fmt: skip
+    at_letter = [row for row in rows if seen.get(row.frequency_hz) == row.m]
     kept = resolved(rows)
-    causes = [causes_at(row) for row in at_letter] + over_all(kept)
+    causes = [causes_over([row], f"{row.frequency_hz:.2f} Hz, p{row.m}") for row in at_letter]
+    causes.append(causes_over(kept, f"median of {len(kept)} folds"))
     run.table("causes", causes, "What each cause multiplies the hysteresis by, from the map to the beam.")
-    off = [accuracy(name, kept) for name in DESCRIPTIONS if name != "beam"]
+    over = {"all": kept, "admissible": [row for row in kept if row.beam_admissible]}
+    others = [name for name in DESCRIPTIONS if name != "beam"]
+    off = [accuracy(name, which, of) for which, of in over.items() for name in others]
     run.table("accuracy", off, "Factor by which the hysteresis of a description differs from the beam's.")
     from studies.hysteresis import figure  # matplotlib is slow to import
 
     run.figure("hysteresis", figure.draw_curves(scene, rows), figure.CURVES)
     run.figure("hysteresis_causes", figure.draw_causes(at_letter), figure.BARS)
-    run.figure("hysteresis_ratio", figure.draw_ratios(scene, rows), figure.RATIOS)
-    judge(run, rows, {found.description: found for found in off}, causes)
+    judge(run, rows, {found.description: found for found in off if found.over == "all"}, causes[-1])
     return {"rows": rows, "causes": causes, "accuracy": off, "modes": model.n_modes}
-
-
-def with_neighbours(rows: Sequence[Row]) -> list[Row]:
-    """The rows with the other periods whose admissible orbits live on below grazing at the same frequency."""
-    alive: dict[float, list[int]] = {}
-    for row in rows:
-        if row.beam_admissible and (row.beam or 0.0) < 0.0:
-            alive.setdefault(row.frequency_hz, []).append(row.m)
-    return [
-        replace(row, coexisting=tuple(m for m in alive.get(row.frequency_hz, []) if m != row.m))
-        for row in rows
-    ]
 
 
 def resolved(rows: Sequence[Row]) -> list[Row]:
@@ -131,42 +111,25 @@ def resolved(rows: Sequence[Row]) -> list[Row]:
     return [row for row in rows if (row.beam or 0.0) < -AMPLITUDE_STABILITY and row.map is not None]
 
 
-def causes_at(row: Row) -> Causes:
-    """The causes at one frequency."""
-    return Causes(at=f"{row.frequency_hz:.2f} Hz, p{row.m}", **{name: row.factor(name) for name in CAUSES})
-
-
-def over_all(rows: Sequence[Row]) -> list[Causes]:
-    """Median, least and greatest factor of each cause."""
-    of: dict[str, Callable[[list[float]], float]] = {
-        f"median of {len(rows)} folds": lambda logs: float(np.median(logs)), "least": min, "greatest": max,
-    }  # fmt: skip
+def causes_over(rows: Sequence[Row], at: str) -> Causes:
+    """Median factor of each cause."""
     logs = {name: [math.log(f) for row in rows if (f := row.factor(name)) is not None] for name in CAUSES}
-    return [
-        Causes(at=at, **{name: math.exp(pick(logs[name])) if logs[name] else None for name in CAUSES})
-        for at, pick in of.items()
-    ]
+    return Causes(at=at, **{n: math.exp(float(np.median(of))) if of else None for n, of in logs.items()})
 
 
-def accuracy(description: str, rows: Sequence[Row]) -> Accuracy:
+def accuracy(description: str, over: str, rows: Sequence[Row]) -> Accuracy:
     """How far a description is off the beam; nothing where it has no fold."""
-    pairs = [(row.ratio(description), row.beam_admissible) for row in rows]
-    logs = np.array([abs(math.log(ratio)) for ratio, _ in pairs if ratio is not None])
-    real = np.array([abs(math.log(ratio)) for ratio, admissible in pairs if ratio is not None and admissible])
-
-    def factor(of: np.ndarray, share: float) -> float:
-        return math.exp(float(np.quantile(of, share))) if of.size else math.nan
-
+    ratios = (row.ratio(description) for row in rows)
+    logs = [abs(math.log(ratio)) for ratio in ratios if ratio is not None]
     return Accuracy(
-        description=description, median=factor(logs, 0.5), nine_tenths=factor(logs, 0.9),
-        worst=factor(logs, 1.0), folds=logs.size, median_admissible=factor(real, 0.5),
-        worst_admissible=factor(real, 1.0), folds_admissible=real.size,
+        description=description, over=over, folds=len(logs),
+        median=math.exp(float(np.median(logs))) if logs else math.nan,
+        worst=math.exp(max(logs)) if logs else math.nan,
     )  # fmt: skip
 
 
-def judge(run: Run, rows: Sequence[Row], off: Mapping[str, Accuracy], causes: Sequence[Causes]) -> None:
+def judge(run: Run, rows: Sequence[Row], off: Mapping[str, Accuracy], median: Causes) -> None:
     """The answer, and the verdicts on Fig. 3 and the two parameters."""
-    median = next(row for row in causes if row.at.startswith("median"))
     factors = {name: value for name in CAUSES if (value := getattr(median, name)) is not None}
     if not factors:
         return
@@ -194,12 +157,13 @@ def judge(run: Run, rows: Sequence[Row], off: Mapping[str, Accuracy], causes: Se
         note="the letter prints curves, no values; the beam differs from the map as the experiment did, but "
         f"a factor of {own:.2f} (median) is the map's own truncation, with no higher mode in it",
     )
-    beside = [row for row in rows if row.beam_admissible and row.m - 1 in row.coexisting]
+    alive = {(row.frequency_hz, row.m) for row in rows if row.beam_admissible and (row.beam or 0.0) < 0.0}
+    beside = [f"p{m} at {f:.2f} Hz" for f, m in sorted(alive, key=lambda at: at[::-1]) if (f, m - 1) in alive]
     run.verdict(
         "neighbour_band",
         "agrees" if beside else "differs",
         found=f"{len(beside)} orbits beside p_m of one less",
-        note=", ".join(f"p{row.m} at {row.frequency_hz:.2f} Hz" for row in beside),
+        note=", ".join(beside),
     )
     two = off["two_parameters"]
     verdict: Verdict = "in part" if two.median <= 2.0 * NEARLY else "differs"

@@ -12,21 +12,19 @@ the beam splits into causes (F_m/F_g - 1 is where the p_m orbit ends in a downwa
     beam                    all modes, the collision entered with the ringing that the last one left
 
 Beside them: map_printed (the letter's y-line as stored) and map_measured_kick (the beam's kick for 1 + tau).
-All are families of orbits with a `fold()`, whose excess is F_m/F_g - 1.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 
 from beam import ModalModel
-from contact import ContactError, MaximalFamily, NordmarkMap, fold
-from contact.orbits import Kick, KickFamily, KickOrbit, PeriodicOrbit, Shooting, fold_of
-from studies.scene import Scene, beam_at, nordmark_at, single_mode_at
+from contact import NordmarkMap, StrobedNordmarkMap, StroboscopicMap, band
+from contact.orbits import Kick, KickFamily, PeriodicOrbit, Shooting, fold_along_frequency, fold_excess
+from studies.scene import Scene, beam_at, corresponding, nordmark_at, periods_of, single_mode_at
 
 CHAIN = (
     "map", "single_mode", "measured_kick", "kick_of_velocity", "two_parameters", "all_mode_kick", "beam",
@@ -43,33 +41,33 @@ CAUSES = {
 }
 """Cause -> the two neighbours in the chain between which it lies."""
 
+FREQUENCIES_HZ = (19.6, 23.8)
+"""Of the letter's spring; others at the same f T."""
+
+BELOW_BAND = 0.5
+"""How far below its band in the map a period is looked for, in widths of the band: there it coexists."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
     """F_m/F_g - 1 at the fold of p_m in all descriptions; None where there is none.
 
-    `beam_scan` is where a downward scan of the simulated beam ends; `coexisting` are the other periods whose
-    orbits live on below grazing at this frequency. A fold of the beam that is not admissible is one of the
-    equations alone: its orbit would touch the stop elsewhere too.
+    A fold of the beam that is not admissible is one of the equations alone: its orbit would touch the stop
+    elsewhere too.
     """
 
     frequency_hz: float
     m: int
-    map_printed: float | None
-    map_measured_kick: float | None
-    map: float | None
-    single_mode: float | None
-    measured_kick: float | None
-    kick_of_velocity: float | None
-    two_parameters: float | None
-    all_mode_kick: float | None
-    beam: float | None
-    beam_scan: float | None = None
-    estimated_error_of_kick: float | None
-    beam_impacts: int | None
-    beam_admissible: bool | None
-    beam_speed_m_s: float | None
-    coexisting: tuple[int, ...] = ()
+    map_printed: float | None = None
+    map_measured_kick: float | None = None
+    map: float | None = None
+    single_mode: float | None = None
+    measured_kick: float | None = None
+    kick_of_velocity: float | None = None
+    two_parameters: float | None = None
+    all_mode_kick: float | None = None
+    beam: float | None = None
+    beam_admissible: bool | None = None
 
     def excess(self, description: str) -> float | None:
         """F_m/F_g - 1 in one of `DESCRIPTIONS`."""
@@ -87,121 +85,73 @@ class Row:
         return self.ratio(after, before)
 
 
-class Ended(Protocol):
-    """An orbit at its fold."""
-
-    @property
-    def excess(self) -> float:
-        """F_m/F_g - 1."""
-
-
-class Family(Protocol):
-    """The p_m orbits in one description."""
-
-    def fold(self) -> Ended | None:
-        """The orbit of smallest amplitude."""
+def map_fold(nordmark: NordmarkMap, m: int, kick: float | None = None) -> float | None:
+    """The fold of the map where it lies below grazing; `kick` stands for 1 + tau in the scale of rho."""
+    found = fold_excess(StrobedNordmarkMap(map=nordmark), m)
+    scale = 1.0 if kick is None else (kick / (1.0 + nordmark.restitution)) ** 2
+    return None if found is None or found >= 0.0 else scale * found
 
 
-@dataclass(frozen=True, kw_only=True)
-class MapFold:
-    """The fold of the map, at F_m/F_g - 1 = `excess`."""
+def one_mode_fold(kicks: KickFamily, jump: Callable[[float], tuple[float, float]]) -> float | None:
+    """The fold with a kick of mode 1 alone, `jump` of its displacement and velocity by approach velocity."""
 
-    excess: float
+    def kick(speed: float) -> Kick:
+        of_all = np.zeros((kicks.oscillator.n_modes, 2))
+        of_all[0] = jump(speed)
+        return Kick(speed=speed, jump=of_all)
 
-
-@dataclass(frozen=True, kw_only=True)
-class MapFamily:
-    """p_m of the map; `kick` stands for 1 + tau in the scale of rho."""
-
-    nordmark: NordmarkMap
-    period: int
-    kick: float | None = None
-
-    def fold(self) -> MapFold | None:
-        """The fold, where it lies below grazing."""
-        found = fold(self.nordmark, self.period)
-        if found is None or found.rho >= 0.0:
-            return None
-        scale = 1.0 if self.kick is None else (self.kick / (1.0 + self.nordmark.restitution)) ** 2
-        return MapFold(excess=scale * self.nordmark.excess(found.rho))
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class OneMode:
-    """p_m of mode 1 alone; `jump` is that of its displacement and velocity, by approach velocity [m/s]."""
-
-    kicks: KickFamily
-    jump: Callable[[float], tuple[float, float]]
-
-    def kick(self, speed: float) -> Kick:
-        """A kick that leaves the other modes in peace."""
-        jump = np.zeros((self.kicks.oscillator.n_modes, 2))
-        jump[0] = self.jump(speed)
-        return Kick(speed=speed, jump=jump, touches=1, duration=0.0)
-
-    def fold(self) -> KickOrbit | None:
-        """The fold."""
-        return self.kicks.fold(kick=self.kick)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Exact:
-    """p_m of the beam itself, by shooting from the fold `near`, or from that of the kicks."""
-
-    shooting: Shooting
-    near: PeriodicOrbit | None
-
-    def fold(self) -> PeriodicOrbit | None:
-        """The fold; None also where the search from kicks fails."""
-        for start in dict.fromkeys((self.near, None)):
-            try:
-                found = fold_of(self.shooting, start)
-            except ContactError:
-                continue
-            if found is not None:
-                return found
-        return None
+    found = replace(kicks, collision=kick).fold()
+    return None if found is None else found.excess
 
 
 def folds_at(
-    scene: Scene, frequency: float, period: int, model: ModalModel, near: PeriodicOrbit | None = None
+    scene: Scene, frequency: float, m: int, model: ModalModel, near: PeriodicOrbit | None = None
 ) -> tuple[Row, PeriodicOrbit | None]:
     """All descriptions of the end of p_m at `frequency` [Hz], and the beam's orbit at its fold.
 
     `near` is that at a neighbouring frequency, if known.
     """
     nordmark, oscillator = nordmark_at(scene, frequency), beam_at(scene, frequency, model)
-    kicks = KickFamily(oscillator=oscillator, period=period)
-    families: dict[str, Family] = {
-        "map": MapFamily(nordmark=nordmark, period=period),
-        "map_printed": MapFamily(nordmark=replace(nordmark, y_line="printed"), period=period),
-        "single_mode": MaximalFamily.from_oscillator(single_mode_at(scene, frequency), period=period),
-    }
-    whole, orbit = kicks.fold(), None
-    found: dict[str, Ended | None] = {"all_mode_kick": whole}
-    if whole is not None:
-        slope = float(whole.kick.jump[0, 1]) / whole.kick.speed
-        relative = -float(model.phi[0]) * slope
-
-        def jump(speed: float) -> tuple[float, float]:
-            shift, velocity = kicks.kick(speed).jump[0]
-            return float(shift), float(velocity)
-
-        families |= {
-            "map_measured_kick": MapFamily(nordmark=nordmark, period=period, kick=relative),
-            "measured_kick": OneMode(kicks=kicks, jump=lambda speed: (0.0, slope * speed)),
-            "kick_of_velocity": OneMode(kicks=kicks, jump=lambda speed: (0.0, jump(speed)[1])),
-            "two_parameters": OneMode(kicks=kicks, jump=jump),
-        }
-        shooting = Shooting(oscillator=oscillator, period=period, impacts=whole.kick.touches)
-        found["beam"] = orbit = Exact(shooting=shooting, near=near).fold()
-    found |= {name: family.fold() for name, family in families.items()}
-    excess = {name: None if (end := found.get(name)) is None else float(end.excess) for name in DESCRIPTIONS}
     row = Row(
-        frequency_hz=frequency, m=period, **excess,  # type: ignore[arg-type]
-        estimated_error_of_kick=None if whole is None else kicks.error(whole),
-        beam_impacts=None if orbit is None else orbit.impacts,
+        frequency_hz=frequency, m=m, map=map_fold(nordmark, m),
+        map_printed=map_fold(replace(nordmark, y_line="printed"), m),
+        single_mode=fold_excess(StroboscopicMap(oscillator=single_mode_at(scene, frequency)), m),
+    )  # fmt: skip
+    kicks = KickFamily(oscillator=oscillator, period=m)
+    whole = kicks.fold()
+    if whole is None:
+        return row, None
+    slope = float(whole.kick.jump[0, 1]) / whole.kick.speed
+
+    def jump(speed: float) -> tuple[float, float]:
+        shift, velocity = kicks.kick(speed).jump[0]
+        return float(shift), float(velocity)
+
+    shooting = Shooting(oscillator=oscillator, period=m, impacts=whole.kick.touches)
+    orbit = fold_along_frequency(shooting, np.array([frequency]), near)[0]
+    row = replace(
+        row, map_measured_kick=map_fold(nordmark, m, -float(model.phi[0]) * slope),
+        measured_kick=one_mode_fold(kicks, lambda speed: (0.0, slope * speed)),
+        kick_of_velocity=one_mode_fold(kicks, lambda speed: (0.0, jump(speed)[1])),
+        two_parameters=one_mode_fold(kicks, jump), all_mode_kick=whole.excess,
+        beam=None if orbit is None else orbit.excess,
         beam_admissible=None if orbit is None else orbit.admissible,
-        beam_speed_m_s=None if orbit is None else orbit.speed,
     )  # fmt: skip
     return row, orbit
+
+
+def column(scene: Scene, model: ModalModel, step: float, m: int) -> list[Row]:
+    """The folds of p_m over the frequencies where it can exist, each started from its neighbour."""
+    keys = scene.single_mode
+    edges = band(m, free_period=keys.free_period_s, decay_rate=keys.decay_rate_per_s,
+                 restitution=keys.restitution)  # fmt: skip
+    low = corresponding(scene, FREQUENCIES_HZ[0])
+    low = max(low, edges.lower - BELOW_BAND * (edges.upper - edges.lower))
+    grid = np.arange(FREQUENCIES_HZ[0], FREQUENCIES_HZ[1] + 1e-9, step)
+    values = {round(corresponding(scene, float(f)), 6) for f in grid}
+    values |= {f for f, seen in periods_of(scene).items() if seen == m}
+    rows, near = list[Row](), None
+    for frequency in sorted((f for f in values if low <= f < edges.upper), reverse=True):
+        row, near = folds_at(scene, frequency, m, model, near)
+        rows.append(row)
+    return rows[::-1]

@@ -11,19 +11,10 @@ from matplotlib.figure import Figure
 
 from contact import Band, bands
 from studies import letter, plotting
-from studies.hysteresis.columns import FREQUENCIES_HZ
-from studies.hysteresis.descriptions import CAUSES, Row
+from studies.hysteresis.descriptions import CAUSES, FREQUENCIES_HZ, Row
 from studies.plotting import BLACK, BLUE, GREEN, GUIDE, LETTER, NOTE, PAGE, PALETTE, VERMILION
 from studies.scene import Scene, corresponding, periods_of
 
-NAMES = {
-    "map": "map",
-    "map_measured_kick": "map, measured kick for 1 + τ",
-    "single_mode": "Eq. (1)",
-    "two_parameters": "one mode, loss and delay",
-    "all_mode_kick": "kick of all modes",
-    "beam": "beam",
-}
 CURVES = (
     "The letter's Fig. 3, computed: where the p_m orbits end when the amplitude is lowered, against the "
     "drive frequency, for m = 3 to 10; below the same on a logarithmic scale. The beam follows the bands of "
@@ -35,14 +26,12 @@ BARS = (
     "the map and size of the kick oppose each other everywhere; delay and ringing decide where the "
     "hysteresis is small."
 )
-RATIOS = "Hysteresis of each description over the beam's. Only the kick of all modes stays at one throughout."
-"""Captions."""
 
 STYLES: dict[str, dict[str, Any]] = {
-    "map": {"color": BLACK, "linestyle": "-"},
-    "single_mode": {"color": BLUE, "linestyle": "--"},
-    "two_parameters": {"color": GREEN, "linestyle": "-."},
-    "beam": {"color": VERMILION, "linestyle": "-", "marker": "o", "markersize": 2.4, "mfc": "none"},
+    "map": {"label": "map", "color": BLACK, "linestyle": "-"},
+    "single_mode": {"label": "Eq. (1)", "color": BLUE, "linestyle": "--"},
+    "two_parameters": {"label": "one mode, loss and delay", "color": GREEN, "linestyle": "-."},
+    "beam": {"label": "beam", "color": VERMILION, "marker": "o", "markersize": 2.4, "mfc": "none"},
 }
 """Descriptions in the figure like the letter's."""
 
@@ -51,18 +40,19 @@ STYLES: dict[str, dict[str, Any]] = {
 def draw_curves(scene: Scene, rows: Sequence[Row]) -> Figure:
     """Folds against frequency, linear and logarithmic."""
     figure, axes = plotting.new_figure(2, 1, width=PAGE, height=0.128, sharex=True)
-    keys, periods = scene.single_mode, sorted({row.m for row in rows})
-    edges = bands(periods, free_period=keys.free_period_s, decay_rate=keys.decay_rate_per_s,
+    keys = scene.single_mode
+    edges = bands({row.m for row in rows}, free_period=keys.free_period_s, decay_rate=keys.decay_rate_per_s,
                   restitution=keys.restitution)  # fmt: skip
-    for axis, logarithmic in zip(axes, (False, True), strict=True):
-        curves(axis, rows, periods, logarithmic)
-        # f T at the edge is fixed: an error of T moves it by as much
-        unsure = letter.FREE_PERIOD_ERROR_S / letter.FREE_PERIOD_S
-        for place, edge in enumerate(edges):
-            name = "_" if place else "upper edge of a band, letter's error of T"
-            low, high = edge.upper * (1.0 - unsure), edge.upper * (1.0 + unsure)
-            axis.axvspan(low, high, color="0.82", linewidth=0, zorder=0, label=name)
-        letters_frequencies(axis, scene, "letter's Fig. 2: p$_m$ seen here")
+    # f T at the edge is fixed: an error of T moves it by as much
+    unsure = letter.FREE_PERIOD_ERROR_S / letter.FREE_PERIOD_S
+    for number, (axis, sign) in enumerate(zip(axes, (1.0, -1.0), strict=True)):
+        curves(axis, rows, sign)
+        for edge in edges:
+            axis.axvspan(edge.upper * (1.0 - unsure), edge.upper * (1.0 + unsure), color="0.82", linewidth=0,
+                         zorder=0, label="upper edge of a band, letter's error of T")  # fmt: skip
+        for seen in periods_of(scene):
+            axis.axvline(seen, **LETTER, label="letter's Fig. 2: p$_m$ seen here")
+        plotting.panel(axis, number)
     names_of_bands(axes, scene, edges)
     axes[0].set_ylim(-0.16, 0.005)
     axes[0].axhline(0.0, **GUIDE)
@@ -73,31 +63,24 @@ def draw_curves(scene: Scene, rows: Sequence[Row]) -> Figure:
     plotting.label(axes[0].yaxis, "$F_m/F_g - 1$")
     plotting.label(axes[1].yaxis, plotting.HYSTERESIS)
     plotting.label(axes[1].xaxis, "excitation frequency", "Hz")
-    for place, axis in enumerate(axes):
-        plotting.panel(axis, place)
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    plotting.legend_below(figure, axes[:1], 3)
     return figure
 
 
-def curves(axis: Axes, rows: Sequence[Row], periods: Sequence[int], logarithmic: bool) -> None:
+def curves(axis: Axes, rows: Sequence[Row], sign: float) -> None:
     """The descriptions, a line for each period; crosses on folds of the beam that are not admissible."""
-    sign = -1.0 if logarithmic else 1.0
-    for m in periods:
-        for name, style in STYLES.items():
-            found = [row for row in rows if row.m == m and (row.excess(name) or 0.0) < 0.0]
-            y = [sign * (row.excess(name) or 0.0) for row in found]
-            words = NAMES[name] if m == periods[0] else "_"
-            axis.plot([row.frequency_hz for row in found], y, **style, linewidth=0.9, label=words)
-    crossed = [row for row in rows if (row.beam or 0.0) < 0.0 and not row.beam_admissible]
-    y = [sign * (row.beam or 0.0) for row in crossed]
-    looks: dict[str, Any] = {"linestyle": "none", "marker": "x", "markersize": 3.5, "color": VERMILION}
-    axis.plot([row.frequency_hz for row in crossed], y, **looks, label="beam, not admissible")
-
-
-def letters_frequencies(axis: Axes, scene: Scene, name: str) -> None:
-    """A line at each of the letter's frequencies."""
-    for place, seen in enumerate(periods_of(scene)):
-        axis.axvline(seen, **LETTER, label="_" if place else name)
+    below = {name: [row for row in rows if (row.excess(name) or 0.0) < 0.0] for name in STYLES}
+    for name, style in STYLES.items():
+        for m in sorted({row.m for row in rows}):
+            points = [
+                (row.frequency_hz, sign * (row.excess(name) or 0.0)) for row in below[name] if row.m == m
+            ]
+            axis.plot(*np.array(points).reshape(-1, 2).T, **style, linewidth=0.9)
+    crossed = [
+        (row.frequency_hz, sign * (row.beam or 0.0)) for row in below["beam"] if not row.beam_admissible
+    ]
+    axis.plot(*np.array(crossed).reshape(-1, 2).T, "x", markersize=3.5, color=VERMILION,
+              label="beam, not admissible")  # fmt: skip
 
 
 def names_of_bands(axes: Sequence[Axes], scene: Scene, edges: Sequence[Band]) -> None:
@@ -115,26 +98,6 @@ def names_of_bands(axes: Sequence[Axes], scene: Scene, edges: Sequence[Band]) ->
         if middle < highest:
             axes[0].annotate(words, (middle, 1.01), xycoords=("data", "axes fraction"), ha="center",
                              va="bottom", fontsize=NOTE)  # fmt: skip
-
-
-@plotting.in_house_style
-def draw_ratios(scene: Scene, rows: Sequence[Row]) -> Figure:
-    """Every description over the beam, against frequency."""
-    figure, axis = plotting.new_figure(width=PAGE, height=0.075)
-    for number, name in enumerate(name for name in NAMES if name != "beam"):
-        found = [row for row in rows if row.ratio(name) is not None and (row.beam or 0.0) < 0.0]
-        axis.plot([row.frequency_hz for row in found], [row.ratio(name) for row in found],
-                  **plotting.points(number), markersize=3.0, mfc="none", label=NAMES[name])  # fmt: skip
-    axis.axhline(1.0, color="0.4", linewidth=0.8)
-    letters_frequencies(axis, scene, "letter's frequencies")
-    axis.set_yscale("log")
-    axis.set_ylim(0.1, 20.0)
-    axis.set_yticks([0.1, 0.3, 1.0, 3.0, 10.0], ["0.1", "0.3", "1", "3", "10"])
-    axis.minorticks_off()
-    plotting.label(axis.xaxis, "excitation frequency", "Hz")
-    plotting.label(axis.yaxis, "hysteresis / that of the beam")
-    figure.legend(loc="outside lower center", ncols=3)
-    return figure
 
 
 @plotting.in_house_style

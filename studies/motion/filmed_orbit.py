@@ -27,7 +27,7 @@ from beam import Modes, SpringMesh
 from contact import ImpactOscillator, State, Trajectory, simulate
 from studies.force import contact_force, touching
 
-__all__ = ["Drawn", "FilmedOrbit", "drawn_shapes", "film_orbit", "frame_times"]
+__all__ = ["FilmedOrbit", "drawn_shapes", "film_orbit", "frame_times"]
 
 Array = NDArray[np.float64]
 
@@ -48,22 +48,24 @@ seen."""
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FilmedOrbit:
-    """What a film shows from the strobe at `begin` [s] on: `run` at the frames, `line` at even times,
-    `strobes`; `contacts` begin and end [s].
+    """One period of an orbit; times from the strobe at which it begins [s], an entry a frame but for the
+    line."""
 
-    `slowed` is how many times slower than life each frame is shown [1]; `base` [m] and `force` [N] at the
-    frames.
-    """
-
-    period: int
-    begin: float
     duration: float
-    run: Trajectory
-    line: Trajectory
-    strobes: Trajectory
     contacts: list[tuple[float, float]]
+    """Begin and end of each [s]."""
+    run: Trajectory
+    time: Array
+    tip: Array
+    """Tip displacement [m]; `tip_velocity` [m/s]."""
+    tip_velocity: Array
+    line_time: Array
+    """Even times of the drawn line, and the tip there, `line_tip` [m]."""
+    line_tip: Array
     slowed: Array
+    """How many times slower than life a frame is shown [1]."""
     base: Array
+    """Displacement of the base [m]; `force` of the plate [N]; whether they touch."""
     force: Array
     touched: NDArray[np.bool_]
 
@@ -97,41 +99,24 @@ def film_orbit(
     spans = zip(whole.impacts.start[felt] - begin, whole.impacts.end[felt] - begin, strict=True)
     contacts = [(float(a), float(b) if math.isfinite(b) else duration) for a, b in spans]
     times = frame_times(duration, contacts, frames)
-
-    def at(places: Array) -> Trajectory:
-        return simulate(oscillator, state, periods=length + 1, times=begin + places)
-
-    run = at(times)
-    steps = np.diff(times, append=duration)
-    assert oscillator.drive is not None
+    line = np.linspace(0.0, duration, length * LINE_POINTS + 1)
+    run, drawn = (simulate(oscillator, state, periods=length + 1, times=begin + at) for at in (times, line))
+    phi, drive = oscillator.model.phi, oscillator.drive
+    assert drive is not None
     return FilmedOrbit(
-        period=period,
-        begin=begin,
-        duration=duration,
-        run=run,
-        line=at(np.linspace(0.0, duration, length * LINE_POINTS + 1, dtype=np.float64)),
-        strobes=at(np.arange(length, dtype=np.float64) * oscillator.period),
-        contacts=contacts,
-        slowed=1.0 / (rate * steps),
-        base=oscillator.drive.displacement(times),
-        force=contact_force(oscillator, run),
-        touched=touching(run),
-    )
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Drawn:
-    """Displacements of the points of the mesh relative to the base, shape (n_frames, n_points, 3) [m]; M
-    [1]."""
-
-    points: Array
-    magnification: float
+        duration=duration, contacts=contacts, run=run, time=times, tip=run.displacement @ phi,
+        tip_velocity=run.velocity @ phi, line_time=line, line_tip=drawn.displacement @ phi,
+        slowed=1.0 / (rate * np.diff(times, append=duration)), base=drive.displacement(times),
+        force=contact_force(oscillator, run), touched=touching(run),
+    )  # fmt: skip
 
 
 def drawn_shapes(
     mesh: SpringMesh, modes: Modes, coordinates: Array, magnification: float | None = None
-) -> Drawn:
-    """The drawn shapes for modal coordinates (n_frames, n_modes) of the coupled modes.
+) -> tuple[Array, float]:
+    """Displacements of the points of the mesh relative to the base (n_frames, n_points, 3) [m], and M [1].
+
+    `coordinates` (n_frames, n_modes) are those of the coupled modes.
 
     M is the largest round number with which the departures stay below `ROOM`, unless it is given.
     """
@@ -148,7 +133,7 @@ def drawn_shapes(
         largest = float(np.linalg.norm(departures[:, strip], axis=2).max())
         room = ROOM * float(np.ptp(mesh.points[strip], axis=0).max())
         magnification = min(MOST, max(1.0, _rounded(room / largest))) if largest > 0.0 else 1.0
-    return Drawn(points=carried + magnification * departures, magnification=magnification)
+    return carried + magnification * departures, magnification
 
 
 def _rounded(value: float) -> float:

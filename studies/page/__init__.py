@@ -6,8 +6,8 @@ is said here of any study: titles and accounts are docstrings, figures and capti
 tables from its csv files, verdicts and answers from its summary. A page made from other results says other
 things.
 
-The page is one file that needs no network: pictures, style and script are inside, and its content policy
-forbids every request. What is missing or broken in the results becomes a sentence on the page.
+The page is one file that needs no network: pictures and style are inside, and its content policy forbids
+every request. What is missing or broken in the results becomes a sentence on the page.
 """
 
 from __future__ import annotations
@@ -156,13 +156,8 @@ def _points(stored: Mapping[str, Stored]) -> Iterator[dict[str, object]]:
     for key, point in letter.POINTS.items():
         there = stored.get(point.study)
         found = {} if there is None else _object(_object(there.summary.get("verdicts")).get(key))
-        judged = found.get("verdict", NOT_RUN if there is None else "not stored")
-        yield {
-            "point": point,
-            "verdict": judged,
-            "found": found.get("found", ""),
-            "note": found.get("note", ""),
-        }
+        judged = NOT_RUN if there is None else "not stored"
+        yield {"verdict": judged, "found": "", "note": "", **found, "point": point}
 
 
 def _answers(stored: Mapping[str, Stored]) -> Iterator[tuple[str, list[tuple[str, str]]]]:

@@ -18,18 +18,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from contact import MaximalFamily, StroboscopicMap, band
-from contact.orbits import born, born_period, settle
+from contact import StroboscopicMap, band
+from contact.orbits import born, born_period, fold_excess
 from studies.letter import AMPLITUDE_STABILITY
-from studies.scene import READOUT, Scene, single_mode_at
+from studies.scene import READOUT, Scene
 
 KINDS = ("jitter", "drift")
 
-BORN_EXCESS, CYCLES = 1e-3, 4000
-"""Excess of the orbit in noise, and bound of a transient [drive periods]."""
+BORN_EXCESS = 1e-3
+"""Excess of the orbit in noise."""
 
-STEP = 1.1
-"""Factor between excesses when the ends of an orbit are looked for."""
+STEP, HIGHEST_EXCESS = 1.1, 0.02
+"""Factor between the excesses at which a period is looked for, and the last of them."""
 
 CORRELATION = 100.0
 """Drive periods over which the drift is correlated: some seconds, longer than 40 strobe points take."""
@@ -44,18 +44,17 @@ SKIPPED, SEED = 200, 1996
 FEWEST = 10
 """Points that a cloud must have."""
 
-Points = NDArray[np.float64] | NDArray[np.int64]
+Points = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Clouds:
-    """How well the m strobe points of p_m are told apart; lengths over the gap, None with too few points.
+    """How well the m strobe points of p_m are told apart.
 
-    `born`, `fold` [1] and `upper_end` [1] are those of the orbit without noise. `regular`: part of the
-    intervals between periods with impact that are m long; `spread`: greatest width of a cloud; `separation`:
-    distance of the closest two; `told_apart`: least ratio of the distance of neighbours to their mean width;
-    `closest`: these two, by the strobes since the impact.
+    `born` and `fold` [1] (Eq. (1) alone) are those of the orbit without noise. `regular`: part of the
+    intervals between periods with impact that are m long; `told_apart`: least ratio of the distance of
+    neighbours to their mean width, NaN with too few points.
     """
 
     description: str
@@ -63,13 +62,9 @@ class Clouds:
     frequency_hz: float
     born: int
     fold: float | None = None
-    upper_end: float | None = None
     noise: str
     regular: float
-    spread: float | None = None
-    separation: float | None = None
-    told_apart: float | None = None
-    closest: tuple[int, int] | None = None
+    told_apart: float
 
 
 def noisy(strobed: StroboscopicMap, kind: str, strobes: int) -> tuple[Points, Counts]:
@@ -89,90 +84,55 @@ def noisy(strobed: StroboscopicMap, kind: str, strobes: int) -> tuple[Points, Co
 
 
 def since_impact(impacts: Counts) -> Counts:
-    """Strobes since the last impact, -1 before the first one."""
-    found, count = np.empty(impacts.size, dtype=np.int64), -1
-    for n, touched in enumerate(impacts):
-        count = 0 if touched else count + 1 if count >= 0 else -1
-        found[n] = count
-    return found
+    """Strobes since the last impact, below 0 before the first one."""
+    n = np.arange(impacts.size)
+    last = np.maximum.accumulate(np.where(impacts > 0, n, -1))
+    return np.where(last < 0, -1, n - last)
 
 
-def apart(points: Points, impacts: Counts, period: int) -> dict[str, object]:
-    """The numbers of `Clouds` from `regular` to `closest`."""
+def apart(points: Points, impacts: Counts, period: int) -> tuple[float, float]:
+    """`regular` and `told_apart` of `Clouds`."""
     phase, intervals = since_impact(impacts), np.diff(np.flatnonzero(impacts))
-    found: dict[str, object] = {"regular": float(np.mean(intervals == period)) if intervals.size else 0.0}
+    regular = float(np.mean(intervals == period)) if intervals.size else 0.0
     groups = [points[phase == j] for j in range(period)]
     if min(group.size for group in groups) < FEWEST:
-        return found
-    centre = np.array([np.median(group) for group in groups])
-    width = np.array([np.quantile(group, 0.95) - np.quantile(group, 0.05) for group in groups])
+        return regular, math.nan
+    low, centre, high = np.array([np.quantile(group, (0.05, 0.5, 0.95)) for group in groups]).T
     order = np.argsort(centre)
-    distance = np.diff(centre[order])
-    ratio = distance / np.maximum(0.5 * (width[order][1:] + width[order][:-1]), 1e-300)
-    worst = int(np.argmin(ratio))
-    return found | {
-        "spread": float(width.max()),
-        "separation": float(distance.min()),
-        "told_apart": float(ratio[worst]),
-        "closest": (int(order[worst]), int(order[worst + 1])),
-    }
+    width = (high - low)[order]
+    ratio = np.diff(centre[order]) / np.maximum(0.5 * (width[1:] + width[:-1]), 1e-300)
+    return regular, float(ratio.min())
 
 
-def single_mode_in_noise(scene: Scene, strobes: int, period: int) -> list[Clouds]:
-    """p_m of Eq. (1) in both kinds of noise, `SHARE_OF_BAND` of its band below the upper edge."""
+def frequency_of(scene: Scene, m: int) -> float:
+    """Where p_m of Eq. (1) is asked about noise [Hz]."""
     keys = scene.single_mode
-    edges = band(period, free_period=keys.free_period_s, decay_rate=keys.decay_rate_per_s,
+    edges = band(m, free_period=keys.free_period_s, decay_rate=keys.decay_rate_per_s,
                  restitution=keys.restitution)  # fmt: skip
-    frequency = edges.upper - SHARE_OF_BAND * (edges.upper - edges.lower)
-    strobed = StroboscopicMap(oscillator=single_mode_at(scene, frequency))
-    fold = MaximalFamily.from_oscillator(strobed.oscillator, period=period).fold()
-    found = []
+    return edges.upper - SHARE_OF_BAND * (edges.upper - edges.lower)
+
+
+def in_noise(strobes: int, described: tuple[str, StroboscopicMap, int]) -> list[Clouds]:
+    """p_m of a named description in both kinds of noise: the tip of Eq. (1), the read-out point of a beam."""
+    description, strobed, m = described
+    model, period = strobed.oscillator.model, born_period(strobed, BORN_EXCESS)
+    fold, found = fold_excess(strobed, m) if model.n_modes == 1 else None, list[Clouds]()
     for kind in KINDS:
-        points, impacts = noisy(strobed, kind, strobes)
+        raw, impacts = noisy(strobed, kind, strobes)
+        points = strobed.readout(raw, READOUT) if READOUT in model.readouts else strobed.tip(raw)
+        regular, told_apart = apart(points, impacts, max(m, 2))
         found.append(Clouds(
-            description="Eq. (1)", m=period, frequency_hz=frequency, born=born_period(strobed, BORN_EXCESS),
-            fold=None if fold is None else fold.excess, upper_end=upper_end(strobed, period), noise=kind,
-            **apart(strobed.tip(points) / scene.stop.gap_m, impacts, period),  # type: ignore[arg-type]
+            description=description, m=m, frequency_hz=strobed.oscillator.drive.frequency, born=period,  # type: ignore[union-attr]
+            fold=fold, noise=kind, regular=regular, told_apart=told_apart,
         ))  # fmt: skip
     return found
 
 
-def beam_in_noise(
-    strobed: StroboscopicMap, period: int, strobes: int
-) -> tuple[list[Clouds], dict[str, Points]]:
-    """The read-out point of the beam in both kinds of noise, its points [m], strobes since the impact."""
-    drive, gap = strobed.oscillator.drive, strobed.oscillator.stop.gap
-    found, arrays = list[Clouds](), dict[str, Points]()
-    for kind in KINDS:
-        raw, impacts = noisy(strobed, kind, strobes)
-        points = strobed.readout(raw, READOUT)
-        arrays |= {kind: points, f"{kind}_phase": since_impact(impacts)}
-        found.append(Clouds(
-            description="beam", m=period, frequency_hz=drive.frequency if drive else math.nan, born=period,
-            noise=kind, **apart(points / gap, impacts, max(period, 2)),  # type: ignore[arg-type]
-        ))  # fmt: skip
-    return found, arrays
-
-
-def upper_end(strobed: StroboscopicMap, period: int, highest: float = 0.1) -> float | None:
-    """Highest excess, in steps of 10 %, up to which the orbit born at 1e-3 keeps its period."""
-    settled = born(strobed, BORN_EXCESS)
-    if settled.period != period:
-        return None
-    excess, state = BORN_EXCESS, settled.end
-    while excess < highest:
-        settled = settle(strobed.at(STEP * excess), state, most_cycles=CYCLES)
-        if settled.period != period:
-            break
-        excess, state = STEP * excess, settled.end
-    return excess
-
-
-def first_birth(strobed: StroboscopicMap, period: int, highest: float = 0.02) -> float | None:
+def first_birth(period: int, strobed: StroboscopicMap) -> float | None:
     """Lowest excess, in steps of 10 %, at which a start from just below grazing gives this period; none is
     closer to grazing than the amplitude is stable."""
     excess = AMPLITUDE_STABILITY
-    while excess < highest:
+    while excess < HIGHEST_EXCESS:
         if born_period(strobed, excess) == period:
             return excess
         excess *= STEP

@@ -1,4 +1,4 @@
-r"""A collision with a soft wall, and the orbit of period 1 that survives it: closed forms.
+r"""A touch near grazing, and the orbit of period 1 that survives it: closed forms.
 
 The wall multiplies the spring constant by K (letter of 1996, Ref. [10]): behind the gap the contact adds
 kappa = (K - 1) Omega^2 [1/s^2] and a dashpot c = 2 zeta s [1/s], s = sqrt(kappa). It only pushes: it lets go
@@ -15,7 +15,8 @@ J = (a/s) [z - tau_c - D'(tau_c)]. Without dashpot
     J = (2 a/s)(z - atan z):   (4/3) kappa sqrt(2/a) h^(3/2) [1 - (3/5) z^2 + ...],   2 v - pi a/s + ...
 
 for small and large z: two power laws that cross at z^2 = 3, h = (3/2) a/kappa. With a dashpot the force sets
-in with c v at once, and J = c h + ... is linear in h.
+in with c v at once, and J = c h + ... is linear in h. A Hertz contact of stiffness k [N/m^1.5] on a beam is
+pressed by the parabola itself, with the impulse k (3 pi/8) sqrt(2/a) h^2; phi_1^2 times that kicks the tip.
 
 **Restitution of a hard approach** (z >> 1): exp(-(pi - 2 beta) tan beta) with zeta = sin beta; beyond
 zeta = 1: exp(-2 eta coth eta), zeta = cosh eta. At zeta = 1 it is exp(-2) = 0.135, so that the letter's 0.1
@@ -33,12 +34,9 @@ dashpot dJ/dh = 2 s z/(1 + z^2), hence with Lambda = 1/S_+
     z_f = (s/Lambda) [1 - sqrt(1 - (Lambda/s)^2)] -> Lambda/(2 s),   h_f = (a/2) z_f^2/kappa
 
 and no doubling near grazing if s < Lambda. As K grows, h_f -> (a/2) [Lambda/(2 K Omega^2)]^2 and the
-excess -> (h_f/gap)(1 + r), r = (2/3) S_-/S_+, which is too small by
-
-    [2 + (Lambda/(2 Omega))^2 (2 + (12/5) r)/(1 + r)]/K      of itself, plus order K^(-2).
-
-With a dashpot dJ/dh = c from the start: for c > Lambda p1 is unstable as soon as it touches, with the
-multipliers of trace alpha - M12 c and determinant gamma, as with a hard wall.
+excess -> (h_f/gap)(1 + (2/3) S_-/S_+), too small by a part of order 1/K. With a dashpot dJ/dh = c from the
+start: for c > Lambda p1 is unstable as soon as it touches, with the multipliers of trace alpha - M12 c and
+determinant gamma, as with a hard wall.
 """
 
 from __future__ import annotations
@@ -50,10 +48,10 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import brentq
 
-from contact import ImpactOscillator, LinearContact, Stop
+from contact import HertzContact, ImpactOscillator, LinearContact, Stop
 from contact.orbits import KickFamily
 
-__all__ = ["SoftWall", "damping_ratio", "hard_restitution", "survival_sums"]
+__all__ = ["SoftWall", "damping_ratio", "hard_restitution", "hertz_doubling", "hertz_kick", "survival_sums"]
 
 CRITICAL = 1e-7
 """eta below which the critically damped limit is used: the error is its square."""
@@ -92,9 +90,35 @@ def survival_sums(oscillator: ImpactOscillator) -> tuple[float, float]:
     return less, more
 
 
+def impulse_per_square(oscillator: ImpactOscillator) -> float:
+    """k (3 pi/8) sqrt(2/a) of a Hertz contact: impulse over h^2 [N s/m^2]."""
+    law, gap = oscillator.stop.law, oscillator.stop.gap
+    if not isinstance(law, HertzContact):
+        raise TypeError(f"law of the stop is {type(law).__name__}; these formulas are for HertzContact")
+    return law.stiffness * (3.0 * math.pi / 8.0) * math.sqrt(2.0 / gap) * oscillator.period / (2.0 * math.pi)
+
+
+def hertz_kick(oscillator: ImpactOscillator, peak: float) -> float:
+    """Kick of mode 1 by a Hertz contact whose incoming peak stands `peak` gaps over it, small peaks [m/s]."""
+    weight = float(oscillator.model.phi[0]) ** 2
+    return weight * impulse_per_square(oscillator) * (peak * oscillator.stop.gap) ** 2
+
+
+def hertz_doubling(oscillator: ImpactOscillator) -> tuple[float, float] | None:
+    """Peak in gaps and F/F_g - 1 at the doubling of p1 under Hertz contact; None if there is none."""
+    (less, more), per_square = survival_sums(oscillator), impulse_per_square(oscillator)
+    if more <= 0.0:
+        return None
+    height = 0.5 / (more * per_square)
+    return height / oscillator.stop.gap, (height + per_square * height**2 * less) / oscillator.stop.gap
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SoftWall:
-    """The wall of `hardness` K and damping ratio `zeta` in place of the stop of Eq. (1), `oscillator`."""
+    """The wall of `hardness` K and damping ratio `zeta` in place of the stop of Eq. (1), `oscillator`.
+
+    Peaks are counted in gaps over the wall.
+    """
 
     oscillator: ImpactOscillator
     hardness: float
@@ -109,30 +133,28 @@ class SoftWall:
         if not 0.0 <= self.zeta < math.inf:
             raise ValueError(f"zeta is {self.zeta}; it must be finite and zero or more")
 
+    def __str__(self) -> str:
+        return f"{self.frequency:g} Hz, K = {self.hardness:g}, {self.name}"
+
     @property
     def name(self) -> str:
         """ "lossless" or "dashpot"."""
-        return "dashpot" if self.zeta > 0.0 else "lossless"
+        return "dashpot" if self.zeta else "lossless"
 
     @property
-    def gap(self) -> float:
-        """[m]."""
-        return self.oscillator.stop.gap
-
-    @property
-    def omega(self) -> float:
-        """Omega of the mode [rad/s]."""
-        return float(self.oscillator.model.omega[0])
+    def frequency(self) -> float:
+        """Of the drive [Hz]."""
+        return self.oscillator.drive.frequency  # type: ignore[union-attr]
 
     @property
     def deceleration(self) -> float:
         """a = omega^2 gap [m/s^2]."""
-        return (2.0 * math.pi / self.oscillator.period) ** 2 * self.gap
+        return (2.0 * math.pi / self.oscillator.period) ** 2 * self.oscillator.stop.gap
 
     @property
     def rate(self) -> float:
         """s = sqrt((K - 1) Omega^2) [1/s]."""
-        return math.sqrt(self.hardness - 1.0) * self.omega
+        return math.sqrt(self.hardness - 1.0) * float(self.oscillator.model.omega[0])
 
     @property
     def dashpot(self) -> float:
@@ -143,90 +165,48 @@ class SoftWall:
     def struck(self) -> ImpactOscillator:
         """Eq. (1) with this wall as its stop."""
         law = LinearContact(stiffness=self.rate**2, damping=self.dashpot)
-        return replace(self.oscillator, stop=Stop(gap=self.gap, law=law))
-
-    @property
-    def restitution(self) -> float:
-        """Of a hard approach [1]."""
-        return hard_restitution(self.zeta)
+        return replace(self.oscillator, stop=Stop(gap=self.oscillator.stop.gap, law=law))
 
     @cached_property
     def sums(self) -> tuple[float, float]:
         """(S_-, S_+) [s]."""
         return survival_sums(self.oscillator)
 
-    def z(self, peak: float) -> float:
-        """z at a peak of `peak` gaps over the wall [1]."""
-        return self.rate * math.sqrt(2.0 * peak * self.gap / self.deceleration)
+    def peak_of(self, z: float) -> float:
+        """Peak at which z has this value."""
+        return 0.5 * z * z * self.deceleration / (self.rate**2 * self.oscillator.stop.gap)
 
     def kick(self, peak: float) -> float:
-        """J, without dashpot, of a collision whose incoming peak stands `peak` gaps above the wall [m/s]."""
+        """J, without dashpot, of a collision with this incoming peak [m/s]."""
         if self.zeta > 0.0:
             raise ValueError(f"zeta is {self.zeta}; the kick is known in closed form without dashpot")
-        z = self.rate * math.sqrt(2.0 * peak * self.gap / self.deceleration)
+        z = math.sqrt(peak / self.peak_of(1.0))
         lost = z**3 * (1 / 3 - z * z * (1 / 5 - z * z / 7)) if z < 1e-2 else z - math.atan(z)
         return 2.0 * self.deceleration / self.rate * lost
 
     def soft_law(self, peak: float) -> float:
         """Leading power law of small peaks: (4/3) kappa sqrt(2/a) h^(3/2), or c h with a dashpot [m/s]."""
-        h = peak * self.gap
+        h = peak * self.oscillator.stop.gap
         if self.zeta > 0.0:
             return self.dashpot * h
         return 4.0 / 3.0 * self.rate**2 * math.sqrt(2.0 / self.deceleration) * h**1.5
 
     def hard_law(self, peak: float) -> float:
         """(1 + tau) sqrt(2 a h), the kick of the hard wall [m/s]."""
-        return (1.0 + self.restitution) * math.sqrt(2.0 * self.deceleration * peak * self.gap)
+        h = peak * self.oscillator.stop.gap
+        return (1.0 + hard_restitution(self.zeta)) * math.sqrt(2.0 * self.deceleration * h)
 
-    def peak_of(self, z: float) -> float:
-        """Peak in gaps at which z has this value."""
-        return 0.5 * z * z * self.deceleration / (self.rate**2 * self.gap)
-
-    @property
-    def crossover(self) -> float:
-        """Peak in gaps where the two power laws cross."""
-        return self.peak_of(math.sqrt(3.0) if self.zeta == 0.0 else (1.0 + self.restitution) / self.zeta)
-
-    @property
-    def half_peak(self) -> float:
-        """Peak in gaps where the kick without dashpot is half of the hard wall's."""
-        return self.peak_of(HALF)
-
-    @property
-    def least_hardness(self) -> float:
-        """K below which p1 does not double without dashpot near grazing at all: there s = Lambda."""
-        return 1.0 + (self.omega * self.sums[1]) ** -2
-
-    def excess_of(self, peak: float) -> float:
-        """F/F_g - 1 at which p1 has this peak (in gaps) over the wall, to leading order."""
-        return peak + self.sums[0] * self.kick(peak) / self.gap
-
-    def doubling_peak(self) -> float | None:
-        """h_f/gap; 0 where p1 is unstable from its first touch on, None where the closed forms know none."""
+    def doubling(self) -> tuple[float, float] | None:
+        """Peak and F/F_g - 1 at the doubling of p1 without dashpot; None where s < Lambda."""
         wanted = 1.0 / (self.sums[1] * self.rate)
-        if 2.0 * self.zeta >= wanted:
-            return 0.0
-        if self.zeta > 0.0 or wanted > 1.0:
+        if wanted > 1.0:
             return None
-        return self.peak_of(wanted / (1.0 + math.sqrt(1.0 - wanted**2)))
+        peak = self.peak_of(wanted / (1.0 + math.sqrt(1.0 - wanted**2)))
+        return peak, peak + self.sums[0] * self.kick(peak) / self.oscillator.stop.gap
 
-    def leading_doubling(self) -> tuple[float, float]:
-        """(h_f/gap, excess) without dashpot as K -> infinity."""
+    def limit(self) -> tuple[float, float]:
+        """The same as K -> infinity."""
         less, more = self.sums
-        w = 2.0 * math.pi / self.oscillator.period
-        peak = 0.5 * (w / (2.0 * more * self.hardness * self.omega**2)) ** 2
+        stiff = self.hardness * float(self.oscillator.model.omega[0]) ** 2
+        peak = 0.5 * (math.pi / (self.oscillator.period * more * stiff)) ** 2
         return peak, peak * (1.0 + 2.0 / 3.0 * less / more)
-
-    @property
-    def leading_shortfall(self) -> float:
-        """K times the relative distance of the excess at the doubling from its limit, as K -> infinity."""
-        less, more = self.sums
-        r = 2.0 / 3.0 * less / more
-        return 2.0 + (0.5 / (more * self.omega)) ** 2 * (2.0 + 2.4 * r) / (1.0 + r)
-
-    @property
-    def grazing_multiplier(self) -> float:
-        """Real part of the larger multiplier of p1 at its first touch."""
-        flow = KickFamily(oscillator=self.oscillator, period=1).flow[0]
-        trace = np.trace(flow) - flow[0, 1] * self.dashpot
-        return float(max(np.roots([1.0, -trace, np.linalg.det(flow)]), key=abs).real)

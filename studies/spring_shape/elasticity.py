@@ -1,4 +1,4 @@
-"""Linear elasticity of a swept solid: modes with the tip on one cross-section, and the compliance of an end.
+"""Linear elasticity of a swept solid: modes with the tip on one cross-section.
 
 For displacements u and test functions v [m], strain e(u) = (grad u + grad u^T)/2, a base that moves by z_base
 along the unit vector e, and Lame's constants lambda = E nu/((1 + nu)(1 - 2 nu)), G = E/(2 (1 + nu)) [Pa],
@@ -31,7 +31,7 @@ import numpy as np
 import skfem as sk
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csc_array, csr_array
-from scipy.sparse.linalg import LinearOperator, SuperLU, eigsh, splu
+from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
 from beam import Material, Tip
 from studies.spring_shape.swept_mesh import SweptMesh
@@ -92,7 +92,8 @@ def solid_modes(spring: SolidSpring, parity: Parity, count: int) -> SolidModes:
     carried = csr_array(np.sqrt(lumped)[:, None] * rows)
     mass = mass + carried.T @ carried
     k, m = (csc_array(matrix)[free][:, free] for matrix in (stiffness, mass))
-    inverse = LinearOperator(k.shape, _factor(k).solve, dtype=np.float64)
+    factors = splu(k, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    inverse = LinearOperator(k.shape, factors.solve, dtype=np.float64)
     start = np.cos(np.arange(k.shape[0]))  # fixed, so that results repeat, and orthogonal to no mode
     values, x = eigsh(k, count, M=m, sigma=0.0, OPinv=inverse, v0=start)
     order = np.argsort(values)
@@ -102,19 +103,6 @@ def solid_modes(spring: SolidSpring, parity: Parity, count: int) -> SolidModes:
     phi = np.array(spring.drive) @ (rows[:3] @ full)
     full *= np.where(phi < 0.0, -1.0, 1.0)
     return SolidModes(omega=np.sqrt(values[order]), phi=np.abs(phi), section=(rows @ full).T)
-
-
-def end_compliance(spring: SolidSpring, parity: Parity) -> float:
-    """Mean displacement of the section at the tip along e, for a unit force spread evenly over it [m/N]."""
-    basis, stiffness, _ = assembled(spring)
-    free = _free(spring, basis, parity)
-    load = (np.array(spring.drive) @ _section_rows(spring, basis, parity)[:3])[free]
-    return float(load @ _factor(csc_array(stiffness)[free][:, free]).solve(load))
-
-
-def _factor(k: csc_array) -> SuperLU:
-    """L and U of a symmetric positive definite matrix, without pivoting."""
-    return splu(k, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
 
 @lru_cache(maxsize=2)  # both parities of a spring ask for them, one after the other

@@ -46,12 +46,8 @@ from studies.spring_shape.swept_mesh import channel_profile, rectangle_profile, 
 
 Reading = Literal["side_by_side", "channel", "folded", "plain"]
 READINGS: tuple[Reading, ...] = ("side_by_side", "channel", "folded", "plain")
-TITLES = {
-    "side_by_side": "legs side by side",
-    "channel": "channel",
-    "folded": "folded",
-    "plain": "plain strip",
-}
+TITLES = {"side_by_side": "legs side by side", "channel": "channel", "folded": "folded",
+          "plain": "plain strip"}  # fmt: skip
 
 THINNEST, THICKEST = 5e-4, 0.05
 """The sheet is looked for between these parts of the length."""
@@ -134,14 +130,9 @@ class Shape:
         supports: tuple[Support, Support] = ("clamped", "clamped" if self.bent else "free")
         x, y, z = (off_line * part for part in self.sideways)
         return SpatialSpring(
-            centreline=line,
-            sections=(self.section,) * len(line.pieces),
-            supports=supports,
-            tip=self.tip,
-            tip_at=self.tip_at,
-            tip_offset=(x, y, z),
-            drive=self.stop,
-        )
+            centreline=line, sections=(self.section,) * len(line.pieces), supports=supports, tip=self.tip,
+            tip_at=self.tip_at, tip_offset=(x, y, z), drive=self.stop,
+        )  # fmt: skip
 
     def solid(self, mesh: Mesh) -> SolidSpring:
         """The same as a solid."""
@@ -154,20 +145,13 @@ class Shape:
         else:
             profile = rectangle_profile(along_n=t, along_z=b, cells=mesh.across)
         solid = sweep(
-            profile,
-            self.centreline,
-            (mesh.legs, mesh.bend, mesh.legs) if self.bent else (mesh.legs,),
-            tip_at=self.tip_at,
-            halvings=(mesh.halvings, mesh.halvings if self.bent else 0),
-        )
+            profile, self.centreline, (mesh.legs, mesh.bend, mesh.legs) if self.bent else (mesh.legs,),
+            tip_at=self.tip_at, halvings=(mesh.halvings, mesh.halvings if self.bent else 0),
+        )  # fmt: skip
         return SolidSpring(
-            solid=solid,
-            material=self.material,
-            clamped=(True, self.bent),
-            tip=self.tip,
-            tip_at=self.tip_at,
+            solid=solid, material=self.material, clamped=(True, self.bent), tip=self.tip, tip_at=self.tip_at,
             drive=self.stop,
-        )
+        )  # fmt: skip
 
 
 def shape_of(scene: Scene, reading: Reading) -> Shape:
@@ -182,14 +166,10 @@ def shape_of(scene: Scene, reading: Reading) -> Shape:
         youngs_modulus=keys.young_modulus_pa, poissons_ratio=keys.poisson_ratio, density=keys.density_kg_m3
     )
     return Shape(
-        reading=reading,
-        material=material,
-        length=keys.leg_length_m,
-        width=keys.width_m,
-        bend_radius=keys.bend_radius_m,
-        thickness=keys.thickness_m,
+        reading=reading, material=material, length=keys.leg_length_m, width=keys.width_m,
+        bend_radius=keys.bend_radius_m, thickness=keys.thickness_m,
         tip=Tip(mass=scene.tip.mass_kg, rotary_inertia=scene.tip.rotary_inertia_kg_m2),
-    )
+    )  # fmt: skip
 
 
 def angular_frequency_of(scene: Scene) -> float:

@@ -33,11 +33,6 @@ class Profile:
     z: NDArray[np.float64]
     hollow: tuple[float, float] | None = None
 
-    def __post_init__(self) -> None:
-        for name, lines in (("y", self.y), ("z", self.z)):
-            if lines.size < 2 or np.any(np.diff(lines) <= 0.0):
-                raise ValueError(f"{name} has {lines.size} grid lines [m]; it must have two or more, rising")
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SweptMesh:

@@ -5,13 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 __all__ = ["Findings", "Limit", "threshold"]
-
-MOST_HALVINGS = 200
-"""64 suffice for neighbouring doubles, three times that for a bracket over all exponents."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,20 +39,19 @@ class Findings:
     arrays: Mapping[str, np.ndarray]
 
 
-def threshold(
-    fails: Callable[[float], bool], holds_at: float, fails_at: float, *, relative: float = 1e-6
-) -> float | None:
-    """Where `fails` turns true between `holds_at` and `fails_at`, both above zero, to a part `relative`.
+def threshold(fails: Callable[[float], bool], ladder: Sequence[float], relative: float) -> float | None:
+    """Where `fails` turns true on a `ladder` of values above zero, to a part `relative`.
 
-    The bracket is halved at its geometric mean, so that many decades take no longer than one. None if the two
-    ends do not differ: a limit that was not seen on both sides is not a measured one.
+    The first interval whose end fails is halved at its geometric mean. None if nothing fails, or the first
+    value does: a limit that was not seen on both sides is not a measured one.
     """
-    if fails(holds_at) or not fails(fails_at):
+    if fails(ladder[0]):
         return None
-    low, high = holds_at, fails_at
-    for _ in range(MOST_HALVINGS):
+    found = next(((low, high) for low, high in pairwise(ladder) if fails(high)), None)
+    if found is None:
+        return None
+    low, high = found
+    while abs(high - low) > relative * max(low, high):
         middle = math.sqrt(low * high)
-        if abs(high - low) <= relative * max(low, high) or middle in (low, high):
-            break
         low, high = (low, middle) if fails(middle) else (middle, high)
     return math.sqrt(low * high)

@@ -1,16 +1,13 @@
-r"""Accumulating impacts: infinitely many in a finite time, and what becomes of loops that count them.
+r"""Accumulating impacts: infinitely many in a finite time, and what becomes of a loop that counts them.
 
 A ball dropped from h rebounds with e times its speed; its impacts fall at
 
     t_n = t_0 (1 + 2 (e + ... + e^n)),   t_0 = sqrt(2 h/g),   t_inf = t_0 (1 + e)/(1 - e).                 (a)
 
-The package computes hops until their height drowns in rounding, sums the rest and lets the ball lie. Two
-loops as they are often written, for contrast, both with a bound on the events:
-
-* closed form, no sum: flight times 2 v e^n/g are added up to the clock until they no longer move it, which
-  happens at 2 v e^n/g < eps t_inf/2; from then on events go on at a standing clock (Zeno).
-* solve_ivp with a terminal event, restarted with -e times the velocity: once a hop is shorter than what
-  the event detection resolves, no change of sign is seen and the ball falls through the floor.
+The package computes hops until their height drowns in rounding, sums the rest and lets the ball lie. For
+contrast a loop as it is often written: solve_ivp with a terminal event, restarted with -e times the velocity.
+Once a hop is shorter than what the event detection resolves, no change of sign is seen and the ball falls
+through the floor.
 
 Number to compare with: h = 1 m, g = 9.81 m/s^2, e = 0.7 gives t_inf = 2.55863 s.
 """
@@ -31,11 +28,12 @@ from studies import plotting
 from studies.scene import Scene
 from studies.stability import Findings, Limit
 
-__all__ = ["ball", "counting_loop", "draw", "event_loop", "measure", "rest_time", "time_of_rest"]
+__all__ = ["ball", "draw", "event_loop", "measure", "rest_time", "time_of_rest"]
 
 HEIGHT, GRAVITY = 1.0, 9.81
 MOST_EVENTS = 20_000
-"""Bound of the events of the two loops: fifty times what e = 0.9 needs to run into rounding."""
+"""Bound of the events of the loop: fifty times what e = 0.9 needs to run into rounding."""
+TOLERANCES = (1e-12, 1e-6)
 SHOWN = 0.7
 """Restitution of the events that the figure shows one by one."""
 
@@ -63,19 +61,6 @@ def time_of_rest(restitution: float) -> tuple[float, int]:
     return float(impacts.start[stay]) + left, int(stay)
 
 
-def counting_loop(restitution: float) -> np.ndarray:
-    """The clock after each event of the loop in closed form until it stops moving [s]."""
-    speed = math.sqrt(2.0 * GRAVITY * HEIGHT)
-    clocks = [speed / GRAVITY]
-    while len(clocks) < MOST_EVENTS:
-        speed *= restitution
-        after = clocks[-1] + 2.0 * speed / GRAVITY
-        if after == clocks[-1]:
-            break
-        clocks.append(after)
-    return np.array(clocks[1:])
-
-
 def event_loop(restitution: float, tolerance: float) -> tuple[str, np.ndarray]:
     """How solve_ivp, restarted at its events, ends, and the times of its events [s]."""
 
@@ -100,7 +85,7 @@ def event_loop(restitution: float, tolerance: float) -> tuple[str, np.ndarray]:
 
 
 def measure(scene: Scene, quick: bool) -> Findings:
-    """Times of rest of the package, and how far loops without a sum get; nothing depends on the scene."""
+    """Times of rest of the package, and how far the loop gets; nothing depends on the scene."""
     restitutions = np.array([0.3, 0.7, 0.9] if quick else [0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.999])
     found = np.array([time_of_rest(float(e)) for e in restitutions])
     limits = [
@@ -110,15 +95,7 @@ def measure(scene: Scene, quick: bool) -> Findings:
     ]  # fmt: skip
     arrays = {"restitution": restitutions, "rest": found[:, 0], "count": found[:, 1]}
     for e in (SHOWN,) if quick else (0.5, SHOWN, 0.9):
-        clocks, fall = counting_loop(e), math.sqrt(2.0 * HEIGHT / GRAVITY)
-        half_step = 0.5 * math.ulp(rest_time(e))
-        limits.append(Row(
-            method="loop in closed form, no sum", case=f"bouncing ball, e = {e:g}: the clock stops",
-            parameter="number of the event [1]", theory=math.log(half_step / (2.0 * fall)) / math.log(e),
-            measured=float(clocks.size), refused=False,
-        ))  # fmt: skip
-        arrays[f"closed_{e:g}"] = rest_time(e) - clocks
-        for tolerance in (1e-6, 1e-12):
+        for tolerance in TOLERANCES:
             how, times = event_loop(e, tolerance)
             arrays[f"events_{tolerance:g}_{e:g}"] = rest_time(e) - times
             limits.append(Row(
@@ -149,21 +126,18 @@ def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
     plotting.label(left.yaxis, "time of rest (s); number; relative error")
     plotting.panel(left, 0, "the package: hops summed")
     left.legend(loc="center right", bbox_to_anchor=(1.0, 0.47))
-    for number, (name, words) in enumerate((
-        ("closed", "closed form, no sum"),
-        ("events_1e-12", "solve_ivp restarted, tolerance 1e-12"),
-        ("events_1e-06", "solve_ivp restarted, tolerance 1e-6"),
-    )):  # fmt: skip
-        values = np.maximum(np.abs(arrays[f"{name}_{SHOWN:g}"]), 1e-16)
+    for number, tolerance in enumerate(TOLERANCES):
+        values = np.maximum(np.abs(arrays[f"events_{tolerance:g}_{SHOWN:g}"]), 1e-16)
         n, style = np.arange(1, values.size + 1), plotting.series(number)
-        right.plot(n, values, **style, markevery=(number, 5), markerfacecolor="none", label=words)
-        right.plot(n[-1:], values[-1:], color=style["color"], marker="Xdv"[number], markersize=8)
+        right.plot(n, values, **style, markevery=(number, 5), markerfacecolor="none",
+                   label=f"tolerance {tolerance:g}")  # fmt: skip
+        right.plot(n[-1:], values[-1:], color=style["color"], marker="Xd"[number], markersize=8)
     right.set_yscale("log")
     plotting.label(right.xaxis, "number of the event")
     plotting.label(right.yaxis, "time left to the accumulation", "s")
-    plotting.panel(right, 1, f"loops without a sum, e = {SHOWN:g}")
+    plotting.panel(right, 1, f"solve_ivp restarted, e = {SHOWN:g}")
     right.legend(loc="upper right")
     return figure, (
-        "A bouncing ball. (a) Time of rest and impacts computed by the package; (b) loops without a sum: the "
-        "large mark is the last event before the clock stands still, or the ball falls through."
+        "A bouncing ball. (a) Time of rest and impacts computed by the package; (b) solve_ivp "
+        "restarted at its events: at the large mark the ball falls through."
     )

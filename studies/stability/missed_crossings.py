@@ -1,11 +1,23 @@
-"""Crossings that a method does not see: change of sign at its steps against certified search.
+r"""Crossings that a method does not see: change of sign at its steps against certified search.
 
-A crossing of known depth is put at every phase of a method's looks; ``known_crossing`` derives the share that
-is missed. That knows of the looks alone. A motion that is not exact puts the peak a little too high or too
-low: by (h omega)^2/8 for central difference, by its tolerance with an error control. Samples of exact flights
-look at the turning points as well, and miss a crossing only where the tip turns twice between two samples:
-they have no formula. Tried on the lowest mode of the scene and on its first six, with a fifth of the peak in
-modes 2 to 6. Fixed steps are a hundredth of the period for one mode and 0.5/omega_max for six.
+A crossing of known depth (``studies.crossings``) is put at every phase of a method's looks, h apart; it sees
+the crossing with probability (duration)/h:
+
+    share missed = max(0, 1 - 2 sqrt(2 delta gap/a)/h),   one half at   delta = a h^2/(32 gap);            (a)
+
+where the spacing varies, the mean of that over the spacings around the peak. With delta < 0 the tip stays
+away, and any touch is invented. A method by percussions (``contact.integrators.moreau_jean``) strikes in the
+step from a grid point if d + (h/2) U >= 0 and U* + e U > 0 there. On the parabola, s steps before the peak,
+these are delta gap >= (a h^2/2) s (s - 1) and s > 1/(1 + e); so, with x (1 + x) = 2 delta gap/(a h^2),
+
+    share missed = max(0, 1/(1 + e) - x),                                                                  (b)
+    touches invented down to   delta = -(a h^2/(2 gap)) e/(1 + e)^2.                                       (c)
+
+That knows of the looks alone. A motion that is not exact puts the peak a little too high or too low: by
+(h omega)^2/8 for central difference, by its tolerance with an error control. Samples of exact flights look at
+the turning points as well, and miss a crossing only where the tip turns twice between two samples: they have
+no formula. Tried on the lowest mode of the scene and on its first six, with a fifth of the peak in modes 2 to
+6. Fixed steps are a hundredth of the period for one mode and 0.5/omega_max for six.
 """
 
 from __future__ import annotations
@@ -18,61 +30,93 @@ from functools import cache, partial
 import numpy as np
 from matplotlib.figure import Figure
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
-from contact import ImpactKind, NewtonRestitution, simulate
+from contact import ContactLaw, HertzContact, LinearContact, NewtonRestitution, Stop
 from contact.integrators import INTEGRATORS, CentralDifference, Integrator, SampledFlight
 from studies import plotting
+from studies.crossings import Swing
+from studies.peers import OutsideSolver
 from studies.scene import Scene, model_of
 from studies.stability import Findings, Limit, threshold
-from studies.stability.known_crossing import Swing, Touch, half_missed, invented_by_percussions, share_missed
 
-__all__ = ["draw", "first_depth", "measure", "of_package", "solved", "swings", "tried", "trials"]
+__all__ = ["RESTITUTION", "Trial", "draw", "half_missed", "invented_by_percussions", "measure", "of_package",
+           "of_scipy", "share_missed", "share_wrong", "swing_of", "tried"]  # fmt: skip
 
 OVERSHOOTS = 10.0 ** -np.arange(1, 13)
 FINE = np.geomspace(1e-12, 1e-1, 276)
 """Where the formulas are drawn, 25 points a decade."""
+MODES = {"one mode": 1, "six modes": 6}
 PHASES = {"one mode": 64, "six modes": 32}
 """Runs for each overshoot. A share is good to 0.5/sqrt(runs) for a solver whose steps do not keep to a grid,
 and the overshoot at which it is one half to a factor exp(2/sqrt(runs)): 1.3 and 1.4."""
-RINGING = 0.2
-"""Part of the peak that the modes above the first make up [1]."""
 LOOKED_AT = 12
 """Flights in which the spacing of a solver's looks around the peak is measured."""
+RESTITUTION, RINGING = 0.5, 0.2
+"""Of the stops with Newton's law; part of the peak that the modes above the first make up [1]."""
 
 Row = partial(Limit, family="missed_crossings")
+Touch = Callable[[float, float], float]
+"""touch(overshoot, lead) -> time of the first touch from the peak, NaN if there is none [s]."""
 
 
-def solved(
-    swing: Swing, solver: str, tolerance: float, overshoot: float, lead: float
-) -> tuple[np.ndarray, float]:
-    """Times of the looks of solve_ivp with a terminal event at the stop, as most would use it, and of the
-    first touch, from the peak; NaN if there is none [s].
+def share_missed(
+    overshoot: np.ndarray, spacings: np.ndarray, pace: float, percussions: bool = False
+) -> np.ndarray:
+    """Share of crossings missed, (a) or (b), for overshoots over gap [1]."""
+    if percussions:
+        x = 0.5 * (np.sqrt(1.0 + 8.0 * overshoot / (pace * spacings[0]) ** 2) - 1.0)
+        return np.maximum(0.0, 1.0 / (1.0 + RESTITUTION) - x)
+    duration = 2.0 * np.sqrt(2.0 * overshoot) / pace
+    return np.maximum(0.0, 1.0 - np.multiply.outer(1.0 / spacings, duration)).mean(axis=0)
 
-    Absolute tolerances are those of one energy: `tolerance` times the largest velocity, and that over omega.
+
+def half_missed(spacings: np.ndarray, pace: float, percussions: bool = False) -> float:
+    """Overshoot over gap at which half the crossings are missed, (a) or (b) [1]."""
+    most = float((pace * spacings.max()) ** 2 / 8.0)
+
+    def excess(depth: float) -> float:
+        return float(share_missed(np.array(depth), spacings, pace, percussions)) - 0.5
+
+    return float(brentq(excess, 0.0, most, xtol=1e-18))
+
+
+def invented_by_percussions(step: float, pace: float) -> float:
+    """Undershoot over gap down to which touches are invented, (c) [1]."""
+    return 0.5 * (pace * step) ** 2 * RESTITUTION / (1.0 + RESTITUTION) ** 2
+
+
+def share_wrong(swing: Swing, touch: Touch, overshoot: float, *, runs: int, slack: float) -> float:
+    """Share of the runs that miss the crossing, or invent one if the overshoot is negative [1].
+
+    A first touch is the crossing if the tip is beyond the stop within `slack` [s] of it.
     """
-    n, start, stiffness = swing.omega.size, swing.start(overshoot, lead), swing.omega**2
-    speed = max(
-        swing.omega[0] * swing.gap / np.linalg.norm(swing.phi), np.linalg.norm(start.velocity),
-        np.linalg.norm(swing.omega * start.displacement),
-    )  # fmt: skip
+    wrong = 0
+    for lead in swing.leads(runs):
+        at = touch(overshoot, float(lead))
+        near = np.append(at + slack * np.linspace(-1.0, 1.0, 401), 0.0 if abs(at) <= slack else at)
+        seen = overshoot < 0.0 or bool(np.any(swing.height_at(overshoot, near) > 0.0))
+        wrong += (math.isfinite(at) and seen) == (overshoot < 0.0)
+    return wrong / runs
 
-    def depth(_t: float, y: np.ndarray) -> float:
-        return float(swing.phi @ y[:n] - swing.gap)
 
-    depth.terminal, depth.direction = True, 1  # type: ignore[attr-defined]
-    found = solve_ivp(
-        lambda _t, y: np.concatenate([y[n:], -stiffness * y[:n]]), (0.0, lead + swing.tail),
-        np.concatenate([start.displacement, start.velocity]), method=solver, events=depth, rtol=tolerance,
-        atol=tolerance * speed * np.concatenate([1.0 / swing.omega, np.ones(n)]),
+def swing_of(scene: Scene, words: str, method: Integrator | None = None) -> Swing:
+    """The first modes of the scene before a stop with a law that `method` knows, soft enough for any step."""
+    model = model_of(scene).truncated(MODES[words])
+    soft, gap = 0.01 * float((model.omega[0] / model.phi[0]) ** 2), scene.stop.gap_m
+    laws: tuple[ContactLaw, ...] = (
+        LinearContact(stiffness=soft), NewtonRestitution(local_restitution=RESTITUTION),
+        HertzContact(stiffness=soft / math.sqrt(gap)),
     )  # fmt: skip
-    touches = found.t_events[0]
-    return found.t - lead, float(touches[0]) - lead if touches.size else math.nan
+    law = next(law for law in laws if method is None or method.accepts(law.code))
+    return Swing.of(model, Stop(gap=gap, law=law), RINGING)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Trial:
     """A method to try."""
 
+    swing: Swing
     label: str
     kind: str
     """"exact", "step" (and samples) or "control" of the error."""
@@ -84,121 +128,99 @@ class Trial:
     """Theory of the undershoot over gap down to which it invents touches [1]."""
 
 
-def of_package(swing: Swing, kind: type[Integrator], options: Mapping[str, float]) -> Trial:
+def of_package(scene: Scene, words: str, kind: type[Integrator], options: Mapping[str, float]) -> Trial:
     """A method of the package with those of the `options` that it knows."""
     known = {entry.name for entry in fields(kind)}  # type: ignore[arg-type]
     method = kind(**{name: value for name, value in options.items() if name in known})
-    oscillator, step = swing.oscillator(method), options["step"]
-
-    def touch(overshoot: float, lead: float) -> float:
-        start, duration = swing.start(overshoot, lead), lead + swing.tail
-        impacts = simulate(oscillator, start, duration=duration, method=method).impacts
-        touches = impacts.start[impacts.kind == ImpactKind.IMPACT] - lead
-        return float(touches[0]) if touches.size else math.nan
-
-    invents = None
-    percussions = "step" in known and isinstance(oscillator.stop.law, NewtonRestitution)
+    swing, step = swing_of(scene, words, method), options["step"]
+    percussions, invents = isinstance(swing.oscillator.stop.law, NewtonRestitution), None
     if percussions:
         invents = invented_by_percussions(step, swing.pace)
     elif kind is CentralDifference:
         invents = (swing.pace * step) ** 2 / 8.0
     return Trial(
-        label=f"{kind.name}, {options['points']} points" if "points" in known else kind.name,
-        kind="exact" if kind.certified else "step", touch=touch, percussions=percussions, invents=invents,
-        spacings=np.array([step]) if "step" in known else np.empty(0),
+        label=f"{kind.name}, {options['points']} points" if "points" in known else kind.name, swing=swing,
+        kind="exact" if kind.certified else "step", touch=partial(swing.touch, method),
+        spacings=np.array([step]) if "step" in known else np.empty(0), percussions=percussions,
+        invents=invents,
     )  # fmt: skip
 
 
-def of_scipy(swing: Swing, solver: str, tolerance: float) -> Trial:
-    """A solver with error control; the spacings are those around the peak in flights that meet nothing."""
-    spacings = []
-    for lead in swing.leads(LOOKED_AT):
-        looks, _none = solved(swing, solver, tolerance, -0.01, float(lead))
-        after = int(np.searchsorted(looks, 0.0))
-        spacings.append(looks[after] - looks[after - 1])
-    return Trial(
-        label=f"scipy {solver}, {tolerance:g}", kind="control", spacings=np.array(spacings),
-        touch=lambda overshoot, lead: solved(swing, solver, tolerance, overshoot, lead)[1],
-    )  # fmt: skip
+def of_scipy(scene: Scene, words: str, solver: str, tolerance: float) -> Trial:
+    """A solver of SciPy; the spacings are those of its steps around the peak in flights that meet nothing.
 
-
-def swings(scene: Scene) -> dict[str, Swing]:
-    """The motions with a crossing of known depth: the first mode of the scene, and its first six.
-
-    Six modes are in step at the peak alone: the next highest one is at 0.83 gap.
+    Absolute tolerances are those of one energy, as in ``studies.peers``.
     """
-    model, gap = model_of(scene).truncated(6), scene.stop.gap_m
-    period = 2.0 * math.pi / float(model.omega[0])
-    height = np.array([1.0 - RINGING, *[RINGING / 5] * 5])
-    return {
-        "one mode": Swing(
-            omega=model.omega[:1], phi=model.phi[:1], height=np.ones(1), gap=gap,
-            lead=0.6 * period, spread=0.25 * period, tail=0.4 * period,
-        ),
-        "six modes": Swing(
-            omega=model.omega, phi=model.phi, height=height, gap=gap,
-            lead=0.05 * period, spread=0.02 * period, tail=0.02 * period,
-        ),
-    }  # fmt: skip
+    swing, spacings = swing_of(scene, words), []
+    model, n = swing.oscillator.model, swing.oscillator.n_modes
+    for lead in swing.leads(LOOKED_AT).tolist():
+        start = swing.start(-0.01, lead)
+        sizes = (start.velocity, model.omega * start.displacement)
+        speed = max(model.omega[0] * swing.oscillator.stop.gap / np.linalg.norm(model.phi),
+                    *(np.linalg.norm(size) for size in sizes))  # fmt: skip
+        looks = solve_ivp(
+            lambda _t, y: np.concatenate([y[n:], -(model.omega**2) * y[:n]]), (0.0, lead + swing.tail),
+            np.concatenate([start.displacement, start.velocity]), method=solver, rtol=tolerance,
+            atol=tolerance * speed * np.concatenate([1.0 / model.omega, np.ones(n)]),
+        ).t  # fmt: skip
+        after = int(np.searchsorted(looks, lead))
+        spacings.append(looks[after] - looks[after - 1])
+    method = OutsideSolver(solver=f"scipy {solver}", tolerance=tolerance)
+    return Trial(swing=swing, label=f"scipy {solver}, {tolerance:g}", kind="control",
+                 spacings=np.array(spacings), touch=partial(swing.touch, method))  # fmt: skip
 
 
-def trials(swing: Swing, quick: bool) -> Iterator[Trial]:
+def trials(scene: Scene, words: str, quick: bool) -> Iterator[Trial]:
     """Every method of the package, and SciPy's solvers."""
-    step = min(0.02 * math.pi / float(swing.omega[0]), 0.5 / float(swing.omega.max()))
+    omega = model_of(scene).omega[: MODES[words]]
+    step = min(0.02 * math.pi / float(omega[0]), 0.5 / float(omega.max()))
     options = {"step": 2.0 * step if quick else step, "rho": 0.8, "points": 24}
-    yield from (of_package(swing, kind, options) for kind in INTEGRATORS.values())
-    yield of_package(swing, SampledFlight, {**options, "points": 96})
-    yield of_scipy(swing, "DOP853", 1e-8)
+    for kind in dict.fromkeys(INTEGRATORS.values()):
+        yield of_package(scene, words, kind, options)
+    yield of_package(scene, words, SampledFlight, {**options, "points": 96})
+    yield of_scipy(scene, words, "DOP853", 1e-8)
     for name, tolerance in () if quick else (("DOP853", 1e-12), ("RK45", 1e-8), ("LSODA", 1e-8)):
-        yield of_scipy(swing, name, tolerance)
+        yield of_scipy(scene, words, name, tolerance)
 
 
-def tried(trial: Trial, swing: Swing, words: str, runs: int) -> tuple[list[Limit], np.ndarray]:
+def tried(trial: Trial, words: str, runs: int) -> tuple[list[Limit], np.ndarray]:
     """Rows of one method, and the shares missed over `OVERSHOOTS`; what follows two decades in which nothing
     is seen is not tried."""
-    pace, spacings = swing.pace, trial.spacings
+    pace, spacings = trial.swing.pace, trial.spacings
     slack = 2.0 * float(spacings.max()) if spacings.size else 1e-6 / pace
 
     @cache
     def wrong(overshoot: float) -> float:
-        return swing.share_wrong(trial.touch, overshoot, runs=runs, slack=slack)
+        return share_wrong(trial.swing, trial.touch, overshoot, runs=runs, slack=slack)
 
     shares: list[float] = []
-    for overshoot in OVERSHOOTS:
-        shares.append(1.0 if shares[-2:] == [1.0, 1.0] else wrong(float(overshoot)))
+    for overshoot in OVERSHOOTS.tolist():
+        shares.append(1.0 if shares[-2:] == [1.0, 1.0] else wrong(overshoot))
     row = partial(Row, method=trial.label, refused=None if trial.kind == "exact" else False)
     rows = [row(
         case=f"half of the crossings missed, {words}", parameter="overshoot / gap [1]",
         theory=half_missed(spacings, pace, trial.percussions) if spacings.size else None,
-        measured=first_depth(lambda depth: wrong(depth) > 0.5),
+        measured=threshold(lambda depth: wrong(depth) > 0.5, OVERSHOOTS.tolist(), relative=0.05),
     )]  # fmt: skip
     if trial.kind != "control":  # an error control errs by less than it misses
         rows.append(row(
             case=f"touches invented, {words}", parameter="undershoot / gap [1]", theory=trial.invents,
-            measured=first_depth(lambda depth: wrong(-depth) > 0.0),
+            measured=threshold(lambda depth: wrong(-depth) > 0.0, OVERSHOOTS.tolist(), relative=0.05),
         ))  # fmt: skip
     return rows, np.array(shares)
-
-
-def first_depth(fails: Callable[[float], bool]) -> float | None:
-    """The depth below which it fails, between the decades; the largest tried if it fails there already."""
-    failed = next((i for i, depth in enumerate(OVERSHOOTS) if fails(float(depth))), None)
-    if not failed:
-        return None if failed is None else float(OVERSHOOTS[0])
-    return threshold(fails, float(OVERSHOOTS[failed - 1]), float(OVERSHOOTS[failed]), relative=0.05)
 
 
 def measure(scene: Scene, quick: bool) -> Findings:
     """Crossings missed and touches invented by every method, on one mode and on six."""
     limits: list[Limit] = []
     arrays: dict[str, np.ndarray] = {"overshoot": OVERSHOOTS, "fine": FINE}
-    for words, swing in swings(scene).items():
-        for trial in trials(swing, quick):
-            rows, shares = tried(trial, swing, words, 6 if quick else PHASES[words])
+    for words, phases in PHASES.items():
+        for trial in trials(scene, words, quick):
+            rows, shares = tried(trial, words, 6 if quick else phases)
             limits += rows
             arrays[f"{words}|{trial.kind}|{trial.label}"] = shares
             if trial.spacings.size:
-                theory = share_missed(FINE, trial.spacings, swing.pace, trial.percussions)
+                theory = share_missed(FINE, trial.spacings, trial.swing.pace, trial.percussions)
                 arrays[f"{words}|theory|{trial.label}"] = theory
     return Findings(limits=limits, arrays=arrays)
 

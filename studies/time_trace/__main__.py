@@ -16,8 +16,8 @@ Fourier transform over one period gives them without leakage and without a windo
 up to 64 drive periods is drawn and told as such; its spectrum then has leakage.
 
 Run:     python -m studies.time_trace [--excess E] [--frequency HZ]     5 s
-Writes:  time_trace.npz (time, tip, read-out), collisions.csv, spectrum.csv, peaks.csv, time_trace.png,
-         spectrum.png
+Writes:  time_trace.npz (time, tip, read-out), collisions.csv (contact.Collision: SI units), spectrum.npz,
+         peaks.csv, time_trace.png, spectrum.png
 """
 
 from __future__ import annotations
@@ -44,11 +44,11 @@ from studies.scene import (
     model_of,
     periods_of,
     require_drive_below,
-)
-from studies.time_trace.close_up import CloseUp, close_up
-from studies.time_trace.spectrum import Line, Peak, lines_of, peaks_of
+)  # fmt: skip
+from studies.time_trace.close_up import close_up
+from studies.time_trace.spectrum import Peak, lines_of, peaks_of
 
-__all__ = ["FoundCollision", "time_trace", "trace_of"]
+__all__ = ["Trace", "time_trace", "trace_of"]
 
 FREQUENCY = 21.50
 """Where the letter has the period 4 of its Fig. 4 [Hz]."""
@@ -62,36 +62,16 @@ APERIODIC = 8
 PER_PERIOD = 16_384
 """Samples in a drive period: at 21.5 Hz up to 176 kHz without folding, beyond what the spectrum shows."""
 
-TOLD = ("time_s", "approach_velocity", "restitution", "delay_s", "kick", "impacts", "contact_s", "ringing_m")
+TOLD = ("first_touch", "approach", "restitution", "delay", "kick", "impacts", "contact_time", "ringing")
 """Columns of a collision that are shown to a person."""
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, kw_only=True)
-class FoundCollision:
-    """A collision; what does not exist is not a number."""
-
-    time_s: float
-    approach_velocity: float
-    real_approach_velocity: float
-    restitution: float
-    delay_s: float
-    kick: float
-    shift_m: float
-    impacts: int
-    contact_s: float
-    ringing_m: float
-    energy_to_higher_modes: float
-    forced_by_ringing: bool
-    returns: bool
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Trace:
-    """The motion over some orbit periods from a strobe: tip [m] and read-out [m or rad] over time [s]."""
+    """The motion from a strobe on: tip [m] and read-out [m or rad] over time [s]."""
 
-    period: int
     time: Array
     tip: Array
     readout: Array
@@ -114,32 +94,39 @@ def time_trace(
     model = model_of(scene)
     require_drive_below(scene, model, drive_hz)
     oscillator = beam_at(scene, drive_hz, model).with_excess(excess)
-    settled = born(
-        StroboscopicMap(oscillator=oscillator), excess, most_cycles=max(scene.scan.settle_cycles, 1)
-    )
+    strobed, most = StroboscopicMap(oscillator=oscillator), max(scene.scan.settle_cycles, 1)
+    settled = born(strobed, excess, most_cycles=most)
     length = ORBIT_PERIODS * settled.period or APERIODIC
-    trace = trace_of(oscillator, settled.end, settled.period, length)
-    near = close_up(oscillator, settled.end, trace.collisions[0]) if trace.collisions else None
+    trace = trace_of(oscillator, settled.end, length)
     # over one period of the orbit: a longer stretch only puts zeros between its lines
     share = ORBIT_PERIODS if settled.period else 1
     part = trace.readout[: trace.readout.size // share]
     lines_hz, amplitude = lines_of(part, length / share * oscillator.period)
     peaks = peaks_of(lines_hz, amplitude, model.frequencies_hz, drive_hz)
-    found = [found_collision(collision) for collision in trace.collisions]
-    power = "rad" if scene.readout.quantity == "rotation" else "m"
-    run.arrays("time_trace", time_s=trace.time, tip_m=trace.tip, **{f"readout_{power}": trace.readout})
-    run.table("collisions", found, "Collisions in the stretch that is shown.", show=TOLD)
-    lines = [
-        Line(frequency_hz=float(f), amplitude=float(a)) for f, a in zip(lines_hz, amplitude, strict=True)
-    ]
-    run.table("spectrum", lines, f"Lines of the read-out [{power}].", show=())
-    run.table("peaks", peaks, f"Peaks of the read-out [{power}], with the mode they belong to.", show=())
-    draw(run, scene, trace, near, (lines_hz, amplitude), model.frequencies_hz, drive_hz)
+    unit = "rad" if scene.readout.quantity == "rotation" else "m"
+    run.arrays("time_trace", time_s=trace.time, tip_m=trace.tip, **{f"readout_{unit}": trace.readout})
+    run.table("collisions", trace.collisions, "Collisions in the stretch that is shown.", show=TOLD)
+    run.arrays("spectrum", frequency_hz=lines_hz, **{f"amplitude_{unit}": amplitude})
+    run.table("peaks", peaks, f"Peaks of the read-out [{unit}], with the mode they belong to.", show=())
+    from studies.time_trace.figure import draw_spectrum, draw_trace  # matplotlib is slow to import
+
     name = f"p{settled.period}" if settled.period else "no period up to 64"
+    near = close_up(oscillator, settled.end, trace.collisions[0]) if trace.collisions else None
+    run.figure(
+        "time_trace",
+        draw_trace(trace, near, scene.stop.gap_m, unit, f"{name}, {drive_hz:.2f} Hz"),
+        "Tip and read-out point of the settled orbit, impacts marked; on the right one collision: tip past "
+        "the plate and contact force, contact shaded.",
+    )
+    run.figure(
+        "spectrum",
+        draw_spectrum(lines_hz, amplitude, model.frequencies_hz, drive_hz, unit),
+        "Amplitudes of the read-out over one period of the orbit; dotted: the modes, dashed: the drive.",
+    )
     run.say(f"{drive_hz:g} Hz, excess {excess:g}: {name}")
     seen = periods_of(scene).get(drive_hz) if excess == letter.TIME_TRACE_EXCESS else None
     if seen == letter.PERIODS[FREQUENCY]:
-        judge(run, name, seen, found, peaks)
+        judge(run, name, seen, trace.collisions, peaks)
     return {
         "frequency_hz": drive_hz,
         "excess": excess,
@@ -147,15 +134,15 @@ def time_trace(
         "letter": seen,
         "impacts": round(trace.impact_times.size / share),
         "impact_times_s": trace.impact_times,
-        "collisions": found,
+        "collisions": trace.collisions,
         "modes_hz": model.frequencies_hz,
         "peaks": peaks,
-        "peak_unit": power,
+        "peak_unit": unit,
     }
 
 
-def trace_of(oscillator: ImpactOscillator, state: State, period: int, length: int) -> Trace:
-    """The motion over `length` drive periods from `state`; `period` is that of the orbit."""
+def trace_of(oscillator: ImpactOscillator, state: State, length: int) -> Trace:
+    """The motion over `length` drive periods from `state`."""
     begin, span = state.time, length * oscillator.period
     time = span * np.arange(length * PER_PERIOD) / (length * PER_PERIOD)
     run = simulate(oscillator, state, periods=length + 2, times=begin + time)
@@ -163,7 +150,6 @@ def trace_of(oscillator: ImpactOscillator, state: State, period: int, length: in
     model = oscillator.model
     final = collisions(oscillator, run, unfinished="drop")
     return Trace(
-        period=period,
         time=time,
         tip=run.displacement @ model.phi,
         readout=run.displacement @ model.readouts[READOUT],
@@ -172,71 +158,18 @@ def trace_of(oscillator: ImpactOscillator, state: State, period: int, length: in
     )
 
 
-def found_collision(collision: Collision) -> FoundCollision:
-    """A collision as a row."""
-    return FoundCollision(
-        time_s=collision.first_touch, approach_velocity=collision.approach,
-        real_approach_velocity=collision.real_approach, restitution=collision.restitution,
-        delay_s=collision.delay, kick=collision.kick, shift_m=collision.shift, impacts=collision.impacts,
-        contact_s=collision.contact_time, ringing_m=collision.ringing,
-        energy_to_higher_modes=collision.energy_to_higher_modes,
-        forced_by_ringing=collision.forced_by_ringing, returns=collision.returns,
-    )  # fmt: skip
-
-
-def judge(run: Run, period: str, seen: int, found: Sequence[FoundCollision], peaks: Sequence[Peak]) -> None:
+def judge(run: Run, period: str, seen: int, found: Sequence[Collision], peaks: Sequence[Peak]) -> None:
     """Verdicts on Fig. 4."""
     run.verdict("time_trace", "agrees" if period == f"p{seen}" else "differs", found=period)
     higher = sorted({peak.mode for peak in peaks if peak.mode is not None and peak.mode > 1})
     verdict: Verdict = "agrees" if len(higher) > 2 else "in part" if higher else "differs"
-    run.verdict(
-        "many_modes",
-        verdict,
-        found=f"modes {', '.join(map(str, higher)) or 'none'} have a peak in the spectrum",
-    )
+    told = f"modes {', '.join(map(str, higher)) or 'none'} have a peak in the spectrum"
+    run.verdict("many_modes", verdict, found=told)
     if found and math.isfinite(found[0].restitution):
         near = abs(found[0].restitution - letter.RESTITUTION) <= 0.5 * letter.RESTITUTION
-        run.verdict(
-            "restitution_on_orbit",
-            "agrees" if near else "differs",
-            found=f"{found[0].restitution:.3f}",
-            note=f"delay {1e3 * found[0].delay_s:.3f} ms, kick {found[0].kick:.3f}",
-        )
-
-
-def draw(
-    run: Run,
-    scene: Scene,
-    trace: Trace,
-    near: CloseUp | None,
-    spectrum: tuple[Array, Array],
-    modes_hz: Array,
-    drive_hz: float,
-) -> None:
-    """Both figures."""
-    from studies.time_trace.figure import draw_spectrum, draw_trace  # matplotlib is slow to import
-
-    unit = "mrad" if scene.readout.quantity == "rotation" else "mm"
-    name = f"p$_{{{trace.period}}}$" if trace.period else "no period"
-    motion = draw_trace(
-        (trace.time, trace.tip, trace.readout),
-        trace.impact_times,
-        near,
-        scene.stop.gap_m,
-        unit,
-        f"{name}, {drive_hz:.2f} Hz",
-    )
-    run.figure(
-        "time_trace",
-        motion,
-        "Tip and read-out point of the settled orbit, impacts marked; on the right one "
-        "collision: tip past the plate and contact force, contact shaded.",
-    )
-    run.figure(
-        "spectrum",
-        draw_spectrum(*spectrum, modes_hz, drive_hz, unit),
-        "Amplitudes of the read-out over one period of the orbit; dotted: the modes, dashed: the drive.",
-    )
+        note = f"delay {1e3 * found[0].delay:.3f} ms, kick {found[0].kick:.3f}"
+        verdict, told = "agrees" if near else "differs", f"{found[0].restitution:.3f}"
+        run.verdict("restitution_on_orbit", verdict, found=told, note=note)
 
 
 if __name__ == "__main__":

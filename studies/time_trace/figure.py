@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,6 +13,9 @@ from numpy.typing import NDArray
 
 from studies.plotting import BLUE, GUIDE, NOTE, PAGE, VERMILION, in_house_style, label, new_figure, panel
 from studies.time_trace.close_up import CloseUp
+
+if TYPE_CHECKING:
+    from studies.time_trace.__main__ import Trace
 
 __all__ = ["draw_spectrum", "draw_trace"]
 
@@ -23,71 +27,39 @@ NUMBER_WIDTH = 13.0
 MOST_DRAWN = 4_000
 """Points of a line: more than a page has dots."""
 
+MARK = {"color": VERMILION, "linewidth": 0.6, "linestyle": ":", "zorder": 1}
+
 
 @in_house_style
-def draw_trace(
-    motion: tuple[Array, Array, Array], impact_times: Array, near: CloseUp | None, gap: float, unit: str,
-    title: str,
-) -> Figure:  # fmt: skip
-    """Time [s], tip [m] and read-out [m or rad], impacts marked, and one collision beside them."""
-    times, tip, readout = motion
-    figure, axes = new_figure(
-        2,
-        2,
-        width=PAGE,
-        height=0.090,
-        sharex="col",
-        gridspec_kw={"width_ratios": [2.3, 1.0]},
-    )
-    left, right = axes[:, 0], axes[:, 1]
-    step = max(1, times.size // MOST_DRAWN)
-    time = 1e3 * times[::step]
-    for axis, shown, name in zip(left, (tip, readout), ("tip", "read-out"), strict=True):
-        axis.plot(time, 1e3 * shown[::step], color=BLUE, linewidth=0.8, gid=name)
+def draw_trace(trace: Trace, near: CloseUp | None, gap: float, unit: str, title: str) -> Figure:
+    """Tip and read-out against time, impacts marked, and one collision beside them; `unit` is m or rad."""
+    widths = {"width_ratios": [2.3, 1.0]}
+    figure, axes = new_figure(2, 2, width=PAGE, height=0.090, sharex="col", gridspec_kw=widths)
+    (tip, readout), step = axes[:, 0], max(1, trace.time.size // MOST_DRAWN)
+    for axis, shown in ((tip, trace.tip), (readout, trace.readout)):
+        axis.plot(1e3 * trace.time[::step], 1e3 * shown[::step], color=BLUE, linewidth=0.8)
         axis.margins(x=0.0)
-        if name == "tip":
-            label(axis.yaxis, "tip displacement $ξ$", "mm")
-        else:
-            label(axis.yaxis, "read-out rotation" if unit == "mrad" else "read-out displacement", unit)
-    left[0].axhline(1e3 * gap, **GUIDE)
-    top = 1e3 * max(gap, float(tip.max()))
-    left[0].set_ylim(1e3 * float(tip.min()) - 1.0, top * 1.25)
-    left[0].plot(
-        1e3 * impact_times,
-        np.full(impact_times.size, 1.12 * top),
-        linestyle="none",
-        marker="v",
-        color=VERMILION,
-        markersize=4.0,
-    )
-    label(left[1].xaxis, "time", "ms")
-    panel(left[0], 0, title)
-    panel(left[1], 1, "read-out point")
-    left[0].annotate(
-        "plate",
-        (0.005, 1e3 * gap),
-        xycoords=left[0].get_yaxis_transform(),
-        fontsize=NOTE,
-        va="bottom",
-        color="0.35",
-    )
-    if impact_times.size:
-        left[0].annotate(
-            "impact",
-            (1e3 * impact_times[0], 1.12 * top),
-            xytext=(5, 0),
-            textcoords="offset points",
-            fontsize=NOTE,
-            va="center",
-            color=VERMILION,
-        )
-    for at in impact_times:
-        left[1].axvline(1e3 * at, color=VERMILION, linewidth=0.6, linestyle=":", zorder=1)
+    label(tip.yaxis, "tip displacement $ξ$", "mm")
+    label(readout.yaxis, f"read-out {'rotation' if unit == 'rad' else 'displacement'}", f"m{unit}")
+    label(readout.xaxis, "time", "ms")
+    panel(tip, 0, title)
+    panel(readout, 1, "read-out point")
+    tip.axhline(1e3 * gap, **GUIDE)
+    top, impacts = 1e3 * max(gap, float(trace.tip.max())), 1e3 * trace.impact_times
+    tip.set_ylim(1e3 * float(trace.tip.min()) - 1.0, top * 1.25)
+    tip.plot(impacts, np.full(impacts.size, 1.12 * top), "v", color=VERMILION, markersize=4.0)
+    across = tip.get_yaxis_transform()
+    tip.annotate("plate", (0.005, 1e3 * gap), xycoords=across, fontsize=NOTE, va="bottom", color="0.35")
+    for number, at in enumerate(impacts):
+        readout.axvline(at, **MARK)
+        if number == 0:
+            beside = {"xytext": (5, 0), "textcoords": "offset points", "va": "center"}
+            tip.annotate("impact", (at, 1.12 * top), fontsize=NOTE, color=VERMILION, **beside)
     if near is None:
-        for axis in right:
+        for axis in axes[:, 1]:
             axis.set_visible(False)
-        return figure
-    _collision(right, near)
+    else:
+        _collision(axes[:, 1], near)
     return figure
 
 
@@ -116,44 +88,22 @@ def draw_spectrum(frequency: Array, amplitude: Array, modes_hz: Array, drive_hz:
     shown = modes_hz[modes_hz <= 0.5 * frequency[-1]]
     limit = 1.25 * float(shown[-1])
     inside = (frequency > 0.0) & (frequency <= limit)
-    axis.plot(
-        frequency[inside],
-        1e3 * amplitude[inside],
-        color=BLUE,
-        linewidth=0.5,
-        marker="o",
-        markersize=1.5,
-        label="lines of the read-out",
-    )
-    axis.set_xscale("log")
-    axis.set_yscale("log")
-    top = 1e3 * float(amplitude[inside].max())
-    floor = max(1e3 * float(amplitude[inside].min()), 1e-8 * top)
-    axis.set_ylim(0.5 * floor, 30.0 * top)
-    axis.set_xlim(0.9 * float(frequency[1]), limit)
-    last = -math.inf
-    for number, at in enumerate(shown, start=1):
-        axis.axvline(at, color=VERMILION, linewidth=0.6, linestyle=":", zorder=1)
+    lines = 1e3 * amplitude[inside]
+    axis.plot(frequency[inside], lines, "o-", color=BLUE, lw=0.5, ms=1.5, label="lines of the read-out")
+    top = float(lines.max())
+    floor = max(float(lines.min()), 1e-8 * top)
+    axis.set(xscale="log", yscale="log", ylim=(0.5 * floor, 30.0 * top), xlim=(0.9 * frequency[1], limit))
+    across, last = axis.get_xaxis_transform(), -math.inf
+    box = {"facecolor": "white", "edgecolor": "none", "pad": 0.6}
+    for number, at in enumerate(shown.tolist(), start=1):
+        axis.axvline(at, **MARK, label="modes, numbered" if number == 1 else None)
         x = float(axis.transData.transform((at, 1.0))[0])
         if x - last > NUMBER_WIDTH:
-            _mode_number(axis, at, number)
+            style = {"ha": "center", "va": "top", "fontsize": NOTE, "color": VERMILION, "bbox": box}
+            axis.annotate(str(number), (at, 0.98), xycoords=across, **style)
             last = x
-    axis.axvline(drive_hz, color="0.4", linewidth=0.7, linestyle="--", zorder=1, label="drive")
-    axis.plot([], [], color=VERMILION, linewidth=0.6, linestyle=":", label="modes, numbered")
+    axis.axvline(drive_hz, **GUIDE, label="drive")
     label(axis.xaxis, "frequency", "Hz")
-    label(axis.yaxis, "amplitude of the read-out", unit)
+    label(axis.yaxis, "amplitude of the read-out", f"m{unit}")
     figure.legend(loc="outside lower center", ncols=3, handlelength=2.5)
     return figure
-
-
-def _mode_number(axis: Axes, at: float, number: int) -> None:
-    axis.annotate(
-        str(number),
-        (at, 0.98),
-        xycoords=axis.get_xaxis_transform(),
-        ha="center",
-        va="top",
-        fontsize=NOTE,
-        color=VERMILION,
-        bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6},
-    )

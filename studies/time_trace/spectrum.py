@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import find_peaks
 
-__all__ = ["Line", "Peak", "lines_of", "peaks_of"]
+__all__ = ["Peak", "lines_of", "peaks_of"]
 
 CLEAR, LOUD = 1e-3, 1e-7
 """Least part of the largest line at which a peak away from the modes, and one at a mode, is told."""
@@ -24,16 +24,8 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Line:
-    """One line of the spectrum; the amplitude in m, or rad where the read-out is a rotation."""
-
-    frequency_hz: float
-    amplitude: float
-
-
-@dataclass(frozen=True, kw_only=True)
 class Peak:
-    """A line that is higher than its neighbours, and the mode (from 1) it belongs to."""
+    """A line higher than its neighbours [m or rad], and the mode (from 1) it belongs to."""
 
     frequency_hz: float
     amplitude: float

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,9 +29,8 @@ Strobed = StrobedMap[Any]
 Diagram = OrbitDiagram[Any]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Description:
-    """One model at one frequency, with what is drawn of it."""
+class Description(NamedTuple):
+    """One model at one frequency, and what is drawn of it."""
 
     strobed: Strobed
     observe: Callable[[NDArray[np.float64]], NDArray[np.float64]]
@@ -95,9 +95,9 @@ def describe(scene: Scene, frequency: float, model: ModalModel) -> dict[str, Des
     beam = StroboscopicMap(oscillator=beam_at(scene, frequency, model))
     nordmark = StrobedNordmarkMap(map=nordmark_at(scene, frequency))
     return {
-        "map": Description(strobed=nordmark, observe=lambda points: points[:, 0]),
-        "single_mode": Description(strobed=single, observe=single.tip),
-        "beam": Description(strobed=beam, observe=lambda points: beam.readout(points, READOUT)),
+        "map": Description(nordmark, lambda points: points[:, 0]),
+        "single_mode": Description(single, single.tip),
+        "beam": Description(beam, lambda points: beam.readout(points, READOUT)),
     }
 
 
@@ -116,7 +116,7 @@ def transition(strobed: Strobed, excess: float, cycles: int) -> Transition:
 def row_at(scene: Scene, frequency: float, model: ModalModel) -> tuple[Row, list[tuple[str, str]]]:
     """One row of the table, and what failed: where, why."""
     cycles, failures = max(scene.scan.settle_cycles, 1), list[tuple[str, str]]()
-    described = {name: entry.strobed for name, entry in describe(scene, frequency, model).items()}
+    described = {name: strobed for name, (strobed, _) in describe(scene, frequency, model).items()}
     if scene.contact.law == "hertz":  # linear contact of the same contact time in place of Hertz's law
         linear = scene.replace({"contact.law": "linear"})
         described["beam_linear"] = StroboscopicMap(oscillator=beam_at(linear, frequency, model))
@@ -126,35 +126,31 @@ def row_at(scene: Scene, frequency: float, model: ModalModel) -> tuple[Row, list
             found[name] = transition(strobed, scene.scan.born_excess, cycles)
         except ContactError as error:
             failures.append((f"{frequency:g} Hz, {name}", str(error)))
-    maps, single, beam, linear_beam = found["map"], found["single_mode"], found["beam"], found["beam_linear"]
-    exact_map, exact_single = exact_ends(scene, frequency, maps.period or 0, single.period or 0)
-    born_excess = f"{scene.scan.born_excess:g}"
+    exact_map, exact_single = exact_ends(scene, frequency, found["map"].period, found["single_mode"].period)
+    columns, not_settled = dict[str, Any](), list[str]()
+    for name, title in TITLES.items():
+        one = found[name]
+        columns |= {name: one.period, f"excess_down_{name}": one.excess_down, f"ends_by_{name}": one.ends_by}
+        columns |= {f"bracket_{name}": one.bracket, f"born_{name}": one.also}
+        periods = {f"{scene.scan.born_excess:g}": one.period, **one.also}
+        not_settled += [f"{title} at {excess}" for excess, period in periods.items() if period == 0]
     row = Row(
-        frequency_hz=frequency, letter=letter.PERIODS.get(frequency),
-        map=maps.period, single_mode=single.period, beam=beam.period,
-        excess_down_map=maps.excess_down, excess_down_single_mode=single.excess_down,
-        excess_down_beam=beam.excess_down, ends_by_map=maps.ends_by, ends_by_single_mode=single.ends_by,
-        ends_by_beam=beam.ends_by, exact_map=exact_map, exact_single_mode=exact_single,
-        beam_linear=linear_beam.period, excess_down_beam_linear=linear_beam.excess_down,
-        bracket_map=maps.bracket, bracket_single_mode=single.bracket, bracket_beam=beam.bracket,
-        born_map=maps.also, born_single_mode=single.also, born_beam=beam.also,
-        not_settled=[
-            f"{TITLES[name]} at {excess}" for name in TITLES
-            for excess, period in {born_excess: found[name].period, **found[name].also}.items() if period == 0
-        ],
+        frequency_hz=frequency, letter=letter.PERIODS.get(frequency), **columns, exact_map=exact_map,
+        exact_single_mode=exact_single, beam_linear=found["beam_linear"].period,
+        excess_down_beam_linear=found["beam_linear"].excess_down, not_settled=not_settled,
         grazing_amplitude_m=beam_at(scene, frequency, model).grazing_amplitude(),
     )  # fmt: skip
     return row, failures
 
 
 def exact_ends(
-    scene: Scene, frequency: float, map_period: int, period: int
+    scene: Scene, frequency: float, of_map: int | None, of_single: int | None
 ) -> tuple[float | None, float | None]:
-    """The folds of the p_m orbits in closed form, of the map and of Eq. (1) [1]."""
+    """The folds of the p_m orbits in closed form, of the map and of Eq. (1) [1]; no orbit for None, 0, 1."""
     nordmark = nordmark_at(scene, frequency)
-    orbit = fold(nordmark, map_period) if map_period > 1 else None
-    family = MaximalFamily.from_oscillator(single_mode_at(scene, frequency), period=max(period, 2))
-    end = family.fold() if period > 1 else None
+    orbit = fold(nordmark, of_map) if of_map and of_map > 1 else None
+    family = MaximalFamily.from_oscillator(single_mode_at(scene, frequency), period=max(of_single or 0, 2))
+    end = family.fold() if of_single and of_single > 1 else None
     return None if orbit is None else nordmark.excess(orbit.rho), None if end is None else end.excess
 
 
@@ -166,15 +162,12 @@ def scans(scene: Scene, row: Row, model: ModalModel, full: bool) -> Scans:
     scan, found = scene.scan, {}
     reach = float(f"{max([*map(abs, row.ends()), scan.narrowest]):.2g}")
     values = np.linspace(-scan.reach_below * reach, scan.reach_above * reach, scan.points)
-    for name, entry in describe(scene, row.frequency_hz, model).items():
-
-        def way(excesses: NDArray[np.float64], state: object, entry: Description = entry) -> Diagram:
-            return orbit_diagram(
-                entry.strobed, excesses, state, observe=entry.observe,
-                settle_cycles=letter.SETTLE_CYCLES if full else max(scan.settle_cycles, 1),
-                record_cycles=scan.record_cycles, largest_period=scan.largest_period, early=not full,
-            )  # fmt: skip
-
-        up = way(values, entry.strobed.at(float(values[0])).steady())
+    for name, (strobed, observe) in describe(scene, row.frequency_hz, model).items():
+        way = partial(
+            orbit_diagram, strobed, observe=observe, record_cycles=scan.record_cycles, early=not full,
+            settle_cycles=letter.SETTLE_CYCLES if full else max(scan.settle_cycles, 1),
+            largest_period=scan.largest_period,
+        )  # fmt: skip
+        up = way(values, strobed.at(float(values[0])).steady())
         found[name] = {"up": up, "down": way(values[::-1], up.end)}
     return found

@@ -5,15 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from studies import letter, plotting
-from studies.plotting import BLUE, GUIDE, VERMILION
+from studies.plotting import GUIDE
 from studies.scene import Scene, single_mode_at
 from studies.transitions.descriptions import Diagram, Row, Scans
+
+LEGEND = ("upward scan", "downward scan", "letter: stability of the amplitude", "grazing", "not settled")
 
 
 def draw(scene: Scene, rows: Sequence[Row], diagrams: Sequence[Scans], name: str) -> Figure:
@@ -21,9 +22,8 @@ def draw(scene: Scene, rows: Sequence[Row], diagrams: Sequence[Scans], name: str
     columns = min(3, len(rows))
     lines = math.ceil(len(rows) / columns)
     with plotting.house_style():
-        figure, axes = plotting.new_figure(
-            lines, columns, width=plotting.PAGE, height=0.055 * lines + 0.012, squeeze=False
-        )
+        size = {"width": plotting.PAGE, "height": 0.055 * lines + 0.012}
+        figure, axes = plotting.new_figure(lines, columns, squeeze=False, **size)
         series: dict[str, Artist] = {}
         for axis in axes.flat[len(rows) :]:
             axis.set_visible(False)
@@ -48,15 +48,8 @@ def draw(scene: Scene, rows: Sequence[Row], diagrams: Sequence[Scans], name: str
             plotting.label(axis.xaxis, *sideways)
         for axis in axes[:, 0]:
             plotting.label(axis.yaxis, *upwards)
-        names = (
-            "upward scan",
-            "downward scan",
-            "letter: stability of the amplitude",
-            "grazing",
-            "not settled",
-        )
-        there = [entry for entry in names if entry in series]
-        figure.legend([series[entry] for entry in there], there, loc="outside lower center", ncols=len(there),
+        there = [name for name in LEGEND if name in series]
+        figure.legend([series[name] for name in there], there, loc="outside lower center", ncols=len(there),
                       markerscale=1.5)  # fmt: skip
     return figure
 
@@ -65,18 +58,13 @@ def panel(axis: Axes, found: Mapping[str, Diagram], grazing: float | None) -> No
     """Both scans at one frequency, against the amplitude [mm], for the map (no amplitude) the excess
     [1e-3]."""
     moving = set[float]()
-    for way, face, size in (("down", "none", 3.2), ("up", BLUE, 2.0)):
+    for way, look in (("down", plotting.DOWN), ("up", plotting.UP)):
         diagram = found[way]
         amplitude = 1e3 * (diagram.excess if grazing is None else grazing * (1.0 + diagram.excess))
         settled = diagram.period > 0
-        x = np.repeat(amplitude[settled, None], diagram.points.shape[1], axis=1)
-        y = diagram.points[settled] * (1.0 if grazing is None else 1e3)
         moving |= {a for a, kind in zip(amplitude, diagram.kind, strict=True) if kind == "not settled"}
-        axis.plot(
-            x.ravel(), y.ravel(), linestyle="none", marker="o", markersize=size, markeredgewidth=0.5,
-            markerfacecolor=face, markeredgecolor=BLUE if way == "up" else VERMILION, label=f"{way}ward scan",
-            rasterized=True, zorder=2 if way == "down" else 3,
-        )  # fmt: skip
+        points = diagram.points[settled] * (1.0 if grazing is None else 1e3)
+        plotting.strobe_points(axis, amplitude[settled], points, settled[settled], look, f"{way}ward scan")
     for place, value in enumerate(sorted(moving)):
         axis.axvline(value, color="0.75", linewidth=0.5, zorder=1, label="_" if place else "not settled")
     at = 0.0 if grazing is None else 1e3 * grazing

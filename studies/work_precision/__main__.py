@@ -3,26 +3,25 @@
 Claim: on these problems no outside solver and no method with a time step is both faster and as accurate as
 the exact method that `simulate` takes by default; the letter's own scheme, the same flights with a search
 that proves nothing (note [11]), costs about the same, and so does heyoka where one soft contact lasts as long
-as the run. With up to eight modes, what is left out of the beam
-weighs more than a time step of a quarter of the contact.
+as the run. With up to eight modes, what is left out of the beam weighs more than a time step of a quarter of
+the contact.
 
 Four problems: Eq. (1) with the hard wall; the scene's beam with a linear contact that lasts as long as
 Hertz's; the same with Hertz's contact; the beam of code_aster's SDNL32 swung on a spring. For every method,
 the package's own and outside solvers, and every setting:
 
-    error     of mode 1 past the first collision, and of the time of impact
-    missed    share of shallow crossings of known depth that are not noticed
-    cost      time per drive period along the settled orbit, and evaluations
+    error     of mode 1 past the first collision
+    missed    share of shallow crossings of known depth that are not noticed by the free modes' motion
+    cost      time per drive period along the settled orbit
     against   a Taylor series in extended precision, whose own error is stated
 
-Then the Pareto front, the cheapest setting of each method for two errors, the orders of convergence, and the
-error of a truncated beam beside that of the time step. A method that fails at a setting is a row that says
-why; a setting at which a drive period would take longer than half a second is a row that says so. Timings are
-taken one at a time, so that --workers makes no difference.
+Then the cheapest setting of each method for two errors, and the error of a truncated beam beside that of the
+time step. A method that fails at a setting is a row that says why; a setting at which a
+drive period would take longer than half a second is a row that says so. Timings are taken one at a time, so
+that --workers makes no difference.
 
 Run:     python -m studies.work_precision     6 min, --quick 20 s
-Writes:  rows.csv, cheapest.csv, judgements.csv, orders.csv, model_error.csv; work_precision, other_errors and
-         model_error (png, pdf)
+Writes:  rows.csv, cheapest.csv, judgements.csv, model_error.csv; work_precision and missed (png, pdf)
 """
 
 from __future__ import annotations
@@ -30,7 +29,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from contact.integrators import INTEGRATORS, method_for
 from studies.peers import missing_solvers
 from studies.run import Run, study
 from studies.scene import Scene, harmonic
@@ -40,13 +38,11 @@ from studies.work_precision.measures import (
     Reference,
     Row,
     cheapest,
-    front,
-    orders_of,
     reference_of,
     rows_of,
 )
-from studies.work_precision.methods import OUTSIDE, SAMPLED, sweeps_for
-from studies.work_precision.model_error import ModelError, model_errors
+from studies.work_precision.methods import SAMPLED, sweeps_for
+from studies.work_precision.model_error import model_errors
 from studies.work_precision.problems import MODES, problems_of
 
 __all__ = ["Cheapest", "Judgement", "cheapest_of", "judgement_of", "work_precision"]
@@ -78,25 +74,15 @@ class Cheapest:
 
 @dataclass(frozen=True, kw_only=True)
 class Judgement:
-    """The default on one problem, and the rows that would beat it.
-
-    `faster` lists rows with no larger error (of rounding, or of the default) at less than 1/TIE of its cost;
-    `next_best` and `outside` are the cheapest other row and outside solver within the accuracy that the
-    default states, with their cost over its cost.
-    """
+    """The default on one problem, and the rows with no larger error (of rounding, or of the default) at less
+    than 1/TIE of its cost."""
 
     problem: str
     error: float
-    accuracy: float
     us_per_period: float
     missed: float | None
     faster: list[str]
-    next_best: str | None
-    next_ratio: float | None
-    outside: str | None
-    outside_ratio: float | None
     reference_error: float
-    reference_error_time: float
 
 
 @study()
@@ -106,35 +92,27 @@ def work_precision(scene: Scene, run: Run) -> Mapping[str, object]:
     references = [reference_of(one) for one in run.track(problems, "references")]
     rows = measured(references, run)
     model = model_errors(scene, run)
-    judgements = [
-        one for one in (judgement_of(reference, rows) for reference in references) if one is not None
-    ]
-    orders = orders_of(rows)
-    best = {
-        one.problem.name: front([row for row in rows if row.problem == one.problem.name])
-        for one in references
-    }
+    judgements = [one for one in (judgement_of(reference, rows) for reference in references) if one]
     run.table("rows", rows, "Every method at every setting.", show=())
     run.table(
         "cheapest", cheapest_of(rows), "Time per drive period [us] for an error of mode 1, crossings missed."
     )
-    run.table("orders", orders, "Orders of convergence, stated for smooth motion and shown.", show=())
-    run.table("model_error", model, "Truncated beam: error of mode 1, and the step that errs as much.",
-              show=("modes", "error", "us_per_period", "balanced_step_s"))  # fmt: skip
-    run.table("judgements", judgements, "The exact method against all others.",
-              show=("problem", "error", "us_per_period", "missed", "faster", "next_best", "next_ratio",
-                    "outside", "outside_ratio", "reference_error"))  # fmt: skip
+    run.table("model_error", model, "Truncated beam: error of mode 1, and the step that errs as much.")
+    run.table("judgements", judgements, "The exact method against all others.")
     for row in rows:
         if row.default and row.failed:
             run.failed(f"{row.problem}, {row.method}", row.failed)
     judge(run, rows)
-    draw(run, rows, references, model)
     if missing_solvers():
         run.say(f"not installed: {', '.join(missing_solvers())}")
+
+    from studies.work_precision import figures  # matplotlib is slow to import
+
+    run.figure("work_precision", figures.draw_errors(rows, references), "Error of mode 1 past the first "
+               "collision against time per drive period; black star, the exact method.")  # fmt: skip
+    run.figure("missed", figures.draw_missed(rows, problems), "Share of shallow crossings that is missed.")
     return {
-        "rows": rows, "front": {name: [row.named for row in kept] for name, kept in best.items()},
-        "judgements": judgements, "model_error": model, "orders": orders, "methods": sorted(INTEGRATORS),
-        "missing_solvers": missing_solvers(),
+        "rows": rows, "judgements": judgements, "model_error": model, "missing_solvers": missing_solvers(),
     }  # fmt: skip
 
 
@@ -151,17 +129,16 @@ def measured(references: Sequence[Reference], run: Run) -> list[Row]:
 
 def cheapest_of(rows: Sequence[Row]) -> list[Cheapest]:
     """The cheapest setting of each method for both errors."""
-
-    def at(rows: Sequence[Row], target: float) -> tuple[float | None, float | None]:
-        row = cheapest(rows, target)
-        return (None, None) if row is None else (row.us_per_period, row.missed)
-
     found = []
     for problem, method in dict.fromkeys((row.problem, row.method) for row in rows):
         mine = [row for row in rows if (row.problem, row.method) == (problem, method)]
-        coarse, fine = at(mine, 1e-4), at(mine, 1e-8)
-        found.append(Cheapest(problem=problem, method=method, us_for_1e_4=coarse[0], missed_at_1e_4=coarse[1],
-                              us_for_1e_8=fine[0], missed_at_1e_8=fine[1]))  # fmt: skip
+        coarse, fine = cheapest(mine, 1e-4), cheapest(mine, 1e-8)
+        found.append(Cheapest(
+            problem=problem, method=method,
+            us_for_1e_4=coarse.us_per_period if coarse else None,
+            missed_at_1e_4=coarse.missed if coarse else None,
+            us_for_1e_8=fine.us_per_period if fine else None, missed_at_1e_8=fine.missed if fine else None,
+        ))  # fmt: skip
     return found
 
 
@@ -169,26 +146,17 @@ def judgement_of(reference: Reference, rows: Sequence[Row]) -> Judgement | None:
     """The default on one problem; None if it failed."""
     mine = [row for row in rows if row.problem == reference.problem.name]
     default = next(row for row in mine if row.default)
-    if default.error is None or default.us_per_period is None:
+    error, cost = default.error, default.us_per_period
+    if error is None or cost is None:
         return None
-    error, cost, others = default.error, default.us_per_period, [row for row in mine if not row.default]
-    accuracy = method_for(reference.problem.oscillator.stop.law.code).accuracy
-    rival = cheapest(others, accuracy)
-    foreign = cheapest([row for row in others if row.family == OUTSIDE], accuracy)
-
-    def against(row: Row | None) -> tuple[str | None, float | None]:
-        return (None, None) if row is None or not row.us_per_period else (row.named, row.us_per_period / cost)
-
-    (next_best, next_ratio), (outside, outside_ratio) = against(rival), against(foreign)
     return Judgement(
-        problem=default.problem, error=error, accuracy=accuracy, us_per_period=cost, missed=default.missed,
+        problem=default.problem, error=error, us_per_period=cost, missed=default.missed,
         faster=[
-            row.named for row in others
+            row.named for row in mine
             if row.error is not None and row.us_per_period is not None
             and row.error <= max(error, ROUNDED) and row.us_per_period * TIE < cost
         ],
-        next_best=next_best, next_ratio=next_ratio, outside=outside, outside_ratio=outside_ratio,
-        reference_error=reference.own_error, reference_error_time=reference.own_error_time,
+        reference_error=reference.own_error,
     )  # fmt: skip
 
 
@@ -203,28 +171,6 @@ def judge(run: Run, rows: Sequence[Row]) -> None:
             found=f"{min(missed):.0%} to {max(missed):.0%} of shallow crossings missed",
             note=f"the scheme in Eq. (1) with {scheme[0].setting} to {scheme[-1].setting}; it proves nothing",
         )
-
-
-def draw(run: Run, rows: Sequence[Row], references: Sequence[Reference], model: Sequence[ModelError]) -> None:
-    """The figures."""
-    from studies.work_precision import figures  # matplotlib is slow to import
-
-    run.figure(
-        "work_precision",
-        figures.draw_errors(rows, references),
-        "Error of mode 1 past the first collision against time per drive period, four problems; grey, the "
-        "front; black star, the exact method.",
-    )
-    run.figure(
-        "other_errors",
-        figures.draw_other_errors(rows, references),
-        "Error of the time of impact, and share of shallow crossings that is missed.",
-    )
-    run.figure(
-        "model_error",
-        figures.draw_model(model),
-        "Error of too few modes beside that of a time step, and the cost of both.",
-    )
 
 
 if __name__ == "__main__":

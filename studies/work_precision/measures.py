@@ -1,16 +1,16 @@
-"""Errors and costs of every method at every setting, the Pareto front, and the orders that the errors show.
+"""Errors and costs of every method at every setting.
 
     error         mode 1 at the probe, past the collision: distance of (q/size, q'/speed) from the reference
-    error_time    first touch (swung beam: first release), over the period
-    missed        share of the known crossings without an impact; largest_missed their largest overshoot
+    missed        share of crossings of known depth that are not seen, each from `PHASES` starts with the free
+                  modes of the problem (``studies.crossings``)
     us_per_period processor time of the thread per drive period along the settled orbit, the median of warm
                   runs long enough that the clock and the call do not count (the swung beam's 12 ms cannot be
                   made longer: there the call, 0.1 ms, is part of the cost)
 
 All methods here use one thread, whose time is on a free core the time that passes, and does not grow on a
-busy one. None stands for what does not exist (no drive) or was not reached (no touch). A setting that fails
-is a row with the sentence of its failure; one whose drive period is expected to take longer than a bound,
-from the setting before it, is a row that says so.
+busy one. None stands for what does not exist (no drive). A setting that fails is a row with the sentence of
+its failure; one whose drive period is expected to take longer than a bound, from the setting before it, is a
+row that says so.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ import numpy as np
 
 from contact import simulate
 from contact.integrators import Integrator
-from studies.work_precision.crossings import KnownCrossing, known_crossings, missed_share
-from studies.work_precision.methods import EXACT, STEPPED, Sweep
+from studies.crossings import Swing
+from studies.work_precision.methods import EXACT, Sweep
 from studies.work_precision.problems import Problem
 from studies.work_precision.reference import DIGITS, extended_motion
 
 __all__ = [
-    "Order", "Reference", "Row", "cheapest", "cost_of", "errors_of", "front", "measured_order", "orders_of",
+    "REPEATS", "RINGING", "SLOWEST", "Reference", "Row", "cheapest", "cost_of", "missed_share",
     "reference_of", "rows_of",
 ]  # fmt: skip
 
@@ -51,9 +51,12 @@ MOST_PERIODS = 512
 PATIENCE = 0.4
 """Time spent on the repetitions of one point at most [s]; a slower run is timed once."""
 
-ROUNDING, COARSE, FEWEST = 1e-11, 3e-2, 3
-"""Errors between which an order is read, and the fewest settings for it: above, a method is not yet in its
-asymptotic range; below, rounding over millions of steps shows."""
+
+OVERSHOOTS, PHASES = tuple(10.0**-p for p in range(2, 9)), 4
+"""Depths of the crossings over the gap, and starts for each."""
+
+RINGING = 2e-3
+"""Part of the peak in the higher modes, as mode 2 rings between collisions of the scene's beam [1]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,15 +69,10 @@ class Row:
     setting: str
     value: float | None
     """Step [s], spacing of samples over the period, or tolerance [1]."""
-    order: float | None
     certified: bool
     error: float | None = None
-    error_time: float | None = None
     missed: float | None = None
-    largest_missed: float | None = None
     us_per_period: float | None = None
-    evaluations_per_period: float | None = None
-    repeats: int = 0
     failed: str = ""
 
     @property
@@ -90,63 +88,67 @@ class Row:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Reference:
-    """What the errors on one problem are measured with; `own_error` and `own_error_time` are its own."""
+    """What the errors on one problem are measured with: mode 1 at the probe; `own_error` is its own."""
 
     problem: Problem
     displacement: Decimal
     velocity: Decimal
-    instant: Decimal
     own_error: float
-    own_error_time: float
-    crossings: list[KnownCrossing]
+
+    def error_of(self, displacement: float | Decimal, velocity: float | Decimal) -> float:
+        """Scaled distance of mode 1 from the reference; differences are formed in extended precision [1]."""
+        away = float(Decimal(displacement) - self.displacement) / self.problem.size
+        return math.hypot(away, float(Decimal(velocity) - self.velocity) / self.problem.speed)
 
 
 def reference_of(problem: Problem) -> Reference:
     """The reference of a problem, from the runs of both precisions."""
-    probes = []
-    for digits in DIGITS:
-        motion = extended_motion(problem.oscillator, problem.start, [problem.probe], digits)
-        (q, v), touch = motion.states[0], motion.touches[0]
-        probes.append((q[0], v[0], touch.end if problem.timed_end else touch.start))
-    one, other = probes
-    away, fast, late = (float(abs(a - b)) for a, b in zip(one, other, strict=True))
-    return Reference(
-        problem=problem, displacement=one[0], velocity=one[1], instant=one[2],
-        own_error=math.hypot(away / problem.size, fast / problem.speed), own_error_time=late / problem.period,
-        crossings=known_crossings(problem.oscillator),
+    one, other = (
+        extended_motion(problem.oscillator, problem.start, problem.probe, digits) for digits in DIGITS
+    )
+    found = Reference(
+        problem=problem, displacement=one.displacement[0], velocity=one.velocity[0], own_error=0.0
     )  # fmt: skip
+    return replace(found, own_error=found.error_of(other.displacement[0], other.velocity[0]))
 
 
-def errors_of(reference: Reference, method: Integrator) -> tuple[float, float | None]:
-    """Error of mode 1 and of the first touch; differences are formed in extended precision."""
+def error_of(reference: Reference, method: Integrator) -> float:
+    """Error of mode 1 by a method [1]."""
     problem = reference.problem
     run = simulate(problem.oscillator, problem.start, duration=problem.duration,
                    times=np.array([problem.probe]), method=method)  # fmt: skip
-    away = float(abs(Decimal(float(run.displacement[0, 0])) - reference.displacement)) / problem.size
-    fast = float(abs(Decimal(float(run.velocity[0, 0])) - reference.velocity)) / problem.speed
-    timed = (run.impacts.end if problem.timed_end else run.impacts.start)[run.impacts.kind == 0]
-    if not timed.size or not math.isfinite(timed[0]):
-        return math.hypot(away, fast), None
-    return math.hypot(away, fast), float(abs(Decimal(float(timed[0])) - reference.instant)) / problem.period
+    return reference.error_of(float(run.displacement[0, 0]), float(run.velocity[0, 0]))
 
 
-def cost_of(problem: Problem, method: Integrator, repeats: int = 9) -> tuple[float, float, int]:
-    """Per drive period of the settled orbit: time [us] and evaluations; and the number of timed runs."""
+def missed_share(problem: Problem, method: Integrator) -> float | None:
+    """Share of the crossings not seen; a run that fails has seen none. None without a drive, for a stop that
+    is not met by swinging [1]."""
+    if problem.oscillator.drive is None:
+        return None
+    swing = Swing.of(problem.oscillator.model, problem.oscillator.stop, RINGING)
+    touches = [
+        swing.touch(method, depth, lead) for depth in OVERSHOOTS for lead in swing.leads(PHASES).tolist()
+    ]
+    return float(np.mean(np.isnan(touches)))
+
+
+def cost_of(problem: Problem, method: Integrator, repeats: int = REPEATS) -> float:
+    """Time per drive period of the settled orbit [us]."""
     periods = problem.cost_periods
 
-    def once(count: int) -> tuple[float, int]:
+    def once(count: int) -> float:
         begun = time.thread_time()
-        run = simulate(problem.oscillator, problem.cost_start, duration=count * problem.period, method=method)
-        return time.thread_time() - begun, run.evaluations
+        simulate(problem.oscillator, problem.cost_start, duration=count * problem.period, method=method)
+        return time.thread_time() - begun
 
-    took, evaluations = once(periods)
+    took = once(periods)
     while took < LONG_ENOUGH and periods < MOST_PERIODS and problem.oscillator.drive is not None:
         periods = min(MOST_PERIODS, periods * max(2, min(8, int(LONG_ENOUGH / took))))
-        took, evaluations = once(periods)
+        took = once(periods)
     times = [took]
     if took < PATIENCE:
-        times = [once(periods)[0] for _ in range(max(1, min(repeats, int(PATIENCE / took))))]
-    return 1e6 * statistics.median(times) / periods, evaluations / periods, len(times)
+        times = [once(periods) for _ in range(max(1, min(repeats, int(PATIENCE / took))))]
+    return 1e6 * statistics.median(times) / periods
 
 
 def rows_of(
@@ -157,24 +159,17 @@ def rows_of(
     rows, expected = [], 0.0
     for setting in sweep.settings:
         method = setting.method
-        order = method.order if math.isfinite(method.order) else None
-        row = Row(
-            problem=reference.problem.name, method=sweep.label, family=sweep.family, setting=setting.text,
-            value=setting.value, order=order, certified=method.certified,
-        )  # fmt: skip
+        row = Row(problem=reference.problem.name, method=sweep.label, family=sweep.family,
+                  setting=setting.text, value=setting.value, certified=method.certified)  # fmt: skip
         if expected > slowest:
-            row = replace(
-                row, failed=f"not run: a period would take about {expected:.2g} s, the bound is {slowest:g} s"
-            )
+            about = f"not run: a period would take about {expected:.2g} s, the bound is {slowest:g} s"
+            row = replace(row, failed=about)
             expected *= sweep.growth
         else:
             try:
-                error, error_time = errors_of(reference, method)
-                missed, largest = missed_share(method, reference.crossings)
-                cost, evaluations, count = cost_of(reference.problem, method, repeats)
                 row = replace(
-                    row, error=error, error_time=error_time, missed=missed, largest_missed=largest,
-                    us_per_period=cost, evaluations_per_period=evaluations, repeats=count,
+                    row, error=error_of(reference, method), missed=missed_share(reference.problem, method),
+                    us_per_period=(cost := cost_of(reference.problem, method, repeats)),
                 )  # fmt: skip
                 expected = 1e-6 * cost * sweep.growth
             except Exception as error:  # an outside solver may raise anything, and it is a result
@@ -184,61 +179,10 @@ def rows_of(
     return rows
 
 
-def _points(rows: Sequence[Row]) -> list[tuple[float, float, Row]]:
-    """(cost, error, row) of the rows that have both, by rising cost."""
-    known = [
-        (row.us_per_period, row.error, row) for row in rows
-        if row.us_per_period is not None and row.error is not None and math.isfinite(row.error)
-    ]  # fmt: skip
-    return sorted(known, key=lambda point: point[:2])
-
-
-def front(rows: Sequence[Row]) -> list[Row]:
-    """The rows that no other row beats in both error and cost, by rising cost; of equal ones, all."""
-    kept: list[tuple[float, float, Row]] = []
-    for point in _points(rows):
-        if not kept or point[1] < kept[-1][1] or point[:2] == kept[-1][:2]:
-            kept.append(point)
-    return [row for _cost, _error, row in kept]
-
-
 def cheapest(rows: Sequence[Row], target: float) -> Row | None:
     """The row of least cost with an error of at most `target`; None if there is none."""
-    return next((row for _cost, error, row in _points(rows) if error <= target), None)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Order:
-    """The order that a method states for smooth motion, and those that its rows show."""
-
-    problem: str
-    method: str
-    stated: float | None
-    measured: float | None
-    measured_time: float | None
-
-
-def measured_order(rows: Sequence[Row], measure: str = "error") -> float | None:
-    """Least-squares slope of log(error) over log(step); None with fewer than three settings in range.
-
-    Where the contact is met between grid points, the error carries a factor that depends on where, so that
-    single ratios scatter about the slope.
-    """
-    points = [(row.value, getattr(row, measure)) for row in rows]
-    known = [point for point in points if None not in point and ROUNDING < point[1] < COARSE]
-    if len(known) < FEWEST:
-        return None
-    step, error = np.log(np.array(known)).T
-    return float(np.polyfit(step, error, 1)[0])
-
-
-def orders_of(rows: Sequence[Row]) -> list[Order]:
-    """The orders of each method with a step on each problem."""
-    found = []
-    for problem, method in dict.fromkeys((row.problem, row.method) for row in rows if row.family == STEPPED):
-        mine = [row for row in rows if (row.problem, row.method) == (problem, method)]
-        found.append(Order(
-            problem=problem, method=method, stated=mine[0].order, measured=measured_order(mine),
-            measured_time=measured_order(mine, "error_time"),
-        ))  # fmt: skip
-    return found
+    known = [
+        (row.us_per_period, row.error, row) for row in rows
+        if row.us_per_period is not None and row.error is not None and row.error <= target
+    ]  # fmt: skip
+    return min(known, key=lambda found: found[:2], default=(None, None, None))[2]

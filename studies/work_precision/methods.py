@@ -2,25 +2,26 @@
 
 Fixed steps start at one step per contact (hard wall: 32 steps per drive period), or at the limit of stability
 of the fastest mode, 2/omega, if that is smaller, and are quartered from one setting to the next. Outside
-solvers run over their tolerance. The exact method of the law has one setting.
+solvers run over their tolerance. The exact method has one setting.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from contact.integrators import (
     CentralDifference,
+    Exact,
     GeneralisedAlpha,
     Integrator,
     MoreauJean,
     NonsmoothGeneralisedAlpha,
     SampledFlight,
     Splitting,
-    method_for,
 )
 from studies.peers import all_solvers
 from studies.work_precision.problems import Problem
@@ -52,8 +53,7 @@ STEPS: dict[str, Callable[[float], Integrator]] = {
 """Methods with a step [s] by their labels."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Setting:
+class Setting(NamedTuple):
     """One point of a sweep: step [s], samples' spacing over the period or tolerance; its text; the method."""
 
     value: float | None
@@ -68,7 +68,7 @@ class Sweep:
     label: str
     family: str
     growth: float
-    settings: tuple[Setting, ...]
+    settings: list[Setting]
 
 
 def coarsest_step(problem: Problem) -> float:
@@ -79,27 +79,21 @@ def coarsest_step(problem: Problem) -> float:
 
 def sweeps_for(problem: Problem, *, quick: bool = False) -> list[Sweep]:
     """Every method that knows the law of `problem`, over its settings."""
-    law, stride = problem.oscillator.stop.law.code, 3 if quick else 1
-    exact = Setting(value=None, text="exact", method=method_for(law))
-    found = [Sweep(label="exact method", family=EXACT, growth=1.0, settings=(exact,))]
+    law, stride, found = problem.oscillator.stop.law.code, 3 if quick else 1, list[Sweep]()
 
-    def add(label: str, family: str, growth: float, settings: Sequence[Setting]) -> None:
+    def add(label: str, family: str, growth: float, settings: list[Setting]) -> None:
         if settings[0].method.accepts(law):
-            found.append(Sweep(label=label, family=family, growth=growth**stride, settings=tuple(settings)))
+            found.append(Sweep(label=label, family=family, growth=growth**stride, settings=settings))
 
+    add("exact method", EXACT, 1.0, [Setting(None, "exact", Exact())])
     finest = FINEST_HARD if problem.contact_time == 0.0 else FINEST
     steps = (coarsest_step(problem) * 4.0 ** -np.arange(0, finest, stride)).tolist()
     for label, made in STEPS.items():
-        add(label, STEPPED, 4.0, [Setting(value=h, text=f"step {h:.3g} s", method=made(h)) for h in steps])
-    add(SAMPLED, STEPPED, 4.0, [
-        Setting(value=1.0 / n, text=f"{n} points per period", method=SampledFlight(points=n))
-        for n in POINTS[::stride]
-    ])  # fmt: skip
-    tolerances = TOLERANCES[1::3] if quick else TOLERANCES
-    solvers = [all_solvers(tolerance) for tolerance in tolerances]
-    for label in solvers[0]:
-        add(label, OUTSIDE, 3.0, [
-            Setting(value=tolerance, text=f"tolerance {tolerance:.0e}", method=made[label])
-            for tolerance, made in zip(tolerances, solvers, strict=True)
-        ])  # fmt: skip
+        add(label, STEPPED, 4.0, [Setting(h, f"step {h:.3g} s", made(h)) for h in steps])
+    add(SAMPLED, STEPPED, 4.0, [Setting(1.0 / n, f"{n} points per period", SampledFlight(points=n))
+                                for n in POINTS[::stride]])  # fmt: skip
+    solvers = {tol: all_solvers(tol) for tol in (TOLERANCES[1::3] if quick else TOLERANCES)}
+    for label in solvers[TOLERANCES[1]]:
+        add(label, OUTSIDE, 3.0, [Setting(tol, f"tolerance {tol:.0e}", made[label])
+                                  for tol, made in solvers.items()])  # fmt: skip
     return found

@@ -18,16 +18,15 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import ContactError, simulate
-from contact.integrators import CentralDifference, Integrator, method_for
+from contact.integrators import CentralDifference, Exact, Integrator
 from studies.run import Run
 from studies.scene import Scene
 from studies.work_precision.measures import cost_of
 from studies.work_precision.problems import Problem, driven_problem, hertz_beam
 
-__all__ = ["ModelError", "StepError", "balanced_step", "model_errors"]
+__all__ = ["ModelError", "balanced_step", "model_errors"]
 
 COUNTS, COUNTS_QUICK = (1, 2, 3, 4, 6, 8, 12, 16, 24), (2, 4, 8)
 """Numbers of modes: 24 reach 27 kHz, two swings in a contact."""
@@ -35,17 +34,8 @@ COUNTS, COUNTS_QUICK = (1, 2, 3, 4, 6, 8, 12, 16, 24), (2, 4, 8)
 FACTOR = 4
 """The larger model has this many times as many modes."""
 
-STEPS, STEPS_QUICK = (32e-6, 16e-6, 8e-6, 4e-6, 1e-6), (16e-6, 4e-6)
+STEPS = (32e-6, 16e-6, 8e-6, 4e-6, 1e-6)
 """Steps of central difference, from half a contact [s]; coarser ones are refused for any number of modes."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class StepError:
-    """Error of a time step and what it costs; None where the step is refused."""
-
-    step_s: float
-    error: float | None
-    us_per_period: float | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,50 +47,41 @@ class ModelError:
     us_per_period: float
     balanced_step_s: float | None
     """None outside the steps tried."""
-    steps: list[StepError]
 
 
-def balanced_step(steps: Sequence[StepError], level: float) -> float | None:
-    """The step whose error is `level`, None if none of the intervals holds it [s]."""
-    known = [(one.step_s, one.error) for one in steps if one.error]
+def balanced_step(errors: Sequence[float | None], level: float) -> float | None:
+    """The step whose error is `level` among those of the `STEPS` (None where a step is refused), None if none
+    of the intervals holds it [s]."""
+    known = [(step, error) for step, error in zip(STEPS, errors, strict=True) if error]
     for (h0, e0), (h1, e1) in pairwise(known):
         if min(e0, e1) <= level <= max(e0, e1) and e0 != e1:
             return float(h0 * (h1 / h0) ** (math.log(level / e0) / math.log(e1 / e0)))
     return None
 
 
-def mode_1(problem: Problem, probe: float, method: Integrator | None = None) -> NDArray[np.float64]:
-    """Scaled (q, q') of mode 1 at time `probe` [s]."""
-    run = simulate(problem.oscillator, problem.start, duration=problem.duration, times=np.array([probe]),
-                   method=method)  # fmt: skip
-    return np.array([run.displacement[0, 0] / problem.size, run.velocity[0, 0] / problem.speed])
-
-
-def step_error(problem: Problem, step: float, exact: NDArray[np.float64]) -> StepError:
-    """The error of central difference with `step` [s]; it may refuse the step, or a contact later on."""
-    method, error, cost = CentralDifference(step=step), None, None
+def mode_1(problem: Problem, probe: float, method: Integrator) -> complex | None:
+    """Scaled q + i q' of mode 1 at time `probe` [s]; None where the method refuses its step, or a contact."""
     try:
-        error = float(np.hypot(*(mode_1(problem, problem.probe, method) - exact)))
-        cost = cost_of(problem, method, 1)[0]
+        run = simulate(problem.oscillator, problem.start, duration=problem.duration, times=np.array([probe]),
+                       method=method)  # fmt: skip
     except ContactError:
-        pass
-    return StepError(step_s=step, error=error, us_per_period=cost)
+        return None
+    return complex(run.displacement[0, 0] / problem.size, run.velocity[0, 0] / problem.speed)
 
 
 def model_errors(scene: Scene, run: Run) -> list[ModelError]:
-    """Both errors and the costs for every number of modes."""
-    counts, steps = (COUNTS_QUICK, STEPS_QUICK) if run.quick else (COUNTS, STEPS)
+    """Both errors and the cost for every number of modes."""
+    counts, found = COUNTS_QUICK if run.quick else COUNTS, []
     problems = {
         n: driven_problem("hertz", f"{n} modes", hertz_beam(scene.replace({"modes.count": n})))
         for n in sorted({*counts, *(FACTOR * n for n in counts)})
     }
-    found = []
     for n in run.track(counts, "number of modes against time step"):
-        here = problems[n]
-        exact = mode_1(here, here.probe)
-        level = float(np.hypot(*(exact - mode_1(problems[FACTOR * n], here.probe))))
-        errors = [step_error(here, h, exact) for h in steps]
-        cost = cost_of(here, method_for(here.oscillator.stop.law.code))[0]
-        found.append(ModelError(modes=n, error=level, us_per_period=cost,
-                                balanced_step_s=balanced_step(errors, level), steps=errors))  # fmt: skip
+        here, probe = problems[n], problems[n].probe
+        exact, more = (mode_1(one, probe, Exact()) or math.nan for one in (here, problems[FACTOR * n]))
+        stepped = [mode_1(here, probe, CentralDifference(step=h)) for h in STEPS]
+        errors = [None if one is None else abs(one - exact) for one in stepped]
+        level = abs(exact - more)
+        found.append(ModelError(modes=n, error=level, us_per_period=cost_of(here, Exact()),
+                                balanced_step_s=balanced_step(errors, level)))  # fmt: skip
     return found

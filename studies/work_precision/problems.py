@@ -28,6 +28,7 @@ from contact import (
     State,
     Stop,
     StroboscopicMap,
+    before_collision,
     first_collision,
     simulate,
 )
@@ -36,7 +37,7 @@ from studies.scene import Scene, beam_at, hertz_of, single_mode_at
 
 __all__ = [
     "EXCESS", "FREQUENCY", "MODES", "Problem", "driven_problem", "hertz_beam", "linear_beam", "problems_of",
-    "steady_at", "swung_beam", "swung_problem",
+    "swung_problem",
 ]  # fmt: skip
 
 FREQUENCY, EXCESS = 21.50, 0.013
@@ -60,46 +61,28 @@ DURATION = 0.012
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Problem:
-    """A motion to be computed by every method.
-
-    Parameters
-    ----------
-    name, title : str
-        Under which its rows are listed; what a figure says.
-    oscillator : ImpactOscillator
-    start : State
-        Of the error run.
-    probe : float
-        Time at which mode 1 is compared [s].
-    duration : float
-        Length of the error run, beyond the probe where there is a drive: no step is cut short for it [s].
-    period : float
-        Unit of time: the drive period, or the swung beam's whole run [s].
-    size, speed : float
-        Scales of mode 1's displacement and velocity [m kg^0.5], [m kg^0.5/s].
-    cost_start : State
-        On the settled orbit.
-    cost_periods : int
-        Units of time in which that orbit repeats.
-    contact_time : float
-        Of the first touch, 0 for an impact law [s].
-    timed_end : bool
-        Whether the instant compared is the first release (the first touch is where the run starts).
-    """
+    """A motion to be computed by every method."""
 
     name: str
     title: str
+    """Under which its rows are listed; what a figure says."""
     oscillator: ImpactOscillator
     start: State
+    """Of the error run."""
     probe: float
     duration: float
+    """Time at which mode 1 is compared, and length of the error run; with a drive it goes on beyond the
+    probe, so that no step is cut short for it [s]."""
     period: float
+    """Unit of time: the drive period, or the swung beam's whole run [s]."""
     size: float
     speed: float
+    """Scales of mode 1's displacement and velocity [m kg^0.5], [m kg^0.5/s]."""
     cost_start: State
     cost_periods: int
+    """On the settled orbit; units of time in which that repeats."""
     contact_time: float
-    timed_end: bool = False
+    """Of the first touch, 0 for an impact law [s]."""
 
     @property
     def unit(self) -> str:
@@ -107,26 +90,10 @@ class Problem:
         return f"{1e3 * self.period:g} ms" if self.oscillator.drive is None else "drive period"
 
 
-def steady_at(oscillator: ImpactOscillator, phase: float) -> State:
-    """The steady motion when the tip, as a cosine, is at `phase` from 0 to 2 pi: 0 is its highest point."""
-    drive, response = oscillator.drive, oscillator.steady_response()
-    if drive is None:
-        raise ValueError("drive is None; a steady motion needs a HarmonicDrive")
-    # x(t) = Z Im(H e^(iwt)) = Z |H| cos(w t + arg H - pi/2)
-    turn = (phase - np.angle(oscillator.tip_response()) + 0.5 * math.pi) % (2.0 * math.pi)
-    moving = drive.amplitude * response * np.exp(1j * turn)
-    w = drive.angular_frequency
-    return State(displacement=moving.imag, velocity=w * moving.real, time=turn / w)
-
-
 def driven_problem(name: str, title: str, oscillator: ImpactOscillator) -> Problem:
     """The problem of `oscillator`, driven above grazing."""
-    size, strobed = (
-        oscillator.stop.gap / abs(float(oscillator.model.phi[0])),
-        StroboscopicMap(oscillator=oscillator),
-    )
-    settled = settle(strobed, strobed.steady(), most_cycles=SETTLING)
-    start = steady_at(oscillator, math.pi)
+    size, strobed = oscillator.stop.gap / abs(oscillator.model.phi[0]), StroboscopicMap(oscillator=oscillator)
+    settled, start = settle(strobed, strobed.steady(), most_cycles=SETTLING), before_collision(oscillator)
     return Problem(
         name=name, title=title, oscillator=oscillator, start=start, probe=start.time + oscillator.period,
         duration=1.3 * oscillator.period, period=oscillator.period, size=size,
@@ -158,40 +125,31 @@ def hertz_beam(scene: Scene) -> ImpactOscillator:
     return replace(beam_at(scene, FREQUENCY), stop=stop).with_excess(EXCESS)
 
 
-def swung_beam(
-    stiffness: float, bending_modes: int = 9, damping_ratio: float = 0.01
-) -> tuple[ImpactOscillator, State]:
-    """The beam of SDNL32 as its free end meets the spring of `stiffness` [N/m].
+def swung_problem() -> Problem:
+    """SDNL32 with the stiffer spring, from where the free end meets it, with ten modes.
 
     Modes: the rotation, w = phi_0 s/L with phi_0 = sqrt(3/(rho A L)), and bending modes of the pinned-free
     bar. The stop lies where the tip moves to, so that the model counts positive what the source counts
     negative.
     """
-    side, modulus, density = 0.014, 6.7e10, 2400.0
+    side, modulus, density, damping_ratio = 0.014, 6.7e10, 2400.0, 0.01
     line = density * side**2
     beam = UniformBeam(length=LENGTH, bending_stiffness=modulus * side**4 / 12, mass_per_length=line,
                        supports=("pinned", "free"))  # fmt: skip
-    bending = exact_modes(beam, bending_modes)
+    bending = exact_modes(beam, 9)
     phi = np.append(math.sqrt(3 / (line * LENGTH)), bending.phi)
     model = ModalModel(
         omega=np.append(0.0, bending.omega), decay_rate=np.append(0.0, 2 * damping_ratio * bending.omega),
         phi=phi, participation=np.zeros(phi.size),
     )  # fmt: skip
-    velocity = np.zeros(phi.size)
-    velocity[0] = TURNING * LENGTH / phi[0]
-    oscillator = ImpactOscillator(model=model, stop=Stop(gap=0.0, law=LinearContact(stiffness=stiffness)))
-    return oscillator, State(displacement=np.zeros(phi.size), velocity=velocity)
-
-
-def swung_problem() -> Problem:
-    """SDNL32 with the stiffer spring."""
-    oscillator, start = swung_beam(SPRING)
-    touches, phi = simulate(oscillator, start, duration=DURATION).impacts, float(oscillator.model.phi[0])
+    velocity = TURNING * LENGTH / phi[0] * np.eye(phi.size)[0]
+    start = State(displacement=np.zeros(phi.size), velocity=velocity)
+    oscillator = ImpactOscillator(model=model, stop=Stop(gap=0.0, law=LinearContact(stiffness=SPRING)))
+    touches = simulate(oscillator, start, duration=DURATION).impacts
     return Problem(
         name="swung beam", title="SDNL32, 10 modes, linear contact", oscillator=oscillator, start=start,
-        probe=DURATION, duration=DURATION, period=DURATION, size=0.005 / phi,
-        speed=TURNING * LENGTH / phi, cost_start=start, cost_periods=1,
-        contact_time=float(touches.end[0] - touches.start[0]), timed_end=True,
+        probe=DURATION, duration=DURATION, period=DURATION, size=0.005 / phi[0], speed=velocity[0],
+        cost_start=start, cost_periods=1, contact_time=float(touches.end[0] - touches.start[0]),
     )  # fmt: skip
 
 

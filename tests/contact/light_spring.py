@@ -7,6 +7,7 @@ import math
 import numpy as np
 import oscillators
 
+from contact.collision import Collision
 from contact.laws import (
     ContactLaw,
     NewtonRestitution,
@@ -37,6 +38,11 @@ def equation_1(frequency: float, law: ContactLaw, excess: float) -> ImpactOscill
 
 def newton(e: float) -> NewtonRestitution:
     return NewtonRestitution(local_restitution=e)
+
+
+def real_differs(collision: Collision) -> bool:
+    """Whether real and virtual approach speed differ by more than 1 %."""
+    return not abs(collision.real_approach / collision.approach - 1.0) <= 0.01
 
 
 def steady(oscillator: ImpactOscillator, time: float) -> tuple[np.ndarray, np.ndarray]:

@@ -74,13 +74,13 @@ EXTREME: dict[str, ContactLaw] = {
 WITHOUT_A_LAW = {
     # objects, and the closed forms of the letter's map
     "AmplitudeScan", "Band", "band", "bands", "before_collision", "Branch", "Chatter", "Collision",
-    "ContactError", "ContactLaw", "ContactTooStiff", "DelayedRestitution", "Differentiable", "Diverged",
-    "Event", "Exponents", "fold", "HarmonicDrive", "HertzContact", "HuntCrossley", "ImpactKind",
-    "ImpactOscillator", "Impacts", "Kick", "KickOrbit", "LinearContact", "maximal_orbits",
-    "maximal_period", "maximal_periods", "MaximalFlight", "MaximalOrbit", "modal_flow",
-    "NewtonRestitution", "NordmarkMap", "NotPeriodic", "of_nordmark", "OrbitDiagram", "OrbitEnd",
+    "ContactError", "ContactLaw", "ContactTooStiff", "DelayedRestitution", "Diverged",
+    "Event", "Exponents", "Family", "fold", "HarmonicDrive", "HertzContact", "HuntCrossley", "ImpactKind",
+    "ImpactOscillator", "Impacts", "Kick", "LinearContact", "MapFamily", "maximal_orbits",
+    "maximal_period", "maximal_periods", "MaximalOrbit", "modal_flow",
+    "NewtonRestitution", "NordmarkMap", "NotPeriodic", "Orbit", "OrbitDiagram", "OrbitEnd",
     "Regime", "ScannedColumn", "Settled", "stable_range", "State", "StepTooLarge", "Stop", "StrobedMap",
-    "StrobedNordmarkMap", "StrobedOrbit", "Trajectory", "UnresolvedCrossing",
+    "StrobedOrbit", "Trajectory", "UnresolvedCrossing",
 }  # fmt: skip
 COMPUTING = (
     "KickFamily", "MaximalFamily", "PeriodicOrbit", "Shooting", "SingleImpactOrbit", "StroboscopicMap"
@@ -122,10 +122,10 @@ def motions(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], ob
         yield "StroboscopicMap.jacobians", lambda state=state: strobed.jacobians(state, 5)
         yield "strobed_orbits", lambda state=state: contact.strobed_orbits([strobed] * 2, [state] * 2, 20)
         for exponents in (lyapunov.map_exponents, lyapunov.orbit_exponents):
-            system = lyapunov.of_oscillator(strobed)
+            system = strobed
             yield exponents.__name__, lambda state=state, e=exponents, s=system: e(s, state, 5)
         yield "divergence_rate", lambda state=state: lyapunov.divergence_rate(
-            lyapunov.of_oscillator(strobed), state, 0.2
+            strobed, state, 0.2
         )
         for prove in (True, False):
             yield "settle", lambda state=state, prove=prove: periodic.settle(
@@ -145,7 +145,6 @@ def motions(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], ob
     ):  # fmt: skip
         yield "simulate", lambda method=method: contact.simulate(driven, fast, periods=2, method=method)
     yield "first_collision", lambda: contact.first_collision(oscillator)
-    yield "of_oscillator", lambda: lyapunov.of_oscillator(strobed)
     yield "StroboscopicMap.tip", lambda: strobed.tip(strobed.orbit(strobed.steady(), 3).points)
     yield "StroboscopicMap.readout", lambda: strobed.readout(np.zeros((1, oscillator.n_modes)), "none")
 
@@ -156,24 +155,31 @@ def orbits(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], obj
         make(oscillator=oscillator, period=5) for make in (kick.KickFamily, shooting.Shooting)
     )
     unit = oscillator.drive.angular_frequency * GAP
-    yield "KickFamily.drive_at_touch", lambda: kicks.drive_at_touch(GAP, 0.1)
     for part in (1e-6, 0.05, 0.3, 20.0):
         speed = part * unit
         yield "KickFamily.kick", lambda v=speed: kicks.kick(v)
         yield "KickFamily.orbit", lambda v=speed: kicks.orbit(v)
         yield "KickFamily.orbit_of", lambda v=speed: kicks.orbit_of(kicks.kick(v))
         yield "KickFamily.error", lambda v=speed: kicks.error(kicks.orbit(v))
-        yield "Shooting.guess", lambda v=speed: family.guess(kicks.orbit(v))
-        yield "Shooting.flow", lambda v=speed: family.flow(family.guess(kicks.orbit(v)))
+        yield "KickFamily.excess", lambda v=speed: kicks.excess(v)
+        yield "KickFamily.closed", lambda v=speed: kicks.closed(kicks.kick(v).jump)
+        yield "Shooting.flow", lambda v=speed: family.flow(unknown_of(kicks.orbit(v)))
+        yield "Shooting.orbit", lambda v=speed: family.orbit(v)
         yield "Shooting.at_speed", lambda v=speed: family.at_speed(v)
         yield "Shooting.at_excess", lambda v=speed: family.at_excess(0.01, family.at_speed(v))
-        yield "Shooting.unknowns", lambda v=speed: family.unknowns(family.at_speed(v))
         yield "PeriodicOrbit.state", lambda v=speed: family.at_speed(v).state()
+        yield "PeriodicOrbit.monodromy", lambda v=speed: family.at_speed(v).monodromy()
+        yield "PeriodicOrbit.release", lambda v=speed: family.at_speed(v).release()
         yield "PeriodicOrbit.strobe_state", lambda v=speed: family.at_speed(v).strobe_state()
         yield "follow", lambda v=speed: continuation.follow(
             family, family.at_speed(v), low=0.5 * v, high=2.0 * v, step=0.3
         )
     yield "KickFamily.fold", lambda: kicks.fold()
+    yield "KickFamily.orbits", lambda: kicks.orbits(0.01)
+    yield "Shooting.fold", lambda: family.fold()
+    yield "Shooting.orbits", lambda: family.orbits(0.01)
+    yield "orbits_at", lambda: continuation.orbits_at(family, 0.01)
+    yield "Shooting.of", lambda: family.of(oscillator)
     yield "fold_of", lambda: continuation.fold_of(family)
     yield "fold_of", lambda: continuation.fold_of(family, family.at_speed(0.1 * unit))
     yield "folds_of", lambda: periodic.folds_of(family)
@@ -193,13 +199,16 @@ def closed_forms(oscillator: ImpactOscillator) -> None:
     family = single_impact.MaximalFamily.from_oscillator(oscillator, period=5)
     fold = family.fold()
     assert fold is not None and family.orbits(0.01)
-    for name in ("state", "tip"):
-        getattr(family.orbit(0.1), name)(family.orbit(0.1).flight.start)
-    for name in ("motion", "excess"):
-        getattr(family, name)(1e-3)
-    family.single_mode(drive_frequency=22.2, free_period=0.04, decay_rate=3.56, restitution=0.1, period=5)
-    for name in ("multipliers", "monodromy", "saltation", "residual"):
-        getattr(fold, name)()
+    assert family.orbit(0.1).state().time == family.orbit(0.1).phase
+    assert family.excess(1e-3) < 1.0
+    assert fold.monodromy().shape == (2 * oscillator.n_modes, 2 * oscillator.n_modes)
+
+
+def unknown_of(orbit: single_impact.SingleImpactOrbit) -> np.ndarray:
+    """Deviations and drive at the touch of an orbit."""
+    angle = orbit.oscillator.drive.angular_frequency * orbit.phase
+    drive = orbit.amplitude * np.array([np.sin(angle), np.cos(angle)])
+    return np.concatenate([orbit.displacement, orbit.velocity, drive])
 
 
 def run_all(said: Callable[[str], None]) -> None:

@@ -18,6 +18,7 @@ import mpmath
 import numpy as np
 import pytest
 from oscillators import equation_1
+from scipy.linalg import expm
 
 from beam import ModalModel
 from contact import (
@@ -76,9 +77,12 @@ def test_a_periodic_orbit_repeats_to_rounding_and_is_the_closed_form():
     points = strobed.orbit(start, 20_000).points
     apart = np.abs(points.reshape(-1, 5, 2) - points[-5:]).max() / strobed.scale
     assert apart < 10 * EPS
-    times = (math.ceil(orbit.flight.start * 22.2) + np.arange(5)) / 22.2
-    q, v = orbit.state(times)
-    closed = np.column_stack([q[0], v[0] / oscillator.model.omega[0]])
+    times = (math.ceil(orbit.phase * 22.2) + np.arange(5)) / 22.2
+    omega, c = (float(row[0]) for row in (oscillator.model.omega, oscillator.model.decay_rate))
+    free = [expm(np.array([[0, 1], [-(omega**2), -c]]) * (t - orbit.phase)) @ orbit.after[0] for t in times]
+    steady = orbit.amplitude * oscillator.steady_response()  # imaginary and real part at a strobe
+    q, v = np.array(free).T + np.array([steady.imag, oscillator.drive.angular_frequency * steady.real])
+    closed = np.column_stack([q, v / omega])
     off = min(float(np.abs(points[-5:] - np.roll(closed, k, axis=0)).max()) for k in range(5))
     assert off < 1e-13 * strobed.scale
 

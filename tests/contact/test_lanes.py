@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from contact.flight.modal_flow import START_U, START_V, U, V, flow, load_state, mode_flow, new_flight
+from contact.flight.modal_flow import U, V, flow, load_state, mode_flow, new_flight
 from contact.flight.motion import Motion, motion_of
 from contact.laws import NewtonRestitution
 
@@ -34,7 +34,7 @@ def test_modes_carried_side_by_side_are_those_carried_one_by_one(modes, damping,
     u, v = generator.standard_normal(modes) / size, generator.standard_normal(modes)
     load_state(room, u, v)
     for t in longest * 10 ** generator.uniform(-6, 0, 40):
-        flow(motion, room[START_U], room[START_V], 0, room.shape[1], t, room[U], room[V])
+        flow(motion, room, 0, room.shape[1], t)
         for k in range(modes):
             x, y = mode_flow(motion.modes, k, u[k], v[k], t)
             scale = abs(v[k]) + size[k] * abs(u[k]) + abs(motion.load[k]) * t

@@ -7,12 +7,12 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from wrong_input_of_beam import INF, MODAL, NAN, each, fields_of, of, told
+from wrong_input_of_beam import INF, NAN, each, fields_of, of, told
 
 import beam
 import contact
 from contact import Regime, integrators
-from contact.orbits import continuation, kick, lyapunov, saltation, shooting
+from contact.orbits import continuation, kick, lyapunov, shooting
 
 
 @cache
@@ -53,7 +53,7 @@ def orbit() -> shooting.PeriodicOrbit:
 
 @cache
 def system() -> Any:
-    return lyapunov.of_nordmark(contact.StrobedNordmarkMap(map=nordmark(), rho=0.01))
+    return contact.StrobedNordmarkMap(map=nordmark(), rho=0.01)
 
 
 def at(displacement: float, regime: Regime = Regime.OUTSIDE) -> contact.State:
@@ -81,13 +81,13 @@ CONTACT = (
        kind=dict(local_restitution=each("0.1", None)),
        value=dict(local_restitution=each(1.1, 1.0000001, -1e-12, NAN))),
     of(contact.DelayedRestitution, dict(restitution=0.1, delay=1e-4),
-       kind=dict(restitution=told(lambda v: "soft", "gives 'soft'"), speeds=3.0),
+       kind=dict(restitution=told(lambda v: "soft", "gives 'soft'")),
        value=dict(restitution=each(2.0, 1.0000001, -0.01, -1e-12, NAN, "soft", None,
                                    told(lambda v: 1.2 - v, "restitution runs from"),
                                    told(lambda v: 0.5 if v < 1 else NAN, "restitution")),
                   delay=each(-1e-9, NAN, INF, "late", None, [1e-4], told(lambda v: 1e-4 - v, "delay"),
                              told(lambda v: INF, "delay")),
-                  speeds=each((1.0,), (1.0, 1.0), (0.0, 1.0), (1.0, NAN)))),
+                  speeds=each(told(3.0, "speeds has shape ()"), (1.0,), (1.0, 1.0), (0.0, 1.0), (1.0, NAN)))),
     of(contact.LinearContact, dict(stiffness=1e6, damping=0.0),
        kind=dict(stiffness=None, damping=None),
        value=dict(stiffness=each(0, 0.0, -1.0), damping=each(-1.0, -1e-300))),
@@ -185,10 +185,16 @@ CONTACT = (
     of(contact.first_collision, lambda: dict(oscillator=eq_1(), periods=64),
        kind=dict(oscillator=3, state="rest"),
        value=dict(periods=0, oscillator=told(eq_1().with_excess(-0.5), "periods is 64"))),
-    of(contact.MaximalFamily, MODAL | dict(drive_frequency=22.2, gap=0.0107, restitution=0.1, period=3),
-       kind=dict(omega=["a", "b"]), value=dict(phi=[1.0], gap=0.0, period=0, restitution=-0.1)),
-    of(contact.MaximalFamily.single_mode, FROM_F | dict(period=5, gap=1.0),
-       kind=dict(free_period="T"), value=dict(decay_rate=-1.0, drive_frequency=NAN)),
+    of(contact.MaximalFamily.from_oscillator, lambda: dict(oscillator=eq_1(), period=3, restitution=0.1),
+       name="MaximalFamily", kind=dict(oscillator=None),
+       value=dict(period=0, restitution=told(-0.1, "restitution is -0.1"),
+                  oscillator=each(told(UNDRIVEN, "drive is None"), told(LOADED, "load is given")))),
+    of(lambda period, speed, rho, excess: (
+           contact.MapFamily(nordmark(), period).orbit(speed),
+           contact.MapFamily(nordmark(), period).at_rho(rho),
+           contact.MapFamily(nordmark(), period).orbits(excess)),
+       dict(period=4, speed=0.1, rho=0.01, excess=0.01), name="MapFamily",
+       kind=dict(excess="1"), value=dict(period=0, speed=told(0.0, "speed is 0.0 [1]"), rho=NAN)),
     of(lambda speed: closed().orbit(speed), dict(speed=0.1), name="MaximalFamily.orbit",
        kind=dict(speed="fast"), value=dict(speed=each(0.0, NAN))),
     of(lambda excess: closed().orbits(excess), dict(excess=1e-3), name="MaximalFamily.orbits",
@@ -198,7 +204,7 @@ CONTACT = (
 ORBITS = (
     of(kick.KickFamily, lambda: dict(oscillator=eq_1(), period=5),
        kind=dict(oscillator=None),
-       value=dict(period=each(0, 2.5), modes=2, oscillator=told(LOADED, "load is given"))),
+       value=dict(period=each(0, 2.5), oscillator=told(LOADED, "load is given"))),
     of(lambda speeds: kick.KickFamily(oscillator=eq_1(), period=5).fold(speeds), dict(speeds=(0.01, 0.5)),
        name="KickFamily.fold",
        kind=dict(speeds="all"), value=dict(speeds=each((0.5, 0.01), (0.0, 1.0)))),
@@ -226,22 +232,15 @@ ORBITS = (
        kind=dict(family=each(None, eq_1()), near=0.1)),
     of(continuation.fold_along_frequency, lambda: dict(family=family(), frequencies=[22.2]),
        kind=dict(family=5, frequencies=["22.2"]), value=dict(frequencies=each(22.2, [NAN]))),
-    of(lyapunov.of_oscillator, lambda: dict(strobed=contact.StroboscopicMap(oscillator=eq_1())),
-       kind=dict(strobed=each(eq_1(), None)),
-       value=dict(strobed=told(contact.StroboscopicMap(oscillator=UNDRIVEN), "drive is None"))),
-    of(lyapunov.of_nordmark, lambda: dict(strobed=contact.StrobedNordmarkMap(map=nordmark())),
-       kind=dict(strobed=each(nordmark(), None, 0.1))),
-    of(lyapunov.map_exponents, lambda: dict(system=system(), state=np.array([0.0, 0.0]), count=10, align=0),
-       kind=dict(system=nordmark()), value=dict(count=1, align=-1)),
-    of(lyapunov.orbit_exponents, lambda: dict(system=system(), state=np.array([0.0, 0.0]), period=1),
-       kind=dict(system=None), value=dict(period=each(0, 1.5))),
+    of(continuation.orbits_at, lambda: dict(family=family(), excess=0.01),
+       kind=dict(family=None), value=dict(excess=each(-1.5, NAN))),
+    of(lyapunov.map_exponents, lambda: dict(strobed=system(), state=np.array([0.0, 0.0]), count=10, align=0),
+       kind=dict(strobed=each(nordmark(), eq_1())), value=dict(count=1, align=-1)),
+    of(lyapunov.orbit_exponents, lambda: dict(strobed=system(), state=np.array([0.0, 0.0]), period=1),
+       kind=dict(strobed=None), value=dict(period=each(0, 1.5))),
     of(lyapunov.divergence_rate,
-       lambda: dict(system=system(), state=np.array([0.0, 0.0]), duration=5.0, align=0.0, seed=1),
-       kind=dict(system=3), value=dict(duration=0.0, align=-1.0, seed=-1)),
-    of(saltation.monodromy, dict(flow=np.ones((1, 2, 2)), saltation=np.eye(2)),
-       kind=dict(saltation=[["a", "b"], ["c", "d"]]), value=dict(flow=np.ones(2), saltation=np.eye(3))),
-    of(saltation.sorted_multipliers, dict(matrix=np.eye(2)),
-       kind=dict(matrix="eye"), value=dict(matrix=each(np.ones((2, 3)), [NAN]))),
+       lambda: dict(strobed=system(), state=np.array([0.0, 0.0]), duration=5.0, align=0.0, seed=1),
+       kind=dict(strobed=3), value=dict(duration=0.0, align=-1.0, seed=-1)),
 )
 
 STEPS = each(0.0, NAN, told("1 us", "step is "))

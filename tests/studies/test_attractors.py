@@ -1,68 +1,19 @@
-"""Lyapunov exponents by two routes, what a motion settles on by them, and basins."""
+"""What a motion settles on by its largest Lyapunov exponent, and basins."""
 
 from __future__ import annotations
 
+import csv
 import math
-from dataclasses import dataclass
 
 import numpy as np
 import pytest
 
-from contact import State, StrobedNordmarkMap, StrobedOrbit, StroboscopicMap
-from contact.orbits import (
-    Shooting,
-    divergence_rate,
-    map_exponents,
-    of_nordmark,
-    of_oscillator,
-    orbit_exponents,
-    settle,
-)
+from contact import State, StroboscopicMap
 from studies.attractors.basins import CLOSE, plane_of
-from studies.attractors.kinds import CHAOTIC, NOT_SETTLED, PERIODIC, WITHOUT, classify
-from studies.scene import beam_at, nordmark_at, read_scene, single_mode_at
+from studies.attractors.scan import CHAOTIC, NOT_SETTLED, PERIODIC, WITHOUT, classify
+from studies.scene import beam_at, read_scene, single_mode_at
 
 FREQUENCY = 21.50
-
-
-@dataclass(frozen=True, kw_only=True)
-class LogisticMap:
-    """x' = a x (1 - x), with its derivative: both a strobed motion and `Differentiable`."""
-
-    a: float
-    scale: float = 1.0
-    period: float = 1.0
-
-    def at(self, excess):
-        return LogisticMap(a=4.0 * (1.0 + excess))
-
-    def steady(self):
-        return np.array([0.3])
-
-    def orbit(self, state, count):
-        points = np.empty((count, 1))
-        x = state[0]
-        for n in range(count):
-            x = self.a * x * (1.0 - x)
-            points[n] = x
-        return StrobedOrbit(end=points[-1].copy(), points=points, impacts=np.zeros(count, dtype=np.int64))
-
-    def jacobians(self, state, count):
-        points = self.orbit(state, count).points
-        before = np.vstack([state, points[:-1]])
-        return [(np.array([[self.a * (1.0 - 2.0 * x)]]), 1) for x in before[:, 0]], points[-1].copy()
-
-    def follow(self, state, time):
-        return self.orbit(state, 1).end
-
-    def clock(self, state):
-        return 0.0
-
-    def coordinates(self, state):
-        return state
-
-    def moved(self, state, change):
-        return state + change
 
 
 @pytest.fixture(scope="module")
@@ -80,117 +31,16 @@ def beam(scene):
     return StroboscopicMap(oscillator=beam_at(scene.replace({"modes.count": 12}), FREQUENCY))
 
 
-def test_the_logistic_map_has_ln_2_at_4_by_both_routes():
-    system = LogisticMap(a=4.0)
-    found, _end = map_exponents(system, system.steady(), 20000)
-    assert found.largest == pytest.approx(math.log(2.0), abs=4.0 * found.error)
-    assert found.error < 5e-3
-    flow = divergence_rate(system, system.steady(), 20000.0)
-    assert flow.largest == pytest.approx(math.log(2.0), abs=4.0 * flow.error)
-
-
-def test_the_logistic_map_on_its_period_two_has_the_multiplier_of_the_formula():
-    a = 3.3
-    system = LogisticMap(a=a)
-    end = settle(system, system.steady(), most_cycles=2000)
-    assert end.period == 2
-    found = orbit_exponents(system, end.end, 2)
-    assert found.largest == pytest.approx(0.5 * math.log(abs(4.0 + 2.0 * a - a * a)), abs=1e-7)
-
-
-def test_classify_takes_the_logistic_map_and_tells_its_chaos():
-    assert classify(LogisticMap(a=4.0), np.array([0.3]), lambda s: s, flow=False).kind == CHAOTIC
-    assert classify(LogisticMap(a=3.5), np.array([0.3]), lambda s: s, flow=False).period == 4
-    # at a period doubling the approach is algebraic: slow, and no chaos
-    slow = classify(LogisticMap(a=3.0), np.array([0.3]), lambda s: s, flow=False, most_cycles=1000)
-    assert slow.kind == NOT_SETTLED and slow.period == 0
-
-
-def test_the_jacobians_are_the_differences_of_the_period_map(single, beam):
-    for strobed, excess in ((single, 0.02), (beam, 1e-3), (beam, 0.02)):
-        here = strobed.at(excess)
-        system = of_oscillator(here)
-        state = settle(here, strobed.steady(), most_cycles=2000).end
-        found, _end = system.jacobians(state, 4)
-        matrix = np.linalg.multi_dot([m for m, _span in found][::-1])
-        start = system.coordinates(state)
-        for direction in (0, start.size // 2):
-            step = 1e-6 * system.scale * np.eye(start.size)[direction]
-            ends = [
-                system.coordinates(here.orbit(system.moved(state, sign * step), 4).end) for sign in (1, -1)
-            ]
-            difference = (ends[0] - ends[1]) / (2e-6 * system.scale)
-            # fast modes ring out within a period: their rows are rounding on both sides
-            assert difference == pytest.approx(matrix[:, direction], rel=1e-3, abs=1e-5)
-
-
-def test_without_impacts_the_exponent_is_minus_half_the_decay_rate(single, beam):
+def test_chaos_slow_transient_and_motion_without_impacts_are_told_apart(single, beam):
+    assert classify(single.at(0.034), single.steady(), cycles=500, most_cycles=1500).kind == CHAOTIC
     for strobed in (single, beam):
-        here = strobed.at(-0.02)
-        rate = float(here.oscillator.model.decay_rate[0])
-        system = of_oscillator(here)
-        found = orbit_exponents(system, here.steady(), 1)
-        assert found.largest * FREQUENCY == pytest.approx(-0.5 * rate, rel=1e-9)
-        flow = divergence_rate(system, here.steady(), 200.0 / FREQUENCY, align=20.0 / FREQUENCY)
-        assert flow.largest == pytest.approx(-0.5 * rate, rel=1e-4)
-        assert classify(here, here.steady(), flow=False).kind == WITHOUT
-
-
-@pytest.mark.parametrize("excess", [-0.004, 1e-3, 0.01, 0.02])
-def test_a_settled_orbit_has_the_multipliers_of_shooting(single, beam, excess):
-    for strobed in (single, beam):
-        here = strobed.at(excess)
-        settled = settle(here, strobed.at(1e-3).steady(), most_cycles=3000)
-        assert settled.period == 4
-        shot = Shooting(oscillator=here.oscillator, period=4, impacts=settled.impacts).from_state(settled.end)
-        wanted = math.log(abs(shot.multipliers[0])) / 4
-        system = of_oscillator(here)
-        assert orbit_exponents(system, settled.end, 4).largest == pytest.approx(wanted, abs=1e-7)
-        flow = divergence_rate(system, settled.end, 150.0 / FREQUENCY, align=20.0 / FREQUENCY)
-        assert flow.largest / FREQUENCY == pytest.approx(wanted, abs=3e-3)
-
-
-def test_chaos_has_one_exponent_by_both_routes_and_the_sum_of_the_determinants(single, scene):
-    here = single.at(0.034)
-    found = classify(here, single.steady(), cycles=500, most_cycles=1500)
-    assert found.kind == CHAOTIC and found.period == 0
-    spread = math.hypot(found.error_map, found.error_flow / FREQUENCY)
-    assert spread < 0.1
-    assert abs(found.lyapunov_map - found.lyapunov_flow / FREQUENCY) < 4.0 * spread
-    # determinant of a period: exp(-mu/f) tau^2 for each impact, whatever the motion
-    state = settle(here, single.steady(), most_cycles=1500).end
-    matrices, _end = of_oscillator(here).jacobians(state, 64)
-    impacts = here.orbit(state, 64).impacts.sum()
-    logs = sum(np.linalg.slogdet(m)[1] for m, _span in matrices)
-    mode, tau = scene.single_mode, scene.single_mode.restitution
-    wanted = -64 * mode.decay_rate_per_s / FREQUENCY + 2.0 * impacts * math.log(tau)
-    assert logs == pytest.approx(wanted, rel=1e-9)
-
-
-def test_chaos_of_the_beam_and_its_slow_transient_are_told_apart(beam):
-    chaos = classify(beam.at(0.03), beam.steady(), cycles=400, most_cycles=1500, flow=False)
+        free = classify(strobed.at(-0.02), strobed.at(-0.02).steady())
+        rate = float(strobed.oscillator.model.decay_rate[0])
+        assert free.kind == WITHOUT and free.lyapunov_map * FREQUENCY == pytest.approx(-0.5 * rate, rel=1e-9)
+    chaos = classify(beam.at(0.03), beam.steady(), cycles=400, most_cycles=1500)
     assert chaos.kind == CHAOTIC and chaos.lyapunov_map > 0.05
-    slow = classify(beam.at(0.01), beam.at(0.01).steady(), cycles=100, most_cycles=128, flow=False)
+    slow = classify(beam.at(0.01), beam.at(0.01).steady(), cycles=100, most_cycles=128)
     assert slow.kind in (PERIODIC, NOT_SETTLED) and slow.lyapunov_map < 0.0
-
-
-def test_the_nordmark_map_by_both_routes(scene):
-    strobed = StrobedNordmarkMap(map=nordmark_at(scene, FREQUENCY))
-    here = strobed.at(1e-3)
-    settled = settle(here, strobed.at(-1e-3).steady(), most_cycles=2000)
-    system = of_nordmark(here)
-    orbit = orbit_exponents(system, settled.end, settled.period)
-    flow = divergence_rate(system, settled.end, 400.0, align=20.0)
-    assert settled.period == 4 and orbit.largest < 0
-    assert flow.largest == pytest.approx(orbit.largest, abs=3e-3)
-
-
-def test_wrong_use_is_refused(single):
-    system = of_oscillator(single.at(0.01))
-    with pytest.raises(ValueError, match="count is 1 "):
-        map_exponents(system, single.steady(), 1)
-    with pytest.raises(ValueError, match="duration is 0"):
-        divergence_rate(system, single.steady(), 0.0)
 
 
 def test_starts_next_to_either_orbit_lead_to_it_between_fold_and_grazing(scene):
@@ -220,13 +70,11 @@ def test_both_orbits_have_a_basin_between_fold_and_grazing_and_one_below(scene):
 def test_small_form(run_study):
     ran = run_study("attractors", "--quick", "--model", "single_mode", "--side", "8", "--cycles", "60")
     assert ran.code == 0
-    lines = (ran.folder / "rows.csv").read_text().splitlines()
-    rows = [dict(zip(lines[0].split(","), line.split(","), strict=True)) for line in lines[1:]]
+    with (ran.folder / "rows.csv").open() as file:
+        rows = list(csv.DictReader(file))
     for row in rows:
         assert (row["kind"] in (PERIODIC, WITHOUT)) == (int(row["period"]) > 0)
-        if int(row["period"]):
-            exponent, flow = float(row["lyapunov_map"]), float(row["lyapunov_flow"]) / FREQUENCY
-            assert exponent < 0.0 and flow == pytest.approx(exponent, abs=0.01)
+        assert float(row["lyapunov_map"]) < 0.0 or not int(row["period"])
     up, down = (
         max(float(row["excess"]) for row in rows if row["direction"] == way and row["kind"] == WITHOUT)
         for way in ("up", "down")

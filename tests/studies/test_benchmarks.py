@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 from contact import StroboscopicMap, simulate
-from studies.benchmarks.__main__ import error_of
-from studies.benchmarks.cases import Row, carry, flows_of, heyoka_batch, heyoka_orbit, in_turns
-from studies.benchmarks.tables import HEADING, SHOWN, cost_table, ratios_of
+from studies.benchmarks.__main__ import HEADING, SHOWN, cost_table, ratios_of
+from studies.benchmarks.cases import Row, carry, error_of, flows_of, heyoka_orbits, in_turns
 from studies.peers import missing_solvers
 from studies.scene import Scene, beam_at, single_mode_at
 
@@ -34,7 +33,7 @@ def test_the_floor_carries_the_modes(letter_scene: Scene) -> None:
 
 def test_runs_are_timed_in_turns() -> None:
     order: list[str] = []
-    spent = in_turns({name: (lambda name=name: order.append(name)) for name in "ab"}, 3)
+    spent = in_turns({name: (lambda _periods, name=name: order.append(name), 5) for name in "ab"}, 3)
     assert order == ["a", "b"] * 4 and set(spent) == {"a", "b"} and min(spent.values()) >= 0.0
 
 
@@ -45,10 +44,8 @@ def test_bare_heyoka_is_on_the_same_orbit(letter_scene: Scene) -> None:
     strobed = StroboscopicMap(oscillator=oscillator)
     settled = strobed.orbit(strobed.steady(), 2000).end
     cycle = strobed.tip(strobed.orbit(settled, 5).points)
-    (single, taylor), (batch, batched) = (
-        heyoka_orbit(oscillator),
-        heyoka_batch([oscillator, oscillator.with_excess(0.0201)]),
-    )
+    single, taylor = heyoka_orbits([oscillator])
+    batch, batched = heyoka_orbits([oscillator, oscillator.with_excess(0.0201)])
     single(2000)
     batch(2000)
     for theirs in (taylor.state[0], batched.state[0, 0]):
@@ -69,7 +66,7 @@ def beam(tool: str, modes: int, microseconds: float, **more: float) -> Row:
 
 
 def test_table_and_ratios_are_those_of_the_rows() -> None:
-    """Medians over frequencies; a row at another excess or tolerance stays out; growth from 8 to 32 modes."""
+    """Medians over frequencies; growth from 8 to 32 modes."""
     times = {"grazing-spring": (0.03, 0.05, 0.9), "floor": (0.01, 0.01, 0.01), "heyoka": (3.0, 4.0, 27.0)}
     single = [
         Row(case="single mode", tool=tool, modes=1, excess=0.02, frequency_hz=f, us_per_period=cost)
@@ -79,27 +76,16 @@ def test_table_and_ratios_are_those_of_the_rows() -> None:
     rows = [
         *single,
         beam("grazing-spring", 8, 12.3, us_per_collision=45.6), beam("grazing-spring", 32, 24.6),
-        beam("grazing-spring", 8, 99.0, excess=0.1), beam("floor", 8, 0.1), beam("floor", 32, 0.4),
-        beam("heyoka", 8, 2345.0, tolerance=1e-7, error=2e-9), beam("heyoka", 8, 1.0, tolerance=1e-4),
+        beam("floor", 8, 0.1), beam("floor", 32, 0.4), beam("heyoka", 8, 2345.0, tolerance=1e-7, error=2e-9),
     ]  # fmt: skip
     heading, _rule, first, eight = cost_table(rows)
     assert heading == HEADING
     assert [cell.strip() for cell in first.split("|")[2:7]] == ["1", "50 ns", "-", "10 ns", "4 us"]
-    assert [cell.strip() for cell in eight.split("|")[2:8]] == [
-        "8",
-        "12 us",
-        "46 us",
-        "100 ns",
-        "2.3 ms",
-        "2e-09",
-    ]
-    ratios = {one.name: one.ratio for one in ratios_of(rows)}
-    assert ratios["single_mode_median"] == pytest.approx(80.0) and ratios[
-        "single_mode_least"
-    ] == pytest.approx(30.0)
-    assert ratios["single_mode_over_floor"] == pytest.approx(5.0)
-    assert ratios["hertz_growth_with_modes"] == pytest.approx(0.5)
-    assert ratios["hertz_8_modes"] == pytest.approx(2345.0 / 12.3)
+    assert eight.split(" | ")[1:] == ["8", "12 us", "46 us", "100 ns", "2.3 ms", "2e-09 |"]
+    assert ratios_of(rows) == pytest.approx({
+        "single_mode_least": 30.0, "single_mode_median": 80.0, "single_mode_largest": 100.0,
+        "hertz_growth_with_modes": 0.5,
+    })  # fmt: skip
 
 
 def test_the_readme_shows_the_cases_of_the_table() -> None:

@@ -7,21 +7,20 @@ import math
 import numpy as np
 import pytest
 
-from contact import StroboscopicMap, maximal_orbits
+from contact import NordmarkMap, StroboscopicMap, maximal_orbits, maximal_period
 from contact.orbits import Shooting, settle
 from studies.claims.bands import band_of, inside_band, path_of
-from studies.claims.below_grazing import first_at
-from studies.claims.equation_one import (
+from studies.claims.energy_loss import (
     RESTITUTIONS,
     falls,
     family_at,
     flip_speed,
+    node_at,
     second_impact_speed,
-    secondary_of,
+    trends,
 )
-from studies.claims.loss import fold_at, trends
-from studies.claims.overdamped_map import exponents, outside_windows, overdamped_map, window
-from studies.claims.universality import Spring, born_at
+from studies.claims.overdamped import exponents, outside_windows
+from studies.claims.universality import Job, Spring, born_at
 from studies.scene import single_mode_at
 
 
@@ -41,18 +40,18 @@ def followed(strobed, values):
 
 @pytest.mark.parametrize(("frequency", "tau", "m"), [(20.90, 0.3, 3), (21.50, 0.0, 4), (22.20, 0.4, 5)])
 def test_the_node_keeps_one_impact_up_to_its_secondary_bifurcation(letter_scene, frequency, tau, m):
-    found = secondary_of(family_at(letter_scene, frequency, tau, m))
-    assert found.admissible and found.excess > 1e-3
+    found = node_at(letter_scene, frequency, tau)
+    assert found.period == m and found.admissible and found.secondary > 1e-3
     strobed = strobed_at(letter_scene, frequency, tau)
-    below = np.linspace(5e-4, found.excess * 0.99, 25)
+    below = np.linspace(5e-4, found.secondary * 0.99, 25)
     assert followed(strobed, below) == (m, 1)
-    assert followed(strobed, [*below, found.excess * 1.01]) != (m, 1)
+    assert followed(strobed, [*below, found.secondary * 1.01]) != (m, 1)
 
 
 @pytest.mark.parametrize(("frequency", "tau", "m"), [(21.50, 0.3, 4), (20.90, 0.5, 3)])
 def test_the_second_impact_is_where_shooting_finds_it(letter_scene, frequency, tau, m):
     """The certified flights of shooting agree on the speed."""
-    speed = second_impact_speed(family_at(letter_scene, frequency, tau, m)) * letter_scene.stop.gap_m
+    speed = second_impact_speed(family_at(letter_scene, frequency, tau, m))
     shooting = Shooting(oscillator=strobed_at(letter_scene, frequency, tau).oscillator, period=m)
     inside, outside = (shooting.at_speed(part * speed) for part in (0.999, 1.001))
     assert inside.admissible and not outside.admissible
@@ -62,30 +61,30 @@ def test_the_second_impact_is_where_shooting_finds_it(letter_scene, frequency, t
 def test_at_the_flip_a_multiplier_is_minus_one(letter_scene, frequency, tau, m):
     """Away from the letter's frequencies: at those p3 to p11 end at a second impact."""
     family = family_at(letter_scene, frequency, tau, m)
-    multipliers = family.orbit(flip_speed(family)).multipliers()
+    multipliers = family.orbit(flip_speed(family)).multipliers
     assert np.min(np.abs(multipliers + 1.0)) < 1e-9
 
 
 def test_a_secondary_bifurcation_below_grazing_lets_another_state_be_born(letter_scene):
     """21.50 Hz: below grazing at tau = 0.3, above at 0.1; the born motion is p4 with one impact only then."""
-    low, high = (first_at(letter_scene, 21.50, tau).eq1 for tau in (0.1, 0.3))
+    low, high = (node_at(letter_scene, 21.50, tau).secondary for tau in (0.1, 0.3))
     assert low > 0.0 > high
     born = [followed(strobed_at(letter_scene, 21.50, tau), [-1e-3, 1e-3]) for tau in (0.1, 0.3)]
     assert born[0] == (4, 1) and born[1] != (4, 1)
 
 
 def test_hysteresis_falls_with_the_energy_lost_and_rho_of_the_map_does_not(letter_scene):
-    rows = [fold_at(letter_scene, f, tau) for f in letter_scene.drive.frequencies_hz for tau in RESTITUTIONS]
+    rows = [node_at(letter_scene, f, tau) for f in letter_scene.drive.frequencies_hz for tau in RESTITUTIONS]
     assert trends(rows) == {"map": True, "eq1": True, "rho": False}
-    assert all(row.eq1 < row.map < 0.0 for row in rows)  # the map is too small throughout
-    at = {(row.frequency_hz, row.restitution): (row.map, row.eq1) for row in rows}
+    assert all(row.fold < row.fold_of_map < 0.0 for row in rows)  # the map is too small throughout
+    at = {(row.frequency_hz, row.restitution): (row.fold_of_map, row.fold) for row in rows}
     assert at[20.90, 0.1] == pytest.approx((-6.272937252e-4, -1.2784409283e-3), rel=1e-8)
     assert at[23.05, 0.1] == pytest.approx((-7.691764860e-5, -1.2823017008e-4), rel=1e-8)
 
 
 def test_secondary_bifurcations_of_the_map_come_above_grazing(letter_scene):
-    rows = [first_at(letter_scene, f, tau) for f in (20.90, 22.60, 23.40) for tau in RESTITUTIONS]
-    assert min(row.map for row in rows) > 0.0 > min(row.eq1 for row in rows)
+    rows = [node_at(letter_scene, f, tau) for f in (20.90, 22.60, 23.40) for tau in RESTITUTIONS]
+    assert min(row.secondary_of_map for row in rows) > 0.0 > min(row.secondary for row in rows)
 
 
 def test_the_hysteresis_starts_from_zero_at_the_upper_edge_of_each_band(letter_scene):
@@ -96,14 +95,33 @@ def test_the_hysteresis_starts_from_zero_at_the_upper_edge_of_each_band(letter_s
         assert max(rows[-1].map, rows[-1].eq1) < 1e-12
         assert falls([row.map for row in rows]) and falls([row.eq1 for row in rows])
     path = path_of(letter_scene, np.linspace(19.6, 23.8, 60).tolist())
-    assert {3, 4, 5, 6, 8, 11} <= {place.period for place in path}
+    assert {3, 4, 5, 6, 8, 11} <= {maximal_period(place) for place in path}
 
 
 @pytest.mark.parametrize("position", [0.85, 0.905])
 def test_eq_1_has_the_period_of_the_map_near_the_upper_edge_of_a_band(letter_scene, position):
     spring = Spring(name="Eq. (1)", scene=letter_scene)
     (place,) = path_of(letter_scene, [spring.frequency(position)])
-    assert born_at((spring, position, 1e-4)) == place.period
+    assert born_at(Job(spring, position, 1e-4)) == maximal_period(place)
+
+
+def overdamped_map(alpha):
+    """Real eigenvalues alpha and 0 of the motion without impact, tau = 0."""
+    return NordmarkMap(alpha=alpha, gamma=0.0, restitution=0.0, whole_turns=0)
+
+
+def window(nordmark, period):
+    """The rho between which p_m is stable and without a second impact; None if there are none."""
+    size, ends = nordmark.alpha ** (2 * period - 2), []
+    for unstable in (True, False):  # along rho p_m becomes stable once, and meets its second impact once
+        low, high = math.log(1e-4), math.log(1e6)
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            orbits = maximal_orbits(nordmark, period, size * math.exp(middle))
+            before = not any(o.stable for o in orbits) if unstable else any(o.admissible for o in orbits)
+            low, high = (middle, high) if before else (low, middle)
+        ends.append(size * math.exp(middle))
+    return tuple(ends) if ends[0] < ends[1] else None
 
 
 @pytest.mark.parametrize("alpha", [0.2, 0.45, 0.6])

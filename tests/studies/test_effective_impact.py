@@ -10,19 +10,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from contact import LinearContact, NewtonRestitution
+from contact import ContactError, LinearContact, NewtonRestitution, first_collision
 from studies.calibration import bare_cantilever, free_period, leaf_mass, with_mass_ratio
-from studies.effective_impact.__main__ import closed_forms
 from studies.effective_impact.cases import Spring
 from studies.effective_impact.collision_rows import (
     Row,
-    crossing,
-    fade_of,
     floor_of,
     measure,
     on_orbits,
-    still_of,
-    tried,
 )
 from studies.letter import TIME_TRACE_EXCESS
 from studies.scene import beam_at, hertz_of, read_scene
@@ -63,7 +58,7 @@ def test_one_mode_under_newtons_law_has_the_laws_restitution_and_no_delay(spring
     assert row.restitution == pytest.approx(e, abs=1e-9)
     assert row.kick == pytest.approx(1.0 + e, abs=1e-9)
     assert row.delay_s == pytest.approx(0.0, abs=1e-12)
-    assert row.energy_to_higher_modes_j == 0.0
+    assert row.energy_share == 0.0
 
 
 @pytest.mark.parametrize("modes", [2, 5, 10])
@@ -76,12 +71,14 @@ def test_the_kick_under_newtons_law_is_that_of_the_modal_masses(spring, modes):
     assert row.restitution == pytest.approx(abs(1.0 - row.kick), abs=2e-3)
 
 
-def test_restitution_and_delay_follow_from_kick_and_shift(spring):
-    laws = [hertz_of(LETTER), LinearContact(stiffness=1e5), spring.lossy(0.4)]
-    found = closed_forms([met(spring, law, excess) for law in laws for excess in (1e-3, 0.013, 0.05)])
-    assert found["collisions"] == 9
-    assert found["restitution"] < 3e-3
-    assert found["delay_over_arc"] < 1e-2
+@pytest.mark.parametrize("excess", [1e-3, 0.013, 0.05])
+def test_restitution_and_delay_follow_from_kick_and_shift(spring, excess):
+    for law in (hertz_of(LETTER), LinearContact(stiffness=1e5), spring.lossy(0.4)):
+        row = met(spring, law, excess)
+        assert row.impacts == 1
+        second = 2.0 * row.shift_m / (row.arc_s * row.approach_m_s)
+        assert row.restitution == pytest.approx(math.sqrt((1.0 - row.kick) ** 2 + second), abs=3e-3)
+        assert row.delay_s / row.arc_s == pytest.approx(1.0 + row.restitution - row.kick, abs=1e-2)
 
 
 def test_the_floor_of_restitution_is_the_time_of_the_contact(spring):
@@ -97,10 +94,12 @@ def test_the_floor_of_restitution_is_the_time_of_the_contact(spring):
 
 def test_energy_goes_where_it_is_said_to_go(spring):
     elastic, lossy = met(spring, hertz_of(LETTER)), met(spring, spring.lossy(0.3))
-    assert elastic.energy_lost_j == pytest.approx(0.0, abs=1e-12)
     # kick 1 takes all of mode 1: the higher modes have it, 1 - restitution^2 within the work of the spring
     assert elastic.energy_share == pytest.approx(1.0 - elastic.restitution**2, abs=0.02)
-    assert lossy.energy_lost_j > 0.0 and lossy.energy_share < elastic.energy_share
+    assert lossy.energy_share < elastic.energy_share
+    lost = [first_collision(spring.case("speed", "a", 0.013, law).oscillator).energy_lost
+            for law in (hertz_of(LETTER), spring.lossy(0.3))]  # fmt: skip
+    assert lost[0] == pytest.approx(0.0, abs=1e-12) and lost[1] > 0.0
 
 
 def test_a_bare_tip_keeps_seven_tenths_and_is_late_by_more_than_the_arc(bare):
@@ -140,15 +139,13 @@ def test_a_settled_orbit_has_its_collision_in_every_period():
     row = measure(case)
     assert row.orbit_period == 4 and row.impacts == 1 and on_orbits([row]) == [row]
     assert row.restitution == pytest.approx(0.143, abs=2e-3)
-    assert row.restitution == pytest.approx(row.closed_restitution, abs=3e-3)
     below = measure(replace(case, oscillator=case.oscillator.with_excess(-0.01)))
     assert below.orbit_period == 1 and math.isnan(below.kick) and on_orbits([below]) == []
 
 
 def test_below_grazing_there_is_no_collision(spring):
-    case = spring.case("speed", "a", -0.1, hertz_of(LETTER), excess=-0.1)
-    assert isinstance(tried(case), str)
-    assert isinstance(tried(spring.case("speed", "a", 0.01, hertz_of(LETTER), excess=0.01)), Row)
+    with pytest.raises((ContactError, ValueError)):
+        measure(spring.case("speed", "a", -0.1, hertz_of(LETTER), excess=-0.1))
 
 
 # what is read off the curves, with rows made for it
@@ -156,55 +153,25 @@ def test_below_grazing_there_is_no_collision(spring):
 
 def made(curve: str, values, **columns) -> list[Row]:
     """Rows of a curve with these columns."""
-    row = Row(
-        curve=curve, series="1", value=0.0, excess=0.01, modes=20, law="HertzContact", mass_ratio=0.3,
-        tip_mass_kg=6e-3, gap_m=0.01, orbit_period=None, ball_limit=0.8, impacts=1, arc_s=1e-3,
-    )  # fmt: skip
+    row = Row(curve=curve, series="1", value=0.0, excess=0.01, modes=20, mass_ratio=0.3, orbit_period=None,
+              ball_limit=0.8, impacts=1, arc_s=1e-3)  # fmt: skip
     return [
         replace(row, value=float(value), **{name: column[i] for name, column in columns.items()})
         for i, value in enumerate(values)
     ]
 
 
-def test_crossings_are_found_in_the_logarithm():
-    x = np.geomspace(1e-5, 1.0, 11).tolist()
-    assert crossing(x, np.log10(x).tolist(), -2.25) == pytest.approx(10**-2.25, rel=1e-9)
-    assert math.isnan(crossing(x, np.log10(x).tolist(), 1.0))
-    assert math.isnan(crossing([1.0], [1.0], 0.5))
-
-
-def test_a_fade_of_known_shape_is_read_back():
-    excess = np.geomspace(1e-6, 0.1, 41).tolist()
-    found = fade_of(made("speed", excess, excess=excess, kick=[1.2 * e / (e + 5e-5) for e in excess]), 1e-3)
-    assert found.plateau == pytest.approx(1.2, rel=1e-3)
-    assert found.half_excess == pytest.approx(5e-5, rel=5e-3)
-    assert found.share_at_stability == pytest.approx(2.5e-4 / 3e-4, rel=2e-3)
-    assert fade_of(made("speed", excess, excess=excess, kick=excess), 1e-3) is None
-
-
-def by_modes(restitution, beyond: float) -> list[Row]:
-    counts = [*range(1, 41), 60]
-    value = [*(restitution(n) for n in counts[:-1]), beyond]
-    return made("modes", counts, modes=counts, restitution=value, kick=value, delay_s=[1e-3] * 41)
-
-
-def test_what_stands_still_is_told_from_what_drifts():
-    settled = still_of(by_modes(lambda n: 0.2 + math.exp(-0.5 * n), 0.2), 40)
-    assert settled.modes == math.ceil(2 * math.log(1e3))
-    drifting = still_of(by_modes(lambda n: 1.0 / n, 1.0 / 60), 40)
-    assert drifting.modes is None and drifting.drift == pytest.approx(1 / 40 - 1 / 60)
-
-
 def test_the_smallest_restitution_lies_between_the_cases():
     ratios = (0.1, 0.15, 0.2, 0.3, 0.4, 0.6, 1.0)
     kick = [1.0 + 0.5 * math.log(ratio / 0.25) for ratio in ratios]
     tau = [math.hypot(1.0 - k, 0.08) for k in kick]
-    found = floor_of(made("search", ratios, mass_ratio=ratios, kick=kick, restitution=tau), 0.1)
+    found = floor_of(made("search", ratios, mass_ratio=ratios, kick=kick, restitution=tau))
     assert found.restitution == pytest.approx(0.08, abs=1e-4)
-    assert found.mass_ratio == pytest.approx(0.25, rel=0.01) and not found.at_edge
-    # (1 - kick)^2 = 0.1^2 - 0.08^2 on either side
-    assert found.letter_at == pytest.approx([0.25 * math.exp(-0.12), 0.25 * math.exp(0.12)], rel=0.01)
-    assert floor_of([], 0.1) is None
+    assert found.mass_ratio == pytest.approx(0.25, rel=0.01)
+    assert floor_of([]) is None
+    tau = [1.0 - 0.5 * ratio for ratio in ratios]
+    falling = made("search", ratios, mass_ratio=ratios, kick=[0.5] * 7, restitution=tau)
+    assert floor_of(falling) is None  # the end of the range is no floor
 
 
 # the study
@@ -217,15 +184,12 @@ def test_the_answers_agree_with_what_is_known(run_study):
     with (ran.folder / "collisions.csv").open(newline="") as file:
         curves = {row["curve"] for row in csv.DictReader(file)}
     assert curves == {
-        "speed", "modes", "mass", "orbit", "stiffness", "materials", "damping", "loss", "search", "hardness"
+        "speed", "modes", "mass", "orbit", "stiffness", "ball", "search", "hardness"
     }  # fmt: skip
     search = [floor["restitution"] for floor in ran.summary["floors"] if floor["curve"] == "search"]
     assert all(0.2 < tau < 0.24 for tau in search)  # whatever the loss in the contact
     needed = ran.summary["what_gives_the_letters_restitution"]
     assert 20.0 < needed["hardness"] < 45.0 and 0.15 < needed["excess"] < 0.25
-    (fade,) = ran.summary["fading_kick"]
-    assert 3e-5 < fade["half_excess"] < 8e-5
-    assert ran.summary["closed_forms"]["restitution"] < 3e-3
     still = {row["series"]: row["modes"] for row in ran.summary["modes_needed"]}
     assert still["Hertz"] <= 20 and still["Newton, e = 1"] is None
     assert ran.summary["verdicts"]["restitution"]["verdict"] == "in part"

@@ -27,32 +27,29 @@ from contact import (
     State,
     Stop,
     Trajectory,
+    before_collision,
     simulate,
 )
 from contact.integrators import Integrator, Run
 from studies import peers
-from studies.peers import CvodeSolver, HeyokaTaylor, ScipySolver, all_solvers, missing_solvers, solvers
-from studies.peers.equations import Equations
-from studies.work_precision.problems import DURATION, steady_at, swung_beam
+from studies.peers import SOLVERS, OutsideSolver, adapters, all_solvers, missing_solvers
+from studies.peers.piecewise import Equations
+from studies.work_precision.problems import DURATION, swung_problem
 
-LABELS = {
-    "scipy RK45": "scipy", "scipy DOP853": "scipy", "scipy Radau": "scipy", "scipy LSODA": "scipy",
-    "heyoka Taylor": "heyoka", "CVODE BDF": "sundials", "CVODE Adams": "sundials",
-}  # fmt: skip
 FAST = ("scipy DOP853", "heyoka Taylor", "CVODE Adams")
 PROMISE = {"CVODE BDF": 2000.0, "CVODE Adams": 2000.0, "scipy RK45": 100.0, "scipy LSODA": 300.0}
 """Error of the state over the tolerance that a solver may gather in a run of some ten periods of its fastest
 mode; 30 for those not named.  The tolerance is that of one step, and multistep methods start anew."""
 
-every = pytest.mark.parametrize("label", LABELS)
+every = pytest.mark.parametrize("label", SOLVERS)
 fast = pytest.mark.parametrize("label", FAST)
 
 
 def solver(label: str, tolerance: float) -> Integrator:
     """The solver with this label; skips the test only if its library is missing."""
-    if LABELS[label] in missing_solvers():
-        pytest.skip(f"{LABELS[label]} is not installed")
-    return all_solvers(tolerance)[label]
+    if SOLVERS[label][0] in missing_solvers():
+        pytest.skip(f"{SOLVERS[label][0]} is not installed")
+    return OutsideSolver(solver=label, tolerance=tolerance)
 
 
 def spring(n_modes: int, law: ContactLaw, *, excess: float = 0.02) -> ImpactOscillator:
@@ -90,7 +87,7 @@ class Case:
 
 def collision(oscillator: ImpactOscillator, periods: float) -> Case:
     """From the lowest point of the steady motion."""
-    return Case(oscillator, steady_at(oscillator, math.pi), periods * oscillator.period)
+    return Case(oscillator, before_collision(oscillator), periods * oscillator.period)
 
 
 CASES = {
@@ -149,13 +146,13 @@ def test_error_falls_with_the_tolerance(label: str) -> None:
 @every
 def test_sets_out_from_the_stop_moving_in(label: str) -> None:
     """The beam swung on a spring (gap 0): rigid turning and 9 bending modes, no drive."""
-    oscillator, start = swung_beam(45000.0)
-    case = Case(oscillator, start, DURATION)
+    problem = swung_problem()
+    case = Case(problem.oscillator, problem.start, DURATION)
     exact = case.follow()
     tolerance = 1e-7 if label == "scipy Radau" else 1e-9
     run = case.follow(solver(label, tolerance))
     assert run.impacts.start[0] == 0.0 and run.impacts.end[0] == pytest.approx(exact.impacts.end[0], rel=1e-5)
-    assert distance(run, exact, oscillator) < PROMISE.get(label, 30.0) * tolerance
+    assert distance(run, exact, case.oscillator) < PROMISE.get(label, 30.0) * tolerance
 
 
 @fast
@@ -199,23 +196,11 @@ def test_a_flight_is_a_flight_and_a_run_goes_on(label: str, law: ContactLaw) -> 
 @pytest.mark.parametrize("law", [LinearContact(stiffness=3e5), HertzContact(stiffness=1e9)])
 def test_jacobian_is_the_derivative_of_the_rates(law: ContactLaw) -> None:
     """Against central differences, tip behind the stop; what is watched begins below zero."""
-    oscillator = spring(3, law)
-    caught: list[Equations] = []
-
-    class Caught(Integrator):
-        name, order, laws = "caught", 1.0, (law.code,)
-
-        def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
-            caught.append(Equations(oscillator, run, 1e-9))
-            return simulate(oscillator, run.start, duration=run.length)
-
-    simulate(
-        oscillator,
-        State(displacement=np.zeros(3), velocity=np.zeros(3), time=0.003),
-        periods=1,
-        method=Caught(),
-    )
-    e, y = caught[0], np.array([6e-4, 1e-5, -2e-5, 0.05, -0.1, 0.2])
+    oscillator, none = spring(3, law), np.empty(0)
+    start = State(displacement=np.zeros(3), velocity=np.zeros(3), time=0.003)
+    run = Run(start=start, length=oscillator.period, first=0, last=1, clock=0.003, clock_end=0.003,
+              times=none, sample_period=none, sample_clock=none)  # fmt: skip
+    e, y = Equations(oscillator, run, 1e-9), np.array([6e-4, 1e-5, -2e-5, 0.05, -0.1, 0.2])
     assert e.tip(y)[0] > 0.0
     for contact in (False, True):
         found = e.jacobian(contact, y)
@@ -248,25 +233,25 @@ def test_threads_do_not_share_a_compiled_integrator() -> None:
 def test_wrong_use_is_refused() -> None:
     late = replace(equation_1(), stop=Stop(gap=1.0, law=DelayedRestitution(restitution=0.1, delay=1e-4)))
     with pytest.raises(TypeError):
-        simulate(late, periods=1, method=ScipySolver())
+        simulate(late, periods=1, method=OutsideSolver(solver="scipy DOP853", tolerance=1e-10))
     for law in (LinearContact(stiffness=3e5, damping=20.0), HuntCrossley(stiffness=1e9, dissipation=0.3)):
         with pytest.raises(TypeError, match="law of the stop"):
-            simulate(spring(2, law), periods=1, method=ScipySolver())
+            simulate(spring(2, law), periods=1, method=OutsideSolver(solver="scipy DOP853", tolerance=1e-10))
     with pytest.raises(ValueError, match="tolerance"):
-        ScipySolver(tolerance=1e-15)
+        OutsideSolver(solver="scipy RK45", tolerance=1e-15)
     with pytest.raises(ValueError, match="solver"):
-        ScipySolver(solver="RK23")
-    with pytest.raises(ValueError, match="family"):
-        CvodeSolver(family="Euler")
+        OutsideSolver(solver="scipy RK23", tolerance=1e-10)
     for state in (
         State(displacement=[1.1], velocity=[0.0]),
         State(displacement=[1.0], velocity=[0.0], regime=3),
     ):
         with pytest.raises(ValueError, match="regime of the state"):
-            simulate(equation_1(), state, periods=1, method=ScipySolver())
+            simulate(
+                equation_1(), state, periods=1, method=OutsideSolver(solver="scipy DOP853", tolerance=1e-10)
+            )
 
 
-@pytest.mark.parametrize("label", [label for label in LABELS if label != "heyoka Taylor"])
+@pytest.mark.parametrize("label", [label for label in SOLVERS if label != "heyoka Taylor"])
 def test_a_solver_that_gives_up_gives_no_number(label: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Accelerations that stop being numbers half way."""
     method, case, whole = solver(label, 1e-6), CASES["hard wall, Eq. (1)"], Equations.rates
@@ -278,7 +263,7 @@ def test_a_solver_that_gives_up_gives_no_number(label: str, monkeypatch: pytest.
         return out
 
     monkeypatch.setattr(Equations, "rates", broken)
-    monkeypatch.setattr(solvers, "MOST_STEPS", 1000)  # CVODE goes on among numbers that are none
+    monkeypatch.setattr(adapters, "MOST_STEPS", 1000)  # CVODE goes on among numbers that are none
     with pytest.raises(ContactError) as caught:
         case.follow(method)
     assert 0.4 * case.length < caught.value.time - case.start.time <= case.length
@@ -290,22 +275,22 @@ def test_what_cannot_be_followed_gives_no_number(monkeypatch: pytest.MonkeyPatch
     start = State(displacement=np.zeros(5), velocity=np.array([0.3, 0.12, 0.1, 0.05, 0.02]))
     assert 2 in simulate(ringing, start, duration=0.06).impacts.kind
     with pytest.raises(Chatter):
-        simulate(ringing, start, duration=0.06, method=ScipySolver(solver="RK45", tolerance=1e-8))
+        simulate(ringing, start, duration=0.06, method=OutsideSolver(solver="scipy RK45", tolerance=1e-8))
     method = solver("heyoka Taylor", 1e-9)
-    monkeypatch.setattr(solvers, "MOST_STEPS", 2)
+    monkeypatch.setattr(adapters, "MOST_STEPS", 2)
     with pytest.raises(ContactError, match="step_limit"):
         CASES["linear, 4 modes"].follow(method)
 
 
 def test_a_missing_package_is_named_and_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(solvers, "find_spec", lambda name: None)
-    for made in (HeyokaTaylor, CvodeSolver):
-        with pytest.raises(ImportError, match="not installed"):
-            made()
-    monkeypatch.undo()
     monkeypatch.setattr(peers, "find_spec", lambda name: object() if name == "scipy" else None)
+    for name in ("heyoka Taylor", "CVODE BDF"):
+        with pytest.raises(ImportError, match="not installed"):
+            OutsideSolver(solver=name, tolerance=1e-10)
     assert missing_solvers() == ["heyoka", "sundials"]
-    assert set(all_solvers(1e-6)) == {label for label, library in LABELS.items() if library == "scipy"}
+    assert set(all_solvers(1e-6)) == {
+        name for name, (library, _made) in SOLVERS.items() if library == "scipy"
+    }
 
 
 def test_importing_the_peers_imports_no_library() -> None:

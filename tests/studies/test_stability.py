@@ -12,7 +12,6 @@ from beam import ModalModel
 from contact import (
     ImpactOscillator,
     LinearContact,
-    NewtonRestitution,
     State,
     StepTooLarge,
     Stop,
@@ -28,7 +27,7 @@ from contact.integrators import (
 from studies.scene import Scene, beam_at, model_of, read_scene
 from studies.stability import explicit, splitting, threshold
 from studies.stability.__main__ import FAMILIES
-from studies.stability.false_restitution import ElasticCollision, outcomes, reached
+from studies.stability.false_restitution import ElasticCollision, outcomes
 from studies.stability.implicit_energy import (
     FORCE,
     STIFF_GROWTH,
@@ -37,10 +36,9 @@ from studies.stability.implicit_energy import (
     kept,
     single_contact,
     stiff_contacts,
-    stop_of,
     undamped,
 )
-from studies.stability.lasting_contact import grows, growth, modal_stiffness, plane, pressed, settled
+from studies.stability.lasting_contact import ROUNDED, growth, modal_stiffness, plane, pressed
 
 MODEL = ModalModel(
     omega=[154.0, 960.0, 2450.0], decay_rate=[3.56, 20.0, 55.0], phi=[8.0, 4.7, 3.6],
@@ -58,9 +56,38 @@ def scene() -> Scene:
 
 
 def test_a_threshold_is_found_over_many_decades_and_only_if_it_was_seen_on_both_sides():
-    assert threshold(lambda x: x * x > 2.0, 1e-8, 1e8, relative=1e-12) == pytest.approx(2**0.5, rel=1e-12)
-    assert threshold(lambda x: x < 1e-5, 1.0, 1e-9) == pytest.approx(1e-5, rel=1e-6)
-    assert threshold(lambda x: True, 1.0, 2.0) is None and threshold(lambda x: False, 1.0, 2.0) is None
+    assert threshold(lambda x: x * x > 2.0, (1e-8, 1e8), 1e-12) == pytest.approx(2**0.5, rel=1e-12)
+    assert threshold(lambda x: x < 1e-5, (1.0, 0.1, 1e-9, 1e-12), 1e-6) == pytest.approx(1e-5, rel=1e-6)
+    assert threshold(lambda x: True, (1.0, 2.0), 0.1) is None
+    assert threshold(lambda x: False, (1.0, 2.0), 0.1) is None
+
+
+def test_growth_is_that_of_the_matrix_of_a_step_and_of_the_motion():
+    """Kick, flight, kick on one undamped mode 5 % beyond its limit; a run grows as the slopes say."""
+    model, step = STILL.truncated(1), 1.0 / float(STILL.omega[0])
+    method = Splitting(step=step, beyond_limit=True)
+    stiffness = 1.05 * splitting.closed_form_stiffness(model, step)
+    kick = np.array([[1.0, 0.0], [-0.5 * step * stiffness * float(model.phi[0] ** 2), 1.0]])
+    omega = float(model.omega[0])
+    flow = np.array([[math.cos(1.0), math.sin(1.0) / omega], [-omega * math.sin(1.0), math.cos(1.0)]])
+    exact = math.log(np.abs(np.linalg.eigvals(kick @ flow @ kick)).max())
+    oscillator, rest = pressed(model, stiffness)
+    assert growth(oscillator, rest, method) == pytest.approx(exact, rel=1e-8)
+
+
+def test_a_run_grows_as_the_slopes_of_a_step_say():
+    """Central difference in flight, 0.1 % beyond its limit, where nothing opens."""
+    one = np.ones(1)
+    model = ModalModel(omega=one, decay_rate=0.0 * one, phi=one, participation=one)
+    oscillator = ImpactOscillator(model=model, stop=Stop(gap=0.5, law=explicit.FAR), load=1e-3 * one)
+    rest, method = (
+        State(displacement=1e-3 * one, velocity=0.0 * one),
+        CentralDifference(step=2.002, beyond_limit=True),
+    )
+    start, times = replace(rest, displacement=1.0001e-3 * one), method.step * np.arange(1, 101)
+    run = simulate(oscillator, start, duration=times[-1], times=times, method=method)
+    away = np.log(np.abs(run.displacement[:, 0] - 1e-3))
+    assert (away[-1] - away[-51]) / 50 == pytest.approx(growth(oscillator, rest, method), rel=1e-3)
 
 
 @pytest.mark.parametrize("name", FAMILIES)
@@ -75,10 +102,8 @@ def test_every_family_derives_its_limits(name):
     ("lagged", "ratio"), [(False, 0.0), (False, 0.3), (True, 0.0), (True, 0.1), (True, 1.0)]
 )
 def test_central_difference_in_flight_grows_beyond_its_limit_and_is_refused_there(lagged, ratio):
-    """n steps see an excess of ln(1e5)/n over the damping's share: 2e-4 at 2e4 steps and zeta = 0.3."""
-    row = explicit.flight(ratio, lagged, 20_000)
-    assert row.measured == pytest.approx(row.theory, rel=1e-3) and row.measured > row.theory * (1 - 1e-9)
-    assert row.refused is True
+    row = explicit.flight(ratio, lagged)
+    assert row.measured == pytest.approx(row.theory, rel=2e-6) and row.refused is True
 
 
 @pytest.mark.parametrize("count", [1, 3])
@@ -86,7 +111,7 @@ def test_a_lasting_contact_grows_where_the_highest_frequency_of_the_closed_conta
     """h^2 omega_max^2 = 4 with the largest eigenvalue of K + k phi phi^T."""
     model = MODEL.truncated(count)
     row = explicit.lasting(model, lagged=False)
-    assert row.theory is not None and row.measured == pytest.approx(row.theory, rel=1e-4)
+    assert row.theory is not None and row.measured == pytest.approx(row.theory, rel=1e-7)
     matrix = np.diag(model.omega**2) + row.theory * np.outer(model.phi, model.phi)
     assert np.linalg.eigvalsh(matrix)[-1] / model.omega[-1] ** 2 == pytest.approx(4.0, rel=1e-12)
     # the default is not affected: a disturbance stays what it was
@@ -104,7 +129,7 @@ def test_lagged_damping_has_a_sharp_limit_in_contact_and_the_package_refuses_at_
     matrix = step**2 * (np.diag(model.omega**2) + row.theory * np.outer(model.phi, model.phi))
     matrix += 2 * step * np.diag(model.decay_rate)
     assert np.linalg.eigvalsh(matrix)[-1] == pytest.approx(4, rel=1e-12)
-    assert row.measured == pytest.approx(row.theory, rel=1e-4)
+    assert row.measured == pytest.approx(row.theory, rel=1e-6)
     oscillator, _rest = pressed(model, 1.0)
     bound = CentralDifference(step=step, lagged=True).critical_stiffness(oscillator.motion())
     assert bound == pytest.approx(row.theory, rel=1e-10)
@@ -116,7 +141,7 @@ def test_in_the_plane_of_step_and_stiffness_the_motion_agrees_with_theory():
     for x, row in zip(angles, rate, strict=True):
         limit = explicit.critical_stiffness(MODEL, float(x / MODEL.omega[-1]), False) if x < 2 else 0.0
         clear = np.abs(parts * modal_stiffness(MODEL) / max(limit, 1e-9) - 1) > 0.02
-        assert np.array_equal((row > 1e-3)[clear], (parts * modal_stiffness(MODEL) > limit)[clear])
+        assert np.array_equal((row > ROUNDED)[clear], (parts * modal_stiffness(MODEL) > limit)[clear])
 
 
 @pytest.mark.parametrize("x", [0.9, 1.2, 1.8])
@@ -150,32 +175,19 @@ def test_commensurate_steps_hide_the_error_of_energy(steps):
 # splitting
 
 
-@pytest.mark.parametrize("order", [2, 4])
-def test_a_settled_tip_stays_near_but_off_the_rest_position(order):
-    method = Splitting(step=1.0 / float(MODEL.omega[-1]), order=order)
-    oscillator, rest = pressed(MODEL, 0.3 * method.critical_stiffness(pressed(MODEL, 1.0)[0].motion()))
-    still = settled(oscillator, rest, method)
-    end = simulate(oscillator, still, duration=method.step, method=method).end
-    near = 1e-10 * np.abs(MODEL.omega * still.displacement).max()
-    assert np.abs(MODEL.omega * (end.displacement - still.displacement)).max() < near
-    assert np.abs(end.velocity - still.velocity).max() < near
-    far = np.abs(still.displacement - rest.displacement).max() / np.abs(rest.displacement).max()
-    assert 1e-5 < far < 1.0
-
-
 @pytest.mark.parametrize(("count", "angle"), [(1, 1.0), (3, 1.0), (3, 2.5)])
 def test_order_2_fails_where_the_closed_form_says_and_is_refused_there(count, angle):
     """By the closed form, the motion, and the spectral radius by which the package refuses."""
     model = MODEL.truncated(count)
-    row = splitting.limit(model, angle, 2)
-    assert row.measured == pytest.approx(row.theory, rel=2e-4) and row.refused is True
+    row = splitting.limit(model, angle)
+    assert row.measured == pytest.approx(row.theory, rel=1e-6) and row.refused is True
     method = Splitting(step=angle / float(model.omega[-1]))
     assert method.critical_stiffness(pressed(model, 1.0)[0].motion()) == pytest.approx(row.theory, rel=1e-9)
     simulate(*pressed(model, 0.99 * row.theory), duration=40 * method.step, method=method)
 
 
 def test_beyond_pi_a_resonance_of_step_and_contact_sets_the_limit():
-    row = splitting.limit(STILL.truncated(1), 4.0, 2)
+    row = splitting.limit(STILL.truncated(1), 4.0)
     assert row.measured == pytest.approx(row.theory, rel=1e-6) and row.refused is True
 
 
@@ -184,7 +196,7 @@ def test_order_4_fails_by_little_in_a_narrow_band_above_its_limit():
     model = STILL.truncated(1)
     method = Splitting(step=1.0 / float(model.omega[0]), order=4)
     limit = method.critical_stiffness(pressed(model, 1.0)[0].motion())
-    unstable = [grows(*pressed(model, part * limit), method, 40_000) for part in (0.999, 1.0024, 1.05)]
+    unstable = [growth(*pressed(model, part * limit), method) > ROUNDED for part in (0.999, 1.0024, 1.05)]
     assert unstable == [False, True, False]
 
 
@@ -195,7 +207,7 @@ def test_the_motion_within_the_limit_of_refusal_is_bounded_at_any_step(order):
     for angle in (0.5, 2.0, 4.0, 6.0) if order == 2 else (0.5, 1.0):
         method = Splitting(step=angle / float(model.omega[-1]), order=order)
         limit = method.critical_stiffness(pressed(model, 1.0)[0].motion())
-        assert growth(*pressed(model, 0.5 * limit), method, 3000) < math.log(1e5) / 3000
+        assert growth(*pressed(model, 0.5 * limit), method) < ROUNDED
 
 
 def test_a_step_beyond_its_limit_is_refused_before_a_number_comes_out(scene):
@@ -236,9 +248,9 @@ def test_a_resolved_contact_gains_nothing_in_the_mean_and_its_places_are_evenly_
 
 def test_the_exact_motion_keeps_the_energy_that_the_trapezoidal_rule_raises():
     """The beam on a stiff linear stop: growth beyond linear theory is the method's, not the motion's."""
-    law, step = stop_of(STILL, 100.0), 1.0 / float(STILL.omega.max())
+    compliance, step = float(STILL.phi @ STILL.phi), 1.0 / float(STILL.omega.max())
+    law = LinearContact(stiffness=100.0 * float(STILL.omega.max() ** 2) / compliance)
     beam = ImpactOscillator(model=STILL, stop=Stop(gap=0.0, law=law))
-    compliance = float(STILL.phi @ STILL.phi)
     start = State(displacement=np.zeros(3), velocity=-1.0 / compliance * STILL.phi)
     length = math.ceil(60 * math.pi / float(STILL.omega.min()) / step) * step
     energies = []
@@ -247,23 +259,13 @@ def test_the_exact_motion_keeps_the_energy_that_the_trapezoidal_rule_raises():
         stored = 0.5 * law.stiffness * max(0.0, float(STILL.phi @ end.displacement)) ** 2
         energies.append((float(beam.energy(end.displacement, end.velocity)) + stored) * 2.0 * compliance)
     assert energies[0] == pytest.approx(1.0, rel=1e-9) and energies[1] > 10.0
-    run = history(STILL, law, FORCE["trapezoidal"], 1.0, 60)
-    assert not run.diverged and run.contacts[-1] > 40
-    # the same run 2^332 times smaller, rounded alike
-    assert run.log_energy[-1] == pytest.approx(math.log(energies[1]), rel=1e-12)
-
-
-def test_a_history_ends_where_the_numbers_do():
-    run = history(STILL, stop_of(STILL, 1e4), FORCE["trapezoidal"], 1.0, 4000)
-    assert run.diverged and np.all(np.isfinite(run.log_energy)) and run.log_energy[-1] > 300
 
 
 def test_schemes_for_impacts_keep_the_energy_or_lose_some():
     for label, bound in (("Moreau-Jean 1/2", 1e-11), ("nonsmooth 1", 1e-9), ("Moreau-Jean 1", 0.0)):
         assert kept(label, STILL, 300).measured <= bound
-    law = NewtonRestitution(local_restitution=1.0)
-    lost = history(STILL, law, lambda h: MoreauJean(step=h, theta=1.0), 0.1, 300)
-    assert lost.log_energy[-1] < -5
+    impacts, log_energy = history(STILL, lambda h: MoreauJean(step=h, theta=1.0), 0.1, 300)
+    assert impacts[-1] > 200 and log_energy[-1] < -5
 
 
 # false restitution
@@ -289,10 +291,3 @@ def test_the_kick_is_right_at_a_fine_step_and_pretends_a_loss_at_a_coarse_one(sc
         for size in (1 / 64, 1 / 4)
     )
     assert fine == pytest.approx(case.exact.kick, abs=5e-3) and coarse < case.exact.kick - 0.05
-
-
-def test_where_an_error_passes_a_bound():
-    sizes = np.array([0.1, 1.0, 10.0, 100.0])
-    assert reached(sizes, sizes**2, 4.0) == pytest.approx(2.0)
-    assert reached(sizes, np.array([0.0, 0.0, math.nan, math.nan]), 1.0) == 10.0
-    assert reached(sizes, np.zeros(4), 1.0) is None and reached(sizes, np.ones(4), 0.5) is None

@@ -81,7 +81,7 @@ def test_an_impact_law_has_no_force():
     settled = born(StroboscopicMap(oscillator=oscillator), 0.005)
     state = settled.end
     assert settled.period == 4
-    trace = trace_of(oscillator, state, 4, 8)
+    trace = trace_of(oscillator, state, 8)
     near = close_up(oscillator, state, trace.collisions[0])
     assert np.all(np.isnan(near.force))
     assert near.spans == [(0.0, 0.0)]

@@ -1,0 +1,1 @@
+"""The least model that answers each question."""

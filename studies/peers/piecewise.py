@@ -1,0 +1,236 @@
+"""The motion as a general solver sees it: y = (q, v), one smooth right-hand side in flight, one in contact.
+
+    q_k' = v_k,   v_k' = P_k sin(w t + phase) - c_k v_k - omega_k^2 q_k - phi_k N
+    N = 0 in flight, k d in a linear contact, k d^(3/2) in Hertz's;   d = sum phi_k q_k - gap
+
+    flight --d rises--> Newton's law: v_k -> v_k - phi_k (1 + e) d'/sum phi^2, and on in flight; else contact
+    contact --d falls--> flight
+
+In contact N is not cut off for d < 0 (Hertz's is continued by zero), so that the right-hand side is smooth
+past the release, within the step that finds it. What is watched rises through zero: d less a bound of its
+rounding in flight, -d in contact. Absolute tolerances are those of one energy: with V the largest of |q'|,
+|omega q| over the start, the steady motion and a swing that reaches the stop, velocities get tolerance V,
+displacements tolerance V/omega_k. The right-hand side is compiled; in numpy it would make SciPy and CVODE a
+third slower.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from contact import (
+    Chatter,
+    ContactError,
+    HertzContact,
+    ImpactOscillator,
+    Impacts,
+    LinearContact,
+    NewtonRestitution,
+    State,
+    Trajectory,
+)
+from contact.integrators import Run
+
+__all__ = ["EPS", "Advance", "Array", "Equations", "Piece", "pieced"]
+
+EPS = 2.220446049250313e-16
+
+FLIGHT, LINEAR, HERTZ = 0, 1, 2
+"""What a piece is, for the kernel."""
+
+MOST_IMPACTS = 2000
+"""Bound of impacts in one period: with so many the tip is on its way to rest, which is not followed."""
+
+MOST_STALLS = 50
+"""Bound of pieces in a row without a duration; flights and contacts of a regular motion alternate."""
+
+Array = NDArray[np.float64]
+compiled: Any = numba.njit(cache=True, nogil=True)
+
+
+class Piece(NamedTuple):
+    """How far a solver came: time, state, whether an event ended it, the states at the times passed, and what
+    it has spent."""
+
+    end: float
+    state: Array
+    event: bool
+    samples: Array
+    evaluations: int
+
+
+Advance = Callable[[bool, float, Array, Array], Piece]
+"""advance(contact, begin, y, times) -> Piece: to the first event or to the last of `times`."""
+
+
+@compiled
+def penetration(y: Array, modes: Array, scalars: Array) -> float:
+    """d [m]."""
+    depth = -scalars[2]
+    for k in range(modes.shape[1]):
+        depth += modes[2, k] * y[k]
+    return depth
+
+
+@compiled
+def rates(t: float, y: Array, out: Array, modes: Array, scalars: Array, kind: int) -> None:
+    """Fill `out` with dy/dt; `modes` (4, n): omega^2, c, phi, P; `scalars`: w, phase, gap, k."""
+    n = modes.shape[1]
+    depth, force, swing = penetration(y, modes, scalars), 0.0, math.sin(scalars[0] * t + scalars[1])
+    if kind == LINEAR:
+        force = scalars[3] * depth
+    elif kind == HERTZ and depth > 0.0:
+        force = scalars[3] * depth * math.sqrt(depth)
+    for k in range(n):
+        out[k] = y[n + k]
+        out[n + k] = modes[3, k] * swing - modes[1, k] * y[n + k] - modes[0, k] * y[k] - modes[2, k] * force
+
+
+class Equations:
+    """The equations of a run; times count from its start."""
+
+    def __init__(self, oscillator: ImpactOscillator, run: Run, tolerance: float) -> None:
+        model, law, drive = oscillator.model, oscillator.stop.law, oscillator.drive
+        self.hard, self.hertz = law.code == NewtonRestitution.code, law.code == HertzContact.code
+        elastic = (self.hertz or law.code == LinearContact.code) and not any(law.numbers[1:])
+        if not (self.hard or elastic) or oscillator.load is not None:
+            raise TypeError(f"law of the stop is {law}; outside solvers follow elastic contacts without load")
+        self.n, self.phi, self.start, self.tolerance = oscillator.n_modes, model.phi, run.start, tolerance
+        self.compliance, self.number = float(model.phi @ model.phi), law.numbers[0]
+        amplitude, w = (0.0, 0.0) if drive is None else (drive.amplitude, drive.angular_frequency)
+        push = model.participation * amplitude * w**2
+        self.modes = np.ascontiguousarray([model.omega**2, model.decay_rate, model.phi, push])
+        self.scalars = np.array([w, w * run.clock, oscillator.stop.gap, self.number])
+        lowest = w if w > 0.0 else 2.0 * math.pi / oscillator.period
+        pace = np.maximum(model.omega, lowest)
+        vectors = (run.start.velocity, model.omega * run.start.displacement,
+                   amplitude * lowest * np.abs(oscillator.steady_response()))  # fmt: skip
+        reach = lowest * oscillator.stop.gap / math.sqrt(self.compliance)
+        speed = max(reach, *(float(np.linalg.norm(vector)) for vector in vectors)) or 1.0
+        self.absolute = tolerance * np.concatenate([speed / pace, np.full(self.n, speed)])
+        self.rounding = 32.0 * EPS * (oscillator.stop.gap + float(np.abs(model.phi) @ (speed / pace)))
+
+    def tip(self, y: Array) -> tuple[float, float]:
+        """Penetration [m] and its rate [m/s]."""
+        return float(penetration(y, self.modes, self.scalars)), float(self.phi @ y[self.n :])
+
+    def rates(self, contact: bool, t: float, y: Array, out: Array) -> Array:
+        """Fill `out`, shape (2 n_modes,), with dy/dt and return it."""
+        rates(t, y, out, self.modes, self.scalars, (HERTZ if self.hertz else LINEAR) if contact else FLIGHT)
+        return out
+
+    def jacobian(self, contact: bool, y: Array) -> Array:
+        """The derivatives of the rates, shape (2 n_modes, 2 n_modes)."""
+        n, slope = self.n, 0.0
+        if contact:
+            depth = self.tip(y)[0]
+            slope = 1.5 * self.number * math.sqrt(max(depth, 0.0)) if self.hertz else self.number
+        stiffness = np.diag(self.modes[0]) + slope * np.outer(self.phi, self.phi)
+        return np.block([[np.zeros((n, n)), np.eye(n)], [-stiffness, -np.diag(self.modes[1])]])
+
+    def surface(self, contact: bool, begin: float, t: float, y: Array) -> float:
+        """What rises through zero at the event of a piece that began at `begin`, on the surface."""
+        depth = float(penetration(y, self.modes, self.scalars))
+        value = -depth if contact else depth - self.rounding
+        return -abs(value) - 1e-300 if t <= begin else value
+
+    def failed(
+        self, s: float, y: Array, detail: str, kind: type[ContactError] = ContactError
+    ) -> ContactError:
+        """The error at the place where a solver has stopped."""
+        depth, rate = self.tip(np.nan_to_num(y))
+        return kind(time=self.start.time + s, gap=-depth, velocity=rate, detail=detail)
+
+    def touch(self, y: Array) -> tuple[bool, Array, Array]:
+        """Whether a contact begins, the states just before and just after the touch; the root finding leaves
+        a trace of penetration, which would be found again."""
+        n, before = self.n, y.copy()
+        before[:n] -= self.phi * self.tip(y)[0] / self.compliance
+        after = before.copy()
+        if self.hard:
+            after[n:] -= self.phi * (1.0 + self.number) * self.tip(y)[1] / self.compliance
+        return not self.hard, before, after
+
+    def impacts(self, touches: list[tuple[float, Array]], releases: list[tuple[float, Array]]) -> Impacts:
+        """The touches as named arrays; a contact that has not ended has no release."""
+        n, count = self.n, len(touches)
+        begin = np.array([s for s, _y in touches]).reshape(count)
+        before = np.array([y for _s, y in touches]).reshape(count, 2 * n)
+        end, after = np.full(count, np.nan), np.full((count, 2 * n), np.nan)
+        for i, (s, y) in enumerate(releases):
+            end[i], after[i] = s, y
+        approach, rebound = before[:, n:] @ self.phi, after[:, n:] @ self.phi
+        return Impacts(
+            start=self.start.time + begin, end=self.start.time + end, approach=approach, rebound=rebound,
+            loss=0.5 * (approach**2 - rebound**2) / self.compliance if self.hard else 0.0 * rebound,
+            kind=np.zeros(count, dtype=np.int64), displacement_start=before[:, :n],
+            velocity_start=before[:, n:], displacement_end=after[:, :n], velocity_end=after[:, n:],
+        )  # fmt: skip
+
+
+def pieced(
+    oscillator: ImpactOscillator, run: Run, tolerance: float, solver: Callable[[Equations], Advance]
+) -> Trajectory:
+    """The motion of `run`, from one event to the next."""
+    e = Equations(oscillator, run, tolerance)
+    n, period, start, advance = e.n, oscillator.period, run.start, solver(e)
+    y = np.concatenate([start.displacement, start.velocity])
+    depth, rate = e.tip(y)
+    if start.regime != 0 or depth > e.rounding:
+        raise ValueError(f"regime of the state is {start.regime}, {depth:.3g} m behind the stop; outside "
+                         "solvers begin off the stop")  # fmt: skip
+    touches, releases = list[tuple[float, Array]](), list[tuple[float, Array]]()
+
+    def touched(s: float, y: Array) -> tuple[bool, Array]:
+        contact, before, after = e.touch(y)
+        touches.append((s, before))
+        if not contact:
+            releases.append((s, after))
+        return contact, after
+
+    contact, y = touched(0.0, y) if depth >= -e.rounding and rate > 0.0 else (False, y)
+    passed = np.arange(run.first + 1, run.last + 1)
+    strobe = np.clip((passed - run.first) * period - run.clock, 0.0, run.length)
+    sample = np.clip((run.sample_period - run.first) * period + run.sample_clock - run.clock, 0.0, run.length)
+    times, place = np.unique(np.concatenate([strobe, sample, [run.length]]), return_inverse=True)
+    states, reached, s = np.empty((times.size, 2 * n)), 0, 0.0
+    spent, stalls, slack = 0, 0, 8.0 * EPS * run.length
+    while True:
+        while reached < times.size and times[reached] <= s + slack:
+            states[reached] = y
+            reached += 1
+        if reached == times.size:
+            break
+        piece = advance(contact, s, y, times[reached:])
+        states[reached : reached + len(piece.samples)] = piece.samples
+        reached, spent = reached + len(piece.samples), spent + piece.evaluations
+        stalls = stalls + 1 if piece.end <= s + slack else 0
+        s, y = piece.end, piece.state
+        if not np.all(np.isfinite(y)):
+            raise e.failed(s, y, "the state is not finite")
+        if piece.event and contact:
+            contact = False
+            releases.append((s, y))
+        elif piece.event:
+            contact, y = touched(s, y)
+        if stalls > MOST_STALLS:
+            raise e.failed(s, y, "the solver finds one event after another there")
+        if len(touches) > MOST_IMPACTS and s - touches[-MOST_IMPACTS][0] < period:
+            raise e.failed(s, y, f"more than {MOST_IMPACTS} in one period", Chatter)
+    begun = [s for s, _y in touches]
+    counts = np.bincount(np.searchsorted(strobe, begun), minlength=passed.size + 1)[: passed.size]
+    at_strobe, at_sample, last = np.split(states[place], [passed.size, passed.size + sample.size])
+    end = State(displacement=last[0, :n], velocity=last[0, n:], time=run.last * period + run.clock_end,
+                regime=int(contact))  # fmt: skip
+    return Trajectory(
+        end=end, strobe_time=passed * period, strobe_displacement=at_strobe[:, :n],
+        strobe_velocity=at_strobe[:, n:], strobe_impacts=counts.astype(np.int64), time=run.times,
+        displacement=at_sample[:, :n], velocity=at_sample[:, n:], impacts=e.impacts(touches, releases),
+        evaluations=spent,
+    )  # fmt: skip

@@ -1,0 +1,196 @@
+"""What is computed of a wall or of the beam: kick of a collision, period doubling of p1, end of p_m."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq
+
+from contact import (
+    ContactError,
+    ImpactOscillator,
+    MaximalFamily,
+    NordmarkMap,
+    StroboscopicMap,
+    first_collision,
+    maximal_period,
+)
+from contact.orbits import PeriodicOrbit, Shooting, born_period, fold_of, follow
+from studies import letter
+from studies.scene import Scene, approach_speed, beam_at, single_mode_at
+from studies.soft_wall.closed_forms import HALF, SoftWall, hard_restitution, hertz_doubling, hertz_kick
+
+__all__ = ["Beam", "Doubling", "End", "Kick", "beam_of", "doubling_near", "doubling_of", "end_of",
+           "kicks_of"]  # fmt: skip
+
+SPAN = 3.0
+"""The doubling is looked for between a third and three times the approach velocity that the formula gives."""
+
+OTHERS = 1e-4
+"""At a fold one multiplier is 1 to the root of rounding; none may be larger."""
+
+RATIO = 1.05
+"""Ratio of two excesses between which a local power is taken."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kick:
+    """Kick velocity of the collision that ends the motion without impacts at `excess` [m/s], and its laws.
+
+    `case` is "lossless", "dashpot" or "beam" (no hardness); `closed_form` is that without dashpot.
+    """
+
+    case: str
+    hardness: float | None
+    excess: float
+    kick_velocity: float
+    closed_form: float | None
+    soft_law: float
+    hard_law: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Doubling:
+    """Excess of the period doubling of p1 without dashpot: by shooting, in closed form, for K -> infinity."""
+
+    frequency_hz: float
+    hardness: float
+    excess: float | None
+    closed_form: float | None
+    limit: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class End:
+    """Excess at the fold of p_m with one touch, of this wall and of the hard wall, and their distance.
+
+    None where the branch has no fold below grazing, or its orbit there touches again or is unstable.
+    """
+
+    frequency_hz: float
+    hardness: float
+    case: str
+    period: int
+    excess: float | None
+    hard_wall: float | None
+    shift: float | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Beam:
+    """What the beam with Hertz contact does near grazing; excesses are F/F_g - 1.
+
+    `plateau`: the kick at Fig. 4, in approach speeds; `half_excess`: where half of it is left;
+    `share_at_stability`: what is left at the letter's amplitude stability; `square_root_from`: where the kick
+    rises with the power 0.6; `doubling_excess`, `doubling_theory`: of p1, by shooting and in closed form;
+    `born`: (excess, period) raised from -1e-3 in one step, as by an experiment, period 0 for none;
+    `equivalent_hardness`: K of the wall without dashpot that has half of its kick at `half_excess`.
+    """
+
+    frequency_hz: float
+    modes: int
+    plateau: float
+    half_excess: float | None
+    share_at_stability: float
+    square_root_from: float | None
+    doubling_excess: float | None
+    doubling_theory: float | None
+    born: tuple[tuple[float, int], ...]
+    equivalent_hardness: float | None
+
+
+def kicks_of(wall: SoftWall, excesses: np.ndarray) -> list[Kick]:
+    """The simulated kicks of a wall, the closed form and the two power laws."""
+    return [
+        Kick(
+            case=wall.name, hardness=wall.hardness, excess=e,
+            kick_velocity=first_collision(wall.struck.with_excess(e)).kick_velocity,
+            closed_form=None if wall.zeta else wall.kick(e), soft_law=wall.soft_law(e),
+            hard_law=wall.hard_law(e),
+        )
+        for e in excesses.tolist()
+    ]  # fmt: skip
+
+
+def doubling_near(oscillator: ImpactOscillator, peak: float) -> PeriodicOrbit | None:
+    """The period doubling of p1 by shooting, next to where its peak is `peak` gaps over the wall."""
+    family = Shooting(oscillator=oscillator, period=1)
+    speed = 2.0 * math.pi / oscillator.period * oscillator.stop.gap * math.sqrt(2.0 * peak)
+    low, high = speed / SPAN, SPAN * speed
+    branch = follow(family, family.at_speed(speed), low=low, high=high, step=math.log(SPAN))
+    return next(iter(branch.of_kind("period doubling")), None)
+
+
+def doubling_of(wall: SoftWall) -> Doubling:
+    """Period doubling of p1 beside the formulas."""
+    closed, limit = wall.doubling(), wall.limit()
+    orbit = doubling_near(wall.struck, limit[0] if closed is None else closed[0])
+    return Doubling(
+        frequency_hz=wall.frequency, hardness=wall.hardness,
+        excess=None if orbit is None else orbit.excess, closed_form=None if closed is None else closed[1],
+        limit=limit[1],
+    )  # fmt: skip
+
+
+def end_of(wall: SoftWall) -> End:
+    """Where the p_m orbit with one touch ends, m as at that frequency in the map."""
+    period, tau = maximal_period(NordmarkMap.from_oscillator(wall.oscillator)), hard_restitution(wall.zeta)
+    hard = MaximalFamily.from_oscillator(wall.oscillator, period=period, restitution=tau).fold()
+    limit = hard.excess if hard is not None and hard.admissible else None
+    try:
+        fold = fold_of(Shooting(oscillator=wall.struck, period=period))
+    except ContactError:  # no orbit of one touch where the kicks have one
+        fold = None
+    lives = fold is not None and fold.admissible and abs(fold.multipliers[0]) <= 1.0 + OTHERS
+    excess = fold.excess if fold is not None and lives and fold.excess < 0.0 else None
+    return End(
+        frequency_hz=wall.frequency, hardness=wall.hardness, case=wall.name, period=period, excess=excess,
+        hard_wall=limit, shift=None if excess is None or limit is None else excess - limit,
+    )  # fmt: skip
+
+
+def zero_of(measure: Callable[[float], float], low: float, high: float) -> float | None:
+    """Excess in [low, high] at which `measure` goes through zero, to 0.1 %; None if it does not."""
+    if measure(low) * measure(high) > 0.0:
+        return None
+    return math.exp(brentq(lambda x: measure(math.exp(x)), math.log(low), math.log(high), xtol=1e-3))
+
+
+def beam_of(scene: Scene, frequency: float, excesses: Sequence[float]) -> tuple[Beam, list[Kick]]:
+    """The beam at one frequency, and its kicks."""
+    oscillator = beam_at(scene.replace({"contact.law": "hertz"}), frequency)
+
+    def kick(excess: float) -> float:
+        return first_collision(oscillator.with_excess(excess)).kick
+
+    def kick_velocity(excess: float) -> float:
+        return first_collision(oscillator.with_excess(excess)).kick_velocity
+
+    def power(excess: float) -> float:
+        low, high = (kick_velocity(excess * RATIO**side) for side in (-0.5, 0.5))
+        return math.log(high / low) / math.log(RATIO)
+
+    plateau, closed = kick(letter.TIME_TRACE_EXCESS), hertz_doubling(oscillator)
+    doubling = None if closed is None else doubling_near(oscillator, closed[0])
+    half = zero_of(lambda e: kick(e) - 0.5 * plateau, 1e-8, 1e-2)
+    soft = SoftWall(oscillator=single_mode_at(scene, frequency), hardness=2.0).peak_of(HALF)
+    strobed = StroboscopicMap(oscillator=oscillator)
+    beam = Beam(
+        frequency_hz=frequency, modes=oscillator.n_modes, plateau=plateau, half_excess=half,
+        share_at_stability=kick(letter.AMPLITUDE_STABILITY) / plateau,
+        square_root_from=zero_of(lambda e: power(e) - 0.6, 1e-5, 1e-1),
+        doubling_excess=None if doubling is None else doubling.excess,
+        doubling_theory=None if closed is None else closed[1],
+        born=tuple((e, born_period(strobed, e)) for e in excesses if e <= 0.01),
+        equivalent_hardness=None if half is None else 1.0 + soft / half,
+    )  # fmt: skip
+    kicks = [
+        Kick(case="beam", hardness=None, excess=e, kick_velocity=kick_velocity(e), closed_form=None,
+             soft_law=hertz_kick(oscillator, e),
+             hard_law=plateau * approach_speed(frequency, oscillator.stop.gap, e))
+        for e in excesses
+    ]  # fmt: skip
+    return beam, kicks

@@ -1,0 +1,70 @@
+"""Sizes, by which one sees that each idea stands once: files, functions, parameters."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+KERNELS = {"kernel", "inlined", "part"}
+"""Decorators of ``contact.compiled``: such functions may be longer, for a call costs them time."""
+
+MANY_PARAMETERS = {
+    "studies.attractors.__main__.attractors": "its parameters are the options of its command line",
+}
+"""Functions with ten parameters or more, and why."""
+
+
+def files(package: str) -> Iterator[tuple[str, str]]:
+    """(dotted name, text) of every file of a package."""
+    for path in sorted((ROOT / package).rglob("*.py")):
+        yield ".".join(path.relative_to(ROOT).with_suffix("").parts), path.read_text(encoding="utf-8")
+
+
+def functions(package: str) -> Iterator[tuple[str, ast.FunctionDef | ast.AsyncFunctionDef]]:
+    for name, text in files(package):
+        for node in ast.walk(ast.parse(text)):
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+                yield f"{name}.{node.name}", node
+
+
+def lines_of(node: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
+    """Lines of a function, without decorators and docstring."""
+    text = node.body[0] if ast.get_docstring(node) is not None else None
+    return node.end_lineno - node.lineno + 1 - (text.end_lineno - text.lineno + 1 if text else 0)
+
+
+def parameters_of(node: ast.FunctionDef | ast.AsyncFunctionDef) -> list[str]:
+    given = node.args
+    every = [*given.posonlyargs, *given.args, given.vararg, *given.kwonlyargs, given.kwarg]
+    return [one.arg for one in every if one is not None and one.arg not in ("self", "cls")]
+
+
+@pytest.mark.parametrize("package", ["beam", "studies"])
+def test_no_file_is_over_300_lines(package):
+    assert {name: n for name, text in files(package) if (n := len(text.splitlines())) > 300} == {}
+
+
+@pytest.mark.parametrize("package", ["beam", "contact"])
+def test_no_function_is_over_60_lines_and_no_kernel_over_90(package):
+    long = {}
+    for name, node in functions(package):
+        compiled = any(isinstance(one, ast.Name) and one.id in KERNELS for one in node.decorator_list)
+        if lines_of(node) > (90 if compiled else 60):
+            long[name] = lines_of(node)
+    assert long == {}
+
+
+@pytest.mark.parametrize("package", ["beam", "contact", "studies"])
+def test_no_function_has_ten_parameters(package):
+    many = {name for name, node in functions(package) if len(parameters_of(node)) >= 10}
+    assert many == {name for name in MANY_PARAMETERS if name.startswith(f"{package}.")}
+
+
+def test_the_counts_would_notice():
+    source = 'def long(self, a, *b, c=1, **d):\n    """One\n    two."""\n    x = 1\n    return x\n'
+    node = ast.parse(source).body[0]
+    assert lines_of(node) == 3 and parameters_of(node) == ["a", "b", "c", "d"]
