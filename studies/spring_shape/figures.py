@@ -72,6 +72,7 @@ def draw_shapes(nets: Mapping[str, Points], rows: Sequence[ReadingRow]) -> Figur
             size += f", flanges {1e3 * row.flange_m:.2f} mm"
         found = f"twist {row.first_twist_hz:.0f} Hz, {row.ratio_twist:.1f} times the first bending"
         panel(ax, number, f"{TITLES[row.reading]}: {size}\n{found}")
+        ax.set_title(ax.get_title(loc="left"), loc="left", x=-0.3)
         ax.set_proj_type("ortho")
         ax.view_init(elev=24.0, azim=-58.0)
         ax.set_box_aspect([np.ptp(span) for span in (ax.get_xlim(), ax.get_ylim(), ax.get_zlim())], zoom=2.5)

@@ -27,7 +27,7 @@ from studies import plotting
 from studies.stability import threshold
 
 __all__ = ["ROUNDED", "SHARE", "Stepped", "growth", "modal_stiffness", "plane", "pressed", "refused",
-           "show_plane", "stiffest"]  # fmt: skip
+           "settled", "show_plane", "stiffest"]  # fmt: skip
 
 Stepped = CentralDifference | Splitting
 """Methods with a fixed step and a limit that can be overridden."""
@@ -55,14 +55,14 @@ def pressed(model: ModalModel, stiffness: float) -> tuple[ImpactOscillator, Stat
     return oscillator, State(displacement=rest, velocity=np.zeros_like(rest))
 
 
-def growth(oscillator: ImpactOscillator, rest: State, method: Stepped) -> float:
-    """Logarithm of the growth of a disturbance per step, the method's own check of its step left out, and
-    infinite if a contact opens [1].
+def settled(oscillator: ImpactOscillator, rest: State, method: Stepped) -> tuple[State, np.ndarray]:
+    """The state that a step leaves as it is, and the slopes of a step about it in (omega q, q'), the method's
+    own check of its step left out.
 
     The slopes lead from the states after the first step to those after the second, since a method may carry
     on more than it shows. Newton's method finds the start from which both are the same. The rounding of the
     tip's place, 1e-16 of its deflection by the load alone, limits it: the deflection is up to 1e6 of the
-    penetration here. If the iteration does not end, the last slopes are taken.
+    penetration here. If the iteration does not end, the last state is given.
     """
     n, free = oscillator.n_modes, replace(method, beyond_limit=True)
     weight, times = np.concatenate([oscillator.model.omega, np.ones(n)]), free.step * np.array([1.0, 2.0])
@@ -80,10 +80,17 @@ def growth(oscillator: ImpactOscillator, rest: State, method: Stepped) -> float:
         if np.abs(residual).max() <= 1e-11 * np.abs(x).max():
             break
         x = x - np.linalg.solve(second - first, residual)
+    state = State(displacement=here[0, :n] / weight[:n], velocity=here[0, n:])
+    return state, np.linalg.solve(first.T, second.T).T
+
+
+def growth(oscillator: ImpactOscillator, rest: State, method: Stepped) -> float:
+    """Logarithm of the growth of a disturbance per step, infinite if a contact opens [1]."""
+    state, slopes = settled(oscillator, rest, method)
     gap, phi = oscillator.stop.gap, oscillator.model.phi
-    if phi @ rest.displacement > gap >= phi @ (here[0, :n] / weight[:n]):
+    if phi @ rest.displacement > gap >= phi @ state.displacement:
         return math.inf
-    return math.log(np.abs(np.linalg.eigvals(np.linalg.solve(first.T, second.T))).max())
+    return math.log(np.abs(np.linalg.eigvals(slopes)).max())
 
 
 def refused(oscillator: ImpactOscillator, rest: State, method: Stepped) -> bool:

@@ -20,7 +20,7 @@ of one undamped mode with sin(theta) < 0 the root leaves upwards, at
 For order 4 the limit is the lowest root of det(M(k) + I), M the matrix of the step, by which the package
 refuses (``Splitting.critical_stiffness``). It is a limit of M alone: an inner kick of a long step may find
 the tip off the stop even at rest; the motion then is affine in pieces, M not its slope, and it is unstable
-from up to 1 % below that limit at h omega_N = 2.5. So order 4 is shown, and not measured.
+from up to 2.2 % below that limit at h omega_N = 2.5. So order 4 is shown, and not measured.
 """
 
 from __future__ import annotations

@@ -37,7 +37,7 @@ from studies.scene import Scene, beam_at, hertz_of, single_mode_at
 
 __all__ = [
     "EXCESS", "FREQUENCY", "MODES", "Problem", "driven_problem", "hertz_beam", "linear_beam", "problems_of",
-    "swung_problem",
+    "swung_beam", "swung_problem",
 ]  # fmt: skip
 
 FREQUENCY, EXCESS = 21.50, 0.013
@@ -125,31 +125,39 @@ def hertz_beam(scene: Scene) -> ImpactOscillator:
     return replace(beam_at(scene, FREQUENCY), stop=stop).with_excess(EXCESS)
 
 
-def swung_problem() -> Problem:
-    """SDNL32 with the stiffer spring, from where the free end meets it, with ten modes.
+def swung_beam(
+    stiffness: float, bending_modes: int = 9, damping_ratio: float = 0.01
+) -> tuple[ImpactOscillator, State]:
+    """The beam of SDNL32 as its free end meets the spring of `stiffness` [N/m].
 
     Modes: the rotation, w = phi_0 s/L with phi_0 = sqrt(3/(rho A L)), and bending modes of the pinned-free
     bar. The stop lies where the tip moves to, so that the model counts positive what the source counts
     negative.
     """
-    side, modulus, density, damping_ratio = 0.014, 6.7e10, 2400.0, 0.01
+    side, modulus, density = 0.014, 6.7e10, 2400.0
     line = density * side**2
     beam = UniformBeam(length=LENGTH, bending_stiffness=modulus * side**4 / 12, mass_per_length=line,
                        supports=("pinned", "free"))  # fmt: skip
-    bending = exact_modes(beam, 9)
+    bending = exact_modes(beam, bending_modes)
     phi = np.append(math.sqrt(3 / (line * LENGTH)), bending.phi)
     model = ModalModel(
         omega=np.append(0.0, bending.omega), decay_rate=np.append(0.0, 2 * damping_ratio * bending.omega),
         phi=phi, participation=np.zeros(phi.size),
     )  # fmt: skip
     velocity = TURNING * LENGTH / phi[0] * np.eye(phi.size)[0]
-    start = State(displacement=np.zeros(phi.size), velocity=velocity)
-    oscillator = ImpactOscillator(model=model, stop=Stop(gap=0.0, law=LinearContact(stiffness=SPRING)))
+    oscillator = ImpactOscillator(model=model, stop=Stop(gap=0.0, law=LinearContact(stiffness=stiffness)))
+    return oscillator, State(displacement=np.zeros(phi.size), velocity=velocity)
+
+
+def swung_problem() -> Problem:
+    """SDNL32 with the stiffer spring."""
+    oscillator, start = swung_beam(SPRING)
     touches = simulate(oscillator, start, duration=DURATION).impacts
     return Problem(
         name="swung beam", title="SDNL32, 10 modes, linear contact", oscillator=oscillator, start=start,
-        probe=DURATION, duration=DURATION, period=DURATION, size=0.005 / phi[0], speed=velocity[0],
-        cost_start=start, cost_periods=1, contact_time=float(touches.end[0] - touches.start[0]),
+        probe=DURATION, duration=DURATION, period=DURATION, size=0.005 / oscillator.model.phi[0],
+        speed=start.velocity[0], cost_start=start, cost_periods=1,
+        contact_time=float(touches.end[0] - touches.start[0]),
     )  # fmt: skip
 
 

@@ -79,8 +79,8 @@ WITHOUT_A_LAW = {
     "ImpactOscillator", "Impacts", "Kick", "LinearContact", "MapFamily", "maximal_orbits",
     "maximal_period", "maximal_periods", "MaximalOrbit", "modal_flow",
     "NewtonRestitution", "NordmarkMap", "NotPeriodic", "Orbit", "OrbitDiagram", "OrbitEnd",
-    "Regime", "ScannedColumn", "Settled", "stable_range", "State", "StepTooLarge", "Stop", "StrobedMap",
-    "StrobedOrbit", "Trajectory", "UnresolvedCrossing",
+    "Regime", "ScannedColumn", "Settled", "SingleImpactFamily", "stable_range", "State", "StepTooLarge",
+    "Stop", "StrobedMap", "StrobedOrbit", "Trajectory", "UnresolvedCrossing",
 }  # fmt: skip
 COMPUTING = (
     "KickFamily", "MaximalFamily", "PeriodicOrbit", "Shooting", "SingleImpactOrbit", "StroboscopicMap"
@@ -119,6 +119,9 @@ def motions(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], ob
         yield "first_collision", lambda state=state: contact.first_collision(driven, state, periods=5)
         yield "StroboscopicMap.step", lambda state=state: strobed.step(state)
         yield "StroboscopicMap.orbit", lambda state=state: strobed.orbit(state, 20)
+        yield "StroboscopicMap.advance", lambda state=state: strobed.advance(state, 0.03)
+        yield "StroboscopicMap.coordinates", lambda state=state: strobed.coordinates(state)
+        yield "StroboscopicMap.moved", lambda state=state: strobed.moved(state, strobed.coordinates(state))
         yield "StroboscopicMap.jacobians", lambda state=state: strobed.jacobians(state, 5)
         yield "strobed_orbits", lambda state=state: contact.strobed_orbits([strobed] * 2, [state] * 2, 20)
         for exponents in (lyapunov.map_exponents, lyapunov.orbit_exponents):

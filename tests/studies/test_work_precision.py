@@ -28,14 +28,7 @@ from contact import (
 from contact.integrators import CentralDifference, method_for
 from studies.scene import read_scene, single_mode_at
 from studies.work_precision.__main__ import judgement_of
-from studies.work_precision.measures import (
-    Reference,
-    Row,
-    cheapest,
-    missed_share,
-    reference_of,
-    rows_of,
-)
+from studies.work_precision.measures import Reference, Row, cheapest, missed_share, reference_of, rows_of
 from studies.work_precision.methods import EXACT, OUTSIDE, STEPPED, Setting, Sweep, sweeps_for
 from studies.work_precision.methods import STEPS as STEPS_OF
 from studies.work_precision.model_error import STEPS, balanced_step
@@ -243,14 +236,10 @@ def test_errors_fall_with_the_square_of_the_step(swung: Reference, label: str) -
     assert np.polyfit(step, error, 1)[0] == pytest.approx(2.0, abs=0.15)
 
 
-# --------------------------------------------------------------------------------------- problems and rows
-
-
 def test_linear_contact_lasts_as_long_as_that_of_hertz() -> None:
     oscillator, hertz = linear_beam(FEW_MODES), hertz_beam(FEW_MODES)
-    assert isinstance(oscillator.stop.law, LinearContact) and oscillator.excess == pytest.approx(
-        EXCESS, rel=1e-9
-    )
+    assert isinstance(oscillator.stop.law, LinearContact)
+    assert oscillator.excess == pytest.approx(EXCESS, rel=1e-9)
     wanted = first_collision(hertz).contact_time
     assert first_collision(oscillator).contact_time == pytest.approx(wanted, rel=1e-11)
 
@@ -281,18 +270,13 @@ def test_a_refused_or_slow_setting_is_a_row_with_its_sentence(few: Reference) ->
     refused, first, *rest = rows_of(few, sweep, slowest=1e-3, repeats=1)
     assert refused.failed.startswith("StepTooLarge") and first.failed == "" and len(rest) == 2
     assert all(one.failed.startswith("not run") for one in rest)
-    assert all(
-        one.error is None and one.missed is None and one.us_per_period is None for one in (refused, *rest)
-    )
+    assert all(one.error is one.missed is one.us_per_period is None for one in (refused, *rest))
 
 
 def test_every_setting_fits_the_law_of_its_problem() -> None:
     one = single_mode_at(SCENE, FREQUENCY).with_excess(EXCESS)
     labels = set()
-    for problem in (
-        driven_problem("single mode", "", one),
-        driven_problem("hertz", "", hertz_beam(FEW_MODES)),
-    ):
+    for problem in (driven_problem("one", "", one), driven_problem("hertz", "", hertz_beam(FEW_MODES))):
         law = problem.oscillator.stop.law.code
         for quick in (False, True):
             sweeps = sweeps_for(problem, quick=quick)
