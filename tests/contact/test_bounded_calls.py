@@ -80,7 +80,7 @@ WITHOUT_A_LAW = {
     "maximal_period", "maximal_periods", "MaximalOrbit", "modal_flow",
     "NewtonRestitution", "NordmarkMap", "NotPeriodic", "Orbit", "OrbitDiagram", "OrbitEnd",
     "Regime", "ScannedColumn", "Settled", "SingleImpactFamily", "stable_range", "State", "StepTooLarge",
-    "Stop", "StrobedMap", "StrobedOrbit", "Trajectory", "UnresolvedCrossing",
+    "Stop", "StrobedMap", "StrobedNordmarkMap", "StrobedOrbit", "Trajectory", "UnresolvedCrossing",
 }  # fmt: skip
 COMPUTING = (
     "KickFamily", "MaximalFamily", "PeriodicOrbit", "Shooting", "SingleImpactOrbit", "StroboscopicMap"
@@ -139,6 +139,7 @@ def motions(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], ob
         )
     yield "orbit_end", lambda: periodic.orbit_end(strobed, fast, 0.02, most_cycles=128)
     yield "born", lambda: periodic.born(strobed, most_cycles=256)
+    yield "fold_excess", lambda: periodic.fold_excess(strobed, 5)
     yield "born_period", lambda: periodic.born_period(strobed, most_cycles=256)
     run = strobed.orbit(strobed.steady(), 20)
     yield "period_of", lambda: periodic.period_of(run.points, run.impacts, largest_period=8, tolerance=1e-9)

@@ -348,25 +348,3 @@ def test_hunt_crossley_slows_fast_rebounds_to_one_over_chi() -> None:
     ])  # fmt: skip
     assert np.all(np.diff(out) > 0) and np.all(out < 2.0)
     assert 1 - out[0] / speeds[0] == pytest.approx(2 / 3 * 0.5e-3, rel=1e-3)
-
-
-def test_bouncing_ball_accumulates_at_2_55863_s() -> None:
-    """h = 1 m, g = 9.81 m/s^2, e = 0.7: from every impact on, the hops left take 2 e v / (g (1 - e))."""
-    fall, e, gravity = 1.0, 0.7, 9.81
-    ball = undriven(0.0, 1.0, NewtonRestitution(local_restitution=e), gap=fall, load=np.array([gravity]))
-    run = simulate(ball, duration=3.0, times=np.array([2.5586, 2.55864]))
-    first = math.sqrt(2 * fall / gravity)
-    limit = first * (1 + 2 * e / (1 - e))
-    assert limit == pytest.approx(2.55863, abs=5e-6)
-    hops = run.impacts.kind == 0
-    assert hops.sum() > 20
-    predicted = run.impacts.start[hops] + 2 * e * run.impacts.approach[hops] / (gravity * (1 - e))
-    # the lower the hop, the more of its speed is the rounding of its height
-    np.testing.assert_allclose(predicted[:20], limit, rtol=0, atol=1e-12)
-    np.testing.assert_allclose(predicted, limit, rtol=0, atol=1e-9)
-    speeds = math.sqrt(2 * gravity * fall) * e ** np.arange(hops.sum())
-    np.testing.assert_allclose(run.impacts.approach[hops], speeds, rtol=0, atol=1e-9)
-    np.testing.assert_allclose(run.impacts.approach[hops][:20], speeds[:20], rtol=1e-10)
-    assert run.end.regime == HELD and run.end.displacement[0] == pytest.approx(fall, abs=1e-15)
-    assert abs(run.velocity[0, 0]) > 0 or run.displacement[0, 0] < fall
-    assert run.velocity[1, 0] == 0 and run.displacement[1, 0] == pytest.approx(fall, abs=1e-15)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import importlib
 import json
+import pickle
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
+from studies.record import Run
 from studies.run import Study
 from studies.scene import Scene, read_scene
 
@@ -45,11 +47,22 @@ def assert_complete(name: str, folder: Path, summary: dict, manifest: dict) -> N
     assert summary["study"] == name and not any(key.startswith("wall") for key in summary)
 
 
+def portable_map(run: Run, function, items, label, of=Run.map):
+    """`Run.map`, with what is mapped sent as to another process: nothing of it may live in `__main__`."""
+    sent = pickle.dumps((function, list(items)))
+    assert b"__main__" not in sent, f"{label}: {function}"
+    return of(run, *pickle.loads(sent), label)
+
+
 @pytest.fixture
-def run_study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Callable[..., Ran]:
+def run_study(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> Callable[..., Ran]:
     """`run_study(name, *argv)`: the study in its own folder, on the letter's scene by default."""
 
     def run(name: str, *argv: str) -> Ran:
+        if "--quick" in argv:
+            monkeypatch.setattr(Run, "map", portable_map)
         code = study_of(name).main([*argv, "--out", str(tmp_path)])
         out, err = capsys.readouterr()
         folder, found = tmp_path / name, []

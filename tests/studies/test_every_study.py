@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import importlib
 import json
-import pickle
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -17,7 +16,6 @@ import contact
 import contact.integrators
 import contact.orbits
 from studies.programs import FOLDER, names, source_of
-from studies.record import Run
 
 PUBLIC = {"beam": beam, "beam.space": beam.space, "contact": contact, "contact.orbits": contact.orbits,
           "contact.integrators": contact.integrators}  # fmt: skip
@@ -42,20 +40,12 @@ SMALLER = {"motion": ["--frames", "16", "--renderer", "matplotlib"], "chart": ["
 SLOW = ("calibrate",)
 
 
-def portable_map(run: Run, function, items, label, of=Run.map):
-    """`Run.map`, with what is mapped sent as to another process: nothing of it may live in `__main__`."""
-    sent = pickle.dumps((function, list(items)))
-    assert b"__main__" not in sent, f"{label}: {function}"
-    return of(run, *pickle.loads(sent), label)
-
-
 @pytest.mark.parametrize(
     "name",
     [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ())
      for name in ON_THE_FRAME if name not in OWN_TEST],
 )  # fmt: skip
-def test_the_small_form_runs_and_leaves_a_table_a_figure_and_a_summary(run_study, name, monkeypatch):
-    monkeypatch.setattr(Run, "map", portable_map)
+def test_the_small_form_runs_and_leaves_a_table_a_figure_and_a_summary(run_study, name):
     ran = run_study(name, "--quick", "--json", *SMALLER.get(name, ()))
     assert ran.code == 0, ran.err
     assert json.loads(ran.out)["study"] == ran.summary["study"] == name

@@ -1,0 +1,158 @@
+"""One mode under Newton's law in any scaling, and its drive periods by the fast and the general loop."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from beam import ModalModel
+from contact.drive import HarmonicDrive
+from contact.event_loop import DONE, advance
+from contact.exact_run import start_of
+from contact.flight.elementary import EPS
+from contact.flight.modal_flow import tip_state
+from contact.flight.motion import Motion
+from contact.laws import NewtonRestitution
+from contact.oscillator import ImpactOscillator
+from contact.recorder import LOG, strobes_only
+from contact.simulation import simulate
+from contact.single_mode.loop import one_mode_periods
+from contact.single_mode.period_table import flow_over
+from contact.stop import Stop
+from contact.strobed_motion import strobed_system
+from contact.trajectory import IMPACT, State
+
+GAP = 0.01
+OMEGA = 2.0 * math.pi / 40.80e-3
+FREQUENCIES = (20.90, 21.50, 22.20, 22.60, 23.05, 23.40)
+RESTITUTIONS = (0.0, 0.05, 0.1, 0.5, 1.0)
+DAMPINGS = {"undamped": 0.0, "letter": 3.56, "strong": 150.0, "over-damped": 2.5 * OMEGA}
+
+
+def oscillator(
+    frequency: float = 22.2, *, tau: float = 0.1, decay: float = 3.56, excess: float = 0.02, phi: float = 1.0,
+    participation: float | None = None,
+) -> ImpactOscillator:
+    """Eq. (1) of the letter in any scaling of its mode."""
+    if decay < 2 * OMEGA:
+        omega = math.sqrt(OMEGA**2 + decay**2 / 4)
+    else:
+        omega = OMEGA
+    one = np.ones(1)
+    model = ModalModel(
+        omega=omega * one, decay_rate=decay * one, phi=phi * one,
+        participation=one / phi if participation is None else participation * one,
+    )
+    return ImpactOscillator(
+        model=model, stop=Stop(gap=GAP, law=NewtonRestitution(local_restitution=tau)),
+        drive=HarmonicDrive(frequency=frequency),
+    ).with_excess(excess)
+
+
+class Period:
+    """One drive period after the other, by both loops from the same deviation."""
+
+    def __init__(self, single: ImpactOscillator) -> None:
+        self.system = strobed_system(single)
+        self.motion, self.table = self.system.motion, self.system.table
+        assert self.table is not None
+        self.log, self.log_state = np.empty(110_000, dtype=LOG), np.empty((110_000, 4))
+
+    def fast(self, u, v, runs):
+        """Status, impacts, periods searched and periods left; the arrays are overwritten."""
+        counts = np.zeros(1, dtype=np.int64)
+        status, searched, left = one_mode_periods(
+            self.table, self.system, u, v, runs, np.empty((1, 2)), counts
+        )
+        return status, int(counts[0]), searched, left
+
+    def general(self, u, v, runs):
+        """Status, impacts and approach velocities."""
+        counts = np.zeros(1, dtype=np.int64)
+        recorder = strobes_only(np.empty((1, 2)), counts)._replace(log=self.log, log_state=self.log_state)
+        status = advance(self.motion, u, v, runs, int(runs[0]["period"]) + 1, 0.0, recorder)
+        rows = self.log[: recorder.marks[0]["logged"]]
+        return status, int(counts[0]), rows["approach"][rows["kind"] == IMPACT]
+
+    def size(self, u, v) -> float:
+        """Deviation in the norm whose square never grows [m]."""
+        m = self.motion
+        return abs(m.phi[0]) * math.hypot(u[0], v[0] / m.omega[0])
+
+    def compare(self, u, v, periods: int) -> tuple[float, int, int, int]:
+        """Follow the general loop, each period also by the fast one: worst error, impacts, searched, left.
+
+        The error is that of the strobed state in roundings, over what the impacts make of one rounding: an
+        impact at speed s turns an error d of the tip displacement into (1 + tau) a d/s of its velocity, a the
+        greatest acceleration.
+        """
+        m = self.motion
+        runs = at_a_strobe()
+        worst, impacts, searches, lefts = 0.0, 0, 0, 0
+        for _ in range(periods):
+            ours = (u.copy(), v.copy(), runs.copy())
+            start = self.size(u, v)
+            status, count, speeds = self.general(u, v, runs)
+            mine, mine_count, searched, left = self.fast(*ours)
+            assert mine == status
+            if status != DONE:
+                break
+            assert mine_count == count
+            assert all(ours[2][0][name] == runs[0][name] for name in ("regime", "order", "period", "clock"))
+            scale = max(abs(m.level) + math.hypot(m.tip_sine, m.tip_cosine), start, self.size(u, v))
+            fastest = max(m.drive, m.omega[0], m.decay[0])
+            growth = np.sum(np.log1p((1.0 + m.number0) * fastest * scale / speeds))
+            if not left and growth < 25.0:
+                off = self.size(ours[0] - u, ours[1] - v) / scale
+                worst = max(worst, off / EPS / math.exp(growth))
+            impacts += count
+            searches += searched
+            lefts += left
+        return worst, impacts, searches, lefts
+
+
+def at_a_strobe() -> np.ndarray:
+    """A run that starts at a strobe, off the wall."""
+    return start_of(oscillator().motion(), State.rest(1), 0, 0.0)[2]
+
+
+def rest_of(single: ImpactOscillator) -> tuple[np.ndarray, np.ndarray]:
+    """Deviation of the spring at rest."""
+    return start_of(single.motion(), State.rest(1), 0, 0.0)[:2]
+
+
+ROUNDINGS = 40.0
+"""Roundings by which the two loops may differ in a period: both make some ten operations on each term of the
+motion in each of a flight's parts; the worst seen in two million periods is 11."""
+
+
+def general_orbit(single: ImpactOscillator, begin: State, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Strobes and impacts by the general loop, through `simulate`."""
+    run = simulate(single, begin, periods=count)
+    points = np.column_stack(
+        [run.strobe_displacement[:, 0], run.strobe_velocity[:, 0] / single.model.omega[0]]
+    )
+    return points, run.strobe_impacts
+
+
+def highest(motion: Motion, table, u: float, v: float) -> float:
+    """Highest tip displacement of a period without a stop, by 2000 samples and Newton's iteration [m]."""
+    times = np.linspace(0.0, motion.period, 2001)
+    root = np.sqrt(complex(motion.decay[0] ** 2 / 4 - motion.omega[0] ** 2))
+    fast, slow = -motion.decay[0] / 2 + root, -motion.decay[0] / 2 - root
+    b = (v - fast * u) / (slow - fast)
+    free = ((u - b) * np.exp(fast * times) + b * np.exp(slow * times)).real
+    angle = motion.drive * times
+    steady = motion.tip_sine * np.sin(angle) + motion.tip_cosine * np.cos(angle)
+    k = int(np.argmax(motion.phi[0] * free + steady))
+    t = times[k]
+    best = -math.inf
+    for _ in range(8):
+        un, vn = flow_over(table.mode, table.rows, t, u, v)
+        height, rate, acceleration = tip_state(motion, t, np.array([un]), np.array([vn]))
+        best = max(best, height)
+        if not 0 < k < 2000 or acceleration >= 0:
+            break
+        t = min(max(t - rate / acceleration, times[k - 1]), times[k + 1])
+    return best

@@ -1,0 +1,173 @@
+"""Impacts that accumulate, and stays on the wall: closed forms, constrained motion, statics."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from oscillators import OMEGA, PHI, heights, spring
+from whole_motions import FREE, HELD, IMPACT, STAY, falling_body, integrate, pressed
+
+from beam import ModalModel
+from contact.laws import NewtonRestitution
+from contact.oscillator import ImpactOscillator
+from contact.simulation import simulate
+from contact.stop import Stop
+from contact.trajectory import State
+
+# ------------------------------------------------------------------------------------------ the bouncing ball
+
+
+def test_bouncing_ball_comes_to_rest_when_it_should():
+    """Impacts at t_n = sqrt(2h/g) (1 + 2 (e + ... + e^n)), accumulating at 2.55863 s; then the ball stays."""
+    e, h, g = 0.7, 1.0, 9.81
+    run = simulate(
+        falling_body(h, NewtonRestitution(local_restitution=e)), duration=4.0,
+        times=np.sort(np.append(np.linspace(0, 4, 401), [2.5586, 2.55864])),  # next to the end of the hops
+    )  # fmt: skip
+    fall = math.sqrt(2 * h / g)
+    total = fall * (1 + 2 * e / (1 - e))
+    assert total == pytest.approx(2.55863, abs=5e-6)
+    hits = run.impacts.kind == IMPACT
+    n = np.arange(hits.sum())
+    # the first 25 have speeds above 1e-4 of the first
+    np.testing.assert_allclose(
+        run.impacts.start[hits][:25], (fall * (1 + 2 * e * (1 - e**n) / (1 - e)))[:25], rtol=1e-13
+    )
+    # a hop of height h e^(2n) is known to the rounding of h
+    speed = g * fall * e**n
+    error = np.abs(run.impacts.approach[hits] / speed - 1)[:25]
+    assert np.all(error < 30 * np.finfo(float).eps / e ** (2 * n[:25]))
+    np.testing.assert_allclose(
+        run.impacts.loss[hits], 0.5 * (1 - e * e) * run.impacts.approach[hits] ** 2, rtol=1e-15
+    )
+    assert hits.sum() > 30
+    # from every impact on, the hops left take 2 e v/(g (1 - e))
+    left = 2 * e * run.impacts.approach[hits] / (g * (1 - e))
+    np.testing.assert_allclose((run.impacts.start[hits] + left)[:20], total, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(run.impacts.start[hits] + left, total, rtol=0, atol=1e-9)
+    assert list(np.flatnonzero(run.impacts.kind == STAY)) == [len(run.impacts) - 1]
+    assert run.impacts.start[-1] == pytest.approx(total, abs=1e-5)
+    resting = run.time > total + 1e-6
+    assert np.max(np.abs(run.displacement[resting] - h)) < 1e-15
+    assert np.max(np.abs(run.velocity[resting])) < 1e-14
+    assert np.all(run.displacement[~resting] < h)
+    assert run.end.regime == HELD
+    assert run.impacts.loss[hits].sum() == pytest.approx(g * h, rel=1e-10)
+
+
+@pytest.mark.parametrize("e", [0.5, 0.9, 0.99])
+def test_accumulation_takes_the_time_it_should(e):
+    """A clock mode beside the ball shows when it came to rest: only then does the stay begin."""
+    h, g = 1e-3, 9.81
+    total = math.sqrt(2 * h / g) * (1 + 2 * e / (1 - e))
+    run = simulate(falling_body(h, NewtonRestitution(local_restitution=e)), duration=1.1 * total)
+    # what is left when hops drown in rounding: their sum, w 2/(g (1 - e)) of the last speed
+    stay = run.impacts.kind == STAY
+    assert stay.sum() == 1
+    left = 2 * abs(run.impacts.approach[stay][0]) / (g * (1 - e))
+    assert run.impacts.start[stay][0] + left == pytest.approx(total, rel=1e-9)
+
+
+@pytest.mark.parametrize("left", [3e-3, 1e-3, 3e-4, 1.3e-4])
+def test_hops_of_an_almost_elastic_ball_do_not_lock_into_one_another(left):
+    """Rounding moves a speed by some left/10 in each of the lowest hops, in 1/left hops by sqrt(left)/10."""
+    gravity, gap = 9.81, 1e-3
+    ball = ModalModel(omega=[0.0], decay_rate=[0.0], phi=[1.0], participation=[0.0])
+    oscillator = ImpactOscillator(
+        model=ball, stop=Stop(gap=gap, law=NewtonRestitution(local_restitution=1.0 - left)), load=[gravity]
+    )
+    speed = 0.25 * gravity * left
+    state = State(displacement=np.array([gap]), velocity=np.array([-speed]))
+    run = simulate(oscillator, state, duration=0.9)
+    hops = run.impacts.approach[run.impacts.kind == 0]
+    assert run.end.regime == 3
+    expected = speed * (1.0 - left) ** np.arange(hops.size)
+    np.testing.assert_allclose(hops / expected, 1.0, atol=0.1 * math.sqrt(left))
+    rest = run.impacts.start[-1] + 2 * abs(run.impacts.approach[-1]) / (gravity * left)
+    assert rest == pytest.approx(0.5, rel=1e-5)
+
+
+@pytest.mark.parametrize("e", [0.7, 0.99])
+def test_accumulation_that_straddles_a_strobe_loses_no_time(e):
+    """Without a drive nothing depends on when the run starts; the strobe is put among the last hops."""
+    h, beside = 1e-3, 2 * np.pi * 3.0
+    oscillator = falling_body(h, NewtonRestitution(local_restitution=e), beside=(beside,))
+    total = math.sqrt(2 * h / 9.81) * (1 + 2 * e / (1 - e))
+    length = total + 0.1
+    start = dict(displacement=np.array([0.0, 0.0]), velocity=np.array([0.0, 1.0]))
+    plain = simulate(oscillator, State(**start), duration=length)
+    stay = np.flatnonzero(plain.impacts.kind == STAY)[0]
+    left = 2 * abs(plain.impacts.approach[stay]) / (9.81 * (1 - e))
+    assert left > 1e-8
+    strobe = 20 * oscillator.period
+    for part in (0.1, 0.5, 0.9):
+        at = strobe - plain.impacts.start[stay] - part * left
+        run = simulate(oscillator, State(time=at, **start), duration=length)
+        assert run.end.displacement[1] == pytest.approx(math.sin(beside * length) / beside, abs=1e-12)
+        assert run.end.velocity[1] == pytest.approx(math.cos(beside * length), abs=1e-11)
+        assert run.end.regime == HELD
+
+
+# ---------------------------------------------------------------------------------------------------- staying
+
+
+@pytest.mark.parametrize("n_modes, restitution", [(1, 0.0), (3, 0.0), (6, 0.0), (1, 0.5), (3, 0.5), (6, 0.5)])
+def test_stay_on_the_wall_is_the_constrained_motion(n_modes, restitution):
+    """Held, the tip stays at the gap to rounding, the modes obey the constrained equations until pulled."""
+    oscillator = pressed(n_modes, restitution, amplitude=2e-3 if n_modes == 1 else 4e-4)
+    period = oscillator.period
+    run = simulate(oscillator, periods=30)
+    impacts = run.impacts
+    stays = np.flatnonzero((impacts.kind == STAY) & np.isfinite(impacts.end))
+    long = stays[impacts.end[stays] - impacts.start[stays] > 0.02 * period]
+    assert long.size >= 1, "the tip never stayed: nothing was tested"
+    for i in long[:2]:
+        # from a little after the accumulation to a little after the release
+        begin = impacts.start[i] + 1e-3 * period
+        times = np.linspace(begin, impacts.end[i] + 2e-3 * period, 60)
+        sampled = simulate(oscillator, duration=30 * period, times=np.append(times, 30 * period))
+        held = times < impacts.end[i]
+        assert np.max(np.abs(heights(oscillator, sampled.displacement[:-1][held]))) < 1e-14
+        assert np.max(np.abs(sampled.velocity[:-1][held] @ oscillator.model.phi)) < 1e-12
+        start = State(displacement=sampled.displacement[0], velocity=sampled.velocity[0], time=begin)
+        other = integrate(oscillator, start, times, held=True)
+        scale = np.max(np.abs(other.velocity))
+        assert len(other.release) == 1
+        assert other.release[0] == pytest.approx(impacts.end[i], abs=1e-9 * period)
+        assert np.max(np.abs(sampled.velocity[:-1] - other.velocity)) < 1e-9 * scale
+        # at the release force and relative acceleration vanish together
+        q, v = impacts.displacement_end[i], impacts.velocity_end[i]
+        assert abs(heights(oscillator, q)) < 1e-14
+        model, w = oscillator.model, oscillator.drive.angular_frequency
+        base = model.participation * oscillator.drive.amplitude * w**2 * math.sin(w * impacts.end[i])
+        terms = model.phi * np.array([oscillator.load, base, -model.decay_rate * v, -(model.omega**2) * q])
+        assert abs(terms.sum()) < 1e-9 * np.abs(terms).sum()
+
+
+def test_held_for_good_under_a_load_without_drive():
+    """Plastic impact on the wall, pressed: it never leaves, and the modes settle under the constraint."""
+    n = 3
+    load = np.zeros(n)
+    load[0] = 2.0 * 0.005 / PHI[0] * OMEGA[0] ** 2
+    oscillator = spring(n, NewtonRestitution(local_restitution=0.0), load=load)
+    run = simulate(oscillator, duration=60.0)
+    assert run.end.regime == HELD
+    assert abs(heights(oscillator, run.end.displacement)) < 1e-14
+    # statics: omega^2 q = g - phi N with phi q = gap
+    flexible = PHI[:n] / OMEGA[:n] ** 2
+    force = (flexible @ load - oscillator.stop.gap) / (flexible @ PHI[:n])
+    np.testing.assert_allclose(run.end.displacement, (load - PHI[:n] * force) / OMEGA[:n] ** 2, rtol=1e-10)
+    assert np.max(np.abs(run.end.velocity)) < 1e-10
+
+
+def test_plastic_tip_that_is_not_pressed_leaves_at_once():
+    """e = 0 at a peak: no speed is left, the acceleration takes the tip away, nothing sticks."""
+    oscillator = spring(1, NewtonRestitution(local_restitution=0.0), damping=0.0)
+    run = simulate(oscillator, State(displacement=[0.0], velocity=[0.1]), duration=1.0)
+    assert list(run.impacts.kind[:1]) == [IMPACT]
+    assert np.all(run.impacts.kind != STAY)
+    assert run.end.regime == FREE
+    energy = oscillator.energy(run.end.displacement, run.end.velocity)
+    assert energy == pytest.approx(0.5 * (OMEGA[0] * 0.005 / PHI[0]) ** 2, rel=1e-12)

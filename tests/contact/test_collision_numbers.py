@@ -1,0 +1,239 @@
+"""Each number of a collision by its definition, and the relations between them."""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+import math
+
+import numpy as np
+import pytest
+from light_spring import PHI, equation_1, flow, newton, real_differs, spring, steady
+from oscillators import GAP, OMEGA
+from scipy.optimize import brentq
+
+from beam import ModalModel
+from contact.collision import before_collision, collisions, first_collision
+from contact.drive import HarmonicDrive
+from contact.laws import (
+    ContactLaw,
+    DelayedRestitution,
+    HertzContact,
+    HuntCrossley,
+    LinearContact,
+)
+from contact.oscillator import ImpactOscillator
+from contact.simulation import simulate
+from contact.stop import Stop
+from contact.trajectory import Impacts, State
+from studies.scene import beam_at, read_scene
+
+# ------------------------------------------------------------------------------ each number by its definition
+
+
+@pytest.mark.parametrize(
+    "n_modes, law, frequency",
+    [(6, newton(0.3), 21.5), (3, newton(0.8), 21.5), (6, HertzContact(stiffness=3e7), 21.5),
+     (6, LinearContact(stiffness=3e4), 21.5), (4, HuntCrossley(stiffness=3e7, dissipation=2.0), 21.5),
+     (2, newton(1.0), 21.5), (2, newton(1.0), 12.0)],
+    ids=repr,
+)  # fmt: skip
+def test_every_number_is_what_its_definition_says(n_modes: int, law: ContactLaw, frequency: float) -> None:
+    """The virtual motions by complex exponentials on a fine grid, collision by collision of a long run.
+
+    At 12 Hz, near half the frequency of mode 1, they have two humps in a drive period.
+    """
+    excess = 0.05 if frequency > 20 else 0.8
+    oscillator = spring(n_modes, law, damping=0.01, frequency=frequency, excess=excess)
+    run = simulate(oscillator, before_collision(oscillator), periods=60)
+    found = collisions(oscillator, run, unfinished="drop")
+    impacts, phi, period = run.impacts, float(oscillator.model.phi[0]), oscillator.period
+    assert len(found) > 20
+    returned = refused = 0
+    for c in found:
+        rows = np.flatnonzero((impacts.start >= c.first_touch) & (impacts.end <= c.end) & (impacts.kind != 1))
+        first, last = rows[0], rows[-1]
+
+        def virtual(time, at, displacement, velocity, oscillator=oscillator):
+            q, rate = steady(oscillator, at)
+            u, v = flow(oscillator, displacement[0] - q[0], velocity[0] - rate[0], time - at)
+            w, tip = oscillator.drive.angular_frequency, oscillator.model.phi
+            size = oscillator.drive.amplitude * (tip @ oscillator.steady_response())
+            turning = size * np.exp(1j * w * time)
+            return turning.imag + tip[0] * u - GAP, (1j * w * turning).imag + tip[0] * v
+
+        def incoming(time, virtual=virtual, i=first):
+            return virtual(time, impacts.start[i], impacts.displacement_start[i], impacts.velocity_start[i])
+
+        def outgoing(time, virtual=virtual, i=last):
+            return virtual(time, impacts.end[i], impacts.displacement_end[i], impacts.velocity_end[i])
+
+        def hump(motion, near):
+            grid = near + np.linspace(-0.6, 0.6, 241) * period
+            speed = motion(grid)[1]
+            tops = [brentq(lambda t: motion(t)[1], grid[i], grid[i + 1], xtol=1e-16)
+                    for i in np.flatnonzero((speed[:-1] > 0) & (speed[1:] <= 0))]  # fmt: skip
+            return min(tops, key=lambda t: abs(t - near))
+
+        def sides(motion, near):
+            top = hump(motion, near)
+            if motion(top)[0] <= 0:
+                return None
+            out = []
+            for side in (-1, 1):
+                far = top
+                while motion(far)[0] > 0:
+                    far += side * 0.002 * period
+                out.append(
+                    brentq(lambda t: motion(t)[0], min(far, top), max(far, top), xtol=1e-17, rtol=1e-15)
+                )
+            return out
+
+        touched = sides(incoming, c.first_touch)
+        assert c.forced_by_ringing == (touched is None)
+        t_in = c.first_touch if touched is None else touched[0]
+        assert c.time == pytest.approx(t_in, abs=1e-12)
+        v_in = incoming(t_in)[1]
+        jump = np.subtract(outgoing(t_in), incoming(t_in))
+        assert c.shift == pytest.approx(jump[0], abs=1e-13)
+        assert c.kick_velocity == pytest.approx(-jump[1], abs=1e-11)
+        left = sides(outgoing, t_in)
+        assert c.returns == (left is not None)
+        if c.forced_by_ringing:
+            assert math.isnan(c.approach) and math.isnan(c.kick)
+        else:
+            assert c.approach == pytest.approx(v_in, rel=1e-10)
+            assert c.kick == pytest.approx(-jump[1] / v_in, abs=1e-8)
+        if touched is None or left is None:
+            refused += 1
+            assert math.isnan(c.restitution) and math.isnan(c.delay)
+        else:
+            returned += 1
+            # rounding moves the sides of a low hump: times and speeds there lose up to half their digits
+            height = min(incoming(hump(incoming, c.first_touch))[0], outgoing(hump(outgoing, t_in))[0])
+            slack = 1e-15 * math.sqrt(GAP / height)
+            assert c.delay == pytest.approx(left[1] - t_in, abs=20 * slack)
+            assert c.restitution == pytest.approx(-outgoing(left[1])[1] / v_in, abs=1e4 * slack)
+        gain = 0.0
+        before, after = steady(oscillator, impacts.start[first]), steady(oscillator, impacts.end[last])
+        for k in range(1, n_modes):
+            u, v = flow(
+                oscillator, impacts.displacement_start[first, k] - before[0][k],
+                impacts.velocity_start[first, k] - before[1][k], c.end - c.first_touch, k,
+            )  # fmt: skip
+            q = impacts.displacement_end[last, k] - after[0][k]
+            rate = impacts.velocity_end[last, k] - after[1][k]
+            gain += 0.5 * (rate**2 - v**2 + OMEGA[k] ** 2 * (q**2 - u**2))
+        assert c.energy_to_higher_modes == pytest.approx(gain, abs=1e-11 * (OMEGA[0] * GAP) ** 2)
+        real = abs(impacts.approach[first] / v_in - 1) > 0.01 if touched is not None else True
+        assert real_differs(c) == real and c.real_approach == impacts.approach[first]
+        assert c.contact_time == pytest.approx(float(np.sum((impacts.end - impacts.start)[rows])), abs=1e-15)
+        assert phi == 10.0
+        slopes = [incoming(t_in + h)[1] for h in (-1e-6, 1e-6)]
+        assert c.deceleration == pytest.approx(-(slopes[1] - slopes[0]) / 2e-6, rel=1e-5)
+    assert returned > 3 and returned + refused == len(found)
+
+
+@pytest.mark.parametrize("before_minimum", [1e-3, 1e-6, -1e-6, -1e-3])
+def test_minimum_of_the_outgoing_motion_ends_a_collision(before_minimum: float) -> None:
+    """A second touch, made up to change nothing, counts to the first until the minimum and no longer."""
+    oscillator = ImpactOscillator(
+        model=ModalModel(omega=[2 * math.pi], decay_rate=[0.0], phi=[1.0], participation=[0.0]),
+        stop=Stop(gap=0.0, law=newton(0.5)),
+    )
+    # swinging through the wall at t = 1 with velocity 1, out with 1/2: minimum a quarter period later
+    real = simulate(oscillator, State(displacement=[0.0], velocity=[-1.0], time=0.5), duration=2.2)
+    assert real.impacts.start[0] == pytest.approx(1.0, abs=1e-15)
+    second = 1.25 - before_minimum
+    angle = 2 * math.pi * (second - 1.0)
+    state = np.array([[-math.sin(angle) / (4 * math.pi)]]), np.array([[-0.5 * math.cos(angle)]])
+    rows = {name: getattr(real.impacts, name)[:1] for name in real.impacts.__dataclass_fields__}
+    made_up = dict(start=second, end=second, approach=0.0, rebound=0.0, loss=0.0, kind=0)
+    for name, value in made_up.items():
+        rows[name] = np.append(rows[name], value).astype(rows[name].dtype)
+    for i, name in enumerate(("displacement", "velocity")):
+        for end in ("start", "end"):
+            rows[f"{name}_{end}"] = np.vstack([rows[f"{name}_{end}"], state[i]])
+    found = collisions(oscillator, dataclasses.replace(real, impacts=Impacts(**rows)), unfinished="drop")
+    assert [c.impacts for c in found] == ([2] if before_minimum > 0 else [1, 1])
+    assert found[0].kick == pytest.approx(1.5, rel=1e-12)
+    assert found[0].restitution == pytest.approx(0.5, rel=1e-12)
+
+
+def test_each_impact_belongs_to_one_collision() -> None:
+    """A collision ends with a minimum of its outgoing virtual motion, and no impact comes before that."""
+    several = 0
+    for law in (newton(0.0), newton(0.3), newton(0.8), LinearContact(stiffness=1e6, damping=3.0)):
+        oscillator = spring(6, law, damping=0.01)
+        run = simulate(oscillator, before_collision(oscillator), periods=60)
+        found = collisions(oscillator, run, unfinished="drop")
+        impacts = run.impacts
+        starts = impacts.start[impacts.kind == 0]
+        counted = np.sum([c.impacts for c in found])
+        assert starts.size - 8 <= counted <= starts.size and len(found) > 20
+        several += counted - len(found)
+        edges = np.searchsorted(starts, [c.first_touch for c in found])
+        np.testing.assert_array_equal(np.diff(edges), [c.impacts for c in found[:-1]])
+        for c, following in itertools.pairwise(found):
+            last = int(np.flatnonzero(impacts.end == c.end)[-1])
+            q, rate = steady(oscillator, c.end)
+            u = impacts.displacement_end[last, 0] - q[0]
+            v = impacts.velocity_end[last, 0] - rate[0]
+
+            def speed(time, c=c, u=u, v=v, oscillator=oscillator):
+                return PHI @ steady(oscillator, time)[1] + PHI[0] * flow(oscillator, u, v, time - c.end)[1]
+
+            ahead = np.array([speed(t) for t in np.linspace(c.end, following.first_touch, 400)])
+            assert np.any((ahead[:-1] < 0) & (ahead[1:] >= 0))
+            assert c.end - c.first_touch < 0.9 * oscillator.period
+    assert several > 20
+
+
+# --------------------------------------------------------------------------- relations between the numbers
+
+
+@pytest.fixture(scope="module")
+def letter_with_hertz() -> ImpactOscillator:
+    return beam_at(read_scene("letter", ['contact.law="hertz"']), 22.2)
+
+
+@pytest.mark.parametrize("frequency", [20.90, 22.20, 23.40])
+def test_two_relations_of_a_single_contact_of_the_letters_spring(
+    frequency: float, letter_with_hertz: ImpactOscillator
+) -> None:
+    """restitution^2 = (1 - kick)^2 + 2 a shift/v^2, delay = (v/a)(1 + restitution - kick), within 3e-3."""
+    oscillator = dataclasses.replace(letter_with_hertz, drive=HarmonicDrive(frequency=frequency))
+    kicks, restitutions = [], []
+    for excess in (1e-5, 1e-4, 1e-3, 5e-3, 1.3e-2, 3e-2, 5e-2):
+        c = first_collision(oscillator.with_excess(excess))
+        assert c.impacts == 1 and c.returns and not c.forced_by_ringing
+        a, v = c.deceleration, c.approach
+        assert a == pytest.approx((2 * math.pi * frequency) ** 2 * oscillator.stop.gap, rel=1e-9)
+        assert abs(c.restitution**2 - (1 - c.kick) ** 2 - 2 * a * c.shift / v**2) < 3e-3
+        assert abs(c.delay * a / v - (1 + c.restitution - c.kick)) < 3e-3
+        # shift = kick v t_c / 2 to the same order: the contact acts at its middle
+        assert c.restitution**2 == pytest.approx(
+            (1 - c.kick) ** 2 + c.kick * c.contact_time * a / v, abs=6e-3
+        )
+        kicks.append(c.kick)
+        restitutions.append(c.restitution)
+    # slow approaches are not kicked at all, and the kick rises with the speed
+    assert kicks[0] < 0.15 and restitutions[0] > 0.98
+    assert np.all(np.diff(kicks) > 0) and kicks[-1] > 1
+    assert np.all(np.diff(restitutions) < 0)
+
+
+def test_leading_order_relations_are_those_of_a_parabola() -> None:
+    """The shorter its arc, the better a planted collision fulfils both relations."""
+    errors = []
+    for scale in (1.0, 0.5, 0.25, 0.125):
+        law = DelayedRestitution(restitution=0.4, delay=4e-4 * scale)
+        c = first_collision(equation_1(22.2, law, 2e-2 * scale**2))
+        a, v = c.deceleration, c.approach
+        errors.append([
+            abs(c.restitution**2 - (1 - c.kick) ** 2 - 2 * a * c.shift / v**2),
+            abs(c.delay * a / v - (1 + c.restitution - c.kick)),
+        ])  # fmt: skip
+    ratios = np.array(errors[:-1]) / np.array(errors[1:])
+    assert np.all(ratios > 1.7) and np.all(ratios < 5)
+    assert np.max(errors[-1]) < 3e-3

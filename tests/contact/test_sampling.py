@@ -1,0 +1,209 @@
+"""Samples, splits and clocks change no motion; what cannot be followed is reported with its place."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from oscillators import equation_1, spring
+from whole_motions import CONTACT, FREE, GRAZE, HELD, IMPACT, falling_body, pressed
+
+from beam import ModalModel
+from contact.errors import Chatter, UnresolvedCrossing
+from contact.laws import LinearContact, NewtonRestitution
+from contact.oscillator import ImpactOscillator
+from contact.simulation import simulate
+from contact.stop import Stop
+from contact.trajectory import Regime, State
+
+# ----------------------------------------------------------------------------------- sampling and composition
+
+SYSTEMS = {
+    "one mode, Newton": lambda: equation_1(22.2, excess=0.05),
+    "six modes, Newton": lambda: spring(6, NewtonRestitution(local_restitution=0.5), drive=(21.5, 1.5e-3)),
+    "three modes, linear": lambda: spring(3, LinearContact(stiffness=2e4, damping=5.0), drive=(21.5, 1.5e-3)),
+    "three modes, pressed": lambda: pressed(3, 0.5),
+    "no drive": lambda: spring(3, LinearContact(stiffness=2e4), damping=0.0),
+}
+
+
+def shaken(n_modes: int) -> State:
+    velocity = np.zeros(n_modes)
+    velocity[0] = 0.15
+    return State(displacement=np.zeros(n_modes), velocity=velocity)
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_samples_at_the_strobes_are_the_strobes(name):
+    oscillator = SYSTEMS[name]()
+    state = shaken(oscillator.n_modes)
+    run = simulate(oscillator, state, periods=25, times=np.arange(26) * oscillator.period)
+    assert np.array_equal(run.strobe_time, np.arange(1, 26) * oscillator.period)
+    scale = np.max(np.abs(run.strobe_velocity))
+    np.testing.assert_allclose(run.displacement[0], state.displacement, atol=1e-17)
+    np.testing.assert_allclose(run.displacement[1:], run.strobe_displacement, atol=1e-13)
+    np.testing.assert_allclose(run.velocity[1:], run.strobe_velocity, atol=1e-12 * scale)
+    assert np.array_equal(run.end.displacement, run.strobe_displacement[-1])
+    assert np.array_equal(run.end.velocity, run.strobe_velocity[-1])
+    hits = run.impacts.start[run.impacts.kind == IMPACT]
+    assert hits.size >= 3
+    expected = np.histogram(hits, np.arange(26) * oscillator.period)[0]
+    assert np.array_equal(run.strobe_impacts, expected)
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_run_split_in_two_is_the_run_in_one(name):
+    """Split anywhere: in flight, in contact, while held, at a strobe, at a touch; ends and samples agree."""
+    oscillator = SYSTEMS[name]()
+    start = shaken(oscillator.n_modes)
+    period = oscillator.period
+    length = 6.0 * period
+    times = np.linspace(0, length, 120)
+    whole = simulate(oscillator, start, duration=length, times=times)
+    scale = np.max(np.abs(whole.velocity))
+    cuts = [*np.random.default_rng(3).uniform(0.1, 5.9, 25) * period, 2 * period]
+    contacts = np.flatnonzero(whole.impacts.end > whole.impacts.start)
+    cuts += [0.5 * (whole.impacts.start[i] + whole.impacts.end[i]) for i in contacts[:3]]
+    cuts += list(whole.impacts.start[:3])
+    regimes = set()
+    for cut in cuts:
+        one = simulate(oscillator, start, duration=cut, times=times[times <= cut])
+        regimes.add(one.end.regime)
+        assert one.end.time == pytest.approx(cut, rel=1e-14)
+        two = simulate(oscillator, one.end, duration=length - cut, times=times[times > cut])
+        both = np.concatenate([one.velocity, two.velocity])
+        assert np.max(np.abs(both - whole.velocity)) < 1e-8 * scale
+        assert np.max(np.abs(two.end.velocity - whole.end.velocity)) < 1e-8 * scale
+        if one.end.regime == FREE:
+            starts = np.concatenate([x.impacts.start[x.impacts.kind == IMPACT] for x in (one, two)])
+            reference = whole.impacts.start[whole.impacts.kind == IMPACT]
+            if cut not in whole.impacts.start:
+                np.testing.assert_allclose(starts, reference, rtol=0, atol=1e-9 * period)
+    if name in ("three modes, linear", "no drive"):
+        assert CONTACT in regimes
+    if name == "three modes, pressed":
+        assert HELD in regimes
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_samples_that_are_asked_for_do_not_change_the_motion(name):
+    oscillator = SYSTEMS[name]()
+    state = shaken(oscillator.n_modes)
+    length = 7.3 * oscillator.period
+    plain = simulate(oscillator, state, duration=length)
+    sampled = simulate(oscillator, state, duration=length, times=np.linspace(0, length, 1000))
+    assert np.array_equal(plain.end.displacement, sampled.end.displacement)
+    assert np.array_equal(plain.impacts.start, sampled.impacts.start)
+    assert np.all(np.isfinite(sampled.displacement))
+    np.testing.assert_allclose(sampled.displacement[-1], sampled.end.displacement, rtol=0, atol=1e-15)
+
+
+def test_every_sample_is_filled_in_whatever_the_length():
+    """Lengths at random, a sample at the very end: none is left out by rounding."""
+    oscillator = spring(1, NewtonRestitution(local_restitution=0.5), drive=(21.5, 1.5e-3))
+    generator = np.random.default_rng(4)
+    start = shaken(1)
+    for length in generator.uniform(0.01, 0.5, 200):
+        run = simulate(oscillator, start, duration=length, times=[0.3 * length, length])
+        scale = abs(run.velocity).max() + 1e-3
+        assert run.displacement[-1] == pytest.approx(run.end.displacement, abs=1e-14)
+        assert run.velocity[-1] == pytest.approx(run.end.velocity, abs=1e-12 * scale)
+
+
+def test_motion_without_drive_does_not_depend_on_the_clock():
+    oscillator = spring(3, LinearContact(stiffness=2e4, damping=3.0))
+    velocity = np.array([0.3, 0.0, 0.0])
+    ends = []
+    for time in (0.0, 0.0123, 17.0, -0.4):
+        state = State(displacement=np.zeros(3), velocity=velocity, time=time)
+        run = simulate(oscillator, state, duration=0.5)
+        assert run.end.time == pytest.approx(time + 0.5, abs=1e-14)
+        assert len(run.impacts) >= 3
+        ends.append(np.concatenate([run.end.displacement, run.end.velocity, run.impacts.start - time]))
+    for end in ends[1:]:
+        np.testing.assert_allclose(end, ends[0], rtol=0, atol=1e-11)
+
+
+def test_drive_is_periodic_in_the_clock():
+    """Started whole periods later the run is the same, to the rounding of the larger times."""
+    oscillator = spring(3, NewtonRestitution(local_restitution=0.5), drive=(16.0, 1.5e-3))
+    runs = []
+    for turns in (0, 7, 1000):
+        state = State(displacement=np.zeros(3), velocity=[0.2, 0.0, 0.0], time=turns / 16.0 + 0.01)
+        run = simulate(oscillator, state, periods=5)
+        assert run.end.time == pytest.approx(state.time + 5 / 16.0, rel=1e-15)
+        runs.append(run)
+    assert len(runs[0].impacts) > 3
+    for run in runs[1:]:
+        np.testing.assert_allclose(run.end.velocity, runs[0].end.velocity, rtol=0, atol=1e-10)
+
+
+def test_start_in_contact_is_the_rest_of_the_contact():
+    """A start behind a wall that pushes is a contact at once (a force law allows it)."""
+    oscillator = falling_body(0.01, LinearContact(stiffness=4e4), gravity=0.0)
+    depth = 1e-4
+    run = simulate(oscillator, State(displacement=[0.01 + depth], velocity=[0.0]), duration=0.1)
+    assert run.impacts.end[0] == pytest.approx(0.5 * math.pi / 200.0, rel=1e-12)
+    assert run.end.velocity[0] == pytest.approx(-depth * 200.0, rel=1e-12)
+    # with a dashpot and moving out fast it lies inside without force, and leaves freely
+    oscillator = falling_body(0.01, LinearContact(stiffness=4e4, damping=1e3), gravity=0.0)
+    run = simulate(oscillator, State(displacement=[0.01 + depth], velocity=[-0.5]), duration=0.1)
+    assert run.end.velocity[0] == -0.5
+    assert run.impacts.end[0] == pytest.approx(depth / 0.5, rel=1e-12)
+
+
+def test_graze_is_logged_and_does_nothing():
+    """An undamped mode whose amplitude is the gap: grazes, no impact, no loss."""
+    model = ModalModel(omega=[2.0], decay_rate=[0.0], phi=[1.0], participation=[0.0])
+    oscillator = ImpactOscillator(
+        model=model, stop=Stop(gap=0.25, law=NewtonRestitution(local_restitution=0.3))
+    )
+    run = simulate(oscillator, State(displacement=[-0.25], velocity=[0.0]), duration=10.0)
+    assert np.all(run.impacts.kind == GRAZE)
+    assert len(run.impacts) >= 3
+    np.testing.assert_allclose(run.impacts.start[:3], np.pi / 2 * np.array([1, 3, 5]), atol=1e-7)
+    assert run.end.displacement[0] == pytest.approx(-0.25 * math.cos(20.0), abs=1e-13)
+    assert not np.any(run.impacts.loss)
+    assert np.all(run.strobe_impacts == 0)
+
+
+# ------------------------------------------------------------------------------------ what cannot be followed
+
+
+def test_impacts_without_end_are_reported_with_their_place():
+    """e = 0.99999: more than 1e5 impacts in one second, none of them below rounding."""
+    oscillator = falling_body(1e-8, NewtonRestitution(local_restitution=0.99999))
+    with pytest.raises(Chatter, match="impacts accumulate at t = ") as caught:
+        simulate(oscillator, duration=20.0)
+    assert 0 < caught.value.time < 10
+    assert abs(caught.value.gap) <= 1e-8
+    assert caught.value.displacement == pytest.approx([1e-8], abs=1e-8)
+    assert abs(caught.value.velocities[0]) <= 5e-4
+
+
+def test_graze_lost_in_rounding_is_reported_and_not_passed():
+    """Two modes that cancel to a thousandth of their size reach the stop to rounding of the larger ones."""
+    model = ModalModel(omega=[100.0, 100.0], decay_rate=[0.0, 0.0], phi=[1.0, -1.0], participation=[0.0, 0.0])
+    state = State(displacement=[-0.01 - 2.0**-17, -0.01], velocity=[0.0, 0.0])
+    for factor, outcome in ((1.0, None), (1 + 1e-9, 0), (1 - 1e-9, 1)):
+        gap = (0.01 + 2.0**-17 - 0.01) * factor
+        stop = Stop(gap=gap, law=NewtonRestitution(local_restitution=1.0))
+        oscillator = ImpactOscillator(model=model, stop=stop)
+        if outcome is None:
+            with pytest.raises(UnresolvedCrossing, match="neither excluded nor located") as caught:
+                simulate(oscillator, state, duration=0.05)
+            assert caught.value.time == pytest.approx(0.01 * math.pi, abs=1e-3)
+        else:
+            assert len(simulate(oscillator, state, duration=0.05).impacts) == outcome
+
+
+@pytest.mark.parametrize("given", [3, 3.0, np.int64(3), Regime.SUSTAINED])
+def test_a_regime_given_as_a_number_is_the_regime(given):
+    assert State(displacement=[0.0], velocity=[0.0], regime=given).regime is Regime.SUSTAINED
+
+
+def test_a_state_cannot_be_changed():
+    state = State(displacement=[0.0, 1.0], velocity=[0.0, 2.0])
+    with pytest.raises(ValueError, match="read-only"):
+        state.displacement[0] = 1.0

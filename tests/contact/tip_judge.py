@@ -1,0 +1,208 @@
+"""The tip of a free flight in extended precision (64-bit mantissa), and random flights for it to judge.
+
+With real exponentials and phases in place of the recurrences of the package: the flight is sampled at 40
+points per period of its fastest mode, every maximum is polished, the first one above the stop counts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beam import ModalModel
+from contact.drive import HarmonicDrive
+from contact.flight.crossing import CROSSES, FREE, GRAZE_TOLERANCE, GRAZES, first_crossing
+from contact.flight.elementary import EPS
+from contact.flight.modal_flow import tip_rounding
+from contact.flight.motion import Motion
+from contact.laws import NewtonRestitution
+from contact.oscillator import ImpactOscillator
+from contact.stop import Stop
+
+Real = np.longdouble
+DECADES = [10.0**-k for k in range(1, 13)]
+PLANTED = [sign * h for h in DECADES for sign in (1.0, -1.0)]
+
+
+# -------------------------------------------------------------------------------------------------- the judge
+
+
+class Signal:
+    """Tip displacement x(s) = y(s) + gap of a free flight, and its derivatives, in double or long double."""
+
+    def __init__(self, motion: Motion, base: float, u: np.ndarray, v: np.ndarray) -> None:
+        self.motion, self.base = motion, base
+        terms: list[tuple[complex, complex]] = []  # rates and coefficients of exp(rate s)
+        polynomial = np.zeros(3, dtype=Real)
+        for k in range(motion.size):
+            o, c = Real(motion.omega[k]), Real(motion.decay[k])
+            a, b, phi = Real(u[k]), Real(v[k]), Real(motion.phi[k])
+            square = (o - c / 2) * (o + c / 2)
+            if o == 0 and c == 0:
+                polynomial += phi * np.array([a, b, Real(motion.load[k]) / 2])
+            elif square > 0:
+                d = np.sqrt(square)
+                terms.append((np.clongdouble(-c / 2 + 1j * d), phi * (a - 1j * (b + c / 2 * a) / d)))
+            else:
+                d = np.sqrt(-square)
+                fast, slow = -c / 2 - d, -o * o / (c / 2 + d)
+                if o == 0:  # constant load against a drag: terminal velocity g/c
+                    g = Real(motion.load[k])
+                    polynomial += phi * np.array([a + (b - g / c) / c, g / c, Real(0)])
+                    terms.append((np.clongdouble(-c), np.clongdouble(-phi * (b - g / c) / c)))
+                else:
+                    terms.append((np.clongdouble(slow), np.clongdouble(phi * (b - fast * a) / (slow - fast))))
+                    terms.append((np.clongdouble(fast), np.clongdouble(phi * (slow * a - b) / (slow - fast))))
+        if motion.drive > 0:
+            w = Real(motion.drive)
+            turn = np.cos(w * Real(base)) + 1j * np.sin(w * Real(base))
+            amplitude = (Real(motion.tip_cosine) - 1j * Real(motion.tip_sine)) * turn
+            terms.append((np.clongdouble(1j * w), np.clongdouble(amplitude)))
+        self.rates = np.array([r for r, _ in terms], dtype=np.clongdouble)
+        self.terms = np.array([t for _, t in terms], dtype=np.clongdouble)
+        self.polynomial = polynomial
+        self.shift = Real(motion.level) + Real(motion.gap)
+
+    def __call__(self, s: np.ndarray, order: int = 0) -> np.ndarray:
+        """x or a derivative of it at `s`, in the precision of `s`."""
+        s = np.asarray(s)
+        rates, terms = self.rates, self.terms
+        polynomial, shift = self.polynomial, self.shift
+        if s.dtype != Real:
+            rates, terms = rates.astype(complex), terms.astype(complex)
+            polynomial, shift = polynomial.astype(float), float(shift)
+        value = (np.exp(s[..., None] * rates) @ (terms * rates**order)).real
+        a, b, c = polynomial
+        return value + (shift + a + s * (b + s * c), b + 2 * c * s, 2 * c)[order]
+
+    def samples(self, end: float) -> np.ndarray:
+        fastest = float(np.max(np.abs(self.rates.imag), initial=1.0))
+        return np.linspace(0.0, end, 3 + int(40 * end * fastest / (2 * np.pi)))
+
+    def peaks(self, end: float, *, above: float = -np.inf, samples: np.ndarray | None = None) -> np.ndarray:
+        """Places of the maxima in (0, end) with samples higher than `above`, long double."""
+        s = self.samples(end) if samples is None else samples
+        x = self(s)
+        top = np.flatnonzero((x[1:-1] >= x[:-2]) & (x[1:-1] > x[2:]) & (x[1:-1] > above)) + 1
+        low, high = s[top - 1].astype(Real), s[top + 1].astype(Real)
+        place = s[top].astype(Real)
+        for _ in range(16):
+            slope, bend = self(place, 1), self(place, 2)
+            low, high = np.where(slope > 0, place, low), np.where(slope > 0, high, place)
+            new = place - slope / np.where(bend < 0, bend, -1)
+            new = np.where((bend < 0) & (new >= low) & (new <= high), new, (low + high) / 2)
+            place, step = new, np.abs(new - place)
+            if np.all(step <= 1e-10 * Real(end)):  # its height is then settled to 1e-20 of the curvature
+                break
+        return place
+
+    def root(self, low: Real, high: Real, gap: Real) -> Real:
+        """Where x rises through `gap` in [low, high]."""
+        s = (low + high) / 2
+        for _ in range(90):
+            y, slope = self(s) - gap, self(s, 1)
+            low, high = (s, high) if y < 0 else (low, s)
+            new = s - y / slope if slope > 0 else low
+            new = new if low < new < high else (low + high) / 2
+            if new == s:
+                break
+            s = new
+        return s
+
+
+@dataclass
+class Verdict:
+    """First touch in (start, end], NaN if there is none, its slope, and height - gap of the decisive peak."""
+
+    time: Real
+    peak: Real
+    slope: Real
+
+
+def judge(
+    signal: Signal, gap: float, end: float, *, start: float = 0.0, peaks: np.ndarray | None = None
+) -> Verdict:
+    """The first s in (start, end] where x rises above `gap`; x lies below it just after `start`."""
+    places = signal.peaks(end) if peaks is None else peaks
+    places = np.concatenate([places[places > start], [Real(end)]])
+    heights = signal(places) - Real(gap)
+    above = np.flatnonzero(heights > 0)
+    if above.size == 0:
+        return Verdict(Real("nan"), heights.max(), Real("nan"))
+    first = above[0]
+    s = signal.samples(end).astype(Real)
+    s = s[(s > start) & (s < places[first])]
+    below = s[signal(s.astype(float)) < gap]
+    low = below[-1] if below.size else Real(start)
+    # the last sample below the stop before the first peak above it
+    time = signal.root(low, places[first], Real(gap))
+    return Verdict(time, heights[first], signal(time, 1))
+
+
+def search(motion: Motion, base: float, u: np.ndarray, v: np.ndarray, duration: float, order: int = 0):
+    return first_crossing(motion, base, u, v, duration, order)
+
+
+# --------------------------------------------------------------------------------------------- random flights
+
+
+def random_oscillator(
+    generator: np.random.Generator, n_modes: int, *, driven: bool = True
+) -> ImpactOscillator:
+    """Modes from 20 Hz up to 50 times that, decays from none to over-damped, tip values of either sign."""
+    omega = 2 * np.pi * 20.0 * np.sort(generator.uniform(1, 1 + 2.5 * n_modes, n_modes))
+    decay = omega * np.where(
+        generator.random(n_modes) < 0.15,
+        generator.uniform(0.5, 3.0, n_modes),
+        10 ** generator.uniform(-4, -1, n_modes),
+    )
+    decay[generator.random(n_modes) < 0.1] = 0.0
+    drive = HarmonicDrive(frequency=float(generator.uniform(14, 19)), amplitude=2e-3) if driven else None
+    model = ModalModel(
+        omega=omega, decay_rate=decay, phi=generator.normal(size=n_modes) * 5 + 2,
+        participation=generator.normal(size=n_modes) * 0.1,
+    )  # fmt: skip
+    stop = Stop(gap=0.01, law=NewtonRestitution(local_restitution=0.5))
+    return ImpactOscillator(model=model, stop=stop, drive=drive)
+
+
+def random_deviation(generator: np.random.Generator, motion: Motion, *, ringing: float) -> tuple:
+    """Deviations of random phase; tip amplitudes fall with the mode number, more slowly when ringing."""
+    n = motion.size
+    amplitude = 0.01 * generator.uniform(0.1, 1, n) / (1 + np.arange(n)) ** (1.0 if ringing else 2.0)
+    phase = generator.uniform(0, 2 * np.pi, n)
+    u = amplitude * np.cos(phase) / np.abs(motion.phi)
+    v = amplitude * np.sin(phase) * motion.omega / np.abs(motion.phi)
+    return u, v
+
+
+def with_gap(motion: Motion, gap: float) -> Motion:
+    """The same oscillator with the stop elsewhere (no constant load, so that level = -gap)."""
+    return motion._replace(gap=gap, level=-gap)
+
+
+def records(heights: np.ndarray) -> np.ndarray:
+    """Indices of the peaks that are higher than all before them."""
+    before = np.concatenate([[-np.inf], np.maximum.accumulate(heights.astype(float))[:-1]])
+    return np.flatnonzero(heights > before)
+
+
+def assert_agrees(
+    result: tuple, verdict: Verdict, motion: Motion, u: np.ndarray, v: np.ndarray, base: float
+) -> str:
+    """Compare an outcome with the judge's; only a peak within twice the rounding bound may be a graze."""
+    outcome, s = result
+    bound = tip_rounding(motion, u, v)
+    if abs(verdict.peak) <= 2.0 * bound:
+        assert outcome in (CROSSES, FREE, GRAZES) or bound > GRAZE_TOLERANCE * motion.gap
+        return "within rounding"
+    if verdict.peak < 0:
+        assert outcome == FREE, f"invented a touch {float(verdict.peak / motion.gap):.2e} of the gap below it"
+        return "free"
+    assert outcome == CROSSES, f"missed an overshoot of {float(verdict.peak / motion.gap):.2e} of the gap"
+    allowed = bound / verdict.slope + 4 * EPS * (base + verdict.time)
+    assert abs(s - verdict.time) <= allowed, (
+        f"time off by {float(abs(s - verdict.time)):.2e}, allowed {allowed:.2e}"
+    )
+    return "crosses"
