@@ -1,4 +1,4 @@
-"""Nordmark's map at its rho as a strobed motion: scans, settling and exponents take it as they take a beam."""
+"""Nordmark's map at its rho as a strobed motion: scans and exponents take it as they take a beam."""
 
 from __future__ import annotations
 
