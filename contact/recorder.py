@@ -189,11 +189,10 @@ def trajectory_of(
     logged, passed = marks["logged"], run.last - run.first
     log, log_state = recorder.log[:logged], recorder.log_state[:logged]
     rows = np.concatenate((log_state[:, : 2 * n], log_state[:, 2 * n :], recorder.strobes, recorder.samples))
-    q, v = 0.0, 0.0
-    if motion is not None:
-        clock = np.concatenate((log["start"], log["end"], np.zeros(passed), run.sample_clock))
-        q, v = steady_motion(motion, clock)  # of all at once: a call costs more than its rows
-    q, v = rows[:, :n] + q, rows[:, n:] + v
+    clock = np.concatenate((log["start"], log["end"], np.zeros(passed), run.sample_clock))
+    # of all rows at once: a call costs more than a few rows
+    steady = (0.0, 0.0) if motion is None else steady_motion(motion, clock)
+    q, v = rows[:, :n] + steady[0], rows[:, n:] + steady[1]
     parts = pairwise((0, logged, 2 * logged, 2 * logged + passed, len(rows)))
     (q_in, v_in), (q_out, v_out), (q_strobe, v_strobe), (q_sample, v_sample) = (
         (q[first:last], v[first:last]) for first, last in parts
