@@ -37,7 +37,7 @@ from contact.integrators import Splitting
 from studies import plotting
 from studies.scene import Scene, model_of
 from studies.stability import Findings, Limit
-from studies.stability.lasting_contact import modal_stiffness, plane, pressed, show_plane, stiffest
+from studies.stability.lasting_contact import pressed, stiffest
 
 __all__ = ["closed_form_stiffness", "draw", "limit", "measure"]
 
@@ -69,7 +69,7 @@ def limit(model: ModalModel, angle: float) -> Limit:
 
 
 def measure(scene: Scene, quick: bool) -> Findings:
-    """Limits on the modes of the scene, and the plane of step and stiffness for both orders."""
+    """Limits on the modes of the scene, and over the step those of both orders for five of them."""
     model = model_of(scene)
     one = replace(model.truncated(1), decay_rate=np.zeros(1))
     counts = sorted({min(n, model.n_modes) for n in ((1, 3) if quick else (1, 2, 5, 15))})
@@ -77,36 +77,30 @@ def measure(scene: Scene, quick: bool) -> Findings:
         *(limit(model.truncated(n), angle) for n in counts for angle in (1.0, 2.5)),
         *(limit(one, angle) for angle in ((4.0,) if quick else (4.0, 5.5))),
     ]
-    few = model.truncated(min(5, model.n_modes))
-    angles, parts = np.linspace(0.2, 6.8, 5 if quick else 23), np.geomspace(1e-1, 1e6, 5 if quick else 22)
+    few, angles = model.truncated(min(5, model.n_modes)), np.linspace(0.5, 3.0, 3 if quick else 6)
     fine, motion = np.linspace(0.1, 7.0, 40 if quick else 280), pressed(few, 1.0)[0].motion()
-    arrays = {"angle": angles, "part": parts, "fine": fine}
+    found = [limit(few, float(angle)).measured for angle in angles]
+    arrays = {"fine": fine, "angle": angles, "measured": np.array(found, dtype=float)}
     for order in (2, 4):
-
-        def made(step: float, order: int = order) -> Splitting:
-            return Splitting(step=step, order=order)
-
-        arrays[f"rate_{order}"] = plane(few, made, angles, parts)
-        line = [made(x / float(few.omega[-1])).critical_stiffness(motion) for x in fine]
-        arrays[f"limit_{order}"] = np.array(line) / modal_stiffness(few)
+        steps = [Splitting(step=x / float(few.omega[-1]), order=order) for x in fine]
+        arrays[f"limit_{order}"] = np.array([method.critical_stiffness(motion) for method in steps])
     return Findings(limits=limits, arrays=arrays)
 
 
 @plotting.in_house_style
 def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
-    """Where the pressed modes are bounded over stiffness and step, both orders, and the limits."""
-    figure, axes = plotting.new_figure(1, 2, width=plotting.PAGE, height=0.080, sharey=True)
-    for number, (axis, order) in enumerate(zip(axes, (2, 4), strict=True)):
-        show_plane(axis, arrays["angle"], arrays["part"], arrays[f"rate_{order}"])
-        axis.plot(arrays[f"limit_{order}"], arrays["fine"], color="black", label="limit of refusal")
-        axis.axhline(math.pi, color="black", linewidth=0.6, linestyle=":", label="h ω$_N$ = π")
-        axis.set_xlim(0.7 * arrays["part"][0], 1.4 * arrays["part"][-1])
-        axis.set_ylim(0.0, 7.05)
-        plotting.panel(axis, number, f"order {order}")
-    plotting.label(axes[0].yaxis, "h ω$_N$, step × highest free frequency")
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    """The stiffest lasting contact over the step, both orders."""
+    figure, axes = plotting.new_figure(width=plotting.COLUMN, height=0.075)
+    for number, order in enumerate((2, 4)):
+        axes.plot(arrays["fine"], arrays[f"limit_{order}"], color=plotting.PALETTE[number + 1],
+                  label=f"order {order}, limit of refusal")  # fmt: skip
+    axes.plot(arrays["angle"], arrays["measured"], **plotting.points(1), label="order 2, found")
+    axes.axvline(math.pi, color="black", linewidth=0.6, linestyle=":", label="h ω$_N$ = π")
+    axes.set_yscale("log")
+    plotting.label(axes.xaxis, "h ω$_N$, step × highest free frequency")
+    plotting.label(axes.yaxis, "contact stiffness", "N/m")
+    figure.legend(loc="outside lower center", ncols=2)
     return figure, (
-        "Splitting, five modes pressed on the stop: where a disturbance does not grow, over contact "
-        "stiffness and step, and the limit by which a step is refused; beyond h omega_N = pi the "
-        "instabilities are resonances of step and contact."
+        "Splitting, five modes pressed on the stop: the stiffest contact that a step bears; beyond "
+        "h omega_N = pi the instabilities are resonances of step and contact."
     )
