@@ -28,8 +28,7 @@ dJ/dh = 2 s z/(1 + z^2), hence with Lambda = 1/S_+
 
     z_f = (s/Lambda) [1 - sqrt(1 - (Lambda/s)^2)] -> Lambda/(2 s),   h_f = (a/2) z_f^2/kappa
 
-and no doubling near grazing if s < Lambda. As K grows, h_f -> (a/2) [Lambda/(2 K Omega^2)]^2 and the
-excess -> (h_f/gap)(1 + (2/3) S_-/S_+), too small by a part of order 1/K.
+and no doubling near grazing if s < Lambda. As K grows, h_f goes like K^(-2).
 """
 
 from __future__ import annotations
@@ -43,10 +42,7 @@ import numpy as np
 from contact import HertzContact, ImpactOscillator, LinearContact, Stop
 from contact.orbits import KickFamily
 
-__all__ = ["HALF", "SoftWall", "hertz_doubling", "hertz_kick", "impulse_per_square", "survival_sums"]
-
-HALF = 2.331122370414423
-"""z at which z - atan z = z/2: the kick is half of the hard wall's."""
+__all__ = ["SoftWall", "hertz_doubling", "hertz_kick", "impulse_per_square", "survival_sums"]
 
 
 def survival_sums(oscillator: ImpactOscillator) -> tuple[float, float]:
@@ -154,10 +150,3 @@ class SoftWall:
             return None
         peak = self.peak_of(wanted / (1.0 + math.sqrt(1.0 - wanted**2)))
         return peak, peak + self.sums[0] * self.kick(peak) / self.oscillator.stop.gap
-
-    def limit(self) -> tuple[float, float]:
-        """The same as K -> infinity."""
-        less, more = self.sums
-        stiff = self.hardness * float(self.oscillator.model.omega[0]) ** 2
-        peak = 0.5 * (math.pi / (self.oscillator.period * more * stiff)) ** 2
-        return peak, peak * (1.0 + 2.0 / 3.0 * less / more)

@@ -54,7 +54,6 @@ def draw_orbits(scene: Scene, doublings: Sequence[Doubling], beam: Beam | None) 
         oscillator = single_mode_at(scene, frequency)
         walls = [SoftWall(oscillator=oscillator, hardness=K) for K in hardness.tolist()]
         axes[0].loglog(hardness, [(wall.doubling() or (0.0, np.nan))[1] for wall in walls], color=colour)
-        axes[0].loglog(hardness, [wall.limit()[1] for wall in walls], color=colour, linestyle="--", lw=0.8)
         rows = [row for row in doublings if row.frequency_hz == frequency]
         axes[0].loglog([row.hardness for row in rows], [row.excess or np.nan for row in rows], **style,
                        markerfacecolor="white", label=f"{frequency:.2f} Hz")  # fmt: skip

@@ -12,8 +12,8 @@ from scipy.optimize import brentq
 from contact import ImpactOscillator, StroboscopicMap, first_collision
 from contact.orbits import PeriodicOrbit, Shooting, born_period, follow
 from studies import letter
-from studies.scene import Scene, approach_speed, beam_at, single_mode_at
-from studies.soft_wall.closed_forms import HALF, SoftWall, hertz_doubling, hertz_kick
+from studies.scene import Scene, approach_speed, beam_at
+from studies.soft_wall.closed_forms import SoftWall, hertz_doubling, hertz_kick
 
 __all__ = ["Beam", "Doubling", "Kick", "beam_of", "doubling_near", "doubling_of", "kicks_of"]
 
@@ -42,13 +42,12 @@ class Kick:
 
 @dataclass(frozen=True, kw_only=True)
 class Doubling:
-    """Excess of the period doubling of p1: by shooting, in closed form, for K -> infinity."""
+    """Excess of the period doubling of p1: by shooting and in closed form."""
 
     frequency_hz: float
     hardness: float
     excess: float | None
     closed_form: float | None
-    limit: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,8 +57,7 @@ class Beam:
     `plateau`: the kick at Fig. 4, in approach speeds; `half_excess`: where half of it is left;
     `share_at_stability`: what is left at the letter's amplitude stability; `square_root_from`: where the kick
     rises with the power 0.6; `doubling_excess`, `doubling_theory`: of p1, by shooting and in closed form;
-    `born`: (excess, period) raised from -1e-3 in one step, as by an experiment, period 0 for none;
-    `equivalent_hardness`: K of the wall that has half of its kick at `half_excess`.
+    `born`: (excess, period) raised from -1e-3 in one step, as by an experiment, period 0 for none.
     """
 
     frequency_hz: float
@@ -71,7 +69,6 @@ class Beam:
     doubling_excess: float | None
     doubling_theory: float | None
     born: tuple[tuple[float, int], ...]
-    equivalent_hardness: float | None
 
 
 def kicks_of(wall: SoftWall, excesses: np.ndarray) -> list[Kick]:
@@ -96,13 +93,12 @@ def doubling_near(oscillator: ImpactOscillator, peak: float) -> PeriodicOrbit | 
 
 
 def doubling_of(wall: SoftWall) -> Doubling:
-    """Period doubling of p1 beside the formulas."""
-    closed, limit = wall.doubling(), wall.limit()
-    orbit = doubling_near(wall.struck, limit[0] if closed is None else closed[0])
+    """Period doubling of p1 beside the formula; where that has none it is looked for at z = 1, its last."""
+    closed = wall.doubling()
+    orbit = doubling_near(wall.struck, wall.peak_of(1.0) if closed is None else closed[0])
     return Doubling(
         frequency_hz=wall.frequency, hardness=wall.hardness,
         excess=None if orbit is None else orbit.excess, closed_form=None if closed is None else closed[1],
-        limit=limit[1],
     )  # fmt: skip
 
 
@@ -130,7 +126,6 @@ def beam_of(scene: Scene, frequency: float, excesses: Sequence[float]) -> tuple[
     plateau, closed = kick(letter.TIME_TRACE_EXCESS), hertz_doubling(oscillator)
     doubling = None if closed is None else doubling_near(oscillator, closed[0])
     half = zero_of(lambda e: kick(e) - 0.5 * plateau, 1e-8, 1e-2)
-    soft = SoftWall(oscillator=single_mode_at(scene, frequency), hardness=2.0).peak_of(HALF)
     strobed = StroboscopicMap(oscillator=oscillator)
     beam = Beam(
         frequency_hz=frequency, modes=oscillator.n_modes, plateau=plateau, half_excess=half,
@@ -139,7 +134,6 @@ def beam_of(scene: Scene, frequency: float, excesses: Sequence[float]) -> tuple[
         doubling_excess=None if doubling is None else doubling.excess,
         doubling_theory=None if closed is None else closed[1],
         born=tuple((e, born_period(strobed, e)) for e in excesses if e <= 0.01),
-        equivalent_hardness=None if half is None else 1.0 + soft / half,
     )  # fmt: skip
     kicks = [
         Kick(case="beam", hardness=None, excess=e, kick_velocity=kick_velocity(e), closed_form=None,
