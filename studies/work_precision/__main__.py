@@ -20,7 +20,7 @@ taken one at a time, so that --workers makes no difference. What the modes left 
 all this is told by `studies.adequacy`.
 
 Run:     python -m studies.work_precision     5 min, --quick 20 s
-Writes:  rows.csv, cheapest.csv; work_precision and missed (png, pdf)
+Writes:  rows.csv, cheapest.csv; work_precision (png, pdf)
 """
 
 from __future__ import annotations
@@ -85,7 +85,6 @@ def work_precision(scene: Scene, run: Run) -> Mapping[str, object]:
 
     run.figure("work_precision", figures.draw_errors(rows, references), "Error of mode 1 past the first "
                "collision against time per drive period; black star, the exact method.")  # fmt: skip
-    run.figure("missed", figures.draw_missed(rows, problems), "Share of shallow crossings that is missed.")
     return {
         "rows": rows, "missing_solvers": missing_solvers(),
         "reference_errors": {one.problem.name: one.own_error for one in references},
