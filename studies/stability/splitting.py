@@ -12,10 +12,7 @@ exp(i psi) are the roots z = cos(psi) of 1 + k h sum_k phi_k^2 sin(theta_k)/(2 o
 0, theta_k = omega_k h; all residues have one sign, so that all roots are real, fall as k rises, and only the
 lowest can pass -1. For h -> 0 the limit is 4/(h^2 sum phi^2), that of central difference on a free body.
 
-Beyond pi a resonance of step and contact opens a tongue of instability that closes again for a longer step;
-of one undamped mode with sin(theta) < 0 the root leaves upwards, at
-
-    k = 2 omega (1 - cos(theta))/(h phi^2 |sin(theta)|).                                                   (b)
+Beyond pi a resonance of step and contact opens a tongue of instability that closes again for a longer step.
 
 For order 4 the limit is the lowest root of det(M(k) + I), M the matrix of the step, by which the package
 refuses (``Splitting.critical_stiffness``). It is a limit of M alone: an inner kick of a long step may find
@@ -27,7 +24,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -43,13 +39,9 @@ __all__ = ["closed_form_stiffness", "draw", "limit", "measure"]
 
 
 def closed_form_stiffness(model: ModalModel, step: float) -> float:
-    """Equation (a) for omega h < pi, and (b) for one undamped mode between pi and 2 pi [N/m]."""
+    """Equation (a), for omega h < pi [N/m]."""
     half = 0.5 * model.decay_rate
     damped = np.sqrt(model.omega**2 - half**2)
-    if damped[-1] * step > math.pi:
-        omega, phi = float(model.omega[-1]), float(model.phi[-1])
-        room = 2.0 * omega * (1.0 - math.cos(omega * step))
-        return room / (step * phi**2 * abs(math.sin(omega * step)))
     fade = np.exp(-half * step)
     sine, trace = fade * np.sin(damped * step) / damped, 2.0 * fade * np.cos(damped * step)
     return 1.0 / (step * float(np.sum(model.phi**2 * sine / (1.0 + trace + fade**2))))
@@ -60,10 +52,9 @@ def limit(model: ModalModel, angle: float) -> Limit:
     method = Splitting(step=angle / float(model.omega[-1]))
     theory = closed_form_stiffness(model, method.step)
     found, beyond_refused = stiffest(model, method, theory)
-    damping = "" if model.decay_rate.any() else ", undamped"
     return Limit(
         family="splitting", method=Splitting.name, parameter="contact stiffness [N/m]", theory=theory,
-        case=f"order 2, lasting contact, modes: {model.n_modes}{damping}, h omega_N = {angle:g}",
+        case=f"order 2, lasting contact, modes: {model.n_modes}, h omega_N = {angle:g}",
         measured=found, refused=beyond_refused,
     )  # fmt: skip
 
@@ -71,12 +62,8 @@ def limit(model: ModalModel, angle: float) -> Limit:
 def measure(scene: Scene, quick: bool) -> Findings:
     """Limits on the modes of the scene, and over the step those of both orders for five of them."""
     model = model_of(scene)
-    one = replace(model.truncated(1), decay_rate=np.zeros(1))
     counts = sorted({min(n, model.n_modes) for n in ((1, 3) if quick else (1, 2, 5, 15))})
-    limits = [
-        *(limit(model.truncated(n), angle) for n in counts for angle in (1.0, 2.5)),
-        *(limit(one, angle) for angle in ((4.0,) if quick else (4.0, 5.5))),
-    ]
+    limits = [limit(model.truncated(n), angle) for n in counts for angle in (1.0, 2.5)]
     few, angles = model.truncated(min(5, model.n_modes)), np.linspace(0.5, 3.0, 3 if quick else 6)
     fine, motion = np.linspace(0.1, 7.0, 40 if quick else 280), pressed(few, 1.0)[0].motion()
     found = [limit(few, float(angle)).measured for angle in angles]

@@ -186,11 +186,6 @@ def test_order_2_fails_where_the_closed_form_says_and_is_refused_there(count, an
     simulate(*pressed(model, 0.99 * row.theory), duration=40 * method.step, method=method)
 
 
-def test_beyond_pi_a_resonance_of_step_and_contact_sets_the_limit():
-    row = splitting.limit(STILL.truncated(1), 4.0)
-    assert row.measured == pytest.approx(row.theory, rel=1e-6) and row.refused is True
-
-
 def test_order_4_fails_by_little_in_a_narrow_band_above_its_limit():
     """One undamped mode, h omega = 1, inner kicks in contact: a band less than 4 % wide in stiffness."""
     model = STILL.truncated(1)
