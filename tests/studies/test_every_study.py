@@ -15,6 +15,7 @@ import beam.space
 import contact
 import contact.integrators
 import contact.orbits
+from studies.film import NO_RENDERING, can_render
 from studies.programs import FOLDER, names, source_of
 
 PUBLIC = {"beam": beam, "beam.space": beam.space, "contact": contact, "contact.orbits": contact.orbits,
@@ -31,7 +32,7 @@ OWN_TEST = [
 ]  # fmt: skip
 
 #: Options that keep a small form small.
-SMALLER = {"motion": ["--frames", "16", "--renderer", "matplotlib"], "chart": ["--points", "6", "8"],
+SMALLER = {"motion": ["--frames", "16"], "chart": ["--points", "6", "8"],
            "transitions": ["--set", "drive.frequencies_hz=[22.2]"],
            "calibrate": ["--set", "modes.count=4", "--set", "spring.elements_per_leg=12"]}  # fmt: skip
 
@@ -46,6 +47,8 @@ SLOW = ("calibrate",)
      for name in ON_THE_FRAME if name not in OWN_TEST],
 )  # fmt: skip
 def test_the_small_form_runs_and_leaves_a_table_a_figure_and_a_summary(run_study, name):
+    if name == "motion" and not can_render():
+        pytest.skip(NO_RENDERING)  # its figure is made of stills
     ran = run_study(name, "--quick", "--json", *SMALLER.get(name, ()))
     assert ran.code == 0, ran.err
     assert json.loads(ran.out)["study"] == ran.summary["study"] == name
