@@ -79,11 +79,12 @@ from contact.maximal_orbits import (
     maximal_periods,
     stable_range,
 )
-from contact.nordmark import NordmarkMap, StrobedNordmarkMap
+from contact.nordmark import NordmarkMap
 from contact.orbits.single_impact import MaximalFamily, SingleImpactOrbit
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
+from contact.strobed_nordmark import StrobedNordmarkMap
 from contact.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap, strobed_orbits
 from contact.trajectory import ImpactKind, Impacts, Regime, State, Trajectory
 

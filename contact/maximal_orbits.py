@@ -187,17 +187,18 @@ def _positive_roots(two: float, one: float, none: float) -> list[float]:
 
 
 def maximal_orbits(nordmark: NordmarkMap, period: int, rho: float) -> tuple[MaximalOrbit, ...]:
-    """`MapFamily.at_rho` of a map; ask each orbit for `admissible` and `stable`."""
+    """The orbits of a map `nordmark` with this `period` at `rho`: `MapFamily.at_rho`; ask each for
+    `admissible` and `stable`."""
     return MapFamily(nordmark, period).at_rho(rho)
 
 
 def fold(nordmark: NordmarkMap, period: int) -> MaximalOrbit | None:
-    """`MapFamily.fold` of a map."""
+    """The orbit of a map `nordmark` at which node and saddle of this `period` meet: `MapFamily.fold`."""
     return MapFamily(nordmark, period).fold()
 
 
 def stable_range(nordmark: NordmarkMap, period: int) -> tuple[float, float] | None:
-    """`MapFamily.stable_range` of a map."""
+    """The rho in which a map `nordmark` has a stable orbit of this `period`: `MapFamily.stable_range`."""
     return MapFamily(nordmark, period).stable_range()
 
 

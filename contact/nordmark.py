@@ -41,7 +41,7 @@ H. E. Nusse, C. Grebogi, Phys. Rev. E 50 (1994) 4427.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -53,9 +53,8 @@ from contact.flight.modal_flow import flow_matrix
 from contact.flight.motion import damped_frequency
 from contact.laws import NewtonRestitution
 from contact.oscillator import ImpactOscillator
-from contact.strobed_map import Jacobians, StrobedOrbit
 
-__all__ = ["NordmarkMap"]
+__all__ = ["NordmarkMap", "pair_of", "restitution_of"]
 
 YLine = Literal["corrected", "printed"]
 
@@ -232,81 +231,19 @@ class NordmarkMap:
         out = np.empty((require_whole("count", count, "periods", low=0), 2))
         value = require_within("rho", rho, "[1]")
         iterate_map(
-            *_state(state), self.alpha, self.gamma, self.gamma_impact, value, self.delay_term, out
+            *pair_of(state), self.alpha, self.gamma, self.gamma_impact, value, self.delay_term, out
         )
         return out
 
     def jacobian(self, state: ArrayLike) -> NDArray[np.float64]:
         """Derivative of one step with respect to (x, y), shape (2, 2); unbounded as x -> 0+."""
-        x, _ = _state(state)
+        x, _ = pair_of(state)
         if x > 0.0:
             return np.array([[-0.5 / math.sqrt(x), 1.0], [-self.gamma_impact, 0.0]])
         return np.array([[self.alpha, 1.0], [-self.gamma, 0.0]])
 
 
-@dataclass(frozen=True, kw_only=True)
-class StrobedNordmarkMap:
-    """A Nordmark map at its rho as a ``contact.strobed_map.StrobedMap``.
-
-    A state is the array (x, y), which is also its point; an impact occurs in the step that starts from x > 0.
-
-    Parameters
-    ----------
-    map : NordmarkMap
-    rho : float
-        The bifurcation parameter [1]; `at` sets it from the excess over grazing.
-    """
-
-    map: NordmarkMap
-    rho: float = 0.0
-
-    def __post_init__(self) -> None:
-        require_kind("map", self.map, NordmarkMap, "a NordmarkMap")
-        require_within("rho", self.rho, "[1]")
-
-    @property
-    def scale(self) -> float:
-        """Size of the state of an orbit with impacts, from the square root's slope at |rho| = 1e-3 [1]."""
-        return 1e-3
-
-    @property
-    def period(self) -> float:
-        """The time of one step, 1: the map has no clock."""
-        return 1.0
-
-    def at(self, excess: float) -> StrobedNordmarkMap:
-        """The same map at F/F_g - 1 = `excess` [1]."""
-        return replace(self, rho=self.map.rho(excess))
-
-    def steady(self) -> NDArray[np.float64]:
-        """The fixed point of the branch without impact: x = rho / (1 - alpha + gamma), y = -gamma x."""
-        x = self.rho / (1.0 - self.map.alpha + self.map.gamma)
-        return np.array([x, -self.map.gamma * x])
-
-    def orbit(self, state: ArrayLike, count: int) -> StrobedOrbit[NDArray[np.float64]]:
-        """`count` steps from `state`; the points are (x, y), shape (count, 2)."""
-        points = np.vstack([_state(state), self.map.iterate(state, self.rho, count)])
-        impacts = (points[:-1, 0] > 0).astype(np.int64)
-        return StrobedOrbit(end=points[-1].copy(), points=points[1:], impacts=impacts)
-
-    def jacobians(self, state: ArrayLike, count: int) -> Jacobians[NDArray[np.float64]]:
-        """The derivatives along `count` steps, and the end."""
-        points = np.vstack([_state(state), self.orbit(state, count).points])
-        return [(self.map.jacobian(row), 1) for row in points[:-1]], points[-1].copy()
-
-    def coordinates(self, state: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The state itself."""
-        return state
-
-    def moved(self, state: NDArray[np.float64], change: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The state with its coordinates changed."""
-        return state + change
-
-    def advance(self, state: NDArray[np.float64], time: float) -> tuple[NDArray[np.float64], float]:
-        """One step, whatever the time."""
-        return self.orbit(state, 1).end, 1.0
-
-
-def _state(state: ArrayLike) -> tuple[float, float]:
+def pair_of(state: ArrayLike) -> tuple[float, float]:
+    """(x, y) of a state; ValueError if it is no pair of numbers."""
     pair = require_array("state", state, "[1]", shape=(2,), words="the pair (x, y)")
     return float(pair[0]), float(pair[1])

@@ -161,13 +161,13 @@ def settled_column(
             for k in range(n):
                 place[k], place[n + k] = u[k], v[k]
             place[2 * n], place[2 * n + 1] = run.period, run.clock
-            held(runs)
+            held(runs)  # type: ignore[call-arg]
             return a, status
         for k in range(n):
             state[k] = u[k] + mean[k]
             state[n + k] = v[k] + mean[n + k]
         state[2 * n], state[2 * n + 1], state[2 * n + 2] = run.regime, run.wait, run.rebound
-        held(runs)  # a record is a place in its array and does not keep it
+        held(runs)  # type: ignore[call-arg]  # a record does not keep the array it lies in
         found[a, 0], found[a, 1], found[a, 2] = period, hits, cycles
     return amplitudes.size, DONE
 

@@ -30,13 +30,13 @@ from beam.parameters import require_kind
 from contact.errors import ContactError
 from contact.laws import NEWTON
 from contact.maximal_orbits import MapFamily
-from contact.nordmark import StrobedNordmarkMap
 from contact.orbits.continuation import first_event
 from contact.orbits.family import Family
 from contact.orbits.kick import KickFamily
 from contact.orbits.settling import Settled, orbit_near, settle
 from contact.orbits.shooting import Shooting
 from contact.orbits.single_impact import MaximalFamily
+from contact.strobed_nordmark import StrobedNordmarkMap
 from contact.stroboscope import StrobedMap, StroboscopicMap
 
 __all__ = ["OrbitEnd", "fold_excess", "orbit_end"]

@@ -86,7 +86,7 @@ class Kick:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SingleImpactOrbit(TouchOrbit):
-    """An orbit with one collision in m drive periods, built from the `Kick` of that collision."""
+    """An orbit with one collision in m drive periods, built from the `kick` of that collision."""
 
     kick: Kick
 

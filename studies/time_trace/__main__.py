@@ -24,19 +24,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contact import Collision, ImpactOscillator, State, StroboscopicMap, collisions, simulate
+from contact import Collision, StroboscopicMap
 from contact.orbits import born
 from studies import letter
 from studies.record import Verdict
 from studies.run import Run, study
 from studies.scene import (
-    READOUT,
     Scene,
     beam_at,
     corresponding,
@@ -45,10 +43,10 @@ from studies.scene import (
     periods_of,
     require_drive_below,
 )  # fmt: skip
-from studies.time_trace.close_up import close_up
 from studies.time_trace.spectrum import Peak, lines_of, peaks_of
+from studies.time_trace.trace import close_up, trace_of
 
-__all__ = ["Trace", "time_trace", "trace_of"]
+__all__ = ["time_trace"]
 
 FREQUENCY = 21.50
 """Where the letter has the period 4 of its Fig. 4 [Hz]."""
@@ -59,24 +57,10 @@ ORBIT_PERIODS = 2
 APERIODIC = 8
 """Drive periods shown of a motion that has no period."""
 
-PER_PERIOD = 16_384
-"""Samples in a drive period: at 21.5 Hz up to 176 kHz without folding, beyond what the spectrum shows."""
-
 TOLD = ("first_touch", "approach", "restitution", "delay", "kick", "impacts", "contact_time", "ringing")
 """Columns of a collision that are shown to a person."""
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Trace:
-    """The motion from a strobe on: tip [m] and read-out [m or rad] over time [s]."""
-
-    time: Array
-    tip: Array
-    readout: Array
-    impact_times: Array
-    collisions: list[Collision]
 
 
 @study(needs={"tip_trace": 2e-3})
@@ -139,23 +123,6 @@ def time_trace(
         "peaks": peaks,
         "peak_unit": unit,
     }
-
-
-def trace_of(oscillator: ImpactOscillator, state: State, length: int) -> Trace:
-    """The motion over `length` drive periods from `state`."""
-    begin, span = state.time, length * oscillator.period
-    time = span * np.arange(length * PER_PERIOD) / (length * PER_PERIOD)
-    run = simulate(oscillator, state, periods=length + 2, times=begin + time)
-    touches = run.impacts.start[(run.impacts.kind == 0) & (run.impacts.start < begin + span)]
-    model = oscillator.model
-    final = collisions(oscillator, run, unfinished="drop")
-    return Trace(
-        time=time,
-        tip=run.displacement @ model.phi,
-        readout=run.displacement @ model.readouts[READOUT],
-        impact_times=touches - begin,
-        collisions=[collision for collision in final if collision.first_touch < begin + span],
-    )
 
 
 def judge(run: Run, period: str, seen: int, found: Sequence[Collision], peaks: Sequence[Peak]) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,10 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from studies.plotting import BLUE, GUIDE, NOTE, PAGE, VERMILION, in_house_style, label, new_figure, panel
-from studies.time_trace.close_up import CloseUp
-
-if TYPE_CHECKING:
-    from studies.time_trace.__main__ import Trace
+from studies.time_trace.trace import CloseUp, Trace
 
 __all__ = ["draw_spectrum", "draw_trace"]
 

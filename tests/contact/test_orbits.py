@@ -22,7 +22,7 @@ from contact.laws import (
     NewtonRestitution,
 )
 from contact.maximal_orbits import fold
-from contact.nordmark import NordmarkMap, StrobedNordmarkMap
+from contact.nordmark import NordmarkMap
 from contact.orbits import (
     KickFamily,
     MaximalFamily,
@@ -42,6 +42,7 @@ from contact.orbits import (
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
+from contact.strobed_nordmark import StrobedNordmarkMap
 from contact.stroboscope import StrobedOrbit, StroboscopicMap
 from contact.trajectory import State
 from studies.scene import beam_at, hertz_of, model_of, read_scene

@@ -19,9 +19,8 @@ from contact import (
 )
 from contact.collision import before_collision
 from contact.orbits import born
-from studies.time_trace.__main__ import trace_of
-from studies.time_trace.close_up import close_up
 from studies.time_trace.spectrum import lines_of, peaks_of
+from studies.time_trace.trace import close_up, trace_of
 
 
 def test_the_orbit_of_figure_4_and_the_ringing_of_its_impact(run_study):

@@ -1,4 +1,4 @@
-"""One collision from close by: tip relative to the plate, and the contact force."""
+"""A stretch of a motion, and one of its collisions close by: tip past the plate, and the contact force."""
 
 from __future__ import annotations
 
@@ -7,13 +7,31 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from contact import Collision, ImpactOscillator, State, simulate
+from contact import Collision, ImpactOscillator, State, collisions, simulate
 from studies.force import contact_force
+from studies.scene import READOUT
 
-__all__ = ["CloseUp", "close_up"]
+__all__ = ["CloseUp", "Trace", "close_up", "trace_of"]
+
+PER_PERIOD = 16_384
+"""Samples in a drive period: at 21.5 Hz up to 176 kHz without folding, beyond what the spectrum shows."""
 
 MARGIN, LEAST_MARGIN, SAMPLES = 2.0, 50e-6, 1201
 """Time before and after in contact times, and at least [s]; samples."""
+
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Trace:
+    """The motion from a strobe on: tip [m] and read-out [m or rad] over time [s]."""
+
+    time: Array
+    tip: Array
+    readout: Array
+    impact_times: Array
+    collisions: list[Collision]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -25,6 +43,23 @@ class CloseUp:
     height: NDArray[np.float64]
     force: NDArray[np.float64]
     spans: list[tuple[float, float]]
+
+
+def trace_of(oscillator: ImpactOscillator, state: State, length: int) -> Trace:
+    """The motion over `length` drive periods from `state`."""
+    begin, span = state.time, length * oscillator.period
+    time = span * np.arange(length * PER_PERIOD) / (length * PER_PERIOD)
+    run = simulate(oscillator, state, periods=length + 2, times=begin + time)
+    touches = run.impacts.start[(run.impacts.kind == 0) & (run.impacts.start < begin + span)]
+    model = oscillator.model
+    final = collisions(oscillator, run, unfinished="drop")
+    return Trace(
+        time=time,
+        tip=run.displacement @ model.phi,
+        readout=run.displacement @ model.readouts[READOUT],
+        impact_times=touches - begin,
+        collisions=[collision for collision in final if collision.first_touch < begin + span],
+    )
 
 
 def close_up(oscillator: ImpactOscillator, state: State, collision: Collision) -> CloseUp:
