@@ -12,15 +12,16 @@ Computed: the first collision of the steady driven motion at an excess above gra
 
 v the approach speed, v/a the time to the top of the arc beyond the gap, a = (2 pi f)^2 gap. Varied, one at a
 time: excess and tip mass (free period and drive amplitude at grazing kept); and tip mass together with loss
-in the contact and with its stiffness, in search of the letter's tau.
+in the contact, in search of the letter's tau.
 
 What comes out for the folded spring with its tape: tau is |1 - kick| with a floor near
 sqrt(contact time * a/v). The floor is the time that the contact takes, not loss: at the excess of Fig. 4
 (0.013) a ceramic ball on steel leaves tau = 0.22 to 0.23 for any loss in the contact, each at its own tip
-mass. tau = 0.1 asks for thirtyfold stiffness or for an excess of 0.19; or for a settled orbit, where what is
-left of the ringing shifts the touch: there tau lies anywhere from 0.15 to 0.99, or does not exist, as mode 1
-does not come back to the gap. A bare tip has tau = 0.7 and a delay longer than v/a. (How the kick fades
-towards grazing: studies.soft_wall; how many modes this takes: studies.adequacy.)
+mass. tau = 0.1 asks for a contact of 12 us, thirty times as stiff, or for an excess of 0.19; or for a
+settled orbit, where what is left of the ringing shifts the touch: there tau lies anywhere from 0.15 to
+0.99, or does not exist, as mode 1 does not come back to the gap. A bare tip has tau = 0.7 and a delay
+longer than v/a. (How the kick fades towards grazing: studies.soft_wall; how many modes this takes:
+studies.adequacy.)
 
 Run:     python -m studies.effective_impact [--quick]     half a minute; --quick ten seconds
 Writes:  collisions.csv (a row an approach), floors.csv (smallest restitution over the tip mass), and the
@@ -72,20 +73,19 @@ def effective_impact(scene: Scene, run: Run) -> Mapping[str, object]:
     found = run.attempt(measure, all_cases(run, scene, frequency, grid), "collisions")
     rows = [row for row in found if row is not None]
     run.table("collisions", rows, show=())
-    searches = [(curve, name) for curve in ("search", "hardness") for name in series_of(rows, curve)]
-    floors = [floor for search in searches if (floor := floor_of(select(rows, *search))) is not None]
-    run.table("floors", floors, "Smallest restitution over the tip mass, by local restitution or hardness.")
+    searches = [select(rows, "search", name) for name in series_of(rows, "search")]
+    floors = [floor for search in searches if (floor := floor_of(search)) is not None]
+    run.table("floors", floors, "Smallest restitution over the tip mass, by local restitution.")
     from studies.effective_impact.figure import DRAWN  # matplotlib is slow to import
 
     for draw in DRAWN:
         run.figure(draw.__name__, draw(rows), " ".join((draw.__doc__ or "").split()))
     reference = next(iter(select(rows, "reference")), None)
-    elastic = [floor for floor in floors if (floor.curve, floor.value) == ("search", 1.0)]
-    if reference is not None and elastic:
+    if reference is not None and any(floor.local_restitution == 1.0 for floor in floors):
         judge(run, reference, on_orbits(rows), floors)
     return {
         "frequency_hz": frequency, "reference": reference, "on_settled_orbits": on_orbits(rows),
-        "floors": floors, "what_gives_the_letters_restitution": ways(rows, floors),
+        "floors": floors, "what_gives_the_letters_restitution": ways(rows),
     }  # fmt: skip
 
 
@@ -100,12 +100,11 @@ def all_cases(run: Run, scene: Scene, frequency: float, grid: Grid) -> list[Case
     return cases.cases_of(spring, masses, reference, grid)
 
 
-def ways(rows: Sequence[Row], floors: Sequence[Floor]) -> Mapping[str, float]:
+def ways(rows: Sequence[Row]) -> Mapping[str, float]:
     """What would give the letter's restitution in a first collision at the excess of Fig. 4."""
-    tau, hard = letter.RESTITUTION, [floor for floor in floors if floor.curve == "hardness"]
+    tau = letter.RESTITUTION
     speed = [row for row in select(rows, "speed", cases.HERTZ) if math.isfinite(row.restitution)]
     return {
-        "hardness": crossing([floor.value for floor in hard], [floor.restitution for floor in hard], tau),
         "contact_s": tau**2 * next((row.arc_s for row in rows if row.curve == "search"), math.nan),
         "excess": crossing([row.excess for row in speed], [row.restitution for row in speed], tau),
     }
@@ -113,7 +112,7 @@ def ways(rows: Sequence[Row], floors: Sequence[Floor]) -> Mapping[str, float]:
 
 def judge(run: Run, at: Row, orbits: Sequence[Row], floors: Sequence[Floor]) -> None:
     """Verdicts on restitution and delay, and this study's part of the answer on higher modes."""
-    loss = {floor.value: floor.restitution for floor in floors if floor.curve == "search"}
+    loss = {floor.local_restitution: floor.restitution for floor in floors}
     least, lossy = loss[1.0], min(loss.values())
     returned = [orbit.restitution for orbit in orbits if orbit.returns]
     lost = len(orbits) - len(returned)

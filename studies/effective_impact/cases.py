@@ -5,12 +5,10 @@
     mass         tip mass over leaf, free period and drive amplitude at grazing kept, at several excesses
     orbit        the same, but the collision of the orbit that settles at the letter's Fig. 4
     search       tip mass and restitution of the contact itself together
-    hardness     tip mass and stiffness together
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -19,10 +17,8 @@ import numpy as np
 from beam import ModalModel
 from contact import (
     ContactLaw,
-    HertzContact,
     HuntCrossley,
     ImpactOscillator,
-    LinearContact,
     Stop,
 )
 from studies.calibration import leaf_mass, with_mass_ratio
@@ -40,7 +36,6 @@ MASS_EXCESSES = (1e-4, 1e-3, TIME_TRACE_EXCESS, 5e-2)
 MASS_RATIOS = (0.0, 0.02, 0.05, 0.1, 0.125, 0.15, 0.175, 0.2, 0.225, 0.25, 0.275, 0.3, 0.325, 0.35, 0.4, 0.5,
                0.7, 1.0, 1.4, 2.0, 3.0)  # fmt: skip
 RESTITUTIONS = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1)
-HARDNESSES = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,11 +104,6 @@ class Spring:
             stiffness=stiffness, restitution=restitution, velocity=self.speed
         )
 
-    def equal(self, law: HertzContact, factor: float = 1.0) -> LinearContact:
-        """Linear contact `factor` times as stiff as the one with the contact time of `law` at `speed`."""
-        mass = self.scene.tip.mass_kg
-        return LinearContact(stiffness=factor * mass * (math.pi / law.contact_time(mass, self.speed)) ** 2)
-
     def case(
         self, curve: str, series: str, value: float, law: ContactLaw, *, excess: float = TIME_TRACE_EXCESS,
         frequency: float | None = None,
@@ -158,5 +148,3 @@ def _mass(spring: Spring, grid: Grid) -> Iterator[Case]:
     yield spring.case("orbit", f"{orbit_hz:.2f} Hz", ratio, hertz, frequency=orbit_hz)
     for local in RESTITUTIONS[:: grid.every]:
         yield spring.case("search", f"{local:g}", ratio, spring.lossy(local))
-    for factor in HARDNESSES[:: grid.every] if ratio > 0.0 else ():
-        yield spring.case("hardness", f"{factor:g}", ratio, spring.equal(hertz, factor))

@@ -136,11 +136,9 @@ def crossing(x: Sequence[float], y: Sequence[float], level: float) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class Floor:
-    """The smallest restitution over the tip mass, for one local restitution ("search") or one factor on the
-    stiffness ("hardness")."""
+    """The smallest restitution over the tip mass, for one local restitution."""
 
-    curve: str
-    value: float
+    local_restitution: float
     restitution: float
     mass_ratio: float
     kick: float
@@ -162,6 +160,6 @@ def floor_of(rows: Sequence[Row]) -> Floor | None:
     if least in (0, FINE - 1):
         return None
     return Floor(
-        curve=kept[0].curve, value=float(kept[0].series), restitution=math.sqrt(square[least]),
+        local_restitution=float(kept[0].series), restitution=math.sqrt(square[least]),
         mass_ratio=math.exp(fine[least]), kick=float(kick(fine[least])),
     )  # fmt: skip

@@ -22,6 +22,9 @@ AXES = {
 
 MASS = "tip mass / mass of the leaf"
 
+SEARCHED = ("1", "0.7", "0.6", "0.4", "0.2", "0.1")
+"""Local restitutions drawn."""
+
 
 def line(axis: Any, rows: Sequence[Row], column: str, number: int, name: str) -> None:
     """One series."""
@@ -108,29 +111,20 @@ def mass(rows: Sequence[Row]) -> Figure:
 
 @plotting.in_house_style
 def search(rows: Sequence[Row]) -> Figure:
-    """In search of the letter's restitution: loss in the contact (a) moves the minimum but not its depth,
-    hardness (b) lowers it."""
-    figure, axes = plotting.new_figure(1, 2, width=PAGE, height=0.075, sharey=True)
-    parts = {
-        "search": (
-            "loss in the contact (Hunt-Crossley)", "local restitution ", ("1", "0.7", "0.4", "0.2", "0.1")
-        ),
-        "hardness": ("hardness (linear, times that of the ball)", "stiffness × ", ()),
-    }
-    for place, (axis, (curve, (title, words, wanted))) in enumerate(zip(axes, parts.items(), strict=True)):
-        names = [name for name in series_of(rows, curve) if not wanted or name in wanted]
-        for number, name in enumerate(names):
-            found = [row for row in select(rows, curve, name) if row.value > 0.0]
-            line(axis, found, "restitution", number, words + name)
-        plotting.mark_letter(axis.yaxis, letter.RESTITUTION, words="letter, τ ≈ 0.1")
-        axis.set_xscale("log")
-        axis.set_ylim(0.0, 1.12)
-        axis.set_xticks([0.02, 0.05, 0.1, 0.2, 0.5, 1, 2], ["0.02", "0.05", "0.1", "0.2", "0.5", "1", "2"])
-        axis.xaxis.set_minor_formatter(NullFormatter())
-        plotting.label(axis.xaxis, MASS)
-        axis.legend(loc="upper left", bbox_to_anchor=(0.0, 1.02), ncols=2, handlelength=3.0)
-        plotting.panel(axis, place, title)
-    plotting.label(axes[0].yaxis, "restitution τ")
+    """In search of the letter's restitution: loss in the contact (Hunt-Crossley) moves the minimum over the
+    tip mass, not its depth."""
+    figure, axis = plotting.new_figure(height=0.075)
+    for number, name in enumerate(name for name in series_of(rows, "search") if name in SEARCHED):
+        found = [row for row in select(rows, "search", name) if row.value > 0.0]
+        line(axis, found, "restitution", number, f"local restitution {name}")
+    plotting.mark_letter(axis.yaxis, letter.RESTITUTION, words="letter, τ ≈ 0.1")
+    axis.set_xscale("log")
+    axis.set_ylim(0.0, 1.12)
+    axis.set_xticks([0.02, 0.05, 0.1, 0.2, 0.5, 1, 2], ["0.02", "0.05", "0.1", "0.2", "0.5", "1", "2"])
+    axis.xaxis.set_minor_formatter(NullFormatter())
+    plotting.label(axis.xaxis, MASS)
+    plotting.label(axis.yaxis, "restitution τ")
+    plotting.legend_below(figure, [axis], 2, handlelength=3.0)
     return figure
 
 
