@@ -33,12 +33,11 @@ KINDS = WITHOUT, PERIODIC, CHAOTIC, NOT_SETTLED, UNDECIDED = (
 @dataclass(frozen=True, kw_only=True)
 class Row:
     """What a motion at one amplitude settled on: `period` in drive periods, 0 for none; `impacts` in one such
-    period, or `impacts_per_period` on average; `lyapunov_map` per drive period with its standard error."""
+    period; `lyapunov_map` per drive period with its standard error."""
 
     kind: str
     period: int
     impacts: int
-    impacts_per_period: float
     lyapunov_map: float
     error_map: float
     model: str = ""
@@ -52,15 +51,13 @@ def classify(strobed: StroboscopicMap, state: State, *, most_cycles: int = 4000,
     settled = settle(strobed, state, most_cycles=most_cycles)
     if settled.period:
         exponents = orbit_exponents(strobed, settled.end, settled.period)
-        impacts, mean = settled.impacts, settled.impacts / settled.period
-        kind = PERIODIC if impacts else WITHOUT
+        kind = PERIODIC if settled.impacts else WITHOUT
     else:
         exponents, _end = map_exponents(strobed, settled.end, cycles, align=ALIGN)
-        impacts, mean = 0, float(strobed.orbit(settled.end, cycles).impacts.mean())
         clear = abs(exponents.largest) > SIGNIFICANT * exponents.error
         kind = UNDECIDED if not clear else CHAOTIC if exponents.largest > 0 else NOT_SETTLED
     return Row(
-        kind=kind, period=settled.period, impacts=impacts, impacts_per_period=mean,
+        kind=kind, period=settled.period, impacts=settled.impacts if settled.period else 0,
         lyapunov_map=exponents.largest, error_map=exponents.error,
     )  # fmt: skip
 

@@ -15,7 +15,6 @@ import beam.space
 import contact
 import contact.integrators
 import contact.orbits
-from studies.film import NO_RENDERING, can_render
 from studies.programs import FOLDER, names, source_of
 
 PUBLIC = {"beam": beam, "beam.space": beam.space, "contact": contact, "contact.orbits": contact.orbits,
@@ -47,8 +46,6 @@ SLOW = ("calibrate",)
      for name in ON_THE_FRAME if name not in OWN_TEST],
 )  # fmt: skip
 def test_the_small_form_runs_and_leaves_a_table_a_figure_and_a_summary(run_study, name):
-    if name == "motion" and not can_render():
-        pytest.skip(NO_RENDERING)  # its figure is made of stills
     ran = run_study(name, "--quick", "--json", *SMALLER.get(name, ()))
     assert ran.code == 0, ran.err
     assert json.loads(ran.out)["study"] == ran.summary["study"] == name
