@@ -1,14 +1,12 @@
 """The cells of a sweep as one file that other programs read.
 
     python -m studies.export results/chart/single_mode-400x400               -> the same name, .csv
-    python -m studies.export results/chart/single_mode-400x400 --out chart.npz
 
-A csv has one line a cell: the arrays of each column (frequency_hz, direction, excess, period, impacts,
-cycles, reason for the chart) broadcast against one another. An npz has them stacked, one entry a column
-along the first axis. What a running sweep has stored so far is given, too. Exit codes: 0 done, 2 wrong use
-or a file that cannot be read or written.
+The csv has one line a cell: the arrays of each column (frequency_hz, direction, excess, period, impacts,
+cycles, reason for the chart) broadcast against one another. What a running sweep has stored so far is given,
+too. Exit codes: 0 done, 2 wrong use or a file that cannot be read or written.
 
-Run:     python -m studies.export FOLDER [--to csv|npz] [--out FILE]     1 s for 100 000 cells
+Run:     python -m studies.export FOLDER [--out FILE]     1 s for 100 000 cells
 Writes:  FILE
 """
 
@@ -38,28 +36,15 @@ def csv_of(columns: Sequence[Column]) -> bytes:
     return stream.getvalue().encode()
 
 
-def npz_of(columns: Sequence[Column]) -> bytes:
-    """The arrays of all columns, stacked."""
-    stream = io.BytesIO()
-    stacked = {name: np.stack([column[name] for column in columns]) for name in columns[0]}
-    np.savez_compressed(stream, **stacked)  # type: ignore[arg-type]
-    return stream.getvalue()
-
-
-FORMATS = {"csv": csv_of, "npz": npz_of}
-
-
 def export(given: Namespace) -> tuple[str, Mapping[str, object]]:
     """Write the columns of the sweep in a folder."""
-    ending = given.out.suffix[1:] if given.out else ""
-    if ending and ending not in FORMATS and given.to is None:
-        raise ValueError(f"--out ends in .{ending}; it must end in .csv or .npz, or --to say which")
-    form = given.to or ending or "csv"
-    path = given.out or given.folder.with_name(f"{given.folder.name}.{form}")
+    path = given.out or given.folder.with_name(f"{given.folder.name}.csv")
+    if path.suffix != ".csv":
+        raise ValueError(f"--out is {path}; it must end in .csv")
     _, columns = read_columns(given.folder)
     if not columns:
         raise ValueError(f"no column of the sweep in {given.folder} is there yet")
-    write_atomically(path, FORMATS[form]([column for _, column in columns]))
+    write_atomically(path, csv_of([column for _, column in columns]))
     return f"{len(columns)} columns in {path}", {"columns": len(columns), "file": path}
 
 
@@ -67,7 +52,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Export from the command line."""
     parser = Parser("python -m studies.export", __doc__ or "")
     parser.add_argument("folder", type=Path, metavar="FOLDER", help="folder of a sweep")
-    parser.add_argument("--to", choices=sorted(FORMATS), help="format (default: that of --out, or csv)")
     parser.add_argument("--out", type=Path, metavar="FILE", help="file to write (default: beside the folder)")
     return tool(parser, argv, export)
 

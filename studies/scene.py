@@ -20,6 +20,7 @@ from pathlib import Path
 
 from beam import ModalModel, SuspiciousValue
 from contact import (
+    Band,
     ContactLaw,
     HarmonicDrive,
     HertzContact,
@@ -28,6 +29,7 @@ from contact import (
     NewtonRestitution,
     NordmarkMap,
     Stop,
+    band,
 )
 from studies import letter
 from studies.scene_keys import SceneError, shown
@@ -47,10 +49,10 @@ from studies.scene_spring import (
 from studies.scene_values import Scene, doubts, named, scene_from_text
 
 __all__ = [
-    "READOUT", "Scene", "SceneError", "approach_speed", "beam_at", "contact_law_of", "corresponding",
-    "damping_of", "elements_of", "first_modes", "free_period", "harmonic", "hertz_of", "model_of", "modes_of",
-    "nordmark_at", "periods_of", "read_scene", "require_drive_below", "sections_of", "single_mode_at",
-    "single_mode_of", "spring_of",
+    "READOUT", "Scene", "SceneError", "approach_speed", "band_of", "beam_at", "contact_law_of",
+    "corresponding", "damping_of", "elements_of", "first_modes", "free_period", "harmonic", "hertz_of",
+    "model_of", "modes_of", "nordmark_at", "periods_of", "read_scene", "require_drive_below", "sections_of",
+    "single_mode_at", "single_mode_of", "spring_of",
 ]  # fmt: skip
 
 SCENES = Path(__file__).resolve().parent / "scenes"
@@ -197,6 +199,13 @@ def single_mode_at(scene: Scene, frequency: float) -> ImpactOscillator:
 def nordmark_at(scene: Scene, frequency: float) -> NordmarkMap:
     """Eqs. (2), (3) of the letter, corrected, at drive frequency `frequency` [Hz]."""
     return NordmarkMap.from_oscillator(single_mode_at(scene, frequency))
+
+
+def band_of(scene: Scene, period: int) -> Band:
+    """The band of p_m of the map with the scene's single mode, m = `period`."""
+    keys = scene.single_mode
+    return band(period, free_period=keys.free_period_s, decay_rate=keys.decay_rate_per_s,
+                restitution=keys.restitution)  # fmt: skip
 
 
 def corresponding(scene: Scene, letter_hz: float) -> float:

@@ -11,18 +11,17 @@ cancel get no credit; that of the reference itself is added.
 
 Run:     python -m studies.adequacy [--quick]     1 min; --quick 15 s
 Writes:  least.csv (a row a question: the least model, its error, that of the best one a step smaller in one
-         thing), ladder.csv (every model tried), ladder.png (error against predicted cost)
+         thing), least.png (both errors over the tolerance)
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
-from studies.adequacy.models import LAWS, LEVELS, Choice, Models
-from studies.adequacy.search import QUANTITIES, Row, Search
+from studies.adequacy.models import Models
+from studies.adequacy.search import Row, Search
 from studies.least_model import middle_of
 from studies.run import Run, study
 from studies.scene import Scene, harmonic
@@ -30,48 +29,25 @@ from studies.scene import Scene, harmonic
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["Tried", "adequacy", "questions"]
-
-SMALLEST = 1e-7
-"""Errors below this, exact agreement among them, are drawn here."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Tried(Choice):
-    """A model that was tried for a question, and its distance from the reference."""
-
-    quantity: str
-    frequency_hz: float
-    cost_us: float
-    error: float
-    chosen: bool
+__all__ = ["adequacy", "questions"]
 
 
 @study()
 def adequacy(scene: Scene, run: Run) -> Mapping[str, object]:
     """Compute, store and draw."""
-    models, rows, tried = Models(harmonic(scene)), list[Row](), list[Tried]()
+    models, rows = Models(harmonic(scene)), list[Row]()
     for quantity, frequency in run.track(questions(scene, run.quick), "questions"):
         search = Search(models, quantity, frequency)
         row = search.least(search.tolerance)
         rows.append(row)
-        tried += [
-            Tried(
-                **asdict(one), quantity=quantity, frequency_hz=frequency, cost_us=one.cost,
-                error=search.off(one), chosen=one.words == row.least,
-            )
-            for one in tuple(search.question.answers)
-        ]  # fmt: skip
         if not row.reached:
             run.say(
                 f"no model gives {quantity} at {frequency:g} Hz to {row.tolerance:g}: {row.error:.1e} is left"
             )
     shown = ("quantity", "frequency_hz", "tolerance", "error", "error_one_less", "least")
     run.table("least", rows, "The least model for each question.", show=shown)
-    run.table("ladder", tried, show=())
-    run.figure(
-        "ladder", draw(rows, tried), "Error against predicted cost of every model tried; ringed: the least."
-    )
+    run.figure("least", draw(rows), "Error of the least model for each question over its tolerance, and that "
+               "of the best one a step smaller in one thing.")  # fmt: skip
     return {"rows": rows}
 
 
@@ -85,45 +61,24 @@ def questions(scene: Scene, quick: bool) -> list[tuple[str, float]]:
     return asked if quick else [*asked, ("tip_trace", middle)]
 
 
-def draw(rows: Sequence[Row], tried: Sequence[Tried]) -> Figure:
-    """A panel for each quantity, of several rows that which needs most."""
+def draw(rows: Sequence[Row]) -> Figure:
+    """Errors over the tolerance, a line for each question that has one."""
     from studies import plotting
 
-    colours = dict(zip(LAWS, (plotting.ORANGE, plotting.BLUE, plotting.VERMILION), strict=True))
-    marks = dict(zip(LEVELS, ("*", "^", "o", "s"), strict=True))
-    of_kind = [[row for row in rows if row.quantity.startswith(kind)] for kind in QUANTITIES]
-    shown = [max(group, key=lambda row: row.cost) for group in of_kind if group]
+    shown = [row for row in rows if row.tolerance][::-1]
     with plotting.house_style():
-        figure, axes = plotting.new_figure(
-            math.ceil(len(shown) / 3), 3, width=plotting.PAGE, height=0.16, squeeze=False
-        )
-        for number, (ax, row) in enumerate(zip(axes.flat, shown, strict=False)):
-            place = row.quantity, row.frequency_hz
-            for one in (one for one in tried if (one.quantity, one.frequency_hz) == place):
-                at = one.cost, max(one.error, SMALLEST if row.tolerance else 0.0)
-                face = "none" if one.residual else colours[one.law]
-                ax.plot(*at, marks[one.level], color=colours[one.law], mfc=face, ms=3.5, mew=0.7)
-                if one.chosen:
-                    ax.plot(*at, "o", color="black", mfc="none", ms=9.0)
-            if row.tolerance:
-                ax.axhline(row.tolerance, **plotting.GUIDE)
-                ax.set_yscale("log")
-            else:
-                ax.set_ylim(bottom=-0.2)
-            ax.set(xscale="log", xlim=(1.5, 40.0), xticks=(2, 5, 10, 20), xticklabels=("2", "5", "10", "20"))
-            ax.minorticks_off()
-            plotting.panel(ax, number, f"{row.quantity}, {row.frequency_hz:.2f} Hz".replace("_", " "))
-            plotting.label(ax.xaxis, "predicted cost of a period", "µs")
-            plotting.label(ax.yaxis, "error", row.unit)
-        for ax in axes.flat[len(shown) :]:
-            ax.set_visible(False)
-        for name, mark in marks.items():
-            if any(one.level == name for one in tried):
-                axes[0, 0].plot([], [], mark, color="0.4", ms=3.5, label=LEVELS[name])
-        for law, colour in colours.items():
-            axes[0, 0].plot([], [], "o", color=colour, ms=3.5, label=f"{law.capitalize()} contact")
-        axes[0, 0].plot([], [], "o", color="0.4", mfc="none", ms=3.5, label="with a residual mode")
-        figure.legend(loc="outside lower center", ncols=4, fontsize=plotting.NOTE, frameon=False)
+        figure, axis = plotting.new_figure(width=plotting.PAGE, height=0.02 + 0.006 * len(shown))
+        for place, row in enumerate(shown):
+            axis.plot(row.error / row.tolerance, place, **plotting.points(1), label="the least model")
+            if row.error_one_less is not None and math.isfinite(row.error_one_less):
+                axis.plot(row.error_one_less / row.tolerance, place, **plotting.points(2),
+                          label="the best one a step smaller")  # fmt: skip
+        axis.axvline(1.0, **plotting.GUIDE)
+        axis.set_xscale("log")
+        words = [f"{row.quantity.replace('_', ' ')}, {row.frequency_hz:.2f} Hz: {row.least}" for row in shown]
+        axis.set_yticks(range(len(shown)), words)
+        plotting.label(axis.xaxis, "error / tolerance")
+        plotting.legend_below(figure, [axis], 2)
     return figure
 
 

@@ -10,8 +10,8 @@ Computed at one drive frequency (--frequency, 21.50 Hz) for Eq. (1) and for the 
     basins              for Eq. (1) at --basin-excess (-0.006): where each start on the strobe plane leads
 
 Run:     python -m studies.attractors [--model single_mode] [--quick]     a minute; --quick ten seconds
-Writes:  rows.csv (a row an amplitude), attractors.npz (strobe points), basins.npz, basins_close.npz;
-         attractors, basins (png, pdf)
+Writes:  rows.csv (a row an amplitude), attractors.npz (strobe points), basins.npz; attractors, basins (png,
+         pdf)
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from typing import Annotated, Literal
 import numpy as np
 
 from contact import StroboscopicMap
-from studies.attractors.basins import CLOSE, Plane, parts, plane_of
+from studies.attractors.basins import parts, plane_of
 from studies.attractors.scan import CHAOTIC, KINDS, TITLES, Start, carried, row_of
 from studies.run import Run, study
 from studies.scene import (
@@ -41,6 +41,9 @@ __all__ = ["attractors"]
 
 FREQUENCY = 21.50
 """Where the letter has period 4 [Hz]."""
+
+BESIDE = 1e-3
+"""Distance from p1 of a start that leads to it, in gaps."""
 
 
 @study(needs={"fold": 0.05}, quick={"points": 11, "cycles": 100, "side": 32})
@@ -82,18 +85,20 @@ def attractors(
               show=("model", "direction", "excess", "kind", "period", "impacts", "lyapunov_map", "error_map"),
               )  # fmt: skip
     run.arrays("attractors", points=np.array([s.points for s in starts]), excess=[s.excess for s in starts])
-    found = [basins_at(run, scene, f, basin_excess, side, close) for close in (False, True)]
+    plane = plane_of(scene, f, basin_excess, side)
+    leads = np.array(run.map(plane.line, plane.velocity.tolist(), "basins"))  # shape (velocities, x)
+    run.arrays("basins", x=plane.x, velocity=plane.velocity, leads=leads, orbit=plane.orbit)
     from studies.attractors import figure
 
-    quantity, period = scene.readout.quantity, found[0][0].period
+    quantity, period, shares = scene.readout.quantity, plane.period, parts(leads, plane.period)
     run.figure("attractors", figure.draw_scan(starts, rows, f, quantity), figure.SCAN)
-    run.figure("basins", figure.draw_basins(found, f), figure.BASINS)
-    whole, close = (parts(leads, period) for _, leads in found)
+    run.figure("basins", figure.draw_basins(plane, leads, f), figure.BASINS)
     counts = Counter((row.model, row.kind) for row in rows)
     kinds = {name: {kind: counts[name, kind] for kind in KINDS} for name in maps}
     chaotic = {name: [r.excess for r in rows if (r.model, r.kind) == (name, CHAOTIC)] for name in maps}
-    free = whole["p1 without impacts"] + close["p1 without impacts"]
-    both = period > 1 and whole[f"p{period}"] > 0.0 and free > 0.0
+    x, velocity = plane.rest  # a coarse grid may have no start in its basin
+    free = plane.leads(x - BESIDE * plane.strobed.scale, velocity) == 1
+    both = free and period > 1 and shares[f"p{period}"] > 0.0
     run.verdict("coexistence", "agrees" if both else "differs",
                 found=f"Eq. (1): p1 and p{period}" if both else "Eq. (1): one of them alone",
                 note=f"at excess {basin_excess:g} the start decides which of them is reached")  # fmt: skip
@@ -102,20 +107,8 @@ def attractors(
                 note=f"excess with a positive Lyapunov exponent at {f:.2f} Hz")  # fmt: skip
     return {
         "frequency_hz": f, "kinds": kinds, "chaotic": chaotic,
-        "basins": {"excess": basin_excess, "period": period, "parts": whole, "parts_close": close,
-                   "close": CLOSE},
+        "basins": {"excess": basin_excess, "period": period, "parts": shares},
     }  # fmt: skip
-
-
-def basins_at(
-    run: Run, scene: Scene, frequency: float, excess: float, side: int, close: bool
-) -> tuple[Plane, np.ndarray]:
-    """Compute and store where the starts of one plane lead, shape (velocities, x)."""
-    plane = plane_of(scene, frequency, excess, side, close=close)
-    leads = np.array(run.map(plane.line, plane.velocity.tolist(), "basins"))
-    run.arrays("basins_close" if close else "basins", x=plane.x, velocity=plane.velocity, leads=leads,
-               orbit=plane.orbit)  # fmt: skip
-    return plane, leads
 
 
 if __name__ == "__main__":

@@ -22,10 +22,10 @@ from contact import ContactError, State, StroboscopicMap
 from contact.orbits import born, settle
 from studies.scene import Scene, single_mode_at
 
-__all__ = ["CLOSE", "Plane", "parts", "plane_of"]
+__all__ = ["Plane", "parts", "plane_of"]
 
-FAR, CLOSE = 1.5, 0.03
-"""Half the sides of the two planes of starts, in x/gap and x'/(2 pi f gap): all of it, and around p1."""
+FAR = 1.5
+"""Half the side of the plane of starts, in x/gap and x'/(2 pi f gap)."""
 
 NEAR = 1e-5
 """Distance from an orbit at which a motion has reached it, in gaps (a basin narrower than that is missed)."""
@@ -91,16 +91,14 @@ def parts(leads: np.ndarray, period: int) -> dict[str, float]:
     return {name: float(np.mean(before == code)) for code, name in names.items()}
 
 
-def plane_of(scene: Scene, frequency: float, excess: float, side: int, *, close: bool = False) -> Plane:
-    """`side` by `side` starts at drive `frequency` [Hz], on all of the strobe plane or `close` to p1."""
+def plane_of(scene: Scene, frequency: float, excess: float, side: int) -> Plane:
+    """`side` by `side` starts on the strobe plane at drive `frequency` [Hz]."""
     strobed = StroboscopicMap(oscillator=single_mode_at(scene, frequency))
     here = strobed.at(excess)
     end = settle(here, born(strobed, most_cycles=MOST_PERIODS).end, most_cycles=MOST_PERIODS)
     orbit = end.points[-max(end.period, 1) :] * (1.0, float(here.oscillator.model.omega[0]))
     gap, speed = here.scale, 2.0 * math.pi * frequency * here.scale
-    rest, grid = here.steady(), np.linspace(-1.0, 1.0, side)
-    x, velocity = np.linspace(-FAR, 1.0, side) * gap, FAR * speed * grid
-    if close:
-        x = rest.displacement[0] + CLOSE * gap * grid
-        velocity = rest.velocity[0] + CLOSE * speed * grid
-    return Plane(strobed=here, excess=excess, x=x, velocity=velocity, orbit=orbit, period=end.period)
+    return Plane(
+        strobed=here, excess=excess, orbit=orbit, period=end.period, x=np.linspace(-FAR, 1.0, side) * gap,
+        velocity=FAR * speed * np.linspace(-1.0, 1.0, side),
+    )  # fmt: skip

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 
 from studies import plotting
 from studies.attractors.basins import Plane, parts
@@ -65,35 +64,31 @@ def draw_scan(starts: Sequence[Start], rows: Sequence[Row], frequency: float, qu
 
 
 @plotting.in_house_style
-def draw_basins(found: Sequence[tuple[Plane, np.ndarray]], frequency: float) -> Figure:
-    """The strobe plane and a part of it, coloured by where the points lead."""
-    figure, axes = plotting.new_figure(1, 2, width=PAGE, height=0.082)
-    gap, period = found[0][0].strobed.scale, found[0][0].period
+def draw_basins(plane: Plane, leads: np.ndarray, frequency: float) -> Figure:
+    """The strobe plane, coloured by where its points lead."""
+    figure, axis = plotting.new_figure(height=0.088)
+    gap, period = plane.strobed.scale, plane.period
     unit = np.array([gap, 2.0 * np.pi * frequency * gap])
     looks = {1: (tint(SKY, 0.3), "to p$_1$ without impacts"), period: (BLUE, f"to p$_{{{period}}}$"),
              0: (ORANGE, "to something else")}  # fmt: skip
-    colours = ListedColormap([colour for colour, _ in looks.values()])
-    for number, (axis, (plane, leads)) in enumerate(zip(axes, found, strict=True)):
-        picture = np.full(leads.shape, np.nan)
-        for place, code in enumerate(looks):
-            picture[leads == code] = place
-        x, y = plane.x / unit[0], plane.velocity / unit[1]
-        axis.pcolormesh(x, y, picture, shading="nearest", vmin=-0.5, vmax=2.5, rasterized=True, cmap=colours)
-        axis.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
-        axis.plot(*(plane.orbit / unit).T, "o", markersize=4, color="white", markeredgecolor="black",
-                  label=f"points of p$_{{{period}}}$")  # fmt: skip
-        axis.plot(*(np.array(plane.rest) / unit), "D", markersize=4, color=VERMILION, markeredgecolor="black",
-                  label="p$_1$")  # fmt: skip
-        where, share = (
-            ("the strobe plane", "around p$_1$")[number],
-            parts(leads, period)["p1 without impacts"],
-        )
-        plotting.panel(axis, number, f"{where}: {100 * share:.1f} % lead to p$_1$")
-        plotting.label(axis.xaxis, "$ξ$ / gap at the strobe")
-    plotting.label(axes[0].yaxis, "$\\dot{ξ}$ / (2π f gap) at the strobe")
-    met = [look for code, look in looks.items() if any(np.any(leads == code) for _, leads in found)]
-    handles = [Patch(facecolor=colour, edgecolor="0.4", label=words) for colour, words in met]
-    handles += axes[0].get_legend_handles_labels()[0]
-    figure.suptitle(f"Eq. (1), {frequency:.2f} Hz, $F/F_g - 1$ = {found[0][0].excess:g}", fontsize="medium")
-    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
+    picture = np.full(leads.shape, np.nan)
+    for place, code in enumerate(looks):
+        picture[leads == code] = place
+    x, y = plane.x / unit[0], plane.velocity / unit[1]
+    axis.pcolormesh(x, y, picture, shading="nearest", vmin=-0.5, vmax=2.5, rasterized=True,
+                    cmap=ListedColormap([colour for colour, _ in looks.values()]))  # fmt: skip
+    axis.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
+    axis.plot(*(plane.orbit / unit).T, "o", markersize=4, color="white", markeredgecolor="black",
+              label=f"p$_{{{period}}}$")  # fmt: skip
+    axis.plot(*(np.array(plane.rest) / unit), "D", markersize=4, color=VERMILION, markeredgecolor="black",
+              label="p$_1$")  # fmt: skip
+    for code, (colour, words) in looks.items():
+        if np.any(leads == code):
+            axis.fill([], [], facecolor=colour, edgecolor="0.4", label=words)
+    share = 100 * parts(leads, period)["p1 without impacts"]
+    title = f"Eq. (1), {frequency:.2f} Hz, $F/F_g - 1$ = {plane.excess:g}"
+    axis.set_title(f"{title}\n{share:.1f} % lead to p$_1$")
+    plotting.label(axis.xaxis, "$ξ$ / gap at the strobe")
+    plotting.label(axis.yaxis, "$\\dot{ξ}$ / (2π f gap) at the strobe")
+    plotting.legend_below(figure, [axis], 2)
     return figure

@@ -7,7 +7,7 @@ kind             periodic, chaotic (exponent above zero by three standard errors
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from contact import ContactError, State, StroboscopicMap
 from contact.orbits import map_exponents, orbit_exponents, settle
 from studies.scene import READOUT, Scene
 
-__all__ = ["CHAOTIC", "KINDS", "TITLES", "Attractor", "Row", "Start", "carried", "classify", "row_of"]
+__all__ = ["CHAOTIC", "KINDS", "TITLES", "Row", "Start", "carried", "classify", "row_of"]
 
 TITLES = {"single_mode": "Eq. (1)", "beam": "beam"}
 
@@ -31,44 +31,33 @@ KINDS = WITHOUT, PERIODIC, CHAOTIC, NOT_SETTLED, UNDECIDED = (
 
 
 @dataclass(frozen=True, kw_only=True)
-class Attractor:
-    """What a motion settled on: `period` in drive periods, 0 for none; `impacts` in one such period, or
-    `impacts_per_period` on average; `lyapunov_map` per drive period with its standard error."""
+class Row:
+    """What a motion at one amplitude settled on: `period` in drive periods, 0 for none; `impacts` in one such
+    period; `lyapunov_map` per drive period with its standard error."""
 
     kind: str
     period: int
     impacts: int
-    impacts_per_period: float
     lyapunov_map: float
     error_map: float
+    model: str = ""
+    direction: str = ""
+    excess: float = 0.0
 
 
-@dataclass(frozen=True, kw_only=True)
-class Row(Attractor):
-    """One amplitude of a scan."""
-
-    model: str
-    direction: str
-    excess: float
-
-
-def classify(
-    strobed: StroboscopicMap, state: State, *, most_cycles: int = 4000, cycles: int = 600
-) -> Attractor:
+def classify(strobed: StroboscopicMap, state: State, *, most_cycles: int = 4000, cycles: int = 600) -> Row:
     """Settle from `state` within `most_cycles`, then tell chaos from a long period or a slow transient by the
     exponents, averages over `cycles` drive periods."""
     settled = settle(strobed, state, most_cycles=most_cycles)
     if settled.period:
         exponents = orbit_exponents(strobed, settled.end, settled.period)
-        impacts, mean = settled.impacts, settled.impacts / settled.period
-        kind = PERIODIC if impacts else WITHOUT
+        kind = PERIODIC if settled.impacts else WITHOUT
     else:
         exponents, _end = map_exponents(strobed, settled.end, cycles, align=ALIGN)
-        impacts, mean = 0, float(strobed.orbit(settled.end, cycles).impacts.mean())
         clear = abs(exponents.largest) > SIGNIFICANT * exponents.error
         kind = UNDECIDED if not clear else CHAOTIC if exponents.largest > 0 else NOT_SETTLED
-    return Attractor(
-        kind=kind, period=settled.period, impacts=impacts, impacts_per_period=mean,
+    return Row(
+        kind=kind, period=settled.period, impacts=settled.impacts if settled.period else 0,
         lyapunov_map=exponents.largest, error_map=exponents.error,
     )  # fmt: skip
 
@@ -116,4 +105,4 @@ def carried(
 def row_of(start: Start, cycles: int, most_cycles: int) -> Row:
     """What the motion from a start settles on."""
     found = classify(start.strobed, start.state, cycles=cycles, most_cycles=most_cycles)
-    return Row(model=start.model, direction=start.direction, excess=start.excess, **asdict(found))
+    return replace(found, model=start.model, direction=start.direction, excess=start.excess)

@@ -12,7 +12,7 @@ Computed:
                 carried along, until the motion is free of impacts
     beam        the scans of the scene's spring with its period and damping fitted again to T and mu
     search      the born period over what is not printed: mass of ball and mount, damping of the modes above
-                the first, loss in the contact
+                the first
     found       the scans of the cell that departs least from the scene, has period 6, and ends on p3
 
 Run:     python -m studies.breakdown [--full] [--quick]     a minute; --quick ten seconds; --full some minutes
@@ -48,9 +48,9 @@ __all__ = ["breakdown"]
 
 RESTITUTIONS, QUICK_RESTITUTIONS = (0.0, 0.05, 0.06, 0.075, 0.1), (0.05, 0.1)
 MASSES_G = (3.0, 3.25, 3.5, 3.75, 4.0, 4.25, 4.5, 4.75, 5.0, 5.5, 6.0, 6.5, 7.0, 8.0)
-FACTORS, LOCAL = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 8.0), (1.0, 0.7)
-QUICK_MASSES_G, QUICK_FACTORS, QUICK_LOCAL = (3.5, 4.0), (1.0, 2.0), (1.0,)
-"""Ball and mount [g], factors on the damping of the higher modes, restitutions of a free ball."""
+FACTORS = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 8.0)
+QUICK_MASSES_G, QUICK_FACTORS = (3.5, 4.0), (1.0, 2.0)
+"""Ball and mount [g], factors on the damping of the higher modes."""
 
 MOST_SCANNED = 4
 """Cells with period 6 whose scans are made: those that depart least from the scene."""
@@ -103,17 +103,14 @@ def breakdown(
 
 
 def search(scene: Scene, run: Run) -> tuple[list[Cell], list[Beam]]:
-    """The born period in every cell of mass, factor on the higher modes' damping, local restitution; and the
-    beams born with period 6, those first that depart least from the scene."""
-    grams, factors, local = (
-        (QUICK_MASSES_G, QUICK_FACTORS, QUICK_LOCAL) if run.quick else (MASSES_G, FACTORS, LOCAL)
-    )
+    """The born period in every cell of mass and factor on the higher modes' damping; and the beams born with
+    period 6, those first that depart least from the scene."""
+    grams, factors = (QUICK_MASSES_G, QUICK_FACTORS) if run.quick else (MASSES_G, FACTORS)
     masses = [m / 1000 for m in grams]
     models = dict(zip(masses, run.map(partial(tuned, scene), masses, "springs"), strict=True))
     beams = [
-        Beam(scene=scene, model=models[m], tip_mass_kg=m, higher_damping=k, local_restitution=e)
-        for e in local for m in masses for k in factors
-    ]  # fmt: skip
+        Beam(scene=scene, model=models[m], tip_mass_kg=m, higher_damping=k) for m in masses for k in factors
+    ]
     found = [
         (beam, cell)
         for beam, cell in zip(beams, run.attempt(cell_of, beams, "search"), strict=True)

@@ -2,8 +2,7 @@
 
 The scene's spring with thickness and tape fitted again to T and mu, ball and gap as they were (the letter
 prints no drive amplitude with Fig. 5). What is not printed can be varied: the mass of ball and mount, with
-the thickness that keeps T; a factor on the damping of the modes above the first; the loss in the contact
-(Hunt-Crossley, by the restitution of a free ball at the approach speed of excess 0.013).
+the thickness that keeps T, and a factor on the damping of the modes above the first.
 """
 
 from __future__ import annotations
@@ -15,11 +14,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from beam import ModalModel
-from contact import ContactError, HarmonicDrive, HuntCrossley, ImpactOscillator, Stop, StroboscopicMap
+from contact import ContactError, HarmonicDrive, ImpactOscillator, Stop, StroboscopicMap
 from contact.orbits import Shooting, born, fold_of
 from studies import letter
 from studies.calibration import calibrate, free_period, solve_for
-from studies.scene import Scene, SceneError, approach_speed, contact_law_of, harmonic, hertz_of, model_of
+from studies.scene import Scene, SceneError, contact_law_of, harmonic, model_of
 
 __all__ = ["Beam", "Cell", "cell_of", "fig_5", "fold_of_p3", "nearest_first", "tuned"]
 
@@ -62,13 +61,12 @@ def tuned(scene: Scene, mass: float) -> ModalModel:
 
 @dataclass(frozen=True, kw_only=True)
 class Beam:
-    """The spring with one choice of what is not printed; `local_restitution` None keeps the scene's law."""
+    """The spring with one choice of what is not printed."""
 
     scene: Scene
     model: ModalModel
     tip_mass_kg: float
     higher_damping: float = 1.0
-    local_restitution: float | None = None
 
     def __str__(self) -> str:
         return f"{1e3 * self.tip_mass_kg:g} g, damping x {self.higher_damping:g}"
@@ -77,15 +75,9 @@ class Beam:
         """Driven as in Fig. 5."""
         rates = np.array(self.model.decay_rate)
         rates[1:] *= self.higher_damping
-        law = contact_law_of(self.scene)
-        if self.local_restitution is not None:
-            law = HuntCrossley.with_restitution(
-                stiffness=hertz_of(self.scene).stiffness, restitution=self.local_restitution,
-                velocity=approach_speed(FREQUENCY_HZ, self.scene.stop.gap_m, letter.TIME_TRACE_EXCESS),
-            )  # fmt: skip
         return StroboscopicMap(oscillator=ImpactOscillator(
-            model=replace(self.model, decay_rate=rates), stop=Stop(gap=self.scene.stop.gap_m, law=law),
-            drive=HarmonicDrive(frequency=FREQUENCY_HZ),
+            model=replace(self.model, decay_rate=rates), drive=HarmonicDrive(frequency=FREQUENCY_HZ),
+            stop=Stop(gap=self.scene.stop.gap_m, law=contact_law_of(self.scene)),
         ))  # fmt: skip
 
 
@@ -96,7 +88,6 @@ class Cell:
 
     tip_mass_kg: float
     higher_damping: float
-    local_restitution: float | None
     period: int
     impacts: int
     fold_p3: float | None = None
@@ -107,8 +98,8 @@ def cell_of(beam: Beam) -> Cell:
     strobed = beam.strobed()
     settled = born(strobed, BORN_EXCESS, most_cycles=SEARCH_CYCLES)
     return Cell(
-        tip_mass_kg=beam.tip_mass_kg, higher_damping=beam.higher_damping,
-        local_restitution=beam.local_restitution, period=settled.period, impacts=settled.impacts,
+        tip_mass_kg=beam.tip_mass_kg, higher_damping=beam.higher_damping, period=settled.period,
+        impacts=settled.impacts,
         fold_p3=fold_of_p3(strobed) if settled.period == BORN_PERIOD else None,
     )  # fmt: skip
 
@@ -123,10 +114,6 @@ def fold_of_p3(strobed: StroboscopicMap) -> float | None:
 
 
 def nearest_first(beams: Iterable[Beam], mass: float) -> list[Beam]:
-    """Sorted by what they ask for: contact elastic, damping as the strips', mass nearest to `mass` [kg]."""
-
-    def asks(beam: Beam) -> tuple[float, float, float]:
-        lost = 1.0 - (1.0 if beam.local_restitution is None else beam.local_restitution)
-        return lost, abs(math.log(beam.higher_damping)), abs(math.log(beam.tip_mass_kg / mass))
-
-    return sorted(beams, key=asks)
+    """Sorted by what they ask for: damping as the strips', then a mass near to `mass` [kg]."""
+    return sorted(beams, key=lambda beam: (abs(math.log(beam.higher_damping)),
+                                           abs(math.log(beam.tip_mass_kg / mass))))  # fmt: skip

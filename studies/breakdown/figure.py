@@ -37,8 +37,7 @@ def title_of(outcome: Outcome) -> str:
     words = f"beam, {1e3 * outcome.tip_mass_kg:.2f} g"
     if outcome.description == "beam":
         return f"{words}, as calibrated"
-    lossy = f", local restitution {outcome.local_restitution:g}" if outcome.local_restitution != 1.0 else ""
-    return f"{words}, damping of the higher modes × {outcome.higher_damping:g}{lossy}"
+    return f"{words}, damping of the higher modes × {outcome.higher_damping:g}"
 
 
 @plotting.in_house_style
@@ -75,35 +74,28 @@ def draw_scans(panels: Sequence[tuple[Outcome, Mapping[str, Diagram]]]) -> Figur
 
 @plotting.in_house_style
 def draw_born(cells: Sequence[Cell], mass: float, found: Outcome | None) -> Figure:
-    """The born period as a map of labelled cells, one panel for each restitution of the contact."""
-    local = sorted({cell.local_restitution or 1.0 for cell in cells}, reverse=True)
+    """The born period as a map of labelled cells."""
     masses = sorted({cell.tip_mass_kg for cell in cells})
     factors = sorted({cell.higher_damping for cell in cells})
-    figure, axes = plotting.new_figure(
-        1, len(local), width=PAGE, height=0.030 + 0.0058 * len(masses), squeeze=False, sharey=True
-    )
+    figure, axis = plotting.new_figure(height=0.030 + 0.0058 * len(masses))
     colours = {3: SKY, 6: ORANGE, 12: tint(ORANGE, 0.4), 0: "0.87"}
     for cell in cells:
-        axis = axes[0, local.index(cell.local_restitution or 1.0)]
         x, y = factors.index(cell.higher_damping), masses.index(cell.tip_mass_kg)
-        framed = found is not None and (cell.tip_mass_kg, cell.higher_damping, cell.local_restitution) == (
-            found.tip_mass_kg, found.higher_damping, found.local_restitution)  # fmt: skip
+        place = (cell.tip_mass_kg, cell.higher_damping)
+        framed = found is not None and place == (found.tip_mass_kg, found.higher_damping)
         axis.add_patch(Rectangle(
             (x - 0.5, y - 0.5), 1.0, 1.0, facecolor=colours.get(cell.period, tint(GREEN, 0.2)),
             edgecolor="black" if framed else "white", linewidth=1.2 if framed else 0.8, zorder=1 + framed,
         ))  # fmt: skip
         axis.text(x, y, str(cell.period or "–"), ha="center", va="center", fontsize=NOTE, zorder=3,
                   fontweight="bold" if cell.period == 6 else "normal")  # fmt: skip
-    for number, (axis, restitution) in enumerate(zip(axes[0], local, strict=True)):
-        axis.set(xlim=(-0.5, len(factors) - 0.5), ylim=(-0.5, len(masses) - 0.5))
-        axis.set_xticks(np.arange(len(factors)), [f"{k:g}" for k in factors])
-        axis.tick_params(length=0)
-        axis.spines[:].set_visible(False)
-        lossy = f"lossy contact, local restitution {restitution:g}"
-        plotting.panel(axis, number, "elastic contact" if restitution == 1.0 else lossy)
-        plotting.label(axis.xaxis, "damping of the higher modes / that of the strips")
-    axes[0, 0].set_yticks(np.arange(len(masses)), [f"{1e3 * m:.2f}" for m in masses])
-    plotting.label(axes[0, 0].yaxis, "ball and mount", "g")
-    figure.supxlabel("number: period born at excess 10$^{-3}$ (letter: 6); –: none up to 64; "
+    axis.set(xlim=(-0.5, len(factors) - 0.5), ylim=(-0.5, len(masses) - 0.5))
+    axis.set_xticks(np.arange(len(factors)), [f"{k:g}" for k in factors])
+    axis.set_yticks(np.arange(len(masses)), [f"{1e3 * m:.2f}" for m in masses])
+    axis.tick_params(length=0)
+    axis.spines[:].set_visible(False)
+    plotting.label(axis.xaxis, "damping of the higher modes / that of the strips")
+    plotting.label(axis.yaxis, "ball and mount", "g")
+    figure.supxlabel("number: period born at excess 10$^{-3}$ (letter: 6);\n–: none up to 64; "
                      f"the calibrated ball and mount have {1e3 * mass:.2f} g", fontsize=NOTE)  # fmt: skip
     return figure

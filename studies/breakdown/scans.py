@@ -47,7 +47,6 @@ class Outcome:
     description: str
     tip_mass_kg: float | None = None
     higher_damping: float = 1.0
-    local_restitution: float | None = None
     born_period: int
     born_impacts: int
     fold_p3: float | None
@@ -103,10 +102,7 @@ class Scans:
         fold = fold_of_p3(strobed)
         lowest = 1.12 * fold if fold is not None and fold < -0.01 else -0.1
         outcome, ways = self.of(name, strobed, lowest, fold, partial(strobed.readout, name=READOUT))
-        return replace(
-            outcome, tip_mass_kg=beam.tip_mass_kg, higher_damping=beam.higher_damping,
-            local_restitution=beam.local_restitution,
-        ), ways  # fmt: skip
+        return replace(outcome, tip_mass_kg=beam.tip_mass_kg, higher_damping=beam.higher_damping), ways
 
 
 def periods(diagram: Diagram) -> np.ndarray:

@@ -30,7 +30,7 @@ import numpy as np
 
 from contact import ImpactOscillator
 from contact.orbits import AmplitudeScan
-from studies.chart.cells import EXCESSES, FREQUENCIES_HZ, KNEE, Cells, Plane, Scan, fold_agreement
+from studies.chart.cells import EXCESSES, FREQUENCIES_HZ, KNEE, Cells, Plane, Scan
 from studies.chart.overlays import bands_in, folds_of_beam, folds_of_single_mode
 from studies.run import Run, study
 from studies.scene import Scene, beam_at, corresponding, harmonic, single_mode_at
@@ -110,7 +110,7 @@ def tell_failures(run: Run, columns: list[Column]) -> None:
 def drawn(
     scene: Scene, run: Run, plane: Plane, oscillator: ImpactOscillator, cells: Cells, model: str
 ) -> dict[str, object]:
-    """Store the cells and what theory says, draw both, and compare them."""
+    """Store the cells and what theory says, draw both."""
     from studies.chart.figure import draw  # matplotlib is slow to import, and a shard draws nothing
 
     edges = bands_in(scene, *plane.frequencies_hz)
@@ -129,15 +129,10 @@ def drawn(
         "(left) and the downward scan (right); lines: exact folds and band edges of the map."
     )
     run.figure(f"chart_{model}", draw(cells, edges, folds, title=title), caption)
-    met, seen = fold_agreement(cells, folds)
     without = float(np.mean(cells.period == 0))
-    run.say(
-        f"{100 * without:.1f} % of the cells without a period up to {LARGEST_PERIOD}; the exact fold lies in "
-        f"the very step of the grid in which p_m ends in {met} of the {seen} columns that come down on p_m"
-    )
+    run.say(f"{100 * without:.1f} % of the cells without a period up to {LARGEST_PERIOD}")
     bands = [{"period": band.period, "lower_hz": band.lower, "upper_hz": band.upper} for band in edges]
-    told = {"share_without_period": without, "folds": len(folds), "folds_seen": seen, "folds_met": met}
-    return {"bands": bands, "counts": cells.counts(), **told}
+    return {"bands": bands, "counts": cells.counts(), "share_without_period": without, "folds": len(folds)}
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from contact.orbits import AmplitudeScan
 from studies.sweep import Column
 
-__all__ = ["Cells", "Fold", "Plane", "Scan", "fold_agreement", "sheared"]
+__all__ = ["Cells", "Fold", "Plane", "Scan", "sheared"]
 
 FREQUENCIES_HZ = (19.5, 24.0)
 EXCESSES = (-0.15, 0.1)
@@ -123,20 +123,3 @@ class Cells:
             way: {str(p): int(n) for p, n in zip(*np.unique(self.period[k], return_counts=True), strict=True)}
             for k, way in enumerate(DIRECTIONS)
         }
-
-
-def fold_agreement(cells: Cells, folds: Sequence[Fold]) -> tuple[int, int]:
-    """In how many columns the exact fold lies in the step in which p_m ends, and in how many it could.
-
-    It can where the downward scan is on p_m with one impact in the two rows above the fold.
-    """
-    agree = able = 0
-    for fold in folds:
-        (columns,) = np.nonzero(cells.frequencies == fold.frequency_hz)
-        above = int(np.searchsorted(cells.excesses, fold.excess))
-        if columns.size and 0 < above < cells.excesses.size - 1:
-            cell = 1, columns[0], slice(above - 1, above + 2)
-            below, on, further = (cells.period[cell] == fold.period) & (cells.impacts[cell] == 1)
-            able += int(further)
-            agree += int(further and on and not below)
-    return agree, able

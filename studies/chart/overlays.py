@@ -1,6 +1,6 @@
 """What theory draws over the chart: band edges of the map, and the folds at which p_m orbits end.
 
-Bands (``contact.bands``): frequencies at which p_m is born at grazing in the map.  Folds: in closed
+Bands (``contact.band``): frequencies at which p_m is born at grazing in the map.  Folds: in closed
 form for Eq. (1) (``contact.MaximalFamily``), by shooting and continuation along the frequency for the
 beam (``contact.orbits``).  Only orbits with one impact, and only where no further touch spoils
 them (certified).
@@ -12,10 +12,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from contact import Band, ImpactOscillator, MaximalFamily, bands
+from contact import Band, ImpactOscillator, MaximalFamily
 from contact.orbits import Shooting, fold_along_frequency
 from studies.chart.cells import Fold
-from studies.scene import Scene
+from studies.scene import Scene, band_of
 
 __all__ = ["bands_in", "folds_of_beam", "folds_of_single_mode"]
 
@@ -28,11 +28,7 @@ FEWEST = 7
 
 def bands_in(scene: Scene, low: float, high: float) -> tuple[Band, ...]:
     """The bands of p_2 ... p_24 that reach into `low` ... `high` [Hz]."""
-    keys = scene.single_mode
-    found = bands(
-        range(2, LARGEST + 1), free_period=keys.free_period_s, decay_rate=keys.decay_rate_per_s,
-        restitution=keys.restitution,
-    )  # fmt: skip
+    found = (band_of(scene, m) for m in range(2, LARGEST + 1))
     return tuple(band for band in found if band.upper > low and band.lower < high)
 
 

@@ -17,7 +17,7 @@ period of the beams by following their motion; Lyapunov exponents of the overdam
 
 Run:     python -m studies.claims [--positions N]     half a minute; --quick 8 s
 Writes:  loss, bands, universality, overdamped (.csv); loss, secondary, bands, universality, overdamped (.png,
-         .pdf); secondary_plane.npz, overdamped_cascade.npz (what else is drawn)
+         .pdf)
 """
 
 from __future__ import annotations
@@ -44,8 +44,8 @@ def claims(
     run: Run,
     *,
     positions: Annotated[int, "values of f T at which a period is born (universality)"] = 55,
-    across: Annotated[int, "frequencies of the plane of secondary bifurcations"] = 240,
-    restitutions: Annotated[int, "restitutions of that plane"] = 46,
+    across: Annotated[int, "frequencies over which secondary bifurcations are counted"] = 240,
+    restitutions: Annotated[int, "restitutions at which they are counted"] = 46,
     inside: Annotated[int, "frequencies inside each band"] = 101,
     alphas: Annotated[int, "values of alpha of the overdamped map"] = 46,
 ) -> Mapping[str, object]:

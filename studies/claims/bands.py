@@ -15,13 +15,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from contact import Band, NordmarkMap, band, fold, maximal_period
+from contact import NordmarkMap, band, fold, maximal_period
 from studies import letter, plotting
 from studies.claims.energy_loss import falls, family_at, map_at
 from studies.run import Run
-from studies.scene import Scene, corresponding
+from studies.scene import Scene, band_of, corresponding
 
-__all__ = ["Inside", "band_of", "bands", "inside_band", "path_of"]
+__all__ = ["Inside", "bands", "inside_band", "path_of"]
 
 SPAN_HZ = (19.6, 23.8)
 """Where the letter measured, by its Figs. 3 and 5."""
@@ -41,13 +41,6 @@ class Inside:
     frequency_hz: float
     map: float
     eq1: float
-
-
-def band_of(scene: Scene, period: int) -> Band:
-    """The band of p_m of the scene's mode."""
-    mode = scene.single_mode
-    return band(period, free_period=mode.free_period_s, decay_rate=mode.decay_rate_per_s,
-                restitution=mode.restitution)  # fmt: skip
 
 
 def inside_band(scene: Scene, period: int, count: int) -> list[Inside]:

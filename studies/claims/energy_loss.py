@@ -23,7 +23,6 @@ from functools import partial
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
@@ -167,21 +166,22 @@ def energy_loss(scene: Scene, run: Run, *, across: int, restitutions: int) -> Ma
     frequencies = np.linspace(low, high, across)
     tau = np.linspace(0.0, 0.9, restitutions)
     plane = run.map(partial(line_of, scene, frequencies.tolist()), tau.tolist(), "plane of f and tau")
-    where = np.array([[place_of(node) for node in line] for line in plane])
+    below = np.array([
+        np.mean([not math.isnan(n.fold) and (not n.admissible or n.secondary < 0.0) for n in line])
+        for line in plane
+    ])  # fmt: skip
     run.table("loss", rows, "Fold and first bifurcation of p_m, F/F_g - 1.", show=())
-    run.arrays("secondary_plane", frequency_hz=frequencies, restitution=tau, where=where)
     run.figure("loss", draw_loss(rows), "Hysteresis against restitution at each frequency: a smaller "
                "restitution, more energy lost, less hysteresis, in the map and in Eq. (1).")  # fmt: skip
-    run.figure("secondary", draw_secondary(rows, frequencies * scene.single_mode.free_period_s, tau, where),
-               "Excess of the secondary bifurcation in Eq. (1) against the restitution, and where it lies "
-               "below grazing.")  # fmt: skip
+    run.figure("secondary", draw_secondary(rows, tau, below),
+               "Excess of the secondary bifurcation in Eq. (1) against the restitution, and at which part of "
+               "the frequencies it lies below grazing.")  # fmt: skip
     found = trends(rows)
     both = found["map"] and found["eq1"]
     parts = ", ".join(f"{name} {'yes' if good else 'no'}" for name, good in found.items())
     note = "" if found["rho"] else "the hysteresis in F falls; |rho_m| rises, for rho per F falls faster"
     run.verdict("loss", "differs" if not both else "agrees" if found["rho"] else "in part",
                 found=f"falls with the loss: {parts}", note=note)  # fmt: skip
-    below = np.nanmean(where > 0.0, axis=1)
     lowest = float(np.nanmin([[node.secondary_of_map for node in line] for line in plane]))
     simple = [row for row in rows if row.admissible]
     falling = [f for f in drives if falls([row.secondary for row in simple if row.frequency_hz == f])]
@@ -198,14 +198,6 @@ def energy_loss(scene: Scene, run: Run, *, across: int, restitutions: int) -> Ma
         "secondary": {"holds": holds, "lowest_of_map": lowest, "restitution": tau,
                       "part_below_grazing": below, "falls_with_restitution_hz": falling},
     }  # fmt: skip
-
-
-def place_of(node: Node) -> float:
-    """0: the secondary bifurcation is above grazing; 1: below it; 2: a fold with a second impact; NaN: no
-    fold."""
-    if math.isnan(node.fold):
-        return math.nan
-    return 2.0 if not node.admissible else 1.0 if node.secondary < 0.0 else 0.0
 
 
 def trends(rows: Sequence[Node]) -> dict[str, bool]:
@@ -242,35 +234,22 @@ def draw_loss(rows: Sequence[Node]) -> Figure:
         plotting.panel(axis, place, title)
         plotting.mark_letter(axis.xaxis, letter.RESTITUTION, along=0.98, turn=True, level=True)
     plotting.label(axes[0].yaxis, plotting.HYSTERESIS, "%")
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    plotting.legend_below(figure, axes[:1], 3)
     return figure
 
 
 @plotting.in_house_style
-def draw_secondary(
-    rows: Sequence[Node], places: NDArray[np.float64], tau: NDArray[np.float64], where: NDArray[np.float64]
-) -> Figure:
-    """The bifurcation against tau, and the plane of f T and tau."""
-    figure, axes = plotting.new_figure(1, 2, width=plotting.PAGE, height=0.084)
+def draw_secondary(rows: Sequence[Node], tau: NDArray[np.float64], below: NDArray[np.float64]) -> Figure:
+    """The bifurcation against tau at each frequency, and at which part of the band it is below grazing."""
+    figure, axes = plotting.new_figure(1, 2, width=plotting.PAGE, height=0.072)
     curves(axes[0], rows, lambda row: row.secondary if row.admissible else math.nan)
     axes[0].axhline(0.0, **plotting.GUIDE)
-    plotting.panel(axes[0], 0, "Eq. (1)")
-    plotting.mark_letter(axes[0].xaxis, letter.RESTITUTION, along=0.02, turn=True, level=True)
+    axes[1].plot(tau, 1e2 * below, color=plotting.BLUE)
     plotting.label(axes[0].yaxis, "secondary bifurcation, excess", "%")
-    colours = ListedColormap([plotting.tint(plotting.SKY, 0.3), plotting.BLUE, plotting.ORANGE])
-    picture = axes[1].pcolormesh(places, tau, where, cmap=colours, vmin=-0.5, vmax=2.5, rasterized=True,
-                                 shading="nearest")  # fmt: skip
-    for m in range(3, 11):
-        if places[0] < 2 * m / (2 * m + 1) < places[-1]:  # upper edges of the bands
-            axes[1].axvline(2 * m / (2 * m + 1), color="black", linewidth=0.5)
-    axes[1].plot([f * letter.FREE_PERIOD_S for f in letter.PERIODS],
-                 [letter.RESTITUTION] * len(letter.PERIODS), **plotting.LETTER_POINTS,
-                 label="letter")  # fmt: skip
-    plotting.panel(axes[1], 1, "Eq. (1): the secondary bifurcation is")
-    plotting.label(axes[1].xaxis, "f T")
-    plotting.label(axes[1].yaxis, "restitution τ")
-    figure.legend(loc="outside lower center", ncols=4)
-    bar = figure.colorbar(picture, ax=axes[1], ticks=[0, 1, 2], location="bottom", aspect=40, drawedges=False)
-    bar.ax.set_xticklabels(["above grazing", "below grazing", "no simple p$_m$"])
-    bar.outline.set_visible(False)  # type: ignore[operator]
+    plotting.label(axes[1].yaxis, "part of the frequencies", "%")
+    plotting.label(axes[1].xaxis, "restitution τ")
+    for place, (axis, title) in enumerate(zip(axes, ("Eq. (1)", "Eq. (1): below grazing"), strict=True)):
+        plotting.panel(axis, place, title)
+        plotting.mark_letter(axis.xaxis, letter.RESTITUTION, along=0.02, turn=True, level=True)
+    plotting.legend_below(figure, axes[:1], 3)
     return figure

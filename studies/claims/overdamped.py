@@ -20,21 +20,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullFormatter
 from numpy.typing import ArrayLike, NDArray
 
 from studies import plotting
 from studies.run import Run
 
-__all__ = ["Cascade", "Share", "cascade_at", "exponents", "outside_windows", "overdamped", "shares"]
+__all__ = ["Share", "exponents", "outside_windows", "overdamped", "shares"]
 
 KEPT = 120
 """Last iterates that `exponents` returns."""
 
-SHOWN = {0.20: "windows overlap", 0.45: "chaos between windows", 0.80: "chaos only"}
-"""alpha of the panels."""
+SHOWN, TOP, TURNS = 0.45, 1e-3, 4
+"""The cascade drawn: its alpha, its largest rho, and how many windows lie below that."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,16 +42,6 @@ class Share:
     alpha: float
     chaotic_part: float
     outside_windows: float
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Cascade:
-    """Exponents, shape (n_rho,), and iterates x, shape (n, n_rho), along rho."""
-
-    alpha: float
-    rho: NDArray[np.float64]
-    exponent: NDArray[np.float64]
-    x: NDArray[np.float64]
 
 
 def outside_windows(alpha: float) -> float:
@@ -91,27 +79,15 @@ def shares(alphas: NDArray[np.float64], count: int, settle_steps: int, steps: in
     ]
 
 
-def cascade_at(alpha: float, count: int) -> Cascade:
-    """Iterates over a few turns of the cascade below rho = 1e-3."""
-    top, turns = 1e-3, 4 if alpha < 0.7 else 16
-    rho = np.geomspace(top * alpha**turns, top, count)
-    found, x = exponents(alpha, rho, 1000, 2000)
-    return Cascade(alpha=alpha, rho=rho, exponent=found, x=x[:: 1 if alpha < 0.7 else 4])
-
-
 def overdamped(run: Run, *, alphas: int) -> Mapping[str, object]:
     """Compute, store, draw and judge."""
     # next to a window's end both chaos and its absence are slow
     count, *steps = (60, 2000, 3000) if run.quick else (120, 4000, 8000)
     rows = shares(np.linspace(0.05, 0.95, alphas), count, *steps)
-    cascades = [cascade_at(alpha, 150 if run.quick else 500) for alpha in SHOWN]
     run.table("overdamped", rows, "Chaotic part of ln rho, by exponents and by windows.", show=())
-    run.arrays("overdamped_cascade", **{
-        f"{name}_{100 * one.alpha:.0f}": getattr(one, name)
-        for one in cascades for name in ("rho", "exponent", "x")
-    })  # fmt: skip
-    run.figure("overdamped", draw(rows, cascades), "The overdamped map: windows of periods that overlap, are "
-               "parted by chaos, or are gone, as alpha grows.")  # fmt: skip
+    run.figure("overdamped", draw(rows, 150 if run.quick else 500), "The overdamped map: periods fall by one "
+               "from window to window as rho rises, blue, with chaos between them, red; its part of ln rho "
+               "as alpha grows.")  # fmt: skip
     off = max(abs(row.chaotic_part - row.outside_windows) for row in rows)
     holds = off < (0.06 if run.quick else 0.03)  # a turn has few values of rho
     run.verdict(
@@ -124,13 +100,19 @@ def overdamped(run: Run, *, alphas: int) -> Mapping[str, object]:
 
 
 @plotting.in_house_style
-def draw(rows: Sequence[Share], cascades: Sequence[Cascade]) -> Figure:
-    """Three cascades and the chaotic part."""
-    figure, axes = plotting.new_figure(2, 2, width=plotting.PAGE, height=0.105)
-    for number, (axis, one) in enumerate(zip(axes.flat, cascades, strict=False)):
-        draw_cascade(axis, one)
-        plotting.panel(axis, number, f"α = {one.alpha:g}: {SHOWN[one.alpha]}")
-    last, alphas = axes.flat[3], [row.alpha for row in rows]
+def draw(rows: Sequence[Share], drawn: int) -> Figure:
+    """One cascade at `drawn` values of rho, coloured by the sign of the exponent, and the chaotic part."""
+    figure, (first, last) = plotting.new_figure(1, 2, width=plotting.PAGE, height=0.066)
+    rho = np.geomspace(TOP * SHOWN**TURNS, TOP, drawn)
+    exponent, x = exponents(SHOWN, rho, 1000, 2000)
+    for chosen, look in ((exponent <= 0.0, plotting.BLUE), (exponent > 0.0, plotting.VERMILION)):
+        first.plot(np.tile(rho[chosen], KEPT), (x[:, chosen] / np.sqrt(rho[chosen])).ravel(), ".",
+                   markersize=1.0, color=look, markeredgewidth=0.0, rasterized=True)  # fmt: skip
+    first.set_xscale("log")
+    plotting.panel(first, 0, f"α = {SHOWN:g}: chaos between windows")
+    plotting.label(first.yaxis, "$x$ / √ρ")
+    plotting.label(first.xaxis, "ρ")
+    alphas = [row.alpha for row in rows]
     last.plot(alphas, [row.outside_windows for row in rows], color=plotting.VERMILION,
               label="outside the windows of p$_m$")  # fmt: skip
     last.plot(alphas, [row.chaotic_part for row in rows], color="black", marker="o", markersize=2.2,
@@ -138,24 +120,9 @@ def draw(rows: Sequence[Share], cascades: Sequence[Cascade]) -> Figure:
     for place, name in ((0.25, "1/4"), (2.0 / 3.0, "2/3")):
         last.axvline(place, **plotting.GUIDE)
         last.text(place + 0.01, 0.06, name, fontsize=plotting.NOTE)
-    plotting.panel(last, 3, "chaotic part of ln ρ")
+    plotting.panel(last, 1, "chaotic part of ln ρ")
     last.legend(loc="upper left")
     plotting.label(last.xaxis, "α")
     plotting.label(last.yaxis, "chaotic part")
     last.set_ylim(-0.03, 1.05)
     return figure
-
-
-def draw_cascade(axis: Axes, one: Cascade) -> None:
-    """Iterates over rho, coloured by the sign of the exponent."""
-    for chaos, colour in ((False, plotting.BLUE), (True, plotting.VERMILION)):
-        chosen = (one.exponent > 0.0) == chaos
-        axis.plot(
-            np.tile(one.rho[chosen], one.x.shape[0]), (one.x[:, chosen] / np.sqrt(one.rho[chosen])).ravel(),
-            linestyle="none", marker="s" if chaos else ".", markersize=0.7 if chaos else 1.0, color=colour,
-            markeredgewidth=0.0, rasterized=True,
-        )  # fmt: skip
-    axis.set_xscale("log")
-    axis.xaxis.set_minor_formatter(NullFormatter())
-    plotting.label(axis.yaxis, "$x$ / √ρ")
-    plotting.label(axis.xaxis, "ρ")

@@ -22,10 +22,9 @@ from contact import StroboscopicMap, maximal_period, maximal_periods
 from contact.orbits import born_period
 from studies import letter, plotting
 from studies.calibration import bare_cantilever, with_mass_ratio
-from studies.claims.bands import band_of
 from studies.claims.energy_loss import map_at
 from studies.run import Run
-from studies.scene import Scene, beam_at, model_of, single_mode_at
+from studies.scene import Scene, band_of, beam_at, model_of, single_mode_at
 
 __all__ = ["Born", "Job", "Spring", "born_at", "springs", "universality"]
 

@@ -11,27 +11,21 @@ Computed: the first collision of the steady driven motion at an excess above gra
     tau^2 = (1 - kick)^2 + 2 a shift / v^2,   delay = (v/a)(1 + tau - kick)         to leading order in v,
 
 v the approach speed, v/a the time to the top of the arc beyond the gap, a = (2 pi f)^2 gap. Varied, one at a
-time: excess, number of modes, tip mass (free period and drive amplitude at grazing kept), stiffness of the
-contact; and tip mass together with loss in the contact and with stiffness, in search of the
-letter's tau.
+time: excess and tip mass (free period and drive amplitude at grazing kept); and tip mass together with loss
+in the contact, in search of the letter's tau.
 
-What comes out for the folded spring with its tape:
-
-- tau is |1 - kick| with a floor near sqrt(contact time * a/v). The floor is the time that the contact takes,
-  not loss: at the excess of Fig. 4 (0.013) a ceramic ball on steel leaves tau = 0.22 to 0.23 for any loss in
-  the contact, each at its own tip mass. tau = 0.1 asks for thirtyfold stiffness or for an excess of 0.19; or
-  for a settled orbit, where what is left of the ringing shifts the touch: there tau lies anywhere from 0.15
-  to 0.99, or does not exist, as mode 1 does not come back to the gap.
-- 18 modes are enough at the tip mass of the scene, 24 at a tenth of the leaf, 30 for a bare cantilever under
-  Hertz's law. A bare tip has tau = 0.7 and a delay longer than v/a. Under Newton's law the count of its
-  impacts grows with the modes without end; tau and delay hardly change, but to 1e-3 they do not stand still.
-- That the kick on a hard stop is 2 M phi_1^2 is a limit far off: the bend, a quarter of the mass of the ball,
-  goes along with it. Real contacts have a kick of 0.99, a stop of 1e7 times the tip stiffness 0.95, and the
-  ball by itself has 0.82. (How the kick fades towards grazing: studies.soft_wall.)
+What comes out for the folded spring with its tape: tau is |1 - kick| with a floor near
+sqrt(contact time * a/v). The floor is the time that the contact takes, not loss: at the excess of Fig. 4
+(0.013) a ceramic ball on steel leaves tau = 0.22 to 0.23 for any loss in the contact, each at its own tip
+mass. tau = 0.1 asks for a contact of 12 us, thirty times as stiff, or for an excess of 0.19; or for a
+settled orbit, where what is left of the ringing shifts the touch: there tau lies anywhere from 0.15 to
+0.99, or does not exist, as mode 1 does not come back to the gap. A bare tip has tau = 0.7 and a delay
+longer than v/a. (How the kick fades towards grazing: studies.soft_wall; how many modes this takes:
+studies.adequacy.)
 
 Run:     python -m studies.effective_impact [--quick]     half a minute; --quick ten seconds
-Writes:  collisions.csv (a row an approach), floors.csv (smallest restitution over the tip mass),
-         modes_needed.csv, and the figures speed, mass, search, modes, stiffness
+Writes:  collisions.csv (a row an approach), floors.csv (smallest restitution over the tip mass), and the
+         figures speed, mass, search
 """
 
 from __future__ import annotations
@@ -41,7 +35,7 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 
 from studies import letter
-from studies.calibration import Targets, bare_cantilever, with_mass_ratio
+from studies.calibration import Targets
 from studies.effective_impact import cases
 from studies.effective_impact.cases import Case, Grid, Spring
 from studies.effective_impact.collision_rows import (
@@ -53,7 +47,6 @@ from studies.effective_impact.collision_rows import (
     on_orbits,
     select,
     series_of,
-    still_of,
 )
 from studies.record import Verdict
 from studies.run import Run, study
@@ -62,10 +55,7 @@ from studies.scene import Scene, SceneError, harmonic
 __all__ = ["effective_impact"]
 
 FINE_MESH = {"spring.elements_per_leg": 120, "spring.elements_on_arc": 60}
-"""Twice the default: the mode curve goes to 60 modes, which the default mesh does not resolve."""
-
-LIGHT = 0.1
-"""Tip mass over leaf of the light tip in the mode curve."""
+"""Twice the default, for the collision that the answer quotes."""
 
 NEAR = 0.05
 """How far a restitution may be from "about 0.1"."""
@@ -83,23 +73,19 @@ def effective_impact(scene: Scene, run: Run) -> Mapping[str, object]:
     found = run.attempt(measure, all_cases(run, scene, frequency, grid), "collisions")
     rows = [row for row in found if row is not None]
     run.table("collisions", rows, show=())
-    searches = [(curve, name) for curve in ("search", "hardness") for name in series_of(rows, curve)]
-    floors = [floor for search in searches if (floor := floor_of(select(rows, *search))) is not None]
-    run.table("floors", floors, "Smallest restitution over the tip mass, by local restitution or hardness.")
-    by_modes = [select(rows, "modes", name) for name in series_of(rows, "modes")]
-    still = [line for curve in by_modes if (line := still_of(curve, grid.modes)) is not None]
-    run.table("modes_needed", still, "Number of modes from which on a series stands still.")
+    searches = [select(rows, "search", name) for name in series_of(rows, "search")]
+    floors = [floor for search in searches if (floor := floor_of(search)) is not None]
+    run.table("floors", floors, "Smallest restitution over the tip mass, by local restitution.")
     from studies.effective_impact.figure import DRAWN  # matplotlib is slow to import
 
     for draw in DRAWN:
         run.figure(draw.__name__, draw(rows), " ".join((draw.__doc__ or "").split()))
-    reference = next((row for curve in by_modes[:1] for row in curve if row.modes == grid.modes), None)
-    elastic = [floor for floor in floors if (floor.curve, floor.value) == ("search", 1.0)]
-    if reference is not None and elastic:
+    reference = next(iter(select(rows, "reference")), None)
+    if reference is not None and any(floor.local_restitution == 1.0 for floor in floors):
         judge(run, reference, on_orbits(rows), floors)
     return {
         "frequency_hz": frequency, "reference": reference, "on_settled_orbits": on_orbits(rows),
-        "floors": floors, "modes_needed": still, "what_gives_the_letters_restitution": ways(rows, floors),
+        "floors": floors, "what_gives_the_letters_restitution": ways(rows),
     }  # fmt: skip
 
 
@@ -108,27 +94,17 @@ def all_cases(run: Run, scene: Scene, frequency: float, grid: Grid) -> list[Case
     fine = scene
     if not (scene.spring.elements_per_leg or scene.spring.elements_on_arc):
         fine = scene.replace(FINE_MESH)
-    springs = {
-        "scene": fine, "light tip": with_mass_ratio(fine, LIGHT, frequency),
-        "bare cantilever": bare_cantilever(fine, frequency),
-    }  # fmt: skip
-    many = {name: Spring.of(one, frequency, grid.check_modes) for name, one in springs.items()}
-    of_mass = partial(spring_of_mass, scene, frequency, grid.modes)
+    of_mass = partial(Spring.of_mass, scene, frequency, grid.modes)
     masses = run.map(of_mass, cases.MASS_RATIOS[:: grid.every], "springs")
-    return cases.cases_of(Spring.of(scene, frequency, grid.modes), masses, many, grid)
+    spring, reference = (Spring.of(one, frequency, grid.modes) for one in (scene, fine))
+    return cases.cases_of(spring, masses, reference, grid)
 
 
-def spring_of_mass(scene: Scene, frequency: float, modes: int, ratio: float) -> Spring:
-    """The spring with another tip mass, `ratio` times the leaf."""
-    return Spring.of(with_mass_ratio(scene, ratio, frequency), frequency, modes)
-
-
-def ways(rows: Sequence[Row], floors: Sequence[Floor]) -> Mapping[str, float]:
+def ways(rows: Sequence[Row]) -> Mapping[str, float]:
     """What would give the letter's restitution in a first collision at the excess of Fig. 4."""
-    tau, hard = letter.RESTITUTION, [floor for floor in floors if floor.curve == "hardness"]
+    tau = letter.RESTITUTION
     speed = [row for row in select(rows, "speed", cases.HERTZ) if math.isfinite(row.restitution)]
     return {
-        "hardness": crossing([floor.value for floor in hard], [floor.restitution for floor in hard], tau),
         "contact_s": tau**2 * next((row.arc_s for row in rows if row.curve == "search"), math.nan),
         "excess": crossing([row.excess for row in speed], [row.restitution for row in speed], tau),
     }
@@ -136,7 +112,7 @@ def ways(rows: Sequence[Row], floors: Sequence[Floor]) -> Mapping[str, float]:
 
 def judge(run: Run, at: Row, orbits: Sequence[Row], floors: Sequence[Floor]) -> None:
     """Verdicts on restitution and delay, and this study's part of the answer on higher modes."""
-    loss = {floor.value: floor.restitution for floor in floors if floor.curve == "search"}
+    loss = {floor.local_restitution: floor.restitution for floor in floors}
     least, lossy = loss[1.0], min(loss.values())
     returned = [orbit.restitution for orbit in orbits if orbit.returns]
     lost = len(orbits) - len(returned)

@@ -36,10 +36,6 @@ SETTLE_CYCLES = 4000
 """An orbit with impacts settles within some hundred drive periods; a motion that has not by then is told as
 period 0."""
 
-STILL = 1e-3
-"""How closely a result must agree with that of the most modes: absolute in restitution and kick, in the delay
-relative to the arc v/a."""
-
 FINE = 2001
 """Points at which a spline is looked through: the smallest value is good to 1e-6 of itself."""
 
@@ -140,11 +136,9 @@ def crossing(x: Sequence[float], y: Sequence[float], level: float) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class Floor:
-    """The smallest restitution over the tip mass, for one local restitution ("search") or one factor on the
-    stiffness ("hardness")."""
+    """The smallest restitution over the tip mass, for one local restitution."""
 
-    curve: str
-    value: float
+    local_restitution: float
     restitution: float
     mass_ratio: float
     kick: float
@@ -166,46 +160,6 @@ def floor_of(rows: Sequence[Row]) -> Floor | None:
     if least in (0, FINE - 1):
         return None
     return Floor(
-        curve=kept[0].curve, value=float(kept[0].series), restitution=math.sqrt(square[least]),
+        local_restitution=float(kept[0].series), restitution=math.sqrt(square[least]),
         mass_ratio=math.exp(fine[least]), kick=float(kick(fine[least])),
-    )  # fmt: skip
-
-
-@dataclass(frozen=True, kw_only=True)
-class Still:
-    """From how many modes on a series stands still, and how far its results at the most modes, kept as a
-    check, are off; None modes if it never does."""
-
-    series: str
-    modes: int | None
-    drift: float
-    restitution: float
-    kick: float
-    impacts: int
-    impacts_at_most: int
-
-
-def still_of(rows: Sequence[Row], modes: int) -> Still | None:
-    """`Still` of one series by rising number of modes, held against its result with `modes`, if there is one.
-
-    Results beyond have to agree as well: a slow drift passes for rest where it is compared with its own last
-    step.
-    """
-    last = next((row for row in rows if row.modes == modes), None)
-    if last is None:
-        return None
-
-    def away(row: Row) -> float:
-        off = [abs(row.restitution - last.restitution), abs(row.kick - last.kick),
-               abs(row.delay_s - last.delay_s) / abs(last.arc_s)]  # fmt: skip
-        return max(math.inf if math.isnan(value) else value for value in off)
-
-    drift, still = max(away(row) for row in rows if row.modes >= modes), None
-    for row in reversed([row for row in rows if row.modes <= modes and drift <= STILL]):
-        if away(row) > STILL:
-            break
-        still = row.modes
-    return Still(
-        series=last.series, modes=still, drift=drift, restitution=last.restitution, kick=last.kick,
-        impacts=last.impacts, impacts_at_most=rows[-1].impacts,
     )  # fmt: skip

@@ -17,11 +17,13 @@ AXES = {
     "restitution": ("restitution τ", "1", 1.0),
     "delay_s": ("delay", "ms", 1e3),
     "kick": ("kick", "1", 1.0),
-    "impacts": ("impacts in the collision", "1", 1.0),
 }
 """Column of the rows -> quantity, unit, factor to that unit."""
 
 MASS = "tip mass / mass of the leaf"
+
+SEARCHED = ("1", "0.7", "0.6", "0.4", "0.2", "0.1")
+"""Local restitutions drawn."""
 
 
 def line(axis: Any, rows: Sequence[Row], column: str, number: int, name: str) -> None:
@@ -33,24 +35,19 @@ def line(axis: Any, rows: Sequence[Row], column: str, number: int, name: str) ->
     )  # fmt: skip
 
 
-def panels(
-    rows: Sequence[Row], curve: str, quantity: str, *, names: Sequence[str] = (),
-    shape: tuple[int, int] = (1, 3), height: float = 0.066, log: bool = True,
-) -> tuple[Figure, list[Any]]:  # fmt: skip
-    """Some series of a curve, a panel for each quantity."""
-    figure, grid = plotting.new_figure(*shape, width=PAGE, height=height, squeeze=False)
-    axes = list(grid.flat)
-    for place, (axis, (column, (words, unit, _))) in enumerate(zip(axes, AXES.items(), strict=False)):
-        for number, name in enumerate(names or series_of(rows, curve)):
+def panels(rows: Sequence[Row], curve: str, quantity: str, *, log: bool = True) -> tuple[Figure, list[Any]]:
+    """The series of a curve, a panel for each quantity."""
+    figure, axes = plotting.new_figure(1, len(AXES), width=PAGE, height=0.066)
+    for place, (axis, (column, (words, unit, _))) in enumerate(zip(axes, AXES.items(), strict=True)):
+        for number, name in enumerate(series_of(rows, curve)):
             line(axis, select(rows, curve, name), column, number, name)
         if log:
             axis.set_xscale("log")
-        if place >= len(axes) - shape[1]:
-            plotting.label(axis.xaxis, quantity)
+        plotting.label(axis.xaxis, quantity)
         plotting.label(axis.yaxis, words, unit)
         axis.set_ylim(bottom=0.0)
         plotting.panel(axis, place)
-    return figure, axes
+    return figure, list(axes)
 
 
 def guide(axis: Any, rows: Sequence[Row], y: Callable[[Row], float], name: str, style: str = "--") -> None:
@@ -67,15 +64,8 @@ def arc_ms(row: Row) -> float:
 
 
 def closed(figure: Figure, axes: Sequence[Any], columns: int = 4, along: float = 0.99) -> Figure:
-    """One legend below, every name once; the letter's restitution in the first panel."""
-    found: dict[str, Any] = {}
-    for axis in axes:
-        for handle, name in zip(*axis.get_legend_handles_labels(), strict=True):
-            found.setdefault(name, handle)
-    figure.legend(
-        list(found.values()), list(found), loc="outside lower center", ncols=columns, handlelength=3.0,
-        columnspacing=1.5,
-    )  # fmt: skip
+    """One legend below; the letter's restitution in the first panel."""
+    plotting.legend_below(figure, axes, columns, handlelength=3.0, columnspacing=1.5)
     plotting.mark_letter(axes[0].yaxis, letter.RESTITUTION, words="letter, τ ≈ 0.1", along=along)
     return figure
 
@@ -102,9 +92,7 @@ def speed(rows: Sequence[Row]) -> Figure:
 def mass(rows: Sequence[Row]) -> Figure:
     """The same against the mass of ball and mount. The restitution is smallest where the kick is near one;
     crosses: collisions on settled orbits, bars on the axis: mode 1 does not come back to the gap."""
-    shown = ("excess 0.0001", "excess 0.001", "excess 0.013", "excess 0.05")
-    names = [name for name in series_of(rows, "mass") if name in shown]
-    figure, axes = panels(rows, "mass", MASS, names=names, log=False)
+    figure, axes = panels(rows, "mass", MASS, log=False)
     middle = select(rows, "mass", "excess 0.013")
     guide(axes[2], middle, lambda row: row.ball_limit, "2 M φ$_1^2$")
     guide(axes[1], middle, arc_ms, "arc v/a, excess 0.013", "-.")
@@ -122,62 +110,23 @@ def mass(rows: Sequence[Row]) -> Figure:
 
 
 @plotting.in_house_style
-def modes(rows: Sequence[Row]) -> Figure:
-    """The same against the number of modes kept, and the impacts in the collision. Springs that carry a ball
-    settle with some twenty modes; a bare tip needs more, and under Newton's law its impacts never settle."""
-    figure, axes = panels(rows, "modes", "modes kept", shape=(2, 2), height=0.105)
-    axes[3].set_yscale("log")
-    axes[3].set_ylim(0.8, 200)
-    for axis in axes:
-        axis.set_xticks([1, 2, 5, 10, 20, 40, 60], ["1", "2", "5", "10", "20", "40", "60"])
-        axis.xaxis.set_minor_formatter(NullFormatter())
-    return closed(figure, axes, 3)
-
-
-@plotting.in_house_style
-def stiffness(rows: Sequence[Row]) -> Figure:
-    """The same against the stiffness of the contact. The scene's restitution falls as the contact gets
-    harder, that of a bare tip does not."""
-    figure, axes = panels(rows, "stiffness", "contact stiffness / tip stiffness")
-    for ball in select(rows, "ball"):
-        for axis, (column, (_, _, factor)) in zip(axes, AXES.items(), strict=False):
-            axis.plot(ball.value, factor * getattr(ball, column), marker="*", markersize=7, linestyle="none",
-                      color=PALETTE[5], markeredgecolor="black", markeredgewidth=0.4, zorder=5,
-                      label="Hertz, ball of the scene")  # fmt: skip
-    first = select(rows, "stiffness", series_of(rows, "stiffness")[0])
-    guide(axes[1], first, arc_ms, "arc v/a", "-.")
-    guide(axes[2], first, lambda row: row.ball_limit, "2 M φ$_1^2$, scene")
-    axes[0].set_ylim(0.0, 1.0)
-    return closed(figure, axes, 3, along=0.02)
-
-
-@plotting.in_house_style
 def search(rows: Sequence[Row]) -> Figure:
-    """In search of the letter's restitution: loss in the contact (a) moves the minimum but not its depth,
-    hardness (b) lowers it."""
-    figure, axes = plotting.new_figure(1, 2, width=PAGE, height=0.075, sharey=True)
-    parts = {
-        "search": (
-            "loss in the contact (Hunt-Crossley)", "local restitution ", ("1", "0.7", "0.4", "0.2", "0.1")
-        ),
-        "hardness": ("hardness (linear, times that of the ball)", "stiffness × ", ()),
-    }
-    for place, (axis, (curve, (title, words, wanted))) in enumerate(zip(axes, parts.items(), strict=True)):
-        names = [name for name in series_of(rows, curve) if not wanted or name in wanted]
-        for number, name in enumerate(names):
-            found = [row for row in select(rows, curve, name) if row.value > 0.0]
-            line(axis, found, "restitution", number, words + name)
-        plotting.mark_letter(axis.yaxis, letter.RESTITUTION, words="letter, τ ≈ 0.1")
-        axis.set_xscale("log")
-        axis.set_ylim(0.0, 1.12)
-        axis.set_xticks([0.02, 0.05, 0.1, 0.2, 0.5, 1, 2], ["0.02", "0.05", "0.1", "0.2", "0.5", "1", "2"])
-        axis.xaxis.set_minor_formatter(NullFormatter())
-        plotting.label(axis.xaxis, MASS)
-        axis.legend(loc="upper left", bbox_to_anchor=(0.0, 1.02), ncols=2, handlelength=3.0)
-        plotting.panel(axis, place, title)
-    plotting.label(axes[0].yaxis, "restitution τ")
+    """In search of the letter's restitution: loss in the contact (Hunt-Crossley) moves the minimum over the
+    tip mass, not its depth."""
+    figure, axis = plotting.new_figure(height=0.075)
+    for number, name in enumerate(name for name in series_of(rows, "search") if name in SEARCHED):
+        found = [row for row in select(rows, "search", name) if row.value > 0.0]
+        line(axis, found, "restitution", number, f"local restitution {name}")
+    plotting.mark_letter(axis.yaxis, letter.RESTITUTION, words="letter, τ ≈ 0.1")
+    axis.set_xscale("log")
+    axis.set_ylim(0.0, 1.12)
+    axis.set_xticks([0.02, 0.05, 0.1, 0.2, 0.5, 1, 2], ["0.02", "0.05", "0.1", "0.2", "0.5", "1", "2"])
+    axis.xaxis.set_minor_formatter(NullFormatter())
+    plotting.label(axis.xaxis, MASS)
+    plotting.label(axis.yaxis, "restitution τ")
+    plotting.legend_below(figure, [axis], 2, handlelength=3.0)
     return figure
 
 
-DRAWN: tuple[Callable[[Sequence[Row]], Figure], ...] = (speed, mass, search, modes, stiffness)
+DRAWN: tuple[Callable[[Sequence[Row]], Figure], ...] = (speed, mass, search)
 """The figures; each is named by its function and has its docstring as caption."""

@@ -21,8 +21,8 @@ vanishes, and its ratios say nothing.
 
 Run:     python -m studies.hysteresis [--step HZ]     half a minute; --quick some seconds
 Writes:  hysteresis.csv (a row a frequency and period), causes.csv (factors at the letter's frequencies and
-         over all folds), accuracy.csv (how far each description is off), and the figures hysteresis (as
-         Fig. 3), hysteresis_causes
+         over all folds), accuracy.csv (how far each description is off), and the figure hysteresis (as
+         Fig. 3)
 """
 
 from __future__ import annotations
@@ -64,10 +64,9 @@ class Causes:
 
 @dataclass(frozen=True, kw_only=True)
 class Accuracy:
-    """By what factor a description is off the beam, up or down, over `folds`: all, or the admissible ones."""
+    """By what factor a description is off the beam, up or down, over so many `folds`."""
 
     description: str
-    over: str
     folds: int
     median: float
     worst: float
@@ -93,15 +92,12 @@ def hysteresis(
     causes = [causes_over([row], f"{row.frequency_hz:.2f} Hz, p{row.m}") for row in at_letter]
     causes.append(causes_over(kept, f"median of {len(kept)} folds"))
     run.table("causes", causes, "What each cause multiplies the hysteresis by, from the map to the beam.")
-    over = {"all": kept, "admissible": [row for row in kept if row.beam_admissible]}
-    others = [name for name in DESCRIPTIONS if name != "beam"]
-    off = [accuracy(name, which, of) for which, of in over.items() for name in others]
+    off = [accuracy(name, kept) for name in DESCRIPTIONS if name != "beam"]
     run.table("accuracy", off, "Factor by which the hysteresis of a description differs from the beam's.")
     from studies.hysteresis import figure  # matplotlib is slow to import
 
     run.figure("hysteresis", figure.draw_curves(scene, rows), figure.CURVES)
-    run.figure("hysteresis_causes", figure.draw_causes(at_letter), figure.BARS)
-    judge(run, rows, {found.description: found for found in off if found.over == "all"}, causes[-1])
+    judge(run, rows, {found.description: found for found in off}, causes[-1])
     return {"rows": rows, "causes": causes, "accuracy": off, "modes": model.n_modes}
 
 
@@ -117,12 +113,12 @@ def causes_over(rows: Sequence[Row], at: str) -> Causes:
     return Causes(at=at, **{n: math.exp(float(np.median(of))) if of else None for n, of in logs.items()})
 
 
-def accuracy(description: str, over: str, rows: Sequence[Row]) -> Accuracy:
+def accuracy(description: str, rows: Sequence[Row]) -> Accuracy:
     """How far a description is off the beam; nothing where it has no fold."""
     ratios = (row.ratio(description) for row in rows)
     logs = [abs(math.log(ratio)) for ratio in ratios if ratio is not None]
     return Accuracy(
-        description=description, over=over, folds=len(logs),
+        description=description, folds=len(logs),
         median=math.exp(float(np.median(logs))) if logs else math.nan,
         worst=math.exp(max(logs)) if logs else math.nan,
     )  # fmt: skip

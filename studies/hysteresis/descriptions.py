@@ -22,9 +22,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from beam import ModalModel
-from contact import NordmarkMap, StrobedNordmarkMap, StroboscopicMap, band
+from contact import NordmarkMap, StrobedNordmarkMap, StroboscopicMap
 from contact.orbits import Kick, KickFamily, PeriodicOrbit, Shooting, fold_along_frequency, fold_excess
-from studies.scene import Scene, beam_at, corresponding, nordmark_at, periods_of, single_mode_at
+from studies.scene import Scene, band_of, beam_at, corresponding, nordmark_at, periods_of, single_mode_at
 
 CHAIN = (
     "map", "single_mode", "measured_kick", "kick_of_velocity", "two_parameters", "all_mode_kick", "beam",
@@ -142,9 +142,7 @@ def folds_at(
 
 def column(scene: Scene, model: ModalModel, step: float, m: int) -> list[Row]:
     """The folds of p_m over the frequencies where it can exist, each started from its neighbour."""
-    keys = scene.single_mode
-    edges = band(m, free_period=keys.free_period_s, decay_rate=keys.decay_rate_per_s,
-                 restitution=keys.restitution)  # fmt: skip
+    edges = band_of(scene, m)
     low = corresponding(scene, FREQUENCIES_HZ[0])
     low = max(low, edges.lower - BELOW_BAND * (edges.upper - edges.lower))
     grid = np.arange(FREQUENCIES_HZ[0], FREQUENCIES_HZ[1] + 1e-9, step)

@@ -1,4 +1,4 @@
-"""The letter's Fig. 3 with four of the descriptions, all of them over the beam, and the causes."""
+"""The letter's Fig. 3 with four of the descriptions, all of them over the beam."""
 
 from __future__ import annotations
 
@@ -9,22 +9,17 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from contact import Band, bands
+from contact import Band
 from studies import letter, plotting
-from studies.hysteresis.descriptions import CAUSES, FREQUENCIES_HZ, Row
-from studies.plotting import BLACK, BLUE, GREEN, GUIDE, LETTER, NOTE, PAGE, PALETTE, VERMILION
-from studies.scene import Scene, corresponding, periods_of
+from studies.hysteresis.descriptions import FREQUENCIES_HZ, Row
+from studies.plotting import BLACK, BLUE, GREEN, GUIDE, LETTER, NOTE, PAGE, VERMILION
+from studies.scene import Scene, band_of, corresponding, periods_of
 
 CURVES = (
     "The letter's Fig. 3, computed: where the p_m orbits end when the amplitude is lowered, against the "
     "drive frequency, for m = 3 to 10; below the same on a logarithmic scale. The beam follows the bands of "
     "the map, at another size and bent by the ringing of its second mode; crosses: folds of the equations "
     "alone, whose orbit would touch the plate elsewhere too."
-)
-BARS = (
-    "Factor of each cause at the letter's frequencies; above one it enlarges the hysteresis. Truncation of "
-    "the map and size of the kick oppose each other everywhere; delay and ringing decide where the "
-    "hysteresis is small."
 )
 
 STYLES: dict[str, dict[str, Any]] = {
@@ -40,9 +35,7 @@ STYLES: dict[str, dict[str, Any]] = {
 def draw_curves(scene: Scene, rows: Sequence[Row]) -> Figure:
     """Folds against frequency, linear and logarithmic."""
     figure, axes = plotting.new_figure(2, 1, width=PAGE, height=0.128, sharex=True)
-    keys = scene.single_mode
-    edges = bands({row.m for row in rows}, free_period=keys.free_period_s, decay_rate=keys.decay_rate_per_s,
-                  restitution=keys.restitution)  # fmt: skip
+    edges = [band_of(scene, m) for m in sorted({row.m for row in rows})]
     # f T at the edge is fixed: an error of T moves it by as much
     unsure = letter.FREE_PERIOD_ERROR_S / letter.FREE_PERIOD_S
     for number, (axis, sign) in enumerate(zip(axes, (1.0, -1.0), strict=True)):
@@ -98,30 +91,3 @@ def names_of_bands(axes: Sequence[Axes], scene: Scene, edges: Sequence[Band]) ->
         if middle < highest:
             axes[0].annotate(words, (middle, 1.01), xycoords=("data", "axes fraction"), ha="center",
                              va="bottom", fontsize=NOTE)  # fmt: skip
-
-
-@plotting.in_house_style
-def draw_causes(rows: Sequence[Row]) -> Figure:
-    """From the map to the beam, cause by cause, at the letter's frequencies; crosses: there is no fold."""
-    figure, axis = plotting.new_figure(width=PAGE, height=0.075)
-    width, hatches = 0.8 / len(CAUSES), ("", "///", "...", "xxx", "\\\\\\", "++")
-    for number, cause in enumerate(CAUSES):
-        places = np.arange(len(rows)) + (number - 0.5 * (len(CAUSES) - 1)) * width
-        heights = np.array([row.factor(cause) or np.nan for row in rows])
-        known = np.isfinite(heights)
-        axis.bar(
-            places[known], heights[known] - 1.0, width, bottom=1.0, color=PALETTE[number + 1],
-            edgecolor="white", hatch=hatches[number], linewidth=0.3, label=cause.replace("_", " "),
-        )  # fmt: skip
-        missing = places[~known]
-        axis.plot(missing, np.ones(missing.size), "x", markersize=4.0, color=BLACK)
-    axis.axhline(1.0, color="0.3", linewidth=0.8)
-    axis.set_yscale("log")
-    ticks = [0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0]
-    axis.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
-    axis.minorticks_off()
-    axis.set_xticks(np.arange(len(rows)), [f"{row.frequency_hz:.2f} Hz, p$_{{{row.m}}}$" for row in rows])
-    plotting.label(axis.xaxis, "drive frequency and period of the orbit (×: no fold below grazing)")
-    plotting.label(axis.yaxis, "factor on the hysteresis")
-    figure.legend(loc="outside lower center", ncols=3)
-    return figure

@@ -1,11 +1,11 @@
-"""The spring in motion: one period of a settled orbit as a film, slow at the collision, with its stills.
+"""The spring in motion: one period of a settled orbit as a film, slow at the collision.
 
 The orbit settles at F/F_g - 1 = 0.013 and 21.50 Hz (the letter's Fig. 4) or where --excess and --frequency
 say. Higher modes are drawn enlarged, so that they show, the ball where the tip is: it meets the plate when
 the computed tip does; the plate turns orange while they touch. Below, the tip against time.
 
 Run:     python -m studies.motion [--excess E] [--frequency HZ] [--magnify M] [--seen-from base]     40 s
-Writes:  motion.gif, motion.mp4 with the extra `video`, motion.png (stills), frames.csv; for ParaView
+Writes:  motion.gif, motion.mp4 with the extra `video`, motion.png (the tip), frames.csv; for ParaView
          motion.pvd with motion_frames (arrays `displacement`, true, and the points as they are drawn)
 """
 
@@ -50,9 +50,6 @@ FREQUENCY = 21.50
 RATE = 20.0
 """Frames a second: gif keeps time in hundredths of a second."""
 
-STILLS = 8
-"""Pictures on the sheet of stills."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class FrameRow:
@@ -80,7 +77,6 @@ def motion(
     frames: Annotated[int, "frames of the film"] = 240,
     magnify: Annotated[float | None, "how many times the higher modes are drawn; so that they show"] = None,
     seen_from: Annotated[Literal["laboratory", "base"], "where the viewer stands"] = "laboratory",
-    renderer: Annotated[Literal["auto", "vtk", "matplotlib"], "what draws"] = "auto",
 ) -> Mapping[str, object]:
     """Compute, store, draw."""
     drive_hz = corresponding(harmonic(scene), FREQUENCY) if frequency is None else frequency
@@ -103,12 +99,22 @@ def motion(
     true, _ = drawn_shapes(scenery.mesh, modes, orbit.run.displacement, 1.0)
     write_frames(run.path("motion.pvd"), grids(scenery, moments, true, rows))
     run.path("motion_frames")
-    if renderer == "auto" and not can_render():
-        run.say(NO_RENDERING)
-    with stage_of(scenery, renderer) as stage:
-        pictures = [stage(moment) for moment in run.track(moments, "frames")]
     name = f"p{settled.period}" if settled.period else "no period up to 64"
     words = f"{name}, {drive_hz:g} Hz, excess {excess:g}"
+    slow = f"{orbit.slowed.min():.0f} to {orbit.slowed.max():.0f} times slower than life"
+    run.say(f"{words}: {len(orbit.contacts)} contacts, {slow}")
+    found = {
+        "frequency_hz": drive_hz, "excess": excess, "period": settled.period, "duration_s": orbit.duration,
+        "impacts": len(orbit.contacts), "contacts_s": orbit.contacts, "magnification": magnification,
+        "film_s": frames / RATE,
+    }  # fmt: skip
+    caption = f"The tip along the film, {words}; dashed: the plate."
+    run.figure("motion", draw_tip(orbit, scene.stop.gap_m)[0], caption)
+    if not can_render():
+        run.say(NO_RENDERING)
+        return found
+    with stage_of(scenery) as stage:
+        pictures = [stage(moment) for moment in run.track(moments, "frames")]
     told = f"higher modes x {magnification:g}"
     framed = list(composed(orbit, pictures, scene.stop.gap_m, words, told))
     write_gif(run.path("motion.gif"), framed, RATE)
@@ -116,21 +122,7 @@ def motion(
         write_mp4(run.path("motion.mp4"), framed, RATE)
     else:
         run.say("no mp4: it needs imageio-ffmpeg (pip install -e '.[video]')")
-    moves = "the base moves" if seen_from == "laboratory" else "seen from the base"
-    caption = f"{words}; higher modes drawn {magnification:g} times; {moves}."
-    run.figure("motion", draw_sheet(pictures, rows), caption)
-    slow = f"{orbit.slowed.min():.0f} to {orbit.slowed.max():.0f} times slower than life"
-    run.say(f"{words}: {len(orbit.contacts)} contacts, {slow}")
-    return {
-        "frequency_hz": drive_hz,
-        "excess": excess,
-        "period": settled.period,
-        "duration_s": orbit.duration,
-        "impacts": len(orbit.contacts),
-        "contacts_s": orbit.contacts,
-        "magnification": magnification,
-        "film_s": frames / RATE,
-    }
+    return found
 
 
 def frame_rows(orbit: FilmedOrbit) -> list[FrameRow]:
@@ -155,24 +147,29 @@ def grids(
         yield row.time_s, grid
 
 
-def composed(
-    orbit: FilmedOrbit, pictures: Sequence[Picture], gap: float, words: str, told: str
-) -> Iterator[Picture]:
-    """The frames: what is seen, the time and how it is slowed, and the tip against time with a mark."""
-    from PIL import Image, ImageDraw, ImageFont
+def draw_tip(orbit: FilmedOrbit, gap: float) -> tuple[Figure, Any]:
+    """The tip against time, and its axes."""
+    from studies.plotting import BLUE, GUIDE, PAGE, house_style, label, new_figure
 
-    from studies.plotting import BLUE, GUIDE, house_style, label, new_figure
-
-    wide, dots = pictures[0].shape[1], 110
-    figure, axes = new_figure()
-    figure.set(dpi=dots, size_inches=(wide / dots, 150 / dots))
+    figure, axes = new_figure(width=PAGE, height=0.05)
     with house_style():
         axes.plot(1e3 * orbit.line_time, 1e3 * orbit.line_tip, color=BLUE)
         axes.axhline(1e3 * gap, **GUIDE)
         axes.set_xlim(0.0, 1e3 * orbit.duration)
         label(axes.xaxis, "time", "ms")
         label(axes.yaxis, "tip", "mm")
-        figure.canvas.draw()
+    return figure, axes
+
+
+def composed(
+    orbit: FilmedOrbit, pictures: Sequence[Picture], gap: float, words: str, told: str
+) -> Iterator[Picture]:
+    """The frames: what is seen, the time and how it is slowed, and the tip against time with a mark."""
+    from PIL import Image, ImageDraw, ImageFont
+
+    figure, axes = draw_tip(orbit, gap)
+    figure.set(dpi=110, size_inches=(pictures[0].shape[1] / 110, 150 / 110))
+    figure.canvas.draw()
     below = np.asarray(figure.canvas.buffer_rgba(), dtype=np.uint8)[..., :3]  # type: ignore[attr-defined]
     places = axes.transData.transform(1e3 * np.column_stack([orbit.time, orbit.tip]))
     font = ImageFont.load_default(size=18)
@@ -185,24 +182,6 @@ def composed(
         slowed = f"{1e3 * orbit.time[number]:.2f} ms, {orbit.slowed[number]:.0f} times slower; {told}"
         pen.text((12, 32), slowed, fill="#5A5A5A", font=font)
         yield np.asarray(image, dtype=np.uint8)
-
-
-def draw_sheet(pictures: Sequence[Picture], rows: Sequence[FrameRow]) -> Figure:
-    """Stills with their times, one of them with the contact."""
-    from studies.plotting import PAGE, house_style, new_figure
-
-    stills = np.linspace(0, len(rows) - 1, STILLS).round().astype(int)
-    touches = [row.frame - 1 for row in rows if row.contact]
-    if touches:
-        stills[1 + np.argmin(np.abs(stills[1:-1] - touches[0]))] = touches[0]
-    figure, axes = new_figure(STILLS // 2, 2, width=PAGE, height=0.046 * STILLS / 2, squeeze=False)
-    with house_style():
-        for axis, number in zip(axes.flat, stills.tolist(), strict=True):
-            axis.imshow(pictures[number])
-            axis.axis("off")
-            row = rows[number]
-            axis.set_title(f"{1e3 * row.time_s:.2f} ms" + (", contact" if row.contact else ""), loc="left")
-    return figure
 
 
 if __name__ == "__main__":

@@ -18,10 +18,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from contact import StroboscopicMap, band
+from contact import StroboscopicMap
 from contact.orbits import born, born_period, fold_excess
 from studies.letter import AMPLITUDE_STABILITY
-from studies.scene import READOUT, Scene
+from studies.scene import READOUT, Scene, band_of
 
 KINDS = ("jitter", "drift")
 
@@ -106,9 +106,7 @@ def apart(points: Points, impacts: Counts, period: int) -> tuple[float, float]:
 
 def frequency_of(scene: Scene, m: int) -> float:
     """Where p_m of Eq. (1) is asked about noise [Hz]."""
-    keys = scene.single_mode
-    edges = band(m, free_period=keys.free_period_s, decay_rate=keys.decay_rate_per_s,
-                 restitution=keys.restitution)  # fmt: skip
+    edges = band_of(scene, m)
     return edges.upper - SHARE_OF_BAND * (edges.upper - edges.lower)
 
 

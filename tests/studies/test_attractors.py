@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import csv
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from contact import State, StroboscopicMap
-from studies.attractors.basins import CLOSE, plane_of
+from studies.attractors.basins import plane_of
 from studies.attractors.scan import CHAOTIC, NOT_SETTLED, PERIODIC, WITHOUT, classify
 from studies.scene import beam_at, read_scene, single_mode_at
 
@@ -44,10 +45,10 @@ def test_chaos_slow_transient_and_motion_without_impacts_are_told_apart(single, 
 
 
 def test_starts_next_to_either_orbit_lead_to_it_between_fold_and_grazing(scene):
-    plane = plane_of(scene, FREQUENCY, -0.006, 2, close=True)
+    plane = plane_of(scene, FREQUENCY, -0.006, 2)
     gap, speed = scene.stop.gap_m, 2.0 * math.pi * FREQUENCY * scene.stop.gap_m
     assert plane.period == 4 and plane.orbit.shape == (4, 2)
-    near = 1e-3 * CLOSE
+    near = 3e-5
     assert plane.leads(plane.rest[0] + near * gap, plane.rest[1] - near * speed) == 1
     for x, velocity in plane.orbit:
         assert plane.leads(x + 1e-6 * gap, velocity) == 4
@@ -59,7 +60,10 @@ def test_starts_next_to_either_orbit_lead_to_it_between_fold_and_grazing(scene):
 
 
 def test_both_orbits_have_a_basin_between_fold_and_grazing_and_one_below(scene):
-    between = plane_of(scene, FREQUENCY, -0.006, 12, close=True)
+    between = plane_of(scene, FREQUENCY, -0.006, 2)
+    around = np.linspace(-0.03, 0.03, 12) * scene.stop.gap_m
+    speed = 2.0 * math.pi * FREQUENCY
+    between = replace(between, x=between.rest[0] + around, velocity=between.rest[1] + speed * around)
     leads = np.array([between.line(v) for v in between.velocity.tolist()])
     assert np.mean(leads == 1) > 0.02 and np.mean(leads == 4) > 0.5
     below = plane_of(scene, FREQUENCY, -0.02, 6)

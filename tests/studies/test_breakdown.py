@@ -8,17 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beam import ModalModel
-from contact import (
-    ImpactOscillator,
-    MaximalFamily,
-    State,
-    Stop,
-    StroboscopicMap,
-    maximal_period,
-    simulate,
-    stable_range,
-)
+from contact import MaximalFamily, StroboscopicMap, maximal_period, stable_range
 from contact.orbits import born
 from studies import letter
 from studies.breakdown.beam import (
@@ -32,7 +22,7 @@ from studies.breakdown.beam import (
 )
 from studies.breakdown.scans import Scans, island, periods
 from studies.calibration import ACCURACY, decay_rate, solve_for
-from studies.scene import approach_speed, free_period, model_of, nordmark_at, read_scene, single_mode_at
+from studies.scene import free_period, model_of, nordmark_at, read_scene, single_mode_at
 
 BEFORE = read_scene("letter")
 
@@ -50,8 +40,7 @@ def calibrated(scene):
 @pytest.fixture(scope="module")
 def light(scene):
     """Ball and damping of the higher modes with which the state born at grazing has period 6."""
-    return Beam(scene=scene, model=tuned(scene, 0.004), tip_mass_kg=0.004, higher_damping=2.0,
-                local_restitution=1.0)  # fmt: skip
+    return Beam(scene=scene, model=tuned(scene, 0.004), tip_mass_kg=0.004, higher_damping=2.0)
 
 
 def test_the_beam_of_fig_5_has_its_period_and_damping_and_keeps_ball_and_gap(scene):
@@ -131,23 +120,10 @@ def test_the_search_keeps_the_period_of_the_beam_and_scales_the_higher_modes_onl
     assert more.decay_rate[1:] == pytest.approx(3.0 * light.model.decay_rate[1:], rel=1e-15)
 
 
-def test_a_lossy_ball_leaves_with_the_restitution_asked_for(scene, light):
-    law = replace(light, local_restitution=0.7).strobed().oscillator.stop.law
-    speed = approach_speed(FREQUENCY_HZ, scene.stop.gap_m, letter.TIME_TRACE_EXCESS)
-    mass = 0.006
-    free = ModalModel(
-        omega=[0.0], decay_rate=[0.0], phi=[1 / math.sqrt(mass)], participation=[math.sqrt(mass)]
-    )
-    ball = ImpactOscillator(model=free, stop=Stop(gap=1e-4, law=law), drive=None)
-    start = State(displacement=np.zeros(1), velocity=np.array([speed * math.sqrt(mass)]))
-    run = simulate(ball, start, duration=0.01)
-    assert run.end.velocity[0] / start.velocity[0] == pytest.approx(-0.7, abs=1e-6)
-
-
 def test_cells_are_tried_by_what_they_ask_for(light):
-    asked = ((0.005, 1.0, 0.7), (0.004, 4.0, 1.0), (0.0045, 0.5, 1.0), (0.006, 1.0, None))
-    beams = [replace(light, tip_mass_kg=m, higher_damping=k, local_restitution=e) for m, k, e in asked]
-    assert nearest_first(beams, 0.00616) == [beams[place] for place in (3, 2, 1, 0)]
+    asked = ((0.005, 1.0), (0.004, 4.0), (0.0045, 0.5), (0.006, 1.0))
+    beams = [replace(light, tip_mass_kg=m, higher_damping=k) for m, k in asked]
+    assert nearest_first(beams, 0.00616) == [beams[place] for place in (3, 0, 2, 1)]
 
 
 @pytest.mark.parametrize("side", [-1.0, 1.0])

@@ -9,7 +9,7 @@ import pytest
 
 from contact import NordmarkMap, StroboscopicMap, maximal_orbits, maximal_period
 from contact.orbits import Shooting, settle
-from studies.claims.bands import band_of, inside_band, path_of
+from studies.claims.bands import inside_band, path_of
 from studies.claims.energy_loss import (
     RESTITUTIONS,
     falls,
@@ -21,7 +21,7 @@ from studies.claims.energy_loss import (
 )
 from studies.claims.overdamped import exponents, outside_windows
 from studies.claims.universality import Job, Spring, born_at
-from studies.scene import single_mode_at
+from studies.scene import band_of, single_mode_at
 
 
 def strobed_at(scene, frequency, restitution):

@@ -45,8 +45,8 @@ def bare() -> Spring:
 
 def met(spring: Spring, law, excess: float = TIME_TRACE_EXCESS, modes: int | None = None) -> Row:
     """The row of one approach."""
-    model = None if modes is None else spring.model.truncated(modes)
-    return measure(spring.case("speed", "a", excess, law, excess=excess, model=model))
+    kept = spring if modes is None else replace(spring, model=spring.model.truncated(modes))
+    return measure(kept.case("speed", "a", excess, law, excess=excess))
 
 
 # the physics of one collision
@@ -86,7 +86,9 @@ def test_the_floor_of_restitution_is_the_time_of_the_contact(spring):
     row = met(spring, hertz)
     assert row.kick == pytest.approx(1.0, abs=0.02)
     assert row.restitution == pytest.approx(math.sqrt(row.contact_s / row.arc_s), rel=0.03)
-    harder, as_hard = met(spring, spring.equal(hertz, 9.0)), met(spring, spring.equal(hertz))
+    mass = LETTER.tip.mass_kg
+    linear = mass * (math.pi / hertz.contact_time(mass, spring.speed)) ** 2
+    as_hard, harder = (met(spring, LinearContact(stiffness=factor * linear)) for factor in (1.0, 9.0))
     assert as_hard.contact_s == pytest.approx(row.contact_s, rel=0.05)
     assert harder.contact_s == pytest.approx(as_hard.contact_s / 3.0, rel=0.05)
     assert harder.restitution < 0.65 * as_hard.restitution
@@ -107,22 +109,12 @@ def test_a_bare_tip_keeps_seven_tenths_and_is_late_by_more_than_the_arc(bare):
     assert row.restitution == pytest.approx(0.7, abs=0.02)
     assert row.delay_s > row.arc_s
     assert row.impacts > 1 and row.ball_limit == 0.0
-    newton = NewtonRestitution(local_restitution=1.0)
-    many, few = met(bare, newton), met(bare, newton, modes=10)
-    assert many.impacts > 3 * few.impacts
-    assert many.restitution == pytest.approx(few.restitution, abs=0.02)
 
 
 def test_the_kick_fades_where_the_contact_outlasts_the_arc(spring):
     kicks = [met(spring, hertz_of(LETTER), excess).kick for excess in (1e-5, 1e-4, 1e-3, 1e-2)]
     assert kicks == sorted(kicks)
     assert kicks[0] < 0.15 and kicks[-1] > 0.95
-
-
-def test_twenty_modes_are_enough_from_a_tenth_of_the_leaf_on(spring):
-    rows = [met(spring, hertz_of(LETTER), modes=n) for n in (5, 10, 18, 20)]
-    off = [abs(row.kick - rows[-1].kick) for row in rows]
-    assert off[0] < 0.18 and off[1] < 0.04 and off[2] < 1e-3
 
 
 def test_the_family_of_tip_masses_keeps_period_and_amplitude_at_grazing():
@@ -183,15 +175,11 @@ def test_the_answers_agree_with_what_is_known(run_study):
     assert ran.code == 0 and ran.summary["frequency_hz"] == FREQUENCY
     with (ran.folder / "collisions.csv").open(newline="") as file:
         curves = {row["curve"] for row in csv.DictReader(file)}
-    assert curves == {
-        "speed", "modes", "mass", "orbit", "stiffness", "ball", "search", "hardness"
-    }  # fmt: skip
-    search = [floor["restitution"] for floor in ran.summary["floors"] if floor["curve"] == "search"]
-    assert all(0.2 < tau < 0.24 for tau in search)  # whatever the loss in the contact
+    assert curves == {"speed", "reference", "mass", "orbit", "search"}
+    floors = [floor["restitution"] for floor in ran.summary["floors"]]
+    assert len(floors) > 1 and all(0.2 < tau < 0.24 for tau in floors)  # whatever the loss in the contact
     needed = ran.summary["what_gives_the_letters_restitution"]
-    assert 20.0 < needed["hardness"] < 45.0 and 0.15 < needed["excess"] < 0.25
-    still = {row["series"]: row["modes"] for row in ran.summary["modes_needed"]}
-    assert still["Hertz"] <= 20 and still["Newton, e = 1"] is None
+    assert 1.1e-5 < needed["contact_s"] < 1.2e-5 and 0.15 < needed["excess"] < 0.25
     assert ran.summary["verdicts"]["restitution"]["verdict"] == "in part"
 
 

@@ -31,7 +31,7 @@ OWN_TEST = [
 ]  # fmt: skip
 
 #: Options that keep a small form small.
-SMALLER = {"motion": ["--frames", "16", "--renderer", "matplotlib"], "chart": ["--points", "6", "8"],
+SMALLER = {"motion": ["--frames", "16"], "chart": ["--points", "6", "8"],
            "transitions": ["--set", "drive.frequencies_hz=[22.2]"],
            "calibrate": ["--set", "modes.count=4", "--set", "spring.elements_per_leg=12"]}  # fmt: skip
 

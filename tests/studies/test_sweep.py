@@ -147,15 +147,12 @@ def test_the_export_has_one_line_a_cell(tmp_path, capsys):
     with (tmp_path / "toy.csv").open() as stream:
         rows = [{key: float(cell) for key, cell in row.items()} for row in csv.DictReader(stream)]
     assert len(rows) == 12 and all(row["power"] == row["x"] ** row["row"] for row in rows)
-    assert export.main([str(tmp_path / "toy"), "--out", str(tmp_path / "all.npz")]) == 0
-    assert np.load(tmp_path / "all.npz")["power"].tolist() == EXPECTED[:4]
 
 
-@pytest.mark.parametrize("argv", [["nowhere"], ["toy", "--out", "toy.xls"], ["toy", "--to", "xls"], []])
+@pytest.mark.parametrize("argv", [["nowhere"], ["toy", "--out", "toy.xls"], []])
 def test_an_export_that_makes_no_sense_is_refused(tmp_path, argv):
     sweep(run_in(tmp_path), "toy", SETTINGS, ARGUMENTS[:1], Powers())
-    assert export.main([str(tmp_path / word) if not word.startswith("-") and word != "xls" else word
-                        for word in argv]) == 2  # fmt: skip
+    assert export.main([word if word.startswith("-") else str(tmp_path / word) for word in argv]) == 2
 
 
 def driven(law) -> ImpactOscillator:
