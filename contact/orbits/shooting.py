@@ -219,7 +219,13 @@ class Shooting:
         # velocity
         closing, right, unit = found.jacobian.copy(), np.zeros(2 * n + 2), self.oscillator.unit_speed
         closing[-1], right[-1] = rate * self._scale / unit, 1.0 / unit
-        change = self._scale * np.linalg.solve(closing, right)
+        try:
+            change = self._scale * np.linalg.solve(closing, right)
+        except np.linalg.LinAlgError as error:
+            raise NotPeriodic(
+                time=phase, gap=0.0, velocity=float(rate @ unknown),
+                detail=f"the orbits of period {self.period} do not follow from their approach velocity here",
+            ) from error
         return PeriodicOrbit(
             oscillator=driven, period=self.period, excess=amplitude / grazing - 1.0,
             speed=float(rate @ unknown), phase=phase, displacement=unknown[:n].copy(),

@@ -14,6 +14,23 @@ GAMMA = np.array([0.09, 0.05, -0.03, 0.02, -0.015, 0.01])
 GAP = 0.005
 FREQUENCY = 21.5
 
+# under-, over- and critically damped modes beside the first; a light and a heavy tip
+MODES = {
+    "three modes": dict(
+        omega=[154.0, 960.0, 2690.0], decay_rate=[3.56, 19.2, 80.0], phi=[7.1, -6.5, 5.2],
+        participation=[0.09, -0.05, 0.03],
+    ),
+    "an overdamped mode": dict(
+        omega=[154.0, 500.0], decay_rate=[3.56, 1300.0], phi=[7.1, 4.0], participation=[0.09, 0.04]
+    ),
+    "a critical mode": dict(
+        omega=[154.0, 600.0], decay_rate=[3.56, 1200.0], phi=[7.1, 4.0], participation=[0.09, 0.04]
+    ),
+    "an undamped mode": dict(
+        omega=[154.0, 1000.0], decay_rate=[3.56, 0.0], phi=[7.1, 3.0], participation=[0.09, 0.0]
+    ),
+}  # fmt: skip
+
 
 def spring(
     n_modes: int, law: ContactLaw, *, damping: float = 0.02, drive: tuple[float, float] | None = None,

@@ -12,6 +12,7 @@ import numpy as np
 import oscillators
 import pytest
 from oscillators import apart
+from simulated_orbit import differences, touches
 
 from contact.errors import NotPeriodic
 from contact.laws import ContactLaw, DelayedRestitution, NewtonRestitution
@@ -22,7 +23,7 @@ from contact.orbits import orbit_end, settle
 from contact.orbits.continuation import fold_of, follow
 from contact.orbits.kick import KickFamily
 from contact.orbits.lyapunov import orbit_exponents
-from contact.orbits.shooting import PeriodicOrbit, Shooting
+from contact.orbits.shooting import Shooting
 from contact.orbits.single_impact import MaximalFamily
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
@@ -51,30 +52,6 @@ def unit_speed(frequency: float) -> float:
 def deceleration(frequency: float) -> float:
     """Of the tip at a graze [m/s^2]."""
     return (2.0 * math.pi * frequency) ** 2 * GAP
-
-
-def touches(orbit: PeriodicOrbit) -> int:
-    """Touches of the simulated motion from just before the first one to just before it comes again."""
-    length = orbit.period * orbit.oscillator.period * (1 - 1e-6)
-    return int(np.count_nonzero(simulate(orbit.oscillator, orbit.state(), duration=length).impacts.kind == 0))
-
-
-def differences(orbit: PeriodicOrbit) -> tuple[np.ndarray, float]:
-    """Multipliers by central differences of the simulated map, and how well the orbit closes in it [gap]."""
-    strobed = StroboscopicMap(oscillator=orbit.oscillator)
-    scale = GAP * np.array([1.0, 2.0 * math.pi / T])
-
-    def after(point: np.ndarray) -> np.ndarray:
-        state = State(displacement=point[:1], velocity=point[1:])
-        end = strobed.orbit(state, orbit.period).end
-        return np.concatenate([end.displacement, end.velocity])
-
-    start = orbit.strobe_state()
-    assert start.regime == 0
-    point = np.concatenate([start.displacement, start.velocity])
-    step = 1e-7 * np.diag(scale)
-    columns = [(after(point + h) - after(point - h)) / 2e-7 / scale for h in step]
-    return np.linalg.eigvals(np.column_stack(columns)), float(np.max(np.abs(after(point) - point) / scale))
 
 
 @pytest.mark.parametrize(("frequency", "period"), PLACES)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from oscillators import MODES
 
-from beam import single_mode
+from beam import ModalModel, single_mode
 from contact import (
     HarmonicDrive,
     HuntCrossley,
@@ -40,8 +41,16 @@ MAKERS = {
 }
 
 
-@pytest.fixture(scope="module", params=[(name, *place) for name in MAKERS for place in PLACES], ids=str)
+@pytest.fixture(
+    scope="module", params=[*((name, *place) for name in MAKERS for place in PLACES), *MODES], ids=str
+)
 def family(request) -> Family:
+    """Of Eq. (1) in each description; of many modes in closed form."""
+    if request.param in MODES:
+        model = ModalModel(**{key: np.array(value) for key, value in MODES[request.param].items()})
+        stop = Stop(gap=0.012, law=NewtonRestitution(local_restitution=0.35))
+        many = ImpactOscillator(model=model, stop=stop, drive=HarmonicDrive(frequency=20.5))
+        return MaximalFamily(oscillator=many, period=3)
     name, frequency, period = request.param
     return MAKERS[name](oscillator(frequency), period)
 
@@ -66,6 +75,7 @@ def test_above_the_fold_are_a_saddle_and_a_node_and_below_it_nothing(family: Fam
     assert family.orbits(1.1 * fold.excess) == ()
     saddle, node = family.orbits(0.9 * fold.excess)
     assert saddle.speed < fold.speed < node.speed
+    assert len(family.orbits(0.01)) == 1
     for orbit in (saddle, node):
         assert orbit.excess == pytest.approx(0.9 * fold.excess, rel=1e-8)
     assert node.stable and not saddle.stable and node.admissible

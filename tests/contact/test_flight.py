@@ -143,11 +143,6 @@ def test_slow_decay_of_a_creeping_mode_keeps_its_digits():
         np.testing.assert_allclose(computed[:, 0], exact[:, 0], rtol=1e-13)
 
 
-@pytest.mark.parametrize("name", MODES)
-def test_no_time_no_change(name):
-    assert np.array_equal(flow(*MODES[name], 0.0) + 0.0, np.eye(2))
-
-
 @settings(max_examples=150, deadline=None, derandomize=True)
 @given(
     omega=st.floats(0.0, 2e3), ratio=st.one_of(st.floats(0.0, 0.05), st.floats(0.0, 4.0)),

@@ -127,10 +127,13 @@ def dense_motion(
     return q, v
 
 
-@pytest.mark.parametrize("law", [SPRING, HERTZ, LOSSY], ids=["linear", "hertz", "hunt-crossley"])
-@pytest.mark.parametrize("form", [0, 1, 4, 5, 8])
-def test_the_step_is_that_of_the_matrix_equations(law: ContactLaw, form: int) -> None:
-    spring = oscillator(law, amplitude=1e-4)
+@pytest.mark.parametrize(
+    ("form", "law"),
+    [*((form, law) for form in (0, 1, 4, 5, 8) for law in (SPRING, HERTZ, LOSSY)), (0, DASHPOT)],
+)
+def test_the_step_is_that_of_the_matrix_equations(form: int, law: ContactLaw) -> None:
+    """Also where a dashpot lets go of the tip before it has left."""
+    spring = oscillator(law, amplitude=0.0 if law is DASHPOT else 1e-4)
     method = dataclasses.replace(FORMS[form], step=4e-5)
     steps = 340
     through = simulate(spring, START, duration=steps * method.step, method=method)
@@ -139,16 +142,7 @@ def test_the_step_is_that_of_the_matrix_equations(law: ContactLaw, form: int) ->
     # the tip force is good to 1e-15 of N; a contact multiplies what that leaves by less than a thousand
     np.testing.assert_allclose(through.end.displacement, q, rtol=0, atol=1e-12 * GAP)
     np.testing.assert_allclose(through.end.velocity, v, rtol=0, atol=1e-11 * np.abs(v).max())
-
-
-def test_a_dashpot_lets_go_where_the_matrix_equations_do() -> None:
-    spring = oscillator(DASHPOT)
-    method = GeneralisedAlpha.newmark(step=4e-5)
-    through = simulate(spring, START, duration=340 * method.step, method=method)
-    q, v = dense_motion(spring, method, START, 340)
-    np.testing.assert_allclose(through.end.displacement, q, rtol=0, atol=1e-12 * GAP)
-    np.testing.assert_allclose(through.end.velocity, v, rtol=0, atol=1e-11 * np.abs(v).max())
-    assert through.impacts.loss[0] > 0
+    assert law is not DASHPOT or through.impacts.loss[0] > 0
 
 
 @pytest.mark.parametrize("law", [HERTZ, LOSSY, SPRING, DASHPOT], ids=["hertz", "hunt", "linear", "dashpot"])
@@ -327,12 +321,6 @@ def test_refusals() -> None:
             method=GeneralisedAlpha.newmark(step=1e-5),
         )  # fmt: skip
     simulate(spring, START, duration=0.02, method=GeneralisedAlpha.newmark(step=1e-3))
-    for wrong, word in (
-        ({"beta": -0.1}, "beta"), ({"gamma": 0.0}, "gamma"), ({"alpha_m": 1.0}, "alpha_m"),
-        ({"alpha_f": math.nan}, "alpha_f"), ({"step": -1.0}, "step"),
-    ):  # fmt: skip
-        with pytest.raises(ValueError, match=word):
-            GeneralisedAlpha(**{"step": 1e-5, **wrong})  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="HHT-alpha"):
         GeneralisedAlpha.hht(step=1e-5, alpha=-0.1)
     with pytest.raises(ValueError, match=r"rho is 1\.1"):

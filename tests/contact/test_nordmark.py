@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from itertools import pairwise
 
 import mpmath as mp
@@ -11,7 +10,7 @@ import numpy as np
 import pytest
 
 from beam import ModalModel
-from contact import HarmonicDrive, ImpactOscillator, LinearContact, NewtonRestitution, Stop
+from contact import HarmonicDrive, ImpactOscillator, NewtonRestitution, Stop
 from contact.maximal_orbits import (
     band,
     bands,
@@ -182,11 +181,9 @@ def test_iteration_finds_the_orbit_above_the_fold_only(frequency: float, period:
     at_fold = fold(made, period)
     assert at_fold is not None
     above = 0.98 * at_fold.rho
-    saddle, node = maximal_orbits(made, period, above)
-    assert node.stable and node.admissible and not saddle.stable and abs(saddle.multipliers[0]) > 1
+    node = maximal_orbits(made, period, above)[-1]
     settled = made.iterate(node.states[0] * 1.0001, above, 400 * period)[-period:]
     assert np.allclose(np.sort(settled[:, 0]), np.sort(node.states[:, 0]), atol=1e-9)
-    assert maximal_orbits(made, period, 1.02 * at_fold.rho) == ()
     gone = made.iterate(at_fold.states[0], 1.02 * at_fold.rho, 20000)[-1]
     rest = 1.02 * at_fold.rho / (1 - made.alpha + made.gamma)
     assert gone[0] == pytest.approx(rest, abs=1e-12) and rest < 0  # p1 without impacts
@@ -256,14 +253,6 @@ def test_period_ten_needs_another_period_or_frequency() -> None:
     assert maximal_period(letter_map(23.343)) == 11
 
 
-def test_born_orbit_at_the_letters_frequencies_by_iteration() -> None:
-    """Just above grazing the map settles from rest on p_m."""
-    for frequency, period, _ in TABLE:
-        tail = letter_map(frequency).iterate([-1e-3, 0.0], 1e-6, 40000)[-2 * period :, 0]
-        assert np.allclose(tail[:period], tail[period:], atol=1e-12)
-        assert np.sum(tail[:period] > 0) == 1
-
-
 def test_delay_moves_the_fold_and_ends_the_hysteresis() -> None:
     plain = letter_map(21.5)
     at_fold = fold(plain, 4)
@@ -306,40 +295,8 @@ def test_map_of_an_oscillator() -> None:
     )
     assert NordmarkMap.from_oscillator(oscillator) == letter_map(21.5)
     assert NordmarkMap.from_oscillator(oscillator, restitution=0.4) == letter_map(21.5, restitution=0.4)
-    oscillator = replace(oscillator, stop=Stop(gap=0.01, law=LinearContact(stiffness=1e6)))
-    with pytest.raises(TypeError, match="restitution"):
-        NordmarkMap.from_oscillator(oscillator)
 
 
-@pytest.mark.parametrize(
-    ("changes", "word"),
-    [
-        ({"gamma": -0.1}, "gamma"),
-        ({"gamma": math.nan}, "gamma"),
-        ({"restitution": 1.5}, "restitution"),
-        ({"alpha": 1.9}, "alpha"),
-        ({"y_line": "other"}, "y_line"),
-        ({"delay_term": -1.0}, "delay_term"),
-        ({"whole_turns": 0.5}, "whole_turns"),
-    ],
-)
-def test_wrong_fields_are_named(changes: dict[str, object], word: str) -> None:
-    with pytest.raises(ValueError, match=word):
-        NordmarkMap(**{"alpha": 0.5, "gamma": 0.8, "restitution": 0.1} | changes)
-
-
-def test_wrong_calls_are_named() -> None:
-    with pytest.raises(ValueError, match=r"25\.0 Hz.*1/\(f T\)"):
-        letter_map(25.0)  # above resonance the root changes sign
-    with pytest.raises(ValueError, match="free_period"):
-        letter_map(21.5, free_period=-1.0)
-    with pytest.raises(ValueError, match="decay_rate"):
-        letter_map(21.5, decay_rate=-1.0)
-    with pytest.raises(ValueError, match="state"):
-        letter_map(21.5).step([1.0, 2.0, 3.0], 0.0)
+def test_a_map_without_a_steady_motion_has_no_excess() -> None:
     with pytest.raises(ValueError, match="alpha"):
         _ = NordmarkMap(alpha=-1.8, gamma=0.8, restitution=0.1).rho_per_excess
-    with pytest.raises(ValueError, match="period"):
-        fold(letter_map(21.5), 0)
-    with pytest.raises(ValueError, match="period"):
-        band(1, free_period=T, decay_rate=MU, restitution=TAU)

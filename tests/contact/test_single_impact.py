@@ -8,9 +8,11 @@ from dataclasses import replace
 import mpmath as mp
 import numpy as np
 import pytest
+from oscillators import MODES
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from scipy.optimize import brentq
+from simulated_orbit import EQUATION_1
 
 from beam import ModalModel, single_mode
 from contact import HarmonicDrive, ImpactOscillator, LinearContact, NewtonRestitution, Stop
@@ -19,32 +21,6 @@ from contact.nordmark import NordmarkMap
 from contact.orbits.single_impact import MaximalFamily, SingleImpactOrbit
 
 T, MU, TAU = 0.0408, 3.56, 0.1
-# f [Hz], m, F_m/F_g - 1 of Eq. (1), digits after the point
-TABLE = [
-    (20.90, 3, -1.2784409283e-3, 13),
-    (21.50, 4, -1.32105924246e-2, 13),
-    (22.20, 5, -1.4773426733e-3, 13),
-    (22.60, 6, -1.6810390565e-4, 14),
-    (23.05, 8, -1.2823017008e-4, 14),
-    (23.40, 11, -1.0196700981e-3, 13),
-]
-
-# under-, over- and critically damped modes beside the first; a light and a heavy tip
-MODES = {
-    "three modes": dict(
-        omega=[154.0, 960.0, 2690.0], decay_rate=[3.56, 19.2, 80.0], phi=[7.1, -6.5, 5.2],
-        participation=[0.09, -0.05, 0.03],
-    ),
-    "an overdamped mode": dict(
-        omega=[154.0, 500.0], decay_rate=[3.56, 1300.0], phi=[7.1, 4.0], participation=[0.09, 0.04]
-    ),
-    "a critical mode": dict(
-        omega=[154.0, 600.0], decay_rate=[3.56, 1200.0], phi=[7.1, 4.0], participation=[0.09, 0.04]
-    ),
-    "an undamped mode": dict(
-        omega=[154.0, 1000.0], decay_rate=[3.56, 0.0], phi=[7.1, 3.0], participation=[0.09, 0.0]
-    ),
-}  # fmt: skip
 
 
 def equation_1(frequency: float, period: int, **changes: float) -> MaximalFamily:
@@ -126,20 +102,11 @@ def integrate(family: MaximalFamily, amplitude: float, state: np.ndarray, start:
         state[:n] -= phi / (phi @ phi) * max(0.0, phi @ state[:n] - stop.gap) * (1 + 1e-12)
 
 
-@pytest.mark.parametrize(("frequency", "period", "excess", "digits"), TABLE)
-def test_folds_of_equation_1(frequency: float, period: int, excess: float, digits: int) -> None:
-    family = equation_1(frequency, period)
-    at_fold = family.fold()
-    assert at_fold is not None
-    assert abs(at_fold.excess - excess) <= 0.6 * 10.0**-digits
-    assert residual(at_fold) < 1e-11
-    assert at_fold.multipliers[0] == pytest.approx(1.0, abs=1e-10)
-
-
-@pytest.mark.parametrize(("frequency", "period"), [(f, m) for f, m, *_ in TABLE])
+@pytest.mark.parametrize(("frequency", "period"), [place[:2] for place in EQUATION_1])
 def test_folds_of_equation_1_in_fifty_digits(frequency: float, period: int) -> None:
     """F as a function of the impact time alone: periodicity and x = gap fix the rest; its minimum is F_m."""
     at_fold = equation_1(frequency, period).fold()
+    assert residual(at_fold) < 1e-11
     with mp.workdps(50):
         half, f, tau = mp.mpf(MU) / 2, mp.mpf(frequency), mp.mpf(TAU)
         pole = mp.mpc(-half, 2 * mp.pi / mp.mpf(T))
@@ -184,51 +151,8 @@ def test_ratio_to_the_map_at_a_band_edge() -> None:
         assert errors[1] < 0.15 * errors[0] and errors[1] < 2e-3
 
 
-@pytest.mark.parametrize(("frequency", "period"), [(f, m) for f, m, *_ in TABLE[:4]])
-def test_equation_1_keeps_its_orbit_down_to_the_fold(frequency: float, period: int) -> None:
-    """Exact flights and a root search, no other code: the orbit survives just above F_m and dies below it."""
-    family = equation_1(frequency, period)
-    at_fold = family.fold()
-    half, wd, w = MU / 2, 2 * math.pi / T, 2 * math.pi * frequency
-    steady = 1 / (complex(wd**2 + half**2 - w**2, 2 * half * w))
-
-    def alive(excess: float, periods: int) -> bool:
-        level = (1 + excess) / abs(steady)
-        node = family.fold() if excess <= at_fold.excess else family.orbits(excess)[-1]
-        clock, speed, count = node.phase, node.speed * (1 + 1e-7), 0
-
-        def forced(t):
-            e = level * steady * complex(math.cos(w * t), math.sin(w * t))
-            return e.imag, w * e.real
-
-        while count < periods:
-            x0, v0 = forced(clock)
-            u, v = 1.0 - x0, -TAU * speed - v0
-
-            def state(s, u=u, v=v, clock=clock):
-                x, dx = forced(clock + s)
-                c, sn, e = math.cos(wd * s), math.sin(wd * s) / wd, math.exp(-half * s)
-                big = v + half * u
-                return x + e * (u * c + big * sn), dx + e * (v * c - sn * (half * v + (wd**2 + half**2) * u))
-
-            grid = np.linspace(0.2 / 400 / frequency, (period + 2) / frequency, 400 * (period + 2))
-            heights = [state(s)[0] - 1.0 for s in grid]
-            hit = next((i for i in range(len(grid) - 1) if heights[i] < 0 <= heights[i + 1]), None)
-            if hit is None:
-                return False
-            ends = grid[hit], grid[hit + 1]
-            s = brentq(lambda s, at=state: at(s)[0] - 1.0, *ends, xtol=1e-16, rtol=1e-15)
-            if abs(s * frequency - period) > 0.2:
-                return False
-            clock, speed, count = (clock + s) % (1 / frequency), state(s)[1], count + 1
-        return True
-
-    assert alive(at_fold.excess * 0.99, 25)
-    assert not alive(at_fold.excess * 1.05, 400)
-
-
-@pytest.mark.parametrize("frequency", [20.90])
-def test_determinant_is_that_of_a_period_with_an_impact(frequency: float) -> None:
+def test_determinant_is_that_of_a_period_with_an_impact() -> None:
+    frequency = 20.90
     for period in (1, 3, 5):
         orbit = equation_1(frequency, period).orbit(0.3)
         assert np.linalg.det(orbit.monodromy()) == pytest.approx(math.exp(-MU * period / frequency) * TAU**2)
@@ -245,6 +169,8 @@ def test_orbits_close_under_integration(name: str) -> None:
     for speed in (1.3 * at_fold.speed, 0.7 * at_fold.speed):
         orbit = family.orbit(speed)
         assert residual(orbit) < 1e-9
+        grazing = family.oscillator.grazing_amplitude()
+        assert orbit.amplitude == pytest.approx((1 + orbit.excess) * grazing, rel=1e-15)
         start = flown(orbit, orbit.phase).ravel()
         end = orbit.phase + orbit.duration
         before, none = integrate(family, orbit.amplitude, start, orbit.phase, end - 1e-9)
@@ -283,23 +209,6 @@ def test_multipliers_are_those_of_integrated_neighbours(name: str, factor: float
     assert orbit.stable == (factor > 1)
 
 
-@pytest.mark.parametrize("name", MODES)
-def test_fold_has_a_multiplier_one_and_the_least_amplitude(name: str) -> None:
-    family = many_modes(name)
-    at_fold = family.fold()
-    assert np.min(np.abs(at_fold.multipliers - 1)) < 1e-8
-    nearby = [family.excess(at_fold.speed * factor) for factor in (0.999, 1.0, 1.001)]
-    assert nearby[1] < min(nearby[0], nearby[2])
-    assert family.orbits(at_fold.excess - 1e-9) == ()
-    slow, fast = family.orbits(at_fold.excess * 0.9)
-    assert slow.speed < at_fold.speed < fast.speed
-    for orbit in (slow, fast):
-        assert orbit.excess == pytest.approx(0.9 * at_fold.excess, rel=1e-9)
-    assert len(family.orbits(0.01)) == 1
-    grazing = family.oscillator.grazing_amplitude()
-    assert slow.amplitude == pytest.approx((1 + slow.excess) * grazing, rel=1e-15)
-
-
 def test_many_modes_with_one_tip_value_are_equation_1() -> None:
     """A second mode that the tip does not see changes nothing, even if it is rigid and undamped."""
     plain = equation_1(21.5, 4)
@@ -312,122 +221,36 @@ def test_many_modes_with_one_tip_value_are_equation_1() -> None:
     assert family.fold().speed / 0.01 == pytest.approx(plain.fold().speed, rel=1e-12)
 
 
-def test_letters_orbits_touch_the_wall_once() -> None:
-    """Dense sampling of the flights at the fold and at grazing; 19.65 Hz at grazing is the counterexample."""
-    for frequency, period, *_ in TABLE:
-        family = equation_1(frequency, period)
-        orbits = [family.fold(), *family.orbits(1e-6)]
-        for orbit in orbits:
-            assert highest(orbit) < 0
-    assert highest(equation_1(19.65, 3, free_period=0.0412).fold()) < 0
-    assert highest(equation_1(19.65, 3, free_period=0.0412).orbits(1e-3)[-1]) > 0
-
-
-def test_second_impact_ends_the_orbits_of_equation_1() -> None:
-    """23.40 Hz: p11 up to +0.0023, far below the map's +0.0155. Fig. 5: p3 exists below grazing only."""
-    fig_5 = (19.65, 3, 0.0412)
-    cases = [(23.40, 11, T, 0.1, 2.278e-3), (*fig_5, 0.1, -0.13097), (*fig_5, 0.05, -0.11282)]
-    for frequency, period, free_period, tau, end in cases:
-        family = equation_1(frequency, period, free_period=free_period, restitution=tau)
-        below, above = (family.orbits(end + side * 2e-5)[-1] for side in (-1, 1))
-        assert below.stable and highest(below) < 0 < highest(above)
-    assert equation_1(19.65, 3, free_period=0.0412).fold().excess == pytest.approx(-0.132, abs=1e-3)
-    softer = equation_1(19.65, 3, free_period=0.0412, restitution=0.05)
-    assert softer.fold().excess == pytest.approx(-0.116, abs=1e-3)
-
-
-def highest(orbit) -> float:
-    """Largest tip height over the wall away from the ends of the flight, relative to the gap."""
-    share = np.linspace(1e-3, 1 - 1e-3, 3001)
-    x, v = tip(orbit, orbit.phase + share * orbit.duration)
-    assert x.shape == v.shape == share.shape
-    return float(np.max(x) / orbit.oscillator.stop.gap - 1)
-
-
-def test_tip_velocity_is_the_rate_of_the_tip() -> None:
-    orbit = many_modes("three modes").fold()
-    times = orbit.phase + np.linspace(0.1, 0.9, 7) * orbit.duration
-    rate = (tip(orbit, times + 1e-6)[0] - tip(orbit, times - 1e-6)[0]) / 2e-6
-    assert np.allclose(rate, tip(orbit, times)[1], rtol=1e-4, atol=1e-4 * orbit.speed)
-
-
-def test_share_of_the_first_mode_in_a_kick() -> None:
-    """The tip velocity of mode k changes by -(1 + e) phi_k^2/sum phi^2 times the approach speed."""
-    family = many_modes("three modes")
-    orbit = family.orbit(0.2)
-    phi = family.oscillator.model.phi
-    jump = phi * orbit.kick.jump[:, 1]
-    share = phi**2 / np.sum(phi**2)
-    assert np.allclose(jump, -1.35 * share * 0.2, rtol=1e-10)
-
-
-def test_family_of_an_oscillator() -> None:
+def test_another_law_needs_its_restitution_told() -> None:
     plain = many_modes("three modes")
-    oscillator = ImpactOscillator(
-        model=ModalModel(**{key: np.array(value) for key, value in MODES["three modes"].items()}),
-        drive=HarmonicDrive(frequency=20.5),
-        stop=Stop(gap=0.012, law=NewtonRestitution(local_restitution=0.35)),
-    )
-    assert MaximalFamily.from_oscillator(oscillator, period=3).fold().excess == plain.fold().excess
-    oscillator = replace(oscillator, stop=Stop(gap=0.012, law=LinearContact(stiffness=1e6)))
-    again = MaximalFamily.from_oscillator(oscillator, period=3, restitution=0.35)
-    assert again.fold().excess == plain.fold().excess
+    soft = replace(plain.oscillator, stop=Stop(gap=0.012, law=LinearContact(stiffness=1e6)))
+    told = MaximalFamily.from_oscillator(soft, period=3, restitution=0.35)
+    assert told.fold().excess == plain.fold().excess
     with pytest.raises(TypeError, match="restitution"):
-        MaximalFamily.from_oscillator(oscillator, period=3)
-
-
-def test_family_of_the_real_oscillator() -> None:
-    reduction = pytest.importorskip("beam")
-    pytest.importorskip("contact.oscillator")
-    from contact.drive import HarmonicDrive
-    from contact.laws import NewtonRestitution
-    from contact.oscillator import ImpactOscillator
-    from contact.stop import Stop
-
-    oscillator = ImpactOscillator(
-        model=reduction.single_mode(free_period=T, decay_rate=MU),
-        drive=HarmonicDrive(frequency=21.5),
-        stop=Stop(gap=0.01, law=NewtonRestitution(local_restitution=TAU)),
-    )
-    family = MaximalFamily.from_oscillator(oscillator, period=4)
-    assert family.fold().excess == pytest.approx(-1.32105924246e-2, abs=1e-13)
-    assert NordmarkMap.from_oscillator(oscillator).restitution == TAU
+        MaximalFamily.from_oscillator(soft, period=3)
 
 
 @pytest.mark.parametrize(
     ("changes", "word"),
     [
-        ({"omega": [154.0, -960.0, 2690.0]}, "omega"),
-        ({"decay_rate": [3.56, 19.2]}, "decay_rate"),
-        ({"phi": [0.0, 0.0, 0.0]}, "phi"),
-        ({"participation": [0.0, 0.0, 0.0]}, "participation"),
-        ({"frequency": 0.0}, "frequency"),
-        ({"gap": -0.01}, "gap"),
-        ({"restitution": 1.01}, "restitution"),
-        ({"period": 0}, "period"),
         ({"omega": [0.0, 960.0, 2690.0]}, r"omega\[0\]"),
         ({"omega": [154.0, 6 * math.pi * 21.0, 2690.0], "decay_rate": [3.56, 0.0, 80.0]}, r"omega\[1\]"),
         ({"omega": [2 * math.pi * 21.0, 960.0, 2690.0], "decay_rate": [0.0, 0.0, 0.0]}, "frequency"),
     ],
 )
-def test_wrong_fields_are_named(changes: dict[str, object], word: str) -> None:
-    rest = dict(frequency=21.0, gap=0.012, restitution=0.35, period=3)
-    rest |= {name: value for name, value in changes.items() if name in rest}
-    modes = MODES["three modes"] | {name: value for name, value in changes.items() if name not in rest}
+def test_a_mode_without_a_return_is_named(changes: dict[str, object], word: str) -> None:
     with pytest.raises(ValueError, match=word):
-        family_of(modes, **rest)
+        family_of(MODES["three modes"] | changes, frequency=21.0, period=3, restitution=0.35)
 
 
-def test_wrong_calls_are_named() -> None:
-    family = equation_1(20.9, 3)
-    with pytest.raises(ValueError, match="speed"):
-        family.orbit(0.0)
-    with pytest.raises(ValueError, match="excess"):
-        family.orbits(-1.0)
-    with pytest.raises(ValueError, match="free_period"):
-        equation_1(20.9, 3, free_period=0.0)
-    above = equation_1(21.02, 3)
-    assert above.fold() is None and len(above.orbits(1e-4)) == 1 and above.orbits(-1e-4) == ()
+def test_of_fig_5_a_second_impact_ends_the_orbits_below_grazing() -> None:
+    """19.65 Hz: p3 exists below grazing only, between its fold and the excess of a second impact."""
+    for tau, lowest, end in ((0.1, -0.132, -0.13097), (0.05, -0.116, -0.11282)):
+        family = equation_1(19.65, 3, free_period=0.0412, restitution=tau)
+        assert family.fold().excess == pytest.approx(lowest, abs=1e-3)
+        below, above = (family.orbits(end + side * 2e-5)[-1] for side in (-1, 1))
+        assert below.stable and below.admissible and not above.admissible
+        assert highest_between(below) < 1 < highest_between(above)
 
 
 def highest_between(orbit: SingleImpactOrbit) -> float:
@@ -439,19 +262,9 @@ def highest_between(orbit: SingleImpactOrbit) -> float:
     return float(np.max(at - (after - before) ** 2 / (8 * (before - 2 * at + after))))
 
 
-@pytest.mark.parametrize(
-    ("frequency", "period", "excess", "digit"),
-    [
-        (20.90, 3, 0.0891, 1e-4),
-        (21.50, 4, 0.0101, 1e-4),
-        (22.20, 5, 0.0273, 1e-4),
-        (22.60, 6, 0.0250, 1e-4),
-        (23.05, 8, 0.0133, 1e-4),
-        (23.40, 11, 0.002274, 1e-6),
-    ],
-)
+@pytest.mark.parametrize(("frequency", "period", "_fold", "excess", "digit"), EQUATION_1)
 def test_the_orbits_of_equation_1_gain_a_second_impact(
-    frequency: float, period: int, excess: float, digit: float
+    frequency: float, period: int, _fold: float, excess: float, digit: float
 ) -> None:
     """The certified search against dense sampling, and the excess at which both change their answer."""
     family = equation_1(frequency, period)

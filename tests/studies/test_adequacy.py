@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ import pytest
 from studies.adequacy.models import Choice, Models
 from studies.adequacy.search import QUANTITIES, Search, first
 from studies.least_model import least_modes
-from studies.scene import Scene, read_scene
+from studies.scene import read_scene
 
 LETTER = read_scene("letter")
 #: Of the heavy ball and of the soft contact.
@@ -28,17 +29,25 @@ SCENES = {
 }
 
 
-def search_of(quantity: str, frequency: float = 22.2, scene: Scene = LETTER) -> Search:
-    return Search(Models(scene), quantity, frequency)
+@cache
+def models_of(name: str) -> Models:
+    """The models of a scene, each solved once for all tests."""
+    return Models(SCENES[name][0])
+
+
+@cache
+def search_of(quantity: str, frequency: float = 22.2, name: str = "letter") -> Search:
+    """One question; its answers are kept for all tests."""
+    return Search(models_of(name), quantity, frequency)
 
 
 def chosen(row: object) -> Choice:
     return Choice(**{name: getattr(row, name) for name in asdict(Choice(level="", law="newton"))})
 
 
-def check(scene: Scene, quantity: str, frequency: float) -> Choice:
+def check(name: str, quantity: str, frequency: float) -> Choice:
     """The least model and all that are one step smaller, against 100 modes and 200 elements on a leg."""
-    search = search_of(quantity, frequency, scene)
+    search = search_of(quantity, frequency, name)
     tolerance = search.tolerance
     row = search.least(tolerance)
     assert row.reached
@@ -54,27 +63,25 @@ def check(scene: Scene, quantity: str, frequency: float) -> Choice:
 @pytest.mark.parametrize("name", SCENES)
 @pytest.mark.parametrize("quantity", ["frequency 3", "kick"])
 def test_enough_and_not_more(name, quantity):
-    scene, frequency = SCENES[name]
-    check(scene, quantity, frequency)
+    check(name, quantity, SCENES[name][1])
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SCENES)
 @pytest.mark.parametrize("quantity", ["restitution", "delay"])
 def test_enough_and_not_more_for_the_whole_collision(name, quantity):
-    scene, frequency = SCENES[name]
-    check(scene, quantity, frequency)
+    check(name, quantity, SCENES[name][1])
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("frequency", [20.9, 21.5, 22.2])
 def test_enough_and_not_more_for_the_fold(frequency):
-    least = check(LETTER, "fold", frequency)
+    least = check("letter", "fold", frequency)
     assert least.law == "hertz" and least.modes >= 12
 
 
 def test_a_soft_contact_leaves_the_higher_modes_alone_a_stiff_one_does_not():
-    soft = search_of("kick", scene=SCENES["soft contact"][0]).least(1e-2)
+    soft = search_of("kick", name="soft contact").least(1e-2)
     stiff = search_of("kick").least(1e-2)
     assert soft.modes == 1 < 8 <= stiff.modes and soft.cost < 0.7 * stiff.cost
 

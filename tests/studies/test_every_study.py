@@ -15,7 +15,9 @@ import beam.space
 import contact
 import contact.integrators
 import contact.orbits
+from studies import plotting
 from studies.programs import FOLDER, names, source_of
+from studies.work_precision.problems import problems_of
 
 PUBLIC = {"beam": beam, "beam.space": beam.space, "contact": contact, "contact.orbits": contact.orbits,
           "contact.integrators": contact.integrators}  # fmt: skip
@@ -31,10 +33,16 @@ OWN_TEST = [
 ]  # fmt: skip
 
 #: Options that keep a small form small.
-SMALLER = {"motion": ["--frames", "16"], "chart": ["--points", "6", "8"],
+SMALLER = {"motion": ["--frames", "16", "--renderer", "matplotlib"], "chart": ["--points", "4", "6"],
+           "stability": ["--families", "false_restitution,accumulation"],
+           "claims": ["--positions", "3", "--across", "12", "--restitutions", "3", "--inside", "6",
+                      "--alphas", "3"],
            "transitions": ["--set", "drive.frequencies_hz=[22.2]"],
            "calibrate": ["--set", "modes.count=4", "--set", "spring.elements_per_leg=12"]}  # fmt: skip
 
+
+#: Names of a study's main module that give a small form less to do, and what stands in for them.
+FEWER = {"work_precision": ("problems_of", lambda scene, modes: problems_of(scene, 2)[:2])}
 
 #: A fit takes hundreds of meshes.
 SLOW = ("calibrate",)
@@ -45,10 +53,25 @@ SLOW = ("calibrate",)
     [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ())
      for name in ON_THE_FRAME if name not in OWN_TEST],
 )  # fmt: skip
-def test_the_small_form_runs_and_leaves_a_table_a_figure_and_a_summary(run_study, name):
+def test_the_small_form_runs_and_leaves_a_table_a_figure_and_a_summary(run_study, monkeypatch, name):
+    if name in FEWER:
+        monkeypatch.setattr(f"studies.{name}.__main__.{FEWER[name][0]}", FEWER[name][1])
     ran = run_study(name, "--quick", "--json", *SMALLER.get(name, ()))
     assert ran.code == 0, ran.err
     assert json.loads(ran.out)["study"] == ran.summary["study"] == name
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["claims", "stability", "work_precision"])
+def test_the_small_form_runs_whole(run_study, name):
+    assert run_study(name, "--quick").code == 0
+
+
+def test_a_figure_is_kept_as_png_and_as_pdf_without_a_date(tmp_path):
+    figure, _axes = plotting.new_figure(1, 1)
+    png, pdf = plotting.save(figure, tmp_path, "empty")
+    assert png.read_bytes().startswith(b"\x89PNG") and pdf.read_bytes().startswith(b"%PDF")
+    assert b"CreationDate" not in pdf.read_bytes()
 
 
 @pytest.mark.parametrize("name", PROGRAMS)

@@ -1,0 +1,100 @@
+"""The letter's spring under several laws, and what its simulated motion says of a periodic orbit."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from beam import ModalModel
+from contact import (
+    ContactLaw,
+    HarmonicDrive,
+    HertzContact,
+    HuntCrossley,
+    ImpactOscillator,
+    LinearContact,
+    NewtonRestitution,
+    State,
+    Stop,
+    StroboscopicMap,
+    simulate,
+)
+from contact.orbits import PeriodicOrbit, Settled, settle
+from studies.scene import model_of, read_scene
+
+HERTZ = HertzContact(stiffness=9.6154e9)
+LAWS = {
+    "hertz": HERTZ,
+    "hunt-crossley": HuntCrossley(stiffness=9.6154e9, dissipation=0.3),
+    "linear": LinearContact(stiffness=1.887e7),
+    "dashpot": LinearContact(stiffness=1.887e7, damping=68.0),
+    "newton": NewtonRestitution(local_restitution=0.3),
+}
+# f [Hz], m, F_m/F_g - 1, and F/F_g - 1 at which the orbit gains a second impact (its rounding: last digit)
+EQUATION_1 = [
+    (20.90, 3, -1.2784409283e-3, 0.0891, 1e-4),
+    (21.50, 4, -1.32105924246e-2, 0.0101, 1e-4),
+    (22.20, 5, -1.4773426733e-3, 0.0273, 1e-4),
+    (22.60, 6, -1.6810390565e-4, 0.0250, 1e-4),
+    (23.05, 8, -1.2823017008e-4, 0.0133, 1e-4),
+    (23.40, 11, -1.0196700981e-3, 0.002274, 1e-6),
+]
+
+
+@cache
+def letters_spring() -> ModalModel:
+    """The letter's spring with all modes of its scene."""
+    return model_of(read_scene("letter", []))
+
+
+def beam(frequency: float, law: ContactLaw, modes: int = 6, ratio: float | None = None) -> ImpactOscillator:
+    """The spring cut to `modes` modes; with `ratio`, that damping ratio in all modes but the first."""
+    spring = letters_spring()
+    decay = spring.decay_rate[:modes].copy()
+    if ratio is not None:
+        decay[1:] = 2.0 * ratio * spring.omega[1:modes]
+    model = ModalModel(
+        omega=spring.omega[:modes], decay_rate=decay, phi=spring.phi[:modes],
+        participation=spring.participation[:modes],
+    )  # fmt: skip
+    return ImpactOscillator(
+        model=model, stop=Stop(gap=0.0107, law=law), drive=HarmonicDrive(frequency=frequency)
+    )
+
+
+def settled(oscillator: ImpactOscillator, excess: float, cycles: int = 4000) -> Settled[State]:
+    """Where the motion from below grazing comes to rest."""
+    strobed = StroboscopicMap(oscillator=oscillator)
+    return settle(strobed.at(excess), strobed.at(-1e-3).steady(), most_cycles=cycles)
+
+
+def sizes(oscillator: ImpactOscillator) -> np.ndarray:
+    """Scales of (q, q') of all modes."""
+    model, size = oscillator.model, oscillator.stop.gap / np.abs(oscillator.model.phi).max()
+    return np.concatenate([np.full(model.omega.size, size), size * model.omega])
+
+
+def differences(orbit: PeriodicOrbit) -> tuple[np.ndarray, float]:
+    """Multipliers by central differences of the simulated map over m periods, and how well the orbit
+    closes."""
+    oscillator, n = orbit.oscillator, orbit.oscillator.n_modes
+    strobed, scale = StroboscopicMap(oscillator=oscillator), sizes(oscillator)
+
+    def after(point: np.ndarray) -> np.ndarray:
+        end = strobed.orbit(State(displacement=point[:n], velocity=point[n:]), orbit.period).end
+        return np.concatenate([end.displacement, end.velocity])
+
+    state = orbit.strobe_state()
+    assert state.regime == 0
+    point = np.concatenate([state.displacement, state.velocity])
+    step = 1e-7 * np.diag(scale)
+    columns = [(after(point + h) - after(point - h)) / 2e-7 / scale for h in step]
+    return np.linalg.eigvals(np.column_stack(columns)), float(np.max(np.abs(after(point) - point) / scale))
+
+
+def touches(orbit: PeriodicOrbit) -> int:
+    """Touches of the simulated motion from just before the first one to just before it comes again."""
+    duration = orbit.period * orbit.oscillator.period * (1 - 1e-6)
+    run = simulate(orbit.oscillator, orbit.state(), duration=duration)
+    return int(np.count_nonzero(run.impacts.kind == 0))

@@ -1,0 +1,268 @@
+"""Orbits by kicks, the ends of orbits and the events of their branches, against simulation and theory."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from oscillators import apart, equation_1
+from simulated_orbit import EQUATION_1, HERTZ, beam, settled, touches
+
+from beam import single_mode
+from contact import (
+    ContactError,
+    LinearContact,
+    NewtonRestitution,
+    NordmarkMap,
+    State,
+    StrobedNordmarkMap,
+    StrobedOrbit,
+    StroboscopicMap,
+    fold,
+)
+from contact.orbits import (
+    KickFamily,
+    MaximalFamily,
+    Shooting,
+    born,
+    fold_along_frequency,
+    fold_of,
+    follow,
+    orbit_end,
+)
+from studies.scene import hertz_of, read_scene
+
+T, MU = 40.80e-3, 3.56
+
+
+# ---------------------------------------------------------------------------------------------------- kicks
+
+
+@pytest.mark.parametrize("ratio", [None, 1e-3], ids=["the letter's strips", "ringing"])
+@pytest.mark.parametrize(("frequency", "period"), [(20.90, 3), (21.50, 4), (22.20, 5)])
+def test_kicks_foretell_their_own_error(
+    ratio: float | None, frequency: float, period: int
+) -> None:
+    oscillator = beam(frequency, hertz_of(read_scene("letter", [])), ratio=ratio)
+    family = Shooting(oscillator=oscillator, period=period)
+    kicks, unit = family.kicks, oscillator.unit_speed
+    errors = []
+    for part in (0.05, 0.1, 0.3):
+        guess = kicks.orbit(part * unit)
+        true = family.at_speed(part * unit).excess - guess.excess
+        assert kicks.error(guess) == pytest.approx(true, rel=0.03)
+        errors.append(abs(true))
+    assert errors[0] < errors[1] < errors[2]
+    assert errors[2] > 3e-6  # there is something to foretell
+
+
+@pytest.mark.parametrize(("frequency", "period"), [(20.90, 3), (22.20, 5)])
+def test_folds_against_a_downward_scan(frequency: float, period: int) -> None:
+    oscillator = beam(frequency, HERTZ, modes=4)
+    start = settled(oscillator, 1e-3)
+    assert (start.period, start.impacts) == (period, 1)
+    end = orbit_end(
+        StroboscopicMap(oscillator=oscillator), start.end, 1e-3, most_cycles=10000, relative=1e-2
+    )
+    fold = fold_of(Shooting(oscillator=oscillator, period=period))
+    assert end.lost < fold.excess < end.held
+    assert end.kind == "fold" and end.excess == pytest.approx(fold.excess, abs=1e-14)
+    assert apart(fold.multipliers[:1], np.ones(1)) < 1e-7
+    kick = KickFamily(oscillator=oscillator, period=period).fold()
+    assert kick.excess == pytest.approx(fold.excess, rel=0.015)
+    assert kick.kick.speed == pytest.approx(fold.speed, rel=0.05)
+
+
+def test_an_end_by_period_doubling_is_named_and_exact() -> None:
+    """p1 of a hard wall of restitution 0.7: the scan downwards ends where a multiplier passes -1."""
+    oscillator = equation_1(20.90, NewtonRestitution(local_restitution=0.7))
+    family, unit = Shooting(oscillator=oscillator, period=1), oscillator.unit_speed
+    branch = follow(family, family.at_speed(1.0 * unit), low=0.5 * unit, high=1.5 * unit)
+    (doubled,) = branch.of_kind("period doubling")
+    start = family.at_speed(1.1 * doubled.speed, doubled)
+    end = orbit_end(
+        StroboscopicMap(oscillator=oscillator), start.strobe_state(), start.excess, most_cycles=4000
+    )
+    assert end.kind == "period doubling" and end.lost < end.excess < end.held
+    assert end.excess == pytest.approx(doubled.excess, rel=1e-9)
+
+
+def test_an_orbit_doubles_its_period_before_a_hard_touch_is_lost() -> None:
+    """Eq. (1), 20.90 Hz: p3 has a second touch above 0.0891 and would lose it there on the way down, but next
+    to the graze its derivative has no bound, and it doubles its period just before."""
+    oscillator = equation_1(20.90)
+    single = Shooting(oscillator=oscillator, period=3)
+    (graze,) = follow(single, single.at_speed(100.0), low=90.0, high=140.0).of_kind("grazing")
+    strobed = StroboscopicMap(oscillator=oscillator)
+    end = orbit_end(strobed, settled(oscillator, 0.1).end, 0.1, most_cycles=4000)
+    assert (end.impacts, end.kind) == (2, "period doubling") and end.lost < end.excess < end.held
+    assert 0.0 < end.excess / graze.excess - 1.0 < 0.02
+
+
+@pytest.mark.parametrize("first_step", [1e-6, 2e-4, 5e-2])
+@pytest.mark.parametrize("relative", [0.03, 1e-3])
+def test_no_bracket_closes_because_a_long_step_fell_off(first_step: float, relative: float) -> None:
+    """The exact end lies in the bracket, which one last step has made, however the scan came there."""
+    for frequency, period, excess, _second, _digit in EQUATION_1:
+        oscillator = equation_1(frequency)
+        nordmark = NordmarkMap.from_oscillator(oscillator)
+        for strobed, exact in (
+            (StroboscopicMap(oscillator=oscillator), excess),
+            (StrobedNordmarkMap(map=nordmark), nordmark.excess(fold(nordmark, period).rho)),
+        ):
+            start = born(strobed)
+            end = orbit_end(
+                strobed, start.end, 1e-3, most_cycles=1000, relative=relative, first_step=first_step
+            )
+            assert (end.period, end.impacts, end.kind) == (period, 1, "fold")
+            assert end.lost <= exact <= end.held
+            assert end.held - end.lost <= 1.0001 * max(relative * abs(end.held), 1e-7)
+            assert end.excess == pytest.approx(exact, rel=2e-10)
+
+
+def test_an_end_that_nothing_can_make_exact_is_a_bracket() -> None:
+    """x -> x^2 + c loses its fixed point with c = -3/4 (1 - excess) by a doubling, at excess 0."""
+
+    class Square:
+        scale = 1.0
+
+        def __init__(self, c: float) -> None:
+            self.c = c
+
+        def at(self, excess: float) -> Square:
+            return Square(-0.75 * (1.0 - excess))
+
+        def steady(self) -> float:
+            return -0.4
+
+        def orbit(self, state: float, count: int) -> StrobedOrbit[float]:
+            points = np.empty((count, 1))
+            for i in range(count):
+                state = state * state + self.c
+                points[i] = state
+            return StrobedOrbit(end=state, points=points, impacts=np.ones(count, dtype=int))
+
+    end = orbit_end(Square(0.0), -0.4, 0.3, most_cycles=20_000, absolute=1e-2)
+    assert (end.period, end.kind) == (1, "bracket")
+    assert end.lost < 0.0 < end.held and end.held - end.lost < 1.01e-2
+
+
+def test_one_mode_of_the_kick_is_not_the_whole_of_it() -> None:
+    """With modes that ring on, the letter's two parameters are off where the kick of all modes is not."""
+    oscillator = beam(20.90, HERTZ, ratio=1e-3)
+    family, speed = Shooting(oscillator=oscillator, period=3), 0.1 * oscillator.unit_speed
+    exact = family.at_speed(speed).excess
+    kicks, mask = family.kicks, np.eye(oscillator.n_modes)[:1].T
+    first = replace(kicks, collision=lambda v: replace(kicks.kick(v), jump=mask * kicks.kick(v).jump))
+    assert np.all(first.kick(speed).jump[1:] == 0.0)
+    assert abs(first.orbit(speed).excess - exact) > 5 * abs(family.kicks.orbit(speed).excess - exact)
+
+
+def test_a_narrow_range_or_a_wrong_band_has_no_kick_fold() -> None:
+    kicks = KickFamily(oscillator=equation_1(20.90), period=3)
+    at = kicks.fold().kick.speed / kicks.oscillator.unit_speed
+    assert kicks.fold(speeds=(1.5 * at, 1.0)) is None
+    assert kicks.fold(speeds=(1e-4, 0.7 * at)) is None
+    other = KickFamily(oscillator=equation_1(20.90), period=1)
+    assert other.fold() is None and fold_of(Shooting(oscillator=equation_1(20.90), period=1)) is None
+
+
+# ------------------------------------------------------------------------------------------------- branches
+
+
+def test_soft_wall_doubles_its_period_where_theory_says() -> None:
+    """A wall of slope K Omega^2 is smooth at first: p1 lives on above grazing until a multiplier is -1."""
+    f, model = 20.90, single_mode(free_period=T, decay_rate=MU)
+    w, stiff = 2 * math.pi * f, float(model.omega[0]) ** 2
+    gamma = math.exp(-MU / f)
+    alpha = 2 * math.sqrt(gamma) * math.cos(2 * math.pi / (f * T))
+    flow = math.sqrt(gamma) * math.sin(2 * math.pi / (f * T)) * T / (2 * math.pi)
+    errors = []
+    for ratio in (1e2, 1e3, 1e4):
+        oscillator = equation_1(f, LinearContact(stiffness=(ratio - 1) * stiff))
+        family = Shooting(oscillator=oscillator, period=1)
+        branch = follow(family, family.at_speed(1e-4 * w), low=1e-5 * w, high=0.1 * w, step=0.2)
+        (orbit,) = branch.of_kind("period doubling")
+        assert np.min(np.abs(orbit.multipliers + 1)) < 1e-6
+        assert orbit.admissible
+        height = 0.5 * w**2 * ((1 + gamma + alpha) / (2 * flow * ratio * stiff)) ** 2
+        theory = height * (1 + (2 / 3) * (1 + gamma + alpha) / (1 - alpha + gamma))
+        errors.append(orbit.excess / theory - 1)
+        beside = [family.at_speed(orbit.speed * factor, orbit) for factor in (0.99, 1.01)]
+        assert beside[0].stable and not beside[1].stable
+        assert branch.of_kind("fold") == []
+    assert errors[2] < 1e-3
+    assert errors[0] / errors[1] == pytest.approx(10, rel=0.15)
+    assert errors[1] / errors[2] == pytest.approx(10, rel=0.15)
+
+
+def test_doubling_of_a_hard_orbit_is_seen_by_simulation() -> None:
+    oscillator = equation_1(20.90, NewtonRestitution(local_restitution=0.7))
+    family, unit = Shooting(oscillator=oscillator, period=1), oscillator.unit_speed
+    branch = follow(family, family.at_speed(1.0 * unit), low=0.5 * unit, high=1.5 * unit)
+    (orbit,) = branch.of_kind("period doubling")
+    assert np.min(np.abs(orbit.multipliers + 1)) < 1e-9
+    for factor, repeats in ((0.98, False), (1.02, True)):
+        beside = family.at_speed(factor * orbit.speed, orbit)
+        assert beside.stable == repeats
+        start = beside.strobe_state()
+        pushed = State(displacement=start.displacement * (1 + 1e-6), velocity=start.velocity)
+        points = StroboscopicMap(oscillator=beside.oscillator).orbit(pushed, 400).points
+        away = np.abs(points[:, 0] - start.displacement[0])
+        assert (away[-1] < 1e-8) == repeats
+        assert (away[200] > away[100]) == (not repeats)
+
+
+def test_the_events_of_a_branch_of_the_beam() -> None:
+    """Hertz: next to grazing the orbit of period m touches at every period, and has a fold of its own
+    there."""
+    oscillator = beam(22.20, HERTZ)
+    family, unit = Shooting(oscillator=oscillator, period=5), oscillator.unit_speed
+    branch = follow(family, family.at_speed(0.1 * unit), low=1e-5 * unit, high=1.5 * unit)
+    speeds = [orbit.speed for orbit in branch.orbits]
+    assert speeds == sorted(speeds)
+    assert [event.kind for event in branch.events] == ["grazing", "fold", "fold", "grazing"]
+    for orbit in branch.of_kind("fold"):
+        assert abs(orbit.slope) * unit < 1e-9
+        assert np.min(np.abs(orbit.multipliers - 1)) < 1e-6
+        beside = [family.at_speed(orbit.speed * factor, orbit) for factor in (0.98, 1.02)]
+        assert np.prod([np.prod(1 - other.multipliers).real for other in beside]) < 0
+    for orbit, inside, outside in zip(branch.of_kind("grazing"), (1.001, 0.999), (0.999, 1.001), strict=True):
+        assert touches(family.at_speed(orbit.speed * inside, orbit)) == 1
+        assert touches(family.at_speed(orbit.speed * outside, orbit)) > 1
+
+
+def test_a_branch_that_loses_a_touch_ends_with_its_last_good_orbit() -> None:
+    """Two touches become one where the second grazes: the branch says where, and goes to its range
+    elsewhere."""
+    oscillator = equation_1(20.90)
+    run = settled(oscillator, 0.1)
+    family = Shooting(oscillator=oscillator.with_excess(0.1), period=3, impacts=2)
+    start = family.from_state(run.end)
+    branch = follow(family, start, low=0.9 * start.speed, high=2.0 * start.speed)
+    assert branch.ended_low == "range"
+    assert "an orbit of period 3 with 2 touches was lost" in branch.ended_high
+    last = branch.orbits[-1]
+    assert f"{last.speed:.6g} m/s" in branch.ended_high and f"{last.excess:.6g}" in branch.ended_high
+    assert last.residual < 1e-9 and last.approach[1] < 5e-3 * last.approach[0]
+    # there the orbit of one impact has its grazing
+    single = Shooting(oscillator=oscillator, period=3)
+    (graze,) = follow(single, single.at_speed(100.0), low=90.0, high=140.0).of_kind("grazing")
+    assert last.speed == pytest.approx(graze.speed, rel=1e-5)
+    assert last.excess == pytest.approx(graze.excess, rel=1e-5)
+    with pytest.raises(ContactError, match="lost"):
+        family.at_speed(1.02 * last.speed, last)
+
+
+def test_folds_along_frequency_are_those_of_each_frequency() -> None:
+    oscillator = equation_1(21.40)
+    frequencies = np.array([21.40, 21.45, 21.50])
+    found = fold_along_frequency(Shooting(oscillator=oscillator, period=4), frequencies)
+    for frequency, orbit in zip(frequencies, found, strict=True):
+        closed = MaximalFamily.from_oscillator(equation_1(frequency), period=4).fold()
+        assert orbit.excess == pytest.approx(closed.excess, abs=1e-13)
+        assert orbit.oscillator.drive.frequency == frequency
+    nothing = fold_along_frequency(Shooting(oscillator=oscillator, period=1), np.array([20.90]))
+    assert nothing == [None]

@@ -1,0 +1,296 @@
+"""Periodic orbits by shooting, against the simulated map and the closed forms."""
+
+from __future__ import annotations
+
+import math
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+from oscillators import apart, equation_1
+from simulated_orbit import EQUATION_1, HERTZ, LAWS, beam, differences, settled, sizes, touches
+
+from beam import ModalModel
+from contact import (
+    HarmonicDrive,
+    ImpactOscillator,
+    NotPeriodic,
+    Stop,
+    StroboscopicMap,
+    simulate,
+)
+from contact.orbits import (
+    KickFamily,
+    MaximalFamily,
+    Shooting,
+    fold_of,
+    folds_of,
+    follow,
+    lowest_of,
+    settle,
+)
+from studies.scene import beam_at, model_of, read_scene
+
+
+@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("part", [0.02, 0.15])
+def test_multipliers_are_those_of_the_simulated_map(name: str, part: float) -> None:
+    oscillator = beam(22.20, LAWS[name])
+    orbit = Shooting(oscillator=oscillator, period=5).at_speed(part * oscillator.unit_speed)
+    assert orbit.speed == pytest.approx(part * oscillator.unit_speed, rel=1e-12)
+    found, open_by = differences(orbit)
+    assert open_by < 1e-12
+    assert orbit.admissible and touches(orbit) == 1
+    assert apart(found, orbit.multipliers) < 1e-6 * max(1.0, abs(orbit.multipliers[0]))
+    assert orbit.stable == (np.abs(found).max() < 1) == (part == 0.15)
+
+
+@pytest.mark.parametrize("modes", [1, 6])
+def test_under_newtons_law_kicks_and_shooting_are_the_closed_form(modes: int) -> None:
+    oscillator = beam(20.90, LAWS["newton"], modes)
+    closed = MaximalFamily.from_oscillator(oscillator, period=3)
+    kicks, family = (make(oscillator=oscillator, period=3) for make in (KickFamily, Shooting))
+    for part in (1e-3, 0.05, 0.2, 0.5):
+        expected, kick = (make.orbit(part * oscillator.unit_speed) for make in (closed, kicks))
+        orbit = family.at_speed(part * oscillator.unit_speed)
+        for found, digits in ((kick, 1e-14), (orbit, 1e-16 * max(10.0, 1 / part))):
+            assert found.excess == pytest.approx(expected.excess, abs=1e-14)
+            assert found.speed == pytest.approx(expected.speed, rel=1e-12)
+            assert abs(np.exp(2j * np.pi * 20.90 * (found.phase - expected.phase)) - 1.0) < 1e-12
+            place = [np.concatenate([one.displacement, one.velocity]) for one in (found, expected)]
+            assert np.max(np.abs(place[0] - place[1]) / sizes(oscillator)) < digits
+        assert abs(kicks.error(kick)) < 1e-14 and kick.kick.touches == 1 and kick.kick.duration == 0.0
+        assert apart(orbit.multipliers, expected.multipliers) < 1e-11 * max(1.0, abs(orbit.multipliers[0]))
+    slow = 1e-4 * oscillator.unit_speed  # shooting ends there with its rounding
+    assert kicks.orbit(slow).excess == pytest.approx(closed.orbit(slow).excess, abs=1e-14)
+    for found, digits in ((kicks.fold(), 1e-13), (fold_of(family), 1e-14)):
+        assert found.excess == pytest.approx(closed.fold().excess, abs=digits)
+    assert fold_of(family).speed == pytest.approx(closed.fold().speed, rel=1e-9)
+    assert apart(fold_of(family).multipliers, closed.fold().multipliers) < 1e-8
+
+
+@pytest.mark.parametrize(("frequency", "period", "excess", "second", "digit"), EQUATION_1)
+def test_fold_and_second_impact_of_equation_1(
+    frequency: float, period: int, excess: float, second: float, digit: float
+) -> None:
+    oscillator = equation_1(frequency)
+    family, unit = Shooting(oscillator=oscillator, period=period), oscillator.unit_speed
+    fold = fold_of(family)
+    assert fold.excess == pytest.approx(excess, abs=1e-11 * abs(excess) + 6e-14)
+    branch = follow(family, fold, low=0.01 * unit, high=1.5 * unit)
+    assert [branch.ended_low, branch.ended_high] == ["range", "range"]
+    assert [event.kind for event in branch.events][:2] == ["fold", "grazing"]
+    again, graze = (event.orbit for event in branch.events[:2])
+    assert again.excess == pytest.approx(excess, abs=1e-13)
+    assert abs(graze.excess - second) <= 0.6 * digit
+    assert graze.admissible
+    for factor, expected in ((1 - 1e-6, 1), (1 + 1e-6, 2)):
+        beside = family.at_speed(graze.speed * factor, graze)
+        assert touches(beside) == expected
+        assert beside.admissible == (expected == 1)
+
+
+def test_where_contact_is_soft_a_branch_has_several_folds() -> None:
+    """The letter's spring with 12 modes at 23.05 Hz: a pair of folds close together, found from no kick fold
+    and from any orbit; below them the branch goes on to the graze of a second touch."""
+    scene = read_scene("letter", ["modes.count=12"])
+    oscillator = beam_at(scene, 23.05, model_of(scene))
+    family = Shooting(oscillator=oscillator, period=8)
+    upper, lower = folds_of(family)
+    assert (upper.excess, lower.excess) == pytest.approx((8.944156e-6, 8.913082e-6), rel=1e-6)
+    for orbit in (upper, lower):
+        assert orbit.admissible and np.min(np.abs(orbit.multipliers - 1)) < 1e-6
+        # one solution of the equations on either side of the fold in speed, at amplitudes on one side only
+        beside = [family.at_speed(orbit.speed * factor, orbit).excess for factor in (0.99, 1.01)]
+        assert (beside[0] - orbit.excess) * (beside[1] - orbit.excess) > 0
+    assert KickFamily(oscillator=oscillator, period=8).fold() is None
+    assert fold_of(family).excess == pytest.approx(lower.excess, abs=1e-14)
+    far = family.at_speed(0.3 * oscillator.unit_speed)
+    assert fold_of(family, far).excess == pytest.approx(lower.excess, abs=1e-14)
+    # however long the steps of the branch
+    for step in (0.05, 0.21, 0.47):
+        branch = follow(family, far, low=1e-3 * oscillator.unit_speed, high=2 * far.speed, step=step)
+        assert [orbit.excess for orbit in branch.of_kind("fold")] == pytest.approx(
+            [upper.excess, lower.excess], abs=1e-14
+        )
+    lowest = lowest_of(family)
+    assert lowest.kind == "grazing" and lowest.orbit.excess == pytest.approx(1.308624e-6, rel=1e-6)
+    assert [touches(family.at_speed(lowest.orbit.speed * x, lowest.orbit)) for x in (1.001, 0.999)] == [1, 2]
+
+
+def test_below_its_lowest_fold_a_branch_can_go_on_to_a_graze() -> None:
+    """A straight leaf with a ball of 2 g, 20 modes, 23.05 Hz: p8 folds at 1.17e-6, turns at 2.99e-6 and lives
+    on, stable, to 4.6e-7; there settled motions say so, too."""
+    thickness = "spring.thickness_m=0.9439314446e-3"  # the period of the letter, 40.80 ms
+    scene = read_scene(
+        "letter", ["modes.count=20", "spring.kind=cantilever", "tip.mass_kg=0.002", thickness]
+    )
+    oscillator = beam_at(scene, 23.05, model_of(scene))
+    family = Shooting(oscillator=oscillator, period=8)
+    upper, lower = folds_of(family)
+    assert upper.speed < lower.speed and lower.excess < upper.excess
+    assert (upper.excess, lower.excess) == pytest.approx((2.98682e-6, 1.17366e-6), rel=1e-4)
+    assert fold_of(family).excess == pytest.approx(lower.excess, abs=1e-14)
+    lowest = lowest_of(family)
+    assert lowest.kind == "grazing" and lowest.orbit.excess == pytest.approx(4.6325e-7, rel=1e-4)
+    start = family.at_speed(1.02 * lowest.orbit.speed, lowest.orbit)
+    assert start.stable and lowest.orbit.excess < start.excess < lower.excess
+    strobed = StroboscopicMap(oscillator=oscillator)
+    for part, impacts in ((1.2, 1), (1.01, 1), (0.99, 2)):
+        excess = part * lowest.orbit.excess
+        run = settle(
+            strobed.at(excess), start.strobe_state(), most_cycles=4000, tolerance=1e-3 * excess, prove=False
+        )
+        assert (run.period, run.impacts) == (8, impacts)
+
+
+def test_in_the_usual_case_the_lowest_orbit_is_the_fold() -> None:
+    family = Shooting(oscillator=beam(22.20, HERTZ), period=5)
+    fold, lowest = fold_of(family), lowest_of(family)
+    assert lowest.kind == "fold" and lowest.orbit.excess == fold.excess < -1e-4
+    assert min(orbit.excess for orbit in folds_of(family)) == pytest.approx(fold.excess, abs=1e-14)
+
+
+def test_the_slope_is_the_derivative_of_the_excess() -> None:
+    oscillator = beam(22.20, HERTZ)
+    family, v = Shooting(oscillator=oscillator, period=5), 0.08 * oscillator.unit_speed
+    middle = family.at_speed(v)
+    ends = [family.at_speed(v * factor, middle).excess for factor in (1 - 1e-4, 1 + 1e-4)]
+    assert middle.slope == pytest.approx((ends[1] - ends[0]) / (2e-4 * v), rel=1e-6)
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_orbits_are_found_down_to_grazing(name: str) -> None:
+    oscillator = beam(22.20, LAWS[name])
+    family, unit = Shooting(oscillator=oscillator, period=5), oscillator.unit_speed
+    excesses = []
+    orbit = family.at_speed(1e-2 * unit)
+    for part in (1e-3, 1e-4, 1e-5, 1e-6):
+        orbit = family.at_speed(part * unit, orbit)
+        assert orbit.residual < 1e-9
+        assert orbit.speed == pytest.approx(part * unit, rel=1e-15 / part + 1e-12)
+        excesses.append(orbit.excess)
+    # a square root of the excess under Newton's law; forces that set in from zero or with a dashpot leave
+    # v^2/2
+    if name == "newton":
+        assert excesses[3] / excesses[2] == pytest.approx(0.1, rel=1e-3)
+    else:
+        assert excesses[3] == pytest.approx(0.5e-12, rel=1e-2 if name != "dashpot" else 0.8)
+
+
+def test_a_neighbour_near_grazing_is_not_taken_for_the_orbit_asked_for() -> None:
+    """Speeds that differ by less than the tolerance of the residual are different orbits all the same."""
+    oscillator = equation_1(21.50)
+    family, unit = Shooting(oscillator=oscillator, period=4), oscillator.unit_speed
+    start = family.at_speed(1.68e-6 * unit)
+    near = family.at_speed(1.68e-6 * unit * (1 + 1e-7), start)
+    assert near.speed / start.speed - 1 == pytest.approx(1e-7, rel=1e-2)
+    branch = follow(family, family.at_speed(1e-5 * unit), low=1e-6 * unit, high=1e-4 * unit)
+    assert branch.events == () and branch.ended_low == branch.ended_high == "range"
+
+
+@pytest.mark.parametrize("name", ["hertz", "linear", "newton"])
+def test_the_determinant_is_the_decay_of_area_and_the_law(name: str) -> None:
+    """Divergence -sum c_k everywhere, contact forces that depend on place alone add none; Newton's law
+    reflects: its saltation matrix [[P, 0], [X, P]] has det P = -e."""
+    oscillator = beam(20.90, LAWS[name], modes=3)
+    orbit = Shooting(oscillator=oscillator, period=3).at_speed(0.1 * oscillator.unit_speed)
+    expected = math.exp(-oscillator.model.decay_rate.sum() * 3 * oscillator.period)
+    if name == "newton":
+        expected *= LAWS["newton"].local_restitution ** 2
+    assert np.prod(orbit.multipliers) == pytest.approx(expected, rel=1e-9)
+
+
+def test_the_determinant_counts_the_dashpot_while_it_pushes() -> None:
+    """The divergence in contact has -c phi.phi more, until the force has come down to zero."""
+    oscillator = beam(20.90, LAWS["dashpot"], modes=3)
+    free = oscillator.model.decay_rate.sum() * 3 * oscillator.period
+    mass = 1 / float(oscillator.model.phi @ oscillator.model.phi)
+    # half a period of that mass on spring and dashpot, less the part in which the force would pull
+    natural, half = math.sqrt(LAWS["dashpot"].stiffness / mass), LAWS["dashpot"].damping / (2 * mass)
+    damped = math.sqrt(natural**2 - half**2)
+    pushes = (math.pi - math.atan2(2 * half * damped, natural**2 - 2 * half**2)) / damped
+    missing = []
+    for part in (0.25, 0.5, 1.0):
+        orbit = Shooting(oscillator=oscillator, period=3).at_speed(part * oscillator.unit_speed)
+        decay = -math.log(abs(np.prod(orbit.multipliers)))
+        missing.append(1 - (decay - free) * mass / (LAWS["dashpot"].damping * pushes))
+    # the spring's own force, 2 a/(w v), shortens the contact
+    assert missing[2] < 4e-3
+    assert missing[0] / missing[1] == pytest.approx(2, rel=0.1)
+    assert missing[1] / missing[2] == pytest.approx(2, rel=0.1)
+
+
+# ---------------------------------------------------------------------------------------------- two touches
+
+
+@pytest.mark.parametrize(
+    ("name", "frequency", "excess", "period", "impacts"),
+    [
+        ("equation 1", 20.90, 0.1, 3, 2),
+        ("equation 1", 21.50, 0.011, 8, 3),
+        ("equation 1", 21.50, 0.02, 4, 2),
+        ("beam", 20.90, 0.1, 3, 2),
+        ("beam", 21.50, 0.02, 4, 2),
+    ],
+)
+def test_orbits_with_several_touches(
+    name: str, frequency: float, excess: float, period: int, impacts: int
+) -> None:
+    oscillator = equation_1(frequency) if name == "equation 1" else beam(frequency, HERTZ, modes=4)
+    run = settled(oscillator, excess)
+    assert (run.period, run.impacts) == (period, impacts)
+    family = Shooting(oscillator=oscillator.with_excess(excess), period=period, impacts=impacts)
+    orbit = family.from_state(run.end)
+    assert orbit.excess == pytest.approx(excess, abs=1e-14)
+    assert orbit.residual < 1e-12 and orbit.admissible and orbit.stable
+    assert touches(orbit) == impacts == len(orbit.approach)
+    last = simulate(orbit.oscillator, orbit.state(), duration=period * oscillator.period * (1 - 1e-6))
+    assert np.allclose(last.impacts.approach[last.impacts.kind == 0], orbit.approach, rtol=1e-10)
+    found, open_by = differences(orbit)
+    assert open_by < 1e-10
+    assert apart(found, orbit.multipliers) < 1e-6
+    # the same orbit by its speed
+    assert family.at_speed(orbit.speed, orbit).excess == pytest.approx(excess, abs=1e-12)
+
+
+def test_orbits_repeat_bit_for_bit_beside_other_threads() -> None:
+    """Compiled code owns the memory it works in: eight of a thousand orbits once differed in their digits."""
+    oscillator = beam(20.90, HERTZ, modes=12)
+    start = Shooting(oscillator=oscillator, period=3).at_speed(0.1 * oscillator.unit_speed)
+
+    def again(_number: int) -> tuple[float, float, bytes]:
+        orbit = Shooting(oscillator=oscillator, period=3).at_speed(1.001 * start.speed, start)
+        return orbit.excess, orbit.phase, orbit.multipliers.tobytes()
+
+    with ThreadPoolExecutor(3) as pool:
+        assert set(pool.map(again, range(1000))) == {again(0)}
+
+
+def test_a_motion_without_impacts_starts_no_search() -> None:
+    oscillator = equation_1(20.90).with_excess(-0.01)
+    with pytest.raises(NotPeriodic, match="no impact"):
+        Shooting(oscillator=oscillator, period=3).from_state(StroboscopicMap(oscillator=oscillator).steady())
+
+
+def test_orbits_that_all_have_one_approach_velocity_are_refused() -> None:
+    """There the approach velocity does not tell an orbit from its neighbours, and the curve has no slope."""
+    drive = HarmonicDrive(frequency=20.0)
+    model = ModalModel(  # twice the drive frequency: the rows of both equations are the same to the last bit
+        omega=[2.0 * drive.angular_frequency], decay_rate=[3.56], phi=[1.0], participation=[1.0],
+    )  # fmt: skip
+    oscillator = ImpactOscillator(model=model, stop=Stop(gap=1.0, law=LAWS["newton"]), drive=drive)
+    plain = Shooting(oscillator=oscillator, period=1)
+    near = plain.at_speed(0.3 * oscillator.unit_speed)
+    first: list[np.ndarray] = []
+
+    class OneSpeed(Shooting):
+        def flow(self, unknown: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+            first.append(unknown)
+            w, response = self.oscillator.drive.angular_frequency, self.oscillator.tip_response()
+            rows = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 2.0, -2 * w * response.imag, 2 * w * response.real]])
+            end = unknown[:2] + rows @ (unknown - first[0])
+            return end, np.vstack([rows + np.eye(4)[:2], np.zeros((2, 4))]), near.record
+
+    with pytest.raises(NotPeriodic, match="do not follow from their approach velocity"):
+        OneSpeed(oscillator=oscillator, period=1).at_excess(near.excess + 1e-3, near)
