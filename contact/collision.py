@@ -189,7 +189,7 @@ def _measure(motion: Motion, impacts: Impacts, rows: slice, outgoing: VirtualMot
     propagate(motion, u_in, v_in, release - touch, u_free, v_free)
     jump = np.array([outgoing.u[0] - u_free[0]]), np.array([outgoing.v[0] - v_free[0]])
     propagate(without_load(single), *jump, back, *jump)
-    shift, kick_velocity = float(single.phi[0] * jump[0][0]), -float(single.phi[0] * jump[1][0])
+    shift, kick_velocity = float(single.tip(jump[0])), -float(single.tip(jump[1]))
 
     # the outgoing hump around t_in, and its fall through the gap
     peak = outgoing.peak_near(back)

@@ -29,7 +29,7 @@ __all__ = ["borrowed", "held", "inlined", "kernel", "part"]
 
 config: Any = numba_config
 
-Function = TypeVar("Function", bound=Callable[..., Any])
+Function = TypeVar("Function", bound=Callable[..., object])
 
 
 def _writable(folder: Path) -> bool:
@@ -66,7 +66,7 @@ def kernel(function: Function) -> Function:
     before = config.CACHE_DIR
     config.CACHE_DIR = _CACHE
     try:
-        compiled: Any = numba.njit(cache=bool(_CACHE), nogil=True, error_model="numpy")(function)
+        compiled = numba.njit(cache=bool(_CACHE), nogil=True, error_model="numpy")(function)
     finally:
         config.CACHE_DIR = before
     return cast(Function, compiled)
@@ -74,8 +74,7 @@ def kernel(function: Function) -> Function:
 
 def inlined(function: Function) -> Function:
     """Compile a small `function` into the machine code of its callers, whose loops can then use vectors."""
-    compiled: Any = numba.njit(forceinline=True, nogil=True, error_model="numpy")(function)
-    return cast(Function, compiled)
+    return cast(Function, numba.njit(forceinline=True, nogil=True, error_model="numpy")(function))
 
 
 def part(function: Function) -> Function:
@@ -83,11 +82,10 @@ def part(function: Function) -> Function:
 
     A kernel is compiled with all that it calls, however deep; parts are not compiled once more for that.
     """
-    compiled: Any = numba.njit(inline="always", nogil=True, error_model="numpy")(function)
-    return cast(Function, compiled)
+    return cast(Function, numba.njit(inline="always", nogil=True, error_model="numpy")(function))
 
 
-def _uncounted(context: Any, builder: Any, kind: Any, value: Any) -> Any:
+def _uncounted(context, builder, kind, value):
     """A value whose arrays have no owner."""
     if isinstance(kind, types.Array):
         array = context.make_array(kind)(context, builder, value)
@@ -95,9 +93,8 @@ def _uncounted(context: Any, builder: Any, kind: Any, value: Any) -> Any:
         array.parent = cgutils.get_null_value(array.parent.type)
         return array._getvalue()
     if isinstance(kind, types.BaseTuple):
-        whole: Any = kind
         items = cgutils.unpack_tuple(builder, value)
-        parts = [_uncounted(context, builder, each, item) for each, item in zip(whole, items, strict=True)]
+        parts = [_uncounted(context, builder, each, item) for each, item in zip(kind, items, strict=True)]
         return context.make_tuple(builder, kind, parts)
     return value
 
@@ -110,7 +107,7 @@ def borrowed(_context, value):
     lender must hold the arrays meanwhile: it does if they are its arguments, or if it says `held` at its end.
     """
 
-    def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    def build(context, builder, signature, args):
         return _uncounted(context, builder, signature.args[0], args[0])
 
     return value(value), build

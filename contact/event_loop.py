@@ -12,7 +12,9 @@ alone.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from collections.abc import Callable
+from types import ModuleType
+from typing import NamedTuple
 
 import numpy as np
 
@@ -195,7 +197,7 @@ def land(motion, u, v, run, crosses, end, recorder):
         run.order = 2
 
 
-def press_of(file: Any) -> Any:
+def press_of(file: ModuleType) -> Callable[..., object]:
     """The steps in touch under one law: a law is told apart once a touch, not once a step."""
     step, state, work_done = file.step, file.state, file.work
 

@@ -145,6 +145,7 @@ class ImpactOscillator:
         number = require_within("amplitude", amplitude, "m", low=0)
         changed = copy.copy(self)  # all else has been checked
         object.__setattr__(changed, "drive", replace(self.driven, amplitude=number))
+        changed.__dict__.pop("_motion", None)
         return changed
 
     def with_excess(self, excess: float) -> ImpactOscillator:
@@ -206,7 +207,11 @@ class ImpactOscillator:
         return 0.5 * np.sum(v**2 + (self.model.omega * q) ** 2, axis=-1)
 
     def motion(self) -> Motion:
-        """The numbers of this oscillator, as the kernels take them."""
+        """The numbers of this oscillator, as the kernels take them; nobody may write into them."""
+        return self._motion
+
+    @cached_property
+    def _motion(self) -> Motion:
         response = self.steady_response() * (0.0 if self.drive is None else self.drive.amplitude)
         return motion_of(
             self.model.omega, self.model.decay_rate, self.model.phi, law=self.stop.law, gap=self.stop.gap,

@@ -11,6 +11,7 @@ velocities themselves.
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -185,17 +186,17 @@ def trajectory_of(
         If given, the rows are deviations from its steady motion.
     """
     n, marks = end.displacement.size, recorder.marks[0]
-    log, log_state = recorder.log[: marks["logged"]], recorder.log_state[: marks["logged"]]
-
-    def physical(rows: np.ndarray, clock: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        q, v = (0.0, 0.0) if motion is None else steady_motion(motion, clock)
-        return rows[:, :n] + q, rows[:, n:] + v
-
-    q_in, v_in = physical(log_state[:, : 2 * n], log["start"])
-    q_out, v_out = physical(log_state[:, 2 * n :], log["end"])
-    passed = run.last - run.first
-    q_strobe, v_strobe = physical(recorder.strobes, np.zeros(passed))
-    q_sample, v_sample = physical(recorder.samples, run.sample_clock)
+    logged, passed = marks["logged"], run.last - run.first
+    log, log_state = recorder.log[:logged], recorder.log_state[:logged]
+    rows = np.concatenate((log_state[:, : 2 * n], log_state[:, 2 * n :], recorder.strobes, recorder.samples))
+    clock = np.concatenate((log["start"], log["end"], np.zeros(passed), run.sample_clock))
+    # of all rows at once: a call costs more than a few rows
+    steady = (0.0, 0.0) if motion is None else steady_motion(motion, clock)
+    q, v = rows[:, :n] + steady[0], rows[:, n:] + steady[1]
+    parts = pairwise((0, logged, 2 * logged, 2 * logged + passed, len(rows)))
+    (q_in, v_in), (q_out, v_out), (q_strobe, v_strobe), (q_sample, v_sample) = (
+        (q[first:last], v[first:last]) for first, last in parts
+    )
     q_sample[marks["sampled"] :], v_sample[marks["sampled"] :] = end.displacement, end.velocity
     impacts = Impacts(
         start=log["period"] * period + log["start"], end=log["end_period"] * period + log["end"],

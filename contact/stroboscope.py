@@ -98,10 +98,6 @@ class StroboscopicMap:
         """The numbers of the oscillator, made once for many short orbits."""
         return strobed_system(self.oscillator)
 
-    def step(self, state: State) -> State:
-        """One drive period."""
-        return self.orbit(state, 1).end
-
     def advance(self, state: State, time: float) -> tuple[State, float]:
         """The motion after `time` [s] or, as long as it is in contact then, somewhat later; the time passed.
 

@@ -10,8 +10,6 @@ sums, whatever the registers of the processor hold.
 # mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
@@ -46,40 +44,40 @@ def aligned(rows, columns):
 class _Rows:
     """Eight numbers at a time of a C-contiguous array of doubles."""
 
-    def __init__(self, context: Any, builder: Any, kind: Any, value: Any) -> None:
+    def __init__(self, context, builder: ir.IRBuilder, kind: types.Array, value: ir.Value) -> None:
         array = context.make_array(kind)(context, builder, value)
         self.builder, self.data = builder, array.data
         self.length = cgutils.unpack_tuple(builder, array.shape)[-1]
 
-    def place(self, row: Any, column: Any) -> Any:
+    def place(self, row: ir.Value | None, column: ir.Value) -> ir.Value:
         """Pointer to an element; `row` None for an array of one dimension."""
         index = column if row is None else self.builder.add(self.builder.mul(row, self.length), column)
         return self.builder.gep(self.data, [index])
 
-    def eight(self, row: Any, column: Any) -> Any:
+    def eight(self, row: ir.Value | None, column: ir.Value) -> ir.Value:
         where = self.builder.bitcast(self.place(row, column), _EIGHT.as_pointer())
         return self.builder.load(where, align=8)
 
-    def put(self, row: Any, column: Any, value: Any) -> None:
+    def put(self, row: ir.Value | None, column: ir.Value, value: ir.Value) -> None:
         where = self.builder.bitcast(self.place(row, column), _EIGHT.as_pointer())
         self.builder.store(value, where, align=8)
 
 
-def _fused(builder: Any, a: Any, b: Any, c: Any) -> Any:
+def _fused(builder: ir.IRBuilder, a: ir.Value, b: ir.Value, c: ir.Value) -> ir.Value:
     """a b + c, in one operation and with one rounding where the processor has it."""
     kind = ir.FunctionType(_EIGHT, [_EIGHT] * 3)
     function = cgutils.get_or_insert_function(builder.module, kind, f"llvm.fmuladd.v{LANES}f64")
     return builder.call(function, [a, b, c])
 
 
-def _spread(builder: Any, value: Any) -> Any:
+def _spread(builder: ir.IRBuilder, value: ir.Value) -> ir.Value:
     """`value` eight times."""
     one = builder.insert_element(ir.Constant(_EIGHT, ir.Undefined), value, ir.Constant(ir.IntType(32), 0))
     zeros = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
     return builder.shuffle_vector(one, ir.Constant(_EIGHT, ir.Undefined), zeros)
 
 
-def _total(builder: Any, value: Any) -> Any:
+def _total(builder: ir.IRBuilder, value: ir.Value) -> ir.Value:
     """Sum of the eight, by halves."""
     for half in (4, 2, 1):
         turn = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [(i + half) % LANES for i in range(LANES)])
@@ -95,7 +93,7 @@ def weighted_rows(_context, weights, top, step, rows, count, out):
     """
     signature = types.void(weights, types.intp, types.intp, rows, types.intp, out)
 
-    def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    def build(context, builder: ir.IRBuilder, signature, args):
         kinds = signature.args
         weight, row, result = (_Rows(context, builder, kinds[i], args[i]) for i in (0, 3, 5))
         top, step, count = args[1], args[2], args[4]
@@ -103,14 +101,14 @@ def weighted_rows(_context, weights, top, step, rows, count, out):
         kind = top.type
         lanes = ir.Constant(kind, LANES)
 
-        def sums(column: Any, blocks: int) -> None:
+        def sums(column: ir.Value, blocks: int) -> None:
             """`blocks` times eight columns from `column` on."""
             columns = [builder.add(column, ir.Constant(kind, LANES * i)) for i in range(blocks)]
             totals = [[cgutils.alloca_once(builder, _EIGHT) for _ in columns] for _parity in range(2)]
             for total in totals[0] + totals[1]:
                 builder.store(zero, total)
 
-            def add(parity: int, j: Any) -> None:
+            def add(parity: int, j: ir.Value) -> None:
                 place = weight.place(None, builder.add(top, builder.mul(step, j)))
                 factor = _spread(builder, builder.load(place))
                 for total, at in zip(totals[parity], columns, strict=True):
@@ -149,7 +147,7 @@ def next_modes(_context, numbers, earlier, r0, inverse, r_now, r_force, n, serie
     real = types.float64
     signature = real(numbers, earlier, real, real, real, real, types.intp, series)
 
-    def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    def build(context, builder: ir.IRBuilder, signature, args):
         kinds = signature.args
         number, sums, row = (_Rows(context, builder, kinds[i], args[i]) for i in (0, 1, 7))
         n, kind = args[6], args[6].type
@@ -186,7 +184,7 @@ def next_order(_context, numbers, factor, scale, push, lift, n, series):
     real = types.float64
     signature = real(numbers, real, real, real, real, types.intp, series)
 
-    def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    def build(context, builder: ir.IRBuilder, signature, args):
         kinds = signature.args
         number, row = _Rows(context, builder, kinds[0], args[0]), _Rows(context, builder, kinds[6], args[6])
         n, kind = args[5], args[5].type

@@ -43,7 +43,7 @@ def parameters_of(node: ast.FunctionDef | ast.AsyncFunctionDef) -> list[str]:
     return [one.arg for one in every if one is not None and one.arg not in ("self", "cls")]
 
 
-@pytest.mark.parametrize("package", ["beam", "studies"])
+@pytest.mark.parametrize("package", ["beam", "contact", "studies"])
 def test_no_file_is_over_300_lines(package):
     assert {name: n for name, text in files(package) if (n := len(text.splitlines())) > 300} == {}
 
@@ -64,7 +64,19 @@ def test_no_function_has_ten_parameters(package):
     assert many == {name for name in MANY_PARAMETERS if name.startswith(f"{package}.")}
 
 
+def any_in(text: str) -> int:
+    """How often a file's code says `Any`, its import left out."""
+    return sum(isinstance(node, ast.Name) and node.id == "Any" for node in ast.walk(ast.parse(text)))
+
+
+def test_types_are_told():
+    every = [one for package in ("beam", "contact", "studies") for one in files(package)]
+    counts = {name: any_in(text) for name, text in every}
+    assert sum(counts.values()) <= 100, {name: n for name, n in counts.items() if n}
+
+
 def test_the_counts_would_notice():
+    assert any_in("from typing import Any\nx: dict[str, Any] = {}\ndef f(a: Any, b: int) -> Any: ...\n") == 3
     source = 'def long(self, a, *b, c=1, **d):\n    """One\n    two."""\n    x = 1\n    return x\n'
     node = ast.parse(source).body[0]
     assert lines_of(node) == 3 and parameters_of(node) == ["a", "b", "c", "d"]

@@ -38,8 +38,10 @@ from contact.flight.motion import (
     DECAY,
     LOAD,
     LOW,
+    OFFSET,
     OMEGA,
     SHORTNESS,
+    SINE,
     SQUARE,
     WEIGHT,
     Motion,
@@ -239,9 +241,7 @@ def speed_scale(motion, u, v):
 
 def steady_motion(motion: Motion, clock: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Steady modal displacement and velocity at times `clock` since a strobe, each (n_times, n_modes)."""
+    sine, cosine, offset = motion.modes[SINE : OFFSET + 1, : motion.size]
     phase = motion.drive * np.asarray(clock, dtype=float)[:, None]
     s, c = np.sin(phase), np.cos(phase)
-    return (
-        motion.offset + motion.sine * s + motion.cosine * c,
-        motion.drive * (motion.sine * c - motion.cosine * s),
-    )
+    return offset + sine * s + cosine * c, motion.drive * (sine * c - cosine * s)

@@ -89,35 +89,9 @@ class Motion(NamedTuple):
         """phi [kg^-0.5], shape (n_modes,)."""
         return self.row(WEIGHT)
 
-    @property
-    def load(self) -> np.ndarray:
-        """g of the modes of zero frequency [N kg^-0.5], shape (n_modes,)."""
-        return self.row(LOAD)
-
-    @property
-    def sine(self) -> np.ndarray:
-        """S [m kg^0.5], shape (n_modes,)."""
-        return self.row(SINE)
-
-    @property
-    def cosine(self) -> np.ndarray:
-        """C [m kg^0.5], shape (n_modes,)."""
-        return self.row(COSINE)
-
-    @property
-    def offset(self) -> np.ndarray:
-        """g/omega^2 [m kg^0.5], shape (n_modes,)."""
-        return self.row(OFFSET)
-
-    @property
-    def damped(self) -> np.ndarray:
-        """d [rad/s], shape (n_modes,)."""
-        return self.row(DAMPED)
-
-    @property
-    def damped_low(self) -> np.ndarray:
-        """What the double d leaves of it [rad/s], shape (n_modes,)."""
-        return self.row(LOW)
+    def tip(self, values: np.ndarray) -> np.ndarray:
+        """What modal values (n_modes,) or (n_modes, n) come to at the tip, the sum of phi_k times them."""
+        return self.phi @ values
 
 
 def motion_of(

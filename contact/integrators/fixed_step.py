@@ -120,7 +120,7 @@ def fixed_step_run(
         return np.squeeze(steady_motion(motion, np.array([clock])), 1) if deviations else np.zeros((2, n))
 
     def place(time: float, q: np.ndarray, v: np.ndarray) -> dict[str, float]:
-        return {"time": time, "gap": motion.gap - float(motion.phi @ q), "velocity": float(motion.phi @ v)}
+        return {"time": time, "gap": motion.gap - float(motion.tip(q)), "velocity": float(motion.tip(v))}
 
     here = place(start.time, start.displacement, start.velocity)
     _refuse(motion, run, step, critical, here)
@@ -154,7 +154,7 @@ def fixed_step_run(
     touching = forced and recorder.marks[0]["touching"] == 1
     end = State(
         displacement=q, velocity=v, time=run.last * period + run.clock_end,
-        regime=CONTACT if touching and motion.phi @ q > motion.gap else OUTSIDE,
+        regime=CONTACT if touching and motion.tip(q) > motion.gap else OUTSIDE,
     )  # fmt: skip
     return trajectory_of(
         _sorted_out(recorder, run, order, period, under_way), run, end, period,

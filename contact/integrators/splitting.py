@@ -59,7 +59,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from contact.flight.modal_flow import flow_over
-from contact.flight.motion import Motion, motion_of
+from contact.flight.motion import DAMPED, Motion, motion_of
 from contact.integrators.fixed_step import check_step, fixed_step_run
 from contact.integrators.method import Integrator
 from contact.integrators.splitting_step import Composition, Split, march, sub_flows
@@ -161,7 +161,7 @@ def first_instability(
 
     high = _passage(motion, composition, step, damping)
     under = motion.omega > 0.5 * motion.decay
-    beyond_pi = bool(np.any(motion.damped[under] * step >= math.pi))
+    beyond_pi = bool(np.any(motion.row(DAMPED)[under] * step >= math.pi))
     if not (beyond_pi or damping > 0.0 or np.any(motion.decay > 0.0)):
         return high
     if not math.isfinite(high):

@@ -22,10 +22,10 @@ the next one goes on from the last state that was reached.  The amplitude enters
 the loop scales the steady motion at grazing.
 """
 
+# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -65,7 +65,7 @@ EXTRA = 3
 
 
 @kernel
-def returns(points: Any, rows: Any, tolerance: Any) -> Any:
+def returns(points, rows, tolerance):
     """Whether a strobe before the last of `rows` is as close to it as a repetition asks for."""
     close = 0
     last = points[rows - 1, 0]
@@ -75,9 +75,7 @@ def returns(points: Any, rows: Any, tolerance: Any) -> Any:
 
 
 @kernel
-def settled_column(
-    system: Any, amplitudes: Any, state: Any, most_cycles: Any, tolerance: Any, found: Any, place: Any
-) -> Any:
+def settled_column(system, amplitudes, state, most_cycles, tolerance, found, place):
     """Settle at each of `amplitudes` in turn, or until one fails.
 
     Parameters

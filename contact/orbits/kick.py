@@ -93,7 +93,7 @@ class KickFamily(SingleImpactFamily):
     def _simulated(self, speed: float, w: Array) -> Kick:
         """The collision from the deviations `w`, shape (n_modes, 2)."""
         n, window, touches = self.oscillator.n_modes, WINDOW * self.oscillator.period, 1
-        p, r = self._motion.phi @ w
+        p, r = self._motion.tip(w)
         amplitude, phase = self.oscillator.drive_at(self.oscillator.stop.gap - p, speed - r)
         motion, response = self.oscillator.with_amplitude(amplitude).motion(), self.oscillator.tip_response()
         while True:

@@ -10,10 +10,10 @@ to a tolerance and the impacts of each strobe repeat exactly, p <= L.
 the tip never meets the stop again.
 """
 
+# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -25,7 +25,7 @@ __all__ = ["free_for_good", "period_of", "repetition"]
 
 
 @kernel
-def repetition(points: Any, impacts: Any, rows: Any, stretch: Any, tolerance: Any) -> Any:
+def repetition(points, impacts, rows, stretch, tolerance):
     """The smallest p <= `stretch` with which the last `stretch` of `rows` strobes repeat, or 0.
 
     Parameters
@@ -69,7 +69,7 @@ def period_of(points: np.ndarray, impacts: np.ndarray, *, largest_period: int, t
 
 
 @kernel
-def free_for_good(motion: Any, u: Any, v: Any) -> Any:
+def free_for_good(motion, u, v):
     """Whether the free motion left over in the deviations (u, v) can never bring the tip to the stop."""
     left = math.hypot(motion.tip_sine, motion.tip_cosine)
     for k in range(motion.size):

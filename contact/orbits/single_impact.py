@@ -49,6 +49,7 @@ from contact.nordmark import restitution_of
 from contact.orbits.family import Release, TouchOrbit, modal_flow
 from contact.oscillator import ImpactOscillator
 from contact.stop import Stop
+from contact.touch.newton import newton_impact
 from contact.touch_flow import FLOWN, flow_from_touch
 
 __all__ = ["Kick", "MaximalFamily", "SingleImpactFamily", "SingleImpactOrbit"]
@@ -183,13 +184,13 @@ class SingleImpactFamily(ABC):
     def excess(self, speed: float) -> float:
         """F/F_g - 1 of the orbit that meets the wall at `speed`, above zero [m/s]; errors as of `orbit`."""
         kick, gap = self.kick(require_within("speed", speed, "m/s", above=0)), self.oscillator.stop.gap
-        p, r = self._motion.phi @ self.closed(kick.jump)
+        p, r = self._motion.tip(self.closed(kick.jump))
         return excess_of(p / gap, (kick.speed - r) / self.oscillator.unit_speed)
 
     def orbit_of(self, kick: Kick) -> SingleImpactOrbit:
         """The orbit on which `kick` happens once in m drive periods."""
         before, gap = self.closed(kick.jump), self.oscillator.stop.gap
-        p, r = self._motion.phi @ before
+        p, r = self._motion.tip(before)
         rate = kick.speed - r
         amplitude, phase = self.oscillator.drive_at(gap - p, rate)
         return SingleImpactOrbit(
@@ -240,14 +241,15 @@ class MaximalFamily(SingleImpactFamily):
 
     def kick(self, speed: float) -> Kick:
         """B of Newton's law."""
-        phi, e = self._motion.phi, self._motion.number0
-        velocity = -(1.0 + e) * phi / self._motion.compliance * speed
-        return Kick(speed=speed, jump=np.column_stack([np.zeros(phi.size), velocity]), leaves=e > 0.0)
+        velocity, e = np.zeros(self.oscillator.n_modes), self._motion.number0
+        newton_impact(self._motion, velocity, speed, e)
+        jump = np.column_stack([np.zeros(velocity.size), velocity])
+        return Kick(speed=speed, jump=jump, leaves=e > 0.0)
 
     @cached_property
     def arms(self) -> tuple[float, float]:
         """(s, b): p and (v - r)/w of Eq. (a) per unit approach speed [s]."""
-        s, r = self._motion.phi @ self.closed(self.kick(1.0).jump)
+        s, r = self._motion.tip(self.closed(self.kick(1.0).jump))
         return float(s), float((1.0 - r) / self._motion.drive)
 
     def orbits(self, excess: float) -> tuple[SingleImpactOrbit, ...]:

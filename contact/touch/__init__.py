@@ -43,7 +43,8 @@ arguments: `by_law` links the files of the table into one kernel for each functi
 from __future__ import annotations
 
 import inspect
-from typing import Any
+from collections.abc import Callable
+from typing import TypeVar
 
 from contact.compiled import part
 from contact.laws import DELAYED, HERTZ, LINEAR, NEWTON
@@ -52,14 +53,16 @@ from contact.touch import delayed, hertz, linear, newton
 __all__ = ["TOUCHES", "force", "leave", "place", "room", "saltation", "slopes", "state", "step", "stiffness",
            "strike", "work"]  # fmt: skip
 
+Function = TypeVar("Function", bound=Callable[..., object])
+
 TOUCHES = {NEWTON: newton, DELAYED: delayed, LINEAR: linear, HERTZ: hertz}
 """The file of each law by its code."""
 
 
-def by_law(functions: dict[int, Any]) -> Any:
+def by_law(functions: dict[int, Function]) -> Function:
     """The function of motion.law: `if motion.law == ...: return ...` for each code, then an error."""
     names = {f"law_{code}": function for code, function in functions.items()}
-    arguments = list(inspect.signature(next(iter(functions.values())).py_func).parameters)
+    arguments = list(inspect.signature(next(iter(functions.values()))).parameters)
     lines = [f"def chosen({', '.join(arguments)}):"]
     for code in functions:
         lines.append(f"    if {arguments[0]}.law == {code}: return law_{code}({', '.join(arguments)})")

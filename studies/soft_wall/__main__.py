@@ -4,42 +4,35 @@ Claim (letter 1996, last page): a wall "such that at impact the spring constant 
 affects the bifurcations close to grazing in a characteristic manner, to larger amplitudes the smaller K; the
 experiment did not show it.
 
-Computed, for Eq. (1) with a wall of K times the spring constant, without loss and with the dashpot that gives
-a hard approach the letter's restitution, at each drive frequency and K = 10 ... 10^6:
+Computed, for Eq. (1) with an elastic wall of K times the spring constant, at each drive frequency and
+K = 10 ... 10^6:
 
     kick       of one collision against the peak h over the wall: J = (4/3) (K - 1) Omega^2 sqrt(2/a) h^(3/2)
-               below h = (3/2) a/((K - 1) Omega^2), a = omega^2 gap, and the square root above; with a dashpot
-               J = c h below
+               below h = (3/2) a/((K - 1) Omega^2), a = omega^2 gap, and the square root above
     doubling   excess at which p1, which survives its first touch, loses stability by a multiplier -1: by
-               shooting, against  h_f [1 + (2/3)(1 + gamma + alpha)/(1 - alpha + gamma)],
-               h_f = (omega^2/2) [(1 + gamma + alpha)/(2 M12 K Omega^2)]^2 (gap 1) for K -> infinity, and
-               against a closed form for finite K; with the dashpot p1 is lost at its first touch
-    end        excess at which p_m ends, m as at that frequency in the map: fold by shooting, and the hard
-               wall (closed form), from which it lies at a distance K^(-1/2)
+               shooting, against a closed form that goes like K^(-2)
 
 and for the beam with Hertz contact the excess at which the kick leaves the square root, the period doubling
 below it, and whether the letter could have seen that. The equations are derived in `closed_forms`.
 
 Run:     python -m studies.soft_wall [--decades 1 6] [--quick]     10 s; --quick 5 s
-Writes:  kicks.csv, doublings.csv, ends.csv; figures kick and orbits
+Writes:  kicks.csv, doublings.csv; figures kick and orbits
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from functools import partial
 from itertools import pairwise
 from typing import Annotated
 
 import numpy as np
-from scipy.optimize import brentq
 
 from studies import letter
 from studies.run import Run, study
 from studies.scene import Scene, SceneError, harmonic, single_mode_at
-from studies.soft_wall.closed_forms import SoftWall, damping_ratio
-from studies.soft_wall.rows import Beam, Doubling, beam_of, doubling_of, end_of, kicks_of
+from studies.soft_wall.closed_forms import SoftWall
+from studies.soft_wall.rows import Beam, Doubling, beam_of, doubling_of, kicks_of
 
 __all__ = ["soft_wall"]
 
@@ -49,9 +42,6 @@ SHOWN_HZ = 22.2
 QUICK_HZ = (22.2, 22.6)
 UNSEEN = 1e-9
 """An excess of a period doubling below this is that of a hard wall."""
-
-HARDEST = 1e8
-"""K up to which the letter's amplitude stability is looked for."""
 
 
 @study(needs={"kick": 0.005}, quick={"decades": (3, 5), "points": 13})
@@ -65,57 +55,37 @@ def soft_wall(
     """Compute, store and draw."""
     if not decades[0] <= decades[1] <= 7:
         raise SceneError(f"decades is {decades}; K runs upwards, to 10^7 at most")
-    zeta = damping_ratio(scene.single_mode.restitution)
     frequencies = sorted(set(harmonic(scene).drive.frequencies_hz))
     shown = min(frequencies, key=lambda f: abs(f - SHOWN_HZ))
     if run.quick:
         frequencies = sorted({min(frequencies, key=lambda f: abs(f - g)) for g in QUICK_HZ})
     walls = [
-        SoftWall(oscillator=single_mode_at(scene, f), hardness=10.0**k, zeta=z)
-        for f in frequencies for z in sorted({0.0, zeta}) for k in range(decades[0], decades[1] + 1)
+        SoftWall(oscillator=single_mode_at(scene, f), hardness=10.0**k)
+        for f in frequencies for k in range(decades[0], decades[1] + 1)
     ]  # fmt: skip
     excesses = np.geomspace(1e-8, 3e-2, 14 if run.quick else 27)
     curves = [wall for wall in walls if wall.frequency == shown]
     kicks = [row for rows in run.attempt(partial(kicks_of, excesses=excesses), curves, "kicks")
              for row in rows or ()]  # fmt: skip
-    lossless = [wall for wall in walls if not wall.zeta]
-    doublings = [row for row in run.attempt(doubling_of, lossless, "period doublings") if row]
-    ends = [row for row in run.attempt(end_of, walls, "ends") if row]
+    doublings = [row for row in run.attempt(doubling_of, walls, "period doublings") if row]
     job = partial(beam_of, scene, excesses=np.geomspace(1e-7, 1e-1, points).tolist())
     (found,) = run.attempt(job, [shown], "beam")
     beam, more = found or (None, [])
     run.table("kicks", [*kicks, *more], "Kick velocity of one collision [m/s].", show=())
-    run.table("doublings", doublings, "Excess F/F_g - 1 at which p1 doubles its period without dashpot.")
-    run.table("ends", ends, "Excess F/F_g - 1 at the fold of p_m.")
+    run.table("doublings", doublings, "Excess F/F_g - 1 at which p1 doubles its period.")
     from studies.soft_wall.figures import draw_kicks, draw_orbits
 
     run.figure("kick", draw_kicks([*kicks, *more]), "Kick of one collision against the excess: points, "
                "closed form (line) and, dashed, the law of a soft touch. All go over into the power 1/2 of a "
                "hard one, the beam below what the letter's drive could resolve.")  # fmt: skip
-    run.figure("orbits", draw_orbits(scene, doublings, ends, beam),
-               "(a) Excess of the period doubling of p1 without dashpot; closed form (line) and K → ∞ "
-               "(dashed). (b) Distance of the end of p_m from the hard wall's, without (open) and with the "
-               "dashpot. (c) The beam: p1 that survives its touch, and what an experiment sees that raises "
+    run.figure("orbits", draw_orbits(scene, doublings, beam),
+               "(a) Excess of the period doubling of p1 at an elastic wall; closed form (line). "
+               "(b) The beam: p1 that survives its touch, and what an experiment sees that raises "
                "the drive in finite steps.")  # fmt: skip
     judge_wall(run, doublings)
     if beam:
         judge_beam(run, beam)
-    return {
-        "damping_ratio": zeta, "doublings": doublings, "ends": ends, "beam": beam,
-        "visible_below_hardness": {f"{f:g}": visible_below(scene, f) for f in frequencies},
-    }  # fmt: skip
-
-
-def visible_below(scene: Scene, frequency: float) -> float | None:
-    """K of the lossless wall below which p1 doubles above the letter's amplitude stability, by the closed
-    form; None if it is above `HARDEST`."""
-
-    def beyond(log_hardness: float) -> float:
-        found = SoftWall(oscillator=oscillator, hardness=math.exp(log_hardness)).doubling()
-        return 1.0 if found is None else math.log(found[1] / letter.AMPLITUDE_STABILITY)
-
-    oscillator, high = single_mode_at(scene, frequency), math.log(HARDEST)
-    return math.exp(brentq(beyond, 1e-3, high, xtol=1e-6)) if beyond(high) < 0.0 else None
+    return {"doublings": doublings, "beam": beam}
 
 
 def judge_wall(run: Run, doublings: Sequence[Doubling]) -> None:

@@ -1,26 +1,21 @@
 r"""A touch near grazing, and the orbit of period 1 that survives it: closed forms.
 
 The wall multiplies the spring constant by K (letter of 1996, Ref. [10]): behind the gap the contact adds
-kappa = (K - 1) Omega^2 [1/s^2] and a dashpot c = 2 zeta s [1/s], s = sqrt(kappa). It only pushes: it lets go
-where kappa d + c d' falls to zero.
+kappa = (K - 1) Omega^2 = s^2 [1/s^2], without loss.
 
 **One collision.** Next to a peak of height h over the gap the incoming motion is a parabola of deceleration
 a = omega^2 gap, and meets the wall at v = sqrt(2 a h). With tau = s t and D = d kappa/a
 
-    D'' + 2 zeta D' + D = -1,   D(0) = 0,   D'(0) = z = s v/a = sqrt(2 kappa h/a)
+    D'' + D = -1,   D(0) = 0,   D'(0) = z = s v/a = sqrt(2 kappa h/a)
 
-until D + 2 zeta D' = 0 at tau_c. Without the wall the velocity would fall by tau_c, so that the kick is
-J = (a/s) [z - tau_c - D'(tau_c)]. Without dashpot
+until D = 0 at tau_c. Without the wall the velocity would fall by tau_c, so that the kick is
 
-    J = (2 a/s)(z - atan z):   (4/3) kappa sqrt(2/a) h^(3/2) [1 - (3/5) z^2 + ...],   2 v - pi a/s + ...
+    J = (a/s) [z - tau_c - D'(tau_c)] = (2 a/s)(z - atan z)
+      = (4/3) kappa sqrt(2/a) h^(3/2) [1 - (3/5) z^2 + ...]  and  2 v - pi a/s + ...
 
-for small and large z: two power laws that cross at z^2 = 3, h = (3/2) a/kappa. With a dashpot the force sets
-in with c v at once, and J = c h + ... is linear in h. A Hertz contact of stiffness k [N/m^1.5] on a beam is
-pressed by the parabola itself, with the impulse k (3 pi/8) sqrt(2/a) h^2; phi_1^2 times that kicks the tip.
-
-**Restitution of a hard approach** (z >> 1): exp(-(pi - 2 beta) tan beta) with zeta = sin beta; beyond
-zeta = 1: exp(-2 eta coth eta), zeta = cosh eta. At zeta = 1 it is exp(-2) = 0.135, so that the letter's 0.1
-needs an overdamped contact.
+for small and large z: two power laws that cross at z^2 = 3, h = (3/2) a/kappa. A Hertz contact of stiffness k
+[N/m^1.5] on a beam is pressed by the parabola itself, with the impulse k (3 pi/8) sqrt(2/a) h^2; phi_1^2
+times that kicks the tip.
 
 **p1 with one touch.** A touch at height h that changes the velocity of the tip, per unit of phi^2, by J(h)
 leaves to leading order
@@ -28,15 +23,12 @@ leaves to leading order
     excess gap = h + S_- J(h),   a multiplier -1 at  S_+ dJ/dh = 1,
     S_-, S_+ = sum_k phi_k^2 M12_k/(1 -+ alpha_k + gamma_k)   [s/kg]
 
-with M_k the free flow of mode k over 1/f, alpha its trace, gamma its determinant. For one mode without
-dashpot dJ/dh = 2 s z/(1 + z^2), hence with Lambda = 1/S_+
+with M_k the free flow of mode k over 1/f, alpha its trace, gamma its determinant. For one mode
+dJ/dh = 2 s z/(1 + z^2), hence with Lambda = 1/S_+
 
     z_f = (s/Lambda) [1 - sqrt(1 - (Lambda/s)^2)] -> Lambda/(2 s),   h_f = (a/2) z_f^2/kappa
 
-and no doubling near grazing if s < Lambda. As K grows, h_f -> (a/2) [Lambda/(2 K Omega^2)]^2 and the
-excess -> (h_f/gap)(1 + (2/3) S_-/S_+), too small by a part of order 1/K. With a dashpot dJ/dh = c from the
-start: for c > Lambda p1 is unstable as soon as it touches, with the multipliers of trace alpha - M12 c and
-determinant gamma, as with a hard wall.
+and no doubling near grazing if s < Lambda. As K grows, h_f goes like K^(-2).
 """
 
 from __future__ import annotations
@@ -46,39 +38,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.optimize import brentq
 
 from contact import HertzContact, ImpactOscillator, LinearContact, Stop
 from contact.orbits import KickFamily
 
-__all__ = ["SoftWall", "damping_ratio", "hard_restitution", "hertz_doubling", "hertz_kick", "survival_sums"]
-
-CRITICAL = 1e-7
-"""eta below which the critically damped limit is used: the error is its square."""
-
-HALF = 2.331122370414423
-"""z at which z - atan z = z/2: the kick without dashpot is half of the hard wall's."""
-
-
-def hard_restitution(zeta: float) -> float:
-    """Restitution of a contact that is short against the motion, at damping ratio `zeta` >= 0."""
-    if not zeta >= 0.0:
-        raise ValueError(f"zeta is {zeta}; it must be zero or more")
-    if zeta < 1.0:
-        beta = math.asin(zeta)
-        return math.exp(-(math.pi - 2.0 * beta) * math.tan(beta))
-    eta = math.acosh(zeta)
-    return math.exp(-2.0 * (eta / math.tanh(eta) if eta > CRITICAL else 1.0))
-
-
-def damping_ratio(restitution: float) -> float:
-    """zeta at which a hard approach leaves with `restitution`, above 0 and at most 1."""
-    if not 0.0 < restitution <= 1.0:
-        raise ValueError(f"single_mode.restitution is {restitution}; a wall with spring and dashpot needs "
-                         "one above 0 and not above 1")  # fmt: skip
-    # exp(-2 eta coth eta) < exp(-2 eta) bounds eta, and with it zeta
-    high = math.cosh(max(1.0, -0.5 * math.log(restitution)) + 1.0)
-    return float(brentq(lambda zeta: hard_restitution(zeta) - restitution, 0.0, high, xtol=1e-15, rtol=1e-14))
+__all__ = ["SoftWall", "hertz_doubling", "hertz_kick", "impulse_per_square", "survival_sums"]
 
 
 def survival_sums(oscillator: ImpactOscillator) -> tuple[float, float]:
@@ -115,14 +79,13 @@ def hertz_doubling(oscillator: ImpactOscillator) -> tuple[float, float] | None:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SoftWall:
-    """The wall of `hardness` K and damping ratio `zeta` in place of the stop of Eq. (1), `oscillator`.
+    """The elastic wall of `hardness` K in place of the stop of Eq. (1), `oscillator`.
 
     Peaks are counted in gaps over the wall.
     """
 
     oscillator: ImpactOscillator
     hardness: float
-    zeta: float = 0.0
 
     def __post_init__(self) -> None:
         model = self.oscillator.model
@@ -130,16 +93,9 @@ class SoftWall:
             raise ValueError(f"oscillator has {model.n_modes} modes; a soft wall is for one, of unit mass")
         if not 1.0 < self.hardness < math.inf:
             raise ValueError(f"hardness is {self.hardness}; the wall's K must be finite and above 1")
-        if not 0.0 <= self.zeta < math.inf:
-            raise ValueError(f"zeta is {self.zeta}; it must be finite and zero or more")
 
     def __str__(self) -> str:
-        return f"{self.frequency:g} Hz, K = {self.hardness:g}, {self.name}"
-
-    @property
-    def name(self) -> str:
-        """ "lossless" or "dashpot"."""
-        return "dashpot" if self.zeta else "lossless"
+        return f"{self.frequency:g} Hz, K = {self.hardness:g}"
 
     @property
     def frequency(self) -> float:
@@ -156,15 +112,10 @@ class SoftWall:
         """s = sqrt((K - 1) Omega^2) [1/s]."""
         return math.sqrt(self.hardness - 1.0) * float(self.oscillator.model.omega[0])
 
-    @property
-    def dashpot(self) -> float:
-        """c = 2 zeta s, per unit mass [1/s]."""
-        return 2.0 * self.zeta * self.rate
-
     @cached_property
     def struck(self) -> ImpactOscillator:
         """Eq. (1) with this wall as its stop."""
-        law = LinearContact(stiffness=self.rate**2, damping=self.dashpot)
+        law = LinearContact(stiffness=self.rate**2)
         return replace(self.oscillator, stop=Stop(gap=self.oscillator.stop.gap, law=law))
 
     @cached_property
@@ -177,36 +128,25 @@ class SoftWall:
         return 0.5 * z * z * self.deceleration / (self.rate**2 * self.oscillator.stop.gap)
 
     def kick(self, peak: float) -> float:
-        """J, without dashpot, of a collision with this incoming peak [m/s]."""
-        if self.zeta > 0.0:
-            raise ValueError(f"zeta is {self.zeta}; the kick is known in closed form without dashpot")
+        """J of a collision with this incoming peak [m/s]."""
         z = math.sqrt(peak / self.peak_of(1.0))
         lost = z**3 * (1 / 3 - z * z * (1 / 5 - z * z / 7)) if z < 1e-2 else z - math.atan(z)
         return 2.0 * self.deceleration / self.rate * lost
 
     def soft_law(self, peak: float) -> float:
-        """Leading power law of small peaks: (4/3) kappa sqrt(2/a) h^(3/2), or c h with a dashpot [m/s]."""
+        """Leading power law of small peaks, (4/3) kappa sqrt(2/a) h^(3/2) [m/s]."""
         h = peak * self.oscillator.stop.gap
-        if self.zeta > 0.0:
-            return self.dashpot * h
         return 4.0 / 3.0 * self.rate**2 * math.sqrt(2.0 / self.deceleration) * h**1.5
 
     def hard_law(self, peak: float) -> float:
-        """(1 + tau) sqrt(2 a h), the kick of the hard wall [m/s]."""
+        """2 sqrt(2 a h), the kick of the hard wall [m/s]."""
         h = peak * self.oscillator.stop.gap
-        return (1.0 + hard_restitution(self.zeta)) * math.sqrt(2.0 * self.deceleration * h)
+        return 2.0 * math.sqrt(2.0 * self.deceleration * h)
 
     def doubling(self) -> tuple[float, float] | None:
-        """Peak and F/F_g - 1 at the doubling of p1 without dashpot; None where s < Lambda."""
+        """Peak and F/F_g - 1 at the doubling of p1; None where s < Lambda."""
         wanted = 1.0 / (self.sums[1] * self.rate)
         if wanted > 1.0:
             return None
         peak = self.peak_of(wanted / (1.0 + math.sqrt(1.0 - wanted**2)))
         return peak, peak + self.sums[0] * self.kick(peak) / self.oscillator.stop.gap
-
-    def limit(self) -> tuple[float, float]:
-        """The same as K -> infinity."""
-        less, more = self.sums
-        stiff = self.hardness * float(self.oscillator.model.omega[0]) ** 2
-        peak = 0.5 * (math.pi / (self.oscillator.period * more * stiff)) ** 2
-        return peak, peak * (1.0 + 2.0 / 3.0 * less / more)

@@ -8,21 +8,20 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from studies import letter, plotting
-from studies.plotting import EXCESS, NOTE, PAGE, PALETTE, in_house_style
+from studies.plotting import EXCESS, PAGE, PALETTE, in_house_style
 from studies.scene import Scene, single_mode_at
 from studies.soft_wall.closed_forms import SoftWall
-from studies.soft_wall.rows import Beam, Doubling, End, Kick
+from studies.soft_wall.rows import Beam, Doubling, Kick
 
 __all__ = ["draw_kicks", "draw_orbits"]
 
-CASES = {"lossless": "Eq. (1), lossless wall", "dashpot": "Eq. (1), dashpot", "beam": "beam, Hertz contact"}
-POWERS = {"lossless": "3/2", "dashpot": "1", "beam": "2"}
+CASES = {"lossless": "Eq. (1), elastic wall: power 3/2", "beam": "beam, Hertz contact: power 2"}
 
 
 @in_house_style
 def draw_kicks(rows: Sequence[Kick]) -> Figure:
     """Kick against excess with both power laws: walls of each K, and the beam."""
-    figure, axes = plotting.new_figure(1, 3, width=PAGE, height=0.078, sharey=True)
+    figure, axes = plotting.new_figure(1, 2, width=PAGE, height=0.078, sharey=True)
     for number, (axis, case) in enumerate(zip(axes, CASES, strict=True)):
         for i, hardness in enumerate(dict.fromkeys(row.hardness for row in rows if row.case == case)):
             curve = [row for row in rows if row.case == case and row.hardness == hardness]
@@ -37,7 +36,7 @@ def draw_kicks(rows: Sequence[Kick]) -> Figure:
         axis.loglog(excess, hard, color="0.45", linewidth=1.2, linestyle=":", label="hard wall, power 1/2")
         plotting.mark_letter(axis.xaxis, letter.AMPLITUDE_STABILITY, along=0.02, turn=True, level=True,
                              words="letter:\nstability")  # fmt: skip
-        plotting.panel(axis, number, f"{CASES[case]}: power {POWERS[case]}")
+        plotting.panel(axis, number, CASES[case])
         plotting.label(axis.xaxis, EXCESS)
     axes[0].set_ylim(bottom=0.3 * min((row.kick_velocity for row in rows), default=1e-6))
     plotting.label(axes[0].yaxis, "kick of one collision", "m/s")
@@ -46,41 +45,32 @@ def draw_kicks(rows: Sequence[Kick]) -> Figure:
 
 
 @in_house_style
-def draw_orbits(
-    scene: Scene, doublings: Sequence[Doubling], ends: Sequence[End], beam: Beam | None
-) -> Figure:
-    """Excess of the doubling and shift of the end of p_m against K; what is born on the beam."""
-    figure, axes = plotting.new_figure(1, 3, width=PAGE, height=0.075)
+def draw_orbits(scene: Scene, doublings: Sequence[Doubling], beam: Beam | None) -> Figure:
+    """Excess of the doubling against K; what is born on the beam."""
+    figure, axes = plotting.new_figure(1, 2, width=PAGE, height=0.075)
     hardness = np.geomspace(10.0, 1e6, 121)
     for i, frequency in enumerate(sorted({row.frequency_hz for row in doublings})):
         style, colour = plotting.points(i % 7), PALETTE[i % 7]
         oscillator = single_mode_at(scene, frequency)
         walls = [SoftWall(oscillator=oscillator, hardness=K) for K in hardness.tolist()]
         axes[0].loglog(hardness, [(wall.doubling() or (0.0, np.nan))[1] for wall in walls], color=colour)
-        axes[0].loglog(hardness, [wall.limit()[1] for wall in walls], color=colour, linestyle="--", lw=0.8)
         rows = [row for row in doublings if row.frequency_hz == frequency]
         axes[0].loglog([row.hardness for row in rows], [row.excess or np.nan for row in rows], **style,
                        markerfacecolor="white", label=f"{frequency:.2f} Hz")  # fmt: skip
-        for case, face in (("lossless", "white"), ("dashpot", colour)):
-            known = [(row.hardness, abs(row.shift / row.hard_wall)) for row in ends
-                     if row.frequency_hz == frequency and row.case == case and row.shift and row.hard_wall]
-            axes[1].loglog(*np.array(known).reshape(-1, 2).T, **{**style, "linestyle": "-"}, lw=0.8,
-                           markerfacecolor=face)  # fmt: skip
     plotting.mark_letter(axes[0].yaxis, letter.AMPLITUDE_STABILITY, words="letter: stability")
-    axes[1].loglog(hardness[60:], 20.0 * hardness[60:] ** -0.5, color="0.5", linestyle=":")
-    axes[1].text(1e4, 0.17, "power -1/2 ", fontsize=NOTE, color="0.35", ha="right", va="top")
     if beam is not None:
-        axes[2].semilogx(*zip(*(one for one in beam.born if one[1]), strict=True), **plotting.points(2),
+        axes[1].semilogx(*zip(*(one for one in beam.born if one[1]), strict=True), **plotting.points(2),
                          markerfacecolor="white", label="raised in one step")  # fmt: skip
         stable = (beam.born[0][0], beam.doubling_excess or np.nan)
-        axes[2].semilogx(stable, (1, 1), color=PALETTE[1], marker="|", label="p$_1$ with a touch is stable")
-        axes[2].set_ylim(0.0, 1.5 + axes[2].get_ylim()[1])
-        plotting.mark_letter(axes[2].xaxis, letter.AMPLITUDE_STABILITY, along=0.3, turn=True, level=True,
+        axes[1].semilogx(stable, (1, 1), color=PALETTE[1], marker="|", label="p$_1$ with a touch is stable")
+        axes[1].set_ylim(0.0, 1.5 + axes[1].get_ylim()[1])
+        plotting.mark_letter(axes[1].xaxis, letter.AMPLITUDE_STABILITY, along=0.3, turn=True, level=True,
                              words="letter:\nstability")  # fmt: skip
-        axes[2].legend(loc="center left", bbox_to_anchor=(0.0, 0.55))
-    names = ("excess of the doubling of p$_1$", "shift of the end of p$_m$ / hard wall", "beam: period born")
-    for number, (axis, name) in enumerate(zip(axes, names, strict=True)):
+        axes[1].legend(loc="center left", bbox_to_anchor=(0.0, 0.55))
+    for number, (axis, name, across) in enumerate(zip(
+        axes, ("excess of the doubling of p$_1$", "beam: period born"), ("hardness K", EXCESS), strict=True
+    )):  # fmt: skip
         plotting.panel(axis, number, name)
-        plotting.label(axis.xaxis, EXCESS if number == 2 else "hardness K")
+        plotting.label(axis.xaxis, across)
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=6)
     return figure

@@ -1,4 +1,4 @@
-"""What is computed of a wall or of the beam: kick of a collision, period doubling of p1, end of p_m."""
+"""What is computed of a wall or of the beam: kick of a collision, period doubling of p1."""
 
 from __future__ import annotations
 
@@ -9,28 +9,16 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from contact import (
-    ContactError,
-    ImpactOscillator,
-    MaximalFamily,
-    NordmarkMap,
-    StroboscopicMap,
-    first_collision,
-    maximal_period,
-)
-from contact.orbits import PeriodicOrbit, Shooting, born_period, fold_of, follow
+from contact import ImpactOscillator, StroboscopicMap, first_collision
+from contact.orbits import PeriodicOrbit, Shooting, born_period, follow
 from studies import letter
-from studies.scene import Scene, approach_speed, beam_at, single_mode_at
-from studies.soft_wall.closed_forms import HALF, SoftWall, hard_restitution, hertz_doubling, hertz_kick
+from studies.scene import Scene, approach_speed, beam_at
+from studies.soft_wall.closed_forms import SoftWall, hertz_doubling, hertz_kick
 
-__all__ = ["Beam", "Doubling", "End", "Kick", "beam_of", "doubling_near", "doubling_of", "end_of",
-           "kicks_of"]  # fmt: skip
+__all__ = ["Beam", "Doubling", "Kick", "beam_of", "doubling_near", "doubling_of", "kicks_of"]
 
 SPAN = 3.0
 """The doubling is looked for between a third and three times the approach velocity that the formula gives."""
-
-OTHERS = 1e-4
-"""At a fold one multiplier is 1 to the root of rounding; none may be larger."""
 
 RATIO = 1.05
 """Ratio of two excesses between which a local power is taken."""
@@ -40,7 +28,7 @@ RATIO = 1.05
 class Kick:
     """Kick velocity of the collision that ends the motion without impacts at `excess` [m/s], and its laws.
 
-    `case` is "lossless", "dashpot" or "beam" (no hardness); `closed_form` is that without dashpot.
+    `case` is "lossless" or "beam" (no hardness, no closed form).
     """
 
     case: str
@@ -54,29 +42,12 @@ class Kick:
 
 @dataclass(frozen=True, kw_only=True)
 class Doubling:
-    """Excess of the period doubling of p1 without dashpot: by shooting, in closed form, for K -> infinity."""
+    """Excess of the period doubling of p1: by shooting and in closed form."""
 
     frequency_hz: float
     hardness: float
     excess: float | None
     closed_form: float | None
-    limit: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class End:
-    """Excess at the fold of p_m with one touch, of this wall and of the hard wall, and their distance.
-
-    None where the branch has no fold below grazing, or its orbit there touches again or is unstable.
-    """
-
-    frequency_hz: float
-    hardness: float
-    case: str
-    period: int
-    excess: float | None
-    hard_wall: float | None
-    shift: float | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,8 +57,7 @@ class Beam:
     `plateau`: the kick at Fig. 4, in approach speeds; `half_excess`: where half of it is left;
     `share_at_stability`: what is left at the letter's amplitude stability; `square_root_from`: where the kick
     rises with the power 0.6; `doubling_excess`, `doubling_theory`: of p1, by shooting and in closed form;
-    `born`: (excess, period) raised from -1e-3 in one step, as by an experiment, period 0 for none;
-    `equivalent_hardness`: K of the wall without dashpot that has half of its kick at `half_excess`.
+    `born`: (excess, period) raised from -1e-3 in one step, as by an experiment, period 0 for none.
     """
 
     frequency_hz: float
@@ -99,17 +69,15 @@ class Beam:
     doubling_excess: float | None
     doubling_theory: float | None
     born: tuple[tuple[float, int], ...]
-    equivalent_hardness: float | None
 
 
 def kicks_of(wall: SoftWall, excesses: np.ndarray) -> list[Kick]:
     """The simulated kicks of a wall, the closed form and the two power laws."""
     return [
         Kick(
-            case=wall.name, hardness=wall.hardness, excess=e,
+            case="lossless", hardness=wall.hardness, excess=e,
             kick_velocity=first_collision(wall.struck.with_excess(e)).kick_velocity,
-            closed_form=None if wall.zeta else wall.kick(e), soft_law=wall.soft_law(e),
-            hard_law=wall.hard_law(e),
+            closed_form=wall.kick(e), soft_law=wall.soft_law(e), hard_law=wall.hard_law(e),
         )
         for e in excesses.tolist()
     ]  # fmt: skip
@@ -125,30 +93,12 @@ def doubling_near(oscillator: ImpactOscillator, peak: float) -> PeriodicOrbit | 
 
 
 def doubling_of(wall: SoftWall) -> Doubling:
-    """Period doubling of p1 beside the formulas."""
-    closed, limit = wall.doubling(), wall.limit()
-    orbit = doubling_near(wall.struck, limit[0] if closed is None else closed[0])
+    """Period doubling of p1 beside the formula; where that has none it is looked for at z = 1, its last."""
+    closed = wall.doubling()
+    orbit = doubling_near(wall.struck, wall.peak_of(1.0) if closed is None else closed[0])
     return Doubling(
         frequency_hz=wall.frequency, hardness=wall.hardness,
         excess=None if orbit is None else orbit.excess, closed_form=None if closed is None else closed[1],
-        limit=limit[1],
-    )  # fmt: skip
-
-
-def end_of(wall: SoftWall) -> End:
-    """Where the p_m orbit with one touch ends, m as at that frequency in the map."""
-    period, tau = maximal_period(NordmarkMap.from_oscillator(wall.oscillator)), hard_restitution(wall.zeta)
-    hard = MaximalFamily.from_oscillator(wall.oscillator, period=period, restitution=tau).fold()
-    limit = hard.excess if hard is not None and hard.admissible else None
-    try:
-        fold = fold_of(Shooting(oscillator=wall.struck, period=period))
-    except ContactError:  # no orbit of one touch where the kicks have one
-        fold = None
-    lives = fold is not None and fold.admissible and abs(fold.multipliers[0]) <= 1.0 + OTHERS
-    excess = fold.excess if fold is not None and lives and fold.excess < 0.0 else None
-    return End(
-        frequency_hz=wall.frequency, hardness=wall.hardness, case=wall.name, period=period, excess=excess,
-        hard_wall=limit, shift=None if excess is None or limit is None else excess - limit,
     )  # fmt: skip
 
 
@@ -176,7 +126,6 @@ def beam_of(scene: Scene, frequency: float, excesses: Sequence[float]) -> tuple[
     plateau, closed = kick(letter.TIME_TRACE_EXCESS), hertz_doubling(oscillator)
     doubling = None if closed is None else doubling_near(oscillator, closed[0])
     half = zero_of(lambda e: kick(e) - 0.5 * plateau, 1e-8, 1e-2)
-    soft = SoftWall(oscillator=single_mode_at(scene, frequency), hardness=2.0).peak_of(HALF)
     strobed = StroboscopicMap(oscillator=oscillator)
     beam = Beam(
         frequency_hz=frequency, modes=oscillator.n_modes, plateau=plateau, half_excess=half,
@@ -185,7 +134,6 @@ def beam_of(scene: Scene, frequency: float, excesses: Sequence[float]) -> tuple[
         doubling_excess=None if doubling is None else doubling.excess,
         doubling_theory=None if closed is None else closed[1],
         born=tuple((e, born_period(strobed, e)) for e in excesses if e <= 0.01),
-        equivalent_hardness=None if half is None else 1.0 + soft / half,
     )  # fmt: skip
     kicks = [
         Kick(case="beam", hardness=None, excess=e, kick_velocity=kick_velocity(e), closed_form=None,

@@ -30,7 +30,6 @@ MODES = 14
 class ReadingRow:
     """A reading of "U shaped", brought to the free period of the scene."""
 
-    variation: str
     reading: str
     thickness_m: float
     flange_m: float
@@ -51,7 +50,6 @@ class ReadingRow:
     """Compliance of the twist mode there over that of the first bending mode."""
     turn_of_twist: float
     """theta of the ball in the twist mode [kg^(-1/2) m^(-1)]."""
-    bending_mode_nearest_to_twist_hz: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,7 +72,7 @@ class ErrorRow:
     """None: the mode does not move the ball along the stop."""
 
 
-def reading_row(shape: Shape, off_line: float, variation: str = "none") -> ReadingRow:
+def reading_row(shape: Shape, off_line: float) -> ReadingRow:
     """The row of a shape that has been brought to its period, the ball off the line by `off_line` [m]."""
     modes = spatial_modes(shape.spring(), MODES)
     kinds, f = kinds_of(shape, modes.displacement, modes.rotation), modes.frequencies_hz
@@ -83,9 +81,9 @@ def reading_row(shape: Shape, off_line: float, variation: str = "none") -> Readi
     off = spatial_modes(shape.spring(off_line), MODES)
     near = np.abs(off.frequencies_hz / f[twist] - 1.0) < 0.1
     moved, first = int(np.argmax(np.abs(off.rotation[:, 0]) * near)), first_bending(off)
-    compliance, in_plane = (off.phi / off.omega) ** 2, f[[kind == "bending" for kind in kinds]]
+    compliance = (off.phi / off.omega) ** 2
     return ReadingRow(
-        variation=variation, reading=shape.reading, thickness_m=shape.thickness, flange_m=shape.flange,
+        reading=shape.reading, thickness_m=shape.thickness, flange_m=shape.flange,
         first_bending_hz=float(f[bending]), first_twist_hz=float(f[twist]), first_sideways_hz=sideways,
         ratio_twist=float(f[twist] / f[bending]),
         ratio=float((f[twist] if sideways is None else min(f[twist], sideways)) / f[bending]),
@@ -93,7 +91,6 @@ def reading_row(shape: Shape, off_line: float, variation: str = "none") -> Readi
         tip_value_twist_off_line=abs(float(off.phi[moved])),
         compliance_share_off_line=float(compliance[moved] / compliance[first]),
         turn_of_twist=abs(float(modes.rotation[twist, 0])),
-        bending_mode_nearest_to_twist_hz=float(in_plane[np.argmin(np.abs(in_plane / f[twist] - 1.0))]),
     )  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""The readings of "U shaped", each as a strip in space and as a solid, brought to one free period.
+"""The readings of "U shaped", each as a strip in space (two of them as solids too), brought to one period.
 
     side_by_side   a U cut out of the sheet: the legs lie side by side in its plane, the ball sits at the bend
                    and moves across the sheet
@@ -35,14 +35,13 @@ from beam.space import (
     SpatialSpring,
     Vector,
     channel,
-    channel_centroid,
     flat,
     spatial_modes,
     upright,
 )
 from studies.scene import Scene, SceneError
 from studies.spring_shape.elasticity import SolidSpring
-from studies.spring_shape.swept_mesh import channel_profile, rectangle_profile, sweep
+from studies.spring_shape.swept_mesh import rectangle_profile, sweep
 
 Reading = Literal["side_by_side", "channel", "folded", "plain"]
 READINGS: tuple[Reading, ...] = ("side_by_side", "channel", "folded", "plain")
@@ -135,15 +134,8 @@ class Shape:
         )  # fmt: skip
 
     def solid(self, mesh: Mesh) -> SolidSpring:
-        """The same as a solid."""
-        b, t = self.width, self.thickness
-        if self.reading == "channel":
-            sizes, cells = self.channel_sizes, (mesh.across, 2 * mesh.across)
-            profile = channel_profile(**sizes, centroid=channel_centroid(**sizes), cells=cells)
-        elif self.reading == "side_by_side":
-            profile = rectangle_profile(along_n=b, along_z=t, cells=mesh.across)
-        else:
-            profile = rectangle_profile(along_n=t, along_z=b, cells=mesh.across)
+        """The folded or the plain strip as a solid."""
+        profile = rectangle_profile(along_n=self.thickness, along_z=self.width, cells=mesh.across)
         solid = sweep(
             profile, self.centreline, (mesh.legs, mesh.bend, mesh.legs) if self.bent else (mesh.legs,),
             tip_at=self.tip_at, halvings=(mesh.halvings, mesh.halvings if self.bent else 0),

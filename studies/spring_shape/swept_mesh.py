@@ -1,7 +1,7 @@
 """Quadratic hexahedra swept along a plane centreline.
 
-A profile lies in the plane of (y, z) [m], symmetric in z; only its half z >= 0 is meshed. With r(s), t and n
-of the centreline, a point of the box (s, y, z) goes to
+The profile is a rectangle in the plane of (y, z) [m]; only its half z >= 0 is meshed. With r(s), t and n of
+the centreline, a point of the box (s, y, z) goes to
 
     x(s, y, z) = r(s) + y n(s) + z e_z,      |dx/d(s, y, z)| = 1 - k y,
 
@@ -21,17 +21,8 @@ from numpy.typing import NDArray
 
 from beam import Centreline
 
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Profile:
-    """Half of a cross-section: grid lines y and z [m], rising, z from 0 on, that cut it into rectangles.
-
-    The rectangle y > hollow[0], z < hollow[1] [m] is left out, if it is given.
-    """
-
-    y: NDArray[np.float64]
-    z: NDArray[np.float64]
-    hollow: tuple[float, float] | None = None
+Profile = tuple[NDArray[np.float64], NDArray[np.float64]]
+"""Half of a cross-section: grid lines y and z [m], rising, z from 0 on, that cut it into rectangles."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -50,29 +41,13 @@ class SweptMesh:
 def rectangle_profile(*, along_n: float, along_z: float, cells: int, through: int = 1) -> Profile:
     """Return half of a rectangle of these sides [m] about the centreline.
 
-    `cells` lie across half of the longer side, besides two in a margin as wide as the shorter side is: there
-    the shear of torsion turns round. `through` lie across the shorter side, or across half of it along z.
+    `cells` lie across half of the side along z, besides two in a margin as wide as the side along n is: there
+    the shear of torsion turns round. `through` lie across the side along n.
     """
-    if along_z >= along_n:
-        y = np.linspace(-0.5 * along_n, 0.5 * along_n, through + 1)
-        return Profile(y=y, z=_towards_edge(0.5 * along_z, along_n, cells))
-    half = _towards_edge(0.5 * along_n, along_z, cells)
-    return Profile(y=np.concatenate((-half[:0:-1], half)), z=np.linspace(0.0, 0.5 * along_z, through + 1))
-
-
-def channel_profile(
-    *, width: float, flange: float, thickness: float, centroid: float, cells: tuple[int, int]
-) -> Profile:
-    """Return half of a channel: web along z with its middle at y = -centroid [m], flanges towards +y.
-
-    Its sizes [m] are those of `beam.space.channel`; `cells` lie along a flange and along half of the web, one
-    through the sheet.
-    """
-    web = 0.5 * thickness - centroid
-    y = np.concatenate(([web - thickness], np.linspace(web, web + flange, cells[0] + 1)))
-    inner = 0.5 * width - thickness
-    z = np.concatenate((np.linspace(0.0, inner, cells[1] + 1), [0.5 * width]))
-    return Profile(y=y, z=z, hollow=(web, inner))
+    half = 0.5 * along_z
+    margin = min(along_n, 0.5 * half)
+    y = np.linspace(-0.5 * along_n, 0.5 * along_n, through + 1)
+    return y, np.concatenate((np.linspace(0.0, half - margin, cells + 1), [half - margin / 3.0, half]))
 
 
 def sweep(
@@ -89,7 +64,7 @@ def sweep(
     halved `halvings` times towards the ends: stresses are singular at the edges of a clamp. A profile that
     reaches the centre of a bend raises ValueError.
     """
-    reach = float(np.max(np.outer(centreline.curvatures, profile.y)))
+    reach = float(np.max(np.outer(centreline.curvatures, profile[0])))
     if reach >= 1.0:
         raise ValueError(f"y reaches {reach:.3g} bend radii [1]; it must stay below 1")
     stations = [np.zeros(1)]
@@ -103,11 +78,7 @@ def sweep(
     s = np.concatenate(
         ([0.0], s[1] * parts[0], s[1:-1], s[-1] - (s[-1] - s[-2]) * parts[1][::-1], [centreline.length])
     )
-    box = sk.MeshHex.init_tensor(s, profile.y, profile.z)
-    if profile.hollow is not None:
-        edge, height = profile.hollow
-        _, y, z = box.p[:, box.t].mean(axis=1)
-        box = box.remove_elements(np.flatnonzero((y > edge) & (z < height)))
+    box = sk.MeshHex.init_tensor(s, *profile)
     quadratic = sk.MeshHex2.from_mesh(box)
     s_of, y, z = quadratic.doflocs
     s_of = np.clip(s_of, 0.0, centreline.length)
@@ -115,9 +86,3 @@ def sweep(
     places = np.ascontiguousarray(centreline.points(s_of).T + y * n.T + z * np.array([[0.0], [0.0], [1.0]]))
     mesh = dataclasses.replace(quadratic, doflocs=places)
     return SweptMesh(box=box, mesh=mesh, centreline=centreline, stations=s)
-
-
-def _towards_edge(half: float, margin: float, cells: int) -> NDArray[np.float64]:
-    """Grid lines from 0 to `half`, the last two intervals in a margin before it."""
-    margin = min(margin, 0.5 * half)
-    return np.concatenate((np.linspace(0.0, half - margin, cells + 1), [half - margin / 3.0, half]))

@@ -46,10 +46,9 @@ def stability(
         if name not in FAMILIES:
             raise ValueError(f"families names {name!r}; it must be among {', '.join(FAMILIES)}")
     rows: list[Limit] = []
-    found = run.map(partial(findings, scene=scene, quick=run.quick), names, "families")
+    found = run.attempt(partial(findings, scene=scene, quick=run.quick), names, "families")
     for name, result in zip(names, found, strict=True):
-        if isinstance(result, Exception):
-            run.failed(name, result)
+        if result is None:
             continue
         rows += result.limits
         run.arrays(name, **result.arrays)

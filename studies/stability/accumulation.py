@@ -93,7 +93,7 @@ def measure(scene: Scene, quick: bool) -> Findings:
             parameter="time of rest [s]", theory=rest_time(float(e)), measured=float(at))
         for e, (at, count) in zip(restitutions, found, strict=True)
     ]  # fmt: skip
-    arrays = {"restitution": restitutions, "rest": found[:, 0], "count": found[:, 1]}
+    arrays: dict[str, np.ndarray] = {}
     for e in (SHOWN,) if quick else (0.5, SHOWN, 0.9):
         for tolerance in TOLERANCES:
             how, times = event_loop(e, tolerance)
@@ -109,35 +109,19 @@ def measure(scene: Scene, quick: bool) -> Findings:
 
 @plotting.in_house_style
 def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
-    """Time of rest and number of impacts over 1 - e; time left to the accumulation over the events."""
-    figure, (left, right) = plotting.new_figure(1, 2, width=plotting.PAGE, height=0.072)
-    lost = 1.0 - arrays["restitution"]
-    exact = np.array([rest_time(1.0 - x) for x in lost])
-    left.plot(lost, exact, color=plotting.BLUE, label="time of rest, theory (s)")
-    for number, (values, words) in enumerate((
-        (np.maximum(np.abs(arrays["rest"] / exact - 1.0), 1e-17), "relative error of the time of rest"),
-        (arrays["rest"], "time of rest (s)"),
-        (arrays["count"], "impacts computed"),
-    )):  # fmt: skip
-        left.plot(lost, values, **plotting.points(number), markerfacecolor="none", label=words)
-    left.set_xscale("log")
-    left.set_yscale("log")
-    plotting.label(left.xaxis, "1 − e")
-    plotting.label(left.yaxis, "time of rest (s); number; relative error")
-    plotting.panel(left, 0, "the package: hops summed")
-    left.legend(loc="center right", bbox_to_anchor=(1.0, 0.47))
+    """Time left to the accumulation over the events of the loop."""
+    figure, axes = plotting.new_figure(width=plotting.COLUMN, height=0.065)
     for number, tolerance in enumerate(TOLERANCES):
         values = np.maximum(np.abs(arrays[f"events_{tolerance:g}_{SHOWN:g}"]), 1e-16)
         n, style = np.arange(1, values.size + 1), plotting.series(number)
-        right.plot(n, values, **style, markevery=(number, 5), markerfacecolor="none",
-                   label=f"tolerance {tolerance:g}")  # fmt: skip
-        right.plot(n[-1:], values[-1:], color=style["color"], marker="Xd"[number], markersize=8)
-    right.set_yscale("log")
-    plotting.label(right.xaxis, "number of the event")
-    plotting.label(right.yaxis, "time left to the accumulation", "s")
-    plotting.panel(right, 1, f"solve_ivp restarted, e = {SHOWN:g}")
-    right.legend(loc="upper right")
+        axes.plot(n, values, **style, markevery=(number, 5), markerfacecolor="none",
+                  label=f"tolerance {tolerance:g}")  # fmt: skip
+        axes.plot(n[-1:], values[-1:], color=style["color"], marker="Xd"[number], markersize=8)
+    axes.set_yscale("log")
+    plotting.label(axes.xaxis, "number of the event")
+    plotting.label(axes.yaxis, "time left to the accumulation", "s")
+    axes.legend(loc="upper right")
     return figure, (
-        "A bouncing ball. (a) Time of rest and impacts computed by the package; (b) solve_ivp "
-        "restarted at its events: at the large mark the ball falls through."
+        f"A bouncing ball, e = {SHOWN:g}, by solve_ivp restarted at its events: at the large mark the ball "
+        "falls through."
     )

@@ -41,16 +41,7 @@ from contact.integrators import CentralDifference
 from studies import plotting
 from studies.scene import Scene, hertz_of, model_of
 from studies.stability import Findings, Limit, threshold
-from studies.stability.lasting_contact import (
-    ROUNDED,
-    SHARE,
-    growth,
-    modal_stiffness,
-    plane,
-    refused,
-    show_plane,
-    stiffest,
-)
+from studies.stability.lasting_contact import ROUNDED, SHARE, growth, refused, stiffest
 
 __all__ = [
     "critical_stiffness", "draw", "flight", "free_body", "lasting", "measure", "rebound", "rebound_ratio",
@@ -166,47 +157,31 @@ def short_contacts(hertz: ContactLaw, lasts: float, quick: bool) -> tuple[list[L
 def measure(scene: Scene, quick: bool) -> Findings:
     """Limits on the modes of the scene, and the energy of a short contact as long as Hertz's."""
     model, hertz = model_of(scene), hertz_of(scene)
-    few = model.truncated(min(5, model.n_modes))
     counts = sorted({min(n, model.n_modes) for n in ((1, 5) if quick else (1, 2, 5, 15))})
     ratios = (0.0, 0.1, 1.0) if quick else (0.0, 0.01, 0.1, 0.3, 1.0, 3.0)
     short, arrays = short_contacts(hertz, hertz.contact_time(MASS, SPEED), quick)
     single = [flight(ratio, lagged) for lagged in (False, True) for ratio in ratios]
     contacts = [lasting(model.truncated(n), lagged) for lagged in (False, True) for n in counts]
-    angles, parts = np.linspace(0.05, 2.2, 10 if quick else 30), np.geomspace(1e-1, 1e7, 10 if quick else 30)
-    fine = 2.0 - np.geomspace(1e-8, 1.98, 200)
-    line = [critical_stiffness(few, x / float(few.omega[-1]), False) / modal_stiffness(few) for x in fine]
-    arrays |= {
-        "angle": angles, "part": parts, "limit_angle": fine, "limit_part": np.array(line),
-        "rate": plane(few, lambda h: CentralDifference(step=h), angles, parts),
-    }  # fmt: skip
     return Findings(limits=[*single, *contacts, *short], arrays=arrays)
 
 
 @plotting.in_house_style
 def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
-    """Limits over stiffness and step; energy of one contact."""
-    figure, (left, right) = plotting.new_figure(1, 2, width=plotting.PAGE, height=0.080)
-    show_plane(left, arrays["angle"], arrays["part"], arrays["rate"])
-    left.plot(arrays["limit_part"], arrays["limit_angle"], color="black", label="theory")
-    left.set_xlim(0.7 * arrays["part"][0], 1.4 * arrays["part"][-1])
-    plotting.label(left.yaxis, "h ω$_N$, step × highest free frequency")
-    plotting.panel(left, 0, "pressed on the stop")
+    """Energy of one short contact."""
+    figure, axes = plotting.new_figure(width=plotting.COLUMN, height=0.080)
     x, fine = arrays["frequency_step"], np.linspace(0.2, 1.985, 300)
     bounds = {"gain": 1.0 / (1.0 - 0.25 * fine**2) - 1.0, "loss": 0.25 * fine**2}
     for (part, bound), colour in zip(bounds.items(), (plotting.VERMILION, plotting.BLUE), strict=True):
-        right.plot(fine, bound, color=colour, label=f"bound of the {part}, linear")
+        axes.plot(fine, bound, color=colour, label=f"bound of the {part}, linear")
         for law, marker in (("linear", "o"), ("Hertz", "x")):
-            right.plot(x, arrays[f"{law}_{part}"], color=colour, marker=marker, linestyle="none",
-                         markersize=2.5, markerfacecolor="none", label=f"{part}, {law}")  # fmt: skip
-    right.set_yscale("log")
-    right.set_ylim(1e-3, 1e2)
-    plotting.label(right.xaxis, "step × contact frequency h ω$_c$")
-    plotting.label(right.yaxis, "largest relative change of energy")
-    plotting.panel(right, 1, "one short contact")
-    for axis in (left, right):
-        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=2)
+            axes.plot(x, arrays[f"{law}_{part}"], color=colour, marker=marker, linestyle="none",
+                      markersize=2.5, markerfacecolor="none", label=f"{part}, {law}")  # fmt: skip
+    axes.set_yscale("log")
+    axes.set_ylim(1e-3, 1e2)
+    plotting.label(axes.xaxis, "step × contact frequency h ω$_c$")
+    plotting.label(axes.yaxis, "largest relative change of energy")
+    figure.legend(loc="outside lower center", ncols=2)
     return figure, (
-        "Central difference. (a) Five modes pressed on the stop, and where a disturbance grows; (b) "
-        "energy made and lost in one short contact within the limit of stability, largest over the phases of "
-        "the grid: none if a linear contact takes a whole number of steps."
+        "Central difference: energy made and lost in one short contact within the limit of stability, "
+        "largest over the phases of the grid: none if a linear contact takes a whole number of steps."
     )

@@ -14,20 +14,16 @@ by sqrt(8 e): the limit is found to e = 1e-15 where the eigenvalues are.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from beam import ModalModel
 from contact import ImpactOscillator, LinearContact, State, StepTooLarge, Stop, simulate
 from contact.integrators import CentralDifference, Splitting
-from studies import plotting
 from studies.stability import threshold
 
-__all__ = ["ROUNDED", "SHARE", "Stepped", "growth", "modal_stiffness", "plane", "pressed", "refused",
-           "settled", "show_plane", "stiffest"]  # fmt: skip
+__all__ = ["ROUNDED", "SHARE", "Stepped", "growth", "pressed", "refused", "settled", "stiffest"]
 
 Stepped = CentralDifference | Splitting
 """Methods with a fixed step and a limit that can be overridden."""
@@ -39,11 +35,6 @@ SHARE = 0.01
 """How far beyond a limit a refusal is tried, relative."""
 SLOPE = 1e-4
 """Size of the displacements from which the slopes of a step are taken, relative to the state."""
-
-
-def modal_stiffness(model: ModalModel) -> float:
-    """Stiffness of mode 1 at the tip, omega_1^2/phi_1^2 [N/m]."""
-    return float(model.omega[0] ** 2 / model.phi[0] ** 2)
 
 
 def pressed(model: ModalModel, stiffness: float) -> tuple[ImpactOscillator, State]:
@@ -107,25 +98,3 @@ def stiffest(model: ModalModel, method: Stepped, theory: float) -> tuple[float |
     ladder = (0.5 * theory, 1.5 * theory)
     found = threshold(lambda k: growth(*pressed(model, k), method) > ROUNDED, ladder, relative=1e-8)
     return found, refused(*pressed(model, (1 + SHARE) * theory), method)
-
-
-def plane(
-    model: ModalModel, make: Callable[[float], Stepped], angles: np.ndarray, parts: np.ndarray
-) -> np.ndarray:
-    """Growth per step for steps h omega_N in `angles` and stiffnesses `parts` of that of mode 1, as rows and
-    columns."""
-    highest, modal = float(model.omega[-1]), modal_stiffness(model)
-    return np.array([
-        [growth(*pressed(model, float(k) * modal), make(float(x) / highest)) for k in parts] for x in angles
-    ])  # fmt: skip
-
-
-def show_plane(axes: Axes, angles: np.ndarray, parts: np.ndarray, rate: np.ndarray) -> None:
-    """Points where disturbances of the pressed modes grow or not, over contact stiffness and step."""
-    k, h = np.meshgrid(parts, angles)
-    for where, marker, colour, words in ((rate <= ROUNDED, ".", plotting.BLUE, "do not grow"),
-                                         (rate > ROUNDED, "x", plotting.VERMILION, "grow")):  # fmt: skip
-        axes.plot(k[where], h[where], linestyle="none", marker=marker, markersize=2.6, markeredgewidth=0.6,
-                  color=colour, label=f"disturbances {words}")  # fmt: skip
-    axes.set_xscale("log")
-    plotting.label(axes.xaxis, "contact stiffness / modal stiffness")

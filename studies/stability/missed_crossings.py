@@ -16,8 +16,7 @@ these are delta gap >= (a h^2/2) s (s - 1) and s > 1/(1 + e); so, with x (1 + x)
 That knows of the looks alone. A motion that is not exact puts the peak a little too high or too low: by
 (h omega)^2/8 for central difference, by its tolerance with an error control. Samples of exact flights look at
 the turning points as well, and miss a crossing only where the tip turns twice between two samples: they have
-no formula. Tried on the lowest mode of the scene and on its first six, with a fifth of the peak in modes 2 to
-6. Fixed steps are a hundredth of the period for one mode and 0.5/omega_max for six.
+no formula. Tried on the lowest mode of the scene; fixed steps are a hundredth of its period.
 """
 
 from __future__ import annotations
@@ -46,14 +45,13 @@ __all__ = ["RESTITUTION", "Trial", "draw", "half_missed", "invented_by_percussio
 OVERSHOOTS = 10.0 ** -np.arange(1, 13)
 FINE = np.geomspace(1e-12, 1e-1, 276)
 """Where the formulas are drawn, 25 points a decade."""
-MODES = {"one mode": 1, "six modes": 6}
-PHASES = {"one mode": 64, "six modes": 32}
+PHASES = 64
 """Runs for each overshoot. A share is good to 0.5/sqrt(runs) for a solver whose steps do not keep to a grid,
-and the overshoot at which it is one half to a factor exp(2/sqrt(runs)): 1.3 and 1.4."""
+and the overshoot at which it is one half to a factor exp(2/sqrt(runs)): 1.3."""
 LOOKED_AT = 12
 """Flights in which the spacing of a solver's looks around the peak is measured."""
-RESTITUTION, RINGING = 0.5, 0.2
-"""Of the stops with Newton's law; part of the peak that the modes above the first make up [1]."""
+RESTITUTION = 0.5
+"""Of the stops with Newton's law [1]."""
 
 Row = partial(Limit, family="missed_crossings")
 Touch = Callable[[float, float], float]
@@ -100,16 +98,16 @@ def share_wrong(swing: Swing, touch: Touch, overshoot: float, *, runs: int, slac
     return wrong / runs
 
 
-def swing_of(scene: Scene, words: str, method: Integrator | None = None) -> Swing:
-    """The first modes of the scene before a stop with a law that `method` knows, soft enough for any step."""
-    model = model_of(scene).truncated(MODES[words])
+def swing_of(scene: Scene, method: Integrator | None = None) -> Swing:
+    """The lowest mode of the scene before a stop with a law that `method` knows, soft enough for any step."""
+    model = model_of(scene).truncated(1)
     soft, gap = 0.01 * float((model.omega[0] / model.phi[0]) ** 2), scene.stop.gap_m
     laws: tuple[ContactLaw, ...] = (
         LinearContact(stiffness=soft), NewtonRestitution(local_restitution=RESTITUTION),
         HertzContact(stiffness=soft / math.sqrt(gap)),
     )  # fmt: skip
     law = next(law for law in laws if method is None or method.accepts(law.code))
-    return Swing.of(model, Stop(gap=gap, law=law), RINGING)
+    return Swing.of(model, Stop(gap=gap, law=law), 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -128,11 +126,11 @@ class Trial:
     """Theory of the undershoot over gap down to which it invents touches [1]."""
 
 
-def of_package(scene: Scene, words: str, kind: type[Integrator], options: Mapping[str, float]) -> Trial:
+def of_package(scene: Scene, kind: type[Integrator], options: Mapping[str, float]) -> Trial:
     """A method of the package with those of the `options` that it knows."""
     known = {entry.name for entry in fields(kind)}  # type: ignore[arg-type]
     method = kind(**{name: value for name, value in options.items() if name in known})
-    swing, step = swing_of(scene, words, method), options["step"]
+    swing, step = swing_of(scene, method), options["step"]
     percussions, invents = isinstance(swing.oscillator.stop.law, NewtonRestitution), None
     if percussions:
         invents = invented_by_percussions(step, swing.pace)
@@ -146,12 +144,12 @@ def of_package(scene: Scene, words: str, kind: type[Integrator], options: Mappin
     )  # fmt: skip
 
 
-def of_scipy(scene: Scene, words: str, solver: str, tolerance: float) -> Trial:
+def of_scipy(scene: Scene, solver: str, tolerance: float) -> Trial:
     """A solver of SciPy; the spacings are those of its steps around the peak in flights that meet nothing.
 
     Absolute tolerances are those of one energy, as in ``studies.peers``.
     """
-    swing, spacings = swing_of(scene, words), []
+    swing, spacings = swing_of(scene), []
     model, n = swing.oscillator.model, swing.oscillator.n_modes
     for lead in swing.leads(LOOKED_AT).tolist():
         start = swing.start(-0.01, lead)
@@ -170,20 +168,19 @@ def of_scipy(scene: Scene, words: str, solver: str, tolerance: float) -> Trial:
                  spacings=np.array(spacings), touch=partial(swing.touch, method))  # fmt: skip
 
 
-def trials(scene: Scene, words: str, quick: bool) -> Iterator[Trial]:
+def trials(scene: Scene, quick: bool) -> Iterator[Trial]:
     """Every method of the package, and SciPy's solvers."""
-    omega = model_of(scene).omega[: MODES[words]]
-    step = min(0.02 * math.pi / float(omega[0]), 0.5 / float(omega.max()))
+    step = 0.02 * math.pi / float(model_of(scene).omega[0])
     options = {"step": 2.0 * step if quick else step, "rho": 0.8, "points": 24}
     for kind in dict.fromkeys(INTEGRATORS.values()):
-        yield of_package(scene, words, kind, options)
-    yield of_package(scene, words, SampledFlight, {**options, "points": 96})
-    yield of_scipy(scene, words, "DOP853", 1e-8)
+        yield of_package(scene, kind, options)
+    yield of_package(scene, SampledFlight, {**options, "points": 96})
+    yield of_scipy(scene, "DOP853", 1e-8)
     for name, tolerance in () if quick else (("DOP853", 1e-12), ("RK45", 1e-8), ("LSODA", 1e-8)):
-        yield of_scipy(scene, words, name, tolerance)
+        yield of_scipy(scene, name, tolerance)
 
 
-def tried(trial: Trial, words: str, runs: int) -> tuple[list[Limit], np.ndarray]:
+def tried(trial: Trial, runs: int) -> tuple[list[Limit], np.ndarray]:
     """Rows of one method, and the shares missed over `OVERSHOOTS`; what follows two decades in which nothing
     is seen is not tried."""
     pace, spacings = trial.swing.pace, trial.spacings
@@ -198,56 +195,53 @@ def tried(trial: Trial, words: str, runs: int) -> tuple[list[Limit], np.ndarray]
         shares.append(1.0 if shares[-2:] == [1.0, 1.0] else wrong(overshoot))
     row = partial(Row, method=trial.label, refused=None if trial.kind == "exact" else False)
     rows = [row(
-        case=f"half of the crossings missed, {words}", parameter="overshoot / gap [1]",
+        case="half of the crossings missed, one mode", parameter="overshoot / gap [1]",
         theory=half_missed(spacings, pace, trial.percussions) if spacings.size else None,
         measured=threshold(lambda depth: wrong(depth) > 0.5, OVERSHOOTS.tolist(), relative=0.05),
     )]  # fmt: skip
     if trial.kind != "control":  # an error control errs by less than it misses
         rows.append(row(
-            case=f"touches invented, {words}", parameter="undershoot / gap [1]", theory=trial.invents,
+            case="touches invented, one mode", parameter="undershoot / gap [1]", theory=trial.invents,
             measured=threshold(lambda depth: wrong(-depth) > 0.0, OVERSHOOTS.tolist(), relative=0.05),
         ))  # fmt: skip
     return rows, np.array(shares)
 
 
 def measure(scene: Scene, quick: bool) -> Findings:
-    """Crossings missed and touches invented by every method, on one mode and on six."""
+    """Crossings missed and touches invented by every method."""
     limits: list[Limit] = []
     arrays: dict[str, np.ndarray] = {"overshoot": OVERSHOOTS, "fine": FINE}
-    for words, phases in PHASES.items():
-        for trial in trials(scene, words, quick):
-            rows, shares = tried(trial, words, 6 if quick else phases)
-            limits += rows
-            arrays[f"{words}|{trial.kind}|{trial.label}"] = shares
-            if trial.spacings.size:
-                theory = share_missed(FINE, trial.spacings, trial.swing.pace, trial.percussions)
-                arrays[f"{words}|theory|{trial.label}"] = theory
+    for trial in trials(scene, quick):
+        rows, shares = tried(trial, 6 if quick else PHASES)
+        limits += rows
+        arrays[f"{trial.kind}|{trial.label}"] = shares
+        if trial.spacings.size:
+            arrays[f"theory|{trial.label}"] = share_missed(
+                FINE, trial.spacings, trial.swing.pace, trial.percussions
+            )
     return Findings(limits=limits, arrays=arrays)
 
 
 @plotting.in_house_style
 def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
-    """Share missed over overshoot: one mode above, six below; error control left, fixed steps right."""
-    figure, axes = plotting.new_figure(2, 2, width=plotting.PAGE, height=0.150, sharex=True, sharey=True)
+    """Share missed over overshoot: error control left, fixed steps right."""
+    figure, axes = plotting.new_figure(1, 2, width=plotting.PAGE, height=0.095, sharey=True)
     overshoot, titles = arrays["overshoot"], {"control": "error control", "step": "fixed steps, samples"}
-    for row, words in enumerate(PHASES):
-        exact = np.max([arrays[key] for key in arrays if f"{words}|exact|" in key], axis=0)
-        axes[row, 1].plot(overshoot, 100 * exact, **plotting.series(0), label="exact methods")
-        for column, (kind, title) in enumerate(titles.items()):
-            axis = axes[row, column]
-            labels = [key.split("|")[2] for key in arrays if f"{words}|{kind}|" in key]
-            for number, label in enumerate(labels, start=column):
-                shares, theory = arrays[f"{words}|{kind}|{label}"], arrays.get(f"{words}|theory|{label}")
-                axis.plot(overshoot, 100 * shares, **plotting.points(number), label=label)
-                if theory is not None:
-                    axis.plot(arrays["fine"], 100 * theory, color=plotting.PALETTE[number], linewidth=0.7)
-            plotting.panel(axis, 2 * row + column, f"{words}, {title}")
-            axis.set_xscale("log")
-            axis.set_ylim(-4.0, 104.0)
-    for column in (0, 1):
-        plotting.label(axes[column, 0].yaxis, "crossings missed", "%")
-        plotting.label(axes[1, column].xaxis, "overshoot / gap")
-        axes[1, column].legend(loc="upper center", bbox_to_anchor=(0.5, -0.25), ncols=2)
+    exact = np.max([arrays[key] for key in arrays if key.startswith("exact|")], axis=0)
+    axes[1].plot(overshoot, 100 * exact, **plotting.series(0), label="exact methods")
+    for column, (axis, (kind, title)) in enumerate(zip(axes, titles.items(), strict=True)):
+        labels = [key.split("|")[1] for key in arrays if key.startswith(f"{kind}|")]
+        for number, label in enumerate(labels, start=column):
+            axis.plot(overshoot, 100 * arrays[f"{kind}|{label}"], **plotting.points(number), label=label)
+            if f"theory|{label}" in arrays:
+                axis.plot(arrays["fine"], 100 * arrays[f"theory|{label}"], color=plotting.PALETTE[number],
+                          linewidth=0.7)  # fmt: skip
+        plotting.panel(axis, column, title)
+        axis.set_xscale("log")
+        axis.set_ylim(-4.0, 104.0)
+        plotting.label(axis.xaxis, "overshoot / gap")
+        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.25), ncols=2)
+    plotting.label(axes[0].yaxis, "crossings missed", "%")
     return figure, (
         "Share of the crossings missed against their depth; lines: theory, from the spacing of the looks. "
         "The number beside a solver is its tolerance."

@@ -3,8 +3,7 @@
 Claim: on these problems no outside solver and no method with a time step is both faster and as accurate as
 the exact method that `simulate` takes by default; the letter's own scheme, the same flights with a search
 that proves nothing (note [11]), costs about the same, and so does heyoka where one soft contact lasts as long
-as the run. With up to eight modes, what is left out of the beam weighs more than a time step of a quarter of
-the contact.
+as the run.
 
 Four problems: Eq. (1) with the hard wall; the scene's beam with a linear contact that lasts as long as
 Hertz's; the same with Hertz's contact; the beam of code_aster's SDNL32 swung on a spring. For every method,
@@ -15,13 +14,13 @@ the package's own and outside solvers, and every setting:
     cost      time per drive period along the settled orbit
     against   a Taylor series in extended precision, whose own error is stated
 
-Then the cheapest setting of each method for two errors, and the error of a truncated beam beside that of the
-time step. A method that fails at a setting is a row that says why; a setting at which a
-drive period would take longer than half a second is a row that says so. Timings are taken one at a time, so
-that --workers makes no difference.
+Then the cheapest setting of each method for two errors. A method that fails at a setting is a row that says
+why; a setting at which a drive period would take longer than half a second is a row that says so. Timings are
+taken one at a time, so that --workers makes no difference. What the modes left out of the beam weigh beside
+all this is told by `studies.adequacy`.
 
-Run:     python -m studies.work_precision     6 min, --quick 20 s
-Writes:  rows.csv, cheapest.csv, judgements.csv, model_error.csv; work_precision and missed (png, pdf)
+Run:     python -m studies.work_precision     5 min, --quick 20 s
+Writes:  rows.csv, cheapest.csv; work_precision (png, pdf)
 """
 
 from __future__ import annotations
@@ -42,22 +41,15 @@ from studies.work_precision.measures import (
     rows_of,
 )
 from studies.work_precision.methods import SAMPLED, sweeps_for
-from studies.work_precision.model_error import model_errors
 from studies.work_precision.problems import MODES, problems_of
 
-__all__ = ["Cheapest", "Judgement", "cheapest_of", "judgement_of", "work_precision"]
+__all__ = ["Cheapest", "cheapest_of", "work_precision"]
 
 SLOWEST_QUICK = 0.01
 """Longest time for one drive period with --quick [s]."""
 
 MODES_QUICK = 4
 """Modes of the beam with --quick."""
-
-TIE = 1.25
-"""Ratio of costs within which two methods count as equally fast: timings repeat to a fifth."""
-
-ROUNDED = 1e-13
-"""Errors of mode 1 below this are rounding, and count as equal."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,33 +64,16 @@ class Cheapest:
     missed_at_1e_8: float | None
 
 
-@dataclass(frozen=True, kw_only=True)
-class Judgement:
-    """The default on one problem, and the rows with no larger error (of rounding, or of the default) at less
-    than 1/TIE of its cost."""
-
-    problem: str
-    error: float
-    us_per_period: float
-    missed: float | None
-    faster: list[str]
-    reference_error: float
-
-
 @study()
 def work_precision(scene: Scene, run: Run) -> Mapping[str, object]:
     """Measure, store, draw."""
     problems = problems_of(harmonic(scene), MODES_QUICK if run.quick else MODES)
     references = [reference_of(one) for one in run.track(problems, "references")]
     rows = measured(references, run)
-    model = model_errors(scene, run)
-    judgements = [one for one in (judgement_of(reference, rows) for reference in references) if one]
     run.table("rows", rows, "Every method at every setting.", show=())
     run.table(
         "cheapest", cheapest_of(rows), "Time per drive period [us] for an error of mode 1, crossings missed."
     )
-    run.table("model_error", model, "Truncated beam: error of mode 1, and the step that errs as much.")
-    run.table("judgements", judgements, "The exact method against all others.")
     for row in rows:
         if row.default and row.failed:
             run.failed(f"{row.problem}, {row.method}", row.failed)
@@ -110,9 +85,9 @@ def work_precision(scene: Scene, run: Run) -> Mapping[str, object]:
 
     run.figure("work_precision", figures.draw_errors(rows, references), "Error of mode 1 past the first "
                "collision against time per drive period; black star, the exact method.")  # fmt: skip
-    run.figure("missed", figures.draw_missed(rows, problems), "Share of shallow crossings that is missed.")
     return {
-        "rows": rows, "judgements": judgements, "model_error": model, "missing_solvers": missing_solvers(),
+        "rows": rows, "missing_solvers": missing_solvers(),
+        "reference_errors": {one.problem.name: one.own_error for one in references},
     }  # fmt: skip
 
 
@@ -140,24 +115,6 @@ def cheapest_of(rows: Sequence[Row]) -> list[Cheapest]:
             us_for_1e_8=fine.us_per_period if fine else None, missed_at_1e_8=fine.missed if fine else None,
         ))  # fmt: skip
     return found
-
-
-def judgement_of(reference: Reference, rows: Sequence[Row]) -> Judgement | None:
-    """The default on one problem; None if it failed."""
-    mine = [row for row in rows if row.problem == reference.problem.name]
-    default = next(row for row in mine if row.default)
-    error, cost = default.error, default.us_per_period
-    if error is None or cost is None:
-        return None
-    return Judgement(
-        problem=default.problem, error=error, us_per_period=cost, missed=default.missed,
-        faster=[
-            row.named for row in mine
-            if row.error is not None and row.us_per_period is not None
-            and row.error <= max(error, ROUNDED) and row.us_per_period * TIE < cost
-        ],
-        reference_error=reference.own_error,
-    )  # fmt: skip
 
 
 def judge(run: Run, rows: Sequence[Row]) -> None:

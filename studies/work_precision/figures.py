@@ -17,9 +17,8 @@ from matplotlib.figure import Figure
 from studies.plotting import MARKERS, PAGE, PALETTE, in_house_style, label, new_figure, panel
 from studies.work_precision.measures import Reference, Row
 from studies.work_precision.methods import EXACT, OUTSIDE, STEPPED
-from studies.work_precision.problems import Problem
 
-__all__ = ["draw_errors", "draw_missed"]
+__all__ = ["draw_errors"]
 
 FLOOR = 1e-17
 """Errors that vanish are drawn here."""
@@ -48,25 +47,15 @@ def styles_of(rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
     return found
 
 
-def draw_methods(axes: Axes, rows: Sequence[Row], styles: Styles, measure: str) -> None:
+def draw_methods(axes: Axes, rows: Sequence[Row], styles: Styles) -> None:
     """All methods of one problem in one panel."""
     for name, style in styles.items():
-        values = [(row.us_per_period, getattr(row, measure)) for row in rows if row.method == name]
+        values = [(row.us_per_period, row.error) for row in rows if row.method == name]
         points = [point for point in values if None not in point]
         if points:
             cost, found = np.array(points).T
-            axes.plot(cost, found if measure == "missed" else np.maximum(found, FLOOR), label=name, **style)
+            axes.plot(cost, np.maximum(found, FLOOR), label=name, **style)
     axes.set_xscale("log")
-
-
-def legend(figure: Figure, axes: Sequence[Axes], columns: int, order: Sequence[str] = ()) -> None:
-    """One legend below all panels, in the order given, others first."""
-    handles: dict[str, Any] = {}
-    for axis in axes:
-        for handle, name in zip(*axis.get_legend_handles_labels(), strict=True):
-            handles.setdefault(name, handle)
-    names = sorted(handles, key=lambda name: order.index(name) if name in order else -1)
-    figure.legend([handles[name] for name in names], names, loc="outside lower center", ncols=columns)
 
 
 @in_house_style
@@ -77,25 +66,15 @@ def draw_errors(rows: Sequence[Row], references: Sequence[Reference]) -> Figure:
     for number, (reference, axis) in enumerate(zip(references, axes.flat, strict=False)):
         problem = reference.problem
         mine = [row for row in rows if row.problem == problem.name]
-        draw_methods(axis, mine, styles, "error")
+        draw_methods(axis, mine, styles)
         axis.set_yscale("log")
         own = math.ceil(math.log10(reference.own_error))
         panel(axis, number, f"{problem.title}\nreference good to 10$^{{{own}}}$")
         label(axis.xaxis, f"time per {problem.unit}", "µs")
         label(axis.yaxis, "error of mode 1")
-    legend(figure, axes.flat, 4, list(styles))
-    return figure
-
-
-@in_house_style
-def draw_missed(rows: Sequence[Row], problems: Sequence[Problem]) -> Figure:
-    """Missed crossings against time, a panel a driven problem."""
-    driven, styles = [one for one in problems if one.oscillator.drive is not None], styles_of(rows)
-    figure, axes = new_figure(1, len(driven), width=PAGE, height=0.085, sharey=True)
-    for number, (problem, axis) in enumerate(zip(driven, axes, strict=True)):
-        draw_methods(axis, [row for row in rows if row.problem == problem.name], styles, "missed")
-        panel(axis, number, problem.title.replace("beam, ", ""))
-        label(axis.xaxis, f"time per {problem.unit}", "µs")
-    label(axes[0].yaxis, "crossings missed (share)")
-    legend(figure, axes, 4, list(styles))
+    handles: dict[str, Any] = {}
+    for axis in axes.flat:
+        handles |= dict(reversed(pair) for pair in zip(*axis.get_legend_handles_labels(), strict=True))
+    names = [name for name in styles if name in handles]
+    figure.legend([handles[name] for name in names], names, loc="outside lower center", ncols=4)
     return figure

@@ -80,11 +80,6 @@ class Row:
         """Whether `simulate` takes it by default."""
         return self.family == EXACT
 
-    @property
-    def named(self) -> str:
-        """Method and setting."""
-        return self.method if self.default else f"{self.method}, {self.setting}"
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Reference:

@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 from contact.event_loop import STATE
 from contact.flight.elementary import exponential, sine_cosine
 from contact.flight.modal_flow import loaded_drift, tip_state
-from contact.flight.motion import Motion, motion_of
+from contact.flight.motion import LOAD, Motion, motion_of
 from contact.laws import HuntCrossley
 from contact.touch import hertz
 from contact.touch.series import new_series
@@ -66,7 +66,7 @@ def contact_by_solver(motion: Motion, u: np.ndarray, v: np.ndarray) -> float:
         r, t, u, v = x[0], x[1], x[2 : 2 + n], x[2 + n :]
         speed = phi @ v + w * (motion.tip_sine * math.cos(w * t) - motion.tip_cosine * math.sin(w * t))
         force = motion.number0 * r**3 * (1.0 + motion.number1 * speed)
-        pull = motion.load - motion.decay * v - motion.omega**2 * u - phi * force
+        pull = motion.row(LOAD) - motion.decay * v - motion.omega**2 * u - phi * force
         return np.concatenate([[0.5 * speed, r], r * v, r * pull])
 
     def released(sigma: float, x: np.ndarray) -> float:
@@ -107,7 +107,7 @@ def test_a_contact_takes_a_loaded_mode_of_zero_frequency():
     duration, _work, _steps = contact_by_series(motion, u, v)
     assert duration == pytest.approx(contact_by_solver(motion, other_u, other_v), rel=1e-11)
     np.testing.assert_allclose(v, other_v, rtol=0, atol=1e-13)
-    _du, dv = loaded_drift(motion.decay[0], motion.load[0], duration)
+    _du, dv = loaded_drift(motion.decay[0], motion.row(LOAD)[0], duration)
     assert abs(dv) > 1e-6  # the load is felt
 
 

@@ -117,7 +117,6 @@ def motions(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], ob
             driven, contact.simulate(driven, state, periods=5), unfinished="drop"
         )
         yield "first_collision", lambda state=state: contact.first_collision(driven, state, periods=5)
-        yield "StroboscopicMap.step", lambda state=state: strobed.step(state)
         yield "StroboscopicMap.orbit", lambda state=state: strobed.orbit(state, 20)
         yield "StroboscopicMap.advance", lambda state=state: strobed.advance(state, 0.03)
         yield "StroboscopicMap.coordinates", lambda state=state: strobed.coordinates(state)

@@ -14,7 +14,7 @@ from beam import ModalModel
 from contact.drive import HarmonicDrive
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import flow_matrix, mode_acceleration, propagate, tip_rounding, tip_state
-from contact.flight.motion import damped_frequency
+from contact.flight.motion import COSINE, OFFSET, SINE, damped_frequency
 from contact.laws import NewtonRestitution
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
@@ -239,17 +239,17 @@ def test_flight_of_many_modes_is_the_exponential_of_the_whole_system(name):
     for start, time in ((0.0, 1e-3), (0.01, 0.02), (0.04, 0.006), (0.0, 0.0465)):
         q, v = generator.normal(size=5) * 1e-3, generator.normal(size=5) * 0.1
         s, c = math.sin(motion.drive * start), math.cos(motion.drive * start)
-        u = q - motion.offset - motion.sine * s - motion.cosine * c
-        du = v - motion.drive * (motion.sine * c - motion.cosine * s)
+        u = q - motion.row(OFFSET) - motion.row(SINE) * s - motion.row(COSINE) * c
+        du = v - motion.drive * (motion.row(SINE) * c - motion.row(COSINE) * s)
         propagate(motion, u, du, time, u, du)
         s, c = math.sin(motion.drive * (start + time)), math.cos(motion.drive * (start + time))
         exact = np.array([exact_state(system, k, q[k], v[k], start, time) for k in range(5)])
         size = np.max(np.abs(exact), axis=0)
-        displacement = u + motion.offset + motion.sine * s + motion.cosine * c
-        velocity = du + motion.drive * (motion.sine * c - motion.cosine * s)
+        displacement = u + motion.row(OFFSET) + motion.row(SINE) * s + motion.row(COSINE) * c
+        velocity = du + motion.drive * (motion.row(SINE) * c - motion.row(COSINE) * s)
         acceleration = (
             np.array([mode_acceleration(motion, k, u[k], du[k]) for k in range(5)])
-            - motion.drive**2 * (motion.sine * s + motion.cosine * c)
+            - motion.drive**2 * (motion.row(SINE) * s + motion.row(COSINE) * c)
         )  # fmt: skip
         for computed, column in zip((displacement, velocity, acceleration), range(3), strict=True):
             assert np.max(np.abs(computed - exact[:, column])) < 1e-12 * size[column]
@@ -352,7 +352,7 @@ def test_steady_motion_stays_steady():
     """Started on its steady motion the spring shows the same state at each of 2000 strobes, to rounding."""
     system = oscillator([150.0, 960.0], [3.56, 20.0], drive=HarmonicDrive(frequency=21.5, amplitude=1e-4))
     motion = system.motion()
-    start = State(displacement=motion.cosine, velocity=motion.drive * motion.sine)
+    start = State(displacement=motion.row(COSINE), velocity=motion.drive * motion.row(SINE))
     run = simulate(system, start, periods=2000)
-    assert np.max(np.abs(run.strobe_displacement - motion.cosine)) == 0.0
-    assert np.max(np.abs(run.strobe_velocity - motion.drive * motion.sine)) == 0.0
+    assert np.max(np.abs(run.strobe_displacement - motion.row(COSINE))) == 0.0
+    assert np.max(np.abs(run.strobe_velocity - motion.drive * motion.row(SINE))) == 0.0

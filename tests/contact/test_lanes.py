@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from contact.flight.modal_flow import U, V, flow, load_state, mode_flow, new_flight
-from contact.flight.motion import Motion, motion_of
+from contact.flight.motion import LOAD, Motion, motion_of
 from contact.laws import NewtonRestitution
 
 
@@ -37,6 +37,6 @@ def test_modes_carried_side_by_side_are_those_carried_one_by_one(modes, damping,
         flow(motion, room, 0, room.shape[1], t)
         for k in range(modes):
             x, y = mode_flow(motion.modes, k, u[k], v[k], t)
-            scale = abs(v[k]) + size[k] * abs(u[k]) + abs(motion.load[k]) * t
+            scale = abs(v[k]) + size[k] * abs(u[k]) + abs(motion.row(LOAD)[k]) * t
             assert abs(room[U, k] - x) * size[k] <= 1e-15 * scale
             assert abs(room[V, k] - y) <= 1e-15 * scale

@@ -12,7 +12,7 @@ from scipy.linalg import expm
 from beam import ModalModel
 from contact.drive import HarmonicDrive
 from contact.errors import StepTooLarge
-from contact.flight.motion import Motion
+from contact.flight.motion import COSINE, SINE, Motion
 from contact.integrators.splitting import (
     COMPOSITIONS,
     Splitting,
@@ -468,8 +468,8 @@ def test_kicks_see_depth_and_rate_of_the_driven_tip():
     motion, clock = oscillator.motion(), 0.0123
     u, v = np.array([1e-4, 2e-5, -1e-5, 3e-6]), np.array([0.01, -0.02, 0.03, 0.01])
     angle = motion.drive * clock
-    q = u + motion.sine * math.sin(angle) + motion.cosine * math.cos(angle)
-    rate = v + motion.drive * (motion.sine * math.cos(angle) - motion.cosine * math.sin(angle))
+    q = u + motion.row(SINE) * math.sin(angle) + motion.row(COSINE) * math.cos(angle)
+    rate = v + motion.drive * (motion.row(SINE) * math.cos(angle) - motion.row(COSINE) * math.sin(angle))
     assert tip_at(motion, u, clock) == pytest.approx(
         (PHI @ q - 0.002, math.sin(angle), math.cos(angle)), rel=1e-12
     )

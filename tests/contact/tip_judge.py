@@ -15,7 +15,7 @@ from contact.drive import HarmonicDrive
 from contact.flight.crossing import CROSSES, FREE, GRAZE_TOLERANCE, GRAZES, first_crossing
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import tip_rounding
-from contact.flight.motion import Motion
+from contact.flight.motion import LOAD, Motion
 from contact.laws import NewtonRestitution
 from contact.oscillator import ImpactOscillator
 from contact.stop import Stop
@@ -40,7 +40,7 @@ class Signal:
             a, b, phi = Real(u[k]), Real(v[k]), Real(motion.phi[k])
             square = (o - c / 2) * (o + c / 2)
             if o == 0 and c == 0:
-                polynomial += phi * np.array([a, b, Real(motion.load[k]) / 2])
+                polynomial += phi * np.array([a, b, Real(motion.row(LOAD)[k]) / 2])
             elif square > 0:
                 d = np.sqrt(square)
                 terms.append((np.clongdouble(-c / 2 + 1j * d), phi * (a - 1j * (b + c / 2 * a) / d)))
@@ -48,7 +48,7 @@ class Signal:
                 d = np.sqrt(-square)
                 fast, slow = -c / 2 - d, -o * o / (c / 2 + d)
                 if o == 0:  # constant load against a drag: terminal velocity g/c
-                    g = Real(motion.load[k])
+                    g = Real(motion.row(LOAD)[k])
                     polynomial += phi * np.array([a + (b - g / c) / c, g / c, Real(0)])
                     terms.append((np.clongdouble(-c), np.clongdouble(-phi * (b - g / c) / c)))
                 else:

@@ -21,30 +21,25 @@ from contact.integrators import (
     CentralDifference,
     Exact,
     GeneralisedAlpha,
-    MoreauJean,
     Splitting,
 )
 from studies.scene import Scene, beam_at, model_of, read_scene
 from studies.stability import explicit, splitting, threshold
-from studies.stability.__main__ import FAMILIES
 from studies.stability.false_restitution import ElasticCollision, outcomes
 from studies.stability.implicit_energy import (
     FORCE,
     STIFF_GROWTH,
     evenly,
-    history,
-    kept,
     single_contact,
     stiff_contacts,
-    undamped,
 )
-from studies.stability.lasting_contact import ROUNDED, growth, modal_stiffness, plane, pressed
+from studies.stability.lasting_contact import ROUNDED, growth, pressed
 
 MODEL = ModalModel(
     omega=[154.0, 960.0, 2450.0], decay_rate=[3.56, 20.0, 55.0], phi=[8.0, 4.7, 3.6],
     participation=[0.1, 0.05, 0.03],
 )  # fmt: skip
-STILL = undamped(MODEL)
+STILL = replace(MODEL, decay_rate=np.zeros(3))
 
 
 @pytest.fixture(scope="module")
@@ -90,11 +85,6 @@ def test_a_run_grows_as_the_slopes_of_a_step_say():
     assert (away[-1] - away[-51]) / 50 == pytest.approx(growth(oscillator, rest, method), rel=1e-3)
 
 
-@pytest.mark.parametrize("name", FAMILIES)
-def test_every_family_derives_its_limits(name):
-    assert len(FAMILIES[name].__doc__ or "") > 500
-
-
 # central difference
 
 
@@ -137,11 +127,15 @@ def test_lagged_damping_has_a_sharp_limit_in_contact_and_the_package_refuses_at_
 
 def test_in_the_plane_of_step_and_stiffness_the_motion_agrees_with_theory():
     angles, parts = np.linspace(0.1, 2.3, 7), np.geomspace(1e-1, 1e6, 6)
-    rate = plane(MODEL, lambda h: CentralDifference(step=h), angles, parts)
+    stiffness = parts * float(MODEL.omega[0] ** 2 / MODEL.phi[0] ** 2)
+    rate = np.array([
+        [growth(*pressed(MODEL, k), CentralDifference(step=x / MODEL.omega[-1])) for k in stiffness]
+        for x in angles
+    ])  # fmt: skip
     for x, row in zip(angles, rate, strict=True):
         limit = explicit.critical_stiffness(MODEL, float(x / MODEL.omega[-1]), False) if x < 2 else 0.0
-        clear = np.abs(parts * modal_stiffness(MODEL) / max(limit, 1e-9) - 1) > 0.02
-        assert np.array_equal((row > ROUNDED)[clear], (parts * modal_stiffness(MODEL) > limit)[clear])
+        clear = np.abs(stiffness / max(limit, 1e-9) - 1) > 0.02
+        assert np.array_equal((row > ROUNDED)[clear], (stiffness > limit)[clear])
 
 
 @pytest.mark.parametrize("x", [0.9, 1.2, 1.8])
@@ -184,11 +178,6 @@ def test_order_2_fails_where_the_closed_form_says_and_is_refused_there(count, an
     method = Splitting(step=angle / float(model.omega[-1]))
     assert method.critical_stiffness(pressed(model, 1.0)[0].motion()) == pytest.approx(row.theory, rel=1e-9)
     simulate(*pressed(model, 0.99 * row.theory), duration=40 * method.step, method=method)
-
-
-def test_beyond_pi_a_resonance_of_step_and_contact_sets_the_limit():
-    row = splitting.limit(STILL.truncated(1), 4.0)
-    assert row.measured == pytest.approx(row.theory, rel=1e-6) and row.refused is True
 
 
 def test_order_4_fails_by_little_in_a_narrow_band_above_its_limit():
@@ -259,13 +248,6 @@ def test_the_exact_motion_keeps_the_energy_that_the_trapezoidal_rule_raises():
         stored = 0.5 * law.stiffness * max(0.0, float(STILL.phi @ end.displacement)) ** 2
         energies.append((float(beam.energy(end.displacement, end.velocity)) + stored) * 2.0 * compliance)
     assert energies[0] == pytest.approx(1.0, rel=1e-9) and energies[1] > 10.0
-
-
-def test_schemes_for_impacts_keep_the_energy_or_lose_some():
-    for label, bound in (("Moreau-Jean 1/2", 1e-11), ("nonsmooth 1", 1e-9), ("Moreau-Jean 1", 0.0)):
-        assert kept(label, STILL, 300).measured <= bound
-    impacts, log_energy = history(STILL, lambda h: MoreauJean(step=h, theta=1.0), 0.1, 300)
-    assert impacts[-1] > 200 and log_energy[-1] < -5
 
 
 # false restitution

@@ -1,1 +1,0 @@
-"""What a drive period costs."""
