@@ -42,10 +42,6 @@ __all__ = ["attractors"]
 FREQUENCY = 21.50
 """Where the letter has period 4 [Hz]."""
 
-BESIDE = 1e-3
-"""Distance from p1 of a start that leads to it, in gaps."""
-
-
 @study(needs={"fold": 0.05}, quick={"points": 11, "cycles": 100, "side": 32})
 def attractors(
     scene: Scene,
@@ -96,9 +92,7 @@ def attractors(
     counts = Counter((row.model, row.kind) for row in rows)
     kinds = {name: {kind: counts[name, kind] for kind in KINDS} for name in maps}
     chaotic = {name: [r.excess for r in rows if (r.model, r.kind) == (name, CHAOTIC)] for name in maps}
-    x, velocity = plane.rest  # a coarse grid may have no start in its basin
-    free = plane.leads(x - BESIDE * plane.strobed.scale, velocity) == 1
-    both = free and period > 1 and shares[f"p{period}"] > 0.0
+    both = plane.free() and period > 1 and shares[f"p{period}"] > 0.0
     run.verdict("coexistence", "agrees" if both else "differs",
                 found=f"Eq. (1): p1 and p{period}" if both else "Eq. (1): one of them alone",
                 note=f"at excess {basin_excess:g} the start decides which of them is reached")  # fmt: skip

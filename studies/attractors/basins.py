@@ -30,6 +30,9 @@ FAR = 1.5
 NEAR = 1e-5
 """Distance from an orbit at which a motion has reached it, in gaps (a basin narrower than that is missed)."""
 
+BESIDE = 1e-3
+"""Distance from p1 of a start that is to lead to it, in gaps."""
+
 MOST_PERIODS, STRETCH = 4000, 32
 """Bound of a motion in the basins (what has not been told by then is something else); strobes looked at
 together."""
@@ -78,6 +81,11 @@ class Plane:
         except ContactError:
             pass
         return 0
+
+    def free(self) -> bool:
+        """Whether a start beside p1 leads to it: a coarse grid may have none in its basin."""
+        x, velocity = self.rest
+        return self.leads(x - BESIDE * self.strobed.scale, velocity) == 1
 
     def line(self, velocity: float) -> list[int]:
         """`leads` for all x at one velocity."""

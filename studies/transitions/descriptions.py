@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam import ModalModel
-from contact import ContactError, MaximalFamily, StrobedMap, StrobedNordmarkMap, StroboscopicMap, fold
-from contact.orbits import OrbitDiagram, born, born_period, orbit_diagram, orbit_end
+from contact import ContactError, StrobedMap, StrobedNordmarkMap, StroboscopicMap
+from contact.orbits import OrbitDiagram, born, born_period, fold_excess, orbit_diagram, orbit_end
 from studies import letter
 from studies.scene import READOUT, Scene, beam_at, nordmark_at, single_mode_at
 
@@ -147,11 +147,9 @@ def exact_ends(
     scene: Scene, frequency: float, of_map: int | None, of_single: int | None
 ) -> tuple[float | None, float | None]:
     """The folds of the p_m orbits in closed form, of the map and of Eq. (1) [1]; no orbit for None, 0, 1."""
-    nordmark = nordmark_at(scene, frequency)
-    orbit = fold(nordmark, of_map) if of_map and of_map > 1 else None
-    family = MaximalFamily.from_oscillator(single_mode_at(scene, frequency), period=max(of_single or 0, 2))
-    end = family.fold() if of_single and of_single > 1 else None
-    return None if orbit is None else nordmark.excess(orbit.rho), None if end is None else end.excess
+    single = StroboscopicMap(oscillator=single_mode_at(scene, frequency))
+    of_mapping = fold_excess(StrobedNordmarkMap(map=nordmark_at(scene, frequency)), of_map or 0)
+    return of_mapping, fold_excess(single, of_single or 0)
 
 
 def scans(scene: Scene, row: Row, model: ModalModel, full: bool) -> Scans:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -13,8 +12,6 @@ from studies import letter, plotting
 from studies.plotting import GUIDE
 from studies.scene import Scene, single_mode_at
 from studies.transitions.descriptions import Diagram, Row, Scans
-
-LEGEND = ("upward scan", "downward scan", "letter: stability of the amplitude", "grazing", "not settled")
 
 
 def draw(scene: Scene, rows: Sequence[Row], diagrams: Sequence[Scans], name: str) -> Figure:
@@ -24,7 +21,6 @@ def draw(scene: Scene, rows: Sequence[Row], diagrams: Sequence[Scans], name: str
     with plotting.house_style():
         size = {"width": plotting.PAGE, "height": 0.055 * lines + 0.012}
         figure, axes = plotting.new_figure(lines, columns, squeeze=False, **size)
-        series: dict[str, Artist] = {}
         for axis in axes.flat[len(rows) :]:
             axis.set_visible(False)
         for number, (axis, row, found) in enumerate(zip(axes.flat, rows, diagrams, strict=False)):
@@ -36,7 +32,6 @@ def draw(scene: Scene, rows: Sequence[Row], diagrams: Sequence[Scans], name: str
             period = row.periods()[name]
             words = f"p$_{{{period}}}$" if period else "no period"
             plotting.panel(axis, number, f"{row.frequency_hz:.2f} Hz: {words}{seen}")
-            series = dict(zip(*axis.get_legend_handles_labels()[::-1], strict=True)) | series
         sideways = (plotting.EXCESS, "10$^{-3}$") if name == "map" else ("excitation amplitude", "mm")
         read = scene.readout.quantity
         upwards = {
@@ -48,9 +43,7 @@ def draw(scene: Scene, rows: Sequence[Row], diagrams: Sequence[Scans], name: str
             plotting.label(axis.xaxis, *sideways)
         for axis in axes[:, 0]:
             plotting.label(axis.yaxis, *upwards)
-        there = [name for name in LEGEND if name in series]
-        figure.legend([series[name] for name in there], there, loc="outside lower center", ncols=len(there),
-                      markerscale=1.5)  # fmt: skip
+        plotting.legend_below(figure, axes.flat, 5, markerscale=1.5)
     return figure
 
 
