@@ -27,6 +27,7 @@ from contact.compiled import kernel, part
 from contact.flight.modal_flow import tip_state, tip_steady
 from contact.flight.motion import WEIGHT
 from contact.touch import newton
+from contact.touch.tangents import tip_change
 from contact.trajectory import OUTSIDE, WAITING
 
 __all__ = ["LAW", "REGIMES", "force", "leave", "numbers_at", "place", "room", "saltation", "slopes", "state",
@@ -119,8 +120,7 @@ def saltation(motion, response, before, after, tangent):
     sine, cosine = math.sin(w * delay), math.cos(w * delay)
     for j in range(4):
         s, c = tangent[2, j], tangent[3, j]
-        reach = phi * tangent[0, j] + a * s + b * c
-        rate = phi * tangent[1, j] + w * (a * c - b * s)
+        reach, rate = tip_change(motion, response, tangent, j)
         late = -reach / approach
         faster = rate + pull_in * late
         late += delay_slope * faster

@@ -22,6 +22,7 @@ from contact.flight.modal_flow import mode_acceleration, tip_rounding, tip_state
 from contact.flight.motion import DECAY, LOAD, SQUARE, WEIGHT
 from contact.flight.polynomial_root import first_polynomial_root
 from contact.touch import time_series
+from contact.touch.tangents import tip_change
 from contact.touch.time_series import FORCE, begin, extend, free_pull, longest_step, negative
 from contact.trajectory import OUTSIDE, SUSTAINED
 
@@ -181,17 +182,13 @@ def saltation(motion, response, before, after, tangent):
     """The tangents over the impact: d -> R d + (R f - f') (-y(d)/v), R the reflection of the tip velocity, f
     and f' the velocity of the flow before and after (M. A. Aizerman, F. R. Gantmacher, Quart. J. Mech. Appl.
     Math. 11 (1958) 243; A. B. Nordmark, J. Sound Vib. 145 (1991) 279)."""
-    n, w, a, b, modes = motion.size, motion.drive, response.real, response.imag, motion.modes
+    n, modes = motion.size, motion.modes
     clock, u, v = before
     rebound = after[2]
     _height, approach, pull = tip_state(motion, clock, u, v)
     flip = (1.0 + motion.number0) / motion.compliance
     for j in range(2 * n + 2):
-        s, c = tangent[2 * n, j], tangent[2 * n + 1, j]
-        reach, rate = a * s + b * c, w * (a * c - b * s)
-        for k in range(n):
-            reach += modes[WEIGHT, k] * tangent[k, j]
-            rate += modes[WEIGHT, k] * tangent[n + k, j]
+        reach, rate = tip_change(motion, response, tangent, j)
         late = -reach / approach  # by how much later this neighbour touches
         for k in range(n):
             push = modes[WEIGHT, k] * flip

@@ -22,12 +22,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contact.compiled import kernel
+from contact.compiled import kernel, part
 from contact.flight.modal_flow import flow_over
 from contact.flight.motion import DECAY, SQUARE, WEIGHT
 from contact.vector_loops import LANES, aligned, weighted_rows
 
-__all__ = ["TangentRoom", "new_room", "onset", "tangent_flight", "tangent_step"]
+__all__ = ["TangentRoom", "new_room", "onset", "tangent_flight", "tangent_step", "tip_change"]
 
 
 class TangentRoom(NamedTuple):
@@ -87,20 +87,30 @@ def tangent_flight(motion, tangent, time):
     turn_drive(tangent, motion.drive * time)
 
 
+@part
+def tip_change(motion, response, tangent, j):
+    """How tip displacement and tip velocity change along tangent `j`."""
+    n, w, a, b = motion.size, motion.drive, response.real, response.imag
+    s, c = tangent[2 * n, j], tangent[2 * n + 1, j]
+    reach, rate = a * s + b * c, w * (a * c - b * s)
+    for k in range(n):
+        reach += motion.modes[WEIGHT, k] * tangent[k, j]
+        rate += motion.modes[WEIGHT, k] * tangent[n + k, j]
+    return reach, rate
+
+
 @kernel
 def onset(motion, response, force, approach, tangent):
     """A touch at which the `force` jumps from zero: d -> d - phi F y(d)/v (saltation matrix of Aizerman and
     Gantmacher; R. I. Leine, H. Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems, 2004,
     ch. 7)."""
-    n, phi = motion.size, motion.modes[WEIGHT]
+    n = motion.size
     if force == 0.0:
         return
     for j in range(2 * n + 2):
-        reach = response.real * tangent[2 * n, j] + response.imag * tangent[2 * n + 1, j]
+        reach, _rate = tip_change(motion, response, tangent, j)
         for k in range(n):
-            reach += phi[k] * tangent[k, j]
-        for k in range(n):
-            tangent[n + k, j] -= phi[k] * force * reach / approach
+            tangent[n + k, j] -= motion.modes[WEIGHT, k] * force * reach / approach
 
 
 @kernel
