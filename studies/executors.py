@@ -36,19 +36,27 @@ def duration(seconds: float) -> str:
 
 @contextmanager
 def progress(label: str, total: int | None = None) -> Iterator[Callable[..., None]]:
-    """Count steps: a bar with the time left on a terminal, a line every half minute elsewhere.
+    """Count steps: a bar with rate and time left on a terminal, a line every half minute elsewhere.
 
     Yields a function that counts one step, or as many as it is given, from any thread.
     """
     begun, done, told, lock = time.monotonic(), 0, time.monotonic(), threading.Lock()
     if sys.stderr.isatty():
         from rich.console import Console
-        from rich.progress import MofNCompleteColumn, Progress
+        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-        columns = (*Progress.get_default_columns(), MofNCompleteColumn())
+        columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(),
+                   TextColumn("{task.fields[rate]}"), TimeRemainingColumn())  # fmt: skip
         with Progress(*columns, console=Console(file=sys.stderr)) as bar:
-            task = bar.add_task(label, total=total)
-            yield lambda steps=1: bar.advance(task, steps)
+            task = bar.add_task(label, total=total, rate="")
+
+            def advance(steps: int = 1) -> None:
+                nonlocal done
+                with lock:
+                    done += steps
+                    bar.update(task, advance=steps, rate=_rate(done, time.monotonic() - begun))
+
+            yield advance
         return
 
     def count(steps: int = 1) -> None:
@@ -59,9 +67,16 @@ def progress(label: str, total: int | None = None) -> Iterator[Callable[..., Non
                 return
             told = now
         left = "" if not total else f", {duration((now - begun) * max(total - done, 0) / done)} left"
-        say(f"{label}: {done} of {total or '?'}{left}")
+        say(f"{label}: {done} of {total or '?'}, {_rate(done, now - begun)}{left}")
 
     yield count
+
+
+def _rate(done: int, seconds: float) -> str:
+    """Steps per second, or seconds per step when that reads better."""
+    if done == 0 or seconds <= 0.0:
+        return ""
+    return f"{done / seconds:.3g} per s" if done >= seconds else f"{seconds / done:.3g} s each"
 
 
 @contextmanager

@@ -1,15 +1,15 @@
 """A spring in motion, seen in space: one picture after another, as gif, as mp4 and as meshes for ParaView.
 
     scenery = Scenery.of(modes, ball_radius=2.5e-3, gap=0.0107, swing=0.012)
-    with stage_of(scenery) as stage:  # where can_render()
+    with stage_of(scenery, "auto") as stage:
         pictures = [stage(moment) for moment in moments]
     write_gif(run.path("motion.gif"), pictures, rate=20.0)
 
 `Moment` says where everything is: displacements of the points of the strip, of the ball and of the base, and
 whether the plate is touched. pyvista draws off the screen where that works. Without the libraries of OpenGL
 that ends in a segmentation fault which no program can catch, so that it is tried once in a process of its
-own; where it does not work there is no film, one sentence names the packages that are missing, and the
-meshes for ParaView are left to look at.
+own; where it does not work matplotlib draws the spring in its plane, and one sentence names the packages
+that are missing.
 """
 
 from __future__ import annotations
@@ -43,8 +43,8 @@ Picture = NDArray[np.uint8]
 """Rows, columns, and red, green, blue."""
 
 NO_RENDERING = (
-    "no film: off-screen rendering does not work here (on Debian it needs libegl1 libegl-mesa0 "
-    "libgl1-mesa-dri)"
+    "matplotlib draws the spring in its plane: off-screen rendering does not work here (on Debian it needs "
+    "libegl1 libegl-mesa0 libgl1-mesa-dri)"
 )
 
 TRIAL = (
@@ -129,6 +129,24 @@ class Scenery:
 Stage = Callable[[Moment], Picture]
 
 
+@contextmanager
+def stage_of(scenery: Scenery, renderer: str = "auto") -> Iterator[Stage]:
+    """What turns a moment into a picture: by "vtk", by "matplotlib", or "auto", the first that works.
+
+    Raises
+    ------
+    ValueError
+        For "vtk" where it cannot draw.
+    """
+    if renderer == "vtk" and not can_render():
+        raise ValueError(NO_RENDERING)
+    if renderer == "matplotlib" or not can_render():
+        yield _painter(scenery)
+        return
+    with _plotter(scenery) as stage:
+        yield stage
+
+
 def prepare_off_screen() -> None:
     """Set what VTK has to know before it is imported."""
     os.environ.setdefault("PYVISTA_OFF_SCREEN", "true")
@@ -150,11 +168,8 @@ def can_render() -> bool:
 
 
 @contextmanager
-def stage_of(scenery: Scenery) -> Iterator[Stage]:
-    """What turns a moment into a picture, where `can_render`.
-
-    In parallel projection: equal lengths in a plane across the view stay equal.
-    """
+def _plotter(scenery: Scenery) -> Iterator[Stage]:
+    """Pictures by pyvista, in parallel projection: equal lengths in a plane across the view stay equal."""
     prepare_off_screen()
     import pyvista
 
@@ -189,6 +204,45 @@ def stage_of(scenery: Scenery) -> Iterator[Stage]:
         yield picture
     finally:
         plotter.close()
+
+
+def _painter(scenery: Scenery) -> Stage:
+    """Pictures by matplotlib: the strip in its plane, ball and plate as outlines."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    mesh, dots = scenery.mesh, 100
+    figure = Figure(figsize=(WIDTH / dots, HEIGHT / dots), dpi=dots)
+    canvas, axes = FigureCanvasAgg(figure), figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    plane = np.array([scenery.along, scenery.drive])[:, :2].T
+    rows = mesh.hexahedra[mesh.part[: len(mesh.hexahedra)] == STRIP]
+    ball = np.unique(mesh.triangles)
+
+    def outline(points: Array) -> Array:
+        line: Array = points[rows].mean(axis=1)[:, :2] @ plane
+        return line
+
+    (strip,) = axes.plot(*outline(mesh.points).T, color=COLOURS[STRIP], linewidth=2.5)
+    (spot,) = axes.plot(*(mesh.points[ball].mean(axis=0)[:2] @ plane), "o", color="0.5", markersize=9.0)
+    plate = None
+    if scenery.corners is not None:
+        plate = axes.fill(*(scenery.corners[:4, :2] @ plane).T, color=PLATE)[0]
+    centre, reach = scenery.centre[:2] @ plane, np.abs(scenery.reach[:2] @ plane)
+    half = 0.56 * max(reach[0] / WIDTH, reach[1] / HEIGHT) * np.array([WIDTH, HEIGHT])
+    axes.set(xlim=(centre[0] - half[0], centre[0] + half[0]), ylim=(centre[1] - half[1], centre[1] + half[1]))
+    axes.axis("off")
+
+    def picture(moment: Moment) -> Picture:
+        points = mesh.points + moment.points + moment.base
+        strip.set_data(*outline(points).T)
+        spot.set_data(*(points[ball].mean(axis=0)[:2] @ plane)[:, None])
+        if plate is not None and scenery.corners is not None:
+            plate.set_xy((scenery.corners[:4, :2] + moment.base[:2]) @ plane)
+            plate.set_facecolor(TOUCHED if moment.touched else PLATE)
+        canvas.draw()
+        return np.asarray(canvas.buffer_rgba(), dtype=np.uint8)[..., :3].copy()
+
+    return picture
 
 
 def can_encode() -> bool:

@@ -149,12 +149,11 @@ def write_shapes(scene: Scene, run: Run, solved: Modes, mode: int, frames: int) 
 
 def write_films(run: Run, solved: Modes, radius: float, count: int, frames: int) -> None:
     """One period of each of the first modes, in space, repeated without a seam."""
-    if not can_render():
-        run.say(NO_RENDERING)
-        return
     largest = largest_of(solved)
     scenery = Scenery.of(solved, ball_radius=radius, swing=largest)
-    with stage_of(scenery) as stage:
+    if not run.quick and not can_render():
+        run.say(NO_RENDERING)
+    with stage_of(scenery, "matplotlib" if run.quick else "auto") as stage:
         for number in run.track(range(count), "films of modes"):
             shape = scenery.mesh.normalised(largest)[number]
             phases = 2.0 * math.pi * np.arange(frames) / frames

@@ -77,6 +77,7 @@ def motion(
     frames: Annotated[int, "frames of the film"] = 240,
     magnify: Annotated[float | None, "how many times the higher modes are drawn; so that they show"] = None,
     seen_from: Annotated[Literal["laboratory", "base"], "where the viewer stands"] = "laboratory",
+    renderer: Annotated[Literal["auto", "vtk", "matplotlib"], "what draws"] = "auto",
 ) -> Mapping[str, object]:
     """Compute, store, draw."""
     drive_hz = corresponding(harmonic(scene), FREQUENCY) if frequency is None else frequency
@@ -99,6 +100,10 @@ def motion(
     true, _ = drawn_shapes(scenery.mesh, modes, orbit.run.displacement, 1.0)
     write_frames(run.path("motion.pvd"), grids(scenery, moments, true, rows))
     run.path("motion_frames")
+    if renderer == "auto" and not can_render():
+        run.say(NO_RENDERING)
+    with stage_of(scenery, renderer) as stage:
+        pictures = [stage(moment) for moment in run.track(moments, "frames")]
     name = f"p{settled.period}" if settled.period else "no period up to 64"
     words = f"{name}, {drive_hz:g} Hz, excess {excess:g}"
     slow = f"{orbit.slowed.min():.0f} to {orbit.slowed.max():.0f} times slower than life"
@@ -110,11 +115,6 @@ def motion(
     }  # fmt: skip
     caption = f"The tip along the film, {words}; dashed: the plate."
     run.figure("motion", draw_tip(orbit, scene.stop.gap_m)[0], caption)
-    if not can_render():
-        run.say(NO_RENDERING)
-        return found
-    with stage_of(scenery) as stage:
-        pictures = [stage(moment) for moment in run.track(moments, "frames")]
     told = f"higher modes x {magnification:g}"
     framed = list(composed(orbit, pictures, scene.stop.gap_m, words, told))
     write_gif(run.path("motion.gif"), framed, RATE)

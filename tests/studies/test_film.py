@@ -14,8 +14,6 @@ from contact import StroboscopicMap
 from contact.orbits import born
 from studies import film
 from studies.film import Moment, Scenery, can_encode, stage_of, write_gif, write_mp4
-from studies.modes import modes as modes_study
-from studies.motion.__main__ import motion
 from studies.motion.filmed_orbit import drawn_shapes, film_orbit, frame_times
 from studies.scene import beam_at, modes_of
 
@@ -85,20 +83,13 @@ def test_the_frames_of_an_orbit_show_its_contact(scene):
     assert orbit.base == pytest.approx(oscillator.drive.displacement(orbit.time))
 
 
-@pytest.fixture
-def graphics():
-    """Off-screen rendering, or no test of what it draws."""
-    if not film.can_render():
-        pytest.skip(film.NO_RENDERING)
-
-
-@pytest.mark.usefixtures("graphics")
-def test_a_picture_shows_what_moves(scene, modes):
+@pytest.mark.parametrize("renderer", ["matplotlib", "auto"])
+def test_a_picture_shows_what_moves(scene, modes, renderer):
     scenery = Scenery.of(modes, ball_radius=scene.tip.ball_radius_m, gap=0.01, swing=0.01)
     rest = at_rest(scenery)
     swung = Moment(points=scenery.mesh.normalised(0.008)[0], base=np.zeros(3))
     touched = Moment(points=rest.points, base=rest.base, touched=True)
-    with stage_of(scenery) as stage:
+    with stage_of(scenery, renderer) as stage:
         pictures = [stage(moment) for moment in (rest, swung, touched, rest)]
     assert {picture.shape for picture in pictures} == {(film.HEIGHT, film.WIDTH, 3)}
     assert (pictures[0] == pictures[3]).all()
@@ -109,15 +100,13 @@ def test_a_picture_shows_what_moves(scene, modes):
         assert picture[0].min() == picture[-1].min() == picture[:, 0].min() == picture[:, -1].min() == 255
 
 
-@pytest.mark.parametrize(("study", "more"), [(modes_study, []), (motion, ["--frames", "16"])])
-def test_without_graphics_the_meshes_are_written_and_the_packages_named(
-    study, more, monkeypatch, tmp_path, capsys
-):
-    monkeypatch.setitem(study.function.__globals__, "can_render", lambda: False)
-    argv = [f"--set={key}={value}" for key, value in COARSE.items()]
-    assert study.main(["--quick", *more, *argv, "--out", str(tmp_path)]) == 0
-    assert "libegl1" in capsys.readouterr().err
-    assert (tmp_path / study.name / "motion.pvd").exists() and not list(tmp_path.rglob("*.gif"))
+def test_without_graphics_matplotlib_draws_and_vtk_is_refused(scene, modes, monkeypatch):
+    monkeypatch.setattr(film, "can_render", lambda: False)
+    scenery = Scenery.of(modes, ball_radius=scene.tip.ball_radius_m, swing=0.01)
+    with stage_of(scenery, "auto") as stage:
+        assert stage(at_rest(scenery)).std() > 1.0
+    with pytest.raises(ValueError, match="libegl1"), stage_of(scenery, "vtk"):
+        pass
 
 
 def test_a_crash_of_the_trial_means_no_graphics(monkeypatch):
@@ -141,10 +130,9 @@ def test_gif_and_mp4_hold_every_frame(tmp_path):
     assert sorted(path.suffix for path in tmp_path.iterdir()) == [".gif", *([".mp4"] if can_encode() else [])]
 
 
-@pytest.mark.usefixtures("graphics")
 def test_the_small_form_of_the_motion_writes_a_film_and_meshes(run_study):
     argv = [f"--set={key}={value}" for key, value in COARSE.items()]
-    ran = run_study("motion", "--quick", "--frames", "24", *argv)
+    ran = run_study("motion", "--quick", "--frames", "24", "--renderer", "matplotlib", *argv)
     assert ran.code == 0 and ran.summary["period"] == 4 and ran.summary["impacts"] >= 1
     assert len(list((ran.folder / "motion_frames").glob("*.vtu"))) == 24
     with Image.open(ran.folder / "motion.gif") as found:
