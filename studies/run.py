@@ -158,14 +158,21 @@ class Study:
                 warnings.simplefilter("ignore", SuspiciousValue)
                 scene = run.choose_modes(run.scene, self.needs) if self.needs else run.scene
                 results = self.function(scene, run, **options)
-        except KeyboardInterrupt:
-            return INTERRUPTED, "interrupted", {}
-        except ContactError as error:
+        except (KeyboardInterrupt, Exception) as error:
+            if _interrupted(error):
+                return INTERRUPTED, "interrupted", {}
+            if not isinstance(error, ContactError):
+                raise
             run.failed(type(error).__name__, error)
             return FAILED_CELLS, "failed", {}
         if run.failures:
             return FAILED_CELLS, "finished with failed cells", results
         return DONE, "done", results
+
+
+def _interrupted(error: BaseException | None) -> bool:
+    """Whether this is an interrupt, or what a file said that was being written when one came."""
+    return error is not None and (isinstance(error, KeyboardInterrupt) or _interrupted(error.__context__))
 
 
 def as_program() -> bool:

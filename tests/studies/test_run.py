@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import os
+import shlex
 import signal
 import subprocess
 import sys
@@ -53,9 +54,13 @@ def small(
         raise ValueError("the value is\nwrong")
     if what == "contact":
         raise NotPeriodic(time=0.0, gap=0.0, velocity=0.0, detail="no orbit")
-    if what == "interrupt":
+    if what.startswith("interrupt"):
         run.text("kept.txt", "kept")
-        raise KeyboardInterrupt
+        try:
+            raise KeyboardInterrupt
+        finally:
+            if what == "interrupt of a file":
+                raise ValueError("a file that was being written cannot be closed")
     rows = [
         Row(number=n, value=None if n else np.float64(np.nan), word="a,b", good=n > 0, pair=(0.0, float(n)))
         for n in run.track(range(points), "rows")
@@ -139,12 +144,13 @@ def test_failed_cells_are_told_kept_and_exit_code_3(tmp_path):
     assert code == 3 and summary_of(folder)["failed_cells"] == 1 and summary_of(folder)["status"] == "failed"
 
 
-def test_an_interrupted_run_keeps_what_it_stored_and_says_how_to_go_on(tmp_path, capsys):
-    code, folder = start("--what", "interrupt", out=tmp_path)
+@pytest.mark.parametrize("what", ["interrupt", "interrupt of a file"])
+def test_an_interrupted_run_keeps_what_it_stored_and_says_how_to_go_on(tmp_path, capsys, what):
+    code, folder = start("--what", what, out=tmp_path)
     err = capsys.readouterr().err
     assert code == 130 and (folder / "kept.txt").read_text() == "kept"
     assert summary_of(folder)["status"] == "interrupted"
-    assert f"python -m studies.small --what interrupt --out {tmp_path}" in err
+    assert f"python -m studies.small --what {shlex.quote(what)} --out {tmp_path}" in err
 
 
 @pytest.mark.parametrize(
