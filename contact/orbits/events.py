@@ -44,6 +44,12 @@ def doubling(orbit: PeriodicOrbit) -> float:
     return float(np.prod(orbit.multipliers + 1.0).real)
 
 
+def passes(here: float, there: float) -> bool:
+    """Whether a number is zero here, as the slope of a fold that a branch starts from, or between here and
+    there."""
+    return here == 0.0 or here * there < 0.0
+
+
 def locate(
     family: Followed, a: PeriodicOrbit, b: PeriodicOrbit, test: Callable[[PeriodicOrbit], float]
 ) -> PeriodicOrbit:
@@ -98,11 +104,11 @@ def probed(family: Followed, a: PeriodicOrbit, b: PeriodicOrbit, depth: int = 0)
 
 
 def events_between(family: Followed, a: PeriodicOrbit, b: PeriodicOrbit) -> list[Event]:
-    """What happens between neighbours, in the order in which it is met from `a` on."""
+    """What happens from `a`, itself included, to its neighbour `b`, in the order in which it is met."""
     found = []
-    if a.slope * b.slope < 0:
+    if passes(a.slope, b.slope):
         found.append(Event(kind="fold", orbit=locate(family, a, b, lambda orbit: orbit.slope)))
-    if doubling(a) * doubling(b) < 0:
+    if passes(doubling(a), doubling(b)):
         found.append(Event(kind="period doubling", orbit=locate(family, a, b, doubling)))
     if a.admissible != b.admissible:
         found.append(Event(kind="grazing", orbit=_bisect(family, a, b)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -32,6 +33,7 @@ from contact.orbits import (
     follow,
     orbit_end,
 )
+from contact.orbits.events import passes
 from studies.scene import hertz_of, read_scene
 
 T, MU = 40.80e-3, 3.56
@@ -266,3 +268,9 @@ def test_folds_along_frequency_are_those_of_each_frequency() -> None:
         assert orbit.oscillator.drive.frequency == frequency
     nothing = fold_along_frequency(Shooting(oscillator=oscillator, period=1), np.array([20.90]))
     assert nothing == [None]
+
+
+@pytest.mark.parametrize("slopes", [(-2.0, -1.0, 1.0), (-2.0, 0.0, 1.0), (0.0, 1.0, 2.0)])
+def test_a_sign_that_changes_at_an_orbit_changes_once(slopes: tuple[float, ...]) -> None:
+    """A branch that starts from a fold may have it to the last bit, with a slope of zero."""
+    assert [passes(a, b) for a, b in pairwise(slopes)].count(True) == 1
