@@ -177,7 +177,8 @@ def test_a_column_settles_where_the_same_motion_settles_step_by_step(law, count)
                 cell = (column.period[way, k], column.impacts[way, k])
                 assert cell == (found.period, found.impacts), (way, k)
     assert column.period[0, 0] == 1 and column.impacts[0, 0] == 0
-    assert np.any(column.period[1] != column.period[0])  # hysteresis
+    if isinstance(law, NewtonRestitution):  # hysteresis; without loss p5 falls off in steps as long as these
+        assert np.any(column.period[1] != column.period[0])
     assert np.all(column.reason == "")
 
 
