@@ -160,25 +160,24 @@ def driven(law) -> ImpactOscillator:
     return ImpactOscillator(model=model, stop=Stop(gap=0.0107, law=law), drive=HarmonicDrive(frequency=22.2))
 
 
-@pytest.mark.parametrize(
-    ("law", "count"), [(NewtonRestitution(local_restitution=0.1), 9), (LinearContact(stiffness=2e7), 5)]
-)
-def test_a_column_settles_where_the_same_motion_settles_step_by_step(law, count):
+@pytest.mark.parametrize("law", [NewtonRestitution(local_restitution=0.1), LinearContact(stiffness=2e7)])
+def test_a_column_settles_where_the_same_motion_settles_step_by_step(law):
     """The compiled column against `settle` with the state carried on by hand, up and down."""
-    oscillator, excesses = driven(law), np.linspace(-3e-3, 4e-3, count)
-    column = AmplitudeScan(oscillator=oscillator, most_cycles=2048)(22.2, excesses)
+    oscillator, excesses = driven(law), np.linspace(-3e-3, 4e-3, 9)
+    column = AmplitudeScan(oscillator=oscillator, most_cycles=4096)(22.2, excesses)
     strobed = StroboscopicMap(oscillator=oscillator)
     state = strobed.at(float(excesses[0])).steady()
-    for way, order in ((0, range(count)), (1, range(count - 1, -1, -1))):
+    for way, order in ((0, range(9)), (1, range(8, -1, -1))):
         for k in order:
-            found = settle(strobed.at(float(excesses[k])), state, most_cycles=2048, prove=False)
+            found = settle(strobed.at(float(excesses[k])), state, most_cycles=4096, prove=False)
             state = found.end
             if found.period and column.period[way, k]:
                 cell = (column.period[way, k], column.impacts[way, k])
                 assert cell == (found.period, found.impacts), (way, k)
     assert column.period[0, 0] == 1 and column.impacts[0, 0] == 0
-    if isinstance(law, NewtonRestitution):  # hysteresis; without loss p5 falls off in steps as long as these
-        assert np.any(column.period[1] != column.period[0])
+    if isinstance(law, NewtonRestitution):  # without loss a cell that differs is one that has not settled
+        settled = np.all(column.period > 0, axis=0)
+        assert np.any((column.period[1] != column.period[0])[settled])  # hysteresis
     assert np.all(column.reason == "")
 
 
