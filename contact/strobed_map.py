@@ -13,7 +13,7 @@ from typing import Generic, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
-__all__ = ["Jacobians", "StrobedMap", "StrobedOrbit"]
+__all__ = ["DifferentiableMap", "Jacobians", "StrobedMap", "StrobedOrbit"]
 
 S = TypeVar("S")
 
@@ -60,6 +60,11 @@ class StrobedMap(Protocol[S]):
 
     def orbit(self, state: S, count: int) -> StrobedOrbit[S]:
         """`count` periods from `state`."""
+
+
+@runtime_checkable
+class DifferentiableMap(StrobedMap[S], Protocol[S]):
+    """One whose derivatives are known: what exponents are found of."""
 
     def jacobians(self, state: S, count: int) -> Jacobians[S]:
         """Derivatives of the points with respect to those before, along at least one of `count` periods."""

@@ -29,7 +29,7 @@ motions they converge faster than any power of its length (S. Das, Y. Saiki, E. 
 Nonlinearity 30 (2017) 4111), on chaos like a plain average.  The standard error comes from the scatter of
 blocks.
 
-Any ``contact.strobed_map.StrobedMap`` can be asked.
+Any ``contact.strobed_map.DifferentiableMap`` can be asked.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ from numpy.typing import NDArray
 
 from beam.parameters import require_kind, require_whole, require_within
 from contact.errors import NotPeriodic, UnresolvedCrossing
-from contact.strobed_map import StrobedMap
+from contact.strobed_map import DifferentiableMap
 
 __all__ = ["Exponents", "divergence_rate", "map_exponents", "orbit_exponents"]
 
@@ -94,7 +94,7 @@ class Exponents:
 def require_strobed(strobed: object) -> None:
     """TypeError unless this is a strobed map."""
     words = "a strobed map with derivatives, such as a StroboscopicMap"
-    require_kind("strobed", strobed, StrobedMap, words)
+    require_kind("strobed", strobed, DifferentiableMap, words)
 
 
 def _weighted(rates: Array, spans: Array) -> tuple[Array, float]:
@@ -111,12 +111,14 @@ def _weighted(rates: Array, spans: Array) -> tuple[Array, float]:
     return mean, error
 
 
-def map_exponents(strobed: StrobedMap[S], state: S, count: int, *, align: int = 0) -> tuple[Exponents, S]:
+def map_exponents(
+    strobed: DifferentiableMap[S], state: S, count: int, *, align: int = 0
+) -> tuple[Exponents, S]:
     """All exponents per step from Jacobians, and the state at the end.
 
     Parameters
     ----------
-    strobed : StrobedMap
+    strobed : DifferentiableMap
     state : State
         On the attractor.
     count : int
@@ -145,7 +147,7 @@ def map_exponents(strobed: StrobedMap[S], state: S, count: int, *, align: int = 
     return Exponents(values=np.sort(mean)[::-1], error=error), state
 
 
-def orbit_exponents(strobed: StrobedMap[S], state: S, period: int) -> Exponents:
+def orbit_exponents(strobed: DifferentiableMap[S], state: S, period: int) -> Exponents:
     """Exponents log|mu_i|/m of the periodic orbit of `period` m on which `state` lies, per step."""
     require_strobed(strobed)
     period = require_whole("period", period, "drive periods")
@@ -164,13 +166,13 @@ def orbit_exponents(strobed: StrobedMap[S], state: S, period: int) -> Exponents:
 
 
 def divergence_rate(
-    strobed: StrobedMap[S], state: S, duration: float, *, align: float = 0.0, seed: int = 1996
+    strobed: DifferentiableMap[S], state: S, duration: float, *, align: float = 0.0, seed: int = 1996
 ) -> Exponents:
     """The largest exponent [1/s] from two neighbouring motions.
 
     Parameters
     ----------
-    strobed : StrobedMap
+    strobed : DifferentiableMap
     state : State
         On the attractor.
     duration, align : float

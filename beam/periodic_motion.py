@@ -1,0 +1,212 @@
+"""Periodic motion of a leaf spring at finite rotations, free or driven, and how deviations from it decay.
+
+With f of `finite_rotation`, motions
+
+    M x'' + mu M x' + f(x) = -b z'',     x(t) = sum_k c_k e^(i k w t),     z'' = Z e^(i w t) + conjugate,
+
+in which the tip turns back at t = 0 at a given displacement, are found by harmonic balance: Newton's method
+for the c_k of |k| <= H and for two numbers more, which the two conditions on the tip decide. Forces and
+their derivatives are sampled at 4 (H + 1) times (T. M. Cameron and J. H. Griffin, J. Appl. Mech. 56 (1989)
+149). Free motion: w and mu are the two numbers, and mu comes out as zero. Driven motion: both parts of Z are.
+
+Deviations e^(lambda t) sum_k d_k e^(i k w t) are those lambda at which the matrix of the same equations, with
+i k w + lambda in place of i k w, is singular (G. W. Hill's method). Mode 1 has the pair nearest to the axis
+from which the effective period comes: that of the one linear mode under the same drive whose deviations turn
+as fast.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import block_array, csc_array, csr_array
+from scipy.sparse.linalg import splu
+
+from .finite_rotation import FiniteRotation
+from .modes import DENSE_LIMIT, lowest
+from .parameters import require_kind, require_whole, require_within
+
+MOST_STEPS = 30
+"""Of Newton's method; it takes four or five."""
+
+CLOSE = 1e-11
+"""Relative change at which Newton's method ends."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PeriodicMotion:
+    """A periodic motion whose tip is at its turning point at t = 0.
+
+    Parameters
+    ----------
+    model : FiniteRotation
+    omega : float
+        Angular frequency w [rad/s].
+    decay_rate : float
+        mu of the motion, on every mode alike [1/s].
+    coefficients : ndarray of complex, shape (2 H + 1, n_dofs)
+        c_k, k = -H ... H [m].
+    drive : complex
+        Z [m/s^2]: the base moves with the acceleration amplitude 2 |Z|.
+    """
+
+    model: FiniteRotation
+    omega: float
+    decay_rate: float
+    coefficients: NDArray[np.complex128]
+    drive: complex
+
+    @property
+    def harmonics(self) -> NDArray[np.intp]:
+        """-H ... H."""
+        most = len(self.coefficients) // 2
+        return np.arange(-most, most + 1)
+
+    def tip(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Displacement of the tip at `time` [s], [m]."""
+        turning = np.exp(1j * self.omega * np.multiply.outer(np.asarray(time), self.harmonics))
+        return (turning @ (self.coefficients @ self.model.tip)).real
+
+    def _sampled(self) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
+        """e^(i k w t) at the samples, (times, harmonics), and x there, (n_dofs, times)."""
+        times = 4 * (len(self.coefficients) // 2 + 1)
+        turning = np.exp(2j * np.pi * np.multiply.outer(np.arange(times) / times, self.harmonics))
+        return turning, (turning @ self.coefficients).real.T
+
+    def residual(self) -> NDArray[np.complex128]:
+        """What is left of the equations, (2 H + 1, n_dofs) [N]."""
+        turning, x = self._sampled()
+        model, rate = self.model, 1j * self.harmonics * self.omega
+        forces = turning.conj().T @ model.force(x).T / len(turning)
+        forces += (rate * (rate + self.decay_rate))[:, None] * (self.coefficients @ model.mass)
+        for k, part in ((1, self.drive), (-1, np.conj(self.drive))):
+            forces[self.harmonics == k] += part * model.base_load
+        return forces
+
+    def derivative(self, growth: complex = 0.0) -> csc_array:
+        """The matrix of small deviations that grow as e^(growth t), all harmonics end to end."""
+        turning, x = self._sampled()
+        densities, most = self.model.densities(x), int(self.harmonics[-1])
+        times = np.arange(len(turning)) / len(turning)
+        between = {
+            k: self.model.stiffness(densities @ np.exp(-2j * np.pi * k * times) / len(turning))
+            for k in range(-2 * most, 2 * most + 1)
+        }
+        rate = 1j * self.harmonics * self.omega + growth
+        inertia = [factor * self.model.mass for factor in rate * (rate + self.decay_rate)]
+        rows = [
+            [between[int(k - j)] + (inertia[i] if k == j else 0.0) for j in self.harmonics]
+            for i, k in enumerate(self.harmonics)
+        ]
+        return csc_array(block_array(rows))
+
+    def exponent(self) -> complex:
+        """The exponent lambda of mode 1, that of the pair whose imaginary part leads to `effective_period`.
+
+        Raises
+        ------
+        ArithmeticError
+            If the iteration, which starts from the linear mode, does not end.
+        """
+        growth = 1j * (_first_mode(self.model)[0] - self.omega) - 0.5 * self.decay_rate
+        vector = np.zeros(self.coefficients.shape, dtype=complex)
+        vector[self.harmonics == 1] = self.coefficients[self.harmonics == 1]
+        for _ in range(MOST_STEPS):
+            rate = 2.0 * (1j * self.harmonics * self.omega + growth) + self.decay_rate
+            pushed = (rate[:, None] * (vector @ self.model.mass)).ravel()
+            found = splu(self.derivative(growth)).solve(pushed)
+            change = np.vdot(vector, vector) / np.vdot(vector, found)
+            growth, vector = growth - change, (found / np.linalg.norm(found)).reshape(vector.shape)
+            if abs(change) < 1e-8 * self.omega:
+                return complex(growth)
+        raise ArithmeticError(f"the exponent at {self.omega / (2.0 * np.pi):g} Hz was not found")
+
+    @property
+    def effective_period(self) -> float:
+        """2 pi/(w + Im lambda) [s]."""
+        return float(2.0 * np.pi / (self.omega + self.exponent().imag))
+
+
+def periodic_motion(
+    model: FiniteRotation,
+    amplitude: float,
+    *,
+    frequency: float | None = None,
+    decay_rate: float = 0.0,
+    harmonics: int = 5,
+) -> PeriodicMotion:
+    """Return the motion whose tip turns back at `amplitude`.
+
+    Parameters
+    ----------
+    model : FiniteRotation
+    amplitude : float
+        Displacement of the tip at its turning point [m].
+    frequency : float, optional
+        Of the drive [Hz]; without it the motion is free, at a frequency that is found.
+    decay_rate : float
+        mu of a driven motion [1/s].
+    harmonics : int
+        H.
+
+    Raises
+    ------
+    ArithmeticError
+        If Newton's method, from the linear motion, does not end.
+    """
+    require_kind("model", model, FiniteRotation, "a FiniteRotation")
+    require_within("amplitude", amplitude, "m")
+    most = require_whole("harmonics", harmonics, "[1]", low=1)
+    omega, shape = _first_mode(model)
+    parts = np.zeros((2 * most + 1, model.tip.size), dtype=complex)
+    parts[most - 1] = parts[most + 1] = 0.5 * amplitude * shape
+    motion = PeriodicMotion(model=model, omega=omega, decay_rate=0.0, coefficients=parts, drive=0j)
+    if frequency is not None:
+        omega = 2.0 * np.pi * require_within("frequency", frequency, "Hz", above=0)
+        rate = require_within("decay_rate", decay_rate, "1/s", low=0)
+        motion = replace(motion, omega=omega, decay_rate=rate)
+    for _ in range(MOST_STEPS):
+        motion, change = _newton(motion, amplitude, driven=frequency is not None)
+        if change < CLOSE:
+            return motion
+    raise ArithmeticError(f"no motion of {amplitude:g} m was found; Newton's last step was {change:.0e}")
+
+
+def _newton(motion: PeriodicMotion, amplitude: float, driven: bool) -> tuple[PeriodicMotion, float]:
+    """A step of Newton's method, and its relative size."""
+    model, k, c = motion.model, motion.harmonics, motion.coefficients
+    moved, size = c @ model.mass, c.size
+    if driven:
+        columns = [np.where(k[:, None] == sign, model.base_load, 0.0) for sign in (1, -1)]
+    else:
+        columns = [-2.0 * motion.omega * k[:, None] ** 2 * moved, 1j * motion.omega * k[:, None] * moved]
+    turning = [np.tile(model.tip, k.size), np.repeat(1j * k, model.tip.size) * np.tile(model.tip, k.size)]
+    bordered = block_array(
+        [
+            [motion.derivative(), csr_array(np.array([column.ravel() for column in columns]).T)],
+            [csr_array(np.array(turning)), None],
+        ]
+    )
+    left = [row @ c.ravel() for row in turning]
+    wrong = np.concatenate((motion.residual().ravel(), [left[0] - amplitude, left[1]]))
+    step = -splu(csc_array(bordered)).solve(wrong)
+    c = c + step[:size].reshape(c.shape)
+    c = 0.5 * (c + c[::-1].conj())  # the displacement is real
+    first, second = step[size:]
+    changed = replace(motion, coefficients=c)
+    if driven:
+        changed = replace(changed, drive=complex(motion.drive + 0.5 * (first + np.conj(second))))
+    else:
+        changed = replace(
+            changed, omega=motion.omega + first.real, decay_rate=motion.decay_rate + second.real
+        )
+    return changed, float(np.linalg.norm(step[:size]) / np.linalg.norm(c))
+
+
+def _first_mode(model: FiniteRotation) -> tuple[float, NDArray[np.float64]]:
+    """omega [rad/s] of mode 1 and its shape of unit tip displacement."""
+    stiffness = model.stiffness(model.densities(np.zeros_like(model.tip)))
+    square, shapes = lowest(stiffness, model.mass, 0.0, 1, dense_limit=DENSE_LIMIT)
+    return float(np.sqrt(square[0])), shapes[:, 0] / (model.tip @ shapes[:, 0])

@@ -1,0 +1,188 @@
+"""Finite rotations: elastica, backbone coefficients, periodic motions and the decay of deviations."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.sparse.linalg import splu
+
+from beam import BRASS, Arc, Centreline, LeafSpring, Straight, StripSection, Tip, assemble, cantilever
+from beam import folded_u as drawn_u
+from beam.backbone import backbone_coefficient
+from beam.finite_rotation import FiniteRotation
+from beam.periodic_motion import periodic_motion
+
+pytestmark = pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")  # heavy tips, thin strips
+
+LEG = 0.13
+STRIP = StripSection(material=BRASS, width=12e-3, thickness=0.7e-3)
+
+
+def folded_u(
+    radius: float = 7.5e-3, thickness: float = 0.7e-3, mass: float = 6e-3, section: StripSection = STRIP
+) -> LeafSpring:
+    """A U whose tip is as heavy, compared with its strip, at every thickness."""
+    tip, section = Tip(mass=mass * thickness / 0.7e-3), replace(section, thickness=thickness)
+    return drawn_u(leg_length=LEG, bend_radius=radius, section=section, tip=tip)
+
+
+def leaf(thickness: float = 0.7e-3, mass: float = 0.0) -> LeafSpring:
+    return cantilever(length=LEG, section=replace(STRIP, thickness=thickness), tip=Tip(mass=mass))
+
+
+def hook() -> LeafSpring:
+    """A leg and a bend of 100 degrees: swings of either sign differ."""
+    line = Centreline(pieces=(Straight(length=LEG), Arc(radius=0.03, angle=1.75)))
+    return LeafSpring(
+        centreline=line, sections=(STRIP, STRIP), supports=("clamped", "free"), tip=Tip(mass=5e-3),
+        tip_at=line.length,
+    )  # fmt: skip
+
+
+def bent(model: FiniteRotation, force: float) -> NDArray[np.float64]:
+    """Equilibrium under a force on the tip along the drive, by Newton's method in ten steps of load."""
+    x = np.zeros_like(model.tip)
+    for load in np.linspace(0.1, 1.0, 10) * force:
+        for _ in range(8):
+            left = model.force(x) - load * model.tip
+            x = x - splu(model.stiffness(model.densities(x)).tocsc()).solve(left)
+    assert np.abs(model.force(x) - force * model.tip).max() < 1e-6 * force
+    return x
+
+
+def test_force_and_stiffness_are_derivatives_of_the_energy() -> None:
+    model, rng = FiniteRotation.of(folded_u(), 3), np.random.default_rng(1)
+    x, d = 1e-5 * rng.standard_normal((2, model.tip.size))
+    h = 1e-3
+    after, before = x + h * d, x - h * d
+    assert model.force(x) @ d == pytest.approx((model.energy(after) - model.energy(before)) / (2 * h))
+    slope = (model.force(after) - model.force(before)) / (2 * h)
+    found = model.stiffness(model.densities(x)) @ d
+    np.testing.assert_allclose(found, slope, atol=1e-7 * np.abs(slope).max())
+
+
+def test_small_motions_are_those_of_the_linear_model() -> None:
+    linear, model = assemble(folded_u(), 6), FiniteRotation.of(folded_u(), 6)
+    same = model.stiffness(model.densities(np.zeros_like(model.tip))) - linear.stiffness
+    assert abs(same).max() < 1e-12 * abs(linear.stiffness).max()
+
+
+@pytest.mark.parametrize("load, deflection", [(1.0, 0.30172), (2.0, 0.49346)])
+def test_elastica(load: float, deflection: float) -> None:
+    """A cantilever under P L^2/EI (K. E. Bisshopp and D. C. Drucker, Q. Appl. Math. 3 (1945) 272)."""
+    thin = leaf(thickness=0.1e-3)
+    model = FiniteRotation.of(thin, 24)
+    force = load * thin.sections[0].bending_stiffness / LEG**2
+    assert model.tip @ bent(model, force) / LEG == pytest.approx(deflection, abs=1e-5)
+
+
+def test_restoring_force_of_a_guided_leg() -> None:
+    """x + (36/35) x^3 with x = y/L: two cantilevers of half its length."""
+    model = FiniteRotation.of(leaf(thickness=0.05e-3), 24)
+    linear = 3.0 * model.spring.sections[0].bending_stiffness / LEG**2
+    excess = []
+    for force in (0.05 * linear, 0.1 * linear):
+        x = model.tip @ bent(model, force) / LEG
+        excess.append((force / linear / x - 1.0) / x**2)
+    assert (4 * excess[0] - excess[1]) / 3 == pytest.approx(36 / 35, rel=2e-4)
+
+
+def test_heavy_tip_on_a_massless_leg() -> None:
+    """27/70 elastic, -9/25 inertial; the leg's own mass is 9e-3 of the tip's, its stretching (t/L)^2."""
+    found = backbone_coefficient(leaf(thickness=0.05e-3, mass=1.0))
+    assert (found.elastic, found.inertial) == pytest.approx((27 / 70, -9 / 25), rel=5e-5)
+    assert found.length == LEG
+
+
+@pytest.mark.parametrize("mass", [0.0, 1e-3, 5e-3, 1.0])
+def test_a_single_leaf_stiffens(mass: float) -> None:
+    assert 0.019 < backbone_coefficient(leaf(mass=mass)).kappa < 0.026
+
+
+def test_backbone_does_not_know_the_modulus_and_hardly_the_thickness() -> None:
+    """Only stretching knows the thickness, by its square: 0.8 % at 0.7 mm."""
+    kappa = [backbone_coefficient(folded_u(thickness=t)).kappa for t in (0.7e-3, 0.35e-3, 0.175e-3)]
+    falls = kappa[1] - kappa[0], kappa[2] - kappa[1]
+    assert falls[0] / falls[1] == pytest.approx(4.0, rel=0.02)
+    assert 4 / 3 * falls[0] / kappa[2] == pytest.approx(0.008, abs=0.002)
+    stiff = replace(STRIP, material=replace(BRASS, youngs_modulus=2 * BRASS.youngs_modulus))
+    assert backbone_coefficient(folded_u(section=stiff)).kappa == pytest.approx(kappa[0], rel=1e-6)
+
+
+def test_coupling_of_a_narrow_u_with_a_heavy_tip() -> None:
+    """-(9/2800)(L/r)^2: the legs bow under the axial forces 6 EI y/(L^2 r) of the sway, but for order r/L."""
+    scaled = [
+        backbone_coefficient(folded_u(radius=r, thickness=0.02e-3, mass=1e3)).kappa * (r / LEG) ** 2
+        for r in (4e-3, 2e-3)
+    ]
+    assert 2 * scaled[1] - scaled[0] == pytest.approx(-9 / 2800, rel=5e-3)
+
+
+@pytest.mark.parametrize("spring", [folded_u(), leaf(), hook()], ids=["folded_u", "leaf", "hook"])
+def test_backbone_against_harmonic_balance(spring: LeafSpring) -> None:
+    """Swings to either side, their amplitudes falling by half, to the limit of both."""
+    model, backbone = FiniteRotation.of(spring, 12), backbone_coefficient(spring, 12)
+    first, shifts = periodic_motion(model, 1e-6).omega, []
+    for amplitude in (2e-3, 4e-3):
+        swings = [periodic_motion(model, side * amplitude, harmonics=3) for side in (1, -1)]
+        assert max(abs(swing.decay_rate) for swing in swings) < 1e-8
+        faster = np.mean([swing.omega for swing in swings]) / first - 1.0
+        shifts.append(faster * (backbone.length / amplitude) ** 2)
+    assert (4 * shifts[0] - shifts[1]) / 3 == pytest.approx(backbone.kappa, rel=2e-4, abs=1e-6)
+
+
+def test_mesh_of_the_backbone() -> None:
+    """The default mesh is good to 1e-5; half the elements are ten times as far off, as the arc's h^4 says."""
+    meshes = (240, 96, 240), None, (60, 24, 60)
+    fine, default, half = (backbone_coefficient(folded_u(), mesh).kappa for mesh in meshes)
+    assert default == pytest.approx(fine, rel=3e-5)
+    assert 8 < (half - fine) / (default - fine) < 32
+
+
+def test_harmonic_balance_against_time_integration() -> None:
+    """A swing of the U comes back after the period found: implicit midpoint rule, steps to the limit."""
+    model = FiniteRotation.of(folded_u(), 2)
+    motion = periodic_motion(model, 6e-3, harmonics=7)
+    mass = model.mass.toarray()
+
+    def end(steps: int) -> NDArray[np.float64]:
+        h, x = 2 * np.pi / motion.omega / steps, motion.coefficients.sum(axis=0).real
+        v = (1j * motion.omega * motion.harmonics @ motion.coefficients).real
+        for _ in range(steps):
+            middle = x + 0.5 * h * v
+            for _ in range(4):
+                left = mass @ (middle - x - 0.5 * h * v) + 0.25 * h**2 * model.force(middle)
+                slope = mass + 0.25 * h**2 * model.stiffness(model.densities(middle)).toarray()
+                middle = middle - np.linalg.solve(slope, left)
+            x, v = 2 * middle - x, 4 * (middle - x) / h - v
+        return np.array([model.tip @ x, model.tip @ v / motion.omega]) / 6e-3
+
+    coarse, fine = end(100), end(200)
+    np.testing.assert_allclose((4 * fine - coarse) / 3, [1.0, 0.0], atol=2e-5)
+
+
+def test_deviations_from_a_driven_motion() -> None:
+    """-mu/2 +- i (omega_1 - omega) for a small one; sqrt((D + k)(D + 3 k)) at a finite amplitude."""
+    model, decay = FiniteRotation.of(folded_u(), 8), 3.56
+    first = periodic_motion(model, 1e-6).omega
+    for amplitude, frequency in ((1e-5, 22.2), (4e-3, 20.9), (4e-3, 23.4)):
+        motion = periodic_motion(model, amplitude, frequency=frequency, decay_rate=decay, harmonics=3)
+        k = periodic_motion(model, amplitude, harmonics=3).omega - first
+        detuning = np.sqrt(first**2 - decay**2 / 4) - 2 * np.pi * frequency
+        turning = np.sqrt((detuning + k) * (detuning + 3 * k))
+        close = 1e-3 * (amplitude / 4e-3) ** 2 + 1e-7
+        assert motion.exponent() == pytest.approx(-decay / 2 + 1j * turning, rel=close)
+        assert motion.effective_period == pytest.approx(
+            2 * np.pi / (motion.omega + turning), rel=1e-5 * (amplitude / 1e-3) ** 2 + 1e-8
+        )
+        assert motion.tip(np.array([0.0]))[0] == pytest.approx(amplitude, rel=1e-9)
+
+
+def test_what_has_no_backbone() -> None:
+    with pytest.raises(ValueError, match="supports leave 2 motions"):
+        backbone_coefficient(replace(leaf(mass=1e-3), supports=("free", "free")))
+    with pytest.raises(TypeError, match="spring is 3; it must be a LeafSpring"):
+        backbone_coefficient(3)  # type: ignore[arg-type]

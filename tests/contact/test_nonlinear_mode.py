@@ -1,0 +1,168 @@
+"""One mode at finite amplitude: against Eq. (1), another integrator and closed forms."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from contact import StroboscopicMap
+from contact.nonlinear_mode import NonlinearMode
+from contact.orbits import born, born_period, orbit_diagram
+from tests.contact.one_mode import FREQUENCIES, GAP, oscillator
+
+LEG = 0.13
+U, LEAF, LINEAR = (-1.715, 1.486), (36 / 35, 36 / 25), (0.0, 0.0)
+"""b and a, times LEG^2: the folded U of the letter's scene, a leaf with a heavy tip, Eq. (1)."""
+
+
+def mode(cubic: tuple[float, float] = U, frequency: float = 22.2, **others: float) -> NonlinearMode:
+    stiffness, inertia = (part / LEG**2 for part in cubic)
+    numbers = {"free_period": 40.80e-3, "decay_rate": 3.56, "gap": GAP, "restitution": 0.1} | others
+    return NonlinearMode(stiffness=stiffness, inertia=inertia, frequency=frequency, **numbers)
+
+
+def acceleration(one: NonlinearMode, force: float):
+    square, decay, b, a, w = one.numbers
+
+    def rate(t: float, y: np.ndarray) -> list[float]:
+        x, v = y
+        pull = force * math.cos(w * t) - decay * v - square * (x + b * x**3) - a * x * v**2
+        return [v, pull / (1.0 + a * x**2)]
+
+    return rate
+
+
+@pytest.mark.parametrize("frequency", FREQUENCIES)
+def test_without_cubic_terms_it_is_eq_1(frequency: float) -> None:
+    """Grazing drive, effective period, what is born (strobes are at another phase of the drive)."""
+    one, linear = mode(LINEAR, frequency), oscillator(frequency)
+    assert one.effective_period == pytest.approx(40.80e-3, rel=1e-12)
+    assert one.effective_decay_rate == pytest.approx(3.56, rel=1e-10)
+    drive = one.grazing[0] / one.numbers[4] ** 2  # the base's amplitude whose inertia pushes as much
+    assert drive == pytest.approx(linear.grazing_amplitude(), rel=1e-12)
+    settled = [born(strobed, 0.01) for strobed in (one, StroboscopicMap(oscillator=linear))]
+    assert [run.period for run in settled] == 2 * [settled[0].period]
+    assert [run.impacts for run in settled] == 2 * [settled[0].impacts]
+
+
+@pytest.mark.parametrize("cubic", [U, LEAF])
+def test_free_flight_against_another_integrator(cubic: tuple[float, float]) -> None:
+    one = mode(cubic).at(-0.2)
+    force, state = 0.8 * one.grazing[0], 0.9 * one.steady()
+    run = one.orbit(state, 5)
+    found = run.points
+    assert run.impacts.sum() == 0
+    root = math.sqrt(one.numbers[0])
+    exact = solve_ivp(
+        acceleration(one, force), (0.0, 5 * one.period), [state[0], state[1] * root], method="DOP853",
+        t_eval=np.arange(1, 6) * one.period, rtol=1e-13, atol=1e-16,
+    ).y.T / [1.0, root]  # fmt: skip
+    np.testing.assert_allclose(found, exact, atol=1e-11 * GAP)
+
+
+@pytest.mark.parametrize("cubic", [U, LEAF])
+def test_a_motion_with_impacts_against_events_of_another_integrator(cubic: tuple[float, float]) -> None:
+    one = mode(cubic).at(0.02)
+    force, root = 1.02 * one.grazing[0], math.sqrt(one.numbers[0])
+    found = one.orbit(one.steady() * 0.9, 6)
+
+    def gap_closes(_t: float, y: np.ndarray) -> float:
+        return y[0] - GAP
+
+    gap_closes.terminal, gap_closes.direction = True, 1.0  # type: ignore[attr-defined]
+    t, y, hits = 0.0, np.array(one.steady() * 0.9) * [1.0, root], 0
+    end = 6 * one.period
+    while t < end:
+        run = solve_ivp(
+            acceleration(one, force), (t, end), y, method="DOP853", events=gap_closes, rtol=1e-13, atol=1e-16,
+            max_step=one.period / 40,
+        )  # fmt: skip
+        t, y = run.t[-1], run.y[:, -1]
+        if run.status == 1:
+            y, hits = np.array([GAP * (1 - 1e-15), -one.restitution * y[1]]), hits + 1
+    assert found.impacts.sum() == hits > 0
+    np.testing.assert_allclose(found.end, y / [1.0, root], atol=1e-9 * GAP)
+
+
+def test_grazing_motion_touches_at_rest_and_nowhere_else() -> None:
+    one = mode()
+    force, touch = one.grazing
+    run = solve_ivp(
+        acceleration(one, force), (touch, touch + one.period), [GAP, 0.0], method="DOP853", rtol=1e-13,
+        atol=1e-16, dense_output=True,
+    )  # fmt: skip
+    np.testing.assert_allclose(run.y[:, -1], [GAP, 0.0], atol=1e-10)
+    assert run.sol(np.linspace(touch, touch + one.period, 1001))[0].max() < GAP * (1 + 1e-12)
+    below, above = one.at(-1e-9), one.at(1e-7)
+    assert below.orbit(below.steady(), 50).impacts.sum() == 0
+    assert above.orbit(above.steady(), 50).impacts.sum() > 0
+
+
+@pytest.mark.parametrize("cubic, least", [(U, 0.011), (LEAF, 0.0)])
+def test_effective_period(cubic: tuple[float, float], least: float) -> None:
+    """(D + k)(D + 3 k) of the averaged motion is good to 0.03 ms of 0.5 ms, better where k is small."""
+    for frequency in FREQUENCIES:
+        one = mode(cubic, frequency)
+        free, w = 2 * math.pi / one.free_period, one.numbers[4]
+        k = free * (3 / 8 * one.stiffness - one.inertia / 4) * GAP**2
+        turning = math.sqrt((free - w + k) * (free - w + 3 * k))
+        shift = one.effective_period - one.free_period
+        expected = 2 * math.pi / (w + turning) - one.free_period
+        assert shift == pytest.approx(expected, abs=0.03e-3)
+        assert abs(shift) > least * one.free_period
+        assert math.copysign(1.0, shift) == math.copysign(1.0, -k) or abs(expected) < 0.03e-3
+
+
+def test_the_u_loses_periods_that_the_leaf_keeps() -> None:
+    """Born at 1e-3: Eq. (1), a leaf and the letter say 3, 4, 5, 6, 8 at the first five frequencies."""
+    born = {
+        cubic: [born_period(mode(cubic, f, gap=10.7e-3), 1e-3) for f in FREQUENCIES[:5]]
+        for cubic in (LINEAR, LEAF, U)
+    }
+    assert born[LINEAR] == born[LEAF] == [3, 4, 5, 6, 8]
+    assert sum(a == b for a, b in zip(born[U], born[LEAF], strict=True)) <= 1
+
+
+def test_a_tip_pressed_against_the_stop_leaves_it_when_the_force_turns() -> None:
+    """At the moment at which the force on the resting tip is zero; free from there to the next strobe."""
+    one = mode(LEAF, frequency=60.0)
+    square, w = one.numbers[0], one.numbers[4]
+    held = square * (GAP + one.stiffness * GAP**3)
+    one = one.at(1.2 * held / one.grazing[0] - 1.0)
+    release = math.acos(1 / 1.2) / w
+    rate, fine = acceleration(one, 1.2 * held), {"rtol": 1e-13, "atol": 1e-16}
+    run = solve_ivp(rate, (release, one.period), [GAP, 0.0], method="DOP853", **fine)
+    assert run.y[0].max() <= GAP
+    found = one.orbit(np.array([GAP, 0.0]), 1)
+    np.testing.assert_allclose(found.end * [1.0, math.sqrt(square)], run.y[:, -1], rtol=1e-9)
+    one = mode(LEAF, 22.2).at(9.0)
+    bouncing = replace(one, restitution=0.8)
+    assert 20 < bouncing.orbit(np.array([0.999 * GAP, 0.0]), 1).impacts[0] < 200
+
+
+def test_scans_take_it() -> None:
+    one = mode(LEAF, 20.9)
+    values = np.linspace(-2e-3, 2e-3, 5)
+    found = orbit_diagram(
+        one, values, one.at(-2e-3).steady(), observe=lambda points: points[:, 0], settle_cycles=2000
+    )
+    assert found.period.tolist()[:2] == [1, 1]
+    assert found.period.tolist()[3:] == [3, 3]
+    assert not found.failures
+
+
+@pytest.mark.parametrize(
+    "wrong, told",
+    [
+        ({"gap": 0.0}, "gap is 0.0 m; it must be"), ({"restitution": 1.5}, "restitution is 1.5"),
+        ({"free_period": -1.0}, "free_period is -1.0 s"), ({"excess": -1.0}, "excess is -1.0"),
+        ({"gap": 0.2}, "stiffness is"), ({"frequency": math.nan}, "frequency is nan Hz"),
+    ],
+)  # fmt: skip
+def test_wrong_input(wrong: dict[str, float], told: str) -> None:
+    with pytest.raises(ValueError, match=told):
+        replace(mode(), **wrong)
