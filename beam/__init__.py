@@ -30,15 +30,18 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from .assembly import Discretization, assemble, default_elements
+    from .backbone import Backbone, backbone_coefficient
     from .centreline import Arc, Centreline, Straight
     from .damping import ConstantLossFactor, ConstantRatio, Damping, MeasuredDecay, Rayleigh, StripDamping
     from .export import write_frames, write_mode_motion, write_modes
+    from .finite_rotation import FiniteRotation
     from .frequency_equation import ExactModes, UniformBeam, exact_modes, frequency_function
     from .guided_leg import as_one_spring, straight_equivalent
     from .material import ALUMINA, BRASS, DAMPING_TAPE, STEEL, Material
     from .modal_model import ModalModel, single_mode
     from .modes import Modes, ShapesAlong, natural_modes
     from .parameters import SuspiciousValue
+    from .periodic_motion import PeriodicMotion, periodic_motion
     from .reduction import reduce
     from .section import Layer, StripSection
     from .spring import LeafSpring, Readout, Support, Tip
@@ -58,15 +61,18 @@ else:
 _RULES = ("ConstantLossFactor", "ConstantRatio", "Damping", "MeasuredDecay", "Rayleigh", "StripDamping")
 _NAMES = {
     "assembly": ("Discretization", "assemble", "default_elements"),
+    "backbone": ("Backbone", "backbone_coefficient"),
     "centreline": ("Arc", "Centreline", "Straight"),
     "damping": _RULES,
     "export": ("write_frames", "write_mode_motion", "write_modes"),
+    "finite_rotation": ("FiniteRotation",),
     "frequency_equation": ("ExactModes", "UniformBeam", "exact_modes", "frequency_function"),
     "guided_leg": ("as_one_spring", "straight_equivalent"),
     "material": ("ALUMINA", "BRASS", "DAMPING_TAPE", "Material", "STEEL"),
     "modal_model": ("ModalModel", "single_mode"),
     "modes": ("Modes", "ShapesAlong", "natural_modes"),
     "parameters": ("SuspiciousValue",),
+    "periodic_motion": ("PeriodicMotion", "periodic_motion"),
     "reduction": ("reduce",),
     "section": ("Layer", "StripSection"),
     "spring": ("LeafSpring", "Readout", "Support", "Tip"),

@@ -32,6 +32,7 @@ From problem to answer
                         ``contact.integrators`` for comparison
     `StroboscopicMap`   the same from strobe to strobe; `strobed_orbits` many of them on all cores
     `collisions`        what each collision does to mode 1; `first_collision` the first above grazing
+    `NonlinearMode`     one mode at finite amplitude
     `NordmarkMap`       the letter's map, its orbits (`maximal_orbits`), folds and bands in closed form
     `MaximalFamily`     the same orbits of Eq. (1) in closed form, under Newton's law
     ``contact.orbits``  orbits of any law: `settle`, `born` and `orbit_diagram` by following the motion,
@@ -79,6 +80,7 @@ from contact.maximal_orbits import (
     maximal_periods,
     stable_range,
 )
+from contact.nonlinear_mode import NonlinearMode
 from contact.nordmark import NordmarkMap
 from contact.orbits.single_impact import MaximalFamily, SingleImpactOrbit
 from contact.oscillator import ImpactOscillator
@@ -108,6 +110,7 @@ __all__ = [
     "MaximalFamily",
     "MaximalOrbit",
     "NewtonRestitution",
+    "NonlinearMode",
     "NordmarkMap",
     "NotPeriodic",
     "Regime",
