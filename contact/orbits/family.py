@@ -20,14 +20,16 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from contact.errors import NotPeriodic
 from contact.flight.crossing import CROSSES, FREE, first_crossing
 from contact.flight.modal_flow import flow_over, steady_motion
 from contact.flight.motion import Motion
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
+from contact.touch_flow import FLOWN, flow_from_touch
 from contact.trajectory import State
 
-__all__ = ["Family", "Orbit", "Release", "TouchOrbit", "modal_flow"]
+__all__ = ["Family", "Orbit", "Release", "TouchOrbit", "flown", "modal_flow"]
 
 Array = NDArray[np.float64]
 CLOSING = 1e-9  # part of a flight by which it is prolonged, so that the touch at its end is met
@@ -76,6 +78,44 @@ class Family(Protocol):
 
     def fold(self) -> Orbit | None:
         """The orbit of least amplitude, at which node and saddle meet; None if there is none."""
+
+
+def flown(
+    oscillator: ImpactOscillator, period: int, phase: float, deviations: Array, touches: int
+) -> tuple[Array, Array, Array]:
+    """The flow over m = `period` drive periods from a touch (``contact.touch_flow``).
+
+    Parameters
+    ----------
+    oscillator : ImpactOscillator
+        At the drive amplitude of the orbit.
+    period : int
+    phase : float
+        Drive time of the touch [s].
+    deviations : ndarray, shape (2 n_modes,)
+        (u, v) just before it.
+    touches : int
+        How many there are to be.
+
+    Returns
+    -------
+    end, tangent, record : ndarray, shapes (2 n_modes,), (2 n_modes + 2,) * 2 and (touches, 4 + 2 n_modes)
+
+    Raises
+    ------
+    NotPeriodic
+        If the motion has fewer touches, or a contact does not end.
+    """
+    (u, v), size, duration = deviations.reshape(2, -1).copy(), deviations.size, period * oscillator.period
+    tangent, record = np.eye(size + 2), np.empty((touches, 4 + size))
+    motion, response = oscillator.motion(), oscillator.tip_response()
+    outcome = flow_from_touch(motion, response, phase, u, v, duration, tangent, record)
+    if outcome != FLOWN:
+        raise NotPeriodic(
+            time=phase, gap=0.0, velocity=float(record[0, 2]),
+            detail=f"an orbit of period {period} with {touches} touches was lost",
+        )  # fmt: skip
+    return np.concatenate([u, v]), tangent, record
 
 
 def modal_flow(motion: Motion, time: float) -> Array:
@@ -133,6 +173,11 @@ class TouchOrbit(ABC):
     @abstractmethod
     def release(self) -> Release:
         """Where the flight begins that ends with the first touch."""
+
+    @property
+    def deviations(self) -> Array:
+        """(u, v) of all modes just before the first touch, shape (2 n_modes,)."""
+        return np.concatenate([self.displacement, self.velocity])
 
     @property
     def amplitude(self) -> float:

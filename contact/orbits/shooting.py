@@ -28,15 +28,14 @@ from numpy.typing import NDArray
 
 from beam.parameters import is_whole, require, require_kind, require_within, shown
 from contact.errors import NotPeriodic
-from contact.flight.modal_flow import steady_motion
 from contact.orbits.continuation import fold_of, orbits_at
-from contact.orbits.family import TouchOrbit
+from contact.orbits.family import TouchOrbit, flown
 from contact.orbits.kick import KickFamily
 from contact.orbits.periodic_orbit import PeriodicOrbit
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
-from contact.touch_flow import FLOWN, flow_from_touch
 from contact.trajectory import ImpactKind, Regime, State
+from contact.virtual_motion import deviations
 
 __all__ = ["PeriodicOrbit", "Shooting"]
 
@@ -138,25 +137,9 @@ class Shooting:
         return self.oscillator.with_amplitude(amplitude), angle % (2.0 * math.pi) / w
 
     def flow(self, unknown: Array) -> tuple[Array, Array, Array]:
-        """End of the flow (u, v), its tangent (2 N + 2, 2 N + 2) and the record of the touches.
-
-        Raises
-        ------
-        NotPeriodic
-            If the motion has fewer touches, or a contact does not end.
-        """
-        n = self.oscillator.n_modes
+        """End, tangent and record of the flow from a touch with these unknowns, as those of `flown`."""
         driven, phase = self._driven(unknown)
-        u, v = unknown[:n].copy(), unknown[n : 2 * n].copy()
-        matrix, record = np.eye(2 * n + 2), np.empty((self.impacts, 4 + 2 * n))
-        response, length = self.oscillator.tip_response(), self.period * self.oscillator.period
-        outcome = flow_from_touch(driven.motion(), response, phase, u, v, length, matrix, record)
-        if outcome != FLOWN:
-            raise NotPeriodic(
-                time=phase, gap=0.0, velocity=float(record[0, 2]),
-                detail=f"an orbit of period {self.period} with {self.impacts} touches was lost",
-            )
-        return np.concatenate([u, v]), matrix, record
+        return flown(driven, self.period, phase, unknown[:-2], self.impacts)
 
     def _iterate(self, unknown: Array, speed: float | None, amplitude: float | None) -> _Iterate:
         """The equations at `unknown`: closed, at the stop, and with this speed or this amplitude."""
@@ -187,11 +170,9 @@ class Shooting:
             # one step in any case: near grazing a neighbour can lie within the tolerance, and is another
             # orbit
             if iteration > 0:
-                if found is None or here.error < found.error:
-                    found = here
-                    if here.error < CONVERGED:
-                        return self._orbit(found)
-                elif found.error < ROUNDED:
+                better = found is None or here.error < found.error
+                found = here if better else found
+                if found.error < (CONVERGED if better else ROUNDED):
                     return self._orbit(found)
             try:
                 change = np.linalg.solve(here.jacobian, here.residual)
@@ -205,10 +186,7 @@ class Shooting:
                 break
         raise NotPeriodic(
             time=0.0, gap=0.0, velocity=here.record[0, 2],
-            detail=(
-                f"Newton's method did not converge to an orbit of period {self.period} "
-                f"(residual {here.error:.1e})"
-            ),
+            detail=f"Newton's method found no orbit of period {self.period} (residual {here.error:.1e})",
         )
 
     def _orbit(self, found: _Iterate) -> PeriodicOrbit:
@@ -235,8 +213,7 @@ class Shooting:
 
     def _beside(self, orbit: TouchOrbit) -> Array:
         """Unknowns of an orbit, to start a neighbouring one from."""
-        deviations = np.concatenate([orbit.displacement, orbit.velocity])
-        return self._unknown(deviations, orbit.amplitude, orbit.phase)
+        return self._unknown(orbit.deviations, orbit.amplitude, orbit.phase)
 
     def at_speed(self, speed: float, near: PeriodicOrbit | None = None) -> PeriodicOrbit:
         """The orbit whose first touch has approach velocity `speed` [m/s].
@@ -275,11 +252,10 @@ class Shooting:
                 time=state.time, gap=0.0, velocity=0.0, detail="the motion has no impact to start from"
             )
         i = int(np.flatnonzero(hits)[0])
-        phase = float(run.impacts.start[i] % self.oscillator.period)
-        steady = np.concatenate(steady_motion(self.oscillator.motion(), np.array([phase])), axis=1)[0]
-        met = np.concatenate([run.impacts.displacement_start[i], run.impacts.velocity_start[i]])
-        amplitude = self.oscillator.driven.amplitude
-        return self._solve(self._unknown(met - steady, amplitude, phase), amplitude=amplitude)
+        phase, met = float(run.impacts.start[i] % self.oscillator.period), run.impacts
+        motion, amplitude = self.oscillator.motion(), self.oscillator.driven.amplitude
+        start = deviations(motion, phase, met.displacement_start[i], met.velocity_start[i]).ravel()
+        return self._solve(self._unknown(start, amplitude, phase), amplitude=amplitude)
 
     def orbit(self, speed: float) -> PeriodicOrbit:
         """`at_speed`, from the kick description."""

@@ -42,15 +42,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam.parameters import require, require_kind, require_whole, require_within
-from contact.errors import NotPeriodic
 from contact.flight.motion import Motion
 from contact.laws import NewtonRestitution
+from contact.maximal_orbits import positive_roots
 from contact.nordmark import restitution_of
-from contact.orbits.family import Release, TouchOrbit, modal_flow
+from contact.orbits.family import Release, TouchOrbit, flown, modal_flow
 from contact.oscillator import ImpactOscillator
 from contact.stop import Stop
 from contact.touch.newton import newton_impact
-from contact.touch_flow import FLOWN, flow_from_touch
 
 __all__ = ["Kick", "MaximalFamily", "SingleImpactFamily", "SingleImpactOrbit"]
 
@@ -94,7 +93,7 @@ class SingleImpactOrbit(TouchOrbit):
     @property
     def after(self) -> Array:
         """Deviations (u, u') just after the collision, referred to its first touch, shape (n_modes, 2)."""
-        return np.column_stack([self.displacement, self.velocity]) + self.kick.jump
+        return self.deviations.reshape(2, -1).T + self.kick.jump
 
     def release(self) -> Release:
         """The end of the collision."""
@@ -111,16 +110,8 @@ class SingleImpactOrbit(TouchOrbit):
         NotPeriodic
             If that collision has fewer touches than the kick, or does not end.
         """
-        n, tangent = self.oscillator.n_modes, np.eye(2 * self.oscillator.n_modes + 2)
-        outcome = flow_from_touch(
-            self.oscillator.motion(), self.oscillator.tip_response(), self.phase, self.displacement.copy(),
-            self.velocity.copy(), self.duration, tangent, np.empty((self.kick.touches, 4 + 2 * n)),
-        )  # fmt: skip
-        if outcome != FLOWN:
-            raise NotPeriodic(
-                time=self.phase, gap=0.0, velocity=self.speed, detail="the collision was lost on its orbit"
-            )
-        return tangent[: 2 * n, : 2 * n]
+        tangent = flown(self.oscillator, self.period, self.phase, self.deviations, self.kick.touches)[1]
+        return tangent[:-2, :-2]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -183,9 +174,7 @@ class SingleImpactFamily(ABC):
 
     def excess(self, speed: float) -> float:
         """F/F_g - 1 of the orbit that meets the wall at `speed`, above zero [m/s]; errors as of `orbit`."""
-        kick, gap = self.kick(require_within("speed", speed, "m/s", above=0)), self.oscillator.stop.gap
-        p, r = self._motion.tip(self.closed(kick.jump))
-        return excess_of(p / gap, (kick.speed - r) / self.oscillator.unit_speed)
+        return self.orbit(speed).excess
 
     def orbit_of(self, kick: Kick) -> SingleImpactOrbit:
         """The orbit on which `kick` happens once in m drive periods."""
@@ -255,13 +244,9 @@ class MaximalFamily(SingleImpactFamily):
     def orbits(self, excess: float) -> tuple[SingleImpactOrbit, ...]:
         """The orbits at F/F_g - 1 = `excess` > -1, 0 to 2, by rising speed (of two, saddle, then node)."""
         require_within("excess", excess, "[1]", above=-1)
-        (s, b), gap = self.arms, self.oscillator.stop.gap
-        square, above = s * s + b * b, excess * (2.0 + excess)
-        if s * s + square * above < 0.0:
-            return ()
-        half = s + math.copysign(math.sqrt(s * s + square * above), s)  # v/gap: half/square and -above/half
-        speeds = sorted((gap * half / square, -gap * above / half if half != 0.0 else 0.0))
-        return tuple(self.orbit(v) for v in speeds if v > 0.0)
+        s, b = self.arms
+        roots = positive_roots(s * s + b * b, -2.0 * s, -excess * (2.0 + excess))
+        return tuple(self.orbit(self.oscillator.stop.gap * root) for root in roots)
 
     def fold(self) -> SingleImpactOrbit | None:
         """The orbit of least amplitude, at which node and saddle meet; None if s <= 0 (no fold)."""
