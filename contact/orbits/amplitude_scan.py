@@ -170,49 +170,33 @@ class AmplitudeScan:
                 f"at least {2 * LARGEST_PERIOD} to be seen"
             )
 
-    def at_frequency(self, frequency: float) -> ImpactOscillator:
-        """The oscillator at grazing and drive `frequency` [Hz]."""
-        drive = replace(self.oscillator.driven, frequency=frequency)
-        return replace(self.oscillator, drive=drive).with_excess(0.0)
-
     def __call__(self, frequency: float, excesses: ArrayLike) -> ScannedColumn:
         """The column at drive `frequency` [Hz] over rising `excesses` F/F_g - 1 [1]."""
         rising = require_array("excesses", excesses, "[1]", dimensions=1, words="one row of rising numbers")
         if rising.size == 0 or not np.all(np.diff(rising) > 0.0):
             raise ValueError("excesses must be at least one number, in rising order")
-        oscillator = self.at_frequency(frequency)
+        drive, n = replace(self.oscillator.driven, frequency=frequency), self.oscillator.n_modes
+        oscillator = replace(self.oscillator, drive=drive).with_excess(0.0)
         steady = StroboscopicMap(oscillator=oscillator).at(float(rising[0])).steady()
         state = np.concatenate([steady.displacement, steady.velocity, np.zeros(EXTRA)])
-        found = np.full((2, 3, rising.size), -1, dtype=np.int64)
-        reasons = [[""] * rising.size, [""] * rising.size]
-        for way in (0, 1):
-            order = slice(None, None, 1 if way == 0 else -1)
-            columns, told = self._scanned(oscillator, rising[order], state)
-            found[way, :, order], reasons[way][order] = columns.T, told
-        return ScannedColumn(
-            period=found[:, 0], impacts=found[:, 1], cycles=found[:, 2], reason=np.array(reasons)
-        )
-
-    def _scanned(
-        self, oscillator: ImpactOscillator, excesses: NDArray[np.float64], state: NDArray[np.float64]
-    ) -> tuple[NDArray[np.int64], list[str]]:
-        """Period, impacts and cycles, shape (n, 3), and reasons; `state` becomes the last one reached."""
-        system, n = strobed_system(oscillator), oscillator.n_modes
+        system, tolerance = strobed_system(oscillator), TOLERANCE * oscillator.stop.gap
         u, v, runs = np.empty(n), np.empty(n), np.zeros(1, dtype=STATE)
-        tolerance = TOLERANCE * oscillator.stop.gap
-        columns, reasons = np.full((excesses.size, 3), -1, dtype=np.int64), [""] * excesses.size
-        at = 0
-        while at < excesses.size:
-            amplitudes, rest = 1.0 + excesses[at:], columns[at:]
+        path = np.concatenate([rising, rising[::-1]])
+        found, reasons, at = np.full((path.size, 3), -1, dtype=np.int64), [""] * path.size, 0
+        while at < path.size:
             done, status = settled_column(
-                system, amplitudes, state, self.most_cycles, tolerance, rest, u, v, runs
+                system, 1.0 + path[at:], state, self.most_cycles, tolerance, found[at:], u, v, runs
             )
             at += done
             if status != DONE:
                 # the next amplitude goes on from the last state that was reached
-                motion = oscillator.with_excess(float(excesses[at])).motion()
+                motion = oscillator.with_excess(float(path[at])).motion()
                 reasons[at], at = _reason(status, motion, runs, u, v), at + 1
-        return columns, reasons
+        period, impacts, cycles, reason = (
+            np.array([every[: rising.size], every[: rising.size - 1 : -1]])
+            for every in (*found.T, np.array(reasons))
+        )
+        return ScannedColumn(period=period, impacts=impacts, cycles=cycles, reason=reason)
 
 
 def _reason(status: int, motion: Motion, runs: np.ndarray, u: np.ndarray, v: np.ndarray) -> str:

@@ -83,23 +83,8 @@ class Family(Protocol):
 def flown(
     oscillator: ImpactOscillator, period: int, phase: float, deviations: Array, touches: int
 ) -> tuple[Array, Array, Array]:
-    """The flow over m = `period` drive periods from a touch (``contact.touch_flow``).
-
-    Parameters
-    ----------
-    oscillator : ImpactOscillator
-        At the drive amplitude of the orbit.
-    period : int
-    phase : float
-        Drive time of the touch [s].
-    deviations : ndarray, shape (2 n_modes,)
-        (u, v) just before it.
-    touches : int
-        How many there are to be.
-
-    Returns
-    -------
-    end, tangent, record : ndarray, shapes (2 n_modes,), (2 n_modes + 2,) * 2 and (touches, 4 + 2 n_modes)
+    """The flow over m = `period` drive periods from a touch: its end, tangent and record, as they are told in
+    ``contact.touch_flow``, from the `deviations` (u, v), shape (2 n_modes,), at drive time `phase` [s].
 
     Raises
     ------

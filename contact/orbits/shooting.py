@@ -170,9 +170,8 @@ class Shooting:
             # one step in any case: near grazing a neighbour can lie within the tolerance, and is another
             # orbit
             if iteration > 0:
-                better = found is None or here.error < found.error
-                found = here if better else found
-                if found.error < (CONVERGED if better else ROUNDED):
+                found = here if found is None or here.error < found.error else found
+                if found.error < (CONVERGED if found is here else ROUNDED):
                     return self._orbit(found)
             try:
                 change = np.linalg.solve(here.jacobian, here.residual)

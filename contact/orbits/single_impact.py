@@ -46,7 +46,7 @@ from contact.flight.motion import Motion
 from contact.laws import NewtonRestitution
 from contact.maximal_orbits import positive_roots
 from contact.nordmark import restitution_of
-from contact.orbits.family import Release, TouchOrbit, flown, modal_flow
+from contact.orbits.family import CLOSING, Release, TouchOrbit, flown, modal_flow
 from contact.oscillator import ImpactOscillator
 from contact.stop import Stop
 from contact.touch.newton import newton_impact
@@ -55,7 +55,6 @@ __all__ = ["Kick", "MaximalFamily", "SingleImpactFamily", "SingleImpactOrbit"]
 
 Array = NDArray[np.float64]
 SINGULAR = 1e-13  # a D below this is rounding of 1 - tr N + G, terms of size 1: the mode is back after m/f
-CLOSING = 1e-9  # part of the flight within which a crossing is the impact that ends it
 HEIGHT = 1e-13  # the same in units of the gap: rounding of the height at which the flight ends
 
 
