@@ -9,16 +9,11 @@ width, made from an orbit that held.  That step brackets the end.
 
 **Exact end.** The orbit that held is then followed, as an orbit and not as a motion, through the bracket: by
 shooting for an impact oscillator (``contact.orbits.continuation``), in closed form for the Nordmark map
-(``contact.maximal_orbits``).  What is met first is the end,
-
-    fold              the orbit meets an unstable one
-    period doubling   a multiplier passes -1
-    grazing           the tip touches the stop once more, or one touch less,
-
-with the excess of that very point.  If the orbit leaves the bracket at its lower end, stable, the motion had
-been lost too early, and the scan goes on from the orbit there.  Where nothing of this is found (a map without
-these tools, several impacts in the map, a pair of complex multipliers that passes the unit circle) the end is
-known to its "bracket" only.
+(``contact.maximal_orbits``).  What is met first is the end, a "fold", "period doubling" or "grazing"
+(``contact.orbits.events``), with the excess of that very point.  If the orbit leaves the bracket at its lower
+end, stable, the motion had been lost too early, and the scan goes on from the orbit there.  Where nothing of
+this is found (a map without these tools, several impacts in the map, a pair of complex multipliers that
+passes the unit circle) the end is known to its "bracket" only.
 """
 
 from __future__ import annotations

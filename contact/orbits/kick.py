@@ -85,14 +85,14 @@ class KickFamily(SingleImpactFamily):
             return self._simulated(speed, deviations)
         if self.collision is not None:
             return self.collision(speed)
-        if self._motion.law == DELAYED:
+        if self.oscillator.motion().law == DELAYED:
             return self._waiting(speed)
         return self._simulated(speed, np.zeros((self.oscillator.n_modes, 2)))
 
     def _simulated(self, speed: float, w: Array) -> Kick:
         """The collision from the deviations `w`, shape (n_modes, 2)."""
         n, window = self.oscillator.n_modes, WINDOW * self.oscillator.period
-        p, r = self._motion.tip(w)
+        p, r = self.oscillator.motion().tip(w)
         amplitude, phase = self.oscillator.drive_at(self.oscillator.stop.gap - p, speed - r)
         motion, response = self.oscillator.with_amplitude(amplitude).motion(), self.oscillator.tip_response()
         (u, v), record = w.T.copy(), np.full((MOST_TOUCHES + 1, 4 + 2 * n), np.nan)
@@ -111,7 +111,7 @@ class KickFamily(SingleImpactFamily):
 
     def _waiting(self, speed: float) -> Kick:
         """The touch of `DelayedRestitution` that repeats once in m drive periods."""
-        motion, gap = self._motion, self.oscillator.stop.gap
+        motion, gap = self.oscillator.motion(), self.oscillator.stop.gap
         restitution, _slope, delay, _slope = numbers_at(motion.table, speed)
         left = self.period * self.oscillator.period - delay
         w, angle = motion.drive, motion.drive * delay

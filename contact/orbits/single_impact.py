@@ -42,7 +42,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam.parameters import require, require_kind, require_whole, require_within
-from contact.flight.motion import Motion
 from contact.laws import NewtonRestitution
 from contact.maximal_orbits import positive_roots
 from contact.nordmark import restitution_of
@@ -139,18 +138,14 @@ class SingleImpactFamily(ABC):
         """The collision with approach speed `speed`, above zero [m/s]."""
 
     @cached_property
-    def _motion(self) -> Motion:
-        return self.oscillator.motion()
-
-    @cached_property
     def flow(self) -> Array:
         """N, mode by mode, shape (n_modes, 2, 2)."""
-        return modal_flow(self._motion, self.period * self.oscillator.period)
+        return modal_flow(self.oscillator.motion(), self.period * self.oscillator.period)
 
     @cached_property
     def _closing(self) -> tuple[Array, NDArray[np.bool_]]:
         """(N - G I)/D mode by mode, and which modes return to themselves after m/f (D = 0)."""
-        shrink = np.exp(-self._motion.decay * self.period * self.oscillator.period)
+        shrink = np.exp(-self.oscillator.motion().decay * self.period * self.oscillator.period)
         distance = np.abs(1.0 - self.flow[:, 0, 0] - self.flow[:, 1, 1] + shrink)
         trapped = distance <= SINGULAR
         sizes = np.where(trapped, 1.0, distance)[:, None, None]
@@ -165,20 +160,22 @@ class SingleImpactFamily(ABC):
         back = np.flatnonzero(trapped & np.any(jump != 0.0, axis=1))  # one that is not kicked stays at rest
         if back.size:
             raise ValueError(
-                f"omega[{back[0]}] is {self._motion.omega[back[0]]} rad/s, a mode that is back after "
-                f"{self.period} drive periods; it must have damping or another frequency"
+                f"omega[{back[0]}] is {self.oscillator.model.omega[back[0]]} rad/s, a mode that is back "
+                f"after {self.period} drive periods; it must have damping or another frequency"
             )
         closed: Array = np.einsum("kij,kj->ki", matrices, jump)
         return closed
 
     def excess(self, speed: float) -> float:
         """F/F_g - 1 of the orbit that meets the wall at `speed`, above zero [m/s]; errors as of `orbit`."""
-        return self.orbit(speed).excess
+        kick, gap = self.kick(require_within("speed", speed, "m/s", above=0)), self.oscillator.stop.gap
+        p, r = self.oscillator.motion().tip(self.closed(kick.jump))
+        return excess_of(p / gap, (kick.speed - r) / self.oscillator.unit_speed)
 
     def orbit_of(self, kick: Kick) -> SingleImpactOrbit:
         """The orbit on which `kick` happens once in m drive periods."""
         before, gap = self.closed(kick.jump), self.oscillator.stop.gap
-        p, r = self._motion.tip(before)
+        p, r = self.oscillator.motion().tip(before)
         rate = kick.speed - r
         amplitude, phase = self.oscillator.drive_at(gap - p, rate)
         return SingleImpactOrbit(
@@ -229,16 +226,16 @@ class MaximalFamily(SingleImpactFamily):
 
     def kick(self, speed: float) -> Kick:
         """B of Newton's law."""
-        velocity, e = np.zeros(self.oscillator.n_modes), self._motion.number0
-        newton_impact(self._motion, velocity, speed, e)
+        motion, velocity = self.oscillator.motion(), np.zeros(self.oscillator.n_modes)
+        newton_impact(motion, velocity, speed, motion.number0)
         jump = np.column_stack([np.zeros(velocity.size), velocity])
-        return Kick(speed=speed, jump=jump, leaves=e > 0.0)
+        return Kick(speed=speed, jump=jump, leaves=motion.number0 > 0.0)
 
     @cached_property
     def arms(self) -> tuple[float, float]:
         """(s, b): p and (v - r)/w of Eq. (a) per unit approach speed [s]."""
-        s, r = self._motion.tip(self.closed(self.kick(1.0).jump))
-        return float(s), float((1.0 - r) / self._motion.drive)
+        s, r = self.oscillator.motion().tip(self.closed(self.kick(1.0).jump))
+        return float(s), float((1.0 - r) / self.oscillator.driven.angular_frequency)
 
     def orbits(self, excess: float) -> tuple[SingleImpactOrbit, ...]:
         """The orbits at F/F_g - 1 = `excess` > -1, 0 to 2, by rising speed (of two, saddle, then node)."""
