@@ -25,7 +25,6 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from beam import Arc, Centreline, Material, Straight, StripSection, Support, Tip
@@ -39,7 +38,7 @@ from beam.space import (
     spatial_modes,
     upright,
 )
-from studies.scene import Scene, SceneError
+from studies.scene import Scene, SceneError, sections_of
 from studies.spring_shape.elasticity import SolidSpring
 from studies.spring_shape.swept_mesh import rectangle_profile, sweep
 
@@ -136,13 +135,13 @@ class Shape:
     def solid(self, mesh: Mesh) -> SolidSpring:
         """The folded or the plain strip as a solid."""
         profile = rectangle_profile(along_n=self.thickness, along_z=self.width, cells=mesh.across)
-        solid = sweep(
+        swept = sweep(
             profile, self.centreline, (mesh.legs, mesh.bend, mesh.legs) if self.bent else (mesh.legs,),
             tip_at=self.tip_at, halvings=(mesh.halvings, mesh.halvings if self.bent else 0),
         )  # fmt: skip
         return SolidSpring(
-            solid=solid, material=self.material, clamped=(True, self.bent), tip=self.tip, tip_at=self.tip_at,
-            drive=self.stop,
+            mesh=swept, axes=self.centreline.axes(self.tip_at), material=self.material, tip=self.tip,
+            clamped=("start", "end") if self.bent else ("start",), drive=self.stop,
         )  # fmt: skip
 
 
@@ -154,20 +153,12 @@ def shape_of(scene: Scene, reading: Reading) -> Shape:
             "spring.bend_radius_m must be greater than half of spring.width_m, "
             f"{keys.width_m / 2:g} (unit m), for legs side by side, not {keys.bend_radius_m}"
         )
-    material = Material(
-        youngs_modulus=keys.young_modulus_pa, poissons_ratio=keys.poisson_ratio, density=keys.density_kg_m3
-    )
+    bare, _ = sections_of(scene)
     return Shape(
-        reading=reading, material=material, length=keys.leg_length_m, width=keys.width_m,
-        bend_radius=keys.bend_radius_m, thickness=keys.thickness_m,
+        reading=reading, material=bare.material, length=keys.leg_length_m, width=bare.width,
+        bend_radius=keys.bend_radius_m, thickness=bare.thickness,
         tip=Tip(mass=scene.tip.mass_kg, rotary_inertia=scene.tip.rotary_inertia_kg_m2),
     )  # fmt: skip
-
-
-def angular_frequency_of(scene: Scene) -> float:
-    """omega_1 [rad/s] of the free damped period in [single_mode]."""
-    keys = scene.single_mode
-    return math.hypot(2.0 * math.pi / keys.free_period_s, 0.5 * keys.decay_rate_per_s)
 
 
 def brought_to(shape: Shape, omega: float) -> Shape:
@@ -209,9 +200,9 @@ def first_bending(modes: SpatialModes) -> int:
     return int(np.argmax(np.abs(modes.phi) > 1e-3 * np.abs(modes.phi).max()))
 
 
-def kinds_of(shape: Shape, displacement: NDArray[np.float64], rotation: NDArray[np.float64]) -> list[str]:
-    """The name of each mode, from the motion of the section at the ball, each (n_modes, 3)."""
+def kinds_of(shape: Shape, modes: SpatialModes) -> list[str]:
+    """The name of each mode, from the motion of the section at the ball."""
     names = ("bending", "sideways", "twist", "breathing" if shape.bent else "lengthwise")
-    along, across = displacement @ np.array(shape.stop), displacement @ np.array(shape.sideways)
-    moves = np.stack([along, across, 0.5 * shape.width * rotation[:, 0], displacement[:, 0]], axis=1)
-    return [names[place] for place in np.argmax(np.abs(moves), axis=1)]
+    moved, turned = modes.displacement, 0.5 * shape.width * modes.rotation[:, 0]
+    moves = (moved @ np.array(shape.stop), moved @ np.array(shape.sideways), turned, moved[:, 0])
+    return [names[place] for place in np.argmax(np.abs(moves), axis=0)]
