@@ -16,7 +16,6 @@ from studies.effective_impact.cases import Spring
 from studies.effective_impact.collision_rows import (
     Row,
     floor_of,
-    measure,
     on_orbits,
 )
 from studies.letter import TIME_TRACE_EXCESS
@@ -46,7 +45,7 @@ def bare() -> Spring:
 def met(spring: Spring, law, excess: float = TIME_TRACE_EXCESS, modes: int | None = None) -> Row:
     """The row of one approach."""
     kept = spring if modes is None else replace(spring, model=spring.model.truncated(modes))
-    return measure(kept.case("speed", "a", excess, law, excess=excess))
+    return kept.case("speed", "a", law, excess=excess).measured()
 
 
 # the physics of one collision
@@ -99,7 +98,7 @@ def test_energy_goes_where_it_is_said_to_go(spring):
     # kick 1 takes all of mode 1: the higher modes have it, 1 - restitution^2 within the work of the spring
     assert elastic.energy_share == pytest.approx(1.0 - elastic.restitution**2, abs=0.02)
     assert lossy.energy_share < elastic.energy_share
-    lost = [first_collision(spring.case("speed", "a", 0.013, law).oscillator).energy_lost
+    lost = [first_collision(spring.case("speed", "a", law).oscillator).energy_lost
             for law in (hertz_of(LETTER), spring.lossy(0.3))]  # fmt: skip
     assert lost[0] == pytest.approx(0.0, abs=1e-12) and lost[1] > 0.0
 
@@ -127,17 +126,17 @@ def test_the_family_of_tip_masses_keeps_period_and_amplitude_at_grazing():
 def test_a_settled_orbit_has_its_collision_in_every_period():
     """The orbit of Fig. 4, and a motion without impacts, which has none."""
     spring = Spring.of(read_scene("letter"), FREQUENCY, 20)
-    case = spring.case("orbit", "21.5 Hz", 0.28, hertz_of(LETTER), frequency=21.50)
-    row = measure(case)
+    case = spring.case("orbit", "21.5 Hz", hertz_of(LETTER), frequency=21.50)
+    row = case.measured()
     assert row.orbit_period == 4 and row.impacts == 1 and on_orbits([row]) == [row]
     assert row.restitution == pytest.approx(0.143, abs=2e-3)
-    below = measure(replace(case, oscillator=case.oscillator.with_excess(-0.01)))
+    below = replace(case, oscillator=case.oscillator.with_excess(-0.01)).measured()
     assert below.orbit_period == 1 and math.isnan(below.kick) and on_orbits([below]) == []
 
 
 def test_below_grazing_there_is_no_collision(spring):
     with pytest.raises((ContactError, ValueError)):
-        measure(spring.case("speed", "a", -0.1, hertz_of(LETTER), excess=-0.1))
+        met(spring, hertz_of(LETTER), -0.1)
 
 
 # what is read off the curves, with rows made for it
