@@ -17,8 +17,7 @@ reference by no more than the tolerances:
                    mean square of the difference over the gap
 
 Folds are those of the collision as a kick of all modes (``contact.orbits.KickFamily``), which has them to
-0.2 % (median; 1 % at worst) at a hundredth of the price of following the orbits; those of fewer modes are
-looked for within a factor e of the approach velocity at the fold of the reference. Modes left out act on a
+0.2 % (median; 1 % at worst) at a hundredth of the price of following the orbits. Modes left out act on a
 collision through their compliance, sum phi_k^2/omega_k^2 over the modes beyond, so that errors fall steadily
 along the ladder: the least number is found by bisection, and the next one is asked as well, lest errors
 cancel by chance. A quantity that the reference does not have at a frequency (no orbit, no fold) asks nothing
@@ -31,23 +30,22 @@ import math
 from bisect import bisect
 from collections.abc import Callable, Hashable, Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import cache
+from functools import partial
 from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
 
 from beam import ModalModel
 from contact import ContactError, ImpactOscillator, StroboscopicMap, first_collision, simulate
-from contact.orbits import KickFamily, Settled, SingleImpactOrbit, born
+from contact.orbits import KickFamily, born, born_period
 from studies import letter
 from studies.scene import Scene, SceneError, beam_at, model_of
 
 __all__ = [
-    "COLLISIONS", "LADDER", "QUANTITIES", "REFERENCE", "Answer", "Models", "Question", "Values", "collisions",
-    "error_of_fold", "error_of_trace", "largest_error", "least_modes", "middle_of", "questions", "settled",
-    "tip_trace",
+    "COLLISIONS", "LADDER", "QUANTITIES", "REFERENCE", "Answer", "At", "Distance", "Question", "Values",
+    "collisions", "error_of_fold", "error_of_trace", "largest_error", "least_modes", "middle_of", "questions",
+    "reference_of", "tip_trace",
 ]  # fmt: skip
 
 REFERENCE = 40
@@ -56,18 +54,17 @@ REFERENCE = 40
 LADDER = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 15, 18, 21, 25, 30)
 """Numbers of modes that are tried."""
 
-BORN_EXCESS, TRACE_EXCESS = 1e-3, letter.TIME_TRACE_EXCESS
+TRACE_EXCESS = letter.TIME_TRACE_EXCESS
 COLLISIONS = (0.5 * TRACE_EXCESS, TRACE_EXCESS, 2.0 * TRACE_EXCESS)
 """Excesses of the collisions that are asked for: three, lest errors that cancel at one pass for accuracy."""
-
-MOST_CYCLES = 4000
-"""Bound of a transient [drive periods]: the slowest at the letter's frequencies takes about 1000."""
 
 SAMPLES = 256
 """Samples of a trace in a drive period."""
 
 Values = NDArray[np.float64]
 Answer = Values | None
+At = Callable[[float], ImpactOscillator]
+"""The oscillator of a model at a drive frequency [Hz]."""
 Distance = Callable[[Values, Values], float]
 Choice = TypeVar("Choice", bound=Hashable)
 
@@ -101,29 +98,7 @@ class Question(Generic[Choice]):
         return math.inf if found is None or sharp is None else self.distance(found, sharp)
 
 
-class Models:
-    """Truncations of the reference of one scene, and what several questions share."""
-
-    def __init__(self, scene: Scene) -> None:
-        self.scene = scene
-        self.whole = _reference(scene)
-        self.period, self.fold = cache(self._period), cache(self._fold)
-
-    def oscillator(self, modes: int, frequency: float) -> ImpactOscillator:
-        """The spring with so many modes, 1e-3 above grazing."""
-        return beam_at(self.scene, frequency, self.whole.truncated(modes)).with_excess(BORN_EXCESS)
-
-    def _period(self, frequency: float) -> int:
-        """The born period of the reference."""
-        return settled(self.oscillator(self.whole.n_modes, frequency)).period
-
-    def _fold(self, frequency: float) -> SingleImpactOrbit | None:
-        """The fold of the reference."""
-        oscillator, period = self.oscillator(self.whole.n_modes, frequency), self.period(frequency)
-        return KickFamily(oscillator=oscillator, period=period).fold() if period > 1 else None
-
-
-def _reference(scene: Scene) -> ModalModel:
+def reference_of(scene: Scene) -> ModalModel:
     """The spring with as many coupled modes as `REFERENCE`, or as its mesh or its measured rates have."""
     most = REFERENCE
     if scene.damping.kind == "measured":
@@ -143,11 +118,6 @@ def middle_of(scene: Scene) -> float:
     return drives[(len(drives) - 1) // 2]
 
 
-def settled(oscillator: ImpactOscillator, excess: float = BORN_EXCESS) -> Settled:
-    """The orbit settled from below grazing at this excess."""
-    return born(StroboscopicMap(oscillator=oscillator), excess, most_cycles=MOST_CYCLES)
-
-
 def collisions(oscillator: ImpactOscillator, name: str) -> Answer:
     """`restitution`, `delay` or `kick` of the first collision at each of `COLLISIONS`."""
     values = [getattr(first_collision(oscillator.with_excess(excess)), name) for excess in COLLISIONS]
@@ -156,7 +126,8 @@ def collisions(oscillator: ImpactOscillator, name: str) -> Answer:
 
 def tip_trace(oscillator: ImpactOscillator) -> Answer:
     """Tip over gap during one period of the orbit settled at excess 0.013; None without an orbit."""
-    orbit, driven = settled(oscillator, TRACE_EXCESS), oscillator.with_excess(TRACE_EXCESS)
+    orbit = born(StroboscopicMap(oscillator=oscillator), TRACE_EXCESS)
+    driven = oscillator.with_excess(TRACE_EXCESS)
     if orbit.period == 0 or orbit.impacts == 0:
         return None
     times = orbit.end.time + np.arange(orbit.period * SAMPLES) / SAMPLES * driven.period
@@ -165,23 +136,12 @@ def tip_trace(oscillator: ImpactOscillator) -> Answer:
     return trace
 
 
-def _fold(models: Models, modes: int, frequency: float) -> Answer:
-    sharp = models.fold(frequency)
-    if sharp is None or modes == models.whole.n_modes:
-        return None if sharp is None else np.array([sharp.excess])
-    family = KickFamily(oscillator=models.oscillator(modes, frequency), period=sharp.period)
-    middle = math.log(sharp.kick.speed)
-    best = minimize_scalar(
-        lambda x: family.orbit(math.exp(x)).excess, bounds=(middle - 1.0, middle + 1.0), method="bounded",
-        options={"xatol": 1e-3},
-    )  # fmt: skip
-    return None if abs(best.x - middle) > 0.99 else np.array([float(best.fun)])
-
-
-def _born_period(models: Models, modes: int, frequency: float) -> Answer:
-    whole = modes == models.whole.n_modes
-    found = models.period(frequency) if whole else settled(models.oscillator(modes, frequency)).period
-    return np.array([float(found)])
+def _fold(at: At, frequency: float) -> Answer:
+    """Excess of the fold, and m."""
+    oscillator = at(frequency)
+    period = born_period(StroboscopicMap(oscillator=oscillator))
+    end = KickFamily(oscillator=oscillator, period=period).fold() if period > 1 else None
+    return None if end is None else np.array([end.excess, float(period)])
 
 
 def error_of_trace(answer: Values, reference: Values) -> float:
@@ -193,7 +153,10 @@ def error_of_trace(answer: Values, reference: Values) -> float:
 
 
 def error_of_fold(answer: Values, reference: Values) -> float:
-    """Relative to the fold, or to the letter's amplitude stability where it is smaller."""
+    """Relative to the fold, or to the letter's amplitude stability where it is smaller; infinite if m
+    differs."""
+    if answer[1] != reference[1]:
+        return math.inf
     return float(abs(answer[0] - reference[0]) / max(abs(reference[0]), letter.AMPLITUDE_STABILITY))
 
 
@@ -202,32 +165,33 @@ def largest_error(answer: Values, reference: Values) -> float:
     return float(np.max(np.abs(answer - reference)))
 
 
-def _collision(name: str) -> Callable[[Models, int, float], Answer]:
-    return lambda models, modes, frequency: collisions(models.oscillator(modes, frequency), name)
-
-
-QUANTITIES: Mapping[str, tuple[Callable[[Models, int, float], Answer], Distance, bool]] = {
-    "kick": (_collision("kick"), largest_error, False),
-    "restitution": (_collision("restitution"), largest_error, False),
+QUANTITIES: Mapping[str, tuple[Callable[[At, float], Answer], Distance, bool]] = {
+    "kick": (lambda at, f: collisions(at(f), "kick"), largest_error, False),
+    "restitution": (lambda at, f: collisions(at(f), "restitution"), largest_error, False),
     "fold": (_fold, error_of_fold, True),
     "fold_middle": (_fold, error_of_fold, False),
-    "tip_trace": (lambda models, n, f: tip_trace(models.oscillator(n, f)), error_of_trace, False),
-    "born_period": (_born_period, largest_error, True),
-}
+    "tip_trace": (lambda at, f: tip_trace(at(f)), error_of_trace, False),
+    "born_period": (
+        lambda at, f: np.array([float(born_period(StroboscopicMap(oscillator=at(f))))]), largest_error, True,
+    ),
+}  # fmt: skip
 """Name -> answer, distance, whether it is asked at every drive frequency. Born periods are asked last:
 transients are long where modes are missing."""
 
 
-def questions(models: Models, needs: Mapping[str, float]) -> Iterator[Question[int]]:
-    """What the needs come to, where the reference has an answer."""
-    scene = models.scene
+def questions(scene: Scene, needs: Mapping[str, float], whole: ModalModel) -> Iterator[Question[int]]:
+    """What the needs come to, where the reference, the model `whole`, has an answer."""
+
+    def at(modes: int, frequency: float) -> ImpactOscillator:
+        return beam_at(scene, frequency, whole.truncated(modes))
+
     for quantity in sorted(needs, key=list(QUANTITIES).index):
         ask, distance, everywhere = QUANTITIES[quantity]
         for frequency in sorted(scene.drive.frequencies_hz) if everywhere else [middle_of(scene)]:
             question = Question(
                 words=f"{quantity.removesuffix('_middle')} at {frequency:g} Hz", distance=distance,
-                ask=lambda modes, ask=ask, frequency=frequency: ask(models, modes, frequency),  # type: ignore[misc]
-                reference=models.whole.n_modes, tolerance=needs[quantity],
+                ask=lambda modes, ask=ask, f=frequency: ask(partial(at, modes), f),  # type: ignore[misc]
+                reference=whole.n_modes, tolerance=needs[quantity],
             )  # fmt: skip
             if question.answer(question.reference) is not None:
                 yield question
@@ -253,11 +217,11 @@ def least_modes(scene: Scene, needs: Mapping[str, float]) -> tuple[Scene, str]:
     least = max(numbers, default=1)
     reason = f"frequency {least}" if numbers else "the least there is"
     if others:
-        models = Models(scene)
-        sharp = models.whole.n_modes
+        whole = reference_of(scene)
+        sharp = whole.n_modes
         rungs = sorted({*(n for n in LADDER if least < n < sharp), min(least, sharp), sharp})
         low, worst = 0, None
-        for question in questions(models, others):
+        for question in questions(scene, others, whole):
 
             def enough(place: int, question: Question[int] = question) -> bool:
                 """Whether the rung with this number and the next one are near enough."""
