@@ -23,96 +23,72 @@ u_x = u_y = 0 at z = 0 and all energies doubled.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import lru_cache
-from typing import Literal
-
 import numpy as np
 import skfem as sk
 from numpy.typing import NDArray
 from scipy.sparse import block_array, block_diag, csc_array, csr_array
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
-from beam import Material, Tip
+from beam import Material
+from studies.spring_shape.shapes import Shape
 
-#: Three Gauss points each way: exact for the stiffness of a brick.
 QUADRATURE_ORDER = 5
-Parity = Literal["symmetric", "antisymmetric"]
-#: Which of d_x, d_y, d_z, theta_x, theta_y, theta_z each parity has.
-MOVES: dict[str, tuple[int, ...]] = {"symmetric": (0, 1, 5), "antisymmetric": (2, 3, 4)}
+"""Three Gauss points each way: exact for the stiffness of a brick."""
+
+FAMILIES = {"in plane": ((0, 1, 5), [2]), "out of plane": ((2, 3, 4), [0, 1])}
+"""Symmetric and antisymmetric motion: which of d_x, d_y, d_z, theta_x, theta_y, theta_z of a section it has,
+and which components of u are 0 at z = 0."""
+
+Modes = tuple[NDArray[np.float64], NDArray[np.float64]]
+"""Natural frequencies [Hz] and |e . d| of the section at the tip [kg^(-1/2)], each (n_modes,)."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class SolidSpring:
-    """A swept solid that is clamped at its faces `clamped`; `drive` is the unit vector e.
+def solid_modes(shape: Shape, mesh: sk.MeshHex2, counts: tuple[int, int]) -> list[Modes]:
+    """The lowest modes in the plane of symmetry and out of it, so many of each; mass-normalised.
 
-    The mesh has the cross-sections "start", "end" and "tip" as named faces; `axes` are t, n and e_z at the
-    tip. The rotary inertia of the tip counts about every axis.
+    The mesh has the cross-sections "start", "tip" and "end" as named faces (``swept_mesh``). The rotary
+    inertia of the tip counts about every axis.
     """
-
-    mesh: sk.MeshHex2
-    axes: NDArray[np.float64]
-    material: Material
-    clamped: tuple[str, ...]
-    tip: Tip
-    drive: tuple[float, float, float] = (0.0, 1.0, 0.0)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class SolidModes:
-    """Mass-normalised modes of one parity, lowest first, with phi >= 0."""
-
-    omega: NDArray[np.float64]
-    """[rad/s], shape (n_modes,)"""
-    phi: NDArray[np.float64]
-    """e . d of the section at the tip [kg^(-1/2)], shape (n_modes,)"""
-    section: NDArray[np.float64]
-    """d along x, y, z [kg^(-1/2)] and theta about them [kg^(-1/2) m^(-1)], shape (n_modes, 6)"""
-
-    @property
-    def frequencies_hz(self) -> NDArray[np.float64]:
-        """Natural frequencies [Hz], shape (n_modes,)."""
-        return self.omega / (2.0 * np.pi)
+    basis, stiffness, mass = assembled(mesh, shape.material)
+    clamped = basis.get_dofs(("start", "end") if shape.bent else "start").all()
+    section = section_rows(mesh, basis, shape.centreline.axes(shape.tip_at))
+    lumped = np.sqrt(np.repeat([shape.tip.mass, shape.tip.rotary_inertia], 3))
+    found = []
+    for (moves, still), count in zip(FAMILIES.values(), counts, strict=True):
+        rows = section * np.isin(np.arange(6), moves)[:, None]
+        carried = csr_array(lumped[:, None] * rows)
+        held = np.zeros((3, basis.N), dtype=bool)
+        held[:, clamped] = True
+        held[np.ix_(still, basis.doflocs[2] == 0.0)] = True
+        free = np.flatnonzero(~held)
+        squares, x = lowest(stiffness, mass + carried.T @ carried, free, count)
+        phi = np.abs(np.array(shape.stop) @ rows[:3, free] @ x)
+        found.append((np.sqrt(squares) / (2.0 * np.pi), phi))
+    return found
 
 
-def solid_modes(spring: SolidSpring, parity: Parity, count: int) -> SolidModes:
-    """Return the `count` lowest modes of one parity."""
-    basis, stiffness, mass = assembled(spring)
-    rows = _section_rows(spring, basis) * np.isin(np.arange(6), MOVES[parity])[:, None]
-    lumped = np.repeat([spring.tip.mass, spring.tip.rotary_inertia], 3)
-    carried = csr_array(np.sqrt(lumped)[:, None] * rows)
-    mass = mass + carried.T @ carried
-    held = np.zeros((3, basis.N), dtype=bool)
-    held[:, basis.get_dofs(spring.clamped).all()] = True
-    held[np.ix_([2] if parity == "symmetric" else [0, 1], basis.doflocs[2] == 0.0)] = True
-    free = np.flatnonzero(~held)
-    k, m = (csc_array(matrix)[free][:, free] for matrix in (stiffness, mass))
+def lowest(stiffness: csr_array, mass: csr_array, free: NDArray[np.intp], count: int) -> Modes:
+    """The `count` lowest omega^2 [rad^2/s^2], rising, and the mass-normalised modes in the free unknowns."""
+    k, m = (csc_array(part)[free][:, free] for part in (stiffness, mass))
     factors = splu(k, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     inverse = LinearOperator(k.shape, factors.solve, dtype=np.float64)
     start = np.cos(np.arange(k.shape[0]))  # fixed, so that results repeat, and orthogonal to no mode
-    values, x = eigsh(k, count, M=m, sigma=0.0, OPinv=inverse, v0=start)
-    order = np.argsort(values)
-    full = np.zeros((held.size, count))
-    full[free] = x[:, order]
-    full /= np.sqrt(np.einsum("ik,ik->k", full, mass @ full))
-    section = (rows @ full).T
-    phi = section[:, :3] @ np.array(spring.drive)
-    signs = np.where(phi < 0.0, -1.0, 1.0)
-    return SolidModes(omega=np.sqrt(values[order]), phi=np.abs(phi), section=signs[:, None] * section)
+    squares, x = eigsh(k, count, M=m, sigma=0.0, OPinv=inverse, v0=start)
+    order = np.argsort(squares)
+    return squares[order], x[:, order] / np.sqrt(np.einsum("ik,ik->k", x, m @ x))[order]
 
 
-@lru_cache(maxsize=1)  # both parities of a spring ask for them, one after the other
-def assembled(spring: SolidSpring) -> tuple[sk.Basis, csr_array, csr_array]:
+def assembled(mesh: sk.MeshHex2, material: Material) -> tuple[sk.Basis, csr_array, csr_array]:
     """Scalar basis of N functions, K and M without tip and supports; unknown c N + i is component c of node
     i.
 
     D_ab = int d_a N_i d_b N_j dV holds everything: K_ab = lambda D_ab + G (D_ba + delta_ab sum_c D_cc). Nine
     scalar forms replace the 81 x 81 ones that a vector element would integrate, ten times faster.
     """
-    basis = sk.Basis(spring.mesh, sk.ElementHex2(), intorder=QUADRATURE_ORDER)
-    e, nu = spring.material.youngs_modulus, spring.material.poissons_ratio
+    basis = sk.Basis(mesh, sk.ElementHex2(), intorder=QUADRATURE_ORDER)
+    e, nu = material.youngs_modulus, material.poissons_ratio
     lame, shear, density = 2.0 * np.array(  # two halves
-        [e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), spring.material.shear_modulus, spring.material.density]
+        [e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), material.shear_modulus, material.density]
     )
     d = [
         [sk.BilinearForm(lambda u, v, _, a=a, b=b: v.grad[a] * u.grad[b]).assemble(basis) for b in range(3)]
@@ -127,21 +103,20 @@ def assembled(spring: SolidSpring) -> tuple[sk.Basis, csr_array, csr_array]:
     return basis, block_array(blocks, format="csr"), block_diag([heavy] * 3, format="csr")
 
 
-def _section_rows(spring: SolidSpring, basis: sk.Basis) -> NDArray[np.float64]:
-    """Rows of d along x, y, z and theta about them for the section at the tip, shape (6, unknowns).
+def section_rows(mesh: sk.MeshHex2, basis: sk.Basis, axes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Rows of d along x, y, z and theta about them for the section at the tip, shape (6, unknowns); `axes`
+    are t, n and e_z there.
 
     A coordinate is a function of the basis: with m = int N_i N_j dA, int y u dA = (m y) . u.
     """
-    bricks, faces = sk.MeshHex.from_mesh(spring.mesh), spring.mesh.boundaries["tip"]  # sections are plane
+    bricks, faces = sk.MeshHex.from_mesh(mesh), mesh.boundaries["tip"]  # the section is plane
     face = sk.FacetBasis(bricks, sk.ElementHex2(), facets=faces, intorder=QUADRATURE_ORDER)
     m = sk.BilinearForm(lambda u, v, _: u * v).assemble(face)
-    (_, n, z_axis), x = spring.axes, basis.doflocs
+    (t, n, z_axis), x = axes, basis.doflocs
     even = m @ np.ones(basis.N)
     mean = even / even.sum()
     y, z = n @ (x - (x @ mean)[:, None]), x[2]
     by_y, by_z = m @ y, m @ z
-    turns = np.stack([
-        (np.kron(z_axis, by_y) - np.kron(n, by_z)) / (y @ by_y + z @ by_z),
-        np.kron(spring.axes[0], by_z) / (z @ by_z), -np.kron(spring.axes[0], by_y) / (y @ by_y),
-    ])  # fmt: skip
-    return np.concatenate((np.kron(np.eye(3), mean), spring.axes.T @ turns))
+    about_t = (np.kron(z_axis, by_y) - np.kron(n, by_z)) / (y @ by_y + z @ by_z)
+    turns = np.stack([about_t, np.kron(t, by_z) / (z @ by_z), -np.kron(t, by_y) / (y @ by_y)])
+    return np.concatenate((np.kron(np.eye(3), mean), axes.T @ turns))

@@ -18,10 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from beam.space import spatial_modes
-from studies.spring_shape.elasticity import Parity, solid_modes
+from studies.spring_shape.elasticity import FAMILIES, solid_modes
 from studies.spring_shape.shapes import Mesh, Shape, first_bending, kinds_of
-
-FAMILIES: dict[str, Parity] = {"in plane": "symmetric", "out of plane": "antisymmetric"}
 
 MODES = 14
 """Modes looked through for the first of each kind."""
@@ -98,19 +96,16 @@ def error_rows(shape: Shape, meshes: tuple[Mesh, Mesh], counts: tuple[int, int])
     """The error of strip theory in the first modes in the plane of symmetry and out of it."""
     strip = spatial_modes(shape.spring(), 3 * sum(counts))
     kinds, f = kinds_of(shape, strip), strip.frequencies_hz
-    coarser, finer = (
-        [solid_modes(solid, parity, count) for parity, count in zip(FAMILIES.values(), counts, strict=True)]
-        for solid in map(shape.solid, meshes)
-    )
+    coarser, finer = (solid_modes(shape, shape.swept(mesh), counts) for mesh in meshes)
     rows: list[ErrorRow] = []
-    for family, coarse, fine in zip(FAMILIES, coarser, finer, strict=True):
-        places = np.flatnonzero((strip.out_of_plane < 0.5) == (family == "in plane"))[: fine.omega.size]
-        for k, (place, solid_hz) in enumerate(zip(places, fine.frequencies_hz, strict=True)):
+    for family, (coarse_hz, _), (fine_hz, phi) in zip(FAMILIES, coarser, finer, strict=True):
+        places = np.flatnonzero((strip.out_of_plane < 0.5) == (family == "in plane"))[: phi.size]
+        for k, place in enumerate(places):
             moves = strip.phi[place] > 1e-3 * strip.phi.max()
             rows.append(ErrorRow(
                 reading=shape.reading, family=family, number=k + 1, kind=kinds[place],
-                strip_hz=float(f[place]), solid_hz=float(solid_hz), error=float(f[place] / solid_hz - 1.0),
-                mesh_change=float(coarse.frequencies_hz[k] / solid_hz - 1.0),
-                tip_value_error=float(strip.phi[place] / fine.phi[k] - 1.0) if moves else None,
+                strip_hz=float(f[place]), solid_hz=float(fine_hz[k]),
+                error=float(f[place] / fine_hz[k] - 1.0), mesh_change=float(coarse_hz[k] / fine_hz[k] - 1.0),
+                tip_value_error=float(strip.phi[place] / phi[k] - 1.0) if moves else None,
             ))  # fmt: skip
     return rows

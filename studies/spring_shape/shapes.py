@@ -26,6 +26,7 @@ from typing import Literal
 
 import numpy as np
 from scipy.optimize import brentq
+from skfem import MeshHex2
 
 from beam import Arc, Centreline, Material, Straight, StripSection, Support, Tip
 from beam.space import (
@@ -39,8 +40,7 @@ from beam.space import (
     upright,
 )
 from studies.scene import Scene, SceneError, sections_of
-from studies.spring_shape.elasticity import SolidSpring
-from studies.spring_shape.swept_mesh import rectangle_profile, sweep
+from studies.spring_shape.swept_mesh import sweep
 
 Reading = Literal["side_by_side", "channel", "folded", "plain"]
 READINGS: tuple[Reading, ...] = ("side_by_side", "channel", "folded", "plain")
@@ -132,16 +132,22 @@ class Shape:
             tip_at=self.tip_at, tip_offset=(x, y, z), drive=self.stop,
         )  # fmt: skip
 
-    def solid(self, mesh: Mesh) -> SolidSpring:
-        """The folded or the plain strip as a solid."""
-        profile = rectangle_profile(along_n=self.thickness, along_z=self.width, cells=mesh.across)
-        swept = sweep(
+    def swept(self, mesh: Mesh) -> MeshHex2:
+        """Half of the folded or the plain strip as a solid.
+
+        Beside `mesh.across` elements across the half, two lie in a margin as wide as the sheet is thick:
+        there the shear of torsion turns round.
+        """
+        half = 0.5 * self.width
+        inner = half - min(self.thickness, 0.5 * half)
+        edge = [half - (half - inner) / 3.0, half]
+        profile = (
+            0.5 * self.thickness * np.array([-1.0, 1.0]),
+            np.concatenate((np.linspace(0.0, inner, mesh.across + 1), edge)),
+        )
+        return sweep(
             profile, self.centreline, (mesh.legs, mesh.bend, mesh.legs) if self.bent else (mesh.legs,),
             tip_at=self.tip_at, halvings=(mesh.halvings, mesh.halvings if self.bent else 0),
-        )  # fmt: skip
-        return SolidSpring(
-            mesh=swept, axes=self.centreline.axes(self.tip_at), material=self.material, tip=self.tip,
-            clamped=("start", "end") if self.bent else ("start",), drive=self.stop,
         )  # fmt: skip
 
 

@@ -24,18 +24,6 @@ Profile = tuple[NDArray[np.float64], NDArray[np.float64]]
 """Half of a cross-section: grid lines y and z [m], rising, z from 0 on, that cut it into rectangles."""
 
 
-def rectangle_profile(*, along_n: float, along_z: float, cells: int) -> Profile:
-    """Return half of a rectangle of these sides [m] about the centreline.
-
-    `cells` lie across half of the side along z, besides two in a margin as wide as the side along n is: there
-    the shear of torsion turns round.
-    """
-    half = 0.5 * along_z
-    margin = min(along_n, 0.5 * half)
-    y = 0.5 * along_n * np.array([-1.0, 1.0])
-    return y, np.concatenate((np.linspace(0.0, half - margin, cells + 1), [half - margin / 3.0, half]))
-
-
 def sweep(
     profile: Profile, line: Centreline, elements: Sequence[int], *, tip_at: float,
     halvings: tuple[int, int] = (0, 0),
