@@ -10,8 +10,8 @@ reference by no more than the tolerances:
     kick           of the first collision at excess 0.0065, 0.013 and 0.026, middle drive frequency; absolute
     restitution    of these collisions; absolute
     born_period    period of the orbit settled at excess 1e-3, every drive frequency; whether it differs (0)
-    fold           F/F_g - 1 at which p_m ends, every drive frequency; relative to it, or to the letter's
-                   amplitude stability of 2.5e-4 where it is smaller
+    fold           F/F_g - 1 at the fold of p_m, every drive frequency; relative to it, or to the letter's
+                   amplitude stability of 2.5e-4 where it is smaller; infinite if another p_m is born
     fold_middle    the same at the middle drive frequency
     tip_trace      tip over one period of the orbit settled at excess 0.013, middle drive frequency; root
                    mean square of the difference over the gap
@@ -29,9 +29,8 @@ from __future__ import annotations
 import math
 from bisect import bisect
 from collections.abc import Callable, Hashable, Iterator, Mapping
-from dataclasses import dataclass, field
-from functools import partial
-from typing import Generic, TypeVar
+from functools import cache, partial
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,9 +42,8 @@ from studies import letter
 from studies.scene import Scene, SceneError, beam_at, model_of
 
 __all__ = [
-    "COLLISIONS", "LADDER", "QUANTITIES", "REFERENCE", "Answer", "At", "Distance", "Question", "Values",
-    "collisions", "error_of_fold", "error_of_trace", "largest_error", "least_modes", "middle_of", "questions",
-    "reference_of", "tip_trace",
+    "COLLISIONS", "LADDER", "QUANTITIES", "REFERENCE", "Answer", "Ask", "At", "Distance", "collisions",
+    "distances", "error_of_fold", "largest_error", "least_modes", "middle_of", "questions", "reference_of",
 ]  # fmt: skip
 
 REFERENCE = 40
@@ -66,36 +64,30 @@ Answer = Values | None
 At = Callable[[float], ImpactOscillator]
 """The oscillator of a model at a drive frequency [Hz]."""
 Distance = Callable[[Values, Values], float]
+Ask = Callable[[At, float], Answer]
+Off = Callable[[int], float]
 Choice = TypeVar("Choice", bound=Hashable)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Question(Generic[Choice]):
-    """What is asked of models, here numbers of modes, and how far their answers may be from the reference's.
+def distances(ask: Callable[[Choice], Answer], distance: Distance) -> Callable[[Choice, Choice], float]:
+    """How far, from the answer of a reference, that of a model is, here of numbers of modes.
 
-    `ask` gives None, or raises ContactError or ValueError, where a model has no answer.
+    Infinite where one has no answer: `ask`, called once for each, gives None or raises ContactError or
+    ValueError.
     """
 
-    words: str
-    ask: Callable[[Choice], Answer]
-    distance: Distance
-    reference: Choice
-    tolerance: float
-    answers: dict[Choice, Answer] = field(default_factory=dict, repr=False)
+    @cache
+    def answer(choice: Choice) -> Answer:
+        try:
+            return ask(choice)
+        except (ContactError, ValueError):  # such as a drive above all modes
+            return None
 
-    def answer(self, choice: Choice) -> Answer:
-        """What a model says, computed once; None if it has no answer."""
-        if choice not in self.answers:
-            try:
-                self.answers[choice] = self.ask(choice)
-            except (ContactError, ValueError):  # such as a drive above all modes
-                self.answers[choice] = None
-        return self.answers[choice]
+    def off(reference: Choice, choice: Choice) -> float:
+        sharp, found = answer(reference), answer(choice)
+        return math.inf if found is None or sharp is None else distance(found, sharp)
 
-    def off(self, choice: Choice, reference: Choice | None = None) -> float:
-        """Distance of a model from the reference, or from another; infinite if one has no answer."""
-        found, sharp = self.answer(choice), self.answer(self.reference if reference is None else reference)
-        return math.inf if found is None or sharp is None else self.distance(found, sharp)
+    return off
 
 
 def reference_of(scene: Scene) -> ModalModel:
@@ -165,7 +157,7 @@ def largest_error(answer: Values, reference: Values) -> float:
     return float(np.max(np.abs(answer - reference)))
 
 
-QUANTITIES: Mapping[str, tuple[Callable[[At, float], Answer], Distance, bool]] = {
+QUANTITIES: Mapping[str, tuple[Ask, Distance, bool]] = {
     "kick": (lambda at, f: collisions(at(f), "kick"), largest_error, False),
     "restitution": (lambda at, f: collisions(at(f), "restitution"), largest_error, False),
     "fold": (_fold, error_of_fold, True),
@@ -179,22 +171,21 @@ QUANTITIES: Mapping[str, tuple[Callable[[At, float], Answer], Distance, bool]] =
 transients are long where modes are missing."""
 
 
-def questions(scene: Scene, needs: Mapping[str, float], whole: ModalModel) -> Iterator[Question[int]]:
-    """What the needs come to, where the reference, the model `whole`, has an answer."""
-
-    def at(modes: int, frequency: float) -> ImpactOscillator:
-        return beam_at(scene, frequency, whole.truncated(modes))
-
+def questions(
+    scene: Scene, needs: Mapping[str, float], whole: ModalModel
+) -> Iterator[tuple[str, float, Off]]:
+    """What the needs come to, where the reference, the model `whole`, has an answer: in words, the tolerance,
+    and the distance of a number of modes."""
     for quantity in sorted(needs, key=list(QUANTITIES).index):
         ask, distance, everywhere = QUANTITIES[quantity]
         for frequency in sorted(scene.drive.frequencies_hz) if everywhere else [middle_of(scene)]:
-            question = Question(
-                words=f"{quantity.removesuffix('_middle')} at {frequency:g} Hz", distance=distance,
-                ask=lambda modes, ask=ask, f=frequency: ask(partial(at, modes), f),  # type: ignore[misc]
-                reference=whole.n_modes, tolerance=needs[quantity],
-            )  # fmt: skip
-            if question.answer(question.reference) is not None:
-                yield question
+
+            def answer(modes: int, ask: Ask = ask, frequency: float = frequency) -> Answer:
+                return ask(lambda f: beam_at(scene, f, whole.truncated(modes)), frequency)
+
+            off = partial(distances(answer, distance), whole.n_modes)
+            if math.isfinite(off(whole.n_modes)):
+                yield f"{quantity.removesuffix('_middle')} at {frequency:g} Hz", needs[quantity], off
 
 
 def least_modes(scene: Scene, needs: Mapping[str, float]) -> tuple[Scene, str]:
@@ -221,18 +212,18 @@ def least_modes(scene: Scene, needs: Mapping[str, float]) -> tuple[Scene, str]:
         sharp = whole.n_modes
         rungs = sorted({*(n for n in LADDER if least < n < sharp), min(least, sharp), sharp})
         low, worst = 0, None
-        for question in questions(scene, others, whole):
+        for words, tolerance, off in questions(scene, others, whole):
 
-            def enough(place: int, question: Question[int] = question) -> bool:
+            def enough(place: int, off: Off = off, tolerance: float = tolerance) -> bool:
                 """Whether the rung with this number and the next one are near enough."""
-                return all(question.off(n) <= question.tolerance for n in rungs[place : place + 2])
+                return all(off(n) <= tolerance for n in rungs[place : place + 2])
 
             if not enough(low):
                 # the first rung above `low` that is good enough; the reference itself is
-                low, worst = bisect(range(low, len(rungs)), False, key=enough) + low, question
+                low, worst = bisect(range(low, len(rungs)), False, key=enough) + low, (words, off)
         least = rungs[low]
         if least == sharp:
-            reason = f"all that were tried; fewer do not give {worst.words if worst else 'what is asked'}"
+            reason = f"all that were tried; fewer do not give {worst[0] if worst else 'what is asked'}"
         elif worst is not None:
-            reason = f"{worst.words}, good to {worst.off(least):.1e} against {sharp} modes"
+            reason = f"{worst[0]}, good to {worst[1](least):.1e} against {sharp} modes"
     return scene.replace({"modes.count": least}, provenance="least"), f"modes kept: {least} ({reason})"

@@ -30,10 +30,11 @@ from studies.adequacy.models import EQ_1, LAWS, MESHES, MODES, Choice, Models
 from studies.least_model import (
     COLLISIONS,
     Answer,
+    Ask,
     At,
     Distance,
-    Question,
     collisions,
+    distances,
     error_of_fold,
     largest_error,
 )
@@ -67,7 +68,7 @@ def _fold(at: At, frequency: float) -> Answer:
 
 
 _SHARED = {name: found[:2] for name, found in least_model.QUANTITIES.items()}
-QUANTITIES: Mapping[str, tuple[Callable[[At, float], Answer], Distance, str, float]] = {
+QUANTITIES: Mapping[str, tuple[Ask, Distance, str, float]] = {
     "frequency": (
         lambda at, f: at(f).model.frequencies_hz,
         lambda a, b: largest_error(a / b, b / b),
@@ -123,10 +124,11 @@ class Search:
                 return found
             return found[int(number) - 1 : int(number)] if int(number) <= choice.modes else None
 
-        self.question = Question(
-            words=quantity, ask=answer, distance=distance, reference=self.sharp, tolerance=self.tolerance
-        )
-        self.off = self.question.off
+        self.between = distances(answer, distance)
+
+    def off(self, choice: Choice) -> float:
+        """Distance of a model's answer from the reference's; infinite without an answer."""
+        return self.between(self.sharp, choice)
 
     def own_error(self) -> float:
         """Of the reference: what one step less in modes changes, and what is left of what one in mesh does.
@@ -151,7 +153,7 @@ class Search:
         if choice.modes < sharp.modes:
             found["modes"] = self.off(replace(sharp, modes=choice.modes, residual=choice.residual))
         if choice.mesh < sharp.mesh:
-            found["mesh"] = self.off(choice, replace(choice, mesh=sharp.mesh))
+            found["mesh"] = self.between(replace(choice, mesh=sharp.mesh), choice)
         return found
 
     def error(self, choice: Choice) -> float:

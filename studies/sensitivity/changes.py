@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from beam import ModalModel
 from contact import ContactError, StrobedNordmarkMap, StroboscopicMap
@@ -142,14 +142,12 @@ def row_at(scene: Scene, model: ModalModel, frequency: float, base: Row | None =
         "single_mode": StroboscopicMap(oscillator=single_mode_at(scene, frequency)),
         "beam": StroboscopicMap(oscillator=beam_at(scene, frequency, model)),
     }
-    born = {name: known(born_period, strobed[name]) for name in NAMES}
-    m = {name: (born[name] if base is None else getattr(base, f"born_{name}")) or 0 for name in NAMES}
-    fold = {name: known(fold_excess, strobed[name], m[name]) for name in NAMES}
-    return Row(
-        frequency_hz=frequency, m=m["beam"], born_map=born["map"], born_single_mode=born["single_mode"],
-        born_beam=born["beam"], fold_map=fold["map"], fold_single_mode=fold["single_mode"],
-        fold_beam=fold["beam"],
-    )  # fmt: skip
+    columns = dict[str, Any](frequency_hz=frequency)
+    for name, motion in strobed.items():
+        period = known(born_period, motion)
+        columns["m"] = (period if base is None else getattr(base, f"born_{name}")) or 0
+        columns |= {f"born_{name}": period, f"fold_{name}": known(fold_excess, motion, columns["m"])}
+    return Row(**columns)
 
 
 def rows_after(scene: Scene, base: Sequence[Row], change: Change) -> list[Row]:

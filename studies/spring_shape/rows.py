@@ -19,7 +19,7 @@ import numpy as np
 
 from beam.space import spatial_modes
 from studies.spring_shape.elasticity import FAMILIES, solid_modes
-from studies.spring_shape.shapes import Mesh, Shape, first_bending, kinds_of
+from studies.spring_shape.shapes import Mesh, Shape, kinds_of
 
 MODES = 14
 """Modes looked through for the first of each kind."""
@@ -74,11 +74,11 @@ def reading_row(shape: Shape, off_line: float) -> ReadingRow:
     """The row of a shape that has been brought to its period, the ball off the line by `off_line` [m]."""
     modes = spatial_modes(shape.spring(), MODES)
     kinds, f = kinds_of(shape, modes), modes.frequencies_hz
-    bending, twist = first_bending(modes), kinds.index("twist")
+    bending, twist = kinds.index("bending"), kinds.index("twist")
     sideways = float(f[kinds.index("sideways")]) if "sideways" in kinds else None
     off = spatial_modes(shape.spring(off_line), MODES)
-    near = np.abs(off.frequencies_hz / f[twist] - 1.0) < 0.1
-    moved, first = int(np.argmax(np.abs(off.rotation[:, 0]) * near)), first_bending(off)
+    near = np.abs(off.frequencies_hz / f[twist] - 1.0) < 0.1  # mixed, it may be named bending
+    moved, first = int(np.argmax(np.abs(off.rotation[:, 0]) * near)), kinds_of(shape, off).index("bending")
     compliance = (off.phi / off.omega) ** 2
     return ReadingRow(
         reading=shape.reading, thickness_m=shape.thickness, flange_m=shape.flange,

@@ -53,8 +53,8 @@ THINNEST, THICKEST = 5e-4, 0.05
 FLANGE_REACH = 1.0
 """Flanges are looked for up to this part of the width."""
 
-ACCURACY = 1e-9
-"""Of the fitted size, as a part of its range (of its logarithm for a thickness)."""
+ACCURACY = 1e-12
+"""Of the fitted size [m]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -182,28 +182,19 @@ def brought_to(shape: Shape, omega: float) -> Shape:
     else:
         fitted, low, high = "thickness", THINNEST * shape.length, min(THICKEST * shape.length, shape.width)
 
-    def with_size(share: float) -> Shape:
-        """`share` from 0 to 1: even steps of a flange, even ratios of a thickness, in which log omega is
-        nearly a straight line."""
-        if fitted == "flange":
-            return replace(shape, flange=low + share * (high - low))
-        return replace(shape, thickness=low * (high / low) ** share)
+    def with_size(size: float) -> Shape:
+        return replace(shape, flange=size) if fitted == "flange" else replace(shape, thickness=size)
 
-    def excess(share: float) -> float:
-        modes = spatial_modes(with_size(share).spring(), 6)
-        return math.log(float(modes.omega[first_bending(modes)]) / omega)
+    def excess(size: float) -> float:
+        modes = spatial_modes(with_size(size).spring(), 6)
+        return float(modes.omega[kinds_of(shape, modes).index("bending")]) - omega
 
-    if not excess(0.0) < 0.0 < excess(1.0):
+    if not excess(low) < 0.0 < excess(high):
         raise SceneError(
             f"no {fitted} between {low:.4g} and {high:.4g} (unit m) brings the reading {shape.reading} to "
             f"{omega / (2.0 * math.pi):.4g} Hz: its other sizes must change"
         )
-    return with_size(float(brentq(excess, 0.0, 1.0, xtol=ACCURACY)))
-
-
-def first_bending(modes: SpatialModes) -> int:
-    """Number of the first mode that moves the ball along the stop."""
-    return int(np.argmax(np.abs(modes.phi) > 1e-3 * np.abs(modes.phi).max()))
+    return with_size(float(brentq(excess, low, high, xtol=ACCURACY)))
 
 
 def kinds_of(shape: Shape, modes: SpatialModes) -> list[str]:
