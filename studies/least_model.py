@@ -124,8 +124,7 @@ def tip_trace(oscillator: ImpactOscillator) -> Answer:
         return None
     times = orbit.end.time + np.arange(orbit.period * SAMPLES) / SAMPLES * driven.period
     run = simulate(driven, orbit.end, periods=orbit.period, times=times)
-    trace: Values = run.displacement @ driven.model.phi / driven.stop.gap
-    return trace
+    return driven.motion().tip(run.displacement.T) / driven.stop.gap
 
 
 def _fold(at: At, frequency: float) -> Answer:

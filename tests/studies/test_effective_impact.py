@@ -7,16 +7,13 @@ import csv
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from contact import LinearContact, first_collision
+from contact import LinearContact, NewtonRestitution, first_collision
 from studies.calibration import bare_cantilever, free_period, leaf_mass, with_mass_ratio
 from studies.effective_impact.cases import Spring
-from studies.effective_impact.collision_rows import (
-    Row,
-    floor_of,
-    on_orbits,
-)
+from studies.effective_impact.collision_rows import Row, floor_of, on_orbits
 from studies.letter import TIME_TRACE_EXCESS
 from studies.scene import beam_at, hertz_of, read_scene
 
@@ -47,6 +44,17 @@ def met(spring: Spring, law, excess: float = TIME_TRACE_EXCESS) -> Row:
 
 
 # the physics of one collision
+
+
+@pytest.mark.parametrize("modes", [2, 5, 10])
+def test_the_kick_under_newtons_law_is_that_of_the_modal_masses(spring, modes):
+    e, phi = 0.7, spring.model.phi[:modes]
+    truncated = replace(spring, model=spring.model.truncated(modes))
+    row = met(truncated, NewtonRestitution(local_restitution=e))
+    # (1 + e) phi_1^2 / sum phi_k^2, with the higher modes all but at rest
+    assert row.impacts == 1
+    assert row.kick == pytest.approx((1.0 + e) * phi[0] ** 2 / np.sum(phi**2), rel=2e-3)
+    assert row.restitution == pytest.approx(abs(1.0 - row.kick), abs=2e-3)
 
 
 def test_the_floor_of_restitution_is_the_time_of_the_contact(spring):
