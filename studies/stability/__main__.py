@@ -27,10 +27,9 @@ from typing import Annotated
 
 from studies.run import Run, study
 from studies.scene import Scene
-from studies.stability import Limit
-from studies.stability.families import FAMILIES, findings
+from studies.stability import FAMILIES, Limit, family, findings
 
-__all__ = ["FAMILIES", "stability"]
+__all__ = ["stability"]
 
 
 @study()
@@ -50,9 +49,10 @@ def stability(
     for name, result in zip(names, found, strict=True):
         if result is None:
             continue
-        rows += result.limits
-        run.arrays(name, **result.arrays)
-        run.figure(name, *FAMILIES[name].draw(result.arrays))
+        limits, arrays = result
+        rows += limits
+        run.arrays(name, **arrays)
+        run.figure(name, *family(name).draw(arrays))
     run.table("limits", rows, "Where methods fail: theory and measurement.")
     return {"rows": rows}
 

@@ -27,22 +27,11 @@ from contact import Collision, ImpactOscillator, State, before_collision, collis
 from contact.integrators import GeneralisedAlpha, Integrator
 from studies import letter, plotting
 from studies.scene import Scene, beam_at
-from studies.stability import Findings, Limit
+from studies.stability import IMPLICIT, Findings, Limit
 
 __all__ = ["ElasticCollision", "draw", "measure"]
 
 MODES = 10
-
-Maker = Callable[[float], Integrator]
-"""A method for a step [s]."""
-
-HERTZ: Mapping[str, Maker] = {
-    "trapezoidal rule": lambda h: GeneralisedAlpha.newmark(step=h),
-    "HHT, α = 0.1": lambda h: GeneralisedAlpha.hht(step=h, alpha=0.1),
-    "HHT, α = 0.3": lambda h: GeneralisedAlpha.hht(step=h, alpha=0.3),
-    "gen.-α, ρ = 0.8": lambda h: GeneralisedAlpha.with_dissipation(step=h, rho=0.8),
-    "gen.-α, ρ = 0": lambda h: GeneralisedAlpha.with_dissipation(step=h, rho=0.0),
-}
 
 Row = partial(Limit, family="false_restitution", method=GeneralisedAlpha.name, refused=False)
 
@@ -70,7 +59,9 @@ class ElasticCollision:
         return (found[0].restitution, found[0].kick) if found else (math.nan, math.nan)
 
 
-def outcomes(case: ElasticCollision, make: Maker, sizes: np.ndarray, places: int) -> np.ndarray:
+def outcomes(
+    case: ElasticCollision, make: Callable[[float], Integrator], sizes: np.ndarray, places: int
+) -> np.ndarray:
     """Restitution and kick, and their spreads, as rows; a column for every step.
 
     One place without a collision, or with a kick but no return, and the whole step has none (NaN).
@@ -105,10 +96,10 @@ def measure(scene: Scene, quick: bool) -> Findings:
     sizes = np.geomspace(1 / 16, 2.0, 6) if quick else np.geomspace(1 / 64, 4.0, 13)
     limits: list[Limit] = []
     arrays = {"step": sizes, "exact": np.array([case.exact.restitution, case.exact.kick])}
-    for label, make in HERTZ.items():
+    for label, make in IMPLICIT.items():
         arrays[label] = outcomes(case, make, sizes, 3 if quick else 12)
         limits += rows_of(case, label, sizes, arrays[label])
-    return Findings(limits=limits, arrays=arrays)
+    return limits, arrays
 
 
 @plotting.in_house_style
@@ -120,7 +111,7 @@ def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
     for column, (axis, quantity) in enumerate(zip(
         axes, ("effective restitution", "kick of mode 1"), strict=True
     )):  # fmt: skip
-        for number, label in enumerate(HERTZ):
+        for number, label in enumerate(IMPLICIT):
             axis.errorbar(
                 sizes, arrays[label][column], yerr=arrays[label][2 + column], **plotting.series(number),
                 label=label, elinewidth=0.6, markevery=every, errorevery=every,
