@@ -31,16 +31,8 @@ from dataclasses import dataclass
 from studies.peers import missing_solvers
 from studies.run import Run, study
 from studies.scene import Scene, harmonic
-from studies.work_precision.measures import (
-    REPEATS,
-    SLOWEST,
-    Reference,
-    Row,
-    cheapest,
-    reference_of,
-    rows_of,
-)
-from studies.work_precision.methods import SAMPLED, sweeps_for
+from studies.work_precision.measures import REPEATS, SLOWEST, Row, cheapest, reference_of, rows_of
+from studies.work_precision.methods import EXACT, SAMPLED, sweeps_for
 from studies.work_precision.problems import MODES, problems_of
 
 __all__ = ["Cheapest", "cheapest_of", "work_precision"]
@@ -69,13 +61,17 @@ def work_precision(scene: Scene, run: Run) -> Mapping[str, object]:
     """Measure, store, draw."""
     problems = problems_of(harmonic(scene), MODES_QUICK if run.quick else MODES)
     references = [reference_of(one) for one in run.track(problems, "references")]
-    rows = measured(references, run)
+    jobs = [(one, sweep) for one in references for sweep in sweeps_for(one.problem, quick=run.quick)]
+    slowest, repeats = (SLOWEST_QUICK, 3) if run.quick else (SLOWEST, REPEATS)
+    rows: list[Row] = []
+    for reference, sweep in run.track(jobs, "errors and costs"):  # nothing runs beside a timing
+        rows += rows_of(reference, sweep, slowest=slowest, repeats=repeats)
     run.table("rows", rows, "Every method at every setting.", show=())
     run.table(
         "cheapest", cheapest_of(rows), "Time per drive period [us] for an error of mode 1, crossings missed."
     )
     for row in rows:
-        if row.default and row.failed:
+        if row.family == EXACT and row.failed:
             run.failed(f"{row.problem}, {row.method}", row.failed)
     judge(run, rows)
     if missing_solvers():
@@ -89,17 +85,6 @@ def work_precision(scene: Scene, run: Run) -> Mapping[str, object]:
         "rows": rows, "missing_solvers": missing_solvers(),
         "reference_errors": {one.problem.name: one.own_error for one in references},
     }  # fmt: skip
-
-
-def measured(references: Sequence[Reference], run: Run) -> list[Row]:
-    """All rows, one setting after the other: nothing runs beside a timing."""
-    jobs = [(one, sweep) for one in references for sweep in sweeps_for(one.problem, quick=run.quick)]
-    slowest, repeats = (SLOWEST_QUICK, 3) if run.quick else (SLOWEST, REPEATS)
-    rows: list[Row] = []
-    with run.progress("errors and costs", sum(len(sweep.settings) for _one, sweep in jobs)) as tick:
-        for reference, sweep in jobs:
-            rows += rows_of(reference, sweep, slowest=slowest, repeats=repeats, tick=tick)
-    return rows
 
 
 def cheapest_of(rows: Sequence[Row]) -> list[Cheapest]:

@@ -205,7 +205,7 @@ def test_what_the_reference_cannot_follow_is_refused() -> None:
 
 def test_cheapest_of_planted_rows() -> None:
     rows = [row(1e-2, 1.1), row(1e-2, 1.0), row(1e-5, 3.0), row(1e-5, 4.0), row(1e-9, 41.0), row(1.0, 0.5)]
-    rows += [row(None, 1e-3), row(1e-12, None), row(math.nan, 1e-3)]
+    rows += [row(None, None), row(math.nan, 1e-3)]
     found = [cheapest(rows, level) for level in (1e-4, 1e-2, 1e-10)]
     assert [one and one.us_per_period for one in found] == [3.0, 1.0, None]
 
@@ -246,7 +246,7 @@ def test_the_exact_method_is_at_rounding(few: Reference) -> None:
     (sweep,) = [one for one in sweeps_for(few.problem) if one.family == EXACT]
     (exact,) = rows_of(few, sweep, repeats=1)
     method = method_for(few.problem.oscillator.stop.law.code)
-    assert exact.certified and exact.default and exact.missed == 0.0
+    assert exact.certified and exact.missed == 0.0
     assert exact.error is not None and exact.error < 1e-13 < method.accuracy and few.own_error < 1e-19
 
 
