@@ -62,17 +62,14 @@ class ElasticCollision:
 def outcomes(
     case: ElasticCollision, make: Callable[[float], Integrator], sizes: np.ndarray, places: int
 ) -> np.ndarray:
-    """Restitution and kick, and their spreads, as rows; a column for every step.
+    """Mean restitution and kick as rows; a column for every step.
 
     One place without a collision, or with a kick but no return, and the whole step has none (NaN).
     """
-    rows = np.empty((4, sizes.size))
-    for j, size in enumerate(sizes):
-        # steps of nearly the same size that put the touch at different places of theirs
-        steps = float(size) * case.unit * (1.0 + 0.03 * (np.arange(places) / places - 0.5))
-        found = np.array([case.outcome(make(float(step))) for step in steps])
-        rows[:, j] = [*found.mean(axis=0), *found.std(axis=0)]
-    return rows
+    # steps of nearly the same size put the touch at different places of theirs
+    spread = 1.0 + 0.03 * (np.arange(places) / places - 0.5)
+    found = [[case.outcome(make(step)) for step in (size * case.unit * spread).tolist()] for size in sizes]
+    return np.array(found).mean(axis=1).T
 
 
 def rows_of(case: ElasticCollision, label: str, sizes: np.ndarray, table: np.ndarray) -> list[Limit]:
@@ -106,16 +103,11 @@ def measure(scene: Scene, quick: bool) -> Findings:
 def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
     """Restitution and kick against the step."""
     figure, axes = plotting.new_figure(1, 2, width=plotting.PAGE, height=0.065)
-    sizes = arrays["step"]
-    every = max(1, sizes.size // 6)
     for column, (axis, quantity) in enumerate(zip(
         axes, ("effective restitution", "kick of mode 1"), strict=True
     )):  # fmt: skip
         for number, label in enumerate(IMPLICIT):
-            axis.errorbar(
-                sizes, arrays[label][column], yerr=arrays[label][2 + column], **plotting.series(number),
-                label=label, elinewidth=0.6, markevery=every, errorevery=every,
-            )  # fmt: skip
+            axis.plot(arrays["step"], arrays[label][column], **plotting.series(number), label=label)
         axis.set_xscale("log")
         axis.axhline(arrays["exact"][column], color="0.5", linewidth=0.8, linestyle=":", label="exact")
         plotting.panel(axis, column, "Hertz contact")
@@ -123,6 +115,6 @@ def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
         plotting.label(axis.yaxis, quantity)
     axes[0].legend(loc="upper left")
     return figure, (
-        "Restitution and kick of an elastic collision against the step; dotted: exact. Bars: spread over "
-        "places of the touch in its step."
+        "Restitution and kick of an elastic collision against the step, means over places of the touch in "
+        "its step; dotted: exact."
     )

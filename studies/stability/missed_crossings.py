@@ -30,7 +30,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.integrate import solve_ivp
 
-from contact import ContactLaw, HertzContact, LinearContact, NewtonRestitution, Stop
+from contact import LinearContact, NewtonRestitution, Stop
 from contact.integrators import INTEGRATORS, CentralDifference, Integrator, SampledFlight
 from studies import plotting
 from studies.crossings import Swing
@@ -114,13 +114,10 @@ def share_wrong(trial: Trial, overshoot: float, runs: int) -> float:
 def swing_of(scene: Scene, method: Integrator | None = None) -> Swing:
     """The lowest mode of the scene before a stop with a law that `method` knows, soft enough for any step."""
     model = model_of(scene).truncated(1)
-    soft, gap = 0.01 * float((model.omega[0] / model.phi[0]) ** 2), scene.stop.gap_m
-    laws: tuple[ContactLaw, ...] = (
-        LinearContact(stiffness=soft), NewtonRestitution(local_restitution=RESTITUTION),
-        HertzContact(stiffness=soft / math.sqrt(gap)),
-    )  # fmt: skip
-    law = next(law for law in laws if method is None or method.accepts(law.code))
-    return Swing.of(model, Stop(gap=gap, law=law), 0.0)
+    soft = LinearContact(stiffness=0.01 * float((model.omega[0] / model.phi[0]) ** 2))
+    hard = NewtonRestitution(local_restitution=RESTITUTION)
+    law = soft if method is None or method.accepts(soft.code) else hard
+    return Swing.of(model, Stop(gap=scene.stop.gap_m, law=law), 0.0)
 
 
 def of_package(scene: Scene, kind: type[Integrator], options: Mapping[str, float]) -> Trial:
