@@ -92,12 +92,11 @@ def cheapest_of(rows: Sequence[Row]) -> list[Cheapest]:
     found = []
     for problem, method in dict.fromkeys((row.problem, row.method) for row in rows):
         mine = [row for row in rows if (row.problem, row.method) == (problem, method)]
-        coarse, fine = cheapest(mine, 1e-4), cheapest(mine, 1e-8)
+        best = [cheapest(mine, level) for level in (1e-4, 1e-8)]
+        coarse, fine = ((row.us_per_period, row.missed) if row else (None, None) for row in best)
         found.append(Cheapest(
-            problem=problem, method=method,
-            us_for_1e_4=coarse.us_per_period if coarse else None,
-            missed_at_1e_4=coarse.missed if coarse else None,
-            us_for_1e_8=fine.us_per_period if fine else None, missed_at_1e_8=fine.missed if fine else None,
+            problem=problem, method=method, us_for_1e_4=coarse[0], missed_at_1e_4=coarse[1],
+            us_for_1e_8=fine[0], missed_at_1e_8=fine[1],
         ))  # fmt: skip
     return found
 

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from beam import ModalModel
-from contact import ImpactOscillator, LinearContact, State, Stop, simulate
+from contact import ImpactOscillator, LinearContact, State, Stop, first_collision, simulate
 from contact.integrators import CentralDifference, Exact, GeneralisedAlpha, Splitting
 from studies.scene import Scene, beam_at, read_scene
-from studies.stability import IMPLICIT, explicit, splitting, threshold
-from studies.stability.false_restitution import ElasticCollision, outcomes
+from studies.stability import explicit, splitting, threshold
+from studies.stability.false_restitution import outcomes
 from studies.stability.free_mass import LAWS, energy_after
 from studies.stability.implicit_energy import STIFF_GROWTH, evenly, single_contact, stiff_contacts
 from studies.stability.lasting_contact import ROUNDED, growth, pressed
@@ -232,18 +232,18 @@ def test_a_step_of_one_contact_time_fakes_a_restitution(scene):
     """0.45 where there is 0.24, by the generalised-alpha method with the strongest damping, ten modes."""
     frequency = sorted(scene.drive.frequencies_hz)[3]
     ten = scene.replace({"modes.count": 10, "contact.law": "hertz"})
-    case = ElasticCollision.of(beam_at(ten, frequency).with_excess(0.013))
-    assert case.exact.restitution == pytest.approx(0.24, abs=0.005)
-    table = outcomes(case, IMPLICIT["gen.-α, ρ = 0"], np.ones(1), 4)
+    driven = beam_at(ten, frequency).with_excess(0.013)
+    exact = first_collision(driven)
+    assert exact.restitution == pytest.approx(0.24, abs=0.005)
+    table = outcomes(driven, "gen.-α, ρ = 0", np.array([exact.contact_time]), 4)
     assert table[0, 0] == pytest.approx(0.45, abs=0.02)
 
 
 def test_the_kick_is_right_at_a_fine_step_and_pretends_a_loss_at_a_coarse_one(scene):
-    case = ElasticCollision.of(
-        beam_at(scene.replace({"modes.count": 4, "contact.law": "hertz"}), 22.2).with_excess(0.013)
-    )
-    assert case.exact.impacts == 1
-    fine, coarse = (
-        case.outcome(IMPLICIT["gen.-α, ρ = 0"](size * case.unit))[1] for size in (1 / 64, 1 / 4)
-    )
-    assert fine == pytest.approx(case.exact.kick, abs=5e-3) and coarse < case.exact.kick - 0.05
+    four = scene.replace({"modes.count": 4, "contact.law": "hertz"})
+    driven = beam_at(four, 22.2).with_excess(0.013)
+    exact = first_collision(driven)
+    assert exact.impacts == 1
+    sizes = np.array([1 / 64, 1 / 4]) * exact.contact_time
+    fine, coarse = outcomes(driven, "gen.-α, ρ = 0", sizes, 1)[1]
+    assert fine == pytest.approx(exact.kick, abs=5e-3) and coarse < exact.kick - 0.05
