@@ -12,10 +12,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from contact import ContactError, State, StroboscopicMap
-from contact.orbits import map_exponents, orbit_exponents, settle
+from contact.orbits import Exponents, Settled, map_exponents, orbit_exponents, settle
 from studies.scene import READOUT, Scene
 
-__all__ = ["CHAOTIC", "KINDS", "TITLES", "Row", "Start", "carried", "classify", "row_of"]
+__all__ = ["CHAOTIC", "KINDS", "TITLES", "Cell", "Row", "carried", "kind_of", "row_of"]
 
 TITLES = {"single_mode": "Eq. (1)", "beam": "beam"}
 
@@ -35,42 +35,25 @@ class Row:
     """What a motion at one amplitude settled on: `period` in drive periods, 0 for none; `impacts` in one such
     period; `lyapunov_map` per drive period with its standard error."""
 
+    model: str
+    direction: str
+    excess: float
     kind: str
     period: int
     impacts: int
     lyapunov_map: float
     error_map: float
-    model: str = ""
-    direction: str = ""
-    excess: float = 0.0
-
-
-def classify(strobed: StroboscopicMap, state: State, *, most_cycles: int = 4000, cycles: int = 600) -> Row:
-    """Settle from `state` within `most_cycles`, then tell chaos from a long period or a slow transient by the
-    exponents, averages over `cycles` drive periods."""
-    settled = settle(strobed, state, most_cycles=most_cycles)
-    if settled.period:
-        exponents = orbit_exponents(strobed, settled.end, settled.period)
-        kind = PERIODIC if settled.impacts else WITHOUT
-    else:
-        exponents, _end = map_exponents(strobed, settled.end, cycles, align=ALIGN)
-        clear = abs(exponents.largest) > SIGNIFICANT * exponents.error
-        kind = UNDECIDED if not clear else CHAOTIC if exponents.largest > 0 else NOT_SETTLED
-    return Row(
-        kind=kind, period=settled.period, impacts=settled.impacts if settled.period else 0,
-        lyapunov_map=exponents.largest, error_map=exponents.error,
-    )  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Start:
-    """A state of a scan and what is drawn of it: `points`, its strobed read-out, shape (record_cycles,)."""
+class Cell:
+    """One amplitude of a scan: its motion, and `points`, its strobed read-out, shape (record_cycles,)."""
 
     model: str
     direction: str
-    strobed: StroboscopicMap
     excess: float
-    state: State
+    strobed: StroboscopicMap
+    settled: Settled[State]
     points: np.ndarray
 
     def __str__(self) -> str:
@@ -79,7 +62,7 @@ class Start:
 
 def carried(
     named: tuple[str, StroboscopicMap], scene: Scene, values: np.ndarray
-) -> tuple[list[Start], list[str]]:
+) -> tuple[list[Cell], list[str]]:
     """Upward and downward scan of one model: the settled state is the start at the next amplitude.
 
     On the way up a motion stays without impacts as far as it can, on the way down it stays on p_m.
@@ -97,12 +80,29 @@ def carried(
                 failures.append(f"{TITLES[name]}, excess {excess:.6g}: {error}")
                 continue
             state = replace(settled.end, time=0.0)
-            found.append(Start(model=name, direction=direction, strobed=here, excess=excess, state=state,
-                               points=here.readout(orbit.points, READOUT)))  # fmt: skip
+            found.append(Cell(model=name, direction=direction, excess=excess, strobed=here, settled=settled,
+                              points=here.readout(orbit.points, READOUT)))  # fmt: skip
     return found, failures
 
 
-def row_of(start: Start, cycles: int, most_cycles: int) -> Row:
-    """What the motion from a start settles on."""
-    found = classify(start.strobed, start.state, cycles=cycles, most_cycles=most_cycles)
-    return replace(found, model=start.model, direction=start.direction, excess=start.excess)
+def kind_of(strobed: StroboscopicMap, settled: Settled[State], cycles: int) -> tuple[str, Exponents]:
+    """Chaos told from a long period or a slow transient by the exponents, averages over `cycles` drive
+    periods."""
+    if settled.period:
+        kind = PERIODIC if settled.impacts else WITHOUT
+        return kind, orbit_exponents(strobed, settled.end, settled.period)
+    exponents, _end = map_exponents(strobed, settled.end, cycles, align=ALIGN)
+    if abs(exponents.largest) <= SIGNIFICANT * exponents.error:
+        return UNDECIDED, exponents
+    return CHAOTIC if exponents.largest > 0 else NOT_SETTLED, exponents
+
+
+def row_of(cell: Cell, cycles: int) -> Row:
+    """Its kind and exponent."""
+    settled = cell.settled
+    kind, exponents = kind_of(cell.strobed, settled, cycles)
+    return Row(
+        model=cell.model, direction=cell.direction, excess=cell.excess, kind=kind, period=settled.period,
+        impacts=settled.impacts if settled.period else 0, lyapunov_map=exponents.largest,
+        error_map=exponents.error,
+    )  # fmt: skip
