@@ -9,7 +9,14 @@ import numpy as np
 import pytest
 
 from contact.orbits import (
-    Shooting, born, born_period, fold_excess, lowest_of, orbit_diagram, orbit_end, settle,
+    Shooting,
+    born,
+    born_period,
+    fold_excess,
+    lowest_of,
+    orbit_diagram,
+    orbit_end,
+    settle,
 )  # fmt: skip
 from studies.letter import PERIODS
 from studies.scene import model_of, read_scene
