@@ -25,15 +25,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
 
-from contact import MaximalFamily, NordmarkMap, fold, maximal_period, stable_range
+from contact import MapFamily, MaximalFamily, maximal_period
 from studies import letter, plotting
 from studies.run import Run
-from studies.scene import Scene, corresponding, single_mode_at
+from studies.scene import Scene, corresponding, nordmark_at, single_mode_at
 
-__all__ = ["RESTITUTIONS", "Node", "energy_loss", "falls", "family_at", "flip_speed", "map_at", "node_at",
-           "second_impact_speed", "trends"]  # fmt: skip
+__all__ = ["RESTITUTIONS", "Node", "energy_loss", "falls", "flip_speed", "node_at", "second_impact_speed",
+           "trends"]  # fmt: skip
 
 RESTITUTIONS = tuple(np.round(np.linspace(0.0, 0.9, 19), 3).tolist())
 """tau of the curves."""
@@ -47,8 +46,9 @@ ROUNDING = 1e-12
 SLACK = 0.02
 """Change of a share of the scanned frequencies that is that of one cell or two."""
 
-SEARCHED = 2000
-"""Times of a drive period at which a second impact is looked for; G turns a few times in one."""
+SEARCHED, CLOSER = 2000, 200
+"""Times of a drive period at which a second impact is looked for (G turns a few times in one), and parts into
+which the two steps next to it are split, twice: what is left of a minimum is rounding."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,49 +75,25 @@ def falls(values: Sequence[float]) -> bool:
     return bool(np.all(np.diff(values) <= ROUNDING))
 
 
-def map_at(scene: Scene, frequency: float, restitution: float) -> NordmarkMap:
-    """The Nordmark map of the scene's mode at a drive frequency [Hz]."""
-    mode = scene.single_mode
-    return NordmarkMap.from_frequencies(
-        drive_frequency=frequency, free_period=mode.free_period_s, decay_rate=mode.decay_rate_per_s,
-        restitution=restitution,
-    )  # fmt: skip
-
-
-def family_at(scene: Scene, frequency: float, restitution: float, period: int) -> MaximalFamily:
-    """The orbits p_m of Eq. (1), m = `period`, at a drive frequency [Hz]."""
-    return MaximalFamily.from_oscillator(
-        single_mode_at(scene, frequency), period=period, restitution=restitution
-    )
-
-
 def second_impact_speed(family: MaximalFamily) -> float:
     """v_2 [m/s] of a family of one mode, infinity if there is none."""
     model, gap = family.oscillator.model, family.oscillator.stop.gap
     duration, w = family.period * family.oscillator.period, family.oscillator.driven.angular_frequency
     half = 0.5 * float(model.decay_rate[0])
     damped = math.sqrt(float(model.omega[0]) ** 2 - half**2)
-    height, rate = (float(entry) * float(model.phi[0]) for entry in family.orbit(1.0).after[0])
-    s0, b = family.arms
+    (height, rate), (s0, b) = family.orbit(1.0).after[0], family.arms
+    free, forced = height - 1j * (rate + half * height) / damped, s0 + 1j * b
 
     def ratio(s: NDArray[np.float64]) -> NDArray[np.float64]:
-        free = height * np.cos(damped * s) + (rate + half * height) / damped * np.sin(damped * s)
-        reach = np.exp(-half * s) * free - s0 * np.cos(w * s) + b * np.sin(w * s)
-        held = gap * (1.0 - np.cos(w * s))
-        return np.where(reach > 0.0, held / np.where(reach > 0.0, reach, 1.0), np.inf)
+        reach = np.real(free * np.exp((1j * damped - half) * s) - forced * np.exp(1j * w * s))
+        return np.where(reach > 0.0, gap * (1.0 - np.cos(w * s)) / np.where(reach > 0.0, reach, 1.0), np.inf)
 
     # the ends are the impact itself, where both sides vanish and rounding decides
     times = np.linspace(0.0, duration, SEARCHED * family.period + 1)[1:-1]
-    values = ratio(times)
-    i = int(np.argmin(values))
-    least = float(values[i])
-    if not math.isfinite(least) or not 0 < i < times.size - 1:
-        return least
-    best = minimize_scalar(
-        lambda s: float(ratio(np.asarray(s))), bounds=(times[i - 1], times[i + 1]), method="bounded",
-        options={"xatol": 1e-12 * duration},
-    )  # fmt: skip
-    return min(float(best.fun), least)
+    for _ in range(2):
+        i = int(np.clip(np.argmin(ratio(times)), 1, times.size - 2))
+        times = np.linspace(times[i - 1], times[i + 1], CLOSER + 1)
+    return float(np.min(ratio(times)))
 
 
 def flip_speed(family: MaximalFamily) -> float:
@@ -130,20 +106,18 @@ def flip_speed(family: MaximalFamily) -> float:
     return speed if speed > 0.0 else math.inf
 
 
-def node_at(scene: Scene, frequency: float, restitution: float) -> Node:
+def node_at(scene: Scene, frequency: float) -> Node:
     """The node of the period that belongs to this frequency."""
-    nordmark = map_at(scene, frequency, restitution)
+    nordmark = nordmark_at(scene, frequency)
     m = maximal_period(nordmark)
-    end, stable = fold(nordmark, m), stable_range(nordmark, m)
-    family = family_at(scene, frequency, restitution, m)
-    least, second, flip = family.fold(), second_impact_speed(family), flip_speed(family)
-    if least is not None and flip <= least.speed:
-        flip = math.inf
-    first = min(second, flip)
+    of_map = MapFamily(nordmark, m)
+    family = MaximalFamily(oscillator=single_mode_at(scene, frequency), period=m)
+    end, stable, least = of_map.fold(), of_map.stable_range(), family.fold()
+    second, flip = second_impact_speed(family), flip_speed(family)
+    first = second if least is not None and flip <= least.speed else min(second, flip)
     return Node(
-        frequency_hz=frequency, period=m, restitution=restitution,
-        rho=math.nan if end is None else end.rho,
-        fold_of_map=math.nan if end is None else nordmark.excess(end.rho),
+        frequency_hz=frequency, period=m, restitution=nordmark.restitution,
+        rho=math.nan if end is None else end.rho, fold_of_map=math.nan if end is None else end.excess,
         secondary_of_map=math.nan if stable is None
         else nordmark.excess(stable[1]) if math.isfinite(stable[1]) else math.inf,
         fold=math.nan if least is None else least.excess,
@@ -154,7 +128,8 @@ def node_at(scene: Scene, frequency: float, restitution: float) -> Node:
 
 def line_of(scene: Scene, frequencies: Sequence[float], restitution: float) -> list[Node]:
     """The nodes of one restitution."""
-    return [node_at(scene, frequency, restitution) for frequency in frequencies]
+    changed = scene.replace({"single_mode.restitution": restitution})
+    return [node_at(changed, frequency) for frequency in frequencies]
 
 
 def energy_loss(scene: Scene, run: Run, *, across: int, restitutions: int) -> Mapping[str, object]:

@@ -22,9 +22,8 @@ from contact import StroboscopicMap, maximal_period, maximal_periods
 from contact.orbits import born_period
 from studies import letter, plotting
 from studies.calibration import bare_cantilever, with_mass_ratio
-from studies.claims.energy_loss import map_at
 from studies.run import Run
-from studies.scene import Scene, band_of, beam_at, model_of, single_mode_at
+from studies.scene import Scene, band_of, beam_at, model_of, nordmark_at, single_mode_of
 
 __all__ = ["Born", "Job", "Spring", "born_at", "springs", "universality"]
 
@@ -43,16 +42,14 @@ MOST_CYCLES = 3000
 
 @dataclass(frozen=True, kw_only=True)
 class Spring:
-    """A spring with its contact law; `model` is None for Eq. (1)."""
+    """A spring, and its contact law in a scene."""
 
     name: str
     scene: Scene
-    model: ModalModel | None = None
+    model: ModalModel
 
     def frequency(self, position: float) -> float:
         """Drive frequency [Hz] at f T."""
-        if self.model is None:
-            return position / self.scene.single_mode.free_period_s
         omega, decay = float(self.model.omega[0]), float(self.model.decay_rate[0])
         return position * math.sqrt(omega**2 - 0.25 * decay**2) / (2.0 * math.pi)
 
@@ -85,10 +82,11 @@ def springs(scene: Scene) -> tuple[Spring, ...]:
     middle = drives[len(drives) // 2]
     bare = bare_cantilever(scene, middle)
     heavy = with_mass_ratio(scene.replace({"spring.kind": "cantilever"}), 0.5, middle)
-    u, loaded = model_of(scene), model_of(heavy)
+    u, loaded, tau = model_of(scene), model_of(heavy), scene.single_mode.restitution
     laws = {law: scene.replace({"contact.law": law}) for law in ("linear", "hertz", "newton")}
+    of_eq1 = laws["newton"].replace({"contact.local_restitution": tau})
     return (
-        Spring(name="Eq. (1), Newton", scene=scene),
+        Spring(name="Eq. (1), Newton", scene=of_eq1, model=single_mode_of(scene)),
         Spring(name="folded U, linear", scene=laws["linear"], model=u),
         Spring(name="folded U, Hertz", scene=laws["hertz"], model=u),
         Spring(name="folded U, Newton", scene=laws["newton"], model=u),
@@ -114,11 +112,7 @@ class Job(NamedTuple):
 def born_at(job: Job) -> int:
     """Period that is born; 0 for none."""
     spring, frequency = job.spring, job.spring.frequency(job.f_times_t)
-    if spring.model is None:
-        oscillator = single_mode_at(spring.scene, frequency)
-    else:
-        oscillator = beam_at(spring.scene, frequency, spring.model)
-    strobed = StroboscopicMap(oscillator=oscillator)
+    strobed = StroboscopicMap(oscillator=beam_at(spring.scene, frequency, spring.model))
     return born_period(strobed, job.excess, below=-job.excess, most_cycles=MOST_CYCLES)
 
 
@@ -163,7 +157,7 @@ def born_everywhere(scene: Scene, run: Run, count: int) -> list[Born]:
     rows = []
     for job, period in zip(jobs, run.attempt(born_at, jobs, "born periods"), strict=True):
         frequency = job.f_times_t / scene.single_mode.free_period_s
-        nordmark = map_at(scene, frequency, scene.single_mode.restitution)
+        nordmark = nordmark_at(scene, frequency)
         edges = band_of(scene, maximal_period(nordmark))
         part = (frequency - edges.lower) / (edges.upper - edges.lower)
         rows.append(Born(
