@@ -25,7 +25,7 @@ import numpy as np
 
 from contact import StroboscopicMap
 from studies.attractors.basins import parts, plane_of
-from studies.attractors.scan import CHAOTIC, KINDS, TITLES, Cell, carried, row_of
+from studies.attractors.scan import CHAOTIC, KINDS, TITLES, Row, carried
 from studies.run import Run, study
 from studies.scene import (
     Scene,
@@ -70,22 +70,21 @@ def attractors(
         modes = model_of(scene)
         require_drive_below(scene, modes, f)
         maps["beam"] = StroboscopicMap(oscillator=beam_at(scene, f, modes))
-    cells: list[Cell] = []
-    jobs = partial(carried, scene=scene, values=np.linspace(lowest, highest, points))
-    for scan, failures in run.map(jobs, maps.items(), "scans"):
-        cells += scan
+    rows, strobes = list[Row](), list[np.ndarray]()
+    jobs = partial(carried, scene=scene, values=np.linspace(lowest, highest, points), cycles=cycles)
+    for scan, recorded, failures in run.map(jobs, maps.items(), "scans"):
+        rows, strobes = rows + scan, strobes + recorded
         for reason in failures:
             run.failed("scan", reason)
-    rows = [row for row in run.attempt(partial(row_of, cycles=cycles), cells, "exponents") if row]
     run.table("rows", rows, "Settled motions; kind by the largest Lyapunov exponent.")
-    run.arrays("attractors", points=np.array([c.points for c in cells]), excess=[c.excess for c in cells])
+    run.arrays("attractors", points=np.array(strobes), excess=[row.excess for row in rows])
     plane = plane_of(scene, f, basin_excess, side)
     leads = np.array(run.map(plane.line, plane.velocity.tolist(), "basins"))  # shape (velocities, x)
     run.arrays("basins", x=plane.x, velocity=plane.velocity, leads=leads, orbit=plane.orbits[plane.period])
     from studies.attractors import figure
 
     quantity, period, shares = scene.readout.quantity, plane.period, parts(leads, plane.period)
-    run.figure("attractors", figure.draw_scan(cells, rows, f, quantity), figure.SCAN)
+    run.figure("attractors", figure.draw_scan(rows, strobes, f, quantity), figure.SCAN)
     run.figure("basins", figure.draw_basins(plane, leads, f), figure.BASINS)
     counts = Counter((row.model, row.kind) for row in rows)
     kinds = {name: {kind: counts[name, kind] for kind in KINDS} for name in maps}

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from studies import plotting
 from studies.attractors.basins import Plane, parts
-from studies.attractors.scan import CHAOTIC, NOT_SETTLED, PERIODIC, TITLES, UNDECIDED, WITHOUT, Cell, Row
+from studies.attractors.scan import CHAOTIC, NOT_SETTLED, PERIODIC, TITLES, UNDECIDED, WITHOUT, Row
 from studies.plotting import BLUE, COLUMN, DOWN, EXCESS, GUIDE, ORANGE, PAGE, SKY, UP, VERMILION, tint
 
 __all__ = ["BASINS", "SCAN", "draw_basins", "draw_scan"]
@@ -31,7 +31,7 @@ LOOKS = {
 
 
 @plotting.in_house_style
-def draw_scan(cells: Sequence[Cell], rows: Sequence[Row], frequency: float, quantity: str) -> Figure:
+def draw_scan(rows: Sequence[Row], strobes: Sequence[np.ndarray], frequency: float, quantity: str) -> Figure:
     """Strobe points and exponents against the excess, a column for each model."""
     names = {key: name for key, name in TITLES.items() if any(row.model == key for row in rows)}
     figure, axes = plotting.new_figure(
@@ -41,9 +41,9 @@ def draw_scan(cells: Sequence[Cell], rows: Sequence[Row], frequency: float, quan
     for column, (name, title) in enumerate(names.items()):
         upper, lower = axes[:, column]
         for way, look in (("up", UP), ("down", DOWN)):
-            mine = [cell for cell in cells if (cell.model, cell.direction) == (name, way)]
-            excess, points = np.array([c.excess for c in mine]), np.array([c.points for c in mine])
-            settled = np.array([c.settled.period > 0 for c in mine])
+            mine = [k for k, row in enumerate(rows) if (row.model, row.direction) == (name, way)]
+            excess, points = np.array([rows[k].excess for k in mine]), np.array([strobes[k] for k in mine])
+            settled = np.array([rows[k].period > 0 for k in mine])
             plotting.strobe_points(upper, 1e2 * excess, 1e3 * points, settled, look, f"{way}ward scan")
         for kind, (marker, colour) in LOOKS.items():
             alike = [row for row in rows if (row.model, row.kind) == (name, kind)]

@@ -15,7 +15,7 @@ from contact import ContactError, State, StroboscopicMap
 from contact.orbits import Exponents, Settled, map_exponents, orbit_exponents, settle
 from studies.scene import READOUT, Scene
 
-__all__ = ["CHAOTIC", "KINDS", "TITLES", "Cell", "Row", "carried", "kind_of", "row_of"]
+__all__ = ["CHAOTIC", "KINDS", "TITLES", "Row", "carried", "kind_of"]
 
 TITLES = {"single_mode": "Eq. (1)", "beam": "beam"}
 
@@ -45,46 +45,6 @@ class Row:
     error_map: float
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Cell:
-    """One amplitude of a scan: its motion, and `points`, its strobed read-out, shape (record_cycles,)."""
-
-    model: str
-    direction: str
-    excess: float
-    strobed: StroboscopicMap
-    settled: Settled[State]
-    points: np.ndarray
-
-    def __str__(self) -> str:
-        return f"{TITLES[self.model]}, excess {self.excess:.6g}, {self.direction}"
-
-
-def carried(
-    named: tuple[str, StroboscopicMap], scene: Scene, values: np.ndarray
-) -> tuple[list[Cell], list[str]]:
-    """Upward and downward scan of one model: the settled state is the start at the next amplitude.
-
-    On the way up a motion stays without impacts as far as it can, on the way down it stays on p_m.
-    """
-    name, strobed = named
-    found, failures = [], []
-    state = strobed.at(float(values[0])).steady()
-    for direction, ordered in (("up", values), ("down", values[::-1])):
-        for excess in ordered.tolist():
-            here = strobed.at(excess)
-            try:
-                settled = settle(here, state, most_cycles=scene.scan.settle_cycles)
-                orbit = here.orbit(settled.end, scene.scan.record_cycles)
-            except ContactError as error:
-                failures.append(f"{TITLES[name]}, excess {excess:.6g}: {error}")
-                continue
-            state = replace(settled.end, time=0.0)
-            found.append(Cell(model=name, direction=direction, excess=excess, strobed=here, settled=settled,
-                              points=here.readout(orbit.points, READOUT)))  # fmt: skip
-    return found, failures
-
-
 def kind_of(strobed: StroboscopicMap, settled: Settled[State], cycles: int) -> tuple[str, Exponents]:
     """Chaos told from a long period or a slow transient by the exponents, averages over `cycles` drive
     periods."""
@@ -97,12 +57,32 @@ def kind_of(strobed: StroboscopicMap, settled: Settled[State], cycles: int) -> t
     return CHAOTIC if exponents.largest > 0 else NOT_SETTLED, exponents
 
 
-def row_of(cell: Cell, cycles: int) -> Row:
-    """Its kind and exponent."""
-    settled = cell.settled
-    kind, exponents = kind_of(cell.strobed, settled, cycles)
-    return Row(
-        model=cell.model, direction=cell.direction, excess=cell.excess, kind=kind, period=settled.period,
-        impacts=settled.impacts if settled.period else 0, lyapunov_map=exponents.largest,
-        error_map=exponents.error,
-    )  # fmt: skip
+def carried(
+    named: tuple[str, StroboscopicMap], scene: Scene, values: np.ndarray, cycles: int
+) -> tuple[list[Row], list[np.ndarray], list[str]]:
+    """Upward and downward scan of one model, the settled state the start at the next amplitude; with the rows
+    their strobed read-out, shape (record_cycles,) each, and third what failed.
+
+    On the way up a motion stays without impacts as far as it can, on the way down it stays on p_m.
+    """
+    name, strobed = named
+    rows, points, failures = [], [], []
+    state = strobed.at(float(values[0])).steady()
+    for direction, ordered in (("up", values), ("down", values[::-1])):
+        for excess in ordered.tolist():
+            here = strobed.at(excess)
+            try:
+                settled = settle(here, state, most_cycles=scene.scan.settle_cycles)
+                state = replace(settled.end, time=0.0)
+                orbit = here.orbit(state, scene.scan.record_cycles)
+                kind, exponents = kind_of(here, settled, cycles)
+            except ContactError as error:
+                failures.append(f"{TITLES[name]}, excess {excess:.6g}, {direction}: {error}")
+                continue
+            points.append(here.readout(orbit.points, READOUT))
+            rows.append(Row(
+                model=name, direction=direction, excess=excess, kind=kind, period=settled.period,
+                impacts=settled.impacts if settled.period else 0, lyapunov_map=exponents.largest,
+                error_map=exponents.error,
+            ))  # fmt: skip
+    return rows, points, failures

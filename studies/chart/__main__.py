@@ -24,13 +24,14 @@ cells
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Annotated, Literal
 
 import numpy as np
 
 from contact import ImpactOscillator
 from contact.orbits import AmplitudeScan
-from studies.chart.cells import EXCESSES, FREQUENCIES_HZ, KNEE, Cells, Plane, Scan
+from studies.chart.cells import EXCESSES, FREQUENCIES_HZ, KNEE, Cells, Plane, column_at
 from studies.chart.overlays import bands_in, folds_of_beam, folds_of_single_mode
 from studies.run import Run, study
 from studies.scene import Scene, beam_at, corresponding, harmonic, single_mode_at
@@ -81,7 +82,7 @@ def chart(
     oscillator = (beam_at if model == "beam" else single_mode_at)(scene, 0.5 * (low + high))
     scan = AmplitudeScan(oscillator=oscillator, most_cycles=bound)
     settings = {"model": model, "plane": plane, "knee": KNEE, "most_cycles": bound, "scene": scene.values()}
-    work, name = Scan(scan=scan, excesses=tuple(plane.rising_excesses())), f"{model}-{columns}x{rows}"
+    work, name = partial(column_at, scan=scan, plane=plane), f"{model}-{columns}x{rows}"
     found = sweep(run, name, settings, plane.frequencies().tolist(), work, shard=part, fresh=fresh)
     there = [column for column in found if column is not None]
     tell_failures(run, there)

@@ -23,7 +23,7 @@ from contact import Band
 from studies.chart.cells import Cells, Fold, sheared
 from studies.plotting import PAGE, PALETTE, house_style, label, new_figure, panel, tint
 
-__all__ = ["colours_of_impacts", "colours_of_periods", "draw"]
+__all__ = ["draw"]
 
 REST, NONE, FAILED, LONG = "white", "0.33", "black", "0.66"
 """No impact; no period; failed; a period beyond 28."""
@@ -54,21 +54,10 @@ PERIODS += [_darker(one, share) for share in (0.45, 0.7) for one in PALETTE[1:8]
 IMPACTS = [REST, *map(to_hex, matplotlib.colormaps["cividis"](np.linspace(1.0, 0.0, len(CLASSES))))]
 
 
-def colours_of_periods(period: Integers, impacts: Integers) -> NDArray[np.float64]:
-    """RGB of the cells in the upper panels."""
-    table = np.array([to_rgb(one) for one in (*PERIODS, LONG, NONE, FAILED)])
-    place = np.where(impacts == 0, 0, np.minimum(period, len(PERIODS)))
-    return table[np.where(period < 0, -1, np.where(period == 0, -2, place))]
-
-
-def colours_of_impacts(period: Integers, impacts: Integers) -> NDArray[np.float64]:
-    """RGB of the cells in the lower panels."""
-    table = np.array([to_rgb(one) for one in (*IMPACTS, NONE, FAILED)])
-    return table[np.where(period < 0, -1, np.where(period == 0, -2, _classes(impacts)))]
-
-
-def _classes(impacts: Integers) -> NDArray[np.int_]:
-    return np.searchsorted(list(CLASSES), impacts, side="right")
+def _colours(table: Sequence[str], place: NDArray[np.int_], period: Integers) -> NDArray[np.float64]:
+    """RGB of cells from their `place` in a table of colours."""
+    colours = np.array([to_rgb(one) for one in (*table, NONE, FAILED)])
+    return colours[np.where(period < 0, -1, np.where(period == 0, -2, place))]
 
 
 def _write_numbers(
@@ -102,14 +91,19 @@ def draw(cells: Cells, edges: Sequence[Band], folds: Sequence[Fold], *, title: s
     with house_style():
         for k, way in enumerate(("upward scan", "downward scan")):
             period, impacts = cells.period[k], cells.impacts[k]
-            for axis, colours in zip(axes[:, k], (colours_of_periods, colours_of_impacts), strict=True):
-                image = np.swapaxes(colours(period, impacts), 0, 1)
-                axis.imshow(image, origin="lower", extent=extent, aspect="auto", interpolation="nearest")
+            classes = np.searchsorted(list(CLASSES), impacts, side="right")
+            of_period = np.where(impacts == 0, 0, np.minimum(period, len(PERIODS)))
+            images = (_colours([*PERIODS, LONG], of_period, period), _colours(IMPACTS, classes, period))
+            for axis, image in zip(axes[:, k], images, strict=True):
+                axis.imshow(
+                    image.swapaxes(0, 1), origin="lower", extent=extent, aspect="auto",
+                    interpolation="nearest",
+                )  # fmt: skip
                 _draw_theory(axis, edges, folds)
                 axis.set(xlim=extent[:2], ylim=extent[2:])
             hit = np.where((period > 0) & (impacts > 0), period, 0)
             _write_numbers(axes[0, k], hit, x, y, lambda value: f"p$_{{{value}}}$")
-            _write_numbers(axes[1, k], np.where(hit, _classes(impacts), 0), x, y, lambda n: names[n - 1])
+            _write_numbers(axes[1, k], np.where(hit, classes, 0), x, y, lambda n: names[n - 1])
             panel(axes[0, k], k, f"{way}: period")
             panel(axes[1, k], 2 + k, f"{way}: impacts in a period")
             label(axes[1, k].xaxis, "drive frequency", "Hz")

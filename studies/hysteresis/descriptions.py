@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -31,14 +32,10 @@ CHAIN = (
 )  # fmt: skip
 DESCRIPTIONS = ("map_printed", "map_measured_kick", *CHAIN)
 
-CAUSES = {
-    "truncation_of_the_map": ("map", "single_mode"),
-    "size_of_the_kick": ("single_mode", "measured_kick"),
-    "kick_against_velocity": ("measured_kick", "kick_of_velocity"),
-    "delay": ("kick_of_velocity", "two_parameters"),
-    "higher_modes_in_the_flight": ("two_parameters", "all_mode_kick"),
-    "ringing_met_by_the_next_collision": ("all_mode_kick", "beam"),
-}
+CAUSES = dict(zip((
+    "truncation_of_the_map", "size_of_the_kick", "kick_against_velocity", "delay",
+    "higher_modes_in_the_flight", "ringing_met_by_the_next_collision",
+), pairwise(CHAIN), strict=True))  # fmt: skip
 """Cause -> the two neighbours in the chain between which it lies."""
 
 FREQUENCIES_HZ = (19.6, 23.8)
