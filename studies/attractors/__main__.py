@@ -89,7 +89,7 @@ def attractors(
     counts = Counter((row.model, row.kind) for row in rows)
     kinds = {name: {kind: counts[name, kind] for kind in KINDS} for name in maps}
     chaotic = {name: [r.excess for r in rows if (r.model, r.kind) == (name, CHAOTIC)] for name in maps}
-    both = plane.free() and period > 1 and shares[f"p{period}"] > 0.0
+    both = period > 1 and shares[f"p{period}"] > 0.0  # p1 without impacts is stable below grazing
     run.verdict("coexistence", "agrees" if both else "differs",
                 found=f"Eq. (1): p1 and p{period}" if both else "Eq. (1): one of them alone",
                 note=f"at excess {basin_excess:g} the start decides which of them is reached")  # fmt: skip

@@ -25,9 +25,6 @@ NEAR, OF_EXCESS = 1e-5, 0.1
 """Distance from an orbit at which a motion has reached it, in gaps (a basin narrower than that is missed),
 and at most in excesses below grazing."""
 
-BESIDE = 1e-3
-"""Distance from p1 of a start that is to lead to it, in gaps."""
-
 MOST_PERIODS, STRETCH = 4000, 32
 """Bound of a motion in the basins (what has not been told by then is something else); strobes looked at
 together."""
@@ -66,11 +63,6 @@ class Plane:
         except ContactError:
             pass
         return 0
-
-    def free(self) -> bool:
-        """Whether a start beside p1 leads to it: a coarse grid may have none in its basin."""
-        x, velocity = self.strobed.steady().displacement[0], self.strobed.steady().velocity[0]
-        return self.leads(float(x) - BESIDE * self.strobed.scale, float(velocity)) == 1
 
     def line(self, velocity: float) -> list[int]:
         """`leads` for all x at one velocity."""

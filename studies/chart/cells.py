@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from contact.orbits import AmplitudeScan
 from studies.sweep import Column
 
-__all__ = ["Cells", "Fold", "Plane", "column_at", "sheared"]
+__all__ = ["Fold", "Plane", "column_at", "counts", "sheared", "side_by_side"]
 
 FREQUENCIES_HZ = (19.5, 24.0)
 EXCESSES = (-0.15, 0.1)
@@ -86,32 +86,18 @@ class Fold:
     excess: float
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Cells:
-    """Arrays of shape (2, n_frequencies, n_excesses), upward scan first; excesses rise in both.
+def side_by_side(columns: Sequence[Column]) -> dict[str, NDArray[np.int32]]:
+    """`period` (0: none found), `impacts` and `cycles` (drive periods spent) of all columns, arrays of shape
+    (2, n_frequencies, n_excesses): upward scan first, excesses rise in both; -1 where a cell failed."""
+    return {
+        name: np.stack([column[name] for column in columns], axis=1).astype(np.int32)
+        for name in ("period", "impacts", "cycles")
+    }
 
-    `period` 0: none found; `cycles` drive periods spent; -1 everywhere where the computation failed.
-    """
 
-    frequencies: NDArray[np.float64]
-    excesses: NDArray[np.float64]
-    period: NDArray[np.int32]
-    impacts: NDArray[np.int32]
-    cycles: NDArray[np.int32]
-
-    @staticmethod
-    def of(plane: Plane, columns: Sequence[Column]) -> Cells:
-        """All columns of a plane side by side."""
-        period, impacts, cycles = (
-            np.stack([column[name] for column in columns], axis=1).astype(np.int32)
-            for name in ("period", "impacts", "cycles")
-        )
-        return Cells(frequencies=plane.frequencies(), excesses=plane.rising_excesses(), period=period,
-                     impacts=impacts, cycles=cycles)  # fmt: skip
-
-    def counts(self) -> Mapping[str, Mapping[str, int]]:
-        """Cells of each period, by direction."""
-        return {
-            way: {str(p): int(n) for p, n in zip(*np.unique(self.period[k], return_counts=True), strict=True)}
-            for k, way in enumerate(DIRECTIONS)
-        }
+def counts(period: NDArray[np.int32]) -> Mapping[str, Mapping[str, int]]:
+    """Cells of each period, by direction."""
+    return {
+        way: {str(p): int(n) for p, n in zip(*np.unique(period[k], return_counts=True), strict=True)}
+        for k, way in enumerate(DIRECTIONS)
+    }

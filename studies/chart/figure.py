@@ -7,7 +7,7 @@ some size says its number as well.  The upright axis is that of the grid (``cell
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import matplotlib
 import numpy as np
@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from contact import Band
-from studies.chart.cells import Cells, Fold, sheared
+from studies.chart.cells import Fold, Plane, sheared
 from studies.plotting import PAGE, PALETTE, house_style, label, new_figure, panel, tint
 
 __all__ = ["draw"]
@@ -81,16 +81,18 @@ def _write_numbers(
         axis.text(x[i], y[j], text(value), size=5.5, ha="center", va="center", path_effects=outline)
 
 
-def draw(cells: Cells, edges: Sequence[Band], folds: Sequence[Fold], *, title: str) -> Figure:
+def draw(
+    plane: Plane, cells: Mapping[str, Integers], edges: Sequence[Band], folds: Sequence[Fold], title: str
+) -> Figure:
     """The figure."""
     figure, axes = new_figure(2, 2, width=PAGE, height=0.150, sharex=True, sharey=True)
-    x, y = cells.frequencies, sheared(cells.excesses)
+    x, y = plane.frequencies(), sheared(plane.rising_excesses())
     dx, dy = 0.5 * (x[1] - x[0]), 0.5 * (y[1] - y[0])
     extent = (x[0] - dx, x[-1] + dx, y[0] - dy, y[-1] + dy)
     names = list(CLASSES.values())
     with house_style():
         for k, way in enumerate(("upward scan", "downward scan")):
-            period, impacts = cells.period[k], cells.impacts[k]
+            period, impacts = cells["period"][k], cells["impacts"][k]
             classes = np.searchsorted(list(CLASSES), impacts, side="right")
             of_period = np.where(impacts == 0, 0, np.minimum(period, len(PERIODS)))
             images = (_colours([*PERIODS, LONG], of_period, period), _colours(IMPACTS, classes, period))
@@ -108,7 +110,7 @@ def draw(cells: Cells, edges: Sequence[Band], folds: Sequence[Fold], *, title: s
             panel(axes[1, k], 2 + k, f"{way}: impacts in a period")
             label(axes[1, k].xaxis, "drive frequency", "Hz")
         for axis in axes[:, 0]:
-            ticks = [t for t in TICKS if cells.excesses[0] <= t <= cells.excesses[-1]]
+            ticks = [t for t in TICKS if plane.excesses[0] <= t <= plane.excesses[1]]
             axis.set_yticks([float(sheared(t)) for t in ticks], [f"{t:g}" for t in ticks])
             label(axis.yaxis, "excess F/F$_g$ − 1")
         known = {

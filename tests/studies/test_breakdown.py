@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -113,13 +112,10 @@ def test_a_ball_of_4_g_gives_the_letters_p6_and_p3_at_the_end_of_the_downward_sc
     assert outcome.p3_first < 0.6 * outcome.fold_p3  # far from grazing, at the end of the scan
 
 
-def test_the_search_keeps_the_period_of_the_beam_and_scales_the_higher_modes_only(light):
-    omega, rate = light.model.omega[0], light.model.decay_rate[0]
-    period = 2 * math.pi / math.sqrt(omega**2 - 0.25 * rate**2)
-    assert period == pytest.approx(letter.BREAKDOWN["free_period_s"], rel=1e-9)
-    more = replace(light, higher_damping=3.0).strobed().oscillator.model
-    assert more.decay_rate[0] == rate
-    assert more.decay_rate[1:] == pytest.approx(3.0 * light.model.decay_rate[1:], rel=1e-15)
+def test_the_search_scales_the_damping_of_the_higher_modes_only(light):
+    more, rate = replace(light, higher_damping=3.0).strobed().oscillator.model, light.model.decay_rate
+    assert more.decay_rate[0] == rate[0]
+    assert more.decay_rate[1:] == pytest.approx(3.0 * rate[1:], rel=1e-15)
 
 
 def test_cells_are_tried_by_what_they_ask_for(light):
@@ -129,12 +125,11 @@ def test_cells_are_tried_by_what_they_ask_for(light):
 
 
 @pytest.mark.parametrize("side", [-1.0, 1.0])
-@pytest.mark.parametrize("error", ["free_period_error_s", "decay_rate_error_per_s"])
-def test_errors_of_the_letter_do_not_give_period_6_to_the_calibrated_beam(scene, side, error):
-    given = letter.BREAKDOWN | {
-        error.replace("_error", ""): letter.BREAKDOWN[error.replace("_error", "")]
-        + side * letter.BREAKDOWN[error]
-    }
+@pytest.mark.parametrize("name", ["free_period", "decay_rate"])
+def test_errors_of_the_letter_do_not_give_period_6_to_the_calibrated_beam(scene, side, name):
+    given = dict(letter.BREAKDOWN)
+    (key,) = (key for key in given if key.startswith(name) and "error" not in key)
+    given[key] += side * given[key.replace(name, f"{name}_error")]
     here = scene.replace({"damping.decay_rate_per_s": given["decay_rate_per_s"]})
     model = model_of(calibrate_thickness(here, given["free_period_s"]))
     assert cell_of(Spring(scene=here, model=model, tip_mass_kg=scene.tip.mass_kg)).period != 6

@@ -138,22 +138,14 @@ def test_rows_have_the_promised_keys_and_every_amplitude_says_whether_it_settled
         assert (cell["kind"] == "periodic") == (int(cell["period"]) > 0)
 
 
-def test_own_modes_from_a_scene_go_through_everything(tmp_path, run_study):
+def test_own_modes_from_a_scene_go_through_everything(scene, model, run_study):
     """A spring given by its measured modes: the same numbers as the letter's spring give the same orbit."""
-    scene = read_scene("letter", [])
-    model = model_of(scene)
-    lines = [
-        "[spring]", 'kind = "modal_data"', "[modes]", f"count = {model.n_modes}", "[modal_data]",
-        f"frequencies_hz = {list(map(float, model.frequencies_hz))}",
-        f"decay_rates_per_s = {list(map(float, model.decay_rate))}",
-        f"tip_values = {list(map(float, model.phi))}",
-        f"participation = {list(map(float, model.participation))}",
-        f"tip_mass_kg = {scene.tip.mass_kg}",
-        "[drive]", "frequencies_hz = [22.2]",
-    ]
-    path = tmp_path / "own.toml"
-    path.write_text("\n".join(lines))
-    ran = run_study("transitions", "--quick", "--scene", str(path))
+    given = {"frequencies_hz": model.frequencies_hz, "decay_rates_per_s": model.decay_rate,
+             "tip_values": model.phi, "participation": model.participation}  # fmt: skip
+    argv = [f"modal_data.{key}={values.tolist()}" for key, values in given.items()]
+    argv += ["spring.kind=modal_data", f"modes.count={model.n_modes}", "drive.frequencies_hz=[22.2]",
+             f"modal_data.tip_mass_kg={scene.tip.mass_kg}"]  # fmt: skip
+    ran = run_study("transitions", "--quick", *(word for key in argv for word in ("--set", key)))
     (row,) = ran.summary["rows"]
     assert ran.code == 0 and row["beam"] == 5
     assert row["excess_down_beam"] == pytest.approx(row_at(scene, 22.2, model)[0].excess_down_beam, rel=1e-9)
