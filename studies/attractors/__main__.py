@@ -80,7 +80,7 @@ def attractors(
     run.arrays("attractors", points=np.array(strobes), excess=[row.excess for row in rows])
     plane = plane_of(scene, f, basin_excess, side)
     leads = np.array(run.map(plane.line, plane.velocity.tolist(), "basins"))  # shape (velocities, x)
-    run.arrays("basins", x=plane.x, velocity=plane.velocity, leads=leads, orbit=plane.orbits[plane.period])
+    run.arrays("basins", x=plane.x, velocity=plane.velocity, leads=leads, orbit=plane.strobes(plane.period))
     from studies.attractors import figure
 
     quantity, period, shares = scene.readout.quantity, plane.period, parts(leads, plane.period)

@@ -48,6 +48,10 @@ class Plane:
         """m of p_m; 1 if there is none beside p1."""
         return max(self.orbits)
 
+    def strobes(self, period: int) -> np.ndarray:
+        """Strobe points of an orbit, x [m] and x' [m/s], shape (period, 2)."""
+        return self.orbits[period] * (1.0, float(self.strobed.oscillator.model.omega[0]))
+
     def leads(self, x: float, velocity: float) -> int:
         """Where a start leads: 1 motion without impacts, m for p_m, 0 something else, -1 behind the wall."""
         if x >= self.strobed.scale:

@@ -76,11 +76,10 @@ def draw_basins(plane: Plane, leads: np.ndarray, frequency: float) -> Figure:
     axis.pcolormesh(x, y, picture, shading="nearest", vmin=-0.5, vmax=len(looks) - 0.5, rasterized=True,
                     cmap=ListedColormap([colour for colour, _ in looks.values()]))  # fmt: skip
     axis.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
-    to_scale = 1.0 / np.array([gap, speed / oscillator.model.omega[0]])
-    for code, points in plane.orbits.items():
+    for code in plane.orbits:
         marker, face = ("D", VERMILION) if code == 1 else ("o", "white")
-        axis.plot(*(points * to_scale).T, marker, markersize=4, color=face, markeredgecolor="black",
-                  label=f"p$_{{{code}}}$")  # fmt: skip
+        axis.plot(*(plane.strobes(code) / (gap, speed)).T, marker, markersize=4, color=face,
+                  markeredgecolor="black", label=f"p$_{{{code}}}$")  # fmt: skip
     for code, (colour, words) in looks.items():
         if np.any(leads == code):
             axis.fill([], [], facecolor=colour, edgecolor="0.4", label=words)

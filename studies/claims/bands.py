@@ -119,14 +119,12 @@ def draw(
 
 def draw_plane(axis: Axes, scene: Scene, path: Sequence[NordmarkMap]) -> None:
     """The bands as rho -> 0 and the path of the experiment."""
-    mode, rates = scene.single_mode, np.geomspace(100.0, 1e-3, 80).tolist()
+    mode, rates = scene.single_mode, np.geomspace(100.0, 1e-3, 80)
     for m in range(3, 9):
         edges = [band(m, free_period=mode.free_period_s, decay_rate=mu, restitution=mode.restitution)
-                 for mu in rates]  # fmt: skip
-        places = [[(mu, one.upper) for mu, one in zip(rates, edges, strict=True)],
-                  [(mu, one.lower) for mu, one in zip(rates, edges, strict=True)][::-1]]  # fmt: skip
-        mu, f = np.array([*places[0], *places[1]]).T
-        gamma = np.exp(-mu / f)
+                 for mu in rates.tolist()]  # fmt: skip
+        f = np.array([*(one.upper for one in edges), *(one.lower for one in edges[::-1])])
+        gamma = np.exp(-np.concatenate([rates, rates[::-1]]) / f)
         alpha = 2.0 * np.sqrt(gamma) * np.cos(2.0 * math.pi / (f * mode.free_period_s))
         axis.fill(alpha, gamma, color=plotting.PALETTE[m % 6 + 1], alpha=0.35, linewidth=0.4)
         axis.text(0.5 * (alpha[79] + alpha[80]), 1.015, f"{m}", fontsize=plotting.NOTE, ha="center")

@@ -53,24 +53,24 @@ def test_chaos_slow_transient_and_motion_without_impacts_are_told_apart(single, 
 
 def test_starts_next_to_either_orbit_lead_to_it_between_fold_and_grazing(scene):
     plane = plane_of(scene, FREQUENCY, -0.006, 2)
-    gap, omega = scene.stop.gap_m, float(plane.strobed.oscillator.model.omega[0])
+    gap = scene.stop.gap_m
     assert {m: points.shape for m, points in plane.orbits.items()} == {4: (4, 2), 1: (1, 2)}
     near = 3e-5 * gap
     for m, moved in ((4, 1e-6 * gap), (1, near)):
-        for x, velocity in plane.orbits[m] * (1.0, omega):
+        for x, velocity in plane.strobes(m):
             assert plane.leads(x + moved, velocity) == m
     assert plane.leads(1.01 * gap, 0.0) == -1
     # what is taken for p1 touches no more; second route: every strobe of a long run from three times as far
-    x, velocity = plane.orbits[1][0] * (1.0, omega)
+    ((x, velocity),) = plane.strobes(1)
     start = State(displacement=np.array([x + near]), velocity=np.array([velocity]))
     assert plane.near < near and plane.strobed.orbit(start, 500).impacts.sum() == 0
 
 
 def test_both_orbits_have_a_basin_between_fold_and_grazing_and_one_below(scene):
     between = plane_of(scene, FREQUENCY, -0.006, 2)
-    (x, scaled), omega = between.orbits[1][0], float(between.strobed.oscillator.model.omega[0])
+    ((x, velocity),), speed = between.strobes(1), 2.0 * np.pi * FREQUENCY
     around = np.linspace(-0.03, 0.03, 12) * scene.stop.gap_m
-    between = replace(between, x=x + around, velocity=omega * (scaled + around))
+    between = replace(between, x=x + around, velocity=velocity + speed * around)
     leads = np.array([between.line(v) for v in between.velocity.tolist()])
     assert np.mean(leads == 1) > 0.02 and np.mean(leads == 4) > 0.5
     below = plane_of(scene, FREQUENCY, -0.02, 6)

@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from contact import NewtonRestitution, StroboscopicMap
-from contact.orbits import KickFamily, born, orbit_end
+from contact.orbits import born, orbit_end
 from studies.hysteresis.__main__ import accuracy, causes_over, resolved
-from studies.hysteresis.descriptions import CAUSES, CHAIN, Row, folds_at, one_mode_fold
+from studies.hysteresis.descriptions import CAUSES, CHAIN, Row, folds_at
 from studies.scene import beam_at, model_of, read_scene, single_mode_of
 
 
@@ -47,20 +46,6 @@ def test_with_one_mode_and_newtons_law_the_whole_chain_is_eq_1(scene):
         assert getattr(row, name) == pytest.approx(-1.4773426733e-3, rel=1e-8), name
     assert row.map == pytest.approx(-8.235686505e-4, abs=1e-12)
     assert row.map_measured_kick == pytest.approx(row.map, rel=1e-9)
-
-
-def test_mode_1_of_a_kick_is_what_the_kick_family_keeps_with_one_mode(fold, beam):
-    """Two routes to the letter's two parameters."""
-    kicks = KickFamily(oscillator=beam, period=4)
-    assert one_mode_fold(kicks, lambda speed: kicks.kick(speed).jump[0]) == fold[0].two_parameters
-    mask = np.eye(beam.n_modes)[:1].T
-
-    def first_mode(speed):
-        kick = kicks.kick(speed)
-        return replace(kick, jump=mask * kick.jump)
-
-    exact = replace(kicks, collision=first_mode).fold()
-    assert fold[0].two_parameters == pytest.approx(exact.excess, rel=1e-9)
 
 
 def test_a_downward_scan_of_the_simulated_beam_ends_at_the_fold(fold, beam):
