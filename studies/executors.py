@@ -83,7 +83,7 @@ def _rate(done: int, seconds: float) -> str:
 def pool_of(place: str, workers: int) -> Iterator[Executor]:
     """The executor at `place`, threads, processes or dask://host:port, with so many threads or processes.
 
-    If the body is left by an exception, what has not begun is dropped.
+    If the body is left by an exception, what has not begun is dropped, and processes are ended.
     """
     kind, colon, address = place.partition("://")
     if kind == "dask" and address:
@@ -100,6 +100,8 @@ def pool_of(place: str, workers: int) -> Iterator[Executor]:
     try:
         yield executor
     except BaseException:
+        for process in multiprocessing.active_children() if kind == "processes" else ():
+            process.terminate()
         executor.shutdown(wait=kind == "processes", cancel_futures=True)
         raise
     executor.shutdown()

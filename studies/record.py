@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import io
 import sys
-import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
@@ -74,6 +73,8 @@ class Run:
     files: list[str] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
     model_choice: str = ""
+    interrupted: bool = False
+    closed: bool = False
 
     def __post_init__(self) -> None:
         make_folder(self.folder)
@@ -81,7 +82,6 @@ class Run:
         self._captions: dict[str, str] = {}
         self._verdicts: dict[str, dict[str, object]] = {}
         self._answers: dict[str, str] = {}
-        self._closing = threading.Lock()
 
     # what a person sees
 
@@ -227,9 +227,8 @@ class Run:
         return time.perf_counter() - self._begun
 
     def close(self, status: str, results: Mapping[str, object]) -> dict[str, object]:
-        """Write summary.json and manifest.json; returns the summary. Later calls, from other threads, wait
-        for ever."""
-        self._closing.acquire()
+        """Write summary.json and manifest.json; returns the summary."""
+        self.closed = True
         settings = {"quick": self.quick, "workers": self.workers, "executor": self.executor, **self.options}
         common = {
             "schema": SCHEMA, "study": self.study, "status": status, "settings": settings,
