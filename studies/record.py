@@ -35,7 +35,6 @@ from studies.files import (
     git_state,
     json_text,
     make_folder,
-    plain,
     versions,
     write_atomically,
 )  # fmt: skip
@@ -247,9 +246,7 @@ class Run:
             "git": git_state(), "begun": self._date.isoformat(timespec="seconds"), "wall_time_s": wall_time,
             "files": sorted(self.files), "captions": self._captions,
         })  # fmt: skip
-        told = plain({**summary, "folder": self.folder, "wall_time_s": wall_time})
-        assert isinstance(told, dict)
-        return told
+        return {**summary, "folder": self.folder, "wall_time_s": wall_time}
 
 
 def _tried(function: Callable[[S], T], item: S) -> tuple[T | None, str]:
