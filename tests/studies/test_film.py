@@ -76,11 +76,13 @@ def test_the_frames_of_an_orbit_show_its_contact(scene):
     settled = born(StroboscopicMap(oscillator=oscillator), 0.013)
     orbit = film_orbit(oscillator, settled.end, settled.period, frames=80, rate=20.0)
     assert settled.period == 4 and len(orbit.contacts) == settled.impacts >= 1
-    tip, gap = orbit.run.displacement @ oscillator.model.phi, oscillator.stop.gap
-    assert orbit.touched.any() and np.all(tip[orbit.touched] >= gap * (1 - 1e-12))
-    assert np.all(orbit.force[orbit.touched] >= 0.0) and np.all(orbit.force[~orbit.touched] == 0.0)
-    assert orbit.slowed[orbit.touched].min() > 20.0 * orbit.slowed.min()
-    assert orbit.base == pytest.approx(oscillator.drive.displacement(orbit.time))
+    gap = oscillator.stop.gap
+    touched, others = ([row for row in orbit.rows if row.contact == kind] for kind in (True, False))
+    assert touched and all(row.tip_m >= gap * (1 - 1e-12) and row.force_n >= 0.0 for row in touched)
+    assert all(row.force_n == 0.0 for row in others)
+    assert min(row.slowed for row in touched) > 20.0 * min(row.slowed for row in orbit.rows)
+    base = oscillator.drive.displacement([row.time_s for row in orbit.rows])
+    assert [row.base_m for row in orbit.rows] == pytest.approx(base)
 
 
 @pytest.mark.parametrize("renderer", ["matplotlib", "auto"])
