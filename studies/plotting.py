@@ -181,19 +181,16 @@ def legend_below(figure: Figure, axes: Iterable[Axes], columns: int, **looks: An
 
 
 def mark_letter(
-    axis: Axis, value: float, error: float = 0.0, *, words: str = "letter", along: float = 0.99,
-    turn: bool = False, level: bool = False,
+    axis: Axis, value: float, *, words: str = "letter", along: float = 0.99, turn: bool = False,
+    level: bool = False,
 ) -> None:  # fmt: skip
-    """A value that the letter prints, across the panel with its error as a band, and the words beside it.
+    """A value that the letter prints, as a line across the panel, and the words beside it.
 
     The words stand at `along` of the line, from 0 to 1, above it (left of an upright one); `turn` puts them
     on the other side, and `level` keeps them horizontal at an upright line.
     """
     axes, upright, end = axis.axes, isinstance(axis, XAxis), along > 0.5
-    line, span = (axes.axvline, axes.axvspan) if upright else (axes.axhline, axes.axhspan)
-    line(value, **LETTER)
-    if error > 0.0:
-        span(value - error, value + error, color="0.85", linewidth=0, zorder=0)
+    (axes.axvline if upright else axes.axhline)(value, **LETTER)
     shift = -2.0 if upright != turn else 2.0
     if upright:
         place, offset, across = (value, along), (shift, 0.0), axes.get_xaxis_transform()
