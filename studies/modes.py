@@ -6,8 +6,7 @@ move it along the legs at most, and take no part in the impacts.
     K x = omega^2 M x      for the elements of the strip, shapes of unit modal mass
 
 Of each mode the impacts see the frequency f = omega/(2 pi) [Hz], the decay rate c [1/s], the tip value phi
-[kg^(-1/2)] and the participation Gamma [kg^(1/2)] in a motion of the base. For straight strips of one
-section the frequencies are set beside the zeros of the frequency equation (beam.exact_modes).
+[kg^(-1/2)] and the participation Gamma [kg^(1/2)] in a motion of the base.
 
 Run:     python -m studies.modes [--mode 3] [--frames 24]     10 s
 Writes:  modes.csv (the table), modes.npz (shapes along the strip), modes.png; for ParaView modes.vtu (Warp By
@@ -23,9 +22,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 
-from beam import LeafSpring, Modes, UniformBeam, exact_modes, write_mode_motion, write_modes
+from beam import Modes, write_mode_motion, write_modes
 from studies import letter
 from studies.film import NO_RENDERING, Moment, Scenery, can_render, stage_of, write_gif
 from studies.run import Run, study
@@ -33,8 +31,6 @@ from studies.scene import Scene, SceneError, damping_of, free_period, model_of, 
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-__all__ = ["Row", "exact_frequencies", "modes", "rows_of"]
 
 FILMED, DRAWN = 6, 8
 """Modes with a film, and in the figure; lowest first."""
@@ -48,11 +44,10 @@ LARGEST = 0.05
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
-    """One mode; `exact_hz` from the frequency equation, None where that does not apply."""
+    """One mode."""
 
     mode: int
     frequency_hz: float
-    exact_hz: float | None
     decay_rate_per_s: float
     tip_value: float
     participation: float
@@ -73,7 +68,7 @@ def modes(
     rows = rows_of(scene, solved)
     if mode > len(rows):
         raise SceneError(f"--mode must be at most {len(rows)}, the modes of this scene, not {mode}")
-    run.table("modes", rows, "Natural modes: f, exact f, c, phi [kg^(-1/2)], Gamma [kg^(1/2)].")
+    run.table("modes", rows, "Natural modes: f, c, phi [kg^(-1/2)], Gamma [kg^(1/2)].")
     if solved is None:
         run.say("measured modes have no shapes: nothing to draw or to look at in ParaView")
     else:
@@ -85,43 +80,18 @@ def modes(
 
 def rows_of(scene: Scene, solved: Modes | None) -> list[Row]:
     """The table; without shapes, of the modal data."""
-    known = None
     if solved is None:
         model = model_of(scene)
         coupled = (model.phi != 0.0) | (model.participation != 0.0)
         columns = (model.frequencies_hz, model.decay_rate, model.phi, model.participation, coupled)
     else:
-        known = exact_frequencies(solved.discretization.spring, solved.omega.size)
         rates = damping_of(scene).decay_rates(solved)
         columns = (solved.frequencies_hz, rates, solved.phi, solved.participation, solved.coupled)
-    exact = [None] * columns[0].size if known is None else known.tolist()
     return [
-        Row(mode=number, frequency_hz=float(f), exact_hz=at, decay_rate_per_s=float(c), tip_value=float(phi),
+        Row(mode=number, frequency_hz=float(f), decay_rate_per_s=float(c), tip_value=float(phi),
             participation=float(gamma), coupled=bool(moves))
-        for number, (at, f, c, phi, gamma, moves) in enumerate(zip(exact, *columns, strict=True), start=1)
+        for number, (f, c, phi, gamma, moves) in enumerate(zip(*columns, strict=True), start=1)
     ]  # fmt: skip
-
-
-def exact_frequencies(spring: LeafSpring, count: int) -> NDArray[np.float64] | None:
-    """Frequencies of the first `count` modes from the frequency equation [Hz]; None where it does not apply.
-
-    It applies to a straight strip of one section that carries its tip at a free far end, or a tip without
-    mass anywhere. Rigid motions have 0.
-    """
-    sections, tip, line = set(spring.sections), spring.tip, spring.centreline
-    at_free_end = spring.supports[1] == "free" and spring.tip_at >= line.length * (1.0 - 1e-12)
-    massless = tip.mass == tip.rotary_inertia == 0.0
-    if not line.is_straight or len(sections) > 1 or not (at_free_end or massless):
-        return None
-    section = spring.sections[0]
-    uniform = UniformBeam(
-        length=line.length, bending_stiffness=section.bending_stiffness, tip_mass=tip.mass,
-        mass_per_length=section.mass_per_length, supports=spring.supports,
-        tip_rotary_inertia=tip.rotary_inertia,
-    )  # fmt: skip
-    rigid = np.zeros(spring.rigid_motions)
-    bent = exact_modes(uniform, max(1, count - rigid.size)).omega / (2.0 * math.pi)
-    return np.concatenate([rigid, bent])[:count]
 
 
 def largest_of(solved: Modes) -> float:
