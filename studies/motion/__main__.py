@@ -22,6 +22,7 @@ from contact import StroboscopicMap
 from contact.orbits import born
 from studies import letter
 from studies.film import (
+    DRIVE,
     NO_RENDERING,
     Moment,
     Picture,
@@ -75,7 +76,7 @@ def motion(
     swing, radius = max(abs(row.tip_m) for row in orbit.rows), scene.tip.ball_radius_m
     scenery = Scenery.of(modes, ball_radius=radius, gap=scene.stop.gap_m, swing=swing)
     drawn, magnification = drawn_shapes(scenery.mesh, modes, orbit.coordinates, magnify)
-    carried = scenery.drive * (seen_from == "laboratory")
+    carried = DRIVE * (seen_from == "laboratory")
     moments = [
         Moment(points=points, base=row.base_m * carried, touched=row.contact)
         for points, row in zip(drawn, orbit.rows, strict=True)

@@ -241,8 +241,8 @@ def test_a_drive_above_the_modes_is_refused(letter_scene):
 
 #: A slip of a unit or a value beyond the theory, and a word of the warning that it brings.
 SLIPS = {
-    "stop.gap_m=10.7": "gap is 10.7 m", "stop.gap_m=0.02": "small motion", "spring.leg_length_m=130": "weight",
-    "spring.width_m=12": "width", "spring.thickness_m=0.006": "a bar rather",
+    "stop.gap_m=10.7": "gap is 10.7", "stop.gap_m=0.02": "small motion", "spring.leg_length_m=130": "weight",
+    "spring.width_m=12": "width", "spring.thickness_m=0.006": "a bar",
     "spring.bend_radius_m=7.5": "bend_radius", "spring.young_modulus_pa=105": "speed of sound",
     "spring.density_kg_m3=8.5": "speed of sound", "spring.tape_modulus_pa=1": "speed of sound",
     "spring.tape_thickness_m=0.45": "thickness", "spring.tape_loss_factor=49": "loss_factor",
