@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
+from datetime import timedelta
 
 INTERVAL = 30.0
 """Seconds between two lines of progress where there is no terminal."""
@@ -24,13 +25,8 @@ def say(sentence: str) -> None:
 
 
 def duration(seconds: float) -> str:
-    """Seconds in the units in which a person waits: 8 s, 3 min 20 s, 2 h 05 min."""
-    whole = round(seconds)
-    if whole < 60:
-        return f"{whole} s"
-    if whole < 3600:
-        return f"{whole // 60} min {whole % 60:02d} s"
-    return f"{whole // 3600} h {whole % 3600 // 60:02d} min"
+    """As hours, minutes and seconds, 0:03:20."""
+    return str(timedelta(seconds=round(seconds)))
 
 
 @contextmanager

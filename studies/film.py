@@ -1,7 +1,7 @@
 """A spring in motion, seen in space: one picture after another, as gif, as mp4 and as meshes for ParaView.
 
     scenery = Scenery.of(modes, ball_radius=2.5e-3, gap=0.0107, swing=0.012)
-    with stage_of(scenery, "auto") as stage:
+    with stage_of(scenery) as stage:
         pictures = [stage(moment) for moment in moments]
     write_gif(run.path("motion.gif"), pictures, rate=20.0)
 
@@ -32,6 +32,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam import BALL, LAYER, STRIP, Modes, SpringMesh, solid_spring
+from studies.executors import say
 from studies.files import write_atomically
 
 Array = NDArray[np.float64]
@@ -115,17 +116,11 @@ Stage = Callable[[Moment], Picture]
 
 
 @contextmanager
-def stage_of(scenery: Scenery, renderer: str = "auto") -> Iterator[Stage]:
-    """What turns a moment into a picture: by "vtk", by "matplotlib", or "auto", the first that works.
-
-    Raises
-    ------
-    ValueError
-        For "vtk" where it cannot draw.
-    """
-    if renderer == "vtk" and not can_render():
-        raise ValueError(NO_RENDERING)
-    if renderer == "matplotlib" or not can_render():
+def stage_of(scenery: Scenery, *, simple: bool = False) -> Iterator[Stage]:
+    """What turns a moment into a picture: pyvista where it can draw, or else, and if `simple`, matplotlib."""
+    if simple or not can_render():
+        if not simple:
+            say(NO_RENDERING)
         yield _painter(scenery)
         return
     with _plotter(scenery) as stage:

@@ -25,7 +25,7 @@ import numpy as np
 
 from beam import Modes, write_mode_motion, write_modes
 from studies import letter
-from studies.film import NO_RENDERING, Moment, Scenery, can_render, stage_of, write_gif
+from studies.film import Moment, Scenery, stage_of, write_gif
 from studies.run import Run, study
 from studies.scene import Scene, SceneError, damping_of, free_period, model_of, modes_of
 
@@ -121,9 +121,7 @@ def write_films(run: Run, solved: Modes, radius: float, count: int, frames: int)
     """One period of each of the first modes, in space, repeated without a seam."""
     largest = largest_of(solved)
     scenery = Scenery.of(solved, ball_radius=radius, swing=largest)
-    if not run.quick and not can_render():
-        run.say(NO_RENDERING)
-    with stage_of(scenery, "matplotlib" if run.quick else "auto") as stage:
+    with stage_of(scenery, simple=run.quick) as stage:
         for number in run.track(range(count), "films of modes"):
             shape = scenery.mesh.normalised(largest)[number]
             phases = 2.0 * math.pi * np.arange(frames) / frames

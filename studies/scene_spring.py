@@ -137,16 +137,12 @@ def modes_of(scene: Scene, count: int | None = None) -> Modes:
                 "keep fewer or give spring.elements_per_leg and spring.elements_on_arc more elements"
             )
         asked = min(2 * asked, discretization.n_dofs)
-    modes = first_modes(modes, int(coupled[wanted - 1]) + 1)
-    energies = discretization.strain_energies(modes.shapes).sum(axis=(0, 1))
-    return dataclasses.replace(modes, omega=np.where(modes.omega > 0.0, np.sqrt(2.0 * energies), 0.0))
-
-
-def first_modes(modes: Modes, count: int) -> Modes:
-    """The `count` lowest of these modes."""
+    count = int(coupled[wanted - 1]) + 1
+    shapes, omega = modes.shapes[:, :count], modes.omega[:count]
+    energies = discretization.strain_energies(shapes).sum(axis=(0, 1))
     return dataclasses.replace(
-        modes, omega=modes.omega[:count], shapes=modes.shapes[:, :count], phi=modes.phi[:count],
-        participation=modes.participation[:count], coupled=modes.coupled[:count],
+        modes, omega=np.where(omega > 0.0, np.sqrt(2.0 * energies), 0.0), shapes=shapes,
+        phi=modes.phi[:count], participation=modes.participation[:count], coupled=modes.coupled[:count],
         readouts={name: row[:count] for name, row in modes.readouts.items()},
     )  # fmt: skip
 

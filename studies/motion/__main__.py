@@ -23,12 +23,10 @@ from contact.orbits import born
 from studies import letter
 from studies.film import (
     DRIVE,
-    NO_RENDERING,
     Moment,
     Picture,
     Scenery,
     can_encode,
-    can_render,
     stage_of,
     write_gif,
     write_mp4,
@@ -63,7 +61,6 @@ def motion(
     frames: Annotated[int, "frames of the film"] = 240,
     magnify: Annotated[float | None, "how many times the higher modes are drawn; so that they show"] = None,
     seen_from: Annotated[Literal["laboratory", "base"], "where the viewer stands"] = "laboratory",
-    renderer: Annotated[Literal["auto", "vtk", "matplotlib"], "what draws"] = "auto",
 ) -> Mapping[str, object]:
     """Compute, store, draw."""
     drive_hz = corresponding(harmonic(scene), FREQUENCY) if frequency is None else frequency
@@ -85,9 +82,7 @@ def motion(
     true, _ = drawn_shapes(scenery.mesh, modes, orbit.coordinates, 1.0)
     write_frames(run.path("motion.pvd"), grids(scenery, moments, true, orbit.rows))
     run.path("motion_frames")
-    if renderer == "auto" and not can_render():
-        run.say(NO_RENDERING)
-    with stage_of(scenery, renderer) as stage:
+    with stage_of(scenery, simple=run.quick) as stage:
         pictures = [stage(moment) for moment in run.track(moments, "frames")]
     name = f"p{settled.period}" if settled.period else "no period up to 64"
     words = f"{name}, {drive_hz:g} Hz, excess {excess:g}"
