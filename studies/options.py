@@ -56,18 +56,10 @@ def parser_of(command: str, account: str) -> Parser:
     scene("--set", action="append", default=[], metavar="section.key=value", dest="overrides",
           help="change one key of the scene; may be repeated")  # fmt: skip
     scene("--dump-scene", action="store_true", help="print every key with unit, default and provenance")
-    runs, cores = (
-        parser.add_argument_group("how it runs, and where the results go").add_argument,
-        os.cpu_count(),
-    )
+    runs = parser.add_argument_group("how it runs, and where the results go").add_argument
+    cores = os.cpu_count() or 1
     runs("--quick", action="store_true", help="a small form of the study, for a first look")
-    runs(
-        "--workers",
-        type=_count,
-        default=cores or 1,
-        metavar="N",
-        help="threads or processes (default: cores)",
-    )
+    runs("--workers", type=_count, default=cores, metavar="N", help="threads or processes (default: cores)")
     runs("--executor", default="", metavar="URL", help="threads (default), processes or dask://host:port")
     runs("--out", default="results", metavar="DIR", help="folder in which the study makes its own")
     return parser

@@ -11,12 +11,14 @@ Values are of the right type here; `studies.scene` makes spring, law and drive o
 from __future__ import annotations
 
 import dataclasses
+import json
 import math
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -84,12 +86,7 @@ class Scene:
 
     def values(self) -> dict[str, dict[str, object]]:
         """Nested plain values, section -> key -> value, as a file holds them."""
-        nested: dict[str, dict[str, object]] = {section: {} for section in SECTIONS}
-        for key in KEYS:
-            section, name = split(key)
-            value = self[key]
-            nested[section][name] = list(value) if isinstance(value, tuple) else value
-        return nested
+        return {section: dataclasses.asdict(getattr(self, section)) for section in SECTIONS}
 
     def provenance(self) -> dict[str, str]:
         """Dotted key -> letter, calibrated, assumed (a default), or what `replace` was told (else given)."""
@@ -102,14 +99,15 @@ class Scene:
     def dump(self) -> str:
         """Every key as TOML, with meaning, unit and what is valid, default and provenance as comments."""
         provenance, lines = self.provenance(), dict[str, list[str]]()
+        toml = partial(json.dumps, ensure_ascii=False)  # of texts, numbers and lists of numbers
         for key, known in KEYS.items():
             section, name = split(key)
             about = " ".join((getattr(self, section).__doc__ or "").split())
             here = "" if self[key] == known.default else f"; here {provenance[key]}"
             lines.setdefault(section, [f"# {about}", f"[{section}]"]).extend([
                 f"# {known.meaning}",
-                f"#   {known.valid()}; default {toml_value(known.default)}, {known.provenance}{here}",
-                f"{name} = {toml_value(self[key])}",
+                f"#   {known.valid()}; default {toml(known.default)}, {known.provenance}{here}",
+                f"{name} = {toml(self[key])}",
             ])  # fmt: skip
         return "\n\n".join(map("\n".join, lines.values())) + "\n"
 
@@ -123,13 +121,6 @@ class Scene:
         if self.damping.kind == "measured":
             return max(1, min(USUAL_MODES, len(self.damping.measured_rates_per_s)))
         return USUAL_MODES
-
-
-def toml_value(value: object) -> str:
-    """A value of a scene as TOML."""
-    if isinstance(value, str):
-        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
-    return "[" + ", ".join(map(repr, value)) + "]" if isinstance(value, tuple) else repr(value)
 
 
 SECTIONS: tuple[str, ...] = tuple(
