@@ -114,7 +114,7 @@ def write_shapes(scene: Scene, run: Run, solved: Modes, mode: int, frames: int) 
     )
     run.path("motion_frames")
     caption = "Shapes in the plane of the strip, enlarged; grey: at rest, dashed: half a period later."
-    run.figure("modes", draw(solved, radius), caption)
+    run.figure("modes", draw(solved), caption)
 
 
 def write_films(run: Run, solved: Modes, radius: float, count: int, frames: int) -> None:
@@ -137,44 +137,39 @@ def judge(scene: Scene, run: Run) -> None:
     run.verdict("free_period", verdict, found=f"{1e3 * period:.2f} ms")  # type: ignore[arg-type]
 
 
-def draw(solved: Modes, ball_radius: float) -> Figure:
+def draw(solved: Modes) -> Figure:
     """The first modes in the plane of the strip."""
     from studies.plotting import PAGE, PALETTE, label, new_figure  # matplotlib is slow to import
 
     along = solved.displacement_along(2)
     points, count = 1e3 * along.points, min(DRAWN, solved.omega.size)
-    extent = np.ptp(points[:, :2], axis=0)
-    swing = LARGEST * extent.max()
     ball = int(np.argmin(np.abs(along.s - solved.discretization.spring.tip_at)))
-    margin, columns = 1.2 * swing + 2e3 * ball_radius, min(2, count)
-    rows = math.ceil(count / columns)
-    tall = (extent[1] + 2.0 * margin) / (extent[0] + 2.0 * margin)
-    height = 0.014 + rows * (0.007 + tall * (PAGE - 0.014) / columns)
+    swing, columns = 1e3 * largest_of(solved), min(2, count)
+    rows, extent = math.ceil(count / columns), np.ptp(points, axis=0) + 3.0 * swing
+    height = 0.014 + rows * (0.007 + extent[1] / extent[0] * (PAGE - 0.014) / columns)
     shared = {"sharex": True, "sharey": True, "squeeze": False}
     figure, axes = new_figure(rows, columns, width=PAGE, height=height, **shared)
-    for number, axis in enumerate(axes.flat):
-        if number >= count:
-            axis.set_visible(False)
-            continue
+    for axis in axes.flat[count:]:
+        axis.set_visible(False)
+    for number, axis in enumerate(axes.flat[:count]):
         shape = along.displacement[number]
         step = shape * (swing / np.linalg.norm(shape, axis=1).max())
         axis.plot(points[:, 0], points[:, 1], color="0.75", linewidth=0.8)
         strong = PALETTE[1 if solved.coupled[number] else 2]
-        for sign, style, colour in ((-1.0, (0, (4, 2)), "0.45"), (1.0, "-", strong)):
-            place, face = points + sign * step, colour if sign > 0 else "white"
+        for sign, style, colour, face in ((-1.0, (0, (4, 2)), "0.45", "white"), (1.0, "-", strong, strong)):
+            place = points + sign * step
             axis.plot(place[:, 0], place[:, 1], color=colour, linestyle=style, linewidth=1.1)
             axis.plot(*place[ball, :2], "o", color=colour, markersize=4.5, markerfacecolor=face)
         kind = "" if solved.coupled[number] else ", uncoupled"
         words = f"mode {number + 1}: {solved.frequencies_hz[number]:.2f} Hz{kind}"
         axis.set_title(words, loc="left", pad=2.0, fontsize=8.0)
         axis.set_aspect("equal")
-        axis.set_xlim(points[:, 0].min() - 0.3 * margin, points[:, 0].max() + margin)
-        axis.set_ylim(points[:, 1].min() - margin, points[:, 1].max() + margin)
-        if number % columns == 0:
-            label(axis.yaxis, "y", "mm")
-        if number + columns >= count:
-            label(axis.xaxis, "x", "mm")
-            axis.tick_params(labelbottom=True)
+        axis.margins(0.05, 0.2)
+    for axis in axes[:, 0]:
+        label(axis.yaxis, "y", "mm")
+    for axis in axes.flat[:count][-columns:]:
+        label(axis.xaxis, "x", "mm")
+        axis.tick_params(labelbottom=True)
     return figure
 
 
