@@ -84,13 +84,8 @@ class Run:
 
     # what a person sees
 
-    def say(self, sentence: str) -> None:
-        """A line for a person."""
-        say(sentence)
-
-    def progress(self, label: str, total: int | None = None) -> AbstractContextManager[Callable[..., None]]:
-        """Count steps: `with run.progress("cells", 100) as tick: tick()`, or tick(5), from any thread."""
-        return progress(label, total)
+    say = staticmethod(say)
+    progress = staticmethod(progress)
 
     def track(self, items: Iterable[T], label: str) -> Iterator[T]:
         """The items one after the other, each counted when it has been dealt with."""

@@ -63,19 +63,14 @@ SAME_PERIOD = 1e-3
 def read_scene(name: str | Path = "letter", overrides: Iterable[str] = ()) -> Scene:
     """The scene in a file, or of a name in studies/scenes, with overrides `section.key=value`; the last
     wins."""
-    path = Path(name)
-    if path.suffix == "" and path.name == str(name) and not path.exists():
-        known = sorted(file.stem for file in SCENES.glob("*.toml"))
-        if path.name not in known:
-            raise SceneError(
-                f"there is no scene {shown(name)}: name a TOML file or one of {', '.join(known)}"
-            )
-        path = SCENES / f"{name}.toml"
+    known = {file.stem: file for file in sorted(SCENES.glob("*.toml"))}
+    path = known.get(str(name), Path(name))
     try:
         text = path.read_bytes().decode("utf-8-sig")
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "it is not text in UTF-8"
-        raise SceneError(f"the scene {shown(str(path))} cannot be read: {reason}") from error
+        choices = f"give a TOML file or one of {', '.join(known)}"
+        raise SceneError(f"the scene {shown(str(name))} cannot be read: {reason}; {choices}") from error
     scene = scene_from_text(text, name=str(path), overrides=overrides, folder=path.parent)
     check(scene)
     for sentence in doubts(scene):

@@ -237,6 +237,8 @@ def test_a_drive_above_the_modes_is_refused(letter_scene):
     require_drive_below(scene, model_of(scene))
     with pytest.raises(SceneError, match=r"1000 Hz"):
         require_drive_below(scene, model_of(scene), 1000.0)
+    with pytest.raises(SceneError, match=r"drive\.frequencies_hz"):
+        model_of(scene.replace({"drive.frequencies_hz": [1e5]}))
 
 
 #: A slip of a unit or a value beyond the theory, and a word of the warning that it brings.
