@@ -22,7 +22,7 @@ from wrong_input_of_contact import CONTACT, METHODS, ORBITS
 
 import beam
 import contact
-from beam.parameters import LONGEST_SHOWN, SuspiciousValue, shown, suspect
+from beam.parameters import LONGEST_SHOWN, SuspiciousValue, shown
 from contact.integrators import INTEGRATORS
 from contact.orbits import continuation, kick, lyapunov, shooting
 
@@ -207,9 +207,3 @@ def test_what_a_sentence_quotes_is_short_and_on_one_line() -> None:
             beam.Straight(length=value)  # type: ignore[arg-type]
         assert len(str(caught.value)) < LONGEST_SHOWN + 80
         assert str(caught.value).isprintable()
-
-
-def test_the_warning_points_at_the_line_that_gave_the_value() -> None:
-    with pytest.warns(SuspiciousValue) as found:
-        suspect("a ball of lead on a leaf of paper")
-    assert found[0].filename == __file__
