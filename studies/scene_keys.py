@@ -115,7 +115,7 @@ class SpringKeys:
     kind: str = key("folded_u", "", ASSUMED,
         "shape of the spring, or modal_data for modes that were measured",
         choices=("folded_u", "cantilever", "straight_strip", "modal_data"))
-    leg_length_m: float = key(0.13, "m", LETTER, "length of one leg, or of a straight strip", low=1e-9)
+    leg_length_m: float = key(0.13, "m", LETTER, "length of one leg, or of a straight strip", low=0.0)
     bend_radius_m: float = key(0.0075, "m", ASSUMED, "radius of the bend of the folded strip")
     width_m: float = key(0.012, "m", ASSUMED, "width of the strip")
     thickness_m: float = key(0.00069683709067, "m", CALIBRATED,

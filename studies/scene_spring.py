@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -78,31 +79,25 @@ def spring_of(scene: Scene) -> LeafSpring:
         )
     bare, taped = sections_of(scene)
     folded, leg = keys.kind == "folded_u", keys.leg_length_m
-    if folded and keys.bend_radius_m <= keys.thickness_m / 2:
-        raise SceneError(
-            f"spring.bend_radius_m is {keys.bend_radius_m} m; it must be greater than half of "
-            f"spring.thickness_m, {keys.thickness_m / 2:g} m"
-        )
     ball = scene.make(beam.Tip, {"mass": "tip.mass_kg", "rotary_inertia": "tip.rotary_inertia_kg_m2"})
     seen_at = scene.readout.arc_fraction * (2.0 * leg + math.pi * keys.bend_radius_m if folded else leg)
     readout = scene.make(beam.Readout, {"quantity": "readout.quantity"}, at=seen_at)
-    common = {
+    common: dict[str, Any] = {
         "section": bare, "damped_section": taped, "tip": ball, "readouts": {READOUT: readout},
         "damped_span": None if taped is None else (0.0, keys.tape_coverage * leg),
     }  # fmt: skip
+    length = {"length": "spring.leg_length_m"}
+
+    def fold(length: float, radius: float) -> LeafSpring:
+        return beam.folded_u(leg_length=length, bend_radius=radius, **common)
+
     if folded:
-        size = {"leg_length": "spring.leg_length_m", "bend_radius": "spring.bend_radius_m"}
-        return scene.make(beam.folded_u, size, **common)
+        return scene.make(fold, length | {"radius": "spring.bend_radius_m"})
     if keys.kind == "cantilever":
-        return scene.make(beam.cantilever, {"length": "spring.leg_length_m"}, **common)
-    for end, place, support in (("start", 0.0, keys.start_support), ("end", 1.0, keys.end_support)):
-        if tip.arc_fraction == place and support in ("clamped", "pinned"):
-            raise SceneError(
-                f"tip.arc_fraction must not be {place:g} while spring.{end}_support is {support}: "
-                "the tip could not move there"
-            )
+        return scene.make(beam.cantilever, length, **common)
     held = {"supports": (keys.start_support, keys.end_support), "tip_at": tip.arc_fraction * leg}
-    return scene.make(beam.straight_strip, {"length": "spring.leg_length_m"}, **common, **held)
+    place = {"tip_at": "tip.arc_fraction times spring.leg_length_m"}
+    return scene.make(beam.straight_strip, length | place, **common, **held)
 
 
 def elements_of(scene: Scene, spring: LeafSpring) -> tuple[int, ...]:

@@ -74,12 +74,12 @@ class Scene:
     def make(self, constructor: Callable[..., T], keys: Mapping[str, str], **others: object) -> T:
         """What `constructor` makes of the values of `keys`, argument -> dotted key, and of `others`.
 
-        What it refuses is a SceneError with the key in place of the argument's name.
+        What it refuses is a SceneError with the key in place of the argument's name; so named are also
+        arguments that are in both.
         """
+        own = {name: self[key] for name, key in keys.items() if name not in others}
         try:
-            return constructor(**{name: self[key] for name, key in keys.items()} | others)
-        except SceneError:
-            raise
+            return constructor(**own, **others)
         except (TypeError, ValueError) as error:
             pattern = rf"\b({'|'.join(keys)})\b( of the [a-z ]+?(?= is | holds ))?"
             raise SceneError(re.sub(pattern, lambda found: keys[found[1]], str(error))) from error
