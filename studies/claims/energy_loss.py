@@ -205,7 +205,7 @@ def draw_loss(rows: Sequence[Node]) -> Figure:
         axis.set_yscale("log")
         axis.set_ylim(4e-3, 30.0)
         plotting.panel(axis, place, title)
-        plotting.mark_letter(axis.xaxis, letter.RESTITUTION, along=0.98, turn=True, level=True)
+        plotting.mark_letter(axis.xaxis, letter.RESTITUTION, along=0.98)
     plotting.label(axes[0].yaxis, plotting.HYSTERESIS, "%")
     plotting.legend_below(figure, axes[:1], 3)
     return figure
@@ -223,6 +223,6 @@ def draw_secondary(rows: Sequence[Node], tau: NDArray[np.float64], below: NDArra
     plotting.label(axes[1].xaxis, "restitution τ")
     for place, (axis, title) in enumerate(zip(axes, ("Eq. (1)", "Eq. (1): below grazing"), strict=True)):
         plotting.panel(axis, place, title)
-        plotting.mark_letter(axis.xaxis, letter.RESTITUTION, along=0.02, turn=True, level=True)
+        plotting.mark_letter(axis.xaxis, letter.RESTITUTION, along=0.02)
     plotting.legend_below(figure, axes[:1], 3)
     return figure

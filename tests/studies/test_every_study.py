@@ -23,7 +23,7 @@ OWN_TEST = [
 ]  # fmt: skip
 
 #: Options that keep a small form small.
-SMALLER = {"motion": ["--frames", "16", "--renderer", "matplotlib"], "chart": ["--points", "4", "6"],
+SMALLER = {"motion": ["--frames", "16"], "chart": ["--points", "4", "6"],
            "stability": ["--families", "false_restitution,accumulation"],
            "claims": ["--positions", "3", "--across", "12", "--restitutions", "3", "--inside", "6",
                       "--alphas", "3"],
