@@ -48,14 +48,9 @@ class UnresolvedCrossing(ContactError):
 
 
 class Chatter(ContactError):
-    """More impacts in one drive period than the bound allows.
-
-    ``displacement`` and ``velocities`` hold the modal state where the run stopped, each (n_modes,).
-    """
+    """More impacts in one drive period than the bound allows."""
 
     reason = "impacts accumulate"
-    displacement: object = None
-    velocities: object = None
 
 
 class ContactTooStiff(ContactError):

@@ -46,6 +46,7 @@ of ``studies.stability`` and no ground to refuse a step.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
@@ -54,7 +55,7 @@ import numpy as np
 from beam.parameters import brief, is_number, require_within
 from contact.compiled import inlined, kernel
 from contact.flight.motion import WEIGHT, Motion
-from contact.integrators.fixed_step import check_step, fixed_step_run, stiffness_at
+from contact.integrators.fixed_step import FixedStep, mobility, stiffness_at
 from contact.integrators.grid import (
     DONE,
     Grid,
@@ -65,10 +66,7 @@ from contact.integrators.grid import (
     force_in_flight,
     tip_of,
 )
-from contact.integrators.method import Integrator
 from contact.laws import HERTZ, LINEAR
-from contact.oscillator import ImpactOscillator
-from contact.trajectory import Run, Trajectory
 
 __all__ = ["AlphaNumbers", "GeneralisedAlpha", "carried_by", "chung_hulbert", "limit", "predict", "stable"]
 
@@ -174,19 +172,18 @@ def predict(grid, carried, swing):
 
 
 @kernel
-def generalised_alpha(grid, carried):
-    """March from the grid point reached; see `carried_by`."""
+def generalised_alpha(grid, prepared):
+    """March from the grid point reached; see `carried_by`, and sum phi^2/D."""
+    carried, moves = prepared
     numbers, (a, f, inertia) = carried
     place, h, q, v, motion = grid.places[0], grid.step, grid.q, grid.v, grid.motion
-    modes, new, mobility = motion.modes, 1.0 - numbers.alpha_f, 0.0
+    modes, new = motion.modes, 1.0 - numbers.alpha_f
     b, g = numbers.beta * h * h, numbers.gamma * h
-    for k in range(q.size):
-        mobility += new * modes[WEIGHT, k] ** 2 / inertia[k]
     while place.step < grid.steps:
         swing = math.sin(motion.drive * (grid.clock + (place.step + 1) * h))
         predict(grid, carried, swing)
         depth, rate = tip_of(motion, q, v)
-        push, used = force_at_end(motion, depth, rate, b * mobility, g * mobility)
+        push, used = force_at_end(motion, depth, rate, b * new * moves, g * new * moves)
         place.evaluations += used
         for k in range(q.size):
             jump = -new * modes[WEIGHT, k] * push / inertia[k]
@@ -210,29 +207,23 @@ def chung_hulbert(rho: float) -> AlphaNumbers:
 
 
 @dataclass(frozen=True, kw_only=True)
-class GeneralisedAlpha(Integrator):
+class GeneralisedAlpha(FixedStep):
     """The generalised-alpha method with a fixed step, contact force at the end of the step.
 
     ``newmark``, ``hht`` and ``with_dissipation`` choose its numbers.
 
     Parameters
     ----------
-    step : float
-        Time step [s].
     beta, gamma : float
         beta zero or more, gamma above zero [1].
     alpha_m, alpha_f : float
         Weights of the old acceleration and the old force, below 1 [1].
-    beyond_limit : bool
-        Run even where the step is unstable, for a study of what happens there.
     """
 
-    step: float
     beta: float = 0.25
     gamma: float = 0.5
     alpha_m: float = 0.0
     alpha_f: float = 0.0
-    beyond_limit: bool = False
     name: ClassVar[str] = "generalised-alpha"
     order: ClassVar[float] = 2.0
     laws: ClassVar[tuple[int, ...]] = (LINEAR, HERTZ)
@@ -244,9 +235,10 @@ class GeneralisedAlpha(Integrator):
         "N. M. Newmark, J. Eng. Mech. Div. ASCE 85 (1959) 67; H. M. Hilber, T. J. R. Hughes, R. L. Taylor, "
         "Earthq. Eng. Struct. Dyn. 5 (1977) 283; J. Chung, G. M. Hulbert, J. Appl. Mech. 60 (1993) 371"
     )
+    march: ClassVar[Callable[..., int]] = staticmethod(generalised_alpha)
 
     def __post_init__(self) -> None:
-        check_step(self.step)
+        super().__post_init__()
         require_within("beta", self.beta, "[1]", low=0)
         require_within("gamma", self.gamma, "[1]", above=0)
         require_within("alpha_m", self.alpha_m, "[1]", below=1)
@@ -291,10 +283,7 @@ class GeneralisedAlpha(Integrator):
         largest = limit(self.numbers)
         return math.inf if largest == math.inf else stiffness_at(motion, (largest / self.step) ** 2)
 
-    def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
-        """The motion of `run`."""
-        return fixed_step_run(
-            oscillator, run, step=self.step, march=generalised_alpha,
-            method=lambda grid: carried_by(self.numbers, grid),
-            critical=math.inf if self.beyond_limit else self.critical_stiffness(oscillator.motion()),
-        )  # fmt: skip
+    def carried(self, grid: Grid) -> object:
+        """See `carried_by`; and sum phi^2/D."""
+        carried = carried_by(self.numbers, grid)
+        return carried, mobility(grid.motion, carried[1][2])

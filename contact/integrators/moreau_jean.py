@@ -37,6 +37,7 @@ impact is dated, from v_n to v_{n+1}, so that Newton's law holds for what is wri
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -44,20 +45,19 @@ import numpy as np
 
 from beam.parameters import require_within
 from contact.compiled import inlined, kernel, part
-from contact.flight.motion import DECAY, SQUARE, WEIGHT, Motion
-from contact.integrators.fixed_step import check_step, fixed_step_run
+from contact.flight.motion import SQUARE, WEIGHT, Motion
+from contact.integrators.fixed_step import FixedStep, mobility
 from contact.integrators.grid import (
     DONE,
+    Grid,
     cubic_between,
     ending,
     force_in_flight,
     tip_of,
 )
-from contact.integrators.method import Integrator
 from contact.laws import NEWTON
-from contact.oscillator import ImpactOscillator
 from contact.recorder import add_loss, close_touch, open_touch
-from contact.trajectory import IMPACT, Run, Trajectory
+from contact.trajectory import IMPACT
 
 __all__ = ["MoreauJean", "end_impact_step", "percussion_of"]
 
@@ -115,14 +115,11 @@ def end_impact_step(grid, corner, push):
 
 
 @kernel
-def moreau_jean(grid, theta):
-    """March from the grid point reached."""
+def moreau_jean(grid, carried):
+    """March from the grid point reached; carried: theta, D, shape (n_modes,), and sum phi^2/D."""
+    theta, inertia, moves = carried
     place, h, q, v, v0, motion = grid.places[0], grid.step, grid.q, grid.v, grid.v0, grid.motion
-    old, new, mobility = (1.0 - theta) * h, theta * h, 0.0
-    inertia = np.empty(q.size)
-    for k in range(q.size):
-        inertia[k] = 1.0 + new * (motion.modes[DECAY, k] + new * motion.modes[SQUARE, k])
-        mobility += motion.modes[WEIGHT, k] ** 2 / inertia[k]
+    old, new = (1.0 - theta) * h, theta * h
     while place.step < grid.steps:
         swing0 = math.sin(motion.drive * (grid.clock + place.step * h))
         swing1 = math.sin(motion.drive * (grid.clock + (place.step + 1) * h))
@@ -134,7 +131,7 @@ def moreau_jean(grid, theta):
             v[k] += change / inertia[k]
         _d, after = tip_of(motion, q, v)
         place.evaluations += 1
-        push = percussion_of(motion, h, depth, before, after, mobility)
+        push = percussion_of(motion, h, depth, before, after, moves)
         for k in range(q.size):
             v[k] -= motion.modes[WEIGHT, k] * push / inertia[k]
             q[k] += new * (v[k] - v0[k])
@@ -145,22 +142,16 @@ def moreau_jean(grid, theta):
 
 
 @dataclass(frozen=True, kw_only=True)
-class MoreauJean(Integrator):
+class MoreauJean(FixedStep):
     """Moreau and Jean's time stepping with a fixed step.
 
     Parameters
     ----------
-    step : float
-        Time step [s].
     theta : float
         Weight of the end of the step, from 0 to 1 [1]; 1/2 keeps the energy, 1 damps most.
-    beyond_limit : bool
-        Run even where the step is unstable, for a study of what happens there.
     """
 
-    step: float
     theta: float = 0.5
-    beyond_limit: bool = False
     name: ClassVar[str] = "moreau-jean"
     order: ClassVar[float] = 1.0
     laws: ClassVar[tuple[int, ...]] = (NEWTON,)
@@ -169,9 +160,10 @@ class MoreauJean(Integrator):
         "M. Jean, J. J. Moreau, Proc. Contact Mechanics Int. Symp. (Lausanne 1992) 31; V. Acary, "
         "B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems (2008)"
     )
+    march: ClassVar[Callable[..., int]] = staticmethod(moreau_jean)
 
     def __post_init__(self) -> None:
-        check_step(self.step)
+        super().__post_init__()
         require_within("theta", self.theta, "[1]", low=0, high=1)
 
     def critical_stiffness(self, motion: Motion) -> float:
@@ -184,9 +176,8 @@ class MoreauJean(Integrator):
         gained = self.step * size**2 * (1.0 - 2.0 * self.theta)
         return -1.0 if np.any(gained > lost + MARGIN * np.abs(gained)) else math.inf
 
-    def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
-        """The motion of `run`."""
-        return fixed_step_run(
-            oscillator, run, step=self.step, march=moreau_jean, method=lambda grid: float(self.theta),
-            critical=math.inf if self.beyond_limit else self.critical_stiffness(oscillator.motion()),
-        )  # fmt: skip
+    def carried(self, grid: Grid) -> tuple[float, np.ndarray, float]:
+        """theta, D and sum phi^2/D."""
+        motion, new = grid.motion, self.theta * self.step
+        inertia = 1.0 + new * (motion.decay + new * motion.row(SQUARE))
+        return float(self.theta), inertia, mobility(motion, inertia)
