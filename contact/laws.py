@@ -21,11 +21,21 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from numbers import Real
 from typing import ClassVar
 
 import numpy as np
 
-from beam.parameters import brief, is_number, require, require_array, require_within, shown, suspect
+from beam.parameters import (
+    brief,
+    is_number,
+    require,
+    require_array,
+    require_kind,
+    require_within,
+    shown,
+    suspect,
+)
 
 __all__ = [
     "ContactLaw",
@@ -93,16 +103,6 @@ class NewtonRestitution(ContactLaw):
         require_within("local_restitution", self.local_restitution, "[1]", low=0, high=1)
 
 
-def _value(function: Callable[[float], float], speed: float) -> float:
-    """The function at an approach speed; TypeError unless it gives a number there."""
-    value = function(speed)
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        words = "it must give a number"
-        raise TypeError(f"function of the approach speed gives {value!r} at {speed:g} m/s; {words}") from None
-
-
 SPEEDS = 1025
 """Samples of a function of the approach speed: a cubic spline through them over six decades is good to
 1e-9."""
@@ -163,9 +163,12 @@ class DelayedRestitution(ContactLaw):
             *self.speeds, SPEEDS if callable(self.restitution) or callable(self.delay) else 2
         )
         rows = [speed]
-        for given in (self.restitution, self.delay):
+        for name in ("restitution", "delay"):
+            given = getattr(self, name)
             if callable(given):
-                values = np.array([_value(given, float(v)) for v in speed])
+                at = f"{name} at an approach speed of"
+                found = [require_kind(f"{at} {v:g} m/s", given(float(v)), Real, "a number") for v in speed]
+                values = np.array(found, dtype=float)
                 slopes = CubicSpline(speed, values)(speed, 1) if np.all(np.isfinite(values)) else values
             else:
                 values, slopes = np.full(speed.size, float(given)), np.zeros(speed.size)

@@ -26,7 +26,7 @@ from typing import ClassVar
 import numpy as np
 
 from contact.compiled import kernel
-from contact.flight.motion import DECAY, WEIGHT, Motion
+from contact.flight.motion import DECAY, Motion
 from contact.integrators.fixed_step import FixedStep, stiffness_at
 from contact.integrators.grid import (
     DONE,
@@ -35,6 +35,7 @@ from contact.integrators.grid import (
     contact_force,
     end_contact_step,
     force_in_flight,
+    push_on,
     tip_of,
 )
 from contact.laws import HERTZ, LINEAR
@@ -53,10 +54,9 @@ def central_difference(grid, numbers):
         swing = math.sin(motion.drive * (grid.clock + (place.step + 1) * h))
         depth, rate = tip_of(motion, q, half)
         push = contact_force(motion, depth, rate)
-        place.evaluations += 1
         for k in range(q.size):
             old = half[k]
-            new = old + h * (force_in_flight(grid, k, swing, q, half) - motion.modes[WEIGHT, k] * push)
+            new = old + h * (force_in_flight(grid, k, swing, q, half) + push_on(motion, k, push))
             if not lagged:
                 c = 0.5 * h * motion.modes[DECAY, k]
                 new = (new + c * old) / (1.0 + c)
@@ -81,8 +81,6 @@ class CentralDifference(FixedStep):
     name: ClassVar[str] = "central-difference"
     order: ClassVar[float] = 2.0
     laws: ClassVar[tuple[int, ...]] = (LINEAR, HERTZ)
-    limit: ClassVar[str] = "h omega_max <= 2, contact closed; 2 (sqrt(1 + zeta^2) - zeta) with lagged damping"
-    source: ClassVar[str] = "T. Belytschko, Computational Methods for Transient Analysis (1983), ch. 1"
     march: ClassVar[Callable[..., int]] = staticmethod(central_difference)
 
     def critical_stiffness(self, motion: Motion) -> float:

@@ -40,12 +40,6 @@ def stiffness_at(motion: Motion, square: float | np.ndarray) -> float:
     return 1.0 / mobility(motion, room) if np.all(room > 0.0) else -1.0
 
 
-def _too_large(step: float, detail: str, place: dict[str, float]) -> StepTooLarge:
-    error = StepTooLarge(**place, detail=f"step {step:.4g} s{detail}")  # type: ignore[arg-type]
-    error.step = step
-    return error
-
-
 def _refuse(motion: Motion, run: Run, step: float, critical: float, place: dict[str, float]) -> None:
     """ValueError for a start behind the stop, StepTooLarge for a step that cannot be stable."""
     within = step * float(np.abs(motion.phi * run.start.velocity).sum()) + 1e-12 * max(motion.gap, 1e-6)
@@ -57,7 +51,8 @@ def _refuse(motion: Motion, run: Run, step: float, critical: float, place: dict[
     stiff = motion.number0 if motion.law == LINEAR else 0.0
     if critical <= 0.0 or stiff > critical:
         bears = "it is unstable even in flight" if critical <= 0.0 else f"it bears {critical:.4g} N/m"
-        raise _too_large(step, f", contact stiffness {stiff:.4g} N/m: {bears}", place)
+        detail = f"step {step:.4g} s, contact stiffness {stiff:.4g} N/m: {bears}"
+        raise StepTooLarge(**place, detail=detail)  # type: ignore[arg-type]
 
 
 def _in_order(recorder: Recorder, run: Run, period: float) -> tuple[Recorder, np.ndarray]:
@@ -134,9 +129,7 @@ class FixedStep(Integrator):
 
         def steady(clock: float) -> np.ndarray:
             """What the method leaves out of (q, v), shape (2, n_modes)."""
-            if not self.deviations:
-                return np.zeros((2, n))
-            return np.squeeze(steady_motion(motion, np.array([clock])), 1)
+            return np.array(steady_motion(motion, clock)) if self.deviations else np.zeros((2, n))
 
         def place(time: float, q: np.ndarray, v: np.ndarray) -> dict[str, float]:
             return {"time": time, "gap": motion.gap - float(motion.tip(q)), "velocity": float(motion.tip(v))}
@@ -167,7 +160,8 @@ class FixedStep(Integrator):
             here = place(start.time - run.clock + reached, *(np.array([grid.q, grid.v]) + steady(reached)))
             if status == DIVERGED:
                 raise Diverged(**here)  # type: ignore[arg-type]
-            raise _too_large(step, ": the contact has become too stiff for it", here)
+            detail = f"step {step:.4g} s: the contact has become too stiff for it"
+            raise StepTooLarge(**here, detail=detail)  # type: ignore[arg-type]
         recorder = grid.recorder
         q, v = recorder.samples[-1].reshape(2, n) + steady(run.clock + run.length)
         touching = forced and recorder.marks[0]["touching"] == 1
@@ -177,5 +171,5 @@ class FixedStep(Integrator):
         )  # fmt: skip
         return trajectory_of(
             _sorted_out(recorder, run, order, period, under_way), run, end, period,
-            evaluations=int(grid.places[0]["evaluations"]), motion=motion if self.deviations else None,
+            evaluations=grid.steps, motion=motion if self.deviations else None,
         )  # fmt: skip

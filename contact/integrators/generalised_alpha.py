@@ -52,9 +52,9 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from beam.parameters import brief, is_number, require_within
+from beam.parameters import require_within
 from contact.compiled import inlined, kernel
-from contact.flight.motion import WEIGHT, Motion
+from contact.flight.motion import Motion
 from contact.integrators.fixed_step import FixedStep, mobility, stiffness_at
 from contact.integrators.grid import (
     DONE,
@@ -64,6 +64,7 @@ from contact.integrators.grid import (
     contact_tangent,
     end_contact_step,
     force_in_flight,
+    push_on,
     tip_of,
 )
 from contact.laws import HERTZ, LINEAR
@@ -177,20 +178,18 @@ def generalised_alpha(grid, prepared):
     carried, moves = prepared
     numbers, (a, f, inertia) = carried
     place, h, q, v, motion = grid.places[0], grid.step, grid.q, grid.v, grid.motion
-    modes, new = motion.modes, 1.0 - numbers.alpha_f
-    b, g = numbers.beta * h * h, numbers.gamma * h
+    new, b, g = 1.0 - numbers.alpha_f, numbers.beta * h * h, numbers.gamma * h
     while place.step < grid.steps:
         swing = math.sin(motion.drive * (grid.clock + (place.step + 1) * h))
         predict(grid, carried, swing)
         depth, rate = tip_of(motion, q, v)
-        push, used = force_at_end(motion, depth, rate, b * new * moves, g * new * moves)
-        place.evaluations += used
+        push, _used = force_at_end(motion, depth, rate, b * new * moves, g * new * moves)
         for k in range(q.size):
-            jump = -new * modes[WEIGHT, k] * push / inertia[k]
+            jump = new * push_on(motion, k, push) / inertia[k]
             a[k] += jump
             q[k] += b * jump
             v[k] += g * jump
-            f[k] = force_in_flight(grid, k, swing, q, v) - modes[WEIGHT, k] * push
+            f[k] = force_in_flight(grid, k, swing, q, v) + push_on(motion, k, push)
         status = end_contact_step(grid, tip_of(motion, q, v)[0])
         if status != DONE:
             return status
@@ -227,14 +226,6 @@ class GeneralisedAlpha(FixedStep):
     name: ClassVar[str] = "generalised-alpha"
     order: ClassVar[float] = 2.0
     laws: ClassVar[tuple[int, ...]] = (LINEAR, HERTZ)
-    limit: ClassVar[str] = (
-        "none in linear theory if alpha_m <= alpha_f <= 1/2 and beta >= 1/4 + (alpha_f - alpha_m)/2; else "
-        "h omega_max <= (gamma/2 - beta)^(-1/2) (Newmark); contacts may feed it energy all the same"
-    )
-    source: ClassVar[str] = (
-        "N. M. Newmark, J. Eng. Mech. Div. ASCE 85 (1959) 67; H. M. Hilber, T. J. R. Hughes, R. L. Taylor, "
-        "Earthq. Eng. Struct. Dyn. 5 (1977) 283; J. Chung, G. M. Hulbert, J. Appl. Mech. 60 (1993) 371"
-    )
     march: ClassVar[Callable[..., int]] = staticmethod(generalised_alpha)
 
     def __post_init__(self) -> None:
@@ -254,11 +245,7 @@ class GeneralisedAlpha(FixedStep):
     @staticmethod
     def hht(*, step: float, alpha: float, beyond_limit: bool = False) -> GeneralisedAlpha:
         """The method of Hilber, Hughes and Taylor; `alpha` from 0 to 1/3 is minus that of their paper."""
-        if not (is_number(alpha) and 0.0 <= alpha <= 1.0 / 3.0):
-            raise ValueError(
-                f"alpha is {brief(alpha)}; it must lie between 0 and 1/3 (that of the HHT-alpha paper with "
-                "its sign turned)"
-            )
+        require_within("alpha of HHT-alpha, its sign turned,", alpha, "[1]", low=0, high=1.0 / 3.0)
         return GeneralisedAlpha(
             step=step, beta=0.25 * (1.0 + alpha) ** 2, gamma=0.5 + alpha, alpha_f=alpha,
             beyond_limit=beyond_limit,

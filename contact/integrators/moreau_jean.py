@@ -45,16 +45,9 @@ import numpy as np
 
 from beam.parameters import require_within
 from contact.compiled import inlined, kernel, part
-from contact.flight.motion import SQUARE, WEIGHT, Motion
+from contact.flight.motion import SQUARE, Motion
 from contact.integrators.fixed_step import FixedStep, mobility
-from contact.integrators.grid import (
-    DONE,
-    Grid,
-    cubic_between,
-    ending,
-    force_in_flight,
-    tip_of,
-)
+from contact.integrators.grid import DONE, Grid, cubic_between, ending, force_in_flight, push_on, tip_of
 from contact.laws import NEWTON
 from contact.recorder import add_loss, close_touch, open_touch
 from contact.trajectory import IMPACT
@@ -130,10 +123,9 @@ def moreau_jean(grid, carried):
             change += new * force_in_flight(grid, k, swing1, q, v)
             v[k] += change / inertia[k]
         _d, after = tip_of(motion, q, v)
-        place.evaluations += 1
         push = percussion_of(motion, h, depth, before, after, moves)
         for k in range(q.size):
-            v[k] -= motion.modes[WEIGHT, k] * push / inertia[k]
+            v[k] += push_on(motion, k, push) / inertia[k]
             q[k] += new * (v[k] - v0[k])
         status = end_impact_step(grid, 1.0 - theta, push)
         if status != DONE:
@@ -155,11 +147,6 @@ class MoreauJean(FixedStep):
     name: ClassVar[str] = "moreau-jean"
     order: ClassVar[float] = 1.0
     laws: ClassVar[tuple[int, ...]] = (NEWTON,)
-    limit: ClassVar[str] = "none for theta >= 1/2; else h <= -2 Re(lambda) / ((1 - 2 theta) |lambda|^2)"
-    source: ClassVar[str] = (
-        "M. Jean, J. J. Moreau, Proc. Contact Mechanics Int. Symp. (Lausanne 1992) 31; V. Acary, "
-        "B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems (2008)"
-    )
     march: ClassVar[Callable[..., int]] = staticmethod(moreau_jean)
 
     def __post_init__(self) -> None:

@@ -34,10 +34,10 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from contact.compiled import kernel
-from contact.flight.motion import DECAY, SQUARE, WEIGHT
+from contact.flight.motion import DECAY, SQUARE
 from contact.integrators.fixed_step import FixedStep, mobility
 from contact.integrators.generalised_alpha import carried_by, chung_hulbert, predict
-from contact.integrators.grid import DONE, Grid, force_in_flight, tip_of
+from contact.integrators.grid import DONE, Grid, force_in_flight, push_on, tip_of
 from contact.integrators.moreau_jean import end_impact_step, percussion_of
 from contact.laws import NEWTON
 
@@ -56,10 +56,9 @@ def nonsmooth_generalised_alpha(grid, prepared):
         depth, before = tip_of(motion, q, v)
         predict(grid, carried, swing)
         _d, after = tip_of(motion, q, v)
-        place.evaluations += 1
         push = percussion_of(motion, h, depth, before, after, moves)
         for k in range(q.size):
-            jump = -modes[WEIGHT, k] * push
+            jump = push_on(motion, k, push)
             change = -new * (modes[DECAY, k] + 0.5 * h * modes[SQUARE, k]) * jump / inertia[k]
             a[k] += change
             q[k] += numbers.beta * h * h * change + 0.5 * h * jump
@@ -85,10 +84,6 @@ class NonsmoothGeneralisedAlpha(FixedStep):
     name: ClassVar[str] = "nonsmooth-generalised-alpha"
     order: ClassVar[float] = 2.0
     laws: ClassVar[tuple[int, ...]] = (NEWTON,)
-    limit: ClassVar[str] = "none"
-    source: ClassVar[str] = (
-        "Q.-Z. Chen, V. Acary, G. Virlez, O. Bruls, Int. J. Numer. Meth. Engng 96 (2013) 487, velocity level"
-    )
     march: ClassVar[Callable[..., int]] = staticmethod(nonsmooth_generalised_alpha)
 
     def __post_init__(self) -> None:

@@ -150,9 +150,7 @@ def _passage(motion: Motion, composition: Composition, step: float, damping: flo
     return lowest
 
 
-def first_instability(
-    motion: Motion, composition: Composition, step: float, damping: float = 0.0
-) -> float:
+def first_instability(motion: Motion, composition: Composition, step: float, damping: float = 0.0) -> float:
     """The lowest contact stiffness at which a lasting contact is unstable [N/m]."""
 
     def unstable(stiffness: ArrayLike) -> np.ndarray:
@@ -199,14 +197,6 @@ class Splitting(FixedStep):
     order: int = 2  # type: ignore[misc]
     name: ClassVar[str] = "splitting"
     laws: ClassVar[tuple[int, ...]] = (LINEAR, HERTZ)
-    limit: ClassVar[str] = (
-        "contact closed, omega h < pi: order 2, k h sum phi^2 tan(omega h/2)/(2 omega) <= 1; order 4, lowest "
-        "root of det(step matrix + I); resonances of step and contact beyond"
-    )
-    source: ClassVar[str] = (
-        "G. Strang, SIAM J. Numer. Anal. 5 (1968) 506; S. Blanes, P. C. Moan, J. Comput. Appl. Math. 142 "
-        "(2002) 313"
-    )
     march: ClassVar[Callable[..., int]] = staticmethod(march)
     deviations: ClassVar[bool] = True
 

@@ -81,7 +81,7 @@ CONTACT = (
        kind=dict(local_restitution=each("0.1", None)),
        value=dict(local_restitution=each(1.1, 1.0000001, -1e-12, NAN))),
     of(contact.DelayedRestitution, dict(restitution=0.1, delay=1e-4),
-       kind=dict(restitution=told(lambda v: "soft", "gives 'soft'")),
+       kind=dict(restitution=told(lambda v: "soft", "m/s is 'soft'")),
        value=dict(restitution=each(2.0, 1.0000001, -0.01, -1e-12, NAN, "soft", None,
                                    told(lambda v: 1.2 - v, "restitution runs from"),
                                    told(lambda v: 0.5 if v < 1 else NAN, "restitution")),
