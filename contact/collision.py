@@ -233,7 +233,6 @@ def first_collision(
     ValueError
         If the tip does not touch the stop, or the collision is not final, within `periods`.
     """
-    require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
     periods = require_whole("periods", periods, "drive periods")
     start = before_collision(oscillator) if state is None else state
     for length in sorted({min(3, periods), periods}):

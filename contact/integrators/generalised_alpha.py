@@ -159,12 +159,12 @@ def carried_by(numbers: AlphaNumbers, grid: Grid) -> tuple[AlphaNumbers, tuple[n
 
 
 @inlined
-def predict(grid, carried, swing):
-    """The step without a contact force at its end; `swing`: sin(w t) there."""
+def predict(grid, carried, eta, swing):
+    """The step without a contact force at its end; `eta` is the 1/2 of the positions, `swing` sin(w t)."""
     numbers, (a, f, inertia) = carried
     h, q, v, new = grid.step, grid.q, grid.v, 1.0 - numbers.alpha_f
     for k in range(q.size):
-        q[k] += h * v[k] + h * h * (0.5 - numbers.beta) * a[k]
+        q[k] += h * v[k] + h * h * (eta - numbers.beta) * a[k]
         v[k] += h * (1.0 - numbers.gamma) * a[k]
         rest = numbers.alpha_f * f[k] - numbers.alpha_m * a[k]
         a[k] = (rest + new * force_in_flight(grid, k, swing, q, v)) / inertia[k]
@@ -181,7 +181,7 @@ def generalised_alpha(grid, prepared):
     new, b, g = 1.0 - numbers.alpha_f, numbers.beta * h * h, numbers.gamma * h
     while place.step < grid.steps:
         swing = math.sin(motion.drive * (grid.clock + (place.step + 1) * h))
-        predict(grid, carried, swing)
+        predict(grid, carried, 0.5, swing)
         depth, rate = tip_of(motion, q, v)
         push, _used = force_at_end(motion, depth, rate, b * new * moves, g * new * moves)
         for k in range(q.size):

@@ -12,6 +12,11 @@ Contact Mechanics Int. Symp., Lausanne 1992, 31; V. Acary, B. Brogliato, Numeric
 Dynamical Systems, Springer 2008).  With D = 1 + theta h c + theta^2 h^2 omega^2 per mode and v* the velocity
 without percussion, v_{n+1} = v* - phi p/D, and p = max(0, (U* + e U_n) / sum phi^2/D) in closed form.
 
+With a = f this is the ``nonsmooth_generalised_alpha`` method of alpha_m = alpha_f = 0, gamma = theta, beta =
+theta^2, but for a weight eta = theta in place of the 1/2 in its positions, so that both march in one loop:
+
+    q_{n+1} = q_n + h v_n + h^2 ((eta - beta) a_n + beta a_{n+1}) + h eta w,     w = -phi p.
+
 Order: an impact is late or early by a fraction of a step, so 1 after an impact; before one, 2 for theta = 1/2
 and 1 otherwise.  Stability: a mode q'' + c q' + omega^2 q = 0 with eigenvalues lambda does not grow if
 2 Re(lambda) + h |lambda|^2 (1 - 2 theta) <= 0, i.e. always for theta >= 1/2.
@@ -44,15 +49,16 @@ from typing import ClassVar
 import numpy as np
 
 from beam.parameters import require_within
-from contact.compiled import inlined, kernel, part
-from contact.flight.motion import SQUARE, Motion
+from contact.compiled import inlined, kernel
+from contact.flight.motion import DECAY, SQUARE, Motion
 from contact.integrators.fixed_step import FixedStep, mobility
+from contact.integrators.generalised_alpha import AlphaNumbers, carried_by, predict
 from contact.integrators.grid import DONE, Grid, cubic_between, ending, force_in_flight, push_on, tip_of
 from contact.laws import NEWTON
 from contact.recorder import add_loss, close_touch, open_touch
 from contact.trajectory import IMPACT
 
-__all__ = ["MoreauJean", "end_impact_step", "percussion_of"]
+__all__ = ["MoreauJean", "prepared_for", "through_percussions"]
 
 MARGIN = 1e-12
 """Slack of the test for stability, relative: on the limit itself its two terms cancel up to rounding."""
@@ -97,40 +103,42 @@ def write_percussion(grid, corner, span, _depth, push):
         marks.touching = 1
 
 
-_end_impact_step = ending(path_between, write_percussion)
-
-
-@part
-def end_impact_step(grid, corner, push):
-    """The end of a step, with the percussion `push` at the fraction `corner` of it if there is one."""
-    depth, _rate = tip_of(grid.motion, grid.q, grid.v)
-    return _end_impact_step(grid, corner, 1, depth, push == 0.0, push)
+end_step = ending(path_between, write_percussion)
 
 
 @kernel
-def moreau_jean(grid, carried):
-    """March from the grid point reached; carried: theta, D, shape (n_modes,), and sum phi^2/D."""
-    theta, inertia, moves = carried
-    place, h, q, v, v0, motion = grid.places[0], grid.step, grid.q, grid.v, grid.v0, grid.motion
-    old, new = (1.0 - theta) * h, theta * h
+def through_percussions(grid, prepared):
+    """March from the grid point reached; see `prepared_for`."""
+    carried, eta, mobility = prepared
+    numbers, (a, f, inertia) = carried
+    place, h, q, v, motion = grid.places[0], grid.step, grid.q, grid.v, grid.motion
+    modes, new = motion.modes, 1.0 - numbers.alpha_f
     while place.step < grid.steps:
-        swing0 = math.sin(motion.drive * (grid.clock + place.step * h))
-        swing1 = math.sin(motion.drive * (grid.clock + (place.step + 1) * h))
+        swing = math.sin(motion.drive * (grid.clock + (place.step + 1) * h))
         depth, before = tip_of(motion, q, v)
-        for k in range(q.size):
-            change = old * force_in_flight(grid, k, swing0, q, v)
-            q[k] += h * v[k]  # where the old velocity leads; the change of velocity then counts by theta
-            change += new * force_in_flight(grid, k, swing1, q, v)
-            v[k] += change / inertia[k]
+        predict(grid, carried, eta, swing)
         _d, after = tip_of(motion, q, v)
-        push = percussion_of(motion, h, depth, before, after, moves)
+        push = percussion_of(motion, h, depth, before, after, mobility)
         for k in range(q.size):
-            v[k] += push_on(motion, k, push) / inertia[k]
-            q[k] += new * (v[k] - v0[k])
-        status = end_impact_step(grid, 1.0 - theta, push)
+            jump = push_on(motion, k, push)
+            change = -new * (modes[DECAY, k] + eta * h * modes[SQUARE, k]) * jump / inertia[k]
+            a[k] += change
+            q[k] += numbers.beta * h * h * change + eta * h * jump
+            v[k] += numbers.gamma * h * change + jump
+            f[k] = force_in_flight(grid, k, swing, q, v)
+        depth, _rate = tip_of(motion, q, v)
+        status = end_step(grid, 1.0 - eta, 1, depth, push == 0.0, push)
         if status != DONE:
             return status
     return DONE
+
+
+def prepared_for(numbers: AlphaNumbers, eta: float, grid: Grid) -> object:
+    """What the march takes: `carried_by`, eta and sum E phi^2."""
+    carried = carried_by(numbers, grid)
+    (alpha_m, alpha_f, beta, gamma), y = numbers, grid.step**2 * grid.motion.row(SQUARE)
+    share = 1.0 - alpha_m + (1.0 - alpha_f) * (beta - gamma * eta) * y
+    return carried, float(eta), mobility(grid.motion, carried[1][2] / share)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -147,7 +155,7 @@ class MoreauJean(FixedStep):
     name: ClassVar[str] = "moreau-jean"
     order: ClassVar[float] = 1.0
     laws: ClassVar[tuple[int, ...]] = (NEWTON,)
-    march: ClassVar[Callable[..., int]] = staticmethod(moreau_jean)
+    march: ClassVar[Callable[..., int]] = staticmethod(through_percussions)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -163,8 +171,7 @@ class MoreauJean(FixedStep):
         gained = self.step * size**2 * (1.0 - 2.0 * self.theta)
         return -1.0 if np.any(gained > lost + MARGIN * np.abs(gained)) else math.inf
 
-    def carried(self, grid: Grid) -> tuple[float, np.ndarray, float]:
-        """theta, D and sum phi^2/D."""
-        motion, new = grid.motion, self.theta * self.step
-        inertia = 1.0 + new * (motion.decay + new * motion.row(SQUARE))
-        return float(self.theta), inertia, mobility(motion, inertia)
+    def carried(self, grid: Grid) -> object:
+        """See `prepared_for`."""
+        theta = float(self.theta)
+        return prepared_for(AlphaNumbers(0.0, 0.0, theta**2, theta), theta, grid)

@@ -28,46 +28,17 @@ the stop stays behind, as with ``moreau_jean``.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
-from contact.compiled import kernel
-from contact.flight.motion import DECAY, SQUARE
-from contact.integrators.fixed_step import FixedStep, mobility
-from contact.integrators.generalised_alpha import carried_by, chung_hulbert, predict
-from contact.integrators.grid import DONE, Grid, force_in_flight, push_on, tip_of
-from contact.integrators.moreau_jean import end_impact_step, percussion_of
+from contact.integrators.fixed_step import FixedStep
+from contact.integrators.generalised_alpha import chung_hulbert
+from contact.integrators.grid import Grid
+from contact.integrators.moreau_jean import prepared_for, through_percussions
 from contact.laws import NEWTON
 
 __all__ = ["NonsmoothGeneralisedAlpha"]
-
-
-@kernel
-def nonsmooth_generalised_alpha(grid, prepared):
-    """March from the grid point reached; see `carried_by`, and sum E phi^2."""
-    carried, moves = prepared
-    numbers, (a, f, inertia) = carried
-    place, h, q, v, motion = grid.places[0], grid.step, grid.q, grid.v, grid.motion
-    modes, new = motion.modes, 1.0 - numbers.alpha_f
-    while place.step < grid.steps:
-        swing = math.sin(motion.drive * (grid.clock + (place.step + 1) * h))
-        depth, before = tip_of(motion, q, v)
-        predict(grid, carried, swing)
-        _d, after = tip_of(motion, q, v)
-        push = percussion_of(motion, h, depth, before, after, moves)
-        for k in range(q.size):
-            jump = push_on(motion, k, push)
-            change = -new * (modes[DECAY, k] + 0.5 * h * modes[SQUARE, k]) * jump / inertia[k]
-            a[k] += change
-            q[k] += numbers.beta * h * h * change + 0.5 * h * jump
-            v[k] += numbers.gamma * h * change + jump
-            f[k] = force_in_flight(grid, k, swing, q, v)
-        status = end_impact_step(grid, 0.5, push)
-        if status != DONE:
-            return status
-    return DONE
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,16 +55,12 @@ class NonsmoothGeneralisedAlpha(FixedStep):
     name: ClassVar[str] = "nonsmooth-generalised-alpha"
     order: ClassVar[float] = 2.0
     laws: ClassVar[tuple[int, ...]] = (NEWTON,)
-    march: ClassVar[Callable[..., int]] = staticmethod(nonsmooth_generalised_alpha)
+    march: ClassVar[Callable[..., int]] = staticmethod(through_percussions)
 
     def __post_init__(self) -> None:
         super().__post_init__()
         chung_hulbert(self.rho)
 
     def carried(self, grid: Grid) -> object:
-        """See `carried_by`; and sum E phi^2."""
-        carried = carried_by(chung_hulbert(self.rho), grid)
-        numbers, (_a, _f, inertia) = carried
-        y = self.step**2 * grid.motion.row(SQUARE)
-        share = 1.0 - numbers.alpha_m + (1.0 - numbers.alpha_f) * (numbers.beta - 0.5 * numbers.gamma) * y
-        return carried, mobility(grid.motion, inertia / share)
+        """See ``moreau_jean.prepared_for``."""
+        return prepared_for(chung_hulbert(self.rho), 0.5, grid)
