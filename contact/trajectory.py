@@ -189,7 +189,7 @@ class Trajectory:
     impacts : Impacts
         Every touch.
     evaluations : int
-        Steps or flights that the method has made.
+        Steps, or flights and sampled positions, that the method has made.
     """
 
     end: State

@@ -125,7 +125,8 @@ def through_percussions(grid, prepared):
             a[k] += change
             q[k] += numbers.beta * h * h * change + eta * h * jump
             v[k] += numbers.gamma * h * change + jump
-            f[k] = force_in_flight(grid, k, swing, q, v)
+            if numbers.alpha_f != 0.0:
+                f[k] = force_in_flight(grid, k, swing, q, v)
         depth, _rate = tip_of(motion, q, v)
         status = end_step(grid, 1.0 - eta, 1, depth, push == 0.0, push)
         if status != DONE:
