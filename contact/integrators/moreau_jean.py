@@ -119,14 +119,14 @@ def through_percussions(grid, prepared):
         predict(grid, carried, eta, swing)
         _d, after = tip_of(motion, q, v)
         push = percussion_of(motion, h, depth, before, after, mobility)
-        for k in range(q.size):
+        for k in range(q.size if push > 0.0 else 0):
             jump = push_on(motion, k, push)
             change = -new * (modes[DECAY, k] + eta * h * modes[SQUARE, k]) * jump / inertia[k]
             a[k] += change
             q[k] += numbers.beta * h * h * change + eta * h * jump
             v[k] += numbers.gamma * h * change + jump
-            if numbers.alpha_f != 0.0:
-                f[k] = force_in_flight(grid, k, swing, q, v)
+        for k in range(q.size if numbers.alpha_f != 0.0 else 0):
+            f[k] = force_in_flight(grid, k, swing, q, v)
         depth, _rate = tip_of(motion, q, v)
         status = end_step(grid, 1.0 - eta, 1, depth, push == 0.0, push)
         if status != DONE:
