@@ -24,7 +24,7 @@ from contact import (
     first_collision,
     simulate,
 )
-from contact.integrators import CentralDifference, method_for
+from contact.integrators import CentralDifference, Exact
 from studies.scene import read_scene, single_mode_at
 from studies.work_precision.measures import Reference, Row, cheapest, missed_share, reference_of, rows_of
 from studies.work_precision.methods import EXACT, STEPPED, Setting, Sweep, sweeps_for
@@ -226,7 +226,7 @@ def few() -> Reference:
 def test_the_exact_method_is_at_rounding(few: Reference) -> None:
     (sweep,) = [one for one in sweeps_for(few.problem) if one.family == EXACT]
     (exact,) = rows_of(few, sweep, repeats=1)
-    method = method_for(few.problem.oscillator.stop.law.code)
+    method = Exact()
     assert exact.certified and exact.missed == 0.0
     assert exact.error is not None and exact.error < 1e-13 < method.accuracy and few.own_error < 1e-19
 
@@ -262,5 +262,5 @@ def test_crossings_are_missed_by_a_coarse_grid_and_never_by_the_exact_method(few
     soft = Stop(gap=few.problem.oscillator.stop.gap, law=LinearContact(stiffness=10.0))
     problem = replace(few.problem, oscillator=replace(few.problem.oscillator, stop=soft))
     shares = [missed_share(problem, CentralDifference(step=step)) for step in (3e-4, 3e-5, 3e-6)]
-    assert missed_share(few.problem, method_for(0)) == missed_share(problem, method_for(0)) == 0.0
+    assert missed_share(few.problem, Exact()) == missed_share(problem, Exact()) == 0.0
     assert shares == sorted(shares, reverse=True) and shares[0] > 0.3 > shares[-1]
