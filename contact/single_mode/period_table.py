@@ -93,9 +93,17 @@ class PeriodTable(NamedTuple):
 
 
 @kernel
-def constants_of(motion, stretches, peak, period_flow, peak_flow):
-    """The `OneMode` of a motion with its steady peak at `peak` and the flows over a period and up to it."""
+def mode_flow(motion, t):
+    """The flow of the deviation over a time `t` [s]."""
+    modes = motion.modes
+    return flow_matrix(modes[OMEGA, 0], modes[DECAY, 0], modes[DAMPED, 0], modes[LOW, 0], t)
+
+
+@kernel
+def constants_of(motion, stretches):
+    """The `OneMode` of a motion whose period is cut into `stretches`."""
     modes, w, gap = motion.modes, motion.drive, -motion.level
+    peak = min((math.atan2(motion.tip_sine, motion.tip_cosine) % (2.0 * math.pi)) / w, motion.period)
     decay, omega, high = modes[DECAY, 0], modes[OMEGA, 0], modes[DAMPED, 0]
     steady = abs(motion.level) + abs(motion.tip_sine) + abs(motion.tip_cosine) + motion.gap
     margin = SAFETY * 4.0 * EPS * (steady + 2.0 * max(1.0, 0.5 * decay / omega) * abs(gap))
@@ -117,8 +125,8 @@ def constants_of(motion, stretches, peak, period_flow, peak_flow):
         stretch=motion.period / stretches,
         per_second=stretches / motion.period,
         peak=peak,
-        period_flow=period_flow,
-        peak_flow=peak_flow,
+        period_flow=mode_flow(motion, motion.period),
+        peak_flow=mode_flow(motion, peak),
         kick=-(1.0 + motion.number0),
         detuning=detuning,
         inverse=1.0 / (omega * omega),
@@ -128,13 +136,6 @@ def constants_of(motion, stretches, peak, period_flow, peak_flow):
         margin=margin,
         reach=math.sqrt(math.sqrt(24.0 * SMALL * margin / fourth)),
     )
-
-
-@kernel
-def mode_flow(motion, t):
-    """The flow of the deviation over a time `t` [s]."""
-    modes = motion.modes
-    return flow_matrix(modes[OMEGA, 0], modes[DECAY, 0], modes[DAMPED, 0], modes[LOW, 0], t)
 
 
 @kernel
@@ -148,10 +149,7 @@ def full_table(motion, stretches):
         rows[k, 0] = motion.tip_sine * s + motion.tip_cosine * c
         rows[k, 1] = motion.tip_sine * c - motion.tip_cosine * s
         rows[k, 2], rows[k, 3], rows[k, 4], rows[k, 5] = mode_flow(motion, t)
-    peak = min((math.atan2(motion.tip_sine, motion.tip_cosine) % (2.0 * math.pi)) / w, period)
-    last = rows[stretches]
-    period_flow = (last[2], last[3], last[4], last[5])
-    return PeriodTable(constants_of(motion, stretches, peak, period_flow, mode_flow(motion, peak)), rows)
+    return PeriodTable(constants_of(motion, stretches), rows)
 
 
 def period_table(motion: Motion) -> PeriodTable | None:
@@ -177,12 +175,11 @@ def table_at(table, motion, factor):
 
     The steady motion alone depends on the amplitude, and in proportion.
     """
-    rows, mode = table.rows.copy(), table.mode
+    rows = table.rows.copy()
     for k in range(rows.shape[0]):
         rows[k, 0] *= factor
         rows[k, 1] *= factor
-    mode = constants_of(motion, rows.shape[0] - 1, mode.peak, mode.period_flow, mode.peak_flow)
-    return PeriodTable(mode, rows)
+    return PeriodTable(constants_of(motion, rows.shape[0] - 1), rows)
 
 
 @inlined

@@ -21,7 +21,7 @@ from contact.flight.modal_flow import tip_rounding
 from contact.flight.polynomial_root import first_polynomial_root
 from contact.touch import time_series
 from contact.touch.series import enter, leave, saltation
-from contact.touch.time_series import DEPTH, FORCE, RATE, begin, extend, longest_step
+from contact.touch.time_series import DEPTH, FORCE, begin, extend, longest_step
 from contact.trajectory import CONTACT, INSIDE, OUTSIDE
 
 __all__ = ["LAW", "REGIMES", "enter", "force", "leave", "place", "room", "saltation", "slopes", "state",
@@ -61,10 +61,10 @@ def slopes(motion, run, series, weights):
 def step(motion, run, u, v, limit, series):
     """One step from (u, v), at most `limit` [s]; see ``contact.touch``."""
     k, c = motion.number0, motion.number1
-    depth, rate, force = series.scalars[DEPTH], series.scalars[RATE], series.scalars[FORCE]
+    depth, force = series.scalars[DEPTH], series.scalars[FORCE]
     begin(motion, run.clock, u, v, series)
     for n in range(time_series.ORDER - 1):
-        force[n] = k * depth[n] + c * rate[n]
+        force[n] = k * depth[n] + c * (n + 1.0) * depth[n + 1]
         extend(motion, n, 0.0 if run.regime == INSIDE else force[n], series)
     h = min(longest_step(motion, k * depth[0] ** 2, u, v, series), limit)
     if not h > EPS * run.clock:

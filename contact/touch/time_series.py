@@ -15,7 +15,8 @@ import math
 
 from contact.compiled import kernel, part
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import speed_scale, tip_state, tip_steady
+from contact.flight.modal_flow import speed_scale, tip_steady
+from contact.flight.motion import WEIGHT
 from contact.touch.series import powers_of, reach, within_force, work_of
 from contact.trajectory import INSIDE
 from contact.vector_loops import next_order, weighted_rows
@@ -26,8 +27,8 @@ ORDER = 30
 """Order of the series in time."""
 
 DEPTH, RATE, FORCE, STEADY, POWERS, SLOPES = range(6)
-"""Rows of the scalar series: d, d', N, the steady tip motion, powers of the time of a state and their
-slopes."""
+"""Rows of the scalar series: d, d' (filled by `work`), N, the steady tip motion, powers of the time of a
+state and their slopes."""
 
 TOLERANCE = 0.1 * EPS
 """Size of the last terms of a step, relative to the modal speeds."""
@@ -49,25 +50,24 @@ def room(motion):
 def begin(motion, base, u, v, series):
     """The first two orders of a step from (u, v) at drive time `base` [s]."""
     rows, depth, steady, w = series.rows, series.scalars[DEPTH], series.scalars[STEADY], motion.drive
-    depth[0], depth[1], _acceleration = tip_state(motion, base, u, v)
-    height, steady[1], _acceleration = tip_steady(motion, base)
-    steady[0] = height - motion.level
+    depth[0], depth[1], _acceleration = tip_steady(motion, base)
+    steady[0], steady[1] = depth[0] - motion.level, depth[1]
     for k in range(u.size):
         rows[0, k] = u[k]
         rows[1, k] = v[k]
+        depth[0] += motion.modes[WEIGHT, k] * u[k]
+        depth[1] += motion.modes[WEIGHT, k] * v[k]
     for n in range(ORDER - 1):
         steady[n + 2] = -w * w * steady[n] / ((n + 1.0) * (n + 2.0))
-    series.scalars[RATE, 0] = depth[1]
     series.scalars[FORCE, ORDER - 1 :] = 0.0
 
 
 @part
 def extend(motion, n, push, series):
-    """Order n + 2 of all modes and of d, n + 1 of d', under the force coefficient `push` of order n."""
+    """Order n + 2 of all modes and of d, under the force coefficient `push` of order n."""
     scale, lift = 1.0 / ((n + 1.0) * (n + 2.0)), 1.0 if n == 0 else 0.0
     tip = next_order(motion.modes, n + 1.0, scale, push, lift, n, series.rows)
-    depth = series.scalars[STEADY, n + 2] + tip
-    series.scalars[DEPTH, n + 2], series.scalars[RATE, n + 1] = depth, (n + 2.0) * depth
+    series.scalars[DEPTH, n + 2] = series.scalars[STEADY, n + 2] + tip
 
 
 @part
@@ -129,4 +129,7 @@ def state(motion, run, h, series, u, v):
 @kernel
 def work(motion, run, h, series):
     """Work that the tip does on the stop in a time `h` [s], the integral of N d' [J]."""
-    return 0.0 if run.regime == INSIDE else work_of(series.scalars[FORCE], series.scalars[RATE], h)
+    depth, rate = series.scalars[DEPTH], series.scalars[RATE]
+    for n in range(ORDER):
+        rate[n] = (n + 1.0) * depth[n + 1]
+    return 0.0 if run.regime == INSIDE else work_of(series.scalars[FORCE], rate, h)
