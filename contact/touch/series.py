@@ -93,22 +93,17 @@ def powers_of(s, out):
 
 
 @kernel
-def at_nodes(coefficients, s):
-    """Values of a series at Gauss's nodes of a step up to `s`."""
-    scaled, values = np.empty(coefficients.size), np.empty(WEIGHTS.size)
-    powers_of(s, scaled)
-    for n in range(scaled.size):
-        scaled[n] *= coefficients[n]
-    weighted_rows(scaled, 0, 1, NODE_POWERS, scaled.size, values)
-    return values
-
-
-@kernel
 def work_of(force, rate, s):
     """The integral of a force times a rate, series both, over a step up to `s`."""
-    pushes, rates, done = at_nodes(force, s), at_nodes(rate, s), 0.0
-    for i in range(WEIGHTS.size):
-        done += WEIGHTS[i] * s * pushes[i] * rates[i]
+    terms, nodes, power, done = force.size, WEIGHTS.size, 1.0, 0.0
+    pushes, rates, push, speed = np.empty(terms), np.empty(terms), np.empty(nodes), np.empty(nodes)
+    for n in range(terms):
+        pushes[n], rates[n] = power * force[n], power * rate[n]
+        power *= s
+    weighted_rows(pushes, 0, 1, NODE_POWERS, terms, push)
+    weighted_rows(rates, 0, 1, NODE_POWERS, terms, speed)
+    for i in range(nodes):
+        done += WEIGHTS[i] * s * push[i] * speed[i]
     return done
 
 
