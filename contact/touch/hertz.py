@@ -249,4 +249,4 @@ def state(motion, run, s, series, u, v):
 @kernel
 def work(motion, run, s, series):
     """Work that the tip does on the stop up to sigma = `s`, the integral of r N d' [J]."""
-    return work_of(series.scalars[PUSH], series.rows[:, SPEED], s)
+    return work_of(series, series.scalars[PUSH], series.rows[:, SPEED], s)

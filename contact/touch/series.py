@@ -93,10 +93,10 @@ def powers_of(s, out):
 
 
 @kernel
-def work_of(force, rate, s):
-    """The integral of a force times a rate, series both, over a step up to `s`."""
+def work_of(series, force, rate, s):
+    """The integral of a force times a rate, series both, over a step up to `s`; uses the last two rows."""
     terms, nodes, power, done = force.size, WEIGHTS.size, 1.0, 0.0
-    pushes, rates, push, speed = np.empty(terms), np.empty(terms), np.empty(nodes), np.empty(nodes)
+    pushes, rates, push, speed = series.scalars[6], series.scalars[7], np.empty(nodes), np.empty(nodes)
     for n in range(terms):
         pushes[n], rates[n] = power * force[n], power * rate[n]
         power *= s

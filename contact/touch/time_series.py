@@ -132,4 +132,4 @@ def work(motion, run, h, series):
     depth, rate = series.scalars[DEPTH], series.scalars[RATE]
     for n in range(ORDER):
         rate[n] = (n + 1.0) * depth[n + 1]
-    return 0.0 if run.regime == INSIDE else work_of(series.scalars[FORCE], rate, h)
+    return 0.0 if run.regime == INSIDE else work_of(series, series.scalars[FORCE], rate, h)
