@@ -43,7 +43,7 @@ def struck(period: Period, u: float, v: float):
     t = guessed(n, p, q)
     if not 0.0 <= t <= n.period:
         return False, t, 0.0, u, v
-    rho = math.sqrt(n.square_u * u * u + n.square_v * v * v)
+    rho = math.sqrt(u * u + n.inverse * v * v)
     return one_impact(n, period.table.rows, t, rho, u, v)
 
 
@@ -89,7 +89,7 @@ def test_what_one_evaluation_cannot_settle_is_not_taken():
     tiny = math.sqrt(3.9 * n.crest * n.margin)
     assert not is_settled(n, 0.0, 0.0, 0.0, tiny, 0.0, 0.0, tiny)
     assert is_settled(n, 0.0, 0.0, 0.0, 1.1 * tiny, 0.0, 0.0, 1.1 * tiny)
-    assert not is_settled(n, 0.0, 1.001 * n.most / math.sqrt(n.square_u), 0.0, slope, 0.0, 0.0, slope)
+    assert not is_settled(n, 0.0, 1.001 * n.most, 0.0, slope, 0.0, 0.0, slope)
     for wrong in (math.nan, -slope):
         assert not is_settled(n, 0.0, 0.0, 0.0, wrong, 0.0, 0.0, wrong)
 
@@ -103,7 +103,7 @@ def test_nearly_every_impact_takes_one_evaluation(frequency):
     impacts = at_once = 0
     for _ in range(600):
         settled, *_rest = struck(period, u[0], v[0])
-        _status, count, _searched, _left = period.fast(u, v, runs)
+        _status, count, _left = period.fast(u, v, runs)
         impacts += count > 0
         at_once += bool(settled) and count > 0
     assert impacts > 60
@@ -122,7 +122,7 @@ def test_the_motion_between_nodes_is_the_closed_form(frequency, damping):
     rng = np.random.default_rng(3)
     u, v = 0.3 * GAP, -0.2 * GAP * motion.omega[0]
     for t in rng.uniform(0.0, motion.period, 60):
-        un, vn, swing, y0, y1, y2 = tip_near(table.mode, table.rows, 0, u, v, t)
+        un, vn, y0, y1, y2 = tip_near(table.mode, table.rows, u, v, t)
         # the closed form through exponentials of complex numbers
         root = np.sqrt(complex(motion.decay[0] ** 2 / 4 - motion.omega[0] ** 2))
         fast, slow = -motion.decay[0] / 2 + root, -motion.decay[0] / 2 - root
@@ -134,15 +134,14 @@ def test_the_motion_between_nodes_is_the_closed_form(frequency, damping):
         fastest = max(motion.drive, motion.omega[0], motion.decay[0])
         assert un == pytest.approx(free[0], abs=tiny)
         assert vn == pytest.approx(free[1], abs=tiny * fastest)
-        assert swing == pytest.approx(steady, abs=tiny)
         assert y0 == pytest.approx(motion.level + steady + free[0], abs=tiny)
         assert y2 == pytest.approx(free[2] - motion.drive**2 * steady, abs=tiny * fastest**2)
         turned = motion.drive * t
         rate = motion.drive * (motion.tip_sine * math.cos(turned) - motion.tip_cosine * math.sin(turned))
         assert y1 == pytest.approx(rate + free[1], abs=tiny * fastest)
     step = 0.37 * table.mode.stretch
-    there = short_flow(table.mode, step, u, v)
-    assert short_flow(table.mode, -step, *there) == pytest.approx((u, v), rel=1e-13)
+    there = short_flow(table.mode, step, u, v)[:2]
+    assert short_flow(table.mode, -step, *there)[:2] == pytest.approx((u, v), rel=1e-13)
 
 
 @pytest.mark.parametrize("factor", [0.3, 1.0, 7.0])
@@ -154,7 +153,6 @@ def test_the_table_of_another_amplitude_is_a_scaled_one(factor):
     assert table is not None and wanted is not None
     found = table_at(table, other, factor)
     assert found.rows == pytest.approx(wanted.rows, rel=1e-14, abs=1e-16 * GAP)
-    assert found.level == pytest.approx(wanted.level, rel=1e-14, abs=1e-16 * GAP)
     for name, value in wanted.mode._asdict().items():
         assert getattr(found.mode, name) == pytest.approx(value, rel=1e-13), name
     # far beyond any amplitude the place of the peak is not good enough
