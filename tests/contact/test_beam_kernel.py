@@ -144,12 +144,3 @@ def test_sine_cosine_and_exponential_are_good_to_one_unit_in_the_last_place():
     assert np.all(worst < 1.0)
     assert sine_cosine(0.0, 0.0) == (0.0, 1.0)
     assert exponential(0.0) == 1.0 and exponential(-800.0) == 0.0
-
-
-def test_sine_and_cosine_keep_their_quadrants():
-    for turns in range(-9, 10):
-        for offset in (-0.7, 0.0, 0.7):
-            phase = turns * math.pi / 2 + offset
-            s, c = sine_cosine(phase, 0.0)
-            assert s == pytest.approx(math.sin(phase), abs=3e-16)
-            assert c == pytest.approx(math.cos(phase), abs=3e-16)

@@ -57,19 +57,6 @@ def test_bouncing_ball_comes_to_rest_when_it_should():
     assert run.impacts.loss[hits].sum() == pytest.approx(g * h, rel=1e-10)
 
 
-@pytest.mark.parametrize("e", [0.5, 0.9, 0.99])
-def test_accumulation_takes_the_time_it_should(e):
-    """A clock mode beside the ball shows when it came to rest: only then does the stay begin."""
-    h, g = 1e-3, 9.81
-    total = math.sqrt(2 * h / g) * (1 + 2 * e / (1 - e))
-    run = simulate(falling_body(h, NewtonRestitution(local_restitution=e)), duration=1.1 * total)
-    # what is left when hops drown in rounding: their sum, w 2/(g (1 - e)) of the last speed
-    stay = run.impacts.kind == STAY
-    assert stay.sum() == 1
-    left = 2 * abs(run.impacts.approach[stay][0]) / (g * (1 - e))
-    assert run.impacts.start[stay][0] + left == pytest.approx(total, rel=1e-9)
-
-
 @pytest.mark.parametrize("left", [3e-3, 1e-3, 3e-4, 1.3e-4])
 def test_hops_of_an_almost_elastic_ball_do_not_lock_into_one_another(left):
     """Rounding moves a speed by some left/10 in each of the lowest hops, in 1/left hops by sqrt(left)/10."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from itertools import pairwise
 
@@ -11,10 +10,8 @@ import pytest
 from oscillators import apart, equation_1
 from simulated_orbit import EQUATION_1, HERTZ, beam, settled, touches
 
-from beam import single_mode
 from contact import (
     ContactError,
-    LinearContact,
     NewtonRestitution,
     NordmarkMap,
     State,
@@ -172,32 +169,6 @@ def test_a_narrow_range_or_a_wrong_band_has_no_kick_fold() -> None:
 
 
 # ------------------------------------------------------------------------------------------------- branches
-
-
-def test_soft_wall_doubles_its_period_where_theory_says() -> None:
-    """A wall of slope K Omega^2 is smooth at first: p1 lives on above grazing until a multiplier is -1."""
-    f, model = 20.90, single_mode(free_period=T, decay_rate=MU)
-    w, stiff = 2 * math.pi * f, float(model.omega[0]) ** 2
-    gamma = math.exp(-MU / f)
-    alpha = 2 * math.sqrt(gamma) * math.cos(2 * math.pi / (f * T))
-    flow = math.sqrt(gamma) * math.sin(2 * math.pi / (f * T)) * T / (2 * math.pi)
-    errors = []
-    for ratio in (1e2, 1e3, 1e4):
-        oscillator = equation_1(f, LinearContact(stiffness=(ratio - 1) * stiff))
-        family = Shooting(oscillator=oscillator, period=1)
-        branch = follow(family, family.at_speed(1e-4 * w), low=1e-5 * w, high=0.1 * w, step=0.2)
-        (orbit,) = branch.of_kind("period doubling")
-        assert np.min(np.abs(orbit.multipliers + 1)) < 1e-6
-        assert orbit.admissible
-        height = 0.5 * w**2 * ((1 + gamma + alpha) / (2 * flow * ratio * stiff)) ** 2
-        theory = height * (1 + (2 / 3) * (1 + gamma + alpha) / (1 - alpha + gamma))
-        errors.append(orbit.excess / theory - 1)
-        beside = [family.at_speed(orbit.speed * factor, orbit) for factor in (0.99, 1.01)]
-        assert beside[0].stable and not beside[1].stable
-        assert branch.of_kind("fold") == []
-    assert errors[2] < 1e-3
-    assert errors[0] / errors[1] == pytest.approx(10, rel=0.15)
-    assert errors[1] / errors[2] == pytest.approx(10, rel=0.15)
 
 
 def test_doubling_of_a_hard_orbit_is_seen_by_simulation() -> None:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 
 import numpy as np
 import pytest
-from one_contact import DASHPOT, HERTZ, IN_CONTACT, LOSSY, PERIOD, SOFTER, SPRING, WAITING, name_of
+from one_contact import DASHPOT, HERTZ, LOSSY, PERIOD, SOFTER, SPRING, name_of
 from oscillators import FREQUENCY, GAP, PHI, heights, spring
 
 from beam import ModalModel
@@ -80,24 +79,6 @@ def test_strobe_within_a_contact_changes_nothing(n_modes, law, share):
     np.testing.assert_array_equal(unsampled.end.displacement, within.end.displacement)
 
 
-@pytest.mark.parametrize("n_modes, law", STRADDLERS, ids=name_of)
-def test_run_cut_within_a_contact_goes_on_as_the_uncut_one(n_modes, law):
-    oscillator = spring(n_modes, law, drive=(FREQUENCY, 2.2e-3))
-    whole = simulate(oscillator, periods=12)
-    impacts = whole.impacts
-    assert len(impacts) >= 3
-    for i, share in itertools.product((0, 2), (0.05, 0.6)):
-        cut = impacts.start[i] + share * (impacts.end[i] - impacts.start[i])
-        head = simulate(oscillator, duration=cut)
-        assert head.end.regime in (IN_CONTACT, WAITING)
-        assert math.isnan(head.impacts.end[-1]) and math.isnan(head.impacts.loss[-1])
-        tail = simulate(oscillator, head.end, duration=12 * PERIOD - cut)
-        np.testing.assert_allclose(tail.impacts.end, impacts.end[i:], rtol=0, atol=1e-11)
-        assert np.max(np.abs(tail.end.velocity - whole.end.velocity)) < 1e-8 * np.max(
-            np.abs(whole.end.velocity)
-        )
-
-
 # ------------------------------------------------------------------------------------- delayed restitution
 
 
@@ -134,21 +115,6 @@ def test_delayed_restitution_waits_on_the_wall_and_leaves_as_told():
             held = simulate(oscillator, periods=30, times=middles)
             assert np.max(np.abs(heights(oscillator, held.displacement))) < 1e-16
             assert np.max(np.abs(held.velocity @ oscillator.model.phi)) < 1e-13
-
-
-def test_delayed_restitution_without_delay_is_newtons():
-    state = State(displacement=[0.0], velocity=[0.0])
-    delayed = simulate(
-        spring(1, DelayedRestitution(restitution=0.3, delay=0.0), drive=(FREQUENCY, 2.2e-3)),
-        state, periods=40,
-    )
-    newton = simulate(
-        spring(1, NewtonRestitution(local_restitution=0.3), drive=(FREQUENCY, 2.2e-3)), state, periods=40
-    )
-    assert len(newton.impacts) > 10
-    np.testing.assert_allclose(delayed.impacts.start, newton.impacts.start, rtol=0, atol=1e-12)
-    np.testing.assert_allclose(delayed.impacts.loss, newton.impacts.loss, rtol=0, atol=1e-12)
-    np.testing.assert_allclose(delayed.strobe_velocity, newton.strobe_velocity, rtol=0, atol=1e-11)
 
 
 def test_free_flight_after_the_wait_is_the_closed_form():

@@ -6,7 +6,6 @@ Eq. (1) with a gap of 10.7 mm; laws with constant and with tabulated numbers.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import oscillators
@@ -19,10 +18,8 @@ from contact.laws import ContactLaw, DelayedRestitution, NewtonRestitution
 from contact.maximal_orbits import band
 from contact.maximal_orbits import fold as fold_of_map
 from contact.nordmark import NordmarkMap
-from contact.orbits import orbit_end, settle
-from contact.orbits.continuation import fold_of, follow
+from contact.orbits import settle
 from contact.orbits.kick import KickFamily
-from contact.orbits.lyapunov import orbit_exponents
 from contact.orbits.shooting import Shooting
 from contact.orbits.single_impact import MaximalFamily
 from contact.oscillator import ImpactOscillator
@@ -54,113 +51,6 @@ def deceleration(frequency: float) -> float:
     return (2.0 * math.pi * frequency) ** 2 * GAP
 
 
-@pytest.mark.parametrize(("frequency", "period"), PLACES)
-def test_without_delay_they_are_newtons(frequency: float, period: int) -> None:
-    oscillator = equation_1(frequency, DelayedRestitution(restitution=TAU, delay=0.0))
-    newton = equation_1(frequency, NewtonRestitution(local_restitution=TAU))
-    kicks, family = (make(oscillator=oscillator, period=period) for make in (KickFamily, Shooting))
-    closed = MaximalFamily.from_oscillator(newton, period=period)
-    for part in (1e-3, 0.05, 0.5):
-        speed = part * unit_speed(frequency)
-        expected, kick, found = closed.orbit(speed), kicks.orbit(speed), family.at_speed(speed)
-        assert kick.excess == pytest.approx(expected.excess, abs=1e-14)
-        assert found.excess == pytest.approx(expected.excess, abs=1e-12)  # where shooting ends
-        assert kick.phase == pytest.approx(expected.phase, abs=1e-13)
-        assert kick.displacement == pytest.approx(expected.displacement, abs=1e-14)
-        assert kick.velocity == pytest.approx(expected.velocity, abs=1e-14)
-        assert apart(found.multipliers, expected.multipliers) < 1e-12 / part**2
-        assert found.admissible == expected.admissible
-    assert kicks.fold().excess == pytest.approx(closed.fold().excess, abs=1e-14)
-    assert fold_of(family).excess == pytest.approx(closed.fold().excess, abs=1e-14)
-
-
-@pytest.mark.parametrize("name", LAWS)
-@pytest.mark.parametrize(("frequency", "period"), PLACES[:3])
-def test_closed_form_shooting_and_simulation_agree(name: str, frequency: float, period: int) -> None:
-    law = LAWS[name]
-    oscillator = equation_1(frequency, law)
-    kicks, family = (make(oscillator=oscillator, period=period) for make in (KickFamily, Shooting))
-    seen = 0
-    for part in (0.03, 0.1, 0.2, 0.3, 0.5):
-        kick, orbit = kicks.orbit(part * unit_speed(frequency)), family.at_speed(part * unit_speed(frequency))
-        assert orbit.excess == pytest.approx(kick.excess, abs=1e-13)
-        assert orbit.phase == pytest.approx(kick.phase, abs=1e-13)
-        assert abs(kicks.error(kick)) < 1e-13 and kick.kick.touches == 1
-        v, f = orbit.speed, 1e-4 * orbit.speed
-        tau, delay = (g if callable(g) else (lambda _v, g=g: g) for g in (law.restitution, law.delay))
-        assert kick.kick.duration == pytest.approx(delay(v), rel=1e-9)
-        # tau (tau + tau' v) exp(-c (m/f - delay)), tau' by a difference
-        slope = (tau(v + f) - tau(v - f)) / (2.0 * f)
-        lost = math.exp(-MU * (period / frequency - delay(v)))
-        expected = lost * tau(v) * (tau(v) + slope * v)
-        assert np.prod(orbit.multipliers).real == pytest.approx(expected, rel=1e-6, abs=1e-12)
-        if orbit.admissible:
-            seen += 1
-            found, open_by = differences(orbit)
-            assert open_by < 1e-11
-            assert touches(orbit) == 1
-            assert apart(found, orbit.multipliers) < 1e-6
-    assert seen >= (1 if name == "elastic" else 2)
-
-
-@pytest.mark.parametrize("name", ["constant", "falling"])
-@pytest.mark.parametrize(("frequency", "period"), PLACES[:3])
-def test_folds_are_those_of_the_closed_form_and_of_a_downward_scan(
-    name: str, frequency: float, period: int
-) -> None:
-    oscillator = equation_1(frequency, LAWS[name])
-    kicks, family = (make(oscillator=oscillator, period=period) for make in (KickFamily, Shooting))
-    fold = fold_of(family)
-    assert fold.admissible and abs(fold.multipliers[0] - 1.0) < 1e-7
-    assert kicks.fold().excess == pytest.approx(fold.excess, abs=1e-13)
-    if name == "constant":
-        # A^2 is a quadratic in the speed: three orbits give its minimum
-        speeds = fold.speed * np.array([0.5, 1.0, 2.0])
-        squares = [kicks.orbit(v).amplitude ** 2 for v in speeds]
-        two, one, none = np.polyfit(speeds, squares, 2)
-        assert fold.speed == pytest.approx(-one / (2.0 * two), rel=1e-7)
-        assert fold.amplitude == pytest.approx(math.sqrt(none - one * one / (4.0 * two)), rel=1e-13)
-    node = family.at_speed(1.3 * fold.speed)
-    assert node.stable and node.admissible and node.excess > fold.excess
-    end = orbit_end(
-        StroboscopicMap(oscillator=oscillator), replace(node.strobe_state(), time=0.0), node.excess,
-        most_cycles=4000, relative=1e-2,
-    )  # fmt: skip
-    assert end.lost < fold.excess < end.held
-
-
-def test_events_of_a_branch_are_seen_by_the_simulation() -> None:
-    oscillator = equation_1(22.20, LAWS["constant"])
-    family = Shooting(oscillator=oscillator, period=5)
-    fold = fold_of(family)
-    start, high = family.at_speed(1.5 * fold.speed), 0.6 * unit_speed(22.2)
-    branch = follow(family, start, low=0.5 * fold.speed, high=high)
-    assert branch.of_kind("fold")[0].excess == pytest.approx(fold.excess, abs=1e-13)
-    (graze,) = branch.of_kind("grazing")
-    before, after = (family.at_speed(graze.speed * part, graze) for part in (0.999, 1.001))
-    assert (before.admissible, after.admissible) == (True, False)
-    assert (touches(before), touches(after)) == (1, 2)
-
-
-def test_a_period_doubling_is_seen_by_the_simulation() -> None:
-    family = Shooting(oscillator=equation_1(22.20, LAWS["constant"]), period=4)
-    unit = unit_speed(22.20)
-    branch = follow(family, family.at_speed(0.36 * unit), low=0.3 * unit, high=0.45 * unit)
-    (doubled,) = branch.of_kind("period doubling")
-    assert abs(doubled.multipliers[0] + 1.0) < 1e-7
-    for part, stable in ((0.99, False), (1.01, True)):
-        orbit = family.at_speed(part * doubled.speed, doubled)
-        assert orbit.stable == stable and orbit.admissible
-        # a small change at the strobe alternates in sign from one period to the next, and grows or shrinks
-        strobed, start = StroboscopicMap(oscillator=orbit.oscillator), orbit.strobe_state()
-        begin = State(displacement=start.displacement + 1e-7 * GAP, velocity=start.velocity)
-        ends = [strobed.orbit(begin, 4 * n).end for n in (3, 4, 13, 14)]
-        steps = [float(end.displacement[0] - start.displacement[0]) for end in ends]
-        assert steps[0] * steps[1] < 0.0
-        assert (abs(steps[3]) > abs(steps[1])) == (not stable)
-        assert steps[3] / steps[2] == pytest.approx(orbit.multipliers[0].real, rel=1e-4)
-
-
 @pytest.mark.parametrize(("frequency", "part"), [(22.20, 0.8), (20.90, 0.9), (23.40, 0.9)])
 def test_a_motion_settles_on_its_orbit_though_the_strobe_falls_into_the_wait(
     frequency: float, part: float
@@ -183,27 +73,6 @@ def test_a_motion_settles_on_its_orbit_though_the_strobe_falls_into_the_wait(
         orbit = family.from_state(start)
         assert orbit.excess == pytest.approx(0.3, abs=1e-12) and orbit.stable and orbit.admissible
         assert orbit.strobe_state().regime == 4
-
-
-def test_exponents_are_the_logarithms_of_the_multipliers() -> None:
-    family = Shooting(oscillator=equation_1(22.20, LAWS["table"]), period=5)
-    orbit = family.at_speed(0.15 * unit_speed(22.2))
-    assert orbit.stable and orbit.admissible
-    found = orbit_exponents(StroboscopicMap(oscillator=orbit.oscillator), orbit.strobe_state(), 5).values
-    assert found == pytest.approx(np.log(np.abs(orbit.multipliers)) / 5.0, rel=1e-6)
-
-
-@pytest.mark.parametrize("excess", [1e-4, 1e-3])
-def test_two_touches_with_a_wait_each(excess: float) -> None:
-    oscillator = equation_1(22.20, DelayedRestitution(restitution=0.1, delay=2e-3))
-    strobed = StroboscopicMap(oscillator=oscillator)
-    settled = settle(strobed.at(excess), strobed.at(-1e-3).steady(), most_cycles=2000)
-    assert (settled.period, settled.impacts) == (6, 2)
-    family = Shooting(oscillator=oscillator.with_excess(excess), period=6, impacts=2)
-    orbit = family.from_state(settled.end)
-    assert orbit.admissible and orbit.stable and touches(orbit) == 2
-    multipliers, open_by = differences(orbit)
-    assert open_by < 1e-12 and apart(multipliers, orbit.multipliers) < 1e-7
 
 
 # ------------------------------------------------------------------------------------------ the letter's map

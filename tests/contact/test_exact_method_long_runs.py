@@ -24,8 +24,6 @@ from beam import ModalModel
 from contact import (
     Chatter,
     ContactLaw,
-    HertzContact,
-    ImpactKind,
     ImpactOscillator,
     LinearContact,
     MaximalFamily,
@@ -87,18 +85,6 @@ def test_a_periodic_orbit_repeats_to_rounding_and_is_the_closed_form():
     assert off < 1e-13 * strobed.scale
 
 
-@pytest.mark.parametrize(
-    ("law", "contacts"), [(LinearContact(stiffness=1e6), 4000), (HertzContact(stiffness=1e8), 800)]
-)
-def test_elastic_contacts_keep_the_energy(law, contacts):
-    oscillator, speed = one_mode(law, 0.01), 0.03 * OMEGA
-    run = simulate(oscillator, State(displacement=np.zeros(1), velocity=np.full(1, speed)), periods=contacts)
-    free = np.flatnonzero(run.strobe_displacement[:, 0] < 0.01)[-1]
-    now = float(oscillator.energy(run.strobe_displacement[free], run.strobe_velocity[free]))
-    assert len(run.impacts) > contacts
-    assert abs(now / (0.5 * speed**2) - 1.0) < 10 * EPS * contacts
-
-
 def test_too_elastic_a_law_is_refused_as_chatter_and_a_lesser_one_comes_to_rest():
     """Hops of a ball that rests after half a period: 1e5, as many as one may hold, at 1 - e = 4.69e-5."""
     for left, refused in ((4.9e-5, False), (4.5e-5, True)):
@@ -110,19 +96,6 @@ def test_too_elastic_a_law_is_refused_as_chatter_and_a_lesser_one_comes_to_rest(
         else:
             run = simulate(ball, start, duration=0.9)
             assert run.end.regime == Regime.SUSTAINED and 0.9e5 < len(run.impacts) < 1e5
-
-
-def test_a_driven_mode_is_let_go_when_the_force_that_holds_it_vanishes():
-    """Driven slowly and three times as far as the stop: released at sin(w t) = 1/3 on the falling side."""
-    slow = 0.2 * float(letters_mode(0.7, 1.0).model.omega[0]) / (2.0 * math.pi)
-    oscillator = letters_mode(0.7, slow)
-    push = float(oscillator.model.participation[0]) * (2.0 * math.pi * slow) ** 2
-    reach = 3.0 * float(oscillator.model.omega[0]) ** 2 * oscillator.stop.gap / float(oscillator.model.phi[0])
-    run = simulate(oscillator.with_amplitude(reach / push), periods=20)
-    held = (run.impacts.kind == ImpactKind.STAY) & np.isfinite(run.impacts.end)
-    phase = np.mod(run.impacts.end[held] * slow, 1.0)
-    assert held.sum() >= 19
-    assert phase == pytest.approx(0.5 - math.asin(1.0 / 3.0) / (2.0 * math.pi), abs=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from contact import StrobedNordmarkMap, StrobedOrbit, StroboscopicMap
+from contact import StrobedOrbit, StroboscopicMap
 from contact.orbits import (
     Shooting,
     divergence_rate,
@@ -16,7 +16,7 @@ from contact.orbits import (
     orbit_exponents,
     settle,
 )
-from studies.scene import beam_at, nordmark_at, read_scene, single_mode_at
+from studies.scene import beam_at, read_scene, single_mode_at
 
 FREQUENCY = 21.50
 
@@ -82,15 +82,6 @@ def test_the_logistic_map_has_ln_2_at_4_by_both_routes():
     assert flow.largest == pytest.approx(math.log(2.0), abs=4.0 * flow.error)
 
 
-def test_the_logistic_map_on_its_period_two_has_the_multiplier_of_the_formula():
-    a = 3.3
-    system = LogisticMap(a=a)
-    end = settle(system, system.steady(), most_cycles=2000)
-    assert end.period == 2
-    found = orbit_exponents(system, end.end, 2)
-    assert found.largest == pytest.approx(0.5 * math.log(abs(4.0 + 2.0 * a - a * a)), abs=1e-7)
-
-
 def test_the_jacobians_are_the_differences_of_the_period_map(single, beam):
     for strobed, excess in ((single, 0.02), (beam, 1e-3), (beam, 0.02)):
         here = strobed.at(excess)
@@ -150,22 +141,3 @@ def test_chaos_has_one_exponent_by_both_routes_and_the_sum_of_the_determinants(s
     mode, tau = scene.single_mode, scene.single_mode.restitution
     wanted = -64 * mode.decay_rate_per_s / FREQUENCY + 2.0 * impacts * math.log(tau)
     assert logs == pytest.approx(wanted, rel=1e-9)
-
-
-def test_the_nordmark_map_by_both_routes(scene):
-    strobed = StrobedNordmarkMap(map=nordmark_at(scene, FREQUENCY))
-    here = strobed.at(1e-3)
-    settled = settle(here, strobed.at(-1e-3).steady(), most_cycles=2000)
-    system = here
-    orbit = orbit_exponents(system, settled.end, settled.period)
-    flow = divergence_rate(system, settled.end, 400.0, align=20.0)
-    assert settled.period == 4 and orbit.largest < 0
-    assert flow.largest == pytest.approx(orbit.largest, abs=3e-3)
-
-
-def test_wrong_use_is_refused(single):
-    system = single.at(0.01)
-    with pytest.raises(ValueError, match="count is 1 "):
-        map_exponents(system, single.steady(), 1)
-    with pytest.raises(ValueError, match="duration is 0"):
-        divergence_rate(system, single.steady(), 0.0)
