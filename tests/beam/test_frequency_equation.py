@@ -48,22 +48,6 @@ def test_high_modes_are_all_there() -> None:
 
 
 @pytest.mark.parametrize(
-    ("ratio", "printed"),
-    [
-        (0.0, 0.2500),
-        (0.05, 0.2975),
-        (0.1, 0.3457),
-        (0.2, 0.4433),
-        (0.3, 0.5419),
-        (0.5, 0.7402),
-        (1.0, 1.2383),
-    ],
-)
-def test_mode_1_mass_at_the_tip(ratio: float, printed: float) -> None:
-    assert 1.0 / (exact_modes(tipped(ratio), 1).phi[0] ** 2 * STRIP) == pytest.approx(printed, abs=5.1e-5)
-
-
-@pytest.mark.parametrize(
     ("ratio", "printed", "limit"),
     [
         (0.1, [1, 0.634, 0.419, 0.351, 0.320, 0.295], 0.289),

@@ -21,13 +21,16 @@ from contact.trajectory import State
 # ------------------------------------------------------------------------ planted restitution and delay
 
 
-@pytest.mark.parametrize("restitution", [0.0, 0.1, 0.7])
+@pytest.mark.parametrize("restitution", [0.0, 0.1, 0.7, 1.0])
 @pytest.mark.parametrize("delay", [0.0, 1e-5, 3e-4, 2e-3])
 def test_planted_restitution_and_delay_are_given_back(restitution: float, delay: float) -> None:
     for frequency in (20.90, 23.05):
         for excess in (1e-5, 1e-3, 1e-2, 5e-2):
             law = DelayedRestitution(restitution=restitution, delay=delay)
+            law = newton(restitution) if delay == 0.0 < restitution else law
             found = first_collision(equation_1(frequency, law, excess))
+            height = math.sqrt(excess * (2 + excess))
+            assert found.approach == pytest.approx(2 * math.pi * frequency * 0.0107 * height, rel=1e-9)
             assert abs(found.restitution - restitution) < 2e-10
             assert abs(found.delay - delay) < 1e-13
             assert found.contact_time == pytest.approx(delay, abs=1e-16)
@@ -52,10 +55,6 @@ def test_planted_functions_of_the_speed_are_given_back() -> None:
         assert found.delay == pytest.approx(delay(found.approach), abs=1e-12)
         seen.append(found.restitution)
     assert seen[0] > seen[-1] + 0.3
-
-
-# ------------------------------------------------------------------------------ Newton's law on several modes
-
 
 
 # --------------------------------------------------------------------------- collisions of a special kind

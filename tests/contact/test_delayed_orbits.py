@@ -1,11 +1,9 @@
-"""Orbits with a touch that waits: the closed form against shooting, the simulated map and the letter's map.
-
-Eq. (1) with a gap of 10.7 mm; laws with constant and with tabulated numbers.
-"""
+"""Orbits of Eq. (1) with a touch that waits: long waits, and short ones as in the letter's map."""
 
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 import oscillators
@@ -14,7 +12,7 @@ from oscillators import apart
 from simulated_orbit import differences, touches
 
 from contact.errors import NotPeriodic
-from contact.laws import ContactLaw, DelayedRestitution, NewtonRestitution
+from contact.laws import DelayedRestitution
 from contact.maximal_orbits import band
 from contact.maximal_orbits import fold as fold_of_map
 from contact.nordmark import NordmarkMap
@@ -22,33 +20,13 @@ from contact.orbits import settle
 from contact.orbits.kick import KickFamily
 from contact.orbits.shooting import Shooting
 from contact.orbits.single_impact import MaximalFamily
-from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stroboscope import StroboscopicMap
 from contact.trajectory import State
 
 T, MU, TAU, GAP = 40.80e-3, 3.56, 0.1, 0.0107
-LAWS = {
-    "constant": DelayedRestitution(restitution=0.1, delay=1e-4),
-    "plastic": DelayedRestitution(restitution=0.0, delay=5e-4),
-    "elastic": DelayedRestitution(restitution=0.9, delay=2e-3),
-    "table": DelayedRestitution(restitution=lambda v: 0.3 / (1 + v), delay=lambda v: 4e-4 + 2e-4 * v),
-    "falling": DelayedRestitution(restitution=lambda v: 0.4 * math.exp(-v), delay=lambda v: 2e-4 * v**0.2),
-}
 PLACES = [(20.90, 3), (21.50, 4), (22.20, 5), (23.40, 11)]
-
-
-def equation_1(frequency: float, law: ContactLaw) -> ImpactOscillator:
-    return oscillators.equation_1(frequency, law, gap=GAP)
-
-
-def unit_speed(frequency: float) -> float:
-    return 2.0 * math.pi * frequency * GAP
-
-
-def deceleration(frequency: float) -> float:
-    """Of the tip at a graze [m/s^2]."""
-    return (2.0 * math.pi * frequency) ** 2 * GAP
+equation_1 = partial(oscillators.equation_1, gap=GAP)
 
 
 @pytest.mark.parametrize(("frequency", "part"), [(22.20, 0.8), (20.90, 0.9), (23.40, 0.9)])
@@ -81,15 +59,13 @@ def test_a_motion_settles_on_its_orbit_though_the_strobe_falls_into_the_wait(
 @pytest.mark.parametrize(("frequency", "period"), PLACES)
 def test_a_short_delay_lifts_slow_orbits_as_in_the_map(frequency: float, period: int) -> None:
     """rho(X) = (a X^2 + b (X - d))/c: at X = 0 the delay alone is left, -b d/c, to first order."""
-    nordmark = NordmarkMap.from_frequencies(
-        drive_frequency=frequency, free_period=T, decay_rate=MU, restitution=TAU
-    )
+    nordmark = NordmarkMap.from_oscillator(equation_1(frequency))
     wrong = []
     for delay in (1e-5, 1e-6):
         kicks = KickFamily(
             oscillator=equation_1(frequency, DelayedRestitution(restitution=TAU, delay=delay)), period=period
         )
-        slow = kicks.orbit(1e-9 * unit_speed(frequency)).excess
+        slow = kicks.orbit(1e-9 * equation_1(frequency).unit_speed).excess
         wrong.append(slow / nordmark.excess(map_shift(frequency, period, delay)) - 1.0)
     assert abs(wrong[1]) < 5e-3 * (1.0 if period < 11 else 10.0)
     assert wrong[0] / wrong[1] == pytest.approx(10.0, rel=0.2)
@@ -97,9 +73,7 @@ def test_a_short_delay_lifts_slow_orbits_as_in_the_map(frequency: float, period:
 
 def map_shift(frequency: float, period: int, delay: float) -> float:
     """rho that a constant delay [s] adds to the map's fold: |b| d/c."""
-    nordmark = NordmarkMap.from_frequencies(
-        drive_frequency=frequency, free_period=T, decay_rate=MU, restitution=TAU
-    )
+    nordmark = NordmarkMap.from_oscillator(equation_1(frequency))
     gamma, theta = nordmark.gamma, nordmark.angle
     d = (2 * math.pi / T) * delay / (2.0 * math.sqrt(gamma) * math.sin(theta) * (1.0 + TAU) ** 2)
     g = gamma ** (0.5 * period)
@@ -119,14 +93,11 @@ def test_the_fold_shifts_by_the_maps_part_of_the_hysteresis_at_a_band_edge(perio
     wrong = []
     for below in (1e-3, 1e-4):
         frequency = edge * (1.0 - below)
-        newton = equation_1(frequency, NewtonRestitution(local_restitution=TAU))
-        free = MaximalFamily.from_oscillator(newton, period=period).fold()
-        delay = 1e-3 * free.speed / deceleration(frequency)
+        free = MaximalFamily.from_oscillator(equation_1(frequency), period=period).fold()
+        delay = 1e-3 * free.speed / ((2.0 * math.pi * frequency) ** 2 * GAP)
         law = DelayedRestitution(restitution=TAU, delay=delay)
         fold = KickFamily(oscillator=equation_1(frequency, law), period=period).fold(speeds=(1e-7, 1.0))
-        nordmark = NordmarkMap.from_frequencies(
-            drive_frequency=frequency, free_period=T, decay_rate=MU, restitution=TAU
-        )
+        nordmark = NordmarkMap.from_oscillator(equation_1(frequency))
         share = map_shift(frequency, period, delay) / -fold_of_map(nordmark, period).rho
         wrong.append((fold.excess - free.excess) / -free.excess / share - 1.0)
     assert abs(wrong[1]) < 2e-3
@@ -139,7 +110,7 @@ def test_the_fold_shifts_by_the_maps_part_of_the_hysteresis_at_a_band_edge(perio
 def test_a_wait_longer_than_the_free_return_holds_the_tip_and_feeds_the_motion() -> None:
     """Slower than a delay/2 the tip is held while it would fly off: period 1 far below grazing."""
     frequency, delay = 23.40, 2e-3
-    slow = 0.5 * deceleration(frequency) * delay
+    slow = 0.5 * (2.0 * math.pi * frequency) ** 2 * GAP * delay
     family = Shooting(
         oscillator=equation_1(frequency, DelayedRestitution(restitution=0.1, delay=delay)), period=1
     )

@@ -5,13 +5,12 @@ Where several describe the same motion their orbits are one, and each is an orbi
 
 from __future__ import annotations
 
-import math
 from functools import partial
 
 import numpy as np
 import pytest
 from oscillators import MODES, apart, equation_1, many_modes
-from simulated_orbit import HERTZ, LAWS, beam, differences, settled, sizes, touches
+from simulated_orbit import DELAYED, HERTZ, LAWS, beam, differences, settled, sizes, touches
 
 from contact import (
     DelayedRestitution,
@@ -26,13 +25,6 @@ from contact import (
 from contact.orbits import KickFamily, Shooting
 from contact.orbits.family import Family
 
-DELAYED = {
-    "constant": DelayedRestitution(restitution=0.1, delay=1e-4),
-    "plastic": DelayedRestitution(restitution=0.0, delay=5e-4),
-    "elastic": DelayedRestitution(restitution=0.9, delay=2e-3),
-    "table": DelayedRestitution(restitution=lambda v: 0.3 / (1 + v), delay=lambda v: 4e-4 + 2e-4 * v),
-    "falling": DelayedRestitution(restitution=lambda v: 0.4 * math.exp(-v), delay=lambda v: 2e-4 * v**0.2),
-}
 UNDELAYED = DelayedRestitution(restitution=0.1, delay=0.0)
 PLACES = [(20.90, 3), (21.50, 4), (22.20, 5), (23.40, 11)]
 one_mode = partial(equation_1, gap=0.0107)

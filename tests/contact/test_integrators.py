@@ -205,14 +205,6 @@ def test_wrong_use_is_one_sentence(name: str) -> None:
             simulate(oscillator, behind, periods=1, method=made(name))
 
 
-@pytest.mark.parametrize("name", [name for name in FINEST if "step" in _fields(name)])
-@pytest.mark.parametrize("step", [0.0, -1e-6, math.nan, math.inf, "1e-6"])
-def test_a_step_is_a_time(name: str, step: object) -> None:
-    more = {"rho": 0.8} if name.startswith("nonsmooth") else {}
-    with pytest.raises(ValueError, match=r"step is .* finite and above zero"):
-        INTEGRATORS[name](step=step, **more)
-
-
 EXPLICIT = {
     "splitting": INTEGRATORS["splitting"],
     "central-difference": INTEGRATORS["central-difference"],

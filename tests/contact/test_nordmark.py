@@ -143,20 +143,6 @@ def test_orbits_repeat_and_have_their_multipliers(period: int, delay: float) -> 
         assert np.prod(orbit.multipliers).real == pytest.approx(orbit.determinant, rel=1e-9)
 
 
-@pytest.mark.parametrize(("frequency", "period", "_excess"), TABLE[:4])
-def test_iteration_finds_the_orbit_above_the_fold_only(frequency: float, period: int, _excess: float) -> None:
-    made = letter_map(frequency)
-    at_fold = fold(made, period)
-    assert at_fold is not None
-    above = 0.98 * at_fold.rho
-    node = maximal_orbits(made, period, above)[-1]
-    settled = made.iterate(node.states[0] * 1.0001, above, 400 * period)[-period:]
-    assert np.allclose(np.sort(settled[:, 0]), np.sort(node.states[:, 0]), atol=1e-9)
-    gone = made.iterate(at_fold.states[0], 1.02 * at_fold.rho, 20000)[-1]
-    rest = 1.02 * at_fold.rho / (1 - made.alpha + made.gamma)
-    assert gone[0] == pytest.approx(rest, abs=1e-12) and rest < 0  # p1 without impacts
-
-
 @pytest.mark.parametrize("y_line", ["corrected", "printed"])
 @pytest.mark.parametrize(("frequency", "period"), [(f, m) for f, m, _ in TABLE])
 def test_a_second_impact_ends_the_stable_range(frequency: float, period: int, y_line: str) -> None:

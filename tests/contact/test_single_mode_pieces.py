@@ -98,6 +98,7 @@ MIXED = (
     + [oscillator(6.0, tau=0.1, decay=20.0, excess=3.0), oscillator(9.0, tau=0.3, excess=0.6)]
     + [oscillator(22.2, excess=-0.1), oscillator(22.2, phi=-1.3)]
     + [oscillator(21.5, phi=2.7, participation=-0.4)]
+    + [replace(oscillator(), stop=Stop(gap=GAP, law=HertzContact(stiffness=1e9)))]
 )
 
 
@@ -116,28 +117,7 @@ def test_an_orbit_is_the_same_in_any_company():
             assert (wanted.end.time, wanted.end.regime) == (orbit.end.time, orbit.end.regime)
             impacts += int(orbit.impacts.sum())
     assert impacts > 3000
-
-
-def test_other_oscillators_may_be_in_the_batch():
-    single = oscillator()
-    other = replace(single, stop=Stop(gap=GAP, law=HertzContact(stiffness=1e9)))
-    maps = [StroboscopicMap(oscillator=one) for one in (single, other, single, single)]
-    orbits = strobed_orbits(maps, [strobed.steady() for strobed in maps], 60, workers=2)
-    for strobed, orbit in zip(maps, orbits, strict=True):
-        assert np.array_equal(strobed.orbit(strobed.steady(), 60).points, orbit.points)
     assert strobed_orbits([], [], 5) == []
-
-
-def test_failures_are_those_of_the_general_loop():
-    """A tip that starts behind the wall is refused; a failed orbit ends the batch."""
-    strobed = StroboscopicMap(oscillator=oscillator())
-    behind = State(displacement=np.array([1.5 * GAP]), velocity=np.zeros(1))
-    with pytest.raises(ValueError, match="behind the stop"):
-        strobed_orbits([strobed, strobed], [strobed.steady(), behind], 10)
-    between = State(displacement=strobed.steady().displacement, velocity=np.zeros(1), time=0.3 / 22.2)
-    with pytest.raises(ValueError, match="strobe time"):
-        strobed_orbits([strobed, strobed], [between, strobed.steady()], 10)
-    assert not issubclass(ValueError, ContactError)
 
 
 def test_the_first_failure_in_their_order_ends_a_batch(monkeypatch):
