@@ -91,7 +91,7 @@ def test_too_elastic_a_law_is_refused_as_chatter_and_a_lesser_one_comes_to_rest(
             with pytest.raises(Chatter, match="impacts accumulate at t = ") as caught:
                 simulate(ball, start, duration=0.9)
             assert 0 < caught.value.time < 0.9 and abs(caught.value.gap) <= 1e-8
-            assert caught.value.displacement == pytest.approx([1e-3], abs=1e-8)
+            assert abs(caught.value.velocity) <= 5e-4
         else:
             run = simulate(ball, start, duration=0.9)
             assert run.end.regime == Regime.SUSTAINED and 0.9e5 < len(run.impacts) < 1e5

@@ -41,7 +41,6 @@ def test_the_table_of_another_amplitude_is_a_scaled_one(factor):
     assert table is not None and wanted is not None
     found = table_at(table, other, factor)
     assert found.rows == pytest.approx(wanted.rows, rel=1e-14, abs=1e-16 * GAP)
-    assert found.level == pytest.approx(wanted.level, rel=1e-14, abs=1e-16 * GAP)
     for name, value in wanted.mode._asdict().items():
         assert getattr(found.mode, name) == pytest.approx(value, rel=1e-13), name
     # far beyond any amplitude the place of the peak is not good enough
