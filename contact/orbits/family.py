@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from contact.errors import NotPeriodic
 from contact.flight.crossing import CROSSES, FREE, first_crossing
-from contact.flight.modal_flow import flow_over, steady_motion
+from contact.flight.modal_flow import flow_over, steady_motion, tip_state
 from contact.flight.motion import Motion
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
@@ -196,10 +196,13 @@ class TouchOrbit(ABC):
         return bool(outcome == FREE or (outcome == CROSSES and abs(met - length) <= slack))
 
     def state(self) -> State:
-        """The physical state just before the first touch."""
-        q, q_rate = steady_motion(self.oscillator.motion(), np.array([self.phase]))
+        """The physical state just before the first touch, on the near side of the stop to the last digit."""
+        motion, phi = self.oscillator.motion(), self.oscillator.model.phi
+        q, q_rate = steady_motion(motion, np.array([self.phase]))
+        behind = max(0.0, tip_state(motion, self.phase, self.displacement, self.velocity)[0])
+        back = behind / (phi @ phi) * phi  # rounding of the sum alone
         return State(
-            displacement=self.displacement + q[0], velocity=self.velocity + q_rate[0], time=self.phase
+            displacement=self.displacement - back + q[0], velocity=self.velocity + q_rate[0], time=self.phase
         )
 
     def strobe_state(self) -> State:
