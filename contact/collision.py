@@ -180,9 +180,9 @@ def _measure(motion: Motion, impacts: Impacts, rows: slice, outgoing: VirtualMot
 
     # the hump of the incoming virtual motion that belongs to the touch
     peak = incoming.peak_near(0.0)
-    forced = math.isnan(peak) or not incoming.height(peak) > 0.0
+    forced = math.isnan(peak) or not incoming.at(peak)[0] > 0.0
     s_in = 0.0 if forced else incoming.crossing(peak, -1.0)
-    speed = math.nan if forced else incoming.velocity(s_in)
+    speed = math.nan if forced else incoming.at(s_in)[1]
 
     # jump of mode 1 over the collision, carried back to t_in
     u_free, v_free, back = np.empty_like(u_in), np.empty_like(v_in), touch + s_in - release
@@ -194,11 +194,11 @@ def _measure(motion: Motion, impacts: Impacts, rows: slice, outgoing: VirtualMot
     # the outgoing hump around t_in, and its fall through the gap
     peak = outgoing.peak_near(back)
     reach = -tip_rounding(single, outgoing.u, outgoing.v)
-    returns = not math.isnan(peak) and outgoing.height(peak) >= reach
+    returns = not math.isnan(peak) and outgoing.at(peak)[0] >= reach
     restitution = delay = math.nan
     if returns and not forced:
         s_out = outgoing.crossing(peak, 1.0)
-        restitution, delay = -outgoing.velocity(s_out) / speed, s_out - back
+        restitution, delay = -outgoing.at(s_out)[1] / speed, s_out - back
 
     ringing = _higher_modes(motion, u_in, v_in)[1]
     gained = _higher_modes(motion, u_out, v_out)[0] - _higher_modes(motion, u_free, v_free)[0]
@@ -233,7 +233,6 @@ def first_collision(
     ValueError
         If the tip does not touch the stop, or the collision is not final, within `periods`.
     """
-    require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
     periods = require_whole("periods", periods, "drive periods")
     start = before_collision(oscillator) if state is None else state
     for length in sorted({min(3, periods), periods}):
@@ -256,7 +255,7 @@ def before_collision(oscillator: ImpactOscillator) -> State:
     require(oscillator.drive is not None, "drive is None; there is no steady motion then, so give a state")
     motion = oscillator.motion()
     lowest = math.atan2(-motion.tip_sine, -motion.tip_cosine) % (2 * math.pi) / motion.drive
-    q, q_rate = steady_motion(motion, np.array([lowest]))
-    return State(displacement=q[0], velocity=q_rate[0], time=lowest)
+    q, q_rate = steady_motion(motion, lowest)
+    return State(displacement=q, velocity=q_rate, time=lowest)
 
 

@@ -54,7 +54,7 @@ class HarmonicDrive:
         return self.amplitude * np.sin(self.angular_frequency * times)
 
 
-def split_time(time: np.ndarray, period: float) -> tuple[np.ndarray, np.ndarray]:
+def split_time(time: float | np.ndarray, period: float) -> tuple[np.ndarray, np.ndarray]:
     """Times as number of the drive period and time since its strobe [s]."""
     index = np.floor(time / period)
     clock = time - index * period

@@ -7,8 +7,6 @@ finished: they carry the place where it happened, and never a number that might 
 
 from __future__ import annotations
 
-import math
-
 __all__ = [
     "Chatter",
     "ContactError",
@@ -48,14 +46,9 @@ class UnresolvedCrossing(ContactError):
 
 
 class Chatter(ContactError):
-    """More impacts in one drive period than the bound allows.
-
-    ``displacement`` and ``velocities`` hold the modal state where the run stopped, each (n_modes,).
-    """
+    """More impacts in one drive period than the bound allows."""
 
     reason = "impacts accumulate"
-    displacement: object = None
-    velocities: object = None
 
 
 class ContactTooStiff(ContactError):
@@ -65,13 +58,9 @@ class ContactTooStiff(ContactError):
 
 
 class StepTooLarge(ContactError):
-    """A method's time step is beyond its limit of stability, in flight or in the contact at hand.
-
-    ``step`` is the step [s].
-    """
+    """A method's time step is beyond its limit of stability, in flight or in the contact at hand."""
 
     reason = "the time step is beyond the limit of stability"
-    step: float = math.nan
 
 
 class Diverged(ContactError):

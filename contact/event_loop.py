@@ -32,15 +32,7 @@ from contact.flight.modal_flow import (
     tip_state,
 )
 from contact.flight.sampled_crossing import first_sampled_crossing
-from contact.recorder import (
-    add_loss,
-    close_touch,
-    is_full,
-    open_touch,
-    put_sample,
-    sample_due,
-    strobe,
-)
+from contact.recorder import add_loss, close_touch, is_full, open_touch, put_sample, sample_due, strobe
 from contact.touch.newton import hold
 from contact.touch.series import Series, new_series
 from contact.trajectory import GRAZE, IMPACT, OUTSIDE, STAY, SUSTAINED

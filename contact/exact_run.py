@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from contact.errors import Chatter, ContactError, ContactTooStiff, UnresolvedCrossing
 from contact.event_loop import (
     DONE,
     FAILED_CHATTER,
+    FAILED_CROSSING,
     FAILED_SERIES,
     FAILED_STEPS,
     LOG_FULL,
@@ -30,6 +29,14 @@ __all__ = ["exact_trajectory", "failure", "start_of", "state_of"]
 HELD_WITHIN = 1e3
 """How far from the gap a tip that is said to rest on the wall may be, in rounding bounds."""
 
+FAILURES: dict[int, tuple[type[ContactError], str]] = {
+    FAILED_CROSSING: (UnresolvedCrossing, ""),
+    FAILED_CHATTER: (Chatter, f"more than {MOST_IMPACTS} in one drive period"),
+    FAILED_STEPS: (ContactTooStiff, f"more than {MOST_STEPS} steps in one drive period"),
+    FAILED_SERIES: (ContactTooStiff, "its power series gives no step of finite length above zero"),
+}
+"""The error that belongs to a status of `advance`, and its detail."""
+
 
 def start_of(
     motion: Motion, state: State, period: int, clock: float, *, search: int = 0,
@@ -42,22 +49,28 @@ def start_of(
     Raises
     ------
     ValueError
-        If the state has another number of modes, or lies behind the stop of an impact law.
+        If the state has another number of modes, a regime that the law does not know or that does not fit
+        where the tip is, or lies behind the stop of an impact law.
     """
     if state.displacement.size != motion.size:
         raise ValueError(
             f"displacement of the state has {state.displacement.size} modes; the model has {motion.size}"
         )
-    if steady is None:
-        steady = tuple(x[0] for x in steady_motion(motion, np.array([clock])))
-    u, v = state.displacement - steady[0], state.velocity - steady[1]
+    q, q_rate = steady_motion(motion, clock) if steady is None else steady
+    u, v = state.displacement - q, state.velocity - q_rate
     runs = np.zeros(1, dtype=STATE)
     regime = int(state.regime)
     height, velocity, _acceleration = tip_state(motion, clock, u, v)
-    rounding = tip_rounding(motion, u, v)
-    _refuse_regime(motion, regime, height, rounding)
+    rounding, known = tip_rounding(motion, u, v), TOUCHES[motion.law].REGIMES
+    near = HELD_WITHIN * rounding
+    if regime not in known:
+        raise ValueError(f"regime of the state is {regime}; with this contact law it must be one of {known}")
+    if regime != OUTSIDE and (height < -near or (height > near and regime in (SUSTAINED, WAITING))):
+        raise ValueError(
+            f"regime of the state is {regime}, but the tip is {height:.3g} m past the stop; it must be at "
+            "the gap, in contact at the gap or beyond"
+        )
     if regime == OUTSIDE and height > rounding:
-        known = TOUCHES[motion.law].REGIMES
         if CONTACT not in known:
             raise ValueError(
                 f"displacement of the state puts the tip {height:.3g} m behind the stop; with an impact law "
@@ -78,41 +91,13 @@ def state_of(motion: Motion, runs: np.ndarray, displacement: np.ndarray, velocit
     )  # fmt: skip
 
 
-def _refuse_regime(motion: Motion, regime: int, height: float, rounding: float) -> None:
-    """ValueError for a regime that the law does not know, or that does not fit where the tip is."""
-    known = TOUCHES[motion.law].REGIMES
-    if regime not in known:
-        raise ValueError(f"regime of the state is {regime}; with this contact law it must be one of {known}")
-    if regime in (SUSTAINED, WAITING) and abs(height) > HELD_WITHIN * rounding:
-        raise ValueError(
-            f"regime of the state is {regime}, held on the stop, but the tip is {abs(height):.3g} m away "
-            "from it; it must be at the gap"
-        )
-    if regime in (CONTACT, INSIDE) and height < -HELD_WITHIN * rounding:
-        raise ValueError(
-            f"regime of the state is {regime}, behind the stop, but the tip is {-height:.3g} m before it; it "
-            "must be at the gap or beyond"
-        )
-
-
 def failure(status: int, motion: Motion, runs: np.ndarray, u: np.ndarray, v: np.ndarray) -> ContactError:
     """The error that belongs to a status of `advance`."""
-    run = runs[0]
-    clock = float(run["clock"])
+    clock = float(runs[0]["clock"])
     height, velocity, _acceleration = tip_state(motion, clock, u, v)
-    place: dict[str, Any] = {
-        "time": int(run["period"]) * motion.period + clock, "gap": -height, "velocity": velocity
-    }  # fmt: skip
-    if status == FAILED_CHATTER:
-        error = Chatter(**place, detail=f"more than {MOST_IMPACTS} in one drive period")
-        q, q_rate = steady_motion(motion, np.array([clock]))
-        error.displacement, error.velocities = u + q[0], v + q_rate[0]
-        return error
-    if status == FAILED_STEPS:
-        return ContactTooStiff(**place, detail=f"more than {MOST_STEPS} steps in one drive period")
-    if status == FAILED_SERIES:
-        return ContactTooStiff(**place, detail="its power series gives no step of finite length above zero")
-    return UnresolvedCrossing(**place)
+    error, detail = FAILURES[status]
+    time = int(runs[0]["period"]) * motion.period + clock
+    return error(time=time, gap=-height, velocity=velocity, detail=detail)
 
 
 def exact_trajectory(oscillator: ImpactOscillator, run: Run, *, search: int = 0) -> Trajectory:
@@ -141,7 +126,7 @@ def exact_trajectory(oscillator: ImpactOscillator, run: Run, *, search: int = 0)
         recorder = grown(recorder)
     if status != DONE:
         raise failure(status, motion, runs, u, v)
-    q, q_rate = steady_motion(motion, np.array([run.clock_end]))
-    end = state_of(motion, runs, u + q[0], v + q_rate[0])
+    q, q_rate = steady_motion(motion, run.clock_end)
+    end = state_of(motion, runs, u + q, v + q_rate)
     evaluations = int(runs[0]["evaluations"])
     return trajectory_of(recorder, run, end, motion.period, evaluations=evaluations, motion=motion)

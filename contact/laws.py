@@ -21,11 +21,12 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from numbers import Real
 from typing import ClassVar
 
 import numpy as np
 
-from beam.parameters import brief, is_number, require, require_array, require_within, shown, suspect
+from beam.parameters import brief, require, require_array, require_kind, require_within, suspect
 
 __all__ = [
     "ContactLaw",
@@ -93,16 +94,6 @@ class NewtonRestitution(ContactLaw):
         require_within("local_restitution", self.local_restitution, "[1]", low=0, high=1)
 
 
-def _value(function: Callable[[float], float], speed: float) -> float:
-    """The function at an approach speed; TypeError unless it gives a number there."""
-    value = function(speed)
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        words = "it must give a number"
-        raise TypeError(f"function of the approach speed gives {value!r} at {speed:g} m/s; {words}") from None
-
-
 SPEEDS = 1025
 """Samples of a function of the approach speed: a cubic spline through them over six decades is good to
 1e-9."""
@@ -138,21 +129,14 @@ class DelayedRestitution(ContactLaw):
         words = "two rising numbers above zero"
         low, high = require_array("speeds", self.speeds, "m/s", shape=(2,), words=words)
         require(0 < low < high, f"speeds is {brief(self.speeds)} m/s; it must be {words}")
-        for name in ("restitution", "delay"):
-            given = getattr(self, name)
-            require(
-                callable(given) or isinstance(given, float) or is_number(given),
-                f"{name} is {shown(given)}; it must be a number or a function of the approach speed",
-            )
+        for name, unit, high in (("restitution", "[1]", 1.0), ("delay", "s", None)):
+            if not callable(getattr(self, name)):
+                require_within(name, getattr(self, name), unit, low=0, high=high)
         _v, tau, _slope, delay, _slope2 = self.table
-        require(
-            bool(np.all(np.isfinite(tau)) and np.all(tau >= 0) and np.all(tau <= 1)),
-            f"restitution runs from {tau.min()} to {tau.max()}; it must lie between 0 and 1",
-        )
-        require(
-            bool(np.all(np.isfinite(delay)) and np.all(delay >= 0)),
-            f"delay runs from {delay.min()} to {delay.max()} s; it must be finite and zero or more",
-        )
+        words = f"restitution runs from {tau.min()} to {tau.max()}; it must lie between 0 and 1"
+        require(bool(np.all((tau >= 0) & (tau <= 1))), words)
+        words = f"delay runs from {delay.min()} to {delay.max()} s; it must be finite and zero or more"
+        require(bool(np.all(np.isfinite(delay) & (delay >= 0))), words)
 
     @cached_property
     def table(self) -> np.ndarray:
@@ -163,9 +147,12 @@ class DelayedRestitution(ContactLaw):
             *self.speeds, SPEEDS if callable(self.restitution) or callable(self.delay) else 2
         )
         rows = [speed]
-        for given in (self.restitution, self.delay):
+        for name in ("restitution", "delay"):
+            given = getattr(self, name)
             if callable(given):
-                values = np.array([_value(given, float(v)) for v in speed])
+                at = f"{name} at an approach speed of"
+                found = [require_kind(f"{at} {v:g} m/s", given(float(v)), Real, "a number") for v in speed]
+                values = np.array(found, dtype=float)
                 slopes = CubicSpline(speed, values)(speed, 1) if np.all(np.isfinite(values)) else values
             else:
                 values, slopes = np.full(speed.size, float(given)), np.zeros(speed.size)
@@ -212,13 +199,10 @@ class HertzContact(ContactLaw):
     ) -> HertzContact:  # fmt: skip
         """A ball of `radius` [m] on a plate: k = (4/3) sqrt(R) / ((1 - nu^2)/E + (1 - nu'^2)/E')
         [N/m^1.5]."""
-        for name, value, unit in (
-            ("radius", radius, "m"),
-            ("youngs_modulus", youngs_modulus, "Pa"),
-            ("other_modulus", other_modulus, "Pa"),
-        ):
-            require_within(name, value, unit, above=0)
-            if unit == "Pa" and not SOFTEST <= value <= HARDEST:
+        require_within("radius", radius, "m", above=0)
+        for name, value in (("youngs_modulus", youngs_modulus), ("other_modulus", other_modulus)):
+            require_within(name, value, "Pa", above=0)
+            if not SOFTEST <= value <= HARDEST:
                 suspect(
                     f"{name} is {value:g} Pa; solids that a ball rebounds from lie between {SOFTEST:g} and "
                     f"{HARDEST:g} Pa"

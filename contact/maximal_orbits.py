@@ -47,7 +47,7 @@ from beam.parameters import require_kind, require_whole, require_within
 from contact.nordmark import NordmarkMap, YLine
 
 __all__ = ["Band", "MapFamily", "MaximalOrbit", "band", "bands", "fold", "maximal_orbits", "maximal_period",
-           "maximal_periods", "stable_range"]  # fmt: skip
+           "maximal_periods", "positive_roots", "stable_range"]  # fmt: skip
 
 
 MOST_PERIODS = 100_000
@@ -142,7 +142,7 @@ class MapFamily:
     def at_rho(self, rho: float) -> tuple[MaximalOrbit, ...]:
         """The orbits at `rho`, 0 to 2, X rising: of two, the first is the saddle and the second the node."""
         require_within("rho", rho, "[1]")
-        roots = _positive_roots(self.a, self.b, -(self.c * rho + self.b * self.map.delay_term))
+        roots = positive_roots(self.a, self.b, -(self.c * rho + self.b * self.map.delay_term))
         return tuple(self._orbit(root, rho) for root in roots)
 
     def orbits(self, excess: float) -> tuple[MaximalOrbit, ...]:
@@ -162,7 +162,7 @@ class MapFamily:
         at_fold = self.fold()
         if at_fold is None:
             return None
-        ends = [root for k in range(1, self.period) for root in _positive_roots(*self._height(k))]
+        ends = [root for k in range(1, self.period) for root in positive_roots(*self._height(k))]
         flip = 1.0 + self.determinant + self.trace_limit
         ends += [self.last / (2.0 * flip)] if flip < 0.0 else []
         marks = [at_fold.root, *sorted(root for root in ends if root > at_fold.root), math.inf]
@@ -173,7 +173,7 @@ class MapFamily:
         return None
 
 
-def _positive_roots(two: float, one: float, none: float) -> list[float]:
+def positive_roots(two: float, one: float, none: float) -> list[float]:
     """The positive solutions of two X^2 + one X + none = 0, ascending."""
     if two == 0.0:
         found = [-none / one] if one != 0.0 else []

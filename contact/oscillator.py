@@ -182,18 +182,16 @@ class ImpactOscillator:
     def grazing_amplitude(self) -> float:
         """Base amplitude Z_g at which the steady tip motion just touches the stop [m]."""
         _ = self.driven
-        static = float(self.model.phi @ self._offset())
-        if static >= self.stop.gap:
-            raise ValueError(
-                f"gap is {self.stop.gap} m; the static displacement {static:g} m must stay below it"
-            )
+        level, gap = self.motion().level, self.stop.gap
+        if level >= 0.0:
+            raise ValueError(f"gap is {gap} m; the static displacement {level + gap:g} m must stay below it")
         response = abs(self.tip_response())
         if response == 0.0:
             raise ValueError(
                 "phi and participation are such that the drive does not move the tip; at least one mode must "
                 "have both other than zero"
             )
-        return (self.stop.gap - static) / response
+        return -level / response
 
     @property
     def excess(self) -> float:
@@ -218,10 +216,3 @@ class ImpactOscillator:
             drive=0.0 if self.drive is None else self.drive.angular_frequency, period=self.period,
             response=response, load=self.load,
         )  # fmt: skip
-
-    def _offset(self) -> np.ndarray:
-        """Static modal displacement under the constant load, (n_modes,); zero for modes of zero frequency."""
-        if self.load is None:
-            return np.zeros(self.n_modes)
-        stiff = self.model.omega > 0
-        return np.where(stiff, self.load / np.where(stiff, self.model.omega, 1.0) ** 2, 0.0)

@@ -8,13 +8,11 @@ is both cheaper and as accurate.
 
 from __future__ import annotations
 
-from numbers import Real
-
 import numpy as np
 
-from beam.parameters import is_number, require_kind, shown
+from beam.parameters import require, require_array, require_kind, require_whole, require_within
 from contact.drive import split_time
-from contact.integrators import INTEGRATORS, Integrator, Run, method_for
+from contact.integrators import INTEGRATORS, Exact, Integrator, Run
 from contact.integrators.method import LAW_NAMES
 from contact.oscillator import ImpactOscillator
 from contact.trajectory import State, Trajectory
@@ -37,7 +35,7 @@ def _method(method: Integrator | str | None, law: int) -> Integrator:
                 f"method is {method!r}, which needs a step; give {INTEGRATORS[method].__name__}(step=...)"
             ) from None
     elif method is None:
-        chosen = method_for(law)
+        chosen = Exact()
     elif isinstance(method, Integrator):
         chosen = method
     else:
@@ -65,34 +63,20 @@ def _run(
         )
     if (duration is None) == (periods is None):
         raise ValueError("duration and periods are both given or both missing; give exactly one of them")
-    for name, value, words in (("duration", duration, "in s"), ("periods", periods, "of drive periods")):
-        if isinstance(value, bool) or not isinstance(value, Real | None):
-            raise TypeError(f"{name} is {shown(value)}; it must be a number {words}")
-    if periods is not None and not (is_number(periods) and periods % 1 == 0):
-        raise ValueError(f"periods is {shown(periods)}; it must be a whole number of drive periods")
     period = oscillator.period
-    length = duration if periods is None else periods * period
-    if length is None or not (is_number(length) and length > 0):
-        raise ValueError(f"duration is {shown(length)} s; it must be finite and above zero")
-    length = float(length)
+    whole = 0 if periods is None else require_whole("periods", periods, "drive periods")
+    length = whole * period if whole else require_within("duration", duration, "s", above=0)
     if length / period * 2 * oscillator.n_modes > MOST_STORED:
         raise ValueError(
             f"duration is {length:g} s, {length / period:g} drive periods with {oscillator.n_modes} modes; "
             f"the strobes kept must stay below {MOST_STORED:g} numbers, so run it in pieces"
         )
-    first_array, clock_array = split_time(np.array([start.time]), period)
-    first, clock = int(first_array[0]), float(clock_array[0])
-    if periods is not None:
-        last, clock_end = first + int(periods), clock
-    else:
-        last_array, end_array = split_time(np.array([start.time + length]), period)
-        last, clock_end = int(last_array[0]), float(end_array[0])
-    wanted = np.zeros(0) if times is None else np.asarray(times)
-    if wanted.dtype.kind not in "iuf":
-        raise TypeError(f"times is {shown(times)}; it must be a rising array of finite values [s]")
-    wanted = wanted.astype(float)
-    if wanted.ndim != 1 or not np.all(np.isfinite(wanted)) or np.any(np.diff(wanted) < 0):
-        raise ValueError("times must be a rising array of finite values [s]")
+    first, clock = (x.item() for x in split_time(start.time, period))
+    last, clock_end = first + whole, clock
+    if not whole:
+        last, clock_end = (x.item() for x in split_time(start.time + length, period))
+    wanted = require_array("times", () if times is None else times, "s", dimensions=1, words="a rising array")
+    require(bool(np.all(np.diff(wanted) >= 0)), "times must be a rising array [s]")
     stop_time = start.time + length
     if wanted.size and (wanted[0] < start.time - 1e-12 * length or wanted[-1] > stop_time + 1e-12 * length):
         raise ValueError(
@@ -100,16 +84,13 @@ def _run(
             f"they must lie within {start.time} to {stop_time} s"
         )
     sample_period, sample_clock = split_time(wanted, period)
-    inside = (sample_period > last) | ((sample_period == last) & (sample_clock > clock_end))
-    sample_period, sample_clock = (
-        np.where(inside, last, sample_period),
-        np.where(inside, clock_end, sample_clock),
-    )
+    late = (sample_period > last) | ((sample_period == last) & (sample_clock > clock_end))
+    sample_period[late], sample_clock[late] = last, clock_end
     early = (sample_period < first) | ((sample_period == first) & (sample_clock < clock))
+    sample_period[early], sample_clock[early] = first, clock
     return Run(
         start=start, length=length, first=first, last=last, clock=clock, clock_end=clock_end, times=wanted,
-        sample_period=np.where(early, first, sample_period),
-        sample_clock=np.where(early, clock, sample_clock),
+        sample_period=sample_period, sample_clock=sample_clock,
     )  # fmt: skip
 
 

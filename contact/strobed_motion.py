@@ -22,7 +22,7 @@ from contact.oscillator import ImpactOscillator
 from contact.single_mode.loop import any_periods, one_mode_periods
 from contact.single_mode.period_table import PeriodTable, period_table, table_at
 
-__all__ = ["StrobedSystem", "at_amplitude", "coordinate_weights", "strobed_motion", "strobed_system"]
+__all__ = ["StrobedSystem", "at_amplitude", "strobed_motion", "strobed_system"]
 
 
 class StrobedSystem(NamedTuple):
@@ -43,23 +43,16 @@ class StrobedSystem(NamedTuple):
     weight: np.ndarray
 
 
-def coordinate_weights(oscillator: ImpactOscillator) -> np.ndarray:
-    """What turns displacements and velocities into points, shape (2 n_modes,)."""
-    model = oscillator.model
-    phi = np.where(model.phi != 0, model.phi, np.abs(model.phi).max())
-    slow = 1.0 if oscillator.drive is None else oscillator.drive.angular_frequency
-    return np.concatenate([phi, phi / np.where(model.omega > 0, model.omega, slow)])
-
-
 def strobed_system(oscillator: ImpactOscillator) -> StrobedSystem:
     """The numbers of an oscillator, made once for many orbits."""
     motion = oscillator.motion()
-    q, q_rate = steady_motion(motion, np.zeros(1))
+    phi = np.where(motion.phi != 0, motion.phi, np.abs(motion.phi).max())
+    slow = motion.drive or 1.0
     return StrobedSystem(
         motion=motion,
         table=period_table(motion),
-        mean=np.concatenate([q[0], q_rate[0]]),
-        weight=coordinate_weights(oscillator),
+        mean=np.concatenate(steady_motion(motion, 0.0)),
+        weight=np.concatenate([phi, phi / np.where(motion.omega > 0, motion.omega, slow)]),
     )
 
 

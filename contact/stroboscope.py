@@ -135,9 +135,8 @@ class StroboscopicMap:
         system, motion, n = self._system, self._system.motion, self.oscillator.n_modes
         index = round(state.time / motion.period)
         if index * motion.period != state.time:  # within rounding it may be a strobe nevertheless
-            near, clock = split_time(np.array([state.time]), motion.period)
-            index = int(near[0])
-            if clock[0] != 0.0:
+            index, clock = (x.item() for x in split_time(state.time, motion.period))
+            if clock != 0.0:
                 raise ValueError(f"time of the state is {state.time} s; it must be a strobe time n/f")
         u, v, runs = start_of(motion, state, index, 0.0, steady=(system.mean[:n], system.mean[n:]))
         points, impacts = np.empty((count, 2 * n)), np.empty(count, dtype=np.int64)

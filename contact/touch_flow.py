@@ -16,7 +16,7 @@ import math
 import numpy as np
 
 from contact import touch
-from contact.compiled import borrowed, kernel, part
+from contact.compiled import borrowed, held, kernel, part
 from contact.event_loop import STATE
 from contact.flight.crossing import CROSSES, first_crossing
 from contact.flight.modal_flow import propagate, tip_state
@@ -73,37 +73,12 @@ def through_touch(motion, response, run, u, v, end, tangent, record):
     return True
 
 
-@kernel
-def through_touches(motion, response, runs, u, v, end, tangent, record):
-    """The flow of `flow_from_touch` from runs[0] to the drive time `end` [s].
-
-    A record is a place in its array and does not keep it: whoever makes `runs` holds it meanwhile.
-    """
-    n, run, base = motion.size, runs[0], runs[0].clock
-    for i in range(record.shape[0]):
-        if i > 0:
-            outcome, s = first_crossing(motion, run.clock, u, v, end - run.clock, run.order)
-            if outcome != CROSSES:
-                return FEWER_TOUCHES
-            propagate(motion, u, v, s, u, v)
-            if tangent.shape[0] > 0:
-                tangent_flight(motion, tangent, s)
-            run.clock += s
-        row = record[i]
-        row[0] = run.clock - base
-        if not through_touch(motion, response, run, u, v, end, tangent, row):
-            return FAILED
-        row[1] = run.clock - base
-        for k in range(n):
-            row[4 + k] = u[k]
-            row[4 + n + k] = v[k]
-    left = end - run.clock
-    if left < 0.0:
-        return FAILED
-    propagate(motion, u, v, left, u, v)
+@part
+def fly(motion, u, v, tangent, time):
+    """A flight of length `time` [s], the wall ignored."""
+    propagate(motion, u, v, time, u, v)
     if tangent.shape[0] > 0:
-        tangent_flight(motion, tangent, left)
-    return FLOWN
+        tangent_flight(motion, tangent, time)
 
 
 @kernel
@@ -135,8 +110,29 @@ def flow_from_touch(motion, response, base, u, v, duration, tangent, record):
         FLOWN, FEWER_TOUCHES or FAILED.
     """
     runs = np.zeros(1, dtype=STATE)
-    runs[0].clock = base
-    return through_touches(
-        borrowed(motion), response, runs, borrowed(u), borrowed(v), base + duration, borrowed(tangent),
-        borrowed(record),
+    n, run, end, outcome = motion.size, runs[0], base + duration, FLOWN
+    motion, u, v, tangent, record = (
+        borrowed(motion), borrowed(u), borrowed(v), borrowed(tangent), borrowed(record)
     )  # fmt: skip
+    run.clock = base
+    for i in range(record.shape[0]):
+        if i > 0:
+            crossing, s = first_crossing(motion, run.clock, u, v, end - run.clock, run.order)
+            if crossing != CROSSES:
+                outcome = FEWER_TOUCHES
+                break
+            fly(motion, u, v, tangent, s)
+            run.clock += s
+        row = record[i]
+        row[0] = run.clock - base
+        if not through_touch(motion, response, run, u, v, end, tangent, row) or run.clock > end:
+            outcome = FAILED
+            break
+        row[1] = run.clock - base
+        for k in range(n):
+            row[4 + k] = u[k]
+            row[4 + n + k] = v[k]
+    if outcome == FLOWN:
+        fly(motion, u, v, tangent, end - run.clock)
+    held(runs)  # a record does not keep the array it lies in
+    return outcome

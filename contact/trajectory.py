@@ -189,7 +189,7 @@ class Trajectory:
     impacts : Impacts
         Every touch.
     evaluations : int
-        Steps, flights or evaluations of the force that the method has spent.
+        Steps, or flights and sampled positions, that the method has made.
     """
 
     end: State

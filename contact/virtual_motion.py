@@ -37,24 +37,22 @@ class VirtualMotion:
 
     def at(self, s: float) -> tuple[float, float, float]:
         """Height over the gap [m], velocity and acceleration."""
-        height, velocity, acceleration = tip_at(self.motion, self.clock, self.u, self.v, s)
-        return height, velocity, acceleration
+        found: tuple[float, float, float] = tip_at(self.motion, self.clock, self.u, self.v, s)
+        return found
 
-    def height(self, s: float) -> float:
-        """Height over the gap [m]."""
-        return self.at(s)[0]
+    def root(self, order: int, low: float, high: float) -> float:
+        """A root of height (0) or velocity (1) in [low, high], to rounding: it may lie at zero, the touch."""
+        from scipy.optimize import brentq  # slow to import
 
-    def velocity(self, s: float) -> float:
-        """Its rate [m/s]."""
-        return self.at(s)[1]
+        return float(brentq(lambda s: self.at(s)[order], low, high, xtol=1e-18, rtol=8.9e-16, maxiter=300))
 
     def extrema(self, low: float, high: float, sign: float) -> list[float]:
         """Times in [low, high] where the velocity goes through zero from `sign` to -`sign`."""
         count = max(2, math.ceil(SAMPLES * (high - low) / self.motion.period))
         grid = np.linspace(low, high, count + 1)
-        speed = np.array([sign * self.velocity(s) for s in grid])
+        speed = np.array([sign * self.at(s)[1] for s in grid])
         turns = np.flatnonzero((speed[:-1] > 0) & (speed[1:] <= 0))
-        return [_root(self.velocity, grid[i], grid[i + 1]) for i in turns]
+        return [self.root(1, grid[i], grid[i + 1]) for i in turns]
 
     def peak_near(self, s: float) -> float:
         """The peak next to `s`, NaN if there is none within most of a period."""
@@ -63,25 +61,17 @@ class VirtualMotion:
 
     def crossing(self, peak: float, direction: float) -> float:
         """The crossing of the gap next to `peak` on its rising (-1) or falling (+1) side, NaN if none [s]."""
-        if self.height(peak) <= 0.0:
+        if self.at(peak)[0] <= 0.0:
             return peak
         step = self.motion.period / SAMPLES
         near, far = peak, peak + direction * step
         for _ in range(SAMPLES):
-            if self.height(far) < 0.0:
-                return _root(self.height, min(near, far), max(near, far))
+            if self.at(far)[0] < 0.0:
+                return self.root(0, min(near, far), max(near, far))
             near, far = far, far + direction * step
         return math.nan
 
 
-def _root(function: object, low: float, high: float) -> float:
-    """A root in [low, high] to rounding (times count from the touch, so that it may lie at zero)."""
-    from scipy.optimize import brentq  # slow to import
-
-    return float(brentq(function, low, high, xtol=1e-18, rtol=8.9e-16, maxiter=300))
-
-
 def deviations(motion: Motion, time: float, q: np.ndarray, q_rate: np.ndarray) -> np.ndarray:
     """Deviations (u, v) of the modal state (q, q') from the steady motion at a time, shape (2, n_modes)."""
-    steady = steady_motion(motion, np.array([math.fmod(time, motion.period)]))
-    return np.array([q, q_rate]) - np.array(steady)[:, 0]
+    return np.array([q, q_rate]) - steady_motion(motion, math.fmod(time, motion.period))

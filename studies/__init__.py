@@ -27,6 +27,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import signal
 import sys
 import warnings
 from pathlib import Path
@@ -62,29 +63,27 @@ def refuse_foreign_packages(root: Path = ROOT) -> None:
 def start_as_program() -> None:
     """For `python -m studies...`: Ctrl-C while importing without a traceback, a sentence for an unknown
     study."""
-    from studies.programs import unknown, wrong_name
-
     if sys.stderr is None:  # started with 2>&-: no file of results may get its number
         os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
         sys.stderr = open(2, "w", encoding="utf-8", closefd=False)
-    before = sys.excepthook
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
 
-    def told(kind, error, trace):  # type: ignore[no-untyped-def]
-        if not issubclass(kind, KeyboardInterrupt):
-            return before(kind, error, trace)
-        print("interrupted; nothing was stored: the same command begins again", file=sys.stderr, flush=True)
-        os._exit(130)
+        def interrupted(number, frame):  # type: ignore[no-untyped-def]
+            print("interrupted; nothing was stored: the same command begins again", file=sys.stderr)
+            os._exit(130)
 
-    sys.excepthook = told
+        signal.signal(signal.SIGINT, interrupted)
+    from studies.programs import unknown, wrong_name
+
     name = wrong_name(sys.orig_argv[1:])
     if name is not None:
         print(f"python -m studies.{name}: {unknown(name)}", file=sys.stderr)
         raise SystemExit(2)
 
 
+single_blas_thread()
 if sys.argv[:1] == ["-m"]:  # as long as the interpreter looks for the module that it was told to run
     start_as_program()
-single_blas_thread()
 refuse_foreign_packages()
 if "--multiprocessing-fork" in sys.orig_argv:  # its parent has told what is suspicious
     warnings.filterwarnings("ignore", category=UserWarning, module=r"(beam|contact|studies)\b")

@@ -45,11 +45,6 @@ def calibrate(scene: Scene, run: Run) -> Mapping[str, object]:
     run.table("keys", rows, "Keys before and after the fit.")
     run.text("calibrated.toml", fitted.dump())
     collision = collision_at(fitted, targets.frequency_hz, targets.excess)
-    run.say(
-        f"collision at excess {targets.excess:g}: kick {collision.kick:.9f}, restitution "
-        f"{collision.restitution:.6f}, delay {1e6 * collision.delay:.3f} us, contact "
-        f"{1e6 * collision.contact_time:.3f} us"
-    )
     amplitude = beam_at(fitted, targets.frequency_hz).grazing_amplitude()
     run.verdict("drive_amplitude", "fitted", found=f"{1e3 * amplitude:.3f} mm at grazing, 22.2 Hz")
     return {

@@ -39,6 +39,7 @@ from contact import Collision, first_collision
 from studies import letter
 from studies.scene import Scene, SceneError, beam_at, damping_of, free_period, modes_of, spring_of
 from studies.scene_keys import CALIBRATED
+from studies.scene_spring import DAMPING
 from studies.scene_values import KEYS
 
 ACCURACY = 1e-10
@@ -58,14 +59,6 @@ MOST_STEPS, MOST_ROUNDS = 200, 40
 """Of Brent's method, four times the bisections that pin down a double; of fitting period and damping in
 turn: each shifts the other by a small part of its own change."""
 
-RATE_KEYS = {
-    "constant_ratio": ("damping.ratio",),
-    "constant_loss_factor": ("damping.loss_factor",),
-    "rayleigh": ("damping.rayleigh_alpha_per_s", "damping.rayleigh_beta_s"),
-    "measured": ("damping.measured_rates_per_s",),
-}
-"""For each other damping.kind the keys to which the rates are proportional."""
-
 KICK_ACCURACY = 1e-9
 """Relative accuracy of the fitted kick: a collision repeats to 1e-11, the spring behind it to 1e-10."""
 
@@ -84,7 +77,8 @@ def solve_for(
     name, unit : of the quantity, for the sentence that says why there is no solution.
     between : interval of the key; the quantity must be on opposite sides of the target at its ends.
     """
-    _require_target(name, target, unit)
+    if not (math.isfinite(target) and target > 0.0):
+        raise SceneError(f"the {name} to fit must be finite and greater than 0 (unit {unit}), not {target}")
     low, high = between
     key_unit = KEYS[key].unit
 
@@ -122,13 +116,6 @@ def strip_decay_rate(scene: Scene) -> float:
     return float(modes.omega[-1] * np.sum([stretching, bending] * energies) / np.sum(energies))
 
 
-def decay_rate(scene: Scene) -> float:
-    """c_1 of the model [1/s]; with damping.kind strips the one that its tape gives by itself."""
-    if scene.damping.kind == "strips":
-        return strip_decay_rate(scene)
-    return float(damping_of(scene).decay_rates(modes_of(scene, 1))[-1])
-
-
 def calibrate_thickness(scene: Scene, free_period_s: float) -> Scene:
     """The scene with the sheet so thick that mode 1, damped, has this period [s]."""
     return solve_for("spring.thickness_m", scene, free_period, free_period_s, name="free period", unit="s",
@@ -148,16 +135,22 @@ def calibrate_damping(scene: Scene, decay_rate_per_s: float) -> Scene:
     With damping.kind strips the loss factor of the tape is chosen such that the strain energies give the
     rate without further scaling. For any other kind all its rates are scaled by one factor.
     """
-    name, unit = "decay rate of mode 1", "1/s"
-    _require_target(name, decay_rate_per_s, unit)
     if scene.damping.kind != "strips":
-        return _scaled_rates(scene, decay_rate_per_s)
+        rate = float(damping_of(scene).decay_rates(modes_of(scene, 1))[-1])
+        keys = tuple(DAMPING[scene.damping.kind][1].values())
+        if not rate > 0.0:
+            raise SceneError(
+                f"damping.kind {scene.damping.kind} gives mode 1 a decay rate of {rate:.6g} 1/s, which no "
+                f"scaling turns into {decay_rate_per_s:.10g} 1/s: change {' or '.join(keys)}"
+            )
+        scaled = {key: (np.array(scene[key]) * (decay_rate_per_s / rate)).tolist() for key in keys}
+        return scene.replace(scaled, provenance=CALIBRATED)
     if scene.spring.tape_thickness_m == 0.0:
         raise SceneError("there is no tape to calibrate: spring.tape_thickness_m must be greater than 0")
     scene = scene.replace({"damping.decay_rate_per_s": decay_rate_per_s}, provenance=CALIBRATED)
     return solve_for(
-        "spring.tape_loss_factor", scene, strip_decay_rate, decay_rate_per_s, name=name, unit=unit,
-        between=LOSS_FACTORS,
+        "spring.tape_loss_factor", scene, strip_decay_rate, decay_rate_per_s, name="decay rate of mode 1",
+        unit="1/s", between=LOSS_FACTORS,
     )  # fmt: skip
 
 
@@ -171,22 +164,6 @@ def calibrate(scene: Scene, *, free_period_s: float, decay_rate_per_s: float) ->
         f"thickness and damping cannot be calibrated together: a free period of {free_period_s:.10g} s and a "
         f"decay rate of {decay_rate_per_s:.10g} 1/s do not settle in {MOST_ROUNDS} rounds"
     )
-
-
-def _scaled_rates(scene: Scene, target: float) -> Scene:
-    rate = decay_rate(scene)
-    if not rate > 0.0:
-        raise SceneError(
-            f"damping.kind {scene.damping.kind} gives mode 1 a decay rate of {rate:.6g} 1/s, which no "
-            f"scaling turns into {target:.10g} 1/s: change {' or '.join(RATE_KEYS[scene.damping.kind])}"
-        )
-    scaled = {key: (np.array(scene[key]) * (target / rate)).tolist() for key in RATE_KEYS[scene.damping.kind]}
-    return scene.replace(scaled, provenance=CALIBRATED)
-
-
-def _require_target(name: str, target: float, unit: str) -> None:
-    if not (math.isfinite(target) and target > 0.0):
-        raise SceneError(f"the {name} to fit must be finite and greater than 0 (unit {unit}), not {target}")
 
 
 @dataclass(frozen=True, kw_only=True)

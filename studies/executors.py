@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import multiprocessing
 import sys
 import threading
@@ -9,8 +10,7 @@ import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
-
-__all__ = ["duration", "pool_of", "progress", "say"]
+from datetime import timedelta
 
 INTERVAL = 30.0
 """Seconds between two lines of progress where there is no terminal."""
@@ -25,13 +25,8 @@ def say(sentence: str) -> None:
 
 
 def duration(seconds: float) -> str:
-    """Seconds in the units in which a person waits: 8 s, 3 min 20 s, 2 h 05 min."""
-    whole = round(seconds)
-    if whole < 60:
-        return f"{whole} s"
-    if whole < 3600:
-        return f"{whole // 60} min {whole % 60:02d} s"
-    return f"{whole // 3600} h {whole % 3600 // 60:02d} min"
+    """As hours, minutes and seconds, 0:03:20."""
+    return str(timedelta(seconds=round(seconds)))
 
 
 @contextmanager
@@ -40,50 +35,42 @@ def progress(label: str, total: int | None = None) -> Iterator[Callable[..., Non
 
     Yields a function that counts one step, or as many as it is given, from any thread.
     """
-    begun, done, told, lock = time.monotonic(), 0, time.monotonic(), threading.Lock()
-    if sys.stderr.isatty():
-        from rich.console import Console
-        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-        columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(),
-                   TextColumn("{task.fields[rate]}"), TimeRemainingColumn())  # fmt: skip
-        with Progress(*columns, console=Console(file=sys.stderr)) as bar:
-            task = bar.add_task(label, total=total, rate="")
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(),
+               TextColumn("{task.fields[rate]}"), TimeRemainingColumn())  # fmt: skip
+    told, lock, terminal = time.monotonic(), threading.Lock(), sys.stderr.isatty()
+    console = Console(file=sys.stderr)
+    with Progress(*columns, console=console, disable=not terminal, speed_estimate_period=math.inf) as bar:
+        task = bar.add_task(label, total=total, rate="")
 
-            def advance(steps: int = 1) -> None:
-                nonlocal done
-                with lock:
-                    done += steps
-                    bar.update(task, advance=steps, rate=_rate(done, time.monotonic() - begun))
+        def count(steps: int = 1) -> None:
+            nonlocal told
+            with lock:
+                bar.advance(task, steps)
+                now, known = time.monotonic(), bar.tasks[0]
+                bar.update(task, rate=_rate(known.speed))
+                if not terminal and now - told >= INTERVAL:
+                    told, left = now, known.time_remaining
+                    ahead = "" if left is None else f", {duration(left)} left"
+                    say(f"{label}: {known.completed:g} of {total or '?'}, {_rate(known.speed)}{ahead}")
 
-            yield advance
-        return
-
-    def count(steps: int = 1) -> None:
-        nonlocal done, told
-        with lock:
-            done, now = done + steps, time.monotonic()
-            if now - told < INTERVAL:
-                return
-            told = now
-        left = "" if not total else f", {duration((now - begun) * max(total - done, 0) / done)} left"
-        say(f"{label}: {done} of {total or '?'}, {_rate(done, now - begun)}{left}")
-
-    yield count
+        yield count
 
 
-def _rate(done: int, seconds: float) -> str:
+def _rate(speed: float | None) -> str:
     """Steps per second, or seconds per step when that reads better."""
-    if done == 0 or seconds <= 0.0:
+    if not speed:
         return ""
-    return f"{done / seconds:.3g} per s" if done >= seconds else f"{seconds / done:.3g} s each"
+    return f"{speed:.3g} per s" if speed >= 1.0 else f"{1.0 / speed:.3g} s each"
 
 
 @contextmanager
 def pool_of(place: str, workers: int) -> Iterator[Executor]:
     """The executor at `place`, threads, processes or dask://host:port, with so many threads or processes.
 
-    If the body is left by an exception, what has not begun is dropped.
+    If the body is left by an exception, what has not begun is dropped, and processes are ended.
     """
     kind, colon, address = place.partition("://")
     if kind == "dask" and address:
@@ -100,6 +87,8 @@ def pool_of(place: str, workers: int) -> Iterator[Executor]:
     try:
         yield executor
     except BaseException:
+        for process in multiprocessing.active_children() if kind == "processes" else ():
+            process.terminate()
         executor.shutdown(wait=kind == "processes", cancel_futures=True)
         raise
     executor.shutdown()

@@ -16,19 +16,15 @@ import os
 import platform
 import subprocess
 import tempfile
-from collections.abc import Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from uuid import uuid4
 
 import numpy as np
 
 from studies import ROOT
-
-__all__ = [
-    "SCHEMA", "columns_of", "csv_text", "git_state", "json_text", "make_folder", "plain", "versions",
-    "write_atomically",
-]  # fmt: skip
 
 SCHEMA = 2
 """Number of the layout of summary.json, manifest.json and the JSON on standard output."""
@@ -42,40 +38,36 @@ PACKAGES = (
 
 def make_folder(folder: Path) -> Path:
     """The folder, made if need be and seen to accept files; better told before a computation than after."""
-    try:
+    with told(f"results cannot be written to the folder {folder}"):
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             pass
-    except OSError as error:
-        reason = error.strerror or "the system gives no reason"
-        raise OSError(f"results cannot be written to the folder {folder}: {reason}") from error
     return folder
 
 
 def write_atomically(path: Path, content: bytes) -> Path:
     """Write or replace the file at `path`."""
-    temporary: Path | None = None
-    try:
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-        temporary = Path(name)
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(content)
-            stream.flush()
-            os.fsync(stream.fileno())
-        mask = os.umask(0)
-        os.umask(mask)
-        os.chmod(temporary, 0o666 & ~mask)
-        os.replace(temporary, path)
-    except BaseException as error:
-        if temporary is not None:
+    temporary = path.with_name(f".{path.name}.{uuid4().hex}")
+    with told(f"{path} cannot be written"):
+        try:
+            with temporary.open("xb") as stream:
+                stream.write(content)
+                stream.flush()
+                os.fsync(stream.fileno())
+            os.replace(temporary, path)
+        finally:
             with suppress(OSError):
                 temporary.unlink()
-        if isinstance(error, OSError):
-            raise OSError(
-                f"{path} cannot be written: {error.strerror or 'the system gives no reason'}"
-            ) from error
-        raise
     return path
+
+
+@contextmanager
+def told(what: str) -> Iterator[None]:
+    """An OSError inside says `what` and the reason of the system."""
+    try:
+        yield
+    except OSError as error:
+        raise OSError(f"{what}: {error.strerror or 'the system gives no reason'}") from error
 
 
 def plain(value: object) -> object:
@@ -146,8 +138,8 @@ def git_state(root: Path = ROOT) -> dict[str, object]:
             return None
         return answer.stdout.strip() if answer.returncode == 0 else None
 
-    top = git("rev-parse", "--show-toplevel")
-    if top is None or Path(top).resolve() != root.resolve():
+    top, _, commit = (git("rev-parse", "--show-toplevel", "HEAD") or "").partition("\n")
+    if not top or Path(top).resolve() != root.resolve():
         return {"commit": None, "dirty": None}
     status = git("status", "--porcelain")
-    return {"commit": git("rev-parse", "--verify", "HEAD"), "dirty": None if status is None else status != ""}
+    return {"commit": commit, "dirty": None if status is None else status != ""}

@@ -1,7 +1,7 @@
 """A spring in motion, seen in space: one picture after another, as gif, as mp4 and as meshes for ParaView.
 
     scenery = Scenery.of(modes, ball_radius=2.5e-3, gap=0.0107, swing=0.012)
-    with stage_of(scenery, "auto") as stage:
+    with stage_of(scenery) as stage:
         pictures = [stage(moment) for moment in moments]
     write_gif(run.path("motion.gif"), pictures, rate=20.0)
 
@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import importlib.util
 import io
+import math
 import os
 import subprocess
 import sys
@@ -31,12 +32,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam import BALL, LAYER, STRIP, Modes, SpringMesh, solid_spring
+from studies.executors import say
 from studies.files import write_atomically
-
-__all__ = [
-    "NO_RENDERING", "Moment", "Picture", "Scenery", "can_encode", "can_render", "stage_of", "write_gif",
-    "write_mp4",
-]  # fmt: skip
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
@@ -64,9 +61,11 @@ ROWS = 120
 WALL = 0.004
 """Thickness of the plate [m]."""
 
-TOWARDS_VIEWER = (0.20, -0.35, 0.91)
-"""Shares of the directions along the spring, of the drive and across the strip: from above, a little from
-the side on which the plate is not, so that the gap is seen open."""
+DRIVE = np.array([0.0, 1.0, 0.0])
+"""Direction in which the base of every scene moves; x runs along the spring, z across the strip."""
+
+TOWARDS_VIEWER = np.array([0.20, -0.35, 0.91])
+"""From above, a little from the side on which the plate is not, so that the gap is seen open."""
 
 COLOURS = {STRIP: "#D0A62B", LAYER: "#4A4A4A", BALL: "#E9EDF2"}
 PLATE, TOUCHED = "#8C9AA8", "#FF7A1A"
@@ -84,19 +83,14 @@ class Moment:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Scenery:
-    """What is drawn: the solid spring at rest, the corners of the plate (None without one), and how it is
-    seen.
+    """What is drawn: the solid spring at rest, the plate (None without one), and what holds everything.
 
-    `corners` has shape (8, 3) [m]; `drive` and `along` are unit vectors; `centre` and `reach` [m] hold
-    everything.
+    `plate` and `room` are boxes, the lowest and the highest corner, shape (2, 3) [m].
     """
 
     mesh: SpringMesh
-    corners: Array | None
-    drive: Array
-    along: Array
-    centre: Array
-    reach: Array
+    plate: Array | None
+    room: Array
 
     @staticmethod
     def of(modes: Modes, *, ball_radius: float, swing: float, gap: float | None = None) -> Scenery:
@@ -105,42 +99,28 @@ class Scenery:
         rows = int(np.sum(mesh.part == STRIP))
         if rows < ROWS:
             mesh = solid_spring(modes, ball_radius=ball_radius, points_per_element=-(-ROWS // rows))
-        drive = np.array([*modes.discretization.spring.drive, 0.0])
-        along = np.array([drive[1], -drive[0], 0.0])
-        corners = None
+        held, plate = [mesh.points - swing * DRIVE, mesh.points + swing * DRIVE], None
         if gap is not None:
-            ball = mesh.points[np.unique(mesh.triangles)]
-            face = ball.mean(axis=0) + (ball_radius + gap) * drive
-            signs = np.array([(-1, 0, -1), (1, 0, -1), (1, 1, -1), (-1, 1, -1)])
-            signs = np.concatenate([signs, signs * (1, 1, -1)])
-            half = 2.0 * ball_radius
+            ball, half = mesh.points[np.unique(mesh.triangles)].mean(axis=0), 2.0 * ball_radius
+            plate = ball + (ball_radius + gap) * DRIVE + np.array([(-half, 0.0, -half), (half, WALL, half)])
             spring = modes.discretization.spring
-            beside = ball.mean(axis=0) - np.append(spring.centreline.points(spring.tip_at)[:2], 0.0)
-            if abs(beside @ along) > abs(beside @ drive):  # a ball beyond the end: the strip passes the plate
-                face = face + np.sign(beside @ along) * (half - 0.75 * ball_radius) * along
-            corners = face + signs * np.array([half, WALL, half]) @ np.array([along, drive, [0.0, 0.0, 1.0]])
-        cloud = mesh.points if corners is None else np.concatenate([mesh.points, corners])
-        low = np.minimum(cloud.min(axis=0), (mesh.points - swing * drive).min(axis=0))
-        high = np.maximum(cloud.max(axis=0), (mesh.points + swing * drive).max(axis=0))
-        return Scenery(mesh=mesh, corners=corners, drive=drive, along=along, centre=0.5 * (low + high),
-                       reach=high - low)  # fmt: skip
+            beside = ball[:2] - spring.centreline.points(spring.tip_at)[:2]
+            if abs(beside[0]) > abs(beside[1]):  # a ball beyond the end: the strip passes the plate
+                plate[:, 0] += math.copysign(half - 0.75 * ball_radius, beside[0])
+            held.append(plate)
+        cloud = np.concatenate(held)
+        return Scenery(mesh=mesh, plate=plate, room=np.array([cloud.min(axis=0), cloud.max(axis=0)]))
 
 
 Stage = Callable[[Moment], Picture]
 
 
 @contextmanager
-def stage_of(scenery: Scenery, renderer: str = "auto") -> Iterator[Stage]:
-    """What turns a moment into a picture: by "vtk", by "matplotlib", or "auto", the first that works.
-
-    Raises
-    ------
-    ValueError
-        For "vtk" where it cannot draw.
-    """
-    if renderer == "vtk" and not can_render():
-        raise ValueError(NO_RENDERING)
-    if renderer == "matplotlib" or not can_render():
+def stage_of(scenery: Scenery, *, simple: bool = False) -> Iterator[Stage]:
+    """What turns a moment into a picture: pyvista where it can draw, or else, and if `simple`, matplotlib."""
+    if simple or not can_render():
+        if not simple:
+            say(NO_RENDERING)
         yield _painter(scenery)
         return
     with _plotter(scenery) as stage:
@@ -181,16 +161,13 @@ def _plotter(scenery: Scenery) -> Iterator[Stage]:
     grid.cell_data["colour"] = colours
     plotter.add_mesh(grid, scalars="colour", rgb=True, ambient=0.4, diffuse=0.6)
     plate = None
-    if scenery.corners is not None:
-        faces = np.array([(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)])
-        box = pyvista.PolyData.from_regular_faces(scenery.corners, faces)
+    if scenery.plate is not None:
+        box = pyvista.Box(scenery.plate.T.ravel())
         plate = plotter.add_mesh(box, color=PLATE, ambient=0.4, diffuse=0.6)
-    towards = TOWARDS_VIEWER @ np.array([scenery.along, scenery.drive, [0.0, 0.0, 1.0]])
-    camera = plotter.camera
-    camera.position, camera.focal_point = tuple(scenery.centre + towards), tuple(scenery.centre)
-    camera.up, camera.parallel_projection = tuple(scenery.drive), True
-    wide, tall = (abs(float(scenery.reach @ np.abs(axis))) for axis in (scenery.along, scenery.drive))
-    camera.parallel_scale = 0.58 * max(tall + 0.4 * scenery.reach[2], wide * HEIGHT / WIDTH)
+    camera, centre, reach = plotter.camera, scenery.room.mean(axis=0), np.ptp(scenery.room, axis=0)
+    camera.position, camera.focal_point = tuple(centre + TOWARDS_VIEWER), tuple(centre)
+    camera.up, camera.parallel_projection = tuple(DRIVE), True
+    camera.parallel_scale = 0.58 * max(reach[1] + 0.4 * reach[2], reach[0] * HEIGHT / WIDTH)
     plotter.show(auto_close=False)
 
     def picture(moment: Moment) -> Picture:
@@ -210,35 +187,27 @@ def _painter(scenery: Scenery) -> Stage:
     """Pictures by matplotlib: the strip in its plane, ball and plate as outlines."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
+    from matplotlib.patches import Rectangle
 
     mesh, dots = scenery.mesh, 100
     figure = Figure(figsize=(WIDTH / dots, HEIGHT / dots), dpi=dots)
     canvas, axes = FigureCanvasAgg(figure), figure.add_axes((0.0, 0.0, 1.0, 1.0))
-    plane = np.array([scenery.along, scenery.drive])[:, :2].T
     rows = mesh.hexahedra[mesh.part[: len(mesh.hexahedra)] == STRIP]
     ball = np.unique(mesh.triangles)
-
-    def outline(points: Array) -> Array:
-        line: Array = points[rows].mean(axis=1)[:, :2] @ plane
-        return line
-
-    (strip,) = axes.plot(*outline(mesh.points).T, color=COLOURS[STRIP], linewidth=2.5)
-    (spot,) = axes.plot(*(mesh.points[ball].mean(axis=0)[:2] @ plane), "o", color="0.5", markersize=9.0)
-    plate = None
-    if scenery.corners is not None:
-        plate = axes.fill(*(scenery.corners[:4, :2] @ plane).T, color=PLATE)[0]
-    centre, reach = scenery.centre[:2] @ plane, np.abs(scenery.reach[:2] @ plane)
+    (strip,) = axes.plot([], [], color=COLOURS[STRIP], linewidth=2.5)
+    (spot,) = axes.plot([], [], "o", color="0.5", markersize=9.0)
+    low, high = scenery.plate if scenery.plate is not None else np.zeros((2, 3))
+    plate = axes.add_patch(Rectangle(low[:2], *(high - low)[:2], visible=scenery.plate is not None))
+    centre, reach = scenery.room.mean(axis=0)[:2], np.ptp(scenery.room, axis=0)
     half = 0.56 * max(reach[0] / WIDTH, reach[1] / HEIGHT) * np.array([WIDTH, HEIGHT])
     axes.set(xlim=(centre[0] - half[0], centre[0] + half[0]), ylim=(centre[1] - half[1], centre[1] + half[1]))
     axes.axis("off")
 
     def picture(moment: Moment) -> Picture:
         points = mesh.points + moment.points + moment.base
-        strip.set_data(*outline(points).T)
-        spot.set_data(*(points[ball].mean(axis=0)[:2] @ plane)[:, None])
-        if plate is not None and scenery.corners is not None:
-            plate.set_xy((scenery.corners[:4, :2] + moment.base[:2]) @ plane)
-            plate.set_facecolor(TOUCHED if moment.touched else PLATE)
+        strip.set_data(*points[rows].mean(axis=1)[:, :2].T)
+        spot.set_data(*points[ball].mean(axis=0)[:2, None])
+        plate.set(xy=(low + moment.base)[:2], color=TOUCHED if moment.touched else PLATE)
         canvas.draw()
         return np.asarray(canvas.buffer_rgba(), dtype=np.uint8)[..., :3].copy()
 

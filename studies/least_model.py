@@ -10,15 +10,14 @@ reference by no more than the tolerances:
     kick           of the first collision at excess 0.0065, 0.013 and 0.026, middle drive frequency; absolute
     restitution    of these collisions; absolute
     born_period    period of the orbit settled at excess 1e-3, every drive frequency; whether it differs (0)
-    fold           F/F_g - 1 at which p_m ends, every drive frequency; relative to it, or to the letter's
-                   amplitude stability of 2.5e-4 where it is smaller
+    fold           F/F_g - 1 at the fold of p_m, every drive frequency; relative to it, or to the letter's
+                   amplitude stability of 2.5e-4 where it is smaller; infinite if another p_m is born
     fold_middle    the same at the middle drive frequency
     tip_trace      tip over one period of the orbit settled at excess 0.013, middle drive frequency; root
                    mean square of the difference over the gap
 
 Folds are those of the collision as a kick of all modes (``contact.orbits.KickFamily``), which has them to
-0.2 % (median; 1 % at worst) at a hundredth of the price of following the orbits; those of fewer modes are
-looked for within a factor e of the approach velocity at the fold of the reference. Modes left out act on a
+0.2 % (median; 1 % at worst) at a hundredth of the price of following the orbits. Modes left out act on a
 collision through their compliance, sum phi_k^2/omega_k^2 over the modes beyond, so that errors fall steadily
 along the ladder: the least number is found by bisection, and the next one is asked as well, lest errors
 cancel by chance. A quantity that the reference does not have at a frequency (no orbit, no fold) asks nothing
@@ -30,24 +29,21 @@ from __future__ import annotations
 import math
 from bisect import bisect
 from collections.abc import Callable, Hashable, Iterator, Mapping
-from dataclasses import dataclass, field
-from functools import cache
-from typing import Generic, TypeVar
+from functools import cache, partial
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
 
 from beam import ModalModel
 from contact import ContactError, ImpactOscillator, StroboscopicMap, first_collision, simulate
-from contact.orbits import KickFamily, Settled, SingleImpactOrbit, born
+from contact.orbits import KickFamily, born, born_period
 from studies import letter
 from studies.scene import Scene, SceneError, beam_at, model_of
 
 __all__ = [
-    "COLLISIONS", "LADDER", "QUANTITIES", "REFERENCE", "Answer", "Models", "Question", "Values", "collisions",
-    "error_of_fold", "error_of_trace", "largest_error", "least_modes", "middle_of", "questions", "settled",
-    "tip_trace",
+    "COLLISIONS", "LADDER", "QUANTITIES", "REFERENCE", "Answer", "Ask", "At", "Distance", "collisions",
+    "distances", "error_of_fold", "largest_error", "least_modes", "middle_of", "questions", "reference_of",
 ]  # fmt: skip
 
 REFERENCE = 40
@@ -56,74 +52,45 @@ REFERENCE = 40
 LADDER = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 15, 18, 21, 25, 30)
 """Numbers of modes that are tried."""
 
-BORN_EXCESS, TRACE_EXCESS = 1e-3, letter.TIME_TRACE_EXCESS
+TRACE_EXCESS = letter.TIME_TRACE_EXCESS
 COLLISIONS = (0.5 * TRACE_EXCESS, TRACE_EXCESS, 2.0 * TRACE_EXCESS)
 """Excesses of the collisions that are asked for: three, lest errors that cancel at one pass for accuracy."""
-
-MOST_CYCLES = 4000
-"""Bound of a transient [drive periods]: the slowest at the letter's frequencies takes about 1000."""
 
 SAMPLES = 256
 """Samples of a trace in a drive period."""
 
 Values = NDArray[np.float64]
 Answer = Values | None
+At = Callable[[float], ImpactOscillator]
+"""The oscillator of a model at a drive frequency [Hz]."""
 Distance = Callable[[Values, Values], float]
+Ask = Callable[[At, float], Answer]
+Off = Callable[[int], float]
 Choice = TypeVar("Choice", bound=Hashable)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Question(Generic[Choice]):
-    """What is asked of models, here numbers of modes, and how far their answers may be from the reference's.
+def distances(ask: Callable[[Choice], Answer], distance: Distance) -> Callable[[Choice, Choice], float]:
+    """How far, from the answer of a reference, that of a model is, here of numbers of modes.
 
-    `ask` gives None, or raises ContactError or ValueError, where a model has no answer.
+    Infinite where one has no answer: `ask`, called once for each, gives None or raises ContactError or
+    ValueError.
     """
 
-    words: str
-    ask: Callable[[Choice], Answer]
-    distance: Distance
-    reference: Choice
-    tolerance: float
-    answers: dict[Choice, Answer] = field(default_factory=dict, repr=False)
+    @cache
+    def answer(choice: Choice) -> Answer:
+        try:
+            return ask(choice)
+        except (ContactError, ValueError):  # such as a drive above all modes
+            return None
 
-    def answer(self, choice: Choice) -> Answer:
-        """What a model says, computed once; None if it has no answer."""
-        if choice not in self.answers:
-            try:
-                self.answers[choice] = self.ask(choice)
-            except (ContactError, ValueError):  # such as a drive above all modes
-                self.answers[choice] = None
-        return self.answers[choice]
+    def off(reference: Choice, choice: Choice) -> float:
+        sharp, found = answer(reference), answer(choice)
+        return math.inf if found is None or sharp is None else distance(found, sharp)
 
-    def off(self, choice: Choice, reference: Choice | None = None) -> float:
-        """Distance of a model from the reference, or from another; infinite if one has no answer."""
-        found, sharp = self.answer(choice), self.answer(self.reference if reference is None else reference)
-        return math.inf if found is None or sharp is None else self.distance(found, sharp)
+    return off
 
 
-class Models:
-    """Truncations of the reference of one scene, and what several questions share."""
-
-    def __init__(self, scene: Scene) -> None:
-        self.scene = scene
-        self.whole = _reference(scene)
-        self.period, self.fold = cache(self._period), cache(self._fold)
-
-    def oscillator(self, modes: int, frequency: float) -> ImpactOscillator:
-        """The spring with so many modes, 1e-3 above grazing."""
-        return beam_at(self.scene, frequency, self.whole.truncated(modes)).with_excess(BORN_EXCESS)
-
-    def _period(self, frequency: float) -> int:
-        """The born period of the reference."""
-        return settled(self.oscillator(self.whole.n_modes, frequency)).period
-
-    def _fold(self, frequency: float) -> SingleImpactOrbit | None:
-        """The fold of the reference."""
-        oscillator, period = self.oscillator(self.whole.n_modes, frequency), self.period(frequency)
-        return KickFamily(oscillator=oscillator, period=period).fold() if period > 1 else None
-
-
-def _reference(scene: Scene) -> ModalModel:
+def reference_of(scene: Scene) -> ModalModel:
     """The spring with as many coupled modes as `REFERENCE`, or as its mesh or its measured rates have."""
     most = REFERENCE
     if scene.damping.kind == "measured":
@@ -143,11 +110,6 @@ def middle_of(scene: Scene) -> float:
     return drives[(len(drives) - 1) // 2]
 
 
-def settled(oscillator: ImpactOscillator, excess: float = BORN_EXCESS) -> Settled:
-    """The orbit settled from below grazing at this excess."""
-    return born(StroboscopicMap(oscillator=oscillator), excess, most_cycles=MOST_CYCLES)
-
-
 def collisions(oscillator: ImpactOscillator, name: str) -> Answer:
     """`restitution`, `delay` or `kick` of the first collision at each of `COLLISIONS`."""
     values = [getattr(first_collision(oscillator.with_excess(excess)), name) for excess in COLLISIONS]
@@ -156,32 +118,21 @@ def collisions(oscillator: ImpactOscillator, name: str) -> Answer:
 
 def tip_trace(oscillator: ImpactOscillator) -> Answer:
     """Tip over gap during one period of the orbit settled at excess 0.013; None without an orbit."""
-    orbit, driven = settled(oscillator, TRACE_EXCESS), oscillator.with_excess(TRACE_EXCESS)
+    orbit = born(StroboscopicMap(oscillator=oscillator), TRACE_EXCESS)
+    driven = oscillator.with_excess(TRACE_EXCESS)
     if orbit.period == 0 or orbit.impacts == 0:
         return None
     times = orbit.end.time + np.arange(orbit.period * SAMPLES) / SAMPLES * driven.period
     run = simulate(driven, orbit.end, periods=orbit.period, times=times)
-    trace: Values = run.displacement @ driven.model.phi / driven.stop.gap
-    return trace
+    return driven.motion().tip(run.displacement.T) / driven.stop.gap
 
 
-def _fold(models: Models, modes: int, frequency: float) -> Answer:
-    sharp = models.fold(frequency)
-    if sharp is None or modes == models.whole.n_modes:
-        return None if sharp is None else np.array([sharp.excess])
-    family = KickFamily(oscillator=models.oscillator(modes, frequency), period=sharp.period)
-    middle = math.log(sharp.kick.speed)
-    best = minimize_scalar(
-        lambda x: family.orbit(math.exp(x)).excess, bounds=(middle - 1.0, middle + 1.0), method="bounded",
-        options={"xatol": 1e-3},
-    )  # fmt: skip
-    return None if abs(best.x - middle) > 0.99 else np.array([float(best.fun)])
-
-
-def _born_period(models: Models, modes: int, frequency: float) -> Answer:
-    whole = modes == models.whole.n_modes
-    found = models.period(frequency) if whole else settled(models.oscillator(modes, frequency)).period
-    return np.array([float(found)])
+def _fold(at: At, frequency: float) -> Answer:
+    """Excess of the fold, and m."""
+    oscillator = at(frequency)
+    period = born_period(StroboscopicMap(oscillator=oscillator))
+    end = KickFamily(oscillator=oscillator, period=period).fold() if period > 1 else None
+    return None if end is None else np.array([end.excess, float(period)])
 
 
 def error_of_trace(answer: Values, reference: Values) -> float:
@@ -193,7 +144,10 @@ def error_of_trace(answer: Values, reference: Values) -> float:
 
 
 def error_of_fold(answer: Values, reference: Values) -> float:
-    """Relative to the fold, or to the letter's amplitude stability where it is smaller."""
+    """Relative to the fold, or to the letter's amplitude stability where it is smaller; infinite if m
+    differs."""
+    if answer[1] != reference[1]:
+        return math.inf
     return float(abs(answer[0] - reference[0]) / max(abs(reference[0]), letter.AMPLITUDE_STABILITY))
 
 
@@ -202,35 +156,35 @@ def largest_error(answer: Values, reference: Values) -> float:
     return float(np.max(np.abs(answer - reference)))
 
 
-def _collision(name: str) -> Callable[[Models, int, float], Answer]:
-    return lambda models, modes, frequency: collisions(models.oscillator(modes, frequency), name)
-
-
-QUANTITIES: Mapping[str, tuple[Callable[[Models, int, float], Answer], Distance, bool]] = {
-    "kick": (_collision("kick"), largest_error, False),
-    "restitution": (_collision("restitution"), largest_error, False),
+QUANTITIES: Mapping[str, tuple[Ask, Distance, bool]] = {
+    "kick": (lambda at, f: collisions(at(f), "kick"), largest_error, False),
+    "restitution": (lambda at, f: collisions(at(f), "restitution"), largest_error, False),
     "fold": (_fold, error_of_fold, True),
     "fold_middle": (_fold, error_of_fold, False),
-    "tip_trace": (lambda models, n, f: tip_trace(models.oscillator(n, f)), error_of_trace, False),
-    "born_period": (_born_period, largest_error, True),
-}
+    "tip_trace": (lambda at, f: tip_trace(at(f)), error_of_trace, False),
+    "born_period": (
+        lambda at, f: np.array([float(born_period(StroboscopicMap(oscillator=at(f))))]), largest_error, True,
+    ),
+}  # fmt: skip
 """Name -> answer, distance, whether it is asked at every drive frequency. Born periods are asked last:
 transients are long where modes are missing."""
 
 
-def questions(models: Models, needs: Mapping[str, float]) -> Iterator[Question[int]]:
-    """What the needs come to, where the reference has an answer."""
-    scene = models.scene
+def questions(
+    scene: Scene, needs: Mapping[str, float], whole: ModalModel
+) -> Iterator[tuple[str, float, Off]]:
+    """What the needs come to, where the reference, the model `whole`, has an answer: in words, the tolerance,
+    and the distance of a number of modes."""
     for quantity in sorted(needs, key=list(QUANTITIES).index):
         ask, distance, everywhere = QUANTITIES[quantity]
         for frequency in sorted(scene.drive.frequencies_hz) if everywhere else [middle_of(scene)]:
-            question = Question(
-                words=f"{quantity.removesuffix('_middle')} at {frequency:g} Hz", distance=distance,
-                ask=lambda modes, ask=ask, frequency=frequency: ask(models, modes, frequency),  # type: ignore[misc]
-                reference=models.whole.n_modes, tolerance=needs[quantity],
-            )  # fmt: skip
-            if question.answer(question.reference) is not None:
-                yield question
+
+            def answer(modes: int, ask: Ask = ask, frequency: float = frequency) -> Answer:
+                return ask(lambda f: beam_at(scene, f, whole.truncated(modes)), frequency)
+
+            off = partial(distances(answer, distance), whole.n_modes)
+            if math.isfinite(off(whole.n_modes)):
+                yield f"{quantity.removesuffix('_middle')} at {frequency:g} Hz", needs[quantity], off
 
 
 def least_modes(scene: Scene, needs: Mapping[str, float]) -> tuple[Scene, str]:
@@ -253,22 +207,22 @@ def least_modes(scene: Scene, needs: Mapping[str, float]) -> tuple[Scene, str]:
     least = max(numbers, default=1)
     reason = f"frequency {least}" if numbers else "the least there is"
     if others:
-        models = Models(scene)
-        sharp = models.whole.n_modes
+        whole = reference_of(scene)
+        sharp = whole.n_modes
         rungs = sorted({*(n for n in LADDER if least < n < sharp), min(least, sharp), sharp})
         low, worst = 0, None
-        for question in questions(models, others):
+        for words, tolerance, off in questions(scene, others, whole):
 
-            def enough(place: int, question: Question[int] = question) -> bool:
+            def enough(place: int, off: Off = off, tolerance: float = tolerance) -> bool:
                 """Whether the rung with this number and the next one are near enough."""
-                return all(question.off(n) <= question.tolerance for n in rungs[place : place + 2])
+                return all(off(n) <= tolerance for n in rungs[place : place + 2])
 
             if not enough(low):
                 # the first rung above `low` that is good enough; the reference itself is
-                low, worst = bisect(range(low, len(rungs)), False, key=enough) + low, question
+                low, worst = bisect(range(low, len(rungs)), False, key=enough) + low, (words, off)
         least = rungs[low]
         if least == sharp:
-            reason = f"all that were tried; fewer do not give {worst.words if worst else 'what is asked'}"
+            reason = f"all that were tried; fewer do not give {worst[0] if worst else 'what is asked'}"
         elif worst is not None:
-            reason = f"{worst.words}, good to {worst.off(least):.1e} against {sharp} modes"
+            reason = f"{worst[0]}, good to {worst[1](least):.1e} against {sharp} modes"
     return scene.replace({"modes.count": least}, provenance="least"), f"modes kept: {least} ({reason})"

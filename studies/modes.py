@@ -6,8 +6,7 @@ move it along the legs at most, and take no part in the impacts.
     K x = omega^2 M x      for the elements of the strip, shapes of unit modal mass
 
 Of each mode the impacts see the frequency f = omega/(2 pi) [Hz], the decay rate c [1/s], the tip value phi
-[kg^(-1/2)] and the participation Gamma [kg^(1/2)] in a motion of the base. For straight strips of one
-section the frequencies are set beside the zeros of the frequency equation (beam.exact_modes).
+[kg^(-1/2)] and the participation Gamma [kg^(1/2)] in a motion of the base.
 
 Run:     python -m studies.modes [--mode 3] [--frames 24]     10 s
 Writes:  modes.csv (the table), modes.npz (shapes along the strip), modes.png; for ParaView modes.vtu (Warp By
@@ -23,18 +22,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 
-from beam import LeafSpring, Modes, UniformBeam, exact_modes, write_mode_motion, write_modes
+from beam import Modes, write_mode_motion, write_modes
 from studies import letter
-from studies.film import NO_RENDERING, Moment, Scenery, can_render, stage_of, write_gif
+from studies.film import Moment, Scenery, stage_of, write_gif
 from studies.run import Run, study
 from studies.scene import Scene, SceneError, damping_of, free_period, model_of, modes_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-__all__ = ["Row", "exact_frequencies", "modes", "rows_of"]
 
 FILMED, DRAWN = 6, 8
 """Modes with a film, and in the figure; lowest first."""
@@ -48,11 +44,10 @@ LARGEST = 0.05
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
-    """One mode; `exact_hz` from the frequency equation, None where that does not apply."""
+    """One mode."""
 
     mode: int
     frequency_hz: float
-    exact_hz: float | None
     decay_rate_per_s: float
     tip_value: float
     participation: float
@@ -73,7 +68,7 @@ def modes(
     rows = rows_of(scene, solved)
     if mode > len(rows):
         raise SceneError(f"--mode must be at most {len(rows)}, the modes of this scene, not {mode}")
-    run.table("modes", rows, "Natural modes: f, exact f, c, phi [kg^(-1/2)], Gamma [kg^(1/2)].")
+    run.table("modes", rows, "Natural modes: f, c, phi [kg^(-1/2)], Gamma [kg^(1/2)].")
     if solved is None:
         run.say("measured modes have no shapes: nothing to draw or to look at in ParaView")
     else:
@@ -85,43 +80,18 @@ def modes(
 
 def rows_of(scene: Scene, solved: Modes | None) -> list[Row]:
     """The table; without shapes, of the modal data."""
-    known = None
     if solved is None:
         model = model_of(scene)
         coupled = (model.phi != 0.0) | (model.participation != 0.0)
         columns = (model.frequencies_hz, model.decay_rate, model.phi, model.participation, coupled)
     else:
-        known = exact_frequencies(solved.discretization.spring, solved.omega.size)
         rates = damping_of(scene).decay_rates(solved)
         columns = (solved.frequencies_hz, rates, solved.phi, solved.participation, solved.coupled)
-    exact = [None] * columns[0].size if known is None else known.tolist()
     return [
-        Row(mode=number, frequency_hz=float(f), exact_hz=at, decay_rate_per_s=float(c), tip_value=float(phi),
+        Row(mode=number, frequency_hz=float(f), decay_rate_per_s=float(c), tip_value=float(phi),
             participation=float(gamma), coupled=bool(moves))
-        for number, (at, f, c, phi, gamma, moves) in enumerate(zip(exact, *columns, strict=True), start=1)
+        for number, (f, c, phi, gamma, moves) in enumerate(zip(*columns, strict=True), start=1)
     ]  # fmt: skip
-
-
-def exact_frequencies(spring: LeafSpring, count: int) -> NDArray[np.float64] | None:
-    """Frequencies of the first `count` modes from the frequency equation [Hz]; None where it does not apply.
-
-    It applies to a straight strip of one section that carries its tip at a free far end, or a tip without
-    mass anywhere. Rigid motions have 0.
-    """
-    sections, tip, line = set(spring.sections), spring.tip, spring.centreline
-    at_free_end = spring.supports[1] == "free" and spring.tip_at >= line.length * (1.0 - 1e-12)
-    massless = tip.mass == tip.rotary_inertia == 0.0
-    if not line.is_straight or len(sections) > 1 or not (at_free_end or massless):
-        return None
-    section = spring.sections[0]
-    uniform = UniformBeam(
-        length=line.length, bending_stiffness=section.bending_stiffness, tip_mass=tip.mass,
-        mass_per_length=section.mass_per_length, supports=spring.supports,
-        tip_rotary_inertia=tip.rotary_inertia,
-    )  # fmt: skip
-    rigid = np.zeros(spring.rigid_motions)
-    bent = exact_modes(uniform, max(1, count - rigid.size)).omega / (2.0 * math.pi)
-    return np.concatenate([rigid, bent])[:count]
 
 
 def largest_of(solved: Modes) -> float:
@@ -144,16 +114,14 @@ def write_shapes(scene: Scene, run: Run, solved: Modes, mode: int, frames: int) 
     )
     run.path("motion_frames")
     caption = "Shapes in the plane of the strip, enlarged; grey: at rest, dashed: half a period later."
-    run.figure("modes", draw(solved, radius), caption)
+    run.figure("modes", draw(solved), caption)
 
 
 def write_films(run: Run, solved: Modes, radius: float, count: int, frames: int) -> None:
     """One period of each of the first modes, in space, repeated without a seam."""
     largest = largest_of(solved)
     scenery = Scenery.of(solved, ball_radius=radius, swing=largest)
-    if not run.quick and not can_render():
-        run.say(NO_RENDERING)
-    with stage_of(scenery, "matplotlib" if run.quick else "auto") as stage:
+    with stage_of(scenery, simple=run.quick) as stage:
         for number in run.track(range(count), "films of modes"):
             shape = scenery.mesh.normalised(largest)[number]
             phases = 2.0 * math.pi * np.arange(frames) / frames
@@ -169,44 +137,39 @@ def judge(scene: Scene, run: Run) -> None:
     run.verdict("free_period", verdict, found=f"{1e3 * period:.2f} ms")  # type: ignore[arg-type]
 
 
-def draw(solved: Modes, ball_radius: float) -> Figure:
+def draw(solved: Modes) -> Figure:
     """The first modes in the plane of the strip."""
     from studies.plotting import PAGE, PALETTE, label, new_figure  # matplotlib is slow to import
 
     along = solved.displacement_along(2)
     points, count = 1e3 * along.points, min(DRAWN, solved.omega.size)
-    extent = np.ptp(points[:, :2], axis=0)
-    swing = LARGEST * extent.max()
     ball = int(np.argmin(np.abs(along.s - solved.discretization.spring.tip_at)))
-    margin, columns = 1.2 * swing + 2e3 * ball_radius, min(2, count)
-    rows = math.ceil(count / columns)
-    tall = (extent[1] + 2.0 * margin) / (extent[0] + 2.0 * margin)
-    height = 0.014 + rows * (0.007 + tall * (PAGE - 0.014) / columns)
+    swing, columns = 1e3 * largest_of(solved), min(2, count)
+    rows, extent = math.ceil(count / columns), np.ptp(points, axis=0) + 3.0 * swing
+    height = 0.014 + rows * (0.007 + extent[1] / extent[0] * (PAGE - 0.014) / columns)
     shared = {"sharex": True, "sharey": True, "squeeze": False}
     figure, axes = new_figure(rows, columns, width=PAGE, height=height, **shared)
-    for number, axis in enumerate(axes.flat):
-        if number >= count:
-            axis.set_visible(False)
-            continue
+    for axis in axes.flat[count:]:
+        axis.set_visible(False)
+    for number, axis in enumerate(axes.flat[:count]):
         shape = along.displacement[number]
         step = shape * (swing / np.linalg.norm(shape, axis=1).max())
         axis.plot(points[:, 0], points[:, 1], color="0.75", linewidth=0.8)
         strong = PALETTE[1 if solved.coupled[number] else 2]
-        for sign, style, colour in ((-1.0, (0, (4, 2)), "0.45"), (1.0, "-", strong)):
-            place, face = points + sign * step, colour if sign > 0 else "white"
+        for sign, style, colour, face in ((-1.0, (0, (4, 2)), "0.45", "white"), (1.0, "-", strong, strong)):
+            place = points + sign * step
             axis.plot(place[:, 0], place[:, 1], color=colour, linestyle=style, linewidth=1.1)
             axis.plot(*place[ball, :2], "o", color=colour, markersize=4.5, markerfacecolor=face)
         kind = "" if solved.coupled[number] else ", uncoupled"
         words = f"mode {number + 1}: {solved.frequencies_hz[number]:.2f} Hz{kind}"
         axis.set_title(words, loc="left", pad=2.0, fontsize=8.0)
         axis.set_aspect("equal")
-        axis.set_xlim(points[:, 0].min() - 0.3 * margin, points[:, 0].max() + margin)
-        axis.set_ylim(points[:, 1].min() - margin, points[:, 1].max() + margin)
-        if number % columns == 0:
-            label(axis.yaxis, "y", "mm")
-        if number + columns >= count:
-            label(axis.xaxis, "x", "mm")
-            axis.tick_params(labelbottom=True)
+        axis.margins(0.05, 0.2)
+    for axis in axes[:, 0]:
+        label(axis.yaxis, "y", "mm")
+    for axis in axes.flat[:count][-columns:]:
+        label(axis.xaxis, "x", "mm")
+        axis.tick_params(labelbottom=True)
     return figure
 
 

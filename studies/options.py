@@ -14,21 +14,16 @@ import typing
 from collections.abc import Callable, Mapping, Sequence
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Annotated, Literal, NoReturn, Union, get_args, get_origin
+from typing import Annotated, Literal, NoReturn, TextIO, Union, get_args, get_origin
 
-from studies.files import SCHEMA, json_text
-
-__all__ = ["Parser", "WrongUse", "add_options", "parser_of", "tool"]
+from studies.files import SCHEMA
+from studies.programs import DONE, perform, tell
 
 Answer = Mapping[str, object]
 
 
-class WrongUse(ValueError):
-    """The arguments make no sense; the message is one sentence."""
-
-
 class Parser(argparse.ArgumentParser):
-    """A parser that refuses with `WrongUse` and names the nearest option to an unknown one."""
+    """A parser that refuses with a ValueError and names the nearest option to an unknown one."""
 
     def __init__(self, command: str, account: str) -> None:
         super().__init__(
@@ -39,11 +34,12 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Refuse."""
-        raise WrongUse(f"{message} (--help lists the options)")
+        raise ValueError(f"{message} (--help lists the options)")
 
-    def read(self, argv: Sequence[str]) -> argparse.Namespace:
-        """The arguments."""
-        arguments, rest = self.parse_known_args(argv)
+    def read(self, argv: Sequence[str], output: TextIO) -> argparse.Namespace:
+        """The arguments; help goes to `output`."""
+        with contextlib.redirect_stdout(output):
+            arguments, rest = self.parse_known_args(argv)
         for word in rest:
             nearest = get_close_matches(word.partition("=")[0], self._option_string_actions, n=1)
             self.error(f"there is no option {word}" + (f"; did you mean {nearest[0]}?" if nearest else ""))
@@ -60,40 +56,30 @@ def parser_of(command: str, account: str) -> Parser:
     scene("--set", action="append", default=[], metavar="section.key=value", dest="overrides",
           help="change one key of the scene; may be repeated")  # fmt: skip
     scene("--dump-scene", action="store_true", help="print every key with unit, default and provenance")
-    runs, cores = (
-        parser.add_argument_group("how it runs, and where the results go").add_argument,
-        os.cpu_count(),
-    )
+    runs = parser.add_argument_group("how it runs, and where the results go").add_argument
+    cores = os.cpu_count() or 1
     runs("--quick", action="store_true", help="a small form of the study, for a first look")
-    runs(
-        "--workers",
-        type=_count,
-        default=cores or 1,
-        metavar="N",
-        help="threads or processes (default: cores)",
-    )
+    runs("--workers", type=_count, default=cores, metavar="N", help="threads or processes (default: cores)")
     runs("--executor", default="", metavar="URL", help="threads (default), processes or dask://host:port")
     runs("--out", default="results", metavar="DIR", help="folder in which the study makes its own")
     return parser
 
 
-def tool(parser: Parser, argv: Sequence[str] | None, perform: Callable[..., tuple[str, Answer]]) -> int:
-    """Run a program without a scene: one sentence to a person, --json, exit code 0, or 2 for wrong use.
-
-    `perform` takes the arguments and returns the sentence and what --json gives.
-    """
+def tool(parser: Parser, argv: Sequence[str] | None, work: Callable[..., tuple[str, Answer]]) -> int:
+    """Run a program without a scene: `work` takes the arguments, returns a sentence and what --json gives."""
     arguments = list(sys.argv[1:] if argv is None else argv)
-    try:
-        sentence, done = perform(parser.read(arguments))
-        answer = {"status": "done", **done, "exit_code": 0}
-    except SystemExit:  # --help
-        return 0
-    except (ValueError, OSError) as error:
-        sentence, answer = str(error), {"status": "refused", "error": str(error), "exit_code": 2}
-    print(f"{parser.prog}: {sentence}", file=sys.stderr)
-    if "--json" in arguments:
-        print(json_text({"schema": SCHEMA, "study": parser.prog.rpartition(".")[2], **answer}))
-    return 2 if answer["status"] == "refused" else 0
+    name = parser.prog.rpartition(".")[2]
+
+    def answered(output: TextIO) -> int:
+        given = parser.read(arguments, output)
+        sentence, done = work(given)
+        print(f"{parser.prog}: {sentence}", file=sys.stderr)
+        if given.json:
+            answer = {"schema": SCHEMA, "study": name, "status": "done", **done, "exit_code": DONE}
+            tell(answer, output)
+        return DONE
+
+    return perform(name, parser.prog, arguments, answered)
 
 
 def add_options(parser: Parser, function: Callable[..., object]) -> dict[str, object]:

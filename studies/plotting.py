@@ -180,30 +180,23 @@ def legend_below(figure: Figure, axes: Iterable[Axes], columns: int, **looks: An
     figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=columns, **looks)
 
 
-def mark_letter(
-    axis: Axis, value: float, error: float = 0.0, *, words: str = "letter", along: float = 0.99,
-    turn: bool = False, level: bool = False,
-) -> None:  # fmt: skip
-    """A value that the letter prints, across the panel with its error as a band, and the words beside it.
+def mark_letter(axis: Axis, value: float, *, words: str = "letter", along: float = 0.99) -> None:
+    """A value that the letter prints, as a line across the panel, and the words beside it.
 
-    The words stand at `along` of the line, from 0 to 1, above it (left of an upright one); `turn` puts them
-    on the other side, and `level` keeps them horizontal at an upright line.
+    The words stand at `along` of the line, from 0 to 1, above it or right of an upright one.
     """
-    axes, upright, end = axis.axes, isinstance(axis, XAxis), along > 0.5
-    line, span = (axes.axvline, axes.axvspan) if upright else (axes.axhline, axes.axhspan)
-    line(value, **LETTER)
-    if error > 0.0:
-        span(value - error, value + error, color="0.85", linewidth=0, zorder=0)
-    shift = -2.0 if upright != turn else 2.0
-    if upright:
-        place, offset, across = (value, along), (shift, 0.0), axes.get_xaxis_transform()
-        sides = ("left" if turn else "right", "top" if end else "bottom")
+    axes, end = axis.axes, along > 0.5
+    if isinstance(axis, XAxis):
+        axes.axvline(value, **LETTER)
+        place, offset, across = (value, along), (2.0, 0.0), axes.get_xaxis_transform()
+        sides = ("left", "top" if end else "bottom")
     else:
-        place, offset, across = (along, value), (0.0, shift), axes.get_yaxis_transform()
-        sides = ("right" if end else "left", "top" if turn else "bottom")
+        axes.axhline(value, **LETTER)
+        place, offset, across = (along, value), (0.0, 2.0), axes.get_yaxis_transform()
+        sides = ("right" if end else "left", "bottom")
     axes.annotate(
         words, place, xycoords=across, xytext=offset, textcoords="offset points", ha=sides[0], va=sides[1],
-        rotation=90.0 if upright and not level else 0.0, fontsize=NOTE, color=LETTER["color"],
+        fontsize=NOTE, color=LETTER["color"],
     )  # fmt: skip
 
 

@@ -1,15 +1,30 @@
-"""The studies as programs: their names, what they say of themselves, the nearest to a misspelt one.
+"""The studies as programs: their names, what they say of themselves, how one refuses.
 
 A study is a file of this folder, or a folder with a `__main__`, that runs: nothing lists them. Nothing of
 this imports a study.
+
+Exit codes: 0 done; 2 wrong use, told in one sentence; 3 finished with failed cells; 130 interrupted. With
+--json standard output carries one JSON object and nothing else; everything for a person goes to standard
+error. GRAZING_SPRING_TRACEBACK=1 shows where a refused input was noticed.
 """
 
 from __future__ import annotations
 
 import ast
+import contextlib
+import os
 import re
+import sys
+import traceback
+from collections.abc import Callable, Iterator, Sequence
 from difflib import get_close_matches
 from pathlib import Path
+from typing import TextIO
+
+from studies.files import SCHEMA, json_text
+
+DONE, WRONG_USE, FAILED_CELLS, INTERRUPTED = 0, 2, 3, 130
+TRACEBACK = "GRAZING_SPRING_TRACEBACK"
 
 FOLDER = Path(__file__).resolve().parent
 PROGRAM = re.compile(r'^(if __name__ == "__main__":|# %%)', re.MULTILINE)
@@ -50,12 +65,60 @@ def unknown(name: str) -> str:
     return f"there is no study {name}; the studies are {', '.join(names())}"
 
 
-def wrong_name(arguments: list[str]) -> str | None:
+def wrong_name(arguments: Sequence[str]) -> str | None:
     """The NAME in `-m studies.NAME` among the arguments of the interpreter, if there is no such module."""
-    for word, following in zip(arguments, [*arguments[1:], ""], strict=True):
-        module = following if word == "-m" else word.removeprefix("-m") if word.startswith("-m") else ""
-        if module.startswith("studies."):
-            name = module.removeprefix("studies.").split(".")[0]
-            there = (FOLDER / name).is_dir() or (FOLDER / f"{name}.py").exists()
-            return None if there else name
-    return None
+    found = re.search(r"(?:^| )-m ?studies\.(\w+)", " ".join(arguments))
+    if found is None or (FOLDER / found[1]).is_dir() or (FOLDER / f"{found[1]}.py").exists():
+        return None
+    return found[1]
+
+
+def perform(study: str, command: str, arguments: Sequence[str], work: Callable[[TextIO], int]) -> int:
+    """The exit code of `work`, which prints its answer to the stream it is given; wrong use is told here."""
+    with _clean_output() as output:
+        try:
+            return work(output)
+        except SystemExit:  # --help
+            return DONE
+        except (ValueError, TypeError, OSError) as error:
+            if os.environ.get(TRACEBACK) == "1":
+                traceback.print_exc()
+            sentence = " ".join(str(error).split()) or f"{type(error).__name__} without a message"
+            print(f"{command}: {sentence}", file=sys.stderr)
+            if "--json" in arguments:
+                refusal = {"status": "refused", "error": sentence, "exit_code": WRONG_USE}
+                tell({"schema": SCHEMA, "study": study, **refusal}, output)
+            return WRONG_USE
+
+
+def as_program() -> bool:
+    """Whether this process was started as `python -m studies...`."""
+    spec = getattr(sys.modules["__main__"], "__spec__", None)
+    return spec is not None and str(spec.name).partition(".")[0] == "studies"
+
+
+@contextlib.contextmanager
+def _clean_output() -> Iterator[TextIO]:
+    """Yield standard output; what is printed meanwhile, even by a library, goes to standard error."""
+    wanted = sys.stdout
+    if not as_program():
+        with contextlib.redirect_stdout(sys.stderr):
+            yield wanted
+        return
+    wanted.flush()
+    kept = os.dup(1)
+    os.dup2(2, 1)
+    try:
+        with contextlib.redirect_stdout(sys.stderr), open(os.dup(kept), "w", encoding="utf-8") as output:
+            yield output
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
+
+
+def tell(answer: object, output: TextIO) -> None:
+    """Print the answer, a text or what JSON takes; a pipe whose reader has seen enough (head) is no error."""
+    try:
+        print(answer if isinstance(answer, str) else json_text(answer), file=output, flush=True)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), output.fileno())

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import io
 import sys
-import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
@@ -36,7 +35,6 @@ from studies.files import (
     git_state,
     json_text,
     make_folder,
-    plain,
     versions,
     write_atomically,
 )  # fmt: skip
@@ -74,6 +72,8 @@ class Run:
     files: list[str] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
     model_choice: str = ""
+    interrupted: bool = False
+    closed: bool = False
 
     def __post_init__(self) -> None:
         make_folder(self.folder)
@@ -81,17 +81,11 @@ class Run:
         self._captions: dict[str, str] = {}
         self._verdicts: dict[str, dict[str, object]] = {}
         self._answers: dict[str, str] = {}
-        self._closing = threading.Lock()
 
     # what a person sees
 
-    def say(self, sentence: str) -> None:
-        """A line for a person."""
-        say(sentence)
-
-    def progress(self, label: str, total: int | None = None) -> AbstractContextManager[Callable[..., None]]:
-        """Count steps: `with run.progress("cells", 100) as tick: tick()`, or tick(5), from any thread."""
-        return progress(label, total)
+    say = staticmethod(say)
+    progress = staticmethod(progress)
 
     def track(self, items: Iterable[T], label: str) -> Iterator[T]:
         """The items one after the other, each counted when it has been dealt with."""
@@ -227,9 +221,8 @@ class Run:
         return time.perf_counter() - self._begun
 
     def close(self, status: str, results: Mapping[str, object]) -> dict[str, object]:
-        """Write summary.json and manifest.json; returns the summary. Later calls, from other threads, wait
-        for ever."""
-        self._closing.acquire()
+        """Write summary.json and manifest.json; returns the summary."""
+        self.closed = True
         settings = {"quick": self.quick, "workers": self.workers, "executor": self.executor, **self.options}
         common = {
             "schema": SCHEMA, "study": self.study, "status": status, "settings": settings,
@@ -248,9 +241,7 @@ class Run:
             "git": git_state(), "begun": self._date.isoformat(timespec="seconds"), "wall_time_s": wall_time,
             "files": sorted(self.files), "captions": self._captions,
         })  # fmt: skip
-        told = plain({**summary, "folder": self.folder, "wall_time_s": wall_time})
-        assert isinstance(told, dict)
-        return told
+        return {**summary, "folder": self.folder, "wall_time_s": wall_time}
 
 
 def _tried(function: Callable[[S], T], item: S) -> tuple[T | None, str]:

@@ -7,15 +7,10 @@
     if __name__ == "__main__":
         raise SystemExit(ends.main())
 
-Keyword-only arguments are the options; `--help` prints the docstring of the module. Exit codes: 0 done; 2
-wrong use, told in one sentence; 3 finished with failed cells (`run.failed`, or a ContactError that escapes);
-130 interrupted, with what was stored kept and the command that goes on. With --json standard output carries
-one JSON object and nothing else; everything for a person goes to standard error. GRAZING_SPRING_TRACEBACK=1
-shows where a refused input was noticed.
-
-The first Ctrl-C or SIGTERM raises KeyboardInterrupt. A study that has not ended `PATIENCE` seconds later
-(its threads compute on, or a callback of the compiler swallowed it) is ended from a timer, a second Ctrl-C
-does so at once.
+Keyword-only arguments are the options; `--help` prints the docstring of the module; exit codes are those of
+`studies.programs`, 3 for `run.failed` or a ContactError that escapes. Interrupted by Ctrl-C or SIGTERM (a
+KeyboardInterrupt in the study) it keeps what was stored and tells the command that goes on. A second signal,
+or one that comes where nothing can be raised (in a callback of the compiler), ends it at once.
 """
 
 from __future__ import annotations
@@ -26,7 +21,6 @@ import shlex
 import signal
 import sys
 import threading
-import traceback
 import types
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -37,16 +31,13 @@ from typing import TextIO, cast
 from beam import SuspiciousValue
 from contact import ContactError
 from studies.executors import duration
-from studies.files import SCHEMA, json_text
+from studies.files import SCHEMA
 from studies.options import add_options, parser_of
+from studies.programs import DONE, FAILED_CELLS, INTERRUPTED, as_program, perform, tell
 from studies.record import Run
 from studies.scene import Scene, read_scene
 
 __all__ = ["Run", "study"]
-
-DONE, WRONG_USE, FAILED_CELLS, INTERRUPTED = 0, 2, 3, 130
-TRACEBACK = "GRAZING_SPRING_TRACEBACK"
-PATIENCE = 5.0
 
 Function = Callable[..., Mapping[str, object]]
 
@@ -88,38 +79,22 @@ class Study:
         """Read the arguments, run the study, store and report; returns the exit code."""
         arguments = list(sys.argv[1:] if argv is None else argv)
         command = f"python -m {module or f'studies.{self.name}'}"
-        with _clean_output() as output:
-            try:
-                return self._perform(command, arguments, output)
-            except SystemExit:  # --help
-                return DONE
-            except KeyboardInterrupt:
-                whole = shlex.join([*command.split(), *arguments])
-                print(f"{command}: interrupted; nothing was stored; go on with: {whole}", file=sys.stderr)
-                return INTERRUPTED
-            except (ValueError, TypeError, OSError) as error:
-                if os.environ.get(TRACEBACK) == "1":
-                    traceback.print_exc()
-                sentence = " ".join(str(error).split()) or f"{type(error).__name__} without a message"
-                print(f"{command}: {sentence}", file=sys.stderr)
-                if "--json" in arguments:
-                    refusal = {"schema": SCHEMA, "study": self.name, "status": "refused", "error": sentence}
-                    _tell(json_text({**refusal, "exit_code": WRONG_USE}), output)
-                return WRONG_USE
+        return perform(
+            self.name, command, arguments, lambda output: self._perform(command, arguments, output)
+        )
 
     def _perform(self, command: str, argv: list[str], output: TextIO) -> int:
         parser = parser_of(command, sys.modules[self.function.__module__].__doc__ or "")
         options = add_options(parser, self.function)
-        with contextlib.redirect_stdout(output):
-            given = vars(parser.read(argv))
+        given = vars(parser.read(argv, output))
         with warnings.catch_warnings(record=True) as found:
             warnings.simplefilter("always", SuspiciousValue)
             scene = read_scene(given["scene"], given["overrides"])
         doubtful = list(dict.fromkeys(str(w.message) for w in found if w.category is SuspiciousValue))
         if given["dump_scene"]:
             values = {"scene": scene.values(), "provenance": scene.provenance()}
-            whole = json_text({"schema": SCHEMA, "study": self.name, **values})
-            _tell(whole if given["json"] else scene.dump().rstrip(), output)
+            whole = {"schema": SCHEMA, "study": self.name, **values}
+            tell(whole if given["json"] else scene.dump().rstrip(), output)
             return DONE
         chosen = {**options, **(self.quick if given["quick"] else {})}
         chosen |= {name: given[name] for name in options if name in given}
@@ -141,11 +116,10 @@ class Study:
                 failed = f"; {len(run.failures)} failed: {run.failures[0]}" if run.failures else ""
                 run.say(f"{took}; {len(run.files)} files in {run.folder}{failed}")
             if given["json"]:
-                _tell(json_text({**summary, "exit_code": code}), output)
+                tell({**summary, "exit_code": code}, output)
 
-        with _signals(lambda: close(INTERRUPTED, "interrupted", {})) as over:
+        with _signals(run, lambda: close(INTERRUPTED, "interrupted", {})):
             code, status, results = self._compute(run, chosen)
-            over.set()
             close(code, status, results)
         if code == INTERRUPTED and as_program():
             _end(code)
@@ -175,78 +149,36 @@ def _interrupted(error: BaseException | None) -> bool:
     return error is not None and (isinstance(error, KeyboardInterrupt) or _interrupted(error.__context__))
 
 
-def as_program() -> bool:
-    """Whether this process was started as `python -m studies...`."""
-    spec = getattr(sys.modules["__main__"], "__spec__", None)
-    return spec is not None and str(spec.name).partition(".")[0] == "studies"
-
-
 @contextlib.contextmanager
-def _clean_output() -> Iterator[TextIO]:
-    """Yield standard output; what is printed meanwhile, even by a library, goes to standard error."""
-    wanted = sys.stdout
-    if not as_program():
-        with contextlib.redirect_stdout(sys.stderr):
-            yield wanted
-        return
-    wanted.flush()
-    kept = os.dup(1)
-    os.dup2(2, 1)
-    try:
-        with contextlib.redirect_stdout(sys.stderr), open(os.dup(kept), "w", encoding="utf-8") as output:
-            yield output
-    finally:
-        os.dup2(kept, 1)
-        os.close(kept)
-
-
-def _tell(text: str, output: TextIO) -> None:
-    """Print the answer; a pipe whose reader has seen enough (head) is no error."""
-    try:
-        print(text, file=output, flush=True)
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), output.fileno())
-
-
-@contextlib.contextmanager
-def _signals(leave: Callable[[], None]) -> Iterator[threading.Event]:
-    """Ctrl-C and SIGTERM as KeyboardInterrupt, once; `leave` stores what there is if the study does not end
-    by itself.
-
-    Yields an event to be set as soon as the study has ended and its results are being written.
-    """
-    over, before = threading.Event(), dict[int, object]()
+def _signals(run: Run, leave: Callable[[], None]) -> Iterator[None]:
+    """Ctrl-C and SIGTERM as KeyboardInterrupt, until the run is closed; `leave` stores what there is where a
+    program ends at once."""
+    signals = dict[int, object]()
     lost = sys.unraisablehook
 
     def stop() -> None:
-        if not over.is_set():
+        if as_program() and not run.closed:
             with contextlib.suppress(Exception):
                 leave()
             _end(INTERRUPTED)
 
-    timer = threading.Timer(PATIENCE, stop)
-    timer.daemon = True
-
     def signalled(number: int, frame: types.FrameType | None) -> None:
-        if timer.is_alive():
+        if run.interrupted:
             stop()
-        if not over.is_set():
-            if as_program():
-                timer.start()
+        if not run.closed:
+            run.interrupted = True
             raise KeyboardInterrupt
 
     if threading.current_thread() is threading.main_thread():
         for number in (signal.SIGINT, signal.SIGTERM):
             if signal.getsignal(number) is not signal.SIG_IGN:  # nohup and background jobs of a shell
-                before[number] = signal.signal(number, signalled)
-    # an interruption within a callback of the compiler cannot be raised; the timer ends the study
-    sys.unraisablehook = lambda told: None if issubclass(told.exc_type, KeyboardInterrupt) else lost(told)
+                signals[number] = signal.signal(number, signalled)
+    sys.unraisablehook = lambda told: stop() if issubclass(told.exc_type, KeyboardInterrupt) else lost(told)
     try:
-        yield over
+        yield
     finally:
-        timer.cancel()
         sys.unraisablehook = lost
-        for kept, handler in before.items():
+        for kept, handler in signals.items():
             signal.signal(kept, cast("signal.Handlers", handler))
 
 

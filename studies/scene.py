@@ -37,7 +37,6 @@ from studies.scene_spring import (
     READOUT,
     damping_of,
     elements_of,
-    first_modes,
     free_period,
     model_of,
     modes_of,
@@ -46,31 +45,16 @@ from studies.scene_spring import (
     single_mode_of,
     spring_of,
 )
-from studies.scene_values import Scene, doubts, named, scene_from_text
+from studies.scene_values import Scene, doubts, scene_from_text
 
 __all__ = [
     "READOUT", "Scene", "SceneError", "approach_speed", "band_of", "beam_at", "contact_law_of",
-    "corresponding", "damping_of", "elements_of", "first_modes", "free_period", "harmonic", "hertz_of",
+    "corresponding", "damping_of", "elements_of", "free_period", "harmonic", "hertz_of",
     "model_of", "modes_of", "nordmark_at", "periods_of", "read_scene", "require_drive_below", "sections_of",
     "single_mode_at", "single_mode_of", "spring_of",
 ]  # fmt: skip
 
 SCENES = Path(__file__).resolve().parent / "scenes"
-
-PLACES = {
-    "gap": "stop.gap_m", "frequency of the drive": "drive.frequencies_hz",
-    "local_restitution": "single_mode.restitution",
-}  # fmt: skip
-BODIES = {
-    "radius": "tip.ball_radius_m", "youngs_modulus": "tip.ball_young_modulus_pa",
-    "poissons_ratio": "tip.ball_poisson_ratio", "other_modulus": "tip.plate_young_modulus_pa",
-    "other_ratio": "tip.plate_poisson_ratio",
-}  # fmt: skip
-LINEAR = {
-    "stiffness of the contact": "contact.stiffness_n_per_m",
-    "damping of the contact": "contact.damping_ns_per_m",
-}
-"""What a constructor calls a value -> its key."""
 
 SAME_PERIOD = 1e-3
 """Relative change of T within which a spring counts as the letter's: twice the error of its 40.80 ms."""
@@ -79,19 +63,14 @@ SAME_PERIOD = 1e-3
 def read_scene(name: str | Path = "letter", overrides: Iterable[str] = ()) -> Scene:
     """The scene in a file, or of a name in studies/scenes, with overrides `section.key=value`; the last
     wins."""
-    path = Path(name)
-    if path.suffix == "" and path.name == str(name) and not path.exists():
-        known = sorted(file.stem for file in SCENES.glob("*.toml"))
-        if path.name not in known:
-            raise SceneError(
-                f"there is no scene {shown(name)}: name a TOML file or one of {', '.join(known)}"
-            )
-        path = SCENES / f"{name}.toml"
+    known = {file.stem: file for file in sorted(SCENES.glob("*.toml"))}
+    path = known.get(str(name), Path(name))
     try:
         text = path.read_bytes().decode("utf-8-sig")
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "it is not text in UTF-8"
-        raise SceneError(f"the scene {shown(str(path))} cannot be read: {reason}") from error
+        choices = f"give a TOML file or one of {', '.join(known)}"
+        raise SceneError(f"the scene {shown(str(name))} cannot be read: {reason}; {choices}") from error
     scene = scene_from_text(text, name=str(path), overrides=overrides, folder=path.parent)
     check(scene)
     for sentence in doubts(scene):
@@ -104,12 +83,10 @@ def check(scene: Scene) -> None:
     spring, damping = scene.spring, scene.damping
     if scene.drive.kind == "harmonic" and scene.stop.gap_m == 0.0:
         raise SceneError("stop.gap_m must be greater than 0 (unit m) when there is a drive, not 0.0")
-    law = contact_law_of(scene)
-    with named(PLACES):
-        Stop(gap=scene.stop.gap_m, law=law)
-        for frequency in scene.drive.frequencies_hz:
-            HarmonicDrive(frequency=frequency)
-        NewtonRestitution(local_restitution=scene.single_mode.restitution)
+    scene.make(Stop, {"gap": "stop.gap_m"}, law=contact_law_of(scene))
+    for frequency in scene.drive.frequencies_hz:
+        scene.make(HarmonicDrive, {"frequency": "drive.frequencies_hz"}, frequency=frequency)
+    scene.make(NewtonRestitution, {"local_restitution": "single_mode.restitution"})
     single_mode_of(scene)
     if spring.kind == "modal_data":
         require_drive_below(scene, model_of(scene))
@@ -142,13 +119,11 @@ def approach_speed(frequency: float, gap: float, excess: float) -> float:
 
 def hertz_of(scene: Scene) -> HertzContact:
     """Hertz's law for the ball and the plate of the scene."""
-    tip = scene.tip
-    with named(BODIES):
-        return HertzContact.of_bodies(
-            radius=tip.ball_radius_m, youngs_modulus=tip.ball_young_modulus_pa,
-            poissons_ratio=tip.ball_poisson_ratio, other_modulus=tip.plate_young_modulus_pa,
-            other_ratio=tip.plate_poisson_ratio,
-        )  # fmt: skip
+    return scene.make(HertzContact.of_bodies, {
+        "radius": "tip.ball_radius_m", "youngs_modulus": "tip.ball_young_modulus_pa",
+        "poissons_ratio": "tip.ball_poisson_ratio", "other_modulus": "tip.plate_young_modulus_pa",
+        "other_ratio": "tip.plate_poisson_ratio",
+    })  # fmt: skip
 
 
 def contact_law_of(scene: Scene) -> ContactLaw:
@@ -157,12 +132,11 @@ def contact_law_of(scene: Scene) -> ContactLaw:
     A linear contact whose stiffness is left open (0) gets k = M (pi/t_c)^2, M the mass of ball and mount and
     t_c its contact time under Hertz's law at the approach speed of the letter's Fig. 4.
     """
-    keys, stiffness = scene.contact, scene.contact.stiffness_n_per_m
-    if keys.law == "hertz":
+    law, stiffness = scene.contact.law, scene.contact.stiffness_n_per_m
+    if law == "hertz":
         return hertz_of(scene)
-    if keys.law == "newton":
-        with named({"local_restitution": "contact.local_restitution"}):
-            return NewtonRestitution(local_restitution=keys.local_restitution)
+    if law == "newton":
+        return scene.make(NewtonRestitution, {"local_restitution": "contact.local_restitution"})
     if stiffness == 0.0:
         mass = scene.modal_data.tip_mass_kg if scene.spring.kind == "modal_data" else scene.tip.mass_kg
         if not mass > 0:
@@ -173,15 +147,17 @@ def contact_law_of(scene: Scene) -> ContactLaw:
         middle = sorted(scene.drive.frequencies_hz)[len(scene.drive.frequencies_hz) // 2]
         speed = approach_speed(middle, scene.stop.gap_m, letter.TIME_TRACE_EXCESS)
         stiffness = mass * (math.pi / hertz_of(scene).contact_time(mass, speed)) ** 2
-    with named(LINEAR):
-        return LinearContact(stiffness=stiffness, damping=keys.damping_ns_per_m)
+    keys = {"stiffness": "contact.stiffness_n_per_m", "damping": "contact.damping_ns_per_m"}
+    return scene.make(LinearContact, keys, stiffness=stiffness)
 
 
 def _on_stop(scene: Scene, model: ModalModel, law: ContactLaw, frequency: float) -> ImpactOscillator:
-    with named(PLACES):
-        return ImpactOscillator(
-            model=model, stop=Stop(gap=scene.stop.gap_m, law=law), drive=HarmonicDrive(frequency=frequency)
-        )
+    def driven(gap: float, frequency: float) -> ImpactOscillator:
+        drive = HarmonicDrive(frequency=frequency)
+        return ImpactOscillator(model=model, stop=Stop(gap=gap, law=law), drive=drive)
+
+    keys = {"gap": "stop.gap_m", "frequency": "drive.frequencies_hz"}
+    return scene.make(driven, keys, frequency=frequency)
 
 
 def beam_at(scene: Scene, frequency: float, model: ModalModel | None = None) -> ImpactOscillator:
@@ -191,8 +167,7 @@ def beam_at(scene: Scene, frequency: float, model: ModalModel | None = None) -> 
 
 def single_mode_at(scene: Scene, frequency: float) -> ImpactOscillator:
     """Eq. (1) of the letter at drive frequency `frequency` [Hz], with the gap of the scene."""
-    with named(PLACES):
-        law = NewtonRestitution(local_restitution=scene.single_mode.restitution)
+    law = scene.make(NewtonRestitution, {"local_restitution": "single_mode.restitution"})
     return _on_stop(scene, single_mode_of(scene), law, frequency)
 
 

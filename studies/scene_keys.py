@@ -1,23 +1,21 @@
 """The keys of a scene: each with default, unit, provenance and meaning, and no other list of them.
 
-A section is a frozen dataclass. The type of a key is that of its default: `float` (a finite number), `int` (a
-whole number), `str` (one line), `tuple` (a list of finite numbers). Whether a value makes sense is for the
-constructors of `beam` and `contact` to say, from which `studies.scene` builds spring, law and drive; what no
-constructor sees (counts, places along the strip, scans) has its limits here. Provenance: `letter` is printed
-in the letter, `calibrated` was fitted to a number that it prints (thickness to the free period, loss factor
-of the tape to the decay rate, ball mass and gap to the impacts and the drive amplitude), `assumed` is ours.
+A section is a frozen dataclass of plain values. The type of a key is that of its default: `float` (a finite
+number), `int` (a whole number), `str` (one line), `tuple` (a list of finite numbers). Whether a value makes
+sense is for the constructors of `beam` and `contact` to say, from which `studies.scene` builds spring, law
+and drive; what no constructor sees (counts, places along the strip, scans) has its limits here.
+
+Provenance: `letter` is printed in the letter, `calibrated` was fitted to a number that it prints (thickness
+to the free period, loss factor of the tape to the decay rate, ball mass and gap to the impacts and the drive
+amplitude), `assumed` is ours.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from numbers import Real
-from types import MappingProxyType
 from typing import TypeVar
-
-__all__ = ["MODE_LISTS", "SECTIONS", "Key", "SceneError", "Section", "keys_of", "shown"]
 
 LETTER, CALIBRATED, ASSUMED, GIVEN = "letter", "calibrated", "assumed", "given"
 
@@ -106,27 +104,12 @@ def key(
     return field(default=default, metadata={"key": known})
 
 
-@dataclass(frozen=True, kw_only=True)
-class Section:
-    """A table of a scene; every value is of its key's type, plain and immutable, from construction on."""
-
-    def __post_init__(self) -> None:
-        section = next(name for name, kind in SECTIONS.items() if kind is type(self))
-        for name, known in keys_of(type(self)).items():
-            object.__setattr__(self, name, known.checked(f"{section}.{name}", getattr(self, name)))
-
-
-def keys_of(section: type[Section]) -> Mapping[str, Key]:
-    """Name -> `Key` of the fields of a section."""
-    return {entry.name: entry.metadata["key"] for entry in fields(section)}
-
-
 SUPPORTS = ("clamped", "pinned", "guided", "free")
 MOST_ELEMENTS = 2000  # of a leg or a bend: a slip of the pen must not fill the memory
 
 
 @dataclass(frozen=True, kw_only=True)
-class SpringKeys(Section):
+class SpringKeys:
     """The leaf spring: a brass strip, with or without a glued damping tape."""
 
     kind: str = key("folded_u", "", ASSUMED,
@@ -162,7 +145,7 @@ class SpringKeys(Section):
 
 
 @dataclass(frozen=True, kw_only=True)
-class TipKeys(Section):
+class TipKeys:
     """The ceramic ball with its mount, and the steel plate that it hits."""
 
     mass_kg: float = key(0.006161452904, "kg", CALIBRATED,
@@ -179,7 +162,7 @@ class TipKeys(Section):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ReadoutKeys(Section):
+class ReadoutKeys:
     """Where the laser beam meets the spring."""
 
     arc_fraction: float = key(0.4, "1", ASSUMED,
@@ -191,7 +174,7 @@ class ReadoutKeys(Section):
 
 
 @dataclass(frozen=True, kw_only=True)
-class DampingKeys(Section):
+class DampingKeys:
     """Decay of the modes; c in q'' + c q' + omega^2 q, so that amplitudes fall as exp(-c t/2)."""
 
     kind: str = key("strips", "", ASSUMED,
@@ -209,7 +192,7 @@ class DampingKeys(Section):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ModesKeys(Section):
+class ModesKeys:
     """Truncation of the modal series."""
 
     count: int = key(0, "1", ASSUMED,
@@ -217,7 +200,7 @@ class ModesKeys(Section):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ModalDataKeys(Section):
+class ModalDataKeys:
     """Mass-normalised modes of a structure of your own, for spring.kind modal_data: lists, or a CSV file."""
 
     file: str = key("", "", ASSUMED,
@@ -233,7 +216,7 @@ class ModalDataKeys(Section):
 
 
 @dataclass(frozen=True, kw_only=True)
-class SingleModeKeys(Section):
+class SingleModeKeys:
     """Eq. (1) of the letter."""
 
     free_period_s: float = key(0.0408, "s", LETTER, "damped period of the free motion")
@@ -242,7 +225,7 @@ class SingleModeKeys(Section):
 
 
 @dataclass(frozen=True, kw_only=True)
-class DriveKeys(Section):
+class DriveKeys:
     """Motion of the base."""
 
     kind: str = key("harmonic", "", LETTER,
@@ -252,7 +235,7 @@ class DriveKeys(Section):
 
 
 @dataclass(frozen=True, kw_only=True)
-class StopKeys(Section):
+class StopKeys:
     """The plate, fixed to the base."""
 
     gap_m: float = key(0.0106993324, "m", CALIBRATED,
@@ -260,7 +243,7 @@ class StopKeys(Section):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ContactKeys(Section):
+class ContactKeys:
     """Ball on plate."""
 
     law: str = key("hertz", "", ASSUMED, "what happens at the plate", choices=("linear", "newton", "hertz"))
@@ -272,7 +255,7 @@ class ContactKeys(Section):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ScanKeys(Section):
+class ScanKeys:
     """Slow scans of the drive amplitude through grazing; excess is amplitude/grazing amplitude - 1."""
 
     reach_below: float = key(2.0, "1", ASSUMED,
@@ -288,11 +271,3 @@ class ScanKeys(Section):
     born_excess: float = key(1e-3, "1", ASSUMED, "excess at which the born period is read", low=1e-12)
     largest_period: int = key(64, "1", ASSUMED,
         "longest period looked for, in drive periods", low=1, high=10_000)
-
-
-SECTIONS: Mapping[str, type[Section]] = MappingProxyType({
-    "spring": SpringKeys, "tip": TipKeys, "readout": ReadoutKeys, "damping": DampingKeys, "modes": ModesKeys,
-    "modal_data": ModalDataKeys, "single_mode": SingleModeKeys, "drive": DriveKeys, "stop": StopKeys,
-    "contact": ContactKeys, "scan": ScanKeys,
-})  # fmt: skip
-"""Section name -> its class, in the order of the files."""

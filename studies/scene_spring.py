@@ -12,10 +12,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
-from functools import partial
-from typing import Literal, cast
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,99 +20,84 @@ from numpy.typing import NDArray
 import beam
 from beam import LeafSpring, ModalModel, Modes, StripSection
 from studies.scene_keys import MODE_LISTS, SceneError
-from studies.scene_values import Scene, named
-
-__all__ = [
-    "READOUT", "damping_of", "elements_of", "first_modes", "free_period", "model_of", "modes_of",
-    "require_drive_below", "sections_of", "single_mode_of", "spring_of",
-]  # fmt: skip
+from studies.scene_values import Scene
 
 READOUT = "readout"
 """Name of the read-out in every model."""
 
-SECTION_KEYS = {
-    "length of the straight strip or leg": "spring.leg_length_m", "width": "spring.width_m",
-    "thickness": "spring.thickness_m", "youngs_modulus": "spring.young_modulus_pa",
-    "poissons_ratio": "spring.poisson_ratio", "density": "spring.density_kg_m3",
-    "loss_factor": "spring.loss_factor", "radius": "spring.bend_radius_m", "mass": "tip.mass_kg",
-    "bend_radius": "spring.bend_radius_m", "rotary_inertia": "tip.rotary_inertia_kg_m2",
-    "damped_span": "spring.tape_coverage",
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class MeasuredRates:
+    """Decay rates c [1/s] as measured, one a coupled mode, lowest first; not a number for the other modes."""
+
+    rates: tuple[float, ...]
+
+    def decay_rates(self, modes: Modes) -> NDArray[np.float64]:
+        """Return c [1/s], shape (n_modes,)."""
+        found = np.full(modes.omega.size, np.nan)
+        places = np.flatnonzero(modes.coupled)[: len(self.rates)]
+        found[places] = self.rates[: places.size]
+        return found
+
+
+DAMPING = {
+    "strips": (beam.MeasuredDecay, {"decay_rate": "damping.decay_rate_per_s"}),
+    "constant_ratio": (beam.ConstantRatio, {"ratio": "damping.ratio"}),
+    "constant_loss_factor": (beam.ConstantLossFactor, {"loss_factor": "damping.loss_factor"}),
+    "rayleigh": (beam.Rayleigh, {"mass_coefficient": "damping.rayleigh_alpha_per_s",
+                                 "stiffness_coefficient": "damping.rayleigh_beta_s"}),
+    "measured": (MeasuredRates, {"rates": "damping.measured_rates_per_s"}),
 }  # fmt: skip
-TAPE_KEYS = {
-    "thickness": "spring.tape_thickness_m", "youngs_modulus": "spring.tape_modulus_pa",
-    "poissons_ratio": "spring.tape_poisson_ratio", "density": "spring.tape_density_kg_m3",
-    "loss_factor": "spring.tape_loss_factor",
-}  # fmt: skip
-DAMPING_KEYS = {
-    "ratio": "damping.ratio", "loss_factor": "damping.loss_factor", "decay_rate": "damping.decay_rate_per_s",
-    "mass_coefficient": "damping.rayleigh_alpha_per_s", "stiffness_coefficient": "damping.rayleigh_beta_s",
-}  # fmt: skip
-MODAL_KEYS = {
-    "omega": "modal_data.frequencies_hz", "decay_rate": "modal_data.decay_rates_per_s",
-    "phi": "modal_data.tip_values",
-}  # fmt: skip
+"""damping.kind -> the rule, and its arguments, to which the rates are proportional, with their keys."""
 
 
 def sections_of(scene: Scene) -> tuple[StripSection, StripSection | None]:
     """The bare sheet, and the sheet with its tape (None without tape)."""
-    keys = scene.spring
-    with named(SECTION_KEYS):
-        sheet = beam.Material(
-            youngs_modulus=keys.young_modulus_pa, poissons_ratio=keys.poisson_ratio,
-            density=keys.density_kg_m3, loss_factor=keys.loss_factor,
-        )  # fmt: skip
-        bare = StripSection(material=sheet, width=keys.width_m, thickness=keys.thickness_m)
-    if keys.tape_thickness_m == 0.0:
+    sheet = scene.make(beam.Material, {
+        "youngs_modulus": "spring.young_modulus_pa", "poissons_ratio": "spring.poisson_ratio",
+        "density": "spring.density_kg_m3", "loss_factor": "spring.loss_factor",
+    })  # fmt: skip
+    size = {"width": "spring.width_m", "thickness": "spring.thickness_m"}
+    bare = scene.make(StripSection, size, material=sheet)
+    if scene.spring.tape_thickness_m == 0.0:
         return bare, None
-    with named(TAPE_KEYS):
-        tape = beam.Material(
-            youngs_modulus=keys.tape_modulus_pa, poissons_ratio=keys.tape_poisson_ratio,
-            density=keys.tape_density_kg_m3, loss_factor=keys.tape_loss_factor,
-        )  # fmt: skip
-        layer = beam.Layer(material=tape, thickness=keys.tape_thickness_m, both_sides=keys.tape_sides == 2)
-        return bare, dataclasses.replace(bare, layer=layer)
+    tape = scene.make(beam.Material, {
+        "youngs_modulus": "spring.tape_modulus_pa", "poissons_ratio": "spring.tape_poisson_ratio",
+        "density": "spring.tape_density_kg_m3", "loss_factor": "spring.tape_loss_factor",
+    })  # fmt: skip
+    both = scene.spring.tape_sides == 2
+    layer = scene.make(beam.Layer, {"thickness": "spring.tape_thickness_m"}, material=tape, both_sides=both)
+    return bare, dataclasses.replace(bare, layer=layer)
 
 
 def spring_of(scene: Scene) -> LeafSpring:
     """The leaf spring with its read-out; SceneError for spring.kind modal_data, which has no shape."""
-    keys = scene.spring
+    keys, tip = scene.spring, scene.tip
     if keys.kind == "modal_data":
         raise SceneError(
             "spring.kind modal_data gives modes without their shapes: this needs a spring that is drawn"
         )
     bare, taped = sections_of(scene)
     folded, leg = keys.kind == "folded_u", keys.leg_length_m
-    if folded and keys.bend_radius_m <= keys.thickness_m / 2:
-        raise SceneError(
-            f"spring.bend_radius_m is {keys.bend_radius_m} m; it must be greater than half of "
-            f"spring.thickness_m, {keys.thickness_m / 2:g} m"
-        )
-    length = 2.0 * leg + math.pi * keys.bend_radius_m if folded else leg
-    quantity: Literal["rotation", "displacement"] = (
-        "rotation" if scene.readout.quantity == "rotation" else "displacement"
-    )
-    with named(SECTION_KEYS):
-        shapes: dict[str, Callable[..., LeafSpring]]
-        shapes = {"folded_u": beam.folded_u, "cantilever": beam.cantilever}
-        draw = partial(
-            shapes.get(keys.kind, beam.straight_strip),
-            section=bare, damped_section=taped,
-            damped_span=None if taped is None else (0.0, keys.tape_coverage * leg),
-            tip=beam.Tip(mass=scene.tip.mass_kg, rotary_inertia=scene.tip.rotary_inertia_kg_m2),
-            readouts={READOUT: beam.Readout(at=scene.readout.arc_fraction * length, quantity=quantity)},
-        )  # fmt: skip
-        if folded:
-            return draw(leg_length=leg, bend_radius=keys.bend_radius_m)
-        if keys.kind == "cantilever":
-            return draw(length=leg)
-        for end, place, support in (("start", 0.0, keys.start_support), ("end", 1.0, keys.end_support)):
-            if scene.tip.arc_fraction == place and support in ("clamped", "pinned"):
-                raise SceneError(
-                    f"tip.arc_fraction must not be {place:g} while spring.{end}_support is {support}: "
-                    "the tip could not move there"
-                )
-        supports = (cast(beam.Support, keys.start_support), cast(beam.Support, keys.end_support))
-        return draw(length=leg, supports=supports, tip_at=scene.tip.arc_fraction * leg)
+    ball = scene.make(beam.Tip, {"mass": "tip.mass_kg", "rotary_inertia": "tip.rotary_inertia_kg_m2"})
+    seen_at = scene.readout.arc_fraction * (2.0 * leg + math.pi * keys.bend_radius_m if folded else leg)
+    readout = scene.make(beam.Readout, {"quantity": "readout.quantity"}, at=seen_at)
+    common: dict[str, Any] = {
+        "section": bare, "damped_section": taped, "tip": ball, "readouts": {READOUT: readout},
+        "damped_span": None if taped is None else (0.0, keys.tape_coverage * leg),
+    }  # fmt: skip
+    length = {"length": "spring.leg_length_m"}
+
+    def fold(length: float, radius: float) -> LeafSpring:
+        return beam.folded_u(leg_length=length, bend_radius=radius, **common)
+
+    if folded:
+        return scene.make(fold, length | {"radius": "spring.bend_radius_m"})
+    if keys.kind == "cantilever":
+        return scene.make(beam.cantilever, length, **common)
+    held = {"supports": (keys.start_support, keys.end_support), "tip_at": tip.arc_fraction * leg}
+    place = {"tip_at": "tip.arc_fraction times spring.leg_length_m"}
+    return scene.make(beam.straight_strip, length | place, **common, **held)
 
 
 def elements_of(scene: Scene, spring: LeafSpring) -> tuple[int, ...]:
@@ -150,49 +132,20 @@ def modes_of(scene: Scene, count: int | None = None) -> Modes:
                 "keep fewer or give spring.elements_per_leg and spring.elements_on_arc more elements"
             )
         asked = min(2 * asked, discretization.n_dofs)
-    modes = first_modes(modes, int(coupled[wanted - 1]) + 1)
-    energies = discretization.strain_energies(modes.shapes).sum(axis=(0, 1))
-    return dataclasses.replace(modes, omega=np.where(modes.omega > 0.0, np.sqrt(2.0 * energies), 0.0))
-
-
-def first_modes(modes: Modes, count: int) -> Modes:
-    """The `count` lowest of these modes."""
+    count = int(coupled[wanted - 1]) + 1
+    shapes, omega = modes.shapes[:, :count], modes.omega[:count]
+    energies = discretization.strain_energies(shapes).sum(axis=(0, 1))
     return dataclasses.replace(
-        modes, omega=modes.omega[:count], shapes=modes.shapes[:, :count], phi=modes.phi[:count],
-        participation=modes.participation[:count], coupled=modes.coupled[:count],
+        modes, omega=np.where(omega > 0.0, np.sqrt(2.0 * energies), 0.0), shapes=shapes,
+        phi=modes.phi[:count], participation=modes.participation[:count], coupled=modes.coupled[:count],
         readouts={name: row[:count] for name, row in modes.readouts.items()},
     )  # fmt: skip
 
 
-@dataclass(frozen=True, kw_only=True)
-class MeasuredRates:
-    """Decay rates c [1/s] as measured, one a coupled mode, lowest first; not a number for the other modes."""
-
-    rates: tuple[float, ...]
-
-    def decay_rates(self, modes: Modes) -> NDArray[np.float64]:
-        """Return c [1/s], shape (n_modes,)."""
-        found = np.full(modes.omega.size, np.nan)
-        places = np.flatnonzero(modes.coupled)[: len(self.rates)]
-        found[places] = self.rates[: places.size]
-        return found
-
-
 def damping_of(scene: Scene) -> beam.Damping:
     """The rule that gives each mode its decay rate."""
-    keys = scene.damping
-    with named(DAMPING_KEYS):
-        if keys.kind == "constant_ratio":
-            return beam.ConstantRatio(ratio=keys.ratio)
-        if keys.kind == "constant_loss_factor":
-            return beam.ConstantLossFactor(loss_factor=keys.loss_factor)
-        if keys.kind == "rayleigh":
-            return beam.Rayleigh(
-                mass_coefficient=keys.rayleigh_alpha_per_s, stiffness_coefficient=keys.rayleigh_beta_s
-            )
-        if keys.kind == "measured":
-            return MeasuredRates(rates=keys.measured_rates_per_s)
-        return beam.MeasuredDecay(decay_rate=keys.decay_rate_per_s, others=beam.StripDamping(), scaled=True)
+    rule, keys = DAMPING[scene.damping.kind]
+    return scene.make(rule, keys)
 
 
 def model_of(scene: Scene) -> ModalModel:
@@ -207,12 +160,12 @@ def model_of(scene: Scene) -> ModalModel:
     if len({values.size for values in lists}) > 1 or not order.size:
         raise SceneError("spring.kind modal_data needs lists of equal length in modal_data, one entry a mode")
     frequencies, rates, tip_values, participation = (values[order] for values in lists)
-    with named(MODAL_KEYS):
-        return ModalModel(
-            omega=2.0 * np.pi * frequencies, decay_rate=rates, phi=tip_values, participation=participation,
-            static_compliance=data.static_compliance_m_per_n or None, tip_mass=data.tip_mass_kg or None,
-            readouts={READOUT: tip_values},
-        )  # fmt: skip
+    keys = {"omega": "modal_data.frequencies_hz", "decay_rate": "modal_data.decay_rates_per_s"}
+    return scene.make(
+        ModalModel, keys, omega=2.0 * np.pi * frequencies, decay_rate=rates, phi=tip_values,
+        participation=participation, static_compliance=data.static_compliance_m_per_n or None,
+        tip_mass=data.tip_mass_kg or None, readouts={READOUT: tip_values},
+    )  # fmt: skip
 
 
 def require_drive_below(scene: Scene, model: ModalModel, frequency: float | None = None) -> None:
@@ -227,9 +180,8 @@ def require_drive_below(scene: Scene, model: ModalModel, frequency: float | None
 
 def single_mode_of(scene: Scene) -> ModalModel:
     """Eq. (1) of the letter: one mode of unit mass with the period and the decay rate in [single_mode]."""
-    keys = scene.single_mode
-    with named({"free_period": "single_mode.free_period_s", "decay_rate": "single_mode.decay_rate_per_s"}):
-        model = beam.single_mode(free_period=keys.free_period_s, decay_rate=keys.decay_rate_per_s)
+    keys = {"free_period": "single_mode.free_period_s", "decay_rate": "single_mode.decay_rate_per_s"}
+    model = scene.make(beam.single_mode, keys)
     return dataclasses.replace(model, readouts={READOUT: model.phi})
 
 

@@ -5,27 +5,27 @@
     scene.spring.thickness_m, scene["spring.thickness_m"]
     print(scene.dump())                                    # reads back as the same scene
 
-Values are of the right type here; `studies.scene` builds spring, law and drive of them and so checks ranges.
+Values are of the right type here; `studies.scene` makes spring, law and drive of them and so checks ranges.
 """
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
+import json
 import math
 import re
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from functools import partial
 from pathlib import Path
-
-import numpy as np
+from typing import Any, TypeVar
 
 from studies import scene_keys
-from studies.scene_keys import GIVEN, MODE_LISTS, SECTIONS, Key, SceneError, Value, keys_of, shown
+from studies.scene_keys import GIVEN, MODE_LISTS, Key, SceneError, Value, shown
 
-__all__ = ["Scene", "doubts", "named", "scene_from_text"]
+T = TypeVar("T")
 
 USUAL_MODES = 15
 """Modes kept where neither the scene nor a study says how many are needed."""
@@ -63,24 +63,30 @@ class Scene:
 
     def replace(self, changes: Mapping[str, object], *, provenance: str = GIVEN) -> Scene:
         """The scene with other values for some dotted keys; `provenance` says where these come from."""
-        by_section: dict[str, dict[str, object]] = {}
+        sections: dict[str, Any] = {}
         for key, value in changes.items():
             section, name = split(key)
-            by_section.setdefault(section, {})[name] = value
-        sections = {
-            section: dataclasses.replace(getattr(self, section), **values)
-            for section, values in by_section.items()
-        }
-        origins = tuple({**dict(self.origins), **dict.fromkeys(changes, provenance)}.items())
-        return dataclasses.replace(self, **sections, origins=origins)
+            before = sections.get(section, getattr(self, section))
+            sections[section] = dataclasses.replace(before, **{name: KEYS[key].checked(key, value)})
+        origins = {**dict(self.origins), **dict.fromkeys(changes, provenance)}
+        return dataclasses.replace(self, **sections, origins=tuple(origins.items()))
+
+    def make(self, constructor: Callable[..., T], keys: Mapping[str, str], **others: object) -> T:
+        """What `constructor` makes of the values of `keys`, argument -> dotted key, and of `others`.
+
+        What it refuses is a SceneError with the key in place of the argument's name; so named are also
+        arguments that are in both.
+        """
+        own = {name: self[key] for name, key in keys.items() if name not in others}
+        try:
+            return constructor(**own, **others)
+        except (TypeError, ValueError) as error:
+            pattern = rf"\b({'|'.join(keys)})\b( of the [a-z ]+?(?= is | holds ))?"
+            raise SceneError(re.sub(pattern, lambda found: keys[found[1]], str(error))) from error
 
     def values(self) -> dict[str, dict[str, object]]:
         """Nested plain values, section -> key -> value, as a file holds them."""
-        return {
-            section: {name: list(value) if isinstance(value, tuple) else value
-                      for name, value in dataclasses.asdict(getattr(self, section)).items()}
-            for section in SECTIONS
-        }  # fmt: skip
+        return {section: dataclasses.asdict(getattr(self, section)) for section in SECTIONS}
 
     def provenance(self) -> dict[str, str]:
         """Dotted key -> letter, calibrated, assumed (a default), or what `replace` was told (else given)."""
@@ -92,19 +98,18 @@ class Scene:
 
     def dump(self) -> str:
         """Every key as TOML, with meaning, unit and what is valid, default and provenance as comments."""
-        provenance, lines = self.provenance(), list[str]()
-        for section, kind in SECTIONS.items():
-            lines += ["", f"# {' '.join((kind.__doc__ or '').split())}", f"[{section}]"]
-            for name, known in keys_of(kind).items():
-                key = f"{section}.{name}"
-                here = "" if self[key] == known.default else f"; here {provenance[key]}"
-                default = f"{toml_value(known.default)}, {known.provenance}{here}"
-                lines += [
-                    f"# {known.meaning}",
-                    f"#   {known.valid()}; default {default}",
-                    f"{name} = {toml_value(self[key])}",
-                ]
-        return "\n".join(lines[1:]) + "\n"
+        provenance, lines = self.provenance(), dict[str, list[str]]()
+        toml = partial(json.dumps, ensure_ascii=False)  # of texts, numbers and lists of numbers
+        for key, known in KEYS.items():
+            section, name = split(key)
+            about = " ".join((getattr(self, section).__doc__ or "").split())
+            here = "" if self[key] == known.default else f"; here {provenance[key]}"
+            lines.setdefault(section, [f"# {about}", f"[{section}]"]).extend([
+                f"# {known.meaning}",
+                f"#   {known.valid()}; default {toml(known.default)}, {known.provenance}{here}",
+                f"{name} = {toml(self[key])}",
+            ])  # fmt: skip
+        return "\n\n".join(map("\n".join, lines.values())) + "\n"
 
     @property
     def kept_modes(self) -> int:
@@ -118,17 +123,15 @@ class Scene:
         return USUAL_MODES
 
 
-def toml_value(value: object) -> str:
-    """A value of a scene as TOML."""
-    if isinstance(value, str):
-        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
-    return "[" + ", ".join(map(repr, value)) + "]" if isinstance(value, tuple) else repr(value)
-
-
+SECTIONS: tuple[str, ...] = tuple(
+    entry.name for entry in dataclasses.fields(Scene) if entry.name != "origins"
+)
 KEYS: dict[str, Key] = {
-    f"{s}.{name}": known for s, kind in SECTIONS.items() for name, known in keys_of(kind).items()
+    f"{section}.{entry.name}": entry.metadata["key"]
+    for section in SECTIONS
+    for entry in dataclasses.fields(getattr(Scene(), section))
 }
-"""Every dotted key, in the order of the files."""
+"""Every section and every dotted key, in the order of the files."""
 
 
 def split(key: str) -> tuple[str, str]:
@@ -155,12 +158,9 @@ def scene_from_text(
     changes: dict[str, object] = {}
     for section, entries in values.items():
         if not isinstance(entries, dict):
-            if section in SECTIONS:
-                raise SceneError(f"{section} must be a section of keys, not {shown(entries)}")
             split(section)
-        elif section not in SECTIONS and len(entries) != 1:
-            nearest = get_close_matches(section[:100], SECTIONS, n=1, cutoff=0.0)[0]
-            raise SceneError(f"there is no section [{shown(section)[1:-1]}]: the nearest is [{nearest}]")
+        elif section not in SECTIONS:
+            split(".".join([section, *entries][:2]))
         else:
             changes |= {f"{section}.{entry}": value for entry, value in entries.items()}
     file = changes.get("modal_data.file")
@@ -189,24 +189,18 @@ def with_measured_modes(scene: Scene) -> Scene:
     The file has the names of the four lists of [modal_data] as its heading, in any order, and one line of
     comma-separated numbers in the units of the keys for each mode; lines that begin with # are skipped.
     """
-    name = f"modal_data.file {shown(scene.modal_data.file)}"
     if any(getattr(scene.modal_data, entry) for entry in MODE_LISTS):
         raise SceneError("modal_data gives its modes twice, as lists and as a file: drop one of them")
     try:
         text = Path(scene.modal_data.file).read_text(encoding="utf-8-sig")
-        heading, *rows = (line for line in text.splitlines() if line.strip()[:1] not in ("", "#"))
-        if not rows:
-            raise ValueError("it holds no mode")
-        columns = np.loadtxt(rows, delimiter=",", ndmin=2).T
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or " ".join(str(error).split())
-        raise SceneError(f"{name} cannot be read as a table of numbers: {reason}") from error
-    found = [word.strip() for word in heading.split(",")]
-    if sorted(found) != sorted(MODE_LISTS) or len(columns) != len(found):
-        raise SceneError(f"{name} must have the columns {','.join(MODE_LISTS)} (in any order)")
-    lists: dict[str, object] = {
-        f"modal_data.{key}": tuple(c) for key, c in zip(found, columns.tolist(), strict=True)
-    }
+        lines = (line for line in text.splitlines() if line.strip()[:1] not in ("", "#"))
+        heading, *rows = ([word.strip() for word in line.split(",")] for line in lines)
+        columns = dict(zip(heading, zip(*rows, strict=True), strict=True))
+        lists = {f"modal_data.{name}": list(map(float, columns.pop(name))) for name in MODE_LISTS}
+    except (OSError, ValueError, KeyError) as error:
+        name, wanted = shown(scene.modal_data.file), ",".join(MODE_LISTS)
+        reason = getattr(error, "strerror", None) or f"it needs columns {wanted}, a number in each cell"
+        raise SceneError(f"modal_data.file {name} cannot be read: {reason}") from error
     return scene.replace({"modal_data.file": "", **lists})
 
 
@@ -248,16 +242,3 @@ def doubts(scene: Scene) -> Iterator[str]:
     for name, ratio in ratios.get(damping.kind, {}).items() if shaped else ():
         if ratio > 0.5:
             yield f"{name} makes a damping ratio of {ratio:.3g}; above 0.5 no mode swings"
-
-
-@contextlib.contextmanager
-def named(keys: Mapping[str, str]) -> Iterator[None]:
-    """What a constructor refuses while inside, as a SceneError with its names put into those of the scene."""
-    try:
-        yield
-    except SceneError:
-        raise
-    except (TypeError, ValueError) as error:
-        words = sorted(keys, key=len, reverse=True)
-        pattern = r"\b(" + "|".join(map(re.escape, words)) + r")\b"
-        raise SceneError(re.sub(pattern, lambda match: keys[match[1]], str(error))) from error

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import shutil
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
@@ -29,8 +30,6 @@ from numpy.typing import NDArray
 
 from studies.files import json_text, write_atomically
 from studies.record import Run
-
-__all__ = ["Column", "Shard", "read_columns", "sweep"]
 
 Column = Mapping[str, NDArray[np.generic]]
 A = TypeVar("A")
@@ -48,17 +47,13 @@ class Shard:
     number: int = 1
     count: int = 1
 
-    def __post_init__(self) -> None:
-        if not 1 <= self.number <= self.count:
-            raise ValueError(f"shard is {self.number}/{self.count}; it must be k/n with 1 <= k <= n")
-
     @staticmethod
     def of(text: str) -> Shard:
         """From k/n."""
-        number, slash, count = text.partition("/")
-        if not (slash and number.isdecimal() and count.isdecimal()):
-            raise ValueError(f"shard is {text!r}; it must be k/n with whole numbers, for instance 2/8")
-        return Shard(number=int(number), count=int(count))
+        found = re.fullmatch(r"(\d+)/(\d+)", text, re.ASCII)
+        if found is None or not 1 <= int(found[1]) <= int(found[2]):
+            raise ValueError(f"shard is {text!r}; it must be k/n with 1 <= k <= n, for instance 2/8")
+        return Shard(number=int(found[1]), count=int(found[2]))
 
 
 def _path(folder: Path, number: int) -> Path:
@@ -138,23 +133,20 @@ def sweep(
     """
     folder, part = run.path(name), Shard() if shard is None else shard
     _begin(folder, {"columns": len(arguments), **settings}, fresh)
-    mine = range(part.number - 1, len(arguments), part.count)
-    missing = [
-        number
-        for number in mine
-        if not _path(folder, number).exists() or _read(_path(folder, number)) is None
-    ]
-    if missing:
-        waiting, flight = iter(missing), dict[Future[Column], int]()
-        with run.pool() as pool, run.progress(f"columns of {name}", len(missing)) as tick:
-            while True:
-                for number in islice(waiting, AHEAD * run.workers - len(flight)):
-                    flight[pool.submit(compute, arguments[number])] = number
-                if not flight:
-                    break
-                for future in wait(flight, return_when=FIRST_COMPLETED).done:
-                    stream = io.BytesIO()
-                    np.savez_compressed(stream, **future.result())  # type: ignore[arg-type]
-                    write_atomically(_path(folder, flight.pop(future)), stream.getvalue())
-                    tick()
-    return [_read(_path(folder, number)) for number in range(len(arguments))]
+    columns = [_read(_path(folder, number)) for number in range(len(arguments))]
+    missing = [n for n in range(part.number - 1, len(arguments), part.count) if columns[n] is None]
+    if not missing:
+        return columns
+    waiting, flight = iter(missing), dict[Future[Column], int]()
+    with run.pool() as pool, run.progress(f"columns of {name}", len(missing)) as tick:
+        while True:
+            for number in islice(waiting, AHEAD * run.workers - len(flight)):
+                flight[pool.submit(compute, arguments[number])] = number
+            if not flight:
+                return columns
+            for future in wait(flight, return_when=FIRST_COMPLETED).done:
+                stream, path = io.BytesIO(), _path(folder, flight[future])
+                np.savez_compressed(stream, **future.result())  # type: ignore[arg-type]
+                write_atomically(path, stream.getvalue())
+                columns[flight.pop(future)] = _read(path)
+                tick()

@@ -135,6 +135,7 @@ def test_no_study_and_no_shared_file_imports_a_study():
         ("import beam", ("numpy", "scipy", *SLOW)),
         ("import contact", ("scipy.optimize", *SLOW)),
         ("import beam.export, beam.space, studies.modes", ("matplotlib", "meshio", "pyvista", "vtkmodules")),
+        ("import studies.peers; studies.peers.missing_solvers()", ("heyoka", "sksundae")),
     ],
 )
 def test_slow_packages_are_imported_only_where_they_are_used(statement, unwanted):

@@ -18,11 +18,11 @@ from typing import Any
 import numpy as np
 import pytest
 from wrong_input_of_beam import BEAM, INF, NAN, Entry, spring, strip, told
-from wrong_input_of_contact import CONTACT, METHODS, ORBITS, PAIR
+from wrong_input_of_contact import CONTACT, METHODS, ORBITS
 
 import beam
 import contact
-from beam.parameters import LONGEST_SHOWN, SuspiciousValue, shown, suspect
+from beam.parameters import LONGEST_SHOWN, SuspiciousValue, shown
 from contact.integrators import INTEGRATORS
 from contact.orbits import continuation, kick, lyapunov, shooting
 
@@ -161,10 +161,10 @@ def warned(make: Callable[[], object]) -> list[str]:
     return [str(warning.message) for warning in found]
 
 
-def oscillator(*, gap: float = 0.0107, frequency: float = 22.2, amplitude: float = 1e-3) -> object:
+def oscillator(*, frequency: float = 22.2, amplitude: float = 1e-3) -> object:
     return contact.ImpactOscillator(
         model=beam.single_mode(free_period=40.8e-3, decay_rate=3.56),
-        stop=contact.Stop(gap=gap, law=contact.NewtonRestitution(local_restitution=0.1)),
+        stop=contact.Stop(gap=0.0107, law=contact.NewtonRestitution(local_restitution=0.1)),
         drive=contact.HarmonicDrive(frequency=frequency, amplitude=amplitude),
     )
 
@@ -172,42 +172,23 @@ def oscillator(*, gap: float = 0.0107, frequency: float = 22.2, amplitude: float
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda: beam.Material(youngs_modulus=105.0, poissons_ratio=0.34, density=8500.0), "speed of sound"),
-        (lambda: beam.Material(youngs_modulus=105e9, poissons_ratio=0.34, density=8.5), "speed of sound"),
-        (lambda: beam.cantilever(length=0.13, section=strip(), tip=beam.Tip(mass=4.0)), "heavier than"),
-        (
-            lambda: beam.cantilever(
-                length=0.13, section=beam.StripSection(material=beam.BRASS, width=0.012, thickness=0.006)
-            ),
-            "a bar rather than a strip",
-        ),
         (lambda: beam.cantilever(length=0.005, section=strip()), "of the strip's length 0.005 m"),
         (lambda: beam.cantilever(length=0.01, section=strip()), "it is a plate"),
-        (lambda: beam.cantilever(length=4.0, section=strip()), "hangs under its own weight"),
         (
             lambda: beam.cantilever(
                 length=0.13, section=strip(), tip=beam.Tip(mass=0.004, rotary_inertia=1e-4)
             ),
             "rotary_inertia of the tip is 0.0001",
         ),
-        (
-            lambda: beam.folded_u(leg_length=0.13, bend_radius=0.2, section=strip(), tip=beam.Tip()),
-            "bend_radius is 0.2 m",
-        ),
-        (
-            lambda: beam.Material(youngs_modulus=1e9, poissons_ratio=0.4, density=1400.0, loss_factor=4.0),
-            "loss_factor is 4",
-        ),
         (lambda: beam.single_mode(free_period=0.04, decay_rate=500.0), "it hardly swings"),
         (lambda: oscillator(amplitude=1.5), "amplitude of the drive is 1.5 m"),
-        (lambda: oscillator(gap=10.7), "gap is 10.7 m"),
         (lambda: oscillator(frequency=0.0222), "frequency of the drive is 0.0222 Hz"),
-        (lambda: contact.HertzContact.of_bodies(**PAIR | {"youngs_modulus": 370.0}), "370 Pa"),
     ],
 )
 def test_a_suspicious_value_is_taken_with_a_warning_that_says_why(
     make: Callable[[], object], words: str
 ) -> None:
+    """Further ones are in tests/studies/test_scene.py, as keys of a scene."""
     sentences = warned(make)
     assert any(words in sentence for sentence in sentences), sentences
     assert all(sentence.isprintable() and len(sentence) < 250 for sentence in sentences)
@@ -226,9 +207,3 @@ def test_what_a_sentence_quotes_is_short_and_on_one_line() -> None:
             beam.Straight(length=value)  # type: ignore[arg-type]
         assert len(str(caught.value)) < LONGEST_SHOWN + 80
         assert str(caught.value).isprintable()
-
-
-def test_the_warning_points_at_the_line_that_gave_the_value() -> None:
-    with pytest.warns(SuspiciousValue) as found:
-        suspect("a ball of lead on a leaf of paper")
-    assert found[0].filename == __file__

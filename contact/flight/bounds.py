@@ -49,8 +49,8 @@ from contact.flight.elementary import sine_cosine
 from contact.flight.modal_flow import START_U, START_V, mode_flow
 from contact.flight.motion import DECAY, OMEGA, SQUARE, WEIGHT
 
-__all__ = ["NEAR", "PEAK", "ROOT", "SKIP", "STALL", "LowestMode", "certify", "free_from", "free_until",
-           "lowest_mode"]  # fmt: skip
+__all__ = ["HIGHEST", "LEAST_SLACK", "NEAR", "PEAK", "ROOT", "SKIP", "STALL", "LowestMode", "certify",
+           "free_from", "free_until", "lowest_mode"]  # fmt: skip
 
 SKIP, ROOT, PEAK, NEAR, STALL = 0, 1, 2, 3, 4
 

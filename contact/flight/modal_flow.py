@@ -239,9 +239,9 @@ def speed_scale(motion, u, v):
     return math.sqrt(energy)
 
 
-def steady_motion(motion: Motion, clock: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Steady modal displacement and velocity at times `clock` since a strobe, each (n_times, n_modes)."""
+def steady_motion(motion: Motion, clock: float | np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Steady modal displacement and velocity at times `clock` since a strobe, each (..., n_modes)."""
     sine, cosine, offset = motion.modes[SINE : OFFSET + 1, : motion.size]
-    phase = motion.drive * np.asarray(clock, dtype=float)[:, None]
+    phase = motion.drive * np.asarray(clock, dtype=float)[..., None]
     s, c = np.sin(phase), np.cos(phase)
     return offset + sine * s + cosine * c, motion.drive * (sine * c - cosine * s)

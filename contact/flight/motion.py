@@ -118,7 +118,7 @@ def motion_of(
     load = np.zeros(n) if load is None else np.asarray(load)
     stiff = omega > 0
     offset = np.where(stiff, load / np.where(stiff, omega, 1.0) ** 2, 0.0)
-    pairs = damped_frequencies(omega, decay)
+    pairs = np.array([damped_frequency(x, c) for x, c in zip(omega, decay, strict=True)]).reshape(n, 2)
     modes = np.zeros((12, (n + LANES - 1) // LANES * LANES))
     modes[DAMPED] = 1.0
     modes[DECAY, :n], modes[SQUARE, :n], modes[WEIGHT, :n] = decay, omega * omega, phi
@@ -165,15 +165,6 @@ def damped_frequency(omega, decay):
     d = p - r
     back = d - p
     return square_root(d, ((p - (d - back)) + (-r - back)) + (ep - er))  # with the rounding error (Knuth)
-
-
-@kernel
-def damped_frequencies(omega, decay):
-    """`damped_frequency` of all modes in one call, shape (n_modes, 2)."""
-    pairs = np.empty((omega.size, 2))
-    for k in range(omega.size):
-        pairs[k, 0], pairs[k, 1] = damped_frequency(omega[k], decay[k])
-    return pairs
 
 
 def single_mode(motion: Motion) -> Motion:

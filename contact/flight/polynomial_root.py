@@ -11,54 +11,45 @@ from contact.compiled import kernel
 from contact.flight.bounds import PEAK, ROOT, SKIP, certify
 from contact.flight.elementary import EPS
 
-__all__ = ["evaluate", "first_polynomial_root", "polynomial_root"]
+__all__ = ["first_polynomial_root", "horner", "polynomial_root"]
 
 
 @kernel
-def evaluate(coefficients, s):
-    """Value of a polynomial at `s`; coefficients in rising order."""
-    total = 0.0
-    for n in range(coefficients.size - 1, -1, -1):
-        total = total * s + coefficients[n]
-    return total
-
-
-@kernel
-def horner(coefficients, s):
-    """Value of a polynomial and its first two derivatives at `s`; coefficients in rising order."""
+def horner(coefficients, sign, height, s):
+    """`sign` times a polynomial, coefficients in rising order, minus `height`, and two derivatives at `s`."""
     y0, y1, y2 = 0.0, 0.0, 0.0
     for n in range(coefficients.size - 1, -1, -1):
         y2 = y2 * s + 2.0 * y1
         y1 = y1 * s + y0
         y0 = y0 * s + coefficients[n]
-    return y0, y1, y2
+    return sign * y0 - height, sign * y1, sign * y2
 
 
 @kernel
-def first_polynomial_root(coefficients, start, end, margin):
-    """First s in (start, end] at which a polynomial rises through zero, or -1 if there is none.
+def first_polynomial_root(coefficients, sign, end, margin):
+    """First s in (0, end] at which `sign` (1 or -1) times a polynomial rises through zero, or -1.
 
-    The polynomial is negative at `start`, or zero there and falling.  Heights within `margin` count as none:
-    meant for forces of continuous laws, where a touch of zero has no consequence.  A step that no proof
-    gives is at least twice the one before, so that a polynomial that is zero, or no number, ends as well.
+    It is negative at zero, or zero there and falling.  Heights within `margin` count as none: meant for
+    forces of continuous laws, where a touch of zero has no consequence.  A step that no proof gives is at
+    least twice the one before, so that a polynomial that is zero, or no number, ends as well.
     """
     m3 = 0.0
     power = 1.0
     for j in range(3, coefficients.size):
         m3 += j * (j - 1.0) * (j - 2.0) * abs(coefficients[j]) * power
         power *= end
-    s = start
-    h = end - start
+    s = 0.0
+    h = end
     h_min = 4.0 * EPS * end
     least = h_min
     while s < end:
-        y0, y1, y2 = horner(coefficients, s)
+        y0, y1, y2 = horner(coefficients, sign, 0.0, s)
         if y0 >= -margin:
             # at the start, or a touch: leave the band of rounding by the slope
-            if s > start and y1 > 0.0:
+            if s > 0.0 and y1 > 0.0:
                 return s
             out = 2.0 * max(margin, y0) / max(abs(y1), 1e-300)
-            s += max(least, min(end - s, out, 1e-3 * (end - start)))
+            s += max(least, min(end - s, out, 1e-3 * end))
             least *= 2.0
             continue
         proof, step = certify(y0, y1, y2, m3, 0.0, margin, min(h, end - s), h_min)
@@ -66,33 +57,33 @@ def first_polynomial_root(coefficients, start, end, margin):
             s += step
             h = 2.0 * step
             least = h_min
-        elif proof == ROOT or (proof == PEAK and horner(coefficients, s + step)[0] > 0.0):
-            return polynomial_root(coefficients, s, s + step)
+        elif proof == ROOT or (proof == PEAK and horner(coefficients, sign, 0.0, s + step)[0] > 0.0):
+            return polynomial_root(coefficients, sign, 0.0, s, s + step)
         elif proof == PEAK:
             low, high = s, s + step
             for _ in range(60):
                 middle = 0.5 * (low + high)
-                if horner(coefficients, middle)[1] > 0.0:
+                if horner(coefficients, sign, 0.0, middle)[1] > 0.0:
                     low = middle
                 else:
                     high = middle
-            if horner(coefficients, low)[0] > margin:
-                return polynomial_root(coefficients, s, low)
+            if horner(coefficients, sign, 0.0, low)[0] > margin:
+                return polynomial_root(coefficients, sign, 0.0, s, low)
             s += step
             h, least = step, h_min
         else:
             s += max(step, least)
-            h = end - start
+            h = end
             least *= 2.0
     return -1.0
 
 
 @kernel
-def polynomial_root(coefficients, low, high):
-    """The root of a polynomial in [low, high], negative at `low` and positive at `high`."""
+def polynomial_root(coefficients, sign, height, low, high):
+    """Where in [low, high] `sign` times a polynomial rises through `height`."""
     s = 0.5 * (low + high)
     for _ in range(100):
-        y0, y1, _unused = horner(coefficients, s)
+        y0, y1, _unused = horner(coefficients, sign, height, s)
         if y0 == 0.0:
             return s
         if y0 < 0.0:

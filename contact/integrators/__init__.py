@@ -28,7 +28,6 @@ __all__ = [
     "Run",
     "SampledFlight",
     "Splitting",
-    "method_for",
 ]
 
 STEPPED = (Splitting, CentralDifference, GeneralisedAlpha, MoreauJean, NonsmoothGeneralisedAlpha)
@@ -38,8 +37,3 @@ INTEGRATORS: dict[str, type[Integrator]] = {
     **{method.name: method for method in (Exact, SampledFlight, *STEPPED)},
 }
 """Every method of the package by its name."""
-
-
-def method_for(law: int) -> Integrator:
-    """The exact method, which knows every contact law."""
-    return Exact()

@@ -19,24 +19,26 @@ disc then, and one at z = -1 at the limit,
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
 from contact.compiled import kernel
-from contact.flight.motion import DECAY, WEIGHT, Motion
-from contact.integrators.fixed_step import check_step, fixed_step_run, stiffness_at
+from contact.flight.motion import DECAY, Motion
+from contact.integrators.fixed_step import FixedStep, stiffness_at
 from contact.integrators.grid import (
     DONE,
+    Grid,
     accelerations,
     contact_force,
     end_contact_step,
     force_in_flight,
+    push_on,
     tip_of,
 )
-from contact.integrators.method import Integrator
 from contact.laws import HERTZ, LINEAR
-from contact.oscillator import ImpactOscillator
-from contact.trajectory import Run, Trajectory
 
 __all__ = ["CentralDifference"]
 
@@ -52,10 +54,9 @@ def central_difference(grid, numbers):
         swing = math.sin(motion.drive * (grid.clock + (place.step + 1) * h))
         depth, rate = tip_of(motion, q, half)
         push = contact_force(motion, depth, rate)
-        place.evaluations += 1
         for k in range(q.size):
             old = half[k]
-            new = old + h * (force_in_flight(grid, k, swing, q, half) - motion.modes[WEIGHT, k] * push)
+            new = old + h * (force_in_flight(grid, k, swing, q, half) + push_on(motion, k, push))
             if not lagged:
                 c = 0.5 * h * motion.modes[DECAY, k]
                 new = (new + c * old) / (1.0 + c)
@@ -67,30 +68,20 @@ def central_difference(grid, numbers):
 
 
 @dataclass(frozen=True, kw_only=True)
-class CentralDifference(Integrator):
+class CentralDifference(FixedStep):
     """Central difference with a fixed step.
 
     Parameters
     ----------
-    step : float
-        Time step [s].
     lagged : bool
         Take the damping at the half step before instead of centring it.
-    beyond_limit : bool
-        Run even where the step is unstable, for a study of what happens there.
     """
 
-    step: float
     lagged: bool = False
-    beyond_limit: bool = False
     name: ClassVar[str] = "central-difference"
     order: ClassVar[float] = 2.0
     laws: ClassVar[tuple[int, ...]] = (LINEAR, HERTZ)
-    limit: ClassVar[str] = "h omega_max <= 2, contact closed; 2 (sqrt(1 + zeta^2) - zeta) with lagged damping"
-    source: ClassVar[str] = "T. Belytschko, Computational Methods for Transient Analysis (1983), ch. 1"
-
-    def __post_init__(self) -> None:
-        check_step(self.step)
+    march: ClassVar[Callable[..., int]] = staticmethod(central_difference)
 
     def critical_stiffness(self, motion: Motion) -> float:
         """Contact stiffness at which the highest frequency reaches the limit, below zero if a mode is beyond
@@ -98,10 +89,6 @@ class CentralDifference(Integrator):
         lag = 2.0 * motion.decay / self.step if self.lagged else 0.0
         return stiffness_at(motion, 4.0 / self.step**2 - lag)
 
-    def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
-        """The motion of `run`."""
-        return fixed_step_run(
-            oscillator, run, step=self.step, march=central_difference,
-            method=lambda grid: (grid.v + 0.5 * self.step * accelerations(grid), self.lagged),
-            critical=math.inf if self.beyond_limit else self.critical_stiffness(oscillator.motion()),
-        )  # fmt: skip
+    def carried(self, grid: Grid) -> tuple[np.ndarray, bool]:
+        """v_{1/2}, and whether damping lags."""
+        return grid.v + 0.5 * self.step * accelerations(grid), self.lagged

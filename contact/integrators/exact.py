@@ -5,7 +5,8 @@ search.  An impact law acts at once, accumulating impacts are summed to the end 
 the stop (event-driven); a force law is followed through the contact by a power series to rounding, in time
 where the force is linear (piecewise-linear), else in a variable in which it is smooth (contact series)
 (``contact.touch``).  Nothing is discretised: the error is that of rounding, and there is no step that could
-be too large.
+be too large.  Flights are those of the letter (1996), note [11], a linear stop is that of S. W. Shaw, P. J.
+Holmes, J. Sound Vib. 90 (1983) 129; the search and the series are the package's own.
 """
 
 from __future__ import annotations
@@ -38,11 +39,6 @@ class Exact(Integrator):
     laws: ClassVar[tuple[int, ...]] = tuple(TOUCHES)
     certified: ClassVar[bool] = True
     accuracy: ClassVar[float] = 1e-12
-    limit: ClassVar[str] = "none"
-    source: ClassVar[str] = (
-        "flights in closed form as in the letter (1996), note [11], a linear stop as in S. W. Shaw, P. J. "
-        "Holmes, J. Sound Vib. 90 (1983) 129; the search and the series are the package's own"
-    )
 
     def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
         """The motion of `run`, exact to rounding."""

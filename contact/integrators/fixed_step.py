@@ -1,9 +1,11 @@
-"""A run of a method with a time step: checked, marched, and turned into a trajectory."""
+"""A method with a time step: its run is checked, marched on a grid, and turned into a trajectory."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -12,18 +14,19 @@ from contact.errors import Diverged, StepTooLarge
 from contact.flight.modal_flow import steady_motion
 from contact.flight.motion import Motion
 from contact.integrators.grid import DIVERGED, DONE, FULL, PLACE, Grid
+from contact.integrators.method import Integrator
 from contact.laws import LINEAR
 from contact.oscillator import ImpactOscillator
 from contact.recorder import Recorder, grown, open_touch, recorder_for, trajectory_of
 from contact.touch import TOUCHES
 from contact.trajectory import CONTACT, IMPACT, OUTSIDE, Run, State, Trajectory
 
-__all__ = ["check_step", "fixed_step_run", "stiffness_at"]
+__all__ = ["FixedStep", "mobility", "stiffness_at"]
 
 
-def check_step(step: float) -> None:
-    """ValueError unless `step` is a time step [s]."""
-    require(is_number(step) and step > 0, f"step is {brief(step)} s; it must be finite and above zero")
+def mobility(motion: Motion, inertia: np.ndarray) -> float:
+    """Velocity of the tip per impulse on it, sum phi^2/`inertia`, (n_modes,) [1/kg]."""
+    return float(np.sum(motion.phi**2 / inertia))
 
 
 def stiffness_at(motion: Motion, square: float | np.ndarray) -> float:
@@ -34,13 +37,7 @@ def stiffness_at(motion: Motion, square: float | np.ndarray) -> float:
     from mode to mode, shape (n_modes,).
     """
     room = square - motion.omega**2
-    return float(1.0 / np.sum(motion.phi**2 / room)) if np.all(room > 0.0) else -1.0
-
-
-def _too_large(step: float, detail: str, place: dict[str, float]) -> StepTooLarge:
-    error = StepTooLarge(**place, detail=f"step {step:.4g} s{detail}")  # type: ignore[arg-type]
-    error.step = step
-    return error
+    return 1.0 / mobility(motion, room) if np.all(room > 0.0) else -1.0
 
 
 def _refuse(motion: Motion, run: Run, step: float, critical: float, place: dict[str, float]) -> None:
@@ -54,7 +51,8 @@ def _refuse(motion: Motion, run: Run, step: float, critical: float, place: dict[
     stiff = motion.number0 if motion.law == LINEAR else 0.0
     if critical <= 0.0 or stiff > critical:
         bears = "it is unstable even in flight" if critical <= 0.0 else f"it bears {critical:.4g} N/m"
-        raise _too_large(step, f", contact stiffness {stiff:.4g} N/m: {bears}", place)
+        detail = f"step {step:.4g} s, contact stiffness {stiff:.4g} N/m: {bears}"
+        raise StepTooLarge(**place, detail=detail)  # type: ignore[arg-type]
 
 
 def _in_order(recorder: Recorder, run: Run, period: float) -> tuple[Recorder, np.ndarray]:
@@ -84,79 +82,94 @@ def _sorted_out(recorder: Recorder, run: Run, order: np.ndarray, period: float, 
     return recorder._replace(strobes=rows[:passed], counts=counts, samples=rows[passed:-1])
 
 
-def fixed_step_run(
-    oscillator: ImpactOscillator, run: Run, *, step: float, march: Callable[..., int],
-    method: Callable[[Grid], object], critical: float = math.inf, deviations: bool = False,
-) -> Trajectory:  # fmt: skip
-    """The motion of `run` on a grid of steps.
+@dataclass(frozen=True, kw_only=True)
+class FixedStep(Integrator):
+    """A method with a time step; strobes, samples and the end of a run need not lie on its grid.
 
     Parameters
     ----------
-    oscillator : ImpactOscillator
-    run : Run
     step : float
-        Time step [s]; strobes, samples and the end of the run need not lie on the grid.
+        Time step [s].
+    beyond_limit : bool
+        Run even where the step is unstable, for a study of what happens there.
+
+    Attributes
+    ----------
     march : compiled function
-        march(grid, numbers) -> status: the method's own loop, from grid point places[0].step to `steps`.
-    method : callable
-        method(grid) -> numbers: what the march needs besides, made for the grid before it starts.
-    critical : float
-        Largest contact stiffness that the step bears [N/m].
+        march(grid, carried) -> status: the method's own loop, from grid point places[0].step to `steps`.
     deviations : bool
         Whether the method carries deviations from the steady motion.
-
-    Raises
-    ------
-    ValueError
-        For a start behind the stop under an impact law.
-    StepTooLarge, Diverged
-        See ``contact.errors``.
     """
-    n, period, start, motion = oscillator.n_modes, oscillator.period, run.start, oscillator.motion()
-    forced = CONTACT in TOUCHES[motion.law].REGIMES
 
-    def steady(clock: float) -> np.ndarray:
-        """What the method leaves out of (q, v), shape (2, n_modes)."""
-        return np.squeeze(steady_motion(motion, np.array([clock])), 1) if deviations else np.zeros((2, n))
+    step: float
+    beyond_limit: bool = False
+    march: ClassVar[Callable[..., int]]
+    deviations: ClassVar[bool] = False
 
-    def place(time: float, q: np.ndarray, v: np.ndarray) -> dict[str, float]:
-        return {"time": time, "gap": motion.gap - float(motion.tip(q)), "velocity": float(motion.tip(v))}
+    def __post_init__(self) -> None:
+        step = self.step
+        require(is_number(step) and step > 0, f"step is {brief(step)} s; it must be finite and above zero")
 
-    here = place(start.time, start.displacement, start.velocity)
-    _refuse(motion, run, step, critical, here)
-    q, v = np.array([start.displacement, start.velocity]) - steady(run.clock)
-    recorder, order = _in_order(recorder_for(run, n), run, period)
-    under_way = forced and here["gap"] < 0.0
-    if under_way:
-        open_touch(recorder, run.first, run.clock, here["velocity"], IMPACT, q, v)
-    places = np.zeros(1, dtype=PLACE)
-    places["due"] = -math.inf  # the first step has to look
-    drive = oscillator.drive
-    base = 0.0 if drive is None else drive.amplitude * drive.angular_frequency**2
-    grid = Grid(
-        places=places, motion=motion, push=oscillator.model.participation * base,
-        constant=np.zeros(n) if oscillator.load is None else np.array(oscillator.load), step=float(step),
-        clock=float(run.clock), first=int(run.first), steps=math.ceil(run.length / step - 1e-9),
-        critical=float(critical), q=q, v=v, q0=q.copy(), v0=v.copy(), q_at=q.copy(), v_at=v.copy(),
-        recorder=recorder,
-    )  # fmt: skip
-    numbers = method(grid)
-    while (status := march(grid, numbers)) == FULL:
-        grid = grid._replace(recorder=grown(grid.recorder))
-    if status != DONE:
-        reached = run.clock + grid.places[0]["step"] * step
-        here = place(start.time - run.clock + reached, *(np.array([grid.q, grid.v]) + steady(reached)))
-        if status == DIVERGED:
-            raise Diverged(**here)  # type: ignore[arg-type]
-        raise _too_large(step, ": the contact has become too stiff for it", here)
-    recorder = grid.recorder
-    q, v = recorder.samples[-1].reshape(2, n) + steady(run.clock + run.length)
-    touching = forced and recorder.marks[0]["touching"] == 1
-    end = State(
-        displacement=q, velocity=v, time=run.last * period + run.clock_end,
-        regime=CONTACT if touching and motion.tip(q) > motion.gap else OUTSIDE,
-    )  # fmt: skip
-    return trajectory_of(
-        _sorted_out(recorder, run, order, period, under_way), run, end, period,
-        evaluations=int(grid.places[0]["evaluations"]), motion=motion if deviations else None,
-    )  # fmt: skip
+    def carried(self, grid: Grid) -> object:
+        """What the march needs besides the grid, made before it starts."""
+        raise NotImplementedError
+
+    def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
+        """The motion of `run` on a grid of steps.
+
+        Raises
+        ------
+        ValueError
+            For a start behind the stop under an impact law.
+        StepTooLarge, Diverged
+            See ``contact.errors``.
+        """
+        n, period, start, motion = oscillator.n_modes, oscillator.period, run.start, oscillator.motion()
+        step, forced = float(self.step), CONTACT in TOUCHES[motion.law].REGIMES
+
+        def steady(clock: float) -> np.ndarray:
+            """What the method leaves out of (q, v), shape (2, n_modes)."""
+            return np.array(steady_motion(motion, clock)) if self.deviations else np.zeros((2, n))
+
+        def place(time: float, q: np.ndarray, v: np.ndarray) -> dict[str, float]:
+            return {"time": time, "gap": motion.gap - float(motion.tip(q)), "velocity": float(motion.tip(v))}
+
+        here = place(start.time, start.displacement, start.velocity)
+        critical = math.inf if self.beyond_limit else float(self.critical_stiffness(motion))
+        _refuse(motion, run, step, critical, here)
+        q, v = np.array([start.displacement, start.velocity]) - steady(run.clock)
+        recorder, order = _in_order(recorder_for(run, n), run, period)
+        under_way = forced and here["gap"] < 0.0
+        if under_way:
+            open_touch(recorder, run.first, run.clock, here["velocity"], IMPACT, q, v)
+        places = np.zeros(1, dtype=PLACE)
+        places["due"] = -math.inf  # the first step has to look
+        drive = oscillator.drive
+        base = 0.0 if drive is None else drive.amplitude * drive.angular_frequency**2
+        grid = Grid(
+            places=places, motion=motion, push=oscillator.model.participation * base,
+            constant=np.zeros(n) if oscillator.load is None else np.array(oscillator.load), step=step,
+            clock=run.clock, first=run.first, steps=math.ceil(run.length / step - 1e-9), critical=critical,
+            q=q, v=v, q0=q.copy(), v0=v.copy(), q_at=q.copy(), v_at=v.copy(), recorder=recorder,
+        )  # fmt: skip
+        carried = self.carried(grid)
+        while (status := self.march(grid, carried)) == FULL:
+            grid = grid._replace(recorder=grown(grid.recorder))
+        if status != DONE:
+            reached = run.clock + grid.places[0]["step"] * step
+            here = place(start.time - run.clock + reached, *(np.array([grid.q, grid.v]) + steady(reached)))
+            if status == DIVERGED:
+                raise Diverged(**here)  # type: ignore[arg-type]
+            detail = f"step {step:.4g} s: the contact has become too stiff for it"
+            raise StepTooLarge(**here, detail=detail)  # type: ignore[arg-type]
+        recorder = grid.recorder
+        q, v = recorder.samples[-1].reshape(2, n) + steady(run.clock + run.length)
+        touching = forced and recorder.marks[0]["touching"] == 1
+        end = State(
+            displacement=q, velocity=v, time=run.last * period + run.clock_end,
+            regime=CONTACT if touching and motion.tip(q) > motion.gap else OUTSIDE,
+        )  # fmt: skip
+        return trajectory_of(
+            _sorted_out(recorder, run, order, period, under_way), run, end, period,
+            evaluations=grid.steps, motion=motion if self.deviations else None,
+        )  # fmt: skip

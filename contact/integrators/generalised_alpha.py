@@ -46,15 +46,16 @@ of ``studies.stability`` and no ground to refuse a step.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from beam.parameters import brief, is_number, require_within
+from beam.parameters import require_within
 from contact.compiled import inlined, kernel
-from contact.flight.motion import WEIGHT, Motion
-from contact.integrators.fixed_step import check_step, fixed_step_run, stiffness_at
+from contact.flight.motion import Motion
+from contact.integrators.fixed_step import FixedStep, mobility, stiffness_at
 from contact.integrators.grid import (
     DONE,
     Grid,
@@ -63,12 +64,10 @@ from contact.integrators.grid import (
     contact_tangent,
     end_contact_step,
     force_in_flight,
+    push_on,
     tip_of,
 )
-from contact.integrators.method import Integrator
 from contact.laws import HERTZ, LINEAR
-from contact.oscillator import ImpactOscillator
-from contact.trajectory import Run, Trajectory
 
 __all__ = ["AlphaNumbers", "GeneralisedAlpha", "carried_by", "chung_hulbert", "limit", "predict", "stable"]
 
@@ -160,12 +159,12 @@ def carried_by(numbers: AlphaNumbers, grid: Grid) -> tuple[AlphaNumbers, tuple[n
 
 
 @inlined
-def predict(grid, carried, swing):
-    """The step without a contact force at its end; `swing`: sin(w t) there."""
+def predict(grid, carried, eta, swing):
+    """The step without a contact force at its end; `eta` is the 1/2 of the positions, `swing` sin(w t)."""
     numbers, (a, f, inertia) = carried
     h, q, v, new = grid.step, grid.q, grid.v, 1.0 - numbers.alpha_f
     for k in range(q.size):
-        q[k] += h * v[k] + h * h * (0.5 - numbers.beta) * a[k]
+        q[k] += h * v[k] + h * h * (eta - numbers.beta) * a[k]
         v[k] += h * (1.0 - numbers.gamma) * a[k]
         rest = numbers.alpha_f * f[k] - numbers.alpha_m * a[k]
         a[k] = (rest + new * force_in_flight(grid, k, swing, q, v)) / inertia[k]
@@ -174,26 +173,23 @@ def predict(grid, carried, swing):
 
 
 @kernel
-def generalised_alpha(grid, carried):
-    """March from the grid point reached; see `carried_by`."""
+def generalised_alpha(grid, prepared):
+    """March from the grid point reached; see `carried_by`, and sum phi^2/D."""
+    carried, moves = prepared
     numbers, (a, f, inertia) = carried
     place, h, q, v, motion = grid.places[0], grid.step, grid.q, grid.v, grid.motion
-    modes, new, mobility = motion.modes, 1.0 - numbers.alpha_f, 0.0
-    b, g = numbers.beta * h * h, numbers.gamma * h
-    for k in range(q.size):
-        mobility += new * modes[WEIGHT, k] ** 2 / inertia[k]
+    new, b, g = 1.0 - numbers.alpha_f, numbers.beta * h * h, numbers.gamma * h
     while place.step < grid.steps:
         swing = math.sin(motion.drive * (grid.clock + (place.step + 1) * h))
-        predict(grid, carried, swing)
+        predict(grid, carried, 0.5, swing)
         depth, rate = tip_of(motion, q, v)
-        push, used = force_at_end(motion, depth, rate, b * mobility, g * mobility)
-        place.evaluations += used
+        push, _used = force_at_end(motion, depth, rate, b * new * moves, g * new * moves)
         for k in range(q.size):
-            jump = -new * modes[WEIGHT, k] * push / inertia[k]
+            jump = new * push_on(motion, k, push) / inertia[k]
             a[k] += jump
             q[k] += b * jump
             v[k] += g * jump
-            f[k] = force_in_flight(grid, k, swing, q, v) - modes[WEIGHT, k] * push
+            f[k] = force_in_flight(grid, k, swing, q, v) + push_on(motion, k, push)
         status = end_contact_step(grid, tip_of(motion, q, v)[0])
         if status != DONE:
             return status
@@ -210,43 +206,30 @@ def chung_hulbert(rho: float) -> AlphaNumbers:
 
 
 @dataclass(frozen=True, kw_only=True)
-class GeneralisedAlpha(Integrator):
+class GeneralisedAlpha(FixedStep):
     """The generalised-alpha method with a fixed step, contact force at the end of the step.
 
     ``newmark``, ``hht`` and ``with_dissipation`` choose its numbers.
 
     Parameters
     ----------
-    step : float
-        Time step [s].
     beta, gamma : float
         beta zero or more, gamma above zero [1].
     alpha_m, alpha_f : float
         Weights of the old acceleration and the old force, below 1 [1].
-    beyond_limit : bool
-        Run even where the step is unstable, for a study of what happens there.
     """
 
-    step: float
     beta: float = 0.25
     gamma: float = 0.5
     alpha_m: float = 0.0
     alpha_f: float = 0.0
-    beyond_limit: bool = False
     name: ClassVar[str] = "generalised-alpha"
     order: ClassVar[float] = 2.0
     laws: ClassVar[tuple[int, ...]] = (LINEAR, HERTZ)
-    limit: ClassVar[str] = (
-        "none in linear theory if alpha_m <= alpha_f <= 1/2 and beta >= 1/4 + (alpha_f - alpha_m)/2; else "
-        "h omega_max <= (gamma/2 - beta)^(-1/2) (Newmark); contacts may feed it energy all the same"
-    )
-    source: ClassVar[str] = (
-        "N. M. Newmark, J. Eng. Mech. Div. ASCE 85 (1959) 67; H. M. Hilber, T. J. R. Hughes, R. L. Taylor, "
-        "Earthq. Eng. Struct. Dyn. 5 (1977) 283; J. Chung, G. M. Hulbert, J. Appl. Mech. 60 (1993) 371"
-    )
+    march: ClassVar[Callable[..., int]] = staticmethod(generalised_alpha)
 
     def __post_init__(self) -> None:
-        check_step(self.step)
+        super().__post_init__()
         require_within("beta", self.beta, "[1]", low=0)
         require_within("gamma", self.gamma, "[1]", above=0)
         require_within("alpha_m", self.alpha_m, "[1]", below=1)
@@ -262,11 +245,7 @@ class GeneralisedAlpha(Integrator):
     @staticmethod
     def hht(*, step: float, alpha: float, beyond_limit: bool = False) -> GeneralisedAlpha:
         """The method of Hilber, Hughes and Taylor; `alpha` from 0 to 1/3 is minus that of their paper."""
-        if not (is_number(alpha) and 0.0 <= alpha <= 1.0 / 3.0):
-            raise ValueError(
-                f"alpha is {brief(alpha)}; it must lie between 0 and 1/3 (that of the HHT-alpha paper with "
-                "its sign turned)"
-            )
+        require_within("alpha of HHT-alpha, its sign turned,", alpha, "[1]", low=0, high=1.0 / 3.0)
         return GeneralisedAlpha(
             step=step, beta=0.25 * (1.0 + alpha) ** 2, gamma=0.5 + alpha, alpha_f=alpha,
             beyond_limit=beyond_limit,
@@ -291,10 +270,7 @@ class GeneralisedAlpha(Integrator):
         largest = limit(self.numbers)
         return math.inf if largest == math.inf else stiffness_at(motion, (largest / self.step) ** 2)
 
-    def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
-        """The motion of `run`."""
-        return fixed_step_run(
-            oscillator, run, step=self.step, march=generalised_alpha,
-            method=lambda grid: carried_by(self.numbers, grid),
-            critical=math.inf if self.beyond_limit else self.critical_stiffness(oscillator.motion()),
-        )  # fmt: skip
+    def carried(self, grid: Grid) -> object:
+        """See `carried_by`; and sum phi^2/D."""
+        carried = carried_by(self.numbers, grid)
+        return carried, mobility(grid.motion, carried[1][2])

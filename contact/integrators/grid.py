@@ -29,15 +29,14 @@ from contact.trajectory import IMPACT
 
 __all__ = ["DIVERGED", "DONE", "FULL", "PLACE", "TOO_LARGE", "Grid", "accelerations",
            "contact_force", "contact_tangent", "cubic_between", "end_contact_step", "ending",
-           "force_in_flight", "tip_of", "touches"]  # fmt: skip
+           "force_in_flight", "push_on", "tip_of", "touches"]  # fmt: skip
 
 DONE, FULL, TOO_LARGE, DIVERGED = 0, 1, 2, 3
 """How a step or a run ends: well; with a full log; at a contact too stiff for the step; with a motion that is
 no longer finite."""
 
-PLACE = np.dtype([("step", "i8"), ("evaluations", "i8"), ("due", "f8")])
-"""Grid point reached; evaluations of the force so far; when the next sample is due, since the strobe `first`
-[s]."""
+PLACE = np.dtype([("step", "i8"), ("due", "f8")])
+"""Grid point reached; when the next sample is due, since the strobe `first` [s]."""
 
 UNBOUNDED = 1e12
 """Penetration [m] beyond which a motion counts as diverged."""
@@ -96,6 +95,12 @@ def tip_of(motion, q, v):
 
 
 @inlined
+def push_on(motion, k, push):
+    """What the stop's force or percussion `push` is for mode `k`: -phi_k times it."""
+    return -motion.modes[WEIGHT, k] * push
+
+
+@inlined
 def force_in_flight(grid, k, swing, q, v):
     """f of mode `k`; `swing` is sin(w t)."""
     modes = grid.motion.modes
@@ -123,9 +128,8 @@ def accelerations(grid):
     swing = math.sin(motion.drive * grid.clock)
     depth, rate = tip_of(motion, q, v)
     push, found = contact_force(motion, depth, rate), np.empty(q.size)
-    grid.places[0].evaluations += 1
     for k in range(q.size):
-        found[k] = force_in_flight(grid, k, swing, q, v) - motion.modes[WEIGHT, k] * push
+        found[k] = force_in_flight(grid, k, swing, q, v) + push_on(motion, k, push)
     return found
 
 

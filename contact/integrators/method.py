@@ -1,9 +1,9 @@
 """What every method for the motion with contacts offers, and what a run asks of it.
 
 A method turns the equation of motion of ``contact.oscillator`` into a ``Trajectory``.  It states its order,
-the laws that it accepts, the largest contact stiffness that its step can bear, and its source; whoever
-compares methods needs no more.  A law that it does not know is refused before time starts (``TypeError``),
-and so is a step beyond its limit of stability (``StepTooLarge``).
+the laws that it accepts, and the largest contact stiffness that its step can bear; its file opens with its
+equations, its limit of stability, and where it is published.  A law that it does not know is refused before
+time starts (``TypeError``), and so is a step beyond the limit (``StepTooLarge``).
 """
 
 from __future__ import annotations
@@ -40,10 +40,6 @@ class Integrator:
         Error of the state after a collision, relative to its size, that an exact method keeps for contacts up
         to 1e7 times as stiff as the spring (it grows as the root of that); NaN for one whose step or
         tolerance decides.
-    limit : str
-        Its limit of stability in words.
-    source : str
-        Where it is published.
     """
 
     name: ClassVar[str]
@@ -51,8 +47,6 @@ class Integrator:
     laws: ClassVar[tuple[int, ...]]
     certified: ClassVar[bool] = False
     accuracy: ClassVar[float] = math.nan
-    limit: ClassVar[str]
-    source: ClassVar[str]
 
     def accepts(self, law: int) -> bool:
         """Whether the method knows the contact law with this code."""

@@ -12,6 +12,11 @@ Contact Mechanics Int. Symp., Lausanne 1992, 31; V. Acary, B. Brogliato, Numeric
 Dynamical Systems, Springer 2008).  With D = 1 + theta h c + theta^2 h^2 omega^2 per mode and v* the velocity
 without percussion, v_{n+1} = v* - phi p/D, and p = max(0, (U* + e U_n) / sum phi^2/D) in closed form.
 
+With a = f this is the ``nonsmooth_generalised_alpha`` method of alpha_m = alpha_f = 0, gamma = theta, beta =
+theta^2, but for a weight eta = theta in place of the 1/2 in its positions, so that both march in one loop:
+
+    q_{n+1} = q_n + h v_n + h^2 ((eta - beta) a_n + beta a_{n+1}) + h eta w,     w = -phi p.
+
 Order: an impact is late or early by a fraction of a step, so 1 after an impact; before one, 2 for theta = 1/2
 and 1 otherwise.  Stability: a mode q'' + c q' + omega^2 q = 0 with eigenvalues lambda does not grow if
 2 Re(lambda) + h |lambda|^2 (1 - 2 theta) <= 0, i.e. always for theta >= 1/2.
@@ -37,29 +42,23 @@ impact is dated, from v_n to v_{n+1}, so that Newton's law holds for what is wri
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from beam.parameters import require_within
-from contact.compiled import inlined, kernel, part
-from contact.flight.motion import DECAY, SQUARE, WEIGHT, Motion
-from contact.integrators.fixed_step import check_step, fixed_step_run
-from contact.integrators.grid import (
-    DONE,
-    cubic_between,
-    ending,
-    force_in_flight,
-    tip_of,
-)
-from contact.integrators.method import Integrator
+from contact.compiled import inlined, kernel
+from contact.flight.motion import DECAY, SQUARE, Motion
+from contact.integrators.fixed_step import FixedStep, mobility
+from contact.integrators.generalised_alpha import AlphaNumbers, carried_by, predict
+from contact.integrators.grid import DONE, Grid, cubic_between, ending, force_in_flight, push_on, tip_of
 from contact.laws import NEWTON
-from contact.oscillator import ImpactOscillator
 from contact.recorder import add_loss, close_touch, open_touch
-from contact.trajectory import IMPACT, Run, Trajectory
+from contact.trajectory import IMPACT
 
-__all__ = ["MoreauJean", "end_impact_step", "percussion_of"]
+__all__ = ["MoreauJean", "prepared_for", "through_percussions"]
 
 MARGIN = 1e-12
 """Slack of the test for stability, relative: on the limit itself its two terms cancel up to rounding."""
@@ -104,74 +103,63 @@ def write_percussion(grid, corner, span, _depth, push):
         marks.touching = 1
 
 
-_end_impact_step = ending(path_between, write_percussion)
-
-
-@part
-def end_impact_step(grid, corner, push):
-    """The end of a step, with the percussion `push` at the fraction `corner` of it if there is one."""
-    depth, _rate = tip_of(grid.motion, grid.q, grid.v)
-    return _end_impact_step(grid, corner, 1, depth, push == 0.0, push)
+end_step = ending(path_between, write_percussion)
 
 
 @kernel
-def moreau_jean(grid, theta):
-    """March from the grid point reached."""
-    place, h, q, v, v0, motion = grid.places[0], grid.step, grid.q, grid.v, grid.v0, grid.motion
-    old, new, mobility = (1.0 - theta) * h, theta * h, 0.0
-    inertia = np.empty(q.size)
-    for k in range(q.size):
-        inertia[k] = 1.0 + new * (motion.modes[DECAY, k] + new * motion.modes[SQUARE, k])
-        mobility += motion.modes[WEIGHT, k] ** 2 / inertia[k]
+def through_percussions(grid, prepared):
+    """March from the grid point reached; see `prepared_for`."""
+    carried, eta, mobility = prepared
+    numbers, (a, f, inertia) = carried
+    place, h, q, v, motion = grid.places[0], grid.step, grid.q, grid.v, grid.motion
+    modes, new = motion.modes, 1.0 - numbers.alpha_f
     while place.step < grid.steps:
-        swing0 = math.sin(motion.drive * (grid.clock + place.step * h))
-        swing1 = math.sin(motion.drive * (grid.clock + (place.step + 1) * h))
+        swing = math.sin(motion.drive * (grid.clock + (place.step + 1) * h))
         depth, before = tip_of(motion, q, v)
-        for k in range(q.size):
-            change = old * force_in_flight(grid, k, swing0, q, v)
-            q[k] += h * v[k]  # where the old velocity leads; the change of velocity then counts by theta
-            change += new * force_in_flight(grid, k, swing1, q, v)
-            v[k] += change / inertia[k]
+        predict(grid, carried, eta, swing)
         _d, after = tip_of(motion, q, v)
-        place.evaluations += 1
         push = percussion_of(motion, h, depth, before, after, mobility)
-        for k in range(q.size):
-            v[k] -= motion.modes[WEIGHT, k] * push / inertia[k]
-            q[k] += new * (v[k] - v0[k])
-        status = end_impact_step(grid, 1.0 - theta, push)
+        for k in range(q.size if push > 0.0 else 0):
+            jump = push_on(motion, k, push)
+            change = -new * (modes[DECAY, k] + eta * h * modes[SQUARE, k]) * jump / inertia[k]
+            a[k] += change
+            q[k] += numbers.beta * h * h * change + eta * h * jump
+            v[k] += numbers.gamma * h * change + jump
+        for k in range(q.size if numbers.alpha_f != 0.0 else 0):
+            f[k] = force_in_flight(grid, k, swing, q, v)
+        depth, _rate = tip_of(motion, q, v)
+        status = end_step(grid, 1.0 - eta, 1, depth, push == 0.0, push)
         if status != DONE:
             return status
     return DONE
 
 
+def prepared_for(numbers: AlphaNumbers, eta: float, grid: Grid) -> object:
+    """What the march takes: `carried_by`, eta and sum E phi^2."""
+    carried = carried_by(numbers, grid)
+    (alpha_m, alpha_f, beta, gamma), y = numbers, grid.step**2 * grid.motion.row(SQUARE)
+    share = 1.0 - alpha_m + (1.0 - alpha_f) * (beta - gamma * eta) * y
+    return carried, float(eta), mobility(grid.motion, carried[1][2] / share)
+
+
 @dataclass(frozen=True, kw_only=True)
-class MoreauJean(Integrator):
+class MoreauJean(FixedStep):
     """Moreau and Jean's time stepping with a fixed step.
 
     Parameters
     ----------
-    step : float
-        Time step [s].
     theta : float
         Weight of the end of the step, from 0 to 1 [1]; 1/2 keeps the energy, 1 damps most.
-    beyond_limit : bool
-        Run even where the step is unstable, for a study of what happens there.
     """
 
-    step: float
     theta: float = 0.5
-    beyond_limit: bool = False
     name: ClassVar[str] = "moreau-jean"
     order: ClassVar[float] = 1.0
     laws: ClassVar[tuple[int, ...]] = (NEWTON,)
-    limit: ClassVar[str] = "none for theta >= 1/2; else h <= -2 Re(lambda) / ((1 - 2 theta) |lambda|^2)"
-    source: ClassVar[str] = (
-        "M. Jean, J. J. Moreau, Proc. Contact Mechanics Int. Symp. (Lausanne 1992) 31; V. Acary, "
-        "B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems (2008)"
-    )
+    march: ClassVar[Callable[..., int]] = staticmethod(through_percussions)
 
     def __post_init__(self) -> None:
-        check_step(self.step)
+        super().__post_init__()
         require_within("theta", self.theta, "[1]", low=0, high=1)
 
     def critical_stiffness(self, motion: Motion) -> float:
@@ -184,9 +172,7 @@ class MoreauJean(Integrator):
         gained = self.step * size**2 * (1.0 - 2.0 * self.theta)
         return -1.0 if np.any(gained > lost + MARGIN * np.abs(gained)) else math.inf
 
-    def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
-        """The motion of `run`."""
-        return fixed_step_run(
-            oscillator, run, step=self.step, march=moreau_jean, method=lambda grid: float(self.theta),
-            critical=math.inf if self.beyond_limit else self.critical_stiffness(oscillator.motion()),
-        )  # fmt: skip
+    def carried(self, grid: Grid) -> object:
+        """See `prepared_for`."""
+        theta = float(self.theta)
+        return prepared_for(AlphaNumbers(0.0, 0.0, theta**2, theta), theta, grid)

@@ -28,83 +28,39 @@ the stop stays behind, as with ``moreau_jean``.
 
 from __future__ import annotations
 
-import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
-from contact.compiled import kernel
-from contact.flight.motion import DECAY, SQUARE, WEIGHT
-from contact.integrators.fixed_step import check_step, fixed_step_run
-from contact.integrators.generalised_alpha import carried_by, chung_hulbert, predict
-from contact.integrators.grid import DONE, force_in_flight, tip_of
-from contact.integrators.method import Integrator
-from contact.integrators.moreau_jean import end_impact_step, percussion_of
+from contact.integrators.fixed_step import FixedStep
+from contact.integrators.generalised_alpha import chung_hulbert
+from contact.integrators.grid import Grid
+from contact.integrators.moreau_jean import prepared_for, through_percussions
 from contact.laws import NEWTON
-from contact.oscillator import ImpactOscillator
-from contact.trajectory import Run, Trajectory
 
 __all__ = ["NonsmoothGeneralisedAlpha"]
 
 
-@kernel
-def nonsmooth_generalised_alpha(grid, carried):
-    """March from the grid point reached; see `carried_by`."""
-    numbers, (a, f, inertia) = carried
-    place, h, q, v, motion = grid.places[0], grid.step, grid.q, grid.v, grid.motion
-    modes, new, mobility = motion.modes, 1.0 - numbers.alpha_f, 0.0
-    for k in range(q.size):
-        y = h * h * modes[SQUARE, k]
-        share = (1.0 - numbers.alpha_m + new * (numbers.beta - 0.5 * numbers.gamma) * y) / inertia[k]
-        mobility += share * modes[WEIGHT, k] ** 2
-    while place.step < grid.steps:
-        swing = math.sin(motion.drive * (grid.clock + (place.step + 1) * h))
-        depth, before = tip_of(motion, q, v)
-        predict(grid, carried, swing)
-        _d, after = tip_of(motion, q, v)
-        place.evaluations += 1
-        push = percussion_of(motion, h, depth, before, after, mobility)
-        for k in range(q.size):
-            jump = -modes[WEIGHT, k] * push
-            change = -new * (modes[DECAY, k] + 0.5 * h * modes[SQUARE, k]) * jump / inertia[k]
-            a[k] += change
-            q[k] += numbers.beta * h * h * change + 0.5 * h * jump
-            v[k] += numbers.gamma * h * change + jump
-            f[k] = force_in_flight(grid, k, swing, q, v)
-        status = end_impact_step(grid, 0.5, push)
-        if status != DONE:
-            return status
-    return DONE
-
-
 @dataclass(frozen=True, kw_only=True)
-class NonsmoothGeneralisedAlpha(Integrator):
+class NonsmoothGeneralisedAlpha(FixedStep):
     """The nonsmooth generalised-alpha method with a fixed step.
 
     Parameters
     ----------
-    step : float
-        Time step [s].
     rho : float
         Factor by which a step damps infinite frequencies, from 0 to 1 [1]; 1 damps nothing.
     """
 
-    step: float
     rho: float
     name: ClassVar[str] = "nonsmooth-generalised-alpha"
     order: ClassVar[float] = 2.0
     laws: ClassVar[tuple[int, ...]] = (NEWTON,)
-    limit: ClassVar[str] = "none"
-    source: ClassVar[str] = (
-        "Q.-Z. Chen, V. Acary, G. Virlez, O. Bruls, Int. J. Numer. Meth. Engng 96 (2013) 487, velocity level"
-    )
+    march: ClassVar[Callable[..., int]] = staticmethod(through_percussions)
 
     def __post_init__(self) -> None:
-        check_step(self.step)
+        super().__post_init__()
         chung_hulbert(self.rho)
 
-    def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
-        """The motion of `run`."""
-        return fixed_step_run(
-            oscillator, run, step=self.step, march=nonsmooth_generalised_alpha,
-            method=lambda grid: carried_by(chung_hulbert(self.rho), grid),
-        )  # fmt: skip
+    def carried(self, grid: Grid) -> object:
+        """See ``moreau_jean.prepared_for``."""
+        return prepared_for(chung_hulbert(self.rho), 0.5, grid)

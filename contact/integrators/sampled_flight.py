@@ -45,8 +45,6 @@ class SampledFlight(Integrator):
     laws: ClassVar[tuple[int, ...]] = Exact.laws
     certified: ClassVar[bool] = False
     accuracy: ClassVar[float] = 1e-12
-    limit: ClassVar[str] = "none; misses crossings when the tip turns twice between two samples"
-    source: ClassVar[str] = "the letter (1996), note [11]"
 
     def __post_init__(self) -> None:
         points = require_whole("points", self.points, "samples per drive period", high=MOST_POINTS)

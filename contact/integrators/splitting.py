@@ -51,6 +51,7 @@ limit.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import ClassVar
@@ -60,12 +61,10 @@ from numpy.typing import ArrayLike
 
 from contact.flight.modal_flow import flow_over
 from contact.flight.motion import DAMPED, Motion, motion_of
-from contact.integrators.fixed_step import check_step, fixed_step_run
-from contact.integrators.method import Integrator
+from contact.integrators.fixed_step import FixedStep
+from contact.integrators.grid import Grid
 from contact.integrators.splitting_step import Composition, Split, march, sub_flows
 from contact.laws import HERTZ, LINEAR, LinearContact
-from contact.oscillator import ImpactOscillator
-from contact.trajectory import Run, Trajectory
 
 __all__ = ["COMPOSITIONS", "Splitting", "first_instability", "spectral_radius", "step_matrix"]
 
@@ -151,9 +150,7 @@ def _passage(motion: Motion, composition: Composition, step: float, damping: flo
     return lowest
 
 
-def first_instability(
-    motion: Motion, composition: Composition, step: float, damping: float = 0.0
-) -> float:
+def first_instability(motion: Motion, composition: Composition, step: float, damping: float = 0.0) -> float:
     """The lowest contact stiffness at which a lasting contact is unstable [N/m]."""
 
     def unstable(stiffness: ArrayLike) -> np.ndarray:
@@ -188,35 +185,23 @@ def _limit(numbers: bytes, n: int, order: int, step: float, damping: float) -> f
 
 
 @dataclass(frozen=True, kw_only=True)
-class Splitting(Integrator):
-    """Symmetric kick-flow-kick splitting with a fixed step.
+class Splitting(FixedStep):
+    """Symmetric kick-flow-kick splitting; the step may be longer than the periods of high modes.
 
     Parameters
     ----------
-    step : float
-        Time step [s]; it may be longer than the periods of high modes.
     order : int
         2 or 4.
-    beyond_limit : bool
-        Run even where the step is unstable, for a study of what happens there.
     """
 
-    step: float
     order: int = 2  # type: ignore[misc]
-    beyond_limit: bool = False
     name: ClassVar[str] = "splitting"
     laws: ClassVar[tuple[int, ...]] = (LINEAR, HERTZ)
-    limit: ClassVar[str] = (
-        "contact closed, omega h < pi: order 2, k h sum phi^2 tan(omega h/2)/(2 omega) <= 1; order 4, lowest "
-        "root of det(step matrix + I); resonances of step and contact beyond"
-    )
-    source: ClassVar[str] = (
-        "G. Strang, SIAM J. Numer. Anal. 5 (1968) 506; S. Blanes, P. C. Moan, J. Comput. Appl. Math. 142 "
-        "(2002) 313"
-    )
+    march: ClassVar[Callable[..., int]] = staticmethod(march)
+    deviations: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
-        check_step(self.step)
+        super().__post_init__()
         if self.order not in COMPOSITIONS:
             raise ValueError(f"order is {self.order!r}; it must be 2 or 4")
 
@@ -230,11 +215,7 @@ class Splitting(Integrator):
         damping = motion.number1 if motion.law == LINEAR else 0.0
         return _limit(numbers.tobytes(), motion.size, self.order, self.step, damping)
 
-    def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
-        """The motion of `run`."""
+    def carried(self, grid: Grid) -> Split:
+        """The composition, and its sub-flows over a step."""
         composition = COMPOSITIONS[self.order]
-        return fixed_step_run(
-            oscillator, run, step=self.step, march=march, deviations=True,
-            method=lambda grid: Split(composition, sub_flows(grid.motion, composition, self.step)),
-            critical=math.inf if self.beyond_limit else self.critical_stiffness(oscillator.motion()),
-        )  # fmt: skip
+        return Split(composition, sub_flows(grid.motion, composition, self.step))

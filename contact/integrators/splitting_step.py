@@ -35,13 +35,7 @@ import numpy as np
 from contact.compiled import inlined, kernel
 from contact.flight.modal_flow import flow_over, propagate
 from contact.flight.motion import LOAD, OMEGA, WEIGHT
-from contact.integrators.grid import (
-    DONE,
-    contact_force,
-    contact_tangent,
-    ending,
-    touches,
-)
+from contact.integrators.grid import DONE, contact_force, contact_tangent, ending, touches
 
 __all__ = ["Composition", "Split", "kick", "march", "sub_flows", "tip_at", "tip_rate"]
 
@@ -187,10 +181,8 @@ def march(grid, split):
             if count < WORTHWHILE:
                 count, look = 1, place.step + WORTHWHILE // 2
         if count == 1:
-            place.evaluations += split.composition.flows.size
             tip, taken, met = take_step(motion, split, h, tip, u, v, True)
         else:
-            place.evaluations += 1
             propagate(motion, u, v, count * h, u, v)
         if count > 1 or (place.step + 1) % RENEW == 0:
             tip = tip_at(motion, u, grid.clock + (place.step + count) * h)

@@ -31,10 +31,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from beam.parameters import require_array
-from contact.compiled import held, kernel
+from contact.compiled import kernel
 from contact.event_loop import DONE, STATE
 from contact.exact_run import failure
 from contact.flight.modal_flow import tip_rounding, tip_state
+from contact.flight.motion import Motion
 from contact.orbits.repetition import free_for_good, repetition
 from contact.orbits.settling import TOLERANCE
 from contact.oscillator import ImpactOscillator
@@ -65,17 +66,7 @@ EXTRA = 3
 
 
 @kernel
-def returns(points, rows, tolerance):
-    """Whether a strobe before the last of `rows` is as close to it as a repetition asks for."""
-    close = 0
-    last = points[rows - 1, 0]
-    for i in range(max(0, rows - 1 - LARGEST_PERIOD), rows - 1):
-        close += 1 if abs(points[i, 0] - last) <= tolerance else 0
-    return close > 0
-
-
-@kernel
-def settled_column(system, amplitudes, state, most_cycles, tolerance, found, place):
+def settled_column(system, amplitudes, state, most_cycles, tolerance, found, u, v, runs):
     """Settle at each of `amplitudes` in turn, or until one fails.
 
     Parameters
@@ -91,81 +82,48 @@ def settled_column(system, amplitudes, state, most_cycles, tolerance, found, pla
         Of a repetition, in the unit of the coordinates [m].
     found : ndarray of int, shape (n, 3)
         Period, impacts and drive periods spent; overwritten.
-    place : ndarray, shape (2 n_modes + 2,)
-        Deviations, drive period and time since its strobe where a failure happened; overwritten.
+    u, v, runs : ndarray, shapes (n_modes,), (n_modes,) and (1,)
+        Deviations and run (`STATE`), at the end where a failure happened; overwritten.
 
     Returns
     -------
     done, status : int
         Amplitudes done; DONE, or why the next one failed.
     """
-    n = system.motion.size
-    capacity = 2 * LARGEST_PERIOD
+    n, run, capacity = system.motion.size, runs[0], 2 * LARGEST_PERIOD
     points, impacts = np.empty((capacity, 2 * n)), np.zeros(capacity, dtype=np.int64)
-    strobes, counts = np.empty((BLOCK, 2 * n)), np.zeros(BLOCK, dtype=np.int64)
-    u, v = np.empty(n), np.empty(n)
     for a in range(amplitudes.size):
         local = at_amplitude(system, amplitudes[a])
         here, mean = local.motion, local.mean.copy()
         local.mean[:] = 0.0  # the points are those of the deviations
-        for k in range(n):
-            u[k] = state[k] - mean[k]
-            v[k] = state[n + k] - mean[n + k]
-        runs = np.zeros(1, dtype=STATE)
-        run = runs[0]
+        u[:], v[:] = state[:n] - mean[:n], state[n : 2 * n] - mean[n:]
         run.regime, run.wait, run.rebound = int(state[2 * n]), state[2 * n + 1], state[2 * n + 2]
-        run.root, run.speed = -1.0, -1.0
-        rows, cycles, period, hits = 0, np.int64(0), 0, 0
-        status, known = DONE, False
-        height, _velocity, _acceleration = tip_state(here, 0.0, u, v)
-        if run.regime == OUTSIDE and height > tip_rounding(here, u, v):
+        run.order, run.period, run.steps, run.clock, run.root, run.speed = 0, 0, 0, 0.0, -1.0, -1.0
+        rows, cycles, period, status = 0, 0, 0, DONE
+        if run.regime == OUTSIDE and tip_state(here, 0.0, u, v)[0] > tip_rounding(here, u, v):
             status = BEHIND
-        while status == DONE and not known:
+        while status == DONE and period == 0:
             if run.regime == OUTSIDE and free_for_good(here, u, v):
-                for k in range(n):
-                    u[k], v[k] = 0.0, 0.0
-                period, hits, known = 1, 0, True
-                break
-            if cycles >= most_cycles:
+                u[:], v[:] = 0.0, 0.0
+                period, rows = 1, 0
+            elif cycles >= most_cycles:
                 period = repetition(points, impacts, rows, np.int64(LARGEST_PERIOD), ROUGH * tolerance)
-                for i in range(rows - period if period > 0 else 0, rows):
-                    hits += impacts[i]
                 break
-            status = strobed_motion(local, u, v, runs, strobes, counts)
-            if status != DONE:
-                break
-            cycles += BLOCK
-            if rows == capacity:
-                for i in range(capacity - BLOCK):
-                    impacts[i] = impacts[i + BLOCK]
-                    for k in range(2 * n):
-                        points[i, k] = points[i + BLOCK, k]
-                rows -= BLOCK
-            for i in range(BLOCK):
-                impacts[rows + i] = counts[i]
-                for k in range(2 * n):
-                    points[rows + i, k] = strobes[i, k]
-            rows += BLOCK
-            stretch = np.int64(SHORTEST)
-            back = returns(points, rows, tolerance)
-            while back and not known and 2 * stretch <= rows:
-                period = repetition(points, impacts, rows, stretch, tolerance)
-                known = period > 0
-                stretch *= 2
-            if known:
-                for i in range(rows - period, rows):
-                    hits += impacts[i]
+            else:
+                if rows == capacity:
+                    rows -= BLOCK
+                    points[:rows], impacts[:rows] = points[BLOCK:], impacts[BLOCK:]
+                new = slice(rows, rows + BLOCK)
+                status = strobed_motion(local, u, v, runs, points[new], impacts[new])
+                rows, cycles, stretch = rows + BLOCK, cycles + BLOCK, np.int64(SHORTEST)
+                while status == DONE and period == 0 and 2 * stretch <= rows:
+                    period = repetition(points, impacts, rows, stretch, tolerance)
+                    stretch *= 2
         if status != DONE:
-            for k in range(n):
-                place[k], place[n + k] = u[k], v[k]
-            place[2 * n], place[2 * n + 1] = run.period, run.clock
-            held(runs)  # type: ignore[call-arg]
             return a, status
-        for k in range(n):
-            state[k] = u[k] + mean[k]
-            state[n + k] = v[k] + mean[n + k]
+        state[:n], state[n : 2 * n] = u + mean[:n], v + mean[n:]
         state[2 * n], state[2 * n + 1], state[2 * n + 2] = run.regime, run.wait, run.rebound
-        held(runs)  # type: ignore[call-arg]  # a record does not keep the array it lies in
+        hits = impacts[max(0, rows - period) if period > 0 else 0 : rows].sum()
         found[a, 0], found[a, 1], found[a, 2] = period, hits, cycles
     return amplitudes.size, DONE
 
@@ -212,60 +170,38 @@ class AmplitudeScan:
                 f"at least {2 * LARGEST_PERIOD} to be seen"
             )
 
-    def at_frequency(self, frequency: float) -> ImpactOscillator:
-        """The oscillator at grazing and drive `frequency` [Hz]."""
-        drive = replace(self.oscillator.driven, frequency=frequency)
-        return replace(self.oscillator, drive=drive).with_excess(0.0)
-
     def __call__(self, frequency: float, excesses: ArrayLike) -> ScannedColumn:
         """The column at drive `frequency` [Hz] over rising `excesses` F/F_g - 1 [1]."""
         rising = require_array("excesses", excesses, "[1]", dimensions=1, words="one row of rising numbers")
         if rising.size == 0 or not np.all(np.diff(rising) > 0.0):
             raise ValueError("excesses must be at least one number, in rising order")
-        oscillator = self.at_frequency(frequency)
-        steady = StroboscopicMap(oscillator=oscillator.with_excess(float(rising[0]))).steady()
+        drive, n = replace(self.oscillator.driven, frequency=frequency), self.oscillator.n_modes
+        oscillator = replace(self.oscillator, drive=drive).with_excess(0.0)
+        steady = StroboscopicMap(oscillator=oscillator).at(float(rising[0])).steady()
         state = np.concatenate([steady.displacement, steady.velocity, np.zeros(EXTRA)])
-        found = np.full((2, 3, rising.size), -1, dtype=np.int64)
-        reasons = [[""] * rising.size, [""] * rising.size]
-        for way in (0, 1):
-            order = slice(None, None, 1 if way == 0 else -1)
-            columns, told = self._scanned(oscillator, rising[order], state)
-            found[way, :, order], reasons[way][order] = columns.T, told
-        return ScannedColumn(
-            period=found[:, 0], impacts=found[:, 1], cycles=found[:, 2], reason=np.array(reasons)
-        )
-
-    def _scanned(
-        self, oscillator: ImpactOscillator, excesses: NDArray[np.float64], state: NDArray[np.float64]
-    ) -> tuple[NDArray[np.int64], list[str]]:
-        """Period, impacts and cycles, shape (n, 3), and reasons; `state` becomes the last one reached."""
-        system, size = strobed_system(oscillator), 2 * oscillator.n_modes
-        columns, reasons = np.full((excesses.size, 3), -1, dtype=np.int64), [""] * excesses.size
-        at = 0
-        while at < excesses.size:
-            place = np.empty(size + 2)
+        system, tolerance = strobed_system(oscillator), TOLERANCE * oscillator.stop.gap
+        u, v, runs = np.empty(n), np.empty(n), np.zeros(1, dtype=STATE)
+        path = np.concatenate([rising, rising[::-1]])
+        found, reasons, at = np.full((path.size, 3), -1, dtype=np.int64), [""] * path.size, 0
+        while at < path.size:
             done, status = settled_column(
-                system, 1.0 + excesses[at:], state, self.most_cycles, TOLERANCE * oscillator.stop.gap,
-                columns[at:], place,
-            )  # fmt: skip
+                system, 1.0 + path[at:], state, self.most_cycles, tolerance, found[at:], u, v, runs
+            )
             at += done
             if status != DONE:
                 # the next amplitude goes on from the last state that was reached
-                reasons[at] = self._reason(oscillator, float(excesses[at]), status, place)
-                at += 1
-        return columns, reasons
+                motion = oscillator.with_excess(float(path[at])).motion()
+                reasons[at], at = _reason(status, motion, runs, u, v), at + 1
+        period, impacts, cycles, reason = (
+            np.array([every[: rising.size], every[: rising.size - 1 : -1]])
+            for every in (*found.T, np.array(reasons))
+        )
+        return ScannedColumn(period=period, impacts=impacts, cycles=cycles, reason=reason)
 
-    def _reason(
-        self, oscillator: ImpactOscillator, excess: float, status: int, place: np.ndarray
-    ) -> str:
-        """One sentence for an amplitude that failed."""
-        motion = oscillator.with_excess(excess).motion()
-        n = oscillator.n_modes
-        u, v = place[:n].copy(), place[n : 2 * n].copy()
-        if status == BEHIND:
-            height = tip_state(motion, 0.0, u, v)[0]
-            return f"the amplitude before left the tip {height:.3g} m behind the stop"
-        runs = np.zeros(1, dtype=STATE)
-        runs["period"], runs["clock"] = place[2 * n], place[2 * n + 1]
-        error = failure(status, motion, runs, u, v)
-        return f"{type(error).__name__}: {error}"
+
+def _reason(status: int, motion: Motion, runs: np.ndarray, u: np.ndarray, v: np.ndarray) -> str:
+    """One sentence for an amplitude that failed."""
+    if status == BEHIND:
+        return f"the amplitude before left the tip {tip_state(motion, 0.0, u, v)[0]:.3g} m behind the stop"
+    error = failure(status, motion, runs, u, v)
+    return f"{type(error).__name__}: {error}"

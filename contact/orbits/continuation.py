@@ -18,7 +18,7 @@ import numpy as np
 from beam.parameters import require_array, require_kind, require_within
 from contact.errors import ContactError
 from contact.laws import NEWTON
-from contact.orbits.events import Event, events_between, locate, probed
+from contact.orbits.events import Event, events_between, locate, passes, probed
 from contact.orbits.periodic_orbit import Followed, PeriodicOrbit
 
 __all__ = [
@@ -81,11 +81,13 @@ class Branch:
         return [event.orbit for event in self.events if event.kind == kind]
 
 
-def require_followed(family: object, start: object, *, optional: bool = False) -> None:
-    """TypeError unless this is a family to follow from this orbit."""
+Pairs = Iterator[tuple[PeriodicOrbit, PeriodicOrbit]]
+
+
+def require_followed(family: object, near: object = None) -> None:
+    """TypeError unless this is a family to follow and `near` one of its orbits or None."""
     require_kind("family", family, Followed, "a Shooting family")
-    name, words = ("near", "a PeriodicOrbit or None") if optional else ("start", "a PeriodicOrbit")
-    require_kind(name, start, (PeriodicOrbit, *([type(None)] if optional else [])), words)
+    require_kind("near", near, (PeriodicOrbit, type(None)), "a PeriodicOrbit or None")
 
 
 def follow(family: Followed, start: PeriodicOrbit, *, low: float, high: float, step: float = 0.1) -> Branch:
@@ -99,7 +101,8 @@ def follow(family: Followed, start: PeriodicOrbit, *, low: float, high: float, s
     step : float
         Largest step of log v.
     """
-    require_followed(family, start)
+    require_followed(family)
+    require_kind("start", start, PeriodicOrbit, "a PeriodicOrbit")
     for name, value in (("low", low), ("high", high)):
         require_within(name, value, "m/s")
     require_within("step", step, "[1]", low=SMALLEST_STEP, high=GREATEST_STEP)
@@ -111,8 +114,8 @@ def follow(family: Followed, start: PeriodicOrbit, *, low: float, high: float, s
     for limit in (low, high):
         arm, reason = [start], "range"
         try:
-            for orbits in _walk(family, start, limit, first=step, longest=step):
-                arm += orbits[1:]
+            for _, there in _walk(family, start, limit, first=step, longest=step):
+                arm.append(there)
         except ContactError as error:
             reason = f"{error}; last orbit at {arm[-1].speed:.6g} m/s, excess {arm[-1].excess:.6g}"
         arms.append(arm)
@@ -122,11 +125,8 @@ def follow(family: Followed, start: PeriodicOrbit, *, low: float, high: float, s
     return Branch(orbits=tuple(orbits), events=tuple(events), ended_low=reasons[0], ended_high=reasons[1])
 
 
-def _walk(
-    family: Followed, here: PeriodicOrbit, limit: float, *, first: float, longest: float
-) -> Iterator[list[PeriodicOrbit]]:
-    """Steps along a branch up to the approach velocity `limit` [m/s]: the orbits from one end of each to the
-    other.
+def _walk(family: Followed, here: PeriodicOrbit, limit: float, *, first: float, longest: float) -> Pairs:
+    """Neighbours along a branch, one after the other, up to the approach velocity `limit` [m/s].
 
     A step of log v grows from `first` to `longest`, and is halved where it fails; the ContactError of one
     that has become `SMALLEST_STEP` is raised.
@@ -143,10 +143,16 @@ def _walk(
             if stride < SMALLEST_STEP:
                 raise
             continue
-        yield orbits
+        yield from pairwise(orbits)
         if target == limit:
             return
         here, stride = there, min(1.5 * stride, longest)
+
+
+def _downhill(family: Followed, start: PeriodicOrbit, slowest: float, fastest: float) -> Pairs:
+    """Neighbours from `start` towards lower amplitudes, up to one of these approach velocities [m/s]."""
+    limit = slowest if start.slope > 0.0 else fastest
+    return _walk(family, start, limit, first=FIRST_STRIDE, longest=LONGEST_STRIDE)
 
 
 def first_event(family: Followed, start: PeriodicOrbit, lowest: float) -> Event | None:
@@ -158,25 +164,24 @@ def first_event(family: Followed, start: PeriodicOrbit, lowest: float) -> Event 
     so does one whose only touch falls below `LEAST_SPEED`, as under a contact so soft that no fold is left.
     NotPeriodic is raised if the branch is lost for another reason.
     """
-    require_followed(family, start)
+    require_followed(family)
+    require_kind("start", start, PeriodicOrbit, "a PeriodicOrbit")
     require_within("lowest", lowest, "[1]", above=-1)
-    here, unit = start, family.oscillator.unit_speed
+    last, unit = start, family.oscillator.unit_speed
     slow, fast = min(LEAST_SPEED * unit, 0.5 * start.speed), max(FASTEST * unit, 2.0 * start.speed)
-    limit = slow if start.slope > 0.0 else fast
     try:
-        for orbits in _walk(family, start, limit, first=FIRST_STRIDE, longest=LONGEST_STRIDE):
-            for a, b in pairwise(orbits):
-                events = events_between(family, a, b)
-                if events:
-                    return events[0]
-            here = orbits[-1]
-            if here.excess < lowest:
+        for here, there in _downhill(family, start, slow, fast):
+            events = events_between(family, here, there)
+            if events:
+                return events[0]
+            last = there
+            if there.excess < lowest:
                 return None
     except ContactError:
-        if here.approach.min() < GRAZED * here.approach.max():
-            return Event(kind="grazing", orbit=here)
-        raise
-    return Event(kind="grazing", orbit=here) if limit == slow else None
+        if last.approach.min() >= GRAZED * last.approach.max():
+            raise
+        return Event(kind="grazing", orbit=last)
+    return Event(kind="grazing", orbit=last) if start.slope > 0.0 else None
 
 
 def fold_of(family: Followed, near: PeriodicOrbit | None = None) -> PeriodicOrbit | None:
@@ -213,8 +218,7 @@ def folds_of(family: Followed, near: PeriodicOrbit | None = None) -> tuple[Perio
     The branch is followed through `near`, or else through the first orbit that the kick description leads to;
     empty also if it leads to none.  Between two steps a pair of folds is seen when the slope comes near zero.
     """
-    branch = _whole_branch(family, near)
-    return () if branch is None else tuple(branch.of_kind("fold"))
+    return tuple(_whole_branch(family, near).of_kind("fold"))
 
 
 def lowest_of(family: Followed, near: PeriodicOrbit | None = None) -> Event | None:
@@ -226,9 +230,8 @@ def lowest_of(family: Followed, near: PeriodicOrbit | None = None) -> Event | No
     fold = _fold_near(family, near)
     if fold is not None and fold.excess < 0.0 and fold.admissible:
         return Event(kind="fold", orbit=fold)
-    branch = _whole_branch(family, near if fold is None else fold)
-    ends = () if branch is None else branch.events
-    ends = tuple(event for event in ends if event.kind != "period doubling" and event.orbit.admissible)
+    events = _whole_branch(family, near if fold is None else fold).events
+    ends = [event for event in events if event.kind != "period doubling" and event.orbit.admissible]
     return min(ends, key=lambda event: event.orbit.excess, default=None)
 
 
@@ -236,46 +239,43 @@ def orbits_at(family: Followed, excess: float) -> tuple[PeriodicOrbit, ...]:
     """The orbits of the branch of `folds_of` at F/F_g - 1 = `excess`, by rising approach velocity."""
     require_within("excess", excess, "[1]", above=-1)
     branch = _whole_branch(family, None)
-    orbits = [] if branch is None else [*branch.orbits, *branch.of_kind("fold")]
+    orbits = sorted([*branch.orbits, *branch.of_kind("fold")], key=lambda orbit: orbit.speed)
     return tuple(
         locate(family, a, b, lambda orbit: orbit.excess - excess)
-        for a, b in pairwise(sorted(orbits, key=lambda orbit: orbit.speed))
+        for a, b in pairwise(orbits)
         if (a.excess - excess) * (b.excess - excess) < 0.0
     )
 
 
-def _whole_branch(family: Followed, near: PeriodicOrbit | None) -> Branch | None:
-    """The branch over all approach velocities; None if no orbit of it is found.
+def _whole_branch(family: Followed, near: PeriodicOrbit | None) -> Branch:
+    """The branch over all approach velocities; without orbits if none of it is found.
 
     Raises NotPeriodic if an event on it is not located: from another start it would be the same one.
     """
-    require_followed(family, near, optional=True)
+    require_followed(family, near)
     unit = family.oscillator.unit_speed
-    starts = [near] if near is not None else [None] * len(STARTS)
-    for start, part in zip(starts, STARTS, strict=False):
+    for speed in [near.speed] if near is not None else [part * unit for part in STARTS]:
         try:
-            here = family.at_speed(part * unit if start is None else start.speed, start)
+            here = family.at_speed(speed, near)
         except ContactError:
             continue
         low = min(LEAST_SPEED * unit, 0.5 * here.speed)
         high = max(GREATEST_SPEED * unit, 2.0 * here.speed)
         return follow(family, here, low=low, high=high, step=LONGEST_STRIDE)
-    return None
+    return Branch(orbits=(), events=(), ended_low="no orbit", ended_high="no orbit")
 
 
 def _fold_near(family: Followed, near: PeriodicOrbit | None) -> PeriodicOrbit | None:
     """The first fold downhill from `near`, or from the fold of the kick description."""
-    require_followed(family, near, optional=True)
+    require_followed(family, near)
     guess = near or family.kicks.fold()
     if guess is None:
         return None
     start, unit = family.at_speed(guess.speed, near), family.oscillator.unit_speed
-    if not LEAST_SPEED * unit < start.speed < GREATEST_SPEED * unit:
-        return None
-    limit = (LEAST_SPEED if start.slope > 0.0 else GREATEST_SPEED) * unit
-    for orbits in _walk(family, start, limit, first=FIRST_STRIDE, longest=LONGEST_STRIDE):
-        for a, b in pairwise(orbits):
-            if a.slope * b.slope <= 0:
+    slow, fast = LEAST_SPEED * unit, GREATEST_SPEED * unit
+    if slow < start.speed < fast:
+        for a, b in _downhill(family, start, slow, fast):
+            if passes(a.slope, b.slope):
                 return locate(family, a, b, lambda orbit: orbit.slope)
     return None
 
@@ -284,7 +284,7 @@ def fold_along_frequency(
     family: Followed, frequencies: np.ndarray, near: PeriodicOrbit | None = None
 ) -> list[PeriodicOrbit | None]:
     """The folds at `frequencies` [Hz], each started from the one before; None where there is none."""
-    require_followed(family, near, optional=True)
+    require_followed(family, near)
     found: list[PeriodicOrbit | None] = []
     for frequency in require_array("frequencies", frequencies, "Hz", dimensions=1, words="drive frequencies"):
         drive = replace(family.oscillator.driven, frequency=float(frequency))

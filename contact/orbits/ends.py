@@ -9,20 +9,16 @@ width, made from an orbit that held.  That step brackets the end.
 
 **Exact end.** The orbit that held is then followed, as an orbit and not as a motion, through the bracket: by
 shooting for an impact oscillator (``contact.orbits.continuation``), in closed form for the Nordmark map
-(``contact.maximal_orbits``).  What is met first is the end,
-
-    fold              the orbit meets an unstable one
-    period doubling   a multiplier passes -1
-    grazing           the tip touches the stop once more, or one touch less,
-
-with the excess of that very point.  If the orbit leaves the bracket at its lower end, stable, the motion had
-been lost too early, and the scan goes on from the orbit there.  Where nothing of this is found (a map without
-these tools, several impacts in the map, a pair of complex multipliers that passes the unit circle) the end is
-known to its "bracket" only.
+(``contact.maximal_orbits``).  What is met first is the end, a "fold", "period doubling" or "grazing"
+(``contact.orbits.events``), with the excess of that very point.  If the orbit leaves the bracket at its lower
+end, stable, the motion had been lost too early, and the scan goes on from the orbit there.  Where nothing of
+this is found (a map without these tools, several impacts in the map, a pair of complex multipliers that
+passes the unit circle) the end is known to its "bracket" only.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
@@ -119,45 +115,41 @@ def orbit_end(
             settled = settle(strobed.at(trial), state, most_cycles=most_cycles)
         except ContactError:
             return None
-        same = settled.period == start.period and settled.impacts == start.impacts
+        same = (settled.period, settled.impacts) == (start.period, start.impacts)
         return settled.end if same else None
 
-    held, state, step = excess, start.end, first_step
-    lost = None
+    held, state, step, lost = excess, start.end, first_step, math.inf
     for _ in range(MOST_STEPS):
         final = max(relative * abs(held), absolute)
-        # from next to where a longer step fell off, the last step is made anew
-        step = max(step, final) if lost is None else max(0.5 * (held - lost), final)
+        # from next to where a longer step fell off (`lost`, if below), the last step is made anew
+        step = max(0.5 * (held - lost) if lost < held else step, final)
         trial = held - step
         if trial < lowest:
             return None
         now = kept(trial)
         if now is None and step <= final:
-            kind, exact, below = _exact_end(strobed, state, start, held, trial)
-            if below is None:
+            end, now = _exact_end(strobed, state, start, held, trial)
+            if end is not None:
                 return OrbitEnd(
-                    period=start.period,
-                    impacts=start.impacts,
-                    excess=exact,
-                    kind=kind,
-                    held=held,
-                    lost=trial,
-                    state=state,
-                )
-            now = below
+                    period=start.period, impacts=start.impacts, kind=end[0], excess=end[1], held=held,
+                    lost=trial, state=state,
+                )  # fmt: skip
         if now is None:
             lost = trial
-            continue
-        held, state, step = trial, now, 2.0 * step
-        lost = lost if lost is not None and lost < held else None
+        else:
+            held, state, step = trial, now, 2.0 * step
     return None
+
+
+End = tuple[str, float]
+"""Kind of an end, and its excess."""
 
 
 def _exact_end(
     strobed: Any, state: Any, start: Settled[Any], held: float, lost: float
-) -> tuple[str, float, Any]:
-    """Kind and excess of the end in the bracket; third the state at `lost`, if the orbit is still there."""
-    unknown = BRACKET, 0.5 * (held + lost), None
+) -> tuple[End | None, Any]:
+    """The end in the bracket; or None and the state at `lost`, if the orbit is still there."""
+    unknown = (BRACKET, 0.5 * (held + lost)), None
     if isinstance(strobed, StrobedNordmarkMap) and start.impacts == 1:
         return _map_end(MapFamily(strobed.map, start.period), held, lost) or unknown
     if not isinstance(strobed, StroboscopicMap):
@@ -169,25 +161,25 @@ def _exact_end(
     try:
         event = first_event(family, orbit, lost)
         if event is not None and event.orbit.excess >= lost:
-            return event.kind, event.orbit.excess, None
+            return (event.kind, event.orbit.excess), None
         below = family.at_excess(lost, orbit)
     except ContactError:
         return unknown
-    return ("", lost, below.strobe_state()) if below.stable else unknown
+    return (None, below.strobe_state()) if below.stable else unknown
 
 
-def _map_end(family: MapFamily, held: float, lost: float) -> tuple[str, float, Any] | None:
+def _map_end(family: MapFamily, held: float, lost: float) -> tuple[End | None, Any] | None:
     """The same for the orbit of the Nordmark map with one impact in a period; None if it is not known."""
     at_fold, stable = family.fold(), family.stable_range()
     if at_fold is None or stable is None or not stable[0] <= family.map.rho(held) <= stable[1]:
         return None
     end = family.map.excess(stable[0])
     if end < lost:
-        return "", lost, family.orbits(lost)[-1].states[0]
+        return None, family.orbits(lost)[-1].states[0]
     if stable[0] == at_fold.rho:
-        return "fold", end, None
+        return ("fold", end), None
     doubles = family.at_rho(stable[0])[-1].multipliers.real.min() < -1.0 + 1e-6
-    return "period doubling" if doubles else "grazing", end, None
+    return ("period doubling" if doubles else "grazing", end), None
 
 
 def fold_excess(strobed: StrobedMap[Any], period: int) -> float | None:

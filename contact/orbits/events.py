@@ -1,11 +1,11 @@
 """Points on a branch of periodic orbits: what happens between two neighbouring orbits of it.
 
-Between neighbours, told apart by the approach velocity v of their first touch, these are located by Brent's
-method on log v, grazing by bisection:
+Between neighbours, told apart by the approach velocity v of their first touch, a number changes sign; its
+zero is located by Brent's method on log v, which bisects where the number is a mere sign:
 
-    fold              dZ/dv changes sign: two orbits, one stable, meet
-    period doubling   det(M + I) changes sign: a multiplier passes -1
-    grazing           the orbit gains or loses a touch of the stop (certified flights)
+    fold              dZ/dv: two orbits, one stable, meet
+    period doubling   det(M + I): a multiplier passes -1
+    grazing           +1 or -1: the orbit gains or loses a touch of the stop (certified flights)
 """
 
 from __future__ import annotations
@@ -18,13 +18,10 @@ import numpy as np
 
 from contact.orbits.periodic_orbit import Followed, PeriodicOrbit
 
-__all__ = ["Event", "events_between", "locate", "probed"]
+__all__ = ["Event", "events_between", "locate", "passes", "probed"]
 
 PLACE = 1e-10
 """Accuracy of log v at a located point; the excess there is good to the square of it at a fold."""
-
-MOST_HALVINGS = 60
-"""Bound of the halvings of a bracket: 2^-60 of any step is below PLACE."""
 
 PROBE, MOST_PROBES = 0.25, 4
 """An orbit is computed where the slope is expected below this part of that of both neighbours: a first probe
@@ -39,9 +36,12 @@ class Event:
     orbit: PeriodicOrbit
 
 
-def doubling(orbit: PeriodicOrbit) -> float:
-    """det(M + I): zero where a multiplier is -1."""
-    return float(np.prod(orbit.multipliers + 1.0).real)
+TESTS: dict[str, Callable[[PeriodicOrbit], float]] = {
+    "fold": lambda orbit: orbit.slope,
+    "period doubling": lambda orbit: float(np.prod(orbit.multipliers + 1.0).real),
+    "grazing": lambda orbit: 1.0 if orbit.admissible else -1.0,
+}
+"""What changes sign at each kind of event."""
 
 
 def passes(here: float, there: float) -> bool:
@@ -53,7 +53,7 @@ def passes(here: float, there: float) -> bool:
 def locate(
     family: Followed, a: PeriodicOrbit, b: PeriodicOrbit, test: Callable[[PeriodicOrbit], float]
 ) -> PeriodicOrbit:
-    """The orbit between neighbours a and b where `test` changes sign."""
+    """The orbit between neighbours a and b where `test` changes sign; of a sign, the last where it is +1."""
     from scipy.optimize import brentq  # slow to import
 
     seen = {math.log(a.speed): a, math.log(b.speed): b}
@@ -64,23 +64,9 @@ def locate(
             seen[x] = family.at_speed(math.exp(x), near)
         return test(seen[x])
 
-    root = brentq(value, math.log(a.speed), math.log(b.speed), xtol=PLACE, rtol=1e-14)
+    root = brentq(value, *seen, xtol=PLACE, rtol=1e-14)
     value(root)
-    return seen[root]
-
-
-def _bisect(family: Followed, a: PeriodicOrbit, b: PeriodicOrbit) -> PeriodicOrbit:
-    """The last admissible orbit between an admissible and an inadmissible neighbour."""
-    good, bad = (a, b) if a.admissible else (b, a)
-    for _ in range(MOST_HALVINGS):
-        if abs(math.log(good.speed / bad.speed)) <= PLACE:
-            break
-        middle = family.at_speed(math.sqrt(good.speed * bad.speed), good)
-        if middle.admissible:
-            good = middle
-        else:
-            bad = middle
-    return good
+    return seen[min((x for x in seen if test(seen[x]) != -1.0), key=lambda x: abs(x - root))]
 
 
 def probed(family: Followed, a: PeriodicOrbit, b: PeriodicOrbit, depth: int = 0) -> list[PeriodicOrbit]:
@@ -105,11 +91,9 @@ def probed(family: Followed, a: PeriodicOrbit, b: PeriodicOrbit, depth: int = 0)
 
 def events_between(family: Followed, a: PeriodicOrbit, b: PeriodicOrbit) -> list[Event]:
     """What happens from `a`, itself included, to its neighbour `b`, in the order in which it is met."""
-    found = []
-    if passes(a.slope, b.slope):
-        found.append(Event(kind="fold", orbit=locate(family, a, b, lambda orbit: orbit.slope)))
-    if passes(doubling(a), doubling(b)):
-        found.append(Event(kind="period doubling", orbit=locate(family, a, b, doubling)))
-    if a.admissible != b.admissible:
-        found.append(Event(kind="grazing", orbit=_bisect(family, a, b)))
+    found = [
+        Event(kind=kind, orbit=locate(family, a, b, test))
+        for kind, test in TESTS.items()
+        if passes(test(a), test(b))
+    ]
     return sorted(found, key=lambda event: abs(math.log(event.orbit.speed / a.speed)))

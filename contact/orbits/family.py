@@ -20,14 +20,16 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from contact.errors import NotPeriodic
 from contact.flight.crossing import CROSSES, FREE, first_crossing
-from contact.flight.modal_flow import flow_over, steady_motion
+from contact.flight.modal_flow import flow_over, steady_motion, tip_state
 from contact.flight.motion import Motion
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
+from contact.touch_flow import FLOWN, flow_from_touch
 from contact.trajectory import State
 
-__all__ = ["Family", "Orbit", "Release", "TouchOrbit", "modal_flow"]
+__all__ = ["Family", "Orbit", "Release", "TouchOrbit", "flown", "modal_flow"]
 
 Array = NDArray[np.float64]
 CLOSING = 1e-9  # part of a flight by which it is prolonged, so that the touch at its end is met
@@ -76,6 +78,29 @@ class Family(Protocol):
 
     def fold(self) -> Orbit | None:
         """The orbit of least amplitude, at which node and saddle meet; None if there is none."""
+
+
+def flown(
+    oscillator: ImpactOscillator, period: int, phase: float, deviations: Array, touches: int
+) -> tuple[Array, Array, Array]:
+    """The flow over m = `period` drive periods from a touch: its end, tangent and record, as they are told in
+    ``contact.touch_flow``, from the `deviations` (u, v), shape (2 n_modes,), at drive time `phase` [s].
+
+    Raises
+    ------
+    NotPeriodic
+        If the motion has fewer touches, or a contact does not end.
+    """
+    (u, v), size, duration = deviations.reshape(2, -1).copy(), deviations.size, period * oscillator.period
+    tangent, record = np.eye(size + 2), np.empty((touches, 4 + size))
+    motion, response = oscillator.motion(), oscillator.tip_response()
+    outcome = flow_from_touch(motion, response, phase, u, v, duration, tangent, record)
+    if outcome != FLOWN:
+        raise NotPeriodic(
+            time=phase, gap=0.0, velocity=float(record[0, 2]),
+            detail=f"an orbit of period {period} with {touches} touches was lost",
+        )  # fmt: skip
+    return np.concatenate([u, v]), tangent, record
 
 
 def modal_flow(motion: Motion, time: float) -> Array:
@@ -135,6 +160,11 @@ class TouchOrbit(ABC):
         """Where the flight begins that ends with the first touch."""
 
     @property
+    def deviations(self) -> Array:
+        """(u, v) of all modes just before the first touch, shape (2 n_modes,)."""
+        return np.concatenate([self.displacement, self.velocity])
+
+    @property
     def amplitude(self) -> float:
         """Base amplitude [m]."""
         return self.oscillator.driven.amplitude
@@ -166,10 +196,13 @@ class TouchOrbit(ABC):
         return bool(outcome == FREE or (outcome == CROSSES and abs(met - length) <= slack))
 
     def state(self) -> State:
-        """The physical state just before the first touch."""
-        q, q_rate = steady_motion(self.oscillator.motion(), np.array([self.phase]))
+        """The physical state just before the first touch, on the near side of the stop to the last digit."""
+        motion, phi = self.oscillator.motion(), self.oscillator.model.phi
+        q, q_rate = steady_motion(motion, np.array([self.phase]))
+        behind = max(0.0, tip_state(motion, self.phase, self.displacement, self.velocity)[0])
+        back = behind / (phi @ phi) * phi  # rounding of the sum alone
         return State(
-            displacement=self.displacement + q[0], velocity=self.velocity + q_rate[0], time=self.phase
+            displacement=self.displacement - back + q[0], velocity=self.velocity + q_rate[0], time=self.phase
         )
 
     def strobe_state(self) -> State:

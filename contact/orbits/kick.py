@@ -28,12 +28,11 @@ from numpy.typing import NDArray
 
 from beam.parameters import require, require_array, require_within, shown
 from contact.errors import NotPeriodic
-from contact.flight.crossing import CROSSES, first_crossing
 from contact.laws import DELAYED
 from contact.orbits.family import modal_flow
 from contact.orbits.single_impact import SINGULAR, Kick, SingleImpactFamily, SingleImpactOrbit
 from contact.touch.delayed import numbers_at
-from contact.touch_flow import FLOWN, flow_from_touch
+from contact.touch_flow import FEWER_TOUCHES, flow_from_touch
 
 __all__ = ["Kick", "KickFamily"]
 
@@ -86,39 +85,33 @@ class KickFamily(SingleImpactFamily):
             return self._simulated(speed, deviations)
         if self.collision is not None:
             return self.collision(speed)
-        if self._motion.law == DELAYED:
+        if self.oscillator.motion().law == DELAYED:
             return self._waiting(speed)
         return self._simulated(speed, np.zeros((self.oscillator.n_modes, 2)))
 
     def _simulated(self, speed: float, w: Array) -> Kick:
         """The collision from the deviations `w`, shape (n_modes, 2)."""
-        n, window, touches = self.oscillator.n_modes, WINDOW * self.oscillator.period, 1
-        p, r = self._motion.tip(w)
+        n, window = self.oscillator.n_modes, WINDOW * self.oscillator.period
+        p, r = self.oscillator.motion().tip(w)
         amplitude, phase = self.oscillator.drive_at(self.oscillator.stop.gap - p, speed - r)
         motion, response = self.oscillator.with_amplitude(amplitude).motion(), self.oscillator.tip_response()
-        while True:
-            u, v = w.T.copy()
-            record = np.empty((touches, 4 + 2 * n))
-            outcome = flow_from_touch(motion, response, phase, u, v, window, np.empty((0, 0)), record)
-            end, rebound = record[-1, 1], record[-1, 3]
-            u, v = record[-1, 4 : 4 + n].copy(), record[-1, 4 + n :].copy()
-            if outcome != FLOWN or touches > MOST_TOUCHES:
-                raise NotPeriodic(
-                    time=phase + window, gap=0.0, velocity=speed,
-                    detail="the collision does not end within half a drive period",
-                )
-            leaves = bool(rebound < 0.0)
-            again, _time = first_crossing(motion, phase + end, u, v, window - end, 1 if leaves else 2)
-            if again != CROSSES:
-                break
-            touches += 1
+        (u, v), record = w.T.copy(), np.full((MOST_TOUCHES + 1, 4 + 2 * n), np.nan)
+        outcome = flow_from_touch(motion, response, phase, u, v, window, np.empty((0, 0)), record)
+        if outcome != FEWER_TOUCHES:
+            raise NotPeriodic(
+                time=phase + window, gap=0.0, velocity=speed,
+                detail="the collision does not end within half a drive period",
+            )
+        touches = int(np.count_nonzero(np.isfinite(record[:, 0])))
+        _start, end, _approach, rebound = record[touches - 1, :4].tolist()
+        left = record[touches - 1, 4:].reshape(2, n).T
         # the flow turned back to the touch, less what was there
-        jump = np.einsum("kij,kj->ki", modal_flow(motion, -end), np.column_stack([u, v])) - w
-        return Kick(speed=speed, jump=jump, touches=touches, duration=float(end), leaves=leaves)
+        jump = np.einsum("kij,kj->ki", modal_flow(motion, -end), left) - w
+        return Kick(speed=speed, jump=jump, touches=touches, duration=end, leaves=rebound < 0.0)
 
     def _waiting(self, speed: float) -> Kick:
         """The touch of `DelayedRestitution` that repeats once in m drive periods."""
-        motion, gap = self._motion, self.oscillator.stop.gap
+        motion, gap = self.oscillator.motion(), self.oscillator.stop.gap
         restitution, _slope, delay, _slope = numbers_at(motion.table, speed)
         left = self.period * self.oscillator.period - delay
         w, angle = motion.drive, motion.drive * delay
@@ -141,45 +134,42 @@ class KickFamily(SingleImpactFamily):
     def error(self, orbit: SingleImpactOrbit) -> float:
         """Estimated error of the excess of an orbit: the change when its collision starts from its own
         ringing."""
-        ringing = np.column_stack([orbit.displacement, orbit.velocity])
+        ringing = orbit.deviations.reshape(2, -1).T
         return self.orbit_of(self.kick(orbit.speed, ringing)).excess - orbit.excess
 
-    def _grid(self, speeds: tuple[float, float]) -> tuple[Array, list[float]]:
-        """Logarithms of velocities in a range over 2 pi f gap, and the excess of their orbits."""
+    def _search(self, speeds: tuple[float, float]) -> tuple[list[float], float | None]:
+        """Logarithms of velocities in a range over 2 pi f gap, rising, with that of least excess inside."""
+        from scipy.optimize import minimize_scalar  # slow to import
+
         low, high = require_array("speeds", speeds, "[1]", shape=(2,), words="two rising numbers above zero")
         require(0.0 < low < high, f"speeds is {shown(speeds)}; it must be two rising numbers above zero")
         unit = self.oscillator.unit_speed
-        grid = np.linspace(math.log(low * unit), math.log(high * unit), GRID)
-        return grid, [self.excess(math.exp(x)) for x in grid]
-
-    def _lowest(self, grid: Array, values: list[float]) -> float | None:
-        """The logarithm of the velocity at which the excess is least inside the grid."""
-        from scipy.optimize import minimize_scalar  # slow to import
-
+        grid = np.linspace(math.log(low * unit), math.log(high * unit), GRID).tolist()
+        values = [self._excess(x) for x in grid]
         # a contact that is soft at low speed makes A(v) start from grazing upwards: look for minima inside
         inside = [i for i in range(1, GRID - 1) if values[i - 1] > values[i] <= values[i + 1]]
         if not inside:
-            return None
+            return grid, None
         i = min(inside, key=lambda k: values[k])
-        best = minimize_scalar(
-            lambda x: self.excess(math.exp(x)), bracket=tuple(grid[i - 1 : i + 2]), method="brent",
-            options={"xtol": 1e-9},
-        )  # fmt: skip
-        return float(best.x)
+        bracket, options = tuple(grid[i - 1 : i + 2]), {"xtol": 1e-9}
+        best = float(minimize_scalar(self._excess, bracket=bracket, method="brent", options=options).x)
+        return sorted([*grid, best]), best
+
+    def _excess(self, x: float) -> float:
+        """F/F_g - 1 of the orbit with x = log v."""
+        return self.excess(math.exp(x))
 
     def orbits(self, excess: float, speeds: tuple[float, float] = SPEEDS) -> tuple[SingleImpactOrbit, ...]:
         """The orbits at F/F_g - 1 = `excess` > -1, by rising speed, among `speeds` over 2 pi f gap."""
         from scipy.optimize import brentq  # slow to import
 
         require_within("excess", excess, "[1]", above=-1)
-        grid, values = self._grid(speeds)
-        lowest = self._lowest(grid, values)
-        places = sorted([*grid.tolist(), *([] if lowest is None else [lowest])])
 
         def above(x: float) -> float:
-            return self.excess(math.exp(x)) - excess
+            return self._excess(x) - excess
 
-        roots = [brentq(above, a, b, xtol=1e-12) for a, b in pairwise(places) if above(a) * above(b) < 0.0]
+        places = pairwise(self._search(speeds)[0])
+        roots = [brentq(above, a, b, xtol=1e-12) for a, b in places if above(a) * above(b) < 0.0]
         return tuple(self.orbit(math.exp(root)) for root in roots)
 
     def fold(self, speeds: tuple[float, float] = SPEEDS) -> SingleImpactOrbit | None:
@@ -191,5 +181,5 @@ class KickFamily(SingleImpactFamily):
             Range of approach velocities over 2 pi f gap, in which the amplitude is searched on a logarithmic
             grid and then minimised by Brent's method.
         """
-        lowest = self._lowest(*self._grid(speeds))
+        lowest = self._search(speeds)[1]
         return None if lowest is None else self.orbit(math.exp(lowest))

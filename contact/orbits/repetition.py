@@ -36,14 +36,12 @@ def repetition(points, impacts, rows, stretch, tolerance):
         Rows in use, at least 2 `stretch`.
     """
     for period in range(1, stretch + 1):
-        same = True
-        i = rows - 1
-        while same and i >= rows - stretch:
-            same = impacts[i] == impacts[i - period]
-            for k in range(points.shape[1]):
-                if not abs(points[i, k] - points[i - period, k]) <= tolerance:
-                    same = False
+        same, i = True, rows
+        while same and i > rows - stretch:
             i -= 1
+            same, k = impacts[i] == impacts[i - period], 0
+            while same and k < points.shape[1]:
+                same, k = abs(points[i, k] - points[i - period, k]) <= tolerance, k + 1
         if same:
             return period
     return 0

@@ -67,7 +67,6 @@ def orbit_diagram(
     record_cycles: int = 40,
     largest_period: int = 64,
     early: bool = True,
-    after_each: Callable[[], None] | None = None,
 ) -> OrbitDiagram[S]:
     """Scan the amplitudes `excesses` in the given order, starting from `state`.
 
@@ -88,8 +87,6 @@ def orbit_diagram(
     early : bool
         End a transient as soon as the orbit is known (`settle`); otherwise every amplitude gets all
         `settle_cycles`.
-    after_each : callable, optional
-        Called after each amplitude (progress).
     """
     values = np.asarray(excesses, dtype=float)
     if values.ndim != 1 or values.size == 0 or not np.all(np.isfinite(values)):
@@ -106,21 +103,18 @@ def orbit_diagram(
                 period[i], impacts[i] = settled.period, settled.impacts
                 recorded = here.orbit(state, record_cycles)
             else:
-                state = here.orbit(state, settle_cycles).end
+                state, cycles[i] = here.orbit(state, settle_cycles).end, settle_cycles
                 recorded = here.orbit(state, max(record_cycles, 2 * largest_period))
-                cycles[i] = settle_cycles
                 period[i] = period_of(
                     recorded.points, recorded.impacts, largest_period=largest_period,
                     tolerance=TOLERANCE * here.scale,
-                )
-                impacts[i] = recorded.impacts[-period[i] :].sum() if period[i] else recorded.impacts.sum()
+                )  # fmt: skip
+                impacts[i] = recorded.impacts[-period[i] :].sum()
             state = recorded.end
             points[i] = observe(recorded.points)[-record_cycles:]
         except ContactError as error:
             # the next amplitude goes on from the last state that was reached
             failures.append(f"excess {excess:.6g}: {error}")
-        if after_each is not None:
-            after_each()
     return OrbitDiagram(
         excess=values, points=points, period=period, impacts=impacts, cycles=cycles, failures=tuple(failures),
         end=state,

@@ -33,6 +33,7 @@ from contact.orbits.repetition import free_for_good, period_of
 from contact.orbits.shooting import Shooting
 from contact.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap
 from contact.trajectory import State
+from contact.virtual_motion import deviations
 
 __all__ = ["BELOW", "TOLERANCE", "Settled", "born", "born_period", "orbit_near", "settle"]
 
@@ -115,43 +116,28 @@ def settle(
         End the transient of a StroboscopicMap where its orbit is proved; otherwise, and for any other map,
         where it repeats.
     """
-    block = 2 * largest_period
+    block, cycles, fine = 2 * largest_period, 0, tolerance * strobed.scale
     proof: Any = None
     if prove and isinstance(strobed, StroboscopicMap):
-        proof = _Proof(strobed, largest_period, tolerance * strobed.scale)
-    cycles = 0
+        proof = _Proof(strobed, largest_period, fine)
     while True:
         run = strobed.orbit(state, block)
         state, cycles = run.end, cycles + block
-        period = period_of(
-            run.points, run.impacts, largest_period=largest_period, tolerance=tolerance * strobed.scale
-        )
-        if cycles < most_cycles and period != period_of(
-            run.points, run.impacts, largest_period=period, tolerance=ALIKE * tolerance * strobed.scale
+        period = period_of(run.points, run.impacts, largest_period=largest_period, tolerance=fine)
+        over = cycles >= most_cycles
+        if not over and period != period_of(
+            run.points, run.impacts, largest_period=period, tolerance=ALIKE * fine
         ):
             period = 0
-        if period or cycles >= most_cycles:
-            counted = run.impacts[-period:] if period else run.impacts
-            return Settled(
-                period=period, impacts=int(counted.sum()), end=state, cycles=cycles, points=run.points
-            )
-        proved = None if proof is None else proof.after(run)
-        if proved is not None:
-            period, impacts, on_orbit = proved
-            final = strobed.orbit(on_orbit, block)
-            return Settled(
-                period=period, impacts=impacts, end=final.end, cycles=cycles, points=final.points
-            )
+        if proof is not None and not over and period == 0:
+            period, run = proof.after(run)
+        if over or period:
+            hits = int(run.impacts[-period:].sum())
+            return Settled(period=period, impacts=hits, end=run.end, cycles=cycles, points=run.points)
 
 
 def born(
-    strobed: StrobedMap[S],
-    excess: float = 1e-3,
-    *,
-    below: float = BELOW,
-    most_cycles: int = 4000,
-    largest_period: int = 64,
-    prove: bool = True,
+    strobed: StrobedMap[S], excess: float = 1e-3, *, below: float = BELOW, most_cycles: int = 4000
 ) -> Settled[S]:
     """What the motion without impacts at `below` turns into when the drive is raised to `excess` in one step.
 
@@ -163,13 +149,8 @@ def born(
         F/F_g - 1 after and before the step [1].
     most_cycles : int
         Bound of the transient: orbits born at grazing settle within some hundred drive periods.
-    largest_period, prove
-        As in `settle`.
     """
-    start = strobed.at(below).steady()
-    return settle(
-        strobed.at(excess), start, most_cycles=most_cycles, largest_period=largest_period, prove=prove
-    )
+    return settle(strobed.at(excess), strobed.at(below).steady(), most_cycles=most_cycles)
 
 
 def born_period(
@@ -189,69 +170,56 @@ def orbit_near(strobed: StroboscopicMap, state: State, period: int, impacts: int
     return orbit if orbit.stable and orbit.admissible else None
 
 
+Cycle = tuple[PeriodicOrbit, StrobedOrbit[State]]
+"""An orbit, and one period of its strobes."""
+
+
 class _Proof:
     """Watches the blocks of a transient until it is certain on which orbit it ends; see the module."""
 
     def __init__(self, strobed: StroboscopicMap, largest_period: int, rounding: float) -> None:
         self.strobed, self.largest_period, self.rounding = strobed, largest_period, rounding
-        self.known: PeriodicOrbit | None = None
+        self.known: Cycle | None = None
         self.before = np.inf
         self.failed = np.inf  # how well the motion repeated when an orbit was looked for in vain
 
-    def cycle(self, orbit: PeriodicOrbit) -> StrobedOrbit[State]:
-        """One period of an orbit."""
-        return self.strobed.orbit(replace(orbit.strobe_state(), time=0.0), orbit.period)
-
-    def single(self, orbit: PeriodicOrbit | None) -> PeriodicOrbit | None:
-        """`orbit`, but None if it is another one of a shorter period, run through more than once."""
+    def look(self, state: State, period: int, impacts: int) -> Cycle | None:
+        """The orbit next to `state`; None also for one of a shorter period, run through more than once."""
+        orbit = orbit_near(self.strobed, state, period, impacts)
         if orbit is None:
             return None
-        points, tolerance = np.tile(self.cycle(orbit).points, (2, 1)), ALIKE * self.rounding
-        counts = np.zeros(len(points), dtype=int)
-        shortest = period_of(points, counts, largest_period=orbit.period, tolerance=tolerance)
-        return orbit if shortest == orbit.period else None
+        cycle = self.strobed.orbit(replace(orbit.strobe_state(), time=0.0), period)
+        points, counts = np.tile(cycle.points, (2, 1)), np.zeros(2 * period)
+        shortest = period_of(points, counts, largest_period=period, tolerance=ALIKE * self.rounding)
+        return (orbit, cycle) if shortest == period else None
 
-    def after(self, run: StrobedOrbit[State]) -> tuple[int, int, State] | None:
-        """Period, impacts and a state on the orbit in the phase of the motion; None while nothing is
+    def after(self, run: StrobedOrbit[State]) -> tuple[int, StrobedOrbit[State]]:
+        """The period, and a block on the orbit in the phase of the motion; 0 and `run` while nothing is
         certain."""
-        strobed = self.strobed
+        strobed, points, end = self.strobed, run.points, run.end
         rough = period_of(
-            run.points, run.impacts, largest_period=self.largest_period, tolerance=FIRST_LOOK * strobed.scale
+            points, run.impacts, largest_period=self.largest_period, tolerance=FIRST_LOOK * strobed.scale
         )
-        hits = int(run.impacts[-rough:].sum()) if rough else 0
-        if rough and hits == 0:
-            self.known = None
-            steady, end = strobed.steady(), run.end
-            u, v = end.displacement - steady.displacement, end.velocity - steady.velocity
-            if free_for_good(strobed.oscillator.motion(), u, v):
-                return 1, 0, replace(steady, time=end.time)
-            return None
-        if not rough or rough > self.largest_period // 2:
+        hits, found = int(run.impacts[-rough:].sum()), None
+        if self.known is None or (self.known[0].period, self.known[0].impacts) != (rough, hits):
             self.known, self.before = None, np.inf
-            return None
-        if self.known is None or (self.known.period, self.known.impacts) != (rough, hits):
-            self.known, self.before = None, np.inf
-            open_by = float(np.max(np.abs(run.points[rough:] - run.points[:-rough])[-self.largest_period :]))
-            if not CLOSER * self.failed <= open_by <= self.failed / CLOSER**3:
-                self.known = self.single(orbit_near(strobed, run.end, rough, hits))
-                self.failed = open_by if self.known is None else np.inf
-        if self.known is None:
-            return None
-        orbit = self.known
-        cycle = self.cycle(orbit)
-        distance, phase = _distance(run.points, cycle.points)
-        promised = SLACK * abs(orbit.multipliers[0]) ** (len(run.points) / orbit.period) * self.before
-        if self.before < NEAR * strobed.scale and distance <= promised + self.rounding:
-            on_orbit = strobed.orbit(cycle.end, phase % orbit.period or orbit.period).end
-            return orbit.period, orbit.impacts, replace(on_orbit, time=run.end.time)
-        self.before = distance
-        return None
-
-
-def _distance(points: np.ndarray, cycle: np.ndarray) -> tuple[float, int]:
-    """Largest distance of the last points from a cycle, in its best phase, and that phase."""
-    m = len(cycle)
-    last = points[-m:]
-    gaps = [float(np.max(np.abs(last - np.roll(cycle, -k, axis=0)))) for k in range(m)]
-    best = int(np.argmin(gaps))
-    return gaps[best], best
+            if rough and hits == 0:
+                motion = strobed.oscillator.motion()
+                if free_for_good(motion, *deviations(motion, 0.0, end.displacement, end.velocity)):
+                    found = 1, strobed.steady()
+            elif 0 < rough <= self.largest_period // 2:
+                open_by = float(np.max(np.abs(points[rough:] - points[:-rough])[-self.largest_period :]))
+                if not CLOSER * self.failed <= open_by <= self.failed / CLOSER**3:
+                    self.known = self.look(end, rough, hits)
+                    self.failed = open_by if self.known is None else np.inf
+        if self.known is not None:
+            orbit, cycle = self.known
+            gaps = [np.max(np.abs(points[-rough:] - np.roll(cycle.points, -k, axis=0))) for k in range(rough)]
+            distance, phase = float(min(gaps)), int(np.argmin(gaps))
+            promised = SLACK * abs(orbit.multipliers[0]) ** (len(points) / rough) * self.before
+            if self.before < NEAR * strobed.scale and distance <= promised + self.rounding:
+                found = rough, strobed.orbit(cycle.end, phase or rough).end
+            self.before = distance
+        if found is None:
+            return 0, run
+        return found[0], strobed.orbit(replace(found[1], time=end.time), len(points))

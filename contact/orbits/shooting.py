@@ -1,19 +1,17 @@
 """Periodic orbits of any contact law, by shooting from touch to touch.
 
-Unknowns are the state at the first touch of the orbit and the drive: e = (u, v, S, C)
-(``contact.touch_flow``). An orbit with k touches in m drive periods satisfies
+Unknowns are the deviations (u, v) at the first touch of the orbit and its approach velocity s.  They give the
+drive (S, C) (``contact.touch_flow``): the tip is at the stop, y = 0, with velocity y' = s, two linear
+equations.  An orbit with k touches in m drive periods satisfies
 
-    (u, v) after m/f  =  (u, v),      y(e) = 0 (the tip is at the stop),
+    (u, v) after m/f  =  (u, v),
 
-2 N + 1 equations for 2 N + 2 unknowns: a curve.  One more equation picks a point of it: the approach velocity
-y'(e) = v, or the amplitude S^2 + C^2 = Z^2.  With the approach velocity the curve is single-valued through
+2 N equations for 2 N + 1 unknowns: a curve.  One more equation picks a point of it: the approach velocity
+s = v, or the amplitude S^2 + C^2 = Z^2.  With the approach velocity the curve is single-valued through
 its fold and down to grazing, where Newton's method on the strobe map has nothing to hold on to (its square
 root): see also arXiv:2510.16218.  The derivatives are the exact tangents of the flow, so that Newton's method
-converges quadratically; floquet multipliers are the eigenvalues of d(u, v)(m/f)/d(u, v) at fixed drive, and
-
-    dZ/dv = 0            at a fold,
-    det(M + I) = 0       at a period doubling,
-    a further touch      at a grazing (bisection on the certified flights).
+converges quadratically; floquet multipliers are the eigenvalues of d(u, v)(m/f)/d(u, v) at fixed drive.  What
+happens along the curve is told in ``contact.orbits.events``.
 """
 
 from __future__ import annotations
@@ -28,15 +26,14 @@ from numpy.typing import NDArray
 
 from beam.parameters import is_whole, require, require_kind, require_within, shown
 from contact.errors import NotPeriodic
-from contact.flight.modal_flow import steady_motion
 from contact.orbits.continuation import fold_of, orbits_at
-from contact.orbits.family import TouchOrbit
+from contact.orbits.family import TouchOrbit, flown
 from contact.orbits.kick import KickFamily
 from contact.orbits.periodic_orbit import PeriodicOrbit
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
-from contact.touch_flow import FLOWN, flow_from_touch
 from contact.trajectory import ImpactKind, Regime, State
+from contact.virtual_motion import deviations
 
 __all__ = ["PeriodicOrbit", "Shooting"]
 
@@ -56,20 +53,28 @@ ROUNDED = 1e-9
 """Residual below which iterates that no longer improve count as an orbit: rounding, 1e-16, times the largest
 multiplier, which grows as 1/v towards grazing."""
 
-OFF_THE_STOP = 1e-9
-"""Distance of a first guess from the stop, over the gap, beyond which the drive is set anew."""
+STEEPEST = 1e10
+"""Change of an unknown with the approach velocity, both in units of their scale, beyond which it is rounding:
+then the approach velocity does not tell an orbit from its neighbours."""
 
 
 class _Iterate(NamedTuple):
-    """An iterate of Newton's method: the unknowns, the tangent of their flow, the record of its touches, the
-    scaled residual and Jacobian of the equations, and the largest residual."""
+    """An iterate of Newton's method: the unknowns, the drive (S, C) that goes with them, the tangent of the
+    flow, the record of its touches, the scaled residual and Jacobian of the equations, and its error: the
+    largest residual."""
 
     unknown: Array
+    drive: Array
     matrix: Array
     record: Array
     residual: Array
     jacobian: Array
     error: float
+
+
+def beside(orbit: TouchOrbit) -> Array:
+    """Unknowns of an orbit, to start a neighbouring one from."""
+    return np.append(orbit.deviations, orbit.speed)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -103,95 +108,58 @@ class Shooting:
 
     @cached_property
     def _scale(self) -> Array:
-        """Sizes of the unknowns (u, v, S, C)."""
+        """Sizes of the unknowns (u, v, s)."""
         model, gap = self.oscillator.model, self.oscillator.stop.gap
         size = gap / np.abs(model.phi).max()
         speed = np.maximum(model.omega, self.oscillator.driven.angular_frequency)
-        return np.concatenate([np.full(model.omega.size, size), size * speed, [gap, gap]])
+        return np.concatenate([np.full(speed.size, size), size * speed, [self.oscillator.unit_speed]])
 
     @cached_property
-    def _tip_rows(self) -> tuple[Array, Array]:
-        """Gradients of tip displacement and tip velocity in (u, v, S, C)."""
-        n, response, phi = self.oscillator.n_modes, self.oscillator.tip_response(), self.oscillator.model.phi
-        w = self.oscillator.driven.angular_frequency
-        place, rate = np.zeros(2 * n + 2), np.zeros(2 * n + 2)
-        place[:n], rate[n : 2 * n] = phi, phi
-        place[-2:] = response.real, response.imag
-        rate[-2:] = -w * response.imag, w * response.real
-        return place, rate
+    def _drive(self) -> tuple[Array, Array]:
+        """K, shape (2, 2 N + 1), and k: (S, C) = K (u, v, s) + k puts the tip on the stop with velocity s."""
+        phi, response = self.oscillator.model.phi, self.oscillator.tip_response()
+        still, w = np.zeros(phi.size), self.oscillator.driven.angular_frequency
+        steady = np.array([[response.real, response.imag], [-w * response.imag, w * response.real]])
+        rows = np.array([[*-phi, *still, 0.0], [*still, *-phi, 1.0]])
+        return np.linalg.solve(steady, rows), np.linalg.solve(steady, [self.oscillator.stop.gap, 0.0])
 
-    def _unknown(self, deviations: Array, amplitude: float, phase: float) -> Array:
-        """The unknowns of a touch: deviations (u, v), shape (2 n_modes,), base amplitude and drive time."""
-        angle = self.oscillator.driven.angular_frequency * phase
-        return np.concatenate([deviations, amplitude * np.array([math.sin(angle), math.cos(angle)])])
+    def _driven(self, drive: Array) -> tuple[ImpactOscillator, float]:
+        """The oscillator with the amplitude of `drive` = (S, C), and the drive time of the touch."""
+        angle, w = math.atan2(*drive), self.oscillator.driven.angular_frequency
+        return self.oscillator.with_amplitude(math.hypot(*drive)), angle % (2.0 * math.pi) / w
 
-    def _at_the_stop(self, unknown: Array, speed: float) -> Array:
-        """The same deviations with the drive that puts the tip on the stop with approach velocity `speed`."""
-        deviations, (place, rate) = unknown[:-2], self._tip_rows
-        p, r = float(place[:-2] @ deviations), float(rate[:-2] @ deviations)
-        return self._unknown(deviations, *self.oscillator.drive_at(self.oscillator.stop.gap - p, speed - r))
-
-    def _driven(self, unknown: Array) -> tuple[ImpactOscillator, float]:
-        """The oscillator at the amplitude of `unknown`, and the drive time of the touch."""
-        amplitude, angle = math.hypot(*unknown[-2:]), math.atan2(*unknown[-2:])
-        w = self.oscillator.driven.angular_frequency
-        return self.oscillator.with_amplitude(amplitude), angle % (2.0 * math.pi) / w
-
-    def flow(self, unknown: Array) -> tuple[Array, Array, Array]:
-        """End of the flow (u, v), its tangent (2 N + 2, 2 N + 2) and the record of the touches.
-
-        Raises
-        ------
-        NotPeriodic
-            If the motion has fewer touches, or a contact does not end.
-        """
-        n = self.oscillator.n_modes
-        driven, phase = self._driven(unknown)
-        u, v = unknown[:n].copy(), unknown[n : 2 * n].copy()
-        matrix, record = np.eye(2 * n + 2), np.empty((self.impacts, 4 + 2 * n))
-        response, length = self.oscillator.tip_response(), self.period * self.oscillator.period
-        outcome = flow_from_touch(driven.motion(), response, phase, u, v, length, matrix, record)
-        if outcome != FLOWN:
-            raise NotPeriodic(
-                time=phase, gap=0.0, velocity=float(record[0, 2]),
-                detail=f"an orbit of period {self.period} with {self.impacts} touches was lost",
-            )
-        return np.concatenate([u, v]), matrix, record
+    def flow(self, start: Array) -> tuple[Array, Array, Array]:
+        """End, tangent and record of the flow from a touch with (u, v, S, C) = `start`; see `flown`."""
+        driven, phase = self._driven(start[-2:])
+        return flown(driven, self.period, phase, start[:-2], self.impacts)
 
     def _iterate(self, unknown: Array, speed: float | None, amplitude: float | None) -> _Iterate:
-        """The equations at `unknown`: closed, at the stop, and with this speed or this amplitude."""
-        place, rate = self._tip_rows
-        gap, size = self.oscillator.stop.gap, math.hypot(*unknown[-2:])
-        end, matrix, record = self.flow(unknown)
-        if speed is not None:
-            picked, gradient, unit = float(rate @ unknown) - speed, rate, self.oscillator.unit_speed
-        else:
-            picked, gradient, unit = size - (amplitude or 0.0), np.zeros(unknown.size), gap
-            gradient[-2:] = unknown[-2:] / size
-        jacobian = matrix - np.eye(unknown.size)
-        jacobian[-2:] = place, gradient
-        weight = np.concatenate([self._scale[:-2], [gap, unit]])
-        residual = np.concatenate([end - unknown[:-2], [place @ unknown - gap, picked]]) / weight
-        scaled = jacobian * self._scale / weight[:, None]
-        return _Iterate(unknown, matrix, record, residual, scaled, float(np.max(np.abs(residual))))
+        """The equations at `unknown`: closed, and with this speed or this amplitude."""
+        (rows, offset), size = self._drive, unknown.size - 1
+        drive = rows @ unknown + offset
+        reached = math.hypot(*drive)
+        end, matrix, record = self.flow(np.concatenate([unknown[:-1], drive]))
+        picked, gradient, unit = unknown[-1] - (speed or 0.0), np.eye(size + 1)[-1], self._scale[-1]
+        if amplitude is not None:
+            picked, gradient, unit = reached - amplitude, drive @ rows / reached, self.oscillator.stop.gap
+        closing = matrix[:size] @ np.vstack([np.eye(size, size + 1), rows]) - np.eye(size, size + 1)
+        weight = np.append(self._scale[:-1], unit)
+        residual = np.append(end - unknown[:-1], picked) / weight
+        jacobian = np.vstack([closing, gradient]) * self._scale / weight[:, None]
+        return _Iterate(unknown, drive, matrix, record, residual, jacobian, float(np.max(np.abs(residual))))
 
     def _solve(
         self, guess: Array, *, speed: float | None = None, amplitude: float | None = None
     ) -> PeriodicOrbit:
         """The orbit next to `guess` with this approach velocity [m/s] or this base amplitude [m]."""
-        gap, unknown, found = self.oscillator.stop.gap, guess, None
-        if speed is not None and abs(self._tip_rows[0] @ guess - gap) > OFF_THE_STOP * gap:
-            unknown = self._at_the_stop(guess, speed)  # a neighbour at another frequency misses the stop
+        unknown, found = guess, None
         for iteration in range(MOST_ITERATIONS):
             here = self._iterate(unknown, speed, amplitude)
             # one step in any case: near grazing a neighbour can lie within the tolerance, and is another
             # orbit
             if iteration > 0:
-                if found is None or here.error < found.error:
-                    found = here
-                    if here.error < CONVERGED:
-                        return self._orbit(found)
-                elif found.error < ROUNDED:
+                found = here if found is None or here.error < found.error else found
+                if found.error < (CONVERGED if found is here else ROUNDED):
                     return self._orbit(found)
             try:
                 change = np.linalg.solve(here.jacobian, here.residual)
@@ -199,44 +167,36 @@ class Shooting:
                 break
             longest = float(np.max(np.abs(change)))
             unknown = unknown - self._scale * change * min(1.0, LONGEST_STEP / max(longest, 1e-300))
-            if speed is not None and longest > LONGEST_STEP:
-                unknown = self._at_the_stop(unknown, speed)
+            if speed is not None:
+                unknown[-1] = speed
             if not np.all(np.isfinite(unknown)):
                 break
         raise NotPeriodic(
             time=0.0, gap=0.0, velocity=here.record[0, 2],
-            detail=(
-                f"Newton's method did not converge to an orbit of period {self.period} "
-                f"(residual {here.error:.1e})"
-            ),
+            detail=f"Newton's method found no orbit of period {self.period} (residual {here.error:.1e})",
         )
 
     def _orbit(self, found: _Iterate) -> PeriodicOrbit:
-        n, unknown, rate = self.oscillator.n_modes, found.unknown, self._tip_rows[1]
-        driven, phase = self._driven(unknown)
+        """The orbit at an iterate, with the slope of the curve of those that close there."""
+        n, unknown, closing = self.oscillator.n_modes, found.unknown, found.jacobian[:-1]
+        driven, phase = self._driven(found.drive)
         amplitude, grazing = driven.driven.amplitude, self.oscillator.grazing_amplitude()
-        # the tangent of the curve: null vector of the first 2 N + 1 equations, unit change of the approach
-        # velocity
-        closing, right, unit = found.jacobian.copy(), np.zeros(2 * n + 2), self.oscillator.unit_speed
-        closing[-1], right[-1] = rate * self._scale / unit, 1.0 / unit
         try:
-            change = self._scale * np.linalg.solve(closing, right)
-        except np.linalg.LinAlgError as error:
+            turn = np.append(np.linalg.solve(closing[:, :-1], -closing[:, -1]), 1.0)
+        except np.linalg.LinAlgError:
+            turn = np.full(unknown.size, np.inf)
+        if not np.max(np.abs(turn)) < STEEPEST:
             raise NotPeriodic(
-                time=phase, gap=0.0, velocity=float(rate @ unknown),
+                time=phase, gap=0.0, velocity=float(unknown[-1]),
                 detail=f"the orbits of period {self.period} do not follow from their approach velocity here",
-            ) from error
+            )
+        change = self._drive[0] @ (self._scale * turn) / self._scale[-1]
         return PeriodicOrbit(
             oscillator=driven, period=self.period, excess=amplitude / grazing - 1.0,
-            speed=float(rate @ unknown), phase=phase, displacement=unknown[:n].copy(),
+            speed=float(unknown[-1]), phase=phase, displacement=unknown[:n].copy(),
             velocity=unknown[n : 2 * n].copy(), record=found.record, tangent=found.matrix[: 2 * n, : 2 * n],
-            slope=float(unknown[-2:] @ change[-2:]) / amplitude / grazing, residual=found.error,
+            slope=float(found.drive @ change) / amplitude / grazing, residual=found.error,
         )  # fmt: skip
-
-    def _beside(self, orbit: TouchOrbit) -> Array:
-        """Unknowns of an orbit, to start a neighbouring one from."""
-        deviations = np.concatenate([orbit.displacement, orbit.velocity])
-        return self._unknown(deviations, orbit.amplitude, orbit.phase)
 
     def at_speed(self, speed: float, near: PeriodicOrbit | None = None) -> PeriodicOrbit:
         """The orbit whose first touch has approach velocity `speed` [m/s].
@@ -254,14 +214,14 @@ class Shooting:
         """
         require_within("speed", speed, "m/s", above=0)
         require_kind("near", near, (PeriodicOrbit, type(None)), "a PeriodicOrbit or None")
-        return self._solve(self._beside(near or self.kicks.orbit(speed)), speed=speed)
+        return self._solve(beside(near or self.kicks.orbit(speed)), speed=speed)
 
     def at_excess(self, excess: float, near: PeriodicOrbit) -> PeriodicOrbit:
         """The orbit at F/F_g - 1 = `excess` that is next to `near`."""
         require_within("excess", excess, "[1]", above=-1)
         require_kind("near", near, PeriodicOrbit, "a PeriodicOrbit")
         amplitude = (1.0 + excess) * self.oscillator.grazing_amplitude()
-        return self._solve(self._beside(near), amplitude=amplitude)
+        return self._solve(beside(near), amplitude=amplitude)
 
     def from_state(self, state: State) -> PeriodicOrbit:
         """The orbit on which a simulated motion has settled: its first touch from `state` starts the
@@ -275,11 +235,9 @@ class Shooting:
                 time=state.time, gap=0.0, velocity=0.0, detail="the motion has no impact to start from"
             )
         i = int(np.flatnonzero(hits)[0])
-        phase = float(run.impacts.start[i] % self.oscillator.period)
-        steady = np.concatenate(steady_motion(self.oscillator.motion(), np.array([phase])), axis=1)[0]
-        met = np.concatenate([run.impacts.displacement_start[i], run.impacts.velocity_start[i]])
-        amplitude = self.oscillator.driven.amplitude
-        return self._solve(self._unknown(met - steady, amplitude, phase), amplitude=amplitude)
+        motion, met = self.oscillator.motion(), run.impacts
+        start = deviations(motion, met.start[i], met.displacement_start[i], met.velocity_start[i])
+        return self._solve(np.append(start, met.approach[i]), amplitude=self.oscillator.driven.amplitude)
 
     def orbit(self, speed: float) -> PeriodicOrbit:
         """`at_speed`, from the kick description."""

@@ -42,21 +42,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam.parameters import require, require_kind, require_whole, require_within
-from contact.errors import NotPeriodic
-from contact.flight.motion import Motion
 from contact.laws import NewtonRestitution
+from contact.maximal_orbits import positive_roots
 from contact.nordmark import restitution_of
-from contact.orbits.family import Release, TouchOrbit, modal_flow
+from contact.orbits.family import CLOSING, Release, TouchOrbit, flown, modal_flow
 from contact.oscillator import ImpactOscillator
 from contact.stop import Stop
 from contact.touch.newton import newton_impact
-from contact.touch_flow import FLOWN, flow_from_touch
 
 __all__ = ["Kick", "MaximalFamily", "SingleImpactFamily", "SingleImpactOrbit"]
 
 Array = NDArray[np.float64]
 SINGULAR = 1e-13  # a D below this is rounding of 1 - tr N + G, terms of size 1: the mode is back after m/f
-CLOSING = 1e-9  # part of the flight within which a crossing is the impact that ends it
 HEIGHT = 1e-13  # the same in units of the gap: rounding of the height at which the flight ends
 
 
@@ -94,7 +91,7 @@ class SingleImpactOrbit(TouchOrbit):
     @property
     def after(self) -> Array:
         """Deviations (u, u') just after the collision, referred to its first touch, shape (n_modes, 2)."""
-        return np.column_stack([self.displacement, self.velocity]) + self.kick.jump
+        return self.deviations.reshape(2, -1).T + self.kick.jump
 
     def release(self) -> Release:
         """The end of the collision."""
@@ -111,16 +108,8 @@ class SingleImpactOrbit(TouchOrbit):
         NotPeriodic
             If that collision has fewer touches than the kick, or does not end.
         """
-        n, tangent = self.oscillator.n_modes, np.eye(2 * self.oscillator.n_modes + 2)
-        outcome = flow_from_touch(
-            self.oscillator.motion(), self.oscillator.tip_response(), self.phase, self.displacement.copy(),
-            self.velocity.copy(), self.duration, tangent, np.empty((self.kick.touches, 4 + 2 * n)),
-        )  # fmt: skip
-        if outcome != FLOWN:
-            raise NotPeriodic(
-                time=self.phase, gap=0.0, velocity=self.speed, detail="the collision was lost on its orbit"
-            )
-        return tangent[: 2 * n, : 2 * n]
+        tangent = flown(self.oscillator, self.period, self.phase, self.deviations, self.kick.touches)[1]
+        return tangent[:-2, :-2]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -149,18 +138,14 @@ class SingleImpactFamily(ABC):
         """The collision with approach speed `speed`, above zero [m/s]."""
 
     @cached_property
-    def _motion(self) -> Motion:
-        return self.oscillator.motion()
-
-    @cached_property
     def flow(self) -> Array:
         """N, mode by mode, shape (n_modes, 2, 2)."""
-        return modal_flow(self._motion, self.period * self.oscillator.period)
+        return modal_flow(self.oscillator.motion(), self.period * self.oscillator.period)
 
     @cached_property
     def _closing(self) -> tuple[Array, NDArray[np.bool_]]:
         """(N - G I)/D mode by mode, and which modes return to themselves after m/f (D = 0)."""
-        shrink = np.exp(-self._motion.decay * self.period * self.oscillator.period)
+        shrink = np.exp(-self.oscillator.motion().decay * self.period * self.oscillator.period)
         distance = np.abs(1.0 - self.flow[:, 0, 0] - self.flow[:, 1, 1] + shrink)
         trapped = distance <= SINGULAR
         sizes = np.where(trapped, 1.0, distance)[:, None, None]
@@ -175,8 +160,8 @@ class SingleImpactFamily(ABC):
         back = np.flatnonzero(trapped & np.any(jump != 0.0, axis=1))  # one that is not kicked stays at rest
         if back.size:
             raise ValueError(
-                f"omega[{back[0]}] is {self._motion.omega[back[0]]} rad/s, a mode that is back after "
-                f"{self.period} drive periods; it must have damping or another frequency"
+                f"omega[{back[0]}] is {self.oscillator.model.omega[back[0]]} rad/s, a mode that is back "
+                f"after {self.period} drive periods; it must have damping or another frequency"
             )
         closed: Array = np.einsum("kij,kj->ki", matrices, jump)
         return closed
@@ -184,13 +169,13 @@ class SingleImpactFamily(ABC):
     def excess(self, speed: float) -> float:
         """F/F_g - 1 of the orbit that meets the wall at `speed`, above zero [m/s]; errors as of `orbit`."""
         kick, gap = self.kick(require_within("speed", speed, "m/s", above=0)), self.oscillator.stop.gap
-        p, r = self._motion.tip(self.closed(kick.jump))
+        p, r = self.oscillator.motion().tip(self.closed(kick.jump))
         return excess_of(p / gap, (kick.speed - r) / self.oscillator.unit_speed)
 
     def orbit_of(self, kick: Kick) -> SingleImpactOrbit:
         """The orbit on which `kick` happens once in m drive periods."""
         before, gap = self.closed(kick.jump), self.oscillator.stop.gap
-        p, r = self._motion.tip(before)
+        p, r = self.oscillator.motion().tip(before)
         rate = kick.speed - r
         amplitude, phase = self.oscillator.drive_at(gap - p, rate)
         return SingleImpactOrbit(
@@ -241,27 +226,23 @@ class MaximalFamily(SingleImpactFamily):
 
     def kick(self, speed: float) -> Kick:
         """B of Newton's law."""
-        velocity, e = np.zeros(self.oscillator.n_modes), self._motion.number0
-        newton_impact(self._motion, velocity, speed, e)
+        motion, velocity = self.oscillator.motion(), np.zeros(self.oscillator.n_modes)
+        newton_impact(motion, velocity, speed, motion.number0)
         jump = np.column_stack([np.zeros(velocity.size), velocity])
-        return Kick(speed=speed, jump=jump, leaves=e > 0.0)
+        return Kick(speed=speed, jump=jump, leaves=motion.number0 > 0.0)
 
     @cached_property
     def arms(self) -> tuple[float, float]:
         """(s, b): p and (v - r)/w of Eq. (a) per unit approach speed [s]."""
-        s, r = self._motion.tip(self.closed(self.kick(1.0).jump))
-        return float(s), float((1.0 - r) / self._motion.drive)
+        s, r = self.oscillator.motion().tip(self.closed(self.kick(1.0).jump))
+        return float(s), float((1.0 - r) / self.oscillator.driven.angular_frequency)
 
     def orbits(self, excess: float) -> tuple[SingleImpactOrbit, ...]:
         """The orbits at F/F_g - 1 = `excess` > -1, 0 to 2, by rising speed (of two, saddle, then node)."""
         require_within("excess", excess, "[1]", above=-1)
-        (s, b), gap = self.arms, self.oscillator.stop.gap
-        square, above = s * s + b * b, excess * (2.0 + excess)
-        if s * s + square * above < 0.0:
-            return ()
-        half = s + math.copysign(math.sqrt(s * s + square * above), s)  # v/gap: half/square and -above/half
-        speeds = sorted((gap * half / square, -gap * above / half if half != 0.0 else 0.0))
-        return tuple(self.orbit(v) for v in speeds if v > 0.0)
+        s, b = self.arms
+        roots = positive_roots(s * s + b * b, -2.0 * s, -excess * (2.0 + excess))
+        return tuple(self.orbit(self.oscillator.stop.gap * root) for root in roots)
 
     def fold(self) -> SingleImpactOrbit | None:
         """The orbit of least amplitude, at which node and saddle meet; None if s <= 0 (no fold)."""

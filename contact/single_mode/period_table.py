@@ -14,6 +14,7 @@ at z = (w x)^2, z = D x^2 (below zero for an over-damped mode) and y = -c x/2.  
 omega x and c x stay below 0.05: the first terms left out, z^5/10! and y^9/9!, are then below 1e-17.
 
 The peak of the steady motion lies at the time t_p of the period, at the height A = sqrt(S^2 + C^2).
+Deviations are those of the tip, (u, v) [m, m/s], which obey the equation of the mode.
 """
 
 from __future__ import annotations
@@ -24,20 +25,18 @@ from typing import NamedTuple
 import numpy as np
 
 from contact.compiled import inlined, kernel
+from contact.flight.bounds import HIGHEST, LEAST_SLACK
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import flow_matrix
-from contact.flight.motion import DAMPED, DECAY, LOW, OMEGA, WEIGHT, Motion
+from contact.flight.motion import DAMPED, DECAY, LOW, OMEGA, Motion
 from contact.laws import NEWTON
 
-__all__ = ["SMALL", "OneMode", "PeriodTable", "flow_over", "flow_to", "period_table", "short_fades",
-    "short_flow", "short_turn", "steady_near", "table_at", "through", "tip_near"]  # fmt: skip
+__all__ = ["SMALL", "OneMode", "PeriodTable", "flow_over", "flow_to", "period_table", "short_flow",
+           "steady_near", "table_at", "through", "tip_near"]  # fmt: skip
 
 FEWEST, MOST = 64, 4096
 """Stretches of a period: 64 where the drive is fastest (w x <= pi/64), more for a faster mode; beyond 4096,
 for a mode some sixty times faster than the drive, the table would outgrow the nearest cache."""
-
-HIGHEST = 1e6
-"""Steady amplitude in gaps up to which the peak's place is good enough to tell the middle of a period."""
 
 SAFETY = 32.0
 """Margin m over the rounding bound of the tip displacement (4 roundings of all its terms): room for the
@@ -46,29 +45,19 @@ roundings of the proofs themselves.  It is some 1e-13 of the gap; what lies with
 SMALL = 1e-3
 """Part of the margin m up to which a tip displacement is zero: one rounding of the gap."""
 
-LEAST_ROOM = 1.0 / 16.0
-"""G - d and G - rho over G below which (*) is not used, so that squares are rounded by less than m allows."""
 
-
-class Flow(NamedTuple):
-    """A matrix by which a deviation (u, v) is multiplied: (uu u + uv v, vu u + vv v)."""
-
-    uu: float
-    uv: float
-    vu: float
-    vv: float
+Flow = tuple[float, float, float, float]
+"""A matrix by rows, by which a deviation (u, v) is multiplied."""
 
 
 class OneMode(NamedTuple):
     """The constants of one driven mode before a stop, in the letters of ``contact.single_mode.loop``.
 
-    drive = w, decay = c [1/s]; stiffness = omega^2, determinant = D [1/s^2]; phi [kg^-0.5]; gap = G,
-    distance of the stop from the tip's mean place, above = A - G [m]; crest = A w^2 [m/s^2];
-    period = P, stretch = P/K, per_second = K/P, peak = t_p [s]; period_flow = F_P; peak_flow = phi F_tp;
-    restitution = e [1]; kick = j/y', j the jump of v in an impact at tip velocity y'; detuning = d/rho;
-    square_u, square_v: rho^2 = square_u u^2 + square_v v^2; most = rho below which (*) is used, not above
-    zero if never [m]; slow = 1/w^2 [s^2]; second: |y''| <= crest + second rho; rounding [m], rounding_rho
-    [1]: the margin for a deviation of size rho is rounding + rounding_rho rho; margin = m, that of rho = G
+    drive = w, decay = c [1/s]; stiffness = omega^2, determinant = D [1/s^2]; gap = G, distance of the stop
+    from the tip's mean place, above = A - G [m]; crest = A w^2 [m/s^2]; period = P, stretch = P/K,
+    per_second = K/P, peak = t_p [s]; period_flow = F_P; peak_flow = F_tp; kick = j/y' = -(1 + e), j the jump
+    of v in an impact at tip velocity y'; detuning = d/rho; inverse = 1/omega^2, slow = 1/w^2 [s^2]; most =
+    rho below which (*) is used, not above zero if never [m]; second: |y''| <= crest + second rho; margin = m
     [m]; reach = greatest |d| of a step to a zero [s].
     """
 
@@ -76,7 +65,6 @@ class OneMode(NamedTuple):
     decay: float
     stiffness: float
     determinant: float
-    phi: float
     gap: float
     above: float
     crest: float
@@ -86,95 +74,74 @@ class OneMode(NamedTuple):
     peak: float
     period_flow: Flow
     peak_flow: Flow
-    restitution: float
     kick: float
     detuning: float
-    square_u: float
-    square_v: float
+    inverse: float
     most: float
     slow: float
     second: float
-    rounding: float
-    rounding_rho: float
     margin: float
     reach: float
 
 
 class PeriodTable(NamedTuple):
-    """A drive period of one mode, cut into stretches.
-
-    mode : OneMode
-    rows : ndarray, shape (K + 1, 6)
-        X_k, R_k [m] and the four numbers of F_k.
-    level, from_u, from_v : ndarray, shape (K + 1,)
-        Tip displacement relative to the stop at the nodes: level + from_u u_0 + from_v v_0.
-    """
+    """A drive period of one mode: its constants, and X_k, R_k [m] and the four numbers of F_k of all nodes,
+    shape (K + 1, 6)."""
 
     mode: OneMode
     rows: np.ndarray
-    level: np.ndarray
-    from_u: np.ndarray
-    from_v: np.ndarray
-
-
-@kernel
-def constants_of(motion, stretches, peak, period_flow, peak_flow):
-    """The `OneMode` of a motion with its steady peak at `peak` and the flows over a period and up to it."""
-    modes, w = motion.modes, motion.drive
-    decay, omega, phi = modes[DECAY, 0], modes[OMEGA, 0], modes[WEIGHT, 0]
-    gap, high = -motion.level, modes[DAMPED, 0]
-    amplitude = math.hypot(motion.tip_sine, motion.tip_cosine)
-    steady = abs(motion.level) + abs(motion.tip_sine) + abs(motion.tip_cosine) + motion.gap
-    rounding, rounding_rho = SAFETY * 4.0 * EPS * steady, SAFETY * 8.0 * EPS * max(1.0, 0.5 * decay / omega)
-    margin = rounding + rounding_rho * abs(gap)
-    detuning = (abs(w * w - omega * omega) + decay * omega) / (w * w)
-    rho = (1.0 - LEAST_ROOM) * gap / max(1.0, detuning)
-    # (*) needs the peak in the middle half of the period
-    inner = abs(peak / motion.period - 0.5) <= 0.25 + 1e-12 and amplitude <= HIGHEST * abs(gap)
-    most = rho if inner else -1.0
-    fourth = amplitude * w**4 + omega * (omega + decay) ** 3 * abs(rho)
-    return OneMode(
-        drive=w,
-        decay=decay,
-        stiffness=omega * omega,
-        determinant=math.copysign(high * (high + 2.0 * modes[LOW, 0]), omega - 0.5 * decay),
-        phi=phi,
-        gap=gap,
-        above=amplitude + motion.level,
-        crest=amplitude * w * w,
-        period=motion.period,
-        stretch=motion.period / stretches,
-        per_second=stretches / motion.period,
-        peak=peak,
-        period_flow=period_flow,
-        peak_flow=peak_flow,
-        restitution=motion.number0,
-        kick=-phi * ((1.0 + motion.number0) / motion.compliance),
-        detuning=detuning,
-        square_u=phi * phi,
-        square_v=phi * phi / (omega * omega),
-        most=most,
-        slow=1.0 / (w * w),
-        second=omega * (omega + decay),
-        rounding=rounding,
-        rounding_rho=rounding_rho,
-        margin=margin,
-        reach=math.sqrt(math.sqrt(24.0 * SMALL * margin / fourth)),
-    )
 
 
 @kernel
 def mode_flow(motion, t):
     """The flow of the deviation over a time `t` [s]."""
     modes = motion.modes
-    uu, uv, vu, vv = flow_matrix(modes[OMEGA, 0], modes[DECAY, 0], modes[DAMPED, 0], modes[LOW, 0], t)
-    return Flow(uu, uv, vu, vv)
+    return flow_matrix(modes[OMEGA, 0], modes[DECAY, 0], modes[DAMPED, 0], modes[LOW, 0], t)
+
+
+@kernel
+def constants_of(motion, stretches):
+    """The `OneMode` of a motion whose period is cut into `stretches`."""
+    modes, w, gap = motion.modes, motion.drive, -motion.level
+    peak = min((math.atan2(motion.tip_sine, motion.tip_cosine) % (2.0 * math.pi)) / w, motion.period)
+    decay, omega, high = modes[DECAY, 0], modes[OMEGA, 0], modes[DAMPED, 0]
+    steady = abs(motion.level) + abs(motion.tip_sine) + abs(motion.tip_cosine) + motion.gap
+    margin = SAFETY * 4.0 * EPS * (steady + 2.0 * max(1.0, 0.5 * decay / omega) * abs(gap))
+    detuning = (abs(w * w - omega * omega) + decay * omega) / (w * w)
+    rho = (1.0 - LEAST_SLACK) * gap / max(1.0, detuning)
+    # (*) needs the peak in the middle half of the period
+    inner = abs(peak / motion.period - 0.5) <= 0.25 + 1e-12 and motion.amplitude <= HIGHEST * abs(gap)
+    most = rho if inner else -1.0
+    fourth = motion.amplitude * w**4 + omega * (omega + decay) ** 3 * abs(rho)
+    return OneMode(
+        drive=w,
+        decay=decay,
+        stiffness=omega * omega,
+        determinant=math.copysign(high * (high + 2.0 * modes[LOW, 0]), omega - 0.5 * decay),
+        gap=gap,
+        above=motion.amplitude + motion.level,
+        crest=motion.amplitude * w * w,
+        period=motion.period,
+        stretch=motion.period / stretches,
+        per_second=stretches / motion.period,
+        peak=peak,
+        period_flow=mode_flow(motion, motion.period),
+        peak_flow=mode_flow(motion, peak),
+        kick=-(1.0 + motion.number0),
+        detuning=detuning,
+        inverse=1.0 / (omega * omega),
+        most=most,
+        slow=1.0 / (w * w),
+        second=omega * (omega + decay),
+        margin=margin,
+        reach=math.sqrt(math.sqrt(24.0 * SMALL * margin / fourth)),
+    )
 
 
 @kernel
 def full_table(motion, stretches):
     """The table of a motion of one mode with `stretches` stretches."""
-    w, phi, period = motion.drive, motion.modes[WEIGHT, 0], motion.period
+    w, period = motion.drive, motion.period
     rows = np.empty((stretches + 1, 6))
     for k in range(stretches + 1):
         t = k * (period / stretches)
@@ -182,13 +149,7 @@ def full_table(motion, stretches):
         rows[k, 0] = motion.tip_sine * s + motion.tip_cosine * c
         rows[k, 1] = motion.tip_sine * c - motion.tip_cosine * s
         rows[k, 2], rows[k, 3], rows[k, 4], rows[k, 5] = mode_flow(motion, t)
-    peak = min((math.atan2(motion.tip_sine, motion.tip_cosine) % (2.0 * math.pi)) / w, period)
-    to_peak, last = mode_flow(motion, peak), rows[stretches]
-    mode = constants_of(
-        motion, stretches, peak, Flow(last[2], last[3], last[4], last[5]),
-        Flow(phi * to_peak.uu, phi * to_peak.uv, phi * to_peak.vu, phi * to_peak.vv),
-    )  # fmt: skip
-    return PeriodTable(mode, rows, rows[:, 0] - mode.gap, phi * rows[:, 2], phi * rows[:, 3])
+    return PeriodTable(constants_of(motion, stretches), rows)
 
 
 def period_table(motion: Motion) -> PeriodTable | None:
@@ -197,7 +158,7 @@ def period_table(motion: Motion) -> PeriodTable | None:
     None for any other: one with another law or several modes, no stiffness or no drive, its node at the tip,
     or so fast that too many nodes would be needed.
     """
-    if motion.law != NEWTON or motion.size != 1 or motion.phi[0] == 0:
+    if motion.law != NEWTON or motion.size != 1 or motion.compliance == 0.0:
         return None
     if not (motion.omega[0] > 0 and motion.drive > 0):
         return None
@@ -214,18 +175,17 @@ def table_at(table, motion, factor):
 
     The steady motion alone depends on the amplitude, and in proportion.
     """
-    rows, mode = table.rows.copy(), table.mode
+    rows = table.rows.copy()
     for k in range(rows.shape[0]):
         rows[k, 0] *= factor
         rows[k, 1] *= factor
-    mode = constants_of(motion, rows.shape[0] - 1, mode.peak, mode.period_flow, mode.peak_flow)
-    return PeriodTable(mode, rows, rows[:, 0] - mode.gap, table.from_u, table.from_v)
+    return PeriodTable(constants_of(motion, rows.shape[0] - 1), rows)
 
 
 @inlined
 def through(flow, u, v):
     """The deviation (u, v) after a flow."""
-    return flow.uu * u + flow.uv * v, flow.vu * u + flow.vv * v
+    return flow[0] * u + flow[1] * v, flow[2] * u + flow[3] * v
 
 
 @inlined
@@ -253,20 +213,24 @@ def short_fades(y):
 
 @inlined
 def short_flow(mode, x, u, v):
-    """Deviation (u, v) after a time |x| <= P/(2K) [s]."""
+    """Deviation (u, v) after a time |x| <= P/(2K) [s], and what is (0, 1) after it was at its beginning."""
     half = 0.5 * mode.decay
     even, odd = short_turn(mode.determinant * x * x)
-    fade, rest = short_fades(-half * x)
-    fade += rest
-    cn, sn = fade * even, fade * odd * x
-    return cn * u + sn * (v + half * u), cn * v - sn * (mode.stiffness * u + half * v)
+    fade, less = short_fades(-half * x)
+    odd *= x
+    cn, sn = (fade + less) * even, (fade + less) * odd
+    back = -(fade - less) * odd
+    return (
+        cn * u + sn * (v + half * u), cn * v - sn * (mode.stiffness * u + half * v),
+        back, (fade - less) * even - half * back,
+    )  # fmt: skip
 
 
 @inlined
 def flow_over(mode, rows, t, u, v):
     """Deviation (u, v) after a time `t` of at most a period [s]."""
     k = int(t * mode.per_second + 0.5)
-    u, v = short_flow(mode, t - k * mode.stretch, u, v)
+    u, v, _back_u, _back_v = short_flow(mode, t - k * mode.stretch, u, v)
     return flow_to(rows, k, u, v)
 
 
@@ -279,20 +243,20 @@ def steady_near(mode, x, swing, glide):
 
 
 @inlined
-def tip_near(mode, rows, since, u, v, t):
-    """The motion at time `t` since the strobe; (u, v) is the deviation at node `since`, not after `t`'s node.
+def tip_near(mode, rows, u, v, t):
+    """The motion at the time `t` since the strobe, where the deviation was (u, v).
 
     Returns
     -------
-    Deviation and its rate; steady swing; tip displacement relative to the stop [m] and two derivatives.
+    Deviation and its rate; tip displacement relative to the stop [m] and two derivatives.
     """
     w = mode.drive
     k = int(t * mode.per_second + 0.5)
     x = t - k * mode.stretch
-    un, vn = flow_to(rows, k - since, u, v)
-    un, vn = short_flow(mode, x, un, vn)
+    un, vn = flow_to(rows, k, u, v)
+    un, vn, _back_u, _back_v = short_flow(mode, x, un, vn)
     swing, glide = steady_near(mode, x, rows[k, 0], rows[k, 1])
     return (
-        un, vn, swing, swing - mode.gap + mode.phi * un, w * glide + mode.phi * vn,
-        -w * w * swing - mode.phi * (mode.decay * vn + mode.stiffness * un),
+        un, vn, swing - mode.gap + un, w * glide + vn,
+        -w * w * swing - (mode.decay * vn + mode.stiffness * un),
     )  # fmt: skip

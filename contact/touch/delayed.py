@@ -23,11 +23,13 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from contact.compiled import kernel, part
-from contact.flight.modal_flow import tip_state, tip_steady
+from contact.flight.modal_flow import tip_state
 from contact.flight.motion import WEIGHT
 from contact.touch import newton
-from contact.touch.tangents import tip_change
+from contact.touch.tangents import tip_changes
 from contact.trajectory import OUTSIDE, WAITING
 
 __all__ = ["LAW", "REGIMES", "force", "leave", "numbers_at", "place", "room", "saltation", "slopes", "state",
@@ -64,13 +66,8 @@ def numbers_at(table, speed):
         return table[RESTITUTION, 0], 0.0, table[DELAY, 0], 0.0
     if speed >= table[0, n - 1]:
         return table[RESTITUTION, n - 1], 0.0, table[DELAY, n - 1], 0.0
-    low, high = 0, n - 1
-    while high - low > 1:
-        middle = (low + high) // 2
-        if table[0, middle] <= speed:
-            low = middle
-        else:
-            high = middle
+    high = np.searchsorted(table[0], speed, "right")
+    low = high - 1
     h = table[0, high] - table[0, low]
     s = (speed - table[0, low]) / h
     restitution, restitution_slope = hermite(table, RESTITUTION, low, high, h, s)
@@ -97,15 +94,14 @@ def step(motion, run, u, v, limit, series):
 @part
 def state(motion, run, h, series, u, v):
     """The deviation a time `h` [s] into the wait."""
-    height, velocity, _acceleration = tip_steady(motion, run.clock + h)
-    u[0] = -height / motion.modes[WEIGHT, 0]
-    v[0] = -velocity / motion.modes[WEIGHT, 0]
+    u[0], v[0] = 0.0, 0.0
+    newton.hold(motion, run.clock + h, u, v)
 
 
 @part
 def leave(motion, run, u, v):
     """The rebound."""
-    v[0] += run.rebound / motion.modes[WEIGHT, 0]
+    newton.newton_impact(motion, v, -run.rebound, 0.0)
     run.order = 1 if run.rebound < 0.0 else 2
 
 
@@ -118,15 +114,15 @@ def saltation(motion, response, before, after, tangent):
     restitution, restitution_slope, delay, delay_slope = numbers_at(motion.table, approach)
     _height, _velocity, pull_out = tip_state(motion, after[0], after[1], after[2])
     sine, cosine = math.sin(w * delay), math.cos(w * delay)
+    reach, rate = np.empty(4), np.empty(4)
+    tip_changes(motion, response, tangent, reach, rate)
     for j in range(4):
         s, c = tangent[2, j], tangent[3, j]
-        reach, rate = tip_change(motion, response, tangent, j)
-        late = -reach / approach
-        faster = rate + pull_in * late
+        late = -reach[j] / approach
+        faster = rate[j] + pull_in * late
         late += delay_slope * faster
-        reach = restitution * approach * late
-        rate = -(restitution + restitution_slope * approach) * faster - pull_out * late
         s, c = cosine * s + sine * c, cosine * c - sine * s
-        tangent[0, j] = (reach - a * s - b * c) / phi
-        tangent[1, j] = (rate - w * (a * c - b * s)) / phi
+        tangent[0, j] = (restitution * approach * late - a * s - b * c) / phi
+        slower = -(restitution + restitution_slope * approach) * faster - pull_out * late
+        tangent[1, j] = (slower - w * (a * c - b * s)) / phi
         tangent[2, j], tangent[3, j] = s, c

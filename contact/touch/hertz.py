@@ -3,8 +3,8 @@
 The force has no Taylor series at the touch d = 0, where every contact begins and ends.  With r = sqrt(d) as
 an unknown of its own and a variable sigma that runs slowly while the contact is shallow,
 
-    dt/dsigma = r,  dr/dsigma = d'/2,  du/dsigma = r v,  dv/dsigma = r (g - c v - omega^2 u) - phi r N,
-    dd/dsigma = r d',  r N = k (r^4 + chi r^4 d'),  d' = sum phi v + x_s'(t),
+    dt/dsigma = r,  dr/dsigma = d'/2,  du/dsigma = r v,  dv/dsigma = r (g - c v - omega^2 u) - phi_k r N,
+    dd/dsigma = r d',  r N = k (r^4 + chi r^4 d'),  d' = sum phi_k v + x_s'(t),
 
 all right-hand sides are polynomials: the motion is analytic right through touch and release (r changes sign
 there; the substitution is Sundman's, Acta Math. 36 (1913) 105).  Each is r times something, so that the
@@ -31,8 +31,8 @@ from contact.compiled import kernel, part
 from contact.flight.elementary import EPS, sine_cosine
 from contact.flight.modal_flow import speed_scale, tip_state
 from contact.flight.motion import SQUARE, WEIGHT
-from contact.flight.polynomial_root import evaluate, first_polynomial_root, polynomial_root
-from contact.touch.series import enter, leave, reach, saltation, within_force
+from contact.flight.polynomial_root import first_polynomial_root, horner, polynomial_root
+from contact.touch.series import enter, leave, powers_of, reach, saltation, within_force, work_of
 from contact.trajectory import CONTACT, OUTSIDE
 from contact.vector_loops import LANES, next_modes, weighted_rows
 
@@ -55,17 +55,10 @@ where the modes take part, both ends of the series agree within it."""
 SPEED, DEPTH, CUBE, SINE, COSINE = range(5)
 """Columns of the series before the modes: d', d, r d, sin and cos of the drive."""
 
-ROOT, CLOCK, PUSH, POWERS, SPARE = range(5)
+ROOT, CLOCK, PUSH, POWERS = range(4)
 """Rows of the scalar series: r, time since the step's start, r N, powers of the sigma of a state."""
 
 _EDGE = TOLERANCE ** (1.0 / ORDER)
-
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(LANES)
-NODE_POWERS = (0.5 * (1.0 + _NODES)) ** np.arange(ORDER + 1.0)[:, None]
-WEIGHTS = 0.5 * _WEIGHTS
-"""Gauss's rule on [0, 1], and powers of its nodes.  If the series converges up to sigma = R and the step is
-s, its error falls as rho^-16, rho = q + sqrt(q^2 - 1), q = 2 R/s - 1: faster than the (s/R)^p of the
-series."""
 
 INVERSE = 1.0 / np.maximum(1.0, np.arange(64.0))
 """1/n."""
@@ -197,7 +190,7 @@ def longest_step(motion, speed, series):
 
 
 @part
-def release_in(r, s, negative):
+def release_in(r, s):
     """The sigma in (0, s] at which r falls to zero, or -1."""
     rest, power = 0.0, s
     for n in range(2, ORDER + 1):
@@ -209,21 +202,13 @@ def release_in(r, s, negative):
     # r >= r_0 + (r_1 - rest/s) sigma if that grows, and r >= r_0 - |drift| - rest at any rate
     if drift - rest > margin or start - abs(drift) - rest > margin:
         return -1.0
-    for n in range(ORDER + 1):
-        negative[n] = -r[n]
-    return first_polynomial_root(negative, 0.0, s, EPS * size)
+    return first_polynomial_root(r, -1.0, s, EPS * size)
 
 
 @kernel
 def place(motion, t, end, series):
     """The sigma, in a step up to `end`, at which a time `t` [s] has passed."""
-    if not t > 0.0:
-        return 0.0
-    late = series.scalars[SPARE]
-    for n in range(ORDER + 1):
-        late[n] = series.scalars[CLOCK, n]
-    late[0] -= t
-    return polynomial_root(late, 0.0, end)
+    return polynomial_root(series.scalars[CLOCK], 1.0, t, 0.0, end) if t > 0.0 else 0.0
 
 
 @kernel
@@ -239,23 +224,21 @@ def step(motion, run, u, v, limit, series):
     s = longest_step(motion, run.speed, series)
     if not (0.0 < s < math.inf):
         return math.nan, math.nan, CONTACT
-    end, following = release_in(r, s, series.scalars[SPARE]), CONTACT
+    end, following = release_in(r, s), CONTACT
     if end >= 0.0:
         s, following = end, OUTSIDE
-    length = evaluate(clock, s)
+    length = horner(clock, 1.0, 0.0, s)[0]
     if length > limit:
         s, length, following = place(motion, limit, s, series), limit, CONTACT
-    run.root = evaluate(r, s)
+    run.root = horner(r, 1.0, 0.0, s)[0]
     return s, length, following
 
 
 @kernel
 def state(motion, run, s, series, u, v):
     """Deviations of all modes at sigma = `s`, in `u` and `v`."""
-    powers, power = series.scalars[POWERS], 1.0
-    for n in range(ORDER + 1):
-        powers[n] = power
-        power *= s
+    powers = series.scalars[POWERS]
+    powers_of(s, powers)
     weighted_rows(powers, 0, 1, series.rows, ORDER + 1, series.sums)
     at_v = LANES + motion.modes.shape[1]
     for k in range(u.size):
@@ -266,18 +249,4 @@ def state(motion, run, s, series, u, v):
 @kernel
 def work(motion, run, s, series):
     """Work that the tip does on the stop up to sigma = `s`, the integral of r N d' [J]."""
-    powers, push = series.scalars[POWERS], series.scalars[PUSH]
-    force, rate, power = np.empty(LANES), np.empty(LANES), 1.0
-    for n in range(ORDER + 1):
-        powers[n] = power * push[n]
-        power *= s
-    weighted_rows(powers, 0, 1, NODE_POWERS, ORDER + 1, force)
-    power = 1.0
-    for n in range(ORDER + 1):
-        powers[n] = power * series.rows[n, SPEED]
-        power *= s
-    weighted_rows(powers, 0, 1, NODE_POWERS, ORDER + 1, rate)
-    done = 0.0
-    for i in range(LANES):
-        done += WEIGHTS[i] * s * force[i] * rate[i]
-    return done
+    return work_of(series, series.scalars[PUSH], series.rows[:, SPEED], s)

@@ -21,7 +21,7 @@ from contact.flight.modal_flow import tip_rounding
 from contact.flight.polynomial_root import first_polynomial_root
 from contact.touch import time_series
 from contact.touch.series import enter, leave, saltation
-from contact.touch.time_series import DEPTH, FORCE, begin, extend, longest_step, negative
+from contact.touch.time_series import DEPTH, FORCE, begin, extend, longest_step
 from contact.trajectory import CONTACT, INSIDE, OUTSIDE
 
 __all__ = ["LAW", "REGIMES", "enter", "force", "leave", "place", "room", "saltation", "slopes", "state",
@@ -71,12 +71,12 @@ def step(motion, run, u, v, limit, series):
         return math.nan, math.nan, CONTACT
     rounding = tip_rounding(motion, u, v)
     if run.regime == CONTACT:
-        end = first_polynomial_root(negative(FORCE, series), 0.0, h, rounding * k)
+        end = first_polynomial_root(force, -1.0, h, rounding * k)
         if end >= 0.0:
             return end, end, OUTSIDE if c == 0.0 else INSIDE
         return h, h, CONTACT
-    closes = first_polynomial_root(force, 0.0, h, rounding * k)
-    leaves = first_polynomial_root(negative(DEPTH, series), 0.0, h, rounding)
+    closes = first_polynomial_root(force, 1.0, h, rounding * k)
+    leaves = first_polynomial_root(depth, -1.0, h, rounding)
     if leaves >= 0.0 and (closes < 0.0 or leaves <= closes):
         return leaves, leaves, OUTSIDE
     if closes >= 0.0:

@@ -16,42 +16,29 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from contact.compiled import kernel, part
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import mode_acceleration, tip_rounding, tip_state
 from contact.flight.motion import DECAY, LOAD, SQUARE, WEIGHT
 from contact.flight.polynomial_root import first_polynomial_root
 from contact.touch import time_series
-from contact.touch.tangents import tip_change
-from contact.touch.time_series import FORCE, begin, extend, free_pull, longest_step, negative
+from contact.touch.tangents import tip_changes
+from contact.touch.time_series import FORCE, begin, extend, free_pull, longest_step
 from contact.trajectory import OUTSIDE, SUSTAINED
 
-__all__ = [
-    "LAW",
-    "REGIMES",
-    "accumulation_time",
-    "force",
-    "hold",
-    "leave",
-    "lowest_hop",
-    "newton_impact",
-    "place",
-    "room",
-    "saltation",
-    "slopes",
-    "state",
-    "step",
-    "stiffness",
-    "strike",
-    "work",
-]
+__all__ = ["LAW", "REGIMES", "force", "hold", "leave", "newton_impact", "place", "room", "saltation",
+           "slopes", "state", "step", "stiffness", "strike", "work"]  # fmt: skip
 
 LAW = "NewtonRestitution"
 REGIMES = (OUTSIDE, SUSTAINED)
 
 LOWEST_HOP = 200.0
 """Height of a hop, in rounding bounds of the tip displacement, below which hops are summed, not computed: two
-digits of the height are then still good.  See `lowest_hop` for laws close to e = 1."""
+digits of the height are then still good.  A hop loses 2(1 - e) of its height, and rounding may move its end
+by as much as its bound: with e so close to one that this is not the smaller of the two, hops need not get
+lower, and may repeat for good."""
 
 room, place = time_series.room, time_series.place
 
@@ -74,16 +61,6 @@ def slopes(motion, run, series, weights):
     return 0
 
 
-@part
-def lowest_hop(restitution, rounding):
-    """Height of the lowest hop that is computed [m], `rounding` the bound of the tip displacement's [m].
-
-    A hop loses 2(1 - e) of its height, and rounding may move its end by as much as its bound: where that is
-    not the smaller of the two, hops need not get lower, and may repeat for good.
-    """
-    return max(LOWEST_HOP, 1.0 / (1.0 - restitution)) * rounding
-
-
 @kernel
 def newton_impact(motion, v, approach, restitution):
     """Apply the impulse that turns the tip velocity `approach` into -`restitution` times itself."""
@@ -101,7 +78,8 @@ def accumulation_time(rebound, acceleration, restitution, rounding):
     """
     if acceleration <= 0.0 or restitution >= 1.0:
         return -1.0
-    if rebound * rebound > 2.0 * acceleration * lowest_hop(restitution, rounding):
+    lowest = max(LOWEST_HOP, 1.0 / (1.0 - restitution)) * rounding
+    if rebound * rebound > 2.0 * acceleration * lowest:
         return -1.0
     return 2.0 * rebound / (acceleration * (1.0 - restitution))
 
@@ -152,7 +130,7 @@ def step(motion, run, u, v, limit, series):
     if not h > EPS * run.clock:
         return math.nan, math.nan, SUSTAINED
     margin = force_rounding(motion, u, v)
-    end = first_polynomial_root(negative(FORCE, series), 0.0, h, margin)
+    end = first_polynomial_root(series.scalars[FORCE], -1.0, h, margin)
     if end >= 0.0:
         return end, end, OUTSIDE
     return h, h, SUSTAINED
@@ -187,12 +165,13 @@ def saltation(motion, response, before, after, tangent):
     rebound = after[2]
     _height, approach, pull = tip_state(motion, clock, u, v)
     flip = (1.0 + motion.number0) / motion.compliance
+    reach, rate = np.empty(2 * n + 2), np.empty(2 * n + 2)
+    tip_changes(motion, response, tangent, reach, rate)
     for j in range(2 * n + 2):
-        reach, rate = tip_change(motion, response, tangent, j)
-        late = -reach / approach  # by how much later this neighbour touches
+        late = -reach[j] / approach  # by how much later this neighbour touches
         for k in range(n):
             push = modes[WEIGHT, k] * flip
             slow = mode_acceleration(motion, k, u[k], v[k]) - push * pull
             after_it = mode_acceleration(motion, k, u[k], rebound[k])
             tangent[k, j] += (v[k] - rebound[k]) * late
-            tangent[n + k, j] += -push * rate + (slow - after_it) * late
+            tangent[n + k, j] += -push * rate[j] + (slow - after_it) * late

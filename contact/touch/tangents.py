@@ -22,12 +22,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contact.compiled import kernel, part
+from contact.compiled import kernel
 from contact.flight.modal_flow import flow_over
 from contact.flight.motion import DECAY, SQUARE, WEIGHT
+from contact.touch.series import powers_of
 from contact.vector_loops import LANES, aligned, weighted_rows
 
-__all__ = ["TangentRoom", "new_room", "onset", "tangent_flight", "tangent_step", "tip_change"]
+__all__ = ["TangentRoom", "new_room", "onset", "tangent_flight", "tangent_step", "tip_changes"]
 
 
 class TangentRoom(NamedTuple):
@@ -66,16 +67,6 @@ def new_room(order, size):
 
 
 @kernel
-def turn_drive(tangent, angle):
-    """Rotate the (S, C) rows of all tangents by the phase `angle`."""
-    s, c, n = math.sin(angle), math.cos(angle), tangent.shape[0]
-    for j in range(n):
-        a, b = tangent[n - 2, j], tangent[n - 1, j]
-        tangent[n - 2, j] = c * a + s * b
-        tangent[n - 1, j] = c * b - s * a
-
-
-@kernel
 def tangent_flight(motion, tangent, time):
     """Carry the tangents through a free flight of length `time` [s]."""
     n, flows = motion.size, flow_over(motion, time)
@@ -84,19 +75,25 @@ def tangent_flight(motion, tangent, time):
             x, y = tangent[k, j], tangent[n + k, j]
             tangent[k, j] = flows[k, 0] * x + flows[k, 1] * y
             tangent[n + k, j] = flows[k, 2] * x + flows[k, 3] * y
-    turn_drive(tangent, motion.drive * time)
+    s, c = math.sin(motion.drive * time), math.cos(motion.drive * time)
+    for j in range(2 * n + 2):
+        a, b = tangent[2 * n, j], tangent[2 * n + 1, j]
+        tangent[2 * n, j], tangent[2 * n + 1, j] = c * a + s * b, c * b - s * a
 
 
-@part
-def tip_change(motion, response, tangent, j):
-    """How tip displacement and tip velocity change along tangent `j`."""
+@kernel
+def tip_changes(motion, response, tangent, reach, rate):
+    """Fill `reach`, `rate` with the changes y and y' of tip displacement and velocity along all tangents."""
     n, w, a, b = motion.size, motion.drive, response.real, response.imag
-    s, c = tangent[2 * n, j], tangent[2 * n + 1, j]
-    reach, rate = a * s + b * c, w * (a * c - b * s)
+    s, c = tangent[2 * n], tangent[2 * n + 1]
+    for j in range(reach.size):
+        reach[j] = a * s[j] + b * c[j]
+        rate[j] = w * (a * c[j] - b * s[j])
     for k in range(n):
-        reach += motion.modes[WEIGHT, k] * tangent[k, j]
-        rate += motion.modes[WEIGHT, k] * tangent[n + k, j]
-    return reach, rate
+        phi, u, v = motion.modes[WEIGHT, k], tangent[k], tangent[n + k]
+        for j in range(reach.size):
+            reach[j] += phi * u[j]
+            rate[j] += phi * v[j]
 
 
 @kernel
@@ -107,26 +104,11 @@ def onset(motion, response, force, approach, tangent):
     n = motion.size
     if force == 0.0:
         return
-    for j in range(2 * n + 2):
-        reach, _rate = tip_change(motion, response, tangent, j)
-        for k in range(n):
-            tangent[n + k, j] -= motion.modes[WEIGHT, k] * force * reach / approach
-
-
-@kernel
-def tips(motion, response, room, order):
-    """y and y' of all tangents at one order."""
-    n, w, m = motion.size, motion.drive, room.push.size
-    row, height, rate = room.rows[order], room.height[order], room.rate[order]
-    s, c, a, b = row[2 * n * m : (2 * n + 1) * m], row[(2 * n + 1) * m :], response.real, response.imag
-    for j in range(m):
-        height[j] = a * s[j] + b * c[j]
-        rate[j] = w * (a * c[j] - b * s[j])
+    reach, rate = np.empty(2 * n + 2), np.empty(2 * n + 2)
+    tip_changes(motion, response, tangent, reach, rate)
     for k in range(n):
-        phi, u, v = motion.modes[WEIGHT, k], row[k * m : (k + 1) * m], row[(n + k) * m : (n + k + 1) * m]
-        for j in range(m):
-            height[j] += phi * u[j]
-            rate[j] += phi * v[j]
+        for j in range(reach.size):
+            tangent[n + k, j] -= motion.modes[WEIGHT, k] * force * reach[j] / approach
 
 
 @kernel
@@ -139,18 +121,17 @@ def sums_of(weights, terms, order, rows, out):
 @kernel
 def next_tangents(motion, room, order):
     """The order after this one of all tangents, from the sums over all before it."""
-    n, w, m, inverse = motion.size, motion.drive, room.push.size, 1.0 / (order + 1.0)
-    sums, fresh, push = room.sums, room.rows[order + 1], room.push
+    n, w, push, inverse = motion.size, motion.drive, room.push, 1.0 / (order + 1.0)
+    shape = (2 * n + 2, push.size)
+    sums, fresh = room.sums.reshape(shape), room.rows[order + 1].reshape(shape)
     for k in range(n):
         c, o2, phi = motion.modes[DECAY, k], motion.modes[SQUARE, k], motion.modes[WEIGHT, k]
-        ru, rv = sums[k * m : (k + 1) * m], sums[(n + k) * m : (n + k + 1) * m]
-        u, v = fresh[k * m : (k + 1) * m], fresh[(n + k) * m : (n + k + 1) * m]
-        for j in range(m):
+        ru, rv, u, v = sums[k], sums[n + k], fresh[k], fresh[n + k]
+        for j in range(push.size):
             u[j] = inverse * rv[j]
             v[j] = -inverse * (o2 * ru[j] + c * rv[j] + phi * push[j])
-    rs, rc = sums[2 * n * m : (2 * n + 1) * m], sums[(2 * n + 1) * m :]
-    s, c = fresh[2 * n * m : (2 * n + 1) * m], fresh[(2 * n + 1) * m :]
-    for j in range(m):
+    rs, rc, s, c = sums[2 * n], sums[2 * n + 1], fresh[2 * n], fresh[2 * n + 1]
+    for j in range(push.size):
         s[j] = inverse * w * rc[j]
         c[j] = -inverse * w * rs[j]
 
@@ -163,17 +144,14 @@ def tangent_step(motion, response, room, terms, end, tangent):
         for j in range(size):
             room.rows[0, i * m + j] = tangent[i, j]
     for n in range(order):
-        tips(motion, response, room, n)
+        tip_changes(motion, response, room.rows[n].reshape((size, m)), room.height[n], room.rate[n])
         sums_of(room.weights[1], terms, n, room.height, room.push)
         sums_of(room.weights[2], terms, n, room.rate, room.more)
         for j in range(m):
             room.push[j] += room.more[j]
         sums_of(room.weights[0], terms, n, room.rows, room.sums)
         next_tangents(motion, room, n)
-    power = 1.0
-    for n in range(order + 1):
-        room.powers[n] = power
-        power *= end
+    powers_of(end, room.powers)
     weighted_rows(room.powers, 0, 1, room.rows, order + 1, room.sums)
     for i in range(size):
         for j in range(size):

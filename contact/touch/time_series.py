@@ -1,6 +1,6 @@
 """The modes under a contact force that is a power series in time.
 
-    u[n+2] = ( g - c (n+1) u[n+1] - omega^2 u[n] - phi N[n] ) / ((n+1)(n+2))      (g for n = 0 only)
+    u[n+2] = ( g - c (n+1) u[n+1] - omega^2 u[n] - phi_k N[n] ) / ((n+1)(n+2))      (g for n = 0 only)
 
 A law fills N[n] from d[n] and d[n+1] and lets `extend` find the next order of all modes, eight at a time
 (``contact.vector_loops``): cost per step, modes times the order.  With order 30 a step takes some three
@@ -13,34 +13,27 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from contact.compiled import kernel, part
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import speed_scale, tip_steady
 from contact.flight.motion import WEIGHT
-from contact.touch.series import within_force
+from contact.touch.series import powers_of, reach, within_force, work_of
 from contact.trajectory import INSIDE
 from contact.vector_loops import next_order, weighted_rows
 
-__all__ = ["ORDER", "begin", "extend", "free_pull", "longest_step", "negative",
-           "place", "room", "state", "work"]  # fmt: skip
+__all__ = ["ORDER", "begin", "extend", "free_pull", "longest_step", "place", "room", "state", "work"]
 
 ORDER = 30
 """Order of the series in time."""
 
-DEPTH, FORCE, STEADY, POWERS, SLOPES, SPARE = range(6)
-"""Rows of the scalar series: d, N, the steady tip motion, powers of the time of a state and their slopes."""
+DEPTH, RATE, FORCE, STEADY, POWERS, SLOPES = range(6)
+"""Rows of the scalar series: d, d' (filled by `work`), N, the steady tip motion, powers of the time of a
+state and their slopes."""
 
 TOLERANCE = 0.1 * EPS
 """Size of the last terms of a step, relative to the modal speeds."""
 
 _EDGE = TOLERANCE ** (1.0 / (ORDER - 1))
-
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
-NODE_POWERS = (0.5 * (1.0 + _NODES)) ** np.arange(ORDER + 1.0)[:, None]
-WEIGHTS = 0.5 * _WEIGHTS
-"""Gauss's rule on [0, 1]: for N d', which turns by some six radians in a step, its error is below 1e-20."""
 
 OVERFLOW = 1e300
 """A coefficient beyond this is about to leave the range of doubles: some 1e18 times the stiffness of the
@@ -106,22 +99,10 @@ def longest_step(motion, stored, u, v, series):
     scale = speed_scale(motion, u, v)
     speed = math.sqrt(scale * scale + stored)
     top, below = largest(series.rows[ORDER]), largest(series.rows[ORDER - 1])
-    h = math.inf
-    if top > 0.0:
-        h = (TOLERANCE * speed / (ORDER * top)) ** (1.0 / (ORDER - 1))
-    if below > 0.0:
-        h = min(h, (TOLERANCE * speed / ((ORDER - 1.0) * below)) ** (1.0 / (ORDER - 2)))
-    h = min(h, motion.period)
+    allowed = TOLERANCE * speed
+    power = min(reach(ORDER * top, ORDER - 1, allowed), reach((ORDER - 1.0) * below, ORDER - 2, allowed))
+    h = min(math.exp(power), motion.period)
     return within_force(h, force, ORDER - 2, math.sqrt(motion.compliance), speed, _EDGE)
-
-
-@kernel
-def negative(row, series):
-    """Minus a scalar series, for a root at which it falls through zero."""
-    spare = series.scalars[SPARE]
-    for n in range(ORDER + 1):
-        spare[n] = -series.scalars[row, n]
-    return spare
 
 
 @part
@@ -133,13 +114,10 @@ def place(motion, t, end, series):
 @kernel
 def state(motion, run, h, series, u, v):
     """Deviations of all modes a time `h` [s] into the step, in `u` and `v`."""
-    powers, slopes, power = series.scalars[POWERS], series.scalars[SLOPES], 1.0
-    slopes[0] = 0.0
+    powers, slopes = series.scalars[POWERS], series.scalars[SLOPES]
+    powers_of(h, powers)
     for n in range(ORDER):
-        powers[n] = power
-        slopes[n + 1] = (n + 1.0) * power
-        power *= h
-    powers[ORDER] = power
+        slopes[n + 1] = (n + 1.0) * powers[n]
     weighted_rows(powers, 0, 1, series.rows, ORDER + 1, series.sums)
     for k in range(u.size):
         u[k] = series.sums[k]
@@ -151,18 +129,7 @@ def state(motion, run, h, series, u, v):
 @kernel
 def work(motion, run, h, series):
     """Work that the tip does on the stop in a time `h` [s], the integral of N d' [J]."""
-    if run.regime == INSIDE:
-        return 0.0
-    scalars, power = series.scalars, 1.0
-    powers, slopes = scalars[POWERS], scalars[SLOPES]
-    force, rate = np.empty(WEIGHTS.size), np.empty(WEIGHTS.size)
+    depth, rate = series.scalars[DEPTH], series.scalars[RATE]
     for n in range(ORDER):
-        powers[n] = power * scalars[FORCE, n]
-        slopes[n] = power * (n + 1.0) * scalars[DEPTH, n + 1]
-        power *= h
-    weighted_rows(powers, 0, 1, NODE_POWERS, ORDER, force)
-    weighted_rows(slopes, 0, 1, NODE_POWERS, ORDER, rate)
-    done = 0.0
-    for i in range(WEIGHTS.size):
-        done += WEIGHTS[i] * h * force[i] * rate[i]
-    return done
+        rate[n] = (n + 1.0) * depth[n + 1]
+    return 0.0 if run.regime == INSIDE else work_of(series, series.scalars[FORCE], rate, h)

@@ -6,8 +6,8 @@
     kick             of these collisions [1]; error absolute
     born_period      period of the settled orbit at excess 1e-3, at the drive frequency and at both ends of
                      what the error of the free period (letter, Fig. 2) makes of it; error: how many differ
-    fold             F/F_g - 1 at which the p_m orbit ends, by shooting; error relative to it, or to the
-                     letter's amplitude stability where it is smaller; infinite if m differs
+    fold             F/F_g - 1 at which the p_m orbit has its fold, by shooting; error relative to it, or to
+                     the letter's amplitude stability where it is smaller; infinite if m differs
     tip_trace        tip over one period of the orbit settled at excess 0.013; error: root mean square
                      over the gap
 
@@ -23,31 +23,27 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
-from contact import ImpactOscillator
-from contact.orbits import Shooting, fold_of
-from studies import letter
+from contact import StroboscopicMap
+from contact.orbits import born_period, fold_excess
+from studies import least_model, letter
 from studies.adequacy.models import EQ_1, LAWS, MESHES, MODES, Choice, Models
 from studies.least_model import (
     COLLISIONS,
     Answer,
-    Question,
-    Values,
+    Ask,
+    At,
+    Distance,
     collisions,
+    distances,
     error_of_fold,
-    error_of_trace,
     largest_error,
-    settled,
-    tip_trace,
-)  # fmt: skip
+)
 from studies.scene import approach_speed
 
 __all__ = ["QUANTITIES", "Row", "Search", "first"]
 
 MESH_ORDER = 4
 """Of frequencies and shapes, with cubic Hermite elements."""
-
-At = Callable[[float], ImpactOscillator]
-"""The oscillator of a model at a drive frequency [Hz]."""
 
 
 def _delays(at: At, frequency: float) -> Answer:
@@ -59,39 +55,32 @@ def _delays(at: At, frequency: float) -> Answer:
 
 def _born_periods(at: At, frequency: float) -> Answer:
     error = letter.FREE_PERIOD_ERROR_S / letter.FREE_PERIOD_S
-    found = [settled(at(frequency * (1.0 + shift))).period for shift in (-error, 0.0, error)]
-    return np.array(found, dtype=float)
+    drives = [frequency * (1.0 + shift) for shift in (-error, 0.0, error)]
+    return np.array([float(born_period(StroboscopicMap(oscillator=at(drive)))) for drive in drives])
 
 
 def _fold(at: At, frequency: float) -> Answer:
-    """Excess of the fold, not a number if there is none, and the period."""
-    period = settled(at(frequency)).period
-    if period < 2:
-        return None
-    end = fold_of(Shooting(oscillator=at(frequency), period=period))
-    return np.array([math.nan if end is None else end.excess, float(period)])
+    """Excess of the fold, and m."""
+    strobed = StroboscopicMap(oscillator=at(frequency))
+    period = born_period(strobed)
+    end = fold_excess(strobed, period)
+    return None if end is None else np.array([end, float(period)])
 
 
-def _of_fold(answer: Values, reference: Values) -> float:
-    if answer[1] != reference[1] or math.isnan(answer[0]) != math.isnan(reference[0]):
-        return math.inf
-    return 0.0 if math.isnan(reference[0]) else error_of_fold(answer, reference)
-
-
-QUANTITIES: Mapping[str, tuple[Callable[[At, float], Answer], Callable[[Values, Values], float], str, float]]
-QUANTITIES = {
+_SHARED = {name: found[:2] for name, found in least_model.QUANTITIES.items()}
+QUANTITIES: Mapping[str, tuple[Ask, Distance, str, float]] = {
     "frequency": (
         lambda at, f: at(f).model.frequencies_hz,
         lambda a, b: largest_error(a / b, b / b),
         "relative",
         1e-3,
     ),
-    "restitution": (lambda at, f: collisions(at(f), "restitution"), largest_error, "1", 1e-2),
+    "restitution": (*_SHARED["restitution"], "1", 1e-2),
     "delay": (_delays, largest_error, "v/a", 2e-2),
-    "kick": (lambda at, f: collisions(at(f), "kick"), largest_error, "1", 1e-2),
+    "kick": (*_SHARED["kick"], "1", 1e-2),
     "born_period": (_born_periods, lambda a, b: float(np.count_nonzero(a != b)), "differing periods", 0.0),
-    "fold": (_fold, _of_fold, "relative", 2e-2),
-    "tip_trace": (lambda at, f: tip_trace(at(f)), error_of_trace, "gap", 1e-2),
+    "fold": (_fold, error_of_fold, "relative", 2e-2),
+    "tip_trace": (*_SHARED["tip_trace"], "gap", 1e-2),
 }
 """Name -> answer, distance of two answers, its unit, usual tolerance."""
 
@@ -125,8 +114,6 @@ class Search:
 
     def __init__(self, models: Models, quantity: str, frequency: float, sharp: Choice | None = None) -> None:
         name, _, number = quantity.partition(" ")
-        if name not in QUANTITIES or (name == "frequency") != (number.isdigit() and int(number) > 0):
-            raise ValueError(f"quantity is {quantity!r}; it must be one of {', '.join(QUANTITIES)} (with K)")
         self.models, self.quantity, self.frequency = models, quantity, frequency
         ask, distance, self.unit, self.tolerance = QUANTITIES[name]
         self.sharp = sharp or models.sharp
@@ -137,10 +124,11 @@ class Search:
                 return found
             return found[int(number) - 1 : int(number)] if int(number) <= choice.modes else None
 
-        self.question = Question(
-            words=quantity, ask=answer, distance=distance, reference=self.sharp, tolerance=self.tolerance
-        )
-        self.off = self.question.off
+        self.between = distances(answer, distance)
+
+    def off(self, choice: Choice) -> float:
+        """Distance of a model's answer from the reference's; infinite without an answer."""
+        return self.between(self.sharp, choice)
 
     def own_error(self) -> float:
         """Of the reference: what one step less in modes changes, and what is left of what one in mesh does.
@@ -165,7 +153,7 @@ class Search:
         if choice.modes < sharp.modes:
             found["modes"] = self.off(replace(sharp, modes=choice.modes, residual=choice.residual))
         if choice.mesh < sharp.mesh:
-            found["mesh"] = self.off(choice, replace(choice, mesh=sharp.mesh))
+            found["mesh"] = self.between(replace(choice, mesh=sharp.mesh), choice)
         return found
 
     def error(self, choice: Choice) -> float:

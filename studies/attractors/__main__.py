@@ -25,7 +25,7 @@ import numpy as np
 
 from contact import StroboscopicMap
 from studies.attractors.basins import parts, plane_of
-from studies.attractors.scan import CHAOTIC, KINDS, TITLES, Start, carried, row_of
+from studies.attractors.scan import CHAOTIC, KINDS, TITLES, Row, carried
 from studies.run import Run, study
 from studies.scene import (
     Scene,
@@ -41,6 +41,7 @@ __all__ = ["attractors"]
 
 FREQUENCY = 21.50
 """Where the letter has period 4 [Hz]."""
+
 
 @study(needs={"fold": 0.05}, quick={"points": 11, "cycles": 100, "side": 32})
 def attractors(
@@ -69,30 +70,26 @@ def attractors(
         modes = model_of(scene)
         require_drive_below(scene, modes, f)
         maps["beam"] = StroboscopicMap(oscillator=beam_at(scene, f, modes))
-    starts: list[Start] = []
-    jobs = partial(carried, scene=scene, values=np.linspace(lowest, highest, points))
-    for scan, failures in run.map(jobs, maps.items(), "scans"):
-        starts += scan
+    rows, strobes = list[Row](), list[np.ndarray]()
+    jobs = partial(carried, scene=scene, values=np.linspace(lowest, highest, points), cycles=cycles)
+    for scan, recorded, failures in run.map(jobs, maps.items(), "scans"):
+        rows, strobes = rows + scan, strobes + recorded
         for reason in failures:
             run.failed("scan", reason)
-    classified = partial(row_of, cycles=cycles, most_cycles=scene.scan.settle_cycles)
-    rows = [row for row in run.attempt(classified, starts, "exponents") if row is not None]
-    run.table("rows", rows, "Settled motions; kind by the largest Lyapunov exponent.",
-              show=("model", "direction", "excess", "kind", "period", "impacts", "lyapunov_map", "error_map"),
-              )  # fmt: skip
-    run.arrays("attractors", points=np.array([s.points for s in starts]), excess=[s.excess for s in starts])
+    run.table("rows", rows, "Settled motions; kind by the largest Lyapunov exponent.")
+    run.arrays("attractors", points=np.array(strobes), excess=[row.excess for row in rows])
     plane = plane_of(scene, f, basin_excess, side)
     leads = np.array(run.map(plane.line, plane.velocity.tolist(), "basins"))  # shape (velocities, x)
-    run.arrays("basins", x=plane.x, velocity=plane.velocity, leads=leads, orbit=plane.orbit)
+    run.arrays("basins", x=plane.x, velocity=plane.velocity, leads=leads, orbit=plane.strobes(plane.period))
     from studies.attractors import figure
 
     quantity, period, shares = scene.readout.quantity, plane.period, parts(leads, plane.period)
-    run.figure("attractors", figure.draw_scan(starts, rows, f, quantity), figure.SCAN)
+    run.figure("attractors", figure.draw_scan(rows, strobes, f, quantity), figure.SCAN)
     run.figure("basins", figure.draw_basins(plane, leads, f), figure.BASINS)
     counts = Counter((row.model, row.kind) for row in rows)
     kinds = {name: {kind: counts[name, kind] for kind in KINDS} for name in maps}
     chaotic = {name: [r.excess for r in rows if (r.model, r.kind) == (name, CHAOTIC)] for name in maps}
-    both = plane.free() and period > 1 and shares[f"p{period}"] > 0.0
+    both = period > 1 and shares[f"p{period}"] > 0.0  # p1 without impacts is stable below grazing
     run.verdict("coexistence", "agrees" if both else "differs",
                 found=f"Eq. (1): p1 and p{period}" if both else "Eq. (1): one of them alone",
                 note=f"at excess {basin_excess:g} the start decides which of them is reached")  # fmt: skip

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from studies import plotting
 from studies.attractors.basins import Plane, parts
-from studies.attractors.scan import CHAOTIC, NOT_SETTLED, PERIODIC, TITLES, UNDECIDED, WITHOUT, Row, Start
+from studies.attractors.scan import CHAOTIC, NOT_SETTLED, PERIODIC, TITLES, UNDECIDED, WITHOUT, Row
 from studies.plotting import BLUE, COLUMN, DOWN, EXCESS, GUIDE, ORANGE, PAGE, SKY, UP, VERMILION, tint
 
 __all__ = ["BASINS", "SCAN", "draw_basins", "draw_scan"]
@@ -31,20 +31,19 @@ LOOKS = {
 
 
 @plotting.in_house_style
-def draw_scan(starts: Sequence[Start], rows: Sequence[Row], frequency: float, quantity: str) -> Figure:
+def draw_scan(rows: Sequence[Row], strobes: Sequence[np.ndarray], frequency: float, quantity: str) -> Figure:
     """Strobe points and exponents against the excess, a column for each model."""
     names = {key: name for key, name in TITLES.items() if any(row.model == key for row in rows)}
     figure, axes = plotting.new_figure(
         2, max(1, len(names)), width=PAGE if len(names) > 1 else COLUMN, height=0.112, squeeze=False,
         sharex="col",
     )  # fmt: skip
-    periodic = {(row.model, row.direction, row.excess) for row in rows if row.period}
     for column, (name, title) in enumerate(names.items()):
         upper, lower = axes[:, column]
         for way, look in (("up", UP), ("down", DOWN)):
-            mine = [start for start in starts if (start.model, start.direction) == (name, way)]
-            excess, points = np.array([s.excess for s in mine]), np.array([s.points for s in mine])
-            settled = np.array([(name, way, s.excess) in periodic for s in mine])
+            mine = [k for k, row in enumerate(rows) if (row.model, row.direction) == (name, way)]
+            excess, points = np.array([rows[k].excess for k in mine]), np.array([strobes[k] for k in mine])
+            settled = np.array([rows[k].period > 0 for k in mine])
             plotting.strobe_points(upper, 1e2 * excess, 1e3 * points, settled, look, f"{way}ward scan")
         for kind, (marker, colour) in LOOKS.items():
             alike = [row for row in rows if (row.model, row.kind) == (name, kind)]
@@ -67,26 +66,25 @@ def draw_scan(starts: Sequence[Start], rows: Sequence[Row], frequency: float, qu
 def draw_basins(plane: Plane, leads: np.ndarray, frequency: float) -> Figure:
     """The strobe plane, coloured by where its points lead."""
     figure, axis = plotting.new_figure(height=0.088)
-    gap, period = plane.strobed.scale, plane.period
-    unit = np.array([gap, 2.0 * np.pi * frequency * gap])
-    looks = {1: (tint(SKY, 0.3), "to p$_1$ without impacts"), period: (BLUE, f"to p$_{{{period}}}$"),
+    oscillator, m = plane.strobed.oscillator, plane.period
+    gap, speed = oscillator.stop.gap, oscillator.unit_speed
+    looks = {m: (BLUE, f"to p$_{{{m}}}$"), 1: (tint(SKY, 0.3), "to p$_1$ without impacts"),
              0: (ORANGE, "to something else")}  # fmt: skip
-    picture = np.full(leads.shape, np.nan)
+    x, y, picture = plane.x / gap, plane.velocity / speed, np.full(leads.shape, np.nan)
     for place, code in enumerate(looks):
         picture[leads == code] = place
-    x, y = plane.x / unit[0], plane.velocity / unit[1]
-    axis.pcolormesh(x, y, picture, shading="nearest", vmin=-0.5, vmax=2.5, rasterized=True,
+    axis.pcolormesh(x, y, picture, shading="nearest", vmin=-0.5, vmax=len(looks) - 0.5, rasterized=True,
                     cmap=ListedColormap([colour for colour, _ in looks.values()]))  # fmt: skip
     axis.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
-    axis.plot(*(plane.orbit / unit).T, "o", markersize=4, color="white", markeredgecolor="black",
-              label=f"p$_{{{period}}}$")  # fmt: skip
-    axis.plot(*(np.array(plane.rest) / unit), "D", markersize=4, color=VERMILION, markeredgecolor="black",
-              label="p$_1$")  # fmt: skip
+    for code in plane.orbits:
+        marker, face = ("D", VERMILION) if code == 1 else ("o", "white")
+        axis.plot(*(plane.strobes(code) / (gap, speed)).T, marker, markersize=4, color=face,
+                  markeredgecolor="black", label=f"p$_{{{code}}}$")  # fmt: skip
     for code, (colour, words) in looks.items():
         if np.any(leads == code):
             axis.fill([], [], facecolor=colour, edgecolor="0.4", label=words)
-    share = 100 * parts(leads, period)["p1 without impacts"]
-    title = f"Eq. (1), {frequency:.2f} Hz, $F/F_g - 1$ = {plane.excess:g}"
+    share = 100 * parts(leads, m)["p1 without impacts"]
+    title = f"Eq. (1), {frequency:.2f} Hz, $F/F_g - 1$ = {oscillator.excess:g}"
     axis.set_title(f"{title}\n{share:.1f} % lead to p$_1$")
     plotting.label(axis.xaxis, "$ξ$ / gap at the strobe")
     plotting.label(axis.yaxis, "$\\dot{ξ}$ / (2π f gap) at the strobe")

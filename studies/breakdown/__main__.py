@@ -28,21 +28,22 @@ from typing import Annotated
 
 import numpy as np
 
-from contact import StroboscopicMap, maximal_period
+from contact import maximal_period
 from studies import letter
 from studies.breakdown.beam import (
     BORN_PERIOD,
     FREQUENCY_HZ,
-    Beam,
     Cell,
+    Spring,
     cell_of,
     fig_5,
     nearest_first,
+    single_mode,
     tuned,
 )
-from studies.breakdown.scans import CHAOS_AT, Diagram, Island, Outcome, Scans, island, periods
+from studies.breakdown.scans import CHAOS_AT, Diagram, Island, Outcome, island, periods, scanned
 from studies.run import Run, study
-from studies.scene import Scene, model_of, nordmark_at, single_mode_at
+from studies.scene import Scene, model_of, nordmark_at
 
 __all__ = ["breakdown"]
 
@@ -68,28 +69,27 @@ def breakdown(
     """Compute, store and draw."""
     scene = fig_5(scene)
     tau, nordmark = scene.single_mode.restitution, nordmark_at(scene, FREQUENCY_HZ)
-    scans = Scans(points=points, cycles=letter.SETTLE_CYCLES if full else cycles, early=not full)
     taus = sorted({*(QUICK_RESTITUTIONS if run.quick else RESTITUTIONS), tau})
     islands = run.map(partial(island, scene), taus, "islands")
     known = [entry for entry, _ in islands]
     run.table("islands", known, "Eq. (1): p3 and chaos below grazing.")
-    single = StroboscopicMap(oscillator=single_mode_at(scene, FREQUENCY_HZ))
-    own, around = islands[taus.index(tau)]
-    calibrated = Beam(scene=scene, model=model_of(scene), tip_mass_kg=scene.tip.mass_kg)
+    calibrated = Spring(scene=scene, model=model_of(scene), tip_mass_kg=scene.tip.mass_kg)
     cells, with_6 = search(scene, run)
-    jobs = [("beam", calibrated), *((f"beam {i}", beam) for i, beam in enumerate(with_6[:MOST_SCANNED], 1))]
-    scanned = [scans.of("Eq. (1)", single, -0.14, own.fold_p3, single.tip)]
-    scanned[0][1]["island"] = around
-    scanned += run.map(scans.of_beam, jobs, "scans of the beam")
-    outcomes = [outcome for outcome, _ in scanned]
+    jobs = [("Eq. (1)", single_mode(scene, tau)), ("beam", calibrated)]
+    jobs += [(f"beam {number}", one) for number, one in enumerate(with_6[:MOST_SCANNED], start=1)]
+    cycles = letter.SETTLE_CYCLES if full else cycles
+    found_by = partial(scanned, points=points, cycles=cycles, early=not full)
+    scans = run.map(found_by, jobs, "scans")
+    scans[0][1]["island"] = islands[taus.index(tau)][1]
+    outcomes = [outcome for outcome, _ in scans]
     # as in the letter: p3 in the downward scan; otherwise the first candidate
     candidates = [*(o for o in outcomes[2:] if o.p3_last is not None), *outcomes[2:]]
     found = candidates[0] if candidates else None
     run.table("outcomes", outcomes, "What is born at grazing, and the end of the downward scan.")
-    store(run, scanned)
+    store(run, scans)
     from studies.breakdown import figure
 
-    shown = [pair for pair in scanned if pair[0] in (*outcomes[:2], found)]
+    shown = [pair for pair in scans if pair[0] in (*outcomes[:2], found)]
     run.figure("breakdown", figure.draw_scans(shown), figure.SCANS)
     run.figure("born_period", figure.draw_born(cells, scene.tip.mass_kg, found), figure.BORN)
     judge(run, maximal_period(nordmark), outcomes, found, known)
@@ -102,30 +102,26 @@ def breakdown(
     }  # fmt: skip
 
 
-def search(scene: Scene, run: Run) -> tuple[list[Cell], list[Beam]]:
+def search(scene: Scene, run: Run) -> tuple[list[Cell], list[Spring]]:
     """The born period in every cell of mass and factor on the higher modes' damping; and the beams born with
     period 6, those first that depart least from the scene."""
     grams, factors = (QUICK_MASSES_G, QUICK_FACTORS) if run.quick else (MASSES_G, FACTORS)
     masses = [m / 1000 for m in grams]
     models = dict(zip(masses, run.map(partial(tuned, scene), masses, "springs"), strict=True))
-    beams = [
-        Beam(scene=scene, model=models[m], tip_mass_kg=m, higher_damping=k) for m in masses for k in factors
+    springs = [
+        Spring(scene=scene, model=models[m], tip_mass_kg=m, higher_damping=k) for m in masses for k in factors
     ]
-    found = [
-        (beam, cell)
-        for beam, cell in zip(beams, run.attempt(cell_of, beams, "search"), strict=True)
-        if cell is not None
-    ]
-    cells = [cell for _, cell in found]
+    found = run.attempt(cell_of, springs, "search")
+    cells = [cell for cell in found if cell is not None]
     run.table("born_period", cells, "Period born at grazing over what the letter does not print.", show=())
-    with_6 = [beam for beam, cell in found if cell.period == BORN_PERIOD]
+    with_6 = [one for one, cell in zip(springs, found, strict=True) if cell and cell.period == BORN_PERIOD]
     return cells, nearest_first(with_6, scene.tip.mass_kg)
 
 
-def store(run: Run, scanned: Sequence[tuple[Outcome, Mapping[str, Diagram]]]) -> None:
+def store(run: Run, scans: Sequence[tuple[Outcome, Mapping[str, Diagram]]]) -> None:
     """All scans; failed amplitudes."""
     arrays = dict[str, np.ndarray]()
-    for outcome, ways in scanned:
+    for outcome, ways in scans:
         name = outcome.description
         for way, diagram in ways.items():
             stem = f"{'single_mode' if name == 'Eq. (1)' else name.replace(' ', '_')}_{way}"
@@ -156,11 +152,9 @@ def judge(
             f"{1e3 * (found.tip_mass_kg or 0.0):.2f} g with {found.higher_damping:g} times the damping of "
             "the higher modes does, and the letter prints neither"
         )
-    if beam.born_period == BORN_PERIOD:
-        run.verdict("breakdown", "agrees", found=said)
-    else:
-        born = found is not None and found.born_period == BORN_PERIOD
-        run.verdict("breakdown", "in part" if born else "differs", found=said, note=note)
+    agrees, in_part = (one is not None and one.born_period == BORN_PERIOD for one in (beam, found))
+    run.verdict("breakdown", "agrees" if agrees else "in part" if in_part else "differs", found=said,
+                note="" if agrees else note)  # fmt: skip
     ends = next((outcome for outcome in (beam, found) if outcome is not None and outcome.ends_on_p3), None)
     if ends is None:
         run.verdict("breakdown_p3", "differs", found="beam: not so", note="no downward scan ends in p3")

@@ -1,4 +1,5 @@
-"""The beam of the letter's Fig. 5, f = 19.65 Hz, T = 41.2 ms, mu = 3.56 1/s, and what it leaves open.
+"""Eq. (1) and the beam at the letter's Fig. 5, f = 19.65 Hz, T = 41.2 ms, mu = 3.56 1/s, and what it leaves
+open.
 
 The scene's spring with thickness and tape fitted again to T and mu, ball and gap as they were (the letter
 prints no drive amplitude with Fig. 5). What is not printed can be varied: the mass of ball and mount, with
@@ -15,12 +16,12 @@ import numpy as np
 
 from beam import ModalModel
 from contact import ContactError, HarmonicDrive, ImpactOscillator, Stop, StroboscopicMap
-from contact.orbits import Shooting, born, fold_of
+from contact.orbits import born, fold_excess
 from studies import letter
-from studies.calibration import calibrate, free_period, solve_for
-from studies.scene import Scene, SceneError, contact_law_of, harmonic, model_of
+from studies.calibration import calibrate, calibrate_thickness
+from studies.scene import Scene, SceneError, contact_law_of, harmonic, model_of, single_mode_of
 
-__all__ = ["Beam", "Cell", "cell_of", "fig_5", "fold_of_p3", "nearest_first", "tuned"]
+__all__ = ["Cell", "Spring", "cell_of", "fig_5", "fold_of_p3", "nearest_first", "single_mode", "tuned"]
 
 FREQUENCY_HZ, FREE_PERIOD_S = letter.BREAKDOWN["frequency_hz"], letter.BREAKDOWN["free_period_s"]
 DECAY_RATE_PER_S, BORN_PERIOD = letter.BREAKDOWN["decay_rate_per_s"], letter.BREAKDOWN["born_period"]
@@ -29,10 +30,7 @@ BORN_EXCESS, SEARCH_CYCLES = 1e-3, 1500
 """Where the born period is read, and the drive periods that a motion gets to settle there."""
 
 NEAR = 0.2
-"""Relative distance from the free period of Fig. 5 within which the thickness brings a spring to it."""
-
-THICKNESSES = (0.7, 1.25)
-"""Where the thickness that keeps T is looked for, over that of the scene."""
+"""Relative distance from the free period of Fig. 5 beyond which a spring is another one."""
 
 
 def fig_5(scene: Scene) -> Scene:
@@ -52,16 +50,12 @@ def fig_5(scene: Scene) -> Scene:
 
 def tuned(scene: Scene, mass: float) -> ModalModel:
     """Modes of the spring with another ball [kg], its sheet so thick that mode 1 keeps its period."""
-    thickness = scene.spring.thickness_m
-    between = (THICKNESSES[0] * thickness, THICKNESSES[1] * thickness)
-    here = scene.replace({"tip.mass_kg": mass})
-    return model_of(solve_for("spring.thickness_m", here, free_period, FREE_PERIOD_S, name="free period",
-                              unit="s", between=between))  # fmt: skip
+    return model_of(calibrate_thickness(scene.replace({"tip.mass_kg": mass}), FREE_PERIOD_S))
 
 
 @dataclass(frozen=True, kw_only=True)
-class Beam:
-    """The spring with one choice of what is not printed."""
+class Spring:
+    """The spring with one choice of what is not printed; Eq. (1) has no ball."""
 
     scene: Scene
     model: ModalModel
@@ -81,6 +75,12 @@ class Beam:
         ))  # fmt: skip
 
 
+def single_mode(scene: Scene, restitution: float) -> Spring:
+    """Eq. (1) with this restitution [1]."""
+    law = {"contact.law": "newton", "contact.local_restitution": restitution}
+    return Spring(scene=scene.replace(law), model=single_mode_of(scene), tip_mass_kg=0.0)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Cell:
     """What a beam is born with at grazing: period (0: none up to 64), impacts, fold of p3 (where the period
@@ -93,27 +93,26 @@ class Cell:
     fold_p3: float | None = None
 
 
-def cell_of(beam: Beam) -> Cell:
+def cell_of(spring: Spring) -> Cell:
     """One cell of the search."""
-    strobed = beam.strobed()
+    strobed = spring.strobed()
     settled = born(strobed, BORN_EXCESS, most_cycles=SEARCH_CYCLES)
     return Cell(
-        tip_mass_kg=beam.tip_mass_kg, higher_damping=beam.higher_damping, period=settled.period,
+        tip_mass_kg=spring.tip_mass_kg, higher_damping=spring.higher_damping, period=settled.period,
         impacts=settled.impacts,
         fold_p3=fold_of_p3(strobed) if settled.period == BORN_PERIOD else None,
     )  # fmt: skip
 
 
 def fold_of_p3(strobed: StroboscopicMap) -> float | None:
-    """F_3/F_g - 1 of the p3 orbit with one touch; None where there is none."""
+    """F_3/F_g - 1 of the p3 orbit; None where there is none."""
     try:
-        orbit = fold_of(Shooting(oscillator=strobed.oscillator, period=3))
+        return fold_excess(strobed, 3)
     except ContactError:
         return None
-    return None if orbit is None else orbit.excess
 
 
-def nearest_first(beams: Iterable[Beam], mass: float) -> list[Beam]:
+def nearest_first(springs: Iterable[Spring], mass: float) -> list[Spring]:
     """Sorted by what they ask for: damping as the strips', then a mass near to `mass` [kg]."""
-    return sorted(beams, key=lambda beam: (abs(math.log(beam.higher_damping)),
-                                           abs(math.log(beam.tip_mass_kg / mass))))  # fmt: skip
+    return sorted(springs, key=lambda one: (abs(math.log(one.higher_damping)),
+                                            abs(math.log(one.tip_mass_kg / mass))))  # fmt: skip

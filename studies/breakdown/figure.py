@@ -64,8 +64,7 @@ def draw_scans(panels: Sequence[tuple[Outcome, Mapping[str, Diagram]]]) -> Figur
                             label="fold of p$_3$")  # fmt: skip
     axes[0, 1].set_title("finer steps above grazing", loc="right")
     axes[-1, 1].set_title("letter: p$_6$ born here", loc="right")
-    plotting.mark_letter(axes[0, 0].xaxis, 1e2 * CHAOS_AT, words="letter: chaos\nof Eq. (1)", along=0.98,
-                         turn=True, level=True)  # fmt: skip
+    plotting.mark_letter(axes[0, 0].xaxis, 1e2 * CHAOS_AT, words="letter: chaos\nof Eq. (1)", along=0.98)
     for axis in axes[-1]:
         plotting.label(axis.xaxis, EXCESS, "%")
     plotting.legend_below(figure, axes[:, 0], 4, markerscale=2.0)

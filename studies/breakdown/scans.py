@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 
-from contact import MaximalFamily, StroboscopicMap
+from contact import MaximalFamily
 from contact.orbits import OrbitDiagram, Shooting, born, orbit_diagram
 from studies import letter
-from studies.breakdown.beam import BORN_EXCESS, FREQUENCY_HZ, Beam, fold_of_p3
-from studies.scene import READOUT, Scene, single_mode_at
+from studies.breakdown.beam import BORN_EXCESS, Spring, fold_of_p3, single_mode
+from studies.scene import READOUT, Scene
 
-__all__ = ["CHAOS_AT", "HIGHEST", "Island", "Outcome", "Scans", "island", "periods"]
+__all__ = ["CHAOS_AT", "HIGHEST", "Island", "Outcome", "island", "periods", "scanned"]
 
 CHAOS_AT = letter.BREAKDOWN["chaos_at"]
-HIGHEST = 0.012
-"""Upper end of the scans: the letter's finer steps above grazing."""
+LOWEST, HIGHEST = -0.14, 0.012
+"""Least lower end of the scans, and their upper end: the letter's finer steps above grazing."""
 
 ISLAND_STEP, ISLAND_CYCLES = 5e-4, 1500
 """Step of the excess and drive periods at each, for the end of the island; beyond it chaos is a transient."""
@@ -45,8 +44,8 @@ class Outcome:
     on p3 with one impact, and the excess at which that scan has its last impacts."""
 
     description: str
-    tip_mass_kg: float | None = None
-    higher_damping: float = 1.0
+    tip_mass_kg: float | None
+    higher_damping: float
     born_period: int
     born_impacts: int
     fold_p3: float | None
@@ -62,47 +61,32 @@ class Outcome:
         return abs(self.impacts_end - self.p3_last) <= LAST * abs(self.p3_last)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Scans:
-    """Upward and downward scan through grazing: even steps below, finer ones above; the state is carried
-    along."""
-
-    points: int
-    cycles: int
-    early: bool
-
-    def of(
-        self, name: str, strobed: StroboscopicMap, lowest: float, fold: float | None,
-        observe: Callable[[np.ndarray], np.ndarray],
-    ) -> tuple[Outcome, dict[str, Diagram]]:  # fmt: skip
-        """What is born, and both scans between the excess `lowest` and `HIGHEST`."""
-        below = np.linspace(lowest, 0.0, self.points)[:-1]
-        values = np.concatenate([below, np.linspace(0.0, HIGHEST, self.points // 2 + 1)[1:]])
-        scan = partial(
-            orbit_diagram, strobed, observe=observe, settle_cycles=self.cycles,
-            record_cycles=letter.STROBE_POINTS, early=self.early,
-        )  # fmt: skip
-        up = scan(values, strobed.at(lowest).steady())
-        down = scan(values[::-1], up.end)
-        settled = born(strobed, BORN_EXCESS, most_cycles=self.cycles)
-        on_p3 = down.excess[(periods(down) == 3) & (down.impacts == 1)]
-        struck = down.excess[down.impacts > 0]
-        outcome = Outcome(
-            description=name, born_period=settled.period, born_impacts=settled.impacts, fold_p3=fold,
-            p3_first=float(on_p3[0]) if on_p3.size else None,
-            p3_last=float(on_p3[-1]) if on_p3.size else None,
-            impacts_end=float(struck[-1]) if struck.size else None,
-        )  # fmt: skip
-        return outcome, {"up": up, "down": down}
-
-    def of_beam(self, named: tuple[str, Beam]) -> tuple[Outcome, dict[str, Diagram]]:
-        """The same for a beam, down to below the fold of p3."""
-        name, beam = named
-        strobed = beam.strobed()
-        fold = fold_of_p3(strobed)
-        lowest = 1.12 * fold if fold is not None and fold < -0.01 else -0.1
-        outcome, ways = self.of(name, strobed, lowest, fold, partial(strobed.readout, name=READOUT))
-        return replace(outcome, tip_mass_kg=beam.tip_mass_kg, higher_damping=beam.higher_damping), ways
+def scanned(
+    named: tuple[str, Spring], *, points: int, cycles: int, early: bool
+) -> tuple[Outcome, dict[str, Diagram]]:
+    """What is born, and the upward and downward scan through grazing: even steps from below the fold of p3,
+    finer ones above; the state is carried along."""
+    name, spring = named
+    strobed = spring.strobed()
+    fold = fold_of_p3(strobed)
+    lowest = max(1.12 * fold, LOWEST) if fold is not None and fold < -0.01 else -0.1
+    below = np.linspace(lowest, 0.0, points)[:-1]
+    values = np.concatenate([below, np.linspace(0.0, HIGHEST, points // 2 + 1)[1:]])
+    scan = partial(
+        orbit_diagram, strobed, observe=partial(strobed.readout, name=READOUT), settle_cycles=cycles,
+        record_cycles=letter.STROBE_POINTS, early=early,
+    )  # fmt: skip
+    up = scan(values, strobed.at(lowest).steady())
+    down = scan(values[::-1], up.end)
+    settled = born(strobed, BORN_EXCESS, most_cycles=cycles)
+    on_p3 = down.excess[(down.period == 3) & (down.impacts == 1)].tolist() or [None]
+    struck = down.excess[down.impacts > 0].tolist() or [None]
+    outcome = Outcome(
+        description=name, tip_mass_kg=spring.tip_mass_kg or None, higher_damping=spring.higher_damping,
+        born_period=settled.period, born_impacts=settled.impacts, fold_p3=fold, p3_first=on_p3[0],
+        p3_last=on_p3[-1], impacts_end=struck[-1],
+    )  # fmt: skip
+    return outcome, {"up": up, "down": down}
 
 
 def periods(diagram: Diagram) -> np.ndarray:
@@ -116,11 +100,10 @@ def island(scene: Scene, restitution: float, *, step: float = ISLAND_STEP) -> tu
     The motion without impacts is stable all along, so that the island is not connected to what is born at
     grazing.
     """
-    oscillator = single_mode_at(scene.replace({"single_mode.restitution": restitution}), FREQUENCY_HZ)
-    fold = MaximalFamily.from_oscillator(oscillator, period=3).fold()
+    strobed = single_mode(scene, restitution).strobed()
+    fold = MaximalFamily.from_oscillator(strobed.oscillator, period=3).fold()
     assert fold is not None  # f T lies in the band of p3
-    orbit = Shooting(oscillator=oscillator, period=3).at_speed(1.02 * fold.speed)
-    strobed = StroboscopicMap(oscillator=oscillator)
+    orbit = Shooting(oscillator=strobed.oscillator, period=3).at_speed(1.02 * fold.speed)
     whole = orbit_diagram(
         strobed, np.arange(orbit.excess, 0.0, step), orbit.strobe_state(), observe=strobed.tip,
         settle_cycles=ISLAND_CYCLES, record_cycles=letter.STROBE_POINTS,

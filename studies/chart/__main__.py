@@ -24,13 +24,14 @@ cells
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Annotated, Literal
 
 import numpy as np
 
 from contact import ImpactOscillator
 from contact.orbits import AmplitudeScan
-from studies.chart.cells import EXCESSES, FREQUENCIES_HZ, KNEE, Cells, Plane, Scan
+from studies.chart.cells import EXCESSES, FREQUENCIES_HZ, KNEE, Plane, column_at, counts, side_by_side
 from studies.chart.overlays import bands_in, folds_of_beam, folds_of_single_mode
 from studies.run import Run, study
 from studies.scene import Scene, beam_at, corresponding, harmonic, single_mode_at
@@ -81,7 +82,7 @@ def chart(
     oscillator = (beam_at if model == "beam" else single_mode_at)(scene, 0.5 * (low + high))
     scan = AmplitudeScan(oscillator=oscillator, most_cycles=bound)
     settings = {"model": model, "plane": plane, "knee": KNEE, "most_cycles": bound, "scene": scene.values()}
-    work, name = Scan(scan=scan, excesses=tuple(plane.rising_excesses())), f"{model}-{columns}x{rows}"
+    work, name = partial(column_at, scan=scan, plane=plane), f"{model}-{columns}x{rows}"
     found = sweep(run, name, settings, plane.frequencies().tolist(), work, shard=part, fresh=fresh)
     there = [column for column in found if column is not None]
     tell_failures(run, there)
@@ -92,7 +93,7 @@ def chart(
     if part.count > 1 or len(there) < columns:
         run.say(f"shard {shard}: {len(there)} of {columns} columns are in {run.folder / name}")
         return result
-    return result | drawn(scene, run, plane, oscillator, Cells.of(plane, there), model)
+    return result | drawn(scene, run, plane, oscillator, there, model)
 
 
 def tell_failures(run: Run, columns: list[Column]) -> None:
@@ -108,31 +109,32 @@ def tell_failures(run: Run, columns: list[Column]) -> None:
 
 
 def drawn(
-    scene: Scene, run: Run, plane: Plane, oscillator: ImpactOscillator, cells: Cells, model: str
+    scene: Scene, run: Run, plane: Plane, oscillator: ImpactOscillator, columns: list[Column], model: str
 ) -> dict[str, object]:
     """Store the cells and what theory says, draw both."""
     from studies.chart.figure import draw  # matplotlib is slow to import, and a shard draws nothing
 
-    edges = bands_in(scene, *plane.frequencies_hz)
+    edges, cells = bands_in(scene, *plane.frequencies_hz), side_by_side(columns)
+    frequencies, excesses, lowest = plane.frequencies(), plane.rising_excesses(), plane.excesses[0]
     if model == "single_mode":
-        folds = folds_of_single_mode(oscillator, cells.frequencies, plane.excesses[0])
+        folds = folds_of_single_mode(oscillator, frequencies, lowest)
     else:
-        folds = folds_of_beam(oscillator, edges, cells.frequencies, plane.excesses[0])
-    run.arrays(
-        f"chart_{model}", frequency_hz=cells.frequencies, excess=cells.excesses, period=cells.period,
-        impacts=cells.impacts, cycles=cells.cycles,
-    )  # fmt: skip
+        folds = folds_of_beam(oscillator, edges, frequencies, lowest)
+    run.arrays(f"chart_{model}", frequency_hz=frequencies, excess=excesses, **cells)
     run.table(f"folds_{model}", folds, "Exact folds of p_m orbits with one impact.", show=())
-    title = f"{TITLES[model]}, {cells.frequencies.size} × {cells.excesses.size}"
+    title = f"{TITLES[model]}, {plane.columns} × {plane.rows}"
     caption = (
         "Period (above) and impacts in a period (below) over drive frequency and excess, in the upward scan "
         "(left) and the downward scan (right); lines: exact folds and band edges of the map."
     )
-    run.figure(f"chart_{model}", draw(cells, edges, folds, title=title), caption)
-    without = float(np.mean(cells.period == 0))
+    run.figure(f"chart_{model}", draw(plane, cells, edges, folds, title), caption)
+    without = float(np.mean(cells["period"] == 0))
     run.say(f"{100 * without:.1f} % of the cells without a period up to {LARGEST_PERIOD}")
     bands = [{"period": band.period, "lower_hz": band.lower, "upper_hz": band.upper} for band in edges]
-    return {"bands": bands, "counts": cells.counts(), "share_without_period": without, "folds": len(folds)}
+    return {
+        "bands": bands, "counts": counts(cells["period"]), "share_without_period": without,
+        "folds": len(folds),
+    }  # fmt: skip
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from contact.orbits import AmplitudeScan
 from studies.sweep import Column
 
-__all__ = ["Cells", "Fold", "Plane", "Scan", "sheared"]
+__all__ = ["Fold", "Plane", "column_at", "counts", "sheared", "side_by_side"]
 
 FREQUENCIES_HZ = (19.5, 24.0)
 EXCESSES = (-0.15, 0.1)
@@ -66,21 +66,15 @@ class Plane:
         return excesses
 
 
-@dataclass(frozen=True, kw_only=True)
-class Scan:
-    """From a frequency [Hz] to its column: the amplitude raised and lowered again over `excesses`."""
-
-    scan: AmplitudeScan
-    excesses: tuple[float, ...]
-
-    def __call__(self, frequency: float) -> Column:
-        """Arrays that broadcast to (2, n_excesses): the upward scan first."""
-        found = self.scan(frequency, self.excesses)
-        return {
-            "frequency_hz": np.array(frequency), "direction": np.array(DIRECTIONS)[:, None],
-            "excess": np.array(self.excesses), "period": found.period, "impacts": found.impacts,
-            "cycles": found.cycles, "reason": found.reason,
-        }  # fmt: skip
+def column_at(frequency: float, scan: AmplitudeScan, plane: Plane) -> Column:
+    """The amplitude raised and lowered again at a frequency [Hz]: arrays that broadcast to (2, rows), the
+    upward scan first."""
+    excesses = plane.rising_excesses()
+    found = scan(frequency, excesses)
+    return {
+        "frequency_hz": np.array(frequency), "direction": np.array(DIRECTIONS)[:, None], "excess": excesses,
+        "period": found.period, "impacts": found.impacts, "cycles": found.cycles, "reason": found.reason,
+    }  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,34 +86,18 @@ class Fold:
     excess: float
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Cells:
-    """Arrays of shape (2, n_frequencies, n_excesses), upward scan first; excesses rise in both.
+def side_by_side(columns: Sequence[Column]) -> dict[str, NDArray[np.int32]]:
+    """`period` (0: none found), `impacts` and `cycles` (drive periods spent) of all columns, arrays of shape
+    (2, n_frequencies, n_excesses): upward scan first, excesses rise in both; -1 where a cell failed."""
+    return {
+        name: np.stack([column[name] for column in columns], axis=1).astype(np.int32)
+        for name in ("period", "impacts", "cycles")
+    }
 
-    `period` 0: none found; `cycles` drive periods spent; -1 everywhere where the computation failed.
-    """
 
-    frequencies: NDArray[np.float64]
-    excesses: NDArray[np.float64]
-    period: NDArray[np.int32]
-    impacts: NDArray[np.int32]
-    cycles: NDArray[np.int32]
-
-    @staticmethod
-    def of(plane: Plane, columns: Sequence[Column]) -> Cells:
-        """All columns of a plane side by side."""
-
-        def side_by_side(name: str) -> NDArray[np.int32]:
-            return np.stack([np.asarray(column[name]) for column in columns], axis=1).astype(np.int32)
-
-        return Cells(
-            frequencies=plane.frequencies(), excesses=plane.rising_excesses(), period=side_by_side("period"),
-            impacts=side_by_side("impacts"), cycles=side_by_side("cycles"),
-        )  # fmt: skip
-
-    def counts(self) -> Mapping[str, Mapping[str, int]]:
-        """Cells of each period, by direction."""
-        return {
-            way: {str(p): int(n) for p, n in zip(*np.unique(self.period[k], return_counts=True), strict=True)}
-            for k, way in enumerate(DIRECTIONS)
-        }
+def counts(period: NDArray[np.int32]) -> Mapping[str, Mapping[str, int]]:
+    """Cells of each period, by direction."""
+    return {
+        way: {str(p): int(n) for p, n in zip(*np.unique(period[k], return_counts=True), strict=True)}
+        for k, way in enumerate(DIRECTIONS)
+    }

@@ -7,7 +7,7 @@ some size says its number as well.  The upright axis is that of the grid (``cell
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import matplotlib
 import numpy as np
@@ -20,10 +20,10 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from contact import Band
-from studies.chart.cells import Cells, Fold, sheared
+from studies.chart.cells import Fold, Plane, sheared
 from studies.plotting import PAGE, PALETTE, house_style, label, new_figure, panel, tint
 
-__all__ = ["colours_of_impacts", "colours_of_periods", "draw"]
+__all__ = ["draw"]
 
 REST, NONE, FAILED, LONG = "white", "0.33", "black", "0.66"
 """No impact; no period; failed; a period beyond 28."""
@@ -54,21 +54,10 @@ PERIODS += [_darker(one, share) for share in (0.45, 0.7) for one in PALETTE[1:8]
 IMPACTS = [REST, *map(to_hex, matplotlib.colormaps["cividis"](np.linspace(1.0, 0.0, len(CLASSES))))]
 
 
-def colours_of_periods(period: Integers, impacts: Integers) -> NDArray[np.float64]:
-    """RGB of the cells in the upper panels."""
-    table = np.array([to_rgb(one) for one in (*PERIODS, LONG, NONE, FAILED)])
-    place = np.where(impacts == 0, 0, np.minimum(period, len(PERIODS)))
-    return table[np.where(period < 0, -1, np.where(period == 0, -2, place))]
-
-
-def colours_of_impacts(period: Integers, impacts: Integers) -> NDArray[np.float64]:
-    """RGB of the cells in the lower panels."""
-    table = np.array([to_rgb(one) for one in (*IMPACTS, NONE, FAILED)])
-    return table[np.where(period < 0, -1, np.where(period == 0, -2, _classes(impacts)))]
-
-
-def _classes(impacts: Integers) -> NDArray[np.int_]:
-    return np.searchsorted(list(CLASSES), impacts, side="right")
+def _colours(table: Sequence[str], place: NDArray[np.int_], period: Integers) -> NDArray[np.float64]:
+    """RGB of cells from their `place` in a table of colours."""
+    colours = np.array([to_rgb(one) for one in (*table, NONE, FAILED)])
+    return colours[np.where(period < 0, -1, np.where(period == 0, -2, place))]
 
 
 def _write_numbers(
@@ -92,29 +81,36 @@ def _write_numbers(
         axis.text(x[i], y[j], text(value), size=5.5, ha="center", va="center", path_effects=outline)
 
 
-def draw(cells: Cells, edges: Sequence[Band], folds: Sequence[Fold], *, title: str) -> Figure:
+def draw(
+    plane: Plane, cells: Mapping[str, Integers], edges: Sequence[Band], folds: Sequence[Fold], title: str
+) -> Figure:
     """The figure."""
     figure, axes = new_figure(2, 2, width=PAGE, height=0.150, sharex=True, sharey=True)
-    x, y = cells.frequencies, sheared(cells.excesses)
+    x, y = plane.frequencies(), sheared(plane.rising_excesses())
     dx, dy = 0.5 * (x[1] - x[0]), 0.5 * (y[1] - y[0])
     extent = (x[0] - dx, x[-1] + dx, y[0] - dy, y[-1] + dy)
     names = list(CLASSES.values())
     with house_style():
         for k, way in enumerate(("upward scan", "downward scan")):
-            period, impacts = cells.period[k], cells.impacts[k]
-            for axis, colours in zip(axes[:, k], (colours_of_periods, colours_of_impacts), strict=True):
-                image = np.swapaxes(colours(period, impacts), 0, 1)
-                axis.imshow(image, origin="lower", extent=extent, aspect="auto", interpolation="nearest")
+            period, impacts = cells["period"][k], cells["impacts"][k]
+            classes = np.searchsorted(list(CLASSES), impacts, side="right")
+            of_period = np.where(impacts == 0, 0, np.minimum(period, len(PERIODS)))
+            images = (_colours([*PERIODS, LONG], of_period, period), _colours(IMPACTS, classes, period))
+            for axis, image in zip(axes[:, k], images, strict=True):
+                axis.imshow(
+                    image.swapaxes(0, 1), origin="lower", extent=extent, aspect="auto",
+                    interpolation="nearest",
+                )  # fmt: skip
                 _draw_theory(axis, edges, folds)
                 axis.set(xlim=extent[:2], ylim=extent[2:])
             hit = np.where((period > 0) & (impacts > 0), period, 0)
             _write_numbers(axes[0, k], hit, x, y, lambda value: f"p$_{{{value}}}$")
-            _write_numbers(axes[1, k], np.where(hit, _classes(impacts), 0), x, y, lambda n: names[n - 1])
+            _write_numbers(axes[1, k], np.where(hit, classes, 0), x, y, lambda n: names[n - 1])
             panel(axes[0, k], k, f"{way}: period")
             panel(axes[1, k], 2 + k, f"{way}: impacts in a period")
             label(axes[1, k].xaxis, "drive frequency", "Hz")
         for axis in axes[:, 0]:
-            ticks = [t for t in TICKS if cells.excesses[0] <= t <= cells.excesses[-1]]
+            ticks = [t for t in TICKS if plane.excesses[0] <= t <= plane.excesses[1]]
             axis.set_yticks([float(sheared(t)) for t in ticks], [f"{t:g}" for t in ticks])
             label(axis.yaxis, "excess F/F$_g$ − 1")
         known = {

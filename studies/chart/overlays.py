@@ -45,8 +45,7 @@ def folds_of_single_mode(oscillator: ImpactOscillator, frequencies: np.ndarray, 
 
 
 def _driven(oscillator: ImpactOscillator, frequency: float) -> ImpactOscillator:
-    assert oscillator.drive is not None
-    return replace(oscillator, drive=replace(oscillator.drive, frequency=frequency))
+    return replace(oscillator, drive=replace(oscillator.driven, frequency=frequency))
 
 
 def folds_of_beam(

@@ -15,13 +15,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from contact import NordmarkMap, band, fold, maximal_period
+from contact import NordmarkMap, StrobedNordmarkMap, StroboscopicMap, band, maximal_period
+from contact.orbits import fold_excess
 from studies import letter, plotting
-from studies.claims.energy_loss import falls, family_at, map_at
+from studies.claims.energy_loss import falls
 from studies.run import Run
-from studies.scene import Scene, band_of, corresponding
+from studies.scene import Scene, band_of, corresponding, nordmark_at, single_mode_at
 
-__all__ = ["Inside", "bands", "inside_band", "path_of"]
+__all__ = ["Inside", "bands", "inside_band"]
 
 SPAN_HZ = (19.6, 23.8)
 """Where the letter measured, by its Figs. 3 and 5."""
@@ -45,37 +46,29 @@ class Inside:
 
 def inside_band(scene: Scene, period: int, count: int) -> list[Inside]:
     """The hysteresis from the lower edge of a band to just below its upper one."""
-    edges, tau, rows = band_of(scene, period), scene.single_mode.restitution, []
+    edges, rows = band_of(scene, period), []
     places = np.linspace(edges.lower, edges.upper, count)
     places[-1] = edges.upper - EDGE * (edges.upper - edges.lower)
     for frequency in places.tolist():
-        nordmark = map_at(scene, frequency, tau)
-        end, orbit = fold(nordmark, period), family_at(scene, frequency, tau, period).fold()
+        of_map = fold_excess(StrobedNordmarkMap(map=nordmark_at(scene, frequency)), period)
+        of_eq1 = fold_excess(StroboscopicMap(oscillator=single_mode_at(scene, frequency)), period)
         rows.append(Inside(
-            period=period, frequency_hz=frequency, map=0.0 if end is None else -nordmark.excess(end.rho),
-            eq1=0.0 if orbit is None else -orbit.excess,
+            period=period, frequency_hz=frequency, map=0.0 - (of_map or 0.0), eq1=0.0 - (of_eq1 or 0.0)
         ))  # fmt: skip
     return rows
-
-
-def path_of(scene: Scene, frequencies: Sequence[float]) -> list[NordmarkMap]:
-    """The maps that the experiment passes through."""
-    return [map_at(scene, f, scene.single_mode.restitution) for f in frequencies]
 
 
 def bands(scene: Scene, run: Run, *, inside: int) -> Mapping[str, object]:
     """Compute, store, draw and judge."""
     rows = [row for m in run.track(PERIODS, "bands") for row in inside_band(scene, m, inside)]
     low, high = (corresponding(scene, f) for f in SPAN_HZ)
-    path = path_of(scene, np.linspace(low, high, 200).tolist())
+    path = [nordmark_at(scene, f) for f in np.linspace(low, high, 200).tolist()]
     run.table("bands", rows, "Hysteresis 1 - F_m/F_g across the bands of p_m.", show=())
     run.figure("bands", draw(scene, rows, path, (low, high)), "Bands of p_m in the plane of alpha and "
                "gamma with the path of the experiment, and the hysteresis along that path.")  # fmt: skip
     of_band = {m: [row for row in rows if row.period == m] for m in PERIODS}
-    grows = {
-        "map": all(falls([row.map for row in own]) for own in of_band.values()),
-        "eq1": all(falls([row.eq1 for row in own]) for own in of_band.values()),
-    }
+    grows = {name: all(falls([getattr(row, name) for row in own]) for own in of_band.values())
+             for name in ("map", "eq1")}  # fmt: skip
     zero = max(max(own[-1].map, own[-1].eq1) for own in of_band.values())
     crossed = sorted({maximal_period(place) for place in path})
     holds = zero < 1e-9 and all(grows.values())
@@ -126,19 +119,17 @@ def draw(
 
 def draw_plane(axis: Axes, scene: Scene, path: Sequence[NordmarkMap]) -> None:
     """The bands as rho -> 0 and the path of the experiment."""
-    mode, rates = scene.single_mode, np.geomspace(100.0, 1e-3, 80).tolist()
+    mode, rates = scene.single_mode, np.geomspace(100.0, 1e-3, 80)
     for m in range(3, 9):
         edges = [band(m, free_period=mode.free_period_s, decay_rate=mu, restitution=mode.restitution)
-                 for mu in rates]  # fmt: skip
-        places = [[(mu, one.upper) for mu, one in zip(rates, edges, strict=True)],
-                  [(mu, one.lower) for mu, one in zip(rates, edges, strict=True)][::-1]]  # fmt: skip
-        mu, f = np.array([*places[0], *places[1]]).T
-        gamma = np.exp(-mu / f)
+                 for mu in rates.tolist()]  # fmt: skip
+        f = np.array([*(one.upper for one in edges), *(one.lower for one in edges[::-1])])
+        gamma = np.exp(-np.concatenate([rates, rates[::-1]]) / f)
         alpha = 2.0 * np.sqrt(gamma) * np.cos(2.0 * math.pi / (f * mode.free_period_s))
         axis.fill(alpha, gamma, color=plotting.PALETTE[m % 6 + 1], alpha=0.35, linewidth=0.4)
         axis.text(0.5 * (alpha[79] + alpha[80]), 1.015, f"{m}", fontsize=plotting.NOTE, ha="center")
     axis.plot([p.alpha for p in path], [p.gamma for p in path], color="black", linewidth=1.4)
-    own = path_of(scene, sorted(scene.drive.frequencies_hz))
+    own = [nordmark_at(scene, f) for f in sorted(scene.drive.frequencies_hz)]
     axis.plot([p.alpha for p in own], [p.gamma for p in own], **plotting.LETTER_POINTS, label="letter")
     axis.set_ylim(bottom=0.02)
     plotting.panel(axis, 0, "bands of p$_m$ as ρ → 0\n")

@@ -1,17 +1,11 @@
 """The p_m orbits against the energy lost in a collision: hysteresis, and their first bifurcation.
 
 The free period T and the decay rate mu fix the map (Eqs. (2), (3)) at a drive frequency, with it the band m,
-and the family of p_m orbits of Eq. (1) itself. At time s after its impact the tip of an orbit with approach
-speed v is at
-
-    x - gap = v G(s) - gap (1 - cos w s),   G = h - s_0 cos w s + b sin w s,
-
-(s_0, b) the arms of the family, h the free motion per unit speed: linear in v. Hence the first orbit with a
-second impact has v_2 = min over G > 0 of gap (1 - cos w s)/G(s). The trace of its multipliers is p + q/v, so
-that the flip (multiplier -1) has v = -q/(1 + D + p), D their determinant. The secondary bifurcation of the
-node p_m is the one of the two that comes first above its fold; the fold counts where its orbit has no second
-impact. What falls with the loss is the hysteresis 1 - F_m/F_g in the drive amplitude; |rho_m| itself rises in
-the map, because rho per F falls faster.
+and the family of p_m orbits of Eq. (1) itself, by its approach speed v. The secondary bifurcation of the node
+p_m is where it first has a second impact, or a multiplier -1, above its fold. Either happens once along the
+family: between two impacts x - gap is linear in v, and the trace of the multipliers is p + q/v. The fold
+counts where its orbit has no second impact. What falls with the loss is the hysteresis 1 - F_m/F_g in the
+drive amplitude; |rho_m| itself rises in the map, because rho per F falls faster.
 """
 
 from __future__ import annotations
@@ -25,15 +19,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
+from scipy.optimize import bisect
 
 from contact import MaximalFamily, NordmarkMap, fold, maximal_period, stable_range
+from contact.orbits import Orbit
 from studies import letter, plotting
 from studies.run import Run
-from studies.scene import Scene, corresponding, single_mode_at
+from studies.scene import Scene, corresponding, nordmark_at, single_mode_at
 
-__all__ = ["RESTITUTIONS", "Node", "energy_loss", "falls", "family_at", "flip_speed", "map_at", "node_at",
-           "second_impact_speed", "trends"]  # fmt: skip
+__all__ = ["RESTITUTIONS", "Node", "end_speed", "energy_loss", "falls", "family_at", "line_of", "lives",
+           "node_at", "trends"]  # fmt: skip
 
 RESTITUTIONS = tuple(np.round(np.linspace(0.0, 0.9, 19), 3).tolist())
 """tau of the curves."""
@@ -47,8 +42,9 @@ ROUNDING = 1e-12
 SLACK = 0.02
 """Change of a share of the scanned frequencies that is that of one cell or two."""
 
-SEARCHED = 2000
-"""Times of a drive period at which a second impact is looked for; G turns a few times in one."""
+ABOVE, FASTEST, EXACT = 1e-6, 10.0, 1e-14
+"""The bifurcation is looked for from next to the fold (relative) to this approach speed over 2 pi f gap, far
+beyond the letter's amplitudes, to a relative accuracy."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,7 +52,7 @@ class Node:
     """The node p_m at one frequency and restitution, by the map and by Eq. (1); NaN where there is no fold.
 
     `fold`, `secondary`: F/F_g - 1 at its fold and at its first bifurcation (infinite: none); `rho`: rho_m;
-    `admissible`: one impact at the fold of Eq. (1).
+    `admissible`: one impact at the fold of Eq. (1), otherwise the node is not there and has no `secondary`.
     """
 
     frequency_hz: float
@@ -75,86 +71,66 @@ def falls(values: Sequence[float]) -> bool:
     return bool(np.all(np.diff(values) <= ROUNDING))
 
 
-def map_at(scene: Scene, frequency: float, restitution: float) -> NordmarkMap:
-    """The Nordmark map of the scene's mode at a drive frequency [Hz]."""
-    mode = scene.single_mode
-    return NordmarkMap.from_frequencies(
-        drive_frequency=frequency, free_period=mode.free_period_s, decay_rate=mode.decay_rate_per_s,
-        restitution=restitution,
-    )  # fmt: skip
+def lives(orbit: Orbit) -> bool:
+    """Whether an orbit is stable and touches once in its period."""
+    return orbit.admissible and orbit.stable
 
 
-def family_at(scene: Scene, frequency: float, restitution: float, period: int) -> MaximalFamily:
+def family_at(scene: Scene, frequency: float, period: int) -> MaximalFamily:
     """The orbits p_m of Eq. (1), m = `period`, at a drive frequency [Hz]."""
-    return MaximalFamily.from_oscillator(
-        single_mode_at(scene, frequency), period=period, restitution=restitution
-    )
+    return MaximalFamily(oscillator=single_mode_at(scene, frequency), period=period)
 
 
-def second_impact_speed(family: MaximalFamily) -> float:
-    """v_2 [m/s] of a family of one mode, infinity if there is none."""
-    model, gap = family.oscillator.model, family.oscillator.stop.gap
-    duration, w = family.period * family.oscillator.period, family.oscillator.driven.angular_frequency
-    half = 0.5 * float(model.decay_rate[0])
-    damped = math.sqrt(float(model.omega[0]) ** 2 - half**2)
-    height, rate = (float(entry) * float(model.phi[0]) for entry in family.orbit(1.0).after[0])
-    s0, b = family.arms
-
-    def ratio(s: NDArray[np.float64]) -> NDArray[np.float64]:
-        free = height * np.cos(damped * s) + (rate + half * height) / damped * np.sin(damped * s)
-        reach = np.exp(-half * s) * free - s0 * np.cos(w * s) + b * np.sin(w * s)
-        held = gap * (1.0 - np.cos(w * s))
-        return np.where(reach > 0.0, held / np.where(reach > 0.0, reach, 1.0), np.inf)
-
-    # the ends are the impact itself, where both sides vanish and rounding decides
-    times = np.linspace(0.0, duration, SEARCHED * family.period + 1)[1:-1]
-    values = ratio(times)
-    i = int(np.argmin(values))
-    least = float(values[i])
-    if not math.isfinite(least) or not 0 < i < times.size - 1:
-        return least
-    best = minimize_scalar(
-        lambda s: float(ratio(np.asarray(s))), bounds=(times[i - 1], times[i + 1]), method="bounded",
-        options={"xatol": 1e-12 * duration},
-    )  # fmt: skip
-    return min(float(best.fun), least)
+def end_speed(family: MaximalFamily, fold: Orbit) -> float:
+    """Approach speed [m/s] of the first bifurcation of the node above its fold, infinity if there is none."""
+    low, high = (1.0 + ABOVE) * fold.speed, FASTEST * family.oscillator.unit_speed
+    if not lives(family.orbit(low)):
+        return low
+    if lives(family.orbit(high)):
+        return math.inf
+    return float(bisect(lambda v: lives(family.orbit(v)) - 0.5, low, high, xtol=EXACT * low, rtol=EXACT))
 
 
-def flip_speed(family: MaximalFamily) -> float:
-    """Approach speed [m/s] of the multiplier -1 of a family of one mode, infinity if there is none."""
-    unit = family.oscillator.unit_speed
-    slow, fast = (family.orbit(v).monodromy() for v in (1e-3 * unit, unit))
-    q = float(np.trace(slow) - np.trace(fast)) * unit / 999.0
-    size = 1.0 + float(np.linalg.det(fast)) + float(np.trace(fast)) - q / unit
-    speed = -q / size if size != 0.0 else math.inf
-    return speed if speed > 0.0 else math.inf
+def end_of_map(nordmark: NordmarkMap, period: int) -> float:
+    """The excess of that of the map; NaN where p_m is not stable."""
+    top = (stable_range(nordmark, period) or (math.nan, math.nan))[1]
+    return nordmark.excess(top) if math.isfinite(top) else top
 
 
-def node_at(scene: Scene, frequency: float, restitution: float) -> Node:
+def node_at(scene: Scene, frequency: float) -> Node:
     """The node of the period that belongs to this frequency."""
-    nordmark = map_at(scene, frequency, restitution)
+    nordmark = nordmark_at(scene, frequency)
     m = maximal_period(nordmark)
-    end, stable = fold(nordmark, m), stable_range(nordmark, m)
-    family = family_at(scene, frequency, restitution, m)
-    least, second, flip = family.fold(), second_impact_speed(family), flip_speed(family)
-    if least is not None and flip <= least.speed:
-        flip = math.inf
-    first = min(second, flip)
+    family, of_map = family_at(scene, frequency, m), fold(nordmark, m)
+    least, end = family.fold(), math.nan
+    if least is not None and least.admissible:
+        end = end_speed(family, least)
     return Node(
-        frequency_hz=frequency, period=m, restitution=restitution,
-        rho=math.nan if end is None else end.rho,
-        fold_of_map=math.nan if end is None else nordmark.excess(end.rho),
-        secondary_of_map=math.nan if stable is None
-        else nordmark.excess(stable[1]) if math.isfinite(stable[1]) else math.inf,
+        frequency_hz=frequency, period=m, restitution=nordmark.restitution,
+        rho=math.nan if of_map is None else of_map.rho,
+        fold_of_map=math.nan if of_map is None else of_map.excess, secondary_of_map=end_of_map(nordmark, m),
         fold=math.nan if least is None else least.excess,
-        secondary=math.nan if least is None else family.excess(first) if math.isfinite(first) else math.inf,
-        admissible=least is not None and second > least.speed,
+        secondary=family.excess(end) if math.isfinite(end) else end, admissible=not math.isnan(end),
     )  # fmt: skip
 
 
 def line_of(scene: Scene, frequencies: Sequence[float], restitution: float) -> list[Node]:
     """The nodes of one restitution."""
-    return [node_at(scene, frequency, restitution) for frequency in frequencies]
+    changed = scene.replace({"single_mode.restitution": restitution})
+    return [node_at(changed, frequency) for frequency in frequencies]
+
+
+def below_grazing(scene: Scene, frequencies: Sequence[float], restitution: float) -> tuple[float, float]:
+    """At which part of the frequencies the node of Eq. (1) has gone, by a secondary bifurcation, before
+    grazing; and the lowest excess at which that of the map goes."""
+    changed, gone, ends = scene.replace({"single_mode.restitution": restitution}), [], []
+    for frequency in frequencies:
+        nordmark = nordmark_at(changed, frequency)
+        m = maximal_period(nordmark)
+        at_grazing = family_at(changed, frequency, m).orbits(0.0)  # it has moved past its fold, if it has one
+        gone.append(bool(at_grazing) and not lives(at_grazing[-1]))
+        ends.append(end_of_map(nordmark, m))
+    return float(np.mean(gone)), float(np.nanmin(ends))
 
 
 def energy_loss(scene: Scene, run: Run, *, across: int, restitutions: int) -> Mapping[str, object]:
@@ -165,11 +141,8 @@ def energy_loss(scene: Scene, run: Run, *, across: int, restitutions: int) -> Ma
     low, high = (corresponding(scene, f) for f in SCANNED_HZ)
     frequencies = np.linspace(low, high, across)
     tau = np.linspace(0.0, 0.9, restitutions)
-    plane = run.map(partial(line_of, scene, frequencies.tolist()), tau.tolist(), "plane of f and tau")
-    below = np.array([
-        np.mean([not math.isnan(n.fold) and (not n.admissible or n.secondary < 0.0) for n in line])
-        for line in plane
-    ])  # fmt: skip
+    plane = run.map(partial(below_grazing, scene, frequencies.tolist()), tau.tolist(), "plane of f and tau")
+    below = np.array([part for part, _ in plane])
     run.table("loss", rows, "Fold and first bifurcation of p_m, F/F_g - 1.", show=())
     run.figure("loss", draw_loss(rows), "Hysteresis against restitution at each frequency: a smaller "
                "restitution, more energy lost, less hysteresis, in the map and in Eq. (1).")  # fmt: skip
@@ -182,7 +155,7 @@ def energy_loss(scene: Scene, run: Run, *, across: int, restitutions: int) -> Ma
     note = "" if found["rho"] else "the hysteresis in F falls; |rho_m| rises, for rho per F falls faster"
     run.verdict("loss", "differs" if not both else "agrees" if found["rho"] else "in part",
                 found=f"falls with the loss: {parts}", note=note)  # fmt: skip
-    lowest = float(np.nanmin([[node.secondary_of_map for node in line] for line in plane]))
+    lowest = float(np.nanmin([end for _, end in plane]))
     simple = [row for row in rows if row.admissible]
     falling = [f for f in drives if falls([row.secondary for row in simple if row.frequency_hz == f])]
     holds = bool(lowest > 0.0 and below[0] < below[-1] and np.all(np.diff(below) >= -SLACK))
@@ -232,7 +205,7 @@ def draw_loss(rows: Sequence[Node]) -> Figure:
         axis.set_yscale("log")
         axis.set_ylim(4e-3, 30.0)
         plotting.panel(axis, place, title)
-        plotting.mark_letter(axis.xaxis, letter.RESTITUTION, along=0.98, turn=True, level=True)
+        plotting.mark_letter(axis.xaxis, letter.RESTITUTION, along=0.98)
     plotting.label(axes[0].yaxis, plotting.HYSTERESIS, "%")
     plotting.legend_below(figure, axes[:1], 3)
     return figure
@@ -250,6 +223,6 @@ def draw_secondary(rows: Sequence[Node], tau: NDArray[np.float64], below: NDArra
     plotting.label(axes[1].xaxis, "restitution τ")
     for place, (axis, title) in enumerate(zip(axes, ("Eq. (1)", "Eq. (1): below grazing"), strict=True)):
         plotting.panel(axis, place, title)
-        plotting.mark_letter(axis.xaxis, letter.RESTITUTION, along=0.02, turn=True, level=True)
+        plotting.mark_letter(axis.xaxis, letter.RESTITUTION, along=0.02)
     plotting.legend_below(figure, axes[:1], 3)
     return figure

@@ -22,11 +22,10 @@ from contact import StroboscopicMap, maximal_period, maximal_periods
 from contact.orbits import born_period
 from studies import letter, plotting
 from studies.calibration import bare_cantilever, with_mass_ratio
-from studies.claims.energy_loss import map_at
 from studies.run import Run
-from studies.scene import Scene, band_of, beam_at, model_of, single_mode_at
+from studies.scene import Scene, band_of, beam_at, model_of, nordmark_at, single_mode_of
 
-__all__ = ["Born", "Job", "Spring", "born_at", "springs", "universality"]
+__all__ = ["Born", "Job", "born_at", "springs", "universality"]
 
 SPAN = (0.802, 0.956)
 """f T from the band of p3 to that of p11."""
@@ -39,22 +38,6 @@ CLOSER = 1.0 / 16.0
 
 MOST_CYCLES = 3000
 """Bound of a transient [drive periods]."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Spring:
-    """A spring with its contact law; `model` is None for Eq. (1)."""
-
-    name: str
-    scene: Scene
-    model: ModalModel | None = None
-
-    def frequency(self, position: float) -> float:
-        """Drive frequency [Hz] at f T."""
-        if self.model is None:
-            return position / self.scene.single_mode.free_period_s
-        omega, decay = float(self.model.omega[0]), float(self.model.decay_rate[0])
-        return position * math.sqrt(omega**2 - 0.25 * decay**2) / (2.0 * math.pi)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,46 +62,43 @@ class Born:
         return self.period in self.map
 
 
-def springs(scene: Scene) -> tuple[Spring, ...]:
+class Job(NamedTuple):
+    """A spring, by its modes and the scene that has its contact law, at f T and an excess [1]."""
+
+    spring: str
+    scene: Scene
+    model: ModalModel
+    f_times_t: float
+    excess: float
+
+    def __str__(self) -> str:
+        return f"{self.spring}, f T = {self.f_times_t:.4g}"
+
+
+def springs(scene: Scene) -> list[tuple[str, Scene, ModalModel]]:
     """Springs and contact laws of the comparison; Eq. (1) first."""
     drives = sorted(scene.drive.frequencies_hz)
     middle = drives[len(drives) // 2]
     bare = bare_cantilever(scene, middle)
     heavy = with_mass_ratio(scene.replace({"spring.kind": "cantilever"}), 0.5, middle)
-    u, loaded = model_of(scene), model_of(heavy)
-    laws = {law: scene.replace({"contact.law": law}) for law in ("linear", "hertz", "newton")}
-    return (
-        Spring(name="Eq. (1), Newton", scene=scene),
-        Spring(name="folded U, linear", scene=laws["linear"], model=u),
-        Spring(name="folded U, Hertz", scene=laws["hertz"], model=u),
-        Spring(name="folded U, Newton", scene=laws["newton"], model=u),
-        Spring(name="bare cantilever, Hertz", scene=bare, model=model_of(bare)),
-        Spring(name="heavy-ball cantilever, Hertz", scene=heavy, model=loaded),
-        Spring(
-            name="heavy-ball cantilever, Newton", scene=heavy.replace({"contact.law": "newton"}), model=loaded
-        ),
-    )
-
-
-class Job(NamedTuple):
-    """A spring at f T and an excess [1]."""
-
-    spring: Spring
-    f_times_t: float
-    excess: float
-
-    def __str__(self) -> str:
-        return f"{self.spring.name}, f T = {self.f_times_t:.4g}"
+    u, loaded, tau = model_of(scene), model_of(heavy), scene.single_mode.restitution
+    linear, hertz, newton = (scene.replace({"contact.law": law}) for law in ("linear", "hertz", "newton"))
+    return [
+        ("Eq. (1), Newton", newton.replace({"contact.local_restitution": tau}), single_mode_of(scene)),
+        ("folded U, linear", linear, u),
+        ("folded U, Hertz", hertz, u),
+        ("folded U, Newton", newton, u),
+        ("bare cantilever, Hertz", bare, model_of(bare)),
+        ("heavy-ball cantilever, Hertz", heavy, loaded),
+        ("heavy-ball cantilever, Newton", heavy.replace({"contact.law": "newton"}), loaded),
+    ]
 
 
 def born_at(job: Job) -> int:
     """Period that is born; 0 for none."""
-    spring, frequency = job.spring, job.spring.frequency(job.f_times_t)
-    if spring.model is None:
-        oscillator = single_mode_at(spring.scene, frequency)
-    else:
-        oscillator = beam_at(spring.scene, frequency, spring.model)
-    strobed = StroboscopicMap(oscillator=oscillator)
+    omega, decay = float(job.model.omega[0]), float(job.model.decay_rate[0])
+    frequency = job.f_times_t * math.sqrt(omega**2 - 0.25 * decay**2) / (2.0 * math.pi)
+    strobed = StroboscopicMap(oscillator=beam_at(job.scene, frequency, job.model))
     return born_period(strobed, job.excess, below=-job.excess, most_cycles=MOST_CYCLES)
 
 
@@ -159,15 +139,15 @@ def born_everywhere(scene: Scene, run: Run, count: int) -> list[Born]:
     """Every spring at every f T; the disagreements next to an upper edge once more, closer to grazing."""
     excess = scene.scan.born_excess
     places = np.linspace(*SPAN, count).tolist()
-    jobs = [Job(spring, place, excess) for spring in springs(scene) for place in places]
+    jobs = [Job(*spring, place, excess) for spring in springs(scene) for place in places]
     rows = []
     for job, period in zip(jobs, run.attempt(born_at, jobs, "born periods"), strict=True):
         frequency = job.f_times_t / scene.single_mode.free_period_s
-        nordmark = map_at(scene, frequency, scene.single_mode.restitution)
+        nordmark = nordmark_at(scene, frequency)
         edges = band_of(scene, maximal_period(nordmark))
         part = (frequency - edges.lower) / (edges.upper - edges.lower)
         rows.append(Born(
-            spring=job.spring.name, f_times_t=job.f_times_t, period=period, map=maximal_periods(nordmark),
+            spring=job.spring, f_times_t=job.f_times_t, period=period, map=maximal_periods(nordmark),
             next_to_edge=part >= TOP, settled=bool(period),
         ))  # fmt: skip
     again = [i for i, row in enumerate(rows) if row.next_to_edge and not row.agrees]

@@ -36,14 +36,12 @@ from functools import partial
 
 from studies import letter
 from studies.calibration import Targets
-from studies.effective_impact import cases
-from studies.effective_impact.cases import Case, Grid, Spring
+from studies.effective_impact.cases import HERTZ, MASS_RATIOS, Case, Spring, cases_of
 from studies.effective_impact.collision_rows import (
     Floor,
     Row,
     crossing,
     floor_of,
-    measure,
     on_orbits,
     select,
     series_of,
@@ -57,6 +55,9 @@ __all__ = ["effective_impact"]
 FINE_MESH = {"spring.elements_per_leg": 120, "spring.elements_on_arc": 60}
 """Twice the default, for the collision that the answer quotes."""
 
+FULL, QUICK = (1, 40), (4, 20)
+"""Every so manieth value of a curve, with so many modes."""
+
 NEAR = 0.05
 """How far a restitution may be from "about 0.1"."""
 
@@ -68,9 +69,14 @@ def effective_impact(scene: Scene, run: Run) -> Mapping[str, object]:
         raise SceneError(
             "spring.kind modal_data has no tip mass to vary: this study needs a spring that is drawn"
         )
-    grid = cases.QUICK if run.quick else cases.FULL
+    every, modes = QUICK if run.quick else FULL
     frequency = min(scene.drive.frequencies_hz, key=lambda f: abs(f - Targets.frequency_hz))
-    found = run.attempt(measure, all_cases(run, scene, frequency, grid), "collisions")
+    fine = scene
+    if not (scene.spring.elements_per_leg or scene.spring.elements_on_arc):
+        fine = scene.replace(FINE_MESH)
+    spring, reference = (Spring.of(one, frequency, modes) for one in (scene, fine))
+    masses = run.map(partial(Spring.of, scene, frequency, modes), MASS_RATIOS[::every], "springs")
+    found = run.attempt(Case.measured, cases_of(spring, masses, reference, every), "collisions")
     rows = [row for row in found if row is not None]
     run.table("collisions", rows, show=())
     searches = [select(rows, "search", name) for name in series_of(rows, "search")]
@@ -80,30 +86,19 @@ def effective_impact(scene: Scene, run: Run) -> Mapping[str, object]:
 
     for draw in DRAWN:
         run.figure(draw.__name__, draw(rows), " ".join((draw.__doc__ or "").split()))
-    reference = next(iter(select(rows, "reference")), None)
-    if reference is not None and any(floor.local_restitution == 1.0 for floor in floors):
-        judge(run, reference, on_orbits(rows), floors)
+    quoted = next(iter(select(rows, "reference")), None)
+    if quoted is not None and any(floor.local_restitution == 1.0 for floor in floors):
+        judge(run, quoted, on_orbits(rows), floors)
     return {
-        "frequency_hz": frequency, "reference": reference, "on_settled_orbits": on_orbits(rows),
+        "frequency_hz": frequency, "reference": quoted, "on_settled_orbits": on_orbits(rows),
         "floors": floors, "what_gives_the_letters_restitution": ways(rows),
     }  # fmt: skip
-
-
-def all_cases(run: Run, scene: Scene, frequency: float, grid: Grid) -> list[Case]:
-    """The cases; the springs with other tip masses are calibrated on the executor."""
-    fine = scene
-    if not (scene.spring.elements_per_leg or scene.spring.elements_on_arc):
-        fine = scene.replace(FINE_MESH)
-    of_mass = partial(Spring.of_mass, scene, frequency, grid.modes)
-    masses = run.map(of_mass, cases.MASS_RATIOS[:: grid.every], "springs")
-    spring, reference = (Spring.of(one, frequency, grid.modes) for one in (scene, fine))
-    return cases.cases_of(spring, masses, reference, grid)
 
 
 def ways(rows: Sequence[Row]) -> Mapping[str, float]:
     """What would give the letter's restitution in a first collision at the excess of Fig. 4."""
     tau = letter.RESTITUTION
-    speed = [row for row in select(rows, "speed", cases.HERTZ) if math.isfinite(row.restitution)]
+    speed = [row for row in select(rows, "speed", HERTZ) if math.isfinite(row.restitution)]
     return {
         "contact_s": tau**2 * next((row.arc_s for row in rows if row.curve == "search"), math.nan),
         "excess": crossing([row.excess for row in speed], [row.restitution for row in speed], tau),

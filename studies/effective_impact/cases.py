@@ -16,12 +16,19 @@ import numpy as np
 
 from beam import ModalModel
 from contact import (
+    Collision,
     ContactLaw,
     HuntCrossley,
     ImpactOscillator,
     Stop,
+    StroboscopicMap,
+    collisions,
+    first_collision,
+    simulate,
 )
+from contact.orbits import born
 from studies.calibration import leaf_mass, with_mass_ratio
+from studies.effective_impact.collision_rows import Row
 from studies.letter import TIME_TRACE_EXCESS
 from studies.scene import Scene, approach_speed, beam_at, contact_law_of, corresponding, hertz_of, model_of
 
@@ -38,53 +45,67 @@ MASS_RATIOS = (0.0, 0.02, 0.05, 0.1, 0.125, 0.15, 0.175, 0.2, 0.225, 0.25, 0.275
 RESTITUTIONS = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Grid:
-    """How finely the curves are sampled: every `every`-th value, with so many `modes`."""
-
-    every: int
-    modes: int
-
-
-FULL, QUICK = Grid(every=1, modes=40), Grid(every=4, modes=20)
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Case:
-    """One approach: a curve, a series of it, the value on its axis, and the oscillator at its amplitude."""
+    """One approach: its row, still without numbers, and the oscillator at its amplitude."""
 
-    curve: str
-    series: str
-    value: float
-    excess: float
+    row: Row
     oscillator: ImpactOscillator
-    mass_ratio: float
 
     def __str__(self) -> str:
-        return f"{self.curve}, {self.series}, {self.value:g}"
+        return f"{self.row.curve}, {self.row.series}, {self.row.value:g}"
+
+    def measured(self) -> Row:
+        """The row with its numbers; ContactError or ValueError if there is no collision."""
+        found, row = None, self.row
+        if row.curve == "orbit":
+            found, period = orbit_collision(self.oscillator)
+            row = replace(row, orbit_period=period)
+        else:
+            found = first_collision(self.oscillator)
+        if found is None:
+            return row
+        mode_1 = 2.0 * float(self.oscillator.model.phi[0]) ** 2
+        return replace(
+            row, approach_m_s=found.approach, restitution=found.restitution, delay_s=found.delay,
+            kick=found.kick, shift_m=found.shift, contact_s=found.contact_time,
+            arc_s=found.approach / found.deceleration,
+            energy_share=found.energy_to_higher_modes * mode_1 / found.approach**2, impacts=found.impacts,
+            forced_by_ringing=found.forced_by_ringing, returns=found.returns,
+        )  # fmt: skip
+
+
+def orbit_collision(oscillator: ImpactOscillator) -> tuple[Collision | None, int]:
+    """The first collision of the settled orbit and its period; None where it has none or did not settle."""
+    settled = born(StroboscopicMap(oscillator=oscillator), oscillator.excess)
+    if not settled.period or not settled.impacts:
+        return None, settled.period
+    trajectory = simulate(oscillator, settled.end, periods=2 * settled.period + 2)
+    found = collisions(oscillator, trajectory, unfinished="drop")
+    return (found[0] if found else None), settled.period
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Spring:
-    """A spring whose modes are made once and then meet the plate in many cases."""
+    """A spring whose modes are made once and then meet the plate in many cases, driven at `frequency`
+    [Hz]."""
 
     scene: Scene
     model: ModalModel
     frequency: float
-    mass_ratio: float
 
     @staticmethod
-    def of(scene: Scene, frequency: float, modes: int) -> Spring:
-        """The spring of a scene with this many modes, driven at `frequency` [Hz]."""
-        model = model_of(scene.replace({"modes.count": modes}))
-        return Spring(
-            scene=scene, model=model, frequency=frequency, mass_ratio=scene.tip.mass_kg / leaf_mass(scene)
-        )
+    def of(scene: Scene, frequency: float, modes: int, mass_ratio: float | None = None) -> Spring:
+        """The spring of a scene with this many modes; with another tip mass, `mass_ratio` times the leaf, if
+        that is given."""
+        if mass_ratio is not None:
+            scene = with_mass_ratio(scene, mass_ratio, frequency)
+        return Spring(scene=scene, model=model_of(scene.replace({"modes.count": modes})), frequency=frequency)
 
-    @staticmethod
-    def of_mass(scene: Scene, frequency: float, modes: int, ratio: float) -> Spring:
-        """The same with another tip mass, `ratio` times the leaf."""
-        return Spring.of(with_mass_ratio(scene, ratio, frequency), frequency, modes)
+    @property
+    def mass_ratio(self) -> float:
+        """Tip mass over that of the leaf [1]."""
+        return self.scene.tip.mass_kg / leaf_mass(self.scene)
 
     @property
     def speed(self) -> float:
@@ -105,20 +126,22 @@ class Spring:
         )
 
     def case(
-        self, curve: str, series: str, value: float, law: ContactLaw, *, excess: float = TIME_TRACE_EXCESS,
-        frequency: float | None = None,
+        self, curve: str, series: str, law: ContactLaw, *, value: float | None = None,
+        excess: float = TIME_TRACE_EXCESS, frequency: float | None = None,
     ) -> Case:  # fmt: skip
-        """The spring under this law; another drive frequency [Hz] where given."""
+        """The spring under this law; `value` on the axis of the curve is the ratio of masses by default."""
         oscillator = beam_at(self.scene, frequency or self.frequency, self.model)
-        oscillator = replace(oscillator, stop=Stop(gap=self.scene.stop.gap_m, law=law))
-        return Case(
-            curve=curve, series=series, value=value, excess=excess, oscillator=oscillator.with_excess(excess),
-            mass_ratio=self.mass_ratio,
+        stop, ratio = Stop(gap=self.scene.stop.gap_m, law=law), self.mass_ratio
+        row = Row(
+            curve=curve, series=series, value=ratio if value is None else value, excess=excess,
+            modes=self.model.n_modes, mass_ratio=ratio,
+            ball_limit=2.0 * float(self.model.tip_mass or 0.0) * float(self.model.phi[0]) ** 2,
         )  # fmt: skip
+        return Case(row=row, oscillator=replace(oscillator, stop=stop).with_excess(excess))
 
 
-def cases_of(spring: Spring, masses: Sequence[Spring], fine: Spring, grid: Grid) -> list[Case]:
-    """Every case of the study.
+def cases_of(spring: Spring, masses: Sequence[Spring], fine: Spring, every: int = 1) -> Iterator[Case]:
+    """Every case of the study, or every `every`-th of a curve.
 
     Parameters
     ----------
@@ -126,25 +149,16 @@ def cases_of(spring: Spring, masses: Sequence[Spring], fine: Spring, grid: Grid)
     masses : the same with other tip masses, the bare tip first.
     fine : as it is, on a finer mesh.
     """
-    return [
-        *_speed(spring, masses[0], grid),
-        *(fine.case("reference", name, fine.mass_ratio, law) for name, law in [*fine.laws.items()][:1]),
-        *(case for one in masses for case in _mass(one, grid)),
-    ]
-
-
-def _speed(spring: Spring, bare: Spring, grid: Grid) -> Iterator[Case]:
+    hertz = hertz_of(spring.scene)
     lines = [(name, spring, law) for name, law in spring.laws.items()]
-    for name, one, law in [*lines, ("bare tip, Hertz", bare, hertz_of(bare.scene))]:
-        for excess in EXCESSES[:: grid.every]:
-            yield one.case("speed", name, excess, law, excess=excess)
-
-
-def _mass(spring: Spring, grid: Grid) -> Iterator[Case]:
-    ratio, hertz = spring.mass_ratio, hertz_of(spring.scene)
-    for excess in MASS_EXCESSES:
-        yield spring.case("mass", f"excess {excess:g}", ratio, hertz, excess=excess)
+    for name, one, law in [*lines, ("bare tip, Hertz", masses[0], hertz)]:
+        for excess in EXCESSES[::every]:
+            yield one.case("speed", name, law, value=excess, excess=excess)
+    yield fine.case("reference", *next(iter(fine.laws.items())))
     orbit_hz = corresponding(spring.scene, ORBIT_HZ)
-    yield spring.case("orbit", f"{orbit_hz:.2f} Hz", ratio, hertz, frequency=orbit_hz)
-    for local in RESTITUTIONS[:: grid.every]:
-        yield spring.case("search", f"{local:g}", ratio, spring.lossy(local))
+    for one in masses:
+        for excess in MASS_EXCESSES:
+            yield one.case("mass", f"excess {excess:g}", hertz, excess=excess)
+        yield one.case("orbit", f"{orbit_hz:.2f} Hz", hertz, frequency=orbit_hz)
+        for local in RESTITUTIONS[::every]:
+            yield one.case("search", f"{local:g}", one.lossy(local))

@@ -1,4 +1,4 @@
-"""A case as a row of numbers, and what is read off the rows of a curve.
+"""The row of an approach, and what is read off the rows of a curve.
 
 A first collision is that of the steady driven motion; one of a settled orbit is its first. Beside what
 `contact.collisions` measures a row holds
@@ -16,25 +16,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
-
-from contact import (
-    Collision,
-    ImpactOscillator,
-    StroboscopicMap,
-    collisions,
-    first_collision,
-    simulate,
-)
-from contact.orbits import born
-from studies.effective_impact.cases import Case
-
-SETTLE_CYCLES = 4000
-"""An orbit with impacts settles within some hundred drive periods; a motion that has not by then is told as
-period 0."""
 
 FINE = 2001
 """Points at which a spline is looked through: the smallest value is good to 1e-6 of itself."""
@@ -54,7 +39,7 @@ class Row:
     excess: float
     modes: int
     mass_ratio: float
-    orbit_period: int | None
+    orbit_period: int | None = None
     approach_m_s: float = math.nan
     restitution: float = math.nan
     delay_s: float = math.nan
@@ -67,40 +52,6 @@ class Row:
     impacts: int = 0
     forced_by_ringing: bool = False
     returns: bool = False
-
-
-def measure(case: Case) -> Row:
-    """The row of a case; ContactError or ValueError if there is no collision."""
-    oscillator, period = case.oscillator, None
-    found: Collision | None
-    if case.curve == "orbit":
-        found, period = orbit_collision(oscillator)
-    else:
-        found = first_collision(oscillator)
-    model = oscillator.model
-    mass, phi = float(model.tip_mass or 0.0), float(model.phi[0])
-    row = Row(
-        curve=case.curve, series=case.series, value=case.value, excess=case.excess, modes=model.n_modes,
-        mass_ratio=case.mass_ratio, orbit_period=period, ball_limit=2.0 * mass * phi**2,
-    )  # fmt: skip
-    if found is None:
-        return row
-    return replace(
-        row, approach_m_s=found.approach, restitution=found.restitution, delay_s=found.delay, kick=found.kick,
-        shift_m=found.shift, contact_s=found.contact_time, arc_s=found.approach / found.deceleration,
-        energy_share=found.energy_to_higher_modes * 2.0 * phi**2 / found.approach**2, impacts=found.impacts,
-        forced_by_ringing=found.forced_by_ringing, returns=found.returns,
-    )  # fmt: skip
-
-
-def orbit_collision(oscillator: ImpactOscillator) -> tuple[Collision | None, int]:
-    """The first collision of the settled orbit and its period; None where it has none or did not settle."""
-    settled = born(StroboscopicMap(oscillator=oscillator), oscillator.excess, most_cycles=SETTLE_CYCLES)
-    if not settled.period or not settled.impacts:
-        return None, settled.period
-    trajectory = simulate(oscillator, settled.end, periods=2 * settled.period + 2)
-    found = collisions(oscillator, trajectory, unfinished="drop")
-    return (found[0] if found else None), settled.period
 
 
 def select(rows: Sequence[Row], curve: str, series: str | None = None) -> list[Row]:
@@ -116,22 +67,15 @@ def series_of(rows: Sequence[Row], curve: str) -> list[str]:
 
 def on_orbits(rows: Sequence[Row]) -> list[Row]:
     """The collisions on settled orbits that belong to a peak of mode 1."""
-    settled = [row for row in select(rows, "orbit") if row.orbit_period and row.impacts]
-    return [row for row in settled if not row.forced_by_ringing]
+    return [row for row in select(rows, "orbit") if row.impacts and not row.forced_by_ringing]
 
 
 def crossing(x: Sequence[float], y: Sequence[float], level: float) -> float:
     """The first x at which y(x) goes through `level`, by a monotone spline in log x; NaN if it never does."""
-    kept = [(math.log(a), b - level) for a, b in zip(x, y, strict=True) if a > 0.0 and math.isfinite(b)]
-    if len(kept) < 2:
+    if len(x) < 2:
         return math.nan
-    where, what = np.array(kept).T
-    turns = np.flatnonzero(what[:-1] * what[1:] <= 0.0)
-    if not turns.size:
-        return math.nan
-    roots = PchipInterpolator(where, what).roots(extrapolate=False)
-    inside = roots[(roots >= where[turns[0]] - 1e-9) & (roots <= where[turns[0] + 1] + 1e-9)]
-    return float(math.exp(inside[0])) if inside.size else math.nan
+    roots = PchipInterpolator(np.log(x), np.array(y) - level).roots(extrapolate=False)
+    return math.exp(roots[0]) if roots.size else math.nan
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,7 +1,6 @@
 """One p_m orbit at one frequency in nine descriptions, from the map to the beam.
 
-Each description differs from the one before in one thing, so that the difference between the letter's map and
-the beam splits into causes (F_m/F_g - 1 is where the p_m orbit ends in a downward scan):
+Each differs from the one before in one thing:
 
     map                     Eqs. (2), (3), corrected, tau of the letter
     single_mode             Eq. (1): the map's own truncation removed
@@ -18,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -31,14 +31,10 @@ CHAIN = (
 )  # fmt: skip
 DESCRIPTIONS = ("map_printed", "map_measured_kick", *CHAIN)
 
-CAUSES = {
-    "truncation_of_the_map": ("map", "single_mode"),
-    "size_of_the_kick": ("single_mode", "measured_kick"),
-    "kick_against_velocity": ("measured_kick", "kick_of_velocity"),
-    "delay": ("kick_of_velocity", "two_parameters"),
-    "higher_modes_in_the_flight": ("two_parameters", "all_mode_kick"),
-    "ringing_met_by_the_next_collision": ("all_mode_kick", "beam"),
-}
+CAUSES = dict(zip((
+    "truncation_of_the_map", "size_of_the_kick", "kick_against_velocity", "delay",
+    "higher_modes_in_the_flight", "ringing_met_by_the_next_collision",
+), pairwise(CHAIN), strict=True))  # fmt: skip
 """Cause -> the two neighbours in the chain between which it lies."""
 
 FREQUENCIES_HZ = (19.6, 23.8)
@@ -69,14 +65,9 @@ class Row:
     beam: float | None = None
     beam_admissible: bool | None = None
 
-    def excess(self, description: str) -> float | None:
-        """F_m/F_g - 1 in one of `DESCRIPTIONS`."""
-        value: float | None = getattr(self, description)
-        return value
-
     def ratio(self, description: str, reference: str = "beam") -> float | None:
         """Its hysteresis over that of the reference; None unless both end on the same side of grazing."""
-        a, b = self.excess(description), self.excess(reference)
+        a, b = getattr(self, description), getattr(self, reference)
         return None if a is None or b is None or a * b <= 0.0 else a / b
 
     def factor(self, cause: str) -> float | None:
@@ -143,8 +134,8 @@ def folds_at(
 def column(scene: Scene, model: ModalModel, step: float, m: int) -> list[Row]:
     """The folds of p_m over the frequencies where it can exist, each started from its neighbour."""
     edges = band_of(scene, m)
-    low = corresponding(scene, FREQUENCIES_HZ[0])
-    low = max(low, edges.lower - BELOW_BAND * (edges.upper - edges.lower))
+    below = edges.lower - BELOW_BAND * (edges.upper - edges.lower)
+    low = max(corresponding(scene, FREQUENCIES_HZ[0]), below)
     grid = np.arange(FREQUENCIES_HZ[0], FREQUENCIES_HZ[1] + 1e-9, step)
     values = {round(corresponding(scene, float(f)), 6) for f in grid}
     values |= {f for f, seen in periods_of(scene).items() if seen == m}

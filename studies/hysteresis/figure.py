@@ -61,17 +61,13 @@ def draw_curves(scene: Scene, rows: Sequence[Row]) -> Figure:
 
 
 def curves(axis: Axes, rows: Sequence[Row], sign: float) -> None:
-    """The descriptions, a line for each period; crosses on folds of the beam that are not admissible."""
-    below = {name: [row for row in rows if (row.excess(name) or 0.0) < 0.0] for name in STYLES}
+    """The descriptions, a line for each period, the beam last; crosses on its folds not admissible."""
     for name, style in STYLES.items():
+        ends = [(row, sign * (getattr(row, name) or 0.0)) for row in rows]
         for m in sorted({row.m for row in rows}):
-            points = [
-                (row.frequency_hz, sign * (row.excess(name) or 0.0)) for row in below[name] if row.m == m
-            ]
-            axis.plot(*np.array(points).reshape(-1, 2).T, **style, linewidth=0.9)
-    crossed = [
-        (row.frequency_hz, sign * (row.beam or 0.0)) for row in below["beam"] if not row.beam_admissible
-    ]
+            shown = [(row.frequency_hz, end) for row, end in ends if row.m == m and sign * end < 0.0]
+            axis.plot(*np.array(shown).reshape(-1, 2).T, **style, linewidth=0.9)
+    crossed = [(row.frequency_hz, end) for row, end in ends if sign * end < 0.0 and not row.beam_admissible]
     axis.plot(*np.array(crossed).reshape(-1, 2).T, "x", markersize=3.5, color=VERMILION,
               label="beam, not admissible")  # fmt: skip
 

@@ -12,7 +12,6 @@ Writes:  motion.gif, motion.mp4 with the extra `video`, motion.png (the tip), fr
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
@@ -23,24 +22,23 @@ from contact import StroboscopicMap
 from contact.orbits import born
 from studies import letter
 from studies.film import (
-    NO_RENDERING,
+    DRIVE,
     Moment,
     Picture,
     Scenery,
     can_encode,
-    can_render,
     stage_of,
     write_gif,
     write_mp4,
 )  # fmt: skip
-from studies.motion.filmed_orbit import FilmedOrbit, drawn_shapes, film_orbit
+from studies.motion.filmed_orbit import FilmedOrbit, FrameRow, drawn_shapes, film_orbit
 from studies.run import Run, study
 from studies.scene import Scene, beam_at, corresponding, harmonic, model_of, modes_of, require_drive_below
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["FrameRow", "motion"]
+__all__ = ["motion"]
 
 Array = NDArray[np.float64]
 
@@ -49,20 +47,6 @@ FREQUENCY = 21.50
 
 RATE = 20.0
 """Frames a second: gif keeps time in hundredths of a second."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class FrameRow:
-    """One frame: time, how many times slower than life it is shown, tip, base, force, whether they touch."""
-
-    frame: int
-    time_s: float
-    slowed: float
-    tip_m: float
-    tip_velocity_m_per_s: float
-    base_m: float
-    force_n: float
-    contact: bool
 
 
 @study(needs={"tip_trace": 2e-3}, quick={"frames": 60})
@@ -77,7 +61,6 @@ def motion(
     frames: Annotated[int, "frames of the film"] = 240,
     magnify: Annotated[float | None, "how many times the higher modes are drawn; so that they show"] = None,
     seen_from: Annotated[Literal["laboratory", "base"], "where the viewer stands"] = "laboratory",
-    renderer: Annotated[Literal["auto", "vtk", "matplotlib"], "what draws"] = "auto",
 ) -> Mapping[str, object]:
     """Compute, store, draw."""
     drive_hz = corresponding(harmonic(scene), FREQUENCY) if frequency is None else frequency
@@ -87,26 +70,24 @@ def motion(
     strobed, most = StroboscopicMap(oscillator=oscillator), max(scene.scan.settle_cycles, 1)
     settled = born(strobed, excess, most_cycles=most)
     orbit = film_orbit(oscillator, settled.end, settled.period, frames=frames, rate=RATE)
-    swing, radius = float(np.abs(orbit.tip).max()), scene.tip.ball_radius_m
+    swing, radius = max(abs(row.tip_m) for row in orbit.rows), scene.tip.ball_radius_m
     scenery = Scenery.of(modes, ball_radius=radius, gap=scene.stop.gap_m, swing=swing)
-    drawn, magnification = drawn_shapes(scenery.mesh, modes, orbit.run.displacement, magnify)
-    base = orbit.base[:, None] * scenery.drive * (seen_from == "laboratory")
+    drawn, magnification = drawn_shapes(scenery.mesh, modes, orbit.coordinates, magnify)
+    carried = DRIVE * (seen_from == "laboratory")
     moments = [
-        Moment(points=points, base=shift, touched=bool(touched))
-        for points, shift, touched in zip(drawn, base, orbit.touched, strict=True)
+        Moment(points=points, base=row.base_m * carried, touched=row.contact)
+        for points, row in zip(drawn, orbit.rows, strict=True)
     ]
-    rows = frame_rows(orbit)
-    run.table("frames", rows, show=())
-    true, _ = drawn_shapes(scenery.mesh, modes, orbit.run.displacement, 1.0)
-    write_frames(run.path("motion.pvd"), grids(scenery, moments, true, rows))
+    run.table("frames", orbit.rows, show=())
+    true, _ = drawn_shapes(scenery.mesh, modes, orbit.coordinates, 1.0)
+    write_frames(run.path("motion.pvd"), grids(scenery, moments, true, orbit.rows))
     run.path("motion_frames")
-    if renderer == "auto" and not can_render():
-        run.say(NO_RENDERING)
-    with stage_of(scenery, renderer) as stage:
+    with stage_of(scenery, simple=run.quick) as stage:
         pictures = [stage(moment) for moment in run.track(moments, "frames")]
     name = f"p{settled.period}" if settled.period else "no period up to 64"
     words = f"{name}, {drive_hz:g} Hz, excess {excess:g}"
-    slow = f"{orbit.slowed.min():.0f} to {orbit.slowed.max():.0f} times slower than life"
+    slowed = [row.slowed for row in orbit.rows]
+    slow = f"{min(slowed):.0f} to {max(slowed):.0f} times slower than life"
     run.say(f"{words}: {len(orbit.contacts)} contacts, {slow}")
     found = {
         "frequency_hz": drive_hz, "excess": excess, "period": settled.period, "duration_s": orbit.duration,
@@ -123,16 +104,6 @@ def motion(
     else:
         run.say("no mp4: it needs imageio-ffmpeg (pip install -e '.[video]')")
     return found
-
-
-def frame_rows(orbit: FilmedOrbit) -> list[FrameRow]:
-    """The numbers behind the film."""
-    columns = (orbit.time, orbit.slowed, orbit.tip, orbit.tip_velocity, orbit.base, orbit.force)
-    return [
-        FrameRow(frame=number + 1, time_s=t, slowed=slow, tip_m=x, tip_velocity_m_per_s=v, base_m=b,
-                 force_n=n, contact=bool(orbit.touched[number]))
-        for number, (t, slow, x, v, b, n) in enumerate(np.array(columns).T.tolist())
-    ]  # fmt: skip
 
 
 def grids(
@@ -171,15 +142,15 @@ def composed(
     figure.set(dpi=110, size_inches=(pictures[0].shape[1] / 110, 150 / 110))
     figure.canvas.draw()
     below = np.asarray(figure.canvas.buffer_rgba(), dtype=np.uint8)[..., :3]  # type: ignore[attr-defined]
-    places = axes.transData.transform(1e3 * np.column_stack([orbit.time, orbit.tip]))
+    places = axes.transData.transform([(1e3 * row.time_s, 1e3 * row.tip_m) for row in orbit.rows])
     font = ImageFont.load_default(size=18)
-    for number, picture in enumerate(pictures):
+    for row, place, picture in zip(orbit.rows, places, pictures, strict=True):
         image = Image.fromarray(np.concatenate([picture, below]))
         pen = ImageDraw.Draw(image)
-        at = places[number, 0], image.height - places[number, 1]
-        pen.circle(at, 5, fill="#FF7A1A" if orbit.touched[number] else "black")
+        at = place[0], image.height - place[1]
+        pen.circle(at, 5, fill="#FF7A1A" if row.contact else "black")
         pen.text((12, 8), words, fill="black", font=font)
-        slowed = f"{1e3 * orbit.time[number]:.2f} ms, {orbit.slowed[number]:.0f} times slower; {told}"
+        slowed = f"{1e3 * row.time_s:.2f} ms, {row.slowed:.0f} times slower; {told}"
         pen.text((12, 32), slowed, fill="#5A5A5A", font=font)
         yield np.asarray(image, dtype=np.uint8)
 

@@ -24,10 +24,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam import Modes, SpringMesh
-from contact import ImpactOscillator, State, Trajectory, simulate
+from contact import ImpactOscillator, State, simulate
 from studies.force import contact_force, touching
-
-__all__ = ["FilmedOrbit", "drawn_shapes", "film_orbit", "frame_times"]
 
 Array = NDArray[np.float64]
 
@@ -46,28 +44,33 @@ ROOM, MOST = 0.07, 100.0
 seen."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class FrameRow:
+    """One frame: time, how many times slower than life it is shown, tip, base, force, whether they touch."""
+
+    frame: int
+    time_s: float
+    slowed: float
+    tip_m: float
+    tip_velocity_m_per_s: float
+    base_m: float
+    force_n: float
+    contact: bool
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FilmedOrbit:
-    """One period of an orbit; times from the strobe at which it begins [s], an entry a frame but for the
-    line."""
+    """One period of an orbit; times from the strobe at which it begins [s]."""
 
     duration: float
     contacts: list[tuple[float, float]]
     """Begin and end of each [s]."""
-    run: Trajectory
-    time: Array
-    tip: Array
-    """Tip displacement [m]; `tip_velocity` [m/s]."""
-    tip_velocity: Array
+    coordinates: Array
+    """Modal coordinates at the frames, shape (n_frames, n_modes); `rows` are the numbers behind them."""
+    rows: list[FrameRow]
     line_time: Array
     """Even times of the drawn line, and the tip there, `line_tip` [m]."""
     line_tip: Array
-    slowed: Array
-    """How many times slower than life a frame is shown [1]."""
-    base: Array
-    """Displacement of the base [m]; `force` of the plate [N]; whether they touch."""
-    force: Array
-    touched: NDArray[np.bool_]
 
 
 def frame_times(duration: float, contacts: list[tuple[float, float]], frames: int) -> Array:
@@ -101,14 +104,19 @@ def film_orbit(
     times = frame_times(duration, contacts, frames)
     line = np.linspace(0.0, duration, length * LINE_POINTS + 1)
     run, drawn = (simulate(oscillator, state, periods=length + 1, times=begin + at) for at in (times, line))
-    phi, drive = oscillator.model.phi, oscillator.drive
-    assert drive is not None
-    return FilmedOrbit(
-        duration=duration, contacts=contacts, run=run, time=times, tip=run.displacement @ phi,
-        tip_velocity=run.velocity @ phi, line_time=line, line_tip=drawn.displacement @ phi,
-        slowed=1.0 / (rate * np.diff(times, append=duration)), base=drive.displacement(times),
-        force=contact_force(oscillator, run), touched=touching(run),
+    phi = oscillator.model.phi
+    columns = (
+        times, 1.0 / (rate * np.diff(times, append=duration)), run.displacement @ phi, run.velocity @ phi,
+        oscillator.driven.displacement(times), contact_force(oscillator, run),
     )  # fmt: skip
+    rows = [
+        FrameRow(frame=number, time_s=t, slowed=slowed, tip_m=x, tip_velocity_m_per_s=v, base_m=b, force_n=n,
+                 contact=bool(touched))
+        for number, (touched, (t, slowed, x, v, b, n)) in enumerate(
+            zip(touching(run), np.array(columns).T.tolist(), strict=True), start=1)
+    ]  # fmt: skip
+    return FilmedOrbit(duration=duration, contacts=contacts, coordinates=run.displacement, rows=rows,
+                       line_time=line, line_tip=drawn.displacement @ phi)  # fmt: skip
 
 
 def drawn_shapes(

@@ -15,10 +15,12 @@ from __future__ import annotations
 import base64
 import csv
 import json
+import re
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from itertools import islice
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader
@@ -27,33 +29,28 @@ from studies import letter
 from studies.files import write_atomically
 from studies.programs import MAIN, account_of, names
 
-__all__ = ["Stored", "Table", "read_results", "told_page", "write_page"]
-
 NOT_RUN = "not run"
+LEAVE_NOTHING = ("report", "export", "tour")
+"""Programs that leave no results here."""
+
 MOST_ROWS, MOST_COLUMNS = 40, 12
 """Of a table on the page; a longer one is named and left to its file."""
 
 LARGEST_PICTURE = 4_000_000
 """Bytes of a picture or film that goes into the page; a larger one is linked."""
 
-
-@dataclass(frozen=True, kw_only=True)
-class Table:
-    """A table that fits on the page: headings and cells as texts."""
-
-    name: str
-    caption: str
-    head: list[str]
-    rows: list[list[str]]
+SET_OUT = re.compile(r"^(    |(Run|Writes):)", re.MULTILINE)
+"""In a paragraph whose lines are not to be filled: a formula, a table, a list of commands."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Picture:
-    """A figure or film: its bytes as a data URI, or a link."""
+class Shown:
+    """A figure or film, `source` a data URI or a link; or a table, the first of its `rows` the headings."""
 
     name: str
     caption: str
-    source: str
+    source: str = ""
+    rows: Sequence[Sequence[str]] = ()
 
 
 @dataclass(kw_only=True)
@@ -63,8 +60,7 @@ class Stored:
     study: str
     summary: Mapping[str, object] = field(default_factory=dict)
     manifest: Mapping[str, object] = field(default_factory=dict)
-    pictures: list[Picture] = field(default_factory=list)
-    tables: list[Table] = field(default_factory=list)
+    shown: list[Shown] = field(default_factory=list)
     files: list[str] = field(default_factory=list)
     faults: list[str] = field(default_factory=list)
 
@@ -72,13 +68,7 @@ class Stored:
     def account(self) -> list[tuple[str, str]]:
         """The docstring of the study, "prose" or "as it is" with each paragraph."""
         blocks = account_of(self.study).split("\n\n")
-        return [("as it is" if _set_out(block) else "prose", block) for block in blocks]
-
-
-def _set_out(block: str) -> bool:
-    """Whether a paragraph is a formula, a table or a list of commands, whose lines are not to be filled."""
-    lines = block.split("\n")
-    return any(line.startswith("    ") for line in lines) or lines[0].partition(":")[0] in ("Run", "Writes")
+        return [("as it is" if SET_OUT.search(block) else "prose", block) for block in blocks]
 
 
 def _object(value: object) -> Mapping[str, object]:
@@ -96,36 +86,29 @@ def read_stored(folder: Path) -> Stored:
     captions = _object(stored.manifest.get("captions"))
     listed = stored.manifest.get("files")
     stored.files = [str(name) for name in listed] if isinstance(listed, list) else []
-    for name in stored.files:
-        path, caption = folder / name, str(captions.get(name) or "")
+    for name in sorted(stored.files, key=lambda name: name.endswith(".csv")):
         try:
-            if path.suffix in (".png", ".gif"):
-                stored.pictures.append(Picture(name=name, caption=caption, source=_source(path)))
-            elif path.suffix == ".csv":
-                table = _table(path, caption)
-                stored.tables += [table] if table else []
+            shown = _shown(folder / name, str(captions.get(name) or ""))
+            stored.shown += [shown] if shown else []
         except (OSError, ValueError, csv.Error) as error:
             stored.faults.append(f"{folder.name}/{name} cannot be read: {error}")
     return stored
 
 
-def _source(path: Path) -> str:
-    """A picture as part of the page, or where it lies beside it."""
-    if path.stat().st_size > LARGEST_PICTURE:
-        return f"../{path.parent.name}/{path.name}"
-    return f"data:image/{path.suffix[1:]};base64,{base64.b64encode(path.read_bytes()).decode('ascii')}"
-
-
-def _table(path: Path, caption: str) -> Table | None:
-    """The table in a csv file; None if it is too large for the page."""
-    with path.open(newline="", encoding="utf-8") as stream:
-        rows = [row for row, _ in zip(csv.reader(stream), range(MOST_ROWS + 2), strict=False)]
-    if not rows or len(rows) > MOST_ROWS + 1 or len(rows[0]) > MOST_COLUMNS:
+def _shown(path: Path, caption: str) -> Shown | None:
+    """What the page shows of a file: a picture, linked if it is large, or a table that is not too large."""
+    if path.suffix == ".csv":
+        with path.open(newline="", encoding="utf-8") as stream:
+            rows = list(islice(csv.reader(stream), MOST_ROWS + 2))
+        fits = 0 < len(rows) <= MOST_ROWS + 1 and len(rows[0]) <= MOST_COLUMNS
+        return Shown(name=path.name, caption=caption, rows=rows) if fits else None
+    if path.suffix not in (".png", ".gif"):
         return None
-    shown = [[_shortened(cell) for cell in row] for row in rows[1:]]
-    return Table(
-        name=path.name, caption=caption, head=[cell.replace("_", " ") for cell in rows[0]], rows=shown
-    )
+    source = f"../{path.parent.name}/{path.name}"
+    if path.stat().st_size <= LARGEST_PICTURE:
+        content = base64.b64encode(path.read_bytes()).decode("ascii")
+        source = f"data:image/{path.suffix[1:]};base64,{content}"
+    return Shown(name=path.name, caption=caption, source=source)
 
 
 def _shortened(cell: str) -> str:
@@ -174,11 +157,12 @@ def write_page(results: Path) -> tuple[Path, list[Stored], list[str]]:
     """Write results/report/index.html; returns its path, what is on it, and which studies are not."""
     found = read_results(results)
     by_name = {stored.study: stored for stored in found}
-    missing = [name for name in names() if name not in by_name and _is_study(name)]
+    missing = [name for name in names() if name not in by_name and name not in LEAVE_NOTHING]
     points = list(_points(by_name))
     environment = Environment(
         loader=FileSystemLoader(Path(__file__).parent), autoescape=True, trim_blocks=True, lstrip_blocks=True
     )
+    environment.filters["shortened"] = _shortened
     text = environment.get_template("page.html.j2").render(
         stored=found,
         missing=missing,
@@ -190,12 +174,6 @@ def write_page(results: Path) -> tuple[Path, list[Stored], list[str]]:
     folder = results / "report"
     folder.mkdir(parents=True, exist_ok=True)
     return write_atomically(folder / "index.html", text.encode()), found, missing
-
-
-def _is_study(name: str) -> bool:
-    """Whether the program of this name leaves results; the report, the export and the tour leave none
-    here."""
-    return name not in ("report", "export", "tour")
 
 
 def told_page(results: Path) -> str:

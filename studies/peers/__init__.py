@@ -28,7 +28,7 @@ from contact.integrators import Integrator, Run
 from studies.peers.adapters import cvode_pieces, heyoka_pieces, scipy_pieces
 from studies.peers.piecewise import Advance, Equations, pieced
 
-__all__ = ["SOLVERS", "OutsideSolver", "all_solvers", "missing_solvers"]
+__all__ = ["SOLVERS", "OutsideSolver", "installed_solvers", "missing_solvers"]
 
 LIBRARIES = {"scipy": ("scipy", 2.5e-14), "heyoka": ("heyoka", 2.3e-16), "sundials": ("sksundae", 1e-15)}
 """The module of each library, and the least tolerance that it takes (solve_ivp replaces smaller ones)."""
@@ -50,14 +50,9 @@ def missing_solvers() -> list[str]:
     return sorted(name for name, (module, _least) in LIBRARIES.items() if find_spec(module) is None)
 
 
-def all_solvers(tolerance: float) -> dict[str, Integrator]:
-    """Every solver of the libraries installed at one `tolerance` [1], by its name in `SOLVERS`."""
-    missing = missing_solvers()
-    return {
-        name: OutsideSolver(solver=name, tolerance=tolerance)
-        for name, (library, _adapter) in SOLVERS.items()
-        if library not in missing
-    }
+def installed_solvers() -> list[str]:
+    """The names in `SOLVERS` of those whose library is there."""
+    return [name for name, (library, _adapter) in SOLVERS.items() if library not in missing_solvers()]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -114,44 +114,30 @@ def heyoka_pieces(e: Equations) -> Advance:
         kept[kind].reset_cooldowns()
         return kept[kind]
 
-    def ended(outcome: Any, s: float, y: Array) -> int:
-        """Number of the event, -1 at the end of the piece."""
-        number = -1 - int(outcome)
-        if 0 <= number < 2:
-            return number
-        if outcome == hy.taylor_outcome.time_limit:
-            return -1
-        raise e.failed(s, y, f"heyoka: {outcome!r}")
-
-    def in_time(taylor: Any, begin: float, y: Array, times: Array) -> Piece:
-        taylor.time = begin
-        taylor.state[:] = y
-        grid = np.concatenate([[begin], times])
-        outcome, _h, _low, steps, _dense, passed = taylor.propagate_grid(grid, max_steps=MOST_STEPS)
-        if ended(outcome, taylor.time, taylor.state) < 0:
-            return Piece(float(times[-1]), passed[-1].copy(), False, passed[1:], steps)
-        return Piece(float(taylor.time), taylor.state.copy(), True, passed[1:], steps)
-
-    def in_sigma(taylor: Any, begin: float, y: Array, times: Array) -> Piece:
-        taylor.time = 0.0
-        taylor.state[:] = [*y, math.sqrt(max(0.0, e.tip(y)[0])), begin]
-        samples: list[Array] = []
-        spent, number = 0, 1
-        for target in times:
-            taylor.pars[-1] = target
-            taylor.reset_cooldowns()
-            outcome, _h, _low, steps, _dense, _state = taylor.propagate_for(FAR, max_steps=MOST_STEPS)
-            spent += steps
-            number = ended(outcome, float(taylor.state[-1]), taylor.state[:-2])
-            if number == 0:
-                break
-            samples.append(taylor.state[:-2].copy())
-        passed = np.array(samples).reshape(-1, 2 * e.n)
-        end = float(times[-1]) if number else float(taylor.state[-1])
-        return Piece(end, taylor.state[:-2].copy(), number == 0, passed, spent)
-
     def advance(contact: bool, begin: float, y: Array, times: Array) -> Piece:
-        return (in_sigma if contact and e.hertz else in_time)(made(contact), begin, y, times)
+        taylor, sigma = made(contact), contact and e.hertz
+        taylor.time = 0.0 if sigma else begin
+        taylor.state[:] = [*y, math.sqrt(max(0.0, e.tip(y)[0])), begin] if sigma else y
+        samples: list[Array] = []
+        spent, event, end = 0, False, begin
+        for target in times:
+            if sigma:
+                taylor.pars[-1] = target
+                taylor.reset_cooldowns()
+            # in sigma the target ends the stretch as the second event
+            outcome, _h, _low, steps, *_rest = (
+                taylor.propagate_for(FAR, max_steps=MOST_STEPS) if sigma
+                else taylor.propagate_until(target, max_steps=MOST_STEPS)
+            )  # fmt: skip
+            spent, event = spent + steps, int(outcome) == -1
+            end = float(taylor.state[-1] if sigma else taylor.time)
+            if event:
+                break
+            if int(outcome) != -2 and outcome != hy.taylor_outcome.time_limit:
+                raise e.failed(end, taylor.state[: 2 * e.n], f"heyoka: {outcome!r}")
+            samples.append(taylor.state[: 2 * e.n].copy())
+        passed = np.array(samples).reshape(-1, 2 * e.n)
+        return Piece(end if event else float(times[-1]), taylor.state[: 2 * e.n].copy(), event, passed, spent)
 
     return advance
 

@@ -45,10 +45,8 @@ FLIGHT, LINEAR, HERTZ = 0, 1, 2
 """What a piece is, for the kernel."""
 
 MOST_IMPACTS = 2000
-"""Bound of impacts in one period: with so many the tip is on its way to rest, which is not followed."""
-
-MOST_STALLS = 50
-"""Bound of pieces in a row without a duration; flights and contacts of a regular motion alternate."""
+"""Bound of impacts in one period: with so many the tip is on its way to rest, which is not followed, or the
+solver finds one event after another at one time."""
 
 Array = NDArray[np.float64]
 compiled: Any = numba.njit(cache=True, nogil=True)
@@ -159,17 +157,15 @@ class Equations:
 
     def impacts(self, touches: list[tuple[float, Array]], releases: list[tuple[float, Array]]) -> Impacts:
         """The touches as named arrays; a contact that has not ended has no release."""
-        n, count = self.n, len(touches)
-        begin = np.array([s for s, _y in touches]).reshape(count)
-        before = np.array([y for _s, y in touches]).reshape(count, 2 * n)
-        end, after = np.full(count, np.nan), np.full((count, 2 * n), np.nan)
-        for i, (s, y) in enumerate(releases):
-            end[i], after[i] = s, y
+        n, open_ended = self.n, len(touches) - len(releases)
+        closed = [*releases, *[(math.nan, np.full(2 * n, np.nan))] * open_ended]
+        begin, end = (np.array([s for s, _y in log]).reshape(-1) for log in (touches, closed))
+        before, after = (np.array([y for _s, y in log]).reshape(-1, 2 * n) for log in (touches, closed))
         approach, rebound = before[:, n:] @ self.phi, after[:, n:] @ self.phi
         return Impacts(
             start=self.start.time + begin, end=self.start.time + end, approach=approach, rebound=rebound,
             loss=0.5 * (approach**2 - rebound**2) / self.compliance if self.hard else 0.0 * rebound,
-            kind=np.zeros(count, dtype=np.int64), displacement_start=before[:, :n],
+            kind=np.zeros(begin.size, dtype=np.int64), displacement_start=before[:, :n],
             velocity_start=before[:, n:], displacement_end=after[:, :n], velocity_end=after[:, n:],
         )  # fmt: skip
 
@@ -200,7 +196,7 @@ def pieced(
     sample = np.clip((run.sample_period - run.first) * period + run.sample_clock - run.clock, 0.0, run.length)
     times, place = np.unique(np.concatenate([strobe, sample, [run.length]]), return_inverse=True)
     states, reached, s = np.empty((times.size, 2 * n)), 0, 0.0
-    spent, stalls, slack = 0, 0, 8.0 * EPS * run.length
+    spent, slack = 0, 8.0 * EPS * run.length
     while True:
         while reached < times.size and times[reached] <= s + slack:
             states[reached] = y
@@ -210,7 +206,6 @@ def pieced(
         piece = advance(contact, s, y, times[reached:])
         states[reached : reached + len(piece.samples)] = piece.samples
         reached, spent = reached + len(piece.samples), spent + piece.evaluations
-        stalls = stalls + 1 if piece.end <= s + slack else 0
         s, y = piece.end, piece.state
         if not np.all(np.isfinite(y)):
             raise e.failed(s, y, "the state is not finite")
@@ -219,8 +214,6 @@ def pieced(
             releases.append((s, y))
         elif piece.event:
             contact, y = touched(s, y)
-        if stalls > MOST_STALLS:
-            raise e.failed(s, y, "the solver finds one event after another there")
         if len(touches) > MOST_IMPACTS and s - touches[-MOST_IMPACTS][0] < period:
             raise e.failed(s, y, f"more than {MOST_IMPACTS} in one period", Chatter)
     begun = [s for s, _y in touches]

@@ -9,23 +9,24 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from beam import ModalModel
 from contact import ContactError, StrobedNordmarkMap, StroboscopicMap
 from contact.orbits import born_period, fold_excess
-from studies.calibration import calibrate_damping, free_period, solve_for
+from studies.calibration import calibrate_damping, calibrate_thickness, free_period
 from studies.letter import BREAKDOWN, FREE_PERIOD_ERROR_S
 from studies.scene import Scene, beam_at, model_of, nordmark_at, single_mode_at
 
-NAMES = {"map": "map", "single_mode": "Eq. (1)", "beam": "beam"}
+NAMES = ("map", "single_mode", "beam")
 
 T = TypeVar("T")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Change:
-    """A parameter lowered (`sign` -1) or raised (1): its key times `factor` plus `add`.
+    """A parameter lowered (`sign` -1) or raised (1): `by` is added to its key, in `unit`, or a factor on it
+    where there is no unit.
 
     Without a key the factor is on the decay rates above the first. `tune`: the sheet is fitted to the free
     period again.
@@ -34,51 +35,50 @@ class Change:
     parameter: str
     key: str
     sign: int
-    factor: float
-    add: float
-    unit: str
+    by: float
+    unit: str | None
     tune: bool
 
     @property
     def text(self) -> str:
         """The change for a table."""
-        return f"{self.add:+g} {self.unit}".rstrip() if self.add else f"x {self.factor:g}"
+        return f"x {self.by:g}" if self.unit is None else f"{self.by:+g} {self.unit}".rstrip()
 
     def __str__(self) -> str:
         return f"{self.parameter} {self.text}"
 
     def value(self, scene: Scene) -> float:
         """What the key becomes."""
-        value = scene.number(self.key) * self.factor + self.add
+        before = scene.number(self.key)
+        value = before * self.by if self.unit is None else before + self.by
         return max(1, round(value)) if self.key == "modes.count" else value
 
 
 def _both(
-    parameter: str, key: str = "", factors: tuple[float, float] = (1.0, 1.0), *, add: float = 0.0,
-    unit: str = "", tune: bool = False,
-) -> tuple[Change, Change]:  # fmt: skip
+    parameter: str, key: str, lower: float, higher: float, unit: str | None = None, *, tune: bool = False
+) -> list[Change]:
     """Lowered and raised."""
-    down, up = (
-        Change(parameter=parameter, key=key, sign=sign, factor=factor, add=sign * add, unit=unit, tune=tune)
-        for sign, factor in zip((-1, 1), factors, strict=True)
-    )
-    return down, up
+    return [
+        Change(parameter=parameter, key=key, sign=sign, by=by, unit=unit, tune=tune)
+        for sign, by in ((-1, lower), (1, higher))
+    ]
 
 
+RATE_ERROR = BREAKDOWN["decay_rate_error_per_s"]
 PARAMETERS = (
-    _both("free period", "single_mode.free_period_s", add=FREE_PERIOD_ERROR_S, unit="s", tune=True),
-    _both("decay rate of mode 1", "single_mode.decay_rate_per_s", add=BREAKDOWN["decay_rate_error_per_s"],
-          unit="1/s"),
-    _both("restitution of Eq. (1)", "single_mode.restitution", add=0.05),
-    _both("damping of higher modes", factors=(0.5, 2.0)),
-    _both("mass of ball and mount", "tip.mass_kg", (0.8, 1.2), tune=True),
-    _both("gap", "stop.gap_m", (0.8, 1.25)),
-    _both("radius of the ball", "tip.ball_radius_m", (0.5, 2.0)),
-    _both("radius of the bend", "spring.bend_radius_m", (0.7, 1.3), tune=True),
-    _both("width of the strip", "spring.width_m", (0.7, 1.3), tune=True),
-    _both("modulus of the tape", "spring.tape_modulus_pa", (0.5, 2.0), tune=True),
-    _both("coverage of the tape", "spring.tape_coverage", (0.75, 1.25), tune=True),
-    _both("number of modes", "modes.count", add=5),
+    _both("free period", "single_mode.free_period_s", -FREE_PERIOD_ERROR_S, FREE_PERIOD_ERROR_S, "s",
+          tune=True),
+    _both("decay rate of mode 1", "single_mode.decay_rate_per_s", -RATE_ERROR, RATE_ERROR, "1/s"),
+    _both("restitution of Eq. (1)", "single_mode.restitution", -0.05, 0.05, ""),
+    _both("damping of higher modes", "", 0.5, 2.0),
+    _both("mass of ball and mount", "tip.mass_kg", 0.8, 1.2, tune=True),
+    _both("gap", "stop.gap_m", 0.8, 1.25),
+    _both("radius of the ball", "tip.ball_radius_m", 0.5, 2.0),
+    _both("radius of the bend", "spring.bend_radius_m", 0.7, 1.3, tune=True),
+    _both("width of the strip", "spring.width_m", 0.7, 1.3, tune=True),
+    _both("modulus of the tape", "spring.tape_modulus_pa", 0.5, 2.0, tune=True),
+    _both("coverage of the tape", "spring.tape_coverage", 0.75, 1.25, tune=True),
+    _both("number of modes", "modes.count", -5, 5, ""),
 )  # fmt: skip
 """The letter's errors, then the assumptions; the first four in the small form."""
 
@@ -102,12 +102,10 @@ def changed(scene: Scene, change: Change) -> tuple[Scene, ModalModel]:
     elif key == "single_mode.decay_rate_per_s":
         scene = calibrate_damping(scene, value)
     if change.tune:
-        h = scene.spring.thickness_m
-        scene = solve_for("spring.thickness_m", scene, free_period, period, name="free period", unit="s",
-                          between=(0.7 * h, 1.4 * h))  # fmt: skip
+        scene = calibrate_thickness(scene, period)
     model = model_of(scene)
     rates = model.decay_rate.copy()
-    rates[1:] *= 1.0 if key else change.factor
+    rates[1:] *= 1.0 if key else change.by
     return scene, replace(model, decay_rate=rates)
 
 
@@ -144,14 +142,12 @@ def row_at(scene: Scene, model: ModalModel, frequency: float, base: Row | None =
         "single_mode": StroboscopicMap(oscillator=single_mode_at(scene, frequency)),
         "beam": StroboscopicMap(oscillator=beam_at(scene, frequency, model)),
     }
-    born = {name: known(born_period, strobed[name]) for name in NAMES}
-    m = {name: (born[name] if base is None else getattr(base, f"born_{name}")) or 0 for name in NAMES}
-    fold = {name: known(fold_excess, strobed[name], m[name]) for name in NAMES}
-    return Row(
-        frequency_hz=frequency, m=m["beam"], born_map=born["map"], born_single_mode=born["single_mode"],
-        born_beam=born["beam"], fold_map=fold["map"], fold_single_mode=fold["single_mode"],
-        fold_beam=fold["beam"],
-    )  # fmt: skip
+    columns = dict[str, Any](frequency_hz=frequency)
+    for name, motion in strobed.items():
+        period = known(born_period, motion)
+        columns["m"] = (period if base is None else getattr(base, f"born_{name}")) or 0
+        columns |= {f"born_{name}": period, f"fold_{name}": known(fold_excess, motion, columns["m"])}
+    return Row(**columns)
 
 
 def rows_after(scene: Scene, base: Sequence[Row], change: Change) -> list[Row]:

@@ -97,7 +97,7 @@ def draw_noise(noise: Sequence[Clouds]) -> Figure:
             axis.plot(m, ratio, **look, mfc=face, label=f"{kind}, {description}")
     axis.axhline(1.0, **plotting.GUIDE)
     highest = max(letter.PERIODS.values())
-    plotting.mark_letter(axis.xaxis, highest, words="letter: highest $m$", along=0.98, turn=True, level=True)
+    plotting.mark_letter(axis.xaxis, highest, words="letter: highest $m$", along=0.98)
     axis.set_yscale("log")
     axis.locator_params(axis="x", integer=True)
     plotting.label(axis.xaxis, "period $m$")

@@ -28,8 +28,8 @@ KINDS = ("jitter", "drift")
 BORN_EXCESS = 1e-3
 """Excess of the orbit in noise."""
 
-STEP, HIGHEST_EXCESS = 1.1, 0.02
-"""Factor between the excesses at which a period is looked for, and the last of them."""
+EXCESSES = tuple((AMPLITUDE_STABILITY * 1.1 ** np.arange(46)).tolist())
+"""Where a period is looked for: from the stability of the amplitude on, in steps of 10 %, to 0.018."""
 
 CORRELATION = 100.0
 """Drive periods over which the drift is correlated: some seconds, longer than 40 strobe points take."""
@@ -127,11 +127,5 @@ def in_noise(strobes: int, described: tuple[str, StroboscopicMap, int]) -> list[
 
 
 def first_birth(period: int, strobed: StroboscopicMap) -> float | None:
-    """Lowest excess, in steps of 10 %, at which a start from just below grazing gives this period; none is
-    closer to grazing than the amplitude is stable."""
-    excess = AMPLITUDE_STABILITY
-    while excess < HIGHEST_EXCESS:
-        if born_period(strobed, excess) == period:
-            return excess
-        excess *= STEP
-    return None
+    """Lowest of `EXCESSES` at which a start from just below grazing gives this period."""
+    return next((excess for excess in EXCESSES if born_period(strobed, excess) == period), None)

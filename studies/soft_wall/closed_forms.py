@@ -88,9 +88,6 @@ class SoftWall:
     hardness: float
 
     def __post_init__(self) -> None:
-        model = self.oscillator.model
-        if model.n_modes != 1 or model.phi[0] != 1.0:
-            raise ValueError(f"oscillator has {model.n_modes} modes; a soft wall is for one, of unit mass")
         if not 1.0 < self.hardness < math.inf:
             raise ValueError(f"hardness is {self.hardness}; the wall's K must be finite and above 1")
 
@@ -100,12 +97,12 @@ class SoftWall:
     @property
     def frequency(self) -> float:
         """Of the drive [Hz]."""
-        return self.oscillator.drive.frequency  # type: ignore[union-attr]
+        return self.oscillator.driven.frequency
 
     @property
     def deceleration(self) -> float:
         """a = omega^2 gap [m/s^2]."""
-        return (2.0 * math.pi / self.oscillator.period) ** 2 * self.oscillator.stop.gap
+        return self.oscillator.driven.angular_frequency * self.oscillator.unit_speed
 
     @property
     def rate(self) -> float:

@@ -34,8 +34,7 @@ def draw_kicks(rows: Sequence[Kick]) -> Figure:
             name = None if hardness is None else f"K = 10$^{{{np.log10(hardness):.0f}}}$"
             axis.loglog(excess, simulated, **style, markerfacecolor="white", label=name)
         axis.loglog(excess, hard, color="0.45", linewidth=1.2, linestyle=":", label="hard wall, power 1/2")
-        plotting.mark_letter(axis.xaxis, letter.AMPLITUDE_STABILITY, along=0.02, turn=True, level=True,
-                             words="letter:\nstability")  # fmt: skip
+        plotting.mark_letter(axis.xaxis, letter.AMPLITUDE_STABILITY, along=0.02, words="letter:\nstability")
         plotting.panel(axis, number, CASES[case])
         plotting.label(axis.xaxis, EXCESS)
     axes[0].set_ylim(bottom=0.3 * min((row.kick_velocity for row in rows), default=1e-6))
@@ -64,8 +63,7 @@ def draw_orbits(scene: Scene, doublings: Sequence[Doubling], beam: Beam | None) 
         stable = (beam.born[0][0], beam.doubling_excess or np.nan)
         axes[1].semilogx(stable, (1, 1), color=PALETTE[1], marker="|", label="p$_1$ with a touch is stable")
         axes[1].set_ylim(0.0, 1.5 + axes[1].get_ylim()[1])
-        plotting.mark_letter(axes[1].xaxis, letter.AMPLITUDE_STABILITY, along=0.3, turn=True, level=True,
-                             words="letter:\nstability")  # fmt: skip
+        plotting.mark_letter(axes[1].xaxis, letter.AMPLITUDE_STABILITY, along=0.3, words="letter:\nstability")
         axes[1].legend(loc="center left", bbox_to_anchor=(0.0, 0.55))
     for number, (axis, name, across) in enumerate(zip(
         axes, ("excess of the doubling of p$_1$", "beam: period born"), ("hardness K", EXCESS), strict=True

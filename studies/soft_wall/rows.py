@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from contact import ImpactOscillator, StroboscopicMap, first_collision
+from contact import Collision, ImpactOscillator, StroboscopicMap, first_collision
 from contact.orbits import PeriodicOrbit, Shooting, born_period, follow
 from studies import letter
 from studies.scene import Scene, approach_speed, beam_at
@@ -86,7 +86,7 @@ def kicks_of(wall: SoftWall, excesses: np.ndarray) -> list[Kick]:
 def doubling_near(oscillator: ImpactOscillator, peak: float) -> PeriodicOrbit | None:
     """The period doubling of p1 by shooting, next to where its peak is `peak` gaps over the wall."""
     family = Shooting(oscillator=oscillator, period=1)
-    speed = 2.0 * math.pi / oscillator.period * oscillator.stop.gap * math.sqrt(2.0 * peak)
+    speed = oscillator.unit_speed * math.sqrt(2.0 * peak)
     low, high = speed / SPAN, SPAN * speed
     branch = follow(family, family.at_speed(speed), low=low, high=high, step=math.log(SPAN))
     return next(iter(branch.of_kind("period doubling")), None)
@@ -113,30 +113,27 @@ def beam_of(scene: Scene, frequency: float, excesses: Sequence[float]) -> tuple[
     """The beam at one frequency, and its kicks."""
     oscillator = beam_at(scene.replace({"contact.law": "hertz"}), frequency)
 
-    def kick(excess: float) -> float:
-        return first_collision(oscillator.with_excess(excess)).kick
-
-    def kick_velocity(excess: float) -> float:
-        return first_collision(oscillator.with_excess(excess)).kick_velocity
+    def collision(excess: float) -> Collision:
+        return first_collision(oscillator.with_excess(excess))
 
     def power(excess: float) -> float:
-        low, high = (kick_velocity(excess * RATIO**side) for side in (-0.5, 0.5))
+        low, high = (collision(excess * RATIO**side).kick_velocity for side in (-0.5, 0.5))
         return math.log(high / low) / math.log(RATIO)
 
-    plateau, closed = kick(letter.TIME_TRACE_EXCESS), hertz_doubling(oscillator)
+    plateau, closed = collision(letter.TIME_TRACE_EXCESS).kick, hertz_doubling(oscillator)
     doubling = None if closed is None else doubling_near(oscillator, closed[0])
-    half = zero_of(lambda e: kick(e) - 0.5 * plateau, 1e-8, 1e-2)
+    half = zero_of(lambda e: collision(e).kick - 0.5 * plateau, 1e-8, 1e-2)
     strobed = StroboscopicMap(oscillator=oscillator)
     beam = Beam(
         frequency_hz=frequency, modes=oscillator.n_modes, plateau=plateau, half_excess=half,
-        share_at_stability=kick(letter.AMPLITUDE_STABILITY) / plateau,
+        share_at_stability=collision(letter.AMPLITUDE_STABILITY).kick / plateau,
         square_root_from=zero_of(lambda e: power(e) - 0.6, 1e-5, 1e-1),
         doubling_excess=None if doubling is None else doubling.excess,
         doubling_theory=None if closed is None else closed[1],
         born=tuple((e, born_period(strobed, e)) for e in excesses if e <= 0.01),
     )  # fmt: skip
     kicks = [
-        Kick(case="beam", hardness=None, excess=e, kick_velocity=kick_velocity(e), closed_form=None,
+        Kick(case="beam", hardness=None, excess=e, kick_velocity=collision(e).kick_velocity, closed_form=None,
              soft_law=hertz_kick(oscillator, e),
              hard_law=plateau * approach_speed(frequency, oscillator.stop.gap, e))
         for e in excesses

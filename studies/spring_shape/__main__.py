@@ -32,7 +32,7 @@ import numpy as np
 
 from beam.space import spatial_modes
 from studies.run import Run, study
-from studies.scene import Scene
+from studies.scene import Scene, single_mode_of
 from studies.spring_shape.rows import MODES, ErrorRow, ReadingRow, error_rows, reading_row
 from studies.spring_shape.shapes import (
     READINGS,
@@ -40,7 +40,6 @@ from studies.spring_shape.shapes import (
     Mesh,
     Reading,
     Shape,
-    angular_frequency_of,
     brought_to,
     kinds_of,
     shape_of,
@@ -82,8 +81,7 @@ def spring_shape(
         "reading", "thickness_m", "flange_m", "first_bending_hz", "first_twist_hz", "ratio_twist", "ratio",
         "tip_value_bending", "tip_value_twist_off_line", "turn_of_twist"))  # fmt: skip
     run.table("theory_error", errors, "Strip theory against solids.", show=(
-        "reading", "family", "number", "kind", "solid_hz", "error", "mesh_change",
-        "error_bend_as_plate"))  # fmt: skip
+        "reading", "family", "number", "kind", "solid_hz", "error", "mesh_change"))  # fmt: skip
     draw(run, shapes, readings, errors)
     ranks = {name: row.ratio_twist for name, row in readings.items() if name != "plain"}
     highest, plain = max(ranks, key=lambda name: ranks[name]), readings["plain"].ratio_twist
@@ -97,7 +95,7 @@ def spring_shape(
 def shapes_of(scene: Scene, sheet: float = 0.25) -> dict[Reading, Shape]:
     """The readings with the sizes of the scene, at its period; the sheet of the channel is `sheet` times that
     of the plain strip."""
-    omega, fitted = angular_frequency_of(scene), dict[Reading, Shape]()
+    omega, fitted = float(single_mode_of(scene).omega[0]), dict[Reading, Shape]()
     for name in ("side_by_side", "folded", "plain"):
         fitted[name] = brought_to(shape_of(scene, name), omega)
     plain = fitted["plain"]
@@ -119,7 +117,7 @@ def draw(
     nets: dict[str, np.ndarray] = {}
     for name, shape in shapes.items():
         modes = spatial_modes(shape.spring(), MODES)
-        twist = kinds_of(shape, modes.displacement, modes.rotation).index("twist")
+        twist = kinds_of(shape, modes).index("twist")
         nets[f"{name}_rest"], nets[f"{name}_moved"] = net_of(shape, modes, twist, LARGEST)
         nets[f"{name}_ball"] = shape.centreline.points(np.array(shape.tip_at))
     run.arrays("shapes", **nets)

@@ -23,157 +23,100 @@ u_x = u_y = 0 at z = 0 and all energies doubled.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import lru_cache
-from typing import Literal
-
 import numpy as np
 import skfem as sk
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, csc_array, csr_array
+from scipy.sparse import block_array, block_diag, csc_array, csr_array
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
-from beam import Material, Tip
-from studies.spring_shape.swept_mesh import SweptMesh
+from beam import Material
+from studies.spring_shape.shapes import Shape
 
-#: Three Gauss points each way: exact for the stiffness of a brick.
 QUADRATURE_ORDER = 5
-Parity = Literal["symmetric", "antisymmetric"]
-#: Which of d_x, d_y, d_z, theta_x, theta_y, theta_z each parity has.
-MOVES: dict[str, tuple[int, ...]] = {"symmetric": (0, 1, 5), "antisymmetric": (2, 3, 4)}
+"""Three Gauss points each way: exact for the stiffness of a brick."""
+
+FAMILIES = {"in plane": ((0, 1, 5), [2]), "out of plane": ((2, 3, 4), [0, 1])}
+"""Symmetric and antisymmetric motion: which of d_x, d_y, d_z, theta_x, theta_y, theta_z of a section it has,
+and which components of u are 0 at z = 0."""
+
+Modes = tuple[NDArray[np.float64], NDArray[np.float64]]
+"""Natural frequencies [Hz] and |e . d| of the section at the tip [kg^(-1/2)], each (n_modes,)."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class SolidSpring:
-    """A swept solid, clamped at s = 0, at the far end or at both; the tip at a station of the mesh.
+def solid_modes(shape: Shape, mesh: sk.MeshHex2, counts: tuple[int, int]) -> list[Modes]:
+    """The lowest modes in the plane of symmetry and out of it, so many of each; mass-normalised.
 
-    `tip_at` is an arc length [m], `drive` the unit vector e; the rotary inertia of the tip counts about every
-    axis.
+    The mesh has the cross-sections "start", "tip" and "end" as named faces (``swept_mesh``). The rotary
+    inertia of the tip counts about every axis.
     """
-
-    solid: SweptMesh
-    material: Material
-    clamped: tuple[bool, bool]
-    tip: Tip
-    tip_at: float
-    drive: tuple[float, float, float] = (0.0, 1.0, 0.0)
-
-    def __post_init__(self) -> None:
-        if len(self.clamped) != 2 or not any(self.clamped):
-            raise ValueError(f"clamped is {self.clamped}; at least one end of two must be clamped")
-        nearest = float(np.min(np.abs(self.solid.stations - self.tip_at)))
-        if nearest > 1e-9 * self.solid.centreline.length:
-            raise ValueError(f"tip_at is {self.tip_at} m; the nearest station of the mesh is {nearest} m off")
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class SolidModes:
-    """Mass-normalised modes of one parity, lowest first, with phi >= 0."""
-
-    omega: NDArray[np.float64]
-    """[rad/s], shape (n_modes,)"""
-    phi: NDArray[np.float64]
-    """e . d of the section at the tip [kg^(-1/2)], shape (n_modes,)"""
-    section: NDArray[np.float64]
-    """d along x, y, z [kg^(-1/2)] and theta about them [kg^(-1/2) m^(-1)], shape (n_modes, 6)"""
-
-    @property
-    def frequencies_hz(self) -> NDArray[np.float64]:
-        """Natural frequencies [Hz], shape (n_modes,)."""
-        return self.omega / (2.0 * np.pi)
+    basis, stiffness, mass = assembled(mesh, shape.material)
+    clamped = basis.get_dofs(("start", "end") if shape.bent else "start").all()
+    section = section_rows(mesh, basis, shape.centreline.axes(shape.tip_at))
+    lumped = np.sqrt(np.repeat([shape.tip.mass, shape.tip.rotary_inertia], 3))
+    found = []
+    for (moves, still), count in zip(FAMILIES.values(), counts, strict=True):
+        rows = section * np.isin(np.arange(6), moves)[:, None]
+        carried = csr_array(lumped[:, None] * rows)
+        held = np.zeros((3, basis.N), dtype=bool)
+        held[:, clamped] = True
+        held[np.ix_(still, basis.doflocs[2] == 0.0)] = True
+        free = np.flatnonzero(~held)
+        squares, x = lowest(stiffness, mass + carried.T @ carried, free, count)
+        phi = np.abs(np.array(shape.stop) @ rows[:3, free] @ x)
+        found.append((np.sqrt(squares) / (2.0 * np.pi), phi))
+    return found
 
 
-def solid_modes(spring: SolidSpring, parity: Parity, count: int) -> SolidModes:
-    """Return the `count` lowest modes of one parity."""
-    basis, stiffness, mass = assembled(spring)
-    free = _free(spring, basis, parity)
-    rows = _section_rows(spring, basis, parity)
-    lumped = np.repeat([spring.tip.mass, spring.tip.rotary_inertia], 3)
-    carried = csr_array(np.sqrt(lumped)[:, None] * rows)
-    mass = mass + carried.T @ carried
-    k, m = (csc_array(matrix)[free][:, free] for matrix in (stiffness, mass))
+def lowest(stiffness: csr_array, mass: csr_array, free: NDArray[np.intp], count: int) -> Modes:
+    """The `count` lowest omega^2 [rad^2/s^2], rising, and the mass-normalised modes in the free unknowns."""
+    k, m = (csc_array(part)[free][:, free] for part in (stiffness, mass))
     factors = splu(k, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     inverse = LinearOperator(k.shape, factors.solve, dtype=np.float64)
     start = np.cos(np.arange(k.shape[0]))  # fixed, so that results repeat, and orthogonal to no mode
-    values, x = eigsh(k, count, M=m, sigma=0.0, OPinv=inverse, v0=start)
-    order = np.argsort(values)
-    full = np.zeros((stiffness.shape[0], count))
-    full[free] = x[:, order]
-    full /= np.sqrt(np.einsum("ik,ik->k", full, mass @ full))
-    phi = np.array(spring.drive) @ (rows[:3] @ full)
-    full *= np.where(phi < 0.0, -1.0, 1.0)
-    return SolidModes(omega=np.sqrt(values[order]), phi=np.abs(phi), section=(rows @ full).T)
+    squares, x = eigsh(k, count, M=m, sigma=0.0, OPinv=inverse, v0=start)
+    order = np.argsort(squares)
+    return squares[order], x[:, order] / np.sqrt(np.einsum("ik,ik->k", x, m @ x))[order]
 
 
-@lru_cache(maxsize=2)  # both parities of a spring ask for them, one after the other
-def assembled(spring: SolidSpring) -> tuple[sk.Basis, csr_array, csr_array]:
-    """Scalar basis, K and M without tip and supports; unknown 3 i + c is component c at node i.
+def assembled(mesh: sk.MeshHex2, material: Material) -> tuple[sk.Basis, csr_array, csr_array]:
+    """Scalar basis of N functions, K and M without tip and supports; unknown c N + i is component c of node
+    i.
 
-    D_{ia,jb} = int d_a N_i d_b N_j dV holds everything: K_{ia,jb} = lambda D_{ia,jb} + G (D_{ib,ja} +
-    delta_ab sum_c D_{ic,jc}). One product of small matrices for each element replaces the 81 x 81 forms that
-    a vector element would integrate one by one, fifty times faster.
+    D_ab = int d_a N_i d_b N_j dV holds everything: K_ab = lambda D_ab + G (D_ba + delta_ab sum_c D_cc). Nine
+    scalar forms replace the 81 x 81 ones that a vector element would integrate, seven times faster.
     """
-    basis = sk.Basis(spring.solid.mesh, sk.ElementHex2(), intorder=QUADRATURE_ORDER)
-    e, nu = spring.material.youngs_modulus, spring.material.poissons_ratio
-    lame, shear = e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), spring.material.shear_modulus
-    gradients = np.array([function[0].grad for function in basis.basis])  # (27, 3, elements, points)
-    n, cells = basis.Nbfun, basis.nelems
-    flat = gradients.transpose(2, 0, 1, 3).reshape(cells, 3 * n, -1)
-    d = ((flat * basis.dx[:, None, :]) @ flat.transpose(0, 2, 1)).reshape(cells, n, 3, n, 3)
-    local = lame * d + shear * d.transpose(0, 1, 4, 3, 2)
-    squares = shear * np.einsum("eicjc->eij", d)
-    values = np.array([np.broadcast_to(function[0], basis.dx.shape) for function in basis.basis])
-    heavy = spring.material.density * np.einsum("iep,jep,ep->eij", values, values, basis.dx, optimize=True)
-    inertia = np.zeros_like(local)
-    for c in range(3):
-        local[:, :, c, :, c] += squares
-        inertia[:, :, c, :, c] = heavy
-    dofs = (3 * basis.element_dofs.T[:, :, None] + np.arange(3)).reshape(cells, 3 * n)
-    rows, columns = np.repeat(dofs, 3 * n, axis=1).ravel(), np.tile(dofs, (1, 3 * n)).ravel()
-    shape = (3 * basis.N, 3 * basis.N)
-    stiffness, mass = (
-        csr_array(coo_array((2.0 * part.ravel(), (rows, columns)), shape=shape)) for part in (local, inertia)
+    basis = sk.Basis(mesh, sk.ElementHex2(), intorder=QUADRATURE_ORDER)
+    e, nu = material.youngs_modulus, material.poissons_ratio
+    lame, shear, density = 2.0 * np.array(  # two halves
+        [e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), material.shear_modulus, material.density]
     )
-    return basis, stiffness, mass
+    d = [
+        [sk.BilinearForm(lambda u, v, _, a=a, b=b: v.grad[a] * u.grad[b]).assemble(basis) for b in range(3)]
+        for a in range(3)
+    ]
+    squares = d[0][0] + d[1][1] + d[2][2]
+    blocks = [
+        [lame * d[a][b] + shear * (d[b][a] + squares if a == b else d[b][a]) for b in range(3)]
+        for a in range(3)
+    ]
+    heavy = density * sk.BilinearForm(lambda u, v, _: u * v).assemble(basis)
+    return basis, block_array(blocks, format="csr"), block_diag([heavy] * 3, format="csr")
 
 
-def _free(spring: SolidSpring, basis: sk.Basis, parity: Parity) -> NDArray[np.intp]:
-    """Unknowns that supports and symmetry leave."""
-    held = np.zeros((basis.N, 3), dtype=bool)
-    line, box = spring.solid.centreline, spring.solid.box
-    for clamped, s in zip(spring.clamped, (0.0, line.length), strict=True):
-        if clamped:
-            faces = box.facets_satisfying(lambda x, s=s: np.abs(x[0] - s) < 1e-9 * line.length)
-            held[basis.get_dofs(faces).all()] = True
-    middle = np.abs(basis.doflocs[2]) < 1e-12 * line.length
-    held[np.ix_(middle, [2] if parity == "symmetric" else [0, 1])] = True
-    return np.flatnonzero(~held.ravel())
+def section_rows(mesh: sk.MeshHex2, basis: sk.Basis, axes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Rows of d along x, y, z and theta about them for the section at the tip, shape (6, unknowns); `axes`
+    are t, n and e_z there.
 
-
-def _section_rows(spring: SolidSpring, basis: sk.Basis, parity: Parity) -> NDArray[np.float64]:
-    """Rows of d along x, y, z and theta about them for the section at the tip, (6, unknowns); those that the
-    other parity has are 0."""
-    line, s = spring.solid.centreline, spring.tip_at
-    faces = spring.solid.box.facets_satisfying(lambda x: np.abs(x[0] - s) < 1e-9 * line.length)
-    face = sk.FacetBasis(spring.solid.box, sk.ElementHex2(), facets=faces, intorder=2 * QUADRATURE_ORDER)
-    t, n = line.frame(np.array(s))
-    _, y, z = np.asarray(face.global_coordinates())  # a section has the same shape in the box and in space
-    y = y - np.sum(y * face.dx) / np.sum(face.dx)
-    area, yy, zz = (float(np.sum(part * face.dx)) for part in (np.ones_like(y), y**2, z**2))
-
-    def mean(weight: NDArray[np.float64]) -> NDArray[np.float64]:
-        row = np.zeros(basis.N)
-        for function, dofs in zip(face.basis, face.element_dofs, strict=True):
-            np.add.at(row, dofs, np.sum(function[0] * weight * face.dx, axis=1))
-        return row
-
-    even, by_y, by_z = mean(np.ones_like(y)) / area, mean(y), mean(z)
-    about_t = np.outer(by_y, [0.0, 0.0, 1.0]) - np.outer(by_z, n)
-    turns = np.outer(t, about_t / (yy + zz)) + np.outer(n, np.outer(by_z, t) / zz)
-    turns = turns - np.outer([0.0, 0.0, 1.0], np.outer(by_y, t) / yy)
-    rows = np.zeros((6, 3 * basis.N))
-    for c in range(3):
-        rows[c, c::3] = even
-    rows[3:] = turns
-    kept = np.isin(np.arange(6), MOVES[parity])
-    return rows * kept[:, None]
+    A coordinate is a function of the basis: with m = int N_i N_j dA, int y u dA = (m y) . u.
+    """
+    bricks, faces = sk.MeshHex.from_mesh(mesh), mesh.boundaries["tip"]  # the section is plane
+    face = sk.FacetBasis(bricks, sk.ElementHex2(), facets=faces, intorder=QUADRATURE_ORDER)
+    m = sk.BilinearForm(lambda u, v, _: u * v).assemble(face)
+    (t, n, z_axis), x = axes, basis.doflocs
+    even = m @ np.ones(basis.N)
+    mean = even / even.sum()
+    y, z = n @ (x - (x @ mean)[:, None]), x[2]
+    by_y, by_z = m @ y, m @ z
+    about_t = (np.kron(z_axis, by_y) - np.kron(n, by_z)) / (y @ by_y + z @ by_z)
+    turns = np.stack([about_t, np.kron(t, by_z) / (z @ by_z), -np.kron(t, by_y) / (y @ by_y)])
+    return np.concatenate((np.kron(np.eye(3), mean), axes.T @ turns))

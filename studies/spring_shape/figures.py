@@ -105,10 +105,6 @@ def draw_errors(rows: Sequence[ErrorRow]) -> Figure:
             for row, x, y in zip(chosen, f, error, strict=True):
                 ax.annotate(str(row.number), (x, y), xytext=(2.5, 3.0), textcoords="offset points",
                             fontsize=NOTE)  # fmt: skip
-        if reading == "folded":
-            bent = [row for row in own if row.family == "in plane"]
-            ax.plot([row.solid_hz for row in bent], [100.0 * row.error_bend_as_plate for row in bent],
-                    color="0.45", marker=".", linestyle=":", lw=0.8, label="bend as plate")  # fmt: skip
         ax.set_xscale("log")
         panel(ax, place, f"{TITLES[reading]}; numbers: modes in and out of the plane")
         label(ax.xaxis, "frequency of the solid", "Hz")

@@ -8,19 +8,18 @@ computed with the ball where it is, not to first order. What a slow force at the
 compliance phi^2/omega^2 [m/N].
 
 A bent strip curls across its width. A clamp forbids that, and a bend of radius r does if b^2/(r t) is large:
-`bend_as_plate` gives the bend EI/(1 - nu^2).
+there EI/(1 - nu^2) halves the error of the folded strip.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from beam.space import SpatialModes, SpatialSpring, spatial_modes
-from studies.spring_shape.elasticity import Parity, solid_modes
-from studies.spring_shape.shapes import Mesh, Shape, first_bending, kinds_of
+from beam.space import spatial_modes
+from studies.spring_shape.elasticity import FAMILIES, solid_modes
+from studies.spring_shape.shapes import Mesh, Shape, kinds_of
 
 MODES = 14
 """Modes looked through for the first of each kind."""
@@ -67,7 +66,6 @@ class ErrorRow:
     """f_strip/f_solid - 1"""
     mesh_change: float
     """Of f_solid, coarse over fine - 1."""
-    error_bend_as_plate: float
     tip_value_error: float | None
     """None: the mode does not move the ball along the stop."""
 
@@ -75,12 +73,12 @@ class ErrorRow:
 def reading_row(shape: Shape, off_line: float) -> ReadingRow:
     """The row of a shape that has been brought to its period, the ball off the line by `off_line` [m]."""
     modes = spatial_modes(shape.spring(), MODES)
-    kinds, f = kinds_of(shape, modes.displacement, modes.rotation), modes.frequencies_hz
-    bending, twist = first_bending(modes), kinds.index("twist")
+    kinds, f = kinds_of(shape, modes), modes.frequencies_hz
+    bending, twist = kinds.index("bending"), kinds.index("twist")
     sideways = float(f[kinds.index("sideways")]) if "sideways" in kinds else None
     off = spatial_modes(shape.spring(off_line), MODES)
-    near = np.abs(off.frequencies_hz / f[twist] - 1.0) < 0.1
-    moved, first = int(np.argmax(np.abs(off.rotation[:, 0]) * near)), first_bending(off)
+    near = np.abs(off.frequencies_hz / f[twist] - 1.0) < 0.1  # mixed, it may be named bending
+    moved, first = int(np.argmax(np.abs(off.rotation[:, 0]) * near)), kinds_of(shape, off).index("bending")
     compliance = (off.phi / off.omega) ** 2
     return ReadingRow(
         reading=shape.reading, thickness_m=shape.thickness, flange_m=shape.flange,
@@ -97,36 +95,17 @@ def reading_row(shape: Shape, off_line: float) -> ReadingRow:
 def error_rows(shape: Shape, meshes: tuple[Mesh, Mesh], counts: tuple[int, int]) -> list[ErrorRow]:
     """The error of strip theory in the first modes in the plane of symmetry and out of it."""
     strip = spatial_modes(shape.spring(), 3 * sum(counts))
-    plates = spatial_modes(bend_as_plate(shape), 3 * sum(counts)) if shape.reading == "folded" else strip
-    solids = [shape.solid(mesh) for mesh in meshes]
+    kinds, f = kinds_of(shape, strip), strip.frequencies_hz
+    coarser, finer = (solid_modes(shape, shape.swept(mesh), counts) for mesh in meshes)
     rows: list[ErrorRow] = []
-    parities: tuple[Parity, Parity] = ("symmetric", "antisymmetric")
-    for family, parity, count in zip(("in plane", "out of plane"), parities, counts, strict=True):
-        coarse, fine = (solid_modes(solid, parity, count) for solid in solids)
-        places, plate_places = (_of_parity(modes, parity)[:count] for modes in (strip, plates))
-        kinds = kinds_of(shape, strip.displacement[places], strip.rotation[places])
-        f, solid_hz = strip.frequencies_hz[places], fine.frequencies_hz
-        plate_hz = plates.frequencies_hz[plate_places]
+    for family, (coarse_hz, _), (fine_hz, phi) in zip(FAMILIES, coarser, finer, strict=True):
+        places = np.flatnonzero((strip.out_of_plane < 0.5) == (family == "in plane"))[: phi.size]
         for k, place in enumerate(places):
             moves = strip.phi[place] > 1e-3 * strip.phi.max()
             rows.append(ErrorRow(
-                reading=shape.reading, family=family, number=k + 1, kind=kinds[k], strip_hz=float(f[k]),
-                solid_hz=float(solid_hz[k]), error=float(f[k] / solid_hz[k] - 1.0),
-                mesh_change=float(coarse.frequencies_hz[k] / solid_hz[k] - 1.0),
-                error_bend_as_plate=float(plate_hz[k] / solid_hz[k] - 1.0),
-                tip_value_error=float(strip.phi[place] / fine.phi[k] - 1.0) if moves else None,
+                reading=shape.reading, family=family, number=k + 1, kind=kinds[place],
+                strip_hz=float(f[place]), solid_hz=float(fine_hz[k]),
+                error=float(f[place] / fine_hz[k] - 1.0), mesh_change=float(coarse_hz[k] / fine_hz[k] - 1.0),
+                tip_value_error=float(strip.phi[place] / phi[k] - 1.0) if moves else None,
             ))  # fmt: skip
     return rows
-
-
-def bend_as_plate(shape: Shape) -> SpatialSpring:
-    """The strip in space with EI/(1 - nu^2) in its bend."""
-    spring = shape.spring()
-    leg, bend, far = spring.sections
-    stiff = bend.in_plane_stiffness / (1.0 - shape.material.poissons_ratio**2)
-    return replace(spring, sections=(leg, replace(bend, in_plane_stiffness=stiff), far))
-
-
-def _of_parity(modes: SpatialModes, parity: Parity) -> NDArray[np.intp]:
-    """Numbers of the modes of one parity."""
-    return np.flatnonzero((modes.out_of_plane < 0.5) == (parity == "symmetric"))

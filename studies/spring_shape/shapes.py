@@ -25,8 +25,8 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
+from skfem import MeshHex2
 
 from beam import Arc, Centreline, Material, Straight, StripSection, Support, Tip
 from beam.space import (
@@ -39,9 +39,8 @@ from beam.space import (
     spatial_modes,
     upright,
 )
-from studies.scene import Scene, SceneError
-from studies.spring_shape.elasticity import SolidSpring
-from studies.spring_shape.swept_mesh import rectangle_profile, sweep
+from studies.scene import Scene, SceneError, sections_of
+from studies.spring_shape.swept_mesh import sweep
 
 Reading = Literal["side_by_side", "channel", "folded", "plain"]
 READINGS: tuple[Reading, ...] = ("side_by_side", "channel", "folded", "plain")
@@ -54,8 +53,8 @@ THINNEST, THICKEST = 5e-4, 0.05
 FLANGE_REACH = 1.0
 """Flanges are looked for up to this part of the width."""
 
-ACCURACY = 1e-9
-"""Of the fitted size, as a part of its range (of its logarithm for a thickness)."""
+ACCURACY = 1e-12
+"""Of the fitted size [m]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -133,16 +132,22 @@ class Shape:
             tip_at=self.tip_at, tip_offset=(x, y, z), drive=self.stop,
         )  # fmt: skip
 
-    def solid(self, mesh: Mesh) -> SolidSpring:
-        """The folded or the plain strip as a solid."""
-        profile = rectangle_profile(along_n=self.thickness, along_z=self.width, cells=mesh.across)
-        solid = sweep(
+    def swept(self, mesh: Mesh) -> MeshHex2:
+        """Half of the folded or the plain strip as a solid.
+
+        Beside `mesh.across` elements across the half, two lie in a margin as wide as the sheet is thick:
+        there the shear of torsion turns round.
+        """
+        half = 0.5 * self.width
+        inner = half - min(self.thickness, 0.5 * half)
+        edge = [half - (half - inner) / 3.0, half]
+        profile = (
+            0.5 * self.thickness * np.array([-1.0, 1.0]),
+            np.concatenate((np.linspace(0.0, inner, mesh.across + 1), edge)),
+        )
+        return sweep(
             profile, self.centreline, (mesh.legs, mesh.bend, mesh.legs) if self.bent else (mesh.legs,),
             tip_at=self.tip_at, halvings=(mesh.halvings, mesh.halvings if self.bent else 0),
-        )  # fmt: skip
-        return SolidSpring(
-            solid=solid, material=self.material, clamped=(True, self.bent), tip=self.tip, tip_at=self.tip_at,
-            drive=self.stop,
         )  # fmt: skip
 
 
@@ -154,20 +159,12 @@ def shape_of(scene: Scene, reading: Reading) -> Shape:
             "spring.bend_radius_m must be greater than half of spring.width_m, "
             f"{keys.width_m / 2:g} (unit m), for legs side by side, not {keys.bend_radius_m}"
         )
-    material = Material(
-        youngs_modulus=keys.young_modulus_pa, poissons_ratio=keys.poisson_ratio, density=keys.density_kg_m3
-    )
+    bare, _ = sections_of(scene)
     return Shape(
-        reading=reading, material=material, length=keys.leg_length_m, width=keys.width_m,
-        bend_radius=keys.bend_radius_m, thickness=keys.thickness_m,
+        reading=reading, material=bare.material, length=keys.leg_length_m, width=bare.width,
+        bend_radius=keys.bend_radius_m, thickness=bare.thickness,
         tip=Tip(mass=scene.tip.mass_kg, rotary_inertia=scene.tip.rotary_inertia_kg_m2),
     )  # fmt: skip
-
-
-def angular_frequency_of(scene: Scene) -> float:
-    """omega_1 [rad/s] of the free damped period in [single_mode]."""
-    keys = scene.single_mode
-    return math.hypot(2.0 * math.pi / keys.free_period_s, 0.5 * keys.decay_rate_per_s)
 
 
 def brought_to(shape: Shape, omega: float) -> Shape:
@@ -185,33 +182,24 @@ def brought_to(shape: Shape, omega: float) -> Shape:
     else:
         fitted, low, high = "thickness", THINNEST * shape.length, min(THICKEST * shape.length, shape.width)
 
-    def with_size(share: float) -> Shape:
-        """`share` from 0 to 1: even steps of a flange, even ratios of a thickness, in which log omega is
-        nearly a straight line."""
-        if fitted == "flange":
-            return replace(shape, flange=low + share * (high - low))
-        return replace(shape, thickness=low * (high / low) ** share)
+    def with_size(size: float) -> Shape:
+        return replace(shape, flange=size) if fitted == "flange" else replace(shape, thickness=size)
 
-    def excess(share: float) -> float:
-        modes = spatial_modes(with_size(share).spring(), 6)
-        return math.log(float(modes.omega[first_bending(modes)]) / omega)
+    def excess(size: float) -> float:
+        modes = spatial_modes(with_size(size).spring(), 6)
+        return float(modes.omega[kinds_of(shape, modes).index("bending")]) - omega
 
-    if not excess(0.0) < 0.0 < excess(1.0):
+    if not excess(low) < 0.0 < excess(high):
         raise SceneError(
             f"no {fitted} between {low:.4g} and {high:.4g} (unit m) brings the reading {shape.reading} to "
             f"{omega / (2.0 * math.pi):.4g} Hz: its other sizes must change"
         )
-    return with_size(float(brentq(excess, 0.0, 1.0, xtol=ACCURACY)))
+    return with_size(float(brentq(excess, low, high, xtol=ACCURACY)))
 
 
-def first_bending(modes: SpatialModes) -> int:
-    """Number of the first mode that moves the ball along the stop."""
-    return int(np.argmax(np.abs(modes.phi) > 1e-3 * np.abs(modes.phi).max()))
-
-
-def kinds_of(shape: Shape, displacement: NDArray[np.float64], rotation: NDArray[np.float64]) -> list[str]:
-    """The name of each mode, from the motion of the section at the ball, each (n_modes, 3)."""
+def kinds_of(shape: Shape, modes: SpatialModes) -> list[str]:
+    """The name of each mode, from the motion of the section at the ball."""
     names = ("bending", "sideways", "twist", "breathing" if shape.bent else "lengthwise")
-    along, across = displacement @ np.array(shape.stop), displacement @ np.array(shape.sideways)
-    moves = np.stack([along, across, 0.5 * shape.width * rotation[:, 0], displacement[:, 0]], axis=1)
-    return [names[place] for place in np.argmax(np.abs(moves), axis=1)]
+    moved, turned = modes.displacement, 0.5 * shape.width * modes.rotation[:, 0]
+    moves = (moved @ np.array(shape.stop), moved @ np.array(shape.sideways), turned, moved[:, 0])
+    return [names[place] for place in np.argmax(np.abs(moves), axis=0)]

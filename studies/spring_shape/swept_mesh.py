@@ -11,9 +11,8 @@ mapping is one to one while k y < 1: the profile must not reach the centre of th
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 import skfem as sk
@@ -25,64 +24,34 @@ Profile = tuple[NDArray[np.float64], NDArray[np.float64]]
 """Half of a cross-section: grid lines y and z [m], rising, z from 0 on, that cut it into rectangles."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class SweptMesh:
-    """The half z >= 0 of a swept profile."""
-
-    box: sk.MeshHex
-    """Elements and faces in the coordinates (s, y, z)."""
-    mesh: sk.MeshHex2
-    """The same elements in space."""
-    centreline: Centreline
-    stations: NDArray[np.float64]
-    """Arc lengths of the cross-sections between the elements [m]."""
-
-
-def rectangle_profile(*, along_n: float, along_z: float, cells: int, through: int = 1) -> Profile:
-    """Return half of a rectangle of these sides [m] about the centreline.
-
-    `cells` lie across half of the side along z, besides two in a margin as wide as the side along n is: there
-    the shear of torsion turns round. `through` lie across the side along n.
-    """
-    half = 0.5 * along_z
-    margin = min(along_n, 0.5 * half)
-    y = np.linspace(-0.5 * along_n, 0.5 * along_n, through + 1)
-    return y, np.concatenate((np.linspace(0.0, half - margin, cells + 1), [half - margin / 3.0, half]))
-
-
 def sweep(
-    profile: Profile,
-    centreline: Centreline,
-    elements: Sequence[int],
-    *,
-    tip_at: float | None = None,
+    profile: Profile, line: Centreline, elements: Sequence[int], *, tip_at: float,
     halvings: tuple[int, int] = (0, 0),
-) -> SweptMesh:
-    """Return the profile swept along the centreline, with so many elements on each of its pieces.
+) -> sk.MeshHex2:  # fmt: skip
+    """Return the half z >= 0 of the profile swept along the line, with so many elements on each of its
+    pieces.
 
-    Inside a piece the station nearest to the tip is moved to `tip_at` [m]. The first and the last element are
-    halved `halvings` times towards the ends: stresses are singular at the edges of a clamp. A profile that
-    reaches the centre of a bend raises ValueError.
+    The cross-sections "start", "tip" (at the arc length `tip_at` [m]) and "end" are named faces. The first
+    and the last element are halved `halvings` times towards the ends: stresses are singular at the edges of a
+    clamp. ValueError if the profile reaches the centre of a bend, or no elements meet at the tip.
     """
-    reach = float(np.max(np.outer(centreline.curvatures, profile[0])))
+    reach = float(np.max(np.outer(line.curvatures, profile[0])))
     if reach >= 1.0:
         raise ValueError(f"y reaches {reach:.3g} bend radii [1]; it must stay below 1")
-    stations = [np.zeros(1)]
-    for count, start, end in zip(elements, centreline.joints[:-1], centreline.joints[1:], strict=True):
-        piece = np.linspace(start, end, count + 1)
-        if tip_at is not None and start < tip_at < end and count > 1:
-            piece[1 + np.argmin(np.abs(piece[1:-1] - tip_at))] = tip_at
-        stations.append(piece[1:])
-    s = np.concatenate(stations)
-    parts = [0.5 ** np.arange(count, 0, -1) for count in halvings]
-    s = np.concatenate(
-        ([0.0], s[1] * parts[0], s[1:-1], s[-1] - (s[-1] - s[-2]) * parts[1][::-1], [centreline.length])
-    )
-    box = sk.MeshHex.init_tensor(s, *profile)
-    quadratic = sk.MeshHex2.from_mesh(box)
-    s_of, y, z = quadratic.doflocs
-    s_of = np.clip(s_of, 0.0, centreline.length)
-    _, n = centreline.frame(s_of)
-    places = np.ascontiguousarray(centreline.points(s_of).T + y * n.T + z * np.array([[0.0], [0.0], [1.0]]))
-    mesh = dataclasses.replace(quadratic, doflocs=places)
-    return SweptMesh(box=box, mesh=mesh, centreline=centreline, stations=s)
+    joints = line.joints
+    pieces = zip(joints[:-1], joints[1:], elements, strict=True)
+    s = np.concatenate([[0.0], *(np.linspace(start, end, n + 1)[1:] for start, end, n in pieces)])
+    first, last = (0.5 ** np.arange(1, count + 1) for count in halvings)
+    s = np.sort(np.concatenate((s, s[1] * first, s[-1] - (s[-1] - s[-2]) * last)))
+    faces = {
+        name: lambda x, at=at: np.abs(x[0] - at) < 1e-9 * line.length
+        for name, at in (("start", 0.0), ("tip", tip_at), ("end", line.length))
+    }
+    box = sk.MeshHex2.from_mesh(sk.MeshHex.init_tensor(s, *profile)).with_boundaries(faces, False)
+    if not box.boundaries["tip"].size:
+        raise ValueError(f"tip_at is {tip_at} m; the nearest elements meet {np.abs(s - tip_at).min()} m off")
+    s_of, y, z = box.doflocs
+    s_of = np.clip(s_of, 0.0, line.length)
+    places = line.points(s_of) + y[:, None] * line.frame(s_of)[1]
+    places[:, 2] += z
+    return replace(box, doflocs=np.ascontiguousarray(places.T))

@@ -1,15 +1,38 @@
-"""The one row of all families: what theory gives, what was found, and whether the package refuses beyond."""
+"""The families of the study, the one row of all of them, and the search for a limit.
+
+A family is a file with two functions: ``measure(scene, quick) -> Findings`` and ``draw(arrays) -> (figure,
+caption)``.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from importlib import import_module
 from itertools import pairwise
+from types import ModuleType
 
 import numpy as np
 
-__all__ = ["Findings", "Limit", "threshold"]
+from contact.integrators import GeneralisedAlpha, Integrator
+from studies.scene import Scene
+
+__all__ = ["FAMILIES", "IMPLICIT", "Findings", "Limit", "family", "findings", "threshold"]
+
+FAMILIES = (
+    "explicit", "splitting", "implicit_energy", "false_restitution", "missed_crossings", "accumulation",
+)  # fmt: skip
+"""In the order of the table."""
+
+IMPLICIT: Mapping[str, Callable[[float], Integrator]] = {
+    "trapezoidal rule": lambda h: GeneralisedAlpha.newmark(step=h),
+    "HHT, α = 0.1": lambda h: GeneralisedAlpha.hht(step=h, alpha=0.1),
+    "HHT, α = 0.3": lambda h: GeneralisedAlpha.hht(step=h, alpha=0.3),
+    "gen.-α, ρ = 0.8": lambda h: GeneralisedAlpha.with_dissipation(step=h, rho=0.8),
+    "gen.-α, ρ = 0": lambda h: GeneralisedAlpha.with_dissipation(step=h, rho=0.0),
+}
+"""The implicit methods that take the stop as a spring, for a step [s]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,12 +54,19 @@ class Limit:
     refused."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Findings:
-    """The rows of a family, and the arrays that its figures are drawn from."""
+Findings = tuple[Sequence[Limit], Mapping[str, np.ndarray]]
+"""The rows of a family, and the arrays that its figure is drawn from."""
 
-    limits: Sequence[Limit]
-    arrays: Mapping[str, np.ndarray]
+
+def family(name: str) -> ModuleType:
+    """The file of a family."""
+    return import_module(f"{__name__}.{name}")
+
+
+def findings(name: str, scene: Scene, quick: bool) -> Findings:
+    """What a family finds."""
+    found: Findings = family(name).measure(scene, quick)
+    return found
 
 
 def threshold(fails: Callable[[float], bool], ladder: Sequence[float], relative: float) -> float | None:

@@ -15,7 +15,7 @@ A row: family; method; case; the parameter with its unit; theory (empty where it
 (empty where the failure did not appear); refused: whether the package refuses to go beyond before a number
 comes out (empty where there is nothing to refuse).
 
-Run:     python -m studies.stability [--families explicit,splitting] [--quick]      4 minutes; quick 20 s
+Run:     python -m studies.stability [--families explicit,splitting] [--quick]      1.5 minutes; quick 20 s
 Writes:  limits.csv (all rows); for each family NAME.npz (arrays of its figure) and NAME.png
 """
 
@@ -27,10 +27,9 @@ from typing import Annotated
 
 from studies.run import Run, study
 from studies.scene import Scene
-from studies.stability import Limit
-from studies.stability.families import FAMILIES, findings
+from studies.stability import FAMILIES, Limit, family, findings
 
-__all__ = ["FAMILIES", "stability"]
+__all__ = ["stability"]
 
 
 @study()
@@ -50,9 +49,10 @@ def stability(
     for name, result in zip(names, found, strict=True):
         if result is None:
             continue
-        rows += result.limits
-        run.arrays(name, **result.arrays)
-        run.figure(name, *FAMILIES[name].draw(result.arrays))
+        limits, arrays = result
+        rows += limits
+        run.arrays(name, **arrays)
+        run.figure(name, *family(name).draw(arrays))
     run.table("limits", rows, "Where methods fail: theory and measurement.")
     return {"rows": rows}
 

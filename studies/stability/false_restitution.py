@@ -16,115 +16,75 @@ table is the exact collision. What the methods for Newton's law make of a step i
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
 from functools import partial
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from contact import Collision, ImpactOscillator, State, before_collision, collisions, simulate
+from contact import ImpactOscillator, before_collision, collisions, first_collision, simulate
 from contact.integrators import GeneralisedAlpha, Integrator
 from studies import letter, plotting
 from studies.scene import Scene, beam_at
-from studies.stability import Findings, Limit
+from studies.stability import IMPLICIT, Findings, Limit
 
-__all__ = ["ElasticCollision", "draw", "measure"]
+__all__ = ["draw", "measure", "outcome", "outcomes"]
 
 MODES = 10
-
-Maker = Callable[[float], Integrator]
-"""A method for a step [s]."""
-
-HERTZ: Mapping[str, Maker] = {
-    "trapezoidal rule": lambda h: GeneralisedAlpha.newmark(step=h),
-    "HHT, α = 0.1": lambda h: GeneralisedAlpha.hht(step=h, alpha=0.1),
-    "HHT, α = 0.3": lambda h: GeneralisedAlpha.hht(step=h, alpha=0.3),
-    "gen.-α, ρ = 0.8": lambda h: GeneralisedAlpha.with_dissipation(step=h, rho=0.8),
-    "gen.-α, ρ = 0": lambda h: GeneralisedAlpha.with_dissipation(step=h, rho=0.0),
-}
 
 Row = partial(Limit, family="false_restitution", method=GeneralisedAlpha.name, refused=False)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ElasticCollision:
-    """One elastic collision: the driven spring before it, its exact outcome, and the contact time [s]."""
-
-    driven: ImpactOscillator
-    start: State
-    exact: Collision
-    unit: float
-
-    @staticmethod
-    def of(driven: ImpactOscillator) -> ElasticCollision:
-        """The first collision of a spring above grazing."""
-        start = before_collision(driven)
-        exact = collisions(driven, simulate(driven, start, periods=2), unfinished="drop")[0]
-        return ElasticCollision(driven=driven, start=start, exact=exact, unit=exact.contact_time)
-
-    def outcome(self, method: Integrator) -> tuple[float, float]:
-        """Restitution and kick by `method`; NaN if its damping keeps the tip off the stop."""
-        motion = simulate(self.driven, self.start, periods=2, method=method)
-        found = collisions(self.driven, motion, unfinished="drop")
-        return (found[0].restitution, found[0].kick) if found else (math.nan, math.nan)
+def outcome(driven: ImpactOscillator, method: Integrator) -> tuple[float, float]:
+    """Restitution and kick of the first collision by `method`; NaN if its damping keeps the tip off the
+    stop."""
+    motion = simulate(driven, before_collision(driven), periods=2, method=method)
+    found = collisions(driven, motion, unfinished="drop")
+    return (found[0].restitution, found[0].kick) if found else (math.nan, math.nan)
 
 
-def outcomes(case: ElasticCollision, make: Maker, sizes: np.ndarray, places: int) -> np.ndarray:
-    """Restitution and kick, and their spreads, as rows; a column for every step.
+def outcomes(driven: ImpactOscillator, label: str, steps: np.ndarray, places: int) -> np.ndarray:
+    """Mean restitution and kick by a method of `IMPLICIT` as rows; a column for every step [s].
 
     One place without a collision, or with a kick but no return, and the whole step has none (NaN).
     """
-    rows = np.empty((4, sizes.size))
-    for j, size in enumerate(sizes):
-        # steps of nearly the same size that put the touch at different places of theirs
-        steps = float(size) * case.unit * (1.0 + 0.03 * (np.arange(places) / places - 0.5))
-        found = np.array([case.outcome(make(float(step))) for step in steps])
-        rows[:, j] = [*found.mean(axis=0), *found.std(axis=0)]
-    return rows
-
-
-def rows_of(case: ElasticCollision, label: str, sizes: np.ndarray, table: np.ndarray) -> list[Limit]:
-    """What one method makes of the collision at a step of about one contact time, the largest up to there at
-    which there is a restitution at all."""
-    last = int(np.flatnonzero(np.isfinite(table[0]) & (sizes < 1.1))[-1])
-    words = f"{label}, elastic Hertz, h / contact time = {sizes[last]:.3g}"
-    return [
-        Row(case=words, parameter="restitution tau [1]", theory=case.exact.restitution,
-            measured=float(table[0, last])),
-        Row(case=words, parameter="local restitution 2 kick(h)/kick - 1 [1]", theory=1.0,
-            measured=float(2.0 * table[1, last] / case.exact.kick - 1.0)),
-    ]  # fmt: skip
+    # steps of nearly the same size put the touch at different places of theirs
+    spread = 1.0 + 0.03 * (np.arange(places) / places - 0.5)
+    found = [[outcome(driven, IMPLICIT[label](h)) for h in (step * spread).tolist()] for step in steps]
+    return np.array(found).mean(axis=1).T
 
 
 def measure(scene: Scene, quick: bool) -> Findings:
-    """Every method over the step."""
+    """Every method over the step; the rows are of a step of about one contact time, the largest up to there
+    at which there is a restitution at all."""
     middle = sorted(scene.drive.frequencies_hz)[len(scene.drive.frequencies_hz) // 2]
     kept = scene.replace({"modes.count": MODES, "contact.law": "hertz"})
-    case = ElasticCollision.of(beam_at(kept, middle).with_excess(letter.TIME_TRACE_EXCESS))
+    driven = beam_at(kept, middle).with_excess(letter.TIME_TRACE_EXCESS)
+    exact = first_collision(driven)
     sizes = np.geomspace(1 / 16, 2.0, 6) if quick else np.geomspace(1 / 64, 4.0, 13)
     limits: list[Limit] = []
-    arrays = {"step": sizes, "exact": np.array([case.exact.restitution, case.exact.kick])}
-    for label, make in HERTZ.items():
-        arrays[label] = outcomes(case, make, sizes, 3 if quick else 12)
-        limits += rows_of(case, label, sizes, arrays[label])
-    return Findings(limits=limits, arrays=arrays)
+    arrays = {"step": sizes, "exact": np.array([exact.restitution, exact.kick])}
+    for label in IMPLICIT:
+        table = arrays[label] = outcomes(driven, label, sizes * exact.contact_time, 3 if quick else 12)
+        last = int(np.flatnonzero(np.isfinite(table[0]) & (sizes < 1.1))[-1])
+        row = partial(Row, case=f"{label}, elastic Hertz, h / contact time = {sizes[last]:.3g}")
+        limits += [
+            row(parameter="restitution tau [1]", theory=exact.restitution, measured=float(table[0, last])),
+            row(parameter="local restitution 2 kick(h)/kick - 1 [1]", theory=1.0,
+                measured=float(2.0 * table[1, last] / exact.kick - 1.0)),
+        ]  # fmt: skip
+    return limits, arrays
 
 
 @plotting.in_house_style
 def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
     """Restitution and kick against the step."""
     figure, axes = plotting.new_figure(1, 2, width=plotting.PAGE, height=0.065)
-    sizes = arrays["step"]
-    every = max(1, sizes.size // 6)
     for column, (axis, quantity) in enumerate(zip(
         axes, ("effective restitution", "kick of mode 1"), strict=True
     )):  # fmt: skip
-        for number, label in enumerate(HERTZ):
-            axis.errorbar(
-                sizes, arrays[label][column], yerr=arrays[label][2 + column], **plotting.series(number),
-                label=label, elinewidth=0.6, markevery=every, errorevery=every,
-            )  # fmt: skip
+        for number, label in enumerate(IMPLICIT):
+            axis.plot(arrays["step"], arrays[label][column], **plotting.series(number), label=label)
         axis.set_xscale("log")
         axis.axhline(arrays["exact"][column], color="0.5", linewidth=0.8, linestyle=":", label="exact")
         plotting.panel(axis, column, "Hertz contact")
@@ -132,6 +92,6 @@ def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
         plotting.label(axis.yaxis, quantity)
     axes[0].legend(loc="upper left")
     return figure, (
-        "Restitution and kick of an elastic collision against the step; dotted: exact. Bars: spread over "
-        "places of the touch in its step."
+        "Restitution and kick of an elastic collision against the step, means over places of the touch in "
+        "its step; dotted: exact."
     )

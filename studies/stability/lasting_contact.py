@@ -3,27 +3,32 @@
     q'' + C q' + K q = F phi - phi N(d),   d = phi . q (gap zero),   K = diag(omega_k^2),   N = k d
 
 The rest position solves (K + k phi phi^T) q = F phi. Its penetration is above zero, and as long as a
-disturbance is small against it the motion is linear. A step of the method is a map of the state (q, q') that
-leaves a state near to that as it is; about it the slopes of the map are taken by differences of steps, which
-are exact where the map is piecewise affine. Disturbances grow by the largest modulus of the slopes'
-eigenvalues in each step, and a method is called unstable if that exceeds 1 by more than the rounding of the
-differences. Two eigenvalues that meet at -1, at h omega = 2 (1 + e) for central difference, leave the circle
-by sqrt(8 e): the limit is found to e = 1e-15 where the eigenvalues are.
+disturbance is small against it the motion is linear; with k -> 0 it is that of a flight. A step of the method
+is a map of the state (q, q') that leaves a state near to that as it is; about it the slopes of the map are
+taken by differences of steps, which are exact where the map is piecewise affine. Disturbances grow by the
+largest modulus of the slopes' eigenvalues in each step, and a method is called unstable if that exceeds 1 by
+more than the rounding of the differences. Two eigenvalues that meet at -1, at h omega = 2 (1 + e) for central
+difference, leave the circle by sqrt(8 e): the limit is found to e = 1e-15 where the eigenvalues are.
+
+Theory is the limit by which the method itself refuses a step (``critical_stiffness``, derived at the head of
+its file); tests hold that against the frequencies of the closed contact and against closed forms.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from beam import ModalModel
 from contact import ImpactOscillator, LinearContact, State, StepTooLarge, Stop, simulate
 from contact.integrators import CentralDifference, Splitting
-from studies.stability import threshold
+from studies.stability import Limit, threshold
 
-__all__ = ["ROUNDED", "SHARE", "Stepped", "growth", "pressed", "refused", "settled", "stiffest"]
+__all__ = ["ROUNDED", "Stepped", "growth", "limit", "pressed", "stiffest"]
 
 Stepped = CentralDifference | Splitting
 """Methods with a fixed step and a limit that can be overridden."""
@@ -46,16 +51,16 @@ def pressed(model: ModalModel, stiffness: float) -> tuple[ImpactOscillator, Stat
     return oscillator, State(displacement=rest, velocity=np.zeros_like(rest))
 
 
-def settled(oscillator: ImpactOscillator, rest: State, method: Stepped) -> tuple[State, np.ndarray]:
-    """The state that a step leaves as it is, and the slopes of a step about it in (omega q, q'), the method's
-    own check of its step left out.
+def growth(oscillator: ImpactOscillator, rest: State, method: Stepped) -> float:
+    """Logarithm of the growth of a disturbance per step about the state that a step leaves as it is, infinite
+    if a contact opens there; the method's own check of its step is left out [1].
 
-    The slopes lead from the states after the first step to those after the second, since a method may carry
-    on more than it shows. Newton's method finds the start from which both are the same. The rounding of the
-    tip's place, 1e-16 of its deflection by the load alone, limits it: the deflection is up to 1e6 of the
-    penetration here. If the iteration does not end, the last state is given.
+    The slopes, in (omega q, q'), lead from the states after the first step to those after the second, since a
+    method may carry on more than it shows. Newton's method finds the start from which both are the same. The
+    rounding of the tip's place, 1e-16 of its deflection by the load alone, limits it: the deflection is up to
+    1e6 of the penetration here. If the iteration does not end, the last state is taken.
     """
-    n, free = oscillator.n_modes, replace(method, beyond_limit=True)
+    n, free, phi = oscillator.n_modes, replace(method, beyond_limit=True), oscillator.model.phi
     weight, times = np.concatenate([oscillator.model.omega, np.ones(n)]), free.step * np.array([1.0, 2.0])
 
     def two_steps(x: np.ndarray) -> np.ndarray:
@@ -71,17 +76,10 @@ def settled(oscillator: ImpactOscillator, rest: State, method: Stepped) -> tuple
         if np.abs(residual).max() <= 1e-11 * np.abs(x).max():
             break
         x = x - np.linalg.solve(second - first, residual)
-    state = State(displacement=here[0, :n] / weight[:n], velocity=here[0, n:])
-    return state, np.linalg.solve(first.T, second.T).T
-
-
-def growth(oscillator: ImpactOscillator, rest: State, method: Stepped) -> float:
-    """Logarithm of the growth of a disturbance per step, infinite if a contact opens [1]."""
-    state, slopes = settled(oscillator, rest, method)
-    gap, phi = oscillator.stop.gap, oscillator.model.phi
-    if phi @ rest.displacement > gap >= phi @ state.displacement:
+    gap, place = oscillator.stop.gap, phi @ (here[0, :n] / weight[:n])
+    if phi @ rest.displacement > gap >= place:
         return math.inf
-    return math.log(np.abs(np.linalg.eigvals(slopes)).max())
+    return math.log(np.abs(np.linalg.eigvals(np.linalg.solve(first.T, second.T))).max())
 
 
 def refused(oscillator: ImpactOscillator, rest: State, method: Stepped) -> bool:
@@ -93,8 +91,24 @@ def refused(oscillator: ImpactOscillator, rest: State, method: Stepped) -> bool:
     return False
 
 
-def stiffest(model: ModalModel, method: Stepped, theory: float) -> tuple[float | None, bool]:
-    """The largest stiffness of a lasting contact [N/m], and whether one beyond `theory` is refused."""
-    ladder = (0.5 * theory, 1.5 * theory)
-    found = threshold(lambda k: growth(*pressed(model, k), method) > ROUNDED, ladder, relative=1e-8)
-    return found, refused(*pressed(model, (1 + SHARE) * theory), method)
+def limit(
+    row: Callable[..., Limit], model: ModalModel, theory: float, at: Callable[[float], tuple[float, Stepped]]
+) -> Limit:
+    """The `row` of a parameter that is limited; `at` gives the stiffness [N/m] and the method at a value."""
+
+    def fails(value: float) -> bool:
+        stiffness, method = at(value)
+        return growth(*pressed(model, stiffness), method) > ROUNDED
+
+    stiffness, method = at((1.0 + SHARE) * theory)
+    return row(
+        method=method.name, theory=theory, measured=threshold(fails, (0.5 * theory, 1.5 * theory), 1e-8),
+        refused=refused(*pressed(model, stiffness), method),
+    )  # fmt: skip
+
+
+def stiffest(model: ModalModel, method: Stepped, *, family: str, case: str) -> Limit:
+    """The largest stiffness of a lasting contact."""
+    row = partial(Limit, family=family, case=case, parameter="contact stiffness [N/m]")
+    theory = method.critical_stiffness(pressed(model, 1.0)[0].motion())
+    return limit(row, model, theory, lambda stiffness: (stiffness, method))

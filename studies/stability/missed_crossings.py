@@ -22,16 +22,15 @@ no formula. Tried on the lowest mode of the scene; fixed steps are a hundredth o
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from functools import cache, partial
 
 import numpy as np
 from matplotlib.figure import Figure
 from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
 
-from contact import ContactLaw, HertzContact, LinearContact, NewtonRestitution, Stop
+from contact import LinearContact, NewtonRestitution, Stop
 from contact.integrators import INTEGRATORS, CentralDifference, Integrator, SampledFlight
 from studies import plotting
 from studies.crossings import Swing
@@ -39,8 +38,8 @@ from studies.peers import OutsideSolver
 from studies.scene import Scene, model_of
 from studies.stability import Findings, Limit, threshold
 
-__all__ = ["RESTITUTION", "Trial", "draw", "half_missed", "invented_by_percussions", "measure", "of_package",
-           "of_scipy", "share_missed", "share_wrong", "swing_of", "tried"]  # fmt: skip
+__all__ = ["RESTITUTION", "Trial", "draw", "invented", "measure", "of_package", "of_scipy", "share_missed",
+           "share_wrong", "swing_of", "tried"]  # fmt: skip
 
 OVERSHOOTS = 10.0 ** -np.arange(1, 13)
 FINE = np.geomspace(1e-12, 1e-1, 276)
@@ -54,12 +53,28 @@ RESTITUTION = 0.5
 """Of the stops with Newton's law [1]."""
 
 Row = partial(Limit, family="missed_crossings")
-Touch = Callable[[float, float], float]
-"""touch(overshoot, lead) -> time of the first touch from the peak, NaN if there is none [s]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Trial:
+    """A method to try."""
+
+    swing: Swing
+    method: Integrator
+    label: str
+    kind: str
+    """"exact", "step" (and samples) or "control" of the error."""
+    spacings: np.ndarray = field(default_factory=lambda: np.empty(0))
+    """Of its looks [s]; none for a method that searches between its steps."""
+
+    @property
+    def percussions(self) -> bool:
+        """Whether it strikes."""
+        return isinstance(self.swing.oscillator.stop.law, NewtonRestitution)
 
 
 def share_missed(
-    overshoot: np.ndarray, spacings: np.ndarray, pace: float, percussions: bool = False
+    overshoot: float | np.ndarray, spacings: np.ndarray, pace: float, percussions: bool = False
 ) -> np.ndarray:
     """Share of crossings missed, (a) or (b), for overshoots over gap [1]."""
     if percussions:
@@ -69,30 +84,28 @@ def share_missed(
     return np.maximum(0.0, 1.0 - np.multiply.outer(1.0 / spacings, duration)).mean(axis=0)
 
 
-def half_missed(spacings: np.ndarray, pace: float, percussions: bool = False) -> float:
-    """Overshoot over gap at which half the crossings are missed, (a) or (b) [1]."""
-    most = float((pace * spacings.max()) ** 2 / 8.0)
-
-    def excess(depth: float) -> float:
-        return float(share_missed(np.array(depth), spacings, pace, percussions)) - 0.5
-
-    return float(brentq(excess, 0.0, most, xtol=1e-18))
-
-
-def invented_by_percussions(step: float, pace: float) -> float:
-    """Undershoot over gap down to which touches are invented, (c) [1]."""
-    return 0.5 * (pace * step) ** 2 * RESTITUTION / (1.0 + RESTITUTION) ** 2
+def invented(trial: Trial) -> float | None:
+    """Theory of the undershoot over gap down to which a method invents touches: (c), and what central
+    difference swings too high [1]."""
+    if trial.percussions and trial.spacings.size:
+        part = 0.5 * RESTITUTION / (1.0 + RESTITUTION) ** 2
+    elif isinstance(trial.method, CentralDifference):
+        part = 0.125
+    else:
+        return None
+    return part * float(trial.swing.pace * trial.spacings[0]) ** 2
 
 
-def share_wrong(swing: Swing, touch: Touch, overshoot: float, *, runs: int, slack: float) -> float:
+def share_wrong(trial: Trial, overshoot: float, runs: int) -> float:
     """Share of the runs that miss the crossing, or invent one if the overshoot is negative [1].
 
-    A first touch is the crossing if the tip is beyond the stop within `slack` [s] of it.
+    A first touch is the crossing if the tip is beyond the stop within two looks of it.
     """
-    wrong = 0
-    for lead in swing.leads(runs):
-        at = touch(overshoot, float(lead))
-        near = np.append(at + slack * np.linspace(-1.0, 1.0, 401), 0.0 if abs(at) <= slack else at)
+    swing, wrong = trial.swing, 0
+    slack = 2.0 * float(trial.spacings.max()) if trial.spacings.size else 1e-6 / swing.pace
+    for lead in swing.leads(runs).tolist():
+        at = swing.touch(trial.method, overshoot, lead)
+        near = np.array([at - slack, at + slack, 0.0 if abs(at) <= slack else at])
         seen = overshoot < 0.0 or bool(np.any(swing.height_at(overshoot, near) > 0.0))
         wrong += (math.isfinite(at) and seen) == (overshoot < 0.0)
     return wrong / runs
@@ -101,46 +114,20 @@ def share_wrong(swing: Swing, touch: Touch, overshoot: float, *, runs: int, slac
 def swing_of(scene: Scene, method: Integrator | None = None) -> Swing:
     """The lowest mode of the scene before a stop with a law that `method` knows, soft enough for any step."""
     model = model_of(scene).truncated(1)
-    soft, gap = 0.01 * float((model.omega[0] / model.phi[0]) ** 2), scene.stop.gap_m
-    laws: tuple[ContactLaw, ...] = (
-        LinearContact(stiffness=soft), NewtonRestitution(local_restitution=RESTITUTION),
-        HertzContact(stiffness=soft / math.sqrt(gap)),
-    )  # fmt: skip
-    law = next(law for law in laws if method is None or method.accepts(law.code))
-    return Swing.of(model, Stop(gap=gap, law=law), 0.0)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Trial:
-    """A method to try."""
-
-    swing: Swing
-    label: str
-    kind: str
-    """"exact", "step" (and samples) or "control" of the error."""
-    touch: Touch
-    spacings: np.ndarray = field(default_factory=lambda: np.empty(0))
-    """Of its looks [s]; none for a method that searches between its steps."""
-    percussions: bool = False
-    invents: float | None = None
-    """Theory of the undershoot over gap down to which it invents touches [1]."""
+    soft = LinearContact(stiffness=0.01 * float((model.omega[0] / model.phi[0]) ** 2))
+    hard = NewtonRestitution(local_restitution=RESTITUTION)
+    law = soft if method is None or method.accepts(soft.code) else hard
+    return Swing.of(model, Stop(gap=scene.stop.gap_m, law=law), 0.0)
 
 
 def of_package(scene: Scene, kind: type[Integrator], options: Mapping[str, float]) -> Trial:
     """A method of the package with those of the `options` that it knows."""
     known = {entry.name for entry in fields(kind)}  # type: ignore[arg-type]
     method = kind(**{name: value for name, value in options.items() if name in known})
-    swing, step = swing_of(scene, method), options["step"]
-    percussions, invents = isinstance(swing.oscillator.stop.law, NewtonRestitution), None
-    if percussions:
-        invents = invented_by_percussions(step, swing.pace)
-    elif kind is CentralDifference:
-        invents = (swing.pace * step) ** 2 / 8.0
     return Trial(
-        label=f"{kind.name}, {options['points']} points" if "points" in known else kind.name, swing=swing,
-        kind="exact" if kind.certified else "step", touch=partial(swing.touch, method),
-        spacings=np.array([step]) if "step" in known else np.empty(0), percussions=percussions,
-        invents=invents,
+        label=f"{kind.name}, {options['points']} points" if "points" in known else kind.name, method=method,
+        swing=swing_of(scene, method), kind="exact" if kind.certified else "step",
+        spacings=np.array([options["step"]] if "step" in known else []),
     )  # fmt: skip
 
 
@@ -150,22 +137,22 @@ def of_scipy(scene: Scene, solver: str, tolerance: float) -> Trial:
     Absolute tolerances are those of one energy, as in ``studies.peers``.
     """
     swing, spacings = swing_of(scene), []
-    model, n = swing.oscillator.model, swing.oscillator.n_modes
+    model = swing.oscillator.model
+    omega, reach = float(model.omega[0]), swing.oscillator.stop.gap / float(model.phi[0])
     for lead in swing.leads(LOOKED_AT).tolist():
         start = swing.start(-0.01, lead)
-        sizes = (start.velocity, model.omega * start.displacement)
-        speed = max(model.omega[0] * swing.oscillator.stop.gap / np.linalg.norm(model.phi),
-                    *(np.linalg.norm(size) for size in sizes))  # fmt: skip
+        x, v = start.displacement[0], start.velocity[0]
+        speed = max(omega * reach, abs(v), abs(omega * x))
         looks = solve_ivp(
-            lambda _t, y: np.concatenate([y[n:], -(model.omega**2) * y[:n]]), (0.0, lead + swing.tail),
-            np.concatenate([start.displacement, start.velocity]), method=solver, rtol=tolerance,
-            atol=tolerance * speed * np.concatenate([1.0 / model.omega, np.ones(n)]),
+            lambda _t, y: [y[1], -(omega**2) * y[0]], (0.0, lead + swing.tail), [x, v], method=solver,
+            rtol=tolerance, atol=tolerance * speed * np.array([1.0 / omega, 1.0]),
         ).t  # fmt: skip
         after = int(np.searchsorted(looks, lead))
         spacings.append(looks[after] - looks[after - 1])
-    method = OutsideSolver(solver=f"scipy {solver}", tolerance=tolerance)
-    return Trial(swing=swing, label=f"scipy {solver}, {tolerance:g}", kind="control",
-                 spacings=np.array(spacings), touch=partial(swing.touch, method))  # fmt: skip
+    return Trial(
+        method=OutsideSolver(solver=f"scipy {solver}", tolerance=tolerance), swing=swing, kind="control",
+        label=f"scipy {solver}, {tolerance:g}", spacings=np.array(spacings),
+    )  # fmt: skip
 
 
 def trials(scene: Scene, quick: bool) -> Iterator[Trial]:
@@ -180,31 +167,36 @@ def trials(scene: Scene, quick: bool) -> Iterator[Trial]:
         yield of_scipy(scene, name, tolerance)
 
 
-def tried(trial: Trial, runs: int) -> tuple[list[Limit], np.ndarray]:
-    """Rows of one method, and the shares missed over `OVERSHOOTS`; what follows two decades in which nothing
-    is seen is not tried."""
-    pace, spacings = trial.swing.pace, trial.spacings
-    slack = 2.0 * float(spacings.max()) if spacings.size else 1e-6 / pace
+def tried(trial: Trial, runs: int) -> tuple[list[Limit], dict[str, np.ndarray]]:
+    """Rows of one method, the shares missed over `OVERSHOOTS` and their theory over `FINE`; what follows two
+    decades in which nothing is seen is not tried."""
+    ladder, theory = OVERSHOOTS.tolist(), None
+    row = partial(Row, method=trial.label, refused=None if trial.kind == "exact" else False)
 
     @cache
     def wrong(overshoot: float) -> float:
-        return share_wrong(trial.swing, trial.touch, overshoot, runs=runs, slack=slack)
+        return share_wrong(trial, overshoot, runs)
 
     shares: list[float] = []
-    for overshoot in OVERSHOOTS.tolist():
+    for overshoot in ladder:
         shares.append(1.0 if shares[-2:] == [1.0, 1.0] else wrong(overshoot))
-    row = partial(Row, method=trial.label, refused=None if trial.kind == "exact" else False)
+    arrays = {f"{trial.kind}|{trial.label}": np.array(shares)}
+    if trial.spacings.size:
+        share = partial(
+            share_missed, spacings=trial.spacings, pace=trial.swing.pace, percussions=trial.percussions
+        )
+        theory = threshold(lambda depth: bool(share(depth) > 0.5), ladder, relative=1e-12)
+        arrays[f"theory|{trial.label}"] = share(FINE)
     rows = [row(
-        case="half of the crossings missed, one mode", parameter="overshoot / gap [1]",
-        theory=half_missed(spacings, pace, trial.percussions) if spacings.size else None,
-        measured=threshold(lambda depth: wrong(depth) > 0.5, OVERSHOOTS.tolist(), relative=0.05),
+        case="half of the crossings missed, one mode", parameter="overshoot / gap [1]", theory=theory,
+        measured=threshold(lambda depth: wrong(depth) > 0.5, ladder, relative=0.05),
     )]  # fmt: skip
     if trial.kind != "control":  # an error control errs by less than it misses
         rows.append(row(
-            case="touches invented, one mode", parameter="undershoot / gap [1]", theory=trial.invents,
-            measured=threshold(lambda depth: wrong(-depth) > 0.0, OVERSHOOTS.tolist(), relative=0.05),
+            case="touches invented, one mode", parameter="undershoot / gap [1]", theory=invented(trial),
+            measured=threshold(lambda depth: wrong(-depth) > 0.0, ladder, relative=0.05),
         ))  # fmt: skip
-    return rows, np.array(shares)
+    return rows, arrays
 
 
 def measure(scene: Scene, quick: bool) -> Findings:
@@ -212,14 +204,10 @@ def measure(scene: Scene, quick: bool) -> Findings:
     limits: list[Limit] = []
     arrays: dict[str, np.ndarray] = {"overshoot": OVERSHOOTS, "fine": FINE}
     for trial in trials(scene, quick):
-        rows, shares = tried(trial, 6 if quick else PHASES)
+        rows, found = tried(trial, 6 if quick else PHASES)
         limits += rows
-        arrays[f"{trial.kind}|{trial.label}"] = shares
-        if trial.spacings.size:
-            arrays[f"theory|{trial.label}"] = share_missed(
-                FINE, trial.spacings, trial.swing.pace, trial.percussions
-            )
-    return Findings(limits=limits, arrays=arrays)
+        arrays |= found
+    return limits, arrays
 
 
 @plotting.in_house_style

@@ -1,17 +1,11 @@
 r"""Splitting: the stiffest stop and the longest step of a contact that lasts.
 
-The tip is pressed on the stop. A step of order 2 is kick, flight, kick: v -> v - phi (h/2) k phi.u, the flow
-(A, B; C, D) of each mode over h with determinant e = exp(-c h), and the kick again. An eigenvector to the
-eigenvalue -1 satisfies for each mode, with J = h k phi.u, u = phi J B/(1 + A + D + e), hence
+A step of order 2 is kick, flight, kick. Its limit in a lasting contact, for omega h < pi, is the stiffness at
+which an eigenvalue of the step passes -1,
 
-    k_crit = 1/X,   X = h sum_k phi_k^2 B_k/(1 + A_k + D_k + e_k),                                         (a)
-    without damping X = h sum_k phi_k^2 tan(omega_k h/2)/(2 omega_k).
+    k_crit = 1/X,   without damping   X = h sum_k phi_k^2 tan(omega_k h/2)/(2 omega_k),
 
-It is the first eigenvalue to leave the circle if omega h < pi for all modes: for c = 0 the eigenvalues
-exp(i psi) are the roots z = cos(psi) of 1 + k h sum_k phi_k^2 sin(theta_k)/(2 omega_k (z - cos(theta_k))) =
-0, theta_k = omega_k h; all residues have one sign, so that all roots are real, fall as k rises, and only the
-lowest can pass -1. For h -> 0 the limit is 4/(h^2 sum phi^2), that of central difference on a free body.
-
+for h -> 0 that of central difference on a free body, 4/(h^2 sum phi^2) (``contact.integrators.splitting``).
 Beyond pi a resonance of step and contact opens a tongue of instability that closes again for a longer step.
 
 For order 4 the limit is the lowest root of det(M(k) + I), M the matrix of the step, by which the package
@@ -35,27 +29,14 @@ from studies.scene import Scene, model_of
 from studies.stability import Findings, Limit
 from studies.stability.lasting_contact import pressed, stiffest
 
-__all__ = ["closed_form_stiffness", "draw", "limit", "measure"]
-
-
-def closed_form_stiffness(model: ModalModel, step: float) -> float:
-    """Equation (a), for omega h < pi [N/m]."""
-    half = 0.5 * model.decay_rate
-    damped = np.sqrt(model.omega**2 - half**2)
-    fade = np.exp(-half * step)
-    sine, trace = fade * np.sin(damped * step) / damped, 2.0 * fade * np.cos(damped * step)
-    return 1.0 / (step * float(np.sum(model.phi**2 * sine / (1.0 + trace + fade**2))))
+__all__ = ["draw", "limit", "measure"]
 
 
 def limit(model: ModalModel, angle: float) -> Limit:
     """Largest stiffness of a lasting contact at h omega_N = `angle`, order 2."""
-    method = Splitting(step=angle / float(model.omega[-1]))
-    theory = closed_form_stiffness(model, method.step)
-    found, beyond_refused = stiffest(model, method, theory)
-    return Limit(
-        family="splitting", method=Splitting.name, parameter="contact stiffness [N/m]", theory=theory,
+    return stiffest(
+        model, Splitting(step=angle / float(model.omega[-1])), family="splitting",
         case=f"order 2, lasting contact, modes: {model.n_modes}, h omega_N = {angle:g}",
-        measured=found, refused=beyond_refused,
     )  # fmt: skip
 
 
@@ -71,7 +52,7 @@ def measure(scene: Scene, quick: bool) -> Findings:
     for order in (2, 4):
         steps = [Splitting(step=x / float(few.omega[-1]), order=order) for x in fine]
         arrays[f"limit_{order}"] = np.array([method.critical_stiffness(motion) for method in steps])
-    return Findings(limits=limits, arrays=arrays)
+    return limits, arrays
 
 
 @plotting.in_house_style

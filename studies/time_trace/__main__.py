@@ -11,9 +11,7 @@ Computed, at 21.50 Hz, where the letter's p1 goes over into p4:
     collision        restitution, delay and kick of the single-mode description (contact.collisions)
     spectrum         amplitudes of the read-out at the multiples of 1/(orbit period)
 
-A signal of period P, sampled over whole periods, is a sum of lines at the multiples of 1/P; the discrete
-Fourier transform over one period gives them without leakage and without a window. A motion without a period
-up to 64 drive periods is drawn and told as such; its spectrum then has leakage.
+A motion without a period up to 64 drive periods is drawn and told as such; its spectrum then has leakage.
 
 Run:     python -m studies.time_trace [--excess E] [--frequency HZ]     5 s
 Writes:  time_trace.npz (time, tip, read-out), collisions.csv (contact.Collision: SI units), spectrum.npz,
@@ -25,9 +23,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from typing import Annotated
-
-import numpy as np
-from numpy.typing import NDArray
 
 from contact import Collision, StroboscopicMap
 from contact.orbits import born
@@ -59,8 +54,6 @@ APERIODIC = 8
 
 TOLD = ("first_touch", "approach", "restitution", "delay", "kick", "impacts", "contact_time", "ringing")
 """Columns of a collision that are shown to a person."""
-
-Array = NDArray[np.float64]
 
 
 @study(needs={"tip_trace": 2e-3})

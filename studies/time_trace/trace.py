@@ -19,7 +19,6 @@ PER_PERIOD = 16_384
 MARGIN, LEAST_MARGIN, SAMPLES = 2.0, 50e-6, 1201
 """Time before and after in contact times, and at least [s]; samples."""
 
-
 Array = NDArray[np.float64]
 
 
@@ -39,9 +38,9 @@ class CloseUp:
     """Time from the first touch [s], tip past the plate [m], contact force [N]; `spans` are the contacts
     [s]."""
 
-    time: NDArray[np.float64]
-    height: NDArray[np.float64]
-    force: NDArray[np.float64]
+    time: Array
+    height: Array
+    force: Array
     spans: list[tuple[float, float]]
 
 

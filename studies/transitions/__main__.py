@@ -133,11 +133,11 @@ def store(run: Run, rows: Iterable[Row], diagrams: Iterable[Scans]) -> None:
             for way, diagram in ways.items():
                 stem = f"{name}_{row.frequency_hz:.2f}_hz_{way}".replace(".", "p")
                 arrays[f"{stem}_excess"], arrays[f"{stem}_points"] = diagram.excess, diagram.points
-                columns = (diagram.excess, diagram.kind, diagram.period, diagram.impacts, diagram.cycles)
-                for excess, kind, period, impacts, cycles in zip(*columns, strict=True):
+                for k, kind in enumerate(diagram.kind):
                     cells.append(Cell(
-                        frequency_hz=row.frequency_hz, model=name, direction=way, excess=float(excess),
-                        kind=kind, period=int(period), impacts=int(impacts), cycles=int(cycles),
+                        frequency_hz=row.frequency_hz, model=name, direction=way, kind=kind,
+                        excess=float(diagram.excess[k]), period=int(diagram.period[k]),
+                        impacts=int(diagram.impacts[k]), cycles=int(diagram.cycles[k]),
                     ))  # fmt: skip
                 for reason in diagram.failures:
                     run.failed(f"{row.frequency_hz:g} Hz, {TITLES[name]}, {way}ward scan", reason)

@@ -1,15 +1,15 @@
 """Map, Eq. (1) and beam at one drive frequency: born period, end on the way down, scans.
 
-`excess` is F/F_g - 1; the map's own variable x is observed for the map, the tip [m] for Eq. (1), the
-read-out [m] for the beam.
+`excess` is F/F_g - 1; the map's own variable x is observed for the map, the read-out for Eq. (1), where it is
+the tip [m], and for the beam [m or rad].
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,16 +24,8 @@ TITLES = {"map": "Nordmark map", "single_mode": "Eq. (1)", "beam": "beam"}
 OTHER_EXCESSES = (2.5e-4, 1e-2)
 """Where the born period is given as well: the letter's amplitude stability, and well above grazing."""
 
-
 Strobed = StrobedMap[Any]
 Diagram = OrbitDiagram[Any]
-
-
-class Description(NamedTuple):
-    """One model at one frequency, and what is drawn of it."""
-
-    strobed: Strobed
-    observe: Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,7 +36,7 @@ class Transition:
     excess_down: float | None = None
     ends_by: str | None = None
     bracket: tuple[float, float] | None = None
-    also: Mapping[str, int]
+    born: Mapping[str, int]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,26 +71,23 @@ class Row:
         """Born period of each description."""
         return {"map": self.map, "single_mode": self.single_mode, "beam": self.beam}
 
-    def ends(self) -> list[float]:
-        """The ends of the three orbits, as far as there are any [1]."""
-        found = (self.excess_down_map, self.excess_down_single_mode, self.excess_down_beam)
-        return [end for end in found if end is not None]
-
 
 Scans = Mapping[str, Mapping[str, Diagram]]
 """Description -> "up" or "down" -> orbit diagram, at one frequency."""
 
 
-def describe(scene: Scene, frequency: float, model: ModalModel) -> dict[str, Description]:
-    """The three descriptions at `frequency` [Hz]; displacements are observed in metres."""
-    single = StroboscopicMap(oscillator=single_mode_at(scene, frequency))
-    beam = StroboscopicMap(oscillator=beam_at(scene, frequency, model))
-    nordmark = StrobedNordmarkMap(map=nordmark_at(scene, frequency))
+def describe(scene: Scene, frequency: float, model: ModalModel) -> dict[str, Strobed]:
+    """The three descriptions at `frequency` [Hz]."""
     return {
-        "map": Description(nordmark, lambda points: points[:, 0]),
-        "single_mode": Description(single, single.tip),
-        "beam": Description(beam, lambda points: beam.readout(points, READOUT)),
+        "map": StrobedNordmarkMap(map=nordmark_at(scene, frequency)),
+        "single_mode": StroboscopicMap(oscillator=single_mode_at(scene, frequency)),
+        "beam": StroboscopicMap(oscillator=beam_at(scene, frequency, model)),
     }
+
+
+def observe(strobed: Strobed, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """What is drawn of strobed points."""
+    return strobed.readout(points, READOUT) if isinstance(strobed, StroboscopicMap) else points[:, 0]
 
 
 def transition(strobed: Strobed, excess: float, cycles: int) -> Transition:
@@ -107,49 +96,41 @@ def transition(strobed: Strobed, excess: float, cycles: int) -> Transition:
     also = {f"{other:g}": born_period(strobed, other, most_cycles=cycles) for other in OTHER_EXCESSES}
     end = orbit_end(strobed, orbit.end, excess, most_cycles=cycles) if orbit.period > 1 else None
     if end is None:
-        return Transition(period=orbit.period, also=also)
+        return Transition(period=orbit.period, born=also)
     return Transition(
-        period=orbit.period, excess_down=end.excess, ends_by=end.kind, bracket=(end.lost, end.held), also=also
+        period=orbit.period, excess_down=end.excess, ends_by=end.kind, bracket=(end.lost, end.held), born=also
     )
 
 
 def row_at(scene: Scene, frequency: float, model: ModalModel) -> tuple[Row, list[tuple[str, str]]]:
     """One row of the table, and what failed: where, why."""
     cycles, failures = max(scene.scan.settle_cycles, 1), list[tuple[str, str]]()
-    described = {name: strobed for name, (strobed, _) in describe(scene, frequency, model).items()}
+    described = describe(scene, frequency, model)
     if scene.contact.law == "hertz":  # linear contact of the same contact time in place of Hertz's law
         linear = scene.replace({"contact.law": "linear"})
         described["beam_linear"] = StroboscopicMap(oscillator=beam_at(linear, frequency, model))
-    found = dict.fromkeys([*TITLES, "beam_linear"], Transition(also={}))
+    found = dict.fromkeys([*TITLES, "beam_linear"], Transition(born={}))
     for name, strobed in described.items():
         try:
             found[name] = transition(strobed, scene.scan.born_excess, cycles)
         except ContactError as error:
             failures.append((f"{frequency:g} Hz, {name}", str(error)))
-    exact_map, exact_single = exact_ends(scene, frequency, found["map"].period, found["single_mode"].period)
     columns, not_settled = dict[str, Any](), list[str]()
     for name, title in TITLES.items():
-        one = found[name]
-        columns |= {name: one.period, f"excess_down_{name}": one.excess_down, f"ends_by_{name}": one.ends_by}
-        columns |= {f"bracket_{name}": one.bracket, f"born_{name}": one.also}
-        periods = {f"{scene.scan.born_excess:g}": one.period, **one.also}
+        one = vars(found[name])
+        columns |= {name: one["period"]}
+        columns |= {f"{key}_{name}": one[key] for key in ("excess_down", "ends_by", "bracket", "born")}
+        periods = {f"{scene.scan.born_excess:g}": one["period"], **one["born"]}
         not_settled += [f"{title} at {excess}" for excess, period in periods.items() if period == 0]
+    for name in ("map", "single_mode"):  # closed forms; there is none of p1
+        columns[f"exact_{name}"] = fold_excess(described[name], found[name].period or 0)
     row = Row(
-        frequency_hz=frequency, letter=letter.PERIODS.get(frequency), **columns, exact_map=exact_map,
-        exact_single_mode=exact_single, beam_linear=found["beam_linear"].period,
-        excess_down_beam_linear=found["beam_linear"].excess_down, not_settled=not_settled,
+        frequency_hz=frequency, letter=letter.PERIODS.get(frequency), **columns,
+        beam_linear=found["beam_linear"].period, not_settled=not_settled,
+        excess_down_beam_linear=found["beam_linear"].excess_down,
         grazing_amplitude_m=beam_at(scene, frequency, model).grazing_amplitude(),
     )  # fmt: skip
     return row, failures
-
-
-def exact_ends(
-    scene: Scene, frequency: float, of_map: int | None, of_single: int | None
-) -> tuple[float | None, float | None]:
-    """The folds of the p_m orbits in closed form, of the map and of Eq. (1) [1]; no orbit for None, 0, 1."""
-    single = StroboscopicMap(oscillator=single_mode_at(scene, frequency))
-    of_mapping = fold_excess(StrobedNordmarkMap(map=nordmark_at(scene, frequency)), of_map or 0)
-    return of_mapping, fold_excess(single, of_single or 0)
 
 
 def scans(scene: Scene, row: Row, model: ModalModel, full: bool) -> Scans:
@@ -158,13 +139,14 @@ def scans(scene: Scene, row: Row, model: ModalModel, full: bool) -> Scans:
     That is taken to two digits, so that the last bit of an end moves no amplitude, and none lies on a fold.
     """
     scan, found = scene.scan, {}
-    reach = float(f"{max([*map(abs, row.ends()), scan.narrowest]):.2g}")
+    ends = [abs(getattr(row, f"excess_down_{name}") or 0.0) for name in TITLES]
+    reach = float(f"{max([*ends, scan.narrowest]):.2g}")
     values = np.linspace(-scan.reach_below * reach, scan.reach_above * reach, scan.points)
-    for name, (strobed, observe) in describe(scene, row.frequency_hz, model).items():
+    for name, strobed in describe(scene, row.frequency_hz, model).items():
         way = partial(
-            orbit_diagram, strobed, observe=observe, record_cycles=scan.record_cycles, early=not full,
+            orbit_diagram, strobed, observe=partial(observe, strobed), early=not full,
             settle_cycles=letter.SETTLE_CYCLES if full else max(scan.settle_cycles, 1),
-            largest_period=scan.largest_period,
+            record_cycles=scan.record_cycles, largest_period=scan.largest_period,
         )  # fmt: skip
         up = way(values, strobed.at(float(values[0])).steady())
         found[name] = {"up": up, "down": way(values[::-1], up.end)}

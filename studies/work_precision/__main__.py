@@ -31,16 +31,8 @@ from dataclasses import dataclass
 from studies.peers import missing_solvers
 from studies.run import Run, study
 from studies.scene import Scene, harmonic
-from studies.work_precision.measures import (
-    REPEATS,
-    SLOWEST,
-    Reference,
-    Row,
-    cheapest,
-    reference_of,
-    rows_of,
-)
-from studies.work_precision.methods import SAMPLED, sweeps_for
+from studies.work_precision.measures import REPEATS, SLOWEST, Row, cheapest, reference_of, rows_of
+from studies.work_precision.methods import EXACT, SAMPLED, sweeps_for
 from studies.work_precision.problems import MODES, problems_of
 
 __all__ = ["Cheapest", "cheapest_of", "work_precision"]
@@ -69,13 +61,17 @@ def work_precision(scene: Scene, run: Run) -> Mapping[str, object]:
     """Measure, store, draw."""
     problems = problems_of(harmonic(scene), MODES_QUICK if run.quick else MODES)
     references = [reference_of(one) for one in run.track(problems, "references")]
-    rows = measured(references, run)
+    jobs = [(one, sweep) for one in references for sweep in sweeps_for(one.problem, quick=run.quick)]
+    slowest, repeats = (SLOWEST_QUICK, 3) if run.quick else (SLOWEST, REPEATS)
+    rows: list[Row] = []
+    for reference, sweep in run.track(jobs, "errors and costs"):  # nothing runs beside a timing
+        rows += rows_of(reference, sweep, slowest=slowest, repeats=repeats)
     run.table("rows", rows, "Every method at every setting.", show=())
     run.table(
         "cheapest", cheapest_of(rows), "Time per drive period [us] for an error of mode 1, crossings missed."
     )
     for row in rows:
-        if row.default and row.failed:
+        if row.family == EXACT and row.failed:
             run.failed(f"{row.problem}, {row.method}", row.failed)
     judge(run, rows)
     if missing_solvers():
@@ -91,28 +87,16 @@ def work_precision(scene: Scene, run: Run) -> Mapping[str, object]:
     }  # fmt: skip
 
 
-def measured(references: Sequence[Reference], run: Run) -> list[Row]:
-    """All rows, one setting after the other: nothing runs beside a timing."""
-    jobs = [(one, sweep) for one in references for sweep in sweeps_for(one.problem, quick=run.quick)]
-    slowest, repeats = (SLOWEST_QUICK, 3) if run.quick else (SLOWEST, REPEATS)
-    rows: list[Row] = []
-    with run.progress("errors and costs", sum(len(sweep.settings) for _one, sweep in jobs)) as tick:
-        for reference, sweep in jobs:
-            rows += rows_of(reference, sweep, slowest=slowest, repeats=repeats, tick=tick)
-    return rows
-
-
 def cheapest_of(rows: Sequence[Row]) -> list[Cheapest]:
     """The cheapest setting of each method for both errors."""
     found = []
     for problem, method in dict.fromkeys((row.problem, row.method) for row in rows):
         mine = [row for row in rows if (row.problem, row.method) == (problem, method)]
-        coarse, fine = cheapest(mine, 1e-4), cheapest(mine, 1e-8)
+        best = [cheapest(mine, level) for level in (1e-4, 1e-8)]
+        coarse, fine = ((row.us_per_period, row.missed) if row else (None, None) for row in best)
         found.append(Cheapest(
-            problem=problem, method=method,
-            us_for_1e_4=coarse.us_per_period if coarse else None,
-            missed_at_1e_4=coarse.missed if coarse else None,
-            us_for_1e_8=fine.us_per_period if fine else None, missed_at_1e_8=fine.missed if fine else None,
+            problem=problem, method=method, us_for_1e_4=coarse[0], missed_at_1e_4=coarse[1],
+            us_for_1e_8=fine[0], missed_at_1e_8=fine[1],
         ))  # fmt: skip
     return found
 

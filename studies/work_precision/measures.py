@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 import statistics
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
 
@@ -27,7 +27,7 @@ import numpy as np
 from contact import simulate
 from contact.integrators import Integrator
 from studies.crossings import Swing
-from studies.work_precision.methods import EXACT, Sweep
+from studies.work_precision.methods import Sweep
 from studies.work_precision.problems import Problem
 from studies.work_precision.reference import DIGITS, extended_motion
 
@@ -74,11 +74,6 @@ class Row:
     missed: float | None = None
     us_per_period: float | None = None
     failed: str = ""
-
-    @property
-    def default(self) -> bool:
-        """Whether `simulate` takes it by default."""
-        return self.family == EXACT
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -140,16 +135,13 @@ def cost_of(problem: Problem, method: Integrator, repeats: int = REPEATS) -> flo
     while took < LONG_ENOUGH and periods < MOST_PERIODS and problem.oscillator.drive is not None:
         periods = min(MOST_PERIODS, periods * max(2, min(8, int(LONG_ENOUGH / took))))
         took = once(periods)
-    times = [took]
-    if took < PATIENCE:
-        times = [once(periods) for _ in range(max(1, min(repeats, int(PATIENCE / took))))]
+    times = [took, *(once(periods) for _ in range(min(repeats, int(PATIENCE / took))))]
     return 1e6 * statistics.median(times) / periods
 
 
 def rows_of(
-    reference: Reference, sweep: Sweep, *, slowest: float = SLOWEST, repeats: int = REPEATS,
-    tick: Callable[[], None] = lambda: None,
-) -> list[Row]:  # fmt: skip
+    reference: Reference, sweep: Sweep, *, slowest: float = SLOWEST, repeats: int = REPEATS
+) -> list[Row]:
     """One row for each setting of a sweep; settings that would take longer than `slowest` [s] are not run."""
     rows, expected = [], 0.0
     for setting in sweep.settings:
@@ -170,14 +162,10 @@ def rows_of(
             except Exception as error:  # an outside solver may raise anything, and it is a result
                 row = replace(row, failed=f"{type(error).__name__}: {' '.join(str(error).split())}")
         rows.append(row)
-        tick()
     return rows
 
 
 def cheapest(rows: Sequence[Row], target: float) -> Row | None:
     """The row of least cost with an error of at most `target`; None if there is none."""
-    known = [
-        (row.us_per_period, row.error, row) for row in rows
-        if row.us_per_period is not None and row.error is not None and row.error <= target
-    ]  # fmt: skip
-    return min(known, key=lambda found: found[:2], default=(None, None, None))[2]
+    known = [row for row in rows if row.error is not None and row.error <= target]
+    return min(known, key=lambda row: (row.us_per_period, row.error), default=None)

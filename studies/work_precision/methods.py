@@ -23,7 +23,7 @@ from contact.integrators import (
     SampledFlight,
     Splitting,
 )
-from studies.peers import all_solvers
+from studies.peers import OutsideSolver, installed_solvers
 from studies.work_precision.problems import Problem
 
 __all__ = ["EXACT", "OUTSIDE", "SAMPLED", "STEPPED", "Setting", "Sweep", "sweeps_for"]
@@ -92,8 +92,9 @@ def sweeps_for(problem: Problem, *, quick: bool = False) -> list[Sweep]:
         add(label, STEPPED, 4.0, [Setting(h, f"step {h:.3g} s", made(h)) for h in steps])
     add(SAMPLED, STEPPED, 4.0, [Setting(1.0 / n, f"{n} points per period", SampledFlight(points=n))
                                 for n in POINTS[::stride]])  # fmt: skip
-    solvers = {tol: all_solvers(tol) for tol in (TOLERANCES[1::3] if quick else TOLERANCES)}
-    for label in solvers[TOLERANCES[1]]:
-        add(label, OUTSIDE, 3.0, [Setting(tol, f"tolerance {tol:.0e}", made[label])
-                                  for tol, made in solvers.items()])  # fmt: skip
+    for label in installed_solvers():
+        add(label, OUTSIDE, 3.0, [
+            Setting(tol, f"tolerance {tol:.0e}", OutsideSolver(solver=label, tolerance=tol))
+            for tol in (TOLERANCES[1::3] if quick else TOLERANCES)
+        ])  # fmt: skip
     return found

@@ -20,6 +20,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.optimize import brentq
 
 from beam import ModalModel, UniformBeam, exact_modes
 from contact import (
@@ -110,13 +111,11 @@ def linear_beam(scene: Scene) -> ImpactOscillator:
     def with_stiffness(stiffness: float) -> ImpactOscillator:
         return replace(hertz, stop=Stop(gap=hertz.stop.gap, law=LinearContact(stiffness=stiffness)))
 
-    stiffness = (math.pi / wanted) ** 2 / float(hertz.model.phi @ hertz.model.phi)
-    for _ in range(40):  # contact times go as k^(-1/2); each turn leaves a tenth of the difference or less
-        lasts = first_collision(with_stiffness(stiffness)).contact_time
-        if abs(lasts / wanted - 1.0) < 1e-12:
-            return with_stiffness(stiffness)
-        stiffness *= (lasts / wanted) ** 2
-    raise ValueError(f"no linear contact of this beam lasts {wanted:.6g} s, as long as Hertz's")
+    guess = (math.pi / wanted) ** 2 / float(hertz.model.phi @ hertz.model.phi)
+    return with_stiffness(float(brentq(
+        lambda k: first_collision(with_stiffness(k)).contact_time - wanted, 0.25 * guess, 4.0 * guess,
+        xtol=1e-13 * guess,
+    )))  # fmt: skip
 
 
 def hertz_beam(scene: Scene) -> ImpactOscillator:

@@ -4,7 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from beam import UniformBeam, exact_modes, frequency_function
+from beam import UniformBeam, exact_modes
 
 LENGTH, STIFFNESS, MASS = 0.13, 0.0288, 0.0663
 STRIP = MASS * LENGTH
@@ -20,13 +20,6 @@ def tipped(mass_ratio: float, inertia_ratio: float = 0.0) -> UniformBeam:
         tip_mass=mass_ratio * STRIP,
         tip_rotary_inertia=inertia_ratio * STRIP * LENGTH**2,
     )
-
-
-def test_clamped_free_digits() -> None:
-    modes = exact_modes(PLAIN, 4)
-    printed = [1.87510407, 4.69409113, 7.85475744, 10.99554073]
-    np.testing.assert_allclose(modes.wave_numbers * LENGTH, printed, atol=5e-9)
-    np.testing.assert_allclose(modes.phi, 2.0 / np.sqrt(STRIP), rtol=1e-12)
 
 
 @pytest.mark.parametrize("mode", [1, 2, 12, 40, 60])
@@ -52,22 +45,6 @@ def test_high_modes_are_all_there() -> None:
     modes = exact_modes(PLAIN, 120)
     np.testing.assert_allclose(modes.wave_numbers[2:] * LENGTH, (np.arange(2, 120) + 0.5) * np.pi, atol=1e-3)
     np.testing.assert_allclose(modes.phi**2 * STRIP, 4.0, rtol=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("ratio", "printed"),
-    [
-        (0.0, 0.2500),
-        (0.05, 0.2975),
-        (0.1, 0.3457),
-        (0.2, 0.4433),
-        (0.3, 0.5419),
-        (0.5, 0.7402),
-        (1.0, 1.2383),
-    ],
-)
-def test_mode_1_mass_at_the_tip(ratio: float, printed: float) -> None:
-    assert 1.0 / (exact_modes(tipped(ratio), 1).phi[0] ** 2 * STRIP) == pytest.approx(printed, abs=5.1e-5)
 
 
 @pytest.mark.parametrize(
@@ -134,11 +111,6 @@ def test_derivatives_of_shapes_against_differences(order: int) -> None:
     np.testing.assert_allclose(
         modes.shapes(s, derivative=order) / scale, rise / (2.0 * step) / scale, atol=1e-7
     )
-
-
-def test_frequency_function_is_of_order_one() -> None:
-    values = frequency_function(PLAIN, np.linspace(1.0, 400.0, 5000))
-    assert 0.1 < np.abs(values).max() < 10.0
 
 
 def test_static_forms_are_for_cantilevers_only() -> None:

@@ -180,26 +180,6 @@ def test_ring_segment_between_guides_out_of_its_plane(turn, warping):
     np.testing.assert_allclose(found[:5], expected[:5], rtol=1.2e-4)
 
 
-def test_quarter_arc_under_a_force_across_its_plane():
-    """Castigliano: C = R^3 ((pi/4)/EI_n + (3 pi/4 - 2)/GJ); a heavy tip swings on it at 1/sqrt(C M)."""
-    radius, section = 0.06, without_warping(upright(STRIP))
-    compliance = radius**3 * (
-        0.25 * math.pi / section.out_of_plane_stiffness + (0.75 * math.pi - 2.0) / section.torsional_stiffness
-    )
-    heavy = 1e4
-    spring = SpatialSpring(
-        centreline=Centreline(pieces=(Arc(radius=radius, angle=0.5 * math.pi),)),
-        sections=(section,),
-        supports=("clamped", "free"),
-        tip=Tip(mass=heavy),
-        tip_at=0.5 * math.pi * radius,
-        drive=(0.0, 0.0, 1.0),
-    )
-    modes = spatial_modes(spring, 4, 40)
-    first = int(np.argmax(modes.phi))
-    assert modes.omega[first] ** -2 == pytest.approx(compliance * heavy, rel=1e-5)
-
-
 @pytest.mark.parametrize("lying", [False, True])
 @pytest.mark.parametrize("offset", [(0.0, 0.0, 0.0), (0.0, 0.0, 2e-3), (1e-3, -2e-3, 1e-3)])
 def test_the_u_in_space_against_many_straight_elements(lying, offset):
@@ -208,15 +188,6 @@ def test_the_u_in_space_against_many_straight_elements(lying, offset):
     frame = frame_frequencies(points, section, BALL, 10, offset)
     modes = spatial_modes(bent(section, tip_offset=offset), 10, [40, 96, 40])
     np.testing.assert_allclose(modes.frequencies_hz, frame, rtol=4e-4)
-
-
-def test_elements_converge_and_arcs_do_not_lock():
-    section = upright(STRIP)
-    coarse, usual, fine = (
-        spatial_modes(bent(section), 12, elements).omega for elements in ([12, 12, 12], None, [80, 96, 80])
-    )
-    np.testing.assert_allclose(usual, fine, rtol=1e-4)
-    np.testing.assert_allclose(coarse[:5], fine[:5], rtol=2e-3)
 
 
 def test_a_ball_on_the_plane_of_symmetry_sees_one_family_and_off_it_both():

@@ -60,12 +60,10 @@ class Period:
         self.log, self.log_state = np.empty(110_000, dtype=LOG), np.empty((110_000, 4))
 
     def fast(self, u, v, runs):
-        """Status, impacts, periods searched and periods left; the arrays are overwritten."""
+        """Status, impacts and periods left; the arrays are overwritten."""
         counts = np.zeros(1, dtype=np.int64)
-        status, searched, left = one_mode_periods(
-            self.table, self.system, u, v, runs, np.empty((1, 2)), counts
-        )
-        return status, int(counts[0]), searched, left
+        status, left = one_mode_periods(self.table, self.system, u, v, runs, np.empty((1, 2)), counts)
+        return status, int(counts[0]), left
 
     def general(self, u, v, runs):
         """Status, impacts and approach velocities."""
@@ -80,8 +78,8 @@ class Period:
         m = self.motion
         return abs(m.phi[0]) * math.hypot(u[0], v[0] / m.omega[0])
 
-    def compare(self, u, v, periods: int) -> tuple[float, int, int, int]:
-        """Follow the general loop, each period also by the fast one: worst error, impacts, searched, left.
+    def compare(self, u, v, periods: int) -> tuple[float, int, int]:
+        """Follow the general loop, each period also by the fast one: worst error, impacts, left.
 
         The error is that of the strobed state in roundings, over what the impacts make of one rounding: an
         impact at speed s turns an error d of the tip displacement into (1 + tau) a d/s of its velocity, a the
@@ -89,12 +87,12 @@ class Period:
         """
         m = self.motion
         runs = at_a_strobe()
-        worst, impacts, searches, lefts = 0.0, 0, 0, 0
+        worst, impacts, lefts = 0.0, 0, 0
         for _ in range(periods):
             ours = (u.copy(), v.copy(), runs.copy())
             start = self.size(u, v)
             status, count, speeds = self.general(u, v, runs)
-            mine, mine_count, searched, left = self.fast(*ours)
+            mine, mine_count, left = self.fast(*ours)
             assert mine == status
             if status != DONE:
                 break
@@ -107,9 +105,8 @@ class Period:
                 off = self.size(ours[0] - u, ours[1] - v) / scale
                 worst = max(worst, off / EPS / math.exp(growth))
             impacts += count
-            searches += searched
             lefts += left
-        return worst, impacts, searches, lefts
+        return worst, impacts, lefts
 
 
 def at_a_strobe() -> np.ndarray:

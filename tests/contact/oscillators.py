@@ -6,13 +6,23 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from beam import ModalModel, single_mode
-from contact import ContactLaw, HarmonicDrive, ImpactOscillator, NewtonRestitution, Stop
+from contact import (
+    ContactLaw,
+    HarmonicDrive,
+    ImpactOscillator,
+    LinearContact,
+    NewtonRestitution,
+    State,
+    Stop,
+)
 
 OMEGA = 2 * np.pi * 24.5 * np.array([1.0, 6.1, 15.4, 29.0, 47.0, 70.0])
 PHI = 10.0 * np.array([1.0, 0.7, 0.5, 0.4, 0.3, 0.25])
 GAMMA = np.array([0.09, 0.05, -0.03, 0.02, -0.015, 0.01])
 GAP = 0.005
 FREQUENCY = 21.5
+THROWN = State(displacement=np.zeros(3), velocity=np.array([0.15, 0.02, 0.01]))
+"""Three modes on their way to the stop, which they touch after some 4 ms."""
 
 # under-, over- and critically damped modes beside the first; a light and a heavy tip
 MODES = {
@@ -49,6 +59,15 @@ def spring(
     return ImpactOscillator(model=model, stop=Stop(gap=GAP, law=law), drive=base, load=load)
 
 
+def many_modes(name: str, *, restitution: float = 0.35, **changes: list[float]) -> ImpactOscillator:
+    """One of `MODES` under Newton's law at 20.5 Hz."""
+    numbers = {key: np.array(value) for key, value in (MODES[name] | changes).items()}
+    return ImpactOscillator(
+        model=ModalModel(**numbers), drive=HarmonicDrive(frequency=20.5),
+        stop=Stop(gap=0.012, law=NewtonRestitution(local_restitution=restitution)),
+    )  # fmt: skip
+
+
 def equation_1(
     frequency: float, law: ContactLaw | None = None, *, gap: float = 1.0, excess: float | None = None
 ) -> ImpactOscillator:
@@ -59,6 +78,13 @@ def equation_1(
         drive=HarmonicDrive(frequency=frequency),
     )
     return oscillator if excess is None else oscillator.with_excess(excess)
+
+
+def at_rest_on(model: ModalModel, law: LinearContact, load: float) -> tuple[ImpactOscillator, np.ndarray]:
+    """The tip pressed on a stop without gap by `load` [N], and its displacements at rest."""
+    oscillator = ImpactOscillator(model=model, stop=Stop(gap=0.0, law=law), load=load * model.phi)
+    whole = np.diag(model.omega**2) + law.stiffness * np.outer(model.phi, model.phi)
+    return oscillator, np.linalg.solve(whole, load * model.phi)
 
 
 def heights(oscillator: ImpactOscillator, displacement: np.ndarray) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from beam import ModalModel
 from contact import (
     ContactLaw,
+    DelayedRestitution,
     HarmonicDrive,
     HertzContact,
     HuntCrossley,
@@ -30,6 +32,13 @@ LAWS = {
     "linear": LinearContact(stiffness=1.887e7),
     "dashpot": LinearContact(stiffness=1.887e7, damping=68.0),
     "newton": NewtonRestitution(local_restitution=0.3),
+}
+DELAYED = {
+    "constant": DelayedRestitution(restitution=0.1, delay=1e-4),
+    "plastic": DelayedRestitution(restitution=0.0, delay=5e-4),
+    "elastic": DelayedRestitution(restitution=0.9, delay=2e-3),
+    "table": DelayedRestitution(restitution=lambda v: 0.3 / (1 + v), delay=lambda v: 4e-4 + 2e-4 * v),
+    "falling": DelayedRestitution(restitution=lambda v: 0.4 * math.exp(-v), delay=lambda v: 2e-4 * v**0.2),
 }
 # f [Hz], m, F_m/F_g - 1, and F/F_g - 1 at which the orbit gains a second impact (its rounding: last digit)
 EQUATION_1 = [

@@ -10,11 +10,8 @@ from tip_judge import (
     PLANTED,
     Real,
     Signal,
-    assert_agrees,
+    flights,
     judge,
-    random_deviation,
-    random_oscillator,
-    records,
     search,
     with_gap,
 )
@@ -38,27 +35,13 @@ pytestmark = pytest.mark.skipif(
 @pytest.mark.parametrize("kind", ["at rest", "ringing", "drive off"])
 def test_planted_overshoots_are_found_and_undershoots_are_not(n_modes, kind):
     """Peaks h = 1e-1 ... 1e-12 of the gap above and below the stop, over flights of up to one period."""
-    generator = np.random.default_rng([n_modes, len(kind)])
     told = {"free": 0, "crosses": 0, "within rounding": 0}
-    for _ in range(10 if n_modes < 10 else 4):
-        motion = random_oscillator(generator, n_modes, driven=kind != "drive off").motion()
-        u, v = random_deviation(generator, motion, ringing=kind == "ringing")
-        base = float(generator.uniform(0, 0.9) * motion.period * generator.integers(0, 2))
-        duration = motion.period - base
-        signal = Signal(motion, base, u, v)
-        places = signal.peaks(duration)
-        heights = signal(places)
-        start = max(float(signal(Real(0))), 0.0)
-        candidates = [i for i in records(heights) if heights[i] > 1.2 * start + 1e-4]
-        for i in candidates[:3]:
+    for flight in flights([n_modes, len(kind)], n_modes, 10 if n_modes < 10 else 4, kind, late=0.9):
+        for i in flight.chosen[:3]:
             for h in PLANTED:
-                gap = float(heights[i] / (1 + Real(h)))
-                if gap <= start:
-                    continue
-                stopped = with_gap(motion, gap)
-                verdict = judge(signal, gap, duration, peaks=places)
-                result = search(stopped, base, u, v, duration)
-                told[assert_agrees(result, verdict, stopped, u, v, base)] += 1
+                gap = float(flight.heights[i] / (1 + Real(h)))
+                if gap > flight.start:
+                    told[flight.agrees(gap, flight.motion.period - flight.base)] += 1
     assert told["within rounding"] == 0
     assert min(told["free"], told["crosses"]) > 20
 
@@ -66,35 +49,25 @@ def test_planted_overshoots_are_found_and_undershoots_are_not(n_modes, kind):
 @pytest.mark.parametrize("n_modes", [1, 2, 5, 20])
 def test_a_peak_on_the_stop_is_a_graze_and_near_it_nothing_is_invented(n_modes):
     """gap = the peak rounded to double is a graze; below the rounding bound CROSSES and FREE stay right."""
-    generator = np.random.default_rng([7, n_modes])
     grazes = 0
-    for _ in range(40):
-        motion = random_oscillator(generator, n_modes).motion()
-        u, v = random_deviation(generator, motion, ringing=True)
-        signal = Signal(motion, 0.0, u, v)
-        places = signal.peaks(motion.period)
-        heights = signal(places)
-        start = max(float(signal(Real(0))), 0.0)
-        chosen = [i for i in records(heights) if heights[i] > 1.2 * start + 1e-4]
-        for i in chosen[-1:]:
-            end = float(places[i] + (motion.period - places[i]) * 1e-3)
+    for flight in flights([7, n_modes], n_modes, 40):
+        for i in flight.chosen[-1:]:
+            end = float(flight.places[i] + (flight.motion.period - flight.places[i]) * 1e-3)
             for h in (0.0, 1e-16, 1e-15, 3e-15, 1e-14, 3e-14, 1e-13):
                 for sign in (1, -1):
-                    gap = float(heights[i] / (1 + sign * Real(h)))
-                    stopped = with_gap(motion, gap)
-                    peak = heights[i] - Real(gap)
-                    bound = tip_rounding(stopped, u, v)
+                    gap = float(flight.heights[i] / (1 + sign * Real(h)))
+                    stopped, (outcome, s) = flight.against(gap, end)
+                    bound, peak = tip_rounding(stopped, flight.u, flight.v), flight.heights[i] - Real(gap)
                     assert bound < GRAZE_TOLERANCE * gap
-                    outcome, s = search(stopped, 0.0, u, v, end)
                     if outcome == GRAZES:
                         grazes += 1
                         assert abs(peak) <= 2 * bound
                         # a place where the height is within rounding of the peak's
-                        assert abs(signal(Real(s)) - heights[i]) <= bound
+                        assert abs(flight.signal(Real(s)) - flight.heights[i]) <= bound
                     elif outcome == CROSSES:
                         assert peak > 0
-                        judged = judge(signal, gap, end, peaks=places[: i + 1])
-                        assert abs(s - judged.time) <= bound / judged.slope + 4 * EPS * motion.period
+                        judged = judge(flight.signal, gap, end, peaks=flight.places[: i + 1])
+                        assert abs(s - judged.time) <= bound / judged.slope + 4 * EPS * stopped.period
                     else:
                         assert outcome == FREE
                         assert peak < 0
@@ -127,41 +100,25 @@ def test_a_graze_too_blurred_to_be_called_one_is_unresolved():
 @pytest.mark.parametrize("n_modes", [1, 3, 10])
 def test_flight_that_ends_near_the_peak(n_modes):
     """The flight ends 1e-3 ... 1e-12 of a period before or after a peak near the stop."""
-    generator = np.random.default_rng([8, n_modes])
     told = {"free": 0, "crosses": 0, "within rounding": 0}
-    for _ in range(12):
-        motion = random_oscillator(generator, n_modes).motion()
-        u, v = random_deviation(generator, motion, ringing=True)
-        signal = Signal(motion, 0.0, u, v)
-        places = signal.peaks(motion.period)
-        heights = signal(places)
-        start = max(float(signal(Real(0))), 0.0)
-        chosen = [i for i in records(heights) if heights[i] > 1.2 * start + 1e-4]
-        for i in chosen[-1:]:
+    for flight in flights([8, n_modes], n_modes, 12):
+        for i in flight.chosen[-1:]:
             for h in (1e-2, 1e-4, 1e-6, 1e-8, -1e-8, -1e-4):
                 for part in (1e-3, 1e-5, 1e-7, 1e-9, 1e-12, -1e-12, -1e-9, -1e-7, -1e-5, -1e-3):
-                    gap = float(heights[i] / (1 + Real(h)))
-                    if gap <= start:
-                        continue
-                    end = float(places[i]) + part * motion.period
-                    stopped = with_gap(motion, gap)
-                    verdict = judge(signal, gap, end, peaks=places[places < end])
-                    told[assert_agrees(search(stopped, 0.0, u, v, end), verdict, stopped, u, v, 0.0)] += 1
+                    gap = float(flight.heights[i] / (1 + Real(h)))
+                    if gap > flight.start:
+                        end = float(flight.places[i]) + part * flight.motion.period
+                        told[flight.agrees(gap, end)] += 1
     assert min(told["free"], told["crosses"]) > 100
 
 
 def test_flight_that_ends_at_the_touch_finds_it_in_the_next_one():
     """A crossing within rounding of the end belongs to exactly one of two consecutive flights."""
-    generator = np.random.default_rng(9)
-    for _ in range(40):
-        motion = random_oscillator(generator, 3).motion()
-        u, v = random_deviation(generator, motion, ringing=False)
-        signal = Signal(motion, 0.0, u, v)
-        start = max(float(signal(Real(0))), 0.0)
-        height = float(signal(signal.peaks(motion.period)).max())
-        if height < 1.2 * start + 1e-4:
+    for flight in flights([9], 3, 40, "at rest"):
+        if not flight.chosen:
             continue
-        stopped = with_gap(motion, 0.5 * (height + start))
+        motion, u, v = flight.motion, flight.u, flight.v
+        stopped = with_gap(motion, 0.5 * (float(flight.heights.max()) + flight.start))
         outcome, root = search(stopped, 0.0, u, v, motion.period)
         assert outcome == CROSSES
         for before in (1e-2, 1e-4, 1e-6, 1e-8, 1e-10):
@@ -181,7 +138,7 @@ def test_flight_that_ends_at_the_touch_finds_it_in_the_next_one():
             assert abs(end + s - root) < 1e-14
 
 
-# ------------------------------------------------------------------------------------- loads, and brute force
+# ----------------------------------------------------------------------------------------------------- loads
 
 
 @pytest.mark.filterwarnings("ignore:gap is 3 m:beam.SuspiciousValue")
@@ -220,33 +177,3 @@ def test_thrown_body_turns_just_above_or_below_the_stop():
         if h > 0:
             exact = (Real(speed) - np.sqrt(16 * excess)) / 8
             assert abs(s - exact) < 4 * EPS + 20 * EPS * gap / np.sqrt(16 * excess)
-
-
-@pytest.mark.parametrize("n_modes", [1, 2, 4, 8, 15, 20])
-def test_brute_force_finds_nothing_earlier(n_modes):
-    """Flights against a stop set at random: 20 000 samples a flight, first one above the stop."""
-    generator = np.random.default_rng([13, n_modes])
-    found = free = 0
-    for trial in range(30):
-        motion = random_oscillator(generator, n_modes, driven=trial % 3 > 0).motion()
-        u, v = random_deviation(generator, motion, ringing=trial % 2 > 0)
-        base = 0.0
-        fine = np.linspace(base, motion.period, 20_000)
-        signal = Signal(motion, base, u, v)
-        x = signal(fine)
-        gap = float(generator.uniform(max(x[0], 1e-4), max(1.1 * x.max(), 2e-4)))
-        if gap <= max(x[0], 0):
-            continue
-        stopped = with_gap(motion, gap)
-        outcome, s = search(stopped, base, u, v, motion.period)
-        above = np.flatnonzero(x > gap)
-        if above.size:
-            found += 1
-            assert outcome == CROSSES
-            assert fine[above[0] - 1] - 1e-12 <= s <= fine[above[0]] + 1e-12
-        else:
-            free += outcome == FREE
-            if outcome == CROSSES:  # a peak between two samples
-                assert signal(Real(s)) - gap < 1e-15
-                assert signal(Real(s), 1) > 0
-    assert min(found, free) >= 1

@@ -130,31 +130,6 @@ def test_a_collision_of_a_spring_with_a_degenerate_mode_keeps_its_digits(name):
     assert error_of_collision(CASES[name], 1e5)[0] < 3e-14 < Exact.accuracy
 
 
-@pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
-@pytest.mark.parametrize(
-    "ratio", [0.0, 1e-15, 1.0 - 1e-8, 1.0, 1.0 + EPS, 1.0 + 1e-12, 1.0 + 1e-4, 1e2, 1e6]
-)
-def test_flights_lose_no_digit_near_and_far_from_critical_damping(ratio):
-    """Times from a thousandth of a radian to thirty; both columns of the flow, as velocities."""
-    omega, one = 150.0, np.ones(1)
-    model = ModalModel(omega=omega * one, decay_rate=2 * omega * ratio * one, phi=one, participation=one)
-    oscillator = ImpactOscillator(model=model, stop=Stop(gap=1.0, law=LinearContact(stiffness=1.0)))
-    times = np.geomspace(1e-3, 30.0, 12) / omega
-    off, size = np.zeros(times.size), np.zeros(times.size)
-    for q, v in ((1e-3, 0.0), (0.0, 1e-3 * omega)):
-        start = State(displacement=q * one, velocity=v * one)
-        run = simulate(oscillator, start, duration=float(times[-1]), times=times)
-        with mpmath.workdps(DIGITS):
-            a, b = generator(model, 0.0)
-            for i, time in enumerate(times):
-                exact = after(a, b, mpmath.matrix([q, v]), mpmath.mpf(float(time)))
-                found = float(run.displacement[i, 0]), float(run.velocity[i, 0])
-                for weight, one_found, wanted in zip((omega, 1.0), found, exact, strict=True):
-                    off[i] = max(off[i], float(abs(weight * (mpmath.mpf(one_found) - wanted))))
-                    size[i] = max(size[i], float(abs(weight * wanted)))
-    assert np.max(off / size) < 2e-14
-
-
 def worst(model: ModalModel, part: float, starts: int) -> tuple[float, float]:
     """Largest error over some starts, a part in a hundred apart in speed (rounding is a matter of luck), and
     the size of it that the precision of the tip's place lets expect [1]."""

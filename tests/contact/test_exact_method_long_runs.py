@@ -4,10 +4,7 @@ A flight is the exact flow of a drive period: what remains is its rounding, the 
 eps each. An orbit that repeats every m periods repeats to rounding. A method with a step multiplies a free
 mode by the principal root z of its polynomial in every step: phase error per radian arg(z)/x - 1, x = h
 omega, is x^2/24 for central difference, -x^2/12 for the trapezoidal rule and Moreau and Jean's with theta =
-1/2, 0 for splitting. Central difference lets the energy of elastic contacts walk: ln E changes in each by
-f(s) - f(s'), f = ln(1 - X s(1 - s)), X = (h omega_c)^2, with the phases s, s' of the grid at touch and
-release, s' = r - s up to whole numbers, r the part of a contact beyond a whole number of steps. For evenly
-spread s and small X the standard deviation after n contacts is X sqrt(n (r^4 - 2 r^3 + r^2)/3).
+1/2, 0 for splitting.
 """
 
 from __future__ import annotations
@@ -24,8 +21,6 @@ from beam import ModalModel
 from contact import (
     Chatter,
     ContactLaw,
-    HertzContact,
-    ImpactKind,
     ImpactOscillator,
     LinearContact,
     MaximalFamily,
@@ -87,42 +82,19 @@ def test_a_periodic_orbit_repeats_to_rounding_and_is_the_closed_form():
     assert off < 1e-13 * strobed.scale
 
 
-@pytest.mark.parametrize(
-    ("law", "contacts"), [(LinearContact(stiffness=1e6), 4000), (HertzContact(stiffness=1e8), 800)]
-)
-def test_elastic_contacts_keep_the_energy(law, contacts):
-    oscillator, speed = one_mode(law, 0.01), 0.03 * OMEGA
-    run = simulate(oscillator, State(displacement=np.zeros(1), velocity=np.full(1, speed)), periods=contacts)
-    free = np.flatnonzero(run.strobe_displacement[:, 0] < 0.01)[-1]
-    now = float(oscillator.energy(run.strobe_displacement[free], run.strobe_velocity[free]))
-    assert len(run.impacts) > contacts
-    assert abs(now / (0.5 * speed**2) - 1.0) < 10 * EPS * contacts
-
-
 def test_too_elastic_a_law_is_refused_as_chatter_and_a_lesser_one_comes_to_rest():
     """Hops of a ball that rests after half a period: 1e5, as many as one may hold, at 1 - e = 4.69e-5."""
     for left, refused in ((4.9e-5, False), (4.5e-5, True)):
         ball = one_mode(NewtonRestitution(local_restitution=1.0 - left), 1e-3, omega=0.0, load=GRAVITY)
         start = State(displacement=np.array([1e-3]), velocity=np.array([-0.25 * GRAVITY * left]))
         if refused:
-            with pytest.raises(Chatter):
+            with pytest.raises(Chatter, match="impacts accumulate at t = ") as caught:
                 simulate(ball, start, duration=0.9)
+            assert 0 < caught.value.time < 0.9 and abs(caught.value.gap) <= 1e-8
+            assert abs(caught.value.velocity) <= 5e-4
         else:
             run = simulate(ball, start, duration=0.9)
             assert run.end.regime == Regime.SUSTAINED and 0.9e5 < len(run.impacts) < 1e5
-
-
-def test_a_driven_mode_is_let_go_when_the_force_that_holds_it_vanishes():
-    """Driven slowly and three times as far as the stop: released at sin(w t) = 1/3 on the falling side."""
-    slow = 0.2 * float(letters_mode(0.7, 1.0).model.omega[0]) / (2.0 * math.pi)
-    oscillator = letters_mode(0.7, slow)
-    push = float(oscillator.model.participation[0]) * (2.0 * math.pi * slow) ** 2
-    reach = 3.0 * float(oscillator.model.omega[0]) ** 2 * oscillator.stop.gap / float(oscillator.model.phi[0])
-    run = simulate(oscillator.with_amplitude(reach / push), periods=20)
-    held = (run.impacts.kind == ImpactKind.STAY) & np.isfinite(run.impacts.end)
-    phase = np.mod(run.impacts.end[held] * slow, 1.0)
-    assert held.sum() >= 19
-    assert phase == pytest.approx(0.5 - math.asin(1.0 / 3.0) / (2.0 * math.pi), abs=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -146,21 +118,3 @@ def test_the_phase_of_a_free_mode_drifts_as_theory_says(method, error):
     turn = np.unwrap(np.angle(run.displacement[:, 0] * scale - 1j * run.velocity[:, 0] / OMEGA))
     rate = abs(turn[-1] - turn[0]) / (x * (steps - 1)) - 1.0
     assert rate == pytest.approx(error * x * x, abs=2e-3 * x * x if error else 1e-13)
-
-
-def test_a_stable_step_lets_the_energy_of_contacts_walk_at_random():
-    """Central difference, a body that bounces on a spring; 64 starts are good to 1/sqrt(128)."""
-    contact, contacts, starts = 4000.0, 20, 64
-    step = math.pi / (contact * 7.37)  # a whole number of steps a contact would hide the error
-    body = one_mode(LinearContact(stiffness=contact**2), 0.0, omega=0.0, load=GRAVITY)
-    changes = []
-    for v in 1.0 + 0.05 * (np.arange(starts) + 0.5) / starts:
-        start = State(displacement=np.array([-1e-3]), velocity=np.array([v]))
-        duration = 1.6 * contacts * (2.0 * v / GRAVITY + math.pi / contact)
-        impacts = simulate(body, start, duration=duration, method=CentralDifference(step=step)).impacts
-        flights = impacts.start[1:] - impacts.end[:-1]  # a flight lasts 2 v/g
-        changes.append(2.0 * math.log(flights[contacts] / flights[0]))
-    x = contact * step
-    r = math.fmod((math.pi + 2.0 * math.atan(GRAVITY / contact)) / (2.0 * math.asin(0.5 * x)), 1.0)
-    walk = x * x * math.sqrt(contacts * (r**4 - 2.0 * r**3 + r**2) / 3.0)
-    assert np.std(changes) == pytest.approx(walk, rel=3 / math.sqrt(2 * starts))

@@ -1,37 +1,33 @@
-"""One contract for every family of periodic orbits: closed forms, kicks, shooting and the Nordmark map."""
+"""One contract for every family of periodic orbits: closed forms, kicks, shooting and the Nordmark map.
+
+Where several describe the same motion their orbits are one, and each is an orbit of the simulated motion.
+"""
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
-from oscillators import MODES
+from oscillators import MODES, apart, equation_1, many_modes
+from simulated_orbit import DELAYED, HERTZ, LAWS, beam, differences, settled, sizes, touches
 
-from beam import ModalModel, single_mode
 from contact import (
-    HarmonicDrive,
+    DelayedRestitution,
     HuntCrossley,
     ImpactOscillator,
     MapFamily,
     MaximalFamily,
     NewtonRestitution,
     NordmarkMap,
-    Stop,
+    simulate,
 )
 from contact.orbits import KickFamily, Shooting
-from contact.orbits.continuation import fold_of
 from contact.orbits.family import Family
 
-T, MU, TAU, GAP = 0.0408, 3.56, 0.1, 0.0107
-PLACES = [(20.90, 3), (21.50, 4), (22.20, 5)]
-
-
-def oscillator(frequency: float) -> ImpactOscillator:
-    return ImpactOscillator(
-        model=single_mode(free_period=T, decay_rate=MU),
-        stop=Stop(gap=GAP, law=NewtonRestitution(local_restitution=TAU)),
-        drive=HarmonicDrive(frequency=frequency),
-    )
-
+UNDELAYED = DelayedRestitution(restitution=0.1, delay=0.0)
+PLACES = [(20.90, 3), (21.50, 4), (22.20, 5), (23.40, 11)]
+one_mode = partial(equation_1, gap=0.0107)
 
 MAKERS = {
     "closed form": lambda at, period: MaximalFamily.from_oscillator(at, period=period),
@@ -39,20 +35,27 @@ MAKERS = {
     "shooting": lambda at, period: Shooting(oscillator=at, period=period),
     "map": lambda at, period: MapFamily(NordmarkMap.from_oscillator(at), period),
 }
+OSCILLATORS = {
+    **{f"Newton, {f} Hz": (one_mode(f), m) for f, m in PLACES},
+    **{f"no delay, {f} Hz": (one_mode(f, UNDELAYED), m) for f, m in PLACES},
+    **{f"{name}, {f} Hz": (one_mode(f, law), m) for name, law in DELAYED.items() for f, m in PLACES[:3]},
+    **{name: (many_modes(name), 3) for name in MODES},
+    "six modes": (beam(20.90, LAWS["newton"]), 3),
+    **{f"six modes, {name}": (beam(22.20, law), 5) for name, law in LAWS.items()},
+}
+CONTRACT = [
+    *((name, f"Newton, {f} Hz") for name in MAKERS for f, _ in PLACES[:3]),
+    *(("closed form", name) for name in MODES),
+    *((name, f"{law}, 21.5 Hz") for name in ("kicks", "shooting") for law in ("constant", "falling")),
+    ("shooting", "six modes, hertz"),
+]
 
 
-@pytest.fixture(
-    scope="module", params=[*((name, *place) for name in MAKERS for place in PLACES), *MODES], ids=str
-)
+@pytest.fixture(scope="module", params=CONTRACT, ids=str)
 def family(request) -> Family:
-    """Of Eq. (1) in each description; of many modes in closed form."""
-    if request.param in MODES:
-        model = ModalModel(**{key: np.array(value) for key, value in MODES[request.param].items()})
-        stop = Stop(gap=0.012, law=NewtonRestitution(local_restitution=0.35))
-        many = ImpactOscillator(model=model, stop=stop, drive=HarmonicDrive(frequency=20.5))
-        return MaximalFamily(oscillator=many, period=3)
-    name, frequency, period = request.param
-    return MAKERS[name](oscillator(frequency), period)
+    """Of Eq. (1) in each description, with a touch that waits; of many modes."""
+    name, at = request.param
+    return MAKERS[name](*OSCILLATORS[at])
 
 
 def test_an_orbit_has_the_speed_it_was_asked_for(family: Family) -> None:
@@ -91,36 +94,98 @@ def test_multipliers_fall_in_size_and_tell_stability(family: Family) -> None:
 
 def test_past_the_band_there_is_no_fold_and_one_orbit_above_grazing_only() -> None:
     for make in MAKERS.values():
-        family = make(oscillator(21.05), 3)  # p3 is born up to 21.008 Hz
+        family = make(one_mode(21.05), 3)  # p3 is born up to 21.008 Hz
         assert family.fold() is None
         assert family.orbits(-1e-4) == () and len(family.orbits(1e-3)) == 1
 
 
-@pytest.mark.parametrize(("frequency", "period"), PLACES)
-def test_under_newtons_law_three_descriptions_are_one(frequency: float, period: int) -> None:
-    at = oscillator(frequency)
-    closed, *others = (MAKERS[name](at, period) for name in ("closed form", "kicks", "shooting"))
-    for other in others:
-        assert other.fold().excess == pytest.approx(closed.fold().excess, abs=1e-12)
-        for wanted, found in zip(closed.orbits(1e-3), other.orbits(1e-3), strict=True):
-            assert found.speed == pytest.approx(wanted.speed, rel=1e-9)
-            assert found.amplitude == pytest.approx(wanted.amplitude, rel=1e-12)
-            assert found.phase == pytest.approx(wanted.phase, abs=1e-12)
-            assert found.multipliers == pytest.approx(wanted.multipliers, abs=1e-7)
-            assert (found.stable, found.admissible) == (wanted.stable, wanted.admissible)
+def descriptions(oscillator: ImpactOscillator, period: int) -> list[Family]:
+    """All that hold for this law, the one in closed form first."""
+    law, others = oscillator.stop.law, [MAKERS[name](oscillator, period) for name in ("kicks", "shooting")]
+    if law is UNDELAYED:
+        oscillator = one_mode(oscillator.drive.frequency)
+    elif not isinstance(law, NewtonRestitution):
+        return others
+    return [MAKERS["closed form"](oscillator, period), *others]
 
 
-def test_the_fold_of_shooting_is_that_of_the_continuation() -> None:
-    family = Shooting(oscillator=oscillator(21.50), period=4)
-    assert family.fold().speed == fold_of(family).speed
+@pytest.mark.parametrize("name", [name for name in OSCILLATORS if not name.startswith("six modes,")])
+def test_where_several_descriptions_hold_they_are_one(name: str) -> None:
+    """Under Newton's law, and where the touch of one mode waits."""
+    oscillator, period = OSCILLATORS[name]
+    closed, *others = descriptions(oscillator, period)
+    w, scale = oscillator.drive.angular_frequency, sizes(oscillator)
+    for part in (1e-3, 0.03, 0.1, 0.3, 0.5):
+        wanted = closed.orbit(part * oscillator.unit_speed)
+        for other in others:
+            found = other.orbit(part * oscillator.unit_speed)
+            if isinstance(other, KickFamily) and found.kick.touches > 1:
+                continue  # the kick is that of the whole collision
+            digits = 1e-15 / part + 1e-13
+            assert found.excess == pytest.approx(wanted.excess, abs=digits)
+            assert abs(np.exp(1j * w * (found.phase - wanted.phase)) - 1.0) < digits
+            place = [np.concatenate([one.displacement, one.velocity]) for one in (found, wanted)]
+            assert np.max(np.abs(place[0] - place[1]) / scale) < digits
+            assert apart(found.multipliers, wanted.multipliers) < 1e-12 / part**2
+            assert found.admissible == wanted.admissible
+    kicks = KickFamily(oscillator=oscillator, period=period)
+    assert abs(kicks.error(kicks.orbit(0.3 * oscillator.unit_speed))) < 1e-13
+    folds = [one.fold() for one in (closed, *others)]
+    for fold in folds if folds[0] else ():
+        assert fold.excess == pytest.approx(folds[0].excess, abs=1e-13)
+        assert fold.speed == pytest.approx(folds[0].speed, rel=1e-6)
+    assert folds[0] or not any(folds)
+
+
+@pytest.mark.parametrize("name", OSCILLATORS)
+def test_an_orbit_is_one_of_the_simulated_motion(name: str) -> None:
+    """It closes, has the multipliers of the simulated map, and is admissible if it touches once."""
+    oscillator, period = OSCILLATORS[name]
+    family, seen = Shooting(oscillator=oscillator, period=period), []
+    for part in (0.02, 0.1, 0.15, 0.3, 0.5, 1.5):
+        orbit = family.orbit(part * oscillator.unit_speed)
+        assert orbit.admissible == (touches(orbit) == 1)
+        if not orbit.admissible:
+            continue
+        found, open_by = differences(orbit)
+        assert open_by < 1e-11
+        assert apart(found, orbit.multipliers) < 1e-6 * max(1.0, abs(orbit.multipliers[0]))
+        assert orbit.stable == (np.abs(found).max() < 1)
+        seen.append(orbit.stable)
+    assert seen
+
+
+@pytest.mark.parametrize(
+    ("oscillator", "excess", "period", "impacts"),
+    [
+        (one_mode(20.90), 0.1, 3, 2), (one_mode(21.50), 0.011, 8, 3), (one_mode(21.50), 0.02, 4, 2),
+        (beam(20.90, HERTZ, modes=4), 0.1, 3, 2), (beam(21.50, HERTZ, modes=4), 0.02, 4, 2),
+        (one_mode(22.20, DelayedRestitution(restitution=0.1, delay=2e-3)), 1e-4, 6, 2),
+        (one_mode(22.20, DelayedRestitution(restitution=0.1, delay=2e-3)), 1e-3, 6, 2),
+    ],
+)  # fmt: skip
+def test_orbits_with_several_touches(
+    oscillator: ImpactOscillator, excess: float, period: int, impacts: int
+) -> None:
+    run = settled(oscillator, excess)
+    assert (run.period, run.impacts) == (period, impacts)
+    family = Shooting(oscillator=oscillator.with_excess(excess), period=period, impacts=impacts)
+    orbit = family.from_state(run.end)
+    assert orbit.excess == pytest.approx(excess, abs=1e-14)
+    assert orbit.residual < 1e-12 and orbit.admissible and orbit.stable
+    assert touches(orbit) == impacts == len(orbit.approach)
+    last = simulate(orbit.oscillator, orbit.state(), duration=period * oscillator.period * (1 - 1e-6))
+    assert np.allclose(last.impacts.approach[last.impacts.kind == 0], orbit.approach, rtol=1e-10)
+    found, open_by = differences(orbit)
+    assert open_by < 1e-10
+    assert apart(found, orbit.multipliers) < 1e-6
+    # the same orbit by its speed
+    assert family.at_speed(orbit.speed, orbit).excess == pytest.approx(excess, abs=1e-12)
 
 
 def test_the_multipliers_of_a_kick_orbit_are_those_of_its_own_touch() -> None:
     """At the fold of the kicks of a soft wall the motion is all but at its own: a multiplier next to one."""
-    at = ImpactOscillator(
-        model=single_mode(free_period=T, decay_rate=MU), drive=HarmonicDrive(frequency=21.50),
-        stop=Stop(gap=GAP, law=HuntCrossley.with_restitution(stiffness=1e9, restitution=TAU, velocity=0.2)),
-    )  # fmt: skip
+    at = one_mode(21.50, HuntCrossley.with_restitution(stiffness=1e9, restitution=0.1, velocity=0.2))
     kick, exact = (make(oscillator=at, period=4).fold() for make in (KickFamily, Shooting))
     assert kick.excess == pytest.approx(exact.excess, rel=0.1)
     assert kick.multipliers[0] == pytest.approx(1.0, abs=0.05) and kick.admissible

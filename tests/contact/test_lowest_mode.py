@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from tip_judge import Signal, with_gap
 
 from beam import ModalModel
 from contact.drive import HarmonicDrive
@@ -20,37 +21,11 @@ from contact.stop import Stop
 GAP = 0.02
 
 
-class Tip:
-    """Tip displacement minus gap and its slope in a flight, by real exponentials in extended precision."""
-
-    def __init__(self, motion: Motion, base: float, u: np.ndarray, v: np.ndarray) -> None:
-        self.base, self.level, self.w = np.longdouble(base), np.longdouble(motion.level), motion.drive
-        self.sine, self.cosine = motion.tip_sine, motion.tip_cosine
-        half = motion.decay.astype(np.longdouble) / 2
-        self.rates = -half + 1j * np.sqrt(motion.omega.astype(np.longdouble) ** 2 - half**2)
-        self.terms = motion.phi * (u - 1j * (v + half * u) / self.rates.imag)
-
-    def __call__(self, s: np.ndarray, order: int = 0) -> np.ndarray:
-        s = np.asarray(s, dtype=np.longdouble)
-        free = (np.exp(s[..., None] * self.rates) @ (self.terms * self.rates**order)).real
-        turn = np.longdouble(self.w) * (self.base + s)
-        sine, cosine = self.sine * np.sin(turn), self.cosine * np.cos(turn)
-        if order == 0:
-            return self.level + sine + cosine + free
-        if order == 1:
-            return self.w * (self.sine * np.cos(turn) - self.cosine * np.sin(turn)) + free
-        return -self.w**2 * (sine + cosine) + free
-
-    def highest(self, start: float, end: float) -> np.longdouble:
-        """Greatest value in [start, end], its inner maxima polished."""
-        s = np.linspace(start, end, 3 + int(40 * (end - start) * float(self.rates.imag.max()) / math.tau))
-        y = self(s)
-        tops = np.flatnonzero((y[1:-1] >= y[:-2]) & (y[1:-1] >= y[2:])) + 1
-        place = s[tops[np.argsort(y[tops])[-5:]]].astype(np.longdouble)
-        for _ in range(6):
-            place = place - self(place, 1) / self(place, 2)
-        inside = place[(place >= start) & (place <= end)]
-        return max(y.max(), self(inside).max(initial=-np.inf))
+def highest(signal: Signal, start: float, end: float) -> np.longdouble:
+    """Greatest tip displacement minus gap in [start, end]."""
+    places = signal.peaks(end)
+    places = np.append(places[places >= start], np.array([start, end], dtype=np.longdouble))
+    return (signal(places) - np.longdouble(GAP)).max()
 
 
 def beam(generator: np.random.Generator, modes: int) -> tuple[Motion, np.ndarray, np.ndarray]:
@@ -92,16 +67,16 @@ def test_no_touch_lies_in_what_is_proved_free(modes, cases):
         motion, u, v = beam(generator, modes)
         base = motion.period * generator.choice([0.0, generator.uniform(0, 0.9)])
         lowest, flight = claims(motion, base, u, v)
-        duration, tip = motion.period - base, Tip(motion, base, u, v)
+        duration, tip = motion.period - base, Signal(motion, base, u, v)
         s = free_until(*flight, lowest, base, duration)
         if s > 0.0:
             free, part = free + (s == duration), part + (s < duration)
-            assert tip.highest(0.0, s) < 0
+            assert highest(tip, 0.0, s) < 0
         for t in generator.uniform(0, duration, 8):
             height, rate, _bend, _twist = without_others(*flight, base, t)
             if free_from(lowest, base + t, height, rate):
                 later += 1
-                assert tip.highest(t, duration) < 0
+                assert highest(tip, t, duration) < 0
     assert free > cases / 10 and part > cases / 30 and later > cases / 3  # the claims are made
 
 
@@ -113,11 +88,13 @@ def test_a_planted_touch_is_found_and_a_planted_miss_settled(modes, planted):
     touched, settled, missed = 0, 0, 0
     while touched < 12:
         motion, u, v = beam(generator, modes)
-        top = float(Tip(motion, 0.0, u, v).highest(0.0, motion.period))
+        signal = Signal(motion, 0.0, u, v)
+        top = float(highest(signal, 0.0, motion.period))
         for sign in (1.0, -1.0):
-            moved = motion._replace(level=motion.level - top + sign * planted * GAP)
+            gap = (GAP + top) / (1.0 + sign * planted)
+            moved = with_gap(motion, gap)
             lowest, flight = claims(moved, 0.0, u, v)
-            if lowest.slack == 0.0 or Tip(moved, 0.0, u, v)(0.0) > -0.1 * GAP:
+            if lowest.slack == 0.0 or signal(np.longdouble(0)) > 0.9 * gap:
                 continue
             s = free_until(*flight, lowest, 0.0, moved.period)
             outcome, root = first_crossing(moved, 0.0, u, v, moved.period, 0)
@@ -126,8 +103,8 @@ def test_a_planted_touch_is_found_and_a_planted_miss_settled(modes, planted):
                 assert s < moved.period
                 assert outcome == CROSSES
                 assert s <= root
-                assert Tip(moved, 0.0, u, v).highest(0.0, root * (1 - 1e-12) - 1e-12) < 1e-16
-                assert abs(Tip(moved, 0.0, u, v)(root)) < 5e-17
+                assert highest(signal, 0.0, root * (1 - 1e-12) - 1e-12) < gap - GAP + 1e-16
+                assert abs(signal(np.longdouble(root)) - np.longdouble(gap)) < 5e-17
             else:
                 missed += 1
                 settled += s == moved.period

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from contact import StrobedNordmarkMap, StrobedOrbit, StroboscopicMap
+from contact import StrobedOrbit, StroboscopicMap
 from contact.orbits import (
     Shooting,
     divergence_rate,
@@ -16,7 +16,7 @@ from contact.orbits import (
     orbit_exponents,
     settle,
 )
-from studies.scene import beam_at, nordmark_at, read_scene, single_mode_at
+from studies.scene import beam_at, read_scene, single_mode_at
 
 FREQUENCY = 21.50
 
@@ -82,29 +82,17 @@ def test_the_logistic_map_has_ln_2_at_4_by_both_routes():
     assert flow.largest == pytest.approx(math.log(2.0), abs=4.0 * flow.error)
 
 
-def test_the_logistic_map_on_its_period_two_has_the_multiplier_of_the_formula():
-    a = 3.3
-    system = LogisticMap(a=a)
-    end = settle(system, system.steady(), most_cycles=2000)
-    assert end.period == 2
-    found = orbit_exponents(system, end.end, 2)
-    assert found.largest == pytest.approx(0.5 * math.log(abs(4.0 + 2.0 * a - a * a)), abs=1e-7)
-
-
 def test_the_jacobians_are_the_differences_of_the_period_map(single, beam):
     for strobed, excess in ((single, 0.02), (beam, 1e-3), (beam, 0.02)):
         here = strobed.at(excess)
-        system = here
         state = settle(here, strobed.steady(), most_cycles=2000).end
-        found, _end = system.jacobians(state, 4)
+        found, _end = here.jacobians(state, 4)
         matrix = np.linalg.multi_dot([m for m, _span in found][::-1])
-        start = system.coordinates(state)
+        start = here.coordinates(state)
         for direction in (0, start.size // 2):
-            step = 1e-6 * system.scale * np.eye(start.size)[direction]
-            ends = [
-                system.coordinates(here.orbit(system.moved(state, sign * step), 4).end) for sign in (1, -1)
-            ]
-            difference = (ends[0] - ends[1]) / (2e-6 * system.scale)
+            step = 1e-6 * here.scale * np.eye(start.size)[direction]
+            ends = [here.coordinates(here.orbit(here.moved(state, sign * step), 4).end) for sign in (1, -1)]
+            difference = (ends[0] - ends[1]) / (2e-6 * here.scale)
             # fast modes ring out within a period: their rows are rounding on both sides
             assert difference == pytest.approx(matrix[:, direction], rel=1e-3, abs=1e-5)
 
@@ -113,10 +101,9 @@ def test_without_impacts_the_exponent_is_minus_half_the_decay_rate(single, beam)
     for strobed in (single, beam):
         here = strobed.at(-0.02)
         rate = float(here.oscillator.model.decay_rate[0])
-        system = here
-        found = orbit_exponents(system, here.steady(), 1)
+        found = orbit_exponents(here, here.steady(), 1)
         assert found.largest * FREQUENCY == pytest.approx(-0.5 * rate, rel=1e-9)
-        flow = divergence_rate(system, here.steady(), 200.0 / FREQUENCY, align=20.0 / FREQUENCY)
+        flow = divergence_rate(here, here.steady(), 200.0 / FREQUENCY, align=20.0 / FREQUENCY)
         assert flow.largest == pytest.approx(-0.5 * rate, rel=1e-4)
 
 
@@ -128,44 +115,24 @@ def test_a_settled_orbit_has_the_multipliers_of_shooting(single, beam, excess):
         assert settled.period == 4
         shot = Shooting(oscillator=here.oscillator, period=4, impacts=settled.impacts).from_state(settled.end)
         wanted = math.log(abs(shot.multipliers[0])) / 4
-        system = here
-        assert orbit_exponents(system, settled.end, 4).largest == pytest.approx(wanted, abs=1e-7)
-        flow = divergence_rate(system, settled.end, 150.0 / FREQUENCY, align=20.0 / FREQUENCY)
+        assert orbit_exponents(here, settled.end, 4).largest == pytest.approx(wanted, abs=1e-7)
+        flow = divergence_rate(here, settled.end, 150.0 / FREQUENCY, align=20.0 / FREQUENCY)
         assert flow.largest / FREQUENCY == pytest.approx(wanted, abs=3e-3)
 
 
 def test_chaos_has_one_exponent_by_both_routes_and_the_sum_of_the_determinants(single, scene):
     here = single.at(0.034)
-    system, settled = here, settle(here, single.steady(), most_cycles=1500)
+    settled = settle(here, single.steady(), most_cycles=1500)
     assert settled.period == 0
-    found, _end = map_exponents(system, settled.end, 500, align=20)
-    flow = divergence_rate(system, settled.end, 500.0 / FREQUENCY, align=20.0 / FREQUENCY)
+    found, _end = map_exponents(here, settled.end, 500, align=20)
+    flow = divergence_rate(here, settled.end, 500.0 / FREQUENCY, align=20.0 / FREQUENCY)
     spread = math.hypot(found.error, flow.error / FREQUENCY)
     assert spread < 0.1 < found.largest
     assert abs(found.largest - flow.largest / FREQUENCY) < 4.0 * spread
     # determinant of a period: exp(-mu/f) tau^2 for each impact, whatever the motion
-    matrices, _end = system.jacobians(settled.end, 64)
+    matrices, _end = here.jacobians(settled.end, 64)
     impacts = here.orbit(settled.end, 64).impacts.sum()
     logs = sum(np.linalg.slogdet(m)[1] for m, _span in matrices)
     mode, tau = scene.single_mode, scene.single_mode.restitution
     wanted = -64 * mode.decay_rate_per_s / FREQUENCY + 2.0 * impacts * math.log(tau)
     assert logs == pytest.approx(wanted, rel=1e-9)
-
-
-def test_the_nordmark_map_by_both_routes(scene):
-    strobed = StrobedNordmarkMap(map=nordmark_at(scene, FREQUENCY))
-    here = strobed.at(1e-3)
-    settled = settle(here, strobed.at(-1e-3).steady(), most_cycles=2000)
-    system = here
-    orbit = orbit_exponents(system, settled.end, settled.period)
-    flow = divergence_rate(system, settled.end, 400.0, align=20.0)
-    assert settled.period == 4 and orbit.largest < 0
-    assert flow.largest == pytest.approx(orbit.largest, abs=3e-3)
-
-
-def test_wrong_use_is_refused(single):
-    system = single.at(0.01)
-    with pytest.raises(ValueError, match="count is 1 "):
-        map_exponents(system, single.steady(), 1)
-    with pytest.raises(ValueError, match="duration is 0"):
-        divergence_rate(system, single.steady(), 0.0)

@@ -12,7 +12,6 @@ import pytest
 from beam import ModalModel
 from contact import HarmonicDrive, ImpactOscillator, NewtonRestitution, Stop
 from contact.maximal_orbits import (
-    band,
     bands,
     fold,
     maximal_orbits,
@@ -39,19 +38,6 @@ def letter_map(frequency: float, **changes: object) -> NordmarkMap:
     return NordmarkMap.from_frequencies(drive_frequency=frequency, **numbers)
 
 
-def test_coefficients_are_the_letters() -> None:
-    f = 20.90
-    made = letter_map(f)
-    gamma, angle = math.exp(-MU / f), 2 * math.pi / (f * T)
-    assert made.gamma == pytest.approx(gamma, rel=1e-15)
-    assert made.alpha == pytest.approx(2 * math.sqrt(gamma) * math.cos(angle), rel=1e-14)
-    per_excess = (1 - made.alpha + gamma) / (2 * gamma * (f * T) ** 2 * (1 + TAU) ** 2 * math.sin(angle) ** 2)
-    assert made.rho_per_excess == pytest.approx(per_excess, rel=1e-14)
-    assert made.excess(made.rho(0.013)) == pytest.approx(0.013, rel=1e-15)
-    assert made.gamma_impact == pytest.approx(0.0084338, abs=5e-8)
-    assert letter_map(f, y_line="printed").gamma_impact == made.gamma
-
-
 @pytest.mark.parametrize("damping", [0.15, 1.0, 1.0 + 1e-9, 3.0, 30.0])
 def test_coefficients_are_those_of_the_period_flow(damping: float) -> None:
     """Trace, determinant and M12 of exp([[0, 1], [-w^2, -c]]/f), by a matrix exponential of 40 digits."""
@@ -68,24 +54,6 @@ def test_coefficients_are_those_of_the_period_flow(damping: float) -> None:
     assert made.delay_term == pytest.approx(float(delay_term), rel=1e-12)
     critical = abs(damping - 1) < 0.1  # there the exponents have the square root of the rounding of alpha
     assert made.rho_per_excess == pytest.approx(float(per_excess), rel=1e-7 if critical else 1e-11)
-
-
-def test_next_peak_of_a_kicked_oscillator() -> None:
-    """Kick Eq. (1) at its peak by -(1 + tau) v: x' is the next peak, less the term alpha x the map drops."""
-    made, f, gap = letter_map(21.5), 21.5, 0.01
-    w, half, wd = 2 * math.pi * f, MU / 2, 2 * math.pi / T
-    decay, turn = math.exp(-half / f), wd / f
-    m11 = decay * (math.cos(turn) + half / wd * math.sin(turn))
-    m12 = decay * math.sin(turn) / wd
-    m22 = decay * (math.cos(turn) - half / wd * math.sin(turn))
-    scale = 2 * w**2 * gap * (m12 * (1 + TAU)) ** 2
-    excess, height = 1e-5, 3e-7  # of the steady motion; of the peak at hand above the wall [m]
-    u = height - excess * gap
-    kick = -(1 + TAU) * math.sqrt(2 * w**2 * gap * height)
-    x_now, x_past = height / scale, (m22 * u / made.gamma + excess * gap) / scale  # one period back, no kick
-    x_next = (m11 * u + m12 * kick + excess * gap) / scale
-    predicted = made.step([x_now, -made.gamma * x_past], made.rho(excess))[0]
-    assert x_next == pytest.approx(predicted + made.alpha * x_now, rel=1e-12)
 
 
 @pytest.mark.parametrize("y_line", ["corrected", "printed"])
@@ -175,20 +143,6 @@ def test_orbits_repeat_and_have_their_multipliers(period: int, delay: float) -> 
         assert np.prod(orbit.multipliers).real == pytest.approx(orbit.determinant, rel=1e-9)
 
 
-@pytest.mark.parametrize(("frequency", "period", "_excess"), TABLE[:4])
-def test_iteration_finds_the_orbit_above_the_fold_only(frequency: float, period: int, _excess: float) -> None:
-    made = letter_map(frequency)
-    at_fold = fold(made, period)
-    assert at_fold is not None
-    above = 0.98 * at_fold.rho
-    node = maximal_orbits(made, period, above)[-1]
-    settled = made.iterate(node.states[0] * 1.0001, above, 400 * period)[-period:]
-    assert np.allclose(np.sort(settled[:, 0]), np.sort(node.states[:, 0]), atol=1e-9)
-    gone = made.iterate(at_fold.states[0], 1.02 * at_fold.rho, 20000)[-1]
-    rest = 1.02 * at_fold.rho / (1 - made.alpha + made.gamma)
-    assert gone[0] == pytest.approx(rest, abs=1e-12) and rest < 0  # p1 without impacts
-
-
 @pytest.mark.parametrize("y_line", ["corrected", "printed"])
 @pytest.mark.parametrize(("frequency", "period"), [(f, m) for f, m, _ in TABLE])
 def test_a_second_impact_ends_the_stable_range(frequency: float, period: int, y_line: str) -> None:
@@ -228,19 +182,6 @@ def test_band_edges() -> None:
         assert maximal_periods(letter_map(middle)) == (below.period, entry.period)
 
 
-def test_lower_edge_solves_its_equation_in_fifty_digits() -> None:
-    entry = band(5, free_period=T, decay_rate=MU, restitution=0.7, y_line="printed")
-    with mp.workdps(50):
-
-        def edge(f):
-            angle = 2 * mp.pi / (f * mp.mpf(T))
-            return mp.sin(4 * angle) / mp.sin(angle) + mp.e ** (-mp.mpf(2.5) * mp.mpf(MU) / f)
-
-        assert entry.lower == pytest.approx(float(mp.findroot(edge, mp.mpf(entry.lower))), rel=1e-14)
-    without = band(5, free_period=T, decay_rate=MU, restitution=0.0)
-    assert without.lower == pytest.approx(8 / (9 * T), rel=1e-14)  # the upper edge of p4: no overlap
-
-
 def test_period_ten_needs_another_period_or_frequency() -> None:
     """Band edges depend on f T alone: 23.40 Hz lies in p11 for T = 40.80 +- 0.02 ms and any damping."""
     for period_of_spring in (T - 2e-5, T, T + 2e-5):
@@ -251,19 +192,6 @@ def test_period_ten_needs_another_period_or_frequency() -> None:
     assert maximal_period(letter_map(23.40, free_period=0.04070)) == 10
     assert maximal_period(letter_map(23.342)) == 10
     assert maximal_period(letter_map(23.343)) == 11
-
-
-def test_delay_moves_the_fold_and_ends_the_hysteresis() -> None:
-    plain = letter_map(21.5)
-    at_fold = fold(plain, 4)
-    assert at_fold is not None
-    enough = at_fold.root / 2
-    made = NordmarkMap(alpha=plain.alpha, gamma=plain.gamma, restitution=TAU, delay_term=enough)
-    assert fold(made, 4).rho == pytest.approx(0, abs=1e-15)
-    wd, f = 2 * math.pi / T, 21.5
-    delay = 1e-4
-    term = wd * delay / (2 * math.sqrt(plain.gamma) * math.sin(wd / f) * (1 + TAU) ** 2)
-    assert letter_map(f, delay=delay).delay_term == pytest.approx(term, rel=1e-13)
 
 
 def test_overdamped_map_adds_periods_and_has_no_fold() -> None:

@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 import pytest
+from oscillators import equation_1, spring
+from whole_motions import falling_body
 
-from beam import ModalModel, single_mode
-from contact.drive import HarmonicDrive
+from beam import ModalModel
 from contact.integrators.sampled_flight import SampledFlight
 from contact.laws import (
-    ContactLaw,
     DelayedRestitution,
     HertzContact,
     HuntCrossley,
@@ -23,8 +23,6 @@ from contact.simulation import simulate
 from contact.stop import Stop
 from contact.trajectory import State
 
-OMEGA = 2 * np.pi * 24.5 * np.array([1.0, 6.1, 15.4, 29.0])
-PHI = 10.0 * np.array([1.0, 0.7, 0.5, 0.4])
 LAWS = {
     "Newton": NewtonRestitution(local_restitution=0.6),
     "delayed": DelayedRestitution(restitution=0.4, delay=4e-4),
@@ -35,23 +33,13 @@ LAWS = {
 }
 
 
-def driven(law: ContactLaw, n: int) -> ImpactOscillator:
-    model = ModalModel(
-        omega=OMEGA[:n], decay_rate=0.02 * OMEGA[:n], phi=PHI[:n],
-        participation=np.array([0.09, 0.05, -0.03, 0.02])[:n],
-    )  # fmt: skip
-    return ImpactOscillator(
-        model=model, stop=Stop(gap=0.005, law=law), drive=HarmonicDrive(frequency=22.2)
-    ).with_excess(0.01)
-
-
 @pytest.mark.parametrize(
     ("law", "n", "points"),
     [(name, n, points) for name in LAWS for n, points in ((1, 4), (4, 32)) if (name, n) != ("delayed", 4)],
 )
 def test_it_is_exact_where_nothing_is_missed(law, n, points):
     """All laws, one mode and four, strobes, samples between them, and impacts, against the proved search."""
-    oscillator = driven(LAWS[law], n)
+    oscillator = spring(n, LAWS[law], drive=(22.2, 0.0)).with_excess(0.01)
     times = np.linspace(0.001, 0.9, 57)
     exact = simulate(oscillator, periods=25, times=times)
     run = simulate(oscillator, periods=25, times=times, method=SampledFlight(points=points))
@@ -65,11 +53,7 @@ def test_it_is_exact_where_nothing_is_missed(law, n, points):
 
 def test_equation_1_needs_two_points_and_one_is_too_few():
     """The letter's "small number of discrete points": p5 at 22.2 Hz, one impact every fifth period."""
-    oscillator = ImpactOscillator(
-        model=single_mode(free_period=0.0408, decay_rate=3.56),
-        stop=Stop(gap=1.0, law=NewtonRestitution(local_restitution=0.1)),
-        drive=HarmonicDrive(frequency=22.2),
-    ).with_excess(1e-3)
+    oscillator = equation_1(22.2, excess=1e-3)
     exact = simulate(oscillator, periods=500)
     assert set(np.diff(np.flatnonzero(exact.strobe_impacts[-100:]))) == {5}
     run = simulate(oscillator, periods=500, method=SampledFlight(points=2))
@@ -140,25 +124,22 @@ def test_it_misses_what_its_rule_misses():
 
 
 def test_a_missed_crossing_shows_as_a_tip_behind_a_rigid_stop():
-    oscillator = driven(LAWS["Newton"], 4)
+    oscillator = spring(4, LAWS["Newton"], drive=(22.2, 0.0)).with_excess(0.01)
     kicked = State(displacement=np.zeros(4), velocity=[0.0, 0.0, 4.0, 0.0])
     times = np.linspace(0.0, 1 / 22.2, 2001)
     deepest = {}
     for points in (3, 400):
         run = simulate(oscillator, kicked, periods=1, times=times, method=SampledFlight(points=points))
-        deepest[points] = (run.displacement @ PHI).max() - 0.005
+        deepest[points] = (run.displacement @ oscillator.model.phi).max() - 0.005
     proved = simulate(oscillator, kicked, periods=1, times=times)
-    assert (proved.displacement @ PHI).max() <= 0.005 + 1e-15
+    assert (proved.displacement @ oscillator.model.phi).max() <= 0.005 + 1e-15
     assert deepest[400] <= 1e-15
     assert deepest[3] > 1e-4
 
 
 def test_a_bouncing_ball_comes_to_rest_at_any_number_of_points():
     """The ball stays behind the floor that it has missed, so that no hop is lost: h = 1 m, e = 0.7."""
-    model = ModalModel(omega=np.zeros(1), decay_rate=np.zeros(1), phi=np.ones(1), participation=np.zeros(1))
-    oscillator = ImpactOscillator(
-        model=model, stop=Stop(gap=1.0, law=NewtonRestitution(local_restitution=0.7)), load=np.array([9.81])
-    )
+    oscillator = falling_body(1.0, NewtonRestitution(local_restitution=0.7))
     for points in (1, 7):
         run = simulate(oscillator, duration=3.0, method=SampledFlight(points=points))
         hops = run.impacts.start[run.impacts.kind == 0]
@@ -167,19 +148,3 @@ def test_a_bouncing_ball_comes_to_rest_at_any_number_of_points():
         )
         assert run.end.regime == 3
         assert run.end.displacement[0] == pytest.approx(1.0, abs=1e-12)
-
-
-def test_positions_computed_are_counted():
-    oscillator = driven(LAWS["Newton"], 4).with_excess(-0.5)
-    run = simulate(oscillator, periods=20, method=SampledFlight(points=10))
-    flights = 20
-    turns = run.evaluations - flights - 20 * 10
-    assert 20 <= turns <= 3 * 20  # a peak or a few in every period
-
-
-def test_what_is_refused():
-    for points, kind in ((0, ValueError), (-3, ValueError), (2.5, ValueError), ("8", TypeError)):
-        with pytest.raises(kind, match="must be a whole number between 1 and"):
-            SampledFlight(points=points)
-    method = SampledFlight(points=8)
-    assert not method.certified and all(method.accepts(law.code) for law in LAWS.values())

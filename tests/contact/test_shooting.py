@@ -7,8 +7,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-from oscillators import apart, equation_1
-from simulated_orbit import EQUATION_1, HERTZ, LAWS, beam, differences, settled, sizes, touches
+from oscillators import equation_1
+from simulated_orbit import EQUATION_1, HERTZ, LAWS, beam, touches
 
 from beam import ModalModel
 from contact import (
@@ -17,11 +17,9 @@ from contact import (
     NotPeriodic,
     Stop,
     StroboscopicMap,
-    simulate,
 )
 from contact.orbits import (
     KickFamily,
-    MaximalFamily,
     Shooting,
     fold_of,
     folds_of,
@@ -30,43 +28,6 @@ from contact.orbits import (
     settle,
 )
 from studies.scene import beam_at, model_of, read_scene
-
-
-@pytest.mark.parametrize("name", LAWS)
-@pytest.mark.parametrize("part", [0.02, 0.15])
-def test_multipliers_are_those_of_the_simulated_map(name: str, part: float) -> None:
-    oscillator = beam(22.20, LAWS[name])
-    orbit = Shooting(oscillator=oscillator, period=5).at_speed(part * oscillator.unit_speed)
-    assert orbit.speed == pytest.approx(part * oscillator.unit_speed, rel=1e-12)
-    found, open_by = differences(orbit)
-    assert open_by < 1e-12
-    assert orbit.admissible and touches(orbit) == 1
-    assert apart(found, orbit.multipliers) < 1e-6 * max(1.0, abs(orbit.multipliers[0]))
-    assert orbit.stable == (np.abs(found).max() < 1) == (part == 0.15)
-
-
-@pytest.mark.parametrize("modes", [1, 6])
-def test_under_newtons_law_kicks_and_shooting_are_the_closed_form(modes: int) -> None:
-    oscillator = beam(20.90, LAWS["newton"], modes)
-    closed = MaximalFamily.from_oscillator(oscillator, period=3)
-    kicks, family = (make(oscillator=oscillator, period=3) for make in (KickFamily, Shooting))
-    for part in (1e-3, 0.05, 0.2, 0.5):
-        expected, kick = (make.orbit(part * oscillator.unit_speed) for make in (closed, kicks))
-        orbit = family.at_speed(part * oscillator.unit_speed)
-        for found, digits in ((kick, 1e-14), (orbit, 1e-16 * max(10.0, 1 / part))):
-            assert found.excess == pytest.approx(expected.excess, abs=1e-14)
-            assert found.speed == pytest.approx(expected.speed, rel=1e-12)
-            assert abs(np.exp(2j * np.pi * 20.90 * (found.phase - expected.phase)) - 1.0) < 1e-12
-            place = [np.concatenate([one.displacement, one.velocity]) for one in (found, expected)]
-            assert np.max(np.abs(place[0] - place[1]) / sizes(oscillator)) < digits
-        assert abs(kicks.error(kick)) < 1e-14 and kick.kick.touches == 1 and kick.kick.duration == 0.0
-        assert apart(orbit.multipliers, expected.multipliers) < 1e-11 * max(1.0, abs(orbit.multipliers[0]))
-    slow = 1e-4 * oscillator.unit_speed  # shooting ends there with its rounding
-    assert kicks.orbit(slow).excess == pytest.approx(closed.orbit(slow).excess, abs=1e-14)
-    for found, digits in ((kicks.fold(), 1e-13), (fold_of(family), 1e-14)):
-        assert found.excess == pytest.approx(closed.fold().excess, abs=digits)
-    assert fold_of(family).speed == pytest.approx(closed.fold().speed, rel=1e-9)
-    assert apart(fold_of(family).multipliers, closed.fold().multipliers) < 1e-8
 
 
 @pytest.mark.parametrize(("frequency", "period", "excess", "second", "digit"), EQUATION_1)
@@ -201,57 +162,7 @@ def test_the_determinant_is_the_decay_of_area_and_the_law(name: str) -> None:
     assert np.prod(orbit.multipliers) == pytest.approx(expected, rel=1e-9)
 
 
-def test_the_determinant_counts_the_dashpot_while_it_pushes() -> None:
-    """The divergence in contact has -c phi.phi more, until the force has come down to zero."""
-    oscillator = beam(20.90, LAWS["dashpot"], modes=3)
-    free = oscillator.model.decay_rate.sum() * 3 * oscillator.period
-    mass = 1 / float(oscillator.model.phi @ oscillator.model.phi)
-    # half a period of that mass on spring and dashpot, less the part in which the force would pull
-    natural, half = math.sqrt(LAWS["dashpot"].stiffness / mass), LAWS["dashpot"].damping / (2 * mass)
-    damped = math.sqrt(natural**2 - half**2)
-    pushes = (math.pi - math.atan2(2 * half * damped, natural**2 - 2 * half**2)) / damped
-    missing = []
-    for part in (0.25, 0.5, 1.0):
-        orbit = Shooting(oscillator=oscillator, period=3).at_speed(part * oscillator.unit_speed)
-        decay = -math.log(abs(np.prod(orbit.multipliers)))
-        missing.append(1 - (decay - free) * mass / (LAWS["dashpot"].damping * pushes))
-    # the spring's own force, 2 a/(w v), shortens the contact
-    assert missing[2] < 4e-3
-    assert missing[0] / missing[1] == pytest.approx(2, rel=0.1)
-    assert missing[1] / missing[2] == pytest.approx(2, rel=0.1)
-
-
 # ---------------------------------------------------------------------------------------------- two touches
-
-
-@pytest.mark.parametrize(
-    ("name", "frequency", "excess", "period", "impacts"),
-    [
-        ("equation 1", 20.90, 0.1, 3, 2),
-        ("equation 1", 21.50, 0.011, 8, 3),
-        ("equation 1", 21.50, 0.02, 4, 2),
-        ("beam", 20.90, 0.1, 3, 2),
-        ("beam", 21.50, 0.02, 4, 2),
-    ],
-)
-def test_orbits_with_several_touches(
-    name: str, frequency: float, excess: float, period: int, impacts: int
-) -> None:
-    oscillator = equation_1(frequency) if name == "equation 1" else beam(frequency, HERTZ, modes=4)
-    run = settled(oscillator, excess)
-    assert (run.period, run.impacts) == (period, impacts)
-    family = Shooting(oscillator=oscillator.with_excess(excess), period=period, impacts=impacts)
-    orbit = family.from_state(run.end)
-    assert orbit.excess == pytest.approx(excess, abs=1e-14)
-    assert orbit.residual < 1e-12 and orbit.admissible and orbit.stable
-    assert touches(orbit) == impacts == len(orbit.approach)
-    last = simulate(orbit.oscillator, orbit.state(), duration=period * oscillator.period * (1 - 1e-6))
-    assert np.allclose(last.impacts.approach[last.impacts.kind == 0], orbit.approach, rtol=1e-10)
-    found, open_by = differences(orbit)
-    assert open_by < 1e-10
-    assert apart(found, orbit.multipliers) < 1e-6
-    # the same orbit by its speed
-    assert family.at_speed(orbit.speed, orbit).excess == pytest.approx(excess, abs=1e-12)
 
 
 def test_orbits_repeat_bit_for_bit_beside_other_threads() -> None:

@@ -35,7 +35,7 @@ from contact.trajectory import State
 @pytest.mark.parametrize("frequency", FREQUENCIES)
 def test_every_period_is_that_of_the_general_loop(frequency, tau):
     single = oscillator(frequency, tau=tau)
-    worst, impacts, _searched, _left = Period(single).compare(*rest_of(single), 400)
+    worst, impacts, _left = Period(single).compare(*rest_of(single), 400)
     assert worst < ROUNDINGS
     assert impacts > 20
 
@@ -45,18 +45,18 @@ def test_every_period_is_that_of_the_general_loop(frequency, tau):
 @pytest.mark.parametrize("phi, participation", [(1.0, None), (-1.3, None), (2.7, -0.4)])
 def test_so_it_is_with_any_damping_sign_of_the_mode_and_amplitude(damping, excess, phi, participation):
     single = oscillator(21.5, decay=DAMPINGS[damping], excess=excess, phi=phi, participation=participation)
-    worst, impacts, searched, _left = Period(single).compare(*rest_of(single), 250)
+    worst, impacts, left = Period(single).compare(*rest_of(single), 250)
     assert worst < ROUNDINGS
     assert impacts > 0 or excess < 0 or damping == "over-damped" or excess < 1e-3
     if excess == 3.0:
-        assert searched > 0  # amplitudes for which the comparison proves nothing
+        assert left > 0  # amplitudes for which the comparison proves nothing
 
 
 @pytest.mark.parametrize("tau, excess", [(0.1, 3.0), (0.5, 6.0), (0.0, 1.0)])
 def test_stays_on_the_wall_are_those_of_the_general_loop(tau, excess):
     """Low drive frequency and a large amplitude press the tip against the wall."""
     single = oscillator(6.0, tau=tau, decay=20.0, excess=excess)
-    worst, impacts, _searched, left = Period(single).compare(*rest_of(single), 100)
+    worst, impacts, left = Period(single).compare(*rest_of(single), 100)
     assert worst < ROUNDINGS
     assert left > 50 and impacts > 50
 
@@ -85,16 +85,6 @@ def test_a_long_orbit_is_that_of_the_general_loop(frequency):
         assert ours.impacts.mean() == pytest.approx(counts.mean(), abs=0.01)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("frequency", FREQUENCIES[:4])
-def test_a_hundred_thousand_periods_have_the_same_impacts(frequency):
-    single = oscillator(frequency)
-    ours = StroboscopicMap(oscillator=single).orbit(State.rest(1), 100_000)
-    points, counts = general_orbit(single, State.rest(1), 100_000)
-    assert np.array_equal(ours.impacts, counts)
-    assert np.abs(ours.points - points)[-1000:].max() < 2e-14 * GAP
-
-
 # --- nothing missed, nothing invented ----------------------------------------------------------------------
 
 
@@ -112,7 +102,7 @@ def test_the_steady_motion_touches_at_every_overshoot(frequency, power):
 def test_planted_overshoots_are_found_and_none_is_invented(damping, size):
     """A period from a random deviation, the stop put next to its peak."""
     rng = np.random.default_rng(7)
-    paths = [0, 0, 0]  # settled by the comparison, searched, left
+    paths = [0, 0]  # settled by the comparison, left
     for _ in range(12):
         single = oscillator(rng.uniform(20.5, 23.8), decay=DAMPINGS[damping], excess=0.02)
         drive = single.drive
@@ -135,13 +125,13 @@ def test_planted_overshoots_are_found_and_none_is_invented(damping, size):
                 )
                 period = Period(here)
                 fresh = (np.array([u]), np.array([v]), at_a_strobe())
-                status, impacts, searched, left = period.fast(*fresh)
+                status, impacts, left = period.fast(*fresh)
                 assert status == DONE
                 assert (impacts > 0) == (side > 0), (power, side, gap)
-                paths[2 if left else 1 if searched else 0] += 1
-    assert paths[0] + paths[1] > 10 * paths[2] and sum(paths) > 50
+                paths[left] += 1
+    assert sum(paths) > 50
     if size == 0.05 and damping != "over-damped":
-        assert paths[0] > 0
+        assert paths[0] > 2 * paths[1]
     if size == 1.5:
         assert paths[1] > 0
 
@@ -166,7 +156,7 @@ def test_what_is_called_free_is_free(frequency, damping, excess, u, v, flipped):
     if height >= -tip_rounding(motion, un, vn):
         un -= height + 1e-6 * GAP
     outcome, _s = first_crossing(motion, 0.0, un, vn, motion.period, 0)
-    status, impacts, _searched, left = period.fast(un.copy(), vn.copy(), at_a_strobe())
+    status, impacts, left = period.fast(un.copy(), vn.copy(), at_a_strobe())
     if status == DONE and not left:
         assert (impacts == 0) == (outcome == FREE)
         assert (impacts == 0) == (highest(motion, period.table, un[0], vn[0]) < 0)
@@ -185,7 +175,7 @@ def test_a_peak_at_the_strobe_hides_no_crossing_of_the_period_before(damping):
         v = (rng.uniform(-0.3, 0.6)) * GAP * motion.omega[0]
         arrays = np.array([u]), np.array([v])
         outcome, _s = first_crossing(motion, 0.0, *arrays, motion.period, 0)
-        status, impacts, _searched, _left = period.fast(*arrays, at_a_strobe())
+        status, impacts, _left = period.fast(*arrays, at_a_strobe())
         assert status == DONE
         assert (impacts == 0) == (outcome == FREE)
         free += impacts == 0

@@ -182,10 +182,47 @@ def with_gap(motion: Motion, gap: float) -> Motion:
     return motion._replace(gap=gap, level=-gap)
 
 
-def records(heights: np.ndarray) -> np.ndarray:
-    """Indices of the peaks that are higher than all before them."""
-    before = np.concatenate([[-np.inf], np.maximum.accumulate(heights.astype(float))[:-1]])
-    return np.flatnonzero(heights > before)
+@dataclass
+class Flight:
+    """A random flight with its peaks, and those that the tip reaches first and well above its start."""
+
+    motion: Motion
+    base: float
+    u: np.ndarray
+    v: np.ndarray
+    signal: Signal
+    places: np.ndarray
+    heights: np.ndarray
+    start: float
+    chosen: list[int]
+
+    def against(self, gap: float, end: float) -> tuple[Motion, tuple]:
+        """The same oscillator with its stop elsewhere, and what the search finds up to `end`."""
+        stopped = with_gap(self.motion, gap)
+        return stopped, first_crossing(stopped, self.base, self.u, self.v, end, 0)
+
+    def agrees(self, gap: float, end: float) -> str:
+        """The search against the judge, with the stop at `gap`."""
+        stopped, result = self.against(gap, end)
+        verdict = judge(self.signal, gap, end, peaks=self.places[self.places < end])
+        return assert_agrees(result, verdict, stopped, self.u, self.v, self.base)
+
+
+def flights(seed: list[int], n_modes: int, count: int, kind: str = "ringing", late: float = 0.0):
+    """Random flights, at rest, ringing or without a drive; half of them from up to `late` periods on."""
+    generator = np.random.default_rng(seed)
+    for _ in range(count):
+        motion = random_oscillator(generator, n_modes, driven=kind != "drive off").motion()
+        u, v = random_deviation(generator, motion, ringing=kind == "ringing")
+        base = float(generator.uniform(0, late) * motion.period * generator.integers(0, 2))
+        signal = Signal(motion, base, u, v)
+        places = signal.peaks(motion.period - base)
+        heights = signal(places)
+        start = max(float(signal(Real(0))), 0.0)
+        # the peaks that are higher than all before them
+        before = np.concatenate([[-np.inf], np.maximum.accumulate(heights.astype(float))[:-1]])
+        chosen = [i for i in np.flatnonzero(heights > before) if heights[i] > 1.2 * start + 1e-4]
+        yield Flight(motion, base, u, v, signal, places, heights, start, chosen)
 
 
 def assert_agrees(

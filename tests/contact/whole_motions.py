@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,13 +11,22 @@ from oscillators import OMEGA, PHI, spring
 from scipy.integrate import solve_ivp
 
 from beam import ModalModel
-from contact.laws import ContactLaw, LinearContact, NewtonRestitution
+from contact.laws import ContactLaw, HertzContact, HuntCrossley, LinearContact, NewtonRestitution
 from contact.oscillator import ImpactOscillator
 from contact.stop import Stop
 from contact.trajectory import State, Trajectory
 
-FREE, CONTACT, INSIDE, HELD = 0, 1, 2, 3
+FREE, CONTACT, INSIDE, HELD, WAITING = 0, 1, 2, 3, 4
 IMPACT, GRAZE, STAY = 0, 1, 2
+
+HERTZ, SOFTER = HertzContact(stiffness=3e7), HertzContact(stiffness=1e6)
+LOSSY = HuntCrossley(stiffness=3e7, dissipation=1.2)
+SPRING, DASHPOT = LinearContact(stiffness=3e5), LinearContact(stiffness=3e5, damping=15.0)
+
+
+def name_of(value: object) -> str:
+    """A test's name for a parameter: its text without addresses, which differ between processes."""
+    return re.sub(r" at 0x[0-9a-f]+", "", repr(value))[:80]
 
 
 def falling_body(

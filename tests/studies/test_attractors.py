@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import csv
-import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from contact import State, StroboscopicMap
-from studies.attractors.basins import plane_of
-from studies.attractors.scan import CHAOTIC, NOT_SETTLED, PERIODIC, WITHOUT, classify
+from contact.orbits import settle
+from studies.attractors.basins import parts, plane_of
+from studies.attractors.scan import CHAOTIC, NOT_SETTLED, PERIODIC, WITHOUT, kind_of
 from studies.scene import beam_at, read_scene, single_mode_at
 
 FREQUENCY = 21.50
@@ -32,43 +32,51 @@ def beam(scene):
     return StroboscopicMap(oscillator=beam_at(scene.replace({"modes.count": 12}), FREQUENCY))
 
 
+def told(strobed, *, most_cycles=1500, cycles=400):
+    """Kind and largest exponent of what the motion without impacts turns into."""
+    settled = settle(strobed, strobed.steady(), most_cycles=most_cycles)
+    kind, exponents = kind_of(strobed, settled, cycles)
+    return kind, exponents.largest
+
+
 def test_chaos_slow_transient_and_motion_without_impacts_are_told_apart(single, beam):
-    assert classify(single.at(0.034), single.steady(), cycles=500, most_cycles=1500).kind == CHAOTIC
+    assert told(single.at(0.034), cycles=500)[0] == CHAOTIC
     for strobed in (single, beam):
-        free = classify(strobed.at(-0.02), strobed.at(-0.02).steady())
+        kind, exponent = told(strobed.at(-0.02))
         rate = float(strobed.oscillator.model.decay_rate[0])
-        assert free.kind == WITHOUT and free.lyapunov_map * FREQUENCY == pytest.approx(-0.5 * rate, rel=1e-9)
-    chaos = classify(beam.at(0.03), beam.steady(), cycles=400, most_cycles=1500)
-    assert chaos.kind == CHAOTIC and chaos.lyapunov_map > 0.05
-    slow = classify(beam.at(0.01), beam.at(0.01).steady(), cycles=100, most_cycles=128)
-    assert slow.kind in (PERIODIC, NOT_SETTLED) and slow.lyapunov_map < 0.0
+        assert kind == WITHOUT and exponent * FREQUENCY == pytest.approx(-0.5 * rate, rel=1e-9)
+    kind, exponent = told(beam.at(0.03))
+    assert kind == CHAOTIC and exponent > 0.05
+    kind, exponent = told(beam.at(0.01), cycles=100, most_cycles=128)
+    assert kind in (PERIODIC, NOT_SETTLED) and exponent < 0.0
 
 
 def test_starts_next_to_either_orbit_lead_to_it_between_fold_and_grazing(scene):
     plane = plane_of(scene, FREQUENCY, -0.006, 2)
-    gap, speed = scene.stop.gap_m, 2.0 * math.pi * FREQUENCY * scene.stop.gap_m
-    assert plane.period == 4 and plane.orbit.shape == (4, 2)
-    near = 3e-5
-    assert plane.leads(plane.rest[0] + near * gap, plane.rest[1] - near * speed) == 1
-    for x, velocity in plane.orbit:
-        assert plane.leads(x + 1e-6 * gap, velocity) == 4
+    gap = scene.stop.gap_m
+    assert {m: points.shape for m, points in plane.orbits.items()} == {4: (4, 2), 1: (1, 2)}
+    near = 3e-5 * gap
+    for m, moved in ((4, 1e-6 * gap), (1, near)):
+        for x, velocity in plane.strobes(m):
+            assert plane.leads(x + moved, velocity) == m
     assert plane.leads(1.01 * gap, 0.0) == -1
-    # within the envelope no impact is possible; second route: every strobe of a long run
-    start = State(displacement=np.array([plane.rest[0] + near * gap]), velocity=np.array([plane.rest[1]]))
-    assert plane.envelope(start) < 0.006 * gap
-    assert plane.strobed.orbit(start, 500).impacts.sum() == 0
+    # what is taken for p1 touches no more; second route: every strobe of a long run from three times as far
+    ((x, velocity),) = plane.strobes(1)
+    start = State(displacement=np.array([x + near]), velocity=np.array([velocity]))
+    assert plane.near < near and plane.strobed.orbit(start, 500).impacts.sum() == 0
 
 
 def test_both_orbits_have_a_basin_between_fold_and_grazing_and_one_below(scene):
     between = plane_of(scene, FREQUENCY, -0.006, 2)
+    ((x, velocity),), speed = between.strobes(1), 2.0 * np.pi * FREQUENCY
     around = np.linspace(-0.03, 0.03, 12) * scene.stop.gap_m
-    speed = 2.0 * math.pi * FREQUENCY
-    between = replace(between, x=between.rest[0] + around, velocity=between.rest[1] + speed * around)
+    between = replace(between, x=x + around, velocity=velocity + speed * around)
     leads = np.array([between.line(v) for v in between.velocity.tolist()])
     assert np.mean(leads == 1) > 0.02 and np.mean(leads == 4) > 0.5
     below = plane_of(scene, FREQUENCY, -0.02, 6)
     leads = np.array([below.line(v) for v in below.velocity.tolist()])
-    assert set(np.unique(leads)) <= {-1, 1}  # below the fold of -0.0132 only p1 is left
+    assert below.period == 1 and set(np.unique(leads)) <= {-1, 1}  # below the fold of -0.0132 only p1 is left
+    assert parts(leads, below.period) == {"p1 without impacts": 1.0, "something else": 0.0}
 
 
 def test_small_form(run_study):

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from contact import StroboscopicMap
-from studies.benchmarks import BEAM, HEYOKA, OURS, SINGLE, Row, error_of, heyoka_orbit, in_turns, ratios_of
-from studies.peers import OutsideSolver, missing_solvers
-from studies.scene import Scene, beam_at, single_mode_at
+from studies.benchmarks import BEAM, HEYOKA, OURS, SINGLE, Row, heyoka_orbit, in_turns, ratios_of
+from studies.peers import missing_solvers
+from studies.scene import Scene, single_mode_at
 
 needs_heyoka = pytest.mark.skipif("heyoka" in missing_solvers(), reason="heyoka is not installed")
 
@@ -29,16 +29,6 @@ def test_bare_heyoka_is_on_the_same_orbit(letter_scene: Scene) -> None:
     orbit, taylor = heyoka_orbit(oscillator)
     orbit(2000)
     assert np.min(np.abs(cycle - taylor.state[0] * oscillator.model.phi[0])) < 1e-8 * oscillator.stop.gap
-
-
-@needs_heyoka
-def test_error_of_heyoka_falls_with_its_tolerance(letter_scene: Scene) -> None:
-    oscillator = beam_at(letter_scene.replace({"modes.count": 4}), 21.5).with_excess(0.013)
-    coarse, fine = (
-        error_of(oscillator, OutsideSolver(solver="heyoka Taylor", tolerance=tolerance))
-        for tolerance in (1e-5, 1e-9)
-    )
-    assert 1e-13 < fine < 1e-3 * coarse < 1e-6
 
 
 def test_ratios_are_those_of_the_rows() -> None:

@@ -9,24 +9,28 @@ import pytest
 
 from contact import NordmarkMap, StroboscopicMap, maximal_orbits, maximal_period
 from contact.orbits import Shooting, settle
-from studies.claims.bands import inside_band, path_of
+from studies.claims.bands import inside_band
 from studies.claims.energy_loss import (
     RESTITUTIONS,
+    end_speed,
     falls,
     family_at,
-    flip_speed,
+    line_of,
+    lives,
     node_at,
-    second_impact_speed,
     trends,
 )
 from studies.claims.overdamped import exponents, outside_windows
-from studies.claims.universality import Job, Spring, born_at
-from studies.scene import band_of, single_mode_at
+from studies.claims.universality import Job, born_at, springs
+from studies.scene import band_of, nordmark_at, single_mode_at
+
+
+def with_tau(scene, restitution):
+    return scene.replace({"single_mode.restitution": restitution})
 
 
 def strobed_at(scene, frequency, restitution):
-    changed = scene.replace({"single_mode.restitution": restitution})
-    return StroboscopicMap(oscillator=single_mode_at(changed, frequency))
+    return StroboscopicMap(oscillator=single_mode_at(with_tau(scene, restitution), frequency))
 
 
 def followed(strobed, values):
@@ -40,7 +44,7 @@ def followed(strobed, values):
 
 @pytest.mark.parametrize(("frequency", "tau", "m"), [(20.90, 0.3, 3), (21.50, 0.0, 4), (22.20, 0.4, 5)])
 def test_the_node_keeps_one_impact_up_to_its_secondary_bifurcation(letter_scene, frequency, tau, m):
-    found = node_at(letter_scene, frequency, tau)
+    found = node_at(with_tau(letter_scene, tau), frequency)
     assert found.period == m and found.admissible and found.secondary > 1e-3
     strobed = strobed_at(letter_scene, frequency, tau)
     below = np.linspace(5e-4, found.secondary * 0.99, 25)
@@ -50,31 +54,24 @@ def test_the_node_keeps_one_impact_up_to_its_secondary_bifurcation(letter_scene,
 
 @pytest.mark.parametrize(("frequency", "tau", "m"), [(21.50, 0.3, 4), (20.90, 0.5, 3)])
 def test_the_second_impact_is_where_shooting_finds_it(letter_scene, frequency, tau, m):
-    """The certified flights of shooting agree on the speed."""
-    speed = second_impact_speed(family_at(letter_scene, frequency, tau, m))
-    shooting = Shooting(oscillator=strobed_at(letter_scene, frequency, tau).oscillator, period=m)
+    """The orbit of the closed form and that of shooting lose their single impact at the same speed."""
+    family = family_at(with_tau(letter_scene, tau), frequency, m)
+    speed, shooting = end_speed(family, family.fold()), Shooting(oscillator=family.oscillator, period=m)
     inside, outside = (shooting.at_speed(part * speed) for part in (0.999, 1.001))
-    assert inside.admissible and not outside.admissible
-
-
-@pytest.mark.parametrize(("frequency", "tau", "m"), [(15.0, 0.3, 2), (15.0, 0.6, 5), (18.0, 0.3, 1)])
-def test_at_the_flip_a_multiplier_is_minus_one(letter_scene, frequency, tau, m):
-    """Away from the letter's frequencies: at those p3 to p11 end at a second impact."""
-    family = family_at(letter_scene, frequency, tau, m)
-    multipliers = family.orbit(flip_speed(family)).multipliers
-    assert np.min(np.abs(multipliers + 1.0)) < 1e-9
+    assert lives(inside) and outside.stable and not outside.admissible
 
 
 def test_a_secondary_bifurcation_below_grazing_lets_another_state_be_born(letter_scene):
     """21.50 Hz: below grazing at tau = 0.3, above at 0.1; the born motion is p4 with one impact only then."""
-    low, high = (node_at(letter_scene, 21.50, tau).secondary for tau in (0.1, 0.3))
+    low, high = (node_at(with_tau(letter_scene, tau), 21.50).secondary for tau in (0.1, 0.3))
     assert low > 0.0 > high
     born = [followed(strobed_at(letter_scene, 21.50, tau), [-1e-3, 1e-3]) for tau in (0.1, 0.3)]
     assert born[0] == (4, 1) and born[1] != (4, 1)
 
 
 def test_hysteresis_falls_with_the_energy_lost_and_rho_of_the_map_does_not(letter_scene):
-    rows = [node_at(letter_scene, f, tau) for f in letter_scene.drive.frequencies_hz for tau in RESTITUTIONS]
+    drives = letter_scene.drive.frequencies_hz
+    rows = [node for tau in RESTITUTIONS for node in line_of(letter_scene, drives, tau)]
     assert trends(rows) == {"map": True, "eq1": True, "rho": False}
     assert all(row.fold < row.fold_of_map < 0.0 for row in rows)  # the map is too small throughout
     at = {(row.frequency_hz, row.restitution): (row.fold_of_map, row.fold) for row in rows}
@@ -83,8 +80,8 @@ def test_hysteresis_falls_with_the_energy_lost_and_rho_of_the_map_does_not(lette
 
 
 def test_secondary_bifurcations_of_the_map_come_above_grazing(letter_scene):
-    rows = [node_at(letter_scene, f, tau) for f in (20.90, 22.60, 23.40) for tau in RESTITUTIONS]
-    assert min(row.secondary_of_map for row in rows) > 0.0 > min(row.secondary for row in rows)
+    rows = [node for tau in RESTITUTIONS for node in line_of(letter_scene, (20.90, 22.60, 23.40), tau)]
+    assert min(row.secondary_of_map for row in rows) > 0.0 > np.nanmin([row.secondary for row in rows])
 
 
 def test_the_hysteresis_starts_from_zero_at_the_upper_edge_of_each_band(letter_scene):
@@ -94,15 +91,15 @@ def test_the_hysteresis_starts_from_zero_at_the_upper_edge_of_each_band(letter_s
         assert band_of(letter_scene, m + 1).lower < edges.upper  # neighbours overlap
         assert max(rows[-1].map, rows[-1].eq1) < 1e-12
         assert falls([row.map for row in rows]) and falls([row.eq1 for row in rows])
-    path = path_of(letter_scene, np.linspace(19.6, 23.8, 60).tolist())
+    path = [nordmark_at(letter_scene, f) for f in np.linspace(19.6, 23.8, 60)]
     assert {3, 4, 5, 6, 8, 11} <= {maximal_period(place) for place in path}
 
 
 @pytest.mark.parametrize("position", [0.85, 0.905])
 def test_eq_1_has_the_period_of_the_map_near_the_upper_edge_of_a_band(letter_scene, position):
-    spring = Spring(name="Eq. (1)", scene=letter_scene)
-    (place,) = path_of(letter_scene, [spring.frequency(position)])
-    assert born_at(Job(spring, position, 1e-4)) == maximal_period(place)
+    eq1 = springs(letter_scene.replace({"modes.count": 1}))[0]
+    place = nordmark_at(letter_scene, position / letter_scene.single_mode.free_period_s)
+    assert eq1[2].n_modes == 1 and born_at(Job(*eq1, position, 1e-4)) == maximal_period(place)
 
 
 def overdamped_map(alpha):

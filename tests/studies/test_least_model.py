@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from contact import StroboscopicMap
-from contact.orbits import Shooting, born, fold_of
-from studies.least_model import LADDER, Models, least_modes, questions
+from contact.orbits import Shooting, born_period, fold_of
+from studies.least_model import LADDER, least_modes, questions, reference_of
 from studies.scene import beam_at, read_scene
 
 #: What a search over modes, meshes and laws that followed every orbit found for the letter's scene.
@@ -29,34 +29,33 @@ def test_the_choice_is_that_of_the_long_search(letter_scene, needs, modes):
 
 
 def test_one_rung_less_is_not_enough(letter_scene):
-    asked = list(questions(Models(letter_scene), {"fold": 0.05}))
+    asked = list(questions(letter_scene, {"fold": 0.05}, reference_of(letter_scene)))
     assert len(asked) >= 5
-    errors = {n: max(question.off(n) for question in asked) for n in (12, 15, 18)}
+    errors = {n: max(off(n) for _, _, off in asked) for n in (12, 15, 18)}
     assert errors[12] > 0.05 > errors[15] > errors[18] > 0.0
 
 
 @pytest.mark.parametrize("frequency", [20.90, 21.50, 22.20])
 def test_errors_of_folds_from_kicks_are_those_of_the_orbits_themselves(letter_scene, frequency):
     """Folds by shooting and continuation, an independent route, with 12 and 40 modes."""
-    models = Models(letter_scene)
-    found = {}
+    whole, found = reference_of(letter_scene), {}
     for modes in (12, 40):
-        oscillator = beam_at(letter_scene, frequency, models.whole.truncated(modes)).with_excess(1e-3)
-        period = born(StroboscopicMap(oscillator=oscillator)).period
+        oscillator = beam_at(letter_scene, frequency, whole.truncated(modes)).with_excess(1e-3)
+        period = born_period(StroboscopicMap(oscillator=oscillator))
         found[modes] = fold_of(Shooting(oscillator=oscillator, period=period)).excess
     error = abs(found[12] / found[40] - 1.0)
     here = letter_scene.replace({"drive.frequencies_hz": (frequency,)})
-    (asked,) = questions(Models(here), {"fold": 0.0})
-    assert asked.off(12) == pytest.approx(error, rel=0.12)
+    ((_, _, off),) = questions(here, {"fold": 0.0}, whole)
+    assert off(12) == pytest.approx(error, rel=0.12)
 
 
 def test_the_reference_is_good_to_the_third_of_a_percent(letter_scene, monkeypatch):
     """40 modes against 60: the folds differ by less than what the loosest and the tightest study asks for."""
     monkeypatch.setattr("studies.least_model.REFERENCE", 60)
-    models = Models(letter_scene)
-    assert models.whole.n_modes == 60
-    for question in questions(models, {"fold": 0.05}):
-        assert question.off(40) < 3e-3
+    whole = reference_of(letter_scene)
+    assert whole.n_modes == 60
+    for _, _, off in questions(letter_scene, {"fold": 0.05}, whole):
+        assert off(40) < 3e-3
 
 
 def test_what_the_scene_says_itself_is_not_changed(letter_scene):
@@ -79,7 +78,7 @@ def test_a_coarse_mesh_or_few_measured_rates_bound_the_reference(letter_scene):
     few = letter_scene.replace(rates)
     assert least_modes(few, {"kick": 1e-12})[0].modes.count == 3
     coarse = letter_scene.replace({"spring.elements_per_leg": 2, "spring.elements_on_arc": 1})
-    assert Models(coarse).whole.n_modes < 40
+    assert reference_of(coarse).n_modes < 40
 
 
 def test_an_unknown_quantity_is_refused(letter_scene):

@@ -237,16 +237,18 @@ def test_a_drive_above_the_modes_is_refused(letter_scene):
     require_drive_below(scene, model_of(scene))
     with pytest.raises(SceneError, match=r"1000 Hz"):
         require_drive_below(scene, model_of(scene), 1000.0)
+    with pytest.raises(SceneError, match=r"drive\.frequencies_hz"):
+        model_of(scene.replace({"drive.frequencies_hz": [1e5]}))
 
 
 #: A slip of a unit or a value beyond the theory, and a word of the warning that it brings.
 SLIPS = {
-    "stop.gap_m=10.7": "gap", "stop.gap_m=0.02": "small motion", "spring.leg_length_m=130": "weight",
-    "spring.width_m=12": "width", "spring.thickness_m=0.006": "bar",
+    "stop.gap_m=10.7": "gap is 10.7", "stop.gap_m=0.02": "small motion", "spring.leg_length_m=130": "weight",
+    "spring.width_m=12": "width", "spring.thickness_m=0.006": "a bar",
     "spring.bend_radius_m=7.5": "bend_radius", "spring.young_modulus_pa=105": "speed of sound",
     "spring.density_kg_m3=8.5": "speed of sound", "spring.tape_modulus_pa=1": "speed of sound",
     "spring.tape_thickness_m=0.45": "thickness", "spring.tape_loss_factor=49": "loss_factor",
-    "tip.mass_kg=6.16": "tip", "tip.ball_radius_m=2.5": "ball_radius",
+    "tip.mass_kg=6.16": "heavier than", "tip.ball_radius_m=2.5": "ball_radius",
     "tip.ball_young_modulus_pa=370": "youngs_modulus", "tip.plate_young_modulus_pa=210e3": "other_modulus",
     "drive.frequencies_hz=[0.0222]": "first mode", "drive.frequencies_hz=[22.2, 139.5]": "first mode",
     "single_mode.free_period_s=1": "first mode", "single_mode.decay_rate_per_s=3560": "damping ratio",

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
@@ -17,8 +16,7 @@ from studies.stability import accumulation
 from studies.stability.missed_crossings import (
     OVERSHOOTS,
     RESTITUTION,
-    half_missed,
-    invented_by_percussions,
+    invented,
     of_package,
     of_scipy,
     share_missed,
@@ -55,67 +53,64 @@ def test_shares_are_those_of_a_parabola_seen_at_a_grid():
         depth, rate = overshoot - 0.5 * grid**2, -grid
         acts = (depth + 0.5 * step * rate > 0) & (rate - step + RESTITUTION * rate > 0)
         for seen, percussions in ((depth > 0, False), (acts, True)):
-            theory = float(share_missed(np.array(overshoot), step, 1.0, percussions))
+            theory = float(share_missed(overshoot, step, 1.0, percussions))
             assert 1 - np.any(seen, axis=1).mean() == pytest.approx(theory, abs=2e-4)
-    edge = invented_by_percussions(0.1, 1.0)
-    for undershoot, touches in ((0.98 * edge, True), (1.02 * edge, False)):
-        acts = (-undershoot - 0.5 * grid**2 - 0.5 * step * grid > 0) & (-grid - step - RESTITUTION * grid > 0)
-        assert np.any(acts) == touches
-    assert half_missed(step, 2.0) == pytest.approx(0.04 / 32)
-    half = half_missed(step, 2.0, percussions=True)
-    assert float(share_missed(np.array(half), step, 2.0, True)) == pytest.approx(0.5)
+    strikes = of_package(SCENE, MoreauJean, {"step": 0.1 / ONE.pace})
+    for part, touches in ((0.98, True), (1.02, False)):
+        depth = -part * invented(strikes) - 0.5 * grid**2
+        assert np.any((depth - 0.5 * step * grid > 0) & (-grid - step - RESTITUTION * grid > 0)) == touches
 
 
 @pytest.mark.parametrize("modes", [1, 6])
 @pytest.mark.parametrize("name", [name for name, kind in INTEGRATORS.items() if kind.certified])
 def test_exact_methods_miss_none_and_invent_none(name, modes):
-    trial = of_package(SCENE, INTEGRATORS[name], {"step": 1.0})
-    swing = trial.swing
+    trial = of_package(SCENE, INTEGRATORS[name], {})
     if modes == 6:
-        swing = Swing.of(model_of(SCENE).truncated(6), swing.oscillator.stop, 0.2)
-        trial = replace(trial, swing=swing, touch=partial(swing.touch, INTEGRATORS[name]()))
+        trial = replace(trial, swing=SIX)
     for overshoot in (*OVERSHOOTS, *-OVERSHOOTS):
-        share = share_wrong(trial.swing, trial.touch, float(overshoot), runs=6, slack=1e-6 / ONE.pace)
-        assert share == 0.0, overshoot
+        assert share_wrong(trial, float(overshoot), 6) == 0.0, overshoot
 
 
 @pytest.mark.parametrize("kind", [GeneralisedAlpha, MoreauJean])
 def test_a_grid_misses_what_theory_says(kind):
     trial = of_package(SCENE, kind, {"step": PERIOD / 100})
     for overshoot in (1e-3, 3e-4, 1e-4, 1e-5, 1e-7):
-        theory = float(share_missed(np.array(overshoot), trial.spacings, ONE.pace, trial.percussions))
-        share = share_wrong(ONE, trial.touch, overshoot, runs=200, slack=PERIOD / 50)
-        assert share == pytest.approx(theory, abs=0.02)
+        theory = float(share_missed(overshoot, trial.spacings, ONE.pace, trial.percussions))
+        assert share_wrong(trial, overshoot, 200) == pytest.approx(theory, abs=0.02)
 
 
 def test_central_difference_swings_too_high():
     """By (h omega)^2/8: crossings 0.9 of that below the gap are seen at some phase, at 1.1 of it at none."""
     trial = of_package(SCENE, CentralDifference, {"step": PERIOD / 100})
-    assert trial.invents == pytest.approx((2 * math.pi / 100) ** 2 / 8, rel=1e-9)
+    assert invented(trial) == pytest.approx((2 * math.pi / 100) ** 2 / 8, rel=1e-9)
     for part, seen in ((0.9, True), (1.1, False)):
-        share = share_wrong(ONE, trial.touch, -part * trial.invents, runs=200, slack=PERIOD / 50)
-        assert (share > 0.0) == seen
+        assert (share_wrong(trial, -part * invented(trial), 200) > 0.0) == seen
 
 
 @pytest.mark.parametrize(("tolerance", "half"), [(1e-8, 1e-2), (1e-12, 1e-3)])
 def test_dop853_misses_half_of_all_crossings_of_one_per_cent_of_the_gap(tolerance, half):
     """At 1e-8; at 1e-12 half of those of 0.1 %. Theory from the spacing of its steps."""
     trial = of_scipy(SCENE, "DOP853", tolerance)
-    assert half_missed(trial.spacings, ONE.pace) == pytest.approx(half, rel=0.4)
-    slack = 2 * float(trial.spacings.max())
-    share = {d: share_wrong(ONE, trial.touch, d, runs=32, slack=slack) for d in (10 * half, half, half / 100)}
+    assert 0.3 < float(share_missed(half, trial.spacings, ONE.pace)) < 0.7
+    share = {depth: share_wrong(trial, depth, 32) for depth in (10 * half, half, half / 100)}
     assert share[10 * half] == 0.0 and 0.3 < share[half] < 0.8 and share[half / 100] > 0.8
 
 
 def test_a_solver_finds_a_deep_crossing_where_it_is():
     lead, omega = float(ONE.leads(1)[0]), float(ONE.oscillator.model.omega[0])
-    touch = of_scipy(SCENE, "DOP853", 1e-10).touch(0.2, lead)
+    touch = ONE.touch(of_scipy(SCENE, "DOP853", 1e-10).method, 0.2, lead)
     assert touch == pytest.approx(-math.acos(1 / 1.2) / omega, rel=1e-7)
 
 
-def test_rows_of_an_exact_method_have_nothing_to_report():
-    rows, shares = tried(of_package(SCENE, Exact, {"step": 1.0}), 4)
-    assert not shares.any() and all(row.measured is None and row.refused is None for row in rows)
+def test_rows_of_methods_without_and_with_looks():
+    """An exact method has nothing to report; looks h apart miss half of the crossings of a h^2/(32 gap)."""
+    rows, arrays = tried(of_package(SCENE, Exact, {}), 4)
+    assert not any(np.any(shares) for shares in arrays.values())
+    assert all(row.measured is row.theory is row.refused is None for row in rows)
+    trial = of_package(SCENE, GeneralisedAlpha, {"step": PERIOD / 100})
+    (half, _invented), arrays = tried(trial, 4)
+    assert half.theory == pytest.approx((2 * math.pi / 100) ** 2 / 32, rel=1e-9)
+    assert half.refused is False and len(arrays) == 2
 
 
 # accumulation

@@ -2,23 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from beam import single_mode
-from contact import (
-    HarmonicDrive,
-    ImpactOscillator,
-    LinearContact,
-    NewtonRestitution,
-    Stop,
-    StroboscopicMap,
-    first_collision,
-)
+from contact import StroboscopicMap, first_collision
 from contact.collision import before_collision
 from contact.orbits import born
+from studies.scene import beam_at, single_mode_of
 from studies.time_trace.spectrum import lines_of, peaks_of
 from studies.time_trace.trace import close_up, trace_of
 
@@ -51,21 +41,17 @@ def test_below_grazing_there_is_no_impact_and_one_line(run_study):
     assert [round(peak["frequency_hz"], 6) for peak in found["peaks"]] == [21.5]
 
 
-def driven(law, excess):
-    """Eq. (1) with this contact law at 21.50 Hz, its tip as read-out point."""
-    model = single_mode(free_period=40.8e-3, decay_rate=3.56)
-    return ImpactOscillator(
-        model=replace(model, readouts={"readout": model.phi}), stop=Stop(gap=0.0107, law=law),
-        drive=HarmonicDrive(frequency=21.5),
-    ).with_excess(excess)
+def driven(scene, law, excess):
+    """Eq. (1) with this contact law at 21.50 Hz."""
+    changed = scene.replace({f"contact.{key}": value for key, value in law.items()})
+    return beam_at(changed, 21.5, single_mode_of(scene)).with_excess(excess)
 
 
-def test_the_close_up_shows_the_force_of_the_law():
+def test_the_close_up_shows_the_force_of_the_law(letter_scene):
     stiffness = 1e8
-    oscillator = driven(LinearContact(stiffness=stiffness), 0.013)
-    state = before_collision(oscillator)
+    oscillator = driven(letter_scene, {"law": "linear", "stiffness_n_per_m": stiffness}, 0.013)
     collision = first_collision(oscillator)
-    near = close_up(oscillator, state, collision)
+    near = close_up(oscillator, before_collision(oscillator), collision)
     assert near.spans[0][0] == pytest.approx(0.0, abs=1e-12)
     touching = near.height > 1e-12
     assert np.allclose(near.force[touching], stiffness * near.height[touching], rtol=1e-9)
@@ -75,13 +61,12 @@ def test_the_close_up_shows_the_force_of_the_law():
     assert step * near.force.sum() == pytest.approx(collision.kick_velocity, rel=2e-3)
 
 
-def test_an_impact_law_has_no_force():
-    oscillator = driven(NewtonRestitution(local_restitution=0.1), 0.005)
+def test_an_impact_law_has_no_force(letter_scene):
+    oscillator = driven(letter_scene, {"law": "newton", "local_restitution": 0.1}, 0.005)
     settled = born(StroboscopicMap(oscillator=oscillator), 0.005)
-    state = settled.end
     assert settled.period == 4
-    trace = trace_of(oscillator, state, 8)
-    near = close_up(oscillator, state, trace.collisions[0])
+    trace = trace_of(oscillator, settled.end, 8)
+    near = close_up(oscillator, settled.end, trace.collisions[0])
     assert np.all(np.isnan(near.force))
     assert near.spans == [(0.0, 0.0)]
 
@@ -102,11 +87,8 @@ def test_a_peak_belongs_to_the_mode_next_to_it():
     amplitude[[20, 95, 104, 150]] = [1.0, 0.1, 0.3, 0.5]
     told = peaks_of(frequency, amplitude, np.array([21.0, 100.0]), 6.0)
     assert [(peak.frequency_hz, peak.mode) for peak in told] == [
-        (20.0, 1),
-        (95.0, None),
-        (104.0, 2),
-        (150.0, None),
-    ]
+        (20.0, 1), (95.0, None), (104.0, 2), (150.0, None),
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize(
