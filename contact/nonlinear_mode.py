@@ -159,11 +159,13 @@ class NonlinearMode:
     def effective_period(self) -> float:
         """Free period [s] of the linear mode whose deviations turn as fast under this drive.
 
-        1/(f (1 + theta/2 pi)) with the trace of the monodromy 2 sqrt(det) cos(theta), 0 < theta < pi.
+        1/(f (1 + theta/2 pi)) with the trace of the monodromy 2 sqrt(det) cos(theta), 0 < theta < pi;
+        NotPeriodic where they do not turn, next to a turning point of the response.
         """
         half = 0.5 * np.trace(self.monodromy) / math.sqrt(np.linalg.det(self.monodromy))
-        told = f"frequency is {self.frequency:g} Hz; deviations from the motion that grazes do not turn there"
-        require(abs(half) < 1.0, told)
+        if not abs(half) < 1.0:
+            detail = f"deviations from the motion that grazes at {self.frequency:g} Hz do not turn"
+            raise NotPeriodic(time=self.grazing[1], gap=0.0, velocity=0.0, detail=detail)
         return 1.0 / (self.frequency * (1.0 + math.acos(half) / (2.0 * math.pi)))
 
     @property

@@ -24,13 +24,14 @@ Writes:  springs.csv (a row a reading, bend radius, gap and ball), frame.csv (ef
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import product
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
-from scipy.optimize import brentq
+import numpy as np
+from scipy.optimize import newton
 
 from beam import Backbone, FiniteRotation, backbone_coefficient, periodic_motion
 from contact import NonlinearMode
@@ -41,6 +42,8 @@ from studies.scene import Scene, harmonic, periods_of, spring_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+Answer = TypeVar("Answer")
 
 __all__ = ["Row", "finite_amplitude", "mode_at", "reading_of"]
 
@@ -62,7 +65,8 @@ FRAME = 12
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
-    """One spring; lists go with the scene's drive frequencies. Born period 0: not settled.
+    """One spring; lists go with the scene's drive frequencies. Born period 0: not settled; nothing: no motion
+    that grazes, or one whose deviations do not turn, as next to a turning point of the response.
 
     `survive` says how many of the letter's periods are born both at 2.5e-4 and at 1e-3; `frame` whether the
     frame's effective period is used.
@@ -75,10 +79,10 @@ class Row:
     kappa: float
     kappa_elastic: float
     kappa_inertial: float
-    effective_period_s: tuple[float, ...]
-    born_period: tuple[int, ...]
-    born_2p5e_4: tuple[int, ...]
-    born_1e_2: tuple[int, ...]
+    effective_period_s: tuple[float | None, ...]
+    born_period: tuple[int | None, ...]
+    born_2p5e_4: tuple[int | None, ...]
+    born_1e_2: tuple[int | None, ...]
     survive: int
     frame: bool
 
@@ -91,8 +95,8 @@ class FrameRow:
     bend_radius_m: float
     gap_m: float
     frequency_hz: float
-    mode_s: float
-    frame_s: float
+    mode_s: float | None
+    frame_s: float | None
 
 
 def reading_of(scene: Scene, reading: str, radius: float, ball: float) -> Scene:
@@ -115,10 +119,19 @@ def mode_at(scene: Scene, backbone: Backbone, frequency: float) -> NonlinearMode
 
 def matched(mode: NonlinearMode, effective: float) -> NonlinearMode:
     """The mode with the cubic stiffness that gives an effective period [s]."""
-    def off(factor: float) -> float:
-        return replace(mode, stiffness=factor * mode.stiffness).effective_period - effective
+    def off(stiffness: float) -> float:
+        return replace(mode, stiffness=stiffness).effective_period - effective
 
-    return replace(mode, stiffness=float(brentq(off, 0.5, 1.5, xtol=1e-9)) * mode.stiffness)
+    guess = off(mode.stiffness) / (0.75 * mode.free_period * mode.gap**2)
+    return replace(mode, stiffness=float(newton(off, mode.stiffness, x1=mode.stiffness + guess)))
+
+
+def tried(question: Callable[[], Answer]) -> Answer | None:
+    """The answer, or None where there is none."""
+    try:
+        return question()
+    except (RuntimeError, ArithmeticError, np.linalg.LinAlgError):
+        return None
 
 
 def frame_period(scene: Scene, model: FiniteRotation, frequency: float) -> float:
@@ -150,26 +163,34 @@ class Spring:
         for gap in gaps:
             scene = drawn.replace({"stop.gap_m": gap})
             modes = [mode_at(scene, backbone, f) for f in scene.drive.frequencies_hz]
-            effective = [mode.effective_period for mode in modes]
+            turning = [partial(getattr, mode, "effective_period") for mode in modes]
+            effective: list[float | None] = [tried(one) for one in turning]
             known = gap == self.scene.stop.gap_m and self.ball == self.scene.tip.mass_kg
             if known:
                 model = FiniteRotation.of(spring_of(drawn), FRAME)
-                exact = [frame_period(scene, model, f) for f in scene.drive.frequencies_hz]
-                place = {"reading": self.reading, "bend_radius_m": self.radius, "gap_m": gap}
-                frames += [FrameRow(**place, frequency_hz=mode.frequency, mode_s=mine, frame_s=other)
-                           for mode, mine, other in zip(modes, effective, exact, strict=True)]  # fmt: skip
-                pairs = zip(modes, effective, exact, strict=True)
-                modes = [matched(m, t) if abs(t - mine) > CLOSE else m for m, mine, t in pairs]
-                effective = exact
+                exact = [tried(partial(frame_period, scene, model, f)) for f in scene.drive.frequencies_hz]
+                pairs = list(zip(modes, effective, exact, strict=True))
+                frames += [
+                    FrameRow(reading=self.reading, bend_radius_m=self.radius, gap_m=gap,
+                             frequency_hz=mode.frequency, mode_s=mine, frame_s=other)
+                    for mode, mine, other in pairs
+                ]  # fmt: skip
+                for i, (mode, mine, other) in enumerate(pairs):
+                    if mine and other and abs(other - mine) > CLOSE:
+                        fitted = tried(partial(matched, mode, other))
+                        modes[i], effective[i] = (fitted, other) if fitted else (mode, mine)
             rows.append(self._row(scene, backbone, modes, effective, known))
         return rows, frames
 
     def _row(
-        self, scene: Scene, backbone: Backbone, modes: Sequence[NonlinearMode], effective: Sequence[float],
-        frame: bool,
+        self, scene: Scene, backbone: Backbone, modes: Sequence[NonlinearMode],
+        effective: Sequence[float | None], frame: bool,
     ) -> Row:  # fmt: skip
         cycles = scene.scan.settle_cycles
-        low, middle, high = (tuple(born_period(m, e, most_cycles=cycles) for m in modes) for e in EXCESSES)
+        low, middle, high = (
+            tuple(tried(partial(born_period, mode, excess, most_cycles=cycles)) for mode in modes)
+            for excess in EXCESSES
+        )
         letter = periods_of(scene)
         wanted = [letter.get(mode.frequency) for mode in modes]
         return Row(
@@ -195,16 +216,24 @@ def finite_amplitude(scene: Scene, run: Run) -> Mapping[str, object]:
     run.table("springs", rows, "Springs by reading, radius, gap and ball; born period at 1e-3.", show=shown)
     run.table("frame", frames, "Effective period of deviations: mode with cubic terms, frame.", show=())
     run.figure("finite_amplitude", draw(scene, rows), "How many of the letter's periods are born at 2.5e-4 "
-               "and at 1e-3, against the shift of the frequency at the gap.")  # fmt: skip
+               "and at 1e-3: of the folded strip with the scene's ball over bend radius and gap; of all "
+               "springs against the shift of the frequency at the gap.")  # fmt: skip
     return {"rows": rows, "frame": frames}
 
 
 def draw(scene: Scene, rows: Sequence[Row]) -> Figure:
-    """Periods that survive against |kappa| (gap/L)^2."""
+    """Periods that survive: of the folded strip over bend radius and gap, of all against the shift."""
     from studies import plotting
 
     with plotting.house_style():
-        figure, axis = plotting.new_figure()
+        figure, (chart, axis) = plotting.new_figure(1, 2, width=plotting.PAGE)
+        for row in rows:
+            if row.reading == "folded" and row.tip_mass_kg == scene.tip.mass_kg:
+                place = 1e3 * row.bend_radius_m, 1e3 * row.gap_m
+                chart.scatter(*place, s=120, color=plotting.tint(plotting.BLUE, row.survive / 6))
+                chart.annotate(str(row.survive), place, ha="center", va="center")
+        plotting.label(chart.xaxis, "bend radius", "mm")
+        plotting.label(chart.yaxis, "gap", "mm")
         for n, reading in enumerate(("folded", *STRAIGHT)):
             own = [row for row in rows if row.reading == reading]
             shift = [abs(row.kappa) * (row.gap_m / scene.spring.leg_length_m) ** 2 for row in own]

@@ -35,7 +35,7 @@ from studies.files import SCHEMA
 from studies.options import add_options, parser_of
 from studies.programs import DONE, FAILED_CELLS, INTERRUPTED, as_program, perform, tell
 from studies.record import Run
-from studies.scene import Scene, read_scene
+from studies.scene import Scene, beyond_linear, read_scene
 
 __all__ = ["Run", "study"]
 
@@ -96,6 +96,7 @@ class Study:
             whole = {"schema": SCHEMA, "study": self.name, **values}
             tell(whole if given["json"] else scene.dump().rstrip(), output)
             return DONE
+        doubtful += [sentence for sentence in [beyond_linear(scene)] if sentence]
         chosen = {**options, **(self.quick if given["quick"] else {})}
         chosen |= {name: given[name] for name in options if name in given}
         chosen = {name: tuple(v) if isinstance(v, list) else v for name, v in chosen.items()}

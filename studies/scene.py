@@ -42,19 +42,23 @@ from studies.scene_spring import (
     modes_of,
     require_drive_below,
     sections_of,
+    shift_at_gap,
     single_mode_of,
     spring_of,
 )
 from studies.scene_values import Scene, doubts, scene_from_text
 
 __all__ = [
-    "READOUT", "Scene", "SceneError", "approach_speed", "band_of", "beam_at", "contact_law_of",
-    "corresponding", "damping_of", "elements_of", "free_period", "harmonic", "hertz_of",
+    "READOUT", "Scene", "SceneError", "approach_speed", "band_of", "beam_at", "beyond_linear",
+    "contact_law_of", "corresponding", "damping_of", "elements_of", "free_period", "harmonic", "hertz_of",
     "model_of", "modes_of", "nordmark_at", "periods_of", "read_scene", "require_drive_below", "sections_of",
-    "single_mode_at", "single_mode_of", "spring_of",
+    "shift_at_gap", "single_mode_at", "single_mode_of", "spring_of",
 ]  # fmt: skip
 
 SCENES = Path(__file__).resolve().parent / "scenes"
+
+LARGEST_BANDS = range(3, 13)
+"""Periods whose bands are looked at: edges lie closer and closer beyond."""
 
 SAME_PERIOD = 1e-3
 """Relative change of T within which a spring counts as the letter's: twice the error of its 40.80 ms."""
@@ -181,6 +185,27 @@ def band_of(scene: Scene, period: int) -> Band:
     keys = scene.single_mode
     return band(period, free_period=keys.free_period_s, decay_rate=keys.decay_rate_per_s,
                 restitution=keys.restitution)  # fmt: skip
+
+
+def beyond_linear(scene: Scene) -> str | None:
+    """One sentence if the spring is too nonlinear at the gap for the periods that are born, else None.
+
+    Small deviations from the motion that grazes feel twice the shift of the free frequency; a period can
+    change where that is more than the distance of a drive frequency from the nearest edge of a band.
+    """
+    if scene.drive.kind != "harmonic":
+        return None
+    shift = shift_at_gap(scene)
+    edges = [edge for m in LARGEST_BANDS for edge in (band_of(scene, m).lower, band_of(scene, m).upper)]
+    nearest = {f: min(abs(edge / f - 1.0) for edge in edges) for f in scene.drive.frequencies_hz}
+    moved = [f"{f:g}" for f, distance in nearest.items() if 2.0 * abs(shift) > distance]
+    if not moved:
+        return None
+    return (
+        f"at the gap, stop.gap_m = {scene.stop.gap_m:g} m, the free frequency is {shift:+.2%} off that of "
+        f"small swings, which can change the periods born at {', '.join(moved)} Hz; the model is linear, and "
+        "`python -m studies.finite_amplitude` says what is left of them"
+    )
 
 
 def corresponding(scene: Scene, letter_hz: float) -> float:

@@ -213,6 +213,9 @@ class ModalDataKeys:
     tip_mass_kg: float = key(0.0, "kg", ASSUMED, "mass at the tip; 0 if not known", low=0.0)
     static_compliance_m_per_n: float = key(0.0, "m/N", ASSUMED,
         "static compliance at the tip; 0 for that of the modes given", low=0.0)
+    kappa: float = key(0.0, "1", ASSUMED,
+        "free frequency at amplitude A over that of small ones, less 1, times (kappa_length/A)^2; 0: linear")
+    kappa_length_m: float = key(1.0, "m", ASSUMED, "the length that kappa counts amplitudes in")
 
 
 @dataclass(frozen=True, kw_only=True)

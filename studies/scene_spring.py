@@ -178,6 +178,18 @@ def require_drive_below(scene: Scene, model: ModalModel, frequency: float | None
         )
 
 
+def shift_at_gap(scene: Scene) -> float:
+    """What the amplitude of the gap changes in the free frequency, relative to small swings [1]."""
+    data, gap = scene.modal_data, scene.stop.gap_m
+    if scene.spring.kind == "modal_data":
+        return data.kappa * (gap / data.kappa_length_m) ** 2
+    spring = spring_of(scene)
+    if spring.rigid_motions:
+        return 0.0
+    found = scene.make(beam.backbone_coefficient, {}, spring=spring, elements=elements_of(scene, spring))
+    return found.kappa * (gap / found.length) ** 2
+
+
 def single_mode_of(scene: Scene) -> ModalModel:
     """Eq. (1) of the letter: one mode of unit mass with the period and the decay rate in [single_mode]."""
     keys = {"free_period": "single_mode.free_period_s", "decay_rate": "single_mode.decay_rate_per_s"}

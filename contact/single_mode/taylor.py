@@ -19,7 +19,7 @@ import math
 import numpy as np
 
 from contact.compiled import kernel
-from contact.flight.polynomial_root import evaluate, first_polynomial_root
+from contact.flight.polynomial_root import first_polynomial_root, horner
 
 __all__ = ["MOST_IMPACTS", "ORDER", "free_flow", "periods"]
 
@@ -67,6 +67,12 @@ def series(p, cosine, sine, x, v, phase, xs, vs, work):
 
 
 @kernel
+def value(coefficients, s):
+    """A polynomial at `s`."""
+    return horner(coefficients, 1.0, 0.0, s)[0]
+
+
+@kernel
 def step_of(xs, gap, most):
     """The step that the last two coefficients of a series allow, at most `most` [s]."""
     h = most
@@ -84,7 +90,7 @@ def free_flow(p, cosine, sine, x, v, start, time, gap, xs, vs, work):
     while t < time:
         series(p, cosine, sine, x, v, p[4] * (start + t), xs, vs, work)
         h = step_of(xs, gap, time - t)
-        x, v = evaluate(xs, h), evaluate(vs, h)
+        x, v = value(xs, h), value(vs, h)
         t = time if h >= time - t else t + h
     return x, v
 
@@ -114,15 +120,15 @@ def periods(p, force, gap, restitution, x, v, points, impacts):
             for n in range(size):
                 height[n] = xs[n]
             height[0] -= gap
-            hit = first_polynomial_root(height, 0.0, h, GRAZED * gap)
+            hit = first_polynomial_root(height, 1.0, h, GRAZED * gap)
             if hit >= 0.0:
-                x, v = gap, -restitution * evaluate(vs, hit)
+                x, v = gap, -restitution * value(vs, hit)
                 t += hit
                 impacts[i] += 1
                 if impacts[i] > MOST_IMPACTS:
                     return i * period + t
             else:
-                x, v = evaluate(xs, h), evaluate(vs, h)
+                x, v = value(xs, h), value(vs, h)
                 t = period if h >= period - t else t + h
         points[i, 0], points[i, 1] = x, v / root
     return -1.0
