@@ -3,7 +3,7 @@
     scenery = Scenery.of(modes, ball_radius=2.5e-3, gap=0.0107, swing=0.012)
     with stage_of(scenery) as stage:
         pictures = [stage(moment) for moment in moments]
-    write_gif(run.path("motion.gif"), pictures, rate=20.0)
+    write_gif(run.path("motion.gif"), pictures, rate=20.0, samples=pictures[:1])
 
 `Moment` says where everything is: displacements of the points of the strip, of the ball and of the base, and
 whether the plate is touched. pyvista draws off the screen where that works. Without the libraries of OpenGL
@@ -219,36 +219,38 @@ def can_encode() -> bool:
     return importlib.util.find_spec("imageio_ffmpeg") is not None
 
 
-def write_gif(path: Path, pictures: Sequence[Picture], rate: float) -> Path:
-    """Write pictures at `rate` a second, repeated for ever, with one palette: what does not move does not
-    flicker."""
+def write_gif(
+    path: Path, pictures: Iterable[Picture], rate: float, *, samples: Sequence[Picture]
+) -> Path:
+    """Write pictures at `rate` a second, repeated for ever, with one palette of `samples`: what does not
+    move does not flicker. One picture after the other is taken, and kept as a byte a pixel."""
     from PIL import Image
 
-    typical = Image.fromarray(np.concatenate([pictures[0], pictures[len(pictures) // 2], pictures[-1]]))
-    palette = typical.quantize(127, dither=Image.Dither.NONE)
-    images = [Image.fromarray(one).quantize(palette=palette, dither=Image.Dither.NONE) for one in pictures]
+    palette = Image.fromarray(np.concatenate(samples)).quantize(127, dither=Image.Dither.NONE)
+    images = (Image.fromarray(one).quantize(palette=palette, dither=Image.Dither.NONE) for one in pictures)
     stream = io.BytesIO()
-    images[0].save(stream, format="GIF", save_all=True, append_images=images[1:], loop=0, optimize=False,
+    next(images).save(stream, format="GIF", save_all=True, append_images=images, loop=0, optimize=False,
                    duration=10 * max(2, round(100.0 / rate)))  # fmt: skip
     return write_atomically(path, stream.getvalue())
 
 
-def write_mp4(path: Path, pictures: Iterable[Picture], rate: float) -> Path:
-    """Write pictures, their rows and columns even, at `rate` a second in the H.264 format that browsers
-    play."""
+def written_as_mp4(path: Path, pictures: Iterable[Picture], rate: float) -> Iterator[Picture]:
+    """Pass pictures on, their rows and columns even, and write them at `rate` a second in the H.264 format
+    that browsers play."""
     import imageio_ffmpeg
 
-    known = list(pictures)
-    rows, columns, _ = known[0].shape
+    writer = None
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.name}.") as folder:
         temporary = Path(folder) / path.name
-        writer = imageio_ffmpeg.write_frames(
-            str(temporary), (columns, rows), fps=rate, codec="libx264", pix_fmt_out="yuv420p", quality=8,
-            macro_block_size=2, ffmpeg_log_level="error",
-        )  # fmt: skip
-        writer.send(None)
-        for one in known:
+        for one in pictures:
+            if writer is None:
+                writer = imageio_ffmpeg.write_frames(
+                    str(temporary), (one.shape[1], one.shape[0]), fps=rate, codec="libx264",
+                    pix_fmt_out="yuv420p", quality=8, macro_block_size=2, ffmpeg_log_level="error",
+                )  # fmt: skip
+                writer.send(None)
             writer.send(np.ascontiguousarray(one))
-        writer.close()
-        os.replace(temporary, path)
-    return path
+            yield one
+        if writer is not None:
+            writer.close()
+            os.replace(temporary, path)

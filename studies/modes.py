@@ -126,7 +126,8 @@ def write_films(run: Run, solved: Modes, radius: float, count: int, frames: int)
             shape = scenery.mesh.normalised(largest)[number]
             phases = 2.0 * math.pi * np.arange(frames) / frames
             moments = [Moment(points=math.cos(phase) * shape, base=np.zeros(3)) for phase in phases]
-            write_gif(run.path(f"mode_{number + 1}.gif"), [stage(moment) for moment in moments], RATE)
+            pictures = [stage(moment) for moment in moments]
+            write_gif(run.path(f"mode_{number + 1}.gif"), pictures, RATE, samples=pictures[:: frames // 2])
 
 
 def judge(scene: Scene, run: Run) -> None:

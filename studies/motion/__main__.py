@@ -11,7 +11,7 @@ Writes:  motion.gif, motion.mp4 with the extra `video`, motion.png (the tip), fr
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
@@ -23,13 +23,14 @@ from contact.orbits import born
 from studies import letter
 from studies.film import (
     DRIVE,
+    WIDTH,
     Moment,
     Picture,
     Scenery,
     can_encode,
     stage_of,
     write_gif,
-    write_mp4,
+    written_as_mp4,
 )  # fmt: skip
 from studies.motion.filmed_orbit import FilmedOrbit, FrameRow, drawn_shapes, film_orbit
 from studies.run import Run, study
@@ -82,8 +83,6 @@ def motion(
     true, _ = drawn_shapes(scenery.mesh, modes, orbit.coordinates, 1.0)
     write_frames(run.path("motion.pvd"), grids(scenery, moments, true, orbit.rows))
     run.path("motion_frames")
-    with stage_of(scenery, simple=run.quick) as stage:
-        pictures = [stage(moment) for moment in run.track(moments, "frames")]
     name = f"p{settled.period}" if settled.period else "no period up to 64"
     words = f"{name}, {drive_hz:g} Hz, excess {excess:g}"
     slowed = [row.slowed for row in orbit.rows]
@@ -96,13 +95,21 @@ def motion(
     }  # fmt: skip
     caption = f"The tip along the film, {words}; dashed: the plate."
     run.figure("motion", draw_tip(orbit, scene.stop.gap_m)[0], caption)
-    told = f"higher modes x {magnification:g}"
-    framed = list(composed(orbit, pictures, scene.stop.gap_m, words, told))
-    write_gif(run.path("motion.gif"), framed, RATE)
-    if can_encode():
-        write_mp4(run.path("motion.mp4"), framed, RATE)
-    else:
-        run.say("no mp4: it needs imageio-ffmpeg (pip install -e '.[video]')")
+    told, most = f"higher modes x {magnification:g}", len(moments)
+    with stage_of(scenery, simple=run.quick) as stage:
+        # one picture after the other, so that memory does not grow with the film
+
+        def film(chosen: Iterable[int]) -> Iterator[Picture]:
+            shown = ((orbit.rows[i], stage(moments[i])) for i in chosen)
+            return composed(orbit, shown, scene.stop.gap_m, words, told)
+
+        samples = list(film([0, most // 2, most - 1]))
+        pictures = film(run.track(range(most), "frames"))
+        if can_encode():
+            pictures = written_as_mp4(run.path("motion.mp4"), pictures, RATE)
+        else:
+            run.say("no mp4: it needs imageio-ffmpeg (pip install -e '.[video]')")
+        write_gif(run.path("motion.gif"), pictures, RATE, samples=samples)
     return found
 
 
@@ -133,18 +140,18 @@ def draw_tip(orbit: FilmedOrbit, gap: float) -> tuple[Figure, Any]:
 
 
 def composed(
-    orbit: FilmedOrbit, pictures: Sequence[Picture], gap: float, words: str, told: str
+    orbit: FilmedOrbit, shown: Iterable[tuple[FrameRow, Picture]], gap: float, words: str, told: str
 ) -> Iterator[Picture]:
     """The frames: what is seen, the time and how it is slowed, and the tip against time with a mark."""
     from PIL import Image, ImageDraw, ImageFont
 
     figure, axes = draw_tip(orbit, gap)
-    figure.set(dpi=110, size_inches=(pictures[0].shape[1] / 110, 150 / 110))
+    figure.set(dpi=110, size_inches=(WIDTH / 110, 150 / 110))
     figure.canvas.draw()
     below = np.asarray(figure.canvas.buffer_rgba(), dtype=np.uint8)[..., :3]  # type: ignore[attr-defined]
-    places = axes.transData.transform([(1e3 * row.time_s, 1e3 * row.tip_m) for row in orbit.rows])
     font = ImageFont.load_default(size=18)
-    for row, place, picture in zip(orbit.rows, places, pictures, strict=True):
+    for row, picture in shown:
+        place = axes.transData.transform((1e3 * row.time_s, 1e3 * row.tip_m))
         image = Image.fromarray(np.concatenate([picture, below]))
         pen = ImageDraw.Draw(image)
         at = place[0], image.height - place[1]
