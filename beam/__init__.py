@@ -37,11 +37,11 @@ if TYPE_CHECKING:
     from .finite_rotation import FiniteRotation
     from .frequency_equation import ExactModes, UniformBeam, exact_modes, frequency_function
     from .guided_leg import as_one_spring, straight_equivalent
+    from .harmonic_balance import PeriodicMotion, periodic_motion
     from .material import ALUMINA, BRASS, DAMPING_TAPE, STEEL, Material
     from .modal_model import ModalModel, single_mode
     from .modes import Modes, ShapesAlong, natural_modes
     from .parameters import SuspiciousValue
-    from .periodic_motion import PeriodicMotion, periodic_motion
     from .reduction import reduce
     from .section import Layer, StripSection
     from .spring import LeafSpring, Readout, Support, Tip
@@ -68,11 +68,11 @@ _NAMES = {
     "finite_rotation": ("FiniteRotation",),
     "frequency_equation": ("ExactModes", "UniformBeam", "exact_modes", "frequency_function"),
     "guided_leg": ("as_one_spring", "straight_equivalent"),
+    "harmonic_balance": ("PeriodicMotion", "periodic_motion"),
     "material": ("ALUMINA", "BRASS", "DAMPING_TAPE", "Material", "STEEL"),
     "modal_model": ("ModalModel", "single_mode"),
     "modes": ("Modes", "ShapesAlong", "natural_modes"),
     "parameters": ("SuspiciousValue",),
-    "periodic_motion": ("PeriodicMotion", "periodic_motion"),
     "reduction": ("reduce",),
     "section": ("Layer", "StripSection"),
     "spring": ("LeafSpring", "Readout", "Support", "Tip"),

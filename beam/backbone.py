@@ -38,8 +38,6 @@ from scipy.sparse.linalg import splu
 
 from .centreline import Centreline
 from .finite_rotation import FiniteRotation
-from .modes import COUPLING_TOLERANCE, DENSE_LIMIT, lowest
-from .parameters import require, require_kind
 from .spring import LeafSpring
 
 
@@ -91,29 +89,22 @@ def backbone_coefficient(spring: LeafSpring, elements: int | Sequence[int] | Non
     ValueError
         If the supports leave a rigid motion, or mode 1 does not move the tip.
     """
-    require_kind("spring", spring, LeafSpring, "a LeafSpring")
-    rigid = spring.rigid_motions
-    require(not rigid, f"supports leave {rigid} motions without strain [no unit]; a backbone needs none")
     model = FiniteRotation.of(spring, elements)
     stiffness, mass = model.stiffness(model.densities(np.zeros_like(model.tip))), model.mass
-    square, shapes = lowest(stiffness, mass, 0.0, 1, dense_limit=DENSE_LIMIT)
-    shape, moved = shapes[:, 0], model.tip @ shapes[:, 0]
-    m = shape @ (mass @ shape)
-    moves = moved**2 * (spring.strip_mass + spring.tip.mass) > COUPLING_TOLERANCE**2 * m
-    require(moves, "mode 1 of the spring leaves the tip at rest; it has no amplitude there")
-    y, m = shape / moved, m / moved**2
+    omega, y = model.first_mode
+    kinetic = omega**2 * (y @ (mass @ y))
     a, b, change = (strain @ y for strain in model.strains)
     axial, bending = model.axial, model.bending
     second = model.strains[0].T @ (0.5 * axial * b**2) + model.strains[1].T @ (axial * a * b)
     rest, double = (
-        -0.5 * splu((stiffness - factor * square[0] * mass).tocsc()).solve(second) for factor in (0.0, 4.0)
+        -0.5 * splu((stiffness - factor * omega**2 * mass).tocsc()).solve(second) for factor in (0.0, 4.0)
     )
     fourth = axial @ (b**4 / 8.0 - 0.5 * (a * b) ** 2) + 0.5 * bending @ (b * change) ** 2
     strained = 0.375 * fourth + second @ (0.5 * rest + 0.25 * double)
     strained += 0.5 * rest @ (stiffness @ rest) + 0.25 * double @ (stiffness @ double)
-    moving = square[0] * double @ (mass @ double)
+    moving = omega**2 * double @ (mass @ double)
     length = first_straight(spring.centreline)
-    scale = 4.0 * length**2 / (m * square[0])
+    scale = 4.0 * length**2 / kinetic
     return Backbone(elastic=float(scale * strained), inertial=float(-scale * moving), length=length)
 
 

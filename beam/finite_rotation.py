@@ -22,6 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
 from typing import Any
 
@@ -30,7 +31,8 @@ from numpy.typing import NDArray
 from scipy.sparse import block_diag, csr_array, diags_array
 
 from .assembly import assemble
-from .parameters import require_kind
+from .modes import COUPLING_TOLERANCE, DENSE_LIMIT, lowest
+from .parameters import require, require_kind
 from .pieces import Field
 from .spring import LeafSpring
 from .strip_element import PieceMesh, bend, stretch
@@ -83,6 +85,22 @@ class FiniteRotation:
             spring=spring, mass=linear.mass, base_load=linear.base_load, tip=linear.tip,
             strains=(a, b, change), axial=np.concatenate(axial), bending=np.concatenate(bending),
         )  # fmt: skip
+
+    @cached_property
+    def first_mode(self) -> tuple[float, Array]:
+        """omega_1 [rad/s] of small motions and the shape of mode 1 with unit tip displacement.
+
+        ValueError if the supports leave a rigid motion, or mode 1 leaves the tip at rest.
+        """
+        rigid = self.spring.rigid_motions
+        require(not rigid, f"supports leave {rigid} motions without strain [no unit]; they must leave none")
+        stiffness = self.stiffness(self.densities(np.zeros_like(self.tip)))
+        square, shapes = lowest(stiffness, self.mass, 0.0, 1, dense_limit=DENSE_LIMIT)
+        shape, moved = shapes[:, 0], self.tip @ shapes[:, 0]
+        whole = (self.spring.strip_mass + self.spring.tip.mass) / (shape @ (self.mass @ shape))
+        moves = moved**2 * whole > COUPLING_TOLERANCE**2
+        require(moves, "mode 1 of the spring leaves the tip at rest [no unit]; it must move it")
+        return float(np.sqrt(square[0])), shape / moved
 
     def energy(self, x: Array) -> Array:
         """V [J] of displacements x [m], shape (n_dofs, ...)."""

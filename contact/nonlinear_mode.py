@@ -113,10 +113,8 @@ class NonlinearMode:
 
     def _flow(self, start: float, time: float, given: Sequence[complex]) -> NDArray[np.complex128]:
         """x and x' at `time` after `start` [s], without a stop, from both parts of the force, x and x'."""
-        size, (cosine, sine, x, v) = ORDER + 1, map(complex, given)
-        room = np.zeros(size, complex), np.zeros(size, complex), np.zeros((2, size), complex)
-        gap = float(self.gap)
-        return np.array(free_flow(self.numbers, cosine, sine, x, v, start, time, gap, *room))
+        room, (cosine, sine, x, v) = np.zeros((4, ORDER + 1), complex), map(complex, given)
+        return np.array(free_flow(self.numbers, cosine, sine, x, v, start, time, float(self.gap), room))
 
     def _slopes(self, start: float, given: Sequence[float], which: Sequence[int]) -> tuple[Array, Array]:
         """(x, x') a drive period after `start`, and its derivatives by two of these four, shape (2, 2)."""

@@ -37,15 +37,15 @@ MOST_IMPACTS = 1000
 
 
 @kernel
-def series(p, cosine, sine, x, v, phase, xs, vs, work):
+def series(p, cosine, sine, x, v, phase, room):
     """The Taylor coefficients of x and x' in rising order, from x and v at `phase` = 2 pi f t.
 
     p = (W^2, mu, b, a, 2 pi f); the force is cosine cos(2 pi f t) + sine sin(2 pi f t). Products by Leibniz'
-    rule; `work`, shape (2, order + 1), holds x^2 and x'^2.
+    rule. `room`, shape (4, order + 1), holds them, x^2 and x'^2.
     """
     stiffness, decay, b, a, w = p
+    xs, vs, square, rates = room[0], room[1], room[2], room[3]
     xs[0], vs[0] = x, v
-    square, rates = work[0], work[1]
     push = cosine * math.cos(phase) + sine * math.sin(phase)
     lead = cosine * math.sin(phase) - sine * math.cos(phase)
     for n in range(xs.size - 1):
@@ -84,13 +84,13 @@ def step_of(xs, gap, most):
 
 
 @kernel
-def free_flow(p, cosine, sine, x, v, start, time, gap, xs, vs, work):
+def free_flow(p, cosine, sine, x, v, start, time, gap, room):
     """x and x' after `time` [s] without a stop, from the drive's time `start` [s]."""
     t = 0.0
     while t < time:
-        series(p, cosine, sine, x, v, p[4] * (start + t), xs, vs, work)
-        h = step_of(xs, gap, time - t)
-        x, v = value(xs, h), value(vs, h)
+        series(p, cosine, sine, x, v, p[4] * (start + t), room)
+        h = step_of(room[0], gap, time - t)
+        x, v = value(room[0], h), value(room[1], h)
         t = time if h >= time - t else t + h
     return x, v
 
@@ -102,7 +102,8 @@ def periods(p, force, gap, restitution, x, v, points, impacts):
     Returns the time of a period with more than `MOST_IMPACTS` impacts [s], or -1.
     """
     size = ORDER + 1
-    xs, vs, height, work = np.zeros(size), np.zeros(size), np.zeros(size), np.zeros((2, size))
+    room, height = np.zeros((4, size)), np.zeros(size)
+    xs, vs = room[0], room[1]
     period, root = 2.0 * math.pi / p[4], math.sqrt(p[0])
     against = p[0] * (gap + p[2] * gap**3)
     for i in range(impacts.size):
@@ -115,7 +116,7 @@ def periods(p, force, gap, restitution, x, v, points, impacts):
                 left = math.acos(against / force) / p[4]
                 t = min(period, left if left >= t else left + period)
                 continue
-            series(p, force, 0.0, x, v, p[4] * t, xs, vs, work)
+            series(p, force, 0.0, x, v, p[4] * t, room)
             h = step_of(xs, gap, period - t)
             for n in range(size):
                 height[n] = xs[n]

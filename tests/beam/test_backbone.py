@@ -13,7 +13,7 @@ from beam import BRASS, Arc, Centreline, LeafSpring, Straight, StripSection, Tip
 from beam import folded_u as drawn_u
 from beam.backbone import backbone_coefficient
 from beam.finite_rotation import FiniteRotation
-from beam.periodic_motion import periodic_motion
+from beam.harmonic_balance import periodic_motion
 
 pytestmark = pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")  # heavy tips, thin strips
 

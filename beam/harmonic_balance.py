@@ -25,7 +25,6 @@ from scipy.sparse import block_array, csc_array, csr_array
 from scipy.sparse.linalg import splu
 
 from .finite_rotation import FiniteRotation
-from .modes import DENSE_LIMIT, lowest
 from .parameters import require_kind, require_whole, require_within
 
 MOST_STEPS = 30
@@ -110,7 +109,7 @@ class PeriodicMotion:
         ArithmeticError
             If the iteration, which starts from the linear mode, does not end.
         """
-        growth = 1j * (_first_mode(self.model)[0] - self.omega) - 0.5 * self.decay_rate
+        growth = 1j * (self.model.first_mode[0] - self.omega) - 0.5 * self.decay_rate
         vector = np.zeros(self.coefficients.shape, dtype=complex)
         vector[self.harmonics == 1] = self.coefficients[self.harmonics == 1]
         for _ in range(MOST_STEPS):
@@ -159,7 +158,7 @@ def periodic_motion(
     require_kind("model", model, FiniteRotation, "a FiniteRotation")
     require_within("amplitude", amplitude, "m")
     most = require_whole("harmonics", harmonics, "[1]", low=1)
-    omega, shape = _first_mode(model)
+    omega, shape = model.first_mode
     parts = np.zeros((2 * most + 1, model.tip.size), dtype=complex)
     parts[most - 1] = parts[most + 1] = 0.5 * amplitude * shape
     motion = PeriodicMotion(model=model, omega=omega, decay_rate=0.0, coefficients=parts, drive=0j)
@@ -203,10 +202,3 @@ def _newton(motion: PeriodicMotion, amplitude: float, driven: bool) -> tuple[Per
             changed, omega=motion.omega + first.real, decay_rate=motion.decay_rate + second.real
         )
     return changed, float(np.linalg.norm(step[:size]) / np.linalg.norm(c))
-
-
-def _first_mode(model: FiniteRotation) -> tuple[float, NDArray[np.float64]]:
-    """omega [rad/s] of mode 1 and its shape of unit tip displacement."""
-    stiffness = model.stiffness(model.densities(np.zeros_like(model.tip)))
-    square, shapes = lowest(stiffness, model.mass, 0.0, 1, dense_limit=DENSE_LIMIT)
-    return float(np.sqrt(square[0])), shapes[:, 0] / (model.tip @ shapes[:, 0])
