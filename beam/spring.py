@@ -193,8 +193,8 @@ class LeafSpring:
         size, arm = f"thickness is {thickness:g} m with its layers", max(self.tip_at, length - self.tip_at)
         if tip.mass > mass:
             suspect(f"mass of the tip is {tip.mass:g} kg; it is heavier than the strip, {mass:g} kg")
-        if tip.rotary_inertia > tip.mass * arm**2 > 0.0:
-            reach = math.sqrt(tip.rotary_inertia / tip.mass)
+        reach = math.sqrt(tip.rotary_inertia / tip.mass) if tip.mass > 0.0 else 0.0
+        if reach > arm:
             suspect(f"rotary_inertia of the tip is {tip.rotary_inertia:g} kg m^2; its body has {reach:.2g} m")
         if thickness > THICKEST * width:
             suspect(f"{size}; above {THICKEST:g} of the width {width:g} m it is a bar rather than a strip")
