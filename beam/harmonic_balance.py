@@ -25,7 +25,7 @@ from scipy.sparse import block_array, csc_array, csr_array
 from scipy.sparse.linalg import splu
 
 from .finite_rotation import FiniteRotation
-from .parameters import require_kind, require_whole, require_within
+from .parameters import require, require_kind, require_whole, require_within
 
 MOST_STEPS = 30
 """Of Newton's method; it takes four or five."""
@@ -156,7 +156,8 @@ def periodic_motion(
         If Newton's method, from the linear motion, does not end.
     """
     require_kind("model", model, FiniteRotation, "a FiniteRotation")
-    require_within("amplitude", amplitude, "m")
+    size = require_within("amplitude", amplitude, "m")
+    require(size != 0.0, f"amplitude is {amplitude} m; it must be finite and not zero")
     most = require_whole("harmonics", harmonics, "[1]", low=1)
     omega, shape = model.first_mode
     parts = np.zeros((2 * most + 1, model.tip.size), dtype=complex)

@@ -45,7 +45,7 @@ UNITS = {
 """Unit that the sentence gives with a number which is refused."""
 
 RESULTS = {
-    "beam": {"ExactModes", "ShapesAlong", "SpringMesh"},
+    "beam": {"Backbone", "ExactModes", "FiniteRotation", "PeriodicMotion", "ShapesAlong", "SpringMesh"},
     "contact": {"Band", "Collision", "Impacts", "MaximalOrbit", "SingleImpactOrbit", "StrobedOrbit",
                 "Trajectory"},
     "orbits": {"Branch", "Event", "Exponents", "Kick", "PeriodicOrbit"},

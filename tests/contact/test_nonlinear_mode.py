@@ -153,16 +153,3 @@ def test_scans_take_it() -> None:
     assert found.period.tolist()[:2] == [1, 1]
     assert found.period.tolist()[3:] == [3, 3]
     assert not found.failures
-
-
-@pytest.mark.parametrize(
-    "wrong, told",
-    [
-        ({"gap": 0.0}, "gap is 0.0 m; it must be"), ({"restitution": 1.5}, "restitution is 1.5"),
-        ({"free_period": -1.0}, "free_period is -1.0 s"), ({"excess": -1.0}, "excess is -1.0"),
-        ({"gap": 0.2}, "stiffness is"), ({"frequency": math.nan}, "frequency is nan Hz"),
-    ],
-)  # fmt: skip
-def test_wrong_input(wrong: dict[str, float], told: str) -> None:
-    with pytest.raises(ValueError, match=told):
-        replace(mode(), **wrong)

@@ -128,7 +128,8 @@ def test_keyword_arguments_are_options(tmp_path):
 def test_wrong_use_is_one_sentence_and_exit_code_2(tmp_path, capsys, argv, named):
     code, _ = start(*argv, out=tmp_path)
     out, err = capsys.readouterr()
-    assert code == 2 and named in err and err.count("\n") == 1 and out == ""
+    lines = [line for line in err.splitlines() if not line.startswith("warning: ")]
+    assert code == 2 and len(lines) == 1 and named in lines[0] and out == ""
 
 
 def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_computed(tmp_path, capsys):
@@ -165,7 +166,7 @@ def test_json_is_one_object_and_nothing_else_on_standard_output(tmp_path, capsys
 def test_suspicious_values_are_told_and_kept(tmp_path, capsys):
     _, folder = start("--set", "scan.born_excess=0.5", out=tmp_path)
     assert "warning: scan.born_excess" in capsys.readouterr().err
-    assert len(summary_of(folder)["warnings"]) == 1
+    assert sum("scan.born_excess" in told for told in summary_of(folder)["warnings"]) == 1
 
 
 def test_help_prints_the_docstring_and_the_dump_the_scene(tmp_path, capsys):
