@@ -93,6 +93,19 @@ class Motion(NamedTuple):
         """What modal values (n_modes,) or (n_modes, n) come to at the tip, the sum of phi_k times them."""
         return self.phi @ values
 
+    def most_at_tip(self, sizes: np.ndarray) -> float:
+        """The most that modal values of these `sizes` can come to at the tip: as `tip`, signs left out."""
+        return float(np.abs(self.phi) @ np.abs(sizes))
+
+    def mobility(self, inertia: np.ndarray) -> float:
+        """Velocity of the tip per impulse on it, sum phi^2/`inertia`, (n_modes,) [1/kg]."""
+        return float(np.sum(self.phi**2 / inertia))
+
+    def least_change(self, reach: float | np.ndarray) -> np.ndarray:
+        """The least change of the modes that moves the tip by `reach`, phi reach/sum phi^2, (n_modes, ...): a
+        push of the stop makes no other."""
+        return np.multiply.outer(self.phi, np.asarray(reach) / self.compliance)
+
 
 def motion_of(
     omega: np.ndarray, decay: np.ndarray, phi: np.ndarray, *, law: Any, gap: float, drive: float = 0.0,
