@@ -49,7 +49,7 @@ from contact.flight.motion import (
 from contact.vector_loops import aligned
 
 __all__ = ["acceleration_rounding", "at_tip", "flow", "flow_matrix", "mode_flow", "new_flight", "propagate",
-           "push_on", "speed_scale", "steady_motion", "tip_bound", "tip_pair", "tip_rounding", "tip_state",
+           "push_on", "speed_scale", "steady_motion", "tip_bound", "tip_rounding", "tip_state",
            "tip_sum"]  # fmt: skip
 
 START_U, START_V, U, V, HEIGHT, RATE, BEND, THIRD, ABOVE = range(9)
@@ -236,15 +236,6 @@ def tip_sum(motion, rest, values):
 
 
 @inlined
-def tip_pair(motion, height, rate, u, v):
-    """`tip_sum` of displacements on `height` and of velocities on `rate`, at once."""
-    for k in range(u.size):
-        height += at_tip(motion, k, u[k])
-        rate += at_tip(motion, k, v[k])
-    return height, rate
-
-
-@inlined
 def tip_bound(motion, k, value, turned):
     """Bound of what a `value` of mode `k` comes to at the tip as long as it is free; `turned` is the value a
     quarter turn off, such as v/omega for u or omega u for v (see the bounds above)."""
@@ -254,7 +245,7 @@ def tip_bound(motion, k, value, turned):
 @inlined
 def push_on(motion, k, push):
     """What a force or impulse `push` of the stop on the tip is for mode `k`: -phi_k times it."""
-    return -at_tip(motion, k, push)
+    return -motion.modes[WEIGHT, k] * push
 
 
 @kernel

@@ -23,7 +23,7 @@ import numpy as np
 
 from contact import touch
 from contact.compiled import inlined, kernel, part
-from contact.flight.modal_flow import push_on, tip_pair
+from contact.flight.modal_flow import push_on, tip_sum
 from contact.flight.motion import DECAY, SQUARE, Motion
 from contact.recorder import Recorder, add_loss, close_touch, is_full, open_touch, put_sample, sample_due
 from contact.trajectory import IMPACT
@@ -88,7 +88,7 @@ class Grid(NamedTuple):
 @inlined
 def tip_of(motion, q, v):
     """Penetration d [m] and its rate [m/s]."""
-    return tip_pair(motion, -motion.gap, 0.0, q, v)
+    return tip_sum(motion, -motion.gap, q), tip_sum(motion, 0.0, v)
 
 
 @inlined
