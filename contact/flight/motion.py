@@ -18,7 +18,7 @@ from contact.compiled import kernel
 from contact.flight.elementary import square_root, two_product
 from contact.vector_loops import LANES
 
-__all__ = ["Motion", "damped_frequency", "motion_of", "single_mode", "with_drive", "without_load"]
+__all__ = ["Motion", "damped_frequency", "motion_of", "single_mode", "with_drive"]
 
 DECAY, SQUARE, WEIGHT, LOAD, DAMPED, LOW, OMEGA, SLOWNESS, SHORTNESS, SINE, COSINE, OFFSET = range(12)
 """Rows of the table of modes: c, omega^2, phi, g of the modes of zero frequency, d = sqrt|D| as a sum of two,
@@ -188,10 +188,3 @@ def single_mode(motion: Motion) -> Motion:
     damped, omega, load = modes[DAMPED, 0], modes[OMEGA, 0], modes[LOAD, 0]
     plain = bool(damped > 0.0 and omega > 0.5 * modes[DECAY, 0] and load == 0.0)
     return motion._replace(modes=modes, size=1, plain=plain, phase_rate=float(damped))
-
-
-def without_load(motion: Motion) -> Motion:
-    """The same without constant load on modes of zero frequency."""
-    modes = motion.modes.copy()
-    modes[LOAD] = 0.0
-    return motion._replace(modes=modes)
