@@ -93,9 +93,3 @@ def test_small_form(run_study):
     )
     assert up > down  # hysteresis
     assert ran.summary["verdicts"]["coexistence"]["verdict"] == "agrees"
-
-
-@pytest.mark.parametrize("argv", [("--lowest", "0.1", "--highest", "0.0"), ("--basin-excess", "0.01"),
-                                  ("--set", "drive.kind=none")])  # fmt: skip
-def test_wrong_input_is_refused(run_study, argv):
-    assert run_study("attractors", *argv).code == 2

@@ -146,10 +146,3 @@ def test_small_form(run_study):
     )
     stored = np.load(ran.folder / "breakdown.npz")
     assert stored["beam_up_points"].shape == (stored["beam_up_excess"].size, letter.STROBE_POINTS)
-
-
-@pytest.mark.parametrize(
-    "change", ["drive.kind=none", "spring.kind=modal_data", "single_mode.free_period_s=0.06"]
-)
-def test_wrong_input_is_refused(run_study, change):
-    assert run_study("breakdown", "--set", change).code == 2

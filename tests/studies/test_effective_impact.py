@@ -146,8 +146,3 @@ def test_the_answers_agree_with_what_is_known(run_study):
     needed = ran.summary["what_gives_the_letters_restitution"]
     assert 1.1e-5 < needed["contact_s"] < 1.2e-5 and 0.15 < needed["excess"] < 0.25
     assert ran.summary["verdicts"]["restitution"]["verdict"] == "in part"
-
-
-@pytest.mark.parametrize("wrong", ["drive.kind=none", "spring.kind=modal_data"])
-def test_a_scene_without_drive_or_tip_mass_is_refused(run_study, wrong):
-    assert run_study("effective_impact", "--quick", "--set", wrong).code == 2

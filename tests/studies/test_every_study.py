@@ -34,6 +34,13 @@ SMALLER = {"motion": ["--frames", "16"], "chart": ["--points", "4", "6"],
 #: Names of a study's main module that give a small form less to do, and what stands in for them.
 FEWER = {"work_precision": ("problems_of", lambda scene, modes: problems_of(scene, 2)[:2])}
 
+#: Studies of driven motions, and those that change the dimensions of a spring.
+DRIVEN = (
+    "adequacy", "attractors", "breakdown", "chart", "claims", "effective_impact", "hysteresis", "motion",
+    "sensitivity", "soft_wall", "time_trace", "transitions", "work_precision",
+)  # fmt: skip
+ON_A_SPRING = ("breakdown", "calibrate", "effective_impact", "motion", "sensitivity", "spring_shape")
+
 #: A fit takes hundreds of meshes.
 SLOW = ("calibrate",)
 
@@ -49,6 +56,35 @@ def test_the_small_form_runs_and_leaves_a_table_a_figure_and_a_summary(run_study
     ran = run_study(name, "--quick", "--json", *SMALLER.get(name, ()))
     assert ran.code == 0, ran.err
     assert json.loads(ran.out)["study"] == ran.summary["study"] == name
+
+
+#: Options and keys that a study does not take, and what its sentence names.
+REFUSED = [
+    *((name, "--set drive.kind=none", "drive.kind") for name in DRIVEN),
+    *((name, "--set spring.kind=modal_data", "modal_data") for name in ON_A_SPRING),
+    ("attractors", "--lowest 0.1 --highest 0.0", "lowest"),
+    ("attractors", "--basin-excess 0.01", "basin-excess"),
+    ("breakdown", "--set single_mode.free_period_s=0.06", "free_period_s"),
+    ("chart", "--points 1 9", "points"),
+    ("hysteresis", "--step 0", "step"),
+    ("sensitivity", "--periods 5 3", "periods"),
+    ("soft_wall", "--decades 5 3", "decades"),
+    ("spring_shape", "--off-line 0", "--off-line"),
+    ("spring_shape", "--channel-sheet 0", "--channel-sheet"),
+    ("stability", "--families none", "families"),
+    ("time_trace", "--excess=-1", "excess"),
+    ("time_trace", "--frequency 0", "frequencies_hz"),
+    ("time_trace", "--frequency 1e6", "1e+06 Hz"),
+]
+
+
+@pytest.mark.parametrize(("name", "argv", "named"), REFUSED)
+def test_what_a_study_cannot_use_is_refused_in_one_sentence(run_study, name, argv, named):
+    ran = run_study(name, "--set", "modes.count=4", *argv.split())
+    assert ran.code == 2 and ran.summary == {}
+    sentence = ran.err.splitlines()[-1]
+    assert sentence.startswith(f"python -m studies.{name}: ") and named in sentence, ran.err
+    assert "Traceback" not in ran.err
 
 
 @pytest.mark.slow

@@ -92,8 +92,3 @@ def test_small_form(run_study):
     assert ran.summary["verdicts"]["hysteresis"]["verdict"] == "in part"
     beside = ran.summary["verdicts"]["neighbour_band"]  # p4 lives on where p3 is born
     assert beside["verdict"] == "agrees" and beside["note"].startswith("p4 at 2")
-
-
-@pytest.mark.parametrize("wrong", [("--set", "drive.kind=none"), ("--step", "0")])
-def test_wrong_use_is_refused(run_study, wrong):
-    assert run_study("hysteresis", "--quick", *wrong).code == 2

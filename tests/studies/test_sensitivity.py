@@ -175,10 +175,3 @@ def test_small_form(run_study):
     assert ran.summary["changes_that_give_the_letters_last_period"] == []
     assert ran.summary["first_period_with_hysteresis_below_noise"] == 9
     assert ran.summary["verdicts"]["last_period"]["verdict"] == "agrees"
-
-
-@pytest.mark.parametrize(
-    "wrong", [("--set", "drive.kind=none"), ("--set", "spring.kind=modal_data"), ("--periods", "5", "3")]
-)
-def test_wrong_use_is_refused(run_study, wrong):
-    assert run_study("sensitivity", "--quick", *wrong).code == 2

@@ -155,18 +155,6 @@ def test_small_form(run_study):
     }  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    "argv, field",
-    [
-        (("--decades", "5", "3"), "decades"),
-        (("--set", "drive.kind=none"), "drive.kind"),
-    ],
-)
-def test_wrong_input_is_refused(run_study, argv, field):
-    ran = run_study("soft_wall", *argv)
-    assert ran.code == 2 and field in ran.err
-
-
 def test_wrong_walls_are_refused():
     wall = wall_at(22.2, 10.0)
     for name, value in (("hardness", 1.0), ("hardness", math.nan)):

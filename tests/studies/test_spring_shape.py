@@ -165,9 +165,3 @@ def test_shapes_that_cannot_be_are_refused(letter_scene):
         shape_of(letter_scene.replace({"spring.width_m": 0.016}), "side_by_side")
     with pytest.raises(SceneError, match="no flange between"):
         brought_to(shape_of(letter_scene, "channel"), 2.0 * math.pi * 5.0)
-
-
-@pytest.mark.parametrize("option", ["--off-line", "--channel-sheet"])
-def test_a_size_that_is_none_is_refused(option, run_study):
-    ran = run_study("spring_shape", option, "0")
-    assert ran.code == 2 and option in ran.err and "greater than 0" in ran.err

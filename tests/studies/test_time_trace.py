@@ -89,15 +89,3 @@ def test_a_peak_belongs_to_the_mode_next_to_it():
     assert [(peak.frequency_hz, peak.mode) for peak in told] == [
         (20.0, 1), (95.0, None), (104.0, 2), (150.0, None),
     ]  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    "wrong",
-    [("--set", "contact.law=foo"), ("--excess", "-1"), ("--excess", "nan"), ("--frequency", "0"),
-     ("--frequency", "1e6"), ("--set", "drive.kind=none"), ("--colour", "red")],
-)
-def test_wrong_use_is_refused_in_one_sentence(run_study, wrong):
-    ran = run_study("time_trace", *wrong)
-    assert ran.code == 2
-    assert ran.err.splitlines()[-1].startswith("python -m studies.time_trace: ")
-    assert "Traceback" not in ran.err
