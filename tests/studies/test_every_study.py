@@ -4,30 +4,28 @@ from __future__ import annotations
 
 import ast
 import json
+import re
 from pathlib import Path
 
 import pytest
 
 from studies import plotting
-from studies.programs import names, source_of
+from studies.programs import names, source_of, title_of
 from studies.work_precision.problems import problems_of
 
 PROGRAMS = names()
 ON_THE_FRAME = [name for name in PROGRAMS if "\n@study(" in source_of(name).read_text()]
 
-#: Studies whose own test runs the small form and looks at its numbers, with these checks of what it leaves.
-OWN_TEST = [
-    name for name in ON_THE_FRAME
-    if (own := Path(__file__).with_name(f"test_{name}.py")).exists()
-    and f'ran = run_study("{name}", "--quick"' in own.read_text()
-]  # fmt: skip
+#: Studies whose small form a test looks at, with these checks of what it leaves.
+LOOKED_AT = {
+    name for path in Path(__file__).parent.glob("test_*.py")
+    for name in re.findall(r'= run_study\("(\w+)", "--quick"', path.read_text())
+}  # fmt: skip
 
 #: Options that keep a small form small.
-SMALLER = {"motion": ["--frames", "16"], "chart": ["--points", "4", "6"],
-           "stability": ["--families", "false_restitution,accumulation"],
+SMALLER = {"stability": ["--families", "false_restitution,accumulation"],
            "claims": ["--positions", "3", "--across", "12", "--restitutions", "3", "--inside", "6",
                       "--alphas", "3"],
-           "transitions": ["--set", "drive.frequencies_hz=[22.2]"],
            "calibrate": ["--set", "modes.count=4", "--set", "spring.elements_per_leg=12"]}  # fmt: skip
 
 
@@ -48,7 +46,7 @@ SLOW = ("calibrate",)
 @pytest.mark.parametrize(
     "name",
     [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ())
-     for name in ON_THE_FRAME if name not in OWN_TEST],
+     for name in ON_THE_FRAME if name not in LOOKED_AT],
 )  # fmt: skip
 def test_the_small_form_runs_and_leaves_a_table_a_figure_and_a_summary(run_study, monkeypatch, name):
     if name in FEWER:
@@ -102,6 +100,7 @@ def test_a_figure_is_kept_as_png_and_as_pdf_without_a_date(tmp_path):
 
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_docstring_says_command_run_time_and_outputs(name):
+    assert title_of(name).endswith(".") and len(title_of(name)) < 200
     text = source_of(name).read_text()
     account = ast.get_docstring(ast.parse(text)) or ""
     if name in ON_THE_FRAME:

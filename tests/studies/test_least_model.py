@@ -28,13 +28,6 @@ def test_the_choice_is_that_of_the_long_search(letter_scene, needs, modes):
     assert scene.provenance()["modes.count"] == "least"
 
 
-def test_one_rung_less_is_not_enough(letter_scene):
-    asked = list(questions(letter_scene, {"fold": 0.05}, reference_of(letter_scene)))
-    assert len(asked) >= 5
-    errors = {n: max(off(n) for _, _, off in asked) for n in (12, 15, 18)}
-    assert errors[12] > 0.05 > errors[15] > errors[18] > 0.0
-
-
 @pytest.mark.parametrize("frequency", [20.90, 21.50, 22.20])
 def test_errors_of_folds_from_kicks_are_those_of_the_orbits_themselves(letter_scene, frequency):
     """Folds by shooting and continuation, an independent route, with 12 and 40 modes."""

@@ -63,19 +63,6 @@ def test_growth_is_that_of_the_matrix_of_a_step():
     assert growth(oscillator, rest, method) == pytest.approx(exact, rel=1e-8)
 
 
-def test_a_run_grows_as_the_slopes_of_a_step_say():
-    """Central difference in flight, 0.1 % beyond its limit, where nothing opens."""
-    one = np.ones(1)
-    model = ModalModel(omega=one, decay_rate=0.0 * one, phi=one, participation=one)
-    oscillator, rest = pressed(model, explicit.SOFT)
-    free = CentralDifference(step=2.002, beyond_limit=True)
-    times = free.step * np.arange(1, 101)
-    start = replace(rest, displacement=(1.0 + 1e-4) * rest.displacement)
-    run = simulate(oscillator, start, duration=times[-1], times=times, method=free)
-    away = np.log(np.abs(run.displacement[:, 0] - 1.0))
-    assert (away[-1] - away[-51]) / 50 == pytest.approx(growth(oscillator, rest, free), rel=1e-3)
-
-
 # central difference
 
 
@@ -137,15 +124,6 @@ def test_energy_of_a_short_contact_is_that_of_the_closed_form_and_can_be_made(x)
     assert 1.0 / bound * (1 - 1e-12) <= np.min(found) < 0.9
     for law in LAWS:
         assert np.abs(energy_after(Exact(), law, x, parts) - 1.0).max() < 1e-11
-
-
-@pytest.mark.parametrize("steps", [3, 8])
-def test_commensurate_steps_hide_the_error_of_energy(steps):
-    def worst(count: float) -> float:
-        x, parts = 2.0 * math.sin(0.5 * math.pi / count), (np.arange(8) + 0.5) / 8
-        return float(np.abs(np.sqrt(explicit.energies("linear", x, parts)) - 1.0).max())
-
-    assert worst(steps) < 1e-10 and worst(steps + 0.5) > 0.01 / steps
 
 
 # splitting

@@ -9,7 +9,7 @@ from contact import StroboscopicMap, first_collision
 from contact.collision import before_collision
 from contact.orbits import born
 from studies.scene import beam_at, single_mode_of
-from studies.time_trace.spectrum import lines_of, peaks_of
+from studies.time_trace.spectrum import lines_of
 from studies.time_trace.trace import close_up, trace_of
 
 
@@ -79,13 +79,3 @@ def test_lines_of_a_known_sum():
     assert amplitude[frequency == 5.0][0] == pytest.approx(3.0)
     assert amplitude[frequency == 40.0][0] == pytest.approx(0.2)
     assert np.sum(amplitude > 1e-9) == 3
-
-
-def test_a_peak_belongs_to_the_mode_next_to_it():
-    frequency = np.arange(0.0, 200.0, 1.0)
-    amplitude = np.full(200, 1e-9)
-    amplitude[[20, 95, 104, 150]] = [1.0, 0.1, 0.3, 0.5]
-    told = peaks_of(frequency, amplitude, np.array([21.0, 100.0]), 6.0)
-    assert [(peak.frequency_hz, peak.mode) for peak in told] == [
-        (20.0, 1), (95.0, None), (104.0, 2), (150.0, None),
-    ]  # fmt: skip
