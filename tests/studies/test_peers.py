@@ -173,19 +173,14 @@ def test_times_wanted_anywhere(label: str) -> None:
 
 @fast
 @pytest.mark.parametrize("law", [LinearContact(stiffness=3e5), NewtonRestitution(local_restitution=0.6)])
-def test_a_flight_is_a_flight_and_a_run_goes_on(label: str, law: ContactLaw) -> None:
-    """Without a touch the closed form; with touches a run in two pieces is the same motion."""
+def test_a_run_goes_on(label: str, law: ContactLaw) -> None:
+    """A run in two pieces is the same motion."""
     method, n = solver(label, 1e-10), 1 if isinstance(law, NewtonRestitution) else 3
-    free = spring(n, law, excess=-0.3)
-    exact, found = (simulate(free, periods=2, method=chosen) for chosen in (None, method))
-    scale = np.abs(exact.strobe_displacement).max()
-    np.testing.assert_allclose(
-        found.strobe_displacement, exact.strobe_displacement, rtol=0, atol=1e-7 * scale
-    )
     case = collision(spring(n, law), 3.0)
     whole = simulate(case.oscillator, case.start, periods=3, method=method)
     half = simulate(case.oscillator, case.start, duration=0.9 * case.oscillator.period, method=method)
     rest = simulate(case.oscillator, half.end, duration=2.1 * case.oscillator.period, method=method)
+    scale = np.abs(whole.strobe_displacement).max()
     np.testing.assert_allclose(rest.end.displacement, whole.end.displacement, rtol=0, atol=1e-6 * scale)
     assert whole.strobe_impacts.sum() == len(whole.impacts) >= 1
 

@@ -102,18 +102,6 @@ def test_the_fold_of_eq_1_and_map_know_nothing_of_the_higher_modes(letter_scene,
     assert abs(row.fold_beam / base.fold_beam - 1) > 0.05
 
 
-def test_noise_leaves_p3_with_three_clouds_where_its_points_were(letter_scene):
-    strobed = single(letter_scene, 20.90)
-    raw, impacts = noisy(strobed, "jitter", 400)
-    points, phase = strobed.tip(raw), since_impact(impacts)
-    regular, told_apart = apart(points, impacts, 3)
-    assert regular == 1.0 and told_apart > 5
-    quiet = np.sort(strobed.tip(strobed.at(BORN_EXCESS).orbit(born(strobed).end, 3).points))
-    clouds = sorted((points[phase == j] for j in range(3)), key=np.median)
-    for cloud, point in zip(clouds, quiet, strict=True):
-        assert np.quantile(cloud, 0.05) < point < np.quantile(cloud, 0.95)
-
-
 class Recorder:
     """A strobed motion that stands still and notes the excesses at which it is driven."""
 

@@ -14,7 +14,7 @@ from studies.time_trace.trace import close_up, trace_of
 
 
 def test_the_orbit_of_figure_4_and_the_ringing_of_its_impact(run_study):
-    ran = run_study("time_trace")
+    ran = run_study("time_trace", "--quick")
     summary = ran.summary
     assert (ran.code, summary["period"], summary["impacts"]) == (0, 4, 1)
     times = summary["impact_times_s"]
