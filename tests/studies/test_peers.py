@@ -187,7 +187,7 @@ def test_a_run_goes_on(label: str, law: ContactLaw) -> None:
 
 @pytest.mark.parametrize("law", [LinearContact(stiffness=3e5), HertzContact(stiffness=1e9)])
 def test_jacobian_is_the_derivative_of_the_rates(law: ContactLaw) -> None:
-    """Against central differences, tip behind the stop; what is watched begins below zero."""
+    """Against central differences, tip behind the stop."""
     oscillator, none = spring(3, law), np.empty(0)
     start = State(displacement=np.zeros(3), velocity=np.zeros(3), time=0.003)
     run = Run(start=start, length=oscillator.period, first=0, last=1, clock=0.003, clock_end=0.003,
@@ -204,8 +204,6 @@ def test_jacobian_is_the_derivative_of_the_rates(law: ContactLaw) -> None:
             np.testing.assert_allclose(
                 found[:, j], column, rtol=1e-5, atol=1e-5 * np.abs(column).max() + 1e-9
             )
-    assert e.surface(True, 0.5, 0.5, y) < 0.0 and e.surface(False, 0.5, 0.5, y) < 0.0
-    assert e.surface(False, 0.5, 0.6, y) == pytest.approx(e.tip(y)[0]) == -e.surface(True, 0.5, 0.6, y)
 
 
 def test_threads_do_not_share_a_compiled_integrator() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -102,23 +104,14 @@ def test_the_fold_of_eq_1_and_map_know_nothing_of_the_higher_modes(letter_scene,
     assert abs(row.fold_beam / base.fold_beam - 1) > 0.05
 
 
-class Recorder:
-    """A strobed motion that stands still and notes the excesses at which it is driven."""
-
-    def __init__(self, strobed):
-        self.scale, self.asked, self.still = strobed.scale, [], strobed.at(-0.01)
-        self.steady, self.orbit = self.still.steady, self.still.orbit
-
-    def at(self, excess):
-        self.asked.append(excess)
-        return self
-
-
 def test_noise_is_a_quarter_of_a_thousandth_of_the_amplitude_and_drift_remembers_it(letter_scene):
     for kind, correlation in (("jitter", 0.0), ("drift", np.exp(-0.01))):
-        recorder = Recorder(single(letter_scene, 20.90))
-        noisy(recorder, kind, 3800)
-        deviation = (np.array(recorder.asked[-4000:]) - BORN_EXCESS) / AMPLITUDE_STABILITY
+        strobed, asked = single(letter_scene, 20.90), []
+        still = strobed.at(-0.01)  # and notes the excesses at which it is driven
+        noted = SimpleNamespace(scale=strobed.scale, steady=still.steady, orbit=still.orbit)
+        noted.at = lambda excess, noted=noted, asked=asked: asked.append(excess) or noted
+        noisy(noted, kind, 3800)
+        deviation = (np.array(asked[-4000:]) - BORN_EXCESS) / AMPLITUDE_STABILITY
         # drift has 4000/200 independent values
         assert np.std(deviation) == pytest.approx(1.0, abs=0.05 if kind == "jitter" else 0.5)
         assert np.corrcoef(deviation[:-1], deviation[1:])[0, 1] == pytest.approx(correlation, abs=0.05)

@@ -45,19 +45,6 @@ def closed_form_stiffness(model: ModalModel, step: float) -> float:
     return 1.0 / (step * float(np.sum(model.phi**2 * sine / (1.0 + trace + fade**2))))
 
 
-def test_growth_is_that_of_the_matrix_of_a_step():
-    """Kick, flight, kick on one undamped mode 5 % beyond its limit."""
-    model, step = STILL.truncated(1), 1.0 / float(STILL.omega[0])
-    method = Splitting(step=step, beyond_limit=True)
-    stiffness = 1.05 * closed_form_stiffness(model, step)
-    kick = np.array([[1.0, 0.0], [-0.5 * step * stiffness * float(model.phi[0] ** 2), 1.0]])
-    omega = float(model.omega[0])
-    flow = np.array([[math.cos(1.0), math.sin(1.0) / omega], [-omega * math.sin(1.0), math.cos(1.0)]])
-    exact = math.log(np.abs(np.linalg.eigvals(kick @ flow @ kick)).max())
-    oscillator, rest = pressed(model, stiffness)
-    assert growth(oscillator, rest, method) == pytest.approx(exact, rel=1e-8)
-
-
 # central difference
 
 

@@ -93,21 +93,6 @@ def test_the_downward_scan_keeps_the_orbit_that_the_upward_scan_does_not_show(le
     assert set(down.period[falling < 1.05 * row.excess_down_beam]) == {1}
 
 
-def test_every_description_is_steady_below_grazing_and_steps_singly_as_in_one_go(letter_scene, letter_model):
-    for name, strobed in describe(letter_scene, 22.20, letter_model).items():
-        below, above = strobed.at(-1e-2), strobed.at(2e-3)
-        start = below.steady()
-        orbit = below.orbit(start, 7)
-        assert np.ptp(orbit.points, axis=0).max() <= 1e-9 * strobed.scale, name
-        assert orbit.impacts.tolist() == [0] * 7
-        whole, state = above.orbit(start, 7), start
-        for point in whole.points:
-            step = above.orbit(state, 1)
-            state = step.end
-            assert np.abs(step.points[0] - point).max() <= 1e-12 * np.abs(point).max(), name
-        assert whole.impacts.sum() > 0
-
-
 def test_rows_have_the_promised_keys_and_every_amplitude_says_whether_it_settled(run_study):
     ran = run_study("transitions", "--quick", "--json", "--set", "drive.frequencies_hz=[22.2]")
     assert ran.code == 0 and json.loads(ran.out)["rows"] == ran.summary["rows"]
