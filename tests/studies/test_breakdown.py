@@ -19,14 +19,12 @@ from studies.breakdown.beam import (
 )
 from studies.breakdown.scans import island, periods, scanned
 from studies.calibration import ACCURACY, calibrate_thickness, strip_decay_rate
-from studies.scene import free_period, model_of, nordmark_at, read_scene
-
-BEFORE = read_scene("letter")
+from studies.scene import free_period, model_of, nordmark_at
 
 
 @pytest.fixture(scope="module")
-def scene():
-    return fig_5(BEFORE)
+def scene(letter_scene):
+    return fig_5(letter_scene)
 
 
 @pytest.fixture(scope="module")
@@ -40,11 +38,11 @@ def light(scene):
     return Spring(scene=scene, model=tuned(scene, 0.004), tip_mass_kg=0.004, higher_damping=2.0)
 
 
-def test_the_beam_of_fig_5_has_its_period_and_damping_and_keeps_ball_and_gap(scene):
+def test_the_beam_of_fig_5_has_its_period_and_damping_and_keeps_ball_and_gap(scene, letter_scene):
     assert free_period(scene) == pytest.approx(letter.BREAKDOWN["free_period_s"], rel=2 * ACCURACY)
     assert strip_decay_rate(scene) == pytest.approx(letter.BREAKDOWN["decay_rate_per_s"], rel=2 * ACCURACY)
-    assert (scene.tip, scene.stop) == (BEFORE.tip, BEFORE.stop)
-    assert scene.spring.thickness_m < BEFORE.spring.thickness_m  # a slower spring is a thinner one
+    assert (scene.tip, scene.stop) == (letter_scene.tip, letter_scene.stop)
+    assert scene.spring.thickness_m < letter_scene.spring.thickness_m  # a slower spring is a thinner one
 
 
 def test_the_map_puts_fig_5_in_the_region_of_a_stable_p3(scene):

@@ -128,13 +128,6 @@ def test_the_model_keeps_the_coupled_modes_only():
     assert modes_of(LETTER, 3).coupled.sum() == 3
 
 
-def test_default_elements_are_those_of_the_beam_package():
-    spring = spring_of(LETTER)
-    assert elements_of(LETTER, spring) == (60, 48, 60)
-    partly = LETTER.replace({"spring.tape_coverage": 0.5, "spring.elements_per_leg": 30})
-    assert elements_of(partly, spring_of(partly)) == (15, 15, 48, 15, 15)
-
-
 def test_every_kind_of_spring_makes_a_model_with_a_readout():
     for kind in ("folded_u", "cantilever", "straight_strip"):
         model = model_of(LETTER.replace({**COARSE, "spring.kind": kind}))

@@ -5,12 +5,14 @@ from __future__ import annotations
 import ast
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from studies import plotting
 from studies.programs import names, source_of, title_of
+from studies.spring_shape.__main__ import COARSE
 from studies.work_precision.problems import problems_of
 
 PROGRAMS = names()
@@ -30,7 +32,8 @@ SMALLER = {"stability": ["--families", "false_restitution,accumulation"],
 
 
 #: Names of a study's main module that give a small form less to do, and what stands in for them.
-FEWER = {"work_precision": ("problems_of", lambda scene, modes: problems_of(scene, 2)[:2])}
+FEWER = {"work_precision": ("problems_of", lambda scene, modes: problems_of(scene, 2)[:2]),
+         "spring_shape": ("COARSE", [replace(mesh, legs=mesh.legs // 2) for mesh in COARSE])}  # fmt: skip
 
 #: Studies of driven motions, and those that change the dimensions of a spring.
 DRIVEN = (

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from contact import NewtonRestitution, StroboscopicMap
 from contact.orbits import born, orbit_end
-from studies.hysteresis.__main__ import accuracy, causes_over
-from studies.hysteresis.descriptions import CAUSES, CHAIN, Row, folds_at
+from studies.hysteresis.descriptions import CAUSES, CHAIN, folds_at
 from studies.scene import beam_at, model_of, single_mode_of
 
 
@@ -51,30 +50,19 @@ def test_a_downward_scan_of_the_simulated_beam_ends_at_the_fold(fold, beam):
     assert 0.5 * (end.held + end.lost) == pytest.approx(row.beam, rel=3e-3)
 
 
-def made(**excess) -> Row:
-    """A row with these folds, the others none."""
-    return Row(frequency_hz=22.2, m=5, beam_admissible=True, **excess)
-
-
-def test_factors_follow_from_the_rows():
-    row = made(map=-2e-3, map_measured_kick=-4e-3, single_mode=-5e-4, all_mode_kick=-1e-3, beam=-1e-3)
-    assert accuracy("map", [row]).median == pytest.approx(2.0)
-    assert accuracy("single_mode", [row]).worst == pytest.approx(2.0)  # up or down
-    assert accuracy("map", [row, replace(row, map=-8e-3)]).worst == pytest.approx(8.0)
-    printed = accuracy("map_printed", [row])
-    assert printed.folds == 0 and math.isnan(printed.median)
-    found = causes_over([row], "here")
-    assert found.truncation_of_the_map == pytest.approx(0.25) and found.delay is None
-    median = causes_over([row, replace(row, single_mode=-2e-3)], "two")
-    assert median.truncation_of_the_map == pytest.approx(0.5)
-
-
 def test_small_form(run_study):
     ran = run_study("hysteresis", "--quick")
     assert ran.code == 0 and {row["m"] for row in ran.summary["rows"]} >= {3, 4, 5, 6}
     kept = [row for row in ran.summary["rows"] if (row["beam"] or 0.0) < -2.5e-4 and row["map"] is not None]
     off = {row["description"]: row for row in ran.summary["accuracy"]}
     assert off["single_mode"]["folds"] == len(kept) < len(ran.summary["rows"])
+    beam, single, of_map = (
+        np.log([-row[name] for row in kept]) for name in ("beam", "single_mode", "map")
+    )
+    error, truncation = np.abs(of_map - beam), ran.summary["causes"][-1]["truncation_of_the_map"]
+    assert off["map"]["median"] == pytest.approx(np.exp(np.median(error)))
+    assert off["map"]["worst"] == pytest.approx(np.exp(error.max()))
+    assert truncation == pytest.approx(np.exp(np.median(single - of_map)))
     assert off["all_mode_kick"]["worst"] < 1.02 < off["map"]["median"]
     assert ran.verdicts["hysteresis"] == "in part"
     beside = ran.summary["verdicts"]["neighbour_band"]  # p4 lives on where p3 is born

@@ -13,8 +13,6 @@ from studies.scene import beam_at, read_scene
 BY_SEARCH = [
     ({"born_period": 0.0, "fold": 0.07}, 12),
     ({"fold": 0.05}, 15),
-    ({"kick": 0.005}, 15),
-    ({"tip_trace": 2e-3}, 15),
     ({"born_period": 0.0, "fold_middle": 0.07}, 12),
     ({"frequency 10": 1e-3}, 10),
     ({"frequency 1": 1e-5, "kick": 0.005}, 15),

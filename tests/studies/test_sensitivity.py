@@ -7,11 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from contact import StrobedNordmarkMap, StroboscopicMap
-from contact.orbits import born, born_period, settle
+from contact import StroboscopicMap
+from contact.orbits import born, settle
 from studies.calibration import free_period
 from studies.letter import AMPLITUDE_STABILITY, FREE_PERIOD_ERROR_S
-from studies.scene import beam_at, nordmark_at, single_mode_at
+from studies.scene import beam_at, single_mode_at
 from studies.sensitivity.changes import NAMES, PARAMETERS, changed, changes_of, row_at
 from studies.sensitivity.noise import (
     BORN_EXCESS,
@@ -58,14 +58,6 @@ def test_a_shorter_free_period_deepens_the_hysteresis_in_all_descriptions(last):
     for sign in (-1, 1):
         ratio = last[sign].fold_map / last[0].fold_map
         assert ratio == pytest.approx((distance[sign] / distance[0]) ** 2, rel=0.05)
-
-
-def test_the_free_period_at_which_p10_is_born(letter_scene):
-    """The band edge f T = 20/21 in the map itself, on both sides of it."""
-    for period, wanted in ((40.71e-3, 11), (40.69e-3, 10)):
-        there = letter_scene.replace({"single_mode.free_period_s": period})
-        assert born_period(StrobedNordmarkMap(map=nordmark_at(there, 23.40)), 1e-5) == wanted
-    assert 20.0 / (21.0 * 23.40) == pytest.approx(40.70e-3, abs=5e-6)
 
 
 def test_the_steps_that_skip_p11_are_far_above_the_noise(letter_scene, letter_model):
