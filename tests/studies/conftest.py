@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import matplotlib
+import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
@@ -41,6 +42,11 @@ class Ran:
         """The rows of NAME.csv."""
         with (self.folder / f"{name}.csv").open(newline="") as stream:
             return list(csv.DictReader(stream))
+
+    def arrays(self, name: str) -> dict[str, np.ndarray]:
+        """The arrays of NAME.npz."""
+        with np.load(self.folder / f"{name}.npz") as stored:
+            return dict(stored)
 
 
 def study_of(name: str) -> Study:

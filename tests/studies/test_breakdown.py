@@ -125,5 +125,5 @@ def test_small_form(run_study):
     assert (0.004, 2.0) in [(cell["tip_mass_kg"], cell["higher_damping"]) for cell in six]
     assert ran.summary["found"]["tip_mass_kg"] == 0.004
     assert ran.verdicts == dict.fromkeys(("breakdown", "breakdown_p3", "island"), "in part")
-    stored = np.load(ran.folder / "breakdown.npz")
+    stored = ran.arrays("breakdown")
     assert stored["beam_up_points"].shape == (stored["beam_up_excess"].size, letter.STROBE_POINTS)

@@ -175,10 +175,10 @@ def test_a_column_settles_where_the_same_motion_settles_step_by_step(law):
 def test_a_chart_is_the_same_by_shards_and_whole(run_study, tmp_path):
     argv = ["--points", "6", "8", "--cycles", "256"]
     whole = run_study("chart", "--quick", *argv)
-    cells = dict(np.load(whole.folder / "chart_single_mode.npz"))
+    cells = whole.arrays("chart_single_mode")
     for part in ("1/2", "2/2"):
         assert run_study("chart", *argv, *(["--fresh"] if part == "1/2" else []), "--shard", part).code == 0
     again = run_study("chart", *argv)
-    for key, values in dict(np.load(again.folder / "chart_single_mode.npz")).items():
+    for key, values in again.arrays("chart_single_mode").items():
         np.testing.assert_array_equal(values, cells[key])
     assert again.summary["folds"] == whole.summary["folds"] > 0

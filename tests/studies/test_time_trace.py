@@ -27,7 +27,7 @@ def test_the_orbit_of_figure_4_and_the_ringing_of_its_impact(run_study):
         assert line == pytest.approx(round(line), abs=1e-6)
     amplitudes = [modes[number]["amplitude"] for number in (1, 2, 3, 4, 5)]
     assert amplitudes == sorted(amplitudes, reverse=True)
-    readout = np.load(ran.folder / "time_trace.npz")["readout_m"]
+    readout = ran.arrays("time_trace")["readout_m"]
     half = readout.size // 2
     # the second orbit period repeats the first: a settled orbit, and a spectrum without leakage
     assert np.max(np.abs(readout[half:] - readout[:half])) < 1e-8 * np.max(np.abs(readout))
@@ -36,7 +36,7 @@ def test_the_orbit_of_figure_4_and_the_ringing_of_its_impact(run_study):
 
 def test_below_grazing_there_is_no_impact_and_one_line(run_study):
     ran = run_study("time_trace", "--excess", "-0.01")
-    found, readout = ran.summary, np.load(ran.folder / "time_trace.npz")["readout_m"]
+    found, readout = ran.summary, ran.arrays("time_trace")["readout_m"]
     assert (found["period"], found["impacts"], found["collisions"]) == (1, 0, [])
     assert [round(peak["frequency_hz"], 6) for peak in found["peaks"]] == [21.5]
     assert found["peaks"][0]["amplitude"] == pytest.approx(0.5 * np.ptp(readout), rel=1e-3)
