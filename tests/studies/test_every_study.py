@@ -68,6 +68,7 @@ REFUSED = [
     ("breakdown", "--set single_mode.free_period_s=0.06", "free_period_s"),
     ("chart", "--points 1 9", "points"),
     ("hysteresis", "--step 0", "step"),
+    ("hysteresis", "--set drive.frequencies_hz=[2000]", "2000 Hz"),
     ("sensitivity", "--periods 5 3", "periods"),
     ("soft_wall", "--decades 5 3", "decades"),
     ("spring_shape", "--off-line 0", "--off-line"),
