@@ -33,8 +33,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from beam.parameters import require, require_kind, require_whole
-from contact.flight.modal_flow import propagate, steady_motion, tip_rounding
-from contact.flight.motion import Motion, single_mode, without_load
+from contact.flight.modal_flow import flow_over, propagate, steady_motion, tip_rounding
+from contact.flight.motion import SLOWNESS, Motion, single_mode
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.trajectory import ImpactKind, Impacts, State, Trajectory
@@ -104,12 +104,16 @@ class Collision:
     returns: bool
 
 
-def _higher_modes(motion: Motion, u: np.ndarray, v: np.ndarray) -> tuple[float, float]:
-    """Energy of the free motion above the first mode [J], and its amplitude at the tip [m]."""
-    omega, u, v = motion.omega[1:], u[1:], v[1:]
-    slow = np.where(omega > 0, omega, np.inf)  # of zero frequency, the displacement alone
-    amplitude = float(np.sum(np.abs(motion.phi[1:]) * np.hypot(u, v / slow)))
-    return float(0.5 * np.sum(v**2 + (omega * u) ** 2)), amplitude
+def _higher_energy(motion: Motion, u: np.ndarray, v: np.ndarray) -> float:
+    """Energy of the free motion above the first mode [J]."""
+    return float(0.5 * np.sum(v[1:] ** 2 + (motion.omega * u)[1:] ** 2))
+
+
+def _ringing(motion: Motion, u: np.ndarray, v: np.ndarray) -> float:
+    """Amplitude at the tip of the free motion above the first mode [m]."""
+    sizes = np.hypot(u, v * motion.row(SLOWNESS))  # of zero frequency, the displacement alone
+    sizes[0] = 0.0
+    return motion.most_at_tip(sizes)
 
 
 def collisions(
@@ -187,9 +191,8 @@ def _measure(motion: Motion, impacts: Impacts, rows: slice, outgoing: VirtualMot
     # jump of mode 1 over the collision, carried back to t_in
     u_free, v_free, back = np.empty_like(u_in), np.empty_like(v_in), touch + s_in - release
     propagate(motion, u_in, v_in, release - touch, u_free, v_free)
-    jump = np.array([outgoing.u[0] - u_free[0]]), np.array([outgoing.v[0] - v_free[0]])
-    propagate(without_load(single), *jump, back, *jump)
-    shift, kick_velocity = float(single.tip(jump[0])), -float(single.tip(jump[1]))
+    jump = np.array([outgoing.u[0] - u_free[0], outgoing.v[0] - v_free[0]])
+    shift, change = single.tip(flow_over(single, back)[:, :4].reshape(1, 2, 2) @ jump).tolist()
 
     # the outgoing hump around t_in, and its fall through the gap
     peak = outgoing.peak_near(back)
@@ -200,16 +203,16 @@ def _measure(motion: Motion, impacts: Impacts, rows: slice, outgoing: VirtualMot
         s_out = outgoing.crossing(peak, 1.0)
         restitution, delay = -outgoing.at(s_out)[1] / speed, s_out - back
 
-    ringing = _higher_modes(motion, u_in, v_in)[1]
-    gained = _higher_modes(motion, u_out, v_out)[0] - _higher_modes(motion, u_free, v_free)[0]
+    gained = _higher_energy(motion, u_out, v_out) - _higher_energy(motion, u_free, v_free)
     return Collision(
         time=touch + s_in, end=release, approach=speed, restitution=restitution, delay=delay,
-        kick=kick_velocity / speed, kick_velocity=kick_velocity, shift=shift,
+        kick=-change / speed, kick_velocity=-change, shift=shift,
         deceleration=-incoming.at(s_in)[2],
         impacts=int(np.count_nonzero(impacts.kind[rows] == ImpactKind.IMPACT)),
         contact_time=float(np.sum((impacts.end - impacts.start)[rows])), first_touch=touch,
-        real_approach=float(impacts.approach[first]), ringing=ringing, energy_to_higher_modes=gained,
-        energy_lost=float(np.sum(impacts.loss[rows])), forced_by_ringing=forced, returns=returns,
+        real_approach=float(impacts.approach[first]), ringing=_ringing(motion, u_in, v_in),
+        energy_to_higher_modes=gained, energy_lost=float(np.sum(impacts.loss[rows])),
+        forced_by_ringing=forced, returns=returns,
     )  # fmt: skip
 
 

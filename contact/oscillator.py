@@ -153,6 +153,11 @@ class ImpactOscillator:
         number = require_within("excess", excess, "[1]", above=-1)
         return self.with_amplitude((1.0 + number) * self.grazing_amplitude())
 
+    def tip(self, values: np.ndarray) -> np.ndarray:
+        """What modal displacements or velocities (..., n_modes) come to at the tip, shape (...): the tip's
+        displacement relative to the base [m], or its velocity [m/s]."""
+        return np.asarray(values) @ self.model.phi
+
     def steady_response(self) -> np.ndarray:
         """H_k, complex, shape (n_modes,) [kg^0.5]: without contact q_k(t) = Z Im(H_k exp(i 2 pi f t))."""
         if self.drive is None:
@@ -169,7 +174,7 @@ class ImpactOscillator:
 
     @cached_property
     def _tip_response(self) -> complex:
-        return complex(self.model.phi @ self.steady_response())
+        return complex(self.tip(self.steady_response()))
 
     def drive_at(self, reach: float, rate: float) -> tuple[float, float]:
         """Base amplitude [m] and drive time [s] at which the steady tip motion has displacement `reach` [m]

@@ -70,19 +70,19 @@ class StroboscopicMap:
 
     def tip(self, points: np.ndarray) -> np.ndarray:
         """Tip displacement of strobed `points`, shape (n_strobes,) [m]."""
-        return self._sum(self.oscillator.model.phi, points)
+        return self.oscillator.tip(self._displacements(points))
 
     def readout(self, points: np.ndarray, name: str) -> np.ndarray:
         """The read-out quantity `name` of the model at strobed `points`, shape (n_strobes,)."""
         readouts = self.oscillator.model.readouts
         if name not in readouts:
             raise ValueError(f"name is {name!r}; the model has the read-out points {sorted(readouts)}")
-        return self._sum(readouts[name], points)
+        return self._displacements(points) @ readouts[name]
 
-    def _sum(self, weights: np.ndarray, points: np.ndarray) -> np.ndarray:
-        """The sum of the modal displacements times `weights`."""
+    def _displacements(self, points: np.ndarray) -> np.ndarray:
+        """The modal displacements of strobed `points`, shape (n_strobes, n_modes)."""
         n = self.oscillator.n_modes
-        return points[:, :n] @ (weights / self._system.weight[:n])
+        return points[:, :n] / self._system.weight[:n]
 
     def coordinates(self, state: State) -> np.ndarray:
         """phi_k q_k and phi_k q_k'/omega_k of a state, as in the points of an orbit [m]."""

@@ -1,7 +1,7 @@
 """States and motions as named arrays.
 
 All arrays are in physical modal coordinates (not deviations): displacement q_k [m kg^0.5], velocity q_k'
-[m kg^0.5 / s]; the tip displacement relative to the base is ``model.phi @ displacement``.
+[m kg^0.5 / s]; the tip displacement relative to the base is ``ImpactOscillator.tip`` of it.
 """
 
 from __future__ import annotations

@@ -26,12 +26,12 @@ def touching(run: Trajectory) -> NDArray[np.bool_]:
 
 def contact_force(oscillator: ImpactOscillator, run: Trajectory) -> Array:
     """Force [N] at the samples of a trajectory, shape (n_samples,)."""
-    law, phi = oscillator.stop.law, oscillator.model.phi
-    depth = np.maximum(run.displacement @ phi - oscillator.stop.gap, 0.0)
+    law = oscillator.stop.law
+    depth = np.maximum(oscillator.tip(run.displacement) - oscillator.stop.gap, 0.0)
     if isinstance(law, NewtonRestitution):
         return np.full(depth.shape, np.nan)
     if isinstance(law, LinearContact):
-        force = law.stiffness * depth + law.damping * (run.velocity @ phi)
+        force = law.stiffness * depth + law.damping * oscillator.tip(run.velocity)
     elif isinstance(law, HertzContact):
         force = law.stiffness * depth**1.5
     else:

@@ -124,7 +124,7 @@ def tip_trace(oscillator: ImpactOscillator) -> Answer:
         return None
     times = orbit.end.time + np.arange(orbit.period * SAMPLES) / SAMPLES * driven.period
     run = simulate(driven, orbit.end, periods=orbit.period, times=times)
-    return driven.motion().tip(run.displacement.T) / driven.stop.gap
+    return driven.tip(run.displacement) / driven.stop.gap
 
 
 def _fold(at: At, frequency: float) -> Answer:

@@ -63,9 +63,9 @@ from pathlib import Path
 from studies.plotting import PALETTE, house_style, label, new_figure, points, save
 
 figure, axes = new_figure()
-axes.plot(1e3 * (times - settled.time), 1e3 * motion.displacement @ model.phi, color=PALETTE[0], label="ball")
+axes.plot(1e3 * (times - settled.time), 1e3 * beam.tip(motion.displacement), color=PALETTE[0], label="ball")
 axes.axhline(1e3 * beam.stop.gap, color=PALETTE[1], linestyle="--", label="plate")
-strobes = motion.strobe_displacement[:4] @ model.phi
+strobes = beam.tip(motion.strobe_displacement[:4])
 axes.plot(1e3 * (motion.strobe_time[:4] - settled.time), 1e3 * strobes, **points(2), label="strobes")
 label(axes.xaxis, "time", "ms")
 label(axes.yaxis, "displacement", "mm")

@@ -81,15 +81,6 @@ def test_imports_never_run_up(package):
     assert upward(package) == []
 
 
-def test_an_import_that_runs_up_would_be_noticed(tmp_path, monkeypatch):
-    monkeypatch.setitem(FLOW, "beam", ("material", "section"))
-    (tmp_path / "beam").mkdir()
-    (tmp_path / "beam" / "material.py").write_text("def f():\n    from .pieces import Piece\n")
-    (tmp_path / "beam" / "pieces.py").write_text("import beam.section\n")
-    (tmp_path / "beam" / "section.py").write_text("")
-    assert upward("beam", tmp_path) == ["beam.material needs beam.section"]
-
-
 def foreign(package: str) -> set[tuple[str, str, str]]:
     """(who, module, name) of the imports from the other packages."""
     return {

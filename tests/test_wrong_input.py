@@ -7,7 +7,6 @@ values that make it wrong.  Beside them, every plain number of every right call 
 
 from __future__ import annotations
 
-import dataclasses
 import inspect
 import re
 import warnings
@@ -17,12 +16,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from wrong_input_of_beam import BEAM, INF, NAN, Entry, spring, strip, told
+from wrong_input_of_beam import BEAM, INF, NAN, Entry, strip, told
 from wrong_input_of_contact import CONTACT, METHODS, ORBITS
 
 import beam
 import contact
-from beam.parameters import LONGEST_SHOWN, SuspiciousValue, shown
+from beam.parameters import SuspiciousValue, shown
 from contact.integrators import INTEGRATORS
 from contact.orbits import continuation, kick, lyapunov, shooting
 
@@ -31,8 +30,8 @@ TABLES = {"beam": BEAM, "contact": CONTACT, "orbits": ORBITS, "integrators": MET
 ENTRIES = {f"{package}.{entry.name}": entry for package, table in TABLES.items() for entry in table}
 
 NOT_FINITE = (NAN, INF, -INF, 10**400)
-NO_NUMBERS = ("1.0", True, 1j, [1.0], [], np.array([1.0, 2.0]), {}, object())
-"""In place of a number: texts, truth values, complex numbers, lists, arrays, empty ones."""
+NO_NUMBERS = ("a\nb" * 100, True, 1j, [1.0], [], np.arange(1000.0), {"deep": [1] * 500}, object())
+"""In place of a number: texts, truth values, complex numbers, lists, arrays, empty and long ones."""
 
 UNITS = {
     "youngs_modulus": "Pa", "density": "kg/m^3", "mass": "kg", "tip_mass": "kg", "rotary_inertia": "kg m^2",
@@ -192,18 +191,3 @@ def test_a_suspicious_value_is_taken_with_a_warning_that_says_why(
     sentences = warned(make)
     assert any(words in sentence for sentence in sentences), sentences
     assert all(sentence.isprintable() and len(sentence) < 250 for sentence in sentences)
-
-
-def test_usual_values_bring_no_warning() -> None:
-    for material in (beam.BRASS, beam.STEEL, beam.ALUMINA, beam.DAMPING_TAPE):
-        assert not warned(lambda material=material: dataclasses.replace(material))
-    assert not warned(lambda: dataclasses.replace(spring()))
-    assert not warned(oscillator)
-
-
-def test_what_a_sentence_quotes_is_short_and_on_one_line() -> None:
-    for value in (np.arange(1000.0), "a\nb" * 100, 10**5000, {"deep": [1] * 500}):
-        with pytest.raises((ValueError, TypeError)) as caught:
-            beam.Straight(length=value)  # type: ignore[arg-type]
-        assert len(str(caught.value)) < LONGEST_SHOWN + 80
-        assert str(caught.value).isprintable()

@@ -48,8 +48,9 @@ from contact.flight.motion import (
 )
 from contact.vector_loops import aligned
 
-__all__ = ["flow", "flow_matrix", "mode_flow", "new_flight", "propagate", "speed_scale", "steady_motion",
-           "tip_rounding", "tip_state"]  # fmt: skip
+__all__ = ["acceleration_rounding", "at_tip", "flow", "flow_matrix", "mode_flow", "new_flight", "propagate",
+           "push_on", "speed_scale", "steady_motion", "tip_bound", "tip_rounding", "tip_state",
+           "tip_sum"]  # fmt: skip
 
 START_U, START_V, U, V, HEIGHT, RATE, BEND, THIRD, ABOVE = range(9)
 """Rows of the work space of a flight: deviation and velocity at its start, and now; what they add to the tip
@@ -220,6 +221,33 @@ def tip_state(motion, t, u, v):
     return y0, y1, y2
 
 
+@inlined
+def at_tip(motion, k, value):
+    """What a displacement or velocity `value` of mode `k` is at the tip: phi_k times it."""
+    return motion.modes[WEIGHT, k] * value
+
+
+@inlined
+def tip_sum(motion, rest, values):
+    """What modal `values` come to at the tip, and a `rest`."""
+    for k in range(values.size):
+        rest += at_tip(motion, k, values[k])
+    return rest
+
+
+@inlined
+def tip_bound(motion, k, value, turned):
+    """Bound of what a `value` of mode `k` comes to at the tip as long as it is free; `turned` is the value a
+    quarter turn off, such as v/omega for u or omega u for v (see the bounds above)."""
+    return abs(motion.modes[WEIGHT, k]) * math.sqrt(value * value + turned * turned)
+
+
+@inlined
+def push_on(motion, k, push):
+    """What a force or impulse `push` of the stop on the tip is for mode `k`: -phi_k times it."""
+    return -motion.modes[WEIGHT, k] * push
+
+
 @kernel
 def tip_rounding(motion, u, v):
     """Bound of the rounding error of the tip displacement in a flight that starts at (u, v) [m]."""
@@ -227,6 +255,16 @@ def tip_rounding(motion, u, v):
     phi, shortness = motion.modes[WEIGHT], motion.modes[SHORTNESS]
     for k in range(u.size):
         total += abs(phi[k]) * (abs(u[k]) + abs(v[k]) * shortness[k])
+    return 4.0 * EPS * total
+
+
+@kernel
+def acceleration_rounding(motion, u, v):
+    """Bound of the rounding error of the tip acceleration at (u, v) [m/s^2]."""
+    total, modes = (abs(motion.tip_sine) + abs(motion.tip_cosine)) * motion.drive**2, motion.modes
+    for k in range(u.size):
+        pull = modes[SQUARE, k] * abs(u[k]) + modes[DECAY, k] * abs(v[k]) + abs(modes[LOAD, k])
+        total += abs(modes[WEIGHT, k]) * pull
     return 4.0 * EPS * total
 
 

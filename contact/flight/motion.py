@@ -18,7 +18,7 @@ from contact.compiled import kernel
 from contact.flight.elementary import square_root, two_product
 from contact.vector_loops import LANES
 
-__all__ = ["Motion", "damped_frequency", "motion_of", "single_mode", "with_drive", "without_load"]
+__all__ = ["Motion", "damped_frequency", "motion_of", "single_mode", "with_drive"]
 
 DECAY, SQUARE, WEIGHT, LOAD, DAMPED, LOW, OMEGA, SLOWNESS, SHORTNESS, SINE, COSINE, OFFSET = range(12)
 """Rows of the table of modes: c, omega^2, phi, g of the modes of zero frequency, d = sqrt|D| as a sum of two,
@@ -92,6 +92,19 @@ class Motion(NamedTuple):
     def tip(self, values: np.ndarray) -> np.ndarray:
         """What modal values (n_modes,) or (n_modes, n) come to at the tip, the sum of phi_k times them."""
         return self.phi @ values
+
+    def most_at_tip(self, sizes: np.ndarray) -> float:
+        """The most that modal values of these `sizes` can come to at the tip: as `tip`, signs left out."""
+        return float(np.abs(self.phi) @ np.abs(sizes))
+
+    def mobility(self, inertia: np.ndarray) -> float:
+        """Velocity of the tip per impulse on it, sum phi^2/`inertia`, (n_modes,) [1/kg]."""
+        return float(np.sum(self.phi**2 / inertia))
+
+    def least_change(self, reach: float | np.ndarray) -> np.ndarray:
+        """The least change of the modes that moves the tip by `reach`, phi reach/sum phi^2, (n_modes, ...): a
+        push of the stop makes no other."""
+        return np.multiply.outer(self.phi, np.asarray(reach) / self.compliance)
 
 
 def motion_of(
@@ -175,10 +188,3 @@ def single_mode(motion: Motion) -> Motion:
     damped, omega, load = modes[DAMPED, 0], modes[OMEGA, 0], modes[LOAD, 0]
     plain = bool(damped > 0.0 and omega > 0.5 * modes[DECAY, 0] and load == 0.0)
     return motion._replace(modes=modes, size=1, plain=plain, phase_rate=float(damped))
-
-
-def without_load(motion: Motion) -> Motion:
-    """The same without constant load on modes of zero frequency."""
-    modes = motion.modes.copy()
-    modes[LOAD] = 0.0
-    return motion._replace(modes=modes)

@@ -26,6 +26,7 @@ from typing import ClassVar
 import numpy as np
 
 from contact.compiled import kernel
+from contact.flight.modal_flow import push_on
 from contact.flight.motion import DECAY, Motion
 from contact.integrators.fixed_step import FixedStep, stiffness_at
 from contact.integrators.grid import (
@@ -35,7 +36,6 @@ from contact.integrators.grid import (
     contact_force,
     end_contact_step,
     force_in_flight,
-    push_on,
     tip_of,
 )
 from contact.laws import HERTZ, LINEAR

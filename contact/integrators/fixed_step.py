@@ -21,12 +21,7 @@ from contact.recorder import Recorder, grown, open_touch, recorder_for, trajecto
 from contact.touch import TOUCHES
 from contact.trajectory import CONTACT, IMPACT, OUTSIDE, Run, State, Trajectory
 
-__all__ = ["FixedStep", "mobility", "stiffness_at"]
-
-
-def mobility(motion: Motion, inertia: np.ndarray) -> float:
-    """Velocity of the tip per impulse on it, sum phi^2/`inertia`, (n_modes,) [1/kg]."""
-    return float(np.sum(motion.phi**2 / inertia))
+__all__ = ["FixedStep", "stiffness_at"]
 
 
 def stiffness_at(motion: Motion, square: float | np.ndarray) -> float:
@@ -37,12 +32,12 @@ def stiffness_at(motion: Motion, square: float | np.ndarray) -> float:
     from mode to mode, shape (n_modes,).
     """
     room = square - motion.omega**2
-    return 1.0 / mobility(motion, room) if np.all(room > 0.0) else -1.0
+    return 1.0 / motion.mobility(room) if np.all(room > 0.0) else -1.0
 
 
 def _refuse(motion: Motion, run: Run, step: float, critical: float, place: dict[str, float]) -> None:
     """ValueError for a start behind the stop, StepTooLarge for a step that cannot be stable."""
-    within = step * float(np.abs(motion.phi * run.start.velocity).sum()) + 1e-12 * max(motion.gap, 1e-6)
+    within = step * motion.most_at_tip(run.start.velocity) + 1e-12 * max(motion.gap, 1e-6)
     if CONTACT not in TOUCHES[motion.law].REGIMES and -place["gap"] > within:
         raise ValueError(
             f"displacement of the state puts the tip {-place['gap']:.3g} m behind the stop; with an impact "

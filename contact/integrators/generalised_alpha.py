@@ -54,8 +54,9 @@ import numpy as np
 
 from beam.parameters import require_within
 from contact.compiled import inlined, kernel
+from contact.flight.modal_flow import push_on
 from contact.flight.motion import Motion
-from contact.integrators.fixed_step import FixedStep, mobility, stiffness_at
+from contact.integrators.fixed_step import FixedStep, stiffness_at
 from contact.integrators.grid import (
     DONE,
     Grid,
@@ -64,7 +65,6 @@ from contact.integrators.grid import (
     contact_tangent,
     end_contact_step,
     force_in_flight,
-    push_on,
     tip_of,
 )
 from contact.laws import HERTZ, LINEAR
@@ -273,4 +273,4 @@ class GeneralisedAlpha(FixedStep):
     def carried(self, grid: Grid) -> object:
         """See `carried_by`; and sum phi^2/D."""
         carried = carried_by(self.numbers, grid)
-        return carried, mobility(grid.motion, carried[1][2])
+        return carried, grid.motion.mobility(carried[1][2])

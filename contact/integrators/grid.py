@@ -23,13 +23,14 @@ import numpy as np
 
 from contact import touch
 from contact.compiled import inlined, kernel, part
-from contact.flight.motion import DECAY, SQUARE, WEIGHT, Motion
+from contact.flight.modal_flow import push_on, tip_sum
+from contact.flight.motion import DECAY, SQUARE, Motion
 from contact.recorder import Recorder, add_loss, close_touch, is_full, open_touch, put_sample, sample_due
 from contact.trajectory import IMPACT
 
 __all__ = ["DIVERGED", "DONE", "FULL", "PLACE", "TOO_LARGE", "Grid", "accelerations",
            "contact_force", "contact_tangent", "cubic_between", "end_contact_step", "ending",
-           "force_in_flight", "push_on", "tip_of", "touches"]  # fmt: skip
+           "force_in_flight", "tip_of", "touches"]  # fmt: skip
 
 DONE, FULL, TOO_LARGE, DIVERGED = 0, 1, 2, 3
 """How a step or a run ends: well; with a full log; at a contact too stiff for the step; with a motion that is
@@ -87,17 +88,7 @@ class Grid(NamedTuple):
 @inlined
 def tip_of(motion, q, v):
     """Penetration d [m] and its rate [m/s]."""
-    modes, depth, rate = motion.modes, -motion.gap, 0.0
-    for k in range(q.size):
-        depth += modes[WEIGHT, k] * q[k]
-        rate += modes[WEIGHT, k] * v[k]
-    return depth, rate
-
-
-@inlined
-def push_on(motion, k, push):
-    """What the stop's force or percussion `push` is for mode `k`: -phi_k times it."""
-    return -motion.modes[WEIGHT, k] * push
+    return tip_sum(motion, -motion.gap, q), tip_sum(motion, 0.0, v)
 
 
 @inlined

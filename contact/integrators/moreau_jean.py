@@ -50,10 +50,11 @@ import numpy as np
 
 from beam.parameters import require_within
 from contact.compiled import inlined, kernel
+from contact.flight.modal_flow import push_on
 from contact.flight.motion import DECAY, SQUARE, Motion
-from contact.integrators.fixed_step import FixedStep, mobility
+from contact.integrators.fixed_step import FixedStep
 from contact.integrators.generalised_alpha import AlphaNumbers, carried_by, predict
-from contact.integrators.grid import DONE, Grid, cubic_between, ending, force_in_flight, push_on, tip_of
+from contact.integrators.grid import DONE, Grid, cubic_between, ending, force_in_flight, tip_of
 from contact.laws import NEWTON
 from contact.recorder import add_loss, close_touch, open_touch
 from contact.trajectory import IMPACT
@@ -139,7 +140,7 @@ def prepared_for(numbers: AlphaNumbers, eta: float, grid: Grid) -> object:
     carried = carried_by(numbers, grid)
     (alpha_m, alpha_f, beta, gamma), y = numbers, grid.step**2 * grid.motion.row(SQUARE)
     share = 1.0 - alpha_m + (1.0 - alpha_f) * (beta - gamma * eta) * y
-    return carried, float(eta), mobility(grid.motion, carried[1][2] / share)
+    return carried, float(eta), grid.motion.mobility(carried[1][2] / share)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -33,8 +33,8 @@ from typing import NamedTuple
 import numpy as np
 
 from contact.compiled import inlined, kernel
-from contact.flight.modal_flow import flow_over, propagate
-from contact.flight.motion import LOAD, OMEGA, WEIGHT
+from contact.flight.modal_flow import at_tip, flow_over, propagate, push_on, tip_bound, tip_sum
+from contact.flight.motion import LOAD, OMEGA
 from contact.integrators.grid import DONE, contact_force, contact_tangent, ending, touches
 
 __all__ = ["Composition", "Split", "kick", "march", "sub_flows", "tip_at", "tip_rate"]
@@ -80,19 +80,14 @@ def sub_flows(motion, composition, length):
 def tip_at(motion, u, clock):
     """Penetration of the tip [m] at a time since a strobe [s], sine and cosine of the drive's phase there."""
     sine, cosine = math.sin(motion.drive * clock), math.cos(motion.drive * clock)
-    depth = motion.level + motion.tip_sine * sine + motion.tip_cosine * cosine
-    for k in range(u.size):
-        depth += motion.modes[WEIGHT, k] * u[k]
-    return depth, sine, cosine
+    steady = motion.level + motion.tip_sine * sine + motion.tip_cosine * cosine
+    return tip_sum(motion, steady, u), sine, cosine
 
 
 @kernel
 def tip_rate(motion, v, sine, cosine):
     """Rate of the penetration [m/s]; `sine`, `cosine` belong to the phase of the drive."""
-    rate = motion.drive * (motion.tip_sine * cosine - motion.tip_cosine * sine)
-    for k in range(v.size):
-        rate += motion.modes[WEIGHT, k] * v[k]
-    return rate
+    return tip_sum(motion, motion.drive * (motion.tip_sine * cosine - motion.tip_cosine * sine), v)
 
 
 @kernel
@@ -110,7 +105,7 @@ def kick(motion, tip, v, length):
     x = damping * motion.compliance * length
     impulse = force * length * (-math.expm1(-x) / x if x != 0.0 else 1.0)
     for k in range(v.size):
-        v[k] -= motion.modes[WEIGHT, k] * impulse
+        v[k] += push_on(motion, k, impulse)
     return impulse * (rate - 0.5 * motion.compliance * impulse)
 
 
@@ -138,7 +133,7 @@ def take_step(motion, split, length, tip, u, v, acting):
             uk, vk = u[k], v[k]
             u[k] = flow[k, 0] * uk + flow[k, 1] * vk + flow[k, 4]
             v[k] = flow[k, 2] * uk + flow[k, 3] * vk + flow[k, 5]
-            depth += motion.modes[WEIGHT, k] * u[k]
+            depth += at_tip(motion, k, u[k])
     return (depth, sine, cosine), taken, met
 
 
@@ -161,11 +156,11 @@ end_split_step = ending(part_of_step, touches(part_of_step))
 @kernel
 def clear_steps(motion, depth, u, v, h):
     """How many steps of length h the tip is sure not to reach the stop."""
-    speed = motion.drive * math.sqrt(motion.tip_sine**2 + motion.tip_cosine**2)
+    speed = motion.drive * motion.amplitude
     for k in range(u.size):
         if motion.modes[LOAD, k] != 0.0:
             return 0.0
-        speed += abs(motion.modes[WEIGHT, k]) * math.sqrt(v[k] * v[k] + (motion.modes[OMEGA, k] * u[k]) ** 2)
+        speed += tip_bound(motion, k, v[k], motion.modes[OMEGA, k] * u[k])
     return -depth / (speed * h) - 1.0 if speed > 0.0 else math.inf
 
 

@@ -197,10 +197,10 @@ class TouchOrbit(ABC):
 
     def state(self) -> State:
         """The physical state just before the first touch, on the near side of the stop to the last digit."""
-        motion, phi = self.oscillator.motion(), self.oscillator.model.phi
+        motion = self.oscillator.motion()
         q, q_rate = steady_motion(motion, np.array([self.phase]))
         behind = max(0.0, tip_state(motion, self.phase, self.displacement, self.velocity)[0])
-        back = behind / (phi @ phi) * phi  # rounding of the sum alone
+        back = motion.least_change(behind)  # rounding of the sum alone
         return State(
             displacement=self.displacement - back + q[0], velocity=self.velocity + q_rate[0], time=self.phase
         )

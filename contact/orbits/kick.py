@@ -128,7 +128,7 @@ class KickFamily(SingleImpactFamily):
         met, left_with = before - steady, after - turn @ steady
         jump = modal_flow(motion, -delay)[0] @ left_with - met
         return Kick(
-            speed=speed, jump=jump[None] / motion.phi[0], duration=float(delay), leaves=restitution > 0.0
+            speed=speed, jump=motion.least_change(jump), duration=float(delay), leaves=restitution > 0.0
         )
 
     def error(self, orbit: SingleImpactOrbit) -> float:

@@ -13,13 +13,12 @@ the tip never meets the stop again.
 # mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from beam.parameters import require, require_whole, require_within
 from contact.compiled import kernel
-from contact.flight.motion import OMEGA, WEIGHT
+from contact.flight.modal_flow import tip_bound
+from contact.flight.motion import OMEGA
 
 __all__ = ["free_for_good", "period_of", "repetition"]
 
@@ -69,9 +68,9 @@ def period_of(points: np.ndarray, impacts: np.ndarray, *, largest_period: int, t
 @kernel
 def free_for_good(motion, u, v):
     """Whether the free motion left over in the deviations (u, v) can never bring the tip to the stop."""
-    left = math.hypot(motion.tip_sine, motion.tip_cosine)
+    left = motion.amplitude
     for k in range(motion.size):
         if not motion.modes[OMEGA, k] > 0.0:
             return False
-        left += abs(motion.modes[WEIGHT, k]) * math.hypot(u[k], v[k] / motion.modes[OMEGA, k])
+        left += tip_bound(motion, k, u[k], v[k] / motion.modes[OMEGA, k])
     return left < -motion.level * (1.0 - 1e-12)

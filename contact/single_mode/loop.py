@@ -39,7 +39,6 @@ import math
 
 from contact.compiled import borrowed, inlined, kernel, part
 from contact.event_loop import DONE, advance
-from contact.flight.motion import WEIGHT
 from contact.recorder import strobes_only
 from contact.single_mode.one_impact import guessed, is_settled, one_impact, rising_zero
 from contact.single_mode.period_table import flow_over, through, tip_near
@@ -105,12 +104,12 @@ def one_mode_periods(table, system, u, v, runs, points, counts):
         Periods left to it.
     """
     table, u, v, points = borrowed(table), borrowed(u), borrowed(v), borrowed(points)
-    counts, n, rows, phi = borrowed(counts), table.mode, table.rows, system.motion.modes[WEIGHT, 0]
-    mean_u, mean_v = system.mean[0] * phi, system.mean[1] * phi
-    weight_u, weight_v = system.weight[0] / phi, system.weight[1] / phi
+    counts, n, rows, weight = borrowed(counts), table.mode, table.rows, system.weight[0]
+    mean_u, mean_v = system.mean[0] * weight, system.mean[1] * weight
+    slowness = system.weight[1] / weight
     left, run = 0, runs[0]
     first = run.period
-    un, vn = phi * u[0], phi * v[0]
+    un, vn = weight * u[0], weight * v[0]
     outside = run.regime == OUTSIDE and run.order == 0
     for i in range(counts.size):
         impacts = 0
@@ -126,15 +125,15 @@ def one_mode_periods(table, system, u, v, runs, points, counts):
                 impacts, ui, vi = settled_period(n, rows, rho, p, q, un, vn)
             if impacts < 0:
                 left += 1
-                u[0], v[0], run.period = un / phi, vn / phi, first + i
+                u[0], v[0], run.period = un / weight, vn / weight, first + i
                 status = any_periods(system.motion, u, v, runs, points[i : i + 1], counts[i : i + 1])
                 if status != DONE:
                     return status, left
-                impacts, ui, vi = counts[i], phi * u[0], phi * v[0]
+                impacts, ui, vi = counts[i], weight * u[0], weight * v[0]
                 outside = run.regime == OUTSIDE and run.order == 0
             un, vn = ui, vi
-        points[i, 0] = (un + mean_u) * weight_u
-        points[i, 1] = (vn + mean_v) * weight_v
+        points[i, 0] = un + mean_u
+        points[i, 1] = (vn + mean_v) * slowness
         counts[i] = impacts
-    u[0], v[0], run.period = un / phi, vn / phi, first + counts.size
+    u[0], v[0], run.period = un / weight, vn / weight, first + counts.size
     return DONE, left

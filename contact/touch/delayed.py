@@ -26,8 +26,7 @@ import math
 import numpy as np
 
 from contact.compiled import kernel, part
-from contact.flight.modal_flow import tip_state
-from contact.flight.motion import WEIGHT
+from contact.flight.modal_flow import push_on, tip_state
 from contact.touch import newton
 from contact.touch.tangents import tip_changes
 from contact.trajectory import OUTSIDE, WAITING
@@ -108,7 +107,8 @@ def leave(motion, run, u, v):
 @kernel
 def saltation(motion, response, before, after, tangent):
     """The tangents over the touch, with the wait; see ``contact.touch``."""
-    w, phi, a, b = motion.drive, motion.modes[WEIGHT, 0], response.real, response.imag
+    w, a, b = motion.drive, response.real, response.imag
+    share = push_on(motion, 0, -1.0 / motion.compliance)  # of the one mode in a change at the tip: 1/phi
     clock, u, v = before
     _height, approach, pull_in = tip_state(motion, clock, u, v)
     restitution, restitution_slope, delay, delay_slope = numbers_at(motion.table, approach)
@@ -122,7 +122,7 @@ def saltation(motion, response, before, after, tangent):
         faster = rate[j] + pull_in * late
         late += delay_slope * faster
         s, c = cosine * s + sine * c, cosine * c - sine * s
-        tangent[0, j] = (restitution * approach * late - a * s - b * c) / phi
+        tangent[0, j] = share * (restitution * approach * late - a * s - b * c)
         slower = -(restitution + restitution_slope * approach) * faster - pull_out * late
-        tangent[1, j] = (slower - w * (a * c - b * s)) / phi
+        tangent[1, j] = share * (slower - w * (a * c - b * s))
         tangent[2, j], tangent[3, j] = s, c

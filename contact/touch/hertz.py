@@ -29,8 +29,8 @@ import numpy as np
 
 from contact.compiled import kernel, part
 from contact.flight.elementary import EPS, sine_cosine
-from contact.flight.modal_flow import speed_scale, tip_state
-from contact.flight.motion import SQUARE, WEIGHT
+from contact.flight.modal_flow import speed_scale, tip_state, tip_sum
+from contact.flight.motion import SQUARE
 from contact.flight.polynomial_root import first_polynomial_root, horner, polynomial_root
 from contact.touch.series import enter, leave, powers_of, reach, saltation, within_force, work_of
 from contact.trajectory import CONTACT, OUTSIDE
@@ -100,11 +100,10 @@ def fill(motion, base, u, v, series):
     r, clock, push = series.scalars[ROOT], series.scalars[CLOCK], series.scalars[PUSH]
     at_v = LANES + modes.shape[1]
     sine, cosine = sine_cosine(w * base, 0.0)
-    speed = w * (a * cosine - b * sine)
+    speed = tip_sum(motion, w * (a * cosine - b * sine), v)
     for k in range(u.size):
         rows[0, LANES + k] = u[k]
         rows[0, at_v + k] = v[k]
-        speed += modes[WEIGHT, k] * v[k]
     r0 = r[0]
     rows[0, SPEED], rows[0, DEPTH], rows[0, SINE], rows[0, COSINE] = speed, r0 * r0, sine, cosine
     clock[0] = 0.0

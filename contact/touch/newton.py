@@ -20,8 +20,13 @@ import numpy as np
 
 from contact.compiled import kernel, part
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import mode_acceleration, tip_rounding, tip_state
-from contact.flight.motion import DECAY, LOAD, SQUARE, WEIGHT
+from contact.flight.modal_flow import (
+    acceleration_rounding,
+    mode_acceleration,
+    push_on,
+    tip_rounding,
+    tip_state,
+)
 from contact.flight.polynomial_root import first_polynomial_root
 from contact.touch import time_series
 from contact.touch.tangents import tip_changes
@@ -66,7 +71,7 @@ def newton_impact(motion, v, approach, restitution):
     """Apply the impulse that turns the tip velocity `approach` into -`restitution` times itself."""
     impulse = (1.0 + restitution) * approach / motion.compliance
     for k in range(v.size):
-        v[k] -= motion.modes[WEIGHT, k] * impulse
+        v[k] += push_on(motion, k, impulse)
 
 
 @part
@@ -104,18 +109,8 @@ def hold(motion, clock, u, v):
     """Put the tip on the wall, at rest: rounding would let it drift off over many steps."""
     height, velocity, _acceleration = tip_state(motion, clock, u, v)
     for k in range(u.size):
-        u[k] -= motion.modes[WEIGHT, k] * height / motion.compliance
-        v[k] -= motion.modes[WEIGHT, k] * velocity / motion.compliance
-
-
-@part
-def force_rounding(motion, u, v):
-    """Bound of the rounding error of the force that holds the tip at (u, v) [N]."""
-    total, modes = (abs(motion.tip_sine) + abs(motion.tip_cosine)) * motion.drive**2, motion.modes
-    for k in range(u.size):
-        pull = modes[SQUARE, k] * abs(u[k]) + modes[DECAY, k] * abs(v[k]) + abs(modes[LOAD, k])
-        total += abs(modes[WEIGHT, k]) * pull
-    return 4.0 * EPS * total / motion.compliance
+        u[k] += push_on(motion, k, height) / motion.compliance
+        v[k] += push_on(motion, k, velocity) / motion.compliance
 
 
 @kernel
@@ -129,7 +124,7 @@ def step(motion, run, u, v, limit, series):
     h = min(longest_step(motion, 0.0, u, v, series), limit)
     if not h > EPS * run.clock:
         return math.nan, math.nan, SUSTAINED
-    margin = force_rounding(motion, u, v)
+    margin = acceleration_rounding(motion, u, v) / motion.compliance
     end = first_polynomial_root(series.scalars[FORCE], -1.0, h, margin)
     if end >= 0.0:
         return end, end, OUTSIDE
@@ -160,7 +155,7 @@ def saltation(motion, response, before, after, tangent):
     """The tangents over the impact: d -> R d + (R f - f') (-y(d)/v), R the reflection of the tip velocity, f
     and f' the velocity of the flow before and after (M. A. Aizerman, F. R. Gantmacher, Quart. J. Mech. Appl.
     Math. 11 (1958) 243; A. B. Nordmark, J. Sound Vib. 145 (1991) 279)."""
-    n, modes = motion.size, motion.modes
+    n = motion.size
     clock, u, v = before
     rebound = after[2]
     _height, approach, pull = tip_state(motion, clock, u, v)
@@ -170,8 +165,8 @@ def saltation(motion, response, before, after, tangent):
     for j in range(2 * n + 2):
         late = -reach[j] / approach  # by how much later this neighbour touches
         for k in range(n):
-            push = modes[WEIGHT, k] * flip
-            slow = mode_acceleration(motion, k, u[k], v[k]) - push * pull
+            push = push_on(motion, k, flip)
+            slow = mode_acceleration(motion, k, u[k], v[k]) + push * pull
             after_it = mode_acceleration(motion, k, u[k], rebound[k])
             tangent[k, j] += (v[k] - rebound[k]) * late
-            tangent[n + k, j] += -push * rate[j] + (slow - after_it) * late
+            tangent[n + k, j] += push * rate[j] + (slow - after_it) * late

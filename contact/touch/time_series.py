@@ -15,8 +15,7 @@ import math
 
 from contact.compiled import kernel, part
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import speed_scale, tip_steady
-from contact.flight.motion import WEIGHT
+from contact.flight.modal_flow import speed_scale, tip_steady, tip_sum
 from contact.touch.series import powers_of, reach, within_force, work_of
 from contact.trajectory import INSIDE
 from contact.vector_loops import next_order, weighted_rows
@@ -52,11 +51,10 @@ def begin(motion, base, u, v, series):
     rows, depth, steady, w = series.rows, series.scalars[DEPTH], series.scalars[STEADY], motion.drive
     depth[0], depth[1], _acceleration = tip_steady(motion, base)
     steady[0], steady[1] = depth[0] - motion.level, depth[1]
+    depth[0], depth[1] = tip_sum(motion, depth[0], u), tip_sum(motion, depth[1], v)
     for k in range(u.size):
         rows[0, k] = u[k]
         rows[1, k] = v[k]
-        depth[0] += motion.modes[WEIGHT, k] * u[k]
-        depth[1] += motion.modes[WEIGHT, k] * v[k]
     for n in range(ORDER - 1):
         steady[n + 2] = -w * w * steady[n] / ((n + 1.0) * (n + 2.0))
     series.scalars[FORCE, ORDER - 1 :] = 0.0

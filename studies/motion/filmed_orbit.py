@@ -104,10 +104,9 @@ def film_orbit(
     times = frame_times(duration, contacts, frames)
     line = np.linspace(0.0, duration, length * LINE_POINTS + 1)
     run, drawn = (simulate(oscillator, state, periods=length + 1, times=begin + at) for at in (times, line))
-    phi = oscillator.model.phi
     columns = (
-        times, 1.0 / (rate * np.diff(times, append=duration)), run.displacement @ phi, run.velocity @ phi,
-        oscillator.driven.displacement(times), contact_force(oscillator, run),
+        times, 1.0 / (rate * np.diff(times, append=duration)), oscillator.tip(run.displacement),
+        oscillator.tip(run.velocity), oscillator.driven.displacement(times), contact_force(oscillator, run),
     )  # fmt: skip
     rows = [
         FrameRow(frame=number, time_s=t, slowed=slowed, tip_m=x, tip_velocity_m_per_s=v, base_m=b, force_n=n,
@@ -116,7 +115,7 @@ def film_orbit(
             zip(touching(run), np.array(columns).T.tolist(), strict=True), start=1)
     ]  # fmt: skip
     return FilmedOrbit(duration=duration, contacts=contacts, coordinates=run.displacement, rows=rows,
-                       line_time=line, line_tip=drawn.displacement @ phi)  # fmt: skip
+                       line_time=line, line_tip=oscillator.tip(drawn.displacement))  # fmt: skip
 
 
 def drawn_shapes(

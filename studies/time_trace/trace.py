@@ -50,12 +50,11 @@ def trace_of(oscillator: ImpactOscillator, state: State, length: int) -> Trace:
     time = span * np.arange(length * PER_PERIOD) / (length * PER_PERIOD)
     run = simulate(oscillator, state, periods=length + 2, times=begin + time)
     touches = run.impacts.start[(run.impacts.kind == 0) & (run.impacts.start < begin + span)]
-    model = oscillator.model
     final = collisions(oscillator, run, unfinished="drop")
     return Trace(
         time=time,
-        tip=run.displacement @ model.phi,
-        readout=run.displacement @ model.readouts[READOUT],
+        tip=oscillator.tip(run.displacement),
+        readout=run.displacement @ oscillator.model.readouts[READOUT],
         impact_times=touches - begin,
         collisions=[collision for collision in final if collision.first_touch < begin + span],
     )
@@ -72,7 +71,7 @@ def close_up(oscillator: ImpactOscillator, state: State, collision: Collision) -
     ends = zip(impacts.start[inside], impacts.end[inside], strict=True)
     return CloseUp(
         time=times - collision.first_touch,
-        height=run.displacement @ oscillator.model.phi - oscillator.stop.gap,
+        height=oscillator.tip(run.displacement) - oscillator.stop.gap,
         force=contact_force(oscillator, run),
         spans=[(float(a) - collision.first_touch, float(b) - collision.first_touch) for a, b in ends],
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import importlib
 import json
 import pickle
@@ -10,13 +11,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import matplotlib
+import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from beam import ModalModel
 from studies import plotting
 from studies.record import Run
 from studies.run import Study
-from studies.scene import Scene, read_scene
+from studies.scene import Scene, model_of, read_scene
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,6 +32,21 @@ class Ran:
     folder: Path
     out: str
     err: str
+
+    @property
+    def verdicts(self) -> dict[str, str]:
+        """Point of the letter -> verdict."""
+        return {point: entry["verdict"] for point, entry in self.summary["verdicts"].items()}
+
+    def rows(self, name: str) -> list[dict[str, str]]:
+        """The rows of NAME.csv."""
+        with (self.folder / f"{name}.csv").open(newline="") as stream:
+            return list(csv.DictReader(stream))
+
+    def arrays(self, name: str) -> dict[str, np.ndarray]:
+        """The arrays of NAME.npz."""
+        with np.load(self.folder / f"{name}.npz") as stored:
+            return dict(stored)
 
 
 def study_of(name: str) -> Study:
@@ -90,3 +108,9 @@ def run_study(
 def letter_scene() -> Scene:
     """The letter's scene."""
     return read_scene("letter")
+
+
+@pytest.fixture(scope="session")
+def letter_model(letter_scene: Scene) -> ModalModel:
+    """The modal model of the letter's scene."""
+    return model_of(letter_scene)

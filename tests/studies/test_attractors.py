@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from dataclasses import replace
 
 import numpy as np
@@ -12,24 +11,9 @@ from contact import State, StroboscopicMap
 from contact.orbits import settle
 from studies.attractors.basins import parts, plane_of
 from studies.attractors.scan import CHAOTIC, NOT_SETTLED, PERIODIC, WITHOUT, kind_of
-from studies.scene import beam_at, read_scene, single_mode_at
+from studies.scene import beam_at, single_mode_at
 
 FREQUENCY = 21.50
-
-
-@pytest.fixture(scope="module")
-def scene():
-    return read_scene("letter")
-
-
-@pytest.fixture(scope="module")
-def single(scene):
-    return StroboscopicMap(oscillator=single_mode_at(scene, FREQUENCY))
-
-
-@pytest.fixture(scope="module")
-def beam(scene):
-    return StroboscopicMap(oscillator=beam_at(scene.replace({"modes.count": 12}), FREQUENCY))
 
 
 def told(strobed, *, most_cycles=1500, cycles=400):
@@ -39,7 +23,12 @@ def told(strobed, *, most_cycles=1500, cycles=400):
     return kind, exponents.largest
 
 
-def test_chaos_slow_transient_and_motion_without_impacts_are_told_apart(single, beam):
+def test_chaos_slow_transient_and_motion_without_impacts_are_told_apart(letter_scene):
+    twelve = letter_scene.replace({"modes.count": 12})
+    single, beam = (
+        StroboscopicMap(oscillator=oscillator)
+        for oscillator in (single_mode_at(letter_scene, FREQUENCY), beam_at(twelve, FREQUENCY))
+    )
     assert told(single.at(0.034), cycles=500)[0] == CHAOTIC
     for strobed in (single, beam):
         kind, exponent = told(strobed.at(-0.02))
@@ -51,9 +40,9 @@ def test_chaos_slow_transient_and_motion_without_impacts_are_told_apart(single, 
     assert kind in (PERIODIC, NOT_SETTLED) and exponent < 0.0
 
 
-def test_starts_next_to_either_orbit_lead_to_it_between_fold_and_grazing(scene):
-    plane = plane_of(scene, FREQUENCY, -0.006, 2)
-    gap = scene.stop.gap_m
+def test_starts_next_to_either_orbit_lead_to_it_between_fold_and_grazing(letter_scene):
+    plane = plane_of(letter_scene, FREQUENCY, -0.006, 2)
+    gap = letter_scene.stop.gap_m
     assert {m: points.shape for m, points in plane.orbits.items()} == {4: (4, 2), 1: (1, 2)}
     near = 3e-5 * gap
     for m, moved in ((4, 1e-6 * gap), (1, near)):
@@ -66,14 +55,14 @@ def test_starts_next_to_either_orbit_lead_to_it_between_fold_and_grazing(scene):
     assert plane.near < near and plane.strobed.orbit(start, 500).impacts.sum() == 0
 
 
-def test_both_orbits_have_a_basin_between_fold_and_grazing_and_one_below(scene):
-    between = plane_of(scene, FREQUENCY, -0.006, 2)
+def test_both_orbits_have_a_basin_between_fold_and_grazing_and_one_below(letter_scene):
+    between = plane_of(letter_scene, FREQUENCY, -0.006, 2)
     ((x, velocity),), speed = between.strobes(1), 2.0 * np.pi * FREQUENCY
-    around = np.linspace(-0.03, 0.03, 12) * scene.stop.gap_m
+    around = np.linspace(-0.03, 0.03, 12) * letter_scene.stop.gap_m
     between = replace(between, x=x + around, velocity=velocity + speed * around)
     leads = np.array([between.line(v) for v in between.velocity.tolist()])
     assert np.mean(leads == 1) > 0.02 and np.mean(leads == 4) > 0.5
-    below = plane_of(scene, FREQUENCY, -0.02, 6)
+    below = plane_of(letter_scene, FREQUENCY, -0.02, 6)
     leads = np.array([below.line(v) for v in below.velocity.tolist()])
     assert below.period == 1 and set(np.unique(leads)) <= {-1, 1}  # below the fold of -0.0132 only p1 is left
     assert parts(leads, below.period) == {"p1 without impacts": 1.0, "something else": 0.0}
@@ -82,8 +71,7 @@ def test_both_orbits_have_a_basin_between_fold_and_grazing_and_one_below(scene):
 def test_small_form(run_study):
     ran = run_study("attractors", "--quick", "--model", "single_mode", "--side", "8", "--cycles", "60")
     assert ran.code == 0
-    with (ran.folder / "rows.csv").open() as file:
-        rows = list(csv.DictReader(file))
+    rows = ran.rows("rows")
     for row in rows:
         assert (row["kind"] in (PERIODIC, WITHOUT)) == (int(row["period"]) > 0)
         assert float(row["lyapunov_map"]) < 0.0 or not int(row["period"])
@@ -92,10 +80,4 @@ def test_small_form(run_study):
         for way in ("up", "down")
     )
     assert up > down  # hysteresis
-    assert ran.summary["verdicts"]["coexistence"]["verdict"] == "agrees"
-
-
-@pytest.mark.parametrize("argv", [("--lowest", "0.1", "--highest", "0.0"), ("--basin-excess", "0.01"),
-                                  ("--set", "drive.kind=none")])  # fmt: skip
-def test_wrong_input_is_refused(run_study, argv):
-    assert run_study("attractors", *argv).code == 2
+    assert ran.verdicts["coexistence"] == "agrees"

@@ -64,14 +64,6 @@ def test_without_scaling_the_modes_decay_as_the_strain_energies_say():
     assert strip_decay_rate(LETTER) == pytest.approx(bare[0], rel=1e-6)
 
 
-def test_the_loss_factor_of_the_tape_carries_the_damping():
-    scene = LETTER.replace({**COARSE, "spring.tape_loss_factor": 0.6})
-    fitted = calibrate_damping(scene, 3.0)
-    assert abs(strip_decay_rate(fitted) / 3.0 - 1.0) <= ACCURACY
-    changed = {key for key in fitted.provenance() if fitted[key] != scene[key]}
-    assert changed == {"spring.tape_loss_factor", "damping.decay_rate_per_s"}
-
-
 @pytest.mark.parametrize(
     "changes",
     [
@@ -87,16 +79,6 @@ def test_other_kinds_of_damping_are_scaled_as_a_whole(changes):
     before, after = model_of(scene).decay_rate, model_of(fitted).decay_rate
     assert abs(after[0] / (2.0 * RATE) - 1.0) <= ACCURACY
     np.testing.assert_allclose(after / before, after[0] / before[0], rtol=1e-12)
-
-
-def test_thickness_of_a_straight_spring_agrees_with_the_scaling_law():
-    """Without tape and tip mass every frequency is proportional to the thickness."""
-    bare = {"spring.kind": "cantilever", "spring.tape_thickness_m": 0.0, "tip.mass_kg": 0.0,
-            "damping.kind": "constant_ratio", "damping.ratio": 0.0, "modes.count": 3}
-    scene = LETTER.replace(bare)
-    fitted = calibrate_thickness(scene, 0.02)
-    expected = scene.spring.thickness_m * free_period(scene) / 0.02
-    assert fitted.spring.thickness_m == pytest.approx(expected, rel=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -144,13 +126,6 @@ def test_the_model_keeps_the_coupled_modes_only():
     np.testing.assert_array_equal(model.omega, modes.omega[modes.coupled])
     assert model.tip_mass == LETTER.tip.mass_kg and model.static_compliance > 0.0
     assert modes_of(LETTER, 3).coupled.sum() == 3
-
-
-def test_default_elements_are_those_of_the_beam_package():
-    spring = spring_of(LETTER)
-    assert elements_of(LETTER, spring) == (60, 48, 60)
-    partly = LETTER.replace({"spring.tape_coverage": 0.5, "spring.elements_per_leg": 30})
-    assert elements_of(partly, spring_of(partly)) == (15, 15, 48, 15, 15)
 
 
 def test_every_kind_of_spring_makes_a_model_with_a_readout():

@@ -4,35 +4,43 @@ from __future__ import annotations
 
 import ast
 import json
+import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from studies import plotting
-from studies.programs import names, source_of
+from studies.programs import names, source_of, title_of
+from studies.spring_shape.__main__ import COARSE
 from studies.work_precision.problems import problems_of
 
 PROGRAMS = names()
 ON_THE_FRAME = [name for name in PROGRAMS if "\n@study(" in source_of(name).read_text()]
 
-#: Studies whose own test runs the small form and looks at its numbers, with these checks of what it leaves.
-OWN_TEST = [
-    name for name in ON_THE_FRAME
-    if (own := Path(__file__).with_name(f"test_{name}.py")).exists()
-    and f'ran = run_study("{name}", "--quick"' in own.read_text()
-]  # fmt: skip
+#: Studies whose small form a test looks at, with these checks of what it leaves.
+LOOKED_AT = {
+    name for path in Path(__file__).parent.glob("test_*.py")
+    for name in re.findall(r'= run_study\("(\w+)", "--quick"', path.read_text())
+}  # fmt: skip
 
 #: Options that keep a small form small.
-SMALLER = {"motion": ["--frames", "16"], "chart": ["--points", "4", "6"],
-           "stability": ["--families", "false_restitution,accumulation"],
+SMALLER = {"stability": ["--families", "false_restitution,accumulation"],
            "claims": ["--positions", "3", "--across", "12", "--restitutions", "3", "--inside", "6",
                       "--alphas", "3"],
-           "transitions": ["--set", "drive.frequencies_hz=[22.2]"],
            "calibrate": ["--set", "modes.count=4", "--set", "spring.elements_per_leg=12"]}  # fmt: skip
 
 
 #: Names of a study's main module that give a small form less to do, and what stands in for them.
-FEWER = {"work_precision": ("problems_of", lambda scene, modes: problems_of(scene, 2)[:2])}
+FEWER = {"work_precision": ("problems_of", lambda scene, modes: problems_of(scene, 2)[:2]),
+         "spring_shape": ("COARSE", [replace(mesh, legs=mesh.legs // 2) for mesh in COARSE])}  # fmt: skip
+
+#: Studies of driven motions, and those that change the dimensions of a spring.
+DRIVEN = (
+    "adequacy", "attractors", "breakdown", "chart", "claims", "effective_impact", "hysteresis", "motion",
+    "sensitivity", "soft_wall", "time_trace", "transitions", "work_precision",
+)  # fmt: skip
+ON_A_SPRING = ("breakdown", "calibrate", "effective_impact", "motion", "sensitivity", "spring_shape")
 
 #: A fit takes hundreds of meshes.
 SLOW = ("calibrate",)
@@ -41,7 +49,7 @@ SLOW = ("calibrate",)
 @pytest.mark.parametrize(
     "name",
     [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ())
-     for name in ON_THE_FRAME if name not in OWN_TEST],
+     for name in ON_THE_FRAME if name not in LOOKED_AT],
 )  # fmt: skip
 def test_the_small_form_runs_and_leaves_a_table_a_figure_and_a_summary(run_study, monkeypatch, name):
     if name in FEWER:
@@ -49,6 +57,36 @@ def test_the_small_form_runs_and_leaves_a_table_a_figure_and_a_summary(run_study
     ran = run_study(name, "--quick", "--json", *SMALLER.get(name, ()))
     assert ran.code == 0, ran.err
     assert json.loads(ran.out)["study"] == ran.summary["study"] == name
+
+
+#: Options and keys that a study does not take, and what its sentence names.
+REFUSED = [
+    *((name, "--set drive.kind=none", "drive.kind") for name in DRIVEN),
+    *((name, "--set spring.kind=modal_data", "modal_data") for name in ON_A_SPRING),
+    ("attractors", "--lowest 0.1 --highest 0.0", "lowest"),
+    ("attractors", "--basin-excess 0.01", "basin-excess"),
+    ("breakdown", "--set single_mode.free_period_s=0.06", "free_period_s"),
+    ("chart", "--points 1 9", "points"),
+    ("hysteresis", "--step 0", "step"),
+    ("hysteresis", "--set drive.frequencies_hz=[2000]", "2000 Hz"),
+    ("sensitivity", "--periods 5 3", "periods"),
+    ("soft_wall", "--decades 5 3", "decades"),
+    ("spring_shape", "--off-line 0", "--off-line"),
+    ("spring_shape", "--channel-sheet 0", "--channel-sheet"),
+    ("stability", "--families none", "families"),
+    ("time_trace", "--excess=-1", "excess"),
+    ("time_trace", "--frequency 0", "frequencies_hz"),
+    ("time_trace", "--frequency 1e6", "1e+06 Hz"),
+]
+
+
+@pytest.mark.parametrize(("name", "argv", "named"), REFUSED)
+def test_what_a_study_cannot_use_is_refused_in_one_sentence(run_study, name, argv, named):
+    ran = run_study(name, "--set", "modes.count=4", *argv.split())
+    assert ran.code == 2 and ran.summary == {}
+    sentence = ran.err.splitlines()[-1]
+    assert sentence.startswith(f"python -m studies.{name}: ") and named in sentence, ran.err
+    assert "Traceback" not in ran.err
 
 
 @pytest.mark.slow
@@ -66,6 +104,7 @@ def test_a_figure_is_kept_as_png_and_as_pdf_without_a_date(tmp_path):
 
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_docstring_says_command_run_time_and_outputs(name):
+    assert title_of(name).endswith(".") and len(title_of(name)) < 200
     text = source_of(name).read_text()
     account = ast.get_docstring(ast.parse(text)) or ""
     if name in ON_THE_FRAME:

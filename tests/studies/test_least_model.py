@@ -13,8 +13,6 @@ from studies.scene import beam_at, read_scene
 BY_SEARCH = [
     ({"born_period": 0.0, "fold": 0.07}, 12),
     ({"fold": 0.05}, 15),
-    ({"kick": 0.005}, 15),
-    ({"tip_trace": 2e-3}, 15),
     ({"born_period": 0.0, "fold_middle": 0.07}, 12),
     ({"frequency 10": 1e-3}, 10),
     ({"frequency 1": 1e-5, "kick": 0.005}, 15),
@@ -26,13 +24,6 @@ def test_the_choice_is_that_of_the_long_search(letter_scene, needs, modes):
     scene, sentence = least_modes(letter_scene, needs)
     assert scene.modes.count == modes and f" {modes} " in sentence
     assert scene.provenance()["modes.count"] == "least"
-
-
-def test_one_rung_less_is_not_enough(letter_scene):
-    asked = list(questions(letter_scene, {"fold": 0.05}, reference_of(letter_scene)))
-    assert len(asked) >= 5
-    errors = {n: max(off(n) for _, _, off in asked) for n in (12, 15, 18)}
-    assert errors[12] > 0.05 > errors[15] > errors[18] > 0.0
 
 
 @pytest.mark.parametrize("frequency", [20.90, 21.50, 22.20])

@@ -173,26 +173,21 @@ def test_times_wanted_anywhere(label: str) -> None:
 
 @fast
 @pytest.mark.parametrize("law", [LinearContact(stiffness=3e5), NewtonRestitution(local_restitution=0.6)])
-def test_a_flight_is_a_flight_and_a_run_goes_on(label: str, law: ContactLaw) -> None:
-    """Without a touch the closed form; with touches a run in two pieces is the same motion."""
+def test_a_run_goes_on(label: str, law: ContactLaw) -> None:
+    """A run in two pieces is the same motion."""
     method, n = solver(label, 1e-10), 1 if isinstance(law, NewtonRestitution) else 3
-    free = spring(n, law, excess=-0.3)
-    exact, found = (simulate(free, periods=2, method=chosen) for chosen in (None, method))
-    scale = np.abs(exact.strobe_displacement).max()
-    np.testing.assert_allclose(
-        found.strobe_displacement, exact.strobe_displacement, rtol=0, atol=1e-7 * scale
-    )
     case = collision(spring(n, law), 3.0)
     whole = simulate(case.oscillator, case.start, periods=3, method=method)
     half = simulate(case.oscillator, case.start, duration=0.9 * case.oscillator.period, method=method)
     rest = simulate(case.oscillator, half.end, duration=2.1 * case.oscillator.period, method=method)
+    scale = np.abs(whole.strobe_displacement).max()
     np.testing.assert_allclose(rest.end.displacement, whole.end.displacement, rtol=0, atol=1e-6 * scale)
     assert whole.strobe_impacts.sum() == len(whole.impacts) >= 1
 
 
 @pytest.mark.parametrize("law", [LinearContact(stiffness=3e5), HertzContact(stiffness=1e9)])
 def test_jacobian_is_the_derivative_of_the_rates(law: ContactLaw) -> None:
-    """Against central differences, tip behind the stop; what is watched begins below zero."""
+    """Against central differences, tip behind the stop."""
     oscillator, none = spring(3, law), np.empty(0)
     start = State(displacement=np.zeros(3), velocity=np.zeros(3), time=0.003)
     run = Run(start=start, length=oscillator.period, first=0, last=1, clock=0.003, clock_end=0.003,
@@ -209,8 +204,6 @@ def test_jacobian_is_the_derivative_of_the_rates(law: ContactLaw) -> None:
             np.testing.assert_allclose(
                 found[:, j], column, rtol=1e-5, atol=1e-5 * np.abs(column).max() + 1e-9
             )
-    assert e.surface(True, 0.5, 0.5, y) < 0.0 and e.surface(False, 0.5, 0.5, y) < 0.0
-    assert e.surface(False, 0.5, 0.6, y) == pytest.approx(e.tip(y)[0]) == -e.surface(True, 0.5, 0.6, y)
 
 
 def test_threads_do_not_share_a_compiled_integrator() -> None:

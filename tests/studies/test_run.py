@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import math
 import os
 import shlex
 import signal
@@ -19,8 +20,8 @@ import pytest
 
 from contact import NotPeriodic
 from studies import ROOT
-from studies.files import json_text, write_atomically
-from studies.programs import names, title_of, wrong_name
+from studies.files import write_atomically
+from studies.programs import wrong_name
 from studies.run import Run, study
 from studies.scene import Scene
 
@@ -70,7 +71,8 @@ def small(
     if fail:
         run.failed("cell 1", ValueError("no number"))
     print("a line of a careless library")
-    return {"options": [points, excess, frequency, colour, span], "rows": rows, "bad": float("nan")}
+    found = {"rows": rows, "bad": np.array([1.0, math.inf]), "folder": run.folder}
+    return {"options": [points, excess, frequency, colour, span], **found}
 
 
 def start(*argv: str, out: Path) -> tuple[int, Path]:
@@ -86,7 +88,9 @@ def test_a_run_leaves_summary_manifest_tables_and_arrays(tmp_path):
     code, folder = start(out=tmp_path)
     assert code == 0
     summary, manifest = summary_of(folder), json.loads((folder / "manifest.json").read_text())
-    assert (summary["status"], summary["failed_cells"], summary["bad"]) == ("done", 0, None)
+    assert (summary["status"], summary["failed_cells"], summary["bad"]) == ("done", 0, [1.0, None])
+    assert summary["rows"][1] == {"number": 1, "value": None, "word": "a,b", "good": True, "pair": [0.0, 1.0]}
+    assert summary["folder"] == str(folder)
     assert summary["settings"]["points"] == 3 and summary["provenance"]["stop.gap_m"] == "calibrated"
     assert set(manifest["files"]) == {path.name for path in folder.iterdir()}
     assert manifest["parameters"]["stop"]["gap_m"] == 0.0106993324
@@ -184,13 +188,15 @@ def test_a_traceback_is_there_for_who_asks_for_it(tmp_path, capsys, monkeypatch)
     assert "Traceback" in capsys.readouterr().err
 
 
-def test_a_verdict_belongs_to_the_study_that_the_point_names(tmp_path, letter_scene):
+def test_what_a_study_may_not_store_is_refused(tmp_path, letter_scene):
     run = Run(study="transitions", folder=tmp_path, scene=letter_scene, command="")
     run.verdict("p3", "agrees", found="p3")
     with pytest.raises(KeyError):
         run.verdict("torsion", "agrees", found="")
     with pytest.raises(KeyError):
         run.answer("hysteresis", "because")
+    with pytest.raises(TypeError, match="set"):
+        run.json("no_json", {"numbers": {1}})
     assert run.close("done", {})["verdicts"] == {"p3": {"verdict": "agrees", "found": "p3", "note": ""}}
 
 
@@ -207,34 +213,12 @@ def test_files_are_complete_or_absent(tmp_path, monkeypatch):
     assert path.read_bytes() == b"old" and list(tmp_path.iterdir()) == [path]
 
 
-def test_json_takes_what_a_study_finds():
-    row = Row(number=1, value=float("inf"), word="x", good=True, pair=(0.0, 1.0))
-    found = json.loads(json_text({"row": row, "array": np.array([1.0, np.nan]), "path": Path("a")}))
-    assert found == {"row": {"number": 1, "value": None, "word": "x", "good": True, "pair": [0.0, 1.0]},
-                     "array": [1.0, None], "path": "a"}  # fmt: skip
-    with pytest.raises(TypeError, match="set"):
-        json_text({1})
-
-
-@pytest.mark.parametrize("place", ["threads", "processes"])
-def test_a_map_is_the_same_on_every_executor(tmp_path, letter_scene, place):
-    run = Run(study="x", folder=tmp_path, scene=letter_scene, command="", workers=2, executor=place)
-    assert run.map(abs, [-1, 2, -3], "numbers") == [1, 2, 3]
-
-
 @pytest.mark.parametrize("place", ["moon", "ssh://there", "dask://127.0.0.1:1"])
 def test_an_executor_that_is_not_there_is_refused(tmp_path, letter_scene, place, monkeypatch):
     monkeypatch.setattr("studies.executors.PATIENCE", 0.2)
     run = Run(study="x", folder=tmp_path, scene=letter_scene, command="", executor=place)
     with pytest.raises(ValueError), run.pool():
         pass
-
-
-def test_every_study_is_found_and_says_what_it_is():
-    assert {"transitions", "chart", "report", "export", "tour"} <= set(names())
-    assert not {"run", "scene", "programs", "film", "page"} & set(names())
-    for name in names():
-        assert title_of(name).endswith(".") and len(title_of(name)) < 200, name
 
 
 def test_an_unknown_study_is_answered_with_the_nearest():

@@ -15,9 +15,9 @@ from hypothesis import strategies as st
 
 import beam
 from beam import SuspiciousValue
-from studies.scene import SCENES, Scene, SceneError, check, model_of, read_scene, require_drive_below
+from studies.scene import SCENES, Scene, SceneError, check, read_scene
 from studies.scene_keys import MODE_LISTS
-from studies.scene_values import KEYS, doubts, parse_override, scene_from_text
+from studies.scene_values import KEYS, parse_override, scene_from_text
 
 DELIVERED = sorted(file.stem for file in SCENES.glob("*.toml"))
 
@@ -232,15 +232,6 @@ def test_measured_modes_from_a_file_beside_the_scene(tmp_path: Path):
         assert "modal_data" in refusal(scene=str(own))
 
 
-def test_a_drive_above_the_modes_is_refused(letter_scene):
-    scene = letter_scene.replace({"modes.count": 2})
-    require_drive_below(scene, model_of(scene))
-    with pytest.raises(SceneError, match=r"1000 Hz"):
-        require_drive_below(scene, model_of(scene), 1000.0)
-    with pytest.raises(SceneError, match=r"drive\.frequencies_hz"):
-        model_of(scene.replace({"drive.frequencies_hz": [1e5]}))
-
-
 #: A slip of a unit or a value beyond the theory, and a word of the warning that it brings.
 SLIPS = {
     "stop.gap_m=10.7": "gap is 10.7", "stop.gap_m=0.02": "small motion", "spring.leg_length_m=130": "weight",
@@ -250,27 +241,18 @@ SLIPS = {
     "spring.tape_thickness_m=0.45": "thickness", "spring.tape_loss_factor=49": "loss_factor",
     "tip.mass_kg=6.16": "heavier than", "tip.ball_radius_m=2.5": "ball_radius",
     "tip.ball_young_modulus_pa=370": "youngs_modulus", "tip.plate_young_modulus_pa=210e3": "other_modulus",
-    "drive.frequencies_hz=[0.0222]": "first mode", "drive.frequencies_hz=[22.2, 139.5]": "first mode",
+    "drive.frequencies_hz=[0.0222]": "first mode", "drive.frequencies_hz=[22.2,139.5]": "first mode",
     "single_mode.free_period_s=1": "first mode", "single_mode.decay_rate_per_s=3560": "damping ratio",
     "damping.decay_rate_per_s=3560": "damping ratio", "scan.born_excess=1": "grazing",
+    "damping.kind=constant_ratio damping.ratio=1.16": "damping.ratio",
+    "damping.kind=constant_loss_factor damping.loss_factor=2.3": "damping.loss_factor",
+    "damping.kind=rayleigh damping.rayleigh_beta_s=0.1": "damping.rayleigh_beta_s",
+    "contact.law=linear contact.stiffness_n_per_m=1000": "contact.stiffness_n_per_m",
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("override", SLIPS)
-def test_a_slip_of_a_unit_is_taken_with_a_warning(override):
+@pytest.mark.parametrize("overrides", SLIPS)
+def test_a_slip_of_a_unit_is_taken_with_a_warning(overrides):
     with pytest.warns(SuspiciousValue) as found:
-        read_scene("letter", [override])
-    assert any(SLIPS[override] in str(warning.message) for warning in found)
-
-
-@pytest.mark.parametrize(
-    ("changes", "named"),
-    [
-        ({"damping.kind": "constant_ratio", "damping.ratio": 1.16}, "damping.ratio"),
-        ({"damping.kind": "constant_loss_factor", "damping.loss_factor": 2.3}, "damping.loss_factor"),
-        ({"damping.kind": "rayleigh", "damping.rayleigh_beta_s": 0.1}, "damping.rayleigh_beta_s"),
-        ({"contact.law": "linear", "contact.stiffness_n_per_m": 1000.0}, "contact.stiffness_n_per_m"),
-    ],
-)
-def test_other_laws_are_judged_by_their_own_numbers(changes, named):
-    assert any(named in sentence for sentence in doubts(Scene().replace(changes)))
+        read_scene("letter", overrides.split())
+    assert any(SLIPS[overrides] in str(warning.message) for warning in found)

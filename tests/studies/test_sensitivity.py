@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from contact import StrobedNordmarkMap, StroboscopicMap
-from contact.orbits import born, born_period, settle
+from contact import StroboscopicMap
+from contact.orbits import born, settle
 from studies.calibration import free_period
 from studies.letter import AMPLITUDE_STABILITY, FREE_PERIOD_ERROR_S
-from studies.scene import beam_at, model_of, nordmark_at, read_scene, single_mode_at
+from studies.scene import beam_at, single_mode_at
 from studies.sensitivity.changes import NAMES, PARAMETERS, changed, changes_of, row_at
 from studies.sensitivity.noise import (
     BORN_EXCESS,
@@ -22,16 +24,6 @@ from studies.sensitivity.noise import (
 )
 
 
-@pytest.fixture(scope="module")
-def scene():
-    return read_scene("letter")
-
-
-@pytest.fixture(scope="module")
-def model(scene):
-    return model_of(scene)
-
-
 def single(scene, frequency):
     return StroboscopicMap(oscillator=single_mode_at(scene, frequency))
 
@@ -41,11 +33,13 @@ def change(scene, parameter, sign):
 
 
 @pytest.fixture(scope="module")
-def last(scene, model):
+def last(letter_scene, letter_model):
     """23.40 Hz without a change, and with T at both ends of its error."""
-    base = row_at(scene, model, 23.40)
-    ends = {way: row_at(*changed(scene, change(scene, "free period", way)), 23.40, base) for way in (-1, 1)}
-    return {0: base, **ends}
+    found = {0: row_at(letter_scene, letter_model, 23.40)}
+    for way in (-1, 1):
+        there, model = changed(letter_scene, change(letter_scene, "free period", way))
+        found[way] = row_at(there, model, 23.40, found[0])
+    return found
 
 
 def test_nothing_within_the_error_of_the_free_period_gives_p10_at_grazing(last):
@@ -66,16 +60,9 @@ def test_a_shorter_free_period_deepens_the_hysteresis_in_all_descriptions(last):
         assert ratio == pytest.approx((distance[sign] / distance[0]) ** 2, rel=0.05)
 
 
-def test_the_free_period_at_which_p10_is_born(scene):
-    """The band edge f T = 20/21 in the map itself, on both sides of it."""
-    for period, wanted in ((40.71e-3, 11), (40.69e-3, 10)):
-        there = scene.replace({"single_mode.free_period_s": period})
-        assert born_period(StrobedNordmarkMap(map=nordmark_at(there, 23.40)), 1e-5) == wanted
-    assert 20.0 / (21.0 * 23.40) == pytest.approx(40.70e-3, abs=5e-6)
-
-
-def test_the_steps_that_skip_p11_are_far_above_the_noise(scene, model):
-    for strobed in (single(scene, 23.40), StroboscopicMap(oscillator=beam_at(scene, 23.40, model))):
+def test_the_steps_that_skip_p11_are_far_above_the_noise(letter_scene, letter_model):
+    beam = beam_at(letter_scene, 23.40, letter_model)
+    for strobed in (single(letter_scene, 23.40), StroboscopicMap(oscillator=beam)):
         ten, eleven = first_birth(10, strobed), born(strobed)
         assert 5 * AMPLITUDE_STABILITY < ten < 40 * AMPLITUDE_STABILITY
         # p11 itself, carried along, lives on far above the noise and ends before p10 is born
@@ -83,68 +70,48 @@ def test_the_steps_that_skip_p11_are_far_above_the_noise(scene, model):
         assert settle(strobed.at(ten), eleven.end, most_cycles=4000).period != 11
 
 
-def test_a_changed_spring_keeps_its_period_and_the_rate_of_mode_1(scene, model):
-    period = free_period(scene)
+def test_a_changed_spring_keeps_its_period_and_the_rate_of_mode_1(letter_scene, letter_model):
+    period = free_period(letter_scene)
     for parameter in ("mass of ball and mount", "damping of higher modes"):
-        there, modes = changed(scene, change(scene, parameter, 1))
+        there, modes = changed(letter_scene, change(letter_scene, parameter, 1))
         assert free_period(there) == pytest.approx(period, rel=1e-9)
-        assert modes.decay_rate[0] == pytest.approx(model.decay_rate[0], rel=1e-9)
-    assert modes.decay_rate[1:] == pytest.approx(2.0 * model.decay_rate[1:], rel=1e-12)
-    shorter, _ = changed(scene, change(scene, "free period", -1))
+        assert modes.decay_rate[0] == pytest.approx(letter_model.decay_rate[0], rel=1e-9)
+    assert modes.decay_rate[1:] == pytest.approx(2.0 * letter_model.decay_rate[1:], rel=1e-12)
+    shorter, _ = changed(letter_scene, change(letter_scene, "free period", -1))
     assert free_period(shorter) == pytest.approx(40.78e-3, rel=1e-9)
-    faster, modes = changed(scene, change(scene, "decay rate of mode 1", 1))
+    faster, modes = changed(letter_scene, change(letter_scene, "decay rate of mode 1", 1))
     assert modes.decay_rate[0] == pytest.approx(faster.single_mode.decay_rate_per_s, rel=1e-9)
 
 
-def test_each_parameter_is_lowered_and_raised_but_for_tape_beyond_the_leg(scene):
-    assert len(changes_of(scene.replace({"spring.tape_coverage": 0.5}))) == 2 * len(PARAMETERS)
-    covered = changes_of(scene.replace({"spring.tape_coverage": 1.0}))
+def test_each_parameter_is_lowered_and_raised_but_for_tape_beyond_the_leg(letter_scene):
+    assert len(changes_of(letter_scene.replace({"spring.tape_coverage": 0.5}))) == 2 * len(PARAMETERS)
+    covered = changes_of(letter_scene.replace({"spring.tape_coverage": 1.0}))
     assert [c.sign for c in covered if "coverage" in c.parameter] == [-1]
 
 
-def test_the_fold_of_eq_1_and_map_know_nothing_of_the_higher_modes(scene, model):
-    base = row_at(scene, model, 20.90)
-    row = row_at(*changed(scene, change(scene, "damping of higher modes", 1)), 20.90, base)
+def test_the_fold_of_eq_1_and_map_know_nothing_of_the_higher_modes(letter_scene, letter_model):
+    base = row_at(letter_scene, letter_model, 20.90)
+    row = row_at(*changed(letter_scene, change(letter_scene, "damping of higher modes", 1)), 20.90, base)
     assert (row.fold_map, row.fold_single_mode) == (base.fold_map, base.fold_single_mode)
     assert abs(row.fold_beam / base.fold_beam - 1) > 0.05
 
 
-def test_noise_leaves_p3_with_three_clouds_where_its_points_were(scene):
-    strobed = single(scene, 20.90)
-    raw, impacts = noisy(strobed, "jitter", 400)
-    points, phase = strobed.tip(raw), since_impact(impacts)
-    regular, told_apart = apart(points, impacts, 3)
-    assert regular == 1.0 and told_apart > 5
-    quiet = np.sort(strobed.tip(strobed.at(BORN_EXCESS).orbit(born(strobed).end, 3).points))
-    clouds = sorted((points[phase == j] for j in range(3)), key=np.median)
-    for cloud, point in zip(clouds, quiet, strict=True):
-        assert np.quantile(cloud, 0.05) < point < np.quantile(cloud, 0.95)
-
-
-class Recorder:
-    """A strobed motion that stands still and notes the excesses at which it is driven."""
-
-    def __init__(self, strobed):
-        self.scale, self.asked, self.still = strobed.scale, [], strobed.at(-0.01)
-        self.steady, self.orbit = self.still.steady, self.still.orbit
-
-    def at(self, excess):
-        self.asked.append(excess)
-        return self
-
-
-def test_noise_is_a_quarter_of_a_thousandth_of_the_amplitude_and_drift_remembers_it(scene):
+def test_noise_is_a_quarter_of_a_thousandth_of_the_amplitude_and_drift_remembers_it(letter_scene):
     for kind, correlation in (("jitter", 0.0), ("drift", np.exp(-0.01))):
-        recorder = Recorder(single(scene, 20.90))
-        noisy(recorder, kind, 3800)
-        deviation = (np.array(recorder.asked[-4000:]) - BORN_EXCESS) / AMPLITUDE_STABILITY
+        strobed, asked = single(letter_scene, 20.90), []
+        still = strobed.at(-0.01)  # and notes the excesses at which it is driven
+        noted = SimpleNamespace(scale=strobed.scale, steady=still.steady, orbit=still.orbit)
+        noted.at = lambda excess, noted=noted, asked=asked: asked.append(excess) or noted
+        noisy(noted, kind, 3800)
+        deviation = (np.array(asked[-4000:]) - BORN_EXCESS) / AMPLITUDE_STABILITY
         # drift has 4000/200 independent values
         assert np.std(deviation) == pytest.approx(1.0, abs=0.05 if kind == "jitter" else 0.5)
         assert np.corrcoef(deviation[:-1], deviation[1:])[0, 1] == pytest.approx(correlation, abs=0.05)
 
 
-def test_strobe_points_run_together_and_hysteresis_sinks_below_the_noise_as_m_grows(scene):
-    rows = {m: in_noise(300, ("Eq. (1)", single(scene, frequency_of(scene, m)), m)) for m in (6, 9, 13)}
+def test_strobe_points_run_together_and_hysteresis_sinks_below_the_noise_as_m_grows(letter_scene):
+    places = {m: single(letter_scene, frequency_of(letter_scene, m)) for m in (6, 9, 13)}
+    rows = {m: in_noise(300, ("Eq. (1)", strobed, m)) for m, strobed in places.items()}
     ratio = [jitter.told_apart for jitter, _ in rows.values()]
     assert ratio[0] > 2 > 0.7 > ratio[2]
     assert ratio[0] > ratio[1] > ratio[2]
@@ -174,11 +141,4 @@ def test_small_form(run_study):
     assert ran.code == 0 and len(ran.summary["rows"]) == 2 * (1 + 8)
     assert ran.summary["changes_that_give_the_letters_last_period"] == []
     assert ran.summary["first_period_with_hysteresis_below_noise"] == 9
-    assert ran.summary["verdicts"]["last_period"]["verdict"] == "agrees"
-
-
-@pytest.mark.parametrize(
-    "wrong", [("--set", "drive.kind=none"), ("--set", "spring.kind=modal_data"), ("--periods", "5", "3")]
-)
-def test_wrong_use_is_refused(run_study, wrong):
-    assert run_study("sensitivity", "--quick", *wrong).code == 2
+    assert ran.verdicts["last_period"] == "agrees"

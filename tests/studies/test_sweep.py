@@ -79,15 +79,6 @@ def test_what_is_there_is_not_computed_again(tmp_path):
     assert sorted(made) == sorted([*ARGUMENTS[:5], ARGUMENTS[3]]) and powers_in(columns) == EXPECTED[:5]
 
 
-def test_shards_make_the_whole_and_leave_gaps_until_they_are_there(tmp_path):
-    run = run_in(tmp_path)
-    first = sweep(run, "toy", SETTINGS, ARGUMENTS, Powers(), shard=Shard.of("1/3"))
-    assert [k for k, column in enumerate(first) if column is not None] == list(range(0, 24, 3))
-    for part in ("2/3", "3/3"):
-        columns = sweep(run, "toy", SETTINGS, ARGUMENTS, Powers(), shard=Shard.of(part))
-    assert powers_in(columns) == EXPECTED
-
-
 @pytest.mark.parametrize("text", ["0/2", "3/2", "1", "a/b", "1/0", "-1/2"])
 def test_a_shard_that_is_none_is_refused(text):
     with pytest.raises(ValueError, match="shard"):
@@ -183,11 +174,11 @@ def test_a_column_settles_where_the_same_motion_settles_step_by_step(law):
 
 def test_a_chart_is_the_same_by_shards_and_whole(run_study, tmp_path):
     argv = ["--points", "6", "8", "--cycles", "256"]
-    whole = run_study("chart", *argv)
-    cells = dict(np.load(whole.folder / "chart_single_mode.npz"))
+    whole = run_study("chart", "--quick", *argv)
+    cells = whole.arrays("chart_single_mode")
     for part in ("1/2", "2/2"):
-        assert run_study("chart", *argv, "--fresh" if part == "1/2" else "--quick", "--shard", part).code == 0
+        assert run_study("chart", *argv, *(["--fresh"] if part == "1/2" else []), "--shard", part).code == 0
     again = run_study("chart", *argv)
-    for key, values in dict(np.load(again.folder / "chart_single_mode.npz")).items():
+    for key, values in again.arrays("chart_single_mode").items():
         np.testing.assert_array_equal(values, cells[key])
     assert again.summary["folds"] == whole.summary["folds"] > 0

@@ -9,12 +9,11 @@ from contact import StroboscopicMap, first_collision
 from contact.collision import before_collision
 from contact.orbits import born
 from studies.scene import beam_at, single_mode_of
-from studies.time_trace.spectrum import lines_of, peaks_of
 from studies.time_trace.trace import close_up, trace_of
 
 
 def test_the_orbit_of_figure_4_and_the_ringing_of_its_impact(run_study):
-    ran = run_study("time_trace")
+    ran = run_study("time_trace", "--quick")
     summary = ran.summary
     assert (ran.code, summary["period"], summary["impacts"]) == (0, 4, 1)
     times = summary["impact_times_s"]
@@ -28,7 +27,7 @@ def test_the_orbit_of_figure_4_and_the_ringing_of_its_impact(run_study):
         assert line == pytest.approx(round(line), abs=1e-6)
     amplitudes = [modes[number]["amplitude"] for number in (1, 2, 3, 4, 5)]
     assert amplitudes == sorted(amplitudes, reverse=True)
-    readout = np.load(ran.folder / "time_trace.npz")["readout_m"]
+    readout = ran.arrays("time_trace")["readout_m"]
     half = readout.size // 2
     # the second orbit period repeats the first: a settled orbit, and a spectrum without leakage
     assert np.max(np.abs(readout[half:] - readout[:half])) < 1e-8 * np.max(np.abs(readout))
@@ -36,9 +35,11 @@ def test_the_orbit_of_figure_4_and_the_ringing_of_its_impact(run_study):
 
 
 def test_below_grazing_there_is_no_impact_and_one_line(run_study):
-    found = run_study("time_trace", "--excess", "-0.01").summary
+    ran = run_study("time_trace", "--excess", "-0.01")
+    found, readout = ran.summary, ran.arrays("time_trace")["readout_m"]
     assert (found["period"], found["impacts"], found["collisions"]) == (1, 0, [])
     assert [round(peak["frequency_hz"], 6) for peak in found["peaks"]] == [21.5]
+    assert found["peaks"][0]["amplitude"] == pytest.approx(0.5 * np.ptp(readout), rel=1e-3)
 
 
 def driven(scene, law, excess):
@@ -69,35 +70,3 @@ def test_an_impact_law_has_no_force(letter_scene):
     near = close_up(oscillator, settled.end, trace.collisions[0])
     assert np.all(np.isnan(near.force))
     assert near.spans == [(0.0, 0.0)]
-
-
-def test_lines_of_a_known_sum():
-    time = np.arange(4096) / 4096 * 2.0
-    signal = 0.5 + 3.0 * np.cos(2 * np.pi * 5.0 * time) + 0.2 * np.sin(2 * np.pi * 40.0 * time)
-    frequency, amplitude = lines_of(signal, 2.0)
-    assert amplitude[0] == pytest.approx(0.5)
-    assert amplitude[frequency == 5.0][0] == pytest.approx(3.0)
-    assert amplitude[frequency == 40.0][0] == pytest.approx(0.2)
-    assert np.sum(amplitude > 1e-9) == 3
-
-
-def test_a_peak_belongs_to_the_mode_next_to_it():
-    frequency = np.arange(0.0, 200.0, 1.0)
-    amplitude = np.full(200, 1e-9)
-    amplitude[[20, 95, 104, 150]] = [1.0, 0.1, 0.3, 0.5]
-    told = peaks_of(frequency, amplitude, np.array([21.0, 100.0]), 6.0)
-    assert [(peak.frequency_hz, peak.mode) for peak in told] == [
-        (20.0, 1), (95.0, None), (104.0, 2), (150.0, None),
-    ]  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    "wrong",
-    [("--set", "contact.law=foo"), ("--excess", "-1"), ("--excess", "nan"), ("--frequency", "0"),
-     ("--frequency", "1e6"), ("--set", "drive.kind=none"), ("--colour", "red")],
-)
-def test_wrong_use_is_refused_in_one_sentence(run_study, wrong):
-    ran = run_study("time_trace", *wrong)
-    assert ran.code == 2
-    assert ran.err.splitlines()[-1].startswith("python -m studies.time_trace: ")
-    assert "Traceback" not in ran.err

@@ -55,8 +55,3 @@ def test_the_sampled_motion_stays_before_the_plate_but_for_the_dent_of_the_conta
 def test_it_draws_where_it_is_run(names):
     for suffix in ("png", "pdf"):
         assert (names["run_in"] / "results" / f"tour.{suffix}").stat().st_size > 5000
-
-
-def test_it_is_about_sixty_lines():
-    lines = [line for line in SOURCE.read_text(encoding="utf-8").splitlines() if line.strip()]
-    assert len(lines) <= 70

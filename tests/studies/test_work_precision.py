@@ -37,7 +37,7 @@ from studies.work_precision.problems import (
     linear_beam,
     swung_problem,
 )
-from studies.work_precision.reference import DIGITS, extended_motion
+from studies.work_precision.reference import extended_motion
 
 SCENE = read_scene("letter", [])
 FEW_MODES = SCENE.replace({"modes.count": 4})
@@ -52,13 +52,6 @@ def row(error: float | None, cost: float | None, **more: object) -> Row:
 # -------------------------------------------------------------------------------------------- the reference
 
 
-def free_mass(mass: float, law: ContactLaw) -> ImpactOscillator:
-    """A mass that touches the stop at t = 0."""
-    phi = np.array([1 / math.sqrt(mass)])
-    model = ModalModel(omega=np.zeros(1), decay_rate=np.zeros(1), phi=phi, participation=np.zeros(1))
-    return ImpactOscillator(model=model, stop=Stop(gap=0.0, law=law))
-
-
 def leaf(law: ContactLaw, excess: float = 0.013) -> ImpactOscillator:
     """Three modes near those of the letter's spring."""
     model = ModalModel(
@@ -67,25 +60,6 @@ def leaf(law: ContactLaw, excess: float = 0.013) -> ImpactOscillator:
     )  # fmt: skip
     stop, drive = Stop(gap=0.0107, law=law), HarmonicDrive(frequency=21.5)
     return ImpactOscillator(model=model, stop=stop, drive=drive).with_excess(excess)
-
-
-@pytest.mark.parametrize("digits", DIGITS)
-@pytest.mark.parametrize("law", [LinearContact(stiffness=3.0e4), HertzContact(stiffness=9.6e9)])
-def test_contact_of_a_free_mass(law: ContactLaw, digits: int) -> None:
-    """Half a period on the spring; 2 int dx/sqrt(1 - x^(5/2)) = (4/5) B(2/5, 1/2) times greatest approach
-    over speed under Hertz; the speed reversed, to the digits set."""
-    oscillator, velocity = free_mass(0.006, law), 0.25 * math.sqrt(0.006)
-    start = State(displacement=[0.0], velocity=[velocity])
-    motion = extended_motion(oscillator, start, 0.05, digits)
-    ((begun, ended),) = motion.touches
-    with mp.workdps(digits):
-        phi, k = mp.mpf(float(oscillator.model.phi[0])), mp.mpf(law.numbers[0])
-        v, within = phi * mp.mpf(velocity), mp.mpf(10) ** (5 - digits)
-        greatest = (mp.mpf(5) / 4 * v**2 / (k * phi**2)) ** mp.mpf("0.4")
-        hertz = mp.mpf(4) / 5 * mp.beta(mp.mpf(2) / 5, mp.mpf(1) / 2) * greatest / v
-        lasts = hertz if isinstance(law, HertzContact) else mp.pi / (mp.sqrt(k) * phi)
-        assert begun == 0 and abs(mp.mpf(str(ended)) / lasts - 1) < within
-        assert abs(mp.mpf(str(motion.velocity[0])) / velocity + 1) < within
 
 
 def second_route(
@@ -240,22 +214,14 @@ def test_a_refused_or_slow_setting_is_a_row_with_its_sentence(few: Reference) ->
     assert all(one.error is one.missed is one.us_per_period is None for one in (refused, *rest))
 
 
-def test_every_setting_fits_the_law_of_its_problem() -> None:
-    one = single_mode_at(SCENE, FREQUENCY).with_excess(EXCESS)
-    labels = set()
+def test_every_method_is_compared() -> None:
+    one, names = single_mode_at(SCENE, FREQUENCY).with_excess(EXCESS), set()
     for problem in (driven_problem("one", "", one), driven_problem("hertz", "", hertz_beam(FEW_MODES))):
-        law = problem.oscillator.stop.law.code
-        for quick in (False, True):
-            sweeps = sweeps_for(problem, quick=quick)
-            assert len({sweep.label for sweep in sweeps}) == len(sweeps)
-            assert [sweep.family for sweep in sweeps].count(EXACT) == 1
-            for sweep in sweeps:
-                assert all(setting.method.accepts(law) for setting in sweep.settings)
-                values = [setting.value for setting in sweep.settings]
-                assert len(values) == 1 or all(np.diff(np.array(values, dtype=float)) < 0)
-            labels |= {setting.method.name for sweep in sweeps for setting in sweep.settings}
+        sweeps = sweeps_for(problem)
+        assert [sweep.family for sweep in sweeps].count(EXACT) == 1
+        names |= {setting.method.name for sweep in sweeps for setting in sweep.settings}
     assert {"splitting", "central-difference", "generalised-alpha", "moreau-jean", "sampled-flight",
-            "nonsmooth-generalised-alpha", "outside"} <= labels  # fmt: skip
+            "nonsmooth-generalised-alpha", "outside"} <= names  # fmt: skip
 
 
 def test_crossings_are_missed_by_a_coarse_grid_and_never_by_the_exact_method(few: Reference) -> None:
