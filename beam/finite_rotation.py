@@ -23,12 +23,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import product
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import block_diag, csr_array, diags_array
+from scipy.sparse import block_diag, bsr_array, csr_array, vstack
 
 from .assembly import assemble
 from .modes import COUPLING_TOLERANCE, DENSE_LIMIT, lowest
@@ -133,11 +132,15 @@ class FiniteRotation:
 
     def stiffness(self, densities: NDArray[Any]) -> csr_array:
         """The matrix of `densities` at one x, or of a sum of them over several, (3, 3, n_points)."""
-        parts = [
-            self.strains[i].T @ diags_array(densities[i, j]) @ self.strains[j]
-            for i, j in product(range(3), repeat=2)
-        ]
-        return csr_array(sum(parts[1:], start=parts[0]))
+        points = np.arange(self.axial.size + 1)
+        blocks = bsr_array((np.moveaxis(densities, 2, 0), points[:-1], points))
+        return csr_array(self._by_point.T @ (blocks @ self._by_point))
+
+    @cached_property
+    def _by_point(self) -> csr_array:
+        """a, b and b' point by point, (3 n_points, n_dofs)."""
+        order = np.arange(3 * self.axial.size).reshape(3, -1).T.ravel()
+        return csr_array(vstack(self.strains, format="csr")[order])
 
 
 def _points(piece: PieceMesh) -> tuple[list[csr_array], Array, Array]:

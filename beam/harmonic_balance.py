@@ -89,10 +89,11 @@ class PeriodicMotion:
         turning, x = self._sampled()
         densities, most = self.model.densities(x), int(self.harmonics[-1])
         times = np.arange(len(turning)) / len(turning)
-        between = {
-            k: self.model.stiffness(densities @ np.exp(-2j * np.pi * k * times) / len(turning))
-            for k in range(-2 * most, 2 * most + 1)
-        }
+        between = [
+            self.model.stiffness(densities @ np.exp(-2j * np.pi * k * times) / len(turning))
+            for k in range(2 * most + 1)
+        ]
+        between += [part.conj() for part in between[:0:-1]]  # found at -1, -2, ...: the densities are real
         rate = 1j * self.harmonics * self.omega + growth
         inertia = [factor * self.model.mass for factor in rate * (rate + self.decay_rate)]
         rows = [
