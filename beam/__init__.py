@@ -16,7 +16,9 @@ can touch a stop. This package takes it from drawing to modal model:
 The steps are types: `Material`, `StripSection`, `Centreline`, `LeafSpring`, `Discretization` (finite elements
 in the arc length), `Modes` (mass-normalised), `ModalModel`. Any of them may be made by hand: `single_mode` is
 the classical oscillator with one degree of freedom, and a `ModalModel` of measured numbers is as good as a
-computed one. `exact_modes` solves the frequency equation of the straight beam, to check the elements by.
+computed one. `exact_modes` solves the frequency equation of the straight beam, to check the elements by; and
+`backbone_coefficient` says how the frequency depends on the amplitude, `periodic_motion` how a spring swings
+at finite rotations.
 
 SI units throughout; parameters are keyword-only and frozen, and `dataclasses.replace` varies them. Wrong
 values raise `ValueError` or `TypeError` with a sentence that names the field, the value, the unit and what is

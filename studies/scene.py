@@ -49,7 +49,8 @@ from studies.scene_spring import (
 from studies.scene_values import Scene, doubts, scene_from_text
 
 __all__ = [
-    "READOUT", "Scene", "SceneError", "approach_speed", "band_of", "beam_at", "beyond_linear",
+    "READOUT", "Scene", "SceneError", "approach_speed", "band_margins", "band_of", "beam_at",
+    "beyond_linear",
     "contact_law_of", "corresponding", "damping_of", "elements_of", "free_period", "harmonic", "hertz_of",
     "model_of", "modes_of", "nordmark_at", "periods_of", "read_scene", "require_drive_below", "sections_of",
     "shift_at_gap", "single_mode_at", "single_mode_of", "spring_of",
@@ -187,6 +188,12 @@ def band_of(scene: Scene, period: int) -> Band:
                 restitution=keys.restitution)  # fmt: skip
 
 
+def band_margins(scene: Scene) -> Mapping[float, float]:
+    """Drive frequencies [Hz], and how far the nearest edge of a band of p_m is, relative to each [1]."""
+    edges = [edge for m in LARGEST_BANDS for edge in (band_of(scene, m).lower, band_of(scene, m).upper)]
+    return {f: min(abs(edge / f - 1.0) for edge in edges) for f in scene.drive.frequencies_hz}
+
+
 def beyond_linear(scene: Scene) -> str | None:
     """One sentence if the spring is too nonlinear at the gap for the periods that are born, else None.
 
@@ -196,9 +203,7 @@ def beyond_linear(scene: Scene) -> str | None:
     if scene.drive.kind != "harmonic":
         return None
     shift = shift_at_gap(scene)
-    edges = [edge for m in LARGEST_BANDS for edge in (band_of(scene, m).lower, band_of(scene, m).upper)]
-    nearest = {f: min(abs(edge / f - 1.0) for edge in edges) for f in scene.drive.frequencies_hz}
-    moved = [f"{f:g}" for f, distance in nearest.items() if 2.0 * abs(shift) > distance]
+    moved = [f"{f:g}" for f, distance in band_margins(scene).items() if 2.0 * abs(shift) > distance]
     if not moved:
         return None
     return (

@@ -11,25 +11,37 @@ cancel get no credit; that of the reference itself is added.
 
 Run:     python -m studies.adequacy [--quick]     1 min; --quick 15 s
 Writes:  least.csv (a row a question: the least model, its error, that of the best one a step smaller in one
-         thing), least.png (both errors over the tolerance)
+         thing), least.png (both errors over the tolerance), amplitude.csv (whether a linear spring is enough
+         for the period that is born: what the amplitude of the gap moves, and the distance of a band's edge)
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from studies.adequacy.models import Models
 from studies.adequacy.search import Row, Search
 from studies.least_model import middle_of
 from studies.run import Run, study
-from studies.scene import Scene, harmonic
+from studies.scene import Scene, band_margins, harmonic, shift_at_gap
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 __all__ = ["adequacy", "questions"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class AmplitudeRow:
+    """What the amplitude of the gap moves, 2 |kappa| (gap/L)^2, and the distance of a band's edge [1]."""
+
+    frequency_hz: float
+    moved: float
+    tolerance: float
+    linear: bool
 
 
 @study()
@@ -46,9 +58,15 @@ def adequacy(scene: Scene, run: Run) -> Mapping[str, object]:
             )
     shown = ("quantity", "frequency_hz", "tolerance", "error", "error_one_less", "least")
     run.table("least", rows, "The least model for each question.", show=shown)
+    moved = 2.0 * abs(shift_at_gap(scene))
+    amplitude = [
+        AmplitudeRow(frequency_hz=f, moved=moved, tolerance=margin, linear=moved <= margin)
+        for f, margin in band_margins(scene).items()
+    ]
+    run.table("amplitude", amplitude, "Whether a linear spring is enough for the period that is born.")
     run.figure("least", draw(rows), "Error of the least model for each question over its tolerance, and that "
                "of the best one a step smaller in one thing.")  # fmt: skip
-    return {"rows": rows}
+    return {"rows": rows, "amplitude": amplitude}
 
 
 def questions(scene: Scene, quick: bool) -> list[tuple[str, float]]:

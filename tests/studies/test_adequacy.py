@@ -140,3 +140,6 @@ def test_the_study_leaves_a_row_a_question(run_study):
     ran = run_study("adequacy", "--quick", "--set", "drive.frequencies_hz=[21.5]")
     assert ran.code == 0 and len(ran.summary["rows"]) == 7
     assert all(row["reached"] and row["error"] <= row["tolerance"] for row in ran.summary["rows"])
+    amplitude = ran.summary["amplitude"]
+    assert amplitude[0]["moved"] == pytest.approx(0.01374, rel=2e-3)
+    assert not any(row["linear"] for row in amplitude)
