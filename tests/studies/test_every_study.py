@@ -38,10 +38,12 @@ FEWER = {"work_precision": ("problems_of", lambda scene, modes: problems_of(scen
 
 #: Studies of driven motions, and those that change the dimensions of a spring.
 DRIVEN = (
-    "adequacy", "attractors", "breakdown", "chart", "claims", "effective_impact", "hysteresis", "motion",
-    "sensitivity", "soft_wall", "time_trace", "transitions", "work_precision",
+    "adequacy", "attractors", "breakdown", "chart", "claims", "effective_impact", "finite_amplitude",
+    "hysteresis", "motion", "sensitivity", "soft_wall", "time_trace", "transitions", "work_precision",
 )  # fmt: skip
-ON_A_SPRING = ("breakdown", "calibrate", "effective_impact", "motion", "sensitivity", "spring_shape")
+ON_A_SPRING = (
+    "breakdown", "calibrate", "effective_impact", "finite_amplitude", "motion", "sensitivity", "spring_shape",
+)  # fmt: skip
 
 #: A fit takes hundreds of meshes.
 SLOW = ("calibrate",)
