@@ -156,14 +156,17 @@ class NonlinearMode:
     def effective_period(self) -> float:
         """Free period [s] of the linear mode whose deviations turn as fast under this drive.
 
-        1/(f (1 + theta/2 pi)) with the trace of the monodromy 2 sqrt(det) cos(theta), 0 < theta < pi;
-        NotPeriodic where they do not turn, next to a turning point of the response.
+        1/(f (1 + theta/2 pi)) with the trace of the monodromy 2 sqrt(det) cos(theta), theta between 0 and pi
+        where the tip moves with the force, between -pi and 0 where it moves against it: for free frequencies
+        between half and one and a half times the drive's. NotPeriodic where deviations do not turn, next to
+        a turning point of the response.
         """
         half = 0.5 * np.trace(self.monodromy) / math.sqrt(np.linalg.det(self.monodromy))
         if not abs(half) < 1.0:
             detail = f"deviations from the motion that grazes at {self.frequency:g} Hz do not turn"
             raise NotPeriodic(time=self.grazing[1], gap=0.0, velocity=0.0, detail=detail)
-        return 1.0 / (self.frequency * (1.0 + math.acos(half) / (2.0 * math.pi)))
+        theta = math.copysign(math.acos(half), math.cos(self.numbers[4] * self.grazing[1]))
+        return 1.0 / (self.frequency * (1.0 + theta / (2.0 * math.pi)))
 
     @property
     def effective_decay_rate(self) -> float:

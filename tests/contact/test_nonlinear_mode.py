@@ -42,6 +42,7 @@ def test_without_cubic_terms_it_is_eq_1(frequency: float) -> None:
     one, linear = mode(LINEAR, frequency), oscillator(frequency)
     assert one.effective_period == pytest.approx(40.80e-3, rel=1e-12)
     assert one.effective_decay_rate == pytest.approx(3.56, rel=1e-10)
+    assert mode(LINEAR, 26.0).effective_period == pytest.approx(40.80e-3, rel=1e-12)  # above resonance
     drive = one.grazing[0] / one.numbers[4] ** 2  # the base's amplitude whose inertia pushes as much
     assert drive == pytest.approx(linear.grazing_amplitude(), rel=1e-12)
     settled = [born(strobed, 0.01) for strobed in (one, StroboscopicMap(oscillator=linear))]
