@@ -64,9 +64,9 @@ class StepTooLarge(ContactError):
 
 
 class Diverged(ContactError):
-    """A discretised motion has grown without bound."""
+    """A discretised motion has grown without bound, or one mode beyond the reach of its cubic terms."""
 
-    reason = "the discretised motion grew without bound"
+    reason = "the motion grew without bound"
 
 
 class NotPeriodic(ContactError):

@@ -21,8 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam.parameters import require_within
-from contact.errors import Chatter, NotPeriodic
-from contact.single_mode.taylor import ORDER, free_flow, periods
+from contact.errors import Chatter, Diverged, NotPeriodic
+from contact.single_mode.taylor import CHATTERED, FLOWN, ORDER, free_flow, periods
 from contact.strobed_map import StrobedOrbit
 
 __all__ = ["NonlinearMode"]
@@ -83,7 +83,7 @@ class NonlinearMode:
         require_within("decay_rate", self.decay_rate, "1/s", low=0)
         require_within("restitution", self.restitution, "[1]", low=0, high=1)
         require_within("excess", self.excess, "[1]", above=-1)
-        # beyond the force would fall, or the mass vanish, on the way to the stop
+        # less, and the force would fall, or the mass vanish, on the way to the stop
         for name, least in (("stiffness", -1.0 / 3.0), ("inertia", -1.0)):
             require_within(name, getattr(self, name), "1/m^2", above=least / self.gap**2)
 
@@ -192,13 +192,16 @@ class NonlinearMode:
         Raises
         ------
         Chatter
-            For more than `MOST_IMPACTS` impacts in a period.
+            For more impacts in a period than `taylor.MOST_IMPACTS`.
+        Diverged
+            Where the tip goes so far out that its restoring force would fall.
         """
         points, impacts = np.empty((count, 2)), np.zeros(count, dtype=np.int64)
         x, v = float(state[0]), float(state[1]) * math.sqrt(self.numbers[0])
         force = (1.0 + self.excess) * self.grazing[0]
         stop = float(self.gap), float(self.restitution)
-        failed = periods(self.numbers, force, *stop, x, v, points, impacts)
-        if failed >= 0.0:
-            raise Chatter(time=failed, gap=0.0, velocity=0.0)
+        outcome, time = periods(self.numbers, force, *stop, x, v, points, impacts)
+        if outcome != FLOWN:
+            gap, velocity = self.gap - points[0, 0], points[0, 1] * math.sqrt(self.numbers[0])
+            raise (Chatter if outcome == CHATTERED else Diverged)(time=time, gap=gap, velocity=velocity)
         return StrobedOrbit(end=points[-1].copy(), points=points, impacts=impacts)

@@ -9,6 +9,9 @@ taken as free: a touch is known to that, not to the last digit as for linear mod
 accumulate the first whose rebound stays within ten times that band ends on the stop; the tip leaves it where
 the force on it changes its sign.  Flights work on complex numbers too: an imaginary step gives a derivative
 exact to rounding.
+
+The cubic terms are those of small x: where the restoring force would fall, or the mass vanish, on the way out
+(`reach`), and where a drive period takes more than `MOST_STEPS`, the run ends without a result.
 """
 
 # mypy: allow-untyped-defs, allow-incomplete-defs
@@ -21,7 +24,10 @@ import numpy as np
 from contact.compiled import kernel
 from contact.flight.polynomial_root import first_polynomial_root, horner
 
-__all__ = ["MOST_IMPACTS", "ORDER", "free_flow", "periods"]
+__all__ = ["CHATTERED", "FLOWN", "LOST", "MOST_IMPACTS", "ORDER", "free_flow", "periods"]
+
+FLOWN, CHATTERED, LOST = range(3)
+"""How drive periods end: all of them; impacts beyond `MOST_IMPACTS`; a motion beyond the model."""
 
 ORDER = 22
 """Of the Taylor series: some eight steps for a drive period."""
@@ -32,7 +38,7 @@ SMALL = 1e-16
 GRAZED = 1e-14
 """Heights above the stop that count as none, relative to the gap."""
 
-MOST_IMPACTS = 1000
+MOST_IMPACTS, MOST_STEPS = 1000, 10_000
 """In a drive period."""
 
 
@@ -84,10 +90,19 @@ def step_of(xs, gap, most):
 
 
 @kernel
+def reach(p):
+    """How far the tip may be from its place at rest [m]."""
+    return min(1.0 / math.sqrt(max(-3.0 * p[2], 1e-300)), 1.0 / math.sqrt(max(-p[3], 1e-300)))
+
+
+@kernel
 def free_flow(p, cosine, sine, x, v, start, time, gap, room):
-    """x and x' after `time` [s] without a stop, from the drive's time `start` [s]."""
-    t = 0.0
+    """x and x' after `time` [s] without a stop, from the drive's time `start` [s]; no numbers if lost."""
+    t, steps, most = 0.0, 0, reach(p)
     while t < time:
+        steps += 1
+        if steps > MOST_STEPS or not abs(x) <= most:
+            return x * math.nan, v * math.nan
         series(p, cosine, sine, x, v, p[4] * (start + t), room)
         h = step_of(room[0], gap, time - t)
         x, v = value(room[0], h), value(room[1], h)
@@ -99,16 +114,20 @@ def free_flow(p, cosine, sine, x, v, start, time, gap, room):
 def periods(p, force, gap, restitution, x, v, points, impacts):
     """Drive periods from a strobe: x and x'/W at the strobes into `points`, impacts into `impacts`.
 
-    Returns the time of a period with more than `MOST_IMPACTS` impacts [s], or -1.
+    Returns how they ended, and when [s]; unless FLOWN, the first point is where.
     """
-    size = ORDER + 1
+    size, most = ORDER + 1, reach(p)
     room, height = np.zeros((4, size)), np.zeros(size)
     xs, vs = room[0], room[1]
     period, root = 2.0 * math.pi / p[4], math.sqrt(p[0])
     against = p[0] * (gap + p[2] * gap**3)
     for i in range(impacts.size):
-        t = 0.0
+        t, steps = 0.0, 0
         while t < period:
+            steps += 1
+            if steps > MOST_STEPS or not abs(x) <= most:
+                points[0, 0], points[0, 1] = x, v / root
+                return LOST, i * period + t
             pressed = force * math.cos(p[4] * t) - against
             if x >= gap and pressed > GRAZED * against and v * v <= 20.0 * GRAZED * gap * pressed:
                 # pressed against the stop until the force on it falls below `against`
@@ -127,9 +146,10 @@ def periods(p, force, gap, restitution, x, v, points, impacts):
                 t += hit
                 impacts[i] += 1
                 if impacts[i] > MOST_IMPACTS:
-                    return i * period + t
+                    points[0, 0], points[0, 1] = x, v / root
+                    return CHATTERED, i * period + t
             else:
                 x, v = value(xs, h), value(vs, h)
                 t = period if h >= period - t else t + h
         points[i, 0], points[i, 1] = x, v / root
-    return -1.0
+    return FLOWN, impacts.size * period

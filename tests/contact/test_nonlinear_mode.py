@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from contact import StroboscopicMap
+from contact import Diverged, NotPeriodic, StroboscopicMap
 from contact.nonlinear_mode import NonlinearMode
 from contact.orbits import born, born_period, orbit_diagram
 from tests.contact.one_mode import FREQUENCIES, GAP, oscillator
@@ -143,6 +143,20 @@ def test_a_tip_pressed_against_the_stop_leaves_it_when_the_force_turns() -> None
     one = mode(LEAF, 22.2).at(9.0)
     bouncing = replace(one, restitution=0.8)
     assert 20 < bouncing.orbit(np.array([0.999 * GAP, 0.0]), 1).impacts[0] < 200
+
+
+@pytest.mark.parametrize("start", [(-0.2, -0.3), (0.0, -1e150), (-1e300, 0.0)])
+def test_a_motion_beyond_its_cubic_terms_is_no_number(start: tuple[float, float]) -> None:
+    """A softening mode runs away where its force falls, a stiffening one takes endless steps."""
+    for cubic in (U, LEAF):
+        one = mode(cubic)
+        if cubic == U or abs(start[0]) + abs(start[1]) > 1.0:
+            with pytest.raises(Diverged, match=r"without bound at t = .* m from the stop"):
+                one.orbit(np.array(start), 5)
+    with pytest.raises(Diverged):
+        mode(U).at(30.0).orbit(mode(U).steady(), 50)
+    with pytest.raises(NotPeriodic):
+        mode(U).at(30.0).steady()
 
 
 def test_scans_take_it() -> None:
