@@ -1,6 +1,6 @@
 """How the frequency of a leaf spring depends on its amplitude: the coefficient of its backbone.
 
-Free vibration of mode 1 at the tip amplitude A [m] has the frequency
+Free vibration of mode 1, the first that moves the tip, at the tip amplitude A [m] has the frequency
 
     f = f_0 (1 + kappa (A/L)^2 + ...),                                                            [Hz]
 
@@ -30,10 +30,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import groupby
-from operator import itemgetter
 
-import numpy as np
 from scipy.sparse.linalg import splu
 
 from .centreline import Centreline
@@ -87,10 +84,10 @@ def backbone_coefficient(spring: LeafSpring, elements: int | Sequence[int] | Non
     Raises
     ------
     ValueError
-        If the supports leave a rigid motion, or mode 1 does not move the tip.
+        If the supports leave a rigid motion, or none of the first modes moves the tip.
     """
     model = FiniteRotation.of(spring, elements)
-    stiffness, mass = model.stiffness(model.densities(np.zeros_like(model.tip))), model.mass
+    stiffness, mass = model.linear.stiffness, model.linear.mass
     omega, y = model.first_mode
     kinetic = omega**2 * (y @ (mass @ y))
     a, b, change = (strain @ y for strain in model.strains)
@@ -111,7 +108,8 @@ def backbone_coefficient(spring: LeafSpring, elements: int | Sequence[int] | Non
 def first_straight(line: Centreline) -> float:
     """Length of the first straight run, of one or more pieces [m]; all of the curve if none is straight."""
     bent = [piece.curvature != 0.0 for piece in line.pieces]
-    for curved, run in groupby(zip(bent, line.pieces, strict=True), key=itemgetter(0)):
-        if not curved:
-            return sum(piece.length for _, piece in run)
-    return line.length
+    if all(bent):
+        return line.length
+    begin = bent.index(False)
+    end = [*bent, True].index(True, begin)
+    return sum(piece.length for piece in line.pieces[begin:end])

@@ -22,30 +22,31 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import block_diag, bsr_array, csr_array, vstack
 
-from .assembly import assemble
-from .modes import COUPLING_TOLERANCE, DENSE_LIMIT, lowest
-from .parameters import require, require_kind
+from .assembly import Discretization, assemble
+from .modes import natural_modes
+from .parameters import require
 from .pieces import Field
 from .spring import LeafSpring
-from .strip_element import PieceMesh, bend, stretch
+from .strip_element import bend, stretch
 
 Array = NDArray[np.float64]
 
 
-def rotation(u: Field, w: Field, k: float) -> Field:
-    """b = w' + k u [1]."""
-    return w.grad[0] + k * u
+def _strains(u: Field, w: Field, k: float) -> tuple[Field, ...]:
+    """a, b and b' of an element's functions."""
+    return stretch(u, w, k), w.grad[0] + k * u, bend(u, w, k)
 
 
-STRAINS = (stretch, rotation, bend)
-"""a, b and b' of an element's functions."""
+def _stretched(a: Array, b: Array) -> Array:
+    """e [1], with all digits where a and b are small."""
+    return (a * (2.0 + a) + b**2) / (1.0 + np.hypot(1.0 + a, b))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -54,20 +55,15 @@ class FiniteRotation:
 
     Parameters
     ----------
-    spring : LeafSpring
-    mass : sparse array, shape (n_dofs, n_dofs)
-    base_load, tip : ndarray, shape (n_dofs,)
-        b, and the row that gives the displacement of the tip along the drive, as in `Discretization`.
+    linear : Discretization
+        The model of small motions: K = df/dx at rest, M, b and the row of the tip.
     strains : tuple of three sparse arrays, shape (n_points, n_dofs)
         a, b, b' at Gauss's points of all elements.
     axial, bending : ndarray, shape (n_points,)
         EA and EI there, times the length that a point stands for [N m, N m^3].
     """
 
-    spring: LeafSpring
-    mass: csr_array
-    base_load: Array
-    tip: Array
+    linear: Discretization
     strains: tuple[csr_array, csr_array, csr_array]
     axial: Array
     bending: Array
@@ -75,51 +71,52 @@ class FiniteRotation:
     @classmethod
     def of(cls, spring: LeafSpring, elements: int | Sequence[int] | None = None) -> FiniteRotation:
         """The model of a spring, with so many `elements` on every piece or on each, as for `assemble`."""
-        require_kind("spring", spring, LeafSpring, "a LeafSpring")
         linear = assemble(spring, elements, shortening=True)
-        parts = [_points(piece) for piece in linear.pieces]
-        strains, axial, bending = zip(*parts, strict=True)
-        a, b, change = (block_diag(kind, format="csr") @ linear.ties for kind in zip(*strains, strict=True))
-        return cls(
-            spring=spring, mass=linear.mass, base_load=linear.base_load, tip=linear.tip,
-            strains=(a, b, change), axial=np.concatenate(axial), bending=np.concatenate(bending),
-        )  # fmt: skip
+        kinds, stiff = [], []
+        for piece in linear.pieces:
+            kinds.append(piece.sampling(of=partial(_strains, k=piece.curvature))[1])
+            moduli = piece.section.axial_stiffness, piece.section.bending_stiffness
+            stiff.append(np.multiply.outer(moduli, np.asarray(piece.basis()[0].dx).ravel()))
+        a, b, change = (block_diag(kind, format="csr") @ linear.ties for kind in zip(*kinds, strict=True))
+        axial, bending = np.concatenate(stiff, axis=1)
+        return cls(linear=linear, strains=(a, b, change), axial=axial, bending=bending)
 
     @cached_property
     def first_mode(self) -> tuple[float, Array]:
-        """omega_1 [rad/s] of small motions and the shape of mode 1 with unit tip displacement.
+        """omega_1 [rad/s] and shape, with unit tip displacement, of the first mode that moves the tip.
 
-        ValueError if the supports leave a rigid motion, or mode 1 leaves the tip at rest.
+        ValueError if the supports leave a rigid motion, or none of the first ten modes moves the tip.
         """
-        rigid = self.spring.rigid_motions
+        rigid = self.linear.spring.rigid_motions
         require(not rigid, f"supports leave {rigid} motions without strain [no unit]; they must leave none")
-        stiffness = self.stiffness(self.densities(np.zeros_like(self.tip)))
-        square, shapes = lowest(stiffness, self.mass, 0.0, 1, dense_limit=DENSE_LIMIT)
-        shape, moved = shapes[:, 0], self.tip @ shapes[:, 0]
-        whole = (self.spring.strip_mass + self.spring.tip.mass) / (shape @ (self.mass @ shape))
-        moves = moved**2 * whole > COUPLING_TOLERANCE**2
-        require(moves, "mode 1 of the spring leaves the tip at rest [no unit]; it must move it")
-        return float(np.sqrt(square[0])), shape / moved
+        modes = natural_modes(self.linear, min(10, self.linear.n_dofs))
+        moving = np.flatnonzero(modes.phi)
+        require(moving.size > 0, "none of the first modes moves the tip [no unit]; one of them must")
+        return float(modes.omega[moving[0]]), modes.shapes[:, moving[0]] / modes.phi[moving[0]]
+
+    def _moduli(self, x: Array) -> tuple[Array, Array]:
+        """`axial` and `bending`, to multiply strains of displacements of the shape of x."""
+        return self.axial.reshape(tail := (-1,) + (1,) * (x.ndim - 1)), self.bending.reshape(tail)
 
     def energy(self, x: Array) -> Array:
         """V [J] of displacements x [m], shape (n_dofs, ...)."""
         a, b, change = (strain @ x for strain in self.strains)
-        stretched = np.hypot(1.0 + a, b) - 1.0
+        stretched = _stretched(a, b)
         return 0.5 * (self.axial @ stretched**2 + self.bending @ (change**2 / (1.0 - b**2)))
 
     def force(self, x: Array) -> Array:
         """f = dV/dx [N], of the shape of x."""
         a, b, change = (strain @ x for strain in self.strains)
-        axial, bending = (part.reshape((-1,) + (1,) * (x.ndim - 1)) for part in (self.axial, self.bending))
-        long, left = np.hypot(1.0 + a, b), 1.0 / (1.0 - b**2)
-        pull = axial * (1.0 - 1.0 / long)
+        axial, bending = self._moduli(x)
+        e, left = _stretched(a, b), 1.0 / (1.0 - b**2)
+        pull = axial * e / (1.0 + e)
         stresses = pull * (1.0 + a), pull * b + bending * change**2 * b * left**2, bending * change * left
         return sum(strain.T @ stress for strain, stress in zip(self.strains, stresses, strict=True))
 
     def densities(self, x: Array) -> Array:
         """Second derivatives of the energy of each point in (a, b, b') [N m]; shape (3, 3, n_points, ...)."""
         a, b, change = (strain @ x for strain in self.strains)
-        axial, bending = (part.reshape((-1,) + (1,) * (x.ndim - 1)) for part in (self.axial, self.bending))
+        axial, bending = self._moduli(x)
         long, left = np.hypot(1.0 + a, b), 1.0 / (1.0 - b**2)
         found = np.zeros((3, 3, *a.shape))
         found[0, 0] = axial * (1.0 - b**2 / long**3)
@@ -141,16 +138,3 @@ class FiniteRotation:
         """a, b and b' point by point, (3 n_points, n_dofs)."""
         order = np.arange(3 * self.axial.size).reshape(3, -1).T.ravel()
         return csr_array(vstack(self.strains, format="csr")[order])
-
-
-def _points(piece: PieceMesh) -> tuple[list[csr_array], Array, Array]:
-    """Strains, EA ds and EI ds at the points of a piece."""
-    basis, s = piece.basis()
-    rows, columns = np.tile(np.arange(s.size), basis.Nbfun), np.repeat(basis.element_dofs, s.shape[1], axis=1)
-    found = []
-    for strain in STRAINS:
-        values = [np.broadcast_to(strain(u, w, piece.curvature), s.shape) for u, w in basis.basis]
-        entries = np.array(values).ravel(), (rows, columns.ravel())
-        found.append(csr_array(entries, shape=(s.size, basis.N)))
-    length, section = np.asarray(basis.dx).ravel(), piece.section
-    return found, section.axial_stiffness * length, section.bending_stiffness * length

@@ -10,14 +10,14 @@ their derivatives are sampled at 4 (H + 1) times (T. M. Cameron and J. H. Griffi
 149). Free motion: w and mu are the two numbers, and mu comes out as zero. Driven motion: both parts of Z are.
 
 Deviations e^(lambda t) sum_k d_k e^(i k w t) are those lambda at which the matrix of the same equations, with
-i k w + lambda in place of i k w, is singular (G. W. Hill's method). Mode 1 has the pair nearest to the axis
-from which the effective period comes: that of the one linear mode under the same drive whose deviations turn
-as fast.
+i k w + lambda in place of i k w, is singular (G. W. Hill's method). The effective period is that of the one
+linear mode under the same drive whose deviations turn as fast as those of mode 1.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,7 +66,7 @@ class PeriodicMotion:
     def tip(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
         """Displacement of the tip at `time` [s], [m]."""
         turning = np.exp(1j * self.omega * np.multiply.outer(np.asarray(time), self.harmonics))
-        return (turning @ (self.coefficients @ self.model.tip)).real
+        return (turning @ (self.coefficients @ self.model.linear.tip)).real
 
     def _sampled(self) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
         """e^(i k w t) at the samples, (times, harmonics), and x there, (n_dofs, times)."""
@@ -79,31 +79,34 @@ class PeriodicMotion:
         turning, x = self._sampled()
         model, rate = self.model, 1j * self.harmonics * self.omega
         forces = turning.conj().T @ model.force(x).T / len(turning)
-        forces += (rate * (rate + self.decay_rate))[:, None] * (self.coefficients @ model.mass)
+        forces += (rate * (rate + self.decay_rate))[:, None] * (self.coefficients @ model.linear.mass)
         for k, part in ((1, self.drive), (-1, np.conj(self.drive))):
-            forces[self.harmonics == k] += part * model.base_load
+            forces[self.harmonics == k] += part * model.linear.base_load
         return forces
+
+    @cached_property
+    def _stiffness(self) -> list[csr_array]:
+        """Fourier coefficients of df/dx along the motion, those of order k at [k], -2 H ... 2 H."""
+        turning, x = self._sampled()
+        densities, times = self.model.densities(x), np.arange(len(turning)) / len(turning)
+        found = [
+            self.model.stiffness(densities @ np.exp(-2j * np.pi * k * times) / len(turning))
+            for k in range(len(self.coefficients))
+        ]
+        return found + [part.conj() for part in found[:0:-1]]  # the densities are real
 
     def derivative(self, growth: complex = 0.0) -> csc_array:
         """The matrix of small deviations that grow as e^(growth t), all harmonics end to end."""
-        turning, x = self._sampled()
-        densities, most = self.model.densities(x), int(self.harmonics[-1])
-        times = np.arange(len(turning)) / len(turning)
-        between = [
-            self.model.stiffness(densities @ np.exp(-2j * np.pi * k * times) / len(turning))
-            for k in range(2 * most + 1)
-        ]
-        between += [part.conj() for part in between[:0:-1]]  # found at -1, -2, ...: the densities are real
         rate = 1j * self.harmonics * self.omega + growth
-        inertia = [factor * self.model.mass for factor in rate * (rate + self.decay_rate)]
+        inertia = [factor * self.model.linear.mass for factor in rate * (rate + self.decay_rate)]
         rows = [
-            [between[int(k - j)] + (inertia[i] if k == j else 0.0) for j in self.harmonics]
+            [self._stiffness[int(k - j)] + (inertia[i] if k == j else 0.0) for j in self.harmonics]
             for i, k in enumerate(self.harmonics)
         ]
         return csc_array(block_array(rows))
 
     def exponent(self) -> complex:
-        """The exponent lambda of mode 1, that of the pair whose imaginary part leads to `effective_period`.
+        """The exponent lambda of mode 1, near i (omega_1 - w) - mu/2.
 
         Raises
         ------
@@ -115,7 +118,7 @@ class PeriodicMotion:
         vector[self.harmonics == 1] = self.coefficients[self.harmonics == 1]
         for _ in range(MOST_STEPS):
             rate = 2.0 * (1j * self.harmonics * self.omega + growth) + self.decay_rate
-            pushed = (rate[:, None] * (vector @ self.model.mass)).ravel()
+            pushed = (rate[:, None] * (vector @ self.model.linear.mass)).ravel()
             found = splu(self.derivative(growth)).solve(pushed)
             change = np.vdot(vector, vector) / np.vdot(vector, found)
             growth, vector = growth - change, (found / np.linalg.norm(found)).reshape(vector.shape)
@@ -161,7 +164,7 @@ def periodic_motion(
     require(size != 0.0, f"amplitude is {amplitude} m; it must be finite and not zero")
     most = require_whole("harmonics", harmonics, "[1]", low=1)
     omega, shape = model.first_mode
-    parts = np.zeros((2 * most + 1, model.tip.size), dtype=complex)
+    parts = np.zeros((2 * most + 1, model.linear.tip.size), dtype=complex)
     parts[most - 1] = parts[most + 1] = 0.5 * amplitude * shape
     motion = PeriodicMotion(model=model, omega=omega, decay_rate=0.0, coefficients=parts, drive=0j)
     if frequency is not None:
@@ -178,12 +181,12 @@ def periodic_motion(
 def _newton(motion: PeriodicMotion, amplitude: float, driven: bool) -> tuple[PeriodicMotion, float]:
     """A step of Newton's method, and its relative size."""
     model, k, c = motion.model, motion.harmonics, motion.coefficients
-    moved, size = c @ model.mass, c.size
+    moved, size = c @ model.linear.mass, c.size
     if driven:
-        columns = [np.where(k[:, None] == sign, model.base_load, 0.0) for sign in (1, -1)]
+        columns = [np.where(k[:, None] == sign, model.linear.base_load, 0.0) for sign in (1, -1)]
     else:
         columns = [-2.0 * motion.omega * k[:, None] ** 2 * moved, 1j * motion.omega * k[:, None] * moved]
-    turning = [np.tile(model.tip, k.size), np.repeat(1j * k, model.tip.size) * np.tile(model.tip, k.size)]
+    turning = [np.kron(weights, model.linear.tip) for weights in (np.ones(k.size), 1j * k)]
     bordered = block_array(
         [
             [motion.derivative(), csr_array(np.array([column.ravel() for column in columns]).T)],

@@ -87,14 +87,15 @@ class Piece(ABC):
         return basis, self.start + 0.5 * self.nodes[-1] + np.asarray(basis.global_coordinates())[0]
 
     def sampling(
-        self, local: NDArray[np.float64], elements: NDArray[np.intp] | None = None
-    ) -> tuple[NDArray[np.float64], list[csr_array]]:
-        """Arc lengths [m] and matrices of what `moves`, at `local` points (0 to 1) of the elements."""
+        self, local: NDArray[np.float64] | None = None, elements: NDArray[np.intp] | None = None,
+        of: Callable[..., tuple[Field, ...]] | None = None,
+    ) -> tuple[NDArray[np.float64], list[csr_array]]:  # fmt: skip
+        """Arc lengths [m] and matrices of what `moves`, or of other functions, at the points of `basis`."""
         basis, s = self.basis(local, elements)
         rows = np.tile(np.arange(s.size), basis.Nbfun)
-        columns = np.repeat(basis.element_dofs, local.size, axis=1).ravel()
+        columns = np.repeat(basis.element_dofs, s.shape[1], axis=1).ravel()
         found = []
-        for fields in zip(*(self.motion(*functions) for functions in basis.basis), strict=True):
+        for fields in zip(*((of or self.motion)(*functions) for functions in basis.basis), strict=True):
             entries = np.concatenate([np.broadcast_to(field, s.shape) for field in fields]).ravel()
             found.append(csr_array((entries, (rows, columns)), shape=(s.size, basis.N)))
         return s.ravel(), found

@@ -9,7 +9,18 @@ import pytest
 from numpy.typing import NDArray
 from scipy.sparse.linalg import splu
 
-from beam import BRASS, Arc, Centreline, LeafSpring, Straight, StripSection, Tip, assemble, cantilever
+from beam import (
+    BRASS,
+    Arc,
+    Centreline,
+    LeafSpring,
+    Straight,
+    StripSection,
+    Tip,
+    assemble,
+    cantilever,
+    natural_modes,
+)
 from beam import folded_u as drawn_u
 from beam.backbone import backbone_coefficient
 from beam.finite_rotation import FiniteRotation
@@ -44,18 +55,18 @@ def hook() -> LeafSpring:
 
 def bent(model: FiniteRotation, force: float) -> NDArray[np.float64]:
     """Equilibrium under a force on the tip along the drive, by Newton's method in ten steps of load."""
-    x = np.zeros_like(model.tip)
+    x = np.zeros_like(model.linear.tip)
     for load in np.linspace(0.1, 1.0, 10) * force:
         for _ in range(8):
-            left = model.force(x) - load * model.tip
+            left = model.force(x) - load * model.linear.tip
             x = x - splu(model.stiffness(model.densities(x)).tocsc()).solve(left)
-    assert np.abs(model.force(x) - force * model.tip).max() < 1e-6 * force
+    assert np.abs(model.force(x) - force * model.linear.tip).max() < 1e-6 * force
     return x
 
 
 def test_force_and_stiffness_are_derivatives_of_the_energy() -> None:
     model, rng = FiniteRotation.of(folded_u(), 3), np.random.default_rng(1)
-    x, d = 1e-5 * rng.standard_normal((2, model.tip.size))
+    x, d = 1e-5 * rng.standard_normal((2, model.linear.tip.size))
     h = 1e-3
     after, before = x + h * d, x - h * d
     assert model.force(x) @ d == pytest.approx((model.energy(after) - model.energy(before)) / (2 * h))
@@ -65,9 +76,10 @@ def test_force_and_stiffness_are_derivatives_of_the_energy() -> None:
 
 
 def test_small_motions_are_those_of_the_linear_model() -> None:
-    linear, model = assemble(folded_u(), 6), FiniteRotation.of(folded_u(), 6)
-    same = model.stiffness(model.densities(np.zeros_like(model.tip))) - linear.stiffness
-    assert abs(same).max() < 1e-12 * abs(linear.stiffness).max()
+    model = FiniteRotation.of(folded_u(), 6)
+    linear = model.linear.stiffness
+    same = model.stiffness(model.densities(np.zeros_like(model.linear.tip))) - linear
+    assert abs(same).max() < 1e-12 * abs(linear).max()
 
 
 @pytest.mark.parametrize("load, deflection", [(1.0, 0.30172), (2.0, 0.49346)])
@@ -76,16 +88,16 @@ def test_elastica(load: float, deflection: float) -> None:
     thin = leaf(thickness=0.1e-3)
     model = FiniteRotation.of(thin, 24)
     force = load * thin.sections[0].bending_stiffness / LEG**2
-    assert model.tip @ bent(model, force) / LEG == pytest.approx(deflection, abs=1e-5)
+    assert model.linear.tip @ bent(model, force) / LEG == pytest.approx(deflection, abs=1e-5)
 
 
 def test_restoring_force_of_a_guided_leg() -> None:
     """x + (36/35) x^3 with x = y/L: two cantilevers of half its length."""
     model = FiniteRotation.of(leaf(thickness=0.05e-3), 24)
-    linear = 3.0 * model.spring.sections[0].bending_stiffness / LEG**2
+    linear = 3.0 * model.linear.spring.sections[0].bending_stiffness / LEG**2
     excess = []
     for force in (0.05 * linear, 0.1 * linear):
-        x = model.tip @ bent(model, force) / LEG
+        x = model.linear.tip @ bent(model, force) / LEG
         excess.append((force / linear / x - 1.0) / x**2)
     assert (4 * excess[0] - excess[1]) / 3 == pytest.approx(36 / 35, rel=2e-4)
 
@@ -146,7 +158,7 @@ def test_harmonic_balance_against_time_integration() -> None:
     """A swing of the U comes back after the period found: implicit midpoint rule, steps to the limit."""
     model = FiniteRotation.of(folded_u(), 2)
     motion = periodic_motion(model, 6e-3, harmonics=7)
-    mass = model.mass.toarray()
+    mass = model.linear.mass.toarray()
 
     def end(steps: int) -> NDArray[np.float64]:
         h, x = 2 * np.pi / motion.omega / steps, motion.coefficients.sum(axis=0).real
@@ -158,7 +170,7 @@ def test_harmonic_balance_against_time_integration() -> None:
                 slope = mass + 0.25 * h**2 * model.stiffness(model.densities(middle)).toarray()
                 middle = middle - np.linalg.solve(slope, left)
             x, v = 2 * middle - x, 4 * (middle - x) / h - v
-        return np.array([model.tip @ x, model.tip @ v / motion.omega]) / 6e-3
+        return np.array([model.linear.tip @ x, model.linear.tip @ v / motion.omega]) / 6e-3
 
     coarse, fine = end(100), end(200)
     np.testing.assert_allclose((4 * fine - coarse) / 3, [1.0, 0.0], atol=2e-5)
@@ -179,6 +191,28 @@ def test_deviations_from_a_driven_motion() -> None:
             2 * np.pi / (motion.omega + turning), rel=1e-5 * (amplitude / 1e-3) ** 2 + 1e-8
         )
         assert motion.tip(np.array([0.0]))[0] == pytest.approx(amplitude, rel=1e-9)
+
+
+def test_drive_of_a_small_motion() -> None:
+    """2 |Z| |tip (K - w^2 M + i w mu M)^-1 b| is the amplitude; half a period later the tip is opposite."""
+    model, decay, amplitude = FiniteRotation.of(folded_u(), 8), 3.56, 1e-6
+    motion = periodic_motion(model, amplitude, frequency=22.2, decay_rate=decay, harmonics=2)
+    linear, w = model.linear, motion.omega
+    stiffness = linear.stiffness + (1j * decay * w - w**2) * linear.mass
+    pulled = splu(stiffness.tocsc()).solve(linear.base_load + 0j)
+    assert 2 * abs(motion.drive) * abs(linear.tip @ pulled) == pytest.approx(amplitude, rel=1e-7)
+    times = np.array([0.0, 0.25, 0.5]) * 2 * np.pi / w
+    np.testing.assert_allclose(motion.tip(times) / amplitude, [1.0, 0.0, -1.0], atol=1e-6)
+
+
+def test_mode_1_is_the_first_that_moves_the_tip() -> None:
+    """A U driven along its legs: the sway, lowest by far, leaves the tip at rest along the drive."""
+    along = replace(folded_u(), drive=(1.0, 0.0))
+    modes = natural_modes(assemble(along, 12), 4)
+    omega, _ = FiniteRotation.of(along, 12).first_mode
+    first = np.flatnonzero(modes.phi)[0]
+    assert first > 0 and omega == pytest.approx(modes.omega[first], rel=1e-9)
+    assert np.isfinite(backbone_coefficient(along, 12).kappa)
 
 
 def test_what_has_no_backbone() -> None:
