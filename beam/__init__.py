@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from .section import Layer, StripSection
     from .spring import LeafSpring, Readout, Support, Tip
     from .spring_mesh import BALL, LAYER, STRIP, SpringMesh, solid_spring
-    from .spring_shapes import cantilever, folded_u, straight_strip
+    from .spring_shapes import cantilever, flat_u, folded_u, straight_strip
 else:
 
     def __getattr__(name):
@@ -79,7 +79,7 @@ _NAMES = {
     "section": ("Layer", "StripSection"),
     "spring": ("LeafSpring", "Readout", "Support", "Tip"),
     "spring_mesh": ("BALL", "LAYER", "STRIP", "SpringMesh", "solid_spring"),
-    "spring_shapes": ("cantilever", "folded_u", "straight_strip"),
+    "spring_shapes": ("cantilever", "flat_u", "folded_u", "straight_strip"),
 }
 """Module -> its public names."""
 

@@ -76,20 +76,31 @@ class StripSection:
         Of the bare strip [m], positive and at most the width.
     layer : Layer, optional
         A glued damping layer.
+    slot : float
+        Free space along the middle of the width [m], which b does not count: two legs of b/2 side by side,
+        which bend as one and twist each by itself.
     """
 
     material: Material
     width: float
     thickness: float
     layer: Layer | None = None
+    slot: float = 0.0
 
     def __post_init__(self) -> None:
         require_kind("material", self.material, Material, "a Material, such as BRASS")
+        require_within("slot", self.slot, "m", low=0)
         require_kind("layer", self.layer, (Layer, type(None)), "a Layer or None")
         require_within("width", self.width, "m", above=0)
         require_within("thickness", self.thickness, "m", above=0)
         flat = self.thickness <= self.width
         require(flat, f"thickness is {self.thickness} m; it must not exceed the width {self.width} m")
+
+    @property
+    def bands(self) -> tuple[tuple[float, float], ...]:
+        """Where across the width the strip is [m]: one interval, or two beside a slot."""
+        half, free = 0.5 * (self.width + self.slot), 0.5 * self.slot
+        return ((-half, -free), (free, half)) if free else ((-half, half),)
 
     @property
     def total_thickness(self) -> float:
@@ -111,7 +122,7 @@ class StripSection:
         """GJ [N m^2]."""
         plies, t, y = self._plies()
         shear = np.array([ply.shear_modulus for ply in plies])
-        slender = self.width / t.sum()
+        slender = self.width / len(self.bands) / t.sum()
         n = np.arange(1, 2 * TORSION_TERMS, 2)
         edges = 1.0 - 192.0 / (np.pi**5 * slender) * np.sum(np.tanh(0.5 * n * np.pi * slender) / n**5)
         return float(4.0 * self.width * edges * _second_moments(shear, t, y).sum())

@@ -8,7 +8,7 @@ the width, moves with the cross-section at r, which stays plane and turns by the
 d and theta are the displacement [m] and the rotation [rad] of the centreline, t its tangent. The ball moves
 likewise as one body with the strip at the tip.
 
-Every ply of the strip is a row of hexahedra, the bare strip with its middle on the centreline. The ball is a
+Every ply of the strip, on either side of a slot, is a row of hexahedra, the bare strip with its middle on the centreline. The ball is a
 sphere that touches the strip from the side towards which the drive pushes it, or, where the drive runs along
 the strip, from outside the bend.
 """
@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -113,10 +114,10 @@ def solid_spring(
         edge = 1e-9 * line.length
         inside = (along.s > line.joints[piece] - edge) & (along.s < line.joints[piece + 1] + edge)
         where = np.flatnonzero(inside)
-        for kind, low, high in _plies(section):
-            heights, sides = np.array([low, high, high, low]), np.array([-0.5, -0.5, 0.5, 0.5])
+        for (kind, low, high), sides in product(_plies(section), section.bands):
+            heights, across = np.array([low, high, high, low]), np.repeat(sides, 2)
             corners = heights[:, None] * along.normal[where, None]
-            corners = corners + (sides * section.width)[:, None] * np.array([0.0, 0.0, 1.0])
+            corners = corners + across[:, None] * np.array([0.0, 0.0, 1.0])
             points.append((along.points[where, None] + corners).reshape(-1, 3))
             shapes.append(_turned(along, where[:, None], corners).reshape(along.rotation.shape[0], -1, 3))
             first = count + 4 * np.arange(where.size - 1)

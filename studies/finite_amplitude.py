@@ -102,10 +102,10 @@ class FrameRow:
 
 def reading_of(scene: Scene, reading: str, radius: float, ball: float) -> Scene:
     """The scene with its spring read so, the sheet as thick as the free period asks."""
-    width = scene.spring.width_m * (2 if reading == "side_by_side" else 1)
-    kind = "folded_u" if reading == "folded" else "cantilever"
-    changed = scene.replace({"spring.kind": kind, "spring.bend_radius_m": radius, "tip.mass_kg": ball,
-                             "spring.width_m": width, **COARSE})  # fmt: skip
+    kind = {"folded": "folded_u", "side_by_side": "flat_u"}.get(reading, "cantilever")
+    changed = scene.replace(
+        {"spring.kind": kind, "spring.bend_radius_m": radius, "tip.mass_kg": ball, **COARSE}
+    )
     return calibrate_thickness(changed, scene.single_mode.free_period_s)
 
 

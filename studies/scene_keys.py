@@ -112,33 +112,33 @@ MOST_ELEMENTS = 2000  # of a leg or a bend: a slip of the pen must not fill the 
 class SpringKeys:
     """The leaf spring: a brass strip, with or without a glued damping tape."""
 
-    kind: str = key("folded_u", "", ASSUMED,
+    kind: str = key("flat_u", "", ASSUMED,
         "shape of the spring, or modal_data for modes that were measured",
-        choices=("folded_u", "cantilever", "straight_strip", "modal_data"))
+        choices=("flat_u", "folded_u", "cantilever", "straight_strip", "modal_data"))
     leg_length_m: float = key(0.13, "m", LETTER, "length of one leg, or of a straight strip", low=0.0)
-    bend_radius_m: float = key(0.0075, "m", ASSUMED, "radius of the bend of the folded strip")
-    width_m: float = key(0.012, "m", ASSUMED, "width of the strip")
-    thickness_m: float = key(0.00069683709067, "m", CALIBRATED,
+    bend_radius_m: float = key(0.009, "m", ASSUMED, "radius of the bend of a U, to its middle line")
+    width_m: float = key(0.012, "m", ASSUMED, "width of the strip, or of one leg of a flat_u")
+    thickness_m: float = key(0.0011760560469233, "m", CALIBRATED,
         "thickness of the sheet, from the free period")
     young_modulus_pa: float = key(105e9, "Pa", ASSUMED, "Young's modulus of the sheet (brass)")
     poisson_ratio: float = key(0.34, "1", ASSUMED, "Poisson's ratio of the sheet (brass)")
     density_kg_m3: float = key(8500.0, "kg/m^3", ASSUMED, "density of the sheet (brass)")
     loss_factor: float = key(1e-3, "1", ASSUMED, "loss factor of the sheet (brass)")
     tape_thickness_m: float = key(0.00045, "m", ASSUMED, "thickness of the damping tape; 0 for none")
-    tape_sides: int = key(1, "1", ASSUMED, "faces of the strip that carry the tape", low=1, high=2)
+    tape_sides: int = key(2, "1", ASSUMED, "faces of the strip that carry the tape", low=1, high=2)
     tape_coverage: float = key(1.0, "1", ASSUMED,
         "part of each leg, or of a straight strip, that the tape covers from its start; the bend is bare",
         low=1e-6, high=1.0)
     tape_modulus_pa: float = key(1e9, "Pa", ASSUMED, "Young's modulus of the tape")
     tape_poisson_ratio: float = key(0.40, "1", ASSUMED, "Poisson's ratio of the tape")
     tape_density_kg_m3: float = key(1400.0, "kg/m^3", ASSUMED, "density of the tape")
-    tape_loss_factor: float = key(0.49481929798, "1", CALIBRATED,
+    tape_loss_factor: float = key(0.53907109242132, "1", CALIBRATED,
         "loss factor of the tape, from the decay of mode 1")
     elements_per_leg: int = key(0, "1", ASSUMED,
-        "elements on a leg, or on a straight strip; 0 for the default, 60 on each of two legs or 120 "
-        "on a straight strip", low=0, high=MOST_ELEMENTS)
+        "elements on a leg, or on a straight strip; 0 for the default, 60 on each of two folded legs, "
+        "else 120", low=0, high=MOST_ELEMENTS)
     elements_on_arc: int = key(0, "1", ASSUMED,
-        "elements on the bend; 0 for the default, 48", low=0, high=MOST_ELEMENTS)
+        "elements on the bend of a folded_u; 0 for the default, 48", low=0, high=MOST_ELEMENTS)
     start_support: str = key("clamped", "", ASSUMED,
         "support at the start of a straight strip", choices=SUPPORTS)
     end_support: str = key("free", "", ASSUMED, "support at the end of a straight strip", choices=SUPPORTS)
@@ -148,7 +148,7 @@ class SpringKeys:
 class TipKeys:
     """The ceramic ball with its mount, and the steel plate that it hits."""
 
-    mass_kg: float = key(0.006161452904, "kg", CALIBRATED,
+    mass_kg: float = key(0.0068341900547184, "kg", CALIBRATED,
         "ball and mount, so that mode 1 is stopped (kick 1)")
     rotary_inertia_kg_m2: float = key(0.0, "kg m^2", ASSUMED, "rotary inertia of ball and mount")
     arc_fraction: float = key(1.0, "1", ASSUMED,
@@ -166,7 +166,7 @@ class ReadoutKeys:
     """Where the laser beam meets the spring."""
 
     arc_fraction: float = key(0.4, "1", ASSUMED,
-        "place along the strip: 0 first end, 1 last end; the ball of a folded strip sits at 0.5",
+        "place along the strip: 0 first end, 1 last end; the ball of a folded_u sits at 0.5, of a flat_u at 1",
         low=0.0, high=1.0)
     quantity: str = key("displacement", "", ASSUMED,
         "what is read there: displacement along the drive (m) or rotation of the strip (rad)",
@@ -241,7 +241,7 @@ class DriveKeys:
 class StopKeys:
     """The plate, fixed to the base."""
 
-    gap_m: float = key(0.0106993324, "m", CALIBRATED,
+    gap_m: float = key(0.011883925614219, "m", CALIBRATED,
         "from the ball at rest to the plate; 2 mm of drive at grazing")
 
 

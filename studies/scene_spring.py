@@ -78,9 +78,10 @@ def spring_of(scene: Scene) -> LeafSpring:
             "spring.kind modal_data gives modes without their shapes: this needs a spring that is drawn"
         )
     bare, taped = sections_of(scene)
-    folded, leg = keys.kind == "folded_u", keys.leg_length_m
+    leg = keys.leg_length_m
     ball = scene.make(beam.Tip, {"mass": "tip.mass_kg", "rotary_inertia": "tip.rotary_inertia_kg_m2"})
-    seen_at = scene.readout.arc_fraction * (2.0 * leg + math.pi * keys.bend_radius_m if folded else leg)
+    beyond = {"folded_u": leg + math.pi * keys.bend_radius_m, "flat_u": keys.bend_radius_m}.get(keys.kind, 0.0)
+    seen_at = scene.readout.arc_fraction * (leg + beyond)
     readout = scene.make(beam.Readout, {"quantity": "readout.quantity"}, at=seen_at)
     common: dict[str, Any] = {
         "section": bare, "damped_section": taped, "tip": ball, "readouts": {READOUT: readout},
@@ -88,11 +89,12 @@ def spring_of(scene: Scene) -> LeafSpring:
     }  # fmt: skip
     length = {"length": "spring.leg_length_m"}
 
-    def fold(length: float, radius: float) -> LeafSpring:
-        return beam.folded_u(leg_length=length, bend_radius=radius, **common)
+    def bent(length: float, radius: float) -> LeafSpring:
+        shape = beam.folded_u if keys.kind == "folded_u" else beam.flat_u
+        return shape(leg_length=length, bend_radius=radius, **common)
 
-    if folded:
-        return scene.make(fold, length | {"radius": "spring.bend_radius_m"})
+    if beyond:
+        return scene.make(bent, length | {"radius": "spring.bend_radius_m"})
     if keys.kind == "cantilever":
         return scene.make(beam.cantilever, length, **common)
     held = {"supports": (keys.start_support, keys.end_support), "tip_at": tip.arc_fraction * leg}

@@ -38,7 +38,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ..material import Material
-from ..parameters import require_kind, require_within
+from ..parameters import require, require_kind, require_within
 from ..section import StripSection
 
 
@@ -91,13 +91,13 @@ class SpatialSection:
 
 def upright(section: StripSection) -> SpatialSection:
     """Return the strip with its width out of the plane of the centreline."""
-    require_kind("section", section, StripSection, "a StripSection")
+    section = _unslotted(section)
     return _strip(section, section.bending_stiffness, _edgewise(section))
 
 
 def flat(section: StripSection) -> SpatialSection:
     """Return the strip with its width in the plane of the centreline."""
-    require_kind("section", section, StripSection, "a StripSection")
+    section = _unslotted(section)
     return _strip(section, _edgewise(section), section.bending_stiffness)
 
 
@@ -148,6 +148,13 @@ def channel_centroid(*, width: float, flange: float, thickness: float) -> float:
 
 def _edgewise(section: StripSection) -> float:
     return section.axial_stiffness * section.width**2 / 12.0
+
+
+def _unslotted(section: StripSection) -> StripSection:
+    """The section, refused if it stands for two legs."""
+    require_kind("section", section, StripSection, "a StripSection")
+    require(section.slot == 0.0, f"slot is {section.slot} m; legs side by side need a strip each here")
+    return section
 
 
 def _strip(section: StripSection, in_plane: float, out_of_plane: float) -> SpatialSection:

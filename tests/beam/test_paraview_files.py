@@ -19,6 +19,7 @@ from beam import (
     Tip,
     assemble,
     cantilever,
+    flat_u,
     folded_u,
     natural_modes,
 )
@@ -55,6 +56,24 @@ def test_the_mesh_has_the_masses_of_the_strip_and_the_surface_of_the_ball(modes)
     area = float(sizes["Area"][mesh.part == BALL].sum())
     assert area == pytest.approx(4.0 * math.pi * RADIUS**2, rel=0.02)
     assert np.all(sizes["Volume"][mesh.part != BALL] > 0.0)
+
+
+def test_a_flat_u_is_drawn_with_the_slot_between_its_legs():
+    spring = flat_u(leg_length=0.13, bend_radius=7.5e-3, section=BARE, damped_section=TAPED,
+                    tip=Tip(mass=5e-3))
+    mesh = solid_spring(natural_modes(assemble(spring), 2), ball_radius=RADIUS)
+    sizes = mesh.grid().compute_cell_sizes()
+    volume = [float(sizes["Volume"][mesh.part == part].sum()) for part in (STRIP, LAYER)]
+    assert BRASS.density * volume[0] + DAMPING_TAPE.density * volume[1] == pytest.approx(
+        spring.strip_mass, rel=1e-9
+    )
+    middle = mesh.points[mesh.hexahedra].mean(axis=1)
+    legs, bend = middle[middle[:, 0] < 0.13], middle[middle[:, 0] > 0.13]
+    assert np.unique(np.abs(legs[:, 2]).round(9)).tolist() == [7.5e-3] and np.all(bend[:, 2] == 0.0)
+    edges = np.abs(mesh.points[np.unique(mesh.hexahedra), 2])
+    assert [edges.min(), edges.max()] == pytest.approx([1.5e-3, 13.5e-3], rel=1e-12)
+    faces, part = mesh.surface()
+    assert len(faces) == len(part)
 
 
 def test_the_tape_lies_inside_the_u_and_the_ball_touches_the_bend_from_outside(modes):

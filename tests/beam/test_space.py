@@ -20,6 +20,7 @@ from beam import (
     UniformBeam,
     assemble,
     exact_modes,
+    flat_u,
     folded_u,
     natural_modes,
 )
@@ -267,3 +268,29 @@ def test_sections_and_counts_out_of_range_are_refused():
         channel(material=BRASS, width=1e-3, flange=0.0, thickness=0.6e-3)
     with pytest.raises(ValueError, match="count"):
         spatial_modes(bent(upright(STRIP)), 0)
+
+
+@pytest.mark.parametrize("width, mass", [(12e-3, 0.0), (12e-3, 6e-3), (10e-3, 6e-3)])
+def test_a_flat_u_bends_as_its_legs_do_in_space(width: float, mass: float) -> None:
+    """Half rings twist and bend where the plane model has a plate as wide as the U."""
+    leg, tip = replace(STRIP, width=width), Tip(mass=mass)
+    plane = natural_modes(assemble(flat_u(leg_length=LENGTH, bend_radius=RADIUS, section=leg, tip=tip)), 3)
+    legs = SpatialSpring(
+        centreline=U, sections=3 * (flat(leg),), supports=("clamped", "clamped"), tip=tip, tip_at=MIDDLE,
+        drive=(0.0, 0.0, 1.0),
+    )  # fmt: skip
+    modes = spatial_modes(legs, 12)
+    moving = np.flatnonzero(np.abs(modes.phi) > 0.1)[:3]
+    assert np.all(np.abs(plane.frequencies_hz / modes.frequencies_hz[moving] - 1.0) < [1.5e-3, 4e-3, 5e-3])
+    assert np.all(np.abs(plane.phi / np.abs(modes.phi[moving]) - 1.0) < [2e-3, 0.012, 0.03])
+
+
+def test_two_legs_are_a_strip_each_in_space() -> None:
+    slotted = replace(STRIP, slot=3e-3)
+    for section in (flat, upright):
+        with pytest.raises(ValueError, match=r"slot is 0.003 m; legs side by side need a strip each"):
+            section(slotted)
+    assert slotted.torsional_stiffness == pytest.approx(
+        2.0 * replace(STRIP, width=0.5 * STRIP.width).torsional_stiffness, rel=1e-12
+    )
+    assert slotted.bending_stiffness == STRIP.bending_stiffness

@@ -54,7 +54,7 @@ EQUATION_1 = [
 @cache
 def letters_spring() -> ModalModel:
     """The letter's spring with all modes of its scene."""
-    return model_of(read_scene("letter", []))
+    return model_of(read_scene("tight_fold"))
 
 
 def beam(frequency: float, law: ContactLaw, modes: int = 6, ratio: float | None = None) -> ImpactOscillator:

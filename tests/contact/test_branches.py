@@ -44,7 +44,7 @@ HARD = equation_1(20.90, NewtonRestitution(local_restitution=0.7))
 def test_kicks_foretell_their_own_error(
     ratio: float | None, frequency: float, period: int
 ) -> None:
-    oscillator = beam(frequency, hertz_of(read_scene("letter", [])), ratio=ratio)
+    oscillator = beam(frequency, hertz_of(read_scene("tight_fold")), ratio=ratio)
     family = Shooting(oscillator=oscillator, period=period)
     kicks, unit = family.kicks, oscillator.unit_speed
     errors = []

@@ -60,7 +60,7 @@ class LogisticMap:
 
 @pytest.fixture(scope="module")
 def scene():
-    return read_scene("letter")
+    return read_scene("tight_fold")
 
 
 @pytest.fixture(scope="module")

@@ -52,9 +52,9 @@ def test_fold_and_second_impact_of_equation_1(
 
 
 def test_where_contact_is_soft_a_branch_has_several_folds() -> None:
-    """The letter's spring with 12 modes at 23.05 Hz: a pair of folds close together, found from no kick fold
+    """A folded spring with 12 modes at 23.05 Hz: a pair of folds close together, found from no kick fold
     and from any orbit; below them the branch goes on to the graze of a second touch."""
-    scene = read_scene("letter", ["modes.count=12"])
+    scene = read_scene("tight_fold", ["modes.count=12"])
     oscillator = beam_at(scene, 23.05, model_of(scene))
     family = Shooting(oscillator=oscillator, period=8)
     upper, lower = folds_of(family)
@@ -84,7 +84,7 @@ def test_below_its_lowest_fold_a_branch_can_go_on_to_a_graze() -> None:
     on, stable, to 4.6e-7; there settled motions say so, too."""
     thickness = "spring.thickness_m=0.9439314446e-3"  # the period of the letter, 40.80 ms
     scene = read_scene(
-        "letter", ["modes.count=20", "spring.kind=cantilever", "tip.mass_kg=0.002", thickness]
+        "tight_fold", ["modes.count=20", "spring.kind=cantilever", "tip.mass_kg=0.002", thickness]
     )
     oscillator = beam_at(scene, 23.05, model_of(scene))
     family = Shooting(oscillator=oscillator, period=8)

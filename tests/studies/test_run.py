@@ -93,7 +93,7 @@ def test_a_run_leaves_summary_manifest_tables_and_arrays(tmp_path):
     assert summary["folder"] == str(folder)
     assert summary["settings"]["points"] == 3 and summary["provenance"]["stop.gap_m"] == "calibrated"
     assert set(manifest["files"]) == {path.name for path in folder.iterdir()}
-    assert manifest["parameters"]["stop"]["gap_m"] == 0.0106993324
+    assert manifest["parameters"]["stop"]["gap_m"] == 0.011883925614219
     assert manifest["captions"]["rows.csv"] == "Rows."
     assert manifest["versions"]["numpy"] and {"commit", "dirty"} == set(manifest["git"])
     with (folder / "rows.csv").open() as stream:
@@ -179,7 +179,7 @@ def test_help_prints_the_docstring_and_the_dump_the_scene(tmp_path, capsys):
     assert small.main(["--dump-scene", "--set", "stop.gap_m=0.011"]) == 0
     assert "gap_m = 0.011\n" in capsys.readouterr().out
     assert small.main(["--dump-scene", "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["scene"]["stop"]["gap_m"] == 0.0106993324
+    assert json.loads(capsys.readouterr().out)["scene"]["stop"]["gap_m"] == 0.011883925614219
 
 
 def test_a_traceback_is_there_for_who_asks_for_it(tmp_path, capsys, monkeypatch):
