@@ -13,7 +13,7 @@ K = 10 ... 10^6:
                shooting, against a closed form that goes like K^(-2)
 
 and for the beam with Hertz contact the excess at which the kick leaves the square root, the period doubling
-below it, and whether the letter could have seen that. The equations are derived in `closed_forms`.
+below it, where p1 loses its stability (before, if it rings), and whether the letter could have seen that. The equations are derived in `closed_forms`.
 
 Run:     python -m studies.soft_wall [--decades 1 6] [--quick]     10 s; --quick 5 s
 Writes:  kicks.csv, doublings.csv; figures kick and orbits
@@ -101,20 +101,22 @@ def judge_wall(run: Run, doublings: Sequence[Doubling]) -> None:
 
 
 def judge_beam(run: Run, beam: Beam) -> None:
-    """Whether the letter could have seen the doubling of the beam."""
-    end, stable = beam.doubling_excess, letter.AMPLITUDE_STABILITY
-    if end is None:
+    """Whether the letter could have seen what the beam does at its first touches."""
+    end, lost, stable = beam.doubling_excess, beam.unstable_excess, letter.AMPLITUDE_STABILITY
+    if end is None or lost is None:
         return
     below = "within what the letter could resolve" if end >= stable else (
         f"{stable / end:.0f} times below the letter's amplitude stability, which is why it was not seen"
     )  # fmt: skip
+    turning = f"; a complex pair of multipliers makes p1 unstable from {lost:.2g} on" if beam.turns else ""
     run.verdict("smoothing", "differs" if end >= stable else "in part" if end > UNSEEN else "agrees",
-                found=f"beam: period doubling at {end:.2g}",
+                found=f"beam: period doubling at {end:.2g}{turning}",
                 note=f"the square root is smoothed; its period doubling lies {below}")  # fmt: skip
     if beam.square_root_from is not None and beam.half_excess is not None:
         run.answer("higher_modes", f"The square root holds from an excess of {beam.square_root_from:.1e} on; "
                    f"half of the kick is left at {beam.half_excess:.1e}. Below, the Hertz contact smooths "
-                   f"it, and the period doubling that this brings ends at {end:.1e}, {below}.")  # fmt: skip
+                   f"it, and the period doubling that this brings ends at {end:.1e}, {below}"
+                   f"{turning}.")  # fmt: skip
 
 
 if __name__ == "__main__":

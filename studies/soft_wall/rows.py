@@ -57,6 +57,8 @@ class Beam:
     `plateau`: the kick at Fig. 4, in approach speeds; `half_excess`: where half of it is left;
     `share_at_stability`: what is left at the letter's amplitude stability; `square_root_from`: where the kick
     rises with the power 0.6; `doubling_excess`, `doubling_theory`: of p1, by shooting and in closed form;
+    `unstable_excess`: where p1 is stable no more, by that doubling or, below it, by `turns`, a complex pair of
+    multipliers that leaves the unit circle (Neimark and Sacker's bifurcation, which one mode does not have);
     `born`: (excess, period) raised from -1e-3 in one step, as by an experiment, period 0 for none.
     """
 
@@ -68,6 +70,8 @@ class Beam:
     square_root_from: float | None
     doubling_excess: float | None
     doubling_theory: float | None
+    unstable_excess: float | None
+    turns: bool
     born: tuple[tuple[float, int], ...]
 
 
@@ -90,6 +94,26 @@ def doubling_near(oscillator: ImpactOscillator, peak: float) -> PeriodicOrbit | 
     low, high = speed / SPAN, SPAN * speed
     branch = follow(family, family.at_speed(speed), low=low, high=high, step=math.log(SPAN))
     return next(iter(branch.of_kind("period doubling")), None)
+
+
+def loss_of_stability(oscillator: ImpactOscillator, doubling: PeriodicOrbit) -> tuple[float, bool]:
+    """Excess at which p1, from its first touch up to its `doubling`, is stable no more, and whether a complex
+    pair of multipliers is why."""
+    family, orbit = Shooting(oscillator=oscillator, period=1), doubling
+
+    def largest(speed: float) -> float:
+        nonlocal orbit
+        orbit = family.at_speed(speed, orbit)
+        return float(np.abs(orbit.multipliers).max()) - 1.0
+
+    speeds = doubling.speed * np.geomspace(1.0 - 1e-4, 0.02, 40)
+    sizes = [largest(speed) for speed in speeds.tolist()]
+    outside = np.flatnonzero(np.array(sizes) > 0.0)
+    if not outside.size:
+        return doubling.excess, False
+    last = outside[-1]
+    largest(float(brentq(largest, speeds[last + 1], speeds[last], rtol=1e-6)))
+    return orbit.excess, bool(abs(orbit.multipliers[0].imag) > 1e-6)
 
 
 def doubling_of(wall: SoftWall) -> Doubling:
@@ -122,6 +146,7 @@ def beam_of(scene: Scene, frequency: float, excesses: Sequence[float]) -> tuple[
 
     plateau, closed = collision(letter.TIME_TRACE_EXCESS).kick, hertz_doubling(oscillator)
     doubling = None if closed is None else doubling_near(oscillator, closed[0])
+    lost = (None, False) if doubling is None else loss_of_stability(oscillator, doubling)
     half = zero_of(lambda e: collision(e).kick - 0.5 * plateau, 1e-8, 1e-2)
     strobed = StroboscopicMap(oscillator=oscillator)
     beam = Beam(
@@ -129,7 +154,7 @@ def beam_of(scene: Scene, frequency: float, excesses: Sequence[float]) -> tuple[
         share_at_stability=collision(letter.AMPLITUDE_STABILITY).kick / plateau,
         square_root_from=zero_of(lambda e: power(e) - 0.6, 1e-5, 1e-1),
         doubling_excess=None if doubling is None else doubling.excess,
-        doubling_theory=None if closed is None else closed[1],
+        doubling_theory=None if closed is None else closed[1], unstable_excess=lost[0], turns=lost[1],
         born=tuple((e, born_period(strobed, e)) for e in excesses if e <= 0.01),
     )  # fmt: skip
     kicks = [

@@ -13,7 +13,7 @@ from contact.orbits import Shooting, born_period, settle
 from studies import letter
 from studies.scene import beam_at, read_scene, single_mode_at
 from studies.soft_wall.closed_forms import SoftWall, hertz_doubling, hertz_kick
-from studies.soft_wall.rows import doubling_near, doubling_of
+from studies.soft_wall.rows import doubling_near, doubling_of, loss_of_stability
 
 SCENE = read_scene("letter")
 
@@ -35,8 +35,9 @@ def test_kick_against_simulated_collisions(z):
     off = []
     for hardness in (1e5, 1e7):
         wall = wall_at(22.2, hardness)
-        off.append(abs(measured_kick(wall, wall.peak_of(z)) / wall.kick(wall.peak_of(z)) - 1.0))
-    assert off[0] < 0.05 and off[1] < 0.15 * off[0] + 1e-6
+        peak = wall.peak_of(z)
+        off.append(abs(measured_kick(wall, peak) / wall.kick(peak) - 1.0))
+    assert off[0] < 0.05 and off[1] < 0.15 * off[0] + 2.0 * np.spacing(1.0) / peak  # the peak's rounding
 
 
 @pytest.mark.parametrize("hardness", [1e2, 1e4, 1e6])
@@ -98,27 +99,31 @@ def test_a_soft_enough_wall_keeps_p1_stable():
 # the beam
 
 
-def test_beam_with_hertz_contact():
-    oscillator = beam_at(SCENE.replace({"contact.law": "hertz", "modes.count": 15}), 22.2)
+@pytest.mark.parametrize(("frequency", "turns"), [(21.5, False), (22.2, True)])
+def test_beam_with_hertz_contact(frequency, turns):
+    """At 21.5 Hz p1 doubles; at 22.2 Hz a complex pair leaves the unit circle before it does."""
+    oscillator = beam_at(SCENE.replace({"contact.law": "hertz", "modes.count": 15}), frequency)
     kicks = {e: first_collision(oscillator.with_excess(e)).kick_velocity for e in (1e-7, 1e-6)}
     error = [kick / hertz_kick(oscillator, e) - 1.0 for e, kick in kicks.items()]
-    assert abs(error[0]) < 1e-3 and abs(error[1]) > 3.0 * abs(error[0])
+    assert abs(error[0]) < 2e-3 and abs(error[1]) > 3.0 * abs(error[0])
     peak, closed = hertz_doubling(oscillator)
-    exact = doubling_near(oscillator, peak).excess
+    doubling = doubling_near(oscillator, peak)
+    exact = doubling.excess
     assert exact == pytest.approx(closed, rel=0.02)
     assert exact < 0.02 * letter.AMPLITUDE_STABILITY
-    strobed = StroboscopicMap(oscillator=oscillator)
+    lost, pair = loss_of_stability(oscillator, doubling)
+    assert pair is turns and (0.1 * exact < lost < 0.2 * exact if turns else lost == exact)
     # raised in one step as by an experiment, there is no p1 to be seen at all
-    assert born_period(strobed, 0.3 * exact) == born_period(strobed, 2.0 * exact) == 5
+    strobed = StroboscopicMap(oscillator=oscillator)
+    born = {21.5: 4, 22.2: 5}[frequency]
+    assert born_period(strobed, 0.3 * exact) == born_period(strobed, 2.0 * exact) == born
     # second route: just above, the simulated motion leaves the p1 on which it stays just below
     for factor, stays in ((0.95, True), (1.05, False)):
         family = Shooting(oscillator=oscillator, period=1)
-        unit = 2.0 * math.pi * 22.2 * oscillator.stop.gap
-        orbit = family.at_excess(factor * exact, family.at_speed(1e-3 * unit))
-        strobed = StroboscopicMap(oscillator=oscillator).at(factor * exact)
+        orbit = family.at_excess(factor * lost, family.at_speed(1e-3 * oscillator.unit_speed))
         start = replace(orbit.strobe_state(), time=0.0)
         moved = replace(start, displacement=start.displacement * (1.0 + 1e-9))
-        run = strobed.orbit(moved, 2000).points
+        run = strobed.at(factor * lost).orbit(moved, 4000).points
         drift = float(np.max(np.abs(run[-1] - run[-2]))), float(np.max(np.abs(run[1] - run[0])))
         assert (drift[0] < 0.1 * drift[1]) is stays
 
