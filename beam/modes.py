@@ -137,6 +137,11 @@ def natural_modes(discretization: Discretization, count: int) -> Modes:
     discretization : Discretization
     count : int
         From 1 to the number of degrees of freedom; trust the modes with four or more elements to a half wave.
+
+    Raises
+    ------
+    ValueError
+        Where rounding leaves no modes: lengths of elements that are too far apart.
     """
     require_kind("discretization", discretization, Discretization, "a Discretization, from assemble")
     size = discretization.n_dofs
@@ -146,9 +151,14 @@ def natural_modes(discretization: Discretization, count: int) -> Modes:
         min(sec.bending_stiffness / sec.mass_per_length for sec in spring.sections)
         / spring.centreline.length**4
     )
-    squares, shapes = lowest(
-        discretization.stiffness, discretization.mass, shift, count, dense_limit=DENSE_LIMIT
-    )
+    try:
+        squares, shapes = lowest(
+            discretization.stiffness, discretization.mass, shift, count, dense_limit=DENSE_LIMIT
+        )
+    except np.linalg.LinAlgError as error:
+        sizes = [size for piece in discretization.pieces for size in np.diff(piece.nodes)]
+        told = f"elements are {min(sizes):.3g} to {max(sizes):.3g} m long"
+        raise ValueError(f"{told}; nearer to one another, or no modes are found to rounding") from error
     omega = np.sqrt(np.maximum(squares, 0.0))
     omega[: spring.rigid_motions] = 0.0
     shapes = shapes / np.sqrt(np.einsum("ik,ik->k", shapes, discretization.mass @ shapes))

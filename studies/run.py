@@ -96,7 +96,8 @@ class Study:
             whole = {"schema": SCHEMA, "study": self.name, **values}
             tell(whole if given["json"] else scene.dump().rstrip(), output)
             return DONE
-        doubtful += [sentence for sentence in [beyond_linear(scene)] if sentence]
+        if beyond := beyond_linear(scene):
+            doubtful.append(beyond)
         chosen = {**options, **(self.quick if given["quick"] else {})}
         chosen |= {name: given[name] for name in options if name in given}
         chosen = {name: tuple(v) if isinstance(v, list) else v for name, v in chosen.items()}

@@ -105,6 +105,7 @@ def key(
 
 
 SUPPORTS = ("clamped", "pinned", "guided", "free")
+LONGEST = 1e3  # m
 MOST_ELEMENTS = 2000  # of a leg or a bend: a slip of the pen must not fill the memory
 
 
@@ -115,9 +116,12 @@ class SpringKeys:
     kind: str = key("flat_u", "", ASSUMED,
         "shape of the spring, or modal_data for modes that were measured",
         choices=("flat_u", "folded_u", "cantilever", "straight_strip", "modal_data"))
-    leg_length_m: float = key(0.13, "m", LETTER, "length of one leg, or of a straight strip", low=0.0)
-    bend_radius_m: float = key(0.009, "m", ASSUMED, "radius of the bend of a U, to its middle line")
-    width_m: float = key(0.012, "m", ASSUMED, "width of the strip, or of one leg of a flat_u")
+    leg_length_m: float = key(0.13, "m", LETTER, "length of one leg, or of a straight strip",
+        low=0.0, high=LONGEST)
+    bend_radius_m: float = key(0.009, "m", ASSUMED, "radius of the bend of a U, to its middle line",
+        low=0.0, high=LONGEST)
+    width_m: float = key(0.012, "m", ASSUMED, "width of the strip, or of one leg of a flat_u",
+        high=LONGEST)
     thickness_m: float = key(0.0011760560469233, "m", CALIBRATED,
         "thickness of the sheet, from the free period")
     young_modulus_pa: float = key(105e9, "Pa", ASSUMED, "Young's modulus of the sheet (brass)")

@@ -80,8 +80,8 @@ def spring_of(scene: Scene) -> LeafSpring:
     bare, taped = sections_of(scene)
     leg = keys.leg_length_m
     ball = scene.make(beam.Tip, {"mass": "tip.mass_kg", "rotary_inertia": "tip.rotary_inertia_kg_m2"})
-    beyond = {"folded_u": leg + math.pi * keys.bend_radius_m, "flat_u": keys.bend_radius_m}.get(keys.kind, 0.0)
-    seen_at = scene.readout.arc_fraction * (leg + beyond)
+    beyond = {"folded_u": leg + math.pi * keys.bend_radius_m, "flat_u": keys.bend_radius_m}
+    seen_at = scene.readout.arc_fraction * (leg + beyond.get(keys.kind, 0.0))
     readout = scene.make(beam.Readout, {"quantity": "readout.quantity"}, at=seen_at)
     common: dict[str, Any] = {
         "section": bare, "damped_section": taped, "tip": ball, "readouts": {READOUT: readout},
@@ -89,12 +89,12 @@ def spring_of(scene: Scene) -> LeafSpring:
     }  # fmt: skip
     length = {"length": "spring.leg_length_m"}
 
-    def bent(length: float, radius: float) -> LeafSpring:
+    def bent(length: float, radius: float, bend_radius: float) -> LeafSpring:
         shape = beam.folded_u if keys.kind == "folded_u" else beam.flat_u
-        return shape(leg_length=length, bend_radius=radius, **common)
+        return shape(leg_length=length, bend_radius=bend_radius, **common)
 
-    if beyond:
-        return scene.make(bent, length | {"radius": "spring.bend_radius_m"})
+    if keys.kind in beyond:  # refusals name the bend's radius either way
+        return scene.make(bent, length | dict.fromkeys(("radius", "bend_radius"), "spring.bend_radius_m"))
     if keys.kind == "cantilever":
         return scene.make(beam.cantilever, length, **common)
     held = {"supports": (keys.start_support, keys.end_support), "tip_at": tip.arc_fraction * leg}

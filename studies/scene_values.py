@@ -81,7 +81,7 @@ class Scene:
         try:
             return constructor(**own, **others)
         except (TypeError, ValueError) as error:
-            pattern = rf"\b({'|'.join(keys)})\b( of the [a-z ]+?(?= is | holds ))?"
+            pattern = rf"\b({'|'.join(keys) or '(?!)'})\b( of the [a-z ]+?(?= is | holds ))?"
             raise SceneError(re.sub(pattern, lambda found: keys[found[1]], str(error))) from error
 
     def values(self) -> dict[str, dict[str, object]]:

@@ -44,6 +44,15 @@ class AmplitudeRow:
     linear: bool
 
 
+def amplitude_rows(scene: Scene) -> list[AmplitudeRow]:
+    """One a drive frequency."""
+    moved = 2.0 * abs(shift_at_gap(scene))
+    return [
+        AmplitudeRow(frequency_hz=f, moved=moved, tolerance=margin, linear=moved <= margin)
+        for f, margin in band_margins(scene).items()
+    ]
+
+
 @study()
 def adequacy(scene: Scene, run: Run) -> Mapping[str, object]:
     """Compute, store and draw."""
@@ -58,11 +67,7 @@ def adequacy(scene: Scene, run: Run) -> Mapping[str, object]:
             )
     shown = ("quantity", "frequency_hz", "tolerance", "error", "error_one_less", "least")
     run.table("least", rows, "The least model for each question.", show=shown)
-    moved = 2.0 * abs(shift_at_gap(scene))
-    amplitude = [
-        AmplitudeRow(frequency_hz=f, moved=moved, tolerance=margin, linear=moved <= margin)
-        for f, margin in band_margins(scene).items()
-    ]
+    amplitude = amplitude_rows(scene)
     run.table("amplitude", amplitude, "Whether a linear spring is enough for the period that is born.")
     run.figure("least", draw(rows), "Error of the least model for each question over its tolerance, and that "
                "of the best one a step smaller in one thing.")  # fmt: skip

@@ -9,12 +9,13 @@ from functools import cache
 import numpy as np
 import pytest
 
+from studies.adequacy.__main__ import amplitude_rows
 from studies.adequacy.models import Choice, Models
 from studies.adequacy.search import QUANTITIES, Search, first
 from studies.least_model import least_modes
 from studies.scene import read_scene
 
-LETTER = read_scene("letter")
+LETTER, FOLDED = read_scene("letter"), read_scene("tight_fold")
 #: Of the heavy ball and of the soft contact.
 pytestmark = pytest.mark.filterwarnings(
     "ignore:mass of the tip:beam.SuspiciousValue", "ignore:(youngs|other)_modulus:beam.SuspiciousValue"
@@ -22,7 +23,7 @@ pytestmark = pytest.mark.filterwarnings(
 SOFT = {"tip.ball_young_modulus_pa": 1e6, "tip.plate_young_modulus_pa": 1e6}
 SCENES = {
     "letter": (LETTER, 22.2),
-    "bare tip": (LETTER.replace({"tip.mass_kg": 0.0}), 22.2),
+    "bare tip": (FOLDED.replace({"tip.mass_kg": 0.0}), 22.2),
     "heavy ball": (LETTER.replace({"tip.mass_kg": 0.03}), 14.0),
     "soft contact": (LETTER.replace(SOFT), 22.2),
     "fast drive": (LETTER.replace({"drive.frequencies_hz": (140.0,)}), 140.0),
@@ -32,7 +33,7 @@ SCENES = {
 @cache
 def models_of(name: str) -> Models:
     """The models of a scene, each solved once for all tests."""
-    return Models(SCENES[name][0])
+    return Models(FOLDED if name == "folded" else SCENES[name][0])
 
 
 @cache
@@ -113,7 +114,7 @@ def test_where_nothing_is_enough_it_says_what_remains():
 
 def test_parts_of_the_error_explain_it():
     """The whole is at most the sum of the parts, up to what they do to one another."""
-    search = search_of("kick")
+    search = search_of("kick", name="folded")
     choice = Choice(level="straight", law="linear", modes=10, mesh=6)
     parts = search.parts(choice)
     assert set(parts) == {"level", "law", "modes", "mesh"}
@@ -123,7 +124,7 @@ def test_parts_of_the_error_explain_it():
 
 def test_errors_that_cancel_get_no_credit():
     """One mode and a residual one on two elements come within 0.01 of the restitution, by luck."""
-    search = search_of("restitution")
+    search = search_of("restitution", name="folded")
     choice = Choice(level="straight", law="hertz", modes=1, mesh=2, residual=True)
     assert search.off(choice) < 1e-2 < search.error(choice)
 
@@ -141,5 +142,11 @@ def test_the_study_leaves_a_row_a_question(run_study):
     assert ran.code == 0 and len(ran.summary["rows"]) == 7
     assert all(row["reached"] and row["error"] <= row["tolerance"] for row in ran.summary["rows"])
     amplitude = ran.summary["amplitude"]
-    assert amplitude[0]["moved"] == pytest.approx(0.01374, rel=2e-3)
-    assert not any(row["linear"] for row in amplitude)
+    assert amplitude[0]["moved"] == pytest.approx(3.153e-4, rel=2e-3)
+    assert all(row["linear"] for row in amplitude)
+
+
+def test_a_tight_fold_is_beyond_its_linear_model():
+    rows = amplitude_rows(FOLDED)
+    assert [row.moved for row in rows] == pytest.approx([0.01374] * 6, rel=2e-3)
+    assert not any(row.linear for row in rows)

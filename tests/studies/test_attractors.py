@@ -34,7 +34,7 @@ def test_chaos_slow_transient_and_motion_without_impacts_are_told_apart(letter_s
         kind, exponent = told(strobed.at(-0.02))
         rate = float(strobed.oscillator.model.decay_rate[0])
         assert kind == WITHOUT and exponent * FREQUENCY == pytest.approx(-0.5 * rate, rel=1e-9)
-    kind, exponent = told(beam.at(0.03))
+    kind, exponent = told(beam.at(0.045))
     assert kind == CHAOTIC and exponent > 0.05
     kind, exponent = told(beam.at(0.01), cycles=100, most_cycles=128)
     assert kind in (PERIODIC, NOT_SETTLED) and exponent < 0.0

@@ -35,7 +35,7 @@ def calibrated(scene):
 @pytest.fixture(scope="module")
 def light(scene):
     """Ball and damping of the higher modes with which the state born at grazing has period 6."""
-    return Spring(scene=scene, model=tuned(scene, 0.004), tip_mass_kg=0.004, higher_damping=2.0)
+    return Spring(scene=scene, model=tuned(scene, 0.00425), tip_mass_kg=0.00425, higher_damping=1.5)
 
 
 def test_the_beam_of_fig_5_has_its_period_and_damping_and_keeps_ball_and_gap(scene, letter_scene):
@@ -91,7 +91,7 @@ def test_the_beam_as_calibrated_and_eq_1_are_born_without_a_period(scene, calibr
         assert cell.period == 0 and cell.impacts > 20
 
 
-def test_a_ball_of_4_g_gives_the_letters_p6_and_p3_at_the_end_of_the_downward_scan(light):
+def test_a_lighter_ball_gives_the_letters_p6_and_p3_at_the_end_of_the_downward_scan(light):
     cell = cell_of(light)
     assert (cell.period, cell.impacts) == (6, 3) and -0.09 < cell.fold_p3 < -0.05
     outcome, ways = scanned(("light", light), points=45, cycles=700, early=True)
@@ -122,7 +122,7 @@ def test_small_form(run_study):
     ran = run_study("breakdown", "--quick")
     assert ran.code == 0
     six = ran.summary["cells_with_period_6"]
-    assert (0.004, 2.0) in [(cell["tip_mass_kg"], cell["higher_damping"]) for cell in six]
+    assert (0.004, 1.0) in [(cell["tip_mass_kg"], cell["higher_damping"]) for cell in six]
     assert ran.summary["found"]["tip_mass_kg"] == 0.004
     assert ran.verdicts == dict.fromkeys(("breakdown", "breakdown_p3", "island"), "in part")
     stored = ran.arrays("breakdown")

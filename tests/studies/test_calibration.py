@@ -30,7 +30,7 @@ from studies.scene import (
     spring_of,
 )
 
-LETTER = read_scene("letter")
+LETTER, FOLDED = read_scene("letter"), read_scene("tight_fold")
 PERIOD, RATE = 40.80e-3, 3.56
 COARSE = {"spring.elements_per_leg": 12, "spring.elements_on_arc": 12, "modes.count": 4}
 
@@ -120,16 +120,17 @@ def test_frequencies_repeat_to_rounding_where_the_solver_leaves_more():
 
 
 def test_the_model_keeps_the_coupled_modes_only():
-    modes, model = modes_of(LETTER), model_of(LETTER)
-    assert model.n_modes == modes.coupled.sum() == LETTER.kept_modes < modes.omega.size
+    """Of a folded strip: its breathing modes leave the ball at rest."""
+    modes, model = modes_of(FOLDED), model_of(FOLDED)
+    assert model.n_modes == modes.coupled.sum() == FOLDED.kept_modes < modes.omega.size
     assert modes.coupled[-1] and np.all(model.phi > 0.0)
     np.testing.assert_array_equal(model.omega, modes.omega[modes.coupled])
-    assert model.tip_mass == LETTER.tip.mass_kg and model.static_compliance > 0.0
-    assert modes_of(LETTER, 3).coupled.sum() == 3
+    assert model.tip_mass == FOLDED.tip.mass_kg and model.static_compliance > 0.0
+    assert modes_of(FOLDED, 3).coupled.sum() == 3
 
 
 def test_every_kind_of_spring_makes_a_model_with_a_readout():
-    for kind in ("folded_u", "cantilever", "straight_strip"):
+    for kind in ("flat_u", "folded_u", "cantilever", "straight_strip"):
         model = model_of(LETTER.replace({**COARSE, "spring.kind": kind}))
         assert model.n_modes == 4 and model.readouts[READOUT].shape == (4,)
     data = {"frequencies_hz": [150.0, 24.5], "decay_rates_per_s": [20.0, 3.5], "tip_values": [5.0, 8.0],
@@ -146,8 +147,9 @@ def test_every_kind_of_spring_makes_a_model_with_a_readout():
 
 
 def test_the_readout_sees_the_ball_where_the_ball_is_and_rotation_where_it_is_asked_for():
-    at_ball = model_of(LETTER.replace({**COARSE, "readout.arc_fraction": 0.5}))
-    np.testing.assert_allclose(at_ball.readouts[READOUT], at_ball.phi, rtol=1e-9)
+    for scene, place in ((LETTER, 1.0), (FOLDED, 0.5)):
+        at_ball = model_of(scene.replace({**COARSE, "readout.arc_fraction": place}))
+        np.testing.assert_allclose(at_ball.readouts[READOUT], at_ball.phi, rtol=1e-9)
     tilted = LETTER.replace({**COARSE, "spring.kind": "cantilever", "readout.arc_fraction": 1.0,
                              "readout.quantity": "rotation", "tip.mass_kg": 0.0})
     model = model_of(tilted)
@@ -161,7 +163,7 @@ def test_a_mode_number_beyond_the_mesh_is_refused():
 
 
 def test_scenes_without_tape_have_one_section():
-    scene = LETTER.replace({"spring.tape_thickness_m": 0.0, "damping.kind": "constant_ratio"})
+    scene = FOLDED.replace({"spring.tape_thickness_m": 0.0, "damping.kind": "constant_ratio"})
     assert len(set(spring_of(scene).sections)) == 1
     both = spring_of(LETTER.replace({"spring.tape_sides": 2})).sections[0]
     assert both.total_thickness == pytest.approx(Scene().spring.thickness_m + 2 * 0.00045)

@@ -27,6 +27,7 @@ LOOKED_AT = {
 #: Options that keep a small form small.
 SMALLER = {"stability": ["--families", "false_restitution,accumulation"],
            "finite_amplitude": ["--set", "drive.frequencies_hz=[22.2]"],
+           "spring_shape": ["--set", "modes.count=4", "--set", "spring.elements_per_leg=12"],
            "claims": ["--positions", "3", "--across", "12", "--restitutions", "3", "--inside", "6",
                       "--alphas", "3"],
            "calibrate": ["--set", "modes.count=4", "--set", "spring.elements_per_leg=12"]}  # fmt: skip

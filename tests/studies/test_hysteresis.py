@@ -65,5 +65,5 @@ def test_small_form(run_study):
     assert truncation == pytest.approx(np.exp(np.median(single - of_map)))
     assert off["all_mode_kick"]["worst"] < 1.02 < off["map"]["median"]
     assert ran.verdicts["hysteresis"] == "in part"
-    beside = ran.summary["verdicts"]["neighbour_band"]  # p4 lives on where p3 is born
-    assert beside["verdict"] == "agrees" and beside["note"].startswith("p4 at 2")
+    beside = ran.summary["verdicts"]["neighbour_band"]  # p7 lives on where p6 is born
+    assert beside["verdict"] == "agrees" and beside["note"].startswith("p7 at 22.60")

@@ -11,11 +11,11 @@ from studies.scene import beam_at, read_scene
 
 #: What a search over modes, meshes and laws that followed every orbit found for the letter's scene.
 BY_SEARCH = [
-    ({"born_period": 0.0, "fold": 0.07}, 12),
-    ({"fold": 0.05}, 15),
-    ({"born_period": 0.0, "fold_middle": 0.07}, 12),
+    ({"born_period": 0.0, "fold": 0.07}, 10),
+    ({"fold": 0.05}, 10),
+    ({"born_period": 0.0, "fold_middle": 0.07}, 10),
     ({"frequency 10": 1e-3}, 10),
-    ({"frequency 1": 1e-5, "kick": 0.005}, 15),
+    ({"frequency 1": 1e-5, "kick": 0.005}, 12),
 ]
 
 

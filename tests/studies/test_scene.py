@@ -99,6 +99,7 @@ WRONG = [
     "spring.width_m=-1", "spring.width_m=0", "spring.width_m=nan", "spring.young_modulus_pa=-inf",
     "spring.young_modulus_pa=true", "spring.young_modulus_pa=brass",
     "spring.young_modulus_pa=1" + "0" * 400, "spring.thickness_m=0.013", "spring.bend_radius_m=0.0003",
+    "spring.bend_radius_m=0", "spring.bend_radius_m=-1", "spring.leg_length_m=1e100",
     "spring.poisson_ratio=0.5", "spring.tape_sides=3", "spring.tape_coverage=1.5",
     "spring.tape_modulus_pa=0", "spring.tape_poisson_ratio=-1", "spring.tape_density_kg_m3=0",
     "spring.tape_thickness_m=-1e-4", "spring.density_kg_m3=0", "spring.loss_factor=-0.1",
@@ -235,7 +236,7 @@ def test_measured_modes_from_a_file_beside_the_scene(tmp_path: Path):
 #: A slip of a unit or a value beyond the theory, and a word of the warning that it brings.
 SLIPS = {
     "stop.gap_m=10.7": "gap is 10.7", "stop.gap_m=0.02": "small motion", "spring.leg_length_m=130": "weight",
-    "spring.width_m=12": "width", "spring.thickness_m=0.006": "a bar",
+    "spring.width_m=12 spring.bend_radius_m=9": "width", "spring.thickness_m=0.006": "a bar",
     "spring.bend_radius_m=7.5": "bend_radius", "spring.young_modulus_pa=105": "speed of sound",
     "spring.density_kg_m3=8.5": "speed of sound", "spring.tape_modulus_pa=1": "speed of sound",
     "spring.tape_thickness_m=0.45": "thickness", "spring.tape_loss_factor=49": "loss_factor",

@@ -15,11 +15,12 @@ from beam import (
     UniformBeam,
     assemble,
     exact_modes,
+    flat_u,
     folded_u,
     natural_modes,
 )
 from beam.space import channel_centroid, spatial_modes
-from studies.scene import SceneError, single_mode_of
+from studies.scene import SceneError, read_scene, single_mode_of
 from studies.spring_shape.__main__ import COARSE, shapes_of
 from studies.spring_shape.elasticity import solid_modes
 from studies.spring_shape.rows import error_rows, reading_row
@@ -28,8 +29,13 @@ from studies.spring_shape.swept_mesh import sweep
 
 
 @pytest.fixture(scope="module")
-def shapes(letter_scene):
-    return shapes_of(letter_scene)
+def folded_scene():
+    return read_scene("tight_fold")
+
+
+@pytest.fixture(scope="module")
+def shapes(folded_scene):
+    return shapes_of(folded_scene)
 
 
 @pytest.fixture(scope="module")
@@ -37,14 +43,14 @@ def rows(shapes):
     return {name: reading_row(shape, 5e-4) for name, shape in shapes.items()}
 
 
-def test_every_reading_has_the_free_period_of_the_letter(letter_scene, rows):
-    omega = single_mode_of(letter_scene).omega[0]
+def test_every_reading_has_the_free_period_of_the_letter(folded_scene, rows):
+    omega = single_mode_of(folded_scene).omega[0]
     assert 2.0 * math.pi / math.sqrt(omega**2 - 1.78**2) == pytest.approx(40.80e-3, rel=1e-9)
     for row in rows.values():
         assert 2.0 * math.pi * row.first_bending_hz == pytest.approx(omega, rel=1e-6)
 
 
-def test_the_sheet_of_the_plain_strip_by_the_frequency_equation(letter_scene, shapes):
+def test_the_sheet_of_the_plain_strip_by_the_frequency_equation(folded_scene, shapes):
     shape = shapes["plain"]
     strip = StripSection(material=shape.material, width=shape.width, thickness=shape.thickness)
     beam = UniformBeam(
@@ -53,19 +59,28 @@ def test_the_sheet_of_the_plain_strip_by_the_frequency_equation(letter_scene, sh
         mass_per_length=strip.mass_per_length,
         tip_mass=shape.tip.mass,
     )
-    assert exact_modes(beam, 1).omega[0] == pytest.approx(single_mode_of(letter_scene).omega[0], rel=1e-6)
+    assert exact_modes(beam, 1).omega[0] == pytest.approx(single_mode_of(folded_scene).omega[0], rel=1e-6)
 
 
-def test_the_sheet_of_the_folded_strip_by_the_plane_model(letter_scene, shapes):
+def test_the_sheet_of_the_folded_strip_by_the_plane_model(folded_scene, shapes):
     shape = shapes["folded"]
     strip = StripSection(material=shape.material, width=shape.width, thickness=shape.thickness)
     spring = folded_u(leg_length=shape.length, bend_radius=shape.bend_radius, section=strip, tip=shape.tip)
     assert natural_modes(assemble(spring), 1).omega[0] == pytest.approx(
-        single_mode_of(letter_scene).omega[0], rel=1e-4
+        single_mode_of(folded_scene).omega[0], rel=1e-4
     )
     assert shape.thickness == pytest.approx(
-        letter_scene.spring.thickness_m, rel=2e-3
-    )  # the letter_scene has its tape on
+        folded_scene.spring.thickness_m, rel=2e-3
+    )  # the scene has its tape on
+
+
+def test_the_sheet_of_legs_side_by_side_by_the_plane_model(folded_scene, shapes):
+    shape = shapes["side_by_side"]
+    strip = StripSection(material=shape.material, width=shape.width, thickness=shape.thickness)
+    spring = flat_u(leg_length=shape.length, bend_radius=shape.bend_radius, section=strip, tip=shape.tip)
+    assert natural_modes(assemble(spring), 1).omega[0] == pytest.approx(
+        single_mode_of(folded_scene).omega[0], rel=1e-3
+    )
 
 
 def test_the_table_says_what_the_study_claims(rows):
@@ -73,15 +88,17 @@ def test_the_table_says_what_the_study_claims(rows):
     assert ratio["plain"] > ratio["folded"] > ratio["side_by_side"] > ratio["channel"]
     assert ratio["folded"] == pytest.approx(16.6, abs=0.2)
     assert ratio["side_by_side"] == pytest.approx(7.8, abs=0.2)
+    turn = {name: row.turn_of_twist for name, row in rows.items()}
+    assert 10.0 * turn["side_by_side"] < turn["plain"] and 4.0 * turn["side_by_side"] < turn["folded"]
     for row in rows.values():
         assert row.tip_value_twist < 1e-4 * row.tip_value_bending
         assert row.tip_value_twist_off_line > 10.0 * row.tip_value_twist
         assert row.ratio <= row.ratio_twist and row.compliance_share_off_line < 1e-3
 
 
-def test_a_mount_with_rotary_inertia_lowers_the_twist_of_the_plain_strip_most(letter_scene, shapes, rows):
+def test_a_mount_with_rotary_inertia_lowers_the_twist_of_the_plain_strip_most(folded_scene, shapes, rows):
     """Of a ball of the mass and of brass, of all bodies of one material the one of least inertia."""
-    mass = letter_scene.tip.mass_kg
+    mass = folded_scene.tip.mass_kg
     mount = Tip(mass=mass, rotary_inertia=0.4 * mass * (3.0 * mass / (4.0 * math.pi * 8500.0)) ** (2.0 / 3.0))
     assert 5e-8 < mount.rotary_inertia < 1e-7
     fall = {}
@@ -139,14 +156,14 @@ def test_a_channel_against_a_solid(shapes):
     assert np.abs(blind.frequencies_hz[blind.out_of_plane > 0.5][:2] / f - 1.0).max() > 0.05
 
 
-def test_a_channel_twists_as_high_as_the_folded_strip_only_with_low_flanges(letter_scene, rows):
-    thin, thick = (reading_row(shapes_of(letter_scene, sheet)["channel"], 5e-4) for sheet in (0.5, 0.75))
+def test_a_channel_twists_as_high_as_the_folded_strip_only_with_low_flanges(folded_scene, rows):
+    thin, thick = (reading_row(shapes_of(folded_scene, sheet)["channel"], 5e-4) for sheet in (0.5, 0.75))
     assert thin.ratio_twist < rows["folded"].ratio_twist < thick.ratio_twist
     assert thin.flange_m > 2.0 * thin.thickness_m and thick.flange_m < thick.thickness_m
 
 
-def test_shapes_that_cannot_be_are_refused(letter_scene):
+def test_shapes_that_cannot_be_are_refused(folded_scene):
     with pytest.raises(SceneError, match="bend_radius_m"):
-        shape_of(letter_scene.replace({"spring.width_m": 0.016}), "side_by_side")
+        shape_of(folded_scene.replace({"spring.width_m": 0.016}), "side_by_side")
     with pytest.raises(SceneError, match="no flange between"):
-        brought_to(shape_of(letter_scene, "channel"), 2.0 * math.pi * 5.0)
+        brought_to(shape_of(folded_scene, "channel"), 2.0 * math.pi * 5.0)

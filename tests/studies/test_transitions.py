@@ -61,15 +61,15 @@ def test_the_beams_p8_ends_where_another_touch_grazes(letter_scene, letter_model
     assert end.kind == "grazing" and end.lost < end.excess < end.held
     lowest = lowest_of(Shooting(oscillator=strobed.oscillator, period=8))
     assert (lowest.kind, lowest.orbit.excess) == ("grazing", pytest.approx(end.excess, rel=1e-8))
-    assert end.excess == pytest.approx(1.309e-6, rel=1e-3)
+    assert end.excess == pytest.approx(1.3799e-6, rel=1e-3)
     seen = {}
-    for excess in (2e-6, 1.32e-6, 1.30e-6, 1e-6, 3e-7, 1e-7):
+    for excess in (2e-6, 1.39e-6, 1.37e-6, 1e-6, 3e-7, 1e-7):
         settled = settle(
             strobed.at(excess), end.state, most_cycles=6000, tolerance=1e-3 * excess, prove=False
         )
         seen[excess] = settled.period, settled.impacts
     assert seen == {
-        2e-6: (8, 1), 1.32e-6: (8, 1), 1.30e-6: (8, 2), 1e-6: (1, 1), 3e-7: (1, 1), 1e-7: (1, 1),
+        2e-6: (8, 1), 1.39e-6: (8, 1), 1.37e-6: (8, 2), 1e-6: (1, 1), 3e-7: (1, 1), 1e-7: (1, 1),
     }
 
 
@@ -103,7 +103,7 @@ def test_rows_have_the_promised_keys_and_every_amplitude_says_whether_it_settled
                      "beam_linear", "excess_down_beam_linear", "grazing_amplitude_m"} == row.keys()
     assert (row["letter"], row["map"], row["single_mode"], row["beam"]) == (5, 5, 5, 5)
     assert row["exact_map"] == pytest.approx(row["excess_down_map"], rel=1e-9)
-    assert ran.summary["modes"] == 12 and ran.verdicts["p5"] == "agrees"
+    assert ran.summary["modes"] == 10 and ran.verdicts["p5"] == "agrees"
     cells = ran.rows("orbit_diagram")
     assert len(cells) == 3 * 2 * 21
     for cell in cells:
