@@ -8,9 +8,9 @@ the width, moves with the cross-section at r, which stays plane and turns by the
 d and theta are the displacement [m] and the rotation [rad] of the centreline, t its tangent. The ball moves
 likewise as one body with the strip at the tip.
 
-Every ply of the strip, on either side of a slot, is a row of hexahedra, the bare strip with its middle on the centreline. The ball is a
-sphere that touches the strip from the side towards which the drive pushes it, or, where the drive runs along
-the strip, from outside the bend.
+Every ply of the strip, on either side of a slot, is a row of hexahedra, the bare strip with its middle on the
+centreline. The ball is a sphere that touches the strip from the side towards which the drive pushes it, or,
+where the drive runs along the strip, from outside the bend.
 """
 
 from __future__ import annotations

@@ -3,12 +3,12 @@
 The folded U: two legs, parallel to x and 2 r apart, clamped at x = 0; a semicircle of radius r [m] joins
 them, with the ball in its middle; driven along y (sway), across the legs and in the plane of the U.
 
-The flat U: cut out of the sheet, its legs side by side, clamped at x = 0 and driven along y, across the sheet.
-They bend as one strip with a slot. The bend, a half ring of radius r and width b, is taken as a plate of its
-area as wide as the U, 2 r + b; the ball sits where the apex is, at r from the legs. Against the U as a strip
-in space (``beam.space``), with b = 12 mm, r = 9 mm and legs of 130 mm, the first four frequencies are then
-within 1 % (0.02, 0.1, 0.4, 1), displacements of the tip within 3 % (0.01, 0.03, 0.7, 2.6); with r = 1.25 b
-these are 1 to 4 and 1 to 6 %.
+The flat U: cut out of the sheet, its legs side by side, clamped at x = 0 and driven along y, across the
+sheet. They bend as one strip with a slot. The bend, a half ring of radius r and width b, is taken as a plate
+of its area as wide as the U, 2 r + b; the ball sits where the apex is, at r from the legs. Against the U as a
+strip in space (``beam.space``), with b = 12 mm, r = 9 mm and legs of 130 mm, the first four frequencies are
+then within 1 % (0.02, 0.1, 0.4, 1), displacements of the tip within 3 % (0.01, 0.03, 0.7, 2.6); with r = 1.25
+b these are 1 to 4 and 1 to 6 %.
 
 The straight strip runs along x from x = 0 and is driven along y. A cantilever is one that is clamped there,
 free at the other end, and carries the tip at that end.

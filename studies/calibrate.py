@@ -32,7 +32,7 @@ class Fitted:
     after: float
 
 
-@study(needs={"frequency 1": 1e-5, "kick": 0.005})
+@study(needs={"frequency 1": 1e-5, "kick": 0.002})
 def calibrate(scene: Scene, run: Run) -> Mapping[str, object]:
     """Fit, report and write the scene."""
     targets = Targets(

@@ -1,6 +1,6 @@
 """A spring in motion, seen in space: one picture after another, as gif, as mp4 and as meshes for ParaView.
 
-    scenery = Scenery.of(modes, ball_radius=2.5e-3, gap=0.0107, swing=0.012)
+    scenery = Scenery.of(modes, ball_radius=2.5e-3, gap=0.0119, swing=0.013)
     with stage_of(scenery) as stage:
         pictures = [stage(moment) for moment in moments]
     write_gif(run.path("motion.gif"), pictures, rate=20.0, samples=pictures[:1])
@@ -64,8 +64,8 @@ WALL = 0.004
 DRIVE = np.array([0.0, 1.0, 0.0])
 """Direction in which the base of every scene moves; x runs along the spring, z across the strip."""
 
-TOWARDS_VIEWER = np.array([0.20, -0.35, 0.91])
-"""From above, a little from the side on which the plate is not, so that the gap is seen open."""
+TOWARDS_VIEWER = np.array([0.20, 0.30, 0.93])
+"""Across the strip, a little from the side of the ball, which a wide strip would hide."""
 
 COLOURS = {STRIP: "#D0A62B", LAYER: "#4A4A4A", BALL: "#E9EDF2"}
 PLATE, TOUCHED = "#8C9AA8", "#FF7A1A"
@@ -187,15 +187,16 @@ def _painter(scenery: Scenery) -> Stage:
     """Pictures by matplotlib: the strip in its plane, ball and plate as outlines."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
-    from matplotlib.patches import Rectangle
+    from matplotlib.patches import Circle, Rectangle
 
     mesh, dots = scenery.mesh, 100
     figure = Figure(figsize=(WIDTH / dots, HEIGHT / dots), dpi=dots)
     canvas, axes = FigureCanvasAgg(figure), figure.add_axes((0.0, 0.0, 1.0, 1.0))
     rows = mesh.hexahedra[mesh.part[: len(mesh.hexahedra)] == STRIP]
+    rows = rows[mesh.points[rows].mean(axis=1)[:, 2] > -1e-9]  # of two legs side by side one hides the other
     ball = np.unique(mesh.triangles)
     (strip,) = axes.plot([], [], color=COLOURS[STRIP], linewidth=2.5)
-    (spot,) = axes.plot([], [], "o", color="0.5", markersize=9.0)
+    spot = axes.add_patch(Circle((0.0, 0.0), 0.5 * float(np.ptp(mesh.points[ball, 2])), color="0.5"))
     low, high = scenery.plate if scenery.plate is not None else np.zeros((2, 3))
     plate = axes.add_patch(Rectangle(low[:2], *(high - low)[:2], visible=scenery.plate is not None))
     centre, reach = scenery.room.mean(axis=0)[:2], np.ptp(scenery.room, axis=0)
@@ -206,7 +207,7 @@ def _painter(scenery: Scenery) -> Stage:
     def picture(moment: Moment) -> Picture:
         points = mesh.points + moment.points + moment.base
         strip.set_data(*points[rows].mean(axis=1)[:, :2].T)
-        spot.set_data(*points[ball].mean(axis=0)[:2, None])
+        spot.set(center=points[ball].mean(axis=0)[:2])
         plate.set(xy=(low + moment.base)[:2], color=TOUCHED if moment.touched else PLATE)
         canvas.draw()
         return np.asarray(canvas.buffer_rgba(), dtype=np.uint8)[..., :3].copy()

@@ -1,7 +1,7 @@
 """Whether a linear spring is enough at the amplitude of the gap, for each reading of "U shaped".
 
-Claim: a folded U with a tight bend softens so much at 11 mm that it loses the letter's periods; a single leaf,
-legs side by side or a wide bend keep them.
+Claim: a folded U with a tight bend softens so much at 11 mm that it loses the letter's periods; a single
+leaf, legs side by side or a wide bend keep them.
 
     f = f_0 (1 + kappa (A/L)^2)   of the spring (``beam.backbone_coefficient``), L the leg
     effective period              of small deviations from the motion that grazes (``contact.NonlinearMode``),
@@ -70,8 +70,9 @@ class Row:
     """One spring; lists go with the scene's drive frequencies. Born period 0: not settled; nothing: no motion
     that grazes, or one whose deviations do not turn, as next to a turning point of the response.
 
-    `survive` says how many of the letter's periods are born both at 2.5e-4 and at 1e-3; `frame` whether the
-    frame was solved, whose effective period then counts where it differs by more than 0.005 ms.
+    `shift`: kappa (gap/L)^2, L the straight run; `survive` says how many of the letter's periods are born
+    both at 2.5e-4 and at 1e-3; `frame` whether the frame was solved, whose effective period then
+    counts where it differs by more than 0.005 ms.
     """
 
     reading: str
@@ -81,6 +82,7 @@ class Row:
     kappa: float
     kappa_elastic: float
     kappa_inertial: float
+    shift: float
     effective_period_s: tuple[float | None, ...]
     born_period: tuple[int | None, ...]
     born_2p5e_4: tuple[int | None, ...]
@@ -206,6 +208,7 @@ class Spring:
         return Row(
             reading=self.reading, bend_radius_m=self.radius, gap_m=scene.stop.gap_m, tip_mass_kg=self.ball,
             kappa=backbone.kappa, kappa_elastic=backbone.elastic, kappa_inertial=backbone.inertial,
+            shift=backbone.kappa * (scene.stop.gap_m / backbone.length) ** 2,
             effective_period_s=tuple(effective), born_period=middle, born_2p5e_4=low, born_1e_2=high,
             survive=sum(a == b == c for a, b, c in zip(wanted, low, middle, strict=True)), frame=frame,
         )  # fmt: skip
@@ -245,12 +248,17 @@ def draw(scene: Scene, rows: Sequence[Row]) -> Figure:
                 place = 1e3 * row.bend_radius_m, 1e3 * row.gap_m
                 chart.scatter(*place, s=120, color=plotting.tint(plotting.BLUE, row.survive / 6))
                 chart.annotate(str(row.survive), place, ha="center", va="center")
+        chart.set_xscale("log")
+        ticks = [1e3 * radius for radius in (RADII[0], 7.5e-3, 15e-3, 25e-3, RADII[-1])]
+        chart.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+        chart.set_xticks([], minor=True)
+        chart.margins(0.08, 0.12)
         plotting.label(chart.xaxis, "bend radius", "mm")
         plotting.label(chart.yaxis, "gap", "mm")
         for n, reading in enumerate(("folded", *STRAIGHT)):
             own = [row for row in rows if row.reading == reading]
-            shift = [abs(row.kappa) * (row.gap_m / scene.spring.leg_length_m) ** 2 for row in own]
             words = reading.replace("_", " ")
+            shift = [abs(row.shift) for row in own]
             axis.plot(shift, [row.survive for row in own], **plotting.points(n), label=words)
         axis.set_xscale("log")
         plotting.label(axis.xaxis, "|kappa| (gap/L)^2", "1")

@@ -1,7 +1,7 @@
 """Natural modes of the spring: what they look like, and what an impact sees of them.
 
-Claim: the folded strip has two kinds of modes. Sway modes move the ball towards the stop; breathing modes
-move it along the legs at most, and take no part in the impacts.
+Claim: with legs side by side every bending mode moves the ball towards the stop. A folded strip has two kinds
+of modes: sway modes do, breathing modes move the ball along the legs at most, and take no part in impacts.
 
     K x = omega^2 M x      for the elements of the strip, shapes of unit modal mass
 

@@ -170,7 +170,7 @@ class ReadoutKeys:
     """Where the laser beam meets the spring."""
 
     arc_fraction: float = key(0.4, "1", ASSUMED,
-        "place along the strip: 0 first end, 1 last end; the ball of a folded_u sits at 0.5, of a flat_u at 1",
+        "place along the strip: 0 first end, 1 last; the ball of a folded_u sits at 0.5, of a flat_u at 1",
         low=0.0, high=1.0)
     quantity: str = key("displacement", "", ASSUMED,
         "what is read there: displacement along the drive (m) or rotation of the strip (rad)",

@@ -23,7 +23,7 @@ def test_the_code_block_runs_and_says_what_its_comments_promise(capsys):
     exec(compile(block, "README.md", "exec"), names)
     said = capsys.readouterr().out.splitlines()
     frequencies = [float(word) for word in re.findall(r"[\d.]+", said[0])]
-    assert frequencies == pytest.approx([24.5, 149, 378, 718], rel=2e-3)
+    assert frequencies == pytest.approx([24.6, 174, 513, 1038], rel=2e-3)
     assert said[1] == "5 1"
     restitution, delay, kick = map(float, said[2].split())
     assert 0 < restitution < 0.6 and 0 < delay < 1e-3 and 0.5 < kick < 1.2

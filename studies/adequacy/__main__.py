@@ -1,10 +1,10 @@
 """How much model each question needs: level, mesh, modes, residual mode and contact law.
 
-Claim: of the spring of the scene, a frequency needs the straight equivalent or less, the period that is
+Claim: of the spring of the scene, a frequency needs a straight strip or less, the period that is
 born at grazing needs Eq. (1) at most frequencies, and only the hysteresis needs the whole ladder.
 
-For each quantity the cheapest model within the tolerance is found: Eq. (1), the straight equivalent of the
-U, the arc-length U; with how many modes, with or without a residual one for those left out; with how many
+For each quantity the cheapest model within the tolerance is found: Eq. (1), a straight strip, of a folded
+U the arc-length model; with how many modes, with or without a residual one for those left out; with how many
 elements; with Newton's, a linear or Hertz's contact. An error is the distance from a reference of 40 modes
 and 96 elements on a leg, or what one coarseness alone changes there if that is more: errors that happen to
 cancel get no credit; that of the reference itself is added.

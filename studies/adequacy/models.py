@@ -23,7 +23,7 @@ from studies.scene import Scene, beam_at, damping_of, model_of, modes_of, single
 __all__ = ["EQ_1", "LAWS", "LEVELS", "MESHES", "MODES", "Choice", "Models"]
 
 LEVELS = {
-    "single_mode": "Eq. (1)", "straight": "straight leg", "folded_u": "folded U",
+    "single_mode": "Eq. (1)", "straight": "straight strip", "folded_u": "folded U",
     "modal_data": "measured modes",
 }  # fmt: skip
 LAWS = ("newton", "linear", "hertz")

@@ -85,9 +85,9 @@ def springs(scene: Scene) -> list[tuple[str, Scene, ModalModel]]:
     linear, hertz, newton = (scene.replace({"contact.law": law}) for law in ("linear", "hertz", "newton"))
     return [
         ("Eq. (1), Newton", newton.replace({"contact.local_restitution": tau}), single_mode_of(scene)),
-        ("folded U, linear", linear, u),
-        ("folded U, Hertz", hertz, u),
-        ("folded U, Newton", newton, u),
+        ("the spring, linear", linear, u),
+        ("the spring, Hertz", hertz, u),
+        ("the spring, Newton", newton, u),
         ("bare cantilever, Hertz", bare, model_of(bare)),
         ("heavy-ball cantilever, Hertz", heavy, loaded),
         ("heavy-ball cantilever, Newton", heavy.replace({"contact.law": "newton"}), loaded),

@@ -13,7 +13,8 @@ K = 10 ... 10^6:
                shooting, against a closed form that goes like K^(-2)
 
 and for the beam with Hertz contact the excess at which the kick leaves the square root, the period doubling
-below it, where p1 loses its stability (before, if it rings), and whether the letter could have seen that. The equations are derived in `closed_forms`.
+below it, where p1 loses its stability (before, if it rings), and whether the letter could have seen that. The
+equations are derived in `closed_forms`.
 
 Run:     python -m studies.soft_wall [--decades 1 6] [--quick]     10 s; --quick 5 s
 Writes:  kicks.csv, doublings.csv; figures kick and orbits

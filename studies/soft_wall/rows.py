@@ -57,8 +57,8 @@ class Beam:
     `plateau`: the kick at Fig. 4, in approach speeds; `half_excess`: where half of it is left;
     `share_at_stability`: what is left at the letter's amplitude stability; `square_root_from`: where the kick
     rises with the power 0.6; `doubling_excess`, `doubling_theory`: of p1, by shooting and in closed form;
-    `unstable_excess`: where p1 is stable no more, by that doubling or, below it, by `turns`, a complex pair of
-    multipliers that leaves the unit circle (Neimark and Sacker's bifurcation, which one mode does not have);
+    `unstable_excess`: where p1 is stable no more, by that doubling or, below it, by `turns`, a complex pair
+    of multipliers that leaves the unit circle (Neimark and Sacker's bifurcation; one mode has none);
     `born`: (excess, period) raised from -1e-3 in one step, as by an experiment, period 0 for none.
     """
 

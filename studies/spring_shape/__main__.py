@@ -7,9 +7,9 @@ flanges less than twice as high as its sheet is thick, --channel-sheet.) A plain
 period has it higher still. With legs side by side it is low, but the ball turns least in it, a tenth of what
 it does on a plain strip. In every reading the ball sees a twist mode only as far as it sits off the plane of
 symmetry. So torsion leaves the reading open. What decides is how far each spring, calibrated, is from linear
-at its gap: of the U's only legs side by side stay within what the bands of the p_m allow. Against solids, strip
-theory gives the bending modes of the folded U 1.2 to 1.5 % too low, those of the plain strip 0.6 to 1.2 %,
-and their twist modes within 1.5 %.
+at its gap: of the U's only legs side by side stay within what the bands of the p_m allow. Against solids,
+strip theory gives the bending modes of the folded U 1.2 to 1.5 % too low, those of the plain strip 0.6 to 1.2
+%, and their twist modes within 1.5 %.
 
 Centreline r(s), displacements u t + w n + v z, twist phi about t, in plane and out of it, tied to the ball:
 
@@ -20,7 +20,7 @@ brought to omega_1^2 = (2 pi/T)^2 + (c/2)^2 by its sheet's thickness, the channe
 gives length, width, bend radius, sheet material, ball and period; its tape and its spring.kind play no part.
 The rotary inertia of ball and mount counts about every axis; it is 0 in the letter's scene.
 
-Run:     python -m studies.spring_shape [--off-line 0.0005] [--channel-sheet 0.25] [--quick]     50 s; --quick 15 s
+Run:     python -m studies.spring_shape [--off-line 0.0005] [--channel-sheet 0.25] [--quick]     50 s
 Writes:  readings.csv (one row a shape), theory_error.csv (one row a mode), candidates.csv (one row a spring,
          calibrated), shapes.npz; figures shapes and theory_error
 """
@@ -100,7 +100,7 @@ def spring_shape(
                 found=f"{ranks[highest]:.1f} times the first bending",
                 note=f"Of the shapes that the words allow, \"{TITLES[highest]}\" has its twist highest; "
                 f"a plain strip of the same period has it at {plain:.1f} times; in that of "
-                f"\"{TITLES[least]}\" the ball turns least, {turns[least]:.2f} of the plain strip's.")  # fmt: skip
+                f"\"{TITLES[least]}\" the ball turns least, {turns[least]:.2f} of this.")  # fmt: skip
     return {"highest_twist": highest, "least_turn": least, "plain_strip_is_higher": plain > ranks[highest]}
 
 

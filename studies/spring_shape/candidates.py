@@ -1,8 +1,9 @@
 """Springs that the words allow, each calibrated to the letter's numbers: what decides between them.
 
-Thickness, tape, gap and ball are fitted as by `studies.calibration`, so that all have the free period, the decay
-rate, the drive amplitude at grazing and the kick of the scene. What is left differs: how far the spring is from
-linear at its gap (``beam.backbone_coefficient``), against how much the bands of the p_m allow, and torsion.
+Thickness, tape, gap and ball are fitted as by `studies.calibration`, so that all have the free period, the
+decay rate, the drive amplitude at grazing and the kick of the scene. What is left differs: how far the spring
+is from linear at its gap (``beam.backbone_coefficient``), against how much the bands of the p_m allow, and
+torsion.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ from tests.contact.one_mode import FREQUENCIES, GAP, oscillator
 
 LEG = 0.13
 U, LEAF, LINEAR = (-1.715, 1.486), (36 / 35, 36 / 25), (0.0, 0.0)
-"""b and a, times LEG^2: the folded U of the letter's scene, a leaf with a heavy tip, Eq. (1)."""
+"""b and a, times LEG^2: a folded U with a tight bend, a leaf with a heavy tip, Eq. (1)."""
 
 
 def mode(cubic: tuple[float, float] = U, frequency: float = 22.2, **others: float) -> NonlinearMode:
