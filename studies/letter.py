@@ -108,6 +108,8 @@ universality | claims | last paragraph | no number
     The same structure is expected in a wide class of impacting systems.
 two_parameters | hysteresis | last paragraph | no number
     Energy loss and time delay represent the higher modes in a single-mode description.
+two_parameters_born | transitions | last paragraph | no number
+    With these two parameters the single mode has the bifurcations of the beam.
 sampled | work_precision | note [11] | no number
     Positions are computed at a few points per period; crossings must not be missed.
 """  # fmt: skip
@@ -138,5 +140,6 @@ QUESTIONS: Mapping[str, tuple[str, tuple[str, ...]]] = MappingProxyType({
     "hysteresis": ("Why does the measured hysteresis differ from the map's?", ("hysteresis",)),
     "higher_modes": ("What do higher modes do to restitution, delay and the square root?",
                      ("effective_impact", "soft_wall")),
+    "two_parameters": ("Do energy loss and delay stand for the higher modes?", ("transitions",)),
 })  # fmt: skip
-"""The two questions that the letter leaves open, and the studies that answer them (`run.answer`)."""
+"""The questions that the letter leaves open, and the studies that answer them (`run.answer`)."""

@@ -15,7 +15,6 @@ Beside them: map_printed (the letter's y-line as stored) and map_measured_kick (
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -23,8 +22,9 @@ import numpy as np
 
 from beam import ModalModel
 from contact import NordmarkMap, StrobedNordmarkMap, StroboscopicMap
-from contact.orbits import Kick, KickFamily, PeriodicOrbit, Shooting, fold_along_frequency, fold_excess
+from contact.orbits import KickFamily, PeriodicOrbit, Shooting, fold_along_frequency, fold_excess
 from studies.scene import Scene, band_of, beam_at, corresponding, nordmark_at, periods_of, single_mode_at
+from studies.two_parameters import fold_of_kicks, one_mode_fold
 
 CHAIN = (
     "map", "single_mode", "measured_kick", "kick_of_velocity", "two_parameters", "all_mode_kick", "beam",
@@ -83,18 +83,6 @@ def map_fold(nordmark: NordmarkMap, m: int, kick: float | None = None) -> float 
     return None if found is None or found >= 0.0 else scale * found
 
 
-def one_mode_fold(kicks: KickFamily, jump: Callable[[float], tuple[float, float]]) -> float | None:
-    """The fold with a kick of mode 1 alone, `jump` of its displacement and velocity by approach velocity."""
-
-    def kick(speed: float) -> Kick:
-        of_all = np.zeros((kicks.oscillator.n_modes, 2))
-        of_all[0] = jump(speed)
-        return Kick(speed=speed, jump=of_all)
-
-    found = replace(kicks, collision=kick).fold()
-    return None if found is None else found.excess
-
-
 def folds_at(
     scene: Scene, frequency: float, m: int, model: ModalModel, near: PeriodicOrbit | None = None
 ) -> tuple[Row, PeriodicOrbit | None]:
@@ -114,17 +102,13 @@ def folds_at(
         return row, None
     slope = float(whole.kick.jump[0, 1]) / whole.kick.speed
 
-    def jump(speed: float) -> tuple[float, float]:
-        shift, velocity = kicks.kick(speed).jump[0]
-        return float(shift), float(velocity)
-
     shooting = Shooting(oscillator=oscillator, period=m, impacts=whole.kick.touches)
     orbit = fold_along_frequency(shooting, np.array([frequency]), near)[0]
     row = replace(
         row, map_measured_kick=map_fold(nordmark, m, -float(model.phi[0]) * slope),
         measured_kick=one_mode_fold(kicks, lambda speed: (0.0, slope * speed)),
-        kick_of_velocity=one_mode_fold(kicks, lambda speed: (0.0, jump(speed)[1])),
-        two_parameters=one_mode_fold(kicks, jump), all_mode_kick=whole.excess,
+        kick_of_velocity=one_mode_fold(kicks, lambda speed: (0.0, float(kicks.kick(speed).jump[0, 1]))),
+        two_parameters=fold_of_kicks(kicks), all_mode_kick=whole.excess,
         beam=None if orbit is None else orbit.excess,
         beam_admissible=None if orbit is None else orbit.admissible,
     )  # fmt: skip

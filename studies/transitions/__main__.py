@@ -1,16 +1,19 @@
-"""The letter's six transitions p1 <-> pm: Nordmark map, Eq. (1) and the beam side by side.
+"""The letter's six transitions p1 <-> pm: map, Eq. (1), its two parameters and the beam side by side.
 
 Claim (letter 1996, Fig. 2): when the drive amplitude passes grazing, the motion without impacts gives way to
 an orbit of period m with one impact, m = 3, 4, 5, 6, 8, 10 at 20.90 ... 23.40 Hz; when the amplitude is
 lowered again, that orbit lives on until some way below grazing.
 
-Computed, at each frequency, for the Nordmark map (Eqs. (2), (3)), the single mode (Eq. (1)) and the beam with
-its N modes:
+Computed, at each frequency, for the Nordmark map (Eqs. (2), (3)), the single mode (Eq. (1)), the single mode
+with restitution and delay as the beam's own collisions have them (`studies.two_parameters`), and the beam
+with its N modes:
 
     born period      period of the settled orbit at F/F_g - 1 = 1e-3 (and 2.5e-4, 1e-2), started below grazing
     excess_down      F/F_g - 1 at which that orbit ends when the amplitude is lowered: bracketed by a scan,
                      and then the fold, period doubling or grazing (ends_by) that is in the bracket
-    exact            the fold of p_m in closed form, of the map and of Eq. (1)
+    exact            the fold of p_m in closed form, of the map and of Eq. (1); of the two parameters from the
+                     kicks that collisions of the beam give mode 1
+    extracted        restitution and delay on the settled orbit, and the map with that restitution
     orbit diagram    strobed points in an upward and a downward scan that carry the physical state along
 
 In the figures filled points are the upward scan, open ones the downward scan; the dashed line is grazing,
@@ -20,12 +23,13 @@ motion did not settle: its points, those of a moment, are stored but not drawn.
 Run:     python -m studies, or python -m studies.transitions [--quick] [--full]     15 s; --full some minutes
 Writes:  transitions.csv (a row a frequency), orbit_diagram.csv (a row an amplitude: period, and whether the
          motion settled), orbit_diagram.npz (points), orbit_diagram.png (beam, at its read-out point),
-         orbit_diagram_single_mode.png, orbit_diagram_map.png
+         orbit_diagram_two_parameters.png, orbit_diagram_single_mode.png, orbit_diagram_map.png;
+         two_parameters.csv (a row a frequency: what was extracted)
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Annotated
@@ -37,11 +41,15 @@ from studies.record import Verdict
 from studies.run import Run, study
 from studies.scene import Scene, harmonic, model_of
 from studies.transitions.descriptions import TITLES, Row, Scans, row_at, scans
+from studies.two_parameters import Extracted
 
 __all__ = ["Cell", "transitions"]
 
 QUICK_POINTS = 21
 """Amplitudes of a scan in the small form, at most."""
+
+NEARLY = 1.25
+"""Factor within which two ends of an orbit count as one."""
 
 AT_THE_EDGE = (
     "the edge between p10 and p11 lies where f T = 20/21, at 23.343 Hz for T = 40.80 ms: p10 at grazing "
@@ -62,6 +70,23 @@ class Cell:
     period: int
     impacts: int
     cycles: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters(Extracted):
+    """A frequency: period m of the two parameters and of the beam, where either orbit ends."""
+
+    frequency_hz: float
+    m: int
+    beam: int
+    excess_down: float | None
+    excess_down_beam: float | None
+
+    @property
+    def ratio(self) -> float | None:
+        """Its hysteresis over the beam's, where both end on the same side of grazing."""
+        mine, of_beam = self.excess_down, self.excess_down_beam
+        return mine / of_beam if mine and of_beam and mine * of_beam > 0.0 else None
 
 
 @study(needs={"born_period": 0.0, "fold": 0.07})
@@ -85,7 +110,7 @@ def transitions(
                 run.failed(where, reason)
     run.json("rows", rows)
     shown = ["frequency_hz", "letter", *TITLES]
-    shown += [f"{name}_{model}" for model in TITLES for name in ("excess_down", "ends_by")]
+    shown += [f"excess_down_{model}" for model in TITLES]
     run.table("transitions", rows, "Born period, and excess F/F_g - 1 at which the orbit ends.", show=shown)
     diagrams = run.map(partial(scans, scene, model=model, full=full), rows, "orbit diagrams")
     store(run, rows, diagrams)
@@ -95,6 +120,7 @@ def transitions(
     for name in TITLES:
         stem = "orbit_diagram" if name == "beam" else f"orbit_diagram_{name}"
         run.figure(stem, draw(scene, rows, diagrams, name), caption + TITLES[name] + ".")
+    compare(run, rows)
     agrees = [row.frequency_hz for row in rows if row.letter is not None and judge(run, row)]
     return {
         "rows": rows, "modes": model.n_modes, "contact": scene.contact.law, "agrees_hz": agrees
@@ -115,7 +141,7 @@ def sentence(row: Row) -> str:
 def judge(run: Run, row: Row) -> bool:
     """Verdict on the transition at a frequency; returns whether all three agree."""
     same = [period == row.letter for period in row.periods().values()]
-    above = [word(also.get("0.01")) for also in (row.born_map, row.born_single_mode, row.born_beam)]
+    above = [word(getattr(row, f"born_{name}").get("0.01")) for name in TITLES]
     note = "" if all(same) else f"at excess 0.01 {', '.join(above)}"
     if note and row.frequency_hz == 23.40:
         note += f"; {AT_THE_EDGE}"
@@ -123,6 +149,41 @@ def judge(run: Run, row: Row) -> bool:
     found = ", ".join(f"{TITLES[name]} {word(period)}" for name, period in row.periods().items())
     run.verdict(f"p{row.letter}", verdict, found=found, note=note)
     return all(same)
+
+
+def compare(run: Run, rows: Sequence[Row]) -> None:
+    """Where the two extracted parameters have the beam's bifurcations, and the map with them."""
+    found = [
+        (row, row.extracted, row.excess_down_two_parameters, row.excess_down_beam)
+        for row in rows if row.extracted and row.beam
+    ]  # fmt: skip
+    table = [Parameters(frequency_hz=row.frequency_hz, m=row.two_parameters or 0, beam=row.beam or 0,
+                        excess_down=mine, excess_down_beam=of_beam, **vars(parameters))
+             for row, parameters, mine, of_beam in found]  # fmt: skip
+    run.table("two_parameters", table, "Restitution and delay on the settled orbits, and what they give.",
+              show=("frequency_hz", "m", "beam", "restitution", "delay_s", "ringing_left", "excess_down",
+                    "fold", "excess_down_beam", "map", "fold_of_map"))  # fmt: skip
+    if not table:
+        return
+    same = [row for row in table if row.m == row.beam]
+    close = [row for row in same if row.ratio is not None and 1.0 / NEARLY < row.ratio < NEARLY]
+    far = [f"{row.frequency_hz:g} Hz ({row.ringing_left:.0%})" for row in same if row not in close]
+    taus = sorted(row.restitution for row in table)
+    text = (
+        f"With restitution, {taus[0]:.2f} to {taus[-1]:.2f}, and delay as the beam's own collisions have "
+        f"them, one mode has the beam's period at {len(same)} of {len(table)} frequencies, the map with that "
+        f"restitution at {sum(row.map == row.beam for row in table)}. Lowered again, the orbit ends "
+        f"where the beam's does, to a factor of {NEARLY:g}, at {len(close)}"
+    )
+    if far:
+        text += (
+            f"; elsewhere, {', '.join(far)}, higher modes still ring by that part when the tip comes back, "
+            "which no restitution and no delay of a first collision contain"
+        )
+    run.answer("two_parameters", f"{text}.")
+    verdict: Verdict = "agrees" if len(close) == len(table) else "in part" if same else "differs"
+    run.verdict("two_parameters_born", verdict, found=f"period at {len(same)}, end at {len(close)} of "
+                f"{len(table)} frequencies", note=f"{text}.")  # fmt: skip
 
 
 def store(run: Run, rows: Iterable[Row], diagrams: Iterable[Scans]) -> None:

@@ -1,7 +1,7 @@
-"""Map, Eq. (1) and beam at one drive frequency: born period, end on the way down, scans.
+"""Map, Eq. (1), two parameters and beam at one drive frequency: born period, end on the way down, scans.
 
-`excess` is F/F_g - 1; the map's own variable x is observed for the map, the read-out for Eq. (1), where it is
-the tip [m], and for the beam [m or rad].
+`excess` is F/F_g - 1; the map's own variable x is observed for the map, the tip for one mode [m], and for
+the beam its read-out [m or rad].
 """
 
 from __future__ import annotations
@@ -15,12 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam import ModalModel
-from contact import ContactError, StrobedMap, StrobedNordmarkMap, StroboscopicMap
+from contact import ContactError, State, StrobedMap, StrobedNordmarkMap, StroboscopicMap
 from contact.orbits import OrbitDiagram, born, born_period, fold_excess, orbit_diagram, orbit_end
 from studies import letter
 from studies.scene import READOUT, Scene, beam_at, nordmark_at, single_mode_at
+from studies.two_parameters import Extracted, extracted, two_parameters_at
 
-TITLES = {"map": "Nordmark map", "single_mode": "Eq. (1)", "beam": "beam"}
+TITLES = {
+    "map": "Nordmark map", "single_mode": "Eq. (1)", "two_parameters": "two parameters", "beam": "beam"
+}  # fmt: skip
 OTHER_EXCESSES = (2.5e-4, 1e-2)
 """Where the born period is given as well: the letter's amplitude stability, and well above grazing."""
 
@@ -37,52 +40,72 @@ class Transition:
     ends_by: str | None = None
     bracket: tuple[float, float] | None = None
     born: Mapping[str, int]
+    state: State | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
-    """One frequency: periods (0: did not settle), ends on the way down [1], the letter's period."""
+    """One frequency: periods (0: did not settle), ends on the way down [1], the letter's period.
+
+    `exact`: the fold in closed form; of the two parameters from the kicks that the beam's collisions give
+    mode 1, without a simulation.
+    """
 
     frequency_hz: float
     letter: int | None
     map: int | None
     single_mode: int | None
+    two_parameters: int | None
     beam: int | None
     excess_down_map: float | None
     excess_down_single_mode: float | None
+    excess_down_two_parameters: float | None
     excess_down_beam: float | None
     ends_by_map: str | None
     ends_by_single_mode: str | None
+    ends_by_two_parameters: str | None
     ends_by_beam: str | None
     exact_map: float | None
     exact_single_mode: float | None
+    exact_two_parameters: float | None
+    extracted: Extracted | None
     beam_linear: int | None
     excess_down_beam_linear: float | None
     bracket_map: tuple[float, float] | None
     bracket_single_mode: tuple[float, float] | None
+    bracket_two_parameters: tuple[float, float] | None
     bracket_beam: tuple[float, float] | None
     born_map: Mapping[str, int]
     born_single_mode: Mapping[str, int]
+    born_two_parameters: Mapping[str, int]
     born_beam: Mapping[str, int]
     not_settled: list[str]
     grazing_amplitude_m: float
 
     def periods(self) -> dict[str, int | None]:
         """Born period of each description."""
-        return {"map": self.map, "single_mode": self.single_mode, "beam": self.beam}
+        return {name: getattr(self, name) for name in TITLES}
 
 
 Scans = Mapping[str, Mapping[str, Diagram]]
 """Description -> "up" or "down" -> orbit diagram, at one frequency."""
 
 
-def describe(scene: Scene, frequency: float, model: ModalModel) -> dict[str, Strobed]:
-    """The three descriptions at `frequency` [Hz]."""
-    return {
+def describe(
+    scene: Scene, frequency: float, model: ModalModel, failures: list[tuple[str, str]] | None = None
+) -> dict[str, Strobed]:
+    """The four descriptions at `frequency` [Hz]; without two parameters, and why, where there are none."""
+    found: dict[str, Strobed] = {
         "map": StrobedNordmarkMap(map=nordmark_at(scene, frequency)),
         "single_mode": StroboscopicMap(oscillator=single_mode_at(scene, frequency)),
         "beam": StroboscopicMap(oscillator=beam_at(scene, frequency, model)),
     }
+    try:
+        found["two_parameters"] = StroboscopicMap(oscillator=two_parameters_at(scene, frequency, model))
+    except (ContactError, ValueError) as error:
+        if failures is not None:
+            failures.append((f"{frequency:g} Hz, two_parameters", str(error)))
+    return found
 
 
 def observe(strobed: Strobed, points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -96,16 +119,17 @@ def transition(strobed: Strobed, excess: float, cycles: int) -> Transition:
     also = {f"{other:g}": born_period(strobed, other, most_cycles=cycles) for other in OTHER_EXCESSES}
     end = orbit_end(strobed, orbit.end, excess, most_cycles=cycles) if orbit.period > 1 else None
     if end is None:
-        return Transition(period=orbit.period, born=also)
+        return Transition(period=orbit.period, born=also, state=orbit.end)
     return Transition(
-        period=orbit.period, excess_down=end.excess, ends_by=end.kind, bracket=(end.lost, end.held), born=also
-    )
+        period=orbit.period, excess_down=end.excess, ends_by=end.kind, bracket=(end.lost, end.held),
+        born=also, state=orbit.end,
+    )  # fmt: skip
 
 
 def row_at(scene: Scene, frequency: float, model: ModalModel) -> tuple[Row, list[tuple[str, str]]]:
     """One row of the table, and what failed: where, why."""
     cycles, failures = max(scene.scan.settle_cycles, 1), list[tuple[str, str]]()
-    described = describe(scene, frequency, model)
+    described = describe(scene, frequency, model, failures)
     if scene.contact.law == "hertz":  # linear contact of the same contact time in place of Hertz's law
         linear = scene.replace({"contact.law": "linear"})
         described["beam_linear"] = StroboscopicMap(oscillator=beam_at(linear, frequency, model))
@@ -124,8 +148,16 @@ def row_at(scene: Scene, frequency: float, model: ModalModel) -> tuple[Row, list
         not_settled += [f"{title} at {excess}" for excess, period in periods.items() if period == 0]
     for name in ("map", "single_mode"):  # closed forms; there is none of p1
         columns[f"exact_{name}"] = fold_excess(described[name], found[name].period or 0)
+    two = found["two_parameters"]
+    parameters = None
+    if two.state is not None and two.period:
+        try:
+            parameters = extracted(scene, frequency, model, end=two.state, period=two.period)
+        except ContactError as error:
+            failures.append((f"{frequency:g} Hz, parameters extracted", str(error)))
     row = Row(
-        frequency_hz=frequency, letter=letter.PERIODS.get(frequency), **columns,
+        frequency_hz=frequency, letter=letter.PERIODS.get(frequency), **columns, extracted=parameters,
+        exact_two_parameters=None if parameters is None else parameters.fold,
         beam_linear=found["beam_linear"].period, not_settled=not_settled,
         excess_down_beam_linear=found["beam_linear"].excess_down,
         grazing_amplitude_m=beam_at(scene, frequency, model).grazing_amplitude(),

@@ -25,9 +25,10 @@ def draw(scene: Scene, rows: Sequence[Row], diagrams: Sequence[Scans], name: str
             axis.set_visible(False)
         for number, (axis, row, found) in enumerate(zip(axes.flat, rows, diagrams, strict=False)):
             grazing = row.grazing_amplitude_m
-            if name == "single_mode":
+            if name in ("single_mode", "two_parameters"):
                 grazing = single_mode_at(scene, row.frequency_hz).grazing_amplitude()
-            panel(axis, found[name], None if name == "map" else grazing)
+            if name in found:
+                panel(axis, found[name], None if name == "map" else grazing)
             seen = "" if row.letter is None else f" (letter: p$_{{{row.letter}}}$)"
             period = row.periods()[name]
             words = f"p$_{{{period}}}$" if period else "no period"
@@ -37,6 +38,7 @@ def draw(scene: Scene, rows: Sequence[Row], diagrams: Sequence[Scans], name: str
         upwards = {
             "map": ("$x$ of the map", "1"),
             "single_mode": ("tip displacement $ξ$", "mm"),
+            "two_parameters": ("tip displacement $ξ$", "mm"),
             "beam": (f"read-out {read}", "mm" if read == "displacement" else "mrad"),
         }[name]
         for axis in axes[-1, :]:

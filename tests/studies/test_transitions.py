@@ -97,15 +97,16 @@ def test_rows_have_the_promised_keys_and_every_amplitude_says_whether_it_settled
     ran = run_study("transitions", "--quick", "--json", "--set", "drive.frequencies_hz=[22.2]")
     assert ran.code == 0 and json.loads(ran.out)["rows"] == ran.summary["rows"]
     (row,) = ran.summary["rows"]
-    models = ("map", "single_mode", "beam")
+    models = ("map", "single_mode", "two_parameters", "beam")
     wanted = {f"{key}_{name}" for key in ("excess_down", "ends_by", "bracket", "born") for name in models}
-    assert wanted | {"frequency_hz", "letter", *models, "exact_map", "exact_single_mode", "not_settled",
+    assert wanted | {"frequency_hz", "letter", *models, "exact_map", "exact_single_mode",
+                     "exact_two_parameters", "extracted", "not_settled",
                      "beam_linear", "excess_down_beam_linear", "grazing_amplitude_m"} == row.keys()
     assert (row["letter"], row["map"], row["single_mode"], row["beam"]) == (5, 5, 5, 5)
     assert row["exact_map"] == pytest.approx(row["excess_down_map"], rel=1e-9)
     assert ran.summary["modes"] == 10 and ran.verdicts["p5"] == "agrees"
     cells = ran.rows("orbit_diagram")
-    assert len(cells) == 3 * 2 * 21
+    assert len(cells) == 4 * 2 * 21
     for cell in cells:
         assert (cell["kind"] == "periodic") == (int(cell["period"]) > 0)
 
