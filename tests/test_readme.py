@@ -43,7 +43,8 @@ def test_the_rows_of_the_first_table_are_computed_values(frequency):
     cells = [cell.strip() for cell in line.split("|")]
     scene, _ = least_modes(read_scene("letter"), transitions.needs)
     row, _ = row_at(scene, frequency, model_of(scene))
-    for cell, name in zip(cells[:4], ("letter", "map", "single_mode", "beam"), strict=True):
+    names = ("map", "single_mode", "two_parameters", "beam")
+    for cell, name in zip(cells[:5], ("letter", *names), strict=True):
         assert cell == f"p{getattr(row, name)}"
-    for cell, name in zip(cells[4:], ("map", "single_mode", "beam"), strict=True):
+    for cell, name in zip(cells[5:], names, strict=True):
         assert float(cell) == pytest.approx(getattr(row, f"excess_down_{name}"), rel=1e-4)
