@@ -39,14 +39,14 @@ from contact import NonlinearMode
 from contact.orbits import born_period
 from studies.calibration import calibrate_thickness
 from studies.run import Run, study
-from studies.scene import Scene, harmonic, periods_of, spring_of
+from studies.scene import Scene, harmonic, nonlinear_mode_at, periods_of, spring_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Answer = TypeVar("Answer")
 
-__all__ = ["Row", "finite_amplitude", "mode_at", "reading_of"]
+__all__ = ["Row", "finite_amplitude", "reading_of"]
 
 STRAIGHT = ("side_by_side", "channel", "plain")
 """Readings that bend as one leaf; in the plane a channel is a plain strip."""
@@ -112,15 +112,6 @@ def reading_of(scene: Scene, reading: str, radius: float, ball: float) -> Scene:
     return calibrate_thickness(changed, scene.single_mode.free_period_s)
 
 
-def mode_at(scene: Scene, backbone: Backbone, frequency: float) -> NonlinearMode:
-    """Eq. (1) of the scene with the cubic terms of a spring."""
-    keys = scene.single_mode
-    return NonlinearMode(
-        free_period=keys.free_period_s, decay_rate=keys.decay_rate_per_s, restitution=keys.restitution,
-        gap=scene.stop.gap_m, frequency=frequency, stiffness=backbone.stiffness, inertia=backbone.inertia,
-    )  # fmt: skip
-
-
 def matched(mode: NonlinearMode, effective: float) -> NonlinearMode:
     """The mode with the cubic stiffness that gives an effective period [s]."""
 
@@ -172,7 +163,7 @@ class Spring:
         rows, frames = list[Row](), list[FrameRow]()
         for gap in gaps:
             scene = drawn.replace({"stop.gap_m": gap})
-            modes = [mode_at(scene, backbone, f) for f in scene.drive.frequencies_hz]
+            modes = [nonlinear_mode_at(scene, f, backbone) for f in scene.drive.frequencies_hz]
             turning = [partial(getattr, mode, "effective_period") for mode in modes]
             effective: list[float | None] = [tried(one) for one in turning]
             known = gap == self.scene.stop.gap_m and self.ball == self.scene.tip.mass_kg

@@ -18,15 +18,17 @@ import warnings
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from beam import ModalModel, SuspiciousValue
+from beam import Backbone, ModalModel, SuspiciousValue
 from contact import (
     Band,
+    ContactError,
     ContactLaw,
     HarmonicDrive,
     HertzContact,
     ImpactOscillator,
     LinearContact,
     NewtonRestitution,
+    NonlinearMode,
     NordmarkMap,
     Stop,
     band,
@@ -35,6 +37,7 @@ from studies import letter
 from studies.scene_keys import SceneError, shown
 from studies.scene_spring import (
     READOUT,
+    backbone_of,
     damping_of,
     elements_of,
     free_period,
@@ -49,11 +52,11 @@ from studies.scene_spring import (
 from studies.scene_values import Scene, doubts, scene_from_text
 
 __all__ = [
-    "READOUT", "Scene", "SceneError", "approach_speed", "band_margins", "band_of", "beam_at",
-    "beyond_linear",
-    "contact_law_of", "corresponding", "damping_of", "elements_of", "free_period", "harmonic", "hertz_of",
-    "model_of", "modes_of", "nordmark_at", "periods_of", "read_scene", "require_drive_below", "sections_of",
-    "shift_at_gap", "single_mode_at", "single_mode_of", "spring_of",
+    "READOUT", "Scene", "SceneError", "approach_speed", "backbone_of", "band_of", "beam_at",
+    "beyond_linear", "contact_law_of", "corresponding", "damping_of", "elements_of", "free_period",
+    "harmonic", "hertz_of", "model_of", "modes_of", "nonlinear_mode_at", "nordmark_at", "period_shifts",
+    "periods_of", "read_scene", "require_drive_below", "sections_of", "shift_at_gap", "single_mode_at",
+    "single_mode_of", "spring_of",
 ]  # fmt: skip
 
 SCENES = Path(__file__).resolve().parent / "scenes"
@@ -188,28 +191,48 @@ def band_of(scene: Scene, period: int) -> Band:
                 restitution=keys.restitution)  # fmt: skip
 
 
-def band_margins(scene: Scene) -> Mapping[float, float]:
-    """Drive frequencies [Hz], and how far the nearest edge of a band of p_m is, relative to each [1]."""
+def nonlinear_mode_at(scene: Scene, frequency: float, backbone: Backbone | None = None) -> NonlinearMode:
+    """Eq. (1) of the letter at `frequency` [Hz] with cubic stiffness and inertia, by default the spring's."""
+    keys, cubic = scene.single_mode, backbone_of(scene) if backbone is None else backbone
+    return NonlinearMode(
+        free_period=keys.free_period_s, decay_rate=keys.decay_rate_per_s, restitution=keys.restitution,
+        gap=scene.stop.gap_m, frequency=frequency, stiffness=cubic.stiffness, inertia=cubic.inertia,
+    )  # fmt: skip
+
+
+def period_shifts(scene: Scene) -> Mapping[float, tuple[float, float]]:
+    """What the amplitude of the gap does to the period that small deviations feel, and what it may do.
+
+    Drive frequency [Hz] -> relative change of that period (infinite where no motion grazes as the linear one
+    does), and the distance of the nearest edge of a band of p_m on that side, both relative [1].
+    """
     edges = [edge for m in LARGEST_BANDS for edge in (band_of(scene, m).lower, band_of(scene, m).upper)]
-    return {f: min(abs(edge / f - 1.0) for edge in edges) for f in scene.drive.frequencies_hz}
+    backbone, found = backbone_of(scene), dict[float, tuple[float, float]]()
+    for frequency in scene.drive.frequencies_hz:
+        try:
+            period = nonlinear_mode_at(scene, frequency, backbone).effective_period
+        except (ContactError, ValueError):
+            period = math.inf
+        shift = period / scene.single_mode.free_period_s - 1.0
+        ways = [math.copysign(1.0, shift) * (edge / frequency - 1.0) for edge in edges]
+        found[frequency] = shift, min((way for way in ways if way > 0.0), default=math.inf)
+    return found
 
 
 def beyond_linear(scene: Scene) -> str | None:
-    """One sentence if the spring is too nonlinear at the gap for the periods that are born, else None.
-
-    Small deviations from the motion that grazes feel twice the shift of the free frequency; a period can
-    change where that is more than the distance of a drive frequency from the nearest edge of a band.
-    """
+    """One sentence if the spring is too nonlinear at the gap for the periods that are born, else None."""
     if scene.drive.kind != "harmonic":
         return None
-    shift = shift_at_gap(scene)
-    moved = [f"{f:g}" for f, distance in band_margins(scene).items() if 2.0 * abs(shift) > distance]
+    shifts = period_shifts(scene)
+    moved = {f"{f:g}": shift for f, (shift, room) in shifts.items() if abs(shift) > room}
     if not moved:
         return None
+    most = max(moved.values(), key=abs)
+    feels = f"small deviations feel a period {most:+.2%} off" if math.isfinite(most) else "no motion grazes"
     return (
-        f"at the gap, stop.gap_m = {scene.stop.gap_m:g} m, the free frequency is {shift:+.2%} off that of "
-        f"small swings, which can change the periods born at {', '.join(moved)} Hz; the model is linear, and "
-        "`python -m studies.finite_amplitude` says what is left of them"
+        f"at the gap, stop.gap_m = {scene.stop.gap_m:g} m, the free frequency is {shift_at_gap(scene):+.2%} "
+        f"off that of small swings and {feels}, which can change the periods born at {', '.join(moved)} Hz; "
+        "the model is linear, and `python -m studies.finite_amplitude` says what is left of them"
     )
 
 

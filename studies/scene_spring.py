@@ -180,16 +180,21 @@ def require_drive_below(scene: Scene, model: ModalModel, frequency: float | None
         )
 
 
-def shift_at_gap(scene: Scene) -> float:
-    """What the amplitude of the gap changes in the free frequency, relative to small swings [1]."""
-    data, gap = scene.modal_data, scene.stop.gap_m
+def backbone_of(scene: Scene) -> beam.Backbone:
+    """How mode 1 depends on its amplitude; measured modes bring one number, taken as elastic."""
+    data = scene.modal_data
     if scene.spring.kind == "modal_data":
-        return data.kappa * (gap / data.kappa_length_m) ** 2
+        return beam.Backbone(elastic=data.kappa, inertial=0.0, length=data.kappa_length_m)
     spring = spring_of(scene)
     if spring.rigid_motions:
-        return 0.0
-    found = scene.make(beam.backbone_coefficient, {}, spring=spring, elements=elements_of(scene, spring))
-    return found.kappa * (gap / found.length) ** 2
+        return beam.Backbone(elastic=0.0, inertial=0.0, length=spring.centreline.length)
+    return scene.make(beam.backbone_coefficient, {}, spring=spring, elements=elements_of(scene, spring))
+
+
+def shift_at_gap(scene: Scene) -> float:
+    """What the amplitude of the gap changes in the free frequency, relative to small swings [1]."""
+    backbone = backbone_of(scene)
+    return backbone.kappa * (scene.stop.gap_m / backbone.length) ** 2
 
 
 def single_mode_of(scene: Scene) -> ModalModel:

@@ -26,7 +26,7 @@ from studies.adequacy.models import Models
 from studies.adequacy.search import Row, Search
 from studies.least_model import middle_of
 from studies.run import Run, study
-from studies.scene import Scene, band_margins, harmonic, shift_at_gap
+from studies.scene import Scene, harmonic, period_shifts
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -36,7 +36,8 @@ __all__ = ["adequacy", "questions"]
 
 @dataclass(frozen=True, kw_only=True)
 class AmplitudeRow:
-    """What the amplitude of the gap moves, 2 |kappa| (gap/L)^2, and the distance of a band's edge [1]."""
+    """What the amplitude of the gap changes in the period that small deviations feel, and the distance of the
+    edge of a band on that side [1]."""
 
     frequency_hz: float
     moved: float
@@ -46,10 +47,9 @@ class AmplitudeRow:
 
 def amplitude_rows(scene: Scene) -> list[AmplitudeRow]:
     """One a drive frequency."""
-    moved = 2.0 * abs(shift_at_gap(scene))
     return [
-        AmplitudeRow(frequency_hz=f, moved=moved, tolerance=margin, linear=moved <= margin)
-        for f, margin in band_margins(scene).items()
+        AmplitudeRow(frequency_hz=f, moved=moved, tolerance=room, linear=abs(moved) <= room)
+        for f, (moved, room) in period_shifts(scene).items()
     ]
 
 

@@ -7,9 +7,9 @@ flanges less than twice as high as its sheet is thick, --channel-sheet.) A plain
 period has it higher still. With legs side by side it is low, but the ball turns least in it, a tenth of what
 it does on a plain strip. In every reading the ball sees a twist mode only as far as it sits off the plane of
 symmetry. So torsion leaves the reading open. What decides is how far each spring, calibrated, is from linear
-at its gap: of the U's only legs side by side stay within what the bands of the p_m allow. Against solids,
-strip theory gives the bending modes of the folded U 1.2 to 1.5 % too low, those of the plain strip 0.6 to 1.2
-%, and their twist modes within 1.5 %.
+at its gap against what the bands of the p_m allow: legs side by side a fifth of it, a folded strip with a
+bend of 40 mm nine tenths, tighter ones more than it. Against solids, strip theory gives the bending modes of
+the folded U 1.2 to 1.5 % too low, those of the plain strip 0.6 to 1.2 %, and their twist modes within 1.5 %.
 
 Centreline r(s), displacements u t + w n + v z, twist phi about t, in plane and out of it, tied to the ball:
 

@@ -10,10 +10,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from beam import backbone_coefficient
 from studies import letter
 from studies.calibration import Targets, calibrate_all, collision_at
-from studies.scene import Scene, band_margins, single_mode_of, spring_of
+from studies.scene import Scene, backbone_of, period_shifts, single_mode_of
 from studies.spring_shape.rows import reading_row
 from studies.spring_shape.shapes import Reading, brought_to, shape_of
 
@@ -26,8 +25,9 @@ FOLDS = (0.0075, 0.02, 0.03, 0.04)
 
 @dataclass(frozen=True, kw_only=True)
 class Candidate:
-    """One spring. `moved`: what the amplitude of the gap changes in the period that small deviations feel,
-    2 |kappa| (gap/L)^2; `margin`: the least distance of a drive frequency from the edge of a band, relative.
+    """One spring. `moved`: what the amplitude of the gap changes in the period that small deviations feel, at
+    the drive frequency where this comes nearest to a band's edge or goes farthest beyond; `margin`: the
+    distance of that edge, both relative.
     `turn_of_twist`: theta of the ball in the first twist mode [kg^(-1/2) m^(-1)]."""
 
     reading: str
@@ -67,15 +67,15 @@ class Drawn:
         )  # fmt: skip
         fitted = calibrate_all(drawn, targets)
         collision = collision_at(fitted, targets.frequency_hz, targets.excess)
-        backbone, gap = backbone_coefficient(spring_of(fitted)), fitted.stop.gap_m
         bare = brought_to(shape_of(fitted, self.reading), float(single_mode_of(fitted).omega[0]))
         twist = reading_row(bare, self.off_line)
+        moved, margin = max(period_shifts(fitted).values(), key=lambda pair: abs(pair[0]) / pair[1])
         return Candidate(
             reading=self.reading, bend_radius_m=self.radius, thickness_m=fitted.spring.thickness_m,
-            tape_loss_factor=fitted.spring.tape_loss_factor, tip_mass_kg=fitted.tip.mass_kg, gap_m=gap,
-            kick=collision.kick, restitution=collision.restitution, delay_s=collision.delay,
-            kappa=backbone.kappa, moved=2.0 * abs(backbone.kappa) * (gap / backbone.length) ** 2,
-            margin=min(band_margins(fitted).values()), ratio_twist=twist.ratio_twist,
+            tape_loss_factor=fitted.spring.tape_loss_factor, tip_mass_kg=fitted.tip.mass_kg,
+            gap_m=fitted.stop.gap_m, kick=collision.kick, restitution=collision.restitution,
+            delay_s=collision.delay,
+            kappa=backbone_of(fitted).kappa, moved=moved, margin=margin, ratio_twist=twist.ratio_twist,
             turn_of_twist=twist.turn_of_twist,
         )  # fmt: skip
 
