@@ -138,5 +138,6 @@ QUESTIONS: Mapping[str, tuple[str, tuple[str, ...]]] = MappingProxyType({
     "hysteresis": ("Why does the measured hysteresis differ from the map's?", ("hysteresis",)),
     "higher_modes": ("What do higher modes do to restitution, delay and the square root?",
                      ("effective_impact", "soft_wall")),
+    "last_period": ("Why p10 at 23.40 Hz, where the map has p11?", ("sensitivity",)),
 })  # fmt: skip
-"""The two questions that the letter leaves open, and the studies that answer them (`run.answer`)."""
+"""The questions that the letter leaves open, and the studies that answer them (`run.answer`)."""
