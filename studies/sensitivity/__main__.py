@@ -9,14 +9,13 @@ apart when the amplitude is noisy (studies.sensitivity.noise), for m = 3 ... 16 
 at three of the letter's frequencies.
 
 What comes out: nothing within the errors gives p10 at grazing at 23.40 Hz. Its band edge in the map is
-f T = 20/21, which asks for T <= 40.70 ms; but Eq. (1) and beam have all six periods at one excess, from 4e-3
-on, and what shortens T at the gap brings that down to the letter's stability (studies.sensitivity.p10). The
-closest strobe points of p_m run into one another from m = 10 on with jitter, from m = 7 on with drift; the
-hysteresis sinks below the noise from m = 9 on.
+f T = 20/21, which asks for T <= 40.70 ms; but Eq. (1) and beam have all six periods from an excess of 4e-3
+on, and with what shortens T at the gap from less (p10.csv). The closest strobe points of p_m run into one
+another from m = 10 on with jitter, from m = 7 on with drift; the hysteresis sinks below the noise from m = 9.
 
 Run:     python -m studies.sensitivity [--periods M M] [--strobes N]     a minute; --quick ten seconds
 Writes:  sensitivity.csv (a row a frequency and change), p10.csv (a row a cause), noise.csv (a row a period
-         and kind of noise), and the figures fold_against_parameter, p10, noise
+         and kind of noise), and the figures fold_against_parameter, noise
 """
 
 from __future__ import annotations
@@ -87,8 +86,7 @@ def sensitivity(
         kind: next((row.m for row in of_eq_1 if row.noise == kind and not row.told_apart >= 1.0), None)
         for kind in KINDS
     }
-    judge(run, merged)
-    explain(run, p10)
+    judge(run, merged, p10)
     return {
         "rows": rows,
         "noise": noise,
@@ -101,32 +99,25 @@ def sensitivity(
     }  # fmt: skip
 
 
-def judge(run: Run, merged: Mapping[str, int | None]) -> None:
-    """Verdict on the highest period."""
+def judge(run: Run, merged: Mapping[str, int | None], rows: Sequence[Row]) -> None:
+    """Verdict on the highest period, and the answer why it is p10."""
+    def told(found: Sequence[Row]) -> str:
+        return "; ".join(f"{row.cause}, " + (f"{row.six_from:.1e} to {row.six_to:.1e}" if row.six_from
+                                             else "nowhere") for row in found)  # fmt: skip
+
     first = merged["jitter"]
     run.verdict(
         "last_period",
         "agrees" if first is not None and 0 <= first - HIGHEST <= 1 else "in part",
         found=", ".join(f"{f'p{m}' if m else 'none'} ({kind})" for kind, m in merged.items()),
-        note="first period whose closest strobe points merge in amplitude noise of the size of the letter's "
-        "stability",
+        note="first period whose closest strobe points merge in noise of the size of the letter's stability",
     )
-
-
-def explain(run: Run, rows: Sequence[Row]) -> None:
-    """The answer why p10, or what would give it."""
-    def told(rows: Sequence[Row]) -> str:
-        ends = [f"{row.six_from:.1e} to {row.six_to:.1e}" if row.six_from else "nowhere" for row in rows]
-        return "; ".join(f"{row.cause}: {end}" for row, end in zip(rows, ends, strict=True)) or "none"
-
     near = [row for row in rows if row.born[1] == HIGHEST and row.others[1] == len(PERIODS) - 1]
-    far = [row for row in rows[3:] if not row.six_from]
     run.answer(
         "last_period",
         f"Excesses at which all six periods are born, with nothing changed: {told(rows[:3])}; with what "
-        f"brings them to 1e-3: {told(near)}; with what leaves none: {told(far)}. The letter prints neither "
-        "the excess at which a period was read nor gap, width, exciter and the base on which T was measured: "
-        "it cannot decide.",
+        f"brings them to 1e-3: {told(near)}. The letter prints neither the excess at which a period was read "
+        "nor gap, width, exciter and the base on which T was measured: it cannot decide between these.",
     )
 
 

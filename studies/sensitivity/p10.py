@@ -7,8 +7,8 @@
     harmonic           z = Z (sin w t + r sin(n w t + p)): the tip's answer to it is the motion of one more
                        mode, free and undamped, whose phi is so small that impacts leave it alone
 
-They act on Eq. (1), with phi and Gamma of the beam's mode 1, where no other description is named. Excess
-counts from the amplitude at which the whole motion without impacts grazes.
+They act on Eq. (1), the exciter with phi and Gamma of the beam's mode 1, where no other description is named.
+Excess counts from the amplitude at which the whole motion without impacts grazes.
 """
 
 from __future__ import annotations
@@ -28,14 +28,12 @@ from studies.letter import AMPLITUDE_STABILITY, FREE_PERIOD_ERROR_S
 from studies.scene import Scene, beam_at, nordmark_at, periods_of, single_mode_at, spring_of
 from studies.sensitivity.changes import known
 
-BELOW, CYCLES = -1e-3, 8000
-"""Excess before the step; drive periods after which a motion has no period."""
-
 EXCESSES = (AMPLITUDE_STABILITY, 1e-3, 4e-3, 1e-2)
 """Of the columns `born` and `others`."""
 
-SUSPENSION_RATIO, TINY, PHASES = 0.1, 1e-6, [0.5 * math.pi * n for n in range(4)]
-"""Damping ratio of the exciter alone, assumed; of a harmonic phi over that of mode 1, and phases [rad]."""
+BELOW, CYCLES, SUSPENSION_RATIO, TINY = -1e-3, 8000, 0.1, 1e-6
+"""Excess before the step; drive periods until a motion has no period; damping ratio of the exciter, assumed;
+phi of a harmonic's mode over that of mode 1."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -90,7 +88,7 @@ Cause = tuple[str, float | None, list[dict[float, Any]]]
 
 
 def causes_of(scene: Scene, modes: ModalModel) -> list[Cause]:
-    """All of them, nothing changed in the first three; recoil in one more mode beside that of Eq. (1)."""
+    """All of them, nothing changed in the first three."""
     keys, gap, letter, error = scene.single_mode, scene.stop.gap_m, periods_of(scene), FREE_PERIOD_ERROR_S
     free, rate, tau = keys.free_period_s, keys.decay_rate_per_s, keys.restitution
     last, beam, found = max(letter), partial(beam_at, scene, model=modes), list[Cause]()
@@ -100,9 +98,8 @@ def causes_of(scene: Scene, modes: ModalModel) -> list[Cause]:
         made = [{f: make(f) for f in letter} for make in makes]
         one, period = made[0][last], free
         if isinstance(one, ImpactOscillator):
-            place = int(np.argmax(np.abs(one.model.phi)))  # of the mode that moves the tip most
-            omega, half = one.model.omega[place], 0.5 * one.model.decay_rate[place]
-            period = 2.0 * math.pi / math.sqrt(omega**2 - half**2)
+            model, k = one.model, np.argmax(np.abs(one.model.phi))  # the mode that moves the tip most
+            period = 2.0 * math.pi / math.sqrt(model.omega[k] ** 2 - 0.25 * model.decay_rate[k] ** 2)
             made = [{f: StroboscopicMap(oscillator=one) for f, one in made[0].items()}]
         found.append((words, known(getattr, one, "effective_period", period), made))
 
@@ -118,16 +115,9 @@ def causes_of(scene: Scene, modes: ModalModel) -> list[Cause]:
         return lambda f: replace(mode, frequency=f)
 
     def recoil(mass: float, hz: float, held: bool, period: float = free) -> Callable[..., ImpactOscillator]:
-        of, own = eq_1(period), mass * (2.0 * math.pi * hz) ** 2
+        of, shake = eq_1(period), {"mass": mass, "suspension_hz": hz, "damping_ratio": SUSPENSION_RATIO}
         mode = replace(of(last).model, phi=modes.phi[:1], participation=modes.participation[:1])
-        if not held:  # the mode that has T and mu where the base moves
-            square = mode.omega**2
-            square += (square * mode.participation) ** 2 / (own - square * mass)
-            mode = replace(mode, omega=np.sqrt(square))
-        moving = mode.on_exciter(mass=mass, suspension_hz=hz, damping_ratio=SUSPENSION_RATIO)
-        if not held:
-            rates = np.where(np.abs(moving.phi) < np.max(np.abs(moving.phi)), moving.decay_rate, rate)
-            moving = replace(moving, decay_rate=rates)
+        moving = mode.on_exciter(**shake, measured_on_it=not held)
         return lambda f: replace(of(f), model=moving)
 
     add("map", lambda f: StrobedNordmarkMap(map=nordmark_at(scene, f)))
@@ -145,10 +135,11 @@ def causes_of(scene: Scene, modes: ModalModel) -> list[Cause]:
     for held, on in ((False, "it"), (True, "a base held still")):
         for mass, hz in ((2, 2), (2, 15), (10, 2), (20, 2), (20, 15)):
             add(f"recoil of {mass} kg on {hz} Hz, T on {on}", recoil(mass, hz, held))
+    phases = [0.5 * math.pi * n for n in range(4)]
     for n in range(2, 8):
-        add(f"harmonic {n} of 1 %", *(partial(distorted, eq_1(), n, 0.01, turn) for turn in PHASES))
+        add(f"harmonic {n} of 1 %", *(partial(distorted, eq_1(), n, 0.01, turn) for turn in phases))
     for r in (0.001, 0.01):
-        add(f"harmonic 7 of {r:.1%}, beam", *(partial(distorted, beam, 7, r, turn) for turn in PHASES))
+        add(f"harmonic 7 of {r:.1%}, beam", *(partial(distorted, beam, 7, r, turn) for turn in phases))
     add("T -0.02 ms, finite rotations", bent(free - error))
     add("T -0.02 ms, finite rotations, gap x 1.25", bent(free - error, 1.25))
     add("T -0.02 ms, recoil of 20 kg on 2 Hz, T on a base held still", recoil(20, 2, True, free - error))
@@ -157,9 +148,8 @@ def causes_of(scene: Scene, modes: ModalModel) -> list[Cause]:
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
-    """A cause, T, and what is `born` at `EXCESSES` (0: not settled, None: failed), where `others` counts the
-    other five of the letter's periods; least and greatest excess of a grid with p10 and with all six, and how
-    many have not in the `gaps` between."""
+    """A cause, T, what is `born` at `EXCESSES` (0: not settled), how many of the letter's `others` are there;
+    least and greatest excess of a grid with p10 and with all six, and excesses without in the `gaps`."""
 
     cause: str
     effective_period_s: float | None
@@ -190,11 +180,10 @@ def row_of(scene: Scene, step: float, cause: Cause) -> Row:
 
         ten = [e for e in grid if right(last, e)]
         six = [e for e in ten if all(right(f, e) for f in five)]
-        spans = [[e for e in grid if part and part[0] <= e <= part[-1]] for part in (ten, six)]
+        gaps = [sum(part[0] <= e <= part[-1] for e in grid) - len(part) if part else 0 for part in (ten, six)]
         return Row(
-            cause=cause[0], effective_period_s=cause[1], p10_from=min(ten, default=None),
+            cause=cause[0], effective_period_s=cause[1], gaps=tuple(gaps), p10_from=min(ten, default=None),
             p10_to=max(ten, default=None), six_from=min(six, default=None), six_to=max(six, default=None),
-            gaps=(len(spans[0]) - len(ten), len(spans[1]) - len(six)),
             born=tuple(known(period_of, motions[last], e) for e in EXCESSES),
             others=tuple(sum(right(f, e) for f in five) for e in EXCESSES),
         )  # fmt: skip
