@@ -2,7 +2,7 @@
 
     finite rotations   cubic terms of mode 1 (``contact.NonlinearMode``); T of small deviations at the gap
     anticlastic        energy EI K^2/2 (1 + (nu^2/60) (b^2 K/t)^2) of a sheet of width b bent to K, as a cubic
-                       stiffness of mode 1: an estimate, since a clamp holds the sheet flat
+                       stiffness of mode 1: an estimate, as a clamp holds the sheet flat
     recoil             the exciter moves too (``beam.ModalModel.on_exciter``), driven by a force
     harmonic           z = Z (sin w t + r sin(n w t + p)): the tip's answer to it is the motion of one more
                        mode, free and undamped, whose phi is so small that impacts leave it alone
@@ -32,8 +32,7 @@ EXCESSES = (AMPLITUDE_STABILITY, 1e-3, 4e-3, 1e-2)
 """Of the columns `born` and `others`."""
 
 BELOW, CYCLES, SUSPENSION_RATIO, TINY = -1e-3, 8000, 0.1, 1e-6
-"""Excess before the step; drive periods until a motion has no period; damping ratio of the exciter, assumed;
-phi of a harmonic's mode over that of mode 1."""
+"""Excess before a step; most drive periods; damping ratio of exciter, assumed; phi of a harmonic's mode."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -61,8 +60,7 @@ def distorted(
     of: Callable[[float], ImpactOscillator], order: int, ratio: float, phase: float, frequency: float
 ) -> Distorted:
     """`of` a drive frequency [Hz], with a harmonic of n = `order`, `ratio` r [1] and `phase` p [rad]."""
-    oscillator, w = of(frequency), 2.0 * math.pi * order * frequency
-    model = oscillator.model
+    model, w = (oscillator := of(frequency)).model, 2.0 * math.pi * order * frequency
     own = model.participation * w**2 / (model.omega**2 - w**2 + 1j * model.decay_rate * w)
     answer = complex(ratio * np.exp(1j * phase) * (model.phi @ own))
     turn = np.exp(1j * np.linspace(0.0, 2.0 * math.pi, 100_000))
@@ -108,10 +106,9 @@ def causes_of(scene: Scene, modes: ModalModel) -> list[Cause]:
         return partial(single_mode_at, scene.replace(there))
 
     def bent(period: float = free, wider: float = 1.0, width: float = 0.0) -> Callable[..., NonlinearMode]:
-        mode = NonlinearMode(
-            free_period=period, decay_rate=rate, restitution=tau, gap=wider * gap, frequency=last,
-            stiffness=terms(width).stiffness, inertia=terms(width).inertia,
-        )  # fmt: skip
+        b, a = terms(width).stiffness, terms(width).inertia
+        mode = NonlinearMode(free_period=period, decay_rate=rate, restitution=tau, gap=wider * gap,
+                             frequency=last, stiffness=b, inertia=a)  # fmt: skip
         return lambda f: replace(mode, frequency=f)
 
     def recoil(mass: float, hz: float, held: bool, period: float = free) -> Callable[..., ImpactOscillator]:
