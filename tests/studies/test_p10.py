@@ -17,13 +17,12 @@ from studies.sensitivity.p10 import causes_of, cubic, distorted, period_of, row_
 
 def test_recoil_has_the_frequencies_and_the_mobility_of_two_bodies():
     """(w^2 - l)(w_s^2 - l) = l^2 Gamma^2/m; an impulse meets the reduced mass; q still follows the base."""
-    gamma, phi, mass = 0.17, 7.7, 2.0
+    gamma, phi, mass, w = 0.17, 7.7, 2.0, 2.0 * np.pi * 23.4
     one = replace(single_mode(free_period=0.04, decay_rate=0.0), phi=[phi], participation=[gamma])
     both, square, own = one.on_exciter(mass=mass, suspension_hz=9.0), one.omega[0] ** 2, (18.0 * np.pi) ** 2
     roots = np.roots([1.0 - gamma**2 / mass, -square - own, square * own])
     assert both.omega**2 == pytest.approx(np.sort(roots), rel=1e-12)
     assert both.phi @ both.phi == pytest.approx(phi**2 / (1.0 - gamma**2 / mass), rel=1e-12)
-    w = 2.0 * np.pi * 23.4
     answer = both.participation / (both.omega**2 - w**2)
     relative = (both.phi @ answer) / (both.participation @ answer / mass)
     assert relative == pytest.approx(phi * gamma * w**2 / (square - w**2), rel=1e-11)
