@@ -42,6 +42,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import eigh
 
 from .parameters import require, require_array, require_kind, require_whole, require_within, suspect
 
@@ -190,6 +191,42 @@ class ModalModel:
             participation=np.append(self.participation, participation),
             readouts={name: np.append(row, 0.0) for name, row in self.readouts.items()},
         )
+
+    def on_exciter(
+        self, *, mass: float, suspension_hz: float, damping_ratio: float = 0.0, measured_on_it: bool = False
+    ) -> ModalModel:
+        """Return the modes of this spring and of an exciter z that its forces move.
+
+        `mass` m [kg] is that of all that moves with the base, spring included, `suspension_hz` f_s [Hz] and
+        `damping_ratio` [1] are those of its suspension:
+
+            M = [[1, Gamma], [Gamma^T, m]],     K = diag(omega^2, (2 pi f_s)^2 m).
+
+        Contact pushes tip and stop apart and the stop rides on the base, so that it works on q alone.
+        `participation` becomes that in a force on the base that would move a free mass m as the drive moves
+        the base. Damping stays modal; statics, tip mass and read-outs go.
+
+        The modes are those on a base held still; where mode 1 was `measured_on_it`, the one that moves the
+        tip most keeps the frequency and the decay rate of mode 1.
+        """
+        require_within("suspension_hz", suspension_hz, "Hz", low=0)
+        require_within("damping_ratio", damping_ratio, "[1]", low=0)
+        gamma, square, n = self.participation, self.omega**2, self.n_modes
+        require_within("mass", mass, "kg", above=float(gamma @ gamma))
+        own = (2.0 * np.pi * suspension_hz) ** 2
+        if measured_on_it:
+            kept, others = square[0], np.sum(gamma[1:] ** 2 / (square[1:] - square[0]))
+            first = kept + (kept * gamma[0]) ** 2 / ((own - kept) * mass - kept**2 * others)
+            square = np.append(first, square[1:])
+        inertia = np.diag(np.append(np.ones(n), mass))
+        inertia[n, :n] = inertia[:n, n] = gamma
+        found, shapes = eigh(np.diag(np.append(square, mass * own)), inertia)
+        phi = self.phi @ shapes[:n]
+        rates = np.append(self.decay_rate, 2.0 * damping_ratio * np.sqrt(own) * mass) @ shapes**2
+        if measured_on_it:
+            rates[np.argmax(np.abs(phi))] = self.decay_rate[0]
+        omega = np.sqrt(np.maximum(found, 0.0))
+        return ModalModel(omega=omega, decay_rate=rates, phi=phi, participation=mass * shapes[n])
 
 
 def _row(name: str, values: ArrayLike, unit: str) -> NDArray[np.float64]:

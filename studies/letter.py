@@ -141,5 +141,6 @@ QUESTIONS: Mapping[str, tuple[str, tuple[str, ...]]] = MappingProxyType({
     "higher_modes": ("What do higher modes do to restitution, delay and the square root?",
                      ("effective_impact", "soft_wall")),
     "two_parameters": ("Do energy loss and delay stand for the higher modes?", ("transitions",)),
+    "last_period": ("Why p10 at 23.40 Hz, where the map has p11?", ("sensitivity",)),
 })  # fmt: skip
 """The questions that the letter leaves open, and the studies that answer them (`run.answer`)."""

@@ -1,6 +1,6 @@
 """One page of everything that the studies stored, to read, print and pass on: results/report/index.html.
 
-The template (page.html.j2) has generic sections: the answers to the letter's two questions, the letter point
+The template (page.html.j2) has generic sections: the answers to the letter's questions, the letter point
 by point, then each study with its docstring, figures and tables, and last what the results rest on. Nothing
 is said here of any study: titles and accounts are docstrings, figures and captions come from its manifest,
 tables from its csv files, verdicts and answers from its summary. A page made from other results says other
@@ -144,7 +144,7 @@ def _points(stored: Mapping[str, Stored]) -> Iterator[dict[str, object]]:
 
 
 def _answers(stored: Mapping[str, Stored]) -> Iterator[tuple[str, list[tuple[str, str]]]]:
-    """The two questions, each with the studies that answer it and what they say."""
+    """The questions, each with the studies that answer it and what they say."""
     for key, (question, answering) in letter.QUESTIONS.items():
         parts = []
         for study in answering:

@@ -28,9 +28,6 @@ KINDS = ("jitter", "drift")
 BORN_EXCESS = 1e-3
 """Excess of the orbit in noise."""
 
-EXCESSES = tuple((AMPLITUDE_STABILITY * 1.1 ** np.arange(46)).tolist())
-"""Where a period is looked for: from the stability of the amplitude on, in steps of 10 %, to 0.018."""
-
 CORRELATION = 100.0
 """Drive periods over which the drift is correlated: some seconds, longer than 40 strobe points take."""
 
@@ -124,8 +121,3 @@ def in_noise(strobes: int, described: tuple[str, StroboscopicMap, int]) -> list[
             fold=fold, noise=kind, regular=regular, told_apart=told_apart,
         ))  # fmt: skip
     return found
-
-
-def first_birth(period: int, strobed: StroboscopicMap) -> float | None:
-    """Lowest of `EXCESSES` at which a start from just below grazing gives this period."""
-    return next((excess for excess in EXCESSES if born_period(strobed, excess) == period), None)

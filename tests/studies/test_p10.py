@@ -1,0 +1,93 @@
+"""What moves p10 at 23.40 Hz, cause by cause."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from beam import single_mode
+from contact import StroboscopicMap
+from studies.letter import PERIODS
+from studies.scene import single_mode_at
+from studies.sensitivity.p10 import causes_of, cubic, distorted, period_of, row_of
+
+
+def test_recoil_has_the_frequencies_and_the_mobility_of_two_bodies():
+    """(w^2 - l)(w_s^2 - l) = l^2 Gamma^2/m; an impulse meets the reduced mass; q still follows the base."""
+    gamma, phi, mass, w = 0.17, 7.7, 2.0, 2.0 * np.pi * 23.4
+    one = replace(single_mode(free_period=0.04, decay_rate=0.0), phi=[phi], participation=[gamma])
+    both, square, own = one.on_exciter(mass=mass, suspension_hz=9.0), one.omega[0] ** 2, (18.0 * np.pi) ** 2
+    roots = np.roots([1.0 - gamma**2 / mass, -square - own, square * own])
+    assert both.omega**2 == pytest.approx(np.sort(roots), rel=1e-12)
+    assert both.phi @ both.phi == pytest.approx(phi**2 / (1.0 - gamma**2 / mass), rel=1e-12)
+    answer = both.participation / (both.omega**2 - w**2)
+    relative = (both.phi @ answer) / (both.participation @ answer / mass)
+    assert relative == pytest.approx(phi * gamma * w**2 / (square - w**2), rel=1e-11)
+
+
+def test_a_heavy_exciter_gives_the_spring_back_and_one_measured_on_it_keeps_mode_1(letter_model):
+    heavy = letter_model.on_exciter(mass=1e9, suspension_hz=5.0, damping_ratio=0.1)
+    light = letter_model.on_exciter(mass=2.0, suspension_hz=15.0, damping_ratio=0.1, measured_on_it=True)
+    for name in ("omega", "decay_rate", "phi"):
+        assert np.abs(getattr(heavy, name))[1:] == pytest.approx(getattr(letter_model, name), rel=1e-7)
+    assert [light.omega[1], light.decay_rate[1]] == pytest.approx([letter_model.omega[0], 3.56], rel=1e-9)
+    with pytest.raises(ValueError, match="mass"):
+        letter_model.on_exciter(mass=0.01, suspension_hz=5.0)
+
+
+@pytest.mark.parametrize(("order", "phase"), [(2, 0.0), (7, 4.0)])
+def test_a_harmonic_moves_eq_1_as_another_integrator_says(letter_scene, order, phase):
+    f, ratio, gap = 23.40, 0.01, letter_scene.stop.gap_m
+    start = distorted(lambda f: single_mode_at(letter_scene, f), order, ratio, phase, f)
+    assert [start.at(e).orbit(start.at(e).steady(), 3).impacts.any() for e in (-1e-6, 1e-6)] == [False, True]
+    there, until = start.at(2e-3), 24 / f
+    turns, phases = 2.0 * np.pi * f * np.array([1.0, order]), np.array([0.0, phase])
+    pulls = there.oscillator.driven.amplitude * np.array([1.0, ratio]) * turns**2
+    square, decay = there.oscillator.model.omega[0] ** 2, there.oscillator.model.decay_rate[0]
+
+    def rate(t, y):
+        return [y[1], pulls @ np.sin(turns * t + phases) - decay * y[1] - square * y[0]]
+
+    def touch(t, y):
+        return y[0] - gap
+
+    touch.terminal, touch.direction = True, 1.0
+    steady = pulls * np.exp(1j * phases) / (square - turns**2 + 1j * decay * turns)
+    y, t, hits = [steady.imag.sum(), turns @ steady.real], 0.0, 0
+    while t < until:
+        run = solve_ivp(rate, (t, until), y, "DOP853", events=touch, max_step=0.01 / f, rtol=1e-9, atol=1e-13)
+        t, y = run.t[-1], run.y[:, -1]
+        if run.status == 1:
+            y, hits = [gap * (1.0 - 1e-15), -0.1 * y[1]], hits + 1
+    assert hits == (found := there.orbit(there.steady(), 24)).impacts.sum() == 3
+    assert there.tip(found.points)[-1] == pytest.approx(y[0], abs=1e-6 * gap)
+
+
+@pytest.mark.filterwarnings("ignore:mass of the tip is 10 kg")
+def test_a_leaf_that_curves_across_stiffens_as_its_curvature_says(letter_scene):
+    """A heavy tip bends it to y'' = 3 (1 - s/L) x/L^2: b = (nu^2 b^4/(30 t^2)) 27/(5 L^4)."""
+    changes = {"spring.kind": "cantilever", "tip.mass_kg": 10.0, "spring.tape_thickness_m": 0.0}
+    leaf = letter_scene.replace(changes)
+    more, keys = cubic(leaf, 0.02).stiffness - cubic(leaf).stiffness, leaf.spring
+    expected = (keys.poisson_ratio * 0.02**2 / keys.thickness_m) ** 2 / 30.0 * 5.4 / keys.leg_length_m**4
+    assert more == pytest.approx(expected, rel=1e-3)
+
+
+def test_p10_is_born_from_where_it_should_be(letter_scene, letter_model):
+    """4e-3 at 40.80 ms, 2.5e-3 at 40.78 ms; recoil of a base on which T was measured moves nothing."""
+    causes = {cause[0]: cause for cause in causes_of(letter_scene, letter_model)}
+    names = ("map", "Eq. (1)", "T -0.02 ms", "recoil of 2 kg on 15 Hz, T on it")
+    nordmark, plain, shorter, recoil = (row_of(letter_scene, 1.05, causes[name]) for name in names)
+    assert nordmark.p10_from is None and plain.born == (11, 11, 10, 10)
+    assert plain.p10_from == plain.six_from == pytest.approx(4e-3, rel=0.05)
+    assert [shorter.p10_from, recoil.p10_from] == pytest.approx([2.5e-3, 4e-3], rel=0.05)
+
+
+@pytest.mark.parametrize(("period", "six"), [(40.70e-3, 0), (40.72e-3, 1), (40.74e-3, 1), (40.76e-3, 0)])
+def test_all_six_at_1e_3_need_an_effective_period_of_40_71_to_40_745_ms(letter_scene, period, six):
+    scene = letter_scene.replace({"single_mode.free_period_s": period})
+    strobed = {m: StroboscopicMap(oscillator=single_mode_at(scene, f)) for f, m in PERIODS.items()}
+    assert all(period_of(one, 1e-3) == m for m, one in strobed.items()) == six
