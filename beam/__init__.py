@@ -38,7 +38,6 @@ if TYPE_CHECKING:
     from .export import write_frames, write_mode_motion, write_modes
     from .finite_rotation import FiniteRotation
     from .frequency_equation import ExactModes, UniformBeam, exact_modes, frequency_function
-    from .guided_leg import as_one_spring, straight_equivalent
     from .harmonic_balance import PeriodicMotion, periodic_motion
     from .material import ALUMINA, BRASS, DAMPING_TAPE, STEEL, Material
     from .modal_model import ModalModel, single_mode
@@ -69,7 +68,6 @@ _NAMES = {
     "export": ("write_frames", "write_mode_motion", "write_modes"),
     "finite_rotation": ("FiniteRotation",),
     "frequency_equation": ("ExactModes", "UniformBeam", "exact_modes", "frequency_function"),
-    "guided_leg": ("as_one_spring", "straight_equivalent"),
     "harmonic_balance": ("PeriodicMotion", "periodic_motion"),
     "material": ("ALUMINA", "BRASS", "DAMPING_TAPE", "Material", "STEEL"),
     "modal_model": ("ModalModel", "single_mode"),

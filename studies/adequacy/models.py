@@ -1,12 +1,9 @@
 """One choice on the ladder of models, and the oscillator that it stands for.
 
     single_mode   Eq. (1) of the letter: one mode of measured period and decay rate, Newton's law with tau
-    straight      the guided leg that has the sway stiffness of the folded U (``beam.straight_equivalent``),
-                  or the straight spring itself
-    folded_u      the arc-length model of the whole U
-    modal_data    modes that were measured
+    spring        the finite-element model of the spring, or its measured modes
 
-On each level but the first: elements on a leg (four fifths of that on the bend), number of modes, whether one
+Of the spring: elements on a leg (four fifths of that on the bend), number of modes, whether one
 residual mode stands for those left out (``ModalModel.with_residual_mode``), and the contact law.
 """
 
@@ -15,17 +12,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from beam import ModalModel, as_one_spring, assemble, natural_modes, reduce, straight_equivalent
+from beam import ModalModel, reduce
 from contact import ImpactOscillator
 from studies.least_model import LADDER, REFERENCE
-from studies.scene import Scene, beam_at, damping_of, model_of, modes_of, single_mode_at, spring_of
+from studies.scene import Scene, beam_at, damping_of, model_of, modes_of, single_mode_at
 
 __all__ = ["EQ_1", "LAWS", "LEVELS", "MESHES", "MODES", "Choice", "Models"]
 
-LEVELS = {
-    "single_mode": "Eq. (1)", "straight": "straight strip", "folded_u": "folded U",
-    "modal_data": "measured modes",
-}  # fmt: skip
+LEVELS = {"single_mode": "Eq. (1)", "spring": "beam"}
 LAWS = ("newton", "linear", "hertz")
 MODES = (*LADDER, REFERENCE)
 MESHES = (2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96)
@@ -73,17 +67,14 @@ EQ_1 = Choice(level="single_mode", law="newton")
 
 
 class Models:
-    """The models of one scene: `levels`, coarsest first, and `sharp`, the reference; each mesh is solved
-    once."""
+    """The models of one scene, and `sharp`, the reference; each mesh is solved once."""
 
     def __init__(self, scene: Scene) -> None:
         kind, radius = scene.spring.kind, scene.tip.ball_radius_m
-        top = kind if kind in ("folded_u", "modal_data") else "straight"
-        self.levels = (EQ_1.level, "straight", top) if kind == "folded_u" else (EQ_1.level, top)
-        self.scene, self._solved = scene, dict[tuple[str, int], ModalModel]()
+        self.scene, self._solved = scene, dict[int, ModalModel]()
         modes = min(REFERENCE, len(scene.modal_data.frequencies_hz) or REFERENCE)
         mesh, law = 0 if kind == "modal_data" else MESHES[-1], "hertz" if radius > 0 else scene.contact.law
-        self.sharp = Choice(level=top, law=law, modes=modes, mesh=mesh)
+        self.sharp = Choice(level="spring", law=law, modes=modes, mesh=mesh)
 
     def oscillator(self, choice: Choice, frequency: float) -> ImpactOscillator:
         """The impact oscillator of a choice at drive `frequency` [Hz].
@@ -93,11 +84,10 @@ class Models:
         """
         if choice.level == EQ_1.level:
             return single_mode_at(self.scene, frequency)
-        place = (choice.level, choice.mesh)
-        if place not in self._solved or self._solved[place].n_modes < choice.modes:
-            solve = self._spring if choice.level == self.levels[-1] else self._guided_leg
-            self._solved[place] = solve(choice.mesh, choice.modes)
-        model = self._solved[place].truncated(choice.modes)
+        mesh = choice.mesh
+        if mesh not in self._solved or self._solved[mesh].n_modes < choice.modes:
+            self._solved[mesh] = self._spring(mesh, choice.modes)
+        model = self._solved[mesh].truncated(choice.modes)
         model = model.with_residual_mode() if choice.residual else model
         return beam_at(self.scene.replace({"contact.law": choice.law}), frequency, model)
 
@@ -107,11 +97,3 @@ class Models:
         changes = {"spring.elements_per_leg": mesh, "spring.elements_on_arc": bend, "modes.count": modes}
         scene = self.scene.replace(changes)
         return reduce(modes_of(scene), damping_of(scene), modes) if mesh else model_of(scene)
-
-    def _guided_leg(self, mesh: int, modes: int) -> ModalModel:
-        """The straight equivalent of the folded U."""
-        spring = straight_equivalent(spring_of(self.scene))
-        shares = [piece.length / spring.centreline.length for piece in spring.centreline.pieces]
-        leg = assemble(spring, [max(1, math.ceil(mesh * share - 1e-9)) for share in shares])
-        solved = natural_modes(leg, min(leg.n_dofs, modes + 1))
-        return as_one_spring(reduce(solved, damping_of(self.scene), modes))

@@ -146,8 +146,6 @@ class Search:
         sharp, found = self.sharp, dict[str, float]()
         if choice == EQ_1:
             return {"level": self.off(choice)}
-        if choice.level != sharp.level:
-            found["level"] = self.off(replace(sharp, level=choice.level))
         if choice.law != sharp.law:
             found["law"] = self.off(replace(sharp, law=choice.law))
         if choice.modes < sharp.modes:
@@ -165,8 +163,7 @@ class Search:
         """The models one step smaller in one thing: level, law, residual mode, modes or mesh."""
         if choice == EQ_1:
             return
-        level = self.models.levels[self.models.levels.index(choice.level) - 1]
-        yield EQ_1 if level == EQ_1.level else replace(choice, level=level)
+        yield EQ_1
         yield from (replace(choice, law=law) for law in LAWS[: LAWS.index(choice.law)][-1:])
         yield from [replace(choice, residual=False)] if choice.residual else []
         yield from (replace(choice, modes=modes) for modes in _below(MODES, choice.modes)[-1:])
@@ -179,8 +176,7 @@ class Search:
         def enough(choice: Choice) -> bool:
             return self.error(choice) <= tolerance - own
 
-        levels = self.models.levels[1:]
-        corners = [replace(self.sharp, level=level, law=law) for level in levels for law in laws]
+        corners = [replace(self.sharp, law=law) for law in laws]
         found = [one for corner in corners if enough(corner) for one in self._below_corner(corner, enough)]
         found += [EQ_1] if enough(EQ_1) else []
         reached, choice = bool(found), self.sharp

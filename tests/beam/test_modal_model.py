@@ -152,3 +152,26 @@ def test_the_package_keeps_its_word() -> None:
     assert set(beam.__all__) <= set(dir(beam))
     with pytest.raises(AttributeError, match="drum"):
         _ = beam.drum
+
+
+@pytest.mark.parametrize("count", [1, 2, 4])
+def test_residual_mode_fulfils_the_sum_rules(count: int) -> None:
+    spring = folded_u(leg_length=0.13, bend_radius=7.5e-3, section=STRIP, tip=Tip(mass=5e-3))
+    model = reduce(natural_modes(assemble(spring), 30), ConstantRatio(ratio=0.01), count)
+    whole = model.with_residual_mode()
+    assert whole.n_modes == count + 1 and whole.omega[-1] > model.omega[-1]
+    assert np.sum(whole.phi**2) == pytest.approx(1 / 5e-3, rel=1e-12)
+    assert np.sum(whole.phi**2 / whole.omega**2) == pytest.approx(model.static_compliance, rel=1e-12)
+    assert whole.phi @ whole.participation == pytest.approx(1.0, rel=1e-12)
+
+
+def test_no_residual_mode_without_statics_tip_mass_or_remainder() -> None:
+    spring = folded_u(leg_length=0.13, bend_radius=7.5e-3, section=STRIP, tip=Tip(mass=5e-3))
+    model = reduce(natural_modes(assemble(spring), 30), ConstantRatio(ratio=0.01), 3)
+    with pytest.raises(ValueError, match="tip_mass is 0"):
+        replace(model, tip_mass=0.0).with_residual_mode()
+    with pytest.raises(ValueError, match="static_compliance is None"):
+        replace(model, static_compliance=None).with_residual_mode()
+    enough = float(np.sum(model.phi**2 / model.omega**2))
+    with pytest.raises(ValueError, match="above zero"):
+        replace(model, static_compliance=enough).with_residual_mode()

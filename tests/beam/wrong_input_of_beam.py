@@ -183,10 +183,5 @@ BEAM = (
        kind=dict(beam=spring()), value=dict(count=each(0, 10**7))),
     of(beam.frequency_function, lambda: dict(beam=uniform(), beta_length=[1.0, 2.0]),
        kind=dict(beam=None, beta_length=["1"]), value=dict(beta_length=each([-1.0], [NAN]))),
-    of(beam.as_one_spring, lambda: dict(half=beam.ModalModel(**MODAL)),
-       kind=dict(half=each(None, 0.5, "leg"))),
-    of(beam.straight_equivalent, lambda: dict(spring=spring()),
-       kind=dict(spring=each(None, strip())),
-       value=dict(spring=told(beam.cantilever(length=0.1, section=strip()), "centreline has 1 pieces"))),
 )
 # fmt: on
