@@ -77,24 +77,13 @@ def at_amplitude(system, factor):
 
 
 @kernel
-def _periods(table, system, u, v, runs, points, counts):
-    """The loop that fits: numba leaves out the branch that does not."""
-    if table is None:
-        status = any_periods(system.motion, u, v, runs, points, counts)
-        for i in range(counts.size):
-            for k in range(points.shape[1]):
-                points[i, k] = (points[i, k] + system.mean[k]) * system.weight[k]
-        return status
-    else:
-        return one_mode_periods(table, system, u, v, runs, points, counts)[0]
-
-
-@kernel
-def strobed_motion(system, u, v, runs, points, counts):
+def strobed_motion(table, system, u, v, runs, points, counts):
     """Carry the deviation (u, v) from a strobe over as many drive periods as `counts` has places.
 
     Parameters
     ----------
+    table : PeriodTable or None
+        That of the system: told apart by its type, the loop that does not fit is not compiled.
     system : StrobedSystem
     u, v : ndarray, shape (n_modes,)
         Overwritten.
@@ -108,4 +97,11 @@ def strobed_motion(system, u, v, runs, points, counts):
     status : int
         As that of ``event_loop.advance``.
     """
-    return _periods(system.table, system, u, v, runs, points, counts)
+    if table is None:
+        status = any_periods(system.motion, u, v, runs, points, counts)
+        for i in range(counts.size):
+            for k in range(points.shape[1]):
+                points[i, k] = (points[i, k] + system.mean[k]) * system.weight[k]
+        return status
+    else:
+        return one_mode_periods(table, system, u, v, runs, points, counts)[0]

@@ -140,7 +140,7 @@ class StroboscopicMap:
                 raise ValueError(f"time of the state is {state.time} s; it must be a strobe time n/f")
         u, v, runs = start_of(motion, state, index, 0.0, steady=(system.mean[:n], system.mean[n:]))
         points, impacts = np.empty((count, 2 * n)), np.empty(count, dtype=np.int64)
-        status = strobed_motion(system, u, v, runs, points, impacts)
+        status = strobed_motion(system.table, system, u, v, runs, points, impacts)
         if status != DONE:
             raise failure(status, motion, runs, u, v)
         end = state_of(motion, runs, u + system.mean[:n], v + system.mean[n:])

@@ -114,7 +114,7 @@ def settled_column(system, amplitudes, state, most_cycles, tolerance, found, u, 
                     rows -= BLOCK
                     points[:rows], impacts[:rows] = points[BLOCK:], impacts[BLOCK:]
                 new = slice(rows, rows + BLOCK)
-                status = strobed_motion(local, u, v, runs, points[new], impacts[new])
+                status = strobed_motion(local.table, local, u, v, runs, points[new], impacts[new])
                 rows, cycles, stretch = rows + BLOCK, cycles + BLOCK, np.int64(SHORTEST)
                 while status == DONE and period == 0 and 2 * stretch <= rows:
                     period = repetition(points, impacts, rows, stretch, tolerance)

@@ -123,11 +123,11 @@ def test_the_first_failure_in_their_order_ends_a_batch(monkeypatch):
     """A failure of the general loop, put in by hand: it does not occur with one mode."""
     compiled = stroboscope.strobed_motion
 
-    def failing(system, u, v, runs, points, counts):
+    def failing(table, system, u, v, runs, points, counts):
         if system.motion.number0 == 0.5:
             runs["clock"] = 0.25 * system.motion.period
             return FAILED_CHATTER
-        return compiled(system, u, v, runs, points, counts)
+        return compiled(table, system, u, v, runs, points, counts)
 
     monkeypatch.setattr(stroboscope, "strobed_motion", failing)
     slow = [oscillator(6.0, tau=tau, decay=20.0, excess=3.0) for tau in (0.1, 0.5, 0.5)]
