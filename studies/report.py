@@ -1,8 +1,8 @@
 """Everything that the studies stored, as one page to read, print and pass on.
 
 Gathered: the two answers (hysteresis; what higher modes do to a collision), the letter point by point, for
-each study its account, figures and tables, what was assumed, versions, and the studies that have not been
-run. Nothing is computed and no result is typed in (``studies.page``).
+each study its account, figures and tables, what was assumed, and versions. Nothing is computed and no result
+is typed in (``studies.page``).
 
 Run:     python -m studies.report [--out DIR]     2 s; DIR is the folder of results (default: results)
 Writes:  DIR/report/index.html
@@ -15,17 +15,16 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from studies.options import Parser, tool
-from studies.page import write_page
+from studies.page import in_words, write_page
 
 
 def report(given: Namespace) -> tuple[str, Mapping[str, object]]:
     """Write the page."""
     path, found, missing = write_page(given.out)
     faults = [fault for stored in found for fault in stored.faults]
-    lines = [*faults, *([f"not run: {', '.join(missing)}"] if missing else [])]
-    lines += [f"{len(found)} studies, {path.stat().st_size / 1e6:.1f} MB in {path}"]
-    studies = [stored.study for stored in found]
-    return "\n".join(lines), {"page": path, "studies": studies, "missing": missing, "faults": faults}
+    lines, studies = [*faults, in_words(path, found, missing)], [stored.study for stored in found]
+    answer = {"page": path, "studies": studies, "missing": missing, "faults": faults}
+    return "\n".join(lines), answer
 
 
 def main(argv: Sequence[str] | None = None) -> int:

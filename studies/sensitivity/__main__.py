@@ -13,7 +13,7 @@ f T = 20/21, which asks for T <= 40.70 ms; p10 is what is born from an excess of
 past grazing of 9 um of 2 mm skips p11. The closest strobe points of p_m run into one another from
 m = 10 on with jitter, from m = 7 on with drift; the hysteresis sinks below the noise from m = 9 on.
 
-Run:     python -m studies.sensitivity [--periods M M] [--strobes N]     a minute; --quick ten seconds
+Run:     python -m studies.sensitivity [--periods M M] [--strobes N]     40 s; --quick ten seconds
 Writes:  sensitivity.csv (a row a frequency and change), noise.csv (a row a period and kind of noise), and
          the figures fold_against_parameter, noise
 """
