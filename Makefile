@@ -1,4 +1,5 @@
 # make study   the main study on the letter's scene
+# make site    the documentation, with the page of what is stored: results/site/index.html
 # make test    the tests, but for the long forms of some
 # make test-slow  these long forms
 # make test-generic  what computes numbers, on the instructions that every processor has
@@ -10,10 +11,13 @@ BIN := .venv/bin
 READY := .venv/.ready
 ONE_THREAD := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
 
-.PHONY: study test test-slow test-generic lint clean
+.PHONY: study site test test-slow test-generic lint clean
 
 study: $(READY)
 	$(BIN)/python -m studies
+
+site: $(READY)
+	$(BIN)/python -m studies.report --site
 
 # `python -m pytest` puts this folder first on the path, so that what is tested is what lies here.
 test: $(READY)

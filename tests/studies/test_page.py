@@ -11,6 +11,7 @@ import pytest
 
 from studies import letter, plotting, report
 from studies.page import read_results, told_page, write_page
+from studies.page.documentation import module_names, write_site
 from studies.programs import studies
 from studies.record import Run
 from studies.scene import Scene
@@ -102,6 +103,20 @@ def test_the_page_of_every_study_has_all_points_and_names_no_command(tmp_path, l
     text = write_page(tmp_path)[0].read_text()
     assert all(point.says.replace("'", "&#39;") in text for point in letter.POINTS.values())
     assert "studies --all</code>" not in text and "makes the rest" not in told_page(tmp_path)
+
+
+def test_the_site_shows_what_the_public_modules_say_and_the_results(tmp_path, letter_scene):
+    """Warnings are errors: of pdoc, of a type that cannot be read or a module that cannot be imported."""
+    stored(tmp_path, letter_scene)
+    doors = ["beam", "beam.space", "contact", "contact.orbits", "contact.integrators"]
+    assert set(doors) <= set(module_names()) and "studies.tour" not in module_names()
+    index = write_site(tmp_path, write_page(tmp_path)[0], doors)
+    assert index == tmp_path / "site" / "index.html"
+    text, page = index.read_text(), (index.parent / "contact.html").read_text()
+    for place in (*(f"{door.replace('.', '/')}.html" for door in doors), "results.html"):
+        assert f'href="{place}"' in text and (index.parent / place).exists()
+    assert 'id="grazing-spring"' in text and 'id="HertzContact"' in page  # README, and a class
+    assert "study-transitions" in (index.parent / "results.html").read_text()
 
 
 @pytest.mark.parametrize("damage", [b"", b"{", b"[1]", b"\xff\xfe", b'{"verdicts": 3, "answers": [1]}'])
