@@ -26,8 +26,9 @@ import tempfile
 import time
 import types
 from argparse import Namespace
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
+from itertools import count
 from pathlib import Path
 from typing import TextIO
 
@@ -89,25 +90,17 @@ def run_in_turn(plan: Mapping[str, Sequence[str]], quick: bool) -> tuple[dict[st
                 running[:] = [subprocess.Popen(
                     command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, text=True, process_group=0
                 )]  # fmt: skip
-                codes[name] = _wait(running[0], expected[name], tick)
+                for left in count(expected[name], -1):
+                    try:
+                        codes[name] = running[0].wait(1.0)
+                        break
+                    except subprocess.TimeoutExpired:
+                        tick(int(left > 1))
+                tick(max(left, 1))  # as many seconds as expected, however long it took
                 log.seek(0)
                 last = next((line for line in reversed(log.read().splitlines()) if line.strip()), "")
             say(last if last.startswith(label) else f"{label}: exit code {codes[name]}; {last.strip()}")
     return codes, stopped
-
-
-def _wait(child: subprocess.Popen[str], expected: int, tick: Callable[[int], None]) -> int:
-    """The exit code of a process; meanwhile its seconds are counted, as many as are expected in the end."""
-    left = expected
-    while True:
-        try:
-            code = child.wait(1.0)
-        except subprocess.TimeoutExpired:
-            tick(step := min(1, left - 1))
-            left -= step
-        else:
-            tick(left)
-            return code
 
 
 def run_all(given: Namespace, arguments: Sequence[str], output: TextIO) -> int:
@@ -117,7 +110,8 @@ def run_all(given: Namespace, arguments: Sequence[str], output: TextIO) -> int:
     passed_on = [word for word in arguments if word not in OWN_OPTIONS]
     found = {name: arguments_of(name, scene, given, passed_on) for name in studies()}
     stored = [name for name, arguments in found.items() if arguments is None]
-    for sentence in [*(f"warning: {doubt}" for doubt in doubtful), *(f"stored already: {n}" for n in stored)]:
+    known = [f"stored already: {', '.join(stored)}"] if stored else []
+    for sentence in [*(f"warning: {doubt}" for doubt in doubtful), *known]:
         say(sentence)
     plan = {name: arguments for name, arguments in found.items() if arguments is not None}
     codes, stopped = run_in_turn(plan, given.quick)
