@@ -1,4 +1,5 @@
 # make study   the main study on the letter's scene
+# make site    the documentation, with the page of what is stored: results/site/index.html
 # make test    the tests, but for the long forms of some
 # make test-slow  these long forms
 # make test-generic  what computes numbers, on the instructions that every processor has
@@ -10,10 +11,13 @@ BIN := .venv/bin
 READY := .venv/.ready
 ONE_THREAD := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
 
-.PHONY: study test test-slow test-generic lint clean
+.PHONY: study site test test-slow test-generic lint clean
 
 study: $(READY)
 	$(BIN)/python -m studies
+
+site: $(READY)
+	$(BIN)/python -m studies.report --site
 
 # `python -m pytest` puts this folder first on the path, so that what is tested is what lies here.
 test: $(READY)
@@ -23,8 +27,8 @@ test-slow: $(READY)
 	$(ONE_THREAD) $(BIN)/python -m pytest -n 2 -m slow
 
 # LAPACK and NumPy's loops round otherwise there; kernels compiled in this way are not kept.
-NOT_NUMBERS := benchmarks docstrings every_study film generic_processor imports own_scenes page readme run scene \
-	sizes tour wrong_input
+NOT_NUMBERS := all_studies benchmarks docstrings every_study film generic_processor imports own_scenes page readme run \
+	scene sizes tour wrong_input
 NUMBERS := $(filter-out $(foreach name,$(NOT_NUMBERS),%/test_$(name).py),$(wildcard tests/test_*.py tests/contact/test_*.py tests/studies/test_*.py))
 SIMD := import numpy; print(*numpy.show_config("dicts")["SIMD Extensions"].get("found", []))
 test-generic: $(READY)

@@ -1,7 +1,7 @@
 """Studies: one program per claim, on top of `beam` (the spring) and `contact` (the impacts).
 
-Run them from the root of the project as `python -m studies.NAME`; `python -m studies` runs the main one,
-writes the page of all results and lists the others; `studies.tour` is the whole package in one script.
+Run them from the root of the project as `python -m studies.NAME`; `python -m studies` runs the main one, with
+--all every one, and writes the page of all results; `studies.tour` is the whole package in one script.
 
 A *scene* (studies/scenes/letter.toml, or one's own: --scene FILE, --set section.key=value) holds the
 physics, each value with its unit and whether it is the letter's, calibrated or assumed. A study takes from
@@ -12,6 +12,7 @@ another study:
 
     scene (with scene_keys, scene_values, scene_spring)   from a TOML file to spring, modes and oscillators
     run (options, record, executors, files, programs)     command line, results, progress, exit codes
+    every_study                                           all of them in turn
     letter, plotting, least_model, calibration, sweep, film, page
 
 Importing this package does two things, both of which have to come before numpy is imported:

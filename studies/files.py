@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import csv
 import dataclasses
+import hashlib
 import io
 import json
 import math
@@ -18,6 +19,7 @@ import subprocess
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from uuid import uuid4
@@ -115,6 +117,19 @@ def csv_text(rows: Sequence[object]) -> str:
         cells = [plain(getattr(row, name)) for name in names]
         writer.writerow(json.dumps(cell) if isinstance(cell, list | dict) else cell for cell in cells)
     return stream.getvalue()
+
+
+@cache
+def _source() -> str:
+    """A number of all modules of the three packages, in a checkout or not."""
+    files = sorted(path for name in ("beam", "contact", "studies") for path in (ROOT / name).rglob("*.py"))
+    return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()
+
+
+def fingerprint(scene: object, settings: Mapping[str, object]) -> str:
+    """Equal for runs of a study whose numbers are the same: those of one source, scene and settings."""
+    matters = {key: value for key, value in settings.items() if key != "fresh"}  # begins anew, ends the same
+    return hashlib.sha256(json_text([_source(), scene, matters]).encode()).hexdigest()
 
 
 def versions() -> dict[str, str]:

@@ -30,8 +30,14 @@ FOLDER = Path(__file__).resolve().parent
 PROGRAM = re.compile(r'^(if __name__ == "__main__":|# %%)', re.MULTILINE)
 """What a file that runs has: a last paragraph, or the cells of a script."""
 
+STUDY = re.compile(r"^@study\(", re.MULTILINE)
+"""What a study has: the others (report, export, tour ...) are programs without results of a scene."""
+
 MAIN = "transitions"
 """What `python -m studies` runs."""
+
+ALL = "python -m studies --all"
+"""What runs every study."""
 
 
 def source_of(name: str) -> Path:
@@ -47,14 +53,28 @@ def names() -> list[str]:
     return sorted(name for name in found if PROGRAM.search(source_of(name).read_text("utf-8")))
 
 
+def studies() -> list[str]:
+    """Every study, the main one first."""
+    found = [name for name in names() if STUDY.search(source_of(name).read_text("utf-8"))]
+    return sorted(found, key=lambda name: name != MAIN)
+
+
 def account_of(name: str) -> str:
     """What a study says of itself: its docstring."""
     return ast.get_docstring(ast.parse(source_of(name).read_text("utf-8"))) or ""
 
 
-def title_of(name: str) -> str:
-    """The first paragraph of it."""
-    return " ".join(account_of(name).split("\n\n")[0].split())
+def run_time(name: str) -> float:
+    """What its docstring says of its run time [s]."""
+    found = re.search(r"^Run:.*?\s(\d[\d.]*) (s\b|min)", account_of(name), re.MULTILINE)
+    if found is None:
+        raise ValueError(f"the docstring of {name} gives no run time")
+    return float(found[1]) * {"s": 1.0, "min": 60.0}[found[2]]
+
+
+def module_of(name: str) -> str:
+    """The module that runs as `python -m studies.NAME`, for an import."""
+    return f"studies.{name}.__main__" if (FOLDER / name).is_dir() else f"studies.{name}"
 
 
 def unknown(name: str) -> str:

@@ -32,6 +32,7 @@ from studies.files import (
     SCHEMA,
     columns_of,
     csv_text,
+    fingerprint,
     git_state,
     json_text,
     make_folder,
@@ -78,6 +79,8 @@ class Run:
     def __post_init__(self) -> None:
         make_folder(self.folder)
         self._begun, self._date = time.perf_counter(), datetime.now(UTC)
+        # of the scene as it was given, before modes are chosen
+        self._fingerprint = fingerprint(self.scene.values(), {"quick": self.quick, **self.options})
         self._captions: dict[str, str] = {}
         self._verdicts: dict[str, dict[str, object]] = {}
         self._answers: dict[str, str] = {}
@@ -238,7 +241,8 @@ class Run:
         self.path("manifest.json")
         self.json("manifest", {
             **common, "command": self.command, "parameters": self.scene.values(), "versions": versions(),
-            "git": git_state(), "begun": self._date.isoformat(timespec="seconds"), "wall_time_s": wall_time,
+            "git": git_state(), "fingerprint": self._fingerprint,
+            "begun": self._date.isoformat(timespec="seconds"), "wall_time_s": wall_time,
             "files": sorted(self.files), "captions": self._captions,
         })  # fmt: skip
         return {**summary, "folder": self.folder, "wall_time_s": wall_time}

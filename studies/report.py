@@ -1,11 +1,11 @@
 """Everything that the studies stored, as one page to read, print and pass on.
 
 Gathered: the two answers (hysteresis; what higher modes do to a collision), the letter point by point, for
-each study its account, figures and tables, what was assumed, versions, and the studies that have not been
-run. Nothing is computed and no result is typed in (``studies.page``).
+each study its account, figures and tables, what was assumed, and versions. Nothing is computed and no result
+is typed in (``studies.page``).
 
-Run:     python -m studies.report [--out DIR]     2 s; DIR is the folder of results (default: results)
-Writes:  DIR/report/index.html
+Run:     python -m studies.report [--site] [--out DIR]     2 s; --site 15 s; DIR is the folder of results
+Writes:  DIR/report/index.html; with --site DIR/site, that page with the documentation of the packages
 """
 
 from __future__ import annotations
@@ -15,23 +15,27 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from studies.options import Parser, tool
-from studies.page import write_page
+from studies.page import in_words, write_page
+from studies.page.documentation import module_names, write_site
 
 
 def report(given: Namespace) -> tuple[str, Mapping[str, object]]:
-    """Write the page."""
+    """Write the page, and the site."""
     path, found, missing = write_page(given.out)
     faults = [fault for stored in found for fault in stored.faults]
-    lines = [*faults, *([f"not run: {', '.join(missing)}"] if missing else [])]
-    lines += [f"{len(found)} studies, {path.stat().st_size / 1e6:.1f} MB in {path}"]
-    studies = [stored.study for stored in found]
-    return "\n".join(lines), {"page": path, "studies": studies, "missing": missing, "faults": faults}
+    lines, studies = [*faults, in_words(path, found, missing)], [stored.study for stored in found]
+    answer = {"page": path, "studies": studies, "missing": missing, "faults": faults}
+    if given.site:
+        answer["site"] = write_site(given.out, path, module_names())
+        lines.append(f"documentation: {answer['site']}")
+    return "\n".join(lines), answer
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Write the page; returns 0, or 2 for wrong use and where there are no results."""
     parser = Parser("python -m studies.report", __doc__ or "")
     parser.add_argument("--out", type=Path, default=Path("results"), metavar="DIR", help="folder of results")
+    parser.add_argument("--site", action="store_true", help="write the documentation, too (needs pdoc)")
     return tool(parser, argv, report)
 
 

@@ -16,6 +16,7 @@ or one that comes where nothing can be raised (in a callback of the compiler), e
 from __future__ import annotations
 
 import contextlib
+import inspect
 import os
 import shlex
 import signal
@@ -75,6 +76,12 @@ class Study:
         """The name of the study, of its file and of its folder of results."""
         return self.function.__name__
 
+    def defaults(self, quick: bool) -> dict[str, object]:
+        """Its options, where the command line gives none, in the small or the full form."""
+        parameters = inspect.signature(self.function).parameters.values()
+        own = {one.name: one.default for one in parameters if one.kind is one.KEYWORD_ONLY}
+        return {**own, **(self.quick if quick else {})}
+
     def main(self, argv: Sequence[str] | None = None, *, module: str | None = None) -> int:
         """Read the arguments, run the study, store and report; returns the exit code."""
         arguments = list(sys.argv[1:] if argv is None else argv)
@@ -87,10 +94,7 @@ class Study:
         parser = parser_of(command, sys.modules[self.function.__module__].__doc__ or "")
         options = add_options(parser, self.function)
         given = vars(parser.read(argv, output))
-        with warnings.catch_warnings(record=True) as found:
-            warnings.simplefilter("always", SuspiciousValue)
-            scene = read_scene(given["scene"], given["overrides"])
-        doubtful = list(dict.fromkeys(str(w.message) for w in found if w.category is SuspiciousValue))
+        scene, doubtful = read_told(given["scene"], given["overrides"])
         if given["dump_scene"]:
             values = {"scene": scene.values(), "provenance": scene.provenance()}
             whole = {"schema": SCHEMA, "study": self.name, **values}
@@ -98,8 +102,7 @@ class Study:
             return DONE
         if beyond := beyond_linear(scene):
             doubtful.append(beyond)
-        chosen = {**options, **(self.quick if given["quick"] else {})}
-        chosen |= {name: given[name] for name in options if name in given}
+        chosen = {**self.defaults(given["quick"]), **{name: given[name] for name in options if name in given}}
         chosen = {name: tuple(v) if isinstance(v, list) else v for name, v in chosen.items()}
         for sentence in doubtful:
             print(f"warning: {sentence}", file=sys.stderr)
@@ -144,6 +147,14 @@ class Study:
         if run.failures:
             return FAILED_CELLS, "finished with failed cells", results
         return DONE, "done", results
+
+
+def read_told(name: str, overrides: Sequence[str]) -> tuple[Scene, list[str]]:
+    """The scene of a command line, and sentences on what is suspicious in it."""
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always", SuspiciousValue)
+        scene = read_scene(name, overrides)
+    return scene, list(dict.fromkeys(str(w.message) for w in found if w.category is SuspiciousValue))
 
 
 def _interrupted(error: BaseException | None) -> bool:

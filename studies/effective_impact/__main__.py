@@ -22,7 +22,7 @@ shifts the touch: there tau lies anywhere from 0.07 (on the orbit of Fig. 4) to 
 mode 1 does not come back to the gap. A bare tip has tau = 0.7 and a delay longer than v/a. (How the kick
 fades towards grazing: studies.soft_wall; how many modes this takes: studies.adequacy.)
 
-Run:     python -m studies.effective_impact [--quick]     half a minute; --quick ten seconds
+Run:     python -m studies.effective_impact [--quick]     20 s; --quick ten seconds
 Writes:  collisions.csv (a row an approach), floors.csv (smallest restitution over the tip mass), and the
          figures speed, mass, search
 """

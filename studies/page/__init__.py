@@ -27,11 +27,7 @@ from jinja2 import Environment, FileSystemLoader
 
 from studies import letter
 from studies.files import write_atomically
-from studies.programs import MAIN, account_of, names
-
-NOT_RUN = "not run"
-LEAVE_NOTHING = ("report", "export", "tour")
-"""Programs that leave no results here."""
+from studies.programs import ALL, account_of, studies
 
 MOST_ROWS, MOST_COLUMNS = 40, 12
 """Of a table on the page; a longer one is named and left to its file."""
@@ -127,37 +123,33 @@ def read_results(results: Path) -> list[Stored]:
     ValueError
         If there are none.
     """
-    order = [MAIN, *(name for name in names() if name != MAIN)]
-    found = [read_stored(results / name) for name in order if (results / name / "summary.json").exists()]
+    found = [read_stored(results / name) for name in studies() if (results / name / "summary.json").exists()]
     if not found:
         raise ValueError(f"there are no results in {results}: run python -m studies first")
     return found
 
 
 def _points(stored: Mapping[str, Stored]) -> Iterator[dict[str, object]]:
-    """The letter point by point, with what was found."""
+    """The letter point by point, with what the studies that are there found."""
     for key, point in letter.POINTS.items():
-        there = stored.get(point.study)
-        found = {} if there is None else _object(_object(there.summary.get("verdicts")).get(key))
-        judged = NOT_RUN if there is None else "not stored"
-        yield {"verdict": judged, "found": "", "note": "", **found, "point": point}
+        if point.study in stored:
+            found = _object(_object(stored[point.study].summary.get("verdicts")).get(key))
+            yield {"verdict": "not stored", "found": "", "note": "", **found, "point": point}
 
 
-def _answers(stored: Mapping[str, Stored]) -> Iterator[tuple[str, list[tuple[str, str]]]]:
-    """The questions, each with the studies that answer it and what they say."""
+def _answers(stored: Mapping[str, Stored]) -> Iterator[tuple[str, list[str]]]:
+    """The questions of the letter that a study has answered, with what the studies say."""
     for key, (question, answering) in letter.QUESTIONS.items():
-        parts = []
-        for study in answering:
-            said = _object(stored[study].summary.get("answers")).get(key) if study in stored else None
-            parts.append((study, str(said) if said else f"Not computed yet: python -m studies.{study}."))
-        yield question, parts
+        there = [stored[study].summary.get("answers") for study in answering if study in stored]
+        if said := [str(answers[key]) for answers in map(_object, there) if answers.get(key)]:
+            yield question, said
 
 
 def write_page(results: Path) -> tuple[Path, list[Stored], list[str]]:
     """Write results/report/index.html; returns its path, what is on it, and which studies are not."""
     found = read_results(results)
     by_name = {stored.study: stored for stored in found}
-    missing = [name for name in names() if name not in by_name and name not in LEAVE_NOTHING]
+    missing = [name for name in studies() if name not in by_name]
     points = list(_points(by_name))
     environment = Environment(
         loader=FileSystemLoader(Path(__file__).parent), autoescape=True, trim_blocks=True, lstrip_blocks=True
@@ -166,7 +158,9 @@ def write_page(results: Path) -> tuple[Path, list[Stored], list[str]]:
     text = environment.get_template("page.html.j2").render(
         stored=found,
         missing=missing,
+        command=ALL,
         points=points,
+        unjudged=len(letter.POINTS) - len(points),
         tally=Counter(str(point["verdict"]) for point in points),
         answers=list(_answers(by_name)),
         made=f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC",
@@ -179,7 +173,14 @@ def write_page(results: Path) -> tuple[Path, list[Stored], list[str]]:
 def told_page(results: Path) -> str:
     """Write the page and say so; a page that cannot be written is no reason for a study to fail."""
     try:
-        path, found, _ = write_page(results)
+        path, found, missing = write_page(results)
     except (OSError, ValueError) as error:
         return f"no page: {error}"
-    return f"page of {len(found)} studies: {path}"
+    return in_words(path, found, missing)
+
+
+def in_words(path: Path, found: Sequence[Stored], missing: Sequence[str]) -> str:
+    """The page in one sentence, with the command that completes it."""
+    count = f"{len(found)} of {len(found) + len(missing)}" if missing else f"all {len(found)}"
+    size = f"page of {count} studies, {path.stat().st_size / 1e6:.1f} MB: {path}"
+    return f"{size}; {ALL} makes the rest" if missing else size

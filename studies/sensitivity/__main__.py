@@ -13,7 +13,7 @@ f T = 20/21, which asks for T <= 40.70 ms; but Eq. (1) and beam have all six per
 on, and with what shortens T at the gap from less (p10.csv). The closest strobe points of p_m run into one
 another from m = 10 on with jitter, from m = 7 on with drift; the hysteresis sinks below the noise from m = 9.
 
-Run:     python -m studies.sensitivity [--periods M M] [--strobes N]     a minute; --quick ten seconds
+Run:     python -m studies.sensitivity [--periods M M] [--strobes N]     60 s; --quick ten seconds
 Writes:  sensitivity.csv (a row a frequency and change), p10.csv (a row a cause), noise.csv (a row a period
          and kind of noise), and the figures fold_against_parameter, noise
 """

@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 
 from beam import ModalModel
 from studies import plotting
+from studies.programs import module_of
 from studies.record import Run
 from studies.run import Study
 from studies.scene import Scene, model_of, read_scene
@@ -51,10 +52,7 @@ class Ran:
 
 def study_of(name: str) -> Study:
     """The study with this name."""
-    module = importlib.import_module(f"studies.{name}")
-    if hasattr(module, "__path__"):
-        module = importlib.import_module(f"studies.{name}.__main__")
-    found = getattr(module, name)
+    found = getattr(importlib.import_module(module_of(name)), name)
     assert isinstance(found, Study)
     return found
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import json
 import re
 from dataclasses import replace
@@ -11,12 +10,11 @@ from pathlib import Path
 import pytest
 
 from studies import plotting
-from studies.programs import names, source_of, title_of
+from studies.programs import account_of, names, run_time, studies
 from studies.spring_shape.__main__ import COARSE
 from studies.work_precision.problems import problems_of
 
-PROGRAMS = names()
-ON_THE_FRAME = [name for name in PROGRAMS if "\n@study(" in source_of(name).read_text()]
+ON_THE_FRAME = studies()
 
 #: Studies whose small form a test looks at, with these checks of what it leaves.
 LOOKED_AT = {
@@ -106,10 +104,11 @@ def test_a_figure_is_kept_as_png_and_as_pdf_without_a_date(tmp_path):
     assert b"CreationDate" not in pdf.read_bytes()
 
 
-@pytest.mark.parametrize("name", PROGRAMS)
+@pytest.mark.parametrize("name", names())
 def test_a_docstring_says_command_run_time_and_outputs(name):
-    assert title_of(name).endswith(".") and len(title_of(name)) < 200
-    text = source_of(name).read_text()
-    account = ast.get_docstring(ast.parse(text)) or ""
+    account = account_of(name)
+    title = " ".join(account.partition("\n\n")[0].split())
+    assert title.endswith(".") and len(title) < 200
     if name in ON_THE_FRAME:
         assert "\nRun:" in account and "\nWrites:" in account and f"python -m studies.{name}" in account
+        assert 1 <= run_time(name) <= 600

@@ -10,7 +10,9 @@ from pathlib import Path
 import pytest
 
 from studies import letter, plotting, report
-from studies.page import read_results, write_page
+from studies.page import read_results, told_page, write_page
+from studies.page.documentation import module_names, write_site
+from studies.programs import studies
 from studies.record import Run
 from studies.scene import Scene
 
@@ -83,14 +85,38 @@ def test_docstrings_are_the_account_of_a_study(tmp_path, letter_scene):
     assert "excess_down F/F_g - 1 at which that orbit ends" in prose
 
 
-def test_every_point_of_the_letter_has_a_verdict_or_says_what_to_run(tmp_path, letter_scene):
+def test_the_page_of_one_study_shows_its_points_and_one_command_for_the_rest(tmp_path, letter_scene):
     stored(tmp_path, letter_scene)
-    text = write_page(tmp_path)[0].read_text()
-    for point in letter.POINTS.values():
-        assert point.says.replace("'", "&#39;") in text
+    path, _, missing = write_page(tmp_path)
+    text, own = path.read_text(), [point for point in letter.POINTS.values() if point.study == "transitions"]
+    assert len(own) == 6 and all(point.says in text for point in own)
     assert text.count('class="verdict agrees"') == 1 and text.count('class="verdict differs"') == 1
-    assert text.count('class="verdict not-stored"') == 5  # of the transitions
-    assert text.count('class="verdict not-run"') == len(letter.POINTS) - 7
+    assert text.count('class="verdict ') == text.count('class="verdict not-stored"') + 2 == 6
+    assert text.count("python -m studies --all</code>") == 1 and 'id="answers"' not in text
+    assert missing and not any(f"python -m studies.{name}" in text for name in missing)
+    assert told_page(tmp_path).endswith(" makes the rest") and "\n" not in told_page(tmp_path)
+
+
+def test_the_page_of_every_study_has_all_points_and_names_no_command(tmp_path, letter_scene):
+    for study in studies():
+        Run(study=study, folder=tmp_path / study, scene=letter_scene, command="").close("done", {})
+    text = write_page(tmp_path)[0].read_text()
+    assert all(point.says.replace("'", "&#39;") in text for point in letter.POINTS.values())
+    assert "studies --all</code>" not in text and "makes the rest" not in told_page(tmp_path)
+
+
+def test_the_site_shows_what_the_public_modules_say_and_the_results(tmp_path, letter_scene):
+    """Warnings are errors: of pdoc, of a type that cannot be read or a module that cannot be imported."""
+    stored(tmp_path, letter_scene)
+    doors = ["beam", "beam.space", "contact", "contact.orbits", "contact.integrators"]
+    assert set(doors) <= set(module_names()) and "studies.tour" not in module_names()
+    index = write_site(tmp_path, write_page(tmp_path)[0], doors)
+    assert index == tmp_path / "site" / "index.html"
+    text, page = index.read_text(), (index.parent / "contact.html").read_text()
+    for place in (*(f"{door.replace('.', '/')}.html" for door in doors), "results.html"):
+        assert f'href="{place}"' in text and (index.parent / place).exists()
+    assert 'id="grazing-spring"' in text and 'id="HertzContact"' in page  # README, and a class
+    assert "study-transitions" in (index.parent / "results.html").read_text()
 
 
 @pytest.mark.parametrize("damage", [b"", b"{", b"[1]", b"\xff\xfe", b'{"verdicts": 3, "answers": [1]}'])

@@ -1,0 +1,104 @@
+"""`python -m studies --all`: what runs, what is not run again, what a failure or an interruption leaves."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from argparse import Namespace
+
+import pytest
+
+from studies import ROOT, every_study, programs
+from studies.chart.__main__ import chart
+from studies.files import fingerprint
+from studies.scene import read_scene
+
+
+def test_the_studies_are_the_programs_with_results_of_a_scene():
+    assert programs.studies()[0] == programs.MAIN
+    assert {"report", "export", "tour"}.isdisjoint(programs.studies())
+    assert set(programs.studies()) < set(programs.names())
+
+
+@pytest.fixture
+def run_all(tmp_path, monkeypatch, capsys):
+    """`run_all(*argv)`: its answer and what it says of two studies; the second refuses the free period."""
+    monkeypatch.setattr(every_study, "studies", lambda: ["time_trace", "breakdown"])
+
+    def run(*argv: str) -> tuple[dict, str]:
+        scene = ["--set", "single_mode.free_period_s=0.06"]
+        code = every_study.main(["--all", "--json", "--quick", *scene, "--out", str(tmp_path), *argv])
+        out, err = capsys.readouterr()
+        answer = json.loads(out)
+        assert answer["exit_code"] == code and "Traceback" not in err
+        return answer, err
+
+    return run
+
+
+def test_a_failure_is_told_and_what_is_stored_is_not_run_again(run_all, tmp_path, monkeypatch):
+    answer, err = run_all()
+    assert (answer["exit_code"], answer["exit_codes"]) == (3, {"time_trace": 0, "breakdown": 2})
+    assert "python -m studies.breakdown: " in err and "free_period_s" in err
+    assert (tmp_path / "report" / "index.html").exists()
+    manifest = json.loads((tmp_path / "time_trace" / "manifest.json").read_text())
+    answer, _ = run_all()
+    assert (answer["stored"], answer["exit_codes"]) == (["time_trace"], {"breakdown": 2})
+    assert json.loads((tmp_path / "time_trace" / "manifest.json").read_text()) == manifest
+    monkeypatch.setattr(every_study, "studies", lambda: ["time_trace"])
+    assert run_all()[0]["exit_code"] == 0
+    assert run_all("--fresh")[0]["exit_codes"] == {"time_trace": 0}
+    assert run_all("--set", "stop.gap_m=0.0117")[0]["stored"] == []
+
+
+@pytest.mark.parametrize(
+    ("stored", "arguments"),
+    [
+        ({"status": "done"}, None),
+        ({"status": "interrupted"}, []),
+        ({"status": "finished with failed cells"}, []),
+        ({"status": "done", "fingerprint": "of another source"}, ["--fresh"]),
+        ({"fingerprint": None}, ["--fresh"]),
+        ([1], ["--fresh"]),
+    ],
+)
+def test_a_sweep_goes_on_where_it_was_interrupted_but_not_with_columns_of_another_source(
+    tmp_path, stored, arguments
+):
+    scene, given = read_scene("letter"), Namespace(out=str(tmp_path), quick=False, fresh=False)
+    same = fingerprint(scene.values(), {"quick": False, **chart.defaults(False)})
+    stored = {"fingerprint": same, **stored} if isinstance(stored, dict) else stored
+    (tmp_path / "chart").mkdir()
+    (tmp_path / "chart" / "manifest.json").write_text(json.dumps(stored))
+    assert every_study.arguments_of("chart", scene, given, []) == arguments
+    given.fresh = True
+    assert every_study.arguments_of("chart", scene, given, []) == ["--fresh"]
+
+
+@pytest.mark.parametrize(
+    ("argv", "named"),
+    [(["--full"], "--full"), (["--set", "stop.gpa_m=1"], "stop.gap_m"), (["--scene", "lettre"], "letter")],
+)
+def test_wrong_use_is_told_before_anything_runs(tmp_path, capsys, argv, named):
+    assert every_study.main(["--all", "--out", str(tmp_path), *argv]) == 2
+    err = capsys.readouterr().err
+    assert named in err and err.count("\n") == 1 and list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_series_keeps_what_is_stored_and_says_how_to_go_on(tmp_path, number):
+    command = [sys.executable, "-m", "studies", "--all", "--out", str(tmp_path), "--json"]
+    series = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    for _ in range(600):
+        if (tmp_path / "transitions").exists() or series.poll() is not None:
+            break
+        time.sleep(0.1)
+    time.sleep(1.0)  # a study that has made its folder is ready for signals a moment later
+    series.send_signal(number)
+    out, err = series.communicate(timeout=60)
+    assert series.returncode == 130 == json.loads(out)["exit_code"], err
+    assert json.loads((tmp_path / "transitions" / "summary.json").read_text())["status"] == "interrupted"
+    assert f"go on with: python -m studies --all --out {tmp_path}" in err and "Traceback" not in err
