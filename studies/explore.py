@@ -2,10 +2,10 @@
 
 For map, Eq. (1), Eq. (1) with two parameters (the rebound law of the beam) or beam, while one drags: the tip
 over time with its impacts, the strobe points, and the orbit diagram around the present excess F/F_g - 1,
-raised (dots), then lowered (rings); pale where the motion did not settle. The motion is carried along, as on
-the shaker: raised past grazing it goes over into p_m, lowered it stays there until the fold; a click on the
-description starts it anew without impacts. Restitution is that of map and Eq. (1), and of a beam with
-contact.law newton. The beam is slower and gets a coarser diagram.
+raised (dots), then lowered (rings), pale where it did not settle. A motion with impacts is carried along, as
+on the shaker: p_m sets in at grazing and lives on below until its fold; a click on the description ends it.
+Restitution is that of map and Eq. (1), and of a beam with contact.law newton. The beam, which is slower, gets
+a coarser diagram.
 
 Run:     python -m studies.explore [--scene FILE.toml] [--set key=value]     on a display
 Writes:  nothing; where the sliders stood is told when the window is closed
@@ -39,11 +39,8 @@ KINDS = {"map": (61, 600), "Eq. (1)": (41, 600), "two parameters": (41, 600), "b
 
 REACH, SPAN, BELOW = 0.03, 0.01, -1e-3
 TRACE, SAMPLES, STROBES, SETTLE = 12, 2401, 64, 600
-"""Excess of slider and diagram, to both sides; excess at which a motion starts. Drive periods and samples of
-the trace, strobe points, drive periods to settle before."""
-
-HALVES, CYCLES = 0.5 ** np.arange(1, 11), 100
-"""Of the way to another excess, and drive periods at each: no step brings an impact that a slow rise does not."""
+"""Excess of slider and diagram, to both sides; that from which the drive is raised past grazing. Drive
+periods and samples of the trace, strobe points, drive periods to settle before."""
 
 modes_of_beam = lru_cache(maxsize=4)(lambda scene: model_of(least_modes(scene, {"fold": 0.07})[0]))
 
@@ -60,8 +57,8 @@ def described(scene: Scene, kind: str, frequency: float, restitution: float) -> 
 
 
 def motion_of(here: StrobedMap[Any], end: Any) -> tuple[Any, float, tuple[np.ndarray, ...]]:
-    """From a strobe before an impact on: that state, the stop [mm], and time [drive periods], tip [mm], times of
-    impacts, tip and its velocity [m/s] at strobes; of the map x in place of the tip, and y."""
+    """From a strobe before an impact on: that state, the stop [mm], and time [drive periods], tip [mm], times
+    of impacts, tip and its velocity [m/s] at strobes; of the map x in place of the tip, and y."""
     end = here.orbit(end, int(np.argmax(here.orbit(end, STROBES).impacts))).end
     if not isinstance(here, StroboscopicMap):
         x, y = here.orbit(end, STROBES).points.T
@@ -74,11 +71,8 @@ def motion_of(here: StrobedMap[Any], end: Any) -> tuple[Any, float, tuple[np.nda
 
 
 def scans_of(strobed: StrobedMap[Any], excess: float, count: int, cycles: int) -> list[OrbitDiagram[Any]]:
-    """The orbit diagram raised from the motion without impacts [mm], and lowered; of the map its x."""
-
-    def observe(points: np.ndarray) -> np.ndarray:
-        return 1e3 * strobed.tip(points) if isinstance(strobed, StroboscopicMap) else points[:, 0]
-
+    """The orbit diagram of the tip [m], of the map x: raised from the motion without impacts, and lowered."""
+    observe = strobed.tip if isinstance(strobed, StroboscopicMap) else lambda points: points[:, 0]
     scan = partial(orbit_diagram, strobed, observe=observe, settle_cycles=cycles, early=False)
     values = excess + np.linspace(-SPAN, SPAN, count)
     raised = scan(values, strobed.at(min(BELOW, excess - SPAN)).steady())
@@ -86,18 +80,18 @@ def scans_of(strobed: StrobedMap[Any], excess: float, count: int, cycles: int) -
 
 
 class Window:
-    """Sliders, buttons and three panels on a figure, and the state of the motion to which they have led."""
+    """Sliders, buttons and three panels on a figure; the state of the motion, None if it has no impacts."""
 
     def __init__(self, scene: Scene, figure: Figure) -> None:
-        self.scene, self.figure, self.state, self.excess = scene, figure, None, BELOW
+        self.scene, self.figure, self.state = scene, figure, None
         self.axes = figure.subplot_mosaic(
             "ktt;kpd;.ff;.ee;.rr", width_ratios=(3, 5, 5), height_ratios=(18, 18, 2, 2, 2)
         )
         figure.subplots_adjust(left=0.02, right=0.9, bottom=0.03, top=0.94, hspace=0.65, wspace=0.5)
-        tau, drives = scene.single_mode.restitution, scene.drive.frequencies_hz
-        ends, (f, e, r) = (0.9 * min(drives), 1.05 * max(drives)), (self.axes[name] for name in "fer")
+        drives, tau = scene.drive.frequencies_hz, scene.single_mode.restitution
+        low, high, (f, e, r) = 0.9 * min(drives), 1.05 * max(drives), (self.axes[name] for name in "fer")
         self.sliders = (
-            Slider(f, "frequency (Hz)", *ends, valinit=middle_of(scene), valfmt="%.2f"),
+            Slider(f, "frequency (Hz)", low, high, valinit=middle_of(scene), valfmt="%.2f"),
             Slider(e, EXCESS, -REACH, REACH, valinit=-BELOW, valfmt="%+.5f"),
             Slider(r, "restitution", 0.0, 1.0, valinit=tau, valfmt="%.3f"),
         )
@@ -115,29 +109,27 @@ class Window:
         trace, plane, diagram = (self.axes[name] for name in "tpd")
         try:
             strobed = described(self.scene, kind, round(frequency, 2), restitution)
-            anew = anew or self.state is None
-            before, state = (BELOW, strobed.at(BELOW).steady()) if anew else (self.excess, self.state)
-            for left in HALVES:
-                state = strobed.at(excess + left * (before - excess)).orbit(state, CYCLES).end
-            found = settle(strobed.at(excess), state, most_cycles=SETTLE)
-            self.excess, (self.state, stop, drawn) = excess, motion_of(strobed.at(excess), found.end)
+            here, quiet = strobed.at(excess), strobed.at(excess if excess < 0.0 else BELOW).steady()
+            found = settle(here, quiet if anew or self.state is None else self.state, most_cycles=SETTLE)
+            end, stop, (time, tip, hits, x, y) = motion_of(here, found.end)
+            self.state = end if found.impacts else None
             scans = scans_of(strobed, excess, *KINDS[kind])
             words = f"period {found.period}" if found.period else "no period up to 64"
         except (ContactError, ValueError) as error:
             self.state, words = None, str(error)
         else:
-            one, other = ("x", "y") if kind == "map" else ("tip (mm)", "velocity (m/s)")
-            names = (trace, "drive periods", one), (plane, one, other), (diagram, EXCESS, one)
-            for panel, across, up in names:
+            one, other, scale = ("x", "y", 1.0) if kind == "map" else ("tip (mm)", "velocity (m/s)", 1e3)
+            for panel in (trace, plane, diagram):
                 panel.clear()
-                panel.set(xlabel=across, ylabel=up)
-            time, tip, hits, x, y = drawn
+            trace.set(xlabel="drive periods", ylabel=one)
+            plane.set(xlabel=one, ylabel=other)
+            diagram.set(xlabel=EXCESS, ylabel=one)
             trace.plot(time, tip, color="black")
             trace.plot(hits, np.full(hits.size, stop), **points(2))
             trace.axhline(stop, **GUIDE)
             plane.plot(x, y, **points(0))
             for scan, look in zip(scans, (UP, DOWN), strict=True):
-                strobe_points(diagram, scan.excess, scan.points, scan.period > 0, look, "")
+                strobe_points(diagram, scan.excess, scale * scan.points, scan.period > 0, look, "")
             diagram.axvline(excess, **GUIDE)
         trace.set_title(words, loc="left", wrap=True)
         self.figure.canvas.draw_idle()
@@ -155,8 +147,9 @@ def explore(given: Namespace) -> tuple[str, Mapping[str, object]]:
     with suppress(KeyboardInterrupt), house_style():
         window = Window(scene, figure)
         plt.show()
-    ended = {one.label.get_text(): float(one.val) for one in window.sliders}
-    return ", ".join(f"{name} {value:.5g}" for name, value in ended.items()), {"ended_at": ended}
+    names, values = ("frequency_hz", "excess", "restitution"), (float(one.val) for one in window.sliders)
+    ended = {"description": window.kind.value_selected, **dict(zip(names, values, strict=True))}
+    return f"ended at {ended}", ended
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -93,7 +93,7 @@ def test_twenty_positions_of_eq_1_and_what_they_take(seen, monkeypatch, capsys):
         seen.figure.canvas.draw()
     update, redraw = np.median(np.diff([*times, time.perf_counter()]).reshape(20, 2), axis=0)
     with capsys.disabled():
-        print(f"an update takes {update / redraw:.2f} of a redraw", end=" ")
+        print(f" an update takes {update / redraw:.2f} of a redraw ")
     assert titles == ["period 5" if excess > 0 else "period 1" for excess in excesses]
 
 
