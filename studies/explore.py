@@ -139,14 +139,15 @@ def explore(given: Namespace) -> tuple[str, Mapping[str, object]]:
     """Show the window until it is closed."""
     scene = harmonic(read_scene(given.scene, given.overrides))
     try:
-        figure = plt.figure(figsize=(PAGE / INCH, 0.75 * PAGE / INCH), dpi=180)
+        figure = plt.figure(figsize=(PAGE / INCH, 0.75 * PAGE / INCH), dpi=140)
         if type(figure.canvas.manager) is FigureManagerBase:
             raise ImportError("matplotlib found none")
     except ImportError as error:
         raise ValueError(f"a window needs a display, and a toolkit such as python3-tk: {error}") from error
-    with suppress(KeyboardInterrupt), house_style():
+    with house_style():
         window = Window(scene, figure)
-        plt.show()
+        with suppress(KeyboardInterrupt):
+            plt.show()
     names, values = ("frequency_hz", "excess", "restitution"), (float(one.val) for one in window.sliders)
     ended = {"description": window.kind.value_selected, **dict(zip(names, values, strict=True))}
     return f"ended at {ended}", ended
