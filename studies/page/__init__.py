@@ -30,7 +30,7 @@ from studies.files import write_atomically
 from studies.programs import MAIN, account_of, names
 
 NOT_RUN = "not run"
-LEAVE_NOTHING = ("report", "explore", "export", "tour")
+LEAVE_NOTHING = ("report", "export", "tour")
 """Programs that leave no results here."""
 
 MOST_ROWS, MOST_COLUMNS = 40, 12
