@@ -46,15 +46,21 @@ class Parser(argparse.ArgumentParser):
         return arguments
 
 
-def parser_of(command: str, account: str) -> Parser:
-    """The options that all studies share."""
-    parser = Parser(command, account)
+def add_scene(parser: Parser) -> Callable[..., object]:
+    """Add the options that name and change the scene; returns what adds another one to them."""
     scene = parser.add_argument_group("the scene").add_argument
     scene(
         "--scene", default="letter", metavar="FILE.toml", help="a file, or the name of one in studies/scenes"
     )
     scene("--set", action="append", default=[], metavar="section.key=value", dest="overrides",
           help="change one key of the scene; may be repeated")  # fmt: skip
+    return scene
+
+
+def parser_of(command: str, account: str) -> Parser:
+    """The options that all studies share."""
+    parser = Parser(command, account)
+    scene = add_scene(parser)
     scene("--dump-scene", action="store_true", help="print every key with unit, default and provenance")
     runs = parser.add_argument_group("how it runs, and where the results go").add_argument
     cores = os.cpu_count() or 1
@@ -66,7 +72,7 @@ def parser_of(command: str, account: str) -> Parser:
 
 
 def tool(parser: Parser, argv: Sequence[str] | None, work: Callable[..., tuple[str, Answer]]) -> int:
-    """Run a program without a scene: `work` takes the arguments, returns a sentence and what --json gives."""
+    """Run a program that is no study: `work` takes the arguments, returns a sentence and --json's answer."""
     arguments = list(sys.argv[1:] if argv is None else argv)
     name = parser.prog.rpartition(".")[2]
 

@@ -1,0 +1,164 @@
+"""A window to explore: drive frequency, excess and restitution on sliders, for a lecture or a first look.
+
+For map, Eq. (1), Eq. (1) with two parameters (the rebound law of the beam) or beam, while one drags: the tip
+over time with its impacts, the strobe points, and the orbit diagram around the present excess F/F_g - 1,
+raised (dots), then lowered (rings), pale where it did not settle. A motion with impacts is carried along, as
+on the shaker: p_m sets in at grazing and lives on below until its fold; a click on the description ends it.
+Restitution is that of map and Eq. (1), and of a beam with contact.law newton. The beam, which is slower, gets
+a coarser diagram.
+
+Run:     python -m studies.explore [--scene FILE.toml] [--set key=value]     on a display
+Writes:  nothing; where the sliders stood is told when the window is closed
+"""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from functools import lru_cache, partial
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.backend_bases import FigureManagerBase
+from matplotlib.figure import Figure
+from matplotlib.widgets import RadioButtons, Slider
+
+from contact import ContactError, ImpactKind, StrobedMap, StrobedNordmarkMap, StroboscopicMap, simulate
+from contact.orbits import OrbitDiagram, orbit_diagram, settle
+from studies.least_model import least_modes, middle_of
+from studies.options import Parser, add_scene, tool
+from studies.plotting import DOWN, EXCESS, GUIDE, INCH, PAGE, UP, house_style, points, strobe_points
+from studies.scene import Scene, beam_at, harmonic, model_of, nordmark_at, read_scene, single_mode_at
+from studies.two_parameters import two_parameters_at
+
+KINDS = {"map": (61, 600), "Eq. (1)": (41, 600), "two parameters": (41, 600), "beam": (21, 200)}
+"""Amplitudes of the diagram, drive periods at each: the letter's spring loses e^-16 of a motion in 200."""
+
+REACH, SPAN, BELOW = 0.03, 0.01, -1e-3
+TRACE, SAMPLES, STROBES, SETTLE = 12, 2401, 64, 600
+"""Excess of slider and diagram, to both sides; that from which the drive is raised past grazing. Drive
+periods and samples of the trace, strobe points, drive periods to settle before."""
+
+modes_of_beam = lru_cache(maxsize=4)(lambda scene: model_of(least_modes(scene, {"fold": 0.07})[0]))
+
+
+@lru_cache(maxsize=64)
+def described(scene: Scene, kind: str, frequency: float, restitution: float) -> StrobedMap[Any]:
+    """The description at a drive frequency [Hz]."""
+    at = scene.replace({f"{key}restitution": restitution for key in ("single_mode.", "contact.local_")})
+    if kind == "map":
+        return StrobedNordmarkMap(map=nordmark_at(at, frequency))
+    make = {"beam": beam_at, "two parameters": two_parameters_at}.get(kind)
+    oscillator = make(at, frequency, modes_of_beam(scene)) if make else single_mode_at(at, frequency)
+    return StroboscopicMap(oscillator=oscillator)
+
+
+def motion_of(here: StrobedMap[Any], end: Any) -> tuple[Any, float, tuple[np.ndarray, ...]]:
+    """From a strobe before an impact on: that state, the stop [mm], and time [drive periods], tip [mm], times
+    of impacts, tip and its velocity [m/s] at strobes; of the map x in place of the tip, and y."""
+    end = here.orbit(end, int(np.argmax(here.orbit(end, STROBES).impacts))).end
+    if not isinstance(here, StroboscopicMap):
+        x, y = here.orbit(end, STROBES).points.T
+        return end, 0.0, (np.arange(TRACE), x[:TRACE], np.flatnonzero(x[:TRACE] > 0.0), x, y)
+    end, time, tip = replace(end, time=0.0), np.linspace(0.0, TRACE, SAMPLES), here.oscillator.tip
+    run = simulate(here.oscillator, end, periods=STROBES, times=time * here.period)
+    hits = run.impacts.start[run.impacts.kind == ImpactKind.IMPACT] / here.period
+    strobes = 1e3 * tip(run.strobe_displacement), tip(run.strobe_velocity)
+    return end, 1e3 * here.scale, (time, 1e3 * tip(run.displacement), hits[hits < TRACE], *strobes)
+
+
+def scans_of(strobed: StrobedMap[Any], excess: float, count: int, cycles: int) -> list[OrbitDiagram[Any]]:
+    """The orbit diagram of the tip [m], of the map x: raised from the motion without impacts, and lowered."""
+    observe = strobed.tip if isinstance(strobed, StroboscopicMap) else lambda points: points[:, 0]
+    scan = partial(orbit_diagram, strobed, observe=observe, settle_cycles=cycles, early=False)
+    values = excess + np.linspace(-SPAN, SPAN, count)
+    raised = scan(values, strobed.at(min(BELOW, excess - SPAN)).steady())
+    return [raised, scan(values[::-1], raised.end)]
+
+
+class Window:
+    """Sliders, buttons and three panels on a figure; the state of the motion, None if it has no impacts."""
+
+    def __init__(self, scene: Scene, figure: Figure) -> None:
+        self.scene, self.figure, self.state = scene, figure, None
+        self.axes = figure.subplot_mosaic(
+            "ktt;kpd;.ff;.ee;.rr", width_ratios=(3, 5, 5), height_ratios=(18, 18, 2, 2, 2)
+        )
+        figure.subplots_adjust(left=0.02, right=0.9, bottom=0.03, top=0.94, hspace=0.65, wspace=0.5)
+        drives, tau = scene.drive.frequencies_hz, scene.single_mode.restitution
+        low, high, (f, e, r) = 0.9 * min(drives), 1.05 * max(drives), (self.axes[name] for name in "fer")
+        self.sliders = (
+            Slider(f, "frequency (Hz)", low, high, valinit=middle_of(scene), valfmt="%.2f"),
+            Slider(e, EXCESS, -REACH, REACH, valinit=-BELOW, valfmt="%+.5f"),
+            Slider(r, "restitution", 0.0, 1.0, valinit=tau, valfmt="%.3f"),
+        )
+        self.kind = RadioButtons(self.axes["k"], list(KINDS), active=1)
+        for slider in self.sliders:
+            slider.on_changed(self.update)
+        self.kind.on_clicked(partial(self.update, anew=True))
+        self.update(anew=True)
+
+    def update(self, _: object = None, *, anew: bool = False) -> None:
+        """Let the motion go over to where the sliders stand, and draw; where it cannot the title says why."""
+        kind, (frequency, excess, restitution) = self.kind.value_selected, (one.val for one in self.sliders)
+        law = {"beam": self.scene.contact.law, "two parameters": "beam"}.get(kind, "newton")
+        self.axes["r"].set_visible(law == "newton")
+        trace, plane, diagram = (self.axes[name] for name in "tpd")
+        try:
+            strobed = described(self.scene, kind, round(frequency, 2), restitution)
+            here, quiet = strobed.at(excess), strobed.at(excess if excess < 0.0 else BELOW).steady()
+            found = settle(here, quiet if anew or self.state is None else self.state, most_cycles=SETTLE)
+            end, stop, (time, tip, hits, x, y) = motion_of(here, found.end)
+            self.state = end if found.impacts else None
+            scans = scans_of(strobed, excess, *KINDS[kind])
+            words = f"period {found.period}" if found.period else "no period up to 64"
+        except (ContactError, ValueError) as error:
+            self.state, words = None, str(error)
+        else:
+            one, other, scale = ("x", "y", 1.0) if kind == "map" else ("tip (mm)", "velocity (m/s)", 1e3)
+            for panel in (trace, plane, diagram):
+                panel.clear()
+            trace.set(xlabel="drive periods", ylabel=one)
+            plane.set(xlabel=one, ylabel=other)
+            diagram.set(xlabel=EXCESS, ylabel=one)
+            trace.plot(time, tip, color="black")
+            trace.plot(hits, np.full(hits.size, stop), **points(2))
+            trace.axhline(stop, **GUIDE)
+            plane.plot(x, y, **points(0))
+            for scan, look in zip(scans, (UP, DOWN), strict=True):
+                strobe_points(diagram, scan.excess, scale * scan.points, scan.period > 0, look, "")
+            diagram.axvline(excess, **GUIDE)
+        trace.set_title(words, loc="left", wrap=True)
+        self.figure.canvas.draw_idle()
+
+
+def explore(given: Namespace) -> tuple[str, Mapping[str, object]]:
+    """Show the window until it is closed."""
+    scene = harmonic(read_scene(given.scene, given.overrides))
+    try:
+        figure = plt.figure(figsize=(PAGE / INCH, 0.75 * PAGE / INCH), dpi=140)
+        if type(figure.canvas.manager) is FigureManagerBase:
+            raise ImportError("matplotlib found none")
+    except ImportError as error:
+        raise ValueError(f"a window needs a display, and a toolkit such as python3-tk: {error}") from error
+    with house_style():
+        window = Window(scene, figure)
+        with suppress(KeyboardInterrupt):
+            plt.show()
+    names, values = ("frequency_hz", "excess", "restitution"), (float(one.val) for one in window.sliders)
+    ended = {"description": window.kind.value_selected, **dict(zip(names, values, strict=True))}
+    return f"ended at {ended}", ended
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Explore from the command line; returns 0, or 2 for wrong use and where there is no display."""
+    parser = Parser("python -m studies.explore", __doc__ or "")
+    add_scene(parser)
+    return tool(parser, argv, explore)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,108 @@
+"""The window to explore, off screen: its sliders are moved, and its panels show the physics."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from studies import ROOT, explore
+from studies.scene import read_scene
+
+SLIDERS = ("frequency", "excess", "restitution")
+
+
+@pytest.fixture
+def seen() -> explore.Window:
+    figure = Figure()
+    FigureCanvasAgg(figure)
+    return explore.Window(read_scene("letter", ["modes.count=4"]), figure)
+
+
+def move(seen: explore.Window, **to: float) -> str:
+    """Move sliders; returns what the title says then."""
+    for name, value in to.items():
+        seen.sliders[SLIDERS.index(name)].set_val(value)
+    return seen.axes["t"].get_title(loc="left")
+
+
+def test_the_motion_is_carried_over_grazing_and_down_to_its_fold(seen):
+    """p4 of Eq. (1) lives on from grazing down to -1.3211e-2, and is not there on the way up."""
+    assert move(seen, frequency=21.5, excess=1e-3) == move(seen, excess=-0.0132) == "period 4"
+    assert move(seen, excess=-0.015) == move(seen, excess=-0.0132) == move(seen, excess=-1e-5) == "period 1"
+    assert move(seen, excess=1e-5) == move(seen, excess=-0.0132) == "period 4"
+    seen.kind.set_active(1)
+    assert move(seen) == "period 1", "a click on the description starts without impacts"
+
+
+def test_the_trace_meets_the_stop_once_a_period_and_the_strobes_repeat(seen):
+    assert move(seen, frequency=20.9) == "period 3"
+    trace, hits, stop = seen.axes["t"].lines
+    times = np.asarray(hits.get_xdata())
+    assert times.size == 4 and np.allclose(np.diff(times), 3.0, atol=1e-9)
+    height = np.interp(times, *trace.get_data()) - stop.get_ydata()[0]
+    assert np.all(np.abs(height) < np.max(np.abs(np.diff(trace.get_ydata()))))
+    x, y = np.round(seen.axes["p"].lines[0].get_data(), 6)
+    assert len(set(zip(x, y, strict=True))) == 3
+
+
+def test_the_diagram_has_the_hysteresis_of_p4(seen):
+    move(seen, frequency=21.5, excess=-0.004)
+    raised, _, lowered, _, here = seen.axes["d"].lines
+    assert here.get_xdata()[0] == -0.004
+
+    def branches(line, low, high):
+        excess, tip = line.get_data()
+        return {len(set(np.round(tip[excess == e], 6))) for e in set(excess) if low < e < high}
+
+    assert branches(raised, -1.0, -1e-4) == {1} and branches(raised, 1e-4, 1.0) == {4}
+    assert branches(lowered, -0.0129, 1.0) == {4} and branches(lowered, -1.0, -0.0135) == {1}
+
+
+@pytest.mark.parametrize("kind", explore.KINDS)
+def test_every_description_follows_its_sliders(seen, kind):
+    seen.kind.set_active(list(explore.KINDS).index(kind))
+    assert [move(seen, frequency=f) for f in (20.9, 22.2)] == ["period 3", "period 5"]
+    strobes = seen.axes["p"].lines[0].get_data()
+    move(seen, restitution=0.3)
+    changed = not np.allclose(seen.axes["p"].lines[0].get_data(), strobes, atol=1e-4)
+    assert changed == seen.axes["r"].get_visible() == (kind in ("map", "Eq. (1)"))
+
+
+def test_what_cannot_be_computed_is_said_and_the_next_position_is_drawn(seen):
+    seen.kind.set_active(0)
+    assert "24.55 Hz" in move(seen, frequency=24.55)
+    assert move(seen, frequency=22.2) == "period 5"
+
+
+def test_twenty_positions_of_eq_1_and_what_they_take(seen, monkeypatch, capsys):
+    """p5 sets in at grazing; the computer's time is told against that of a redraw, not judged."""
+    monkeypatch.setattr(seen.figure.canvas, "draw_idle", lambda: None)
+    move(seen, excess=-0.005)
+    excesses, titles, times = np.linspace(-0.005, 0.005, 20), [], []
+    for excess in excesses:
+        times.append(time.perf_counter())
+        titles.append(move(seen, excess=excess))
+        times.append(time.perf_counter())
+        seen.figure.canvas.draw()
+    update, redraw = np.median(np.diff([*times, time.perf_counter()]).reshape(20, 2), axis=0)
+    with capsys.disabled():
+        print(f" an update takes {update / redraw:.2f} of a redraw ")
+    assert titles == ["period 5" if excess > 0 else "period 1" for excess in excesses]
+
+
+@pytest.mark.parametrize(
+    ("backend", "argv", "told"),
+    [("agg", [], "display"), ("tkagg", [], "display"), ("agg", ["--set", "drive.kind=none"], "drive.kind")],
+)
+def test_without_a_display_or_a_drive_it_says_so_in_a_sentence(backend, argv, told):
+    around = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    ran = subprocess.run([sys.executable, "-m", "studies.explore", *argv], cwd=ROOT, capture_output=True,
+                         text=True, env=around | {"MPLBACKEND": backend})  # fmt: skip
+    assert ran.returncode == 2 and told in ran.stderr and len(ran.stderr.splitlines()) == 1
