@@ -89,9 +89,9 @@ def test_the_page_of_one_study_shows_its_points_and_one_command_for_the_rest(tmp
     stored(tmp_path, letter_scene)
     path, _, missing = write_page(tmp_path)
     text, own = path.read_text(), [point for point in letter.POINTS.values() if point.study == "transitions"]
-    assert len(own) == 6 and all(point.says in text for point in own)
+    assert len(own) == 7 and all(point.says in text for point in own)
     assert text.count('class="verdict agrees"') == 1 and text.count('class="verdict differs"') == 1
-    assert text.count('class="verdict ') == text.count('class="verdict not-stored"') + 2 == 6
+    assert text.count('class="verdict ') == text.count('class="verdict not-stored"') + 2 == 7
     assert text.count("python -m studies --all</code>") == 1 and 'id="answers"' not in text
     assert missing and not any(f"python -m studies.{name}" in text for name in missing)
     assert told_page(tmp_path).endswith(" makes the rest") and "\n" not in told_page(tmp_path)
