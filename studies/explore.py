@@ -2,19 +2,16 @@
 
 For map, Eq. (1), Eq. (1) with two parameters (the rebound law of the beam) or beam, while one drags: the tip
 over time with its impacts, the strobe points, and the orbit diagram around the present excess F/F_g - 1,
-raised (dots), then lowered (rings), pale where it did not settle. A motion with impacts is carried along, as
-on the shaker: p_m sets in at grazing and lives on below until its fold; a click on the description ends it.
-Restitution is that of map and Eq. (1), and of a beam with contact.law newton. The beam, which is slower, gets
-a coarser diagram.
+raised (dots), then lowered (rings). A motion with impacts is carried along, as on the shaker, to its fold; a
+click on the description ends it. Restitution is that of Newton's law.
 
 Run:     python -m studies.explore [--scene FILE.toml] [--set key=value]     on a display
-Writes:  nothing; where the sliders stood is told when the window is closed
+Writes:  nothing
 """
 
 from __future__ import annotations
 
-from argparse import Namespace
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import lru_cache, partial
@@ -27,7 +24,7 @@ from matplotlib.figure import Figure
 from matplotlib.widgets import RadioButtons, Slider
 
 from contact import ContactError, ImpactKind, StrobedMap, StrobedNordmarkMap, StroboscopicMap, simulate
-from contact.orbits import OrbitDiagram, orbit_diagram, settle
+from contact.orbits import orbit_diagram, settle
 from studies.least_model import least_modes, middle_of
 from studies.options import Parser, add_scene, tool
 from studies.plotting import DOWN, EXCESS, GUIDE, INCH, PAGE, UP, house_style, points, strobe_points
@@ -37,10 +34,8 @@ from studies.two_parameters import two_parameters_at
 KINDS = {"map": (61, 600), "Eq. (1)": (41, 600), "two parameters": (41, 600), "beam": (21, 200)}
 """Amplitudes of the diagram, drive periods at each: the letter's spring loses e^-16 of a motion in 200."""
 
-REACH, SPAN, BELOW = 0.03, 0.01, -1e-3
-TRACE, SAMPLES, STROBES, SETTLE = 12, 2401, 64, 600
-"""Excess of slider and diagram, to both sides; that from which the drive is raised past grazing. Drive
-periods and samples of the trace, strobe points, drive periods to settle before."""
+REACH, SPAN, BELOW, TRACE, SAMPLES, STROBES, SETTLE = 0.03, 0.01, -1e-3, 12, 2401, 64, 600
+"""Excess of slider, diagram and before grazing; periods, samples of a trace; strobes; periods to settle."""
 
 modes_of_beam = lru_cache(maxsize=4)(lambda scene: model_of(least_modes(scene, {"fold": 0.07})[0]))
 
@@ -57,8 +52,7 @@ def described(scene: Scene, kind: str, frequency: float, restitution: float) -> 
 
 
 def motion_of(here: StrobedMap[Any], end: Any) -> tuple[Any, float, tuple[np.ndarray, ...]]:
-    """From a strobe before an impact on: that state, the stop [mm], and time [drive periods], tip [mm], times
-    of impacts, tip and its velocity [m/s] at strobes; of the map x in place of the tip, and y."""
+    """State before an impact, stop [mm]; times [periods], tip [mm], impacts, tip and velocity at strobes."""
     end = here.orbit(end, int(np.argmax(here.orbit(end, STROBES).impacts))).end
     if not isinstance(here, StroboscopicMap):
         x, y = here.orbit(end, STROBES).points.T
@@ -70,28 +64,18 @@ def motion_of(here: StrobedMap[Any], end: Any) -> tuple[Any, float, tuple[np.nda
     return end, 1e3 * here.scale, (time, 1e3 * tip(run.displacement), hits[hits < TRACE], *strobes)
 
 
-def scans_of(strobed: StrobedMap[Any], excess: float, count: int, cycles: int) -> list[OrbitDiagram[Any]]:
-    """The orbit diagram of the tip [m], of the map x: raised from the motion without impacts, and lowered."""
-    observe = strobed.tip if isinstance(strobed, StroboscopicMap) else lambda points: points[:, 0]
-    scan = partial(orbit_diagram, strobed, observe=observe, settle_cycles=cycles, early=False)
-    values = excess + np.linspace(-SPAN, SPAN, count)
-    raised = scan(values, strobed.at(min(BELOW, excess - SPAN)).steady())
-    return [raised, scan(values[::-1], raised.end)]
-
-
 class Window:
     """Sliders, buttons and three panels on a figure; the state of the motion, None if it has no impacts."""
 
     def __init__(self, scene: Scene, figure: Figure) -> None:
         self.scene, self.figure, self.state = scene, figure, None
-        self.axes = figure.subplot_mosaic(
-            "ktt;kpd;.ff;.ee;.rr", width_ratios=(3, 5, 5), height_ratios=(18, 18, 2, 2, 2)
-        )
+        wide, tall = (3, 5, 5), (9, 9, 1, 1, 1)
+        self.axes = figure.subplot_mosaic("ktt;kpd;.ff;.ee;.rr", width_ratios=wide, height_ratios=tall)
         figure.subplots_adjust(left=0.02, right=0.9, bottom=0.03, top=0.94, hspace=0.65, wspace=0.5)
         drives, tau = scene.drive.frequencies_hz, scene.single_mode.restitution
         low, high, (f, e, r) = 0.9 * min(drives), 1.05 * max(drives), (self.axes[name] for name in "fer")
         self.sliders = (
-            Slider(f, "frequency (Hz)", low, high, valinit=middle_of(scene), valfmt="%.2f"),
+            Slider(f, "frequency (Hz)", low, high, valinit=middle_of(scene), valfmt="%.2f Hz"),
             Slider(e, EXCESS, -REACH, REACH, valinit=-BELOW, valfmt="%+.5f"),
             Slider(r, "restitution", 0.0, 1.0, valinit=tau, valfmt="%.3f"),
         )
@@ -102,9 +86,9 @@ class Window:
         self.update(anew=True)
 
     def update(self, _: object = None, *, anew: bool = False) -> None:
-        """Let the motion go over to where the sliders stand, and draw; where it cannot the title says why."""
+        """Let the motion go over to where the sliders stand, and draw, or say in the title why not."""
         kind, (frequency, excess, restitution) = self.kind.value_selected, (one.val for one in self.sliders)
-        law = {"beam": self.scene.contact.law, "two parameters": "beam"}.get(kind, "newton")
+        law = {"beam": self.scene.contact.law, "two parameters": ""}.get(kind, "newton")
         self.axes["r"].set_visible(law == "newton")
         trace, plane, diagram = (self.axes[name] for name in "tpd")
         try:
@@ -113,29 +97,33 @@ class Window:
             found = settle(here, quiet if anew or self.state is None else self.state, most_cycles=SETTLE)
             end, stop, (time, tip, hits, x, y) = motion_of(here, found.end)
             self.state = end if found.impacts else None
-            scans = scans_of(strobed, excess, *KINDS[kind])
+            count, cycles = KINDS[kind]
+            observe = strobed.tip if isinstance(strobed, StroboscopicMap) else lambda points: points[:, 0]
+            scan = partial(orbit_diagram, strobed, observe=observe, settle_cycles=cycles, early=False)
+            values = excess + np.linspace(-SPAN, SPAN, count)
+            scans = [scan(values, strobed.at(min(BELOW, excess - SPAN)).steady())]
+            scans.append(scan(values[::-1], scans[0].end))
             words = f"period {found.period}" if found.period else "no period up to 64"
         except (ContactError, ValueError) as error:
             self.state, words = None, str(error)
         else:
-            one, other, scale = ("x", "y", 1.0) if kind == "map" else ("tip (mm)", "velocity (m/s)", 1e3)
-            for panel in (trace, plane, diagram):
+            at, rate, scale = ("x", "y", 1.0) if kind == "map" else ("tip (mm)", "velocity (m/s)", 1e3)
+            words_of = (("drive periods", at), (at, rate), (EXCESS, at))
+            for panel, (x_word, y_word) in zip((trace, plane, diagram), words_of, strict=True):
                 panel.clear()
-            trace.set(xlabel="drive periods", ylabel=one)
-            plane.set(xlabel=one, ylabel=other)
-            diagram.set(xlabel=EXCESS, ylabel=one)
+                panel.set(xlabel=x_word, ylabel=y_word)
             trace.plot(time, tip, color="black")
             trace.plot(hits, np.full(hits.size, stop), **points(2))
             trace.axhline(stop, **GUIDE)
             plane.plot(x, y, **points(0))
-            for scan, look in zip(scans, (UP, DOWN), strict=True):
-                strobe_points(diagram, scan.excess, scale * scan.points, scan.period > 0, look, "")
+            for one, look in zip(scans, (UP, DOWN), strict=True):
+                strobe_points(diagram, one.excess, scale * one.points, one.period > 0, look, "")
             diagram.axvline(excess, **GUIDE)
         trace.set_title(words, loc="left", wrap=True)
         self.figure.canvas.draw_idle()
 
 
-def explore(given: Namespace) -> tuple[str, Mapping[str, object]]:
+def explore(given: Any) -> tuple[str, dict[str, object]]:
     """Show the window until it is closed."""
     scene = harmonic(read_scene(given.scene, given.overrides))
     try:
@@ -148,9 +136,7 @@ def explore(given: Namespace) -> tuple[str, Mapping[str, object]]:
         window = Window(scene, figure)
         with suppress(KeyboardInterrupt):
             plt.show()
-    names, values = ("frequency_hz", "excess", "restitution"), (float(one.val) for one in window.sliders)
-    ended = {"description": window.kind.value_selected, **dict(zip(names, values, strict=True))}
-    return f"ended at {ended}", ended
+    return f"closed at {', '.join(slider.valtext.get_text() for slider in window.sliders)}", {}
 
 
 def main(argv: Sequence[str] | None = None) -> int:

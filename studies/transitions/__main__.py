@@ -154,13 +154,12 @@ def judge(run: Run, row: Row) -> bool:
 
 def compare(run: Run, rows: Sequence[Row]) -> None:
     """Where the two extracted parameters have the beam's bifurcations, and the map with them."""
-    found = [
-        (row, row.extracted, row.excess_down_two_parameters, row.excess_down_beam)
+    table = [
+        Parameters(frequency_hz=row.frequency_hz, m=row.two_parameters or 0, beam=row.beam,
+                   excess_down=row.excess_down_two_parameters, excess_down_beam=row.excess_down_beam,
+                   **vars(row.extracted))
         for row in rows if row.extracted and row.beam
     ]  # fmt: skip
-    table = [Parameters(frequency_hz=row.frequency_hz, m=row.two_parameters or 0, beam=row.beam or 0,
-                        excess_down=mine, excess_down_beam=of_beam, **vars(parameters))
-             for row, parameters, mine, of_beam in found]  # fmt: skip
     run.table("two_parameters", table, "Restitution and delay on the settled orbits, and what they give.",
               show=("frequency_hz", "m", "beam", "restitution", "delay_s", "ringing_left", "excess_down",
                     "fold", "excess_down_beam", "map", "fold_of_map"))  # fmt: skip
