@@ -100,8 +100,9 @@ class Study:
             whole = {"schema": SCHEMA, "study": self.name, **values}
             tell(whole if given["json"] else scene.dump().rstrip(), output)
             return DONE
-        if beyond := beyond_linear(scene):
-            doubtful.append(beyond)
+        with warnings.catch_warnings():  # told already
+            warnings.simplefilter("ignore", SuspiciousValue)
+            doubtful += [beyond] if (beyond := beyond_linear(scene)) else []
         chosen = {**self.defaults(given["quick"]), **{name: given[name] for name in options if name in given}}
         chosen = {name: tuple(v) if isinstance(v, list) else v for name, v in chosen.items()}
         for sentence in doubtful:
