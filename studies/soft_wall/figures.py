@@ -60,7 +60,7 @@ def draw_orbits(scene: Scene, doublings: Sequence[Doubling], beam: Beam | None) 
     if beam is not None:
         axes[1].semilogx(*zip(*(one for one in beam.born if one[1]), strict=True), **plotting.points(2),
                          markerfacecolor="white", label="raised in one step")  # fmt: skip
-        stable = (beam.born[0][0], beam.doubling_excess or np.nan)
+        stable = (beam.born[0][0], beam.unstable_excess or np.nan)
         axes[1].semilogx(stable, (1, 1), color=PALETTE[1], marker="|", label="p$_1$ with a touch is stable")
         axes[1].set_ylim(0.0, 1.5 + axes[1].get_ylim()[1])
         plotting.mark_letter(axes[1].xaxis, letter.AMPLITUDE_STABILITY, along=0.3, words="letter:\nstability")
