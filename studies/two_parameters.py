@@ -46,9 +46,6 @@ EXCESSES = np.geomspace(1e-6, 0.3, 45)
 FEWEST = 8
 """Collisions with a restitution that make a law."""
 
-SLOWEST = 1e-6
-"""m/s, down to which the law is tabled."""
-
 
 def law_of(oscillator: ImpactOscillator) -> DelayedRestitution:
     """The rebound law of a beam, from its first collisions; SceneError where too few have a restitution."""
@@ -68,7 +65,7 @@ def law_of(oscillator: ImpactOscillator) -> DelayedRestitution:
 
     return DelayedRestitution(
         restitution=lambda v: float(tables[0](within(v))), delay=lambda v: v * float(tables[1](within(v))),
-        speeds=(min(SLOWEST, speed[0] / 2.0), float(speed[-1])),
+        speeds=(1e-3 * float(speed[0]), float(speed[-1])),
     )  # fmt: skip
 
 
@@ -102,13 +99,15 @@ def fold_of_kicks(kicks: KickFamily) -> float | None:
 
 @dataclass(frozen=True, kw_only=True)
 class Extracted:
-    """The two parameters at the approach speed [m/s] of a settled orbit with one impact.
+    """The two parameters at the approach speed [m/s] of a settled orbit p_m with one impact.
 
     `ringing_left`: what is left of the ringing of a higher mode when the tip comes back, exp(-c m/(2 f));
     `fold`: where the orbit ends, from the kicks of the beam's collisions; `map` and `fold_of_map`: the period
     that the map with that restitution gives birth to at the same excess (0: not settled), and its fold.
     """
 
+    frequency_hz: float
+    m: int
     approach_m_per_s: float
     restitution: float
     delay_s: float
@@ -134,8 +133,8 @@ def extracted(
     strobed = StrobedNordmarkMap(map=replace(nordmark_at(scene, frequency), restitution=restitution))
     born = born_period(strobed, excess, most_cycles=max(scene.scan.settle_cycles, 1))
     return Extracted(
-        approach_m_per_s=speed, restitution=restitution, delay_s=law.delay(speed),
+        frequency_hz=frequency, m=period, approach_m_per_s=speed, restitution=restitution,
+        delay_s=law.delay(speed), map=born, fold_of_map=fold_excess(strobed, born),
         ringing_left=float(np.exp(-0.5 * model.decay_rate[1:] * period / frequency).max(initial=0.0)),
-        fold=fold_of_kicks(KickFamily(oscillator=beam, period=period)), map=born,
-        fold_of_map=fold_excess(strobed, born),
+        fold=fold_of_kicks(KickFamily(oscillator=beam, period=period)),
     )  # fmt: skip

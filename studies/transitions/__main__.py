@@ -30,6 +30,7 @@ Writes:  transitions.csv (a row a frequency), orbit_diagram.csv (a row an amplit
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -42,7 +43,6 @@ from studies.record import Verdict
 from studies.run import Run, study
 from studies.scene import Scene, harmonic, model_of
 from studies.transitions.descriptions import TITLES, Row, Scans, row_at, scans
-from studies.two_parameters import Extracted
 
 __all__ = ["Cell", "transitions"]
 
@@ -71,23 +71,6 @@ class Cell:
     period: int
     impacts: int
     cycles: int
-
-
-@dataclass(frozen=True, kw_only=True)
-class Parameters(Extracted):
-    """A frequency: period m of the two parameters and of the beam, where either orbit ends."""
-
-    frequency_hz: float
-    m: int
-    beam: int
-    excess_down: float | None
-    excess_down_beam: float | None
-
-    @property
-    def ratio(self) -> float | None:
-        """Its hysteresis over the beam's, where both end on the same side of grazing."""
-        mine, of_beam = self.excess_down, self.excess_down_beam
-        return mine / of_beam if mine and of_beam and mine * of_beam > 0.0 else None
 
 
 @study(needs={"born_period": 0.0, "fold": 0.07})
@@ -154,26 +137,23 @@ def judge(run: Run, row: Row) -> bool:
 
 def compare(run: Run, rows: Sequence[Row]) -> None:
     """Where the two extracted parameters have the beam's bifurcations, and the map with them."""
-    table = [
-        Parameters(frequency_hz=row.frequency_hz, m=row.two_parameters or 0, beam=row.beam,
-                   excess_down=row.excess_down_two_parameters, excess_down_beam=row.excess_down_beam,
-                   **vars(row.extracted))
-        for row in rows if row.extracted and row.beam
-    ]  # fmt: skip
-    run.table("two_parameters", table, "Restitution and delay on the settled orbits, and what they give.",
-              show=("frequency_hz", "m", "beam", "restitution", "delay_s", "ringing_left", "excess_down",
-                    "fold", "excess_down_beam", "map", "fold_of_map"))  # fmt: skip
-    if not table:
+    found = [(row, row.extracted) for row in rows if row.extracted and row.beam]
+    run.table("two_parameters", [parameters for _, parameters in found],
+              "Restitution and delay on the settled orbits, and what they give.")  # fmt: skip
+    if not found:
         return
-    same = [row for row in table if row.m == row.beam]
-    close = [row for row in same if row.ratio is not None and 1.0 / NEARLY < row.ratio < NEARLY]
-    far = [f"{row.frequency_hz:g} Hz ({row.ringing_left:.0%})" for row in same if row not in close]
-    taus = sorted(row.restitution for row in table)
+    same = [(row, one) for row, one in found if row.two_parameters == row.beam]
+    ratios = [(row.excess_down_two_parameters or 0.0) / (row.excess_down_beam or math.inf) for row, _ in same]
+    far = [
+        f"{one.frequency_hz:g} Hz ({one.ringing_left:.0%})"
+        for (_, one), ratio in zip(same, ratios, strict=True) if not 1.0 / NEARLY < ratio < NEARLY
+    ]  # fmt: skip
+    close, taus = len(same) - len(far), sorted(one.restitution for _, one in found)
     text = (
         f"With restitution, {taus[0]:.2f} to {taus[-1]:.2f}, and delay as the beam's own collisions have "
-        f"them, one mode has the beam's period at {len(same)} of {len(table)} frequencies, the map with that "
-        f"restitution at {sum(row.map == row.beam for row in table)}. Lowered again, the orbit ends "
-        f"where the beam's does, to a factor of {NEARLY:g}, at {len(close)}"
+        f"them, one mode has the beam's period at {len(same)} of {len(found)} frequencies, the map with that "
+        f"restitution at {sum(one.map == row.beam for row, one in found)}. Lowered again, the orbit ends "
+        f"where the beam's does, to a factor of {NEARLY:g}, at {close}"
     )
     if far:
         text += (
@@ -181,9 +161,9 @@ def compare(run: Run, rows: Sequence[Row]) -> None:
             "which no restitution and no delay of a first collision contain"
         )
     run.answer("two_parameters", f"{text}.")
-    verdict: Verdict = "agrees" if len(close) == len(table) else "in part" if same else "differs"
-    run.verdict("two_parameters_born", verdict, found=f"period at {len(same)}, end at {len(close)} of "
-                f"{len(table)} frequencies", note=f"{text}.")  # fmt: skip
+    verdict: Verdict = "agrees" if close == len(found) else "in part" if same else "differs"
+    run.verdict("two_parameters_born", verdict, found=f"period at {len(same)}, end at {close} of "
+                f"{len(found)} frequencies", note=f"{text}.")  # fmt: skip
 
 
 def store(run: Run, rows: Iterable[Row], diagrams: Iterable[Scans]) -> None:
