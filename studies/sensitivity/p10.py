@@ -25,7 +25,15 @@ from beam import Backbone, FiniteRotation, ModalModel, backbone_coefficient
 from contact import ImpactOscillator, NonlinearMode, State, StrobedNordmarkMap, StroboscopicMap
 from contact.orbits import settle
 from studies.letter import AMPLITUDE_STABILITY, FREE_PERIOD_ERROR_S
-from studies.scene import Scene, beam_at, nordmark_at, periods_of, single_mode_at, spring_of
+from studies.scene import (
+    Scene,
+    beam_at,
+    nonlinear_mode_at,
+    nordmark_at,
+    periods_of,
+    single_mode_at,
+    spring_of,
+)
 from studies.sensitivity.changes import known
 
 EXCESSES = (AMPLITUDE_STABILITY, 1e-3, 4e-3, 1e-2)
@@ -106,10 +114,8 @@ def causes_of(scene: Scene, modes: ModalModel) -> list[Cause]:
         return partial(single_mode_at, scene.replace(there))
 
     def bent(period: float = free, wider: float = 1.0, width: float = 0.0) -> Callable[..., NonlinearMode]:
-        b, a = terms(width).stiffness, terms(width).inertia
-        mode = NonlinearMode(free_period=period, decay_rate=rate, restitution=tau, gap=wider * gap,
-                             frequency=last, stiffness=b, inertia=a)  # fmt: skip
-        return lambda f: replace(mode, frequency=f)
+        there = scene.replace({"single_mode.free_period_s": period, "stop.gap_m": wider * gap})
+        return partial(nonlinear_mode_at, there, backbone=terms(width))
 
     def recoil(mass: float, hz: float, held: bool, period: float = free) -> Callable[..., ImpactOscillator]:
         of, shake = eq_1(period), {"mass": mass, "suspension_hz": hz, "damping_ratio": SUSPENSION_RATIO}
