@@ -13,7 +13,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from studies import letter
 from studies.calibration import Targets, calibrate_all, collision_at
 from studies.run import Run, study
 from studies.scene import Scene, beam_at, harmonic
@@ -35,11 +34,7 @@ class Fitted:
 @study(needs={"frequency 1": 1e-5, "kick": 0.002})
 def calibrate(scene: Scene, run: Run) -> Mapping[str, object]:
     """Fit, report and write the scene."""
-    targets = Targets(
-        free_period_s=harmonic(scene).single_mode.free_period_s,
-        decay_rate_per_s=scene.single_mode.decay_rate_per_s,
-        grazing_amplitude_m=letter.DRIVE_AMPLITUDE_M,
-    )
+    targets = Targets.of(harmonic(scene))
     fitted = calibrate_all(scene, targets)
     rows = [Fitted(key=key, before=scene.number(key), after=fitted.number(key)) for key in KEYS]
     run.table("keys", rows, "Keys before and after the fit.")

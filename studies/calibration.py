@@ -181,6 +181,13 @@ class Targets:
     frequency_hz: float = 22.2
     excess: float = 0.013
 
+    @classmethod
+    def of(cls, scene: Scene) -> Targets:
+        """The measured period and decay of a scene, and the rest as the letter prints it."""
+        keys = scene.single_mode
+        return cls(free_period_s=keys.free_period_s, decay_rate_per_s=keys.decay_rate_per_s,
+                   grazing_amplitude_m=letter.DRIVE_AMPLITUDE_M)  # fmt: skip
+
 
 def calibrate_gap(scene: Scene, amplitude: float, frequency: float) -> Scene:
     """The scene whose tip grazes the stop at base amplitude `amplitude` [m] and `frequency` [Hz]."""

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from studies import letter
 from studies.calibration import Targets, calibrate_all, collision_at
 from studies.scene import Scene, backbone_of, period_shifts, single_mode_of
 from studies.spring_shape.rows import reading_row
@@ -60,11 +59,7 @@ class Drawn:
     def calibrated(self, scene: Scene) -> Candidate:
         """The spring, fitted; SceneError where no ball gives the kick."""
         drawn = scene.replace({"spring.kind": KINDS[self.reading], "spring.bend_radius_m": self.radius})
-        keys = scene.single_mode
-        targets = Targets(
-            free_period_s=keys.free_period_s, decay_rate_per_s=keys.decay_rate_per_s,
-            grazing_amplitude_m=letter.DRIVE_AMPLITUDE_M,
-        )  # fmt: skip
+        targets = Targets.of(scene)
         fitted = calibrate_all(drawn, targets)
         collision = collision_at(fitted, targets.frequency_hz, targets.excess)
         bare = brought_to(shape_of(fitted, self.reading), float(single_mode_of(fitted).omega[0]))
