@@ -44,8 +44,6 @@ class Backbone:
 
     Parameters
     ----------
-    kappa : float
-        (f/f_0 - 1) (L/A)^2 for small A [1].
     elastic, inertial : float
         The parts of kappa from strain energy and kinetic energy [1].
     length : float
@@ -58,7 +56,7 @@ class Backbone:
 
     @property
     def kappa(self) -> float:
-        """Their sum [1]."""
+        """(f/f_0 - 1) (L/A)^2 for small A [1], the sum of both parts."""
         return self.elastic + self.inertial
 
     @property
