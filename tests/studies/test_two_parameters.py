@@ -10,7 +10,7 @@ from itertools import count
 import numpy as np
 import pytest
 
-from contact import StroboscopicMap, first_collision
+from contact import StroboscopicMap, first_collision, simulate
 from contact.orbits import KickFamily, born, born_period, orbit_end
 from studies import letter, two_parameters
 from studies.scene import SceneError, approach_speed, beam_at, single_mode_at
@@ -58,6 +58,16 @@ def test_the_orbit_ends_where_the_kicks_of_the_beam_say(letter_scene, letter_mod
     assert end.excess == pytest.approx(by_kicks, rel=0.01)
     found = extracted(letter_scene, frequency, letter_model, end=settled.end, period=m)
     assert found.fold == by_kicks and found.map == m
+    run = simulate(strobed.oscillator.with_excess(1e-3), settled.end, periods=m)
+    assert run.impacts.approach == pytest.approx([found.approach_m_per_s], rel=1e-6)
+    beam = StroboscopicMap(oscillator=beam_at(letter_scene, frequency, letter_model)).at(-0.5)
+    quiet, ringing = beam.steady(), np.eye(letter_model.n_modes)[1] * 1e-6  # of mode 2, which decays slowest
+    rung = beam.orbit(replace(quiet, displacement=quiet.displacement + ringing), m).end
+    u, v = rung.displacement[1] - quiet.displacement[1], rung.velocity[1] - quiet.velocity[1]
+    rate, omega = letter_model.decay_rate[1], letter_model.omega[1]
+    turn = math.sqrt(omega**2 - 0.25 * rate**2)
+    left = math.hypot(u, (v + 0.5 * rate * u) / turn) / math.hypot(1.0, 0.5 * rate / turn) / 1e-6
+    assert found.ringing_left == pytest.approx(left, rel=1e-6)
     assert 0.05 < found.restitution < 0.5 and 0.0 < found.delay_s < 5e-4
 
 
