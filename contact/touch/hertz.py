@@ -33,6 +33,7 @@ from contact.flight.modal_flow import speed_scale, tip_state, tip_sum
 from contact.flight.motion import SQUARE
 from contact.flight.polynomial_root import first_polynomial_root, horner, polynomial_root
 from contact.touch.series import enter, leave, powers_of, reach, saltation, within_force, work_of
+from contact.touch.tangents import FORCES
 from contact.trajectory import CONTACT, OUTSIDE
 from contact.vector_loops import LANES, next_modes, weighted_rows
 
@@ -140,15 +141,25 @@ def fill(motion, base, u, v, series):
 
 @kernel
 def slopes(motion, run, series, weights):
-    """The series of r, r dN/dd = (3/2) k d (1 + chi d') and r dN/dd' = k chi d^2, from those of a step."""
+    """The series of r, r dN/dd = (3/2) k d (1 + chi d') and r dN/dd' = k chi d^2, from those of a step; of
+    r N, r N/k and r dN/dchi = k d^2 d'."""
     rows, k, chi = series.rows, motion.number0, motion.number1
     for n in range(ORDER + 1):
         weights[0, n] = series.scalars[ROOT, n]
         weights[1, n], weights[2, n] = 1.5 * k * rows[n, DEPTH], 0.0
+        weights[FORCES, n] = series.scalars[PUSH, n]
+        weights[FORCES + 1, n] = series.scalars[PUSH, n] / k
+        weights[FORCES + 2, n] = 0.0
         if chi != 0.0:
             for i in range(n + 1):
                 weights[1, n] += 1.5 * k * chi * rows[i, DEPTH] * rows[n - i, SPEED]
                 weights[2, n] += k * chi * rows[i, DEPTH] * rows[n - i, DEPTH]
+    for n in range(ORDER + 1):
+        for i in range(n + 1):
+            square = 0.0
+            for j in range(i + 1):
+                square += rows[j, DEPTH] * rows[i - j, DEPTH]
+            weights[FORCES + 2, n] += k * square * rows[n - i, SPEED]
     return ORDER + 1
 
 
