@@ -140,8 +140,8 @@ def pace_of_deviations(oscillator: ImpactOscillator, q: Array, touching: bool, c
     """d(u, v)/dt of the deviations where the state is `q` at `clock` [s] after a strobe, in touch or not."""
     motion = oscillator.motion()
     u, v = q.reshape(2, -1) - np.array(steady_motion(motion, clock))
-    square, reach, rate = motion.omega**2, oscillator.tip(q[: u.size]) - motion.gap, oscillator.tip(q[u.size :])
-    slowing = -motion.decay * v - square * u
+    reach, rate = oscillator.tip(q[: u.size]) - motion.gap, oscillator.tip(q[u.size :])
+    slowing = -motion.decay * v - motion.omega**2 * u
     if touching and motion.law == DELAYED:  # the tip rests, and the mode follows the drive
         steady = oscillator.steady_response() * np.exp(1j * motion.drive * clock)
         slowing = motion.drive**2 * oscillator.driven.amplitude * steady.imag

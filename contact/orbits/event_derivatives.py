@@ -6,8 +6,8 @@ of a peak over the stop; hence
     d(excess)/dp = excess_p - excess_s g_p/g_s.
 
 The height changes as the tip does at the time of the peak.  A multiplier changes with the tangents of the
-flow: with left and right eigenvectors l, r of the monodromy matrix M, l M. r/(l r), and M. is taken from central
-differences of order four of the exact tangents, along the exact change of the orbit.
+flow: with left and right eigenvectors l, r of the monodromy matrix M by l M. r/(l r), where M. is taken from
+central differences of order four of the exact tangents, along the exact change of the orbit.
 """
 
 from __future__ import annotations
@@ -98,10 +98,11 @@ def _peaks(orbit: PeriodicOrbit) -> list[tuple[int, float, float]]:
     the stop [m]."""
     from scipy.optimize import brentq  # slow to import
 
-    motion, n, found = orbit.oscillator.motion(), orbit.oscillator.n_modes, []
+    motion, n = orbit.oscillator.motion(), orbit.oscillator.n_modes
+    found = list[tuple[int, float, float]]()
     ends = np.append(orbit.record[1:, 0], orbit.duration)
     for i, (row, end) in enumerate(zip(orbit.record, ends, strict=True)):
-        flight = motion, orbit.phase + row[1], row[4 : 4 + n].copy(), row[4 + n :].copy()
+        flight = motion, float(orbit.phase + row[1]), row[4 : 4 + n].copy(), row[4 + n :].copy()
         grid = np.linspace(0.0, end - row[1], PEAKS * orbit.period + 1)[1:-1]
         rate = np.array([tip_at(*flight, s)[1] for s in grid])
         for j in np.flatnonzero((rate[:-1] > 0.0) & (rate[1:] <= 0.0)):
