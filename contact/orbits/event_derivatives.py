@@ -13,6 +13,7 @@ central differences of order four of the exact tangents, along the exact change 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
@@ -102,12 +103,13 @@ def _peaks(orbit: PeriodicOrbit) -> list[tuple[int, float, float]]:
     found = list[tuple[int, float, float]]()
     ends = np.append(orbit.record[1:, 0], orbit.duration)
     for i, (row, end) in enumerate(zip(orbit.record, ends, strict=True)):
-        flight = motion, float(orbit.phase + row[1]), row[4 : 4 + n].copy(), row[4 + n :].copy()
+        base, u, v = float(orbit.phase + row[1]), row[4 : 4 + n].copy(), row[4 + n :].copy()
+        tip = partial(tip_at, motion, base, u, v)
         grid = np.linspace(0.0, end - row[1], PEAKS * orbit.period + 1)[1:-1]
-        rate = np.array([tip_at(*flight, s)[1] for s in grid])
+        rate = np.array([tip(s)[1] for s in grid])
         for j in np.flatnonzero((rate[:-1] > 0.0) & (rate[1:] <= 0.0)):
-            s = float(brentq(lambda s, f=flight: tip_at(*f, s)[1], grid[j], grid[j + 1], xtol=1e-16))
-            found.append((i, s, float(tip_at(*flight, s)[0])))
+            s = float(brentq(lambda s, tip=tip: tip(s)[1], grid[j], grid[j + 1], xtol=1e-16))
+            found.append((i, s, float(tip(s)[0])))
     return found
 
 

@@ -56,8 +56,8 @@ where the modes take part, both ends of the series agree within it."""
 SPEED, DEPTH, CUBE, SINE, COSINE = range(5)
 """Columns of the series before the modes: d', d, r d, sin and cos of the drive."""
 
-ROOT, CLOCK, PUSH, POWERS = range(4)
-"""Rows of the scalar series: r, time since the step's start, r N, powers of the sigma of a state."""
+ROOT, CLOCK, PUSH, POWERS, QUARTIC = range(5)
+"""Rows of the scalar series: r, time since the step's start, r N, powers of the sigma of a state, k r^4."""
 
 _EDGE = TOLERANCE ** (1.0 / ORDER)
 
@@ -149,17 +149,16 @@ def slopes(motion, run, series, weights):
         weights[1, n], weights[2, n] = 1.5 * k * rows[n, DEPTH], 0.0
         weights[FORCES, n] = series.scalars[PUSH, n]
         weights[FORCES + 1, n] = series.scalars[PUSH, n] / k
-        weights[FORCES + 2, n] = 0.0
         if chi != 0.0:
             for i in range(n + 1):
                 weights[1, n] += 1.5 * k * chi * rows[i, DEPTH] * rows[n - i, SPEED]
                 weights[2, n] += k * chi * rows[i, DEPTH] * rows[n - i, DEPTH]
+    quartic = series.scalars[QUARTIC]
     for n in range(ORDER + 1):
+        quartic[n], weights[FORCES + 2, n] = 0.0, 0.0
         for i in range(n + 1):
-            square = 0.0
-            for j in range(i + 1):
-                square += rows[j, DEPTH] * rows[i - j, DEPTH]
-            weights[FORCES + 2, n] += k * square * rows[n - i, SPEED]
+            quartic[n] += k * rows[i, DEPTH] * rows[n - i, DEPTH]
+            weights[FORCES + 2, n] += quartic[i] * rows[n - i, SPEED]
     return ORDER + 1
 
 

@@ -153,11 +153,10 @@ def tangent_flight(vary, tangent, u, v, clock, time):
 
 
 @kernel
-def tip_changes(vary, tangent, reach, rate):
+def tip_changes(motion, response, tangent, reach, rate):
     """Fill `reach`, `rate` with the changes y and y' of tip displacement and velocity along tangents, without
     the sources of the parameters."""
-    motion = vary.motion
-    n, w, a, b = motion.size, motion.drive, vary.response.real, vary.response.imag
+    n, w, a, b = motion.size, motion.drive, response.real, response.imag
     s, c = tangent[2 * n], tangent[2 * n + 1]
     for j in range(reach.size):
         reach[j] = a * s[j] + b * c[j]
@@ -184,7 +183,7 @@ def all_tip_changes(vary, tangent, u, v, clock):
     whole."""
     columns, count = tangent.shape[1], len(vary.rest)
     reach, rate = np.empty(columns), np.empty(columns)
-    tip_changes(vary, tangent, reach, rate)
+    tip_changes(vary.motion, vary.response, tangent, reach, rate)
     if count > 0:
         sine, cosine = drive_now(vary, clock)
         for p in range(count):
@@ -219,20 +218,18 @@ def sums_of(weights, terms, order, rows, out):
     weighted_rows(weights, order - low, -1, rows[low:], order + 1 - low, out)
 
 
-@part
+@kernel
 def pushed(vary, room, order, columns):
     """The pushes of this order that are not the stop's answer to y and y': that on the motion itself, and the
     changes of the law."""
-    count = len(vary.rest)
-    if count > 0:
-        force, first, second = room.weights[FORCES, order], room.weights[FORCES + 1], room.weights[FORCES + 2]
-        room.push[columns] = force
-        for p in range(count):
-            changed = first[order] * vary.rest[p, FIRST] + second[order] * vary.rest[p, FIRST + 1]
-            room.push[columns - count + p] += changed
+    first, second = room.weights[FORCES + 1, order], room.weights[FORCES + 2, order]
+    room.push[columns] = room.weights[FORCES, order]
+    start = columns - len(vary.rest)
+    for p in range(columns - start):
+        room.push[start + p] += first * vary.rest[p, FIRST] + second * vary.rest[p, FIRST + 1]
 
 
-@part
+@kernel
 def raised(vary, room, order, columns):
     """The changes y and y' of this order that are the parameters' own."""
     n, m, count = vary.motion.size, room.push.size, len(vary.rest)
@@ -247,10 +244,9 @@ def raised(vary, room, order, columns):
 
 
 @kernel
-def next_tangents(vary, room, order, columns):
+def next_tangents(motion, room, order):
     """The order after this one of all tangents, from the sums over all before it."""
-    motion, push, count, inverse = vary.motion, room.push, len(vary.rest), 1.0 / (order + 1.0)
-    n, w, start, force = motion.size, motion.drive, columns - count, room.weights[FORCES, order]
+    n, w, push, inverse = motion.size, motion.drive, room.push, 1.0 / (order + 1.0)
     shape = (2 * n + 2, push.size)
     sums, fresh = room.sums.reshape(shape), room.rows[order + 1].reshape(shape)
     for k in range(n):
@@ -259,26 +255,35 @@ def next_tangents(vary, room, order, columns):
         for j in range(push.size):
             u[j] = inverse * rv[j]
             v[j] = -inverse * (o2 * ru[j] + c * rv[j] + phi * push[j])
-        for p in range(count):
-            pull = vary.square[p, k] * ru[columns] + vary.decay[p, k] * rv[columns]
-            v[start + p] -= inverse * (pull + vary.weight[p, k] * force)
-        if count > 0:
-            v[columns] += inverse * motion.modes[LOAD, k] * room.weights[0, order]
     rs, rc, s, c = sums[2 * n], sums[2 * n + 1], fresh[2 * n], fresh[2 * n + 1]
     for j in range(push.size):
         s[j] = inverse * w * rc[j]
         c[j] = -inverse * w * rs[j]
-    for p in range(count):
-        s[start + p] += inverse * vary.rest[p, PACE] * rc[columns]
-        c[start + p] -= inverse * vary.rest[p, PACE] * rs[columns]
+
+
+@kernel
+def next_sources(vary, room, order, columns):
+    """What the parameters add to it, and a constant load to the motion itself."""
+    n, m, inverse, force = vary.motion.size, room.push.size, 1.0 / (order + 1.0), room.weights[FORCES, order]
+    shape, start = (2 * n + 2, m), columns - len(vary.rest)
+    sums, fresh = room.sums.reshape(shape), room.rows[order + 1].reshape(shape)
+    for k in range(n):
+        fresh[n + k, columns] += inverse * vary.motion.modes[LOAD, k] * room.weights[0, order]
+        for p in range(columns - start):
+            pull = vary.square[p, k] * sums[k, columns] + vary.decay[p, k] * sums[n + k, columns]
+            fresh[n + k, start + p] -= inverse * (pull + vary.weight[p, k] * force)
+    for p in range(columns - start):
+        turn = inverse * vary.rest[p, PACE]
+        fresh[2 * n, start + p] += turn * sums[2 * n + 1, columns]
+        fresh[2 * n + 1, start + p] -= turn * sums[2 * n, columns]
 
 
 @kernel
 def tangent_step(vary, room, terms, end, tangent, before):
     """Carry the tangents through a step up to s = `end` that starts at `before`, (drive time, u, v); `terms`
     terms of the first rows of room.weights count."""
-    size, columns = tangent.shape
-    m, order, n = room.push.size, room.powers.size - 1, vary.motion.size
+    motion, response, (size, columns) = vary.motion, vary.response, tangent.shape
+    m, order, n = room.push.size, room.powers.size - 1, motion.size
     start = room.rows[0].reshape((size, m))
     start[:, :columns] = tangent
     if len(vary.rest) > 0:
@@ -286,15 +291,19 @@ def tangent_step(vary, room, terms, end, tangent, before):
         start[2 * n, columns], start[2 * n + 1, columns] = drive_now(vary, clock)
         start[:n, columns], start[n : 2 * n, columns] = u, v
     for i in range(order):
-        tip_changes(vary, room.rows[i].reshape((size, m)), room.height[i], room.rate[i])
-        raised(vary, room, i, columns)
+        tip_changes(motion, response, room.rows[i].reshape((size, m)), room.height[i], room.rate[i])
+        if len(vary.rest) > 0:
+            raised(vary, room, i, columns)
         sums_of(room.weights[1], terms, i, room.height, room.push)
         sums_of(room.weights[2], terms, i, room.rate, room.more)
         for j in range(m):
             room.push[j] += room.more[j]
-        pushed(vary, room, i, columns)
+        if len(vary.rest) > 0:
+            pushed(vary, room, i, columns)
         sums_of(room.weights[0], terms, i, room.rows, room.sums)
-        next_tangents(vary, room, i, columns)
+        next_tangents(motion, room, i)
+        if len(vary.rest) > 0:
+            next_sources(vary, room, i, columns)
     powers_of(end, room.powers)
     weighted_rows(room.powers, 0, 1, room.rows, order + 1, room.sums)
     tangent[:, :] = room.sums.reshape((size, m))[:, :columns]
