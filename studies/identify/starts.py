@@ -43,9 +43,9 @@ CLOSE = 0.01
 SPEEDS = np.geomspace(0.01, 0.5, 12)
 """Approach speeds that a search begins with, in units of 2 pi f gap."""
 
-CORNER, SMOOTH, LEVEL = 0.01, 0.0, 2e-4
+CORNER, LEVEL, FINE = 0.01, 2e-4, 81
 """Jump of the velocity over 2 pi f gap from which on a maximum of a displacement is an impact; part of the
-height by which the tip rests on the stop."""
+height within which the tip rests on the stop; instants at which the curves of both sides are compared."""
 
 WINDOW, DENSEST = 0.08, 40
 """Part of a drive period on either side that tells the velocity at an impact; rows a period at least."""
@@ -158,7 +158,7 @@ def _corners(times: Array, x: Array, oscillator: ImpactOscillator, waits: bool) 
     """The impacts of a displacement: maxima at which the velocity jumps; with a wait, after a level stretch."""
     step = float(times[1] - times[0])
     width = max(5, round(WINDOW * oscillator.period / step))
-    ends = np.linalg.pinv(np.vander(np.arange(width) * step, 4))[[3, 2]]  # value and slope at the near end
+    cubic = np.linalg.pinv(np.vander(np.arange(width) * step, 4))
     speed, found = oscillator.driven.angular_frequency * float(x.max()), list[Corner]()
     for i in range(width, x.size - width):
         if x[i] < x[i - width : i + width + 1].max() or x[i] < 0.5 * x.max():
@@ -167,15 +167,20 @@ def _corners(times: Array, x: Array, oscillator: ImpactOscillator, waits: bool) 
         here, there = i - 1, i + 1 + (int(level[0]) if waits and level.size else 0)
         if there + width > x.size:
             continue
-        low, v_in = (ends @ x[here - width + 1 : here + 1][::-1]) * (1.0, -1.0)
-        high, v_out = ends @ x[there : there + width]
-        if v_in - v_out - speed * SMOOTH * (there - here) < CORNER * speed or not v_in > 0.0:
-            continue
+        back, ahead = cubic @ x[here - width + 1 : here + 1][::-1], cubic @ x[there : there + width]
         apart = times[there] - times[here]
-        meet = (high - low - v_out * apart) / (v_in - v_out)
-        top = float(x[i]) if waits else float(low + v_in * meet)
-        delay = apart - (top - low) / v_in + (top - high) / min(v_out, -1e-3 * v_in)
-        found.append(Corner(here, there, top, float(-v_out / v_in), float(delay) if waits else 0.0))
+        s = np.linspace(0.0, apart, FINE)
+        left, right = np.polyval(back, -s), np.polyval(ahead, s - apart)
+        met = gone = int(np.argmin(np.abs(left - right)))
+        back, ahead = np.polyder(back), np.polyder(ahead)
+        if -np.polyval(back, -s[met]) - np.polyval(ahead, s[gone] - apart) < CORNER * speed:
+            continue
+        top = float(left[met])
+        if waits:  # a wait shorter than a step leaves the top between the highest row and where the curves meet
+            top = float(x[i]) if there - here > 2 else 0.5 * (top + float(x[i]))
+            met, gone = int(np.argmax(left >= top)), FINE - 1 - int(np.argmax(right[::-1] >= top))
+        bounce = float(np.polyval(ahead, s[gone] - apart) / np.polyval(back, -s[met]))
+        found.append(Corner(here, there, top, bounce, float(s[gone] - s[met])))
     return found
 
 
