@@ -180,7 +180,10 @@ def fit(
     rows, unknowns = problem.observed.size, problem.start.size - int(np.isfinite(prediction.prior).sum())
     if rows < unknowns + (not known):
         raise ValueError(f"the record has {rows} numbers, too short for {unknowns} unknowns and their errors")
-    found = problem.solve(problem.start)
+    at = problem.start
+    for part in prediction.parts(begun)[:-1]:
+        at = Problem(part, begun, names, unit).solve(at).x
+    found = problem.solve(at)
     freedom = max(rows - unknowns, 1)
     spread = 1.0 if known else float(np.sqrt(2.0 * found.cost / freedom))
     n, values = len(names), found.x * problem.sizes

@@ -7,6 +7,7 @@ hardly sees are held by a prior, one per cent of the gap at the tip. Transitions
 
 from __future__ import annotations
 
+import copy
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -15,8 +16,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from contact import ContactError, ImpactOscillator, MaximalFamily, NewtonRestitution, State, simulate
-from contact.orbits import KickFamily, PeriodicOrbit, Shooting, SingleImpactOrbit
+from contact import ContactError, ImpactOscillator, MaximalFamily, NewtonRestitution, State, Trajectory, simulate
+from contact.orbits import KickFamily, PeriodicOrbit, Shooting, SingleImpactOrbit, fold_of
 from studies.identify.parameters import parameters_of, with_values
 from studies.identify.records import Record
 
@@ -26,6 +27,10 @@ Array = NDArray[np.float64]
 
 STEP = 1e-6
 """Of a central difference, in units of a parameter's size."""
+
+FIRST, CLOSE, END = 3.0, 0.01, 0.002
+"""Drive periods that a displacement is first fitted over if its start is not close; residuals over the size of
+the record that are close; part of a record at whose end impacts do not count."""
 
 PRIOR = 0.01
 """Standard deviation of a mode beyond the first at the start of a record, in gaps at the tip."""
@@ -41,6 +46,9 @@ class Prediction(Protocol):
     """By which changes of them are measured, shape (n_extra,)."""
     prior: Array
     """Standard deviation of each about zero; infinite for none, shape (n_extra,)."""
+
+    def parts(self, oscillator: ImpactOscillator) -> Sequence[Prediction]:
+        """What is fitted one after the other, itself last."""
 
     def values(self, oscillator: ImpactOscillator, extra: Array) -> Array:
         """The predicted rows, shape of `record.observed`; ContactError or ValueError where there are none."""
@@ -85,6 +93,10 @@ class Strobes:
         rows = record.observed
         self.mean = np.array([rows[k::period].mean(axis=0) for k in range(period)])
 
+    def parts(self, oscillator: ImpactOscillator) -> Sequence[Prediction]:
+        """Itself."""
+        return [self]
+
     def values(self, oscillator: ImpactOscillator, extra: Array) -> Array:
         """The strobe points of the orbit next to the last one, as many rows as the record has."""
         family = Shooting(oscillator=oscillator, period=self.period)
@@ -124,6 +136,10 @@ class Transitions:
         self.record = record
         self.near: list[PeriodicOrbit | None] = [None] * len(record.rows)
 
+    def parts(self, oscillator: ImpactOscillator) -> Sequence[Prediction]:
+        """Itself."""
+        return [self]
+
     def values(self, oscillator: ImpactOscillator, extra: Array) -> Array:
         """F/F_g - 1 at the folds."""
         found = []
@@ -149,8 +165,6 @@ class Transitions:
 
 
 def _fold(family: Shooting, near: PeriodicOrbit | None) -> PeriodicOrbit | None:
-    from contact.orbits import fold_of
-
     try:
         return fold_of(family, near)
     except ContactError:
@@ -170,29 +184,50 @@ class Displacement:
         free = np.arange(model.n_modes) == 0
         self.prior = np.where(np.tile(free, 2), np.inf, PRIOR * self.sizes)
         self.extra = np.concatenate([start.displacement, start.velocity])
+        self.hits: int | None = None
 
-    def upto(self, rows: int) -> Displacement:
-        """The same for the first rows only."""
-        import copy
+    def parts(self, oscillator: ImpactOscillator) -> Sequence[Prediction]:
+        """Itself where it starts close to the record; otherwise first the beginning, twice as long each time."""
+        seen = self.record.observed
+        try:
+            off = self.values(oscillator, self.extra) - seen
+            if off.std() < CLOSE * seen.std():
+                return [self]
+        except (ContactError, ValueError):
+            pass
+        first, rows = FIRST * oscillator.period / (self.times[1] - self.times[0]), len(seen)
+        counts = [int(first * 2**k) for k in range(64) if first * 2**k < 0.75 * rows]
+        return [*(self._upto(count) for count in counts), self]
 
+    def _upto(self, count: int) -> Displacement:
         part = copy.copy(self)
-        part.record = replace(self.record, rows=self.record.rows[:rows])
-        part.times = part.record.rows[:, 0]
+        part.record = replace(self.record, rows=self.record.rows[:count])
+        part.times, part.hits = self.times[:count], None
         return part
 
-    def _run(self, oscillator: ImpactOscillator, extra: Array):  # type: ignore[no-untyped-def]
+    def _run(self, oscillator: ImpactOscillator, extra: Array) -> Trajectory:
         q, v = extra.reshape(2, -1)
         state = State(displacement=q, velocity=v, time=self.time)
         periods = math.ceil((self.times[-1] - self.time) / oscillator.period + 1e-9)
         return simulate(oscillator, state, periods=periods, times=self.times)
 
     def values(self, oscillator: ImpactOscillator, extra: Array) -> Array:
-        """The displacement of the tip."""
-        return oscillator.tip(self._run(oscillator, extra).displacement)[:, None]
+        """The displacement of the tip; ValueError for another number of impacts than before."""
+        run = self._run(oscillator, extra)
+        hits = self._hits(run)
+        if self.hits is None:
+            self.hits = hits
+        if hits != self.hits:
+            raise ValueError(f"the motion has {hits} impacts instead of {self.hits}")
+        return oscillator.tip(run.displacement)[:, None]
+
+    def _hits(self, run: Trajectory) -> int:
+        """Impacts up to the last rows, among which one more may come and go."""
+        return int(np.sum(run.impacts.start <= self.times[-1] - END * (self.times[-1] - self.time)))
 
     def touches(self, oscillator: ImpactOscillator, extra: Array) -> int:
-        """Impacts up to the last row."""
-        return int(np.sum(self._run(oscillator, extra).impacts.start <= self.times[-1]))
+        """Impacts in the record."""
+        return self._hits(self._run(oscillator, extra))
 
     def jacobian(self, oscillator: ImpactOscillator, extra: Array, names: Sequence[str]) -> Array:
         """Derivatives of `values`."""

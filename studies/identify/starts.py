@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from contact import ContactError, ImpactOscillator, State
+from contact import ContactError, ImpactOscillator, SingleImpactOrbit, State
 from studies.identify.parameters import parameters_of, with_values
 from studies.identify.predictions import PRIOR, Displacement, Prediction, Strobes, Transitions, family_of
 from studies.identify.records import Record
@@ -39,6 +39,9 @@ ALIKE = 3.0
 
 CLOSE = 0.01
 """A start whose residuals are below this part of the record's own size needs no search."""
+
+SIMILAR, TRIED = 0.1, 3
+"""The same at which a search has failed; starts that are searched from."""
 
 SPEEDS = np.geomspace(0.01, 0.5, 12)
 """Approach speeds that a search begins with, in units of 2 pi f gap."""
@@ -100,47 +103,50 @@ def _strobes(
         found = Strobes(record, period, orbits[-1])
         if misfit(found) < CLOSE * size:
             return found, oscillator
-    begun, speed = _searched(record, oscillator, names, period)
+    begun, orbit = _searched(record, oscillator, names, period)
     try:
-        orbit = family_of(begun, period).orbits(begun.excess)[-1]
+        if "amplitude" not in names:
+            orbit = family_of(begun, period).orbits(begun.excess)[-1]
         found = Strobes(record, period, orbit)
-        found.values(begun, found.extra)
+        if misfit(found) > SIMILAR * size:
+            raise ValueError
     except (ContactError, ValueError, IndexError):
         raise ValueError(
             f"no p{period} with one impact was found near the record: give better values of what is not "
             "fitted, or fit more"
         ) from None
-    return found, begun
+    return found, orbit.oscillator
 
 
 def _searched(
     record: Record, oscillator: ImpactOscillator, names: Sequence[str], period: int
-) -> tuple[ImpactOscillator, float]:
-    """Parameters and approach speed [m/s] of an orbit p_m like the record, its amplitude a little off."""
-    known, amplitude, unit = parameters_of(oscillator), oscillator.driven.amplitude, oscillator.unit_speed
-    sizes, gap, own = np.array([known[name].size for name in names]), oscillator.stop.gap, [*names]
-    kept = "amplitude" not in names
+) -> tuple[ImpactOscillator, SingleImpactOrbit]:
+    """The oscillator and orbit p_m most like the record, its amplitude allowed to be a little off."""
+    known, unit, kept = parameters_of(oscillator), oscillator.unit_speed, "amplitude" not in names
+    own = [name for name in names if name != "amplitude"]
+    sizes, scale = np.array([known[name].size for name in own]), record.units(CLOSE * oscillator.stop.gap)
+
+    def orbit_at(unknowns: Array) -> tuple[ImpactOscillator, SingleImpactOrbit]:
+        at = with_values(oscillator, dict(zip(own, (unknowns[:-1] * sizes).tolist(), strict=True)))
+        return at, family_of(at, period).orbit(math.exp(unknowns[-1]) * unit)
 
     def off(unknowns: Array) -> Array:
-        values = dict(zip(own, (unknowns[:-1] * sizes).tolist(), strict=True))
         try:
-            at = with_values(oscillator, values)
-            orbit = family_of(at, period).orbit(math.exp(unknowns[-1]) * unit)
-            found = Strobes(record, period, orbit)
-            rows = found.of_orbit()[:, 0] - record.observed[:, 0]
+            at, orbit = orbit_at(unknowns)
+            rows = ((Strobes(record, period, orbit).of_orbit() - record.observed) / scale).ravel()
         except (ContactError, ValueError):
-            return np.full(len(record.rows) + 1, np.nan)
-        drive = (found.orbit.amplitude - at.driven.amplitude) / amplitude
-        return np.append(rows / (CLOSE * gap), kept * drive * math.sqrt(len(record.rows)) / CLOSE)
+            return np.full(scale.size + 1, np.nan)
+        drive = orbit.amplitude / at.driven.amplitude - 1.0
+        return np.append(rows, kept * drive * math.sqrt(rows.size) / CLOSE)
 
-    begun = np.array([known[name].value for name in names]) / sizes
+    begun = np.array([known[name].value for name in own]) / sizes
     starts = [np.append(begun, math.log(part)) for part in SPEEDS]
     costs = np.array([np.sum(off(start) ** 2) for start in starts])
-    if not np.any(np.isfinite(costs)):
-        return oscillator, unit
-    found = least_squares(off, starts[int(np.nanargmin(costs))], max_nfev=40, x_scale="jac").x
-    values = dict(zip(own, (found[:-1] * sizes).tolist(), strict=True))
-    return with_values(oscillator, values), math.exp(found[-1]) * unit
+    best = [starts[i] for i in np.argsort(costs)[:TRIED] if np.isfinite(costs[i])]
+    if not best:
+        raise ValueError(f"the scene has no p{period} with one impact at {oscillator.driven.frequency:g} Hz")
+    found = [least_squares(off, start, max_nfev=30, x_scale="jac") for start in best]
+    return orbit_at(min(found, key=lambda one: one.cost).x)
 
 
 class Corner(NamedTuple):
