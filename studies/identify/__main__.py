@@ -22,6 +22,7 @@ Writes:  parameters.csv, correlations.csv, profile.csv, residuals.npz, identify.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
@@ -30,6 +31,7 @@ from typing import Annotated, Literal
 
 import numpy as np
 
+from beam.parameters import require_within
 from contact import DelayedRestitution, HarmonicDrive, ImpactOscillator
 from studies.identify.fit import Fit, Profile, fit, profile
 from studies.identify.parameters import parameters_of
@@ -48,23 +50,26 @@ TRADE = 0.95
 
 USUAL: Mapping[Kind, tuple[str, ...]] = {
     "strobe": ("free_period", "decay_rate", "gap", "restitution"),
-    "displacement": ("free_period", "decay_rate", "gap", "restitution"),
+    "displacement": ("free_period", "decay_rate", "gap", "amplitude", "restitution", "delay"),
     "transitions": ("free_period", "restitution"),
 }
-"""What is fitted of a kind of record if nobody says."""
+"""What is fitted of a kind of record if nobody says, as far as the oscillator has it."""
 
-EXAMPLES: Sequence[tuple[Kind, Description, tuple[str, ...]]] = (
-    ("strobe", "one_mode", USUAL["strobe"]),
-    ("displacement", "two_parameters", (*USUAL["displacement"], "delay")),
-    ("transitions", "one_mode", USUAL["transitions"]),
-)
+EXAMPLES: Sequence[tuple[Kind, Description]] = (
+    ("strobe", "one_mode"), ("displacement", "two_parameters"), ("transitions", "one_mode"),
+)  # fmt: skip
 FREQUENCY_HZ, SEED = 22.20, 1996
 """Of the example: the letter's p5."""
 
 
+SHOWN = ("record", "parameter", "unit", "start", "told", "low90", "high90", "scene")
+"""Columns of the estimates on the terminal."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Estimate:
-    """One parameter: where the fit started, what it found, standard error and 90 % interval, the scene's."""
+    """One parameter: where the fit started, what it found, standard error and 90 % interval, the value of the
+    scene, and estimate and error in short, 40.80(2)."""
 
     record: str
     parameter: str
@@ -75,6 +80,7 @@ class Estimate:
     low90: float
     high90: float
     scene: float
+    told: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,6 +118,15 @@ def described(scene: Scene, description: Description, frequency: float, delay: f
     return oscillator.with_excess(scene.scan.born_excess)
 
 
+def usual(record: Record, oscillator: ImpactOscillator) -> tuple[str, ...]:
+    """What is fitted of a record if nobody says; of strobe points a delay or the gap, not both."""
+    known = parameters_of(oscillator)
+    names = [name for name in USUAL[record.kind] if name in known]
+    if record.kind == "strobe" and "delay" in known:
+        names[names.index("gap")] = "delay"
+    return (*names, *(name for name in ("stiffness",) if name in known and "restitution" not in known))
+
+
 def driven(record: Record, oscillator: ImpactOscillator, names: Sequence[str]) -> ImpactOscillator:
     """The oscillator at the drive of the record."""
     if record.kind == "transitions":
@@ -126,7 +141,7 @@ def driven(record: Record, oscillator: ImpactOscillator, names: Sequence[str]) -
     return replace(oscillator, drive=drive)
 
 
-@study(quick={"profile_points": 5})
+@study()
 def identify(
     scene: Scene, run: Run, *,
     record: Annotated[Path | None, "CSV file; without one, the example", POSITIONAL] = None,
@@ -136,7 +151,6 @@ def identify(
     amplitude_mm: Annotated[float | None, "amplitude of the base, in place of the record's"] = None,
     noise_um: Annotated[float | None, "noise of the read-out, where it is known"] = None,
     delay_ms: Annotated[float, "two_parameters: the delay, or where its fit starts"] = 0.3,
-    profile_points: Annotated[int, "points of a profile likelihood"] = 9,
 ) -> Mapping[str, object]:  # fmt: skip
     """Read or make, fit, report and draw."""
     harmonic(scene)
@@ -144,11 +158,13 @@ def identify(
         scene = run.choose_modes(scene, {"fold": 0.05})
     given: list[tuple[str, Record, ImpactOscillator, tuple[str, ...]]] = []
     if record is None:
-        for kind, stands, names in EXAMPLES:
+        if fit:
+            raise ValueError(f"fit names {' '.join(fit)}, but no record is given: put its file before --fit")
+        for kind, stands in EXAMPLES:
             oscillator = described(scene, stands, FREQUENCY_HZ, 1e-3 * delay_ms)
             made = synthetic(kind, oscillator, seed=SEED)
             run.text(f"{kind}.csv", made.text())
-            given.append((kind, made, oscillator, names))
+            given.append((kind, made, oscillator, usual(made, oscillator)))
     else:
         read = read_record(record)
         if read.kind != "transitions":
@@ -157,16 +173,16 @@ def identify(
                 raise ValueError("the record does not say the drive frequency: give --frequency-hz")
             if amplitude_mm is not None:
                 read = replace(read, amplitude=1e-3 * amplitude_mm)
-        names = fit or (*USUAL[read.kind], *(["delay"] if description == "two_parameters" else []))
         frequency = read.frequency or float(read.rows[0, 0])
-        oscillator = driven(read, described(scene, description, frequency, 1e-3 * delay_ms), names)
-        given.append((record.stem, read, oscillator, names))
-    noise = None if noise_um is None else 1e-6 * noise_um
+        oscillator = described(scene, description, frequency, 1e-3 * delay_ms)
+        names = fit or usual(read, oscillator)
+        given.append((record.stem, read, driven(read, oscillator, names), names))
+    noise = None if noise_um is None else 1e-6 * require_within("noise_um", noise_um, "um", above=0)
     found = {name: _fit(made, oscillator, names, noise=noise) for name, made, oscillator, names in given}
-    profiles = {name: traded(one, profile_points) for name, one in found.items()}
+    profiles = {name: traded(one, 5 if run.quick else 9) for name, one in found.items()}
     estimates = [row for (name, one), (*_, before, _) in zip(found.items(), given, strict=True)
                  for row in estimates_of(name, one, before)]  # fmt: skip
-    run.table("parameters", estimates, "Estimates with standard errors and 90 % intervals.")
+    run.table("parameters", estimates, "Estimates with standard errors and 90 % intervals.", show=SHOWN)
     quality = [
         Quality(record=name, rows=len(one.residuals), noise=one.noise, freedom=one.freedom,
                 chance=one.chance, too_small=one.too_small) for name, one in found.items()
@@ -182,7 +198,7 @@ def identify(
     run.arrays("residuals", **{name: one.residuals for name, one in found.items()})
     for row in quality:
         if row.too_small:
-            run.say(f"{row.record}: the model is too small, its residuals are no noise (p = {row.chance:.1g})")
+            run.say(f"{row.record}: the model is too small: its residuals are no noise (p {row.chance:.0e})")
     best = found[given[0][0]]
     run.text("fitted.toml", fitted_scene(scene, best, estimates))
     from studies.identify import figures  # matplotlib is slow to import
@@ -203,16 +219,28 @@ def estimates_of(name: str, found: Fit, before: ImpactOscillator) -> list[Estima
             record=name, parameter=one, unit=known[one].unit, start=float(found.start[i]),
             estimate=float(found.estimate[i]), standard_error=float(found.errors[i]),
             low90=float(low), high90=float(high), scene=known[one].value,
+            told=in_short(float(found.estimate[i]), float(found.errors[i])),
         ) for i, (one, (low, high)) in enumerate(zip(found.names, found.intervals(), strict=True))
     ]  # fmt: skip
 
 
+def in_short(value: float, error: float) -> str:
+    """The value with its error in units of its last digits, 0.04080(2)."""
+    if not 0.0 < error < math.inf:
+        return f"{value:.6g}"
+    digits = 1 - math.floor(math.log10(error))
+    return f"{value:.{max(digits, 0)}f}({round(error * 10.0 ** max(digits, 0))})"
+
+
 def traded(found: Fit, points: int) -> list[Profile]:
-    """The profile of each pair of parameters that trade off, along the second of them."""
-    pairs = combinations(range(len(found.names)), 2)
+    """The profile of each parameter that trades off with another, the most correlated pair first."""
+    size = np.abs(found.correlations) - np.eye(len(found.names))
+    partners = {i: int(np.argmax(row)) for i, row in enumerate(size) if row.max() > TRADE}
+    order = sorted(partners, key=lambda i: -size[i, partners[i]])
+    kept = [i for k, i in enumerate(order) if partners[i] not in order[:k] or partners[partners[i]] != i]
     return [
-        row for i, j in pairs if abs(found.correlations[i, j]) > TRADE
-        for row in profile(found, found.names[j], found.names[i], points=points)
+        row for i in kept
+        for row in profile(found, found.names[i], found.names[partners[i]], points=points)
     ]  # fmt: skip
 
 

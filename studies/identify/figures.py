@@ -10,12 +10,14 @@ from matplotlib.figure import Figure
 
 from studies import plotting
 from studies.identify.fit import Fit, Profile
+from studies.identify.parameters import parameters_of
 
 __all__ = ["CAPTION", "draw"]
 
 CAPTION = (
     "Each record with its fit (left), residuals (middle), and the profile likelihood of the two parameters "
-    "that trade off most, or the correlations of all (right); the dashed line is the 90 % interval."
+    "that trade off most (blue: chi^2, dashed the 90 % interval; red: the other, fitted again), or the "
+    "correlations of all (right)."
 )
 SHOWN = 6
 """Drive periods of a displacement that are shown."""
@@ -45,7 +47,8 @@ def _record(left: Any, middle: Any, one: Fit) -> None:
     if kind == "displacement":
         place, across = 1e3 * rows[:, 0], ("time", "ms")
         end = 1e3 * (rows[0, 0] + SHOWN * one.oscillator.period)
-        left.plot(place, unit * seen, linestyle="none", marker=".", markersize=2, color=plotting.SKY, label="record")
+        dots = {"linestyle": "none", "marker": ".", "markersize": 2, "color": plotting.SKY}
+        left.plot(place, unit * seen, **dots, label="record")
         left.plot(place, unit * fitted, color=plotting.BLACK, linewidth=0.6, label="fit")
         left.set_xlim(place[0], end)
     elif kind == "strobe":
@@ -55,7 +58,8 @@ def _record(left: Any, middle: Any, one: Fit) -> None:
     else:
         place, across, unit, words = rows[:, 0], ("drive frequency", "Hz"), 1e2, "end of $p_m$, excess"
         residuals = 1e2 * one.residuals[:, 0]
-        left.errorbar(place, unit * seen, unit * one.record.units(one.noise)[:, 0], **plotting.points(1), label="record")
+        errors = unit * one.record.units(one.noise)[:, 0]
+        left.errorbar(place, unit * seen, errors, **plotting.points(1), label="record")
         left.plot(place, unit * fitted, linestyle="none", marker="_", color=plotting.BLACK, label="fit")
     middle.plot(place, residuals, linestyle="none", marker=".", markersize=2, color=plotting.BLUE)
     middle.axhline(0.0, **plotting.GUIDE)
@@ -63,7 +67,8 @@ def _record(left: Any, middle: Any, one: Fit) -> None:
         plotting.label(axis.xaxis, *across)
     plotting.label(left.yaxis, words, "%" if kind == "transitions" else "mm")
     plotting.label(middle.yaxis, "observed less fitted", "%" if kind == "transitions" else "um")
-    left.legend(loc="best")
+    left.margins(y=0.25)
+    left.legend(loc="upper right", ncols=2)
 
 
 def _trade(axis: Any, one: Fit, rows: Sequence[Profile]) -> None:
@@ -78,9 +83,18 @@ def _trade(axis: Any, one: Fit, rows: Sequence[Profile]) -> None:
             for j in range(n):
                 axis.text(j, i, f"{one.correlations[i, j]:.2f}", ha="center", va="center")
         return
-    first = rows[-1].parameter, rows[-1].other
-    own = [row for row in rows if (row.parameter, row.other) == first]
-    value = [row.value for row in own]
-    axis.plot(value, [row.depth for row in own], **plotting.series(1), label="rise of chi^2")
+    first = rows[0].parameter
+    own, unit = [row for row in rows if row.parameter == first], parameters_of(one.oscillator)[first].unit
+    scale, shown = (1e3, f"m{unit}") if unit in ("s", "m") else (1.0, unit)
+    value = scale * np.array([row.value for row in own])
+    axis.plot(value, [row.depth for row in own], **plotting.series(1))
     axis.axhline(DEPTH, **plotting.GUIDE)
-    plotting.label(axis.xaxis, first[0].replace("_", " "), "")
+    axis.locator_params(axis="x", nbins=5)
+    plotting.label(axis.xaxis, first.replace("_", " "), shown)
+    plotting.label(axis.yaxis, "rise of chi^2")
+    other = axis.twinx()
+    known = parameters_of(one.oscillator)[own[0].other]
+    scale, shown = (1e3, f"m{known.unit}") if known.unit in ("s", "m") else (1.0, known.unit)
+    other.plot(value, scale * np.array([row.other_value for row in own]), **plotting.series(2))
+    plotting.label(other.yaxis, own[0].other.replace("_", " "), shown)
+    other.spines["right"].set_visible(True)

@@ -216,6 +216,8 @@ def _require_small(
 ) -> None:
     """ValueError where a parameter is lost in its error, or the impacts change inside the region."""
     n = len(result.names)
+    if result.too_small:  # errors mean little then, and that is told
+        return
     wide = result.errors > problem.sizes[:n] * np.maximum(np.abs(unknowns[:n]), 1.0)
     if np.any(wide):
         axis = np.abs(directions[-1][:n])
@@ -281,8 +283,8 @@ def profile(found: Fit, name: str, other: str, *, points: int = 9, reach: float 
     variance, scale = (found.noise / problem.noise) ** 2, problem.sizes[:n]
     best, rows = np.sum(problem.residuals(found.unknowns) ** 2), list[Profile]()
     for side in np.linspace(-reach, reach, points):
-        start = found.unknowns.copy()
-        start[:n] += side * found.covariance[:, i] / found.errors[i] / scale
+        start, along = found.unknowns.copy(), found.covariance[:, i] / found.errors[i]
+        start[:n] += side * along / scale
         try:
             held = problem.solve(start, fixed=i)
         except ValueError:

@@ -57,7 +57,8 @@ def parameters_of(oscillator: ImpactOscillator) -> dict[str, Parameter]:
         if field in type(law).__dataclass_fields__:
             hertzian = field == "stiffness" and type(law).__name__ != "LinearContact"
             known[field.removeprefix("local_")] = getattr(law, field), "N/m^1.5" if hertzian else unit
-    least = {"delay": SHORT_DELAY * oscillator.period, "restitution": 0.01, "decay_rate": 0.01 / oscillator.period}
+    period = oscillator.period
+    least = {"delay": SHORT_DELAY * period, "restitution": 0.01, "decay_rate": 0.01 / period}
     return {
         name: Parameter(value=value, size=max(abs(value), least.get(name, 0.0)), unit=unit)
         for name, (value, unit) in known.items()
@@ -87,7 +88,7 @@ def with_values(oscillator: ImpactOscillator, values: Mapping[str, float]) -> Im
         before, rate = float(model.decay_rate[0]), values.get("decay_rate", float(model.decay_rate[0]))
         period = values.get("free_period", 0.0) or free_period_of(oscillator)
         if not (period > 0.0 and rate >= 0.0):
-            raise ValueError(f"free_period is {period:g} s and decay_rate {rate:g} 1/s; they must be above zero")
+            raise ValueError(f"free_period is {period:g} s, decay_rate {rate:g} 1/s; they must be above zero")
         pace = math.hypot(2.0 * math.pi / period, 0.5 * rate) / float(model.omega[0])
         rates = model.decay_rate * (rate / before) if before > 0.0 else model.decay_rate + rate
         model = replace(model, omega=model.omega * pace, decay_rate=rates)

@@ -16,7 +16,15 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from contact import ContactError, ImpactOscillator, MaximalFamily, NewtonRestitution, State, Trajectory, simulate
+from contact import (
+    ContactError,
+    ImpactOscillator,
+    MaximalFamily,
+    NewtonRestitution,
+    State,
+    Trajectory,
+    simulate,
+)
 from contact.orbits import KickFamily, PeriodicOrbit, Shooting, SingleImpactOrbit, fold_of
 from studies.identify.parameters import parameters_of, with_values
 from studies.identify.records import Record
@@ -29,8 +37,8 @@ STEP = 1e-6
 """Of a central difference, in units of a parameter's size."""
 
 FIRST, CLOSE, END = 3.0, 0.01, 0.002
-"""Drive periods that a displacement is first fitted over if its start is not close; residuals over the size of
-the record that are close; part of a record at whose end impacts do not count."""
+"""Drive periods that a displacement is first fitted over if its start is not close; residuals over the size
+of the record that are close; part of a record at whose end impacts do not count."""
 
 PRIOR = 0.01
 """Standard deviation of a mode beyond the first at the start of a record, in gaps at the tip."""
@@ -89,7 +97,8 @@ class Strobes:
 
     def __init__(self, record: Record, period: int, orbit: SingleImpactOrbit) -> None:
         self.record, self.period = record, period
-        self.orbit: PeriodicOrbit = Shooting(oscillator=orbit.oscillator, period=period).at_speed(orbit.speed)
+        family = Shooting(oscillator=orbit.oscillator, period=period)
+        self.orbit: PeriodicOrbit = family.at_speed(orbit.speed)
         rows = record.observed
         self.mean = np.array([rows[k::period].mean(axis=0) for k in range(period)])
 
@@ -187,7 +196,7 @@ class Displacement:
         self.hits: int | None = None
 
     def parts(self, oscillator: ImpactOscillator) -> Sequence[Prediction]:
-        """Itself where it starts close to the record; otherwise first the beginning, twice as long each time."""
+        """Itself where it starts close to the record; otherwise first its beginning, then twice as much ..."""
         seen = self.record.observed
         try:
             off = self.values(oscillator, self.extra) - seen

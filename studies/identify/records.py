@@ -144,7 +144,7 @@ def _check(record: Record, path: Path) -> None:
         uneven = np.flatnonzero(np.abs(steps - np.median(steps)) > UNEQUAL * np.median(steps))
         if uneven.size or not np.median(steps) > 0.0 or rows[0, 0] < 0.0:
             row = int(uneven[0]) + 2 if uneven.size else 1
-            raise ValueError(f"time_s of {path} must rise from 0 or later in equal steps, not so at row {row}")
+            raise ValueError(f"time_s of {path} must rise from 0 or later in equal steps; see row {row}")
     if record.kind == "transitions":
         wrong = (rows[:, 0] <= 0.0) | (rows[:, 1] % 1 != 0) | (rows[:, 1] < 1) | (rows[:, 2] <= -1.0)
         wrong |= np.any(rows[:, 3:] <= 0.0, axis=1)

@@ -49,5 +49,5 @@ def fitted_scene(scene: Scene, found: Fit, notes: Iterable[object]) -> str:
         for name, one in parameters_of(oscillator).items() if name in errors
     ]  # fmt: skip
     if "delay" in known:
-        lines.append(f"# a scene has no key for the delay, {known['delay']:.6g} s: contact.DelayedRestitution")
+        lines.append(f"# a scene has no key for the delay, {known['delay']:.6g} s (DelayedRestitution)")
     return "\n".join([*lines, "", scene.replace(changes, provenance="fitted").dump()])

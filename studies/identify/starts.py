@@ -35,7 +35,10 @@ LONGEST = 64
 """Longest period of an orbit that is looked for [drive periods]."""
 
 ALIKE = 3.0
-"""A record repeats after m rows if rows m apart differ by no more than this times the least such difference."""
+"""A record repeats after m rows if rows m apart differ by no more than this times the least difference."""
+
+FLAT = 1e-3
+"""Scatter over size of strobe points that are one and the same."""
 
 CLOSE = 0.01
 """A start whose residuals are below this part of the record's own size needs no search."""
@@ -74,12 +77,14 @@ def repetition(record: Record) -> int:
     most = min(LONGEST, len(rows) // 2)
     off = np.array([np.sqrt(np.mean((rows[m:] - rows[:-m]) ** 2)) for m in range(1, most + 1)])
     period = int(np.argmax(off <= ALIKE * off.min())) + 1
-    if off[period - 1] > 0.1 * rows.std() and period > 1:
+    if rows.std() < FLAT * np.abs(rows).max():
+        raise ValueError("the strobe points stay where they are: there is no impact in the record")
+    if off[period - 1] > SIMILAR * rows.std():
         raise ValueError(
             f"the record is too short, or its strobe points do not repeat: no period up to {most} rows"
         )
     if period == 1:
-        raise ValueError("the strobe points repeat after one drive period: there is no impact in the record")
+        raise ValueError("the strobe points repeat after one drive period: nothing tells an impact in it")
     return period
 
 
@@ -161,7 +166,7 @@ class Corner(NamedTuple):
 
 
 def _corners(times: Array, x: Array, oscillator: ImpactOscillator, waits: bool) -> list[Corner]:
-    """The impacts of a displacement: maxima at which the velocity jumps; with a wait, after a level stretch."""
+    """The impacts of a displacement: maxima at which the velocity jumps, after a level stretch if it waits."""
     step = float(times[1] - times[0])
     width = max(5, round(WINDOW * oscillator.period / step))
     cubic = np.linalg.pinv(np.vander(np.arange(width) * step, 4))
@@ -182,7 +187,7 @@ def _corners(times: Array, x: Array, oscillator: ImpactOscillator, waits: bool) 
         if -np.polyval(back, -s[met]) - np.polyval(ahead, s[gone] - apart) < CORNER * speed:
             continue
         top = float(left[met])
-        if waits:  # a wait shorter than a step leaves the top between the highest row and where the curves meet
+        if waits:  # one shorter than a step leaves the top between the highest row and where the curves meet
             top = float(x[i]) if there - here > 2 else 0.5 * (top + float(x[i]))
             met, gone = int(np.argmax(left >= top)), FINE - 1 - int(np.argmax(right[::-1] >= top))
         bounce = float(np.polyval(ahead, s[gone] - apart) / np.polyval(back, -s[met]))
