@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from .frequency_equation import ExactModes, UniformBeam, exact_modes, frequency_function
     from .harmonic_balance import PeriodicMotion, periodic_motion
     from .material import ALUMINA, BRASS, DAMPING_TAPE, STEEL, Material
+    from .modal_change import ModalChange
     from .modal_model import ModalModel, single_mode
     from .modes import Modes, ShapesAlong, natural_modes
     from .parameters import SuspiciousValue
@@ -70,6 +71,7 @@ _NAMES = {
     "frequency_equation": ("ExactModes", "UniformBeam", "exact_modes", "frequency_function"),
     "harmonic_balance": ("PeriodicMotion", "periodic_motion"),
     "material": ("ALUMINA", "BRASS", "DAMPING_TAPE", "Material", "STEEL"),
+    "modal_change": ("ModalChange",),
     "modal_model": ("ModalModel", "single_mode"),
     "modes": ("Modes", "ShapesAlong", "natural_modes"),
     "parameters": ("SuspiciousValue",),
