@@ -9,7 +9,6 @@ period count as disagreement; none is drawn as a period.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
