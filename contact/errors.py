@@ -12,6 +12,7 @@ __all__ = [
     "ContactError",
     "ContactTooStiff",
     "Diverged",
+    "NoDerivative",
     "NotPeriodic",
     "StepTooLarge",
     "UnresolvedCrossing",
@@ -73,3 +74,9 @@ class NotPeriodic(ContactError):
     """An orbit that was asked to be periodic is not."""
 
     reason = "the motion did not settle on a periodic orbit"
+
+
+class NoDerivative(ContactError):
+    """A motion or orbit where it does not depend smoothly on its start or its numbers."""
+
+    reason = "there is no derivative"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -12,18 +11,17 @@ from functools import cached_property
 import numpy as np
 
 from beam.parameters import require_kind, require_whole
+from contact.change import Changes
 from contact.drive import split_time
 from contact.errors import UnresolvedCrossing
 from contact.event_loop import DONE
 from contact.exact_run import failure, start_of, state_of
-from contact.flight.modal_flow import steady_motion
 from contact.oscillator import ImpactOscillator
+from contact.retraced import Retraced
 from contact.simulation import simulate
 from contact.strobed_map import Jacobians, StrobedMap, StrobedOrbit
 from contact.strobed_motion import StrobedSystem, strobed_motion, strobed_system
-from contact.touch.tangents import tangent_flight
-from contact.touch_flow import FLOWN, flow_from_touch
-from contact.trajectory import ImpactKind, Regime, State
+from contact.trajectory import Regime, State
 
 __all__ = ["StrobedMap", "StrobedOrbit", "StroboscopicMap", "strobed_orbits"]
 
@@ -161,43 +159,21 @@ class StroboscopicMap:
         """
         if state.regime != Regime.OUTSIDE:
             raise ValueError("state is in contact; start from a strobe at which the tip is off the wall")
-        oscillator, motion, n = self.oscillator, self._system.motion, self.oscillator.n_modes
-        period, response = motion.period, oscillator.tip_response()
-        weight = self._system.weight
+        period, n, weight = self._system.motion.period, self.oscillator.n_modes, self._system.weight
         for more in range(MOST_STRETCHES):
-            run = simulate(oscillator, replace(state, time=0.0), periods=count + more)
-            hits = run.impacts.kind != ImpactKind.GRAZE
-            if np.any(run.impacts.kind[hits] != ImpactKind.IMPACT):
-                raise UnresolvedCrossing(time=state.time, gap=0.0, velocity=0.0)
-            start, end = run.impacts.start[hits], np.nan_to_num(run.impacts.end[hits], nan=np.inf)
-            strobes = [
-                j for j in range(1, count + more + 1)
-                if not np.any((start < j * period) & (end > j * period))
-            ]  # fmt: skip
+            run = simulate(self.oscillator, replace(state, time=0.0), periods=count + more)
+            retraced = Retraced(Changes(oscillator=self.oscillator), run)
+            strobes = [j for j in range(1, count + more + 1) if not retraced.touching(j * period)]
             if strobes:
                 break
         else:
             raise UnresolvedCrossing(time=state.time, gap=0.0, velocity=0.0)
-        q, q_rate = steady_motion(motion, start % period)
-        u = run.impacts.displacement_start[hits] - q
-        v = run.impacts.velocity_start[hits] - q_rate
-        until = np.append(start[1:], math.inf)
-        found, first, clock = [], 0, 0.0
+        found, first = [], 0
         for last in strobes:
-            tangent = np.eye(2 * n + 2)
-            for i in np.flatnonzero((start >= first * period) & (start < last * period)):
-                tangent_flight(motion, tangent, start[i] - clock)
-                clock = min(last * period, until[i])
-                outcome = flow_from_touch(
-                    motion, response, start[i] % period, u[i].copy(), v[i].copy(), clock - start[i],
-                    tangent, np.empty((1, 4 + 2 * n)),
-                )  # fmt: skip
-                if outcome != FLOWN:
-                    speed = float(run.impacts.approach[hits][i])
-                    raise UnresolvedCrossing(time=float(start[i]), gap=0.0, velocity=speed)
-            tangent_flight(motion, tangent, last * period - clock)
-            found.append((weight[:, None] * tangent[: 2 * n, : 2 * n] / weight, last - first))
-            first, clock = last, last * period
+            retraced.tangent = np.eye(2 * n + 2)
+            tangent = retraced.to(last * period)[: 2 * n, : 2 * n]
+            found.append((weight[:, None] * tangent / weight, last - first))
+            first = last
         q, v = run.strobe_displacement[first - 1], run.strobe_velocity[first - 1]
         return found, State(displacement=q, velocity=v)
 

@@ -24,9 +24,11 @@ from contact.touch.series import new_series
 from contact.touch.tangents import new_room, onset, tangent_flight, tangent_step
 from contact.trajectory import CONTACT, OUTSIDE, SUSTAINED
 
-__all__ = ["FAILED", "FEWER_TOUCHES", "FLOWN", "flow_from_touch"]
+__all__ = ["FAILED", "FEWER_TOUCHES", "FLOWN", "TOUCHING", "flow_from_touch"]
 
-FLOWN, FEWER_TOUCHES, FAILED = 0, 1, 2
+FLOWN, FEWER_TOUCHES, FAILED, TOUCHING = 0, 1, 2, 3
+"""Outcomes: at the end, the wall ignored after the last touch; too few touches; lost; at the end, which falls
+into the last touch of a force law."""
 
 MOST_STEPS = 1_500
 """Bound of contact steps in one touch: they cover 3000 radians of the fastest mode, a hundred times the
@@ -34,71 +36,72 @@ longest contact of the letter's beam."""
 
 
 @part
-def through_touch(motion, response, run, u, v, end, tangent, record):
-    """From a touch to its release, at most to the drive time `end` [s]; whether it got there.
+def through_touch(vary, run, u, v, end, tangent, record):
+    """From a touch to its release, at most to the drive time `end` [s]: FLOWN, TOUCHING or FAILED.
 
     `record` gets approach and rebound velocity.
     """
-    with_tangent = tangent.shape[0] > 0
+    motion, with_tangent = vary.motion, tangent.shape[1] > 0
     order, columns = touch.room(motion)
     series = new_series(order, columns)
-    room = new_room(order if with_tangent else 0, tangent.shape[0])
+    room = new_room(order if with_tangent else 0, tangent.shape[0], tangent.shape[1])
     approach = tip_state(motion, run.clock, u, v)[1]
     record[2] = approach
     if not approach > 0.0:
-        return False
+        return FAILED
     before = (run.clock, u.copy(), v.copy())
     run.regime, rebound, _loss = touch.strike(motion, run, u, v, approach)
     if run.regime == SUSTAINED:  # accumulating impacts are followed one by one
         run.regime, run.order = OUTSIDE, 1 if rebound < 0.0 else 2
     if with_tangent and run.regime == CONTACT:
-        onset(motion, response, touch.force(motion, 0.0, approach), approach, tangent)
+        onset(vary, touch.force(motion, 0.0, approach), approach, tangent, before)
     steps = 0
     while run.regime != OUTSIDE:
+        if not run.clock < end:
+            return TOUCHING
         steps += 1
         s, h, following = touch.step(motion, run, u, v, end - run.clock, series)
-        if steps > MOST_STEPS or not (0.0 <= h < math.inf) or not run.clock < end:
-            return False
+        if steps > MOST_STEPS or not (0.0 <= h < math.inf):
+            return FAILED
         if with_tangent:
             terms = touch.slopes(motion, run, series, room.weights)
             if terms > 0:
-                tangent_step(motion, response, room, terms, s, tangent)
+                tangent_step(vary, room, terms, s, tangent, (run.clock, u, v))
         touch.state(motion, run, s, series, u, v)
         run.regime, run.clock = following, run.clock + h
         if following == OUTSIDE:
             touch.leave(motion, run, u, v)
     if with_tangent:
-        touch.saltation(motion, response, before, (run.clock, u, v), tangent)
+        touch.saltation(motion, vary, before, (run.clock, u, v), tangent)
     record[3] = tip_state(motion, run.clock, u, v)[1] if math.isnan(rebound) else rebound
-    return True
+    return FLOWN
 
 
 @part
-def fly(motion, u, v, tangent, time):
-    """A flight of length `time` [s], the wall ignored."""
-    propagate(motion, u, v, time, u, v)
-    if tangent.shape[0] > 0:
-        tangent_flight(motion, tangent, time)
+def fly(vary, u, v, tangent, clock, time):
+    """A flight of length `time` [s] from the drive time `clock` [s], the wall ignored."""
+    if tangent.shape[1] > 0:
+        tangent_flight(vary, tangent, u, v, clock, time)
+    propagate(vary.motion, u, v, time, u, v)
 
 
 @kernel
-def flow_from_touch(motion, response, base, u, v, duration, tangent, record):
+def flow_from_touch(vary, base, u, v, duration, tangent, record):
     """Flow for `duration` from a touch at time `base` after a strobe.
 
     Parameters
     ----------
-    motion : Motion
-        Driven at the amplitude of this orbit.
-    response : complex
-        a + i b, the tip response per unit base amplitude [1].
+    vary : Variation
+        Of the motion driven at the amplitude of this orbit.
     base : float
         Drive time of the touch [s].
     u, v : ndarray, shape (n_modes,)
         Deviations at the touch; overwritten by those at the end.
     duration : float
         m/f [s].
-    tangent : ndarray, shape (2 n_modes + 2, 2 n_modes + 2), or (0, 0)
-        The unit matrix on entry; overwritten by the derivatives of (u, v, S, C).
+    tangent : ndarray, shape (2 n_modes + 2, columns)
+        Tangents of (u, v, S, C), the last ones those of the parameters of `vary`; overwritten by those at the
+        end.  From the unit matrix come the derivatives with respect to the start; without columns nothing.
     record : ndarray, shape (touches, 4 + 2 n_modes)
         Its length tells how many contacts to go through; in the last flight the wall is ignored.  Results:
         start and end of each contact since the first touch [s], approach and rebound velocity [m/s],
@@ -107,32 +110,34 @@ def flow_from_touch(motion, response, base, u, v, duration, tangent, record):
     Returns
     -------
     outcome : int
-        FLOWN, FEWER_TOUCHES or FAILED.
+        FLOWN, FEWER_TOUCHES, FAILED or TOUCHING.
     """
     runs = np.zeros(1, dtype=STATE)
-    n, run, end, outcome = motion.size, runs[0], base + duration, FLOWN
-    motion, u, v, tangent, record = (
-        borrowed(motion), borrowed(u), borrowed(v), borrowed(tangent), borrowed(record)
-    )  # fmt: skip
+    run, end, outcome = runs[0], base + duration, FLOWN
+    vary, tangent, record = borrowed(vary), borrowed(tangent), borrowed(record)
+    u, v = borrowed(u), borrowed(v)
+    n = vary.motion.size
     run.clock = base
     for i in range(record.shape[0]):
         if i > 0:
-            crossing, s = first_crossing(motion, run.clock, u, v, end - run.clock, run.order)
+            crossing, s = first_crossing(vary.motion, run.clock, u, v, end - run.clock, run.order)
             if crossing != CROSSES:
                 outcome = FEWER_TOUCHES
                 break
-            fly(motion, u, v, tangent, s)
+            fly(vary, u, v, tangent, run.clock, s)
             run.clock += s
         row = record[i]
         row[0] = run.clock - base
-        if not through_touch(motion, response, run, u, v, end, tangent, row) or run.clock > end:
+        outcome = through_touch(vary, run, u, v, end, tangent, row)
+        if outcome == FLOWN and run.clock > end:
             outcome = FAILED
+        if outcome != FLOWN:
             break
         row[1] = run.clock - base
         for k in range(n):
             row[4 + k] = u[k]
             row[4 + n + k] = v[k]
     if outcome == FLOWN:
-        fly(motion, u, v, tangent, end - run.clock)
+        fly(vary, u, v, tangent, run.clock, end - run.clock)
     held(runs)  # a record does not keep the array it lies in
     return outcome

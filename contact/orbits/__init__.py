@@ -5,9 +5,11 @@ Newton's law in closed form; `kick`: one collision of any law, by linear algebra
 number of touches, with exact tangents; `continuation`: branches, with the points of `events` on them;
 `settling`: on what a motion settles; `scan`: orbit diagrams, the state carried along; `ends`: where an orbit
 ends when the drive is lowered, by a scan and by its fold; `amplitude_scan`: the compiled column of a chart;
-`lyapunov`: exponents.
+`lyapunov`: exponents; `derivatives`, `event_derivatives`, `motion_derivatives`: how orbits, their folds,
+doublings and grazings, and simulated motions change with the numbers of the oscillator, a `Change` each.
 """
 
+from contact.change import Change
 from contact.orbits.amplitude_scan import AmplitudeScan, ScannedColumn
 from contact.orbits.continuation import (
     Branch,
@@ -18,11 +20,18 @@ from contact.orbits.continuation import (
     follow,
     lowest_of,
 )
+from contact.orbits.derivatives import OrbitDerivatives, excess_derivatives, orbit_derivatives
 from contact.orbits.ends import OrbitEnd, fold_excess, orbit_end
+from contact.orbits.event_derivatives import (
+    doubling_derivatives,
+    graze_derivatives,
+    multiplier_derivatives,
+)
 from contact.orbits.events import Event
 from contact.orbits.family import Family, Orbit
 from contact.orbits.kick import KickFamily
 from contact.orbits.lyapunov import Exponents, divergence_rate, map_exponents, orbit_exponents
+from contact.orbits.motion_derivatives import MotionDerivatives, motion_derivatives
 from contact.orbits.repetition import period_of
 from contact.orbits.scan import OrbitDiagram, orbit_diagram
 from contact.orbits.settling import Settled, born, born_period, settle
@@ -32,13 +41,16 @@ from contact.orbits.single_impact import Kick, MaximalFamily, SingleImpactOrbit
 __all__ = [
     "AmplitudeScan",
     "Branch",
+    "Change",
     "Event",
     "Exponents",
     "Family",
     "Kick",
     "KickFamily",
     "MaximalFamily",
+    "MotionDerivatives",
     "Orbit",
+    "OrbitDerivatives",
     "OrbitDiagram",
     "OrbitEnd",
     "PeriodicOrbit",
@@ -49,14 +61,20 @@ __all__ = [
     "born",
     "born_period",
     "divergence_rate",
+    "doubling_derivatives",
+    "excess_derivatives",
     "first_event",
     "fold_along_frequency",
     "fold_excess",
     "fold_of",
     "folds_of",
     "follow",
+    "graze_derivatives",
     "lowest_of",
     "map_exponents",
+    "motion_derivatives",
+    "multiplier_derivatives",
+    "orbit_derivatives",
     "orbit_diagram",
     "orbit_end",
     "orbit_exponents",

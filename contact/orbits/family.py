@@ -26,6 +26,7 @@ from contact.flight.modal_flow import flow_over, steady_motion, tip_state
 from contact.flight.motion import Motion
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
+from contact.touch.tangents import Variation, variation
 from contact.touch_flow import FLOWN, flow_from_touch
 from contact.trajectory import State
 
@@ -81,10 +82,13 @@ class Family(Protocol):
 
 
 def flown(
-    oscillator: ImpactOscillator, period: int, phase: float, deviations: Array, touches: int
-) -> tuple[Array, Array, Array]:
+    oscillator: ImpactOscillator, period: int, phase: float, deviations: Array, touches: int,
+    vary: Variation | None = None,
+) -> tuple[Array, Array, Array]:  # fmt: skip
     """The flow over m = `period` drive periods from a touch: its end, tangent and record, as they are told in
     ``contact.touch_flow``, from the `deviations` (u, v), shape (2 n_modes,), at drive time `phase` [s].
+
+    The tangents are those of (u, v, S, C), and of the parameters of `vary`.
 
     Raises
     ------
@@ -92,9 +96,9 @@ def flown(
         If the motion has fewer touches, or a contact does not end.
     """
     (u, v), size, duration = deviations.reshape(2, -1).copy(), deviations.size, period * oscillator.period
-    tangent, record = np.eye(size + 2), np.empty((touches, 4 + size))
-    motion, response = oscillator.motion(), oscillator.tip_response()
-    outcome = flow_from_touch(motion, response, phase, u, v, duration, tangent, record)
+    vary = variation(oscillator.motion(), oscillator.tip_response()) if vary is None else vary
+    tangent, record = np.eye(size + 2, size + 2 + len(vary.rest)), np.empty((touches, 4 + size))
+    outcome = flow_from_touch(vary, phase, u, v, duration, tangent, record)
     if outcome != FLOWN:
         raise NotPeriodic(
             time=phase, gap=0.0, velocity=float(record[0, 2]),

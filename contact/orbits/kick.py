@@ -32,6 +32,7 @@ from contact.laws import DELAYED
 from contact.orbits.family import modal_flow
 from contact.orbits.single_impact import SINGULAR, Kick, SingleImpactFamily, SingleImpactOrbit
 from contact.touch.delayed import numbers_at
+from contact.touch.tangents import variation
 from contact.touch_flow import FEWER_TOUCHES, flow_from_touch
 
 __all__ = ["Kick", "KickFamily"]
@@ -94,9 +95,10 @@ class KickFamily(SingleImpactFamily):
         n, window = self.oscillator.n_modes, WINDOW * self.oscillator.period
         p, r = self.oscillator.motion().tip(w)
         amplitude, phase = self.oscillator.drive_at(self.oscillator.stop.gap - p, speed - r)
-        motion, response = self.oscillator.with_amplitude(amplitude).motion(), self.oscillator.tip_response()
+        motion = self.oscillator.with_amplitude(amplitude).motion()
+        vary = variation(motion, self.oscillator.tip_response())
         (u, v), record = w.T.copy(), np.full((MOST_TOUCHES + 1, 4 + 2 * n), np.nan)
-        outcome = flow_from_touch(motion, response, phase, u, v, window, np.empty((0, 0)), record)
+        outcome = flow_from_touch(vary, phase, u, v, window, np.empty((0, 0)), record)
         if outcome != FEWER_TOUCHES:
             raise NotPeriodic(
                 time=phase + window, gap=0.0, velocity=speed,

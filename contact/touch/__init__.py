@@ -30,8 +30,9 @@ its deviations, `series` the room of one step.
     stiffness(numbers, d, d') -> dN/dd, dN/dd'
     slopes(motion, run, series, weights) -> terms
                                               for the tangents: the series of dt/ds, dN/dd dt/ds and dN/dd'
-                                              dt/ds in three rows, and how many terms they have
-    saltation(motion, response, before, after, tangent)
+                                              dt/ds in three rows, and how many terms they have; behind them
+                                              those of N dt/ds and its derivatives with respect to the numbers
+    saltation(motion, vary, before, after, tangent)
                                               for the tangents: what the touch does besides; (drive time, u,
                                               v) before and after it
 

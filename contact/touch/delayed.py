@@ -21,14 +21,12 @@ Newton's.
 # mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from contact.compiled import kernel, part
 from contact.flight.modal_flow import push_on, tip_state
 from contact.touch import newton
-from contact.touch.tangents import tip_changes
+from contact.touch.tangents import FIRST, all_tip_changes, tangent_flight
 from contact.trajectory import OUTSIDE, WAITING
 
 __all__ = ["LAW", "REGIMES", "force", "leave", "numbers_at", "place", "room", "saltation", "slopes", "state",
@@ -105,24 +103,27 @@ def leave(motion, run, u, v):
 
 
 @kernel
-def saltation(motion, response, before, after, tangent):
+def saltation(motion, vary, before, after, tangent):
     """The tangents over the touch, with the wait; see ``contact.touch``."""
-    w, a, b = motion.drive, response.real, response.imag
     share = push_on(motion, 0, -1.0 / motion.compliance)  # of the one mode in a change at the tip: 1/phi
     clock, u, v = before
     _height, approach, pull_in = tip_state(motion, clock, u, v)
     restitution, restitution_slope, delay, delay_slope = numbers_at(motion.table, approach)
     _height, _velocity, pull_out = tip_state(motion, after[0], after[1], after[2])
-    sine, cosine = math.sin(w * delay), math.cos(w * delay)
-    reach, rate = np.empty(4), np.empty(4)
-    tip_changes(motion, response, tangent, reach, rate)
-    for j in range(4):
-        s, c = tangent[2, j], tangent[3, j]
+    reach, rate = all_tip_changes(vary, tangent, u, v, clock)
+    first = reach.size - len(vary.rest)
+    for j in range(reach.size):
         late = -reach[j] / approach
         faster = rate[j] + pull_in * late
         late += delay_slope * faster
-        s, c = cosine * s + sine * c, cosine * c - sine * s
-        tangent[0, j] = share * (restitution * approach * late - a * s - b * c)
-        slower = -(restitution + restitution_slope * approach) * faster - pull_out * late
-        tangent[1, j] = share * (slower - w * (a * c - b * s))
-        tangent[2, j], tangent[3, j] = s, c
+        slower = -(restitution + restitution_slope * approach) * faster
+        if j >= first:
+            late += vary.rest[j - first, FIRST + 1]
+            slower -= vary.rest[j - first, FIRST] * approach
+        reach[j], rate[j] = restitution * approach * late, slower - pull_out * late
+    # (u, v) after the wait are what is left to the mode; the drive turns as in a flight
+    tangent_flight(vary, tangent, np.zeros(1), np.zeros(1), clock, delay)
+    tangent[:2] = 0.0
+    own = all_tip_changes(vary, tangent, after[1], after[2], after[0])
+    for j in range(reach.size):
+        tangent[0, j], tangent[1, j] = share * (reach[j] - own[0][j]), share * (rate[j] - own[1][j])

@@ -33,6 +33,7 @@ from contact.flight.modal_flow import speed_scale, tip_state, tip_sum
 from contact.flight.motion import SQUARE
 from contact.flight.polynomial_root import first_polynomial_root, horner, polynomial_root
 from contact.touch.series import enter, leave, powers_of, reach, saltation, within_force, work_of
+from contact.touch.tangents import FORCES
 from contact.trajectory import CONTACT, OUTSIDE
 from contact.vector_loops import LANES, next_modes, weighted_rows
 
@@ -55,8 +56,8 @@ where the modes take part, both ends of the series agree within it."""
 SPEED, DEPTH, CUBE, SINE, COSINE = range(5)
 """Columns of the series before the modes: d', d, r d, sin and cos of the drive."""
 
-ROOT, CLOCK, PUSH, POWERS = range(4)
-"""Rows of the scalar series: r, time since the step's start, r N, powers of the sigma of a state."""
+ROOT, CLOCK, PUSH, POWERS, QUARTIC = range(5)
+"""Rows of the scalar series: r, time since the step's start, r N, powers of the sigma of a state, k r^4."""
 
 _EDGE = TOLERANCE ** (1.0 / ORDER)
 
@@ -140,15 +141,24 @@ def fill(motion, base, u, v, series):
 
 @kernel
 def slopes(motion, run, series, weights):
-    """The series of r, r dN/dd = (3/2) k d (1 + chi d') and r dN/dd' = k chi d^2, from those of a step."""
+    """The series of r, r dN/dd = (3/2) k d (1 + chi d') and r dN/dd' = k chi d^2, from those of a step; of
+    r N, r N/k and r dN/dchi = k d^2 d'."""
     rows, k, chi = series.rows, motion.number0, motion.number1
     for n in range(ORDER + 1):
         weights[0, n] = series.scalars[ROOT, n]
         weights[1, n], weights[2, n] = 1.5 * k * rows[n, DEPTH], 0.0
+        weights[FORCES, n] = series.scalars[PUSH, n]
+        weights[FORCES + 1, n] = series.scalars[PUSH, n] / k
         if chi != 0.0:
             for i in range(n + 1):
                 weights[1, n] += 1.5 * k * chi * rows[i, DEPTH] * rows[n - i, SPEED]
                 weights[2, n] += k * chi * rows[i, DEPTH] * rows[n - i, DEPTH]
+    quartic = series.scalars[QUARTIC]
+    for n in range(ORDER + 1):
+        quartic[n], weights[FORCES + 2, n] = 0.0, 0.0
+        for i in range(n + 1):
+            quartic[n] += k * rows[i, DEPTH] * rows[n - i, DEPTH]
+            weights[FORCES + 2, n] += quartic[i] * rows[n - i, SPEED]
     return ORDER + 1
 
 

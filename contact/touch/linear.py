@@ -21,6 +21,7 @@ from contact.flight.modal_flow import tip_rounding
 from contact.flight.polynomial_root import first_polynomial_root
 from contact.touch import time_series
 from contact.touch.series import enter, leave, saltation
+from contact.touch.tangents import FORCES
 from contact.touch.time_series import DEPTH, FORCE, begin, extend, longest_step
 from contact.trajectory import CONTACT, INSIDE, OUTSIDE
 
@@ -50,10 +51,14 @@ def stiffness(numbers, depth, rate):
 
 @part
 def slopes(motion, run, series, weights):
-    """The series of dN/dd and dN/dd': constants; none where the tip is behind the wall without force."""
-    weights[0, 0] = 1.0
-    weights[1, 0] = 0.0 if run.regime == INSIDE else motion.number0
-    weights[2, 0] = 0.0 if run.regime == INSIDE else motion.number1
+    """The series of dN/dd and dN/dd', constants; of N, d and d'; none where the tip is behind the wall
+    without force."""
+    pushes = 0.0 if run.regime == INSIDE else 1.0
+    weights[0, 0], weights[1, 0], weights[2, 0] = 1.0, pushes * motion.number0, pushes * motion.number1
+    for n in range(time_series.ORDER):
+        depth, rate = series.scalars[DEPTH, n], (n + 1.0) * series.scalars[DEPTH, n + 1]
+        weights[FORCES, n] = pushes * (motion.number0 * depth + motion.number1 * rate)
+        weights[FORCES + 1, n], weights[FORCES + 2, n] = pushes * depth, pushes * rate
     return 1
 
 

@@ -16,8 +16,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from contact.compiled import kernel, part
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import (
@@ -26,10 +24,11 @@ from contact.flight.modal_flow import (
     push_on,
     tip_rounding,
     tip_state,
+    tip_sum,
 )
 from contact.flight.polynomial_root import first_polynomial_root
 from contact.touch import time_series
-from contact.touch.tangents import tip_changes
+from contact.touch.tangents import FIRST, all_tip_changes
 from contact.touch.time_series import FORCE, begin, extend, free_pull, longest_step
 from contact.trajectory import OUTSIDE, SUSTAINED
 
@@ -151,18 +150,17 @@ def leave(motion, run, u, v):
 
 
 @kernel
-def saltation(motion, response, before, after, tangent):
+def saltation(motion, vary, before, after, tangent):
     """The tangents over the impact: d -> R d + (R f - f') (-y(d)/v), R the reflection of the tip velocity, f
     and f' the velocity of the flow before and after (M. A. Aizerman, F. R. Gantmacher, Quart. J. Mech. Appl.
-    Math. 11 (1958) 243; A. B. Nordmark, J. Sound Vib. 145 (1991) 279)."""
-    n = motion.size
+    Math. 11 (1958) 243; A. B. Nordmark, J. Sound Vib. 145 (1991) 279); parameters change R as well."""
+    n, count = motion.size, len(vary.rest)
     clock, u, v = before
     rebound = after[2]
     _height, approach, pull = tip_state(motion, clock, u, v)
     flip = (1.0 + motion.number0) / motion.compliance
-    reach, rate = np.empty(2 * n + 2), np.empty(2 * n + 2)
-    tip_changes(motion, response, tangent, reach, rate)
-    for j in range(2 * n + 2):
+    reach, rate = all_tip_changes(vary, tangent, u, v, clock)
+    for j in range(reach.size):
         late = -reach[j] / approach  # by how much later this neighbour touches
         for k in range(n):
             push = push_on(motion, k, flip)
@@ -170,3 +168,9 @@ def saltation(motion, response, before, after, tangent):
             after_it = mode_acceleration(motion, k, u[k], rebound[k])
             tangent[k, j] += (v[k] - rebound[k]) * late
             tangent[n + k, j] += push * rate[j] + (slow - after_it) * late
+    for p in range(count):
+        mobility = 2.0 * tip_sum(motion, 0.0, vary.weight[p])
+        flipped = (vary.rest[p, FIRST] - flip * mobility) / motion.compliance
+        for k in range(n):
+            change = push_on(motion, k, flipped) - vary.weight[p, k] * flip
+            tangent[n + k, reach.size - count + p] += change * approach

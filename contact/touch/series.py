@@ -79,7 +79,7 @@ def leave(motion, run, u, v):
 
 
 @part
-def saltation(motion, response, before, after, tangent):
+def saltation(motion, vary, before, after, tangent):
     """Nothing: the tangents have gone through the contact with its series."""
 
 

@@ -1,4 +1,4 @@
-"""How a motion in touch changes with its start: further columns of the contact's own series.
+"""How a motion changes with its start and with the numbers of its oscillator: tangents.
 
 The drive is carried along as two more coordinates, S = Z sin(w t) and C = Z cos(w t), so that the motion is
 an autonomous flow of e = (u, v, S, C), 2 N + 2 numbers.  The tip is at
@@ -12,6 +12,16 @@ series
 
 with r = dt/ds: the sums over earlier orders, sum_j r_(n-j) x_j, are those of the motion itself, and the
 series of r, r N_d and r N_d' are all that a law has to give (`slopes`).
+
+The last columns of a matrix may belong to parameters p, each a direction in which the numbers of the
+oscillator change (``contact.change``).  They have sources besides: with a dot for the derivative of a number,
+and with (u, v, S, C) the motion itself,
+
+    y(d)  + level. + a. S + b. C + phi. . u,      y'(d)  + w. (a C - b S) + w (a. C - b. S) + phi. . v,
+    dv  - r ((omega^2). u + c. v) - phi. r N - phi (r N)_1 n_1. - phi (r N)_2 n_2.,
+    dS  + r w. C,   dC  - r w. S,
+
+n_1, n_2 the two numbers of the law.  The motion itself is one more column of the series, pushed by r N.
 """
 
 # mypy: allow-untyped-defs, allow-incomplete-defs
@@ -22,13 +32,54 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contact.compiled import kernel
+from contact.compiled import kernel, part
+from contact.flight.flow_derivative import flow_derivative
 from contact.flight.modal_flow import flow_over
-from contact.flight.motion import DECAY, SQUARE, WEIGHT
+from contact.flight.motion import DECAY, LOAD, SQUARE, WEIGHT, Motion
 from contact.touch.series import powers_of
 from contact.vector_loops import LANES, aligned, weighted_rows
 
-__all__ = ["TangentRoom", "new_room", "onset", "tangent_flight", "tangent_step", "tip_changes"]
+__all__ = ["FIRST", "FORCES", "NUMBERS", "TangentRoom", "Variation", "all_tip_changes", "new_room", "onset",
+           "tangent_flight", "tangent_step", "variation"]  # fmt: skip
+
+NUMBERS, PACE, FIRST = 6, 3, 4
+"""Columns of `Variation.rest`, the changes of level, a, b, w, n_1 and n_2; those of w and of n_1 among
+them."""
+
+TINY = 1e-300
+"""Stands for |a + i b| of a tip that the drive does not move."""
+
+FORCES = 3
+"""Rows of the weights from which on they hold r N and its derivatives with respect to n_1 and n_2."""
+
+
+class Variation(NamedTuple):
+    """Whose tangents are carried along: of an oscillator's motion, with these parameters.
+
+    motion : Motion
+    response : complex
+        a + i b.
+    square, decay, weight : ndarray, shape (parameters, n_modes)
+        Changes of omega^2, c and phi.
+    rest : ndarray, shape (parameters, 6)
+        Those of level, a, b, w, n_1 and n_2.
+    """
+
+    motion: Motion
+    response: complex
+    square: np.ndarray
+    decay: np.ndarray
+    weight: np.ndarray
+    rest: np.ndarray
+
+
+def variation(motion, response, square=None, decay=None, weight=None, rest=None):
+    """The variation of an oscillator; without parameters unless these are given."""
+    none, numbers = np.zeros((0, motion.size)), np.zeros((0, NUMBERS))
+    return Variation(
+        motion, response, *(none if each is None else each for each in (square, decay, weight)),
+        numbers if rest is None else rest,
+    )  # fmt: skip
 
 
 class TangentRoom(NamedTuple):
@@ -36,13 +87,13 @@ class TangentRoom(NamedTuple):
 
     rows : ndarray, shape (order + 1, (2 n_modes + 2) m)
         Row n holds the coefficients of order n: the rows of the matrix one after the other, each filled up to
-        a multiple of eight numbers, m.
+        a multiple of eight numbers, m; with parameters the motion itself is the column behind its last.
     sums : ndarray, shape ((2 n_modes + 2) m,)
     height, rate : ndarray, shape (order + 1, m)
         y and y' of all tangents.
     push, more : ndarray, shape (m,)
-    weights : ndarray, shape (3, order + 1)
-        Series of r, r N_d and r N_d'.
+    weights : ndarray, shape (6, order + 1)
+        Series of r, r N_d, r N_d', and of r N and its derivatives with respect to n_1 and n_2.
     powers : ndarray, shape (order + 1,)
     """
 
@@ -57,33 +108,54 @@ class TangentRoom(NamedTuple):
 
 
 @kernel
-def new_room(order, size):
-    """Room for the tangents, `size` = 2 n_modes + 2 of them."""
-    m = (size + LANES - 1) // LANES * LANES
+def new_room(order, size, columns):
+    """Room for `columns` tangents of `size` = 2 n_modes + 2 numbers, and the motion itself."""
+    m = (columns + LANES) // LANES * LANES
     return TangentRoom(
         aligned(order + 1, size * m), aligned(1, size * m)[0], aligned(order + 1, m), aligned(order + 1, m),
-        aligned(1, m)[0], aligned(1, m)[0], np.zeros((3, order + 1)), np.zeros(order + 1),
+        aligned(1, m)[0], aligned(1, m)[0], np.zeros((FORCES + 3, order + 1)), np.zeros(order + 1),
     )  # fmt: skip
 
 
+@part
+def drive_now(vary, clock):
+    """S and C at the drive time `clock` [s]."""
+    motion, angle = vary.motion, vary.motion.drive * clock
+    size = motion.amplitude / max(abs(vary.response), TINY)
+    return size * math.sin(angle), size * math.cos(angle)
+
+
 @kernel
-def tangent_flight(motion, tangent, time):
-    """Carry the tangents through a free flight of length `time` [s]."""
-    n, flows = motion.size, flow_over(motion, time)
+def tangent_flight(vary, tangent, u, v, clock, time):
+    """Carry the tangents through a free flight of length `time` [s] that starts from (u, v) at `clock`."""
+    motion = vary.motion
+    n, count, flows = motion.size, len(vary.rest), flow_over(motion, time)
+    first = tangent.shape[1] - count
     for k in range(n):
-        for j in range(2 * n + 2):
+        for j in range(tangent.shape[1]):
             x, y = tangent[k, j], tangent[n + k, j]
             tangent[k, j] = flows[k, 0] * x + flows[k, 1] * y
             tangent[n + k, j] = flows[k, 2] * x + flows[k, 3] * y
+        for p in range(count):
+            if vary.square[p, k] != 0.0 or vary.decay[p, k] != 0.0:
+                a, b, c, d = flow_derivative(motion.modes, k, vary.square[p, k], vary.decay[p, k], time)
+                tangent[k, first + p] += a * u[k] + b * v[k]
+                tangent[n + k, first + p] += c * u[k] + d * v[k]
     s, c = math.sin(motion.drive * time), math.cos(motion.drive * time)
-    for j in range(2 * n + 2):
+    for j in range(tangent.shape[1]):
         a, b = tangent[2 * n, j], tangent[2 * n + 1, j]
         tangent[2 * n, j], tangent[2 * n + 1, j] = c * a + s * b, c * b - s * a
+    if count > 0:
+        sine, cosine = drive_now(vary, clock + time)
+        for p in range(count):
+            tangent[2 * n, first + p] += vary.rest[p, PACE] * time * cosine
+            tangent[2 * n + 1, first + p] -= vary.rest[p, PACE] * time * sine
 
 
 @kernel
 def tip_changes(motion, response, tangent, reach, rate):
-    """Fill `reach`, `rate` with the changes y and y' of tip displacement and velocity along all tangents."""
+    """Fill `reach`, `rate` with the changes y and y' of tip displacement and velocity along tangents, without
+    the sources of the parameters."""
     n, w, a, b = motion.size, motion.drive, response.real, response.imag
     s, c = tangent[2 * n], tangent[2 * n + 1]
     for j in range(reach.size):
@@ -96,19 +168,47 @@ def tip_changes(motion, response, tangent, reach, rate):
             rate[j] += phi * v[j]
 
 
+@part
+def own_changes(vary, p, sine, cosine, still):
+    """What parameter `p` itself adds to y and y' at (S, C), the modes left out; `still` is 1, or 0 for a
+    coefficient of a higher order, to which the level adds nothing."""
+    w, a, b, rest = vary.motion.drive, vary.response.real, vary.response.imag, vary.rest[p]
+    in_phase, off_phase = a * cosine - b * sine, rest[1] * cosine - rest[2] * sine
+    return rest[0] * still + rest[1] * sine + rest[2] * cosine, rest[PACE] * in_phase + w * off_phase
+
+
 @kernel
-def onset(motion, response, force, approach, tangent):
+def all_tip_changes(vary, tangent, u, v, clock):
+    """The changes of tip displacement and velocity along all tangents at (u, v), those of the parameters
+    whole."""
+    columns, count = tangent.shape[1], len(vary.rest)
+    reach, rate = np.empty(columns), np.empty(columns)
+    tip_changes(vary.motion, vary.response, tangent, reach, rate)
+    if count > 0:
+        sine, cosine = drive_now(vary, clock)
+        for p in range(count):
+            y, y_rate = own_changes(vary, p, sine, cosine, 1.0)
+            for k in range(u.size):
+                y += vary.weight[p, k] * u[k]
+                y_rate += vary.weight[p, k] * v[k]
+            reach[columns - count + p] += y
+            rate[columns - count + p] += y_rate
+    return reach, rate
+
+
+@kernel
+def onset(vary, force, approach, tangent, before):
     """A touch at which the `force` jumps from zero: d -> d - phi F y(d)/v (saltation matrix of Aizerman and
     Gantmacher; R. I. Leine, H. Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems, 2004,
     ch. 7)."""
-    n = motion.size
+    motion = vary.motion
     if force == 0.0:
         return
-    reach, rate = np.empty(2 * n + 2), np.empty(2 * n + 2)
-    tip_changes(motion, response, tangent, reach, rate)
-    for k in range(n):
+    clock, u, v = before
+    reach, _rate = all_tip_changes(vary, tangent, u, v, clock)
+    for k in range(motion.size):
         for j in range(reach.size):
-            tangent[n + k, j] -= motion.modes[WEIGHT, k] * force * reach[j] / approach
+            tangent[motion.size + k, j] -= motion.modes[WEIGHT, k] * force * reach[j] / approach
 
 
 @kernel
@@ -116,6 +216,31 @@ def sums_of(weights, terms, order, rows, out):
     """out = sum of weights_(order - j) rows_j, of which the first `terms` weights are not zero."""
     low = max(0, order + 1 - terms)
     weighted_rows(weights, order - low, -1, rows[low:], order + 1 - low, out)
+
+
+@kernel
+def pushed(vary, room, order, columns):
+    """The pushes of this order that are not the stop's answer to y and y': that on the motion itself, and the
+    changes of the law."""
+    first, second = room.weights[FORCES + 1, order], room.weights[FORCES + 2, order]
+    room.push[columns] = room.weights[FORCES, order]
+    start = columns - len(vary.rest)
+    for p in range(columns - start):
+        room.push[start + p] += first * vary.rest[p, FIRST] + second * vary.rest[p, FIRST + 1]
+
+
+@kernel
+def raised(vary, room, order, columns):
+    """The changes y and y' of this order that are the parameters' own."""
+    n, m, count = vary.motion.size, room.push.size, len(vary.rest)
+    for p in range(count):
+        row = room.rows[order].reshape((2 * n + 2, m))[:, columns]  # the motion itself
+        y, rate = own_changes(vary, p, row[2 * n], row[2 * n + 1], 1.0 if order == 0 else 0.0)
+        for k in range(n):
+            y += vary.weight[p, k] * row[k]
+            rate += vary.weight[p, k] * row[n + k]
+        room.height[order, columns - count + p] += y
+        room.rate[order, columns - count + p] += rate
 
 
 @kernel
@@ -137,22 +262,48 @@ def next_tangents(motion, room, order):
 
 
 @kernel
-def tangent_step(motion, response, room, terms, end, tangent):
-    """Carry the tangents through a step up to s = `end`; `terms` terms of room.weights count."""
-    size, m, order = tangent.shape[0], room.push.size, room.powers.size - 1
-    for i in range(size):
-        for j in range(size):
-            room.rows[0, i * m + j] = tangent[i, j]
-    for n in range(order):
-        tip_changes(motion, response, room.rows[n].reshape((size, m)), room.height[n], room.rate[n])
-        sums_of(room.weights[1], terms, n, room.height, room.push)
-        sums_of(room.weights[2], terms, n, room.rate, room.more)
+def next_sources(vary, room, order, columns):
+    """What the parameters add to it, and a constant load to the motion itself."""
+    n, m, inverse, force = vary.motion.size, room.push.size, 1.0 / (order + 1.0), room.weights[FORCES, order]
+    shape, start = (2 * n + 2, m), columns - len(vary.rest)
+    sums, fresh = room.sums.reshape(shape), room.rows[order + 1].reshape(shape)
+    for k in range(n):
+        fresh[n + k, columns] += inverse * vary.motion.modes[LOAD, k] * room.weights[0, order]
+        for p in range(columns - start):
+            pull = vary.square[p, k] * sums[k, columns] + vary.decay[p, k] * sums[n + k, columns]
+            fresh[n + k, start + p] -= inverse * (pull + vary.weight[p, k] * force)
+    for p in range(columns - start):
+        turn = inverse * vary.rest[p, PACE]
+        fresh[2 * n, start + p] += turn * sums[2 * n + 1, columns]
+        fresh[2 * n + 1, start + p] -= turn * sums[2 * n, columns]
+
+
+@kernel
+def tangent_step(vary, room, terms, end, tangent, before):
+    """Carry the tangents through a step up to s = `end` that starts at `before`, (drive time, u, v); `terms`
+    terms of the first rows of room.weights count."""
+    motion, response, (size, columns) = vary.motion, vary.response, tangent.shape
+    m, order, n = room.push.size, room.powers.size - 1, motion.size
+    start = room.rows[0].reshape((size, m))
+    start[:, :columns] = tangent
+    if len(vary.rest) > 0:
+        clock, u, v = before
+        start[2 * n, columns], start[2 * n + 1, columns] = drive_now(vary, clock)
+        start[:n, columns], start[n : 2 * n, columns] = u, v
+    for i in range(order):
+        tip_changes(motion, response, room.rows[i].reshape((size, m)), room.height[i], room.rate[i])
+        if len(vary.rest) > 0:
+            raised(vary, room, i, columns)
+        sums_of(room.weights[1], terms, i, room.height, room.push)
+        sums_of(room.weights[2], terms, i, room.rate, room.more)
         for j in range(m):
             room.push[j] += room.more[j]
-        sums_of(room.weights[0], terms, n, room.rows, room.sums)
-        next_tangents(motion, room, n)
+        if len(vary.rest) > 0:
+            pushed(vary, room, i, columns)
+        sums_of(room.weights[0], terms, i, room.rows, room.sums)
+        next_tangents(motion, room, i)
+        if len(vary.rest) > 0:
+            next_sources(vary, room, i, columns)
     powers_of(end, room.powers)
     weighted_rows(room.powers, 0, 1, room.rows, order + 1, room.sums)
-    for i in range(size):
-        for j in range(size):
-            tangent[i, j] = room.sums[i * m + j]
+    tangent[:, :] = room.sums.reshape((size, m))[:, :columns]

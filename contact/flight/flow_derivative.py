@@ -1,0 +1,50 @@
+"""How the free flow of a mode changes with its numbers.
+
+With half = c/2, D = omega^2 - half^2 and cn, sn as in ``contact.flight.modal_flow`` (damping included), the
+flow is (cn + half sn, sn; -omega^2 sn, cn - half sn), and
+
+    d cn/dD = -t sn/2,      d sn/dD = (t cn - sn)/(2 D),      dD/d(omega^2) = 1,      dD/dc = -half,
+
+while the damping factor exp(-half t) falls by t/2 with c.  Where D t^2 is small the second is the series
+
+    e^(-half t) t^3 sum_k (-1)^k (D t^2)^(k-1) k/(2k + 1)!,      k = 1, 2, ...
+"""
+
+# mypy: allow-untyped-defs, allow-incomplete-defs
+from __future__ import annotations
+
+import math
+
+from contact.compiled import kernel
+from contact.flight.modal_flow import flow_matrix
+from contact.flight.motion import DAMPED, DECAY, LOW, OMEGA
+
+__all__ = ["flow_derivative"]
+
+TERMS = 10
+"""Terms of the series for |D t^2| < 1: the next one is below 1e-19 of the first."""
+
+
+@kernel
+def flow_derivative(modes, k, square, decay, t):
+    """Change of the flow of mode `k` over a time `t` [s], as four numbers, when omega^2 changes by `square`
+    and c by `decay`."""
+    omega, half = modes[OMEGA, k], 0.5 * modes[DECAY, k]
+    m11, sn, m21, m22 = flow_matrix(omega, modes[DECAY, k], modes[DAMPED, k], modes[LOW, k], t)
+    distance = math.copysign(modes[DAMPED, k] ** 2, omega - half)
+    x = distance * t * t
+    if abs(x) < 1.0:
+        term, slope = -t * t * t * math.exp(-half * t) / 6.0, 0.0
+        for n in range(1, TERMS + 1):
+            slope += n * term
+            term *= -x / ((2.0 * n + 2.0) * (2.0 * n + 3.0))
+    else:
+        slope = (0.5 * t * (m11 + m22) - sn) / (2.0 * distance)
+    moved, faded, spread = square - half * decay, -0.5 * t * decay, 0.5 * decay * sn
+    even, odd = -0.5 * t * sn * moved, half * slope * moved
+    return (
+        faded * m11 + even + odd + spread,
+        faded * sn + slope * moved,
+        faded * m21 - sn * square - omega * omega * slope * moved,
+        faded * m22 + even - odd - spread,
+    )

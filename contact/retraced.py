@@ -1,0 +1,118 @@
+"""A simulated motion retraced from touch to touch, with tangents carried along.
+
+The touches are those that the simulation has found; between them flights, and through them the law's own
+tangents (``contact.touch.tangents``).  The time t of a touch moves along a tangent d by -y(d)/v, v its
+approach velocity: where v is zero, at a graze, the motion has no derivative.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact.change import Changes
+from contact.errors import NoDerivative, UnresolvedCrossing
+from contact.flight.modal_flow import propagate, steady_motion
+from contact.laws import DELAYED
+from contact.touch.tangents import all_tip_changes, tangent_flight
+from contact.touch_flow import FLOWN, TOUCHING, flow_from_touch
+from contact.trajectory import ImpactKind, State, Trajectory
+
+__all__ = ["Retraced"]
+
+Array = NDArray[np.float64]
+
+
+class Retraced:
+    """The motion of `run`, which starts off the stop at `start`, or at strobe zero where nobody asks for the
+    derivatives of a flight.
+
+    Parameters
+    ----------
+    changes : Changes
+        The oscillator, and the parameters to which the last columns of `tangent` belong.
+    run : Trajectory
+    start : State, optional
+
+    Attributes
+    ----------
+    tangent : ndarray, shape (2 n_modes + 2, columns)
+        Those of (u, v, S, C) where the motion has been retraced to; to be set before the first step.
+    late : dict of int to ndarray, shape (columns,)
+        By how much later touch number i comes along each of them [s].
+
+    Raises
+    ------
+    NoDerivative
+        If the motion grazes the stop, or comes to rest on it.
+    """
+
+    def __init__(self, changes: Changes, run: Trajectory, start: State | None = None) -> None:
+        self.vary, self.oscillator, met = changes.variation, changes.oscillator, run.impacts
+        motion, n = self.vary.motion, self.oscillator.n_modes
+        for i in np.flatnonzero(met.kind != ImpactKind.IMPACT):
+            words = "grazes the stop" if met.kind[i] == ImpactKind.GRAZE else "comes to rest on the stop"
+            raise NoDerivative(
+                time=float(met.start[i]), gap=0.0, velocity=float(met.approach[i]), detail=f"it {words} there"
+            )
+        self.start, self.end = met.start, np.nan_to_num(met.end, nan=np.inf)
+        self.approach = met.approach
+        q, q_rate = steady_motion(motion, self.start % motion.period)
+        self._touch = met.displacement_start - q, met.velocity_start - q_rate
+        self.tangent = np.zeros((2 * n + 2, len(self.vary.rest)))
+        self.late = dict[int, Array]()
+        self._i, self.clock, self.u, self.v = 0, 0.0, np.zeros(n), np.zeros(n)
+        if start is not None:
+            self.clock = start.time
+            q, q_rate = steady_motion(motion, start.time % motion.period)
+            self.u, self.v = start.displacement - q, start.velocity - q_rate
+
+    def touching(self, time: float) -> bool:
+        """Whether the tip is in touch with the stop at a time [s]."""
+        return bool(np.any((self.start < time) & (self.end > time)))
+
+    def to(self, time: float) -> Array:
+        """The tangents at `time` [s], later than where they are; shape (2 n_modes + 2, columns).
+
+        In a touch they are those there, and those kept remain before it.
+        """
+        while self._i < self.start.size and self.start[self._i] <= time:
+            i, n = self._i, self.oscillator.n_modes
+            at, (u, v) = float(self.start[i]), (part[i].copy() for part in self._touch)
+            self._fly(at)
+            phase = at % self.vary.motion.period
+            self.late[i] = -all_tip_changes(self.vary, self.tangent, u, v, phase)[0] / self.approach[i]
+            following = self.start[i + 1] if i + 1 < self.start.size else math.inf
+            until = min(time, float(following))
+            tangent, record = self.tangent.copy(), np.empty((1, 4 + 2 * n))
+            outcome = flow_from_touch(self.vary, phase, u, v, until - at, tangent, record)
+            if outcome == TOUCHING and self.end[i] > time:
+                return self._waiting(tangent, u, v, at, time) if self.vary.motion.law == DELAYED else tangent
+            if outcome != FLOWN:
+                raise UnresolvedCrossing(time=at, gap=0.0, velocity=float(self.approach[i]))
+            self.tangent, self.clock, self.u, self.v = tangent, until, u, v
+            self._i += 1
+        self._fly(time)
+        return self.tangent
+
+    def _waiting(self, tangent: Array, u: Array, v: Array, at: float, time: float) -> Array:
+        """The tangents at `time` [s], when the tip waits on the stop since `at`, as the drive leaves them to
+        the one mode."""
+        motion = self.vary.motion
+        phase = at % motion.period
+        tangent_flight(self.vary, tangent, u, v, phase, time - at)
+        tangent[:2] = 0.0
+        reach, rate = all_tip_changes(self.vary, tangent, u, v, phase + time - at)
+        tangent[:2] = -np.array([reach, rate]) / motion.phi[0]
+        return tangent
+
+    def _fly(self, time: float) -> None:
+        """On to a time before the next touch."""
+        length = time - self.clock
+        if length > 0.0:
+            motion = self.vary.motion
+            tangent_flight(self.vary, self.tangent, self.u, self.v, self.clock % motion.period, length)
+            propagate(motion, self.u, self.v, length, self.u, self.v)
+            self.clock = time
