@@ -25,16 +25,22 @@ from contact import (
     Trajectory,
     simulate,
 )
-from contact.orbits import KickFamily, PeriodicOrbit, Shooting, SingleImpactOrbit, fold_of
-from studies.identify.parameters import parameters_of, with_values
+from contact.orbits import (
+    KickFamily,
+    PeriodicOrbit,
+    Shooting,
+    SingleImpactOrbit,
+    excess_derivatives,
+    fold_of,
+    motion_derivatives,
+    orbit_derivatives,
+)
+from studies.identify.parameters import changes_of
 from studies.identify.records import Record
 
 __all__ = ["PRIOR", "Displacement", "Prediction", "Strobes", "Transitions", "family_of"]
 
 Array = NDArray[np.float64]
-
-STEP = 1e-6
-"""Of a central difference, in units of a parameter's size."""
 
 FIRST, CLOSE, END = 3.0, 0.01, 0.002
 """Drive periods that a displacement is first fitted over if its start is not close; residuals over the size
@@ -62,26 +68,10 @@ class Prediction(Protocol):
         """The predicted rows, shape of `record.observed`; ContactError or ValueError where there are none."""
 
     def touches(self, oscillator: ImpactOscillator, extra: Array) -> int:
-        """Number of impacts in what is predicted; -1 where the orbit is none."""
+        """Number of impacts in what is predicted; errors as of `values`."""
 
     def jacobian(self, oscillator: ImpactOscillator, extra: Array, names: Sequence[str]) -> Array:
         """Derivatives of `values` by the named parameters and `extra`, shape (values.size, n_unknowns)."""
-
-
-def differences(
-    prediction: Prediction, oscillator: ImpactOscillator, extra: Array, names: Sequence[str]
-) -> Array:
-    """The Jacobian of a prediction by central differences."""
-    known, columns = parameters_of(oscillator), []
-    for name in names:
-        value, step = known[name].value, STEP * known[name].size
-        ends = [prediction.values(with_values(oscillator, {name: value + s}), extra) for s in (step, -step)]
-        columns.append((ends[0] - ends[1]).ravel() / (2.0 * step))
-    for k, size in enumerate(prediction.sizes):
-        step = STEP * size * np.eye(extra.size)[k]
-        ends = [prediction.values(oscillator, extra + s) for s in (step, -step)]
-        columns.append((ends[0] - ends[1]).ravel() / (2.0 * STEP * size))
-    return np.array(columns).T
 
 
 def family_of(oscillator: ImpactOscillator, period: int) -> MaximalFamily | KickFamily:
@@ -109,7 +99,10 @@ class Strobes:
     def values(self, oscillator: ImpactOscillator, extra: Array) -> Array:
         """The strobe points of the orbit next to the last one, as many rows as the record has."""
         family = Shooting(oscillator=oscillator, period=self.period)
-        self.orbit = family.at_excess(oscillator.excess, self.orbit)
+        orbit = family.at_excess(oscillator.excess, self.orbit)
+        if not orbit.admissible:
+            raise ValueError(f"p{self.period} has another impact with these parameters")
+        self.orbit = orbit
         return self.of_orbit()
 
     def of_orbit(self) -> Array:
@@ -129,11 +122,14 @@ class Strobes:
     def touches(self, oscillator: ImpactOscillator, extra: Array) -> int:
         """1 as long as the tip touches nowhere else."""
         self.values(oscillator, extra)
-        return 1 if self.orbit.admissible else -1
+        return 1
 
     def jacobian(self, oscillator: ImpactOscillator, extra: Array, names: Sequence[str]) -> Array:
         """Derivatives of `values`."""
-        return differences(self, oscillator, extra, names)
+        points, found = self.values(oscillator, extra), orbit_derivatives(self.orbit, changes_of(oscillator, names))
+        tips = np.tensordot(found.strobes_changed.reshape(self.period, 2, -1, len(names)), oscillator.model.phi, (2, 0))
+        x = oscillator.tip(found.strobes[:, : oscillator.n_modes])
+        return self._in_order(tips[:, : points.shape[1]], x).reshape(points.size, -1)
 
 
 class Transitions:
@@ -143,7 +139,7 @@ class Transitions:
 
     def __init__(self, record: Record) -> None:
         self.record = record
-        self.near: list[PeriodicOrbit | None] = [None] * len(record.rows)
+        self.folds: list[PeriodicOrbit | SingleImpactOrbit | None] = [None] * len(record.rows)
 
     def parts(self, oscillator: ImpactOscillator) -> Sequence[Prediction]:
         """Itself."""
@@ -151,17 +147,21 @@ class Transitions:
 
     def values(self, oscillator: ImpactOscillator, extra: Array) -> Array:
         """F/F_g - 1 at the folds."""
-        found = []
         for i, (frequency, period) in enumerate(self.record.rows[:, :2]):
             there = replace(oscillator, drive=replace(oscillator.driven, frequency=float(frequency)))
             if isinstance(oscillator.stop.law, NewtonRestitution):
                 fold = MaximalFamily(oscillator=there, period=int(period)).fold()
             else:
-                fold = self.near[i] = _fold(Shooting(oscillator=there, period=int(period)), self.near[i])
+                fold = fold_of(Shooting(oscillator=there, period=int(period)), self._near(i))
             if fold is None:
                 raise ValueError(f"p{period:g} has no fold at {frequency:g} Hz with these parameters")
-            found.append([fold.excess])
-        return np.array(found)
+            self.folds[i] = fold
+        return np.array([[fold.excess] for fold in self.folds if fold is not None])
+
+    def _near(self, i: int) -> PeriodicOrbit | None:
+        """The fold of before, to start from."""
+        before = self.folds[i]
+        return before if isinstance(before, PeriodicOrbit) else None
 
     def touches(self, oscillator: ImpactOscillator, extra: Array) -> int:
         """1 where all folds exist."""
@@ -170,14 +170,14 @@ class Transitions:
 
     def jacobian(self, oscillator: ImpactOscillator, extra: Array, names: Sequence[str]) -> Array:
         """Derivatives of `values`."""
-        return differences(self, oscillator, extra, names)
-
-
-def _fold(family: Shooting, near: PeriodicOrbit | None) -> PeriodicOrbit | None:
-    try:
-        return fold_of(family, near)
-    except ContactError:
-        return fold_of(family)
+        self.values(oscillator, extra)
+        folds = [fold for fold in self.folds if fold is not None]
+        orbits = [
+            fold if isinstance(fold, PeriodicOrbit)
+            else Shooting(oscillator=fold.oscillator, period=fold.period).at_speed(fold.speed)
+            for fold in folds
+        ]  # fmt: skip
+        return np.array([excess_derivatives(one, changes_of(one.oscillator, names)) for one in orbits])
 
 
 class Displacement:
@@ -214,11 +214,17 @@ class Displacement:
         part.times, part.hits = self.times[:count], None
         return part
 
-    def _run(self, oscillator: ImpactOscillator, extra: Array) -> Trajectory:
+    def _state(self, extra: Array) -> State:
         q, v = extra.reshape(2, -1)
-        state = State(displacement=q, velocity=v, time=self.time)
-        periods = math.ceil((self.times[-1] - self.time) / oscillator.period + 1e-9)
-        return simulate(oscillator, state, periods=periods, times=self.times)
+        return State(displacement=q, velocity=v, time=self.time)
+
+    def _periods(self, oscillator: ImpactOscillator) -> int:
+        return math.ceil((self.times[-1] - self.time) / oscillator.period + 1e-9)
+
+    def _run(self, oscillator: ImpactOscillator, extra: Array) -> Trajectory:
+        return simulate(
+            oscillator, self._state(extra), periods=self._periods(oscillator), times=self.times
+        )
 
     def values(self, oscillator: ImpactOscillator, extra: Array) -> Array:
         """The displacement of the tip; ValueError for another number of impacts than before."""
@@ -240,4 +246,9 @@ class Displacement:
 
     def jacobian(self, oscillator: ImpactOscillator, extra: Array, names: Sequence[str]) -> Array:
         """Derivatives of `values`."""
-        return differences(self, oscillator, extra, names)
+        found = motion_derivatives(
+            oscillator, self._state(extra), changes_of(oscillator, names), periods=self._periods(oscillator),
+            times=self.times,
+        )  # fmt: skip
+        tip = np.tensordot(found.states[:, : oscillator.n_modes], oscillator.model.phi, (1, 0))
+        return np.roll(tip, len(names), axis=1)
