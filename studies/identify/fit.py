@@ -107,12 +107,15 @@ class Problem:
         self.observed = prediction.record.observed.ravel()
         self.held, self.noise = 1.0 / prediction.prior, noise
         self.evaluations = 0
+        self.last: tuple[Array, ImpactOscillator, Array] | None = None
 
     def at(self, unknowns: Array) -> tuple[ImpactOscillator, Array]:
-        """Oscillator and further unknowns."""
-        values, n = unknowns * self.sizes, len(self.names)
-        own = dict(zip(self.names, values[:n].tolist(), strict=True))
-        return with_values(self.oscillator, own), values[n:]
+        """Oscillator and further unknowns; for the same unknowns the same objects."""
+        if self.last is None or not np.array_equal(self.last[0], unknowns):
+            values, n = unknowns * self.sizes, len(self.names)
+            own = dict(zip(self.names, values[:n].tolist(), strict=True))
+            self.last = unknowns.copy(), with_values(self.oscillator, own), values[n:]
+        return self.last[1], self.last[2]
 
     def residuals(self, unknowns: Array) -> Array:
         """Shape (rows + priors,); not a number where there is no orbit, which rejects the step."""
