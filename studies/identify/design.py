@@ -25,7 +25,6 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 from matplotlib.colors import LogNorm
@@ -226,8 +225,8 @@ def answer(of: Of, found: Sequence[Measurement], plan: Plan) -> str:
         return f"tau to {errors[1]:.1g} and the delay to {1e6 * errors[2]:.2g} us"
 
     return (
-        f"Of {plan.strobes} strobes read to {1e6 * plan.noise:g} um, at an excess of 1e-3, amplitudes known to "
-        f"{1e6 * plan.amplitude_error:g} um: T follows to "
+        f"Of {plan.strobes} strobes read to {1e6 * plan.noise:g} um, at an excess of 1e-3, amplitudes known "
+        f"to {1e6 * plan.amplitude_error:g} um: T follows to "
         + ", ".join(f"{1e3 * errors[0]:.1g} ms (p{m})" for m, errors in alone.items())
         + ". No single p_m tells gap, tau and delay apart; with the gap from the amplitude at grazing "
         f"p{few} gives {words(alone[few])}, the best place, p{first.period} at {first.frequency_hz:.2f} Hz "
@@ -239,7 +238,8 @@ def answer(of: Of, found: Sequence[Measurement], plan: Plan) -> str:
 
 @plotting.in_house_style
 def draw(found: Sequence[Measurement], plan: Plan) -> Figure:
-    """The error of each wanted parameter over frequency and excess, by the orbit that tells most there."""
+    """The error of each wanted parameter by the orbit that tells most at a place; stars: the letter's pairs
+    at an excess of 1e-3; numbers: the best places; grey: the orbit need not outlive the errors."""
     places = [(round(one.frequency_hz, 6), round(one.excess, 9)) for one in found]
     across, up = (sorted({place[i] for place in places}) for i in (0, 1))
     figure, axes = plotting.new_figure(
@@ -251,9 +251,8 @@ def draw(found: Sequence[Measurement], plan: Plan) -> Figure:
         told, lost = np.full((2, len(up), len(across)), np.nan)
         for (f, excess), one in shown.items():
             (told if one.kept else lost)[heights[excess], across.index(f)] = one.errors[k] * SHOWN[name][1]
-        grey: Any = {"cmap": "Greys", "vmin": -1.0, "vmax": 3.0, "rasterized": True}
-        axis.pcolormesh(across, range(len(up)), 0.0 * lost, **grey)
-        mesh = axis.pcolormesh(across, range(len(up)), told, norm=LogNorm(), cmap="viridis_r", rasterized=True)
+        axis.pcolormesh(across, range(len(up)), 0.0 * lost, cmap="Greys", vmin=-1.0, vmax=3.0)
+        mesh = axis.pcolormesh(across, range(len(up)), told, cmap="viridis_r", norm=LogNorm())
         bar = figure.colorbar(mesh, ax=axis, location="top", label=SHOWN[name][0])
         bar.ax.xaxis.set_minor_formatter("")
         axis.plot(list(letter.PERIODS), [np.interp(1e-3, up, range(len(up)))] * 6, **plotting.LETTER_POINTS)
