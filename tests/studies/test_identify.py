@@ -40,7 +40,7 @@ def beam():
 
 
 def far_from(oscillator):
-    """A start that a user might have: half a per cent off in T, some per cent in the gap, half in the rest."""
+    """A start that a user might have: a quarter of a per cent off in T, some in the gap, half in the rest."""
     known = parameters_of(oscillator)
     factors = {"free_period": 0.9975, "gap": 0.97, "decay_rate": 0.85, "restitution": 1.5, "delay": 0.5}
     return with_values(oscillator, {n: known[n].value * f for n, f in factors.items() if n in known})
@@ -91,7 +91,7 @@ def test_the_jacobian_is_that_of_differences(request, name, kind, velocity, name
             for way in (1.0, -1.0)
         ]
         column = (moved[0] - moved[1]) / (2.0 * step)
-        assert np.max(np.abs(exact[:, k] - column)) < 2e-5 * np.max(np.abs(column))
+        assert np.max(np.abs(exact[:, k] - column)) < 1e-4 * np.max(np.abs(column))
     for k, size in enumerate(prediction.sizes):
         step = 1e-6 * size * np.eye(prediction.sizes.size)[k]
         ends = [prediction.values(at, prediction.extra + way * step).ravel() for way in (1.0, -1.0)]
@@ -160,7 +160,7 @@ def test_an_orbit_that_ends_inside_the_confidence_region_is_refused(one_mode):
     motion = simulate(orbit.oscillator, orbit.state(), periods=40)
     rows = one_mode.tip(motion.strobe_displacement)[:, None]
     near = replace(record, rows=rows, amplitude=orbit.amplitude).noisy(1, 2e-5)
-    with pytest.raises(ValueError, match="changes its impacts|no p5"):
+    with pytest.raises(ValueError, match=r"changes its impacts|no p5"):
         fit(near, orbit.oscillator, ("free_period", "restitution"))
 
 
