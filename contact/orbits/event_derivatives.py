@@ -44,8 +44,8 @@ WEIGHTS = np.array([8.0, -1.0]) / 12.0
 PEAKS = 400
 """Points a drive period among which the peaks of a flight are looked for."""
 
-PEAKED = 1e-6
-"""Height of a peak, in gaps, up to which an orbit counts as one that grazes."""
+NEAR = 1e-6
+"""Part of the approach speed by which an orbit may miss its graze: located ones do by 1e-10."""
 
 
 def multiplier_derivatives(found: OrbitDerivatives) -> NDArray[np.complex128]:
@@ -74,16 +74,11 @@ def graze_derivatives(orbit: PeriodicOrbit, changes: Sequence[Change]) -> Array:
     Raises
     ------
     NoDerivative
-        If none of its peaks comes to within 1e-6 of the gap.
+        If none of its peaks grazes at a speed that is the same to 1e-6.
     """
     found = with_speed(orbit, changes)
-    last, wait, height = max(_peaks(orbit), key=lambda peak: peak[2], default=(0, 0.0, -np.inf))
+    last, wait, height = max(_peaks(orbit), key=lambda peak: peak[2], default=(0, orbit.oscillator.period, -np.inf))
     released, oscillator, state = orbit.record[last, 1], orbit.oscillator, orbit.state()
-    if not abs(height) < PEAKED * oscillator.stop.gap:
-        raise NoDerivative(
-            time=orbit.phase + released + wait, gap=-height, velocity=0.0,
-            detail="no peak of the orbit between its touches grazes the stop",
-        )
     run = simulate(oscillator, state, duration=released + 0.5 * wait)
     traced, size = Retraced(found.changes, run, state), len(found.start)
     traced.tangent = np.eye(size, size + found.start.shape[1])
@@ -91,6 +86,11 @@ def graze_derivatives(orbit: PeriodicOrbit, changes: Sequence[Change]) -> Array:
     moved = np.ascontiguousarray(tangent[:, :size] @ found.start + tangent[:, size:])
     clock = traced.clock % oscillator.period
     risen, _rate = all_tip_changes(found.changes.variation, moved, traced.u, traced.v, clock)
+    if not abs(height) <= NEAR * orbit.speed * abs(risen[-1]):
+        raise NoDerivative(
+            time=orbit.phase + released + wait, gap=-height, velocity=0.0,
+            detail="no peak of the orbit between its touches grazes the stop",
+        )
     return np.asarray(found.excess[:-1] - found.excess[-1] * risen[:-1] / risen[-1])
 
 
