@@ -40,7 +40,15 @@ if TYPE_CHECKING:
     from .frequency_equation import ExactModes, UniformBeam, exact_modes, frequency_function
     from .harmonic_balance import PeriodicMotion, periodic_motion
     from .material import ALUMINA, BRASS, DAMPING_TAPE, STEEL, Material
-    from .modal_change import ModalChange
+    from .modal_change import (
+        ModalChange,
+        damping_ratio_change,
+        decay_rate_change,
+        free_period_change,
+        frequency_change,
+        mode_changes,
+        tip_mass_change,
+    )
     from .modal_model import ModalModel, single_mode
     from .modes import Modes, ShapesAlong, natural_modes
     from .parameters import SuspiciousValue
@@ -61,6 +69,7 @@ else:
 
 
 _RULES = ("ConstantLossFactor", "ConstantRatio", "Damping", "MeasuredDecay", "Rayleigh", "StripDamping")
+_CHANGES = ("damping_ratio_change", "decay_rate_change", "free_period_change", "frequency_change")
 _NAMES = {
     "assembly": ("Discretization", "assemble", "default_elements"),
     "backbone": ("Backbone", "backbone_coefficient"),
@@ -71,7 +80,7 @@ _NAMES = {
     "frequency_equation": ("ExactModes", "UniformBeam", "exact_modes", "frequency_function"),
     "harmonic_balance": ("PeriodicMotion", "periodic_motion"),
     "material": ("ALUMINA", "BRASS", "DAMPING_TAPE", "Material", "STEEL"),
-    "modal_change": ("ModalChange",),
+    "modal_change": ("ModalChange", *_CHANGES, "mode_changes", "tip_mass_change"),
     "modal_model": ("ModalModel", "single_mode"),
     "modes": ("Modes", "ShapesAlong", "natural_modes"),
     "parameters": ("SuspiciousValue",),

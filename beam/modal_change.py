@@ -1,36 +1,48 @@
 """How the numbers that an impact sees of a spring change with a parameter of it.
 
-A `ModalModel` holds omega_k, c_k, phi_k and Gamma_k of each mode. Here are their derivatives with respect to
-one parameter p, and where they come from.
+Measured numbers: the damped free period T and the decay rate c_1 are read off the ring-down of mode 1,
+omega_1^2 = (2 pi/T)^2 + (c_1/2)^2; with one mode they are those of `single_mode`. The ratios omega_k/omega_1
+are kept, as under a change of the modulus. Damping ratios zeta_k = c_k/(2 omega_k) may stand for all c_k.
+
+Finite elements: with K x = omega^2 M x, x^T M x = 1, a change (') of K and M moves a simple mode by
+
+    (omega^2)' = x^T (K' - omega^2 M') x,
+    [ K - omega^2 M   M x ] [ x' ]   [ ((omega^2)' M - K' + omega^2 M') x ]
+    [ x^T M            0  ] [ 0  ] = [ -x^T M' x / 2                      ],
+
+regular though K - omega^2 M is not (R. B. Nelson, AIAA J. 14 (1976) 1201, bordered), and Gamma = b^T x. The
+rule of `damping` is given modes with the change as imaginary part, and so are the decay rates it returns
+(complex step: W. Squire and G. Trapp, SIAM Rev. 40 (1998) 110).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import block_array, csr_array
+from scipy.sparse.linalg import splu
 
-from .parameters import require_array, require_whole
+from .assembly import carried
+from .damping import Damping
+from .modal_model import ModalModel
+from .modes import Modes
+from .parameters import require, require_array, require_kind, require_whole
+from .pieces import place
+from .spring import Tip
+
+CLOSEST = 1e-6
+"""Relative distance of two frequencies below which rounding leaves no derivative of their shapes."""
+STEP = 1e-30j
+"""Complex step: its square is far below rounding."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ModalChange:
-    """Derivatives of the four arrays of a `ModalModel` with respect to one parameter.
+    """Derivatives of the four arrays of a `ModalModel` with respect to one parameter, (n_modes,) each.
 
-    Units are those of the array per unit of the parameter. Any sequence of numbers may be given; it is stored
-    as a read-only float64 copy.
-
-    Parameters
-    ----------
-    omega : array_like, shape (n_modes,)
-        Of the undamped angular frequencies [rad/s per unit].
-    decay_rate : array_like, shape (n_modes,)
-        Of the coefficients of q' [1/s per unit].
-    phi : array_like, shape (n_modes,)
-        Of the tip values [kg^(-1/2) per unit].
-    participation : array_like, shape (n_modes,)
-        Of the participations in a motion of the base [kg^(1/2) per unit].
+    Units are those of the array per unit of the parameter; stored as read-only float64 copies.
     """
 
     omega: NDArray[np.float64]
@@ -40,12 +52,9 @@ class ModalChange:
 
     def __post_init__(self) -> None:
         shape = np.shape(self.omega)
-        for field in fields(self):
-            words = "one row of numbers, one for each mode,"
-            row = require_array(
-                field.name, getattr(self, field.name), "its unit per unit of the parameter", dimensions=1,
-                shape=shape, words=words,
-            )  # fmt: skip
+        for field, unit in zip(fields(self), ("rad/s", "1/s", "kg^(-1/2)", "kg^(1/2)"), strict=True):
+            given, unit = getattr(self, field.name), f"{unit} per unit of the parameter"
+            row = require_array(field.name, given, unit, dimensions=1, shape=shape, words="a row of numbers")
             object.__setattr__(self, field.name, row)
 
     @property
@@ -53,7 +62,105 @@ class ModalChange:
         """Number of modes."""
         return self.omega.size
 
-    def truncated(self, count: int) -> ModalChange:
-        """Return the change of the first `count` modes only, 1 <= count <= n_modes."""
-        count = require_whole("count", count, "modes", high=self.n_modes, why=", those of the change")
-        return ModalChange(**{field.name: getattr(self, field.name)[:count] for field in fields(self)})
+
+def free_period_change(model: ModalModel, *, ratios_kept: bool = False) -> ModalChange:
+    """Return the change with T, per second, at fixed decay rates, or at fixed damping ratios."""
+    omega, rates = model.omega, model.decay_rate
+    if ratios_kept:
+        return _of_numbers(-omega / model.free_period, -rates / model.free_period)
+    return _of_numbers(-omega / omega[0] ** 2 * (2.0 * np.pi) ** 2 / model.free_period**3, 0.0 * rates)
+
+
+def decay_rate_change(model: ModalModel, mode: int | None = 0) -> ModalChange:
+    """Return the change at fixed T with c of one mode, from 0 on, per 1/s; None: of mode 1, all with it."""
+    omega, rates = model.omega, model.decay_rate
+    change = rates / rates[0] if mode is None else _one(model, mode)
+    return _of_numbers(0.25 * rates[0] * change[0] * omega / omega[0] ** 2, change)
+
+
+def damping_ratio_change(model: ModalModel, mode: int | None = None) -> ModalChange:
+    """Return the change at fixed T with zeta of one mode, from 0 on; None: of all by the same amount."""
+    omega, rates = model.omega, model.decay_rate
+    change = np.ones(model.n_modes) if mode is None else _one(model, mode)
+    first = 0.5 * rates[0] * omega[0] * (model.free_period / (2.0 * np.pi)) ** 2 * change[0]
+    return _of_numbers(first * omega, 2.0 * omega * change + first * rates)
+
+
+def frequency_change(model: ModalModel, mode: int) -> ModalChange:
+    """Return the change with the undamped frequency of one mode alone, from 0 on, per Hz."""
+    return _of_numbers(2.0 * np.pi * _one(model, mode), 0.0 * model.omega)
+
+
+def tip_mass_change(modes: Modes, damping: Damping) -> ModalChange:
+    """Return the change of the modes that `reduce` keeps with the mass at the tip, per kg."""
+    require_kind("modes", modes, Modes, "Modes, from natural_modes")
+    model = modes.discretization
+    moved = place(model.spring.centreline, model.pieces, model.ties, model.spring.tip_at)
+    return mode_changes(modes, damping, mass=carried(Tip(mass=1.0), moved), base_load=model.tip)
+
+
+def mode_changes(
+    modes: Modes,
+    damping: Damping,
+    *,
+    stiffness: csr_array | None = None,
+    loss_stiffness: csr_array | None = None,
+    mass: csr_array | None = None,
+    base_load: NDArray[np.float64] | None = None,
+) -> ModalChange:
+    """Return the change of the modes that `reduce` keeps with a parameter on which the matrices depend.
+
+    `stiffness`, `loss_stiffness`, `mass` and `base_load` are the derivatives of those of the
+    `Discretization`. What a rule for damping knows from elsewhere, such as a measured rate, is kept.
+
+    Raises
+    ------
+    ValueError
+        Where two frequencies coincide, or a rigid motion gets stiffness; if the rule does not follow.
+    """
+    require_kind("modes", modes, Modes, "Modes, from natural_modes")
+    model, omega, x, keep = modes.discretization, modes.omega, modes.shapes, np.flatnonzero(modes.coupled)
+    none = csr_array(model.mass.shape)
+    d_k, d_m, d_l = (none if part is None else part for part in (stiffness, mass, loss_stiffness))
+    d_square = np.einsum("ik,ik->k", x, d_k @ x - (d_m @ x) * omega**2)
+    require(not d_square[omega == 0.0].any(), "omega holds 0 rad/s; a rigid motion must not get stiffness")
+    d_omega, d_x = np.divide(d_square, 2.0 * omega, out=0.0 * omega, where=omega > 0.0), 0.0 * x
+    for k in keep:
+        apart = np.abs(np.delete(omega, k) - omega[k]).min(initial=np.inf)
+        require(apart > CLOSEST * omega[k], f"omega holds {omega[k]} rad/s twice; there is no derivative")
+        square, border, inert = omega[k] ** 2, (model.mass @ x[:, k])[:, None], d_m @ x[:, k]
+        pencil = block_array([[model.stiffness - square * model.mass, border], [border.T, None]])
+        right = d_square[k] * border[:, 0] - d_k @ x[:, k] + square * inert
+        d_x[:, k] = splu(pencil.tocsc()).solve(np.append(right, -0.5 * x[:, k] @ inert))[:-1]
+    d_phi, d_gamma = model.tip @ d_x, model.base_load @ d_x + (0.0 if base_load is None else base_load @ x)
+    moving = replace(
+        _Moving(**vars(modes)),
+        discretization=replace(
+            model, stiffness=model.stiffness + STEP * d_k, loss_stiffness=model.loss_stiffness + STEP * d_l
+        ),
+        omega=omega + STEP * d_omega,
+        shapes=x + STEP * d_x,
+    )
+    rates = damping.decay_rates(moving)
+    told = f"damping is {damping!r}; it must give complex rates for complex omega, to be followed"
+    require(np.iscomplexobj(rates), told)
+    rates = (rates / STEP).real
+    changes = {"omega": d_omega, "decay_rate": rates, "phi": d_phi, "participation": d_gamma}
+    return ModalChange(**{name: row[keep] for name, row in changes.items()})
+
+
+class _Moving(Modes):
+    """Modes with a change as imaginary part."""
+
+    def __post_init__(self) -> None:
+        """Complex numbers are valid."""
+
+
+def _one(model: ModalModel, mode: int) -> NDArray[np.float64]:
+    """1 at this mode, 0 at the others."""
+    return np.eye(model.n_modes)[require_whole("mode", mode, "[1]", low=0, high=model.n_modes - 1)]
+
+
+def _of_numbers(omega: NDArray[np.float64], rates: NDArray[np.float64]) -> ModalChange:
+    """Tip values and participations stay."""
+    return ModalChange(omega=omega, decay_rate=rates, phi=0.0 * omega, participation=0.0 * omega)

@@ -135,6 +135,14 @@ class ModalModel:
         """Undamped natural frequencies [Hz], shape (n_modes,)."""
         return self.omega / (2.0 * np.pi)
 
+    @property
+    def free_period(self) -> float:
+        """Period of the free damped oscillation of mode 1 [s]; ValueError if it does not swing."""
+        square = self.omega[0] ** 2 - (0.5 * self.decay_rate[0]) ** 2
+        told = f"omega is {self.omega[0]} rad/s and decay_rate {self.decay_rate[0]} 1/s in mode 1"
+        require(square > 0.0, f"{told}; it does not swing, so there is no free period")
+        return float(2.0 * np.pi / np.sqrt(square))
+
     def truncated(self, count: int) -> ModalModel:
         """Return the same structure with its first `count` modes only, 1 <= count <= n_modes."""
         count = require_whole("count", count, "modes", high=self.n_modes, why=", those of the model")

@@ -185,14 +185,17 @@ class Changes:
             2.0 * self.oscillator.model.omega * self.omega, self.decay, self.phi, rest,
         )  # fmt: skip
 
-    def steady(self, clock: float) -> Array:
-        """The changes of the steady motion (q, q') at a fixed time `clock` [s] after a strobe, shape
-        (2 n_modes, changes)."""
+    def steady(self, clock: float | Array) -> Array:
+        """The changes of the steady motion (q, q') at fixed times `clock` [s] after a strobe, shape
+        (..., 2 n_modes, changes)."""
+        clock = np.asarray(clock, dtype=float)[..., None, None]
         if self.oscillator.drive is None:
-            return np.vstack([self.offset.T, np.zeros_like(self.offset.T)])
+            still = np.vstack([self.offset.T, np.zeros_like(self.offset.T)])
+            return np.broadcast_to(still, (*clock.shape[:-2], *still.shape))
         drive, steady = self.oscillator.drive, self.oscillator.steady_response()
         w, turn = drive.angular_frequency, np.exp(1j * drive.angular_frequency * clock)
         size = drive.amplitude * self.response + np.multiply.outer(self.amplitude, steady)
         moved = (size + 1j * clock * drive.amplitude * self.pace[:, None] * steady) * turn
         rate = w * moved + self.pace[:, None] * drive.amplitude * steady * turn
-        return np.vstack([self.offset.T + moved.imag.T, rate.real.T])
+        parts = self.offset + moved.imag, rate.real
+        return np.concatenate([np.swapaxes(part, -1, -2) for part in parts], axis=-2)

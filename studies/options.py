@@ -21,6 +21,9 @@ from studies.programs import DONE, perform, tell
 
 Answer = Mapping[str, object]
 
+POSITIONAL = "positional"
+"""Beside the words of an argument: it needs no name on the command line."""
+
 
 class Parser(argparse.ArgumentParser):
     """A parser that refuses with a ValueError and names the nearest option to an unknown one."""
@@ -39,7 +42,7 @@ class Parser(argparse.ArgumentParser):
     def read(self, argv: Sequence[str], output: TextIO) -> argparse.Namespace:
         """The arguments; help goes to `output`."""
         with contextlib.redirect_stdout(output):
-            arguments, rest = self.parse_known_args(argv)
+            arguments, rest = self.parse_known_intermixed_args(argv)
         for word in rest:
             nearest = get_close_matches(word.partition("=")[0], self._option_string_actions, n=1)
             self.error(f"there is no option {word}" + (f"; did you mean {nearest[0]}?" if nearest else ""))
@@ -89,16 +92,19 @@ def tool(parser: Parser, argv: Sequence[str] | None, work: Callable[..., tuple[s
 
 
 def add_options(parser: Parser, function: Callable[..., object]) -> dict[str, object]:
-    """Make options of the keyword-only arguments of a study; returns their defaults."""
+    """Make options of the keyword-only arguments of a study; returns their defaults.
+
+    One annotated with `POSITIONAL` as well is given without a name; `tuple[T, ...]` takes one value or more.
+    """
     group = parser.add_argument_group("options of this study")
     hints = typing.get_type_hints(function, include_extras=True)
     defaults: dict[str, object] = {}
     for name, entry in inspect.signature(function).parameters.items():
         if entry.kind is not inspect.Parameter.KEYWORD_ONLY:
             continue
-        kind, words = hints[name], ""
+        kind, words, marks = hints[name], "", ()
         if get_origin(kind) is Annotated:
-            kind, words = get_args(kind)[:2]
+            kind, words, *marks = get_args(kind)
         if get_origin(kind) in (Union, types.UnionType):  # T | None
             kind = next(part for part in get_args(kind) if part is not types.NoneType)
         default = defaults[name] = entry.default
@@ -112,8 +118,11 @@ def add_options(parser: Parser, function: Callable[..., object]) -> dict[str, ob
             about["choices"] = get_args(kind)
         else:
             if get_origin(kind) is tuple:
-                about["nargs"], kind = len(get_args(kind)), get_args(kind)[0]
+                several = Ellipsis in get_args(kind)
+                about["nargs"], kind = "+" if several else len(get_args(kind)), get_args(kind)[0]
             about |= {"type": READERS[kind], "metavar": kind.__name__.upper()}
+            if POSITIONAL in marks:
+                flag, about = name, {**about, "nargs": "?", "metavar": name.upper(), "default": default}
         group.add_argument(flag, **about)  # type: ignore[arg-type]
     return defaults
 

@@ -34,7 +34,7 @@ class MeasuredRates:
 
     def decay_rates(self, modes: Modes) -> NDArray[np.float64]:
         """Return c [1/s], shape (n_modes,)."""
-        found = np.full(modes.omega.size, np.nan)
+        found = np.full_like(modes.omega, np.nan)
         places = np.flatnonzero(modes.coupled)[: len(self.rates)]
         found[places] = self.rates[: places.size]
         return found

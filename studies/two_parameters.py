@@ -43,6 +43,9 @@ __all__ = ["Extracted", "extracted", "fold_of_kicks", "law_of", "one_mode_fold",
 EXCESSES = np.geomspace(1e-6, 0.3, 45)
 """Of the first collisions."""
 
+SHORTEST = 1e-12
+"""Delay over the drive period below which it is rounding."""
+
 FEWEST = 8
 """Collisions with a restitution that make a law."""
 
@@ -57,7 +60,8 @@ def law_of(oscillator: ImpactOscillator) -> DelayedRestitution:
             f"parameters need {FEWEST} of them"
         )
     speed, restitution, delay = np.array([(one.approach, one.restitution, one.delay) for one in kept]).T
-    columns = restitution, np.maximum(delay, 0.0) / speed  # rounding, where mode 1 is all there is
+    # rounding, where mode 1 is all there is, in which no rebound can wait
+    columns = restitution, np.where(delay > SHORTEST * oscillator.period, delay, 0.0) / speed
     tables = [PchipInterpolator(np.log(speed), values) for values in columns]
 
     def within(v: float) -> float:

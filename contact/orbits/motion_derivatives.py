@@ -80,7 +80,7 @@ def motion_derivatives(
     wanted = require_array("times", () if times is None else times, "s", dimensions=1, words="a rising array")
     several = Changes(oscillator=oscillator, changes=tuple(changes))
     run, n = simulate(oscillator, state, periods=periods, times=wanted), oscillator.n_modes
-    traced, count = Retraced(several, run, state), len(several.changes)
+    count = len(several.changes)
     amplitude, w = oscillator.driven.amplitude, oscillator.driven.angular_frequency
     sine, cosine = np.sin(w * state.time), np.cos(w * state.time)
     tangent = np.zeros((2 * n + 2, 2 * n + count))
@@ -88,20 +88,20 @@ def motion_derivatives(
     turned = amplitude * state.time * several.pace
     tangent[2 * n, 2 * n :] = several.amplitude * sine + turned * cosine
     tangent[2 * n + 1, 2 * n :] = several.amplitude * cosine - turned * sine
-    traced.tangent = tangent
 
-    strobes = np.empty((run.strobe_time.size, 2 * n, 2 * n + count))
-    states = np.empty((wanted.size, 2 * n, 2 * n + count))
-    events = [(t, i, strobes) for i, t in enumerate(run.strobe_time)]
-    events += [(t, i, states) for i, t in enumerate(wanted)]
-    for time, i, table in sorted(events, key=lambda event: event[0]):
-        table[i] = traced.to(float(time))[: 2 * n]
-        if table is states:
-            table[i, :, 2 * n :] += several.steady(float(time))
-            continue
+    states, done, traced = np.empty((wanted.size, 2 * n, 2 * n + count)), 0, Retraced(several, run, state)
+    traced.tangent = tangent.copy()
+    while done < wanted.size:
+        done += traced.through(wanted[done:], states[done:])
+    states[:, :, 2 * n :] += several.steady(wanted)
+
+    strobes, traced = np.empty((run.strobe_time.size, 2 * n, 2 * n + count)), Retraced(several, run, state)
+    traced.tangent = tangent
+    for i, time in enumerate(run.strobe_time):
+        strobes[i] = traced.to(float(time))[: 2 * n]
         q = np.concatenate([run.strobe_displacement[i], run.strobe_velocity[i]])
         pace = pace_of_deviations(oscillator, q, traced.touching(float(time)))
         late = round(time / oscillator.period) * several.of_period
-        table[i, :, 2 * n :] += several.steady(0.0) + np.multiply.outer(pace, late)
+        strobes[i, :, 2 * n :] += several.steady(0.0) + np.multiply.outer(pace, late)
     late = np.array([traced.late[i] for i in range(len(run.impacts))]).reshape(-1, 2 * n + count)
     return MotionDerivatives(run=run, impact_time=late, strobes=strobes, states=states)

@@ -9,7 +9,6 @@ period count as disagreement; none is drawn as a period.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -96,9 +95,7 @@ def springs(scene: Scene) -> list[tuple[str, Scene, ModalModel]]:
 
 def born_at(job: Job) -> int:
     """Period that is born; 0 for none."""
-    omega, decay = float(job.model.omega[0]), float(job.model.decay_rate[0])
-    frequency = job.f_times_t * math.sqrt(omega**2 - 0.25 * decay**2) / (2.0 * math.pi)
-    strobed = StroboscopicMap(oscillator=beam_at(job.scene, frequency, job.model))
+    strobed = StroboscopicMap(oscillator=beam_at(job.scene, job.f_times_t / job.model.free_period, job.model))
     return born_period(strobed, job.excess, below=-job.excess, most_cycles=MOST_CYCLES)
 
 

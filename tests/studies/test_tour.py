@@ -24,7 +24,7 @@ def names(tmp_path_factory):
 
 
 def test_the_spring_has_the_period_of_the_letter(names):
-    assert names["free_period"] == pytest.approx(FREE_PERIOD_S, rel=1e-3)
+    assert names["model"].free_period == pytest.approx(FREE_PERIOD_S, rel=1e-3)
 
 
 def test_the_orbit_is_that_of_the_letter(names):

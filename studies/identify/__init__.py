@@ -1,0 +1,1 @@
+"""From a measured record to the parameters and their errors."""

@@ -1,0 +1,296 @@
+"""Least squares: from a record to parameters, errors and correlations, and whether the model is enough.
+
+    r_i = (observed_i - predicted_i(p))/sigma_i,   chi^2 = sum r_i^2  ->  least,
+    covariance  s^2 (J^T J)^-1,   s^2 = 1 where the noise is known, else chi^2/(n - number of unknowns),
+
+90 % intervals by Student's t. A step to where there is no orbit is rejected by the trust region. The model is
+too small where residuals are not noise: by their size if the noise is known, and by their pattern: strobe
+points by the lack-of-fit test of rows that repeat (between the m points, against within), a displacement by
+the autocorrelation of its residuals (Ljung and Box, Biometrika 65 (1978) 297).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+from scipy.optimize import least_squares
+
+from contact import ContactError, ImpactOscillator
+from studies import letter
+from studies.identify.parameters import parameters_of, require_names, with_values
+from studies.identify.predictions import Prediction
+from studies.identify.records import READ_OUT, Record
+from studies.identify.starts import prediction_of
+
+__all__ = ["Fit", "Profile", "fit", "profile"]
+
+Array = NDArray[np.float64]
+
+LEVEL = 0.90
+"""Of the intervals."""
+
+SINGULAR = 1e-8
+"""Ratio of singular values below which a direction of the parameters is not seen at all."""
+
+TOO_SMALL = 1e-3
+"""Probability of such residuals from noise alone, below which the model is called too small."""
+
+LAGS = 10
+"""Of the autocorrelation of residuals."""
+
+REGION = 2.0
+"""Half axes of the confidence region in standard errors."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Fit:
+    """A fit; arrays by `names`, in SI units.
+
+    `noise`: standard deviation of x [m], or of an excess in units of its error; `freedom`: rows less
+    unknowns; `residuals`: observed less predicted, shape of the record's `observed`; `chance`: probability of
+    residuals of such size or pattern from noise alone; `problem` and `unknowns`: what was solved.
+    """
+
+    record: Record
+    oscillator: ImpactOscillator
+    names: tuple[str, ...]
+    start: Array
+    estimate: Array
+    covariance: Array
+    noise: float
+    noise_known: bool
+    freedom: int
+    residuals: Array
+    chance: float
+    evaluations: int
+    problem: Problem
+    unknowns: Array
+
+    @property
+    def errors(self) -> Array:
+        """Standard errors."""
+        return np.sqrt(np.diag(self.covariance))
+
+    @property
+    def correlations(self) -> Array:
+        """Shape (n, n)."""
+        return self.covariance / np.outer(self.errors, self.errors)
+
+    @property
+    def too_small(self) -> bool:
+        """Whether the residuals are no noise, so that the model is too small for the record."""
+        return self.chance < TOO_SMALL
+
+    def intervals(self, level: float = LEVEL) -> Array:
+        """Lower and upper ends, shape (n, 2), by Student's t; of the normal law where the noise is known."""
+        tail = 0.5 + 0.5 * level
+        width = stats.norm.ppf(tail) if self.noise_known else stats.t.ppf(tail, self.freedom)
+        return self.estimate[:, None] + np.outer(self.errors, [-width, width])
+
+
+class Problem:
+    """Residuals and Jacobian in units of the noise, by unknowns in units of their size."""
+
+    def __init__(
+        self, prediction: Prediction, oscillator: ImpactOscillator, names: tuple[str, ...], noise: float
+    ) -> None:
+        self.prediction, self.oscillator, self.names = prediction, oscillator, names
+        known = parameters_of(oscillator)
+        self.sizes = np.concatenate([[known[name].size for name in names], prediction.sizes])
+        self.start = np.concatenate([[known[name].value for name in names], prediction.extra]) / self.sizes
+        self.weights = 1.0 / prediction.record.units(noise).ravel()
+        self.observed = prediction.record.observed.ravel()
+        self.held, self.noise = 1.0 / prediction.prior, noise
+        self.evaluations = 0
+
+    def at(self, unknowns: Array) -> tuple[ImpactOscillator, Array]:
+        """Oscillator and further unknowns."""
+        values, n = unknowns * self.sizes, len(self.names)
+        own = dict(zip(self.names, values[:n].tolist(), strict=True))
+        return with_values(self.oscillator, own), values[n:]
+
+    def residuals(self, unknowns: Array) -> Array:
+        """Shape (rows + priors,); not a number where there is no orbit, which rejects the step."""
+        self.evaluations += 1
+        try:
+            oscillator, extra = self.at(unknowns)
+            predicted = self.prediction.values(oscillator, extra).ravel()
+        except (ContactError, ValueError):
+            return np.full(self.observed.size + self.held.size, np.nan)
+        return np.concatenate([(predicted - self.observed) * self.weights, extra * self.held])
+
+    def jacobian(self, unknowns: Array) -> Array:
+        """Shape (rows + priors, unknowns)."""
+        oscillator, extra = self.at(unknowns)
+        rows = self.prediction.jacobian(oscillator, extra, self.names) * self.weights[:, None]
+        priors = np.hstack([np.zeros((extra.size, len(self.names))), np.diag(self.held)])
+        return np.vstack([rows, priors]) * self.sizes
+
+    def solve(self, start: Array, fixed: int | None = None) -> Any:
+        """``scipy.optimize.least_squares`` from `start`, perhaps with one unknown held."""
+        free = np.arange(start.size) != (-1 if fixed is None else fixed)
+        whole = start.copy()
+
+        def filled(part: Array) -> Array:
+            whole[free] = part
+            return whole
+
+        if not np.all(np.isfinite(self.residuals(start))):
+            raise ValueError("there is no orbit like the record's at the start of the fit")
+        found = least_squares(
+            lambda part: self.residuals(filled(part)), start[free], x_scale="jac", max_nfev=60,
+            jac=lambda part: self.jacobian(filled(part))[:, free], xtol=1e-10, ftol=1e-12, gtol=1e-12,
+        )  # fmt: skip
+        found.x = filled(found.x).copy()
+        return found
+
+
+def fit(
+    record: Record, oscillator: ImpactOscillator, names: Sequence[str], *, noise: float | None = None
+) -> Fit:
+    """Fit the named parameters; the others keep the values of `oscillator`, driven as the record was.
+
+    Parameters
+    ----------
+    record : Record
+    oscillator : ImpactOscillator
+        Where the fit starts and what is not fitted.
+    names : sequence of str
+        Of ``parameters.parameters_of(oscillator)``.
+    noise : float, optional
+        Standard deviation of the read-out where it is known [m]; for a table of excesses [1].
+
+    Raises
+    ------
+    ValueError
+        In one sentence, for a record that cannot tell what is asked.
+    """
+    require_names(names, oscillator)
+    names = tuple(names)
+    table = record.kind == "transitions"
+    known = noise is not None or len(record.columns) == 4
+    unit = noise or (letter.AMPLITUDE_STABILITY if table else READ_OUT)
+    prediction, begun = prediction_of(record, oscillator, names)
+    problem = Problem(prediction, begun, names, unit)
+    rows, unknowns = problem.observed.size, problem.start.size - int(np.isfinite(prediction.prior).sum())
+    if rows < unknowns + (not known):
+        raise ValueError(f"the record has {rows} numbers, too short for {unknowns} unknowns and their errors")
+    at = problem.start
+    for part in prediction.parts(begun)[:-1]:
+        at = Problem(part, begun, names, unit).solve(at).x
+    found = problem.solve(at)
+    freedom = max(rows - unknowns, 1)
+    spread = 1.0 if known else float(np.sqrt(2.0 * found.cost / freedom))
+    n, values = len(names), found.x * problem.sizes
+    _u, singular, directions = np.linalg.svd(found.jac, full_matrices=False)
+    _require_seen(singular, directions, names)
+    covariance = (directions.T / singular**2 @ directions * spread**2)[:n, :n]
+    fitted, _extra = problem.at(found.x)
+    residuals = -found.fun[:rows] / problem.weights
+    result = Fit(
+        record=prediction.record, oscillator=fitted, names=names, estimate=values[:n], noise=spread * unit,
+        start=problem.start[:n] * problem.sizes[:n], noise_known=known, freedom=freedom,
+        covariance=covariance * np.outer(problem.sizes[:n], problem.sizes[:n]), problem=problem,
+        unknowns=found.x, residuals=residuals.reshape(prediction.record.observed.shape), evaluations=problem.evaluations,
+        chance=_chance(found.fun[:rows], prediction, known, freedom, unknowns),
+    )  # fmt: skip
+    _require_small(result, problem, found.x, directions, singular / spread)
+    return result
+
+
+def _require_seen(singular: Array, directions: Array, names: tuple[str, ...]) -> None:
+    if not singular[-1] > SINGULAR * singular[0]:
+        share = np.abs(directions[-1][: len(names)])
+        blind = [name for name, part in zip(names, share, strict=True) if part > 0.3 * share.max()]
+        words = f"tell {' from '.join(blind)}" if len(blind) > 1 else f"see {blind[0]}"
+        raise ValueError(f"the record cannot {words}: fit fewer parameters or another record")
+
+
+def _require_small(
+    result: Fit, problem: Problem, unknowns: Array, directions: Array, inverse: Array
+) -> None:
+    """ValueError where a parameter is lost in its error, or the impacts change inside the region."""
+    n = len(result.names)
+    if result.too_small:  # errors mean little then, and that is told
+        return
+    wide = result.errors > problem.sizes[:n] * np.maximum(np.abs(unknowns[:n]), 1.0)
+    if np.any(wide):
+        axis = np.abs(directions[-1][:n])
+        blind = [name for name, part in zip(result.names, axis, strict=True) if part > 0.3 * axis.max()]
+        lost = ", ".join(name for name, one in zip(result.names, wide, strict=True) if one)
+        raise ValueError(
+            f"the record cannot tell {' from '.join(blind)}: the standard error of {lost} is above its value"
+        )
+    before = problem.prediction.touches(*problem.at(unknowns))
+    for axis, scale in zip(directions, inverse, strict=True):
+        if np.linalg.norm(axis[:n]) < 1e-3:
+            continue
+        for sign in (-REGION, REGION):
+            try:
+                after = problem.prediction.touches(*problem.at(unknowns + sign * axis / scale))
+            except (ContactError, ValueError):
+                after = -1
+            if before < 0 or after != before:
+                raise ValueError(
+                    "the orbit changes its impacts inside the confidence region: errors would mean nothing; "
+                    "record it longer or farther from where it ends"
+                )
+
+
+def _chance(residuals: Array, prediction: Prediction, known: bool, freedom: int, unknowns: int) -> float:
+    """Probability of residuals of this size or pattern from noise alone."""
+    found = [float(stats.chi2.sf(residuals @ residuals, freedom))] if known else []
+    record, period = prediction.record, getattr(prediction, "period", 0)
+    if record.kind == "strobe":
+        rows = residuals.reshape(len(record.rows), -1)
+        parts = [rows[k::period] for k in range(period)]
+        between = sum(len(part) * part.mean(axis=0) @ part.mean(axis=0) for part in parts)
+        within, points = float(residuals @ residuals - between), period * rows.shape[1]
+        if points > unknowns and residuals.size > points:
+            ratio = between / (points - unknowns) / (within / (residuals.size - points))
+            found.append(float(stats.f.sf(ratio, points - unknowns, residuals.size - points)))
+    if record.kind == "displacement":
+        size, off = residuals.size, residuals - residuals.mean()
+        lagged = np.array([off[k:] @ off[:-k] for k in range(1, LAGS + 1)]) / (off @ off)
+        box = size * (size + 2) * np.sum(lagged**2 / (size - np.arange(1, LAGS + 1)))
+        found.append(float(stats.chi2.sf(box, LAGS)))
+    return min(1.0, len(found) * min(found)) if found else 1.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Profile:
+    """One point of a profile likelihood: `parameter` held at `value`, all others fitted again.
+
+    `other` is the parameter that trades off with it, `other_value` what it becomes; `depth` is the rise of
+    chi^2 in units of the noise's variance.
+    """
+
+    parameter: str
+    value: float
+    other: str
+    other_value: float
+    depth: float
+
+
+def profile(found: Fit, name: str, other: str, *, points: int = 9, reach: float = 3.0) -> list[Profile]:
+    """The profile likelihood of `name`, `reach` standard errors to both sides."""
+    problem, i, j, n = found.problem, found.names.index(name), found.names.index(other), len(found.names)
+    variance, scale = (found.noise / problem.noise) ** 2, problem.sizes[:n]
+    best, rows = np.sum(problem.residuals(found.unknowns) ** 2), list[Profile]()
+    for side in np.linspace(-reach, reach, points):
+        start, along = found.unknowns.copy(), found.covariance[:, i] / found.errors[i]
+        start[:n] += side * along / scale
+        try:
+            held = problem.solve(start, fixed=i)
+        except ValueError:
+            continue
+        rows.append(Profile(
+            parameter=name, value=float(held.x[i] * scale[i]), other=other,
+            other_value=float(held.x[j] * scale[j]), depth=float(2.0 * held.cost - best) / variance,
+        ))  # fmt: skip
+    return rows

@@ -1,0 +1,206 @@
+"""Measured records: three kinds, told by their heading, and synthetic ones.
+
+    x_m[,v_m_per_s]                        strobe points of a settled motion, a row a drive period
+    time_s,x_m                             the tip at a constant rate
+    frequency_hz,period,excess[,error]     a table: where p_m is lost as the drive is lowered, F/F_g - 1
+
+x is the displacement of the tip relative to the base, the base moves as Z sin(2 pi f t), and time zero is a
+strobe. Lines that begin with # are skipped but for `# frequency_hz = 22.2` and `# amplitude_m = 0.002`, the
+drive of the first two kinds. The noise is that of the read-out, independent from row to row: of x one sigma
+[m], of v 2 pi f sigma; of an excess the error in the table or the letter's amplitude stability.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact import ImpactOscillator, StroboscopicMap, simulate
+from contact.orbits import Shooting, born
+from studies import letter
+
+__all__ = ["READ_OUT", "Kind", "Record", "read_record", "synthetic"]
+
+Array = NDArray[np.float64]
+Kind = Literal["strobe", "displacement", "transitions"]
+
+READ_OUT = 0.5e-6
+"""Noise of the read-out of synthetic records, and what residuals are counted in if nobody says [m]."""
+
+HEADINGS: dict[tuple[str, ...], Kind] = {
+    ("x_m",): "strobe",
+    ("x_m", "v_m_per_s"): "strobe",
+    ("time_s", "x_m"): "displacement",
+    ("frequency_hz", "period", "excess"): "transitions",
+    ("frequency_hz", "period", "excess", "error"): "transitions",
+}
+NOTES = ("frequency_hz", "amplitude_m")
+
+FEWEST = {"strobe": 4, "displacement": 40, "transitions": 1}
+"""Rows that each kind needs: strobes, rows a drive period, transitions."""
+
+UNEQUAL = 0.02
+"""Part of a time step by which one may differ: times are printed with few digits."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Record:
+    """A record: its `columns`, `rows` of shape (n_rows, n_columns), and the drive where it is known.
+
+    `frequency` [Hz] and `amplitude` [m] are None where the record does not say them.
+    """
+
+    columns: tuple[str, ...]
+    rows: Array
+    frequency: float | None = None
+    amplitude: float | None = None
+
+    @property
+    def kind(self) -> Kind:
+        """Which of the three kinds it is."""
+        return HEADINGS[self.columns]
+
+    @property
+    def observed(self) -> Array:
+        """What a model has to give, shape (n_rows, 1 or 2): x [m] and perhaps v [m/s], or excess [1]."""
+        first = {"strobe": 0, "displacement": 1, "transitions": 2}[self.kind]
+        return self.rows[:, first : first + len(self.columns) if self.kind == "strobe" else first + 1]
+
+    def units(self, noise: float) -> Array:
+        """Standard deviation of each observed number if that of x is `noise`; shape of `observed`."""
+        if self.kind == "transitions":
+            errors = self.rows[:, 3:] if len(self.columns) > 3 else np.full((len(self.rows), 1), noise)
+            return np.asarray(errors)
+        each = [1.0, 2.0 * math.pi * (self.frequency or 1.0)][: self.observed.shape[1]]
+        return np.broadcast_to(noise * np.array(each), self.observed.shape)
+
+    def noisy(self, seed: int, noise: float = READ_OUT) -> Record:
+        """The record with normal noise on what is observed, standard deviations as in `units`."""
+        rows, seen = self.rows.copy(), self.observed
+        first = len(self.columns) - 1 if self.kind == "displacement" else 2 * (self.kind == "transitions")
+        off = np.random.default_rng(seed).standard_normal(seen.shape) * self.units(noise)
+        rows[:, first : first + seen.shape[1]] += off
+        return replace(self, rows=rows)
+
+    def text(self) -> str:
+        """The record as CSV."""
+        notes = zip(NOTES, (self.frequency, self.amplitude), strict=True)
+        lines = [f"# {name} = {value!r}" for name, value in notes if value is not None]
+        cells = (",".join(f"{number:.10g}" for number in row) for row in self.rows)
+        return "\n".join([*lines, ",".join(self.columns), *cells]) + "\n"
+
+
+def read_record(path: Path) -> Record:
+    """The record in a CSV file; ValueError with one sentence on what is wrong with it."""
+    try:
+        lines = [line.strip() for line in path.read_text(encoding="utf-8-sig").splitlines()]
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "it is not text in UTF-8"
+        raise ValueError(f"the record {path} cannot be read: {reason}") from error
+    notes = dict[str, float]()
+    for line in lines:
+        name, equals, value = (part.strip() for part in line.lstrip("#").partition("="))
+        if line.startswith("#") and equals and name in NOTES:
+            notes[name] = _number(value, f"the note {name}", path)
+    kept = [line for line in lines if line and not line.startswith("#")]
+    heading = tuple(word.strip().lower() for word in kept[0].split(",")) if kept else ()
+    if heading not in HEADINGS:
+        known = "; ".join(",".join(names) for names in HEADINGS)
+        found = ",".join(heading)[:60] or "nothing"
+        raise ValueError(f"the record {path} has the heading {found!r}; it must be one of {known}")
+    cells = [line.split(",") for line in kept[1:]]
+    for i, row in enumerate(cells, 1):
+        if len(row) != len(heading):
+            raise ValueError(f"row {i} of {path} has {len(row)} cells, the heading {len(heading)}")
+    numbers = [[_number(cell, f"row {i}", path) for cell in row] for i, row in enumerate(cells, 1)]
+    rows = np.array(numbers, dtype=float).reshape(-1, len(heading))
+    record = Record(columns=heading, rows=rows, frequency=notes.get(NOTES[0]), amplitude=notes.get(NOTES[1]))
+    _check(record, path)
+    return record
+
+
+def _number(text: str, place: str, path: Path) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise ValueError(f"{place} of {path} has {text.strip()[:40]!r}, which is not a finite number")
+    return number
+
+
+def _check(record: Record, path: Path) -> None:
+    """ValueError for rows that no record of its kind has."""
+    rows, fewest = record.rows, FEWEST[record.kind]
+    if len(rows) < fewest:
+        raise ValueError(f"the record {path} has {len(rows)} rows; one of its kind needs {fewest} at least")
+    if record.kind == "displacement":
+        steps = np.diff(rows[:, 0])
+        uneven = np.flatnonzero(np.abs(steps - np.median(steps)) > UNEQUAL * np.median(steps))
+        if uneven.size or not np.median(steps) > 0.0 or rows[0, 0] < 0.0:
+            row = int(uneven[0]) + 2 if uneven.size else 1
+            raise ValueError(f"time_s of {path} must rise from 0 or later in equal steps; see row {row}")
+    if record.kind == "transitions":
+        wrong = (rows[:, 0] <= 0.0) | (rows[:, 1] % 1 != 0) | (rows[:, 1] < 1) | (rows[:, 2] <= -1.0)
+        wrong |= np.any(rows[:, 3:] <= 0.0, axis=1)
+        if np.any(wrong):
+            raise ValueError(
+                f"row {int(np.argmax(wrong)) + 1} of {path} needs a frequency above 0 Hz, a whole period, an "
+                "excess above -1 and an error above 0"
+            )
+
+
+def synthetic(
+    kind: Kind, oscillator: ImpactOscillator, *, seed: int | None = None, noise: float | None = None,
+    periods: int = 40, rate: float = 2000.0, velocity: bool = False,
+    transitions: tuple[tuple[float, int], ...] = tuple(letter.PERIODS.items()),
+) -> Record:  # fmt: skip
+    """What an oscillator at its drive gives to measure, with read-out noise unless `seed` is None.
+
+    Parameters
+    ----------
+    kind : str
+    oscillator : ImpactOscillator
+        At its drive amplitude; the motion is the one it settles on from just below grazing.
+    seed, noise
+        Of the noise [m, or excess for a table].
+    periods : int
+        Drive periods that are recorded.
+    rate : float
+        Rows a second of a displacement record [Hz].
+    velocity : bool
+        Whether strobe points have their velocity.
+    transitions : pairs of (frequency [Hz], m)
+        Of the table; the folds are those of the oscillator driven there.
+    """
+    drive = oscillator.driven
+    if kind == "transitions":
+        found = []
+        for frequency, period in transitions:
+            there = replace(oscillator, drive=replace(drive, frequency=frequency))
+            fold = Shooting(oscillator=there, period=period).fold()
+            if fold is not None:
+                found.append([frequency, float(period), fold.excess])
+        record = Record(columns=("frequency_hz", "period", "excess"), rows=np.array(found))
+        usual = letter.AMPLITUDE_STABILITY
+    else:
+        strobed = StroboscopicMap(oscillator=oscillator)
+        start = born(strobed, oscillator.excess).end
+        begin = round(start.time * drive.frequency) / drive.frequency
+        times = np.arange(int(periods / drive.frequency * rate)) / rate
+        asked = times if kind == "displacement" else np.arange(periods) / drive.frequency
+        motion = simulate(oscillator, start, periods=periods + 1, times=np.maximum(start.time, begin + asked))
+        rows = [oscillator.tip(motion.displacement), oscillator.tip(motion.velocity)][: 1 + velocity]
+        columns: tuple[str, ...] = ("x_m", "v_m_per_s")[: 1 + velocity]
+        if kind == "displacement":
+            rows, columns = [times, rows[0]], ("time_s", "x_m")
+        record = Record(
+            columns=columns, rows=np.column_stack(rows), frequency=drive.frequency, amplitude=drive.amplitude
+        )
+        usual = READ_OUT
+    return record if seed is None else record.noisy(seed, usual if noise is None else noise)
