@@ -102,7 +102,7 @@ def add_options(parser: Parser, function: Callable[..., object]) -> dict[str, ob
     for name, entry in inspect.signature(function).parameters.items():
         if entry.kind is not inspect.Parameter.KEYWORD_ONLY:
             continue
-        kind, words, marks = hints[name], "", ()
+        kind, words, marks = hints[name], "", list[str]()
         if get_origin(kind) is Annotated:
             kind, words, *marks = get_args(kind)
         if get_origin(kind) in (Union, types.UnionType):  # T | None

@@ -103,5 +103,6 @@ def motion_derivatives(
         pace = pace_of_deviations(oscillator, q, traced.touching(float(time)))
         late = round(time / oscillator.period) * several.of_period
         strobes[i, :, 2 * n :] += several.steady(0.0) + np.multiply.outer(pace, late)
+    traced.to(float(run.end.time))
     late = np.array([traced.late[i] for i in range(len(run.impacts))]).reshape(-1, 2 * n + count)
     return MotionDerivatives(run=run, impact_time=late, strobes=strobes, states=states)

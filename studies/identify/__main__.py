@@ -34,9 +34,8 @@ import numpy as np
 from beam.parameters import require_within
 from contact import DelayedRestitution, HarmonicDrive, ImpactOscillator
 from studies.identify.fit import Fit, Profile, fit, profile
-from studies.identify.parameters import parameters_of
+from studies.identify.parameters import fitted_scene, parameters_of
 from studies.identify.records import Kind, Record, read_record, synthetic
-from studies.identify.scenes import fitted_scene
 from studies.options import POSITIONAL
 from studies.run import Run, study
 from studies.scene import Scene, beam_at, harmonic, model_of, single_mode_at
@@ -200,7 +199,11 @@ def identify(
         if row.too_small:
             run.say(f"{row.record}: the model is too small: its residuals are no noise (p {row.chance:.0e})")
     best = found[given[0][0]]
-    run.text("fitted.toml", fitted_scene(scene, best, estimates))
+    about = [f"# {row.parameter} {row.told} {row.unit}" for row in estimates if row.record == given[0][0]]
+    table = best.record.kind == "transitions"
+    frequencies = sorted(set(best.record.rows[:, 0])) if table else [best.oscillator.driven.frequency]
+    fitted = fitted_scene(scene, best.oscillator, frequencies)
+    run.text("fitted.toml", "\n".join([*about, "", fitted.dump()]))
     from studies.identify import figures  # matplotlib is slow to import
 
     run.figure("identify", figures.draw(found, profiles), figures.CAPTION)

@@ -1,34 +1,33 @@
-"""The parameters that a record may tell of an impact oscillator: value, unit, and the oscillator with others.
+"""The parameters that a record may tell of an impact oscillator: values, derivatives, and other values.
 
     free_period T, decay_rate c     of mode 1: omega_1^2 = (2 pi/T)^2 + (c/2)^2; the other frequencies keep
                                     their ratio to omega_1, the other decay rates theirs to c
     gap                             of the stop
     restitution, delay, stiffness, damping, dissipation     the plain numbers of the contact law
-    frequency, amplitude            of the base motion
+    frequency, amplitude            of the base motion; with one mode Z is that of Eq. (1), Gamma phi Z of a
+                                    spring, so that it is fitted where the record is not that of one mode
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
-from functools import partial
+from typing import Any
 
 from beam import decay_rate_change, free_period_change
-from contact import ContactLaw, ImpactOscillator
+from contact import ContactLaw, DelayedRestitution, HertzContact, ImpactOscillator, LinearContact
 from contact.orbits import Change
+from studies.scene import Scene, hertz_of
 
-__all__ = ["Parameter", "changes_of", "parameters_of", "require_names", "with_values"]
+__all__ = ["Parameter", "changes_of", "fitted_scene", "parameters_of", "require_names", "with_values"]
 
-SHORT_DELAY = 1e-3
-"""Of the drive period: what counts as one unit of a delay, which may be zero."""
+LEAST = {"delay": 1e-3, "restitution": 0.01, "decay_rate": 0.01}
+"""What counts as a change of a parameter that may be zero, times drive periods or per drive period if it has
+a unit."""
 
-LAW_UNITS = {
-    "local_restitution": "1", "restitution": "1", "delay": "s", "stiffness": "N/m", "damping": "N s/m",
-    "dissipation": "s/m",
-}  # fmt: skip
-"""Fields of contact laws that are plain numbers, and their units where a law does not say them."""
+OF_LAWS = ("restitution", "delay", "stiffness", "damping", "dissipation")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,59 +39,50 @@ class Parameter:
     unit: str
 
 
-def law_fields(law: ContactLaw) -> list[str]:
-    """The names of its plain numbers."""
-    return [field.name for field in fields(law) if field.name in LAW_UNITS]
+def numbers_of(law: ContactLaw) -> dict[str, tuple[str, str]]:
+    """The plain numbers of a law in their order: name -> field and unit."""
+    units = {"restitution": "s^0", "delay": "s"} if isinstance(law, DelayedRestitution) else law.units
+    plain = {field: unit.strip("[]") for field, unit in units.items() if not callable(getattr(law, field))}
+    return {field.removeprefix("local_"): (field, unit.replace("s^0", "1")) for field, unit in plain.items()}
 
 
 def parameters_of(oscillator: ImpactOscillator) -> dict[str, Parameter]:
     """The parameters that this oscillator has, by name."""
-    law, drive = oscillator.stop.law, oscillator.driven
+    law, drive, period = oscillator.stop.law, oscillator.driven, oscillator.period
     known = {
         "free_period": (oscillator.model.free_period, "s"),
         "decay_rate": (float(oscillator.model.decay_rate[0]), "1/s"),
         "gap": (oscillator.stop.gap, "m"),
         "frequency": (drive.frequency, "Hz"),
         "amplitude": (drive.amplitude, "m"),
+        **{name: (getattr(law, field), unit) for name, (field, unit) in numbers_of(law).items()},
     }
-    for field in law_fields(law):
-        unit = law.units.get(field, LAW_UNITS[field]).strip("[]")
-        known[field.removeprefix("local_")] = getattr(law, field), unit
-    period = oscillator.period
-    least = {"delay": SHORT_DELAY * period, "restitution": 0.01, "decay_rate": 0.01 / period}
+    pace = {"s": period, "1/s": 1.0 / period}
     return {
-        name: Parameter(value=value, size=max(abs(value), least.get(name, 0.0)), unit=unit)
-        for name, (value, unit) in known.items()
-        if not callable(value)
+        name: Parameter(value=v, size=max(abs(v), LEAST.get(name, 0.0) * pace.get(unit, 1.0)), unit=unit)
+        for name, (v, unit) in known.items()
     }
 
 
 def changes_of(oscillator: ImpactOscillator, names: Sequence[str]) -> list[Change]:
     """How the oscillator's numbers change with the named parameters."""
-    law = oscillator.stop.law
-    numbers = [field.removeprefix("local_") for field in law_fields(law)]
-    of_model = {"free_period": free_period_change, "decay_rate": partial(decay_rate_change, mode=None)}
-
-    def change(name: str) -> Change:
-        if name in of_model:
-            return Change(model=of_model[name](oscillator.model))
-        if name in numbers:
-            return Change(law=(float(numbers.index(name) == 0), float(numbers.index(name) == 1)))
-        return Change(**{name: 1.0})
-
-    return [change(name) for name in names]
+    model, law = oscillator.model, [*numbers_of(oscillator.stop.law)]
+    found: dict[str, Change] = {
+        "free_period": Change(model=free_period_change(model)) if "free_period" in names else Change(),
+        "decay_rate": Change(model=decay_rate_change(model, None)) if "decay_rate" in names else Change(),
+        "gap": Change(gap=1.0), "frequency": Change(frequency=1.0), "amplitude": Change(amplitude=1.0),
+    } | {name: Change(law=(1.0 - i, float(i))) for i, name in enumerate(law)}  # fmt: skip
+    return [found[name] for name in names]
 
 
 def require_names(names: Sequence[str], oscillator: ImpactOscillator) -> None:
     """ValueError unless each is the name of a parameter of this oscillator, given once."""
-    known = parameters_of(oscillator)
+    known, law = parameters_of(oscillator), type(oscillator.stop.law).__name__
     for name in names:
+        if name not in known and name in OF_LAWS:
+            raise ValueError(f"fit names {name}, which {law} does not have; there are {', '.join(known)}")
         if name not in known:
-            others = {field.removeprefix("local_") for field in LAW_UNITS} - set(known)
-            law = type(oscillator.stop.law).__name__
-            if name in others:
-                raise ValueError(f"fit names {name}, which {law} does not have; there are {', '.join(known)}")
-            nearest = get_close_matches(name[:60], [*known, *others], n=1, cutoff=0.0)[0]
+            nearest = get_close_matches(name[:60], [*known, *OF_LAWS], n=1, cutoff=0.0)[0]
             raise ValueError(f"fit names {name[:60]!r}, which is no parameter; the nearest is {nearest}")
     if len(set(names)) < len(names) or not names:
         raise ValueError(f"fit names {', '.join(names) or 'nothing'}; it must name each parameter once")
@@ -102,16 +92,51 @@ def with_values(oscillator: ImpactOscillator, values: Mapping[str, float]) -> Im
     """The oscillator with other values of some parameters; ValueError where one is out of range."""
     model, stop, drive, law = oscillator.model, oscillator.stop, oscillator.driven, oscillator.stop.law
     if "free_period" in values or "decay_rate" in values:
-        before, rate = float(model.decay_rate[0]), values.get("decay_rate", float(model.decay_rate[0]))
-        period = values.get("free_period") or model.free_period
+        before = float(model.decay_rate[0])
+        rate, period = values.get("decay_rate", before), values.get("free_period", model.free_period)
         if not (period > 0.0 and rate >= 0.0):
             raise ValueError(f"free_period is {period:g} s, decay_rate {rate:g} 1/s; they must be above zero")
         pace = math.hypot(2.0 * math.pi / period, 0.5 * rate) / float(model.omega[0])
         rates = model.decay_rate * (rate / before) if before > 0.0 else model.decay_rate + rate
         model = replace(model, omega=model.omega * pace, decay_rate=rates)
-    own = {field: values[name] for field in law_fields(law) if (name := field.removeprefix("local_")) in values}
+    own: dict[str, Any] = {
+        field: values[name] for name, (field, _) in numbers_of(law).items() if name in values
+    }
     if own or "gap" in values:
         changed: ContactLaw = replace(law, **own)  # type: ignore[type-var]
         stop = replace(stop, gap=values.get("gap", stop.gap), law=changed)
     moved = {name: values[name] for name in ("frequency", "amplitude") if name in values}
     return replace(oscillator, model=model, stop=stop, drive=replace(drive, **moved) if moved else drive)
+
+
+def fitted_scene(scene: Scene, oscillator: ImpactOscillator, frequencies: Sequence[float]) -> Scene:
+    """The scene with the modes of a fitted oscillator as measured ones, its law, gap and drive frequencies.
+
+    A scene has no key for a constant delay; Hertz's stiffness is that of harder or softer bodies.
+    """
+    model, law = oscillator.model, oscillator.stop.law
+    known = {name: one.value for name, one in parameters_of(oscillator).items()}
+    changes: dict[str, object] = {
+        "spring.kind": "modal_data",
+        "modal_data.frequencies_hz": model.frequencies_hz.tolist(),
+        "modal_data.decay_rates_per_s": model.decay_rate.tolist(),
+        "modal_data.tip_values": model.phi.tolist(),
+        "modal_data.participation": model.participation.tolist(),
+        "modal_data.tip_mass_kg": model.tip_mass or 0.0,
+        "modal_data.static_compliance_m_per_n": model.static_compliance or 0.0,
+        "single_mode.free_period_s": known["free_period"],
+        "single_mode.decay_rate_per_s": known["decay_rate"],
+        "stop.gap_m": known["gap"],
+        "drive.frequencies_hz": list(frequencies),
+    }
+    if isinstance(law, LinearContact):
+        changes |= {"contact.stiffness_n_per_m": law.stiffness, "contact.damping_ns_per_m": law.damping}
+    elif isinstance(law, HertzContact):
+        moduli, harder = ("ball_young_modulus_pa", "plate_young_modulus_pa"), law.stiffness
+        harder /= hertz_of(scene).stiffness
+        changes |= {f"tip.{key}": harder * scene.number(f"tip.{key}") for key in moduli}
+    else:
+        changes |= {"contact.law": "newton", "contact.local_restitution": known["restitution"]}
+    if model.n_modes == 1:
+        changes["single_mode.restitution"] = known["restitution"]
+    return scene.replace(changes, provenance="fitted")

@@ -54,6 +54,8 @@ class Prediction(Protocol):
     """What is predicted of one record; `extra` are the unknowns beside the parameters."""
 
     record: Record
+    period: int
+    """After so many rows they repeat; 0 for rows that do not."""
     extra: Array
     """Start of the further unknowns, shape (n_extra,)."""
     sizes: Array
@@ -89,7 +91,7 @@ class Strobes:
         self.record, self.period = record, period
         family = Shooting(oscillator=orbit.oscillator, period=period)
         self.orbit: PeriodicOrbit = family.at_speed(orbit.speed)
-        rows = record.observed
+        self.at, rows = orbit.oscillator, record.observed
         self.mean = np.array([rows[k::period].mean(axis=0) for k in range(period)])
 
     def parts(self, oscillator: ImpactOscillator) -> Sequence[Prediction]:
@@ -97,12 +99,9 @@ class Strobes:
         return [self]
 
     def values(self, oscillator: ImpactOscillator, extra: Array) -> Array:
-        """The strobe points of the orbit next to the last one, as many rows as the record has."""
-        family = Shooting(oscillator=oscillator, period=self.period)
-        orbit = family.at_excess(oscillator.excess, self.orbit)
-        if not orbit.admissible:
-            raise ValueError(f"p{self.period} has another impact with these parameters")
-        self.orbit = orbit
+        """The strobe points of the orbit next to the last one, a row for each of the record."""
+        if oscillator is not self.at:
+            self.touches(oscillator, extra)
         return self.of_orbit()
 
     def of_orbit(self) -> Array:
@@ -114,20 +113,25 @@ class Strobes:
         return self._in_order(points, points[:, 0])
 
     def _in_order(self, values: Array, x: Array) -> Array:
-        """`values` of the m strobes, shape (m, ...), as rows of the record, in the order in which `x` fits."""
-        off = [np.sum((np.roll(x, k) - self.mean[:, 0]) ** 2) for k in range(self.period)]
-        turned = np.roll(values, int(np.argmin(off)), axis=0)
-        return np.asarray(turned[np.arange(len(self.record.rows)) % self.period])
+        """`values` of the m strobes, shape (m, ...), as rows of the record, in the order in which x fits."""
+        places = (np.arange(self.period) - np.arange(self.period)[:, None]) % self.period
+        best = places[np.argmin(np.sum((x[places] - self.mean[:, 0]) ** 2, axis=1))]
+        return np.asarray(values[best[np.arange(len(self.record.rows)) % self.period]])
 
     def touches(self, oscillator: ImpactOscillator, extra: Array) -> int:
-        """1 as long as the tip touches nowhere else."""
-        self.values(oscillator, extra)
+        """1; ValueError where the orbit next to the last one touches the stop besides."""
+        orbit = Shooting(oscillator=oscillator, period=self.period).at_excess(oscillator.excess, self.orbit)
+        if not orbit.admissible:
+            raise ValueError(f"p{self.period} has another impact with these parameters")
+        self.orbit, self.at = orbit, oscillator
         return 1
 
     def jacobian(self, oscillator: ImpactOscillator, extra: Array, names: Sequence[str]) -> Array:
         """Derivatives of `values`."""
-        points, found = self.values(oscillator, extra), orbit_derivatives(self.orbit, changes_of(oscillator, names))
-        tips = np.tensordot(found.strobes_changed.reshape(self.period, 2, -1, len(names)), oscillator.model.phi, (2, 0))
+        points = self.values(oscillator, extra)
+        found = orbit_derivatives(self.orbit, changes_of(self.orbit.oscillator, names))
+        states = found.strobes_changed.reshape(self.period, 2, -1, len(names))
+        tips = np.tensordot(states, oscillator.model.phi, (2, 0))
         x = oscillator.tip(found.strobes[:, : oscillator.n_modes])
         return self._in_order(tips[:, : points.shape[1]], x).reshape(points.size, -1)
 
@@ -136,6 +140,7 @@ class Transitions:
     """The fold of each p_m of a table."""
 
     extra = sizes = prior = np.empty(0)
+    period = 0
 
     def __init__(self, record: Record) -> None:
         self.record = record
@@ -150,12 +155,11 @@ class Transitions:
         for i, (frequency, period) in enumerate(self.record.rows[:, :2]):
             there = replace(oscillator, drive=replace(oscillator.driven, frequency=float(frequency)))
             if isinstance(oscillator.stop.law, NewtonRestitution):
-                fold = MaximalFamily(oscillator=there, period=int(period)).fold()
+                self.folds[i] = MaximalFamily(oscillator=there, period=int(period)).fold()
             else:
-                fold = fold_of(Shooting(oscillator=there, period=int(period)), self._near(i))
-            if fold is None:
+                self.folds[i] = fold_of(Shooting(oscillator=there, period=int(period)), self._near(i))
+            if self.folds[i] is None:
                 raise ValueError(f"p{period:g} has no fold at {frequency:g} Hz with these parameters")
-            self.folds[i] = fold
         return np.array([[fold.excess] for fold in self.folds if fold is not None])
 
     def _near(self, i: int) -> PeriodicOrbit | None:
@@ -183,6 +187,8 @@ class Transitions:
 class Displacement:
     """The tip at the times of the record, or up to some row of it."""
 
+    period = 0
+
     def __init__(self, record: Record, oscillator: ImpactOscillator, start: State) -> None:
         self.record, model = record, oscillator.model
         first = int(np.searchsorted(record.rows[:, 0], start.time - 1e-12))
@@ -196,7 +202,7 @@ class Displacement:
         self.hits: int | None = None
 
     def parts(self, oscillator: ImpactOscillator) -> Sequence[Prediction]:
-        """Itself where it starts close to the record; otherwise first its beginning, then twice as much ..."""
+        """Itself if it starts close to the record, else first its beginning, twice as long each time."""
         seen = self.record.observed
         try:
             off = self.values(oscillator, self.extra) - seen

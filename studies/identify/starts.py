@@ -20,6 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d
 from scipy.optimize import least_squares
 
 from contact import ContactError, ImpactOscillator, SingleImpactOrbit, State
@@ -166,14 +167,13 @@ class Corner(NamedTuple):
 
 
 def _corners(times: Array, x: Array, oscillator: ImpactOscillator, waits: bool) -> list[Corner]:
-    """The impacts of a displacement: maxima at which the velocity jumps, after a level stretch if it waits."""
+    """The impacts of a displacement: maxima at which its velocity jumps, after a wait or at once."""
     step = float(times[1] - times[0])
     width = max(5, round(WINDOW * oscillator.period / step))
     cubic = np.linalg.pinv(np.vander(np.arange(width) * step, 4))
     speed, found = oscillator.driven.angular_frequency * float(x.max()), list[Corner]()
-    for i in range(width, x.size - width):
-        if x[i] < x[i - width : i + width + 1].max() or x[i] < 0.5 * x.max():
-            continue
+    tops = np.flatnonzero((x == maximum_filter1d(x, 2 * width + 1)) & (x > 0.5 * x.max()))
+    for i in tops[(tops >= width) & (tops < x.size - width)]:
         level = np.flatnonzero(x[i + 1 :] < x[i] - LEVEL * x.max())
         here, there = i - 1, i + 1 + (int(level[0]) if waits and level.size else 0)
         if there + width > x.size:
@@ -183,14 +183,14 @@ def _corners(times: Array, x: Array, oscillator: ImpactOscillator, waits: bool) 
         s = np.linspace(0.0, apart, FINE)
         left, right = np.polyval(back, -s), np.polyval(ahead, s - apart)
         met = gone = int(np.argmin(np.abs(left - right)))
-        back, ahead = np.polyder(back), np.polyder(ahead)
-        if -np.polyval(back, -s[met]) - np.polyval(ahead, s[gone] - apart) < CORNER * speed:
+        slope, slope_after = np.polyder(back), np.polyder(ahead)
+        if -np.polyval(slope, -s[met]) - np.polyval(slope_after, s[gone] - apart) < CORNER * speed:
             continue
         top = float(left[met])
         if waits:  # one shorter than a step leaves the top between the highest row and where the curves meet
             top = float(x[i]) if there - here > 2 else 0.5 * (top + float(x[i]))
             met, gone = int(np.argmax(left >= top)), FINE - 1 - int(np.argmax(right[::-1] >= top))
-        bounce = float(np.polyval(ahead, s[gone] - apart) / np.polyval(back, -s[met]))
+        bounce = float(np.polyval(slope_after, s[gone] - apart) / np.polyval(slope, -s[met]))
         found.append(Corner(here, there, top, bounce, float(s[gone] - s[met])))
     return found
 

@@ -1,0 +1,412 @@
+"""Derivatives of orbits, their folds, doublings and grazings, and of simulated motions: against closed forms
+in 50 digits, published folds, invariances, and differences."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import mpmath as mp
+import numpy as np
+import pytest
+from oscillators import MODES, equation_1
+from simulated_orbit import DELAYED, EQUATION_1, LAWS, beam
+
+from beam import ModalChange, ModalModel, single_mode
+from contact import (
+    ContactLaw,
+    DelayedRestitution,
+    HarmonicDrive,
+    ImpactOscillator,
+    NewtonRestitution,
+    NoDerivative,
+    State,
+    Stop,
+    simulate,
+)
+from contact.flight.flow_derivative import flow_derivative
+from contact.flight.motion import motion_of
+from contact.orbits import (
+    Change,
+    MaximalFamily,
+    PeriodicOrbit,
+    Shooting,
+    doubling_derivatives,
+    excess_derivatives,
+    fold_of,
+    follow,
+    graze_derivatives,
+    motion_derivatives,
+    multiplier_derivatives,
+    orbit_derivatives,
+)
+
+T, MU, TAU, GAP = 40.80e-3, 3.56, 0.1, 0.0107
+H = mp.mpf("1e-18")
+"""Step of differences in 50 digits: their error is its square."""
+
+ARRAYS = ("omega", "decay_rate", "phi", "participation")
+
+
+def of_modes(size: int, **rates: object) -> ModalChange:
+    return ModalChange(**{name: np.broadcast_to(rates.get(name, 0.0), size) for name in ARRAYS})
+
+
+def of_equation_1(frequency: float) -> list[Change]:
+    """Changes with free period, decay rate, restitution, gap, drive frequency and amplitude."""
+    omega = math.hypot(2 * math.pi / T, MU / 2)
+    period = of_modes(1, omega=-((2 * math.pi / T) ** 2) / (T * omega))
+    decay = of_modes(1, omega=MU / (4 * omega), decay_rate=1.0)
+    return [
+        Change(model=period), Change(model=decay), Change(law=(1.0, 0.0)), Change(gap=1.0),
+        Change(frequency=1.0), Change(amplitude=1.0),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", [*MODES, "nearly critical"])
+def test_flow_of_a_mode_against_differentiation_in_50_digits(name: str) -> None:
+    modes = MODES.get(name, {"omega": [600.0], "decay_rate": [1200.0 - 1e-7]})
+    law, rates = NewtonRestitution(local_restitution=0.0), modes["decay_rate"]
+    table = motion_of(modes["omega"], rates, np.ones(len(rates)), law=law, gap=1.0).modes
+    for k, (omega, decay) in enumerate(zip(modes["omega"], rates, strict=True)):
+        for t in (1e-5, 3e-3, 0.2):
+            with mp.workdps(90):
+
+                def flow(square: mp.mpf, c: mp.mpf, t: float = t) -> list[mp.mpf]:
+                    root = mp.sqrt(c * c / 4 - square + mp.mpf("1e-50"))
+                    low, high = mp.exp((root - c / 2) * t), mp.exp((-root - c / 2) * t)
+                    sn = mp.re((low - high) / (2 * root))
+                    cn = mp.re((low + high) / 2)
+                    return [cn + c / 2 * sn, sn, -square * sn, cn - c / 2 * sn]
+
+                point = (mp.mpf(omega) ** 2, mp.mpf(decay))
+                for entry in range(4):
+                    for which, (square, c) in enumerate([(1.0, 0.0), (0.0, 1.0)]):
+                        n = (1, 0) if which == 0 else (0, 1)
+                        exact = mp.diff(lambda a, b, i=entry: flow(a, b)[i], point, n, h=mp.mpf("1e-18"))
+                        size = max(abs(float(x)) for x in flow(*point)) * t * (t if which == 0 else 1.0)
+                        found = flow_derivative(table, k, square, c, t)[entry]
+                        unit = max(1.0, omega) if entry in (0, 2, 3) else 1.0
+                        assert abs(found - float(exact)) < 2e-13 * (abs(float(exact)) + size * unit)
+
+
+def exact_orbit(m: int) -> Callable[..., list[mp.mpf]]:
+    """Closed form of the p_m node of Eq. (1): excess, time and speed of the impact, trace and determinant of
+    its monodromy matrix, and tip displacement and velocity at the m strobes after it."""
+
+    def orbit(t: float, mu: float, tau: float, gap: float, f: float, amplitude: float) -> list[mp.mpf]:
+        t, mu, tau, gap, f, amplitude = (mp.mpf(x) for x in (t, mu, tau, gap, f, amplitude))
+        w, d = 2 * mp.pi * f, 2 * mp.pi / t
+
+        def flow(s: mp.mpf) -> mp.matrix:
+            fade, sn, cn = mp.exp(-mu * s / 2), mp.sin(d * s) / d, mp.cos(d * s)
+            square = d * d + mu * mu / 4
+            return fade * mp.matrix([[cn + mu / 2 * sn, sn], [-square * sn, cn - mu / 2 * sn]])
+
+        response = w**2 / (d * d + mu * mu / 4 - w * w + 1j * mu * w)
+        n, shrink = flow(m / f), mp.exp(-mu * m / f)
+        per = (n - shrink * mp.eye(2)) * mp.matrix([0, -(1 + tau)]) / (1 - n[0, 0] - n[1, 1] + shrink)
+        a, b = per[0], (1 - per[1]) / w
+        size = amplitude * abs(response)
+        # (gap - a v)^2 + (b v)^2 = size^2, the larger root
+        half, square = a * gap, a * a + b * b
+        v = (half + mp.sqrt(half * half - square * (gap * gap - size * size))) / square
+        psi = mp.atan2(gap - a * v, b * v)
+        time = (psi - mp.arg(response)) / w
+        time -= mp.floor(time * f) / f
+        after = mp.matrix([a * v, per[1] * v - (1 + tau) * v])
+        points = []
+        for j in range(1, m + 1):
+            deviation, turn = flow(j / f - time) * after, amplitude * response
+            points += [deviation[0] + mp.im(turn), deviation[1] + w * mp.re(turn)]
+        # saltation of Newton's law on (u, u'), then the flow
+        # accelerations of the deviation before and after, and of the steady motion
+        before, behind = (-(d * d + mu * mu / 4) * x[0] - mu * x[1] for x in (per * v, after))
+        steady = -w * w * (gap - a * v)
+        jump = mp.matrix([[-tau, 0], [(tau * (before + steady) + behind + steady) / v, -tau]])
+        monodromy = n * jump
+        return [
+            size / gap - 1, time, v, monodromy[0, 0] + monodromy[1, 1],
+            monodromy[0, 0] * monodromy[1, 1] - monodromy[0, 1] * monodromy[1, 0], *points,
+        ]  # fmt: skip
+
+    return orbit
+
+
+@pytest.mark.parametrize(("frequency", "m", "excess"), [(22.2, 5, 4e-3), (20.9, 3, -5e-4), (23.4, 11, 1e-3)])
+def test_orbit_of_equation_1_against_its_closed_form_in_50_digits(
+    frequency: float, m: int, excess: float
+) -> None:
+    oscillator = equation_1(frequency)
+    oscillator = replace(oscillator, stop=Stop(gap=GAP, law=NewtonRestitution(local_restitution=TAU)))
+    node = MaximalFamily(oscillator=oscillator, period=m).orbits(excess)[-1]
+    family = Shooting(oscillator=oscillator, period=m)
+    orbit = family.at_excess(excess, family.at_speed(node.speed))
+    changes = of_equation_1(frequency)
+    found = orbit_derivatives(orbit, changes)
+    pair = multiplier_derivatives(found)
+    ours = [found.excess, found.time, found.speed, *found.strobes_changed.reshape(-1, 6)]
+    sums = [pair.sum(axis=0).real, (orbit.multipliers[::-1, None] * pair).sum(axis=0).real]
+    point = (T, MU, TAU, GAP, frequency, orbit.amplitude)
+    with mp.workdps(50):
+        closed = exact_orbit(m)
+        here = np.array([float(x) for x in closed(*point)])
+        there = np.empty((here.size, 6))
+        for j in range(6):
+            ends = [closed(*point[:j], point[j] + step, *point[j + 1 :]) for step in (H, -H)]
+            there[:, j] = [float((a - b) / (2 * H)) for a, b in zip(*ends, strict=True)]
+    values = [orbit.excess, orbit.phase, orbit.speed, *found.strobes.reshape(-1)]
+    assert values == pytest.approx(np.delete(here, (3, 4)), rel=1e-9, abs=1e-14)
+    exact = np.delete(there, (3, 4), axis=0)
+    allowed = np.abs(exact) + np.multiply.outer(np.abs(values), 1 / np.array(point))
+    assert np.max(np.abs(ours - exact) / allowed) < 1e-10
+    assert np.max(np.abs(sums - there[3:5]) / np.abs(pair).max(axis=0)) < 1e-10
+
+
+@pytest.mark.parametrize(("frequency", "m"), [(row[0], row[1]) for row in EQUATION_1])
+def test_folds_of_equation_1_move_as_their_closed_form_does(frequency: float, m: int) -> None:
+    """F_m/F_g = 1/sqrt(1 + k^2), k = w N12 (1 + tau)/(1 - N11 + tau N22 - tau G), with free period, decay
+    rate, restitution and drive frequency; the gap and the amplitude say nothing."""
+
+    def excess(t: float, mu: float, tau: float, f: float) -> mp.mpf:
+        d, s = 2 * mp.pi / t, m / f
+        fade, sn, cn = mp.exp(-mu * s / 2), mp.sin(d * s) / d, mp.cos(d * s)
+        n11, n22 = fade * (cn + mu / 2 * sn), fade * (cn - mu / 2 * sn)
+        k = 2 * mp.pi * f * fade * sn * (1 + tau) / (1 - n11 + tau * n22 - tau * fade**2)
+        return 1 / mp.sqrt(1 + k * k) - 1
+
+    fold = fold_of(Shooting(oscillator=equation_1(frequency, gap=GAP), period=m))
+    found = excess_derivatives(fold, of_equation_1(frequency))
+    point = [mp.mpf(x) for x in (T, MU, TAU, frequency)]
+    with mp.workdps(50):
+        assert fold.excess == pytest.approx(float(excess(*point)), rel=1e-9)
+        for j, ours in enumerate(found[[0, 1, 2, 4]]):
+            ends = [excess(*(x + (i == j) * step for i, x in enumerate(point))) for step in (H, -H)]
+            # the place of the fold is good to 1e-10 of the speed, its excess to the square of it
+            assert ours == pytest.approx(float((ends[0] - ends[1]) / (2 * H)), rel=2e-9)
+    assert abs(found[3]) < 1e-12 / GAP and abs(found[5]) < 1e-12 / fold.amplitude
+
+
+def ghosh_and_simpson(w: float) -> tuple[Shooting, float]:
+    """p2 of x'' + 0.04 x' + x = F cos(w t), wall at 1, restitution 0.9, and its grazing F."""
+    one = np.ones(1)
+    oscillator = ImpactOscillator(
+        model=ModalModel(omega=one, decay_rate=0.04 * one, phi=one, participation=one),
+        stop=Stop(gap=1.0, law=NewtonRestitution(local_restitution=0.9)),
+        drive=HarmonicDrive(frequency=w / (2 * math.pi)),
+    )
+    return Shooting(oscillator=oscillator, period=2), math.hypot(1 - w * w, 0.04 * w)
+
+
+def force_slope(
+    orbit: PeriodicOrbit, derivative: Callable[..., np.ndarray], w: float, grazing: float
+) -> float:
+    """dF/dw along a curve of bifurcations, F = (1 + excess) F_g."""
+    rate = float(derivative(orbit, [Change(frequency=1 / (2 * math.pi))])[0])
+    return rate * grazing + (1 + orbit.excess) * (-2 * w * (1 - w * w) + 0.0016 * w) / grazing
+
+
+def test_slopes_of_the_published_folds() -> None:
+    """Table of arXiv:2510.16218: F = 0.3628362020 and 0.3634213706 at w = 0.799 and 0.794578, good to 1e-10,
+    and the integral of dF/dw between them, by four points of Gauss."""
+    low, high = 0.794578, 0.799
+    nodes, weights = np.polynomial.legendre.leggauss(4)
+    total = 0.0
+    for x, weight in zip(nodes, weights, strict=True):
+        w = 0.5 * (low + high) + 0.5 * (high - low) * x
+        family, grazing = ghosh_and_simpson(w)
+        fold = MaximalFamily(oscillator=family.oscillator, period=2).fold()
+        total += 0.5 * (high - low) * weight * force_slope(
+            family.at_speed(fold.speed), excess_derivatives, w, grazing
+        )  # fmt: skip
+    assert total == pytest.approx(0.3628362019762544 - 0.3634213705816635, abs=4e-10)
+
+
+def test_slopes_of_the_published_doublings() -> None:
+    """F = 0.3475333989 and 0.3601817821 at w = 0.81 and 0.80079 (same table), impacts at 0.0653 and 0.0060;
+    there the multiplier is -1 to 3e-6 and 1e-5, which is 1.5e-9 and 4e-11 in F."""
+
+    def doubling(w: float, near: float) -> tuple[PeriodicOrbit, float]:
+        family, grazing = ghosh_and_simpson(w)
+        branch = follow(family, family.at_speed(near), low=0.3 * near, high=20 * near)
+        return min(branch.of_kind("period doubling"), key=lambda orbit: abs(orbit.speed - near)), grazing
+
+    ends, forces = [(0.80079, 0.0060385158), (0.81, 0.0653039883)], (0.3601817820562527, 0.3475333988945534)
+    ours = [(1 + orbit.excess) * grazing for orbit, grazing in (doubling(*end) for end in ends)]
+    assert ours == pytest.approx(forces, abs=2e-9)
+    (low, near), (high, _speed) = ends
+    total, (nodes, weights) = 0.0, np.polynomial.legendre.leggauss(6)
+    for x, weight in zip(nodes, weights, strict=True):
+        w = 0.5 * (low + high) + 0.5 * (high - low) * x
+        orbit, grazing = doubling(w, near)
+        near = orbit.speed
+        total += 0.5 * (high - low) * weight * force_slope(orbit, doubling_derivatives, w, grazing)
+    assert total == pytest.approx(ours[1] - ours[0], abs=3e-11)
+
+
+def in_other_units(oscillator: ImpactOscillator) -> list[Change]:
+    """Changes that amount to other units of time, length and modal coordinates."""
+    model, law, gap = oscillator.model, oscillator.stop.law, oscillator.stop.gap
+    amplitude, n = oscillator.driven.amplitude, model.n_modes
+    first, second = law.numbers
+    time, length, modal = {  # powers of the law's numbers in the three units
+        "HertzContact": ((2, 0), (-0.5, 0), (-2, 0)),
+        "HuntCrossley": ((2, -1), (-0.5, -1), (-2, 0)),
+        "LinearContact": ((2, 1), (0, 0), (-2, -2)),
+    }.get(type(law).__name__, ((0, 0), (0, 0), (0, 0)))
+    if isinstance(law, DelayedRestitution):
+        second, time = law.delay, (0, -1)
+    laws = [(first * a, second * b) for a, b in (time, length, modal)]
+    faster = of_modes(n, omega=model.omega, decay_rate=model.decay_rate)
+    heavier = of_modes(n, phi=model.phi, participation=-model.participation)
+    return [
+        Change(model=faster, frequency=oscillator.driven.frequency, law=laws[0]),
+        Change(gap=gap, amplitude=amplitude, law=laws[1]), Change(model=heavier, law=laws[2]),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", [*LAWS, "constant"])
+def test_other_units_change_nothing_but_units(name: str) -> None:
+    """Excess and multipliers stay, at given speed in the new units and at given amplitude."""
+    oscillator = equation_1(22.2, DELAYED[name], gap=GAP) if name in DELAYED else beam(22.20, LAWS[name])
+    orbit = Shooting(oscillator=oscillator, period=5).at_speed(0.1 * oscillator.unit_speed)
+    changes = in_other_units(orbit.oscillator)
+    found = orbit_derivatives(orbit, changes)
+    assert np.max(np.abs(found.excess)) < 1e-11
+    assert np.max(np.abs(found.time + orbit.phase * np.array([1, 0, 0]))) < 2e-9 * orbit.phase
+    assert np.max(np.abs(found.speed - orbit.speed * np.array([1, 1, 0]))) < 2e-9 * orbit.speed
+    n = oscillator.n_modes
+    q = found.strobes * np.repeat([1.0, 1.0], n)
+    powers = np.stack([np.repeat([0.0, 1.0], n), np.ones(2 * n), -np.ones(2 * n)], axis=1)
+    sizes = np.abs(q).max(axis=0)[:, None]
+    # under a linear spring rounding of the release is the largest error: 4e-8 of the smallest mode
+    assert np.max(np.abs(found.strobes_changed - q[:, :, None] * powers) / sizes) < 1e-7
+    sensitive = np.abs(multiplier_derivatives(orbit_derivatives(orbit, [Change(gap=GAP)]))).max()
+    assert np.max(np.abs(multiplier_derivatives(found))) < 1e-8 * max(sensitive, 1.0)
+
+
+def random_change(oscillator: ImpactOscillator, rng: np.random.Generator) -> Change:
+    model, law = oscillator.model, oscillator.stop.law
+    arrays = {name: rng.normal(size=model.n_modes) * getattr(model, name) for name in ARRAYS}
+    return Change(
+        model=ModalChange(**arrays), gap=oscillator.stop.gap * rng.normal(),
+        law=(law.numbers[0] * rng.normal(), law.numbers[1] * rng.normal()),
+        frequency=oscillator.driven.frequency * rng.normal(),
+        amplitude=oscillator.driven.amplitude * rng.normal(),
+    )  # fmt: skip
+
+
+def along(oscillator: ImpactOscillator, change: Change, step: float) -> ImpactOscillator:
+    """The oscillator with its numbers moved by a step along a change."""
+    model = ModalModel(
+        **{name: getattr(oscillator.model, name) + step * getattr(change.model, name) for name in ARRAYS}
+    )
+    law: ContactLaw = oscillator.stop.law
+    moved = {
+        unit: number + step * rate
+        for unit, number, rate in zip(law.units, law.numbers, change.law, strict=False)
+    }
+    if isinstance(law, DelayedRestitution):
+        moved = {"restitution": law.restitution, "delay": law.delay}
+    drive = oscillator.driven
+    return ImpactOscillator(
+        model=model, stop=Stop(gap=oscillator.stop.gap + step * change.gap, law=replace(law, **moved)),
+        drive=HarmonicDrive(
+            frequency=drive.frequency + step * change.frequency,
+            amplitude=drive.amplitude + step * change.amplitude,
+        ),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("name", [*LAWS, "elastic"])
+def test_a_simulated_motion_against_differences(name: str) -> None:
+    """Impact times, strobes and states, some of them within a touch, along a direction in all numbers and the
+    start; the differences are of order four."""
+    at_rest = equation_1(22.2, DELAYED[name], gap=GAP) if name in DELAYED else beam(22.20, LAWS[name])
+    oscillator, rng, n = at_rest.with_excess(0.02), np.random.default_rng(7), at_rest.n_modes
+    change, kicked = random_change(oscillator, rng), 1e-5 * rng.normal(size=(2, n))
+    start = State(displacement=np.full(n, 1e-5), velocity=np.zeros(n))
+    first = simulate(oscillator, start, periods=5).impacts
+    within = np.where(first.end > first.start, 0.4 * (first.end - first.start), 1e-4)
+    times = np.sort([0.013, 0.1, *(first.start + within)[:2], 0.21])
+
+    def observed(step: float) -> list[np.ndarray]:
+        moved = State(
+            displacement=start.displacement + step * kicked[0], velocity=start.velocity + step * kicked[1]
+        )
+        run = simulate(along(oscillator, change, step), moved, periods=5, times=times)
+        return [
+            run.impacts.start, np.hstack([run.strobe_displacement, run.strobe_velocity]),
+            np.hstack([run.displacement, run.velocity]),
+        ]  # fmt: skip
+
+    found = motion_derivatives(oscillator, start, [change], periods=5, times=times)
+    direction = np.concatenate([kicked.reshape(-1), [1.0]])
+    assert len(found.run.impacts) >= 2
+    step = 1e-7
+    ends = [observed(j * step) for j in (1, -1, 2, -2)]
+    for ours, a, b, c, d in zip((found.impact_time, found.strobes, found.states), *ends, strict=True):
+        exact = ours @ direction
+        difference = (8 * (a - b) - (c - d)) / (12 * step)
+        assert np.max(np.abs(difference - exact) / np.abs(exact).max(axis=0)) < 2e-5
+
+
+def test_orbits_and_folds_of_the_letters_spring_under_hertz_against_differences() -> None:
+    oscillator = beam(22.20, LAWS["hertz"], modes=10)
+    family, rng = Shooting(oscillator=oscillator, period=5), np.random.default_rng(3)
+    fold, step = fold_of(family), 1e-7
+    orbit = family.at_speed(1.5 * fold.speed, fold)
+    change = random_change(orbit.oscillator, rng)
+    found = orbit_derivatives(orbit, [change])
+    ours = [found.time, found.speed, multiplier_derivatives(found)[:2, 0], excess_derivatives(fold, [change])]
+
+    def observed(step: float) -> list[np.ndarray]:
+        moved = along(orbit.oscillator, change, step)
+        near, beside = Shooting(oscillator=moved, period=5), moved.excess
+        there = near.at_excess(beside, orbit)
+        return [
+            np.array([there.phase]), np.array([there.speed]), there.multipliers[:2],
+            np.array([fold_of(near, fold).excess]),
+        ]  # fmt: skip
+
+    ends = [observed(j * step) for j in (1, -1, 2, -2)]
+    for exact, a, b, c, d, allowed in zip(ours, *ends, (1e-6, 1e-6, 1e-4, 1e-4), strict=True):
+        assert (8 * (a - b) - (c - d)) / (12 * step) == pytest.approx(exact, rel=allowed)
+
+
+def test_grazings_of_equation_1_move_as_located_ones_do() -> None:
+    """The second impact of p5 at 22.20 Hz; other units of time leave its excess."""
+
+    def graze_at(period: float) -> PeriodicOrbit:
+        model = single_mode(free_period=period, decay_rate=MU)
+        family = Shooting(oscillator=replace(equation_1(22.2, gap=GAP), model=model), period=5)
+        fold = fold_of(family)
+        return follow(family, fold, low=0.5 * fold.speed, high=20 * fold.speed).of_kind("grazing")[0]
+
+    changes, orbit = of_equation_1(22.2), graze_at(T)
+    found, step = graze_derivatives(orbit, changes), 1e-4 * T
+    before = Shooting(oscillator=orbit.oscillator, period=5).at_speed(0.5 * orbit.speed, orbit)
+    a, b, c, d = (graze_at(T + j * step).excess for j in (1, -1, 2, -2))
+    assert (8 * (a - b) - (c - d)) / (12 * step) == pytest.approx(found[0], rel=1e-5)
+    assert T * found[0] - MU * found[1] - 22.2 * found[4] == pytest.approx(0.0, abs=1e-7 * abs(T * found[0]))
+    with pytest.raises(NoDerivative, match="no peak of the orbit"):
+        graze_derivatives(before, changes)
+
+
+def test_where_there_is_no_derivative_a_sentence_says_so() -> None:
+    oscillator = equation_1(22.2, gap=GAP)
+    family = Shooting(oscillator=oscillator, period=5)
+    exact = MaximalFamily(oscillator=oscillator, period=5).fold()
+    with pytest.raises(NoDerivative, match="does not follow from its amplitude here, as at a fold"):
+        orbit_derivatives(family.at_speed(exact.speed), of_equation_1(22.2))
+    grazing = oscillator.with_excess(0.0)
+    steady = grazing.steady_response() * grazing.driven.amplitude
+    start = State(displacement=steady.imag, velocity=grazing.driven.angular_frequency * steady.real)
+    with pytest.raises(NoDerivative, match="it grazes the stop there"):
+        motion_derivatives(grazing, start, periods=1)
+    wrong = Change(model=of_modes(2, omega=1.0))
+    with pytest.raises(ValueError, match="model of the change has 2 modes; the oscillator has 1"):
+        orbit_derivatives(family.at_speed(exact.speed), [wrong])
+    with pytest.raises(ValueError, match=r"law of the change is .*; NewtonRestitution has 1 numbers"):
+        orbit_derivatives(family.at_speed(exact.speed), [Change(law=(0.0, 1.0))])
