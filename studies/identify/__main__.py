@@ -34,7 +34,8 @@ import numpy as np
 
 from beam.parameters import require_within
 from contact import DelayedRestitution, ImpactOscillator
-from studies.identify import design, figures, pairs
+from studies.identify import coverage as covering
+from studies.identify import design, figures, gradients, pairs
 from studies.identify.fit import Fit, Profile, profile
 from studies.identify.fit import fit as fitted
 from studies.identify.parameters import fitted_scene, parameters_of
@@ -159,6 +160,7 @@ def identify(
                      "frequency (Hz) and amplitude of the base (mm), in place of the record's"] = None,
     noise_um: Annotated[float | None, "noise of the read-out, where it is known"] = None,
     delay_ms: Annotated[float, "two_parameters: the delay, or where its fit starts"] = 0.3,
+    coverage: Annotated[int | None, "also fit so many synthetic records of each kind: is 90 % 90 %?"] = None,
 ) -> Mapping[str, object]:  # fmt: skip
     """Read or make, fit, report and draw."""
     harmonic(scene)
@@ -184,6 +186,8 @@ def identify(
     run.text("fitted.toml", as_scene(scene, found[first], [r for r in results["rows"] if r.record == first]))
     if record is None:
         results |= letters_rig(scene, run, 1e-3 * delay_ms)
+    if coverage is not None:
+        results |= truth(scene, run, coverage)
     return results
 
 
@@ -202,7 +206,7 @@ def letters_rig(scene: Scene, run: Run, delay: float) -> dict[str, object]:
     kinds = [kind for kind in pairs.KINDS if kind[2] == pairs.RESTITUTIONS[0]][: 2 if run.quick else None]
     rows = [row for found in run.map(pairs.intervals_of, kinds, "pairs") for row in found]
     run.table("pairs", rows, "Free periods at which the letter's six pairs are born.", show=())
-    run.figure("pairs", pairs.draw(rows), "Free periods at which each of the letter's pairs is born, and all.")
+    run.figure("pairs", pairs.draw(rows), "Free periods at which the letter's pairs are born, each and all.")
     plan, thin = design.Plan(), 6 if run.quick else 2
     of = partial(described, scene, "two_parameters", delay)
     ask = partial(design.measurements_at, of, plan, design.EXCESSES[::thin])
@@ -210,13 +214,25 @@ def letters_rig(scene: Scene, run: Run, delay: float) -> dict[str, object]:
     found = [one for column in measured for one in column]
     best = design.best(found)
     run.table("measurements", found, "What an orbit tells of T, restitution and delay.", show=())
-    run.table("next", best, "The five best of them.")
-    run.figure("next", design.draw(found, plan), "Standard errors over drive frequency and excess; stars: the "
-               "letter's points; numbers: the best five; grey: the orbit does not outlive its errors.")  # fmt: skip
-    told = [design.answer(of, plan, found)] if run.quick else [pairs.sentence(rows), design.answer(of, plan, found)]
+    run.table("next", best, "The five best of them.", show=("frequency_hz", "excess", "period", "together"))
+    run.figure("next", design.draw(found, plan), "Standard errors over drive frequency and excess; stars: "
+               "the letter's points; numbers: the best five; grey: the orbit does not outlive its errors.")  # fmt: skip
+    told = [design.answer(of, found, plan), *([] if run.quick else [pairs.sentence(rows)])]
     for sentence in told:
         run.say(sentence)
     return {"pairs": rows, "next": best, "told": told}
+
+
+def truth(scene: Scene, run: Run, records: int) -> dict[str, object]:
+    """Do intervals hold what was put in, and what does a gradient cost?"""
+    beam = run.choose_modes(scene, {"fold": 0.05})
+    rows = covering.coverage(scene, beam, run, records=records, beam_records=records // 4)
+    run.table("coverage", rows, covering.COVERED)
+    run.figure("coverage", covering.draw_coverage(rows), covering.COVERED)
+    paths = gradients.gradients(described(scene, "one_mode", 0.0, FREQUENCY_HZ))
+    run.table("gradients", paths, gradients.CHART, show=())
+    run.figure("gradients", gradients.draw_gradients(paths), gradients.CHART)
+    return {"coverage": rows, "gradients": paths}
 
 
 def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
