@@ -43,13 +43,14 @@ TOO_SMALL = 1e-3
 LAGS = 10
 """Of the autocorrelation of residuals."""
 
-REGION = 2.0
-"""Half axes of the confidence region in standard errors."""
+REGION, PART = 2.0, 0.3
+"""Half axes of the confidence region in standard errors; part of the largest from which a parameter takes
+part in a direction that is not seen."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Fit:
-    """A fit; arrays by `names`, in SI units.
+    """A fit; arrays by `names`, in SI units: `before` the record was looked at, at the `start` of the fit.
 
     `noise`: standard deviation of x [m], or of an excess in units of its error; `freedom`: rows less
     unknowns; `residuals`: observed less predicted, shape of the record's `observed`; `chance`: probability of
@@ -59,6 +60,7 @@ class Fit:
     record: Record
     oscillator: ImpactOscillator
     names: tuple[str, ...]
+    before: Array
     start: Array
     estimate: Array
     covariance: Array
@@ -183,81 +185,71 @@ def fit(
     rows, unknowns = problem.observed.size, problem.start.size - int(np.isfinite(prediction.prior).sum())
     if rows < unknowns + (not known):
         raise ValueError(f"the record has {rows} numbers, too short for {unknowns} unknowns and their errors")
-    at = problem.start
+    at = start = problem.start
     for part in prediction.parts(begun)[:-1]:
-        at = Problem(part, begun, names, unit).solve(at).x
-    found = problem.solve(at)
+        start = Problem(part, begun, names, unit).solve(start).x
+    found = problem.solve(start)
     freedom = max(rows - unknowns, 1)
     spread = 1.0 if known else float(np.sqrt(2.0 * found.cost / freedom))
-    n, values = len(names), found.x * problem.sizes
-    _u, singular, directions = np.linalg.svd(found.jac, full_matrices=False)
-    _require_seen(singular, directions, names)
-    covariance = (directions.T / singular**2 @ directions * spread**2)[:n, :n]
-    fitted, _extra = problem.at(found.x)
-    residuals = -found.fun[:rows] / problem.weights
+    n, sizes, shape = len(names), problem.sizes, prediction.record.observed.shape
+    _u, singular, axes = np.linalg.svd(found.jac, full_matrices=False)
+    if not singular[-1] > SINGULAR * singular[0]:
+        raise ValueError(f"the record cannot {_blind(axes, names)}: fit fewer parameters or another record")
+    covariance = (axes.T / singular**2 @ axes * np.outer(sizes, sizes) * spread**2)[:n, :n]
     result = Fit(
-        record=prediction.record, oscillator=fitted, names=names, estimate=values[:n], noise=spread * unit,
-        start=problem.start[:n] * problem.sizes[:n], noise_known=known, freedom=freedom,
-        covariance=covariance * np.outer(problem.sizes[:n], problem.sizes[:n]), problem=problem,
-        unknowns=found.x, residuals=residuals.reshape(prediction.record.observed.shape), evaluations=problem.evaluations,
-        chance=_chance(found.fun[:rows], prediction, known, freedom, unknowns),
+        record=prediction.record, oscillator=problem.at(found.x)[0], names=names, start=(at * sizes)[:n],
+        before=np.array([parameters_of(oscillator)[name].value for name in names]),
+        estimate=(found.x * sizes)[:n], covariance=covariance, noise=spread * unit, noise_known=known,
+        freedom=freedom, residuals=(-found.fun[:rows] / problem.weights).reshape(shape),
+        chance=_chance(found.fun[:rows], prediction, known, freedom), evaluations=problem.evaluations,
+        problem=problem, unknowns=found.x,
     )  # fmt: skip
-    _require_small(result, problem, found.x, directions, singular / spread)
+    if not result.too_small:  # else errors mean little, and that is told
+        lost = result.errors > sizes[:n] * np.maximum(np.abs(found.x[:n]), 1.0)
+        if np.any(lost):
+            worst = names[int(np.argmax(lost))]
+            raise ValueError(
+                f"the record cannot {_blind(axes, names)}: the standard error of {worst} is above its value"
+            )
+        _require_same_impacts(problem, found.x, axes * spread / singular[:, None])
     return result
 
 
-def _require_seen(singular: Array, directions: Array, names: tuple[str, ...]) -> None:
-    if not singular[-1] > SINGULAR * singular[0]:
-        share = np.abs(directions[-1][: len(names)])
-        blind = [name for name, part in zip(names, share, strict=True) if part > 0.3 * share.max()]
-        words = f"tell {' from '.join(blind)}" if len(blind) > 1 else f"see {blind[0]}"
-        raise ValueError(f"the record cannot {words}: fit fewer parameters or another record")
+def _blind(axes: Array, names: Sequence[str]) -> str:
+    """What a record cannot do with the parameters of its last axis."""
+    share = np.abs(axes[-1][: len(names)])
+    blind = [name for name, part in zip(names, share, strict=True) if part > PART * share.max()]
+    return f"tell {' from '.join(blind)}" if len(blind) > 1 else f"see {blind[0]}"
 
 
-def _require_small(
-    result: Fit, problem: Problem, unknowns: Array, directions: Array, inverse: Array
-) -> None:
-    """ValueError where a parameter is lost in its error, or the impacts change inside the region."""
-    n = len(result.names)
-    if result.too_small:  # errors mean little then, and that is told
-        return
-    wide = result.errors > problem.sizes[:n] * np.maximum(np.abs(unknowns[:n]), 1.0)
-    if np.any(wide):
-        axis = np.abs(directions[-1][:n])
-        blind = [name for name, part in zip(result.names, axis, strict=True) if part > 0.3 * axis.max()]
-        lost = ", ".join(name for name, one in zip(result.names, wide, strict=True) if one)
-        raise ValueError(
-            f"the record cannot tell {' from '.join(blind)}: the standard error of {lost} is above its value"
-        )
-    before = problem.prediction.touches(*problem.at(unknowns))
-    for axis, scale in zip(directions, inverse, strict=True):
-        if np.linalg.norm(axis[:n]) < 1e-3:
-            continue
-        for sign in (-REGION, REGION):
-            try:
-                after = problem.prediction.touches(*problem.at(unknowns + sign * axis / scale))
-            except (ContactError, ValueError):
-                after = -1
-            if before < 0 or after != before:
-                raise ValueError(
-                    "the orbit changes its impacts inside the confidence region: errors would mean nothing; "
-                    "record it longer or farther from where it ends"
-                )
+def _require_same_impacts(problem: Problem, unknowns: Array, axes: Array) -> None:
+    """ValueError if the impacts change inside the confidence region with these half axes."""
+    touches, before = problem.prediction.touches, problem.prediction.touches(*problem.at(unknowns))
+    for axis in [sign * axis for axis in axes for sign in (-REGION, REGION)]:
+        try:
+            same = touches(*problem.at(unknowns + axis)) == before
+        except (ContactError, ValueError):
+            same = False
+        if not same:
+            raise ValueError(
+                "the orbit changes its impacts inside the confidence region, so that errors mean nothing: "
+                "record it longer, or farther from where it ends"
+            )
 
 
-def _chance(residuals: Array, prediction: Prediction, known: bool, freedom: int, unknowns: int) -> float:
+def _chance(residuals: Array, prediction: Prediction, known: bool, freedom: int) -> float:
     """Probability of residuals of this size or pattern from noise alone."""
     found = [float(stats.chi2.sf(residuals @ residuals, freedom))] if known else []
-    record, period = prediction.record, getattr(prediction, "period", 0)
-    if record.kind == "strobe":
-        rows = residuals.reshape(len(record.rows), -1)
-        parts = [rows[k::period] for k in range(period)]
-        between = sum(len(part) * part.mean(axis=0) @ part.mean(axis=0) for part in parts)
-        within, points = float(residuals @ residuals - between), period * rows.shape[1]
-        if points > unknowns and residuals.size > points:
-            ratio = between / (points - unknowns) / (within / (residuals.size - points))
-            found.append(float(stats.f.sf(ratio, points - unknowns, residuals.size - points)))
-    if record.kind == "displacement":
+    kind, period = prediction.record.kind, prediction.period
+    if kind == "strobe":
+        rows = residuals.reshape(len(prediction.record.rows), -1)
+        means = np.array([rows[k::period].mean(axis=0) for k in range(period)])
+        within = float(np.sum((rows - means[np.arange(len(rows)) % period]) ** 2))
+        more, spare = freedom - residuals.size + means.size, residuals.size - means.size
+        if more > 0 and spare > 0:
+            ratio = (residuals @ residuals - within) / more / (within / spare)
+            found.append(float(stats.f.sf(ratio, more, spare)))
+    if kind == "displacement":
         size, off = residuals.size, residuals - residuals.mean()
         lagged = np.array([off[k:] @ off[:-k] for k in range(1, LAGS + 1)]) / (off @ off)
         box = size * (size + 2) * np.sum(lagged**2 / (size - np.arange(1, LAGS + 1)))

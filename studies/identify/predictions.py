@@ -54,6 +54,8 @@ class Prediction(Protocol):
     """What is predicted of one record; `extra` are the unknowns beside the parameters."""
 
     record: Record
+    period: int
+    """After so many rows they repeat; 0 for rows that do not."""
     extra: Array
     """Start of the further unknowns, shape (n_extra,)."""
     sizes: Array
@@ -111,7 +113,7 @@ class Strobes:
         return self._in_order(points, points[:, 0])
 
     def _in_order(self, values: Array, x: Array) -> Array:
-        """`values` of the m strobes, shape (m, ...), as rows of the record, in the order in which `x` fits."""
+        """`values` of the m strobes, shape (m, ...), as rows of the record, in the order in which x fits."""
         places = (np.arange(self.period) - np.arange(self.period)[:, None]) % self.period
         best = places[np.argmin(np.sum((x[places] - self.mean[:, 0]) ** 2, axis=1))]
         return np.asarray(values[best[np.arange(len(self.record.rows)) % self.period]])
@@ -138,6 +140,7 @@ class Transitions:
     """The fold of each p_m of a table."""
 
     extra = sizes = prior = np.empty(0)
+    period = 0
 
     def __init__(self, record: Record) -> None:
         self.record = record
@@ -183,6 +186,8 @@ class Transitions:
 
 class Displacement:
     """The tip at the times of the record, or up to some row of it."""
+
+    period = 0
 
     def __init__(self, record: Record, oscillator: ImpactOscillator, start: State) -> None:
         self.record, model = record, oscillator.model

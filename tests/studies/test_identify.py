@@ -1,0 +1,260 @@
+"""Records and their fits: what was put in comes out, with errors that scatter tells too, or a sentence."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from contact import DelayedRestitution, simulate
+from studies.identify.fit import fit, profile
+from studies.identify.parameters import fitted_scene, parameters_of, with_values
+from studies.identify.records import read_record, synthetic
+from studies.identify.starts import prediction_of, repetition
+from studies.scene import beam_at, read_scene, single_mode_at
+
+NAMES = ("free_period", "decay_rate", "gap", "restitution")
+DELAY = 3e-4
+
+
+@pytest.fixture(scope="module")
+def one_mode(letter_scene):
+    """Eq. (1) on p5."""
+    return single_mode_at(letter_scene, 22.2).with_excess(1e-3)
+
+
+@pytest.fixture(scope="module")
+def waiting(one_mode):
+    """The same with a constant delay."""
+    law = DelayedRestitution(restitution=0.18, delay=DELAY)
+    return replace(one_mode, stop=replace(one_mode.stop, law=law))
+
+
+@pytest.fixture(scope="module")
+def beam():
+    """Eight modes under Hertz contact."""
+    scene = read_scene("letter", ["modes.count=8"])
+    return beam_at(scene, 22.2).with_excess(1e-3)
+
+
+def far_from(oscillator):
+    """A start that a user might have: a quarter of a per cent off in T, some in the gap, half in the rest."""
+    known = parameters_of(oscillator)
+    factors = {"free_period": 0.9975, "gap": 0.97, "decay_rate": 0.85, "restitution": 1.5, "delay": 0.5}
+    return with_values(oscillator, {n: known[n].value * f for n, f in factors.items() if n in known})
+
+
+def truth(oscillator, names):
+    known = parameters_of(oscillator)
+    return np.array([known[name].value for name in names])
+
+
+CASES = [
+    ("one_mode", "strobe", False, NAMES),
+    ("one_mode", "strobe", True, (*NAMES, "amplitude")),
+    ("one_mode", "displacement", False, (*NAMES, "frequency")),
+    ("waiting", "strobe", True, ("free_period", "decay_rate", "restitution", "delay")),
+    ("waiting", "displacement", False, (*NAMES, "delay", "amplitude")),
+    ("beam", "strobe", False, ("free_period", "gap")),
+    ("beam", "displacement", False, ("free_period", "decay_rate", "gap", "stiffness")),
+    ("one_mode", "transitions", False, ("free_period", "restitution")),
+]
+
+
+@pytest.mark.parametrize(("name", "kind", "velocity", "names"), CASES)
+def test_what_was_put_in_comes_out_from_a_start_far_away(request, name, kind, velocity, names):
+    """All within three and a half standard errors: by chance one in some hundred seeds is not."""
+    oscillator = request.getfixturevalue(name)
+    record = synthetic(kind, oscillator, seed=7, velocity=velocity, periods=20 if name == "beam" else 40)
+    begun = oscillator if kind == "transitions" else far_from(oscillator)
+    others = {n: v.value for n, v in parameters_of(oscillator).items() if n not in names}
+    found = fit(record, with_values(begun, others), names)
+    off = (found.estimate - truth(oscillator, names)) / found.errors
+    assert np.max(np.abs(off)) < 3.5 and not found.too_small
+    assert found.freedom < 10 or abs(found.noise / (2.5e-4 if kind == "transitions" else 5e-7) - 1.0) < 0.4
+    low, high = found.intervals().T
+    assert np.all((low < found.estimate) & (found.estimate < high))
+
+
+@pytest.mark.parametrize(("name", "kind", "velocity", "names"), CASES)
+def test_the_jacobian_is_that_of_differences(request, name, kind, velocity, names):
+    oscillator = request.getfixturevalue(name)
+    record = synthetic(kind, oscillator, velocity=velocity, periods=6 if kind == "displacement" else 20)
+    prediction, at = prediction_of(record, oscillator, names)
+    exact, known = prediction.jacobian(at, prediction.extra, names), parameters_of(at)
+    for k, one in enumerate(names):
+        step = 1e-6 * known[one].size
+        moved = [
+            prediction.values(with_values(at, {one: known[one].value + way * step}), prediction.extra).ravel()
+            for way in (1.0, -1.0)
+        ]
+        column = (moved[0] - moved[1]) / (2.0 * step)
+        assert np.max(np.abs(exact[:, k] - column)) < 1e-4 * np.max(np.abs(column))
+    for k, size in enumerate(prediction.sizes):
+        step = 1e-6 * size * np.eye(prediction.sizes.size)[k]
+        ends = [prediction.values(at, prediction.extra + way * step).ravel() for way in (1.0, -1.0)]
+        column = (ends[0] - ends[1]) / (2e-6 * size)
+        assert np.max(np.abs(exact[:, len(names) + k] - column)) < 1e-5 * np.max(np.abs(column))
+
+
+def test_errors_are_those_of_the_scatter_over_many_records(one_mode):
+    """64 records: the variance of each estimate over its reported one is chi^2/64, 1 +- 0.18."""
+    exact = synthetic("strobe", one_mode)
+    fits = [fit(exact.noisy(seed), one_mode, NAMES) for seed in range(64)]
+    pulls = np.array([(one.estimate - truth(one_mode, NAMES)) / one.errors for one in fits])
+    assert np.all(np.abs(np.mean(pulls**2, axis=0) - 1.0) < 0.75)
+    assert np.all(np.abs(pulls.mean(axis=0)) < 4.0 / 8.0)
+
+
+def test_restitution_and_delay_trade_off_and_the_profile_shows_it(waiting):
+    names = (*NAMES, "delay")
+    found = fit(synthetic("displacement", waiting, seed=3), waiting, names)
+    assert found.correlations[3, 4] > 0.99
+    rows = profile(found, "delay", "restitution", points=5, reach=1.0)
+    depth = np.array([row.depth for row in rows])
+    assert depth[2] == pytest.approx(0.0, abs=1e-6) and depth[[0, -1]] == pytest.approx(1.0, abs=0.3)
+    slope = np.polyfit([row.value for row in rows], [row.other_value for row in rows], 1)[0]
+    assert slope == pytest.approx(found.covariance[3, 4] / found.covariance[4, 4], rel=0.05)
+
+
+@pytest.mark.parametrize(("velocity", "kind"), [(False, "displacement"), (True, "strobe")])
+def test_a_model_that_is_too_small_is_noticed(beam, letter_scene, velocity, kind):
+    record = synthetic(kind, beam, seed=1, periods=20, velocity=velocity)
+    one = single_mode_at(letter_scene, 22.2).with_amplitude(1.3 * beam.driven.amplitude)
+    found = fit(record, one, (*NAMES, "amplitude"))
+    assert found.too_small and found.noise > 5e-6
+
+
+def test_noise_that_is_larger_than_it_is_said_to_be_is_noticed(one_mode):
+    record = synthetic("displacement", one_mode, seed=1, noise=1e-6)
+    assert fit(record, one_mode, NAMES, noise=0.5e-6).too_small
+    assert not fit(record, one_mode, NAMES, noise=1e-6).too_small
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "names", "said"),
+    [
+        ("waiting", "strobe", ("gap", "restitution", "delay"), "cannot tell"),
+        ("one_mode", "transitions", ("free_period", "gap"), "gap"),
+        ("one_mode", "transitions", (*NAMES, "frequency", "amplitude"), "too short"),
+        ("one_mode", "strobe", ("gapp",), "nearest is gap"),
+        ("one_mode", "strobe", ("delay",), "NewtonRestitution does not have"),
+        ("one_mode", "strobe", ("gap", "gap"), "once"),
+    ],
+)
+def test_what_a_record_cannot_tell_is_refused_in_a_sentence(request, name, kind, names, said):
+    oscillator = request.getfixturevalue(name)
+    with pytest.raises(ValueError, match=said) as refusal:
+        fit(synthetic(kind, oscillator, seed=1), oscillator, names)
+    assert "\n" not in str(refusal.value)
+
+
+def test_an_orbit_that_ends_inside_the_confidence_region_is_refused(one_mode):
+    fold = -1.4773e-3  # of p5, as the main table has it
+    record = synthetic("strobe", one_mode.with_excess(1e-3))
+    from contact.orbits import MaximalFamily
+
+    orbit = MaximalFamily(oscillator=one_mode, period=5).orbits(fold + 2e-7)[-1]
+    motion = simulate(orbit.oscillator, orbit.state(), periods=40)
+    rows = one_mode.tip(motion.strobe_displacement)[:, None]
+    near = replace(record, rows=rows, amplitude=orbit.amplitude).noisy(1, 2e-5)
+    with pytest.raises(ValueError, match=r"changes its impacts|no p5"):
+        fit(near, orbit.oscillator, ("free_period", "restitution"))
+
+
+def test_impacts_are_found_in_a_displacement(one_mode):
+    record = synthetic("displacement", one_mode, seed=5)
+    prediction, at = prediction_of(record, far_from(one_mode), NAMES)
+    off = (truth(at, NAMES) - truth(one_mode, NAMES)) / truth(one_mode, NAMES)
+    assert np.all(np.abs(off) < [1e-4, 2e-3, 1e-3, 0.5])
+    assert prediction.touches(one_mode, prediction.extra) == 8
+
+
+def test_a_record_is_what_its_file_says(one_mode, tmp_path):
+    for kind in ("strobe", "displacement", "transitions"):
+        record = synthetic(kind, one_mode, seed=1)
+        (tmp_path / "a.csv").write_text(record.text())
+        again = read_record(tmp_path / "a.csv")
+        assert again.kind == kind and np.allclose(again.rows, record.rows, rtol=1e-9)
+        assert (again.frequency, again.amplitude) == (record.frequency, record.amplitude)
+    assert repetition(synthetic("strobe", one_mode, seed=1)) == 5
+
+
+def wave(rows, step=5e-4, height=0.01):
+    lines = [f"{step * i:.8g},{height * math.sin(2 * math.pi * 22.2 * step * i):.9g}" for i in range(rows)]
+    return "\n".join(["# frequency_hz = 22.2", "# amplitude_m = 2e-3", "time_s,x_m", *lines])
+
+
+REFUSED = {
+    "": "heading 'nothing'",
+    "hello": "heading 'hello'",
+    "x_m\n1\nnan\n": "row 2 .* 'nan'",
+    "x_m\n1\nabc\n": "row 2 .* 'abc'",
+    "x_m\n1\n": "1 rows",
+    "# frequency_hz = fast\nx_m\n1\n": "note frequency_hz",
+    "x_m,v_m_per_s\n1\n": "1 cells",
+    "frequency_hz,period,excess\n22.2,5.5,0\n": "whole period",
+    "frequency_hz,period,excess,error\n22.2,5,0,0\n": "error above 0",
+    wave(300).replace("0.0205,", "0.0206,"): "equal steps",
+    wave(30): "30 rows",
+}
+
+
+@pytest.mark.parametrize("text", REFUSED)
+def test_a_file_that_is_no_record_is_refused(tmp_path, text):
+    (tmp_path / "a.csv").write_text(text)
+    with pytest.raises(ValueError, match=REFUSED[text]):
+        read_record(tmp_path / "a.csv")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (wave(2000), "no impact"),
+        (wave(80), "too short"),
+        (wave(300, step=5e-3), "rows a drive period"),
+        ("# frequency_hz = 22.2\nx_m\n" + "1e-3\n2e-3\n" * 9, "amplitude"),
+        ("# amplitude_m = 2e-3\nx_m\n" + "1e-3\n2e-3\n" * 9, "--drive"),
+        ("# frequency_hz = 22.2\n# amplitude_m = 2e-3\nx_m\n" + "1e-3\n" * 9, "no impact"),
+    ],
+)
+def test_a_poor_record_is_refused_on_the_command_line(run_study, tmp_path, text, said):
+    (tmp_path / "a.csv").write_text(text)
+    ran = run_study("identify", str(tmp_path / "a.csv"))
+    assert ran.code == 2 and said in ran.err and ran.err.count("\n") == 1
+
+
+def test_the_command_line_takes_a_record_and_leaves_a_scene(run_study, tmp_path, one_mode):
+    (tmp_path / "mine.csv").write_text(synthetic("strobe", one_mode, seed=2).text())
+    ran = run_study("identify", "--quick", str(tmp_path / "mine.csv"), "--fit", "gap", "restitution")
+    assert ran.code == 0, ran.err
+    gap, restitution = (float(row["estimate"]) for row in ran.rows("parameters"))
+    again = single_mode_at(read_scene(ran.folder / "fitted.toml"), 22.2)
+    assert (again.stop.gap, again.stop.law.local_restitution) == (gap, restitution)
+    assert {row["record"] for row in ran.rows("parameters")} == {"mine"}
+
+
+def test_the_example_makes_a_record_of_each_kind_and_finds_what_it_put_in(run_study):
+    ran = run_study("identify", "--quick")
+    assert ran.code == 0, ran.err
+    kinds = [read_record(ran.folder / f"{kind}.csv").kind for kind in ("strobe", "displacement", "transitions")]
+    assert kinds == ["strobe", "displacement", "transitions"]
+    for row in ran.rows("parameters"):
+        assert abs(float(row["estimate"]) - float(row["scene"])) < 4.0 * float(row["standard_error"])
+    assert {row["parameter"] for row in ran.rows("profile")} & {"delay", "restitution"}
+
+
+def test_fit_without_a_record_is_refused(run_study):
+    ran = run_study("identify", "--fit", "gap", "mine.csv")
+    assert ran.code == 2 and "before --fit" in ran.err
+
+
+def test_a_fitted_beam_is_a_scene(beam):
+    scene = read_scene("letter", ["modes.count=8"])
+    changed = with_values(beam, {"gap": 0.0117, "stiffness": 8e9, "free_period": 0.0405})
+    again = beam_at(fitted_scene(scene, changed, [22.2]), 22.2)
+    for name in ("gap", "stiffness", "free_period", "decay_rate"):
+        assert parameters_of(again)[name].value == pytest.approx(parameters_of(changed)[name].value, rel=1e-12)
+    assert np.allclose(again.steady_response(), changed.steady_response(), rtol=1e-12)
