@@ -17,6 +17,7 @@ that give the same points: the three follow from one p_m as far as the gap is kn
 theory holds while the orbit outlives the errors: D has the standard error (d^T C d)^(1/2), d = dD/dp, and a
 place counts where p_m is there and stable with the excess that much lower and higher. So it leaves out as
 well what is as close to a second impact or a doubling, where J stays finite. Without a fold D is the excess.
+An error beyond the value itself says no more than that the parameter is not told.
 """
 
 from __future__ import annotations
