@@ -69,11 +69,5 @@ class DifferentiableMap(StrobedMap[S], Protocol[S]):
     def jacobians(self, state: S, count: int) -> Jacobians[S]:
         """Derivatives of the points with respect to those before, along at least one of `count` periods."""
 
-    def advance(self, state: S, time: float) -> tuple[S, float]:
-        """The motion after about `time` [s], at any phase but out of contact, and the time that passed."""
-
     def coordinates(self, state: S) -> np.ndarray:
         """Coordinates of a state, those of `points`, shape (n_coordinates,)."""
-
-    def moved(self, state: S, change: np.ndarray) -> S:
-        """The state with its coordinates changed."""

@@ -67,11 +67,3 @@ class StrobedNordmarkMap:
     def coordinates(self, state: NDArray[np.float64]) -> NDArray[np.float64]:
         """The state itself."""
         return state
-
-    def moved(self, state: NDArray[np.float64], change: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The state with its coordinates changed."""
-        return state + change
-
-    def advance(self, state: NDArray[np.float64], time: float) -> tuple[NDArray[np.float64], float]:
-        """One step, whatever the time."""
-        return self.orbit(state, 1).end, 1.0

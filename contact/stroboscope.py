@@ -28,9 +28,6 @@ __all__ = ["StrobedMap", "StrobedOrbit", "StroboscopicMap", "strobed_orbits"]
 MOST_STRETCHES = 64
 """Bound on how often a stretch that ends in contact is prolonged; a contact lasts less than a period."""
 
-PROLONGED = 0.05
-"""Drive periods by which it is."""
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class StroboscopicMap:
@@ -86,30 +83,10 @@ class StroboscopicMap:
         """phi_k q_k and phi_k q_k'/omega_k of a state, as in the points of an orbit [m]."""
         return self._system.weight * np.concatenate([state.displacement, state.velocity])
 
-    def moved(self, state: State, change: np.ndarray) -> State:
-        """The state with its coordinates changed [m]."""
-        q, v = np.split(change / self._system.weight, 2)
-        return replace(state, displacement=state.displacement + q, velocity=state.velocity + v)
-
     @cached_property
     def _system(self) -> StrobedSystem:
         """The numbers of the oscillator, made once for many short orbits."""
         return strobed_system(self.oscillator)
-
-    def advance(self, state: State, time: float) -> tuple[State, float]:
-        """The motion after `time` [s] or, as long as it is in contact then, somewhat later; the time passed.
-
-        Raises
-        ------
-        UnresolvedCrossing
-            If it is in contact all the time.
-        """
-        end = simulate(self.oscillator, state, duration=time).end
-        for _ in range(MOST_STRETCHES):
-            if end.regime == Regime.OUTSIDE:
-                return end, end.time - state.time
-            end = simulate(self.oscillator, end, duration=PROLONGED * self.period).end
-        raise UnresolvedCrossing(time=end.time, gap=0.0, velocity=0.0)
 
     def orbit(self, state: State, count: int) -> StrobedOrbit[State]:
         """`count` drive periods from `state`, which must lie at a strobe.

@@ -21,7 +21,8 @@ from contact.event_loop import STATE
 from contact.flight.crossing import CROSSES, first_crossing
 from contact.flight.modal_flow import propagate, tip_state
 from contact.touch.series import new_series
-from contact.touch.tangents import new_room, onset, tangent_flight, tangent_step
+from contact.touch.tangent_series import new_room, tangent_step
+from contact.touch.tangents import onset, tangent_flight
 from contact.trajectory import CONTACT, OUTSIDE, SUSTAINED
 
 __all__ = ["FAILED", "FEWER_TOUCHES", "FLOWN", "TOUCHING", "flow_from_touch"]

@@ -2,7 +2,7 @@
 
 The letter's Fig. 4 (1996): a U with legs of 13 cm, driven at 21.50 Hz, 1.3 % above grazing. Each cell prints
 what it found. Run time: 3 s. Command: python -m studies.tour, or cell by cell in an editor that knows `# %%`.
-Output: results/tour.png and .pdf.
+Output: results/tour.png and .pdf, and three records as CSV.
 """
 
 # %% A U cut out of a sheet of brass, damping tape on its legs; a ceramic ball with its mount at the bend
@@ -73,3 +73,16 @@ with house_style():
 folder = Path("results")
 folder.mkdir(parents=True, exist_ok=True)
 print("drawn in", *save(figure, folder, "tour"))
+
+# %% Records of this rig as an experiment gives them, for `python -m studies.identify results/tour_strobe.csv`
+rig = f"# frequency_hz = 21.5\n# amplitude_m = {beam.driven.amplitude!r}\n"
+noise = np.random.default_rng(1996).normal(0.0, 0.5e-6, (40 + times.size, 1))  # of the read-out, in metres
+points = np.tile(beam.tip(again.points[:4, :12])[:, None], (10, 1)) + noise[:40]
+trace = np.column_stack([times - settled.time, beam.tip(motion.displacement) + noise[40:, 0]])
+table = np.array([[21.5, 4, fold.excess, 2.5e-4]])
+for name, rows, heading in (
+    ("strobe", points, f"{rig}x_m"),
+    ("displacement", trace, f"{rig}time_s,x_m"),
+    ("transitions", table, "frequency_hz,period,excess,error"),
+):
+    np.savetxt(folder / f"tour_{name}.csv", rows, "%.9g", ",", header=heading, comments="")

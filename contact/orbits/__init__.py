@@ -30,7 +30,7 @@ from contact.orbits.event_derivatives import (
 from contact.orbits.events import Event
 from contact.orbits.family import Family, Orbit
 from contact.orbits.kick import KickFamily
-from contact.orbits.lyapunov import Exponents, divergence_rate, map_exponents, orbit_exponents
+from contact.orbits.lyapunov import Exponents, map_exponents, orbit_exponents
 from contact.orbits.motion_derivatives import MotionDerivatives, motion_derivatives
 from contact.orbits.repetition import period_of
 from contact.orbits.scan import OrbitDiagram, orbit_diagram
@@ -60,7 +60,6 @@ __all__ = [
     "SingleImpactOrbit",
     "born",
     "born_period",
-    "divergence_rate",
     "doubling_derivatives",
     "excess_derivatives",
     "first_event",

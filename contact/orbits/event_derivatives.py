@@ -19,11 +19,11 @@ from types import SimpleNamespace
 import numpy as np
 from numpy.typing import NDArray
 
-from contact.change import Change, Changes
+from contact.change import Change
 from contact.errors import NoDerivative
 from contact.flight.motion import Motion, motion_of, with_drive
 from contact.flight.tip_search import tip_at
-from contact.orbits.derivatives import OrbitDerivatives, at_touch, drive_of, sizes_of, with_speed
+from contact.orbits.derivatives import OrbitDerivatives, drive_of, sizes_of, with_speed
 from contact.orbits.periodic_orbit import PeriodicOrbit
 from contact.retraced import Retraced
 from contact.simulation import simulate
@@ -44,8 +44,8 @@ WEIGHTS = np.array([8.0, -1.0]) / 12.0
 PEAKS = 400
 """Points a drive period among which the peaks of a flight are looked for."""
 
-PEAKED = 1e-6
-"""Height of a peak, in gaps, up to which an orbit counts as one that grazes."""
+NEAR = 1e-6
+"""Part of the approach speed by which an orbit may miss its graze: located ones do by 1e-10."""
 
 
 def multiplier_derivatives(found: OrbitDerivatives) -> NDArray[np.complex128]:
@@ -74,16 +74,13 @@ def graze_derivatives(orbit: PeriodicOrbit, changes: Sequence[Change]) -> Array:
     Raises
     ------
     NoDerivative
-        If none of its peaks comes to within 1e-6 of the gap.
+        If none of its peaks grazes at a speed that is the same to 1e-6.
     """
     found = with_speed(orbit, changes)
-    last, wait, height = max(_peaks(orbit), key=lambda peak: peak[2], default=(0, 0.0, -np.inf))
-    released, oscillator, state = orbit.record[last, 1], orbit.oscillator, orbit.state()
-    if not abs(height) < PEAKED * oscillator.stop.gap:
-        raise NoDerivative(
-            time=orbit.phase + released + wait, gap=-height, velocity=0.0,
-            detail="no peak of the orbit between its touches grazes the stop",
-        )
+    oscillator, state = orbit.oscillator, orbit.state()
+    none = 0, oscillator.period, -np.inf
+    last, wait, height = max(_peaks(orbit), key=lambda peak: peak[2], default=none)
+    released = orbit.record[last, 1]
     run = simulate(oscillator, state, duration=released + 0.5 * wait)
     traced, size = Retraced(found.changes, run, state), len(found.start)
     traced.tangent = np.eye(size, size + found.start.shape[1])
@@ -91,6 +88,11 @@ def graze_derivatives(orbit: PeriodicOrbit, changes: Sequence[Change]) -> Array:
     moved = np.ascontiguousarray(tangent[:, :size] @ found.start + tangent[:, size:])
     clock = traced.clock % oscillator.period
     risen, _rate = all_tip_changes(found.changes.variation, moved, traced.u, traced.v, clock)
+    if not abs(height) <= NEAR * orbit.speed * abs(risen[-1]):
+        raise NoDerivative(
+            time=orbit.phase + released + wait, gap=-height, velocity=0.0,
+            detail="no peak of the orbit between its touches grazes the stop",
+        )
     return np.asarray(found.excess[:-1] - found.excess[-1] * risen[:-1] / risen[-1])
 
 
@@ -113,20 +115,20 @@ def _peaks(orbit: PeriodicOrbit) -> list[tuple[int, float, float]]:
     return found
 
 
-def _moved(orbit: PeriodicOrbit, changes: Changes, p: int, step: float) -> tuple[Motion, complex]:
-    """The numbers of the oscillator, moved by `step` along change `p`, at base amplitude 1, and a + i b."""
-    oscillator, change = orbit.oscillator, changes.changes[p]
-    model, law, gap = oscillator.model, oscillator.stop.law, oscillator.stop.gap + step * change.gap
-    omega, decay = model.omega + step * changes.omega[p], model.decay_rate + step * changes.decay[p]
-    phi, w = model.phi + step * changes.phi[p], oscillator.driven.angular_frequency + step * changes.pace[p]
-    gamma = model.participation + step * changes.of_model("participation")[p]
+def _moved(found: OrbitDerivatives, p: int, step: float) -> tuple[Motion, complex]:
+    """The numbers of the oscillator, moved by `step` along parameter `p`, at amplitude 1; and a + i b."""
+    oscillator, change = found.orbit.oscillator, found.changes.changes[p]
+    omega, decay, phi, gamma = (
+        getattr(oscillator.model, name) + step * rows[p] for name, rows in found.changes.model.items()
+    )
+    law, w = oscillator.stop.law, oscillator.driven.angular_frequency + step * found.changes.pace[p]
     response = gamma * w**2 / ((omega - w) * (omega + w) + 1j * decay * w)
     table = law.table.copy()
     table[[1, 3]] += step * np.array(change.law)[:, None]
     numbers = tuple(a + step * b for a, b in zip(law.numbers, change.law, strict=True))
     motion = motion_of(
-        omega, decay, phi, law=SimpleNamespace(code=law.code, numbers=numbers, table=table), gap=gap, drive=w,
-        period=2.0 * np.pi / w, response=response,
+        omega, decay, phi, law=SimpleNamespace(code=law.code, numbers=numbers, table=table), drive=w,
+        gap=oscillator.stop.gap + step * change.gap, period=2.0 * np.pi / w, response=response,
     )  # fmt: skip
     return motion, complex(phi @ response)
 
@@ -134,27 +136,25 @@ def _moved(orbit: PeriodicOrbit, changes: Changes, p: int, step: float) -> tuple
 def _tangent_change(found: OrbitDerivatives, p: int) -> Array:
     """Derivative of the monodromy matrix with parameter `p`, along the orbit's own."""
     orbit, changes, start = found.orbit, found.changes, found.start[:, p]
-    n, w = orbit.deviations.size, orbit.oscillator.driven.angular_frequency
-    z, change = np.concatenate([orbit.deviations, drive_of(orbit)]), changes.changes[p]
-    model, law = orbit.oscillator.model, np.array(orbit.oscillator.stop.law.numbers)
-    speed = at_touch(orbit, changes)[1][: n + 2] @ start
+    n, oscillator, z = orbit.deviations.size, orbit.oscillator, np.append(orbit.deviations, drive_of(orbit))
+    law, w = np.array(oscillator.stop.law.numbers), oscillator.driven.angular_frequency
     parts = [
-        start[:n] / sizes_of(orbit), start[n:] / orbit.amplitude, speed / orbit.speed, changes.omega[p] / w,
-        changes.decay[p] / w, changes.phi[p] / np.abs(model.phi).max(), changes.pace[p] / w,
-        change.gap / orbit.oscillator.stop.gap,
-        np.array(change.law) / np.where(law > 0.0, law, 1.0),
+        start[:n] / sizes_of(orbit), start[n:] / orbit.amplitude, found.speed[p] / orbit.speed,
+        changes.model["omega"][p] / w, changes.model["decay_rate"][p] / w,
+        changes.model["phi"][p] / np.abs(oscillator.model.phi).max(), changes.pace[p] / w,
+        changes.level[p] / oscillator.stop.gap,
+        np.array(changes.changes[p].law) / np.where(law > 0.0, law, 1.0),
     ]  # fmt: skip
     size = max(float(np.max(np.abs(part))) for part in parts)
     if size == 0.0:
         return np.zeros((n, n))
 
     def tangent(step: float) -> Array:
-        moved, (motion, response) = z + step * start, _moved(orbit, changes, p, step)
+        moved, (motion, response) = z + step * start, _moved(found, p, step)
         motion = with_drive(motion, float(np.hypot(*moved[-2:])))
         base = float(np.arctan2(*moved[-2:])) % (2.0 * np.pi) / motion.drive
         (u, v), matrix = moved[:n].reshape(2, -1).copy(), np.eye(n + 2)
-        record = np.empty((orbit.impacts, 4 + n))
-        duration = orbit.period * motion.period
+        record, duration = np.empty((orbit.impacts, 4 + n)), orbit.period * motion.period
         if flow_from_touch(variation(motion, response), base, u, v, duration, matrix, record) != FLOWN:
             raise NoDerivative(
                 time=base, gap=0.0, velocity=float(record[0, 2]), detail="a neighbouring orbit loses a touch"

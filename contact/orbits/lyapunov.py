@@ -1,6 +1,6 @@
-r"""Lyapunov exponents by two routes: Jacobians of the period map, and two neighbouring motions of the flow.
+r"""Lyapunov exponents from the Jacobians of the period map.
 
-**Map.** With J_n the derivative of the period map at the n-th strobe and Q R = J_n Q' (Q' of the step
+With J_n the derivative of the period map at the n-th strobe and Q R = J_n Q' (Q' of the step
 before),
 
     lambda_i = < log |R_ii| >        [per drive period],  largest first.
@@ -12,17 +12,6 @@ into a contact is passed over: that J_n spans more than one period.  On an orbit
 log|mu_i|/m, with mu_i the eigenvalues of J_m ... J_1.  For Eq. (1) of the letter (1996) the determinants give
 
     sum of lambda_i = -mu/f + 2 log(tau) x impacts per period.
-
-**Flow** (G. Benettin, L. Galgani, J.-M. Strelcyn, Phys. Rev. A 14 (1976) 2338).  A second motion starts at a
-distance d_0 from the first, both are followed by the exact simulation over a stretch h of time, and the
-distance is set back to d_0 without turning it:
-
-    lambda = < log(d/d_0) > / h      [1/s].
-
-No derivative and no strobe occurs in this: h is 0.618 drive periods, so that the distance is taken at all
-phases of the drive.  A stretch that would end in a contact is prolonged.  Both routes measure one number,
-
-    lambda_map = lambda_flow / f.
 
 Averages are weighted by w(t) = exp(-1/(t (1 - t))), t the fraction of the run: on periodic and quasi-periodic
 motions they converge faster than any power of its length (S. Das, Y. Saiki, E. Sander, J. A. Yorke,
@@ -41,21 +30,14 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from beam.parameters import require_kind, require_whole, require_within
-from contact.errors import NotPeriodic, UnresolvedCrossing
+from beam.parameters import require_kind, require_whole
+from contact.errors import NotPeriodic
 from contact.strobed_map import DifferentiableMap
 
-__all__ = ["Exponents", "divergence_rate", "map_exponents", "orbit_exponents"]
+__all__ = ["Exponents", "map_exponents", "orbit_exponents"]
 
 Array = NDArray[np.float64]
 S = TypeVar("S")
-
-SEPARATION = 1e-8
-"""d_0 in units of the scale: its square root, the size of what is neglected after a graze, is still small,
-and rounding changes it by 1e-8 of itself."""
-
-STRETCH = 0.618
-"""h in drive periods, no simple fraction."""
 
 BLOCK = 64
 """Periods simulated at a time, which bounds the memory; no result depends on it."""
@@ -64,7 +46,7 @@ BLOCKS = 20
 """Blocks whose scatter gives the standard error: enough for an estimate within a sixth of itself."""
 
 MOST_STRETCHES = 64
-"""Bound on how often a stretch is prolonged; a contact lasts less than a drive period."""
+"""Bound on how often an orbit's period is gone through until its strobe is off the wall."""
 
 SMALLEST = 1e-300
 """In place of a zero on the diagonal of R, where an impact without rebound has erased a direction."""
@@ -77,7 +59,7 @@ class Exponents:
     Parameters
     ----------
     values : ndarray, shape (n_exponents,)
-        Largest first; per drive period from a map, per second from the flow.
+        Largest first [per drive period].
     error : float
         Standard error of the largest, 0 if it is that of a periodic orbit.
     """
@@ -163,46 +145,3 @@ def orbit_exponents(strobed: DifferentiableMap[S], state: S, period: int) -> Exp
             matrix, done = step @ matrix, done + span
     sizes = np.maximum(np.abs(np.linalg.eigvals(matrix)), SMALLEST)
     return Exponents(values=np.sort(np.log(sizes))[::-1] / done, error=0.0)
-
-
-def divergence_rate(
-    strobed: DifferentiableMap[S], state: S, duration: float, *, align: float = 0.0, seed: int = 1996
-) -> Exponents:
-    """The largest exponent [1/s] from two neighbouring motions.
-
-    Parameters
-    ----------
-    strobed : DifferentiableMap
-    state : State
-        On the attractor.
-    duration, align : float
-        Time of the average, and before it, in which the distance finds its direction [s].
-    seed : int
-        Of the direction in which the second motion starts.
-    """
-    require_strobed(strobed)
-    require_within("duration", duration, "s", above=0)
-    require_within("align", align, "s", low=0)
-    require_whole("seed", seed, "[1]", low=0)
-    size = SEPARATION * strobed.scale
-    start = np.random.default_rng(seed).standard_normal(strobed.coordinates(state).size)
-    beside = strobed.moved(state, size * start / np.linalg.norm(start))
-    clock, rates, spans = 0.0, [], []
-    while clock < align + duration:
-        target = STRETCH * strobed.period
-        for _ in range(MOST_STRETCHES):
-            (end, span), (other, as_long) = (strobed.advance(here, target) for here in (state, beside))
-            if abs(as_long - span) <= 1e-9 * strobed.period:
-                break
-            target *= 1.0 + 0.5 * STRETCH  # one of the two was in contact
-        else:
-            raise UnresolvedCrossing(time=clock, gap=0.0, velocity=0.0)
-        gap = strobed.coordinates(other) - strobed.coordinates(end)
-        distance = max(float(np.linalg.norm(gap)), SMALLEST)
-        clock += span
-        if clock > align:
-            rates.append([math.log(distance / size) / span])
-            spans.append(span)
-        state, beside = end, strobed.moved(end, gap * (size / distance))
-    mean, error = _weighted(np.array(rates), np.array(spans))
-    return Exponents(values=mean, error=error)

@@ -25,20 +25,24 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import combinations
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
 from beam.parameters import require_within
-from contact import DelayedRestitution, HarmonicDrive, ImpactOscillator
-from studies.identify.fit import Fit, Profile, fit, profile
+from contact import DelayedRestitution, ImpactOscillator
+from studies.identify import coverage as covering
+from studies.identify import design, figures, gradients, pairs
+from studies.identify.fit import Fit, Profile, profile
+from studies.identify.fit import fit as fitted
 from studies.identify.parameters import fitted_scene, parameters_of
 from studies.identify.records import Kind, Record, read_record, synthetic
 from studies.options import POSITIONAL
 from studies.run import Run, study
-from studies.scene import Scene, beam_at, harmonic, model_of, single_mode_at
+from studies.scene import Scene, beam_at, harmonic, single_mode_at
 
 __all__ = ["identify"]
 
@@ -54,9 +58,9 @@ USUAL: Mapping[Kind, tuple[str, ...]] = {
 }
 """What is fitted of a kind of record if nobody says, as far as the oscillator has it."""
 
-EXAMPLES: Sequence[tuple[Kind, Description]] = (
-    ("strobe", "one_mode"), ("displacement", "two_parameters"), ("transitions", "one_mode"),
-)  # fmt: skip
+EXAMPLES: Mapping[Kind, Description] = {
+    "strobe": "one_mode", "displacement": "two_parameters", "transitions": "one_mode"
+}  # fmt: skip
 FREQUENCY_HZ, SEED = 22.20, 1996
 """Of the example: the letter's p5."""
 
@@ -105,10 +109,19 @@ class Quality:
     too_small: bool
 
 
-def described(scene: Scene, description: Description, frequency: float, delay: float) -> ImpactOscillator:
+def frequency_of(record: Record) -> float:
+    """The drive frequency of a record, the first of a table [Hz]."""
+    if record.kind == "transitions":
+        return float(record.rows[0, 0])
+    if record.frequency is None:
+        raise ValueError("the record does not say the frequency of the drive: give --drive HZ MM")
+    return record.frequency
+
+
+def described(scene: Scene, description: Description, delay: float, frequency: float) -> ImpactOscillator:
     """The oscillator of the scene at a drive frequency [Hz], at the excess at which periods are born."""
     if description == "beam":
-        oscillator = beam_at(scene, frequency, model_of(scene))
+        oscillator = beam_at(scene, frequency)
     else:
         oscillator = single_mode_at(scene, frequency)
     if description == "two_parameters":
@@ -127,17 +140,14 @@ def usual(record: Record, oscillator: ImpactOscillator) -> tuple[str, ...]:
 
 
 def driven(record: Record, oscillator: ImpactOscillator, names: Sequence[str]) -> ImpactOscillator:
-    """The oscillator at the drive of the record."""
-    if record.kind == "transitions":
-        return oscillator
-    amplitude = record.amplitude
-    if amplitude is None and "amplitude" not in names:
+    """The oscillator at the drive amplitude of the record."""
+    if record.amplitude is not None:
+        return oscillator.with_amplitude(record.amplitude)
+    if record.kind != "transitions" and "amplitude" not in names:
         raise ValueError(
-            "the record does not say the amplitude of the base: give --amplitude-mm, or fit amplitude"
+            "the record does not say the amplitude of the base: give --drive HZ MM, or --fit amplitude ..."
         )
-    assert record.frequency is not None
-    drive = HarmonicDrive(frequency=record.frequency, amplitude=amplitude or oscillator.driven.amplitude)
-    return replace(oscillator, drive=drive)
+    return oscillator
 
 
 @study()
@@ -146,83 +156,126 @@ def identify(
     record: Annotated[Path | None, "CSV file; without one, the example", POSITIONAL] = None,
     fit: Annotated[tuple[str, ...], "parameters to fit (default: those that its kind of record tells)"] = (),
     description: Annotated[Description, "what stands for the spring"] = "one_mode",
-    frequency_hz: Annotated[float | None, "drive frequency, in place of the record's"] = None,
-    amplitude_mm: Annotated[float | None, "amplitude of the base, in place of the record's"] = None,
+    drive: Annotated[tuple[float, float] | None,
+                     "frequency (Hz) and amplitude of the base (mm), in place of the record's"] = None,
     noise_um: Annotated[float | None, "noise of the read-out, where it is known"] = None,
     delay_ms: Annotated[float, "two_parameters: the delay, or where its fit starts"] = 0.3,
+    coverage: Annotated[int | None, "also fit so many synthetic records of each kind: is 90 % 90 %?"] = None,
 ) -> Mapping[str, object]:  # fmt: skip
     """Read or make, fit, report and draw."""
     harmonic(scene)
+    noise = None if noise_um is None else 1e-6 * require_within("noise_um", noise_um, "um", above=0)
     if description == "beam":
         scene = run.choose_modes(scene, {"fold": 0.05})
-    given: list[tuple[str, Record, ImpactOscillator, tuple[str, ...]]] = []
-    if record is None:
-        if fit:
-            raise ValueError(f"fit names {' '.join(fit)}, but no record is given: put its file before --fit")
-        for kind, stands in EXAMPLES:
-            oscillator = described(scene, stands, FREQUENCY_HZ, 1e-3 * delay_ms)
-            made = synthetic(kind, oscillator, seed=SEED)
-            run.text(f"{kind}.csv", made.text())
-            given.append((kind, made, oscillator, usual(made, oscillator)))
-    else:
+    if record is not None:
         read = read_record(record)
-        if read.kind != "transitions":
-            read = replace(read, frequency=frequency_hz or read.frequency)
-            if read.frequency is None:
-                raise ValueError("the record does not say the drive frequency: give --frequency-hz")
-            if amplitude_mm is not None:
-                read = replace(read, amplitude=1e-3 * amplitude_mm)
-        frequency = read.frequency or float(read.rows[0, 0])
-        oscillator = described(scene, description, frequency, 1e-3 * delay_ms)
-        names = fit or usual(read, oscillator)
-        given.append((record.stem, read, driven(read, oscillator, names), names))
-    noise = None if noise_um is None else 1e-6 * require_within("noise_um", noise_um, "um", above=0)
-    found = {name: _fit(made, oscillator, names, noise=noise) for name, made, oscillator, names in given}
-    profiles = {name: traded(one, 5 if run.quick else 9) for name, one in found.items()}
-    estimates = [row for (name, one), (*_, before, _) in zip(found.items(), given, strict=True)
-                 for row in estimates_of(name, one, before)]  # fmt: skip
+        if drive is not None:
+            read = replace(read, frequency=drive[0], amplitude=1e-3 * drive[1])
+        oscillator = described(scene, description, 1e-3 * delay_ms, frequency_of(read))
+        given = {record.stem: (read, oscillator)}
+    elif fit:
+        raise ValueError(f"fit names {' '.join(fit)}, but no record is given: put its file before --fit")
+    else:
+        given = examples(scene, run, 1e-3 * delay_ms)
+    found = {
+        name: fitted(one, driven(one, oscillator, fit), fit or usual(one, oscillator), noise=noise)
+        for name, (one, oscillator) in given.items()
+    }
+    results = report(run, found)
+    first = next(iter(found))
+    run.text("fitted.toml", as_scene(scene, found[first], [r for r in results["rows"] if r.record == first]))
+    if record is None:
+        results |= letters_rig(scene, run, 1e-3 * delay_ms)
+    if coverage is not None:
+        results |= truth(scene, run, coverage)
+    return results
+
+
+def examples(scene: Scene, run: Run, delay: float) -> dict[str, tuple[Record, ImpactOscillator]]:
+    """A record of each kind, stored, and the oscillator of which it is."""
+    found = dict[str, tuple[Record, ImpactOscillator]]()
+    for kind, description in EXAMPLES.items():
+        oscillator = described(scene, description, delay, FREQUENCY_HZ)
+        found[kind] = synthetic(kind, oscillator, seed=SEED), oscillator
+        run.text(f"{kind}.csv", found[kind][0].text())
+    return found
+
+
+def letters_rig(scene: Scene, run: Run, delay: float) -> dict[str, object]:
+    """What the letter's six pairs say of the free period, and what to measure next."""
+    kinds = [kind for kind in pairs.KINDS if kind[2] == pairs.RESTITUTIONS[0]][: 2 if run.quick else None]
+    rows = [row for found in run.map(pairs.intervals_of, kinds, "pairs") for row in found]
+    run.table("pairs", rows, "Free periods at which the letter's six pairs are born.", show=())
+    run.figure("pairs", pairs.draw(rows), "Free periods at which the letter's pairs are born, each and all.")
+    plan, thin = design.Plan(), 6 if run.quick else 2
+    of = partial(described, scene, "two_parameters", delay)
+    ask = partial(design.measurements_at, of, plan, design.EXCESSES[::thin])
+    measured = run.map(ask, design.FREQUENCIES_HZ[::thin], "orbits")
+    found = [one for column in measured for one in column]
+    best = design.best(found)
+    run.table("measurements", found, "What an orbit tells of T, restitution and delay.", show=())
+    run.table("next", best, "The five best of them.", show=("frequency_hz", "excess", "period", "together"))
+    run.figure("next", design.draw(found, plan), "Standard errors over drive frequency and excess; stars: "
+               "the letter's points; numbers: the best five; grey: the orbit does not outlive its errors.")  # fmt: skip
+    told = [design.answer(of, found, plan), *([] if run.quick else [pairs.sentence(rows)])]
+    for sentence in told:
+        run.say(sentence)
+    return {"pairs": rows, "next": best, "told": told}
+
+
+def truth(scene: Scene, run: Run, records: int) -> dict[str, object]:
+    """Do intervals hold what was put in, and what does a gradient cost?"""
+    beam = run.choose_modes(scene, {"fold": 0.05})
+    rows = covering.coverage(scene, beam, run, records=records, beam_records=records // 4)
+    run.table("coverage", rows, covering.COVERED)
+    run.figure("coverage", covering.draw_coverage(rows), covering.COVERED)
+    paths = gradients.gradients(described(scene, "one_mode", 0.0, FREQUENCY_HZ))
+    run.table("gradients", paths, gradients.CHART, show=())
+    run.figure("gradients", gradients.draw_gradients(paths), gradients.CHART)
+    return {"coverage": rows, "gradients": paths}
+
+
+def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
+    """Tables and figure of the fits."""
+    estimates = [row for name, one in found.items() for row in estimates_of(name, one)]
     run.table("parameters", estimates, "Estimates with standard errors and 90 % intervals.", show=SHOWN)
     quality = [
         Quality(record=name, rows=len(one.residuals), noise=one.noise, freedom=one.freedom,
                 chance=one.chance, too_small=one.too_small) for name, one in found.items()
     ]  # fmt: skip
     run.table("quality", quality, "What is left of the records.")
+    for row in quality:
+        if row.too_small:
+            run.say(f"{row.record}: the model is too small: its residuals are no noise (p {row.chance:.0e})")
     correlations = [
         Correlation(record=name, parameter=a, other=b, correlation=float(one.correlations[i, j]))
         for name, one in found.items() for (i, a), (j, b) in combinations(enumerate(one.names), 2)
     ]  # fmt: skip
     run.table("correlations", correlations, "Correlations of the estimates.", show=())
+    profiles = {name: traded(one, 5 if run.quick else 9) for name, one in found.items()}
     run.table("profile", [row for rows in profiles.values() for row in rows],
               "Likelihood along one of two parameters that trade off.", show=())  # fmt: skip
     run.arrays("residuals", **{name: one.residuals for name, one in found.items()})
-    for row in quality:
-        if row.too_small:
-            run.say(f"{row.record}: the model is too small: its residuals are no noise (p {row.chance:.0e})")
-    best = found[given[0][0]]
-    about = [f"# {row.parameter} {row.told} {row.unit}" for row in estimates if row.record == given[0][0]]
-    table = best.record.kind == "transitions"
-    frequencies = sorted(set(best.record.rows[:, 0])) if table else [best.oscillator.driven.frequency]
-    fitted = fitted_scene(scene, best.oscillator, frequencies)
-    run.text("fitted.toml", "\n".join([*about, "", fitted.dump()]))
-    from studies.identify import figures  # matplotlib is slow to import
-
     run.figure("identify", figures.draw(found, profiles), figures.CAPTION)
     return {"rows": estimates, "quality": quality, "correlations": correlations}
 
 
-def _fit(record: Record, oscillator: ImpactOscillator, names: Sequence[str], *, noise: float | None) -> Fit:
-    return fit(record, oscillator, names, noise=noise)
+def as_scene(scene: Scene, found: Fit, rows: Sequence[Estimate]) -> str:
+    """What was fitted, as a scene, in TOML; its first lines tell the estimates."""
+    table = found.record.kind == "transitions"
+    frequencies = sorted(set(found.record.rows[:, 0])) if table else [found.oscillator.driven.frequency]
+    about = [f"# {row.parameter} {row.told} {row.unit}" for row in rows]
+    return "\n".join([*about, "", fitted_scene(scene, found.oscillator, frequencies).dump()])
 
 
-def estimates_of(name: str, found: Fit, before: ImpactOscillator) -> list[Estimate]:
+def estimates_of(name: str, found: Fit) -> list[Estimate]:
     """The rows of a fit."""
-    known = parameters_of(before)
+    known = parameters_of(found.oscillator)
     return [
         Estimate(
-            record=name, parameter=one, unit=known[one].unit, start=float(found.start[i]),
-            estimate=float(found.estimate[i]), standard_error=float(found.errors[i]),
-            low90=float(low), high90=float(high), scene=known[one].value,
-            told=in_short(float(found.estimate[i]), float(found.errors[i])),
+            record=name, parameter=one, unit=known[one].unit, start=float(found.start[i]), low90=float(low),
+            estimate=float(found.estimate[i]), standard_error=float(found.errors[i]), high90=float(high),
+            told=in_short(float(found.estimate[i]), float(found.errors[i])), scene=float(found.before[i]),
         ) for i, (one, (low, high)) in enumerate(zip(found.names, found.intervals(), strict=True))
     ]  # fmt: skip
 

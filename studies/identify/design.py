@@ -1,23 +1,22 @@
-r"""What to measure next: where in the plane of drive frequency and excess an orbit tells most of parameters p.
+r"""What to measure next: where in the plane of frequency and excess an orbit tells most of parameters p.
 
-N strobes of a settled p_m see the tip at its m strobe points y_j(p), each N/m times. With read-out noise s,
-J_j = dy_j/dp (``contact.orbits.orbit_derivatives``) and standard errors s_0 of what is known before,
+N strobes of a settled p_m see the tip at its m strobe points y_j(p), each N/m times. With read-out noise s
+and standard errors s_0 of what is known before, A_g the amplitude at grazing, which is measured too,
 
-    information M = (N/m) sum_j J_j^T J_j/s^2 + sum g g^T/s_0^2,     covariance C = M^-1,
+    information  M = (N/m) sum_j J_j^T J_j/s^2 + g g^T/s_0^2 + 1/s_0^2,    J_j = dy_j/dp,   g = dA_g/dp.
 
-g = dA_g/dp for the amplitude at grazing, which is measured too. A parameter's error is C_ii^(1/2), and
-M_ii^(-1/2) with all others known; that of n together is det(C_n)^(1/2n) in units of their values, the geometric
-mean of the half axes of the ellipsoid of errors (D-criterion).
+With C = M^-1 a parameter's error is C_ii^(1/2), or M_ii^(-1/2) with all others known; that of n together
+is det(C_n)^(1/2n) in units of their values, the geometric mean of the half axes of their ellipsoid
+(D-criterion).
 
-**What one orbit cannot tell.** Between touches the points obey T, mu and the drive; the touch joins the flight
-that comes and the one that goes: wherever the two meet a level, that gap with a delay and a restitution gives
-the same strobe points. So gap, restitution and delay follow from one p_m only as far as the gap is known, here
-from A_g, or from two orbits of different speeds.
+**What one orbit cannot tell.** Between touches the points obey T, mu and the drive; the touch joins the
+flight that comes to the one that goes. Where these meet any level tells a gap with a delay and a restitution
+that give the same points: the three follow from one p_m as far as the gap is known, or from two unlike ones.
 
-**Where it ends.** Towards a fold, D away in excess, y_j - y_fold ~ D^(1/2): J grows without bound. Linear
+**Where it ends.** Towards a fold, D away in excess, y_j - y_fold ~ D^(1/2) and J grows without bound. Linear
 theory holds while the orbit outlives the errors: D has the standard error (d^T C d)^(1/2), d = dD/dp, and a
-place counts where p_m is there, stable, with the excess that much lower and higher. That leaves out places as
-close to a second impact or a doubling, where J stays finite, too. Without a fold p_m ends at grazing.
+place counts where p_m is there and stable with the excess that much lower and higher. So it leaves out as
+well what is as close to a second impact or a doubling, where J stays finite. Without a fold D is the excess.
 """
 
 from __future__ import annotations
@@ -25,6 +24,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import combinations
+from typing import Any
 
 import numpy as np
 from matplotlib.colors import LogNorm
@@ -32,38 +33,25 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from beam import ModalChange
-from contact import (
-    ContactError,
-    DelayedRestitution,
-    ImpactOscillator,
-    NewtonRestitution,
-    NordmarkMap,
-    maximal_period,
-)
-from contact.orbits import (
-    Change,
-    KickFamily,
-    MaximalFamily,
-    PeriodicOrbit,
-    Shooting,
-    excess_derivatives,
-    orbit_derivatives,
-)
+from contact import ContactError, ImpactOscillator, NewtonRestitution, NordmarkMap, maximal_period
+from contact.orbits import PeriodicOrbit, Shooting, excess_derivatives, orbit_derivatives
 from studies import letter, plotting
+from studies.identify.parameters import changes_of, parameters_of
+from studies.identify.predictions import family_of
 
 Array = NDArray[np.float64]
+Of = Callable[[float], ImpactOscillator]
+"""Drive frequency [Hz] to oscillator."""
 
+STABLE = letter.AMPLITUDE_STABILITY
 FREQUENCIES_HZ = np.linspace(20.5, 23.6, 63).tolist()
-MARKS = (0.0, *(letter.AMPLITUDE_STABILITY * 4.0**k for k in range(4)))
-EXCESSES = sorted({0.0, *(way * MARKS[1] * 2.0 ** (0.5 * k) for k in range(13) for way in (-1, 1))})
-"""The plane: drive frequencies, excesses, and those that are written on its axis."""
+EXCESSES = sorted({0.0, *(way * STABLE * 2.0 ** (0.5 * k) for k in range(13) for way in (-1, 1))})
+MARKS = [0.0, *(way * STABLE * 4.0**k for k in (1, 2, 3) for way in (-1, 1))]
+"""The plane of the map, and the excesses written on its axis."""
 
-UNSEEN = 1e-11
-"""Ratio of singular values below which a direction of the parameters is not seen."""
-
-SPEEDS = (1e-4, 1.0)
-"""Approach speeds over 2 pi f gap among which nodes are looked for."""
+UNSEEN, SPEEDS = 1e-11, (1e-4, 1.0)
+"""Ratio of singular values below which a direction of the parameters is not seen; approach speeds over
+2 pi f gap among which nodes are looked for."""
 
 APART_HZ, ALIKE = 0.3, 0.1
 """Least distance of two of the best places; by which approach speeds may differ and count as one."""
@@ -71,15 +59,15 @@ APART_HZ, ALIKE = 0.3, 0.1
 SHOWN = {
     "free_period": ("error of $T$ (ms)", 1e3), "decay_rate": ("error of $\\mu$ (1/s)", 1.0),
     "gap": ("error of the gap (mm)", 1e3), "restitution": ("error of $\\tau$", 1.0),
-    "delay": ("error of the delay (ms)", 1e3),
+    "delay": ("error of the delay (\u00b5s)", 1e6),
 }  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
 class Plan:
     """Wanted `names`; standard errors `before` of what else is unknown, in its unit (inf: nothing known), and
-    of any drive amplitude [m]; number of `strobes`; `noise` of the read-out [m]; whether velocity is read too,
-    to 2 pi f `noise`."""
+    of any drive amplitude [m]; number of `strobes`; `noise` of the read-out [m]; whether velocity is read
+    too, to 2 pi f `noise`."""
 
     names: tuple[str, ...] = ("free_period", "restitution", "delay")
     before: Mapping[str, float] = field(
@@ -116,52 +104,29 @@ class Measurement:
     kept: bool
 
 
-def parameters(oscillator: ImpactOscillator) -> dict[str, tuple[float, Change]]:
-    """Values of the parameters of one mode under a law of restitution, and the changes with them, per unit."""
-    law, drive, model = oscillator.stop.law, oscillator.driven, oscillator.model
-    first, delay = law.table[[1, 3], 0].tolist() if isinstance(law, DelayedRestitution) else (*law.numbers[:1], 0.0)
-    omega, rate = float(model.omega[0]), float(model.decay_rate[0])
-    period = 2.0 * math.pi / math.sqrt(omega**2 - 0.25 * rate**2)
-
-    def moved(pace: float, decay: float) -> Change:
-        return Change(model=ModalChange(omega=[pace], decay_rate=[decay], phi=[0.0], participation=[0.0]))
-
-    return {
-        "free_period": (period, moved(-(2.0 * math.pi / period) ** 2 / (period * omega), 0.0)),
-        "decay_rate": (rate, moved(0.25 * rate / omega, 1.0)),
-        "gap": (oscillator.stop.gap, Change(gap=1.0)),
-        "restitution": (first, Change(law=(1.0, 0.0))),
-        "delay": (delay, Change(law=(0.0, 1.0))),
-        "frequency": (drive.frequency, Change(frequency=1.0)),
-        "amplitude": (drive.amplitude, Change(amplitude=1.0)),
-    }
-
-
-def values_of(orbit: PeriodicOrbit, plan: Plan) -> Array:
-    """Of all that is unknown."""
-    known = parameters(orbit.oscillator)
-    return np.array([known[name][0] for name in plan.unknown])
+def sizes_of(orbit: PeriodicOrbit, plan: Plan) -> Array:
+    """Of all that is unknown: its values, or what counts as a change of it."""
+    known = parameters_of(orbit.oscillator)
+    return np.array([known[name].size for name in plan.unknown])
 
 
 def changed(orbit: PeriodicOrbit, plan: Plan) -> tuple[Array, Array]:
-    """Changes of what is measured, over its noise, and of the excess, by relative changes of the unknown."""
-    known, values = parameters(orbit.oscillator), values_of(orbit, plan)
-    found = orbit_derivatives(orbit, [known[name][1] for name in plan.unknown])
+    """Changes of what is measured, over its noise, and of the excess, by what is unknown over its sizes."""
+    found = orbit_derivatives(orbit, changes_of(orbit.oscillator, plan.unknown))
     phi, weight = orbit.oscillator.model.phi, math.sqrt(plan.strobes / orbit.period) / plan.noise
     rows = [weight * np.einsum("i,jip->jp", phi, found.strobes_changed[:, : phi.size])]
     if plan.velocity:
         rates = np.einsum("i,jip->jp", phi, found.strobes_changed[:, phi.size :])
         rows.append(weight * rates / orbit.oscillator.driven.angular_frequency)
-    grazing = found.changes.grazing_amplitude / plan.amplitude_error
-    return np.vstack([*rows, grazing]) * values, found.excess * values
+    grazing, sizes = found.changes.grazing_amplitude / plan.amplitude_error, sizes_of(orbit, plan)
+    return np.vstack([*rows, grazing]) * sizes, found.excess * sizes
 
 
 def covariance(orbits: Sequence[PeriodicOrbit], plan: Plan) -> Array:
-    """C of relative changes of what is unknown, with an amplitude for each orbit; infinite where the orbits do
-    not tell all of it."""
-    own, values = len(plan.unknown) - 1, values_of(orbits[0], plan)
-    before = values[len(plan.names) : own] / list(plan.before.values())
-    rows = [np.diag([*np.zeros(len(plan.names)), *before, *(o.amplitude / plan.amplitude_error for o in orbits)])]
+    """C in units of sizes, with an amplitude for each orbit; infinite where they do not tell all of it."""
+    n, own, sizes = len(plan.names), len(plan.unknown) - 1, sizes_of(orbits[0], plan)
+    before = sizes[n:own] / list(plan.before.values())
+    rows = [np.diag([*np.zeros(n), *before, *(one.amplitude / plan.amplitude_error for one in orbits)])]
     for i, orbit in enumerate(orbits):
         found = changed(orbit, plan)[0]
         rows.append(np.zeros((len(found), own + len(orbits))))
@@ -178,7 +143,7 @@ def covariance(orbits: Sequence[PeriodicOrbit], plan: Plan) -> Array:
 def errors_of(orbits: Sequence[PeriodicOrbit], plan: Plan) -> tuple[tuple[float, ...], float]:
     """Standard errors of the wanted by several orbits together, and their D-criterion [1]."""
     n, cov = len(plan.names), covariance(orbits, plan)
-    errors = np.sqrt(np.diag(cov)[:n]) * values_of(orbits[0], plan)[:n]
+    errors = np.sqrt(np.diag(cov)[:n]) * sizes_of(orbits[0], plan)[:n]
     told = bool(np.isfinite(cov[0, 0]))
     return tuple(errors.tolist()), float(np.linalg.det(cov[:n, :n]) ** (0.5 / n)) if told else math.inf
 
@@ -187,8 +152,7 @@ class Nodes:
     """The stable, admissible orbits p_m, m = `period`, at approach speeds above that of the fold."""
 
     def __init__(self, oscillator: ImpactOscillator, period: int) -> None:
-        newton = isinstance(oscillator.stop.law, NewtonRestitution)
-        self.family = (MaximalFamily if newton else KickFamily)(oscillator=oscillator, period=period)
+        self.family = family_of(oscillator, period)
         self.exact, low = Shooting(oscillator=oscillator, period=period), self.family.fold()
         self.fold = self.exact.at_speed(low.speed) if low else None
         slow, fast = (part * oscillator.unit_speed for part in SPEEDS)
@@ -209,32 +173,27 @@ class Nodes:
 
 def measurement(orbit: PeriodicOrbit, nodes: Nodes, plan: Plan) -> Measurement:
     """What one of the `nodes` tells."""
-    n, values, cov = len(plan.names), values_of(orbit, plan), covariance([orbit], plan)
+    n, sizes, cov = len(plan.names), sizes_of(orbit, plan), covariance([orbit], plan)
     (errors, together), (rows, away) = errors_of([orbit], plan), changed(orbit, plan)
     if nodes.fold is not None:
-        known = parameters(orbit.oscillator)
-        away = away - excess_derivatives(nodes.fold, [known[name][1] for name in plan.unknown]) * values
-    told = math.isfinite(together)
+        away = away - excess_derivatives(nodes.fold, changes_of(orbit.oscillator, plan.unknown)) * sizes
+    told, widths = math.isfinite(together), np.sqrt(np.diag(cov)[:n])
     off = math.sqrt(away @ cov @ away) if told else math.inf
-    sizes = np.array(errors) / values[:n]
+    mutual = cov[:n, :n] / np.outer(widths, widths) - np.eye(n) if told else np.ones((n, n))
     return Measurement(
-        frequency_hz=orbit.oscillator.driven.frequency, excess=orbit.excess, period=orbit.period, errors=errors,
-        alone=tuple((values / np.linalg.norm(rows, axis=0))[:n].tolist()), together=together,
-        correlation=float(np.max(np.abs(cov[:n, :n] / np.outer(sizes, sizes) - np.eye(n)))) if told else 1.0,
-        distance=orbit.excess - (nodes.fold.excess if nodes.fold else 0.0), distance_error=off,
-        kept=told and all(nodes.at(orbit.excess + way * off) is not None for way in (-1.0, 1.0)),
+        frequency_hz=orbit.oscillator.driven.frequency, excess=orbit.excess, period=orbit.period,
+        errors=errors, alone=tuple((sizes / np.linalg.norm(rows, axis=0))[:n].tolist()), together=together,
+        correlation=float(np.max(np.abs(mutual))), distance=orbit.excess - nodes.excesses[0],
+        distance_error=off, kept=told and None not in [nodes.at(orbit.excess + way * off) for way in (-1, 1)],
     )  # fmt: skip
 
 
-def measurements_at(
-    of: Callable[[float], ImpactOscillator], plan: Plan, excesses: Sequence[float], frequency: float
-) -> list[Measurement]:
+def measurements_at(of: Of, plan: Plan, excesses: Sequence[float], frequency: float) -> list[Measurement]:
     """All that can be measured at a drive frequency [Hz]: p_m of the map there, and of its neighbours."""
     oscillator, found = of(frequency), list[Measurement]()
     plastic = replace(oscillator.stop, law=NewtonRestitution(local_restitution=0.0))
     m = maximal_period(NordmarkMap.from_oscillator(replace(oscillator, stop=plastic)))
-    for period in range(max(m - 1, 2), m + 2):
-        nodes = Nodes(oscillator, period)
+    for nodes in [Nodes(oscillator, period) for period in range(max(m - 1, 2), m + 2)]:
         orbits = [orbit for orbit in map(nodes.at, excesses) if orbit is not None]
         found += [measurement(orbit, nodes, plan) for orbit in orbits]
     return found
@@ -249,33 +208,33 @@ def best(found: Sequence[Measurement], count: int = 5) -> list[Measurement]:
     return chosen[:count]
 
 
-def letters_orbits(of: Callable[[float], ImpactOscillator], excess: float = 1e-3) -> list[PeriodicOrbit]:
-    """The orbits of the letter's pairs at an excess, of the period next to it where p_m is not there."""
-    found = list[PeriodicOrbit]()
-    for f, m in letter.PERIODS.items():
-        there = [Nodes(of(f), period).at(excess) for period in (m, m + 1)]
-        found += [orbit for orbit in there if orbit is not None][:1]
-    return found
+def letters_orbits(of: Of, excess: float = 1e-3) -> list[PeriodicOrbit]:
+    """The orbits of the letter's pairs at an excess; p_(m+1) where p_m is not there."""
+    both = [[Nodes(of(f), k).at(excess) for k in (m, m + 1)] for f, m in letter.PERIODS.items()]
+    return [orbit for pair in both for orbit in [pair[0] or pair[1]] if orbit is not None]
 
 
-def answer(of: Callable[[float], ImpactOscillator], plan: Plan, found: Sequence[Measurement]) -> str:
-    """What the letter's points and the best one tell, for the page; `plan` wants T, restitution and delay."""
-    def told(orbits: Sequence[PeriodicOrbit]) -> str:
-        period, restitution, delay = errors_of(orbits, plan)[0]
-        return f"T to {1e3 * period:.1g} ms, tau to {restitution:.1g}, the delay to {1e6 * delay:.2g} us"
-
+def answer(of: Of, found: Sequence[Measurement], plan: Plan) -> str:
+    """What the letter's points and the best place tell, for the page; the plan wants T, tau and the delay."""
     six, first = letters_orbits(of), best(found, 1)[0]
-    names = [f"p{orbit.period}" for orbit in six]
-    one = Nodes(of(first.frequency_hz), first.period).at(first.excess)
-    assert one is not None
-    pairs = [(a, b) for k, a in enumerate(six) for b in six[k + 1 :] if abs(a.speed / b.speed - 1.0) < ALIKE]
-    a, b = min(pairs, key=lambda pair: errors_of(pair, plan)[1])
+    alone = {orbit.period: errors_of([orbit], plan)[0] for orbit in six}
+    few = min(alone, key=lambda m: alone[m][1])
+    pairs = [(a, b) for a, b in combinations(six, 2) if abs(a.speed / b.speed - 1.0) < ALIKE]
+    alike = min(pairs, key=lambda pair: errors_of(pair, plan)[1])
+
+    def words(errors: Sequence[float]) -> str:
+        return f"tau to {errors[1]:.1g} and the delay to {1e6 * errors[2]:.2g} us"
+
+    one, other = alike
     return (
-        f"With {plan.strobes} strobes read to {1e6 * plan.noise:g} um at an excess of 1e-3, and amplitudes to "
-        f"{1e6 * plan.amplitude_error:g} um: " + "; ".join(f"{name} tells {told([o])}" for name, o in zip(names, six, strict=True))
-        + f". The best one, p{one.period} at {first.frequency_hz:.2f} Hz and {first.excess:.1e}, {told([one])}; tau and "
-        f"delay stay correlated ({first.correlation:.3f}) through the gap. p{a.period} and p{b.period}, which meet the stop at {a.speed:.2f} "
-        f"and {b.speed:.2f} m/s, {told([a, b])} whatever these do at other speeds; all six, if they are constant, {told(six)}."
+        f"Of {plan.strobes} strobes read to {1e6 * plan.noise:g} um, at an excess of 1e-3, amplitudes known to "
+        f"{1e6 * plan.amplitude_error:g} um: T follows to "
+        + ", ".join(f"{1e3 * errors[0]:.1g} ms (p{m})" for m, errors in alone.items())
+        + ". No single p_m tells gap, tau and delay apart; with the gap from the amplitude at grazing "
+        f"p{few} gives {words(alone[few])}, the best place, p{first.period} at {first.frequency_hz:.2f} Hz "
+        f"and {first.excess:.1e}, {words(first.errors)}. p{one.period} and p{other.period}, which meet the "
+        f"stop at {one.speed:.2f} and {other.speed:.2f} m/s, give {words(errors_of(alike, plan)[0])} "
+        f"whatever these are at other speeds; all six, if they are constant, {words(errors_of(six, plan)[0])}."
     )
 
 
@@ -293,16 +252,19 @@ def draw(found: Sequence[Measurement], plan: Plan) -> Figure:
         told, lost = np.full((2, len(up), len(across)), np.nan)
         for (f, excess), one in shown.items():
             (told if one.kept else lost)[heights[excess], across.index(f)] = one.errors[k] * SHOWN[name][1]
-        axis.pcolormesh(across, range(len(up)), 0.0 * lost, cmap="Greys", vmin=-1.0, vmax=3.0, rasterized=True)
-        mesh = axis.pcolormesh(across, range(len(up)), told, cmap="viridis_r", norm=LogNorm(), rasterized=True)
-        figure.colorbar(mesh, ax=axis, location="top", label=SHOWN[name][0])
-        born = np.interp(1e-3, up, range(len(up)))
-        axis.plot(list(letter.PERIODS), [born] * len(letter.PERIODS), **plotting.LETTER_POINTS)
+        grey: Any = {"cmap": "Greys", "vmin": -1.0, "vmax": 3.0, "rasterized": True}
+        axis.pcolormesh(across, range(len(up)), 0.0 * lost, **grey)
+        mesh = axis.pcolormesh(across, range(len(up)), told, norm=LogNorm(), cmap="viridis_r", rasterized=True)
+        bar = figure.colorbar(mesh, ax=axis, location="top", label=SHOWN[name][0])
+        bar.ax.xaxis.set_minor_formatter("")
+        axis.plot(list(letter.PERIODS), [np.interp(1e-3, up, range(len(up)))] * 6, **plotting.LETTER_POINTS)
         for number, one in enumerate(best(found), 1):
-            axis.annotate(str(number), (one.frequency_hz, heights[round(one.excess, 9)]), ha="center", va="center",
-                          fontsize=plotting.NOTE, bbox={"boxstyle": "circle,pad=0.15", "fc": "white", "lw": 0.5})  # fmt: skip
-        ticks = [excess for excess in up if any(abs(abs(excess) - mark) < 1e-9 for mark in MARKS)]
-        axis.set_yticks([heights[excess] for excess in ticks], [f"{1e3 * excess:g}" for excess in ticks])
+            axis.annotate(
+                str(number), (one.frequency_hz, heights[round(one.excess, 9)]), ha="center", va="center",
+                fontsize=plotting.NOTE, bbox={"boxstyle": "circle,pad=0.15", "fc": "white", "lw": 0.5},
+            )  # fmt: skip
+        marks = {f"{1e3 * mark:g}": heights[round(mark, 9)] for mark in MARKS if round(mark, 9) in heights}
+        axis.set_yticks(list(marks.values()), list(marks))
         plotting.label(axis.xaxis, "drive frequency", "Hz")
     plotting.label(axes[0, 0].yaxis, plotting.EXCESS, "10$^{-3}$")
     return figure

@@ -50,7 +50,7 @@ part in a direction that is not seen."""
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Fit:
-    """A fit; arrays by `names`, in SI units.
+    """A fit; arrays by `names`, in SI units: `before` the record was looked at, at the `start` of the fit.
 
     `noise`: standard deviation of x [m], or of an excess in units of its error; `freedom`: rows less
     unknowns; `residuals`: observed less predicted, shape of the record's `observed`; `chance`: probability of
@@ -60,6 +60,7 @@ class Fit:
     record: Record
     oscillator: ImpactOscillator
     names: tuple[str, ...]
+    before: Array
     start: Array
     estimate: Array
     covariance: Array
@@ -197,6 +198,7 @@ def fit(
     covariance = (axes.T / singular**2 @ axes * np.outer(sizes, sizes) * spread**2)[:n, :n]
     result = Fit(
         record=prediction.record, oscillator=problem.at(found.x)[0], names=names, start=(at * sizes)[:n],
+        before=np.array([parameters_of(oscillator)[name].value for name in names]),
         estimate=(found.x * sizes)[:n], covariance=covariance, noise=spread * unit, noise_known=known,
         freedom=freedom, residuals=(-found.fun[:rows] / problem.weights).reshape(shape),
         chance=_chance(found.fun[:rows], prediction, known, freedom), evaluations=problem.evaluations,

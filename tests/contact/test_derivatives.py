@@ -10,7 +10,7 @@ from dataclasses import replace
 import mpmath as mp
 import numpy as np
 import pytest
-from oscillators import MODES, equation_1
+from oscillators import MODES, equation_1, many_modes
 from simulated_orbit import DELAYED, EQUATION_1, LAWS, beam
 
 from beam import ModalChange, ModalModel, single_mode
@@ -164,28 +164,50 @@ def test_orbit_of_equation_1_against_its_closed_form_in_50_digits(
     assert np.max(np.abs(sums - there[3:5]) / np.abs(pair).max(axis=0)) < 1e-10
 
 
-@pytest.mark.parametrize(("frequency", "m"), [(row[0], row[1]) for row in EQUATION_1])
-def test_folds_of_equation_1_move_as_their_closed_form_does(frequency: float, m: int) -> None:
-    """F_m/F_g = 1/sqrt(1 + k^2), k = w N12 (1 + tau)/(1 - N11 + tau N22 - tau G), with free period, decay
-    rate, restitution and drive frequency; the gap and the amplitude say nothing."""
+CASES = {f"{row[0]:.2f} Hz": (equation_1(row[0], gap=GAP), row[1]) for row in EQUATION_1}
+CASES |= {name: (many_modes(name, restitution=0.3), 4) for name in ("three modes", "an overdamped mode")}
 
-    def excess(t: float, mu: float, tau: float, f: float) -> mp.mpf:
-        d, s = 2 * mp.pi / t, m / f
-        fade, sn, cn = mp.exp(-mu * s / 2), mp.sin(d * s) / d, mp.cos(d * s)
-        n11, n22 = fade * (cn + mu / 2 * sn), fade * (cn - mu / 2 * sn)
-        k = 2 * mp.pi * f * fade * sn * (1 + tau) / (1 - n11 + tau * n22 - tau * fade**2)
-        return 1 / mp.sqrt(1 + k * k) - 1
 
-    fold = fold_of(Shooting(oscillator=equation_1(frequency, gap=GAP), period=m))
-    found = excess_derivatives(fold, of_equation_1(frequency))
-    point = [mp.mpf(x) for x in (T, MU, TAU, frequency)]
+@pytest.mark.parametrize("name", CASES)
+def test_folds_under_newtons_law_move_as_their_closed_form_does(name: str) -> None:
+    """F_m/F_g = 1/sqrt(1 + (s/b)^2) of ``contact.orbits.single_impact``, with every number of every mode,
+    restitution and drive frequency; gap, participation and amplitude say nothing."""
+    oscillator, m = CASES[name]
+    model, tau, f = oscillator.model, oscillator.stop.law.numbers[0], oscillator.driven.frequency
+    n = model.n_modes
+
+    def excess(numbers: list[mp.mpf]) -> mp.mpf:
+        """From omega_k, c_k, phi_k, restitution and frequency."""
+        *rows, tau, f = numbers
+        omega, decay, phi = rows[:n], rows[n : 2 * n], rows[2 * n :]
+        t, p, r, mobility = m / f, mp.mpf(0), mp.mpf(0), sum(x * x for x in phi)
+        for k in range(n):
+            root = mp.sqrt(mp.mpc(omega[k] ** 2 - decay[k] ** 2 / 4))
+            fade, sn, cn = mp.exp(-decay[k] * t / 2), mp.re(mp.sin(root * t) / root), mp.re(mp.cos(root * t))
+            shrink, kick = fade * fade, -(1 + tau) * phi[k] / mobility
+            closing = 1 - 2 * fade * cn + shrink
+            p += phi[k] * fade * sn * kick / closing
+            r += phi[k] * (fade * (cn - decay[k] / 2 * sn) - shrink) * kick / closing
+        ratio = p * 2 * mp.pi * f / (1 - r)
+        return 1 / mp.sqrt(1 + ratio * ratio) - 1
+
+    def unit(array: str, k: int) -> Change:
+        return Change(model=of_modes(n, **{array: np.eye(n)[k]}))
+
+    changes = [unit(array, k) for array in ARRAYS for k in range(n)]
+    changes += [Change(law=(1.0, 0.0)), Change(frequency=1.0), Change(gap=1.0), Change(amplitude=1.0)]
+    fold = fold_of(Shooting(oscillator=oscillator, period=m))
+    found = excess_derivatives(fold, changes)
     with mp.workdps(50):
-        assert fold.excess == pytest.approx(float(excess(*point)), rel=1e-9)
-        for j, ours in enumerate(found[[0, 1, 2, 4]]):
-            ends = [excess(*(x + (i == j) * step for i, x in enumerate(point))) for step in (H, -H)]
+        point = [mp.mpf(x) for x in (*model.omega, *model.decay_rate, *model.phi, tau, f)]
+        assert fold.excess == pytest.approx(float(excess(point)), rel=1e-9)
+        for i, ours in enumerate(np.delete(found, [*range(3 * n, 4 * n), -2, -1])):
+            ends = [excess([x + (i == j) * step for j, x in enumerate(point)]) for step in (H, -H)]
             # the place of the fold is good to 1e-10 of the speed, its excess to the square of it
-            assert ours == pytest.approx(float((ends[0] - ends[1]) / (2 * H)), rel=2e-9)
-    assert abs(found[3]) < 1e-12 / GAP and abs(found[5]) < 1e-12 / fold.amplitude
+            exact = float((ends[0] - ends[1]) / (2 * H))
+            assert ours == pytest.approx(exact, rel=2e-9, abs=1e-12 / float(abs(point[i]) + 1))
+    still = [*(found[3 * n : 4 * n] * model.participation), found[-2] * oscillator.stop.gap]
+    assert np.max(np.abs([*still, found[-1] * fold.amplitude])) < 1e-12
 
 
 def ghosh_and_simpson(w: float) -> tuple[Shooting, float]:

@@ -245,9 +245,6 @@ ORBITS = (
        kind=dict(strobed=each(nordmark(), eq_1())), value=dict(count=1, align=-1)),
     of(lyapunov.orbit_exponents, lambda: dict(strobed=system(), state=np.array([0.0, 0.0]), period=1),
        kind=dict(strobed=None), value=dict(period=each(0, 1.5))),
-    of(lyapunov.divergence_rate,
-       lambda: dict(strobed=system(), state=np.array([0.0, 0.0]), duration=5.0, align=0.0, seed=1),
-       kind=dict(strobed=3), value=dict(duration=0.0, align=-1.0, seed=-1)),
 )
 
 STEPS = each(0.0, NAN, told("1 us", "step is "))

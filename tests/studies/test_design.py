@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,22 +10,20 @@ from matplotlib.figure import Figure
 from scipy.optimize import least_squares
 
 from beam import single_mode
-from contact import DelayedRestitution, HarmonicDrive, ImpactOscillator, NewtonRestitution, Stop, simulate
+from contact import DelayedRestitution, HarmonicDrive, ImpactOscillator, Stop, simulate
 from contact.orbits import Shooting
 from studies.identify import design
 from studies.identify.design import Nodes, Plan, covariance, errors_of, measurement
+from studies.identify.parameters import with_values
 
-AT = {"free_period": 40.80e-3, "restitution": 0.1, "delay": 2e-4, "decay_rate": 3.56, "gap": 11.9e-3}
+PLAN = Plan()
 
 
-def of(frequency, **values):
+def of(frequency):
     """Eq. (1) with two parameters."""
-    now = {**AT, **values}
-    law = DelayedRestitution(restitution=now["restitution"], delay=now["delay"])
-    return ImpactOscillator(
-        model=single_mode(free_period=now["free_period"], decay_rate=now["decay_rate"]),
-        stop=Stop(gap=now["gap"], law=law), drive=HarmonicDrive(frequency=frequency),
-    )  # fmt: skip
+    law = DelayedRestitution(restitution=0.1, delay=2e-4)
+    model = single_mode(free_period=40.80e-3, decay_rate=3.56)
+    return ImpactOscillator(model=model, stop=Stop(gap=11.9e-3, law=law), drive=HarmonicDrive(frequency=frequency))
 
 
 def node(frequency, period, excess):
@@ -34,30 +31,28 @@ def node(frequency, period, excess):
     return nodes.at(excess), nodes
 
 
-def predicted(near, plan, values):
-    """What is measured at other values of all that is unknown, by shooting at that amplitude and simulation."""
-    *rest, amplitude = values
-    there = of(near.oscillator.driven.frequency, **dict(zip(plan.unknown, rest, strict=False)))
-    excess = amplitude / there.grazing_amplitude() - 1.0
-    orbit = Shooting(oscillator=there, period=near.period).at_excess(excess, near)
+def predicted(near, values):
+    """What is measured at other values of the unknown, by shooting at that amplitude and simulation."""
+    there = with_values(near.oscillator, dict(zip(PLAN.unknown, values.tolist(), strict=True)))
+    orbit = Shooting(oscillator=there, period=near.period).at_excess(there.excess, near)
     run = simulate(orbit.oscillator, orbit.state(), periods=orbit.period)
     return np.append(run.strobe_displacement[:, 0], there.grazing_amplitude()), orbit
 
 
-def scale(orbit, plan):
+def scale(orbit):
     """Standard errors of what is measured."""
-    return np.append(np.full(orbit.period, plan.noise * math.sqrt(orbit.period / plan.strobes)), plan.amplitude_error)
+    return np.append(np.full(orbit.period, 0.5e-6 * math.sqrt(orbit.period / 1000)), 0.5e-6)
 
 
 @pytest.mark.parametrize(("f", "m", "excess"), [(21.50, 4, 4e-3), (22.20, 5, 5e-4)])
 def test_the_rows_are_finite_differences_of_the_orbit(f, m, excess):
-    plan, (orbit, fold) = Plan(), node(f, m, excess)
-    rows, away = design.changed(orbit, plan)
-    values = design.values_of(orbit, plan)
+    orbit, _ = node(f, m, excess)
+    rows, away = design.changed(orbit, PLAN)
+    values = design.sizes_of(orbit, PLAN)
     for k in range(len(values)):
         step = 1e-6 * np.eye(len(values))[k]
-        (high, a), (low, b) = (predicted(orbit, plan, values * (1.0 + way * step)) for way in (1, -1))
-        slope = (high - low) / 2e-6 / scale(orbit, plan)
+        (high, a), (low, b) = (predicted(orbit, values * (1.0 + way * step)) for way in (1, -1))
+        slope = (high - low) / 2e-6 / scale(orbit)
         assert rows[:, k] == pytest.approx(slope, rel=1e-4, abs=1e-6 * np.abs(rows[:, k]).max())
         assert away[k] == pytest.approx((a.excess - b.excess) / 2e-6, rel=1e-4, abs=1e-8)
 
@@ -65,28 +60,27 @@ def test_the_rows_are_finite_differences_of_the_orbit(f, m, excess):
 @pytest.mark.parametrize(("f", "m", "excess"), [(21.50, 4, 1e-3), (22.00, 5, -5.66e-3)])
 def test_the_errors_are_the_spread_of_fits(f, m, excess):
     """60 records with the noise of the plan, fitted by shooting; a spread of 60 is good to 9 %."""
-    plan, random = Plan(), np.random.default_rng(1996)
+    random = np.random.default_rng(1996)
     orbit, values, sizes = node(f, m, excess)[0], None, None
-    values, sizes = design.values_of(orbit, plan), scale(orbit, plan)
-    clean, root = predicted(orbit, plan, values)[0], np.linalg.cholesky(covariance([orbit], plan))
-    before = np.array([plan.before["decay_rate"], plan.amplitude_error]) / values[[3, 5]]
+    values, sizes = design.sizes_of(orbit, PLAN), scale(orbit)
+    clean, root = predicted(orbit, values)[0], np.linalg.cholesky(covariance([orbit], PLAN))
+    before = np.array([PLAN.before["decay_rate"], PLAN.amplitude_error]) / values[[3, 5]]
     held, found = np.eye(6)[[3, 5]] / before[:, None], []
 
     def slopes(part):
-        there = predicted(orbit, plan, values * (1.0 + root @ part))[1]
-        rows = design.changed(there, plan)[0] * (values / design.values_of(there, plan))
+        there = predicted(orbit, values * (1.0 + root @ part))[1]
+        rows = design.changed(there, PLAN)[0] * (values / design.sizes_of(there, PLAN))
         return np.vstack([rows, held]) @ root
 
     for _ in range(60):
         seen, known = clean + sizes * random.standard_normal(m + 1), before * random.standard_normal(2)
 
         def off(part, seen=seen, known=known):
-            there = predicted(orbit, plan, values * (1.0 + root @ part))[0]
+            there = predicted(orbit, values * (1.0 + root @ part))[0]
             return np.append((there - seen) / sizes, ((root @ part)[[3, 5]] - known) / before)
 
         found.append(root @ least_squares(off, np.zeros(6), slopes).x)
     errors = np.sqrt(np.diag(root @ root.T))
-    print(np.std(found,axis=0)/errors, np.mean(found, axis=0)/errors)
     assert np.std(found, axis=0) == pytest.approx(errors, rel=0.27)  # three times 0.09
     assert np.abs(np.mean(found, axis=0) / errors).max() < 3.0 / math.sqrt(60)
 
@@ -105,8 +99,40 @@ def test_one_orbit_does_not_tell_gap_restitution_and_delay_apart():
 
 def test_the_limit_is_the_fold():
     """D and its error by moving the parameters; towards the fold the errors alone vanish as D^(1/2)."""
-    plan = Plan()
     nodes = Nodes(of(22.20), 5)
-    near, far = (measurement(nodes.at(nodes.fold.excess + d), nodes, plan) for d in (1e-8, 1e-6))
+    near, far = (measurement(nodes.at(nodes.fold.excess + d), nodes, PLAN) for d in (1e-8, 1e-6))
     assert np.array(near.alone) / far.alone == pytest.approx(0.1, rel=0.1)
     assert not near.kept and near.distance == pytest.approx(1e-8, rel=1e-3)
+
+
+@pytest.fixture(scope="module")
+def plane():
+    """A coarse map."""
+    return [one for f in (21.40, 22.0, 22.20, 23.05) for one in design.measurements_at(of, PLAN, (-5.66e-3, 1e-3, 4e-3), f)]
+
+
+def test_the_best_places_outlive_their_errors_and_lie_apart(plane):
+    """Moved by one standard error along each axis of the ellipsoid the orbit is there, touching once."""
+    best = design.best(plane)
+    assert [one.together for one in best] == sorted(one.together for one in best)
+    assert min(abs(np.diff(sorted(one.frequency_hz for one in best)))) >= 0.3
+    for one in best[:2]:
+        orbit, _ = node(one.frequency_hz, one.period, one.excess)
+        sizes, (squares, axes) = design.sizes_of(orbit, PLAN), np.linalg.eigh(covariance([orbit], PLAN))
+        for way in (-1, 1):
+            for axis in axes.T * way * np.sqrt(squares)[:, None]:
+                there = predicted(orbit, sizes * (1.0 + axis))[1]
+                assert there.stable and there.admissible
+
+
+def test_what_the_letters_points_tell(plane):
+    """T to 0.02 ms and far better by any from p4 on; tau and delay by p4, or two orbits of the same speed."""
+    six = design.letters_orbits(of)
+    assert [orbit.period for orbit in six] == [3, 4, 5, 6, 8, 11]
+    alone = np.array([errors_of([orbit], PLAN)[0] for orbit in six])
+    assert alone[0, 0] > 0.02e-3 > 1.5e-6 > alone[1:, 0].max()
+    assert alone[1, 1] == pytest.approx(0.0066, rel=0.05) and np.delete(alone[:, 1], 1).min() > 0.1
+    assert errors_of([six[0], six[2]], PLAN)[0][1:] == pytest.approx((0.003, 3.9e-6), rel=0.05)
+    assert "p3 and p5, which meet the stop" in design.answer(of, plane, PLAN)
+    drawn = design.draw(plane, PLAN)
+    assert isinstance(drawn, Figure) and len(drawn.axes) == 6

@@ -216,7 +216,7 @@ def test_a_file_that_is_no_record_is_refused(tmp_path, text):
         (wave(80), "too short"),
         (wave(300, step=5e-3), "rows a drive period"),
         ("# frequency_hz = 22.2\nx_m\n" + "1e-3\n2e-3\n" * 9, "amplitude"),
-        ("# amplitude_m = 2e-3\nx_m\n" + "1e-3\n2e-3\n" * 9, "--frequency-hz"),
+        ("# amplitude_m = 2e-3\nx_m\n" + "1e-3\n2e-3\n" * 9, "--drive"),
         ("# frequency_hz = 22.2\n# amplitude_m = 2e-3\nx_m\n" + "1e-3\n" * 9, "no impact"),
     ],
 )
