@@ -9,7 +9,7 @@ of the beam: its intervals mean nothing, and the residuals must say so.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -20,14 +20,13 @@ from numpy.typing import NDArray
 from contact import ContactError, ImpactOscillator
 from studies import letter, plotting
 from studies.identify.fit import LEVEL, fit
-from studies.identify.gradients import CHART, draw_gradients, gradients
 from studies.identify.parameters import parameters_of
 from studies.identify.records import READ_OUT, Kind, Record, synthetic
 from studies.run import Run
 from studies.scene import Scene, beam_at, model_of, single_mode_at
 from studies.sweep import sweep
 
-__all__ = ["Coverage", "checked", "coverage", "draw_coverage"]
+__all__ = ["COVERED", "Coverage", "coverage", "draw_coverage"]
 
 COVERED = "Share of 90 % intervals that hold the true value, with its binomial error; grey is what agrees."
 SEED, FREQUENCY_HZ = 1996, 22.20
@@ -136,22 +135,6 @@ def coverage(scene: Scene, beam: Scene, run: Run, *, records: int, beam_records:
                 agrees=small > 1.0 - OFTEN if trial.short else right,
             ))  # fmt: skip
     return rows
-
-
-def checked(scene: Scene, run: Run) -> Mapping[str, object]:
-    """What can be believed of a fit: coverage of its intervals, and error and cost of its derivatives."""
-    beam = run.choose_modes(scene, {"fold": 0.05})
-    counts = {"records": 40, "beam_records": 10} if run.quick else {"records": 1600, "beam_records": 400}
-    rows = coverage(scene, beam, run, **counts)
-    run.table("coverage", rows, COVERED)
-    run.figure("coverage", draw_coverage(rows), COVERED)
-    for name, part in {row.trial: row.too_small for row in rows}.items():
-        if part > OFTEN:
-            run.say(f"{name}: called too small by the residuals of {100.0 * part:.0f} % of the records")
-    ways = gradients(single_mode_at(scene, FREQUENCY_HZ).with_excess(1e-2))
-    run.table("gradients", ways, CHART)
-    run.figure("gradients", draw_gradients(ways), CHART)
-    return {"coverage": rows, "gradients": ways}
 
 
 @plotting.in_house_style

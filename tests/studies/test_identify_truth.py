@@ -32,8 +32,8 @@ def run(tmp_path, letter_scene):
 
 
 @pytest.mark.parametrize(("stated", "agrees"), [(1.0, True), (0.8, False), (1.25, False)])
-def test_errors_that_are_stated_wrong_are_seen(stated, agrees, trials, run, letter_scene, monkeypatch):
-    """Normal estimates, whose errors are said to be `stated` times what they are; one in twenty is refused."""
+def test_errors_stated_wrong_are_seen(stated, agrees, trials, run, letter_scene, monkeypatch):
+    """Normal estimates with errors said to be `stated` times what they are; one in twenty is refused."""
     trial = replace(trials["Eq. (1), strobe"], truth={"gap": 5.0})
     random = np.random.default_rng(3)
 
@@ -59,7 +59,8 @@ def test_a_record_depends_on_its_trial_and_its_number_alone(trials):
 
 
 def test_one_mode_is_too_small_for_the_beam_and_its_own_modes_are_not(trials):
-    for name, small in (("beam, displacement, by Eq. (1)", 10), ("beam, displacement", 0), ("Eq. (1), strobe", 0)):
+    own = {"beam, displacement": 0, "Eq. (1), strobe": 0}
+    for name, small in {"beam, displacement, by Eq. (1)": 10, **own}.items():
         found = trials[name].column(0, 0)
         assert np.all(np.isfinite(found["error"])) and found["small"].sum() == small
         off = (found["estimate"] - np.array(list(trials[name].truth.values()))) / found["error"]
@@ -67,7 +68,7 @@ def test_one_mode_is_too_small_for_the_beam_and_its_own_modes_are_not(trials):
 
 
 def test_closed_form_is_the_motion(letter_scene):
-    oscillator = single_mode_at(letter_scene, 22.2).with_excess(1e-2)
+    oscillator = single_mode_at(letter_scene, 22.2).with_excess(1e-3)
     start, values, hits = gradients.motion_of(oscillator)
     end = simulate(oscillator, start, periods=gradients.PERIODS).end
     found = gradients.closed_form([mpf(value) for value in values.tolist()], start, hits)
@@ -76,13 +77,13 @@ def test_closed_form_is_the_motion(letter_scene):
 
 
 def test_errors_of_gradients_fall_as_the_order_of_the_differences_says(letter_scene):
-    """And then rise; derivatives are better than the best of them by four orders of magnitude."""
-    rows = gradients.gradients(single_mode_at(letter_scene, 22.2).with_excess(1e-2))
+    """And then rise; derivatives are better than the best of them by five orders of magnitude."""
+    rows = gradients.gradients(single_mode_at(letter_scene, 22.2).with_excess(1e-3))
     exact = next(row.error for row in rows if row.method == "exact")
     for method, order in (("central differences", 2.0), ("one-sided differences", 1.0)):
         error = {round(-np.log10(row.setting)): row.error for row in rows if row.method == method}
         assert np.log10(error[5] / error[6]) == pytest.approx(order, abs=0.05)
-        assert error[12] > 100.0 * min(error.values()) > 1e6 * exact
+        assert error[12] > 10.0 * min(error.values()) > 1e5 * exact
     assert exact < 1e-12
     others = [row.error for row in rows if row.method == "heyoka"]
     assert not others or (np.all(np.diff(others) < 0.0) and others[-1] < 1e-11)
