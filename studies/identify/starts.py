@@ -54,11 +54,13 @@ CORNER, LEVEL, FINE = 0.01, 2e-4, 81
 """Jump of the velocity over 2 pi f gap from which on a maximum of a displacement is an impact; part of the
 height within which the tip rests on the stop; instants at which the curves of both sides are compared."""
 
-WINDOW, DENSEST = 0.08, 40
-"""Part of a drive period on either side that tells the velocity at an impact; rows a period at least."""
+WINDOW, DENSEST, ENOUGH = 0.08, 40, 100
+"""Part of a drive period on either side that tells the velocity at an impact; rows a period at least, and as
+many as are looked at."""
 
-STRETCHES, ROWS = 8, 60
-"""Stretches between impacts, and rows of each, that tell free period and decay rate."""
+STRETCHES, ROWS, SHORTEST = 8, 60, 0.1
+"""Stretches between impacts, and rows of each, that tell free period and decay rate; drive periods of the
+shortest."""
 
 
 def prediction_of(
@@ -204,14 +206,18 @@ def _displacement(
     if (density := oscillator.period / (times[1] - times[0])) < DENSEST:
         raise ValueError(f"the record has {density:.3g} rows a drive period; it needs {DENSEST} at least")
     known = parameters_of(oscillator)
-    corners = _corners(times, x, oscillator, "delay" in known)
+    thin = max(1, int(density / ENOUGH))  # a slow rebound hides in the noise of the next row
+    corners = [
+        one._replace(before=thin * one.before, after=thin * one.after)
+        for one in _corners(times[::thin], x[::thin], oscillator, "delay" in known)
+    ]
     if not corners:
         raise ValueError("there is no impact in the record")
     told = np.median([corner[2:] for corner in corners], axis=0)
-    told[1:] = np.clip(told[1:], 0.0, (1.0, math.inf))
+    told = np.clip(told, (x.max(), 0.0, 0.0), (math.inf, 1.0, math.inf))
     values = dict(zip(("gap", "restitution", "delay"), told.tolist(), strict=True))
     cuts = [0, *(one.after + 1 for one in corners)], [*(one.before for one in corners), x.size]
-    stretches = [(a, b) for a, b in zip(*cuts, strict=True) if b - a > 0.3 * density]
+    stretches = [(a, b) for a, b in zip(*cuts, strict=True) if b - a > SHORTEST * density]
     if oscillator.n_modes == 1:
         values |= _rung(times, x, stretches, oscillator, names)
     begun = with_values(oscillator, {name: values[name] for name in names if name in values})
