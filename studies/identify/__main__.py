@@ -28,25 +28,23 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import combinations
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import numpy as np
 
 from beam.parameters import require_within
-from contact import DelayedRestitution, ImpactOscillator
+from contact import ImpactOscillator
 from studies.identify import coverage as covering
 from studies.identify import design, figures, gradients, pairs
 from studies.identify.fit import Fit, Profile, profile
 from studies.identify.fit import fit as fitted
-from studies.identify.parameters import fitted_scene, parameters_of
+from studies.identify.parameters import Description, described, fitted_scene, parameters_of
 from studies.identify.records import Kind, Record, read_record, synthetic
 from studies.options import POSITIONAL
 from studies.run import Run, study
-from studies.scene import Scene, beam_at, harmonic, single_mode_at
+from studies.scene import Scene, harmonic
 
 __all__ = ["identify"]
-
-Description = Literal["one_mode", "two_parameters", "beam"]
 
 TRADE = 0.95
 """Correlation from which on two parameters trade off."""
@@ -116,18 +114,6 @@ def frequency_of(record: Record) -> float:
     if record.frequency is None:
         raise ValueError("the record does not say the frequency of the drive: give --drive HZ MM")
     return record.frequency
-
-
-def described(scene: Scene, description: Description, delay: float, frequency: float) -> ImpactOscillator:
-    """The oscillator of the scene at a drive frequency [Hz], at the excess at which periods are born."""
-    if description == "beam":
-        oscillator = beam_at(scene, frequency)
-    else:
-        oscillator = single_mode_at(scene, frequency)
-    if description == "two_parameters":
-        law = DelayedRestitution(restitution=scene.single_mode.restitution, delay=delay)
-        oscillator = replace(oscillator, stop=replace(oscillator.stop, law=law))
-    return oscillator.with_excess(scene.scan.born_excess)
 
 
 def usual(record: Record, oscillator: ImpactOscillator) -> tuple[str, ...]:
@@ -203,7 +189,7 @@ def examples(scene: Scene, run: Run, delay: float) -> dict[str, tuple[Record, Im
 
 def letters_rig(scene: Scene, run: Run, delay: float) -> dict[str, object]:
     """What the letter's six pairs say of the free period, and what to measure next."""
-    kinds, single = pairs.KINDS[: 2 if run.quick else None], single_mode_at(scene, FREQUENCY_HZ)
+    kinds, single = pairs.KINDS[: 2 if run.quick else None], described(scene, "one_mode", 0.0, FREQUENCY_HZ)
     rows = [row for found in run.map(partial(pairs.intervals_of, single), kinds, "pairs") for row in found]
     run.table("pairs", rows, "Free periods at which the letter's six pairs are born.", show=())
     run.figure("pairs", pairs.draw(rows), "Free periods at which the letter's pairs are born, each and all.")
@@ -215,8 +201,9 @@ def letters_rig(scene: Scene, run: Run, delay: float) -> dict[str, object]:
     best = design.best(found)
     run.table("measurements", found, "What an orbit tells of T, restitution and delay.", show=())
     run.table("next", best, "The five best of them.", show=("frequency_hz", "excess", "period", "together"))
-    run.figure("next", design.draw(found, plan), "Standard errors over drive frequency and excess; stars: "
-               "the letter's points; numbers: the best five; grey: the orbit does not outlive its errors.")  # fmt: skip
+    caption = ("Standard errors over drive frequency and excess; stars: the letter's points; numbers: the "
+               "best five; grey: the orbit does not outlive its errors.")  # fmt: skip
+    run.figure("next", design.draw(found, plan), caption)
     told = [design.answer(of, found, plan), *([] if run.quick else [pairs.sentence(single, rows)])]
     for sentence in told:
         run.say(sentence)

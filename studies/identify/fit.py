@@ -146,7 +146,9 @@ class Problem:
             return whole
 
         if not np.all(np.isfinite(self.residuals(start))):
-            raise ValueError("there is no orbit like the record's at the start of the fit")
+            raise ValueError(
+                "no motion like the record's was found to start from: fit more, or give better values"
+            )
         found = least_squares(
             lambda part: self.residuals(filled(part)), start[free], x_scale="jac", max_nfev=60,
             jac=lambda part: self.jacobian(filled(part))[:, free], xtol=1e-10, ftol=1e-12, gtol=1e-12,

@@ -14,14 +14,19 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
-from typing import Any
+from typing import Any, Literal
 
 from beam import decay_rate_change, free_period_change
 from contact import ContactLaw, DelayedRestitution, HertzContact, ImpactOscillator, LinearContact
 from contact.orbits import Change
-from studies.scene import Scene, hertz_of
+from studies.scene import Scene, beam_at, hertz_of, single_mode_at
 
-__all__ = ["Parameter", "changes_of", "fitted_scene", "parameters_of", "require_names", "with_values"]
+__all__ = [
+    "Description", "Parameter", "changes_of", "described", "fitted_scene", "parameters_of", "require_names",
+    "with_values",
+]  # fmt: skip
+
+Description = Literal["one_mode", "two_parameters", "beam"]
 
 LEAST = {"delay": 1e-3, "restitution": 0.01, "decay_rate": 0.01}
 """What counts as a change of a parameter that may be zero, times drive periods or per drive period if it has
@@ -107,6 +112,18 @@ def with_values(oscillator: ImpactOscillator, values: Mapping[str, float]) -> Im
         stop = replace(stop, gap=values.get("gap", stop.gap), law=changed)
     moved = {name: values[name] for name in ("frequency", "amplitude") if name in values}
     return replace(oscillator, model=model, stop=stop, drive=replace(drive, **moved) if moved else drive)
+
+
+def described(scene: Scene, description: Description, delay: float, frequency: float) -> ImpactOscillator:
+    """The oscillator of the scene at a drive frequency [Hz], at the excess at which periods are born."""
+    if description == "beam":
+        oscillator = beam_at(scene, frequency)
+    else:
+        oscillator = single_mode_at(scene, frequency)
+    if description == "two_parameters":
+        law = DelayedRestitution(restitution=scene.single_mode.restitution, delay=delay)
+        oscillator = replace(oscillator, stop=replace(oscillator.stop, law=law))
+    return oscillator.with_excess(scene.scan.born_excess)
 
 
 def fitted_scene(scene: Scene, oscillator: ImpactOscillator, frequencies: Sequence[float]) -> Scene:

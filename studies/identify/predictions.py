@@ -210,6 +210,7 @@ class Displacement:
                 return [self]
         except (ContactError, ValueError):
             pass
+        self.hits = None
         first, rows = FIRST * oscillator.period / (self.times[1] - self.times[0]), len(seen)
         counts = [int(first * 2**k) for k in range(64) if first * 2**k < 0.75 * rows]
         return [*(self._upto(count) for count in counts), self]

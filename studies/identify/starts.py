@@ -214,7 +214,7 @@ def _displacement(
     if not corners:
         raise ValueError("there is no impact in the record")
     told = np.median([corner[2:] for corner in corners], axis=0)
-    told[1:] = np.clip(told[1:], 0.0, (1.0, math.inf))
+    told = np.clip(told, (x.max(), 0.0, 0.0), (math.inf, 1.0, math.inf))
     values = dict(zip(("gap", "restitution", "delay"), told.tolist(), strict=True))
     cuts = [0, *(one.after + 1 for one in corners)], [*(one.before for one in corners), x.size]
     stretches = [(a, b) for a, b in zip(*cuts, strict=True) if b - a > SHORTEST * density]

@@ -1,0 +1,89 @@
+"""Whether coverage is counted right, and what the ways to a gradient through impacts are worth."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from mpmath import mpf
+
+from contact import simulate
+from studies.identify import coverage as truth
+from studies.identify import gradients
+from studies.record import Run
+from studies.scene import read_scene, single_mode_at
+
+
+@pytest.fixture(scope="module")
+def trials():
+    """By name; the beam with six modes."""
+    scene = read_scene("letter", ["modes.count=6"])
+    return {trial.name: trial for trial in truth.trials(scene, scene)}
+
+
+@pytest.fixture
+def run(tmp_path, letter_scene):
+    return Run(
+        study="identify", folder=tmp_path, scene=letter_scene, quick=True, workers=2, executor="threads",
+        options={}, warnings=[], command="",
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(("stated", "agrees"), [(1.0, True), (0.8, False), (1.25, False)])
+def test_errors_stated_wrong_are_seen(stated, agrees, trials, run, letter_scene, monkeypatch):
+    """Normal estimates with errors said to be `stated` times what they are; one in twenty is refused."""
+    trial = replace(trials["Eq. (1), strobe"], truth={"gap": 5.0})
+    random = np.random.default_rng(3)
+
+    def fit(record, start, names):
+        if random.random() < 0.05:
+            raise ValueError("refused")
+        at, error = np.array([random.normal(5.0, 0.1)]), np.array([0.1 * stated])
+        ends = at[:, None] + 1.645 * np.array([-error, error]).T
+        return SimpleNamespace(estimate=at, errors=error, intervals=lambda: ends, too_small=False)
+
+    monkeypatch.setattr(truth, "fit", fit)
+    monkeypatch.setattr(truth, "trials", lambda *scenes: iter([trial]))
+    (row,) = truth.coverage(letter_scene, letter_scene, run, records=2000, beam_records=1)
+    assert row.agrees is agrees and row.records == 2000 and 60 < row.refused < 140
+    assert row.spread == pytest.approx(1.0 / stated, rel=0.05) and abs(row.bias) < 0.1
+
+
+def test_a_record_depends_on_its_trial_and_its_number_alone(trials):
+    trial = trials["Eq. (1), transitions"]
+    first, again, other, later = (trial.column(*at) for at in ((2, 1), (2, 1), (3, 1), (2, 2)))
+    assert all(np.array_equal(first[name], again[name]) for name in first)
+    assert np.unique(np.concatenate([one["estimate"][:, 0] for one in (first, other, later)])).size == 30
+
+
+def test_one_mode_is_too_small_for_the_beam_and_its_own_modes_are_not(trials):
+    own = {"beam, displacement": 0, "Eq. (1), strobe": 0}
+    for name, small in {"beam, displacement, by Eq. (1)": 10, **own}.items():
+        found = trials[name].column(0, 0)
+        assert np.all(np.isfinite(found["error"])) and found["small"].sum() == small
+        off = (found["estimate"] - np.array(list(trials[name].truth.values()))) / found["error"]
+        assert small or np.all((off.std(axis=0) > 0.4) & (off.std(axis=0) < 1.8))
+
+
+def test_closed_form_is_the_motion(letter_scene):
+    oscillator = single_mode_at(letter_scene, 22.2).with_excess(1e-3)
+    start, values, hits = gradients.motion_of(oscillator)
+    end = simulate(oscillator, start, periods=gradients.PERIODS).end
+    found = gradients.closed_form([mpf(value) for value in values.tolist()], start, hits)
+    expected = [hits[-1], end.displacement[0], end.velocity[0]]
+    np.testing.assert_allclose(np.array(found, dtype=float), expected, rtol=1e-11)
+
+
+def test_errors_of_gradients_fall_as_the_order_of_the_differences_says(letter_scene):
+    """And then rise; derivatives are better than the best of them by five orders of magnitude."""
+    rows = gradients.gradients(single_mode_at(letter_scene, 22.2).with_excess(1e-3))
+    exact = next(row.error for row in rows if row.method == "exact")
+    for method, order in (("central differences", 2.0), ("one-sided differences", 1.0)):
+        error = {round(-np.log10(row.setting)): row.error for row in rows if row.method == method}
+        assert np.log10(error[5] / error[6]) == pytest.approx(order, abs=0.05)
+        assert error[12] > 10.0 * min(error.values()) > 1e5 * exact
+    assert exact < 1e-12
+    others = [row.error for row in rows if row.method == "heyoka"]
+    assert not others or (np.all(np.diff(others) < 0.0) and others[-1] < 1e-11)
