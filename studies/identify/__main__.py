@@ -32,7 +32,6 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from beam.parameters import require_within
 from contact import ImpactOscillator
 from studies.identify import coverage as covering
 from studies.identify import design, figures, gradients, pairs
@@ -150,7 +149,9 @@ def identify(
 ) -> Mapping[str, object]:  # fmt: skip
     """Read or make, fit, report and draw."""
     harmonic(scene)
-    noise = None if noise_um is None else 1e-6 * require_within("noise_um", noise_um, "um", above=0)
+    if noise_um is not None and not 0.0 < noise_um < math.inf:
+        raise ValueError(f"noise_um is {noise_um} um; it must be finite and above zero")
+    noise = None if noise_um is None else 1e-6 * noise_um
     if description == "beam":
         scene = run.choose_modes(scene, {"fold": 0.05})
     if record is not None:
