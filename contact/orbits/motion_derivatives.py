@@ -96,13 +96,13 @@ def motion_derivatives(
     states[:, :, 2 * n :] += several.steady(wanted)
 
     strobes, traced = np.empty((run.strobe_time.size, 2 * n, 2 * n + count)), Retraced(several, run, state)
-    traced.tangent = tangent
+    traced.tangent, still, longer = tangent, several.steady(0.0), several.of_period
     for i, time in enumerate(run.strobe_time):
         strobes[i] = traced.to(float(time))[: 2 * n]
         q = np.concatenate([run.strobe_displacement[i], run.strobe_velocity[i]])
         pace = pace_of_deviations(oscillator, q, traced.touching(float(time)))
-        late = round(time / oscillator.period) * several.of_period
-        strobes[i, :, 2 * n :] += several.steady(0.0) + np.multiply.outer(pace, late)
+        late = round(time / oscillator.period) * longer
+        strobes[i, :, 2 * n :] += still + np.multiply.outer(pace, late)
     traced.to(float(run.end.time))
     late = np.array([traced.late[i] for i in range(len(run.impacts))]).reshape(-1, 2 * n + count)
     return MotionDerivatives(run=run, impact_time=late, strobes=strobes, states=states)
