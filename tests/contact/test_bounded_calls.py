@@ -167,17 +167,18 @@ def orbits(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], obj
         yield "Shooting.at_excess", lambda v=speed: family.at_excess(0.01, family.at_speed(v))
         for name in ("state", "monodromy", "release", "strobe_state"):
             yield f"PeriodicOrbit.{name}", lambda v=speed, name=name: getattr(family.at_speed(v), name)()
-        for derivatives in (
-            periodic.excess_derivatives, periodic.doubling_derivatives, periodic.graze_derivatives
-        ):  # fmt: skip
-            yield derivatives.__name__, lambda v=speed, d=derivatives: d(family.at_speed(v), [CHANGE])
-        yield "orbit_derivatives", lambda v=speed: periodic.orbit_derivatives(family.at_speed(v), [CHANGE])
-        yield "multiplier_derivatives", lambda v=speed: periodic.multiplier_derivatives(
-            periodic.orbit_derivatives(family.at_speed(v), [CHANGE])
-        )
         yield "follow", lambda v=speed: continuation.follow(
             family, family.at_speed(v), low=0.5 * v, high=2.0 * v, step=0.3
         )
+    speed = 0.05 * unit
+    for derivatives in (
+        periodic.excess_derivatives, periodic.doubling_derivatives, periodic.graze_derivatives,
+        periodic.orbit_derivatives,
+    ):  # fmt: skip
+        yield derivatives.__name__, lambda d=derivatives: d(family.at_speed(speed), [CHANGE])
+    yield "multiplier_derivatives", lambda: periodic.multiplier_derivatives(
+        periodic.orbit_derivatives(family.at_speed(speed), [CHANGE])
+    )
     yield "KickFamily.fold", lambda: kicks.fold()
     yield "KickFamily.orbits", lambda: kicks.orbits(0.01)
     yield "Shooting.fold", lambda: family.fold()
