@@ -42,7 +42,7 @@ from studies.identify.parameters import Description, described, fitted_scene, pa
 from studies.identify.records import Kind, Record, read_record, synthetic
 from studies.options import POSITIONAL
 from studies.run import Run, study
-from studies.scene import Scene, harmonic
+from studies.scene import Scene, harmonic, single_mode_at
 
 __all__ = ["identify"]
 
@@ -189,8 +189,8 @@ def examples(scene: Scene, run: Run, delay: float) -> dict[str, tuple[Record, Im
 
 def letters_rig(scene: Scene, run: Run, delay: float) -> dict[str, object]:
     """What the letter's six pairs say of the free period, and what to measure next."""
-    kinds = [kind for kind in pairs.KINDS if kind[2] == pairs.RESTITUTIONS[0]][: 2 if run.quick else None]
-    rows = [row for found in run.map(pairs.intervals_of, kinds, "pairs") for row in found]
+    kinds, single = pairs.KINDS[: 2 if run.quick else None], single_mode_at(scene, FREQUENCY_HZ)
+    rows = [row for found in run.map(partial(pairs.intervals_of, single), kinds, "pairs") for row in found]
     run.table("pairs", rows, "Free periods at which the letter's six pairs are born.", show=())
     run.figure("pairs", pairs.draw(rows), "Free periods at which the letter's pairs are born, each and all.")
     plan, thin = design.Plan(), 6 if run.quick else 2
@@ -204,7 +204,7 @@ def letters_rig(scene: Scene, run: Run, delay: float) -> dict[str, object]:
     caption = ("Standard errors over drive frequency and excess; stars: the letter's points; numbers: the "
                "best five; grey: the orbit does not outlive its errors.")  # fmt: skip
     run.figure("next", design.draw(found, plan), caption)
-    told = [design.answer(of, found, plan), *([] if run.quick else [pairs.sentence(rows)])]
+    told = [design.answer(of, found, plan), *([] if run.quick else [pairs.sentence(single, rows)])]
     for sentence in told:
         run.say(sentence)
     return {"pairs": rows, "next": best, "told": told}
