@@ -32,7 +32,6 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from beam.parameters import require_within
 from contact import ImpactOscillator
 from studies.identify import coverage as covering
 from studies.identify import design, figures, gradients, pairs
@@ -150,7 +149,9 @@ def identify(
 ) -> Mapping[str, object]:  # fmt: skip
     """Read or make, fit, report and draw."""
     harmonic(scene)
-    noise = None if noise_um is None else 1e-6 * require_within("noise_um", noise_um, "um", above=0)
+    if noise_um is not None and noise_um <= 0.0:
+        raise ValueError(f"noise_um is {noise_um:g} um; it must be above zero")
+    noise = None if noise_um is None else 1e-6 * noise_um
     if description == "beam":
         scene = run.choose_modes(scene, {"fold": 0.05})
     if record is not None:
@@ -239,7 +240,7 @@ def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
         for name, one in found.items() for (i, a), (j, b) in combinations(enumerate(one.names), 2)
     ]  # fmt: skip
     run.table("correlations", correlations, "Correlations of the estimates.", show=())
-    profiles = {name: traded(one, 5 if run.quick else 9) for name, one in found.items()}
+    profiles = {name: traded(one, run.quick) for name, one in found.items()}
     run.table("profile", [row for rows in profiles.values() for row in rows],
               "Likelihood along one of two parameters that trade off.", show=())  # fmt: skip
     run.arrays("residuals", **{name: one.residuals for name, one in found.items()})
@@ -275,15 +276,16 @@ def in_short(value: float, error: float) -> str:
     return f"{value:.{max(digits, 0)}f}({round(error * 10.0 ** max(digits, 0))})"
 
 
-def traded(found: Fit, points: int) -> list[Profile]:
-    """The profile of each parameter that trades off with another, the most correlated pair first."""
+def traded(found: Fit, quick: bool) -> list[Profile]:
+    """The profile of each parameter that trades off with another, the most correlated pair first; or this
+    alone, of few points."""
     size = np.abs(found.correlations) - np.eye(len(found.names))
     partners = {i: int(np.argmax(row)) for i, row in enumerate(size) if row.max() > TRADE}
     order = sorted(partners, key=lambda i: -size[i, partners[i]])
     kept = [i for k, i in enumerate(order) if partners[i] not in order[:k] or partners[partners[i]] != i]
     return [
-        row for i in kept
-        for row in profile(found, found.names[i], found.names[partners[i]], points=points)
+        row for i in kept[: 1 if quick else None]
+        for row in profile(found, found.names[i], found.names[partners[i]], points=5 if quick else 9)
     ]  # fmt: skip
 
 
