@@ -41,7 +41,6 @@ if TYPE_CHECKING:
     from .harmonic_balance import PeriodicMotion, periodic_motion
     from .material import ALUMINA, BRASS, DAMPING_TAPE, STEEL, Material
     from .modal_change import (
-        ModalChange,
         damping_ratio_change,
         decay_rate_change,
         free_period_change,
@@ -49,7 +48,7 @@ if TYPE_CHECKING:
         mode_changes,
         tip_mass_change,
     )
-    from .modal_model import ModalModel, single_mode
+    from .modal_model import ModalChange, ModalModel, single_mode
     from .modes import Modes, ShapesAlong, natural_modes
     from .parameters import SuspiciousValue
     from .reduction import reduce
@@ -80,8 +79,8 @@ _NAMES = {
     "frequency_equation": ("ExactModes", "UniformBeam", "exact_modes", "frequency_function"),
     "harmonic_balance": ("PeriodicMotion", "periodic_motion"),
     "material": ("ALUMINA", "BRASS", "DAMPING_TAPE", "Material", "STEEL"),
-    "modal_change": ("ModalChange", *_CHANGES, "mode_changes", "tip_mass_change"),
-    "modal_model": ("ModalModel", "single_mode"),
+    "modal_change": (*_CHANGES, "mode_changes", "tip_mass_change"),
+    "modal_model": ("ModalChange", "ModalModel", "single_mode"),
     "modes": ("Modes", "ShapesAlong", "natural_modes"),
     "parameters": ("SuspiciousValue",),
     "reduction": ("reduce",),

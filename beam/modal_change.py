@@ -17,7 +17,7 @@ rule of `damping` is given modes with the change as imaginary part, and so are t
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,10 +25,10 @@ from scipy.sparse import block_array, csr_array
 from scipy.sparse.linalg import splu
 
 from .assembly import carried
-from .damping import Damping
-from .modal_model import ModalModel
+from .damping import Damping, require_rule
+from .modal_model import ModalChange, ModalModel
 from .modes import Modes
-from .parameters import require, require_array, require_kind, require_whole
+from .parameters import require, require_kind, require_whole
 from .pieces import place
 from .spring import Tip
 
@@ -38,61 +38,41 @@ STEP = 1e-30j
 """Complex step: its square is far below rounding."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ModalChange:
-    """Derivatives of the four arrays of a `ModalModel` with respect to one parameter, (n_modes,) each.
-
-    Units are those of the array per unit of the parameter; stored as read-only float64 copies.
-    """
-
-    omega: NDArray[np.float64]
-    decay_rate: NDArray[np.float64]
-    phi: NDArray[np.float64]
-    participation: NDArray[np.float64]
-
-    def __post_init__(self) -> None:
-        shape = np.shape(self.omega)
-        for field, unit in zip(fields(self), ("rad/s", "1/s", "kg^(-1/2)", "kg^(1/2)"), strict=True):
-            given, unit = getattr(self, field.name), f"{unit} per unit of the parameter"
-            row = require_array(field.name, given, unit, dimensions=1, shape=shape, words="a row of numbers")
-            object.__setattr__(self, field.name, row)
-
-    @property
-    def n_modes(self) -> int:
-        """Number of modes."""
-        return self.omega.size
-
-
 def free_period_change(model: ModalModel, *, ratios_kept: bool = False) -> ModalChange:
-    """Return the change with T, per second, at fixed decay rates, or at fixed damping ratios."""
-    omega, rates = model.omega, model.decay_rate
+    """Return the change of `model` with T, per second, at fixed decay rates; with `ratios_kept` at fixed
+    damping ratios."""
+    omega, rates = _rows(model)
     if ratios_kept:
         return _of_numbers(-omega / model.free_period, -rates / model.free_period)
     return _of_numbers(-omega / omega[0] ** 2 * (2.0 * np.pi) ** 2 / model.free_period**3, 0.0 * rates)
 
 
 def decay_rate_change(model: ModalModel, mode: int | None = 0) -> ModalChange:
-    """Return the change at fixed T with c of one mode, from 0 on, per 1/s; None: of mode 1, all with it."""
-    omega, rates = model.omega, model.decay_rate
+    """Return the change of `model` at fixed T with c of one `mode`, from 0 on, per 1/s; None: of mode 1, all
+    with it."""
+    omega, rates = _rows(model)
     change = rates / rates[0] if mode is None else _one(model, mode)
     return _of_numbers(0.25 * rates[0] * change[0] * omega / omega[0] ** 2, change)
 
 
 def damping_ratio_change(model: ModalModel, mode: int | None = None) -> ModalChange:
-    """Return the change at fixed T with zeta of one mode, from 0 on; None: of all by the same amount."""
-    omega, rates = model.omega, model.decay_rate
+    """Return the change of `model` at fixed T with zeta of one `mode`, from 0 on; None: of all by the same
+    amount."""
+    omega, rates = _rows(model)
     change = np.ones(model.n_modes) if mode is None else _one(model, mode)
     first = 0.5 * rates[0] * omega[0] * (model.free_period / (2.0 * np.pi)) ** 2 * change[0]
     return _of_numbers(first * omega, 2.0 * omega * change + first * rates)
 
 
 def frequency_change(model: ModalModel, mode: int) -> ModalChange:
-    """Return the change with the undamped frequency of one mode alone, from 0 on, per Hz."""
-    return _of_numbers(2.0 * np.pi * _one(model, mode), 0.0 * model.omega)
+    """Return the change of `model` with the undamped frequency of one `mode` alone, from 0 on, per Hz."""
+    omega, _rates = _rows(model)
+    return _of_numbers(2.0 * np.pi * _one(model, mode), 0.0 * omega)
 
 
 def tip_mass_change(modes: Modes, damping: Damping) -> ModalChange:
-    """Return the change of the modes that `reduce` keeps with the mass at the tip, per kg."""
+    """Return the change of those of `modes` that `reduce` keeps, under `damping`, with the tip mass, per
+    kg."""
     require_kind("modes", modes, Modes, "Modes, from natural_modes")
     model = modes.discretization
     moved = place(model.spring.centreline, model.pieces, model.ties, model.spring.tip_at)
@@ -108,10 +88,10 @@ def mode_changes(
     mass: csr_array | None = None,
     base_load: NDArray[np.float64] | None = None,
 ) -> ModalChange:
-    """Return the change of the modes that `reduce` keeps with a parameter on which the matrices depend.
+    """Return the change of those of `modes` that `reduce` keeps with a parameter of the matrices.
 
     `stiffness`, `loss_stiffness`, `mass` and `base_load` are the derivatives of those of the
-    `Discretization`. What a rule for damping knows from elsewhere, such as a measured rate, is kept.
+    `Discretization`. What the rule of `damping` knows from elsewhere, such as a measured rate, is kept.
 
     Raises
     ------
@@ -119,6 +99,7 @@ def mode_changes(
         Where two frequencies coincide, or a rigid motion gets stiffness; if the rule does not follow.
     """
     require_kind("modes", modes, Modes, "Modes, from natural_modes")
+    require_rule("damping", damping)
     model, omega, x, keep = modes.discretization, modes.omega, modes.shapes, np.flatnonzero(modes.coupled)
     none = csr_array(model.mass.shape)
     d_k, d_m, d_l = (none if part is None else part for part in (stiffness, mass, loss_stiffness))
@@ -154,6 +135,12 @@ class _Moving(Modes):
 
     def __post_init__(self) -> None:
         """Complex numbers are valid."""
+
+
+def _rows(model: ModalModel) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """omega and decay rates."""
+    require_kind("model", model, ModalModel, "a ModalModel")
+    return model.omega, model.decay_rate
 
 
 def _one(model: ModalModel, mode: int) -> NDArray[np.float64]:

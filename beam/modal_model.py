@@ -38,7 +38,7 @@ the tip, and to a translation of the base).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -235,6 +235,34 @@ class ModalModel:
             rates[np.argmax(np.abs(phi))] = self.decay_rate[0]
         omega = np.sqrt(np.maximum(found, 0.0))
         return ModalModel(omega=omega, decay_rate=rates, phi=phi, participation=mass * shapes[n])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ModalChange:
+    """Derivatives of the four arrays of a `ModalModel` with respect to one parameter.
+
+    Parameters
+    ----------
+    omega, decay_rate, phi, participation : array_like, shape (n_modes,)
+        In the unit of the array per unit of the parameter; stored as read-only float64 copies.
+    """
+
+    omega: NDArray[np.float64]
+    decay_rate: NDArray[np.float64]
+    phi: NDArray[np.float64]
+    participation: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        shape = np.shape(self.omega)
+        for each, unit in zip(fields(self), ("rad/s", "1/s", "kg^(-1/2)", "kg^(1/2)"), strict=True):
+            given, unit = getattr(self, each.name), f"{unit} per unit of the parameter"
+            row = require_array(each.name, given, unit, dimensions=1, shape=shape, words="a row of numbers")
+            object.__setattr__(self, each.name, row)
+
+    @property
+    def n_modes(self) -> int:
+        """Number of modes."""
+        return self.omega.size
 
 
 def _row(name: str, values: ArrayLike, unit: str) -> NDArray[np.float64]:

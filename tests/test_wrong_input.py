@@ -55,7 +55,7 @@ NO_ENTRIES = {
     "beam": {"Damping", "Support", "SuspiciousValue",  # in tests/beam/test_paraview_files.py:
              "solid_spring", "write_frames", "write_mode_motion", "write_modes"},
     "contact": {"Chatter", "ContactError", "ContactLaw", "ContactTooStiff", "Diverged", "ImpactKind",
-                "NotPeriodic", "Regime", "StepTooLarge", "StrobedMap", "UnresolvedCrossing"},
+                "NoDerivative", "NotPeriodic", "Regime", "StepTooLarge", "StrobedMap", "UnresolvedCrossing"},
     "orbits": set(),
 }  # fmt: skip
 """Protocols, abstract classes, types, enumerations and errors."""

@@ -149,8 +149,8 @@ def identify(
 ) -> Mapping[str, object]:  # fmt: skip
     """Read or make, fit, report and draw."""
     harmonic(scene)
-    if noise_um is not None and noise_um <= 0.0:
-        raise ValueError(f"noise_um is {noise_um:g} um; it must be above zero")
+    if noise_um is not None and not 0.0 < noise_um < math.inf:
+        raise ValueError(f"noise_um is {noise_um} um; it must be finite and above zero")
     noise = None if noise_um is None else 1e-6 * noise_um
     if description == "beam":
         scene = run.choose_modes(scene, {"fold": 0.05})
@@ -190,7 +190,8 @@ def examples(scene: Scene, run: Run, delay: float) -> dict[str, tuple[Record, Im
 
 def letters_rig(scene: Scene, run: Run, delay: float) -> dict[str, object]:
     """What the letter's six pairs say of the free period, and what to measure next."""
-    kinds, single = pairs.KINDS[: 2 if run.quick else None], single_mode_at(scene, FREQUENCY_HZ)
+    kinds = pairs.KINDS[: 2 if run.quick else len(pairs.WAYS)]
+    single = described(scene, "one_mode", 0.0, FREQUENCY_HZ)
     rows = [row for found in run.map(partial(pairs.intervals_of, single), kinds, "pairs") for row in found]
     run.table("pairs", rows, "Free periods at which the letter's six pairs are born.", show=())
     run.figure("pairs", pairs.draw(rows), "Free periods at which the letter's pairs are born, each and all.")

@@ -88,6 +88,11 @@ def modes() -> beam.Modes:
 
 
 @cache
+def one_mode() -> beam.ModalModel:
+    return beam.single_mode(free_period=0.04, decay_rate=3.0)
+
+
+@cache
 def uniform() -> beam.UniformBeam:
     return beam.UniformBeam(length=0.13, bending_stiffness=0.03, mass_per_length=0.07)
 
@@ -175,6 +180,15 @@ BEAM = (
        value=dict(omega=[], decay_rate=[-3.0, 9.0], phi=[10.0], participation=[NAN, 1.0], tip_mass=-1.0)),
     of(beam.single_mode, dict(free_period=40.8e-3, decay_rate=3.56),
        kind=dict(free_period="40.8 ms"), value=dict(free_period=0.0, decay_rate=-3.56)),
+    of(beam.ModalChange, lambda: dict(MODAL),
+       value=dict(omega=each([[1.0]], [NAN, 1.0]), phi=each([1.0], [INF, 1.0]))),
+    of(beam.free_period_change, lambda: dict(model=one_mode(), ratios_kept=False),
+       kind=dict(model=each(5, "no", None))),
+    *(of(change, lambda: dict(model=one_mode(), mode=0), kind=dict(model="no"), value=dict(mode=each(1, -1)))
+      for change in (beam.decay_rate_change, beam.damping_ratio_change, beam.frequency_change)),
+    *(of(change, lambda: dict(modes=modes(), damping=beam.ConstantRatio(ratio=0.01)),
+         kind=dict(modes=each(5, None), damping="no"))
+      for change in (beam.tip_mass_change, beam.mode_changes)),
     of(beam.UniformBeam, lambda: fields_of(uniform()),
        value=dict(length=0.0, bending_stiffness=NAN, supports=each(("clamped",), 2))),
     of(beam.UniformBeam, lambda: fields_of(uniform()) | dict(supports=("free", "clamped")),
