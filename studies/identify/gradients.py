@@ -21,6 +21,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -165,10 +166,10 @@ def gradients(oscillator: ImpactOscillator) -> list[Gradient]:
 
     measured("exact", None, exact)
     for step in np.logspace(-3, -12, 10):
-        measured("central differences", step, lambda step=step: differences(step, step))
-        measured("one-sided differences", step, lambda step=step: differences(step, 0.0))
+        measured("central differences", step, partial(differences, step, step))
+        measured("one-sided differences", step, partial(differences, step, 0.0))
     solver = OutsideSolver(solver="scipy DOP853", tolerance=1e-10)
-    measured("differences of DOP853", 1e-6, lambda: differences(1e-6, 1e-6, solver))
+    measured("differences of DOP853", 1e-6, partial(differences, 1e-6, 1e-6, solver))
     for tolerance in (1e-6, 1e-8, 1e-10, 1e-12) if "heyoka Taylor" in installed_solvers() else ():
         measured("heyoka", tolerance, by_heyoka(values, start, hits, tolerance))
     return rows
