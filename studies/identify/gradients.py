@@ -41,7 +41,7 @@ Array = NDArray[np.float64]
 CHART = "Error of a gradient through impacts against step or tolerance, and against the time it takes."
 NAMES = ("free_period", "decay_rate", "gap", "restitution", "frequency", "amplitude")
 PERIODS, REPEATS = 20, 11
-"""Drive periods; runs of which the median time counts."""
+"""Drive periods; runs of which the median processor time counts."""
 POLISHED = 3
 """Steps of Newton's method from the 16 digits of a double to 60 and more."""
 
@@ -156,9 +156,9 @@ def gradients(oscillator: ImpactOscillator) -> list[Gradient]:
     def measured(method: str, setting: float | None, compute: Callable[[], Array]) -> None:
         times = []
         for _ in range(REPEATS + 1):
-            begun = time.perf_counter()
+            begun = time.process_time()
             found = compute()
-            times.append(time.perf_counter() - begun)
+            times.append(time.process_time() - begun)
         error = float(np.linalg.norm((found - truth) / scale) / np.linalg.norm(truth / scale))
         rows.append(Gradient(method=method, setting=setting, error=error if np.isfinite(error) else None,
                              milliseconds=1e3 * float(np.median(times[1:]))))  # fmt: skip
