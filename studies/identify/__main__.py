@@ -32,7 +32,6 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from beam.parameters import require_within
 from contact import ImpactOscillator
 from studies.identify import coverage as covering
 from studies.identify import design, figures, gradients, pairs
@@ -42,7 +41,7 @@ from studies.identify.parameters import Description, described, fitted_scene, pa
 from studies.identify.records import Kind, Record, read_record, synthetic
 from studies.options import POSITIONAL
 from studies.run import Run, study
-from studies.scene import Scene, harmonic
+from studies.scene import Scene, harmonic, single_mode_at
 
 __all__ = ["identify"]
 
@@ -150,7 +149,9 @@ def identify(
 ) -> Mapping[str, object]:  # fmt: skip
     """Read or make, fit, report and draw."""
     harmonic(scene)
-    noise = None if noise_um is None else 1e-6 * require_within("noise_um", noise_um, "um", above=0)
+    if noise_um is not None and noise_um <= 0.0:
+        raise ValueError(f"noise_um is {noise_um:g} um; it must be above zero")
+    noise = None if noise_um is None else 1e-6 * noise_um
     if description == "beam":
         scene = run.choose_modes(scene, {"fold": 0.05})
     if record is not None:
@@ -189,8 +190,8 @@ def examples(scene: Scene, run: Run, delay: float) -> dict[str, tuple[Record, Im
 
 def letters_rig(scene: Scene, run: Run, delay: float) -> dict[str, object]:
     """What the letter's six pairs say of the free period, and what to measure next."""
-    kinds = [kind for kind in pairs.KINDS if kind[2] == pairs.RESTITUTIONS[0]][: 2 if run.quick else None]
-    rows = [row for found in run.map(pairs.intervals_of, kinds, "pairs") for row in found]
+    kinds, single = pairs.KINDS[: 2 if run.quick else None], single_mode_at(scene, FREQUENCY_HZ)
+    rows = [row for found in run.map(partial(pairs.intervals_of, single), kinds, "pairs") for row in found]
     run.table("pairs", rows, "Free periods at which the letter's six pairs are born.", show=())
     run.figure("pairs", pairs.draw(rows), "Free periods at which the letter's pairs are born, each and all.")
     plan, thin = design.Plan(), 6 if run.quick else 2
@@ -204,7 +205,7 @@ def letters_rig(scene: Scene, run: Run, delay: float) -> dict[str, object]:
     caption = ("Standard errors over drive frequency and excess; stars: the letter's points; numbers: the "
                "best five; grey: the orbit does not outlive its errors.")  # fmt: skip
     run.figure("next", design.draw(found, plan), caption)
-    told = [design.answer(of, found, plan), *([] if run.quick else [pairs.sentence(rows)])]
+    told = [design.answer(of, found, plan), *([] if run.quick else [pairs.sentence(single, rows)])]
     for sentence in told:
         run.say(sentence)
     return {"pairs": rows, "next": best, "told": told}
@@ -239,7 +240,7 @@ def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
         for name, one in found.items() for (i, a), (j, b) in combinations(enumerate(one.names), 2)
     ]  # fmt: skip
     run.table("correlations", correlations, "Correlations of the estimates.", show=())
-    profiles = {name: traded(one, 5 if run.quick else 9) for name, one in found.items()}
+    profiles = {name: traded(one, run.quick) for name, one in found.items()}
     run.table("profile", [row for rows in profiles.values() for row in rows],
               "Likelihood along one of two parameters that trade off.", show=())  # fmt: skip
     run.arrays("residuals", **{name: one.residuals for name, one in found.items()})
@@ -275,15 +276,16 @@ def in_short(value: float, error: float) -> str:
     return f"{value:.{max(digits, 0)}f}({round(error * 10.0 ** max(digits, 0))})"
 
 
-def traded(found: Fit, points: int) -> list[Profile]:
-    """The profile of each parameter that trades off with another, the most correlated pair first."""
+def traded(found: Fit, quick: bool) -> list[Profile]:
+    """The profile of each parameter that trades off with another, the most correlated pair first; or this
+    alone, of few points."""
     size = np.abs(found.correlations) - np.eye(len(found.names))
     partners = {i: int(np.argmax(row)) for i, row in enumerate(size) if row.max() > TRADE}
     order = sorted(partners, key=lambda i: -size[i, partners[i]])
     kept = [i for k, i in enumerate(order) if partners[i] not in order[:k] or partners[partners[i]] != i]
     return [
-        row for i in kept
-        for row in profile(found, found.names[i], found.names[partners[i]], points=points)
+        row for i in kept[: 1 if quick else None]
+        for row in profile(found, found.names[i], found.names[partners[i]], points=5 if quick else 9)
     ]  # fmt: skip
 
 

@@ -17,6 +17,7 @@ that give the same points: the three follow from one p_m as far as the gap is kn
 theory holds while the orbit outlives the errors: D has the standard error (d^T C d)^(1/2), d = dD/dp, and a
 place counts where p_m is there and stable with the excess that much lower and higher. So it leaves out as
 well what is as close to a second impact or a doubling, where J stays finite. Without a fold D is the excess.
+An error beyond the value itself says no more than that the parameter is not told.
 """
 
 from __future__ import annotations
@@ -25,7 +26,6 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 from matplotlib.colors import LogNorm
@@ -140,12 +140,11 @@ def covariance(orbits: Sequence[PeriodicOrbit], plan: Plan) -> Array:
     return np.asarray(root @ root.T)
 
 
-def errors_of(orbits: Sequence[PeriodicOrbit], plan: Plan) -> tuple[tuple[float, ...], float]:
-    """Standard errors of the wanted by several orbits together, and their D-criterion [1]."""
-    n, cov = len(plan.names), covariance(orbits, plan)
-    errors = np.sqrt(np.diag(cov)[:n]) * sizes_of(orbits[0], plan)[:n]
-    told = bool(np.isfinite(cov[0, 0]))
-    return tuple(errors.tolist()), float(np.linalg.det(cov[:n, :n]) ** (0.5 / n)) if told else math.inf
+def errors_of(orbits: Sequence[PeriodicOrbit], plan: Plan) -> list[float]:
+    """Standard errors of the wanted by several orbits together."""
+    errors = np.sqrt(np.diag(covariance(orbits, plan))[: len(plan.names)])
+    found: list[float] = (errors * sizes_of(orbits[0], plan)[: errors.size]).tolist()
+    return found
 
 
 class Nodes:
@@ -174,17 +173,18 @@ class Nodes:
 def measurement(orbit: PeriodicOrbit, nodes: Nodes, plan: Plan) -> Measurement:
     """What one of the `nodes` tells."""
     n, sizes, cov = len(plan.names), sizes_of(orbit, plan), covariance([orbit], plan)
-    (errors, together), (rows, away) = errors_of([orbit], plan), changed(orbit, plan)
+    (rows, away), told = changed(orbit, plan), bool(np.isfinite(cov[0, 0]))
     if nodes.fold is not None:
         away = away - excess_derivatives(nodes.fold, changes_of(orbit.oscillator, plan.unknown)) * sizes
-    told, widths = math.isfinite(together), np.sqrt(np.diag(cov)[:n])
-    off = math.sqrt(away @ cov @ away) if told else math.inf
+    widths, off = np.sqrt(np.diag(cov)[:n]), math.sqrt(away @ cov @ away) if told else math.inf
     mutual = cov[:n, :n] / np.outer(widths, widths) - np.eye(n) if told else np.ones((n, n))
     return Measurement(
         frequency_hz=orbit.oscillator.driven.frequency, excess=orbit.excess, period=orbit.period,
-        errors=errors, alone=tuple((sizes / np.linalg.norm(rows, axis=0))[:n].tolist()), together=together,
-        correlation=float(np.max(np.abs(mutual))), distance=orbit.excess - nodes.excesses[0],
-        distance_error=off, kept=told and None not in [nodes.at(orbit.excess + way * off) for way in (-1, 1)],
+        errors=tuple((widths * sizes[:n]).tolist()), correlation=float(np.max(np.abs(mutual))),
+        alone=tuple((sizes / np.linalg.norm(rows, axis=0))[:n].tolist()),
+        together=float(np.linalg.det(cov[:n, :n]) ** (0.5 / n)) if told else math.inf,
+        distance=orbit.excess - nodes.excesses[0], distance_error=off,
+        kept=told and None not in [nodes.at(orbit.excess + way * off) for way in (-1, 1)],
     )  # fmt: skip
 
 
@@ -217,30 +217,30 @@ def letters_orbits(of: Of, excess: float = 1e-3) -> list[PeriodicOrbit]:
 def answer(of: Of, found: Sequence[Measurement], plan: Plan) -> str:
     """What the letter's points and the best place tell, for the page; the plan wants T, tau and the delay."""
     six, first = letters_orbits(of), best(found, 1)[0]
-    alone = {orbit.period: errors_of([orbit], plan)[0] for orbit in six}
+    alone = {orbit.period: errors_of([orbit], plan) for orbit in six}
     few = min(alone, key=lambda m: alone[m][1])
-    pairs = [(a, b) for a, b in combinations(six, 2) if abs(a.speed / b.speed - 1.0) < ALIKE]
-    alike = min(pairs, key=lambda pair: errors_of(pair, plan)[1])
+    pairs = [pair for pair in combinations(six, 2) if abs(pair[0].speed / pair[1].speed - 1.0) < ALIKE]
+    one, other = min(pairs, key=lambda pair: errors_of(pair, plan)[1])
 
     def words(errors: Sequence[float]) -> str:
         return f"tau to {errors[1]:.1g} and the delay to {1e6 * errors[2]:.2g} us"
 
-    one, other = alike
     return (
-        f"Of {plan.strobes} strobes read to {1e6 * plan.noise:g} um, at an excess of 1e-3, amplitudes known to "
-        f"{1e6 * plan.amplitude_error:g} um: T follows to "
+        f"Of {plan.strobes} strobes read to {1e6 * plan.noise:g} um, at an excess of 1e-3, amplitudes known "
+        f"to {1e6 * plan.amplitude_error:g} um: T follows to "
         + ", ".join(f"{1e3 * errors[0]:.1g} ms (p{m})" for m, errors in alone.items())
         + ". No single p_m tells gap, tau and delay apart; with the gap from the amplitude at grazing "
         f"p{few} gives {words(alone[few])}, the best place, p{first.period} at {first.frequency_hz:.2f} Hz "
         f"and {first.excess:.1e}, {words(first.errors)}. p{one.period} and p{other.period}, which meet the "
-        f"stop at {one.speed:.2f} and {other.speed:.2f} m/s, give {words(errors_of(alike, plan)[0])} "
-        f"whatever these are at other speeds; all six, if they are constant, {words(errors_of(six, plan)[0])}."
+        f"stop at {one.speed:.2f} and {other.speed:.2f} m/s, give {words(errors_of([one, other], plan))} "
+        f"whatever these are at other speeds; all six, if they are constant, {words(errors_of(six, plan))}."
     )
 
 
 @plotting.in_house_style
 def draw(found: Sequence[Measurement], plan: Plan) -> Figure:
-    """The error of each wanted parameter over frequency and excess, by the orbit that tells most there."""
+    """The error of each wanted parameter by the orbit that tells most at a place; stars: the letter's pairs
+    at an excess of 1e-3; numbers: the best places; grey: the orbit need not outlive the errors."""
     places = [(round(one.frequency_hz, 6), round(one.excess, 9)) for one in found]
     across, up = (sorted({place[i] for place in places}) for i in (0, 1))
     figure, axes = plotting.new_figure(
@@ -252,9 +252,8 @@ def draw(found: Sequence[Measurement], plan: Plan) -> Figure:
         told, lost = np.full((2, len(up), len(across)), np.nan)
         for (f, excess), one in shown.items():
             (told if one.kept else lost)[heights[excess], across.index(f)] = one.errors[k] * SHOWN[name][1]
-        grey: Any = {"cmap": "Greys", "vmin": -1.0, "vmax": 3.0, "rasterized": True}
-        axis.pcolormesh(across, range(len(up)), 0.0 * lost, **grey)
-        mesh = axis.pcolormesh(across, range(len(up)), told, norm=LogNorm(), cmap="viridis_r", rasterized=True)
+        axis.pcolormesh(across, range(len(up)), 0.0 * lost, cmap="Greys", vmin=-1.0, vmax=3.0)
+        mesh = axis.pcolormesh(across, range(len(up)), told, cmap="viridis_r", norm=LogNorm())
         bar = figure.colorbar(mesh, ax=axis, location="top", label=SHOWN[name][0])
         bar.ax.xaxis.set_minor_formatter("")
         axis.plot(list(letter.PERIODS), [np.interp(1e-3, up, range(len(up)))] * 6, **plotting.LETTER_POINTS)

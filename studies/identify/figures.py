@@ -22,6 +22,8 @@ CAPTION = (
 SHOWN = 6
 """Drive periods of a displacement that are shown."""
 
+DOTS: plotting.Style = {"linestyle": "none", "marker": ".", "markersize": 2, "rasterized": True}
+
 DEPTH = 2.71
 """Rise of chi^2 at the ends of a 90 % interval."""
 
@@ -47,8 +49,7 @@ def _record(left: Any, middle: Any, one: Fit) -> None:
     if kind == "displacement":
         place, across = 1e3 * rows[:, 0], ("time", "ms")
         end = 1e3 * (rows[0, 0] + SHOWN * one.oscillator.period)
-        dots = {"linestyle": "none", "marker": ".", "markersize": 2, "color": plotting.SKY}
-        left.plot(place, unit * seen, **dots, label="record")
+        left.plot(place, unit * seen, **DOTS, color=plotting.SKY, label="record")
         left.plot(place, unit * fitted, color=plotting.BLACK, linewidth=0.6, label="fit")
         left.set_xlim(place[0], end)
     elif kind == "strobe":
@@ -61,7 +62,7 @@ def _record(left: Any, middle: Any, one: Fit) -> None:
         errors = unit * one.record.units(one.noise)[:, 0]
         left.errorbar(place, unit * seen, errors, **plotting.points(1), label="record")
         left.plot(place, unit * fitted, linestyle="none", marker="_", color=plotting.BLACK, label="fit")
-    middle.plot(place, residuals, linestyle="none", marker=".", markersize=2, color=plotting.BLUE)
+    middle.plot(place, residuals, **DOTS, color=plotting.BLUE)
     middle.axhline(0.0, **plotting.GUIDE)
     for axis in (left, middle):
         plotting.label(axis.xaxis, *across)
