@@ -13,11 +13,15 @@ The oscillator is that of the scene: Eq. (1) (one_mode), the same with a constan
 the spring on its stop (beam). Least squares with exact derivatives; errors and intervals from (J^T J)^-1 and
 the scatter of the residuals; where two parameters trade off (correlation beyond 0.95) the likelihood along
 one of them, the others fitted again (`profile`). Residuals that are no noise say that the model is too small.
-Without a record three synthetic ones, with 0.5 um of read-out noise, are made and fitted.
+Without a record three synthetic ones, with 0.5 um of read-out noise, are made and fitted; --coverage N asks
+of N records of each kind whether 90 % intervals hold the truth 90 % of the time.
 
-Run:     python -m studies.identify RECORD.csv --fit free_period restitution gap     10 s
-Writes:  parameters.csv, correlations.csv, profile.csv, residuals.npz, identify.png (record and fit,
-         residuals, profile), fitted.toml, a scene that every study takes; the example also its three records
+Run:     python -m studies.identify [RECORD.csv --fit free_period restitution gap] [--coverage N]     25 s;
+         a record 2 s
+Writes:  parameters.csv, quality.csv, correlations.csv, profile.csv, residuals.npz, identify.png (record and
+         fit, residuals, profile), fitted.toml, a scene that every study takes; the example also its three
+         records, pairs (T in motion by the letter's six pairs) and next (what to measure next), each csv and
+         png; --coverage also coverage and gradients
 """
 
 from __future__ import annotations
@@ -41,7 +45,7 @@ from studies.identify.parameters import Description, described, fitted_scene, pa
 from studies.identify.records import Kind, Record, read_record, synthetic
 from studies.options import POSITIONAL
 from studies.run import Run, study
-from studies.scene import Scene, harmonic, single_mode_at
+from studies.scene import Scene, harmonic
 
 __all__ = ["identify"]
 
@@ -68,8 +72,8 @@ SHOWN = ("record", "parameter", "unit", "start", "told", "low90", "high90", "sce
 
 @dataclass(frozen=True, kw_only=True)
 class Estimate:
-    """One parameter: where the fit started, what it found, standard error and 90 % interval, the value of the
-    scene, and estimate and error in short, 40.80(2)."""
+    """One parameter: where the fit started, what it found, standard error and 90 % interval (of the profile
+    likelihood where there is one), the value of the scene, and estimate and error in short, 40.80(2)."""
 
     record: str
     parameter: str
@@ -226,7 +230,8 @@ def truth(scene: Scene, run: Run, records: int) -> dict[str, object]:
 
 def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
     """Tables and figure of the fits."""
-    estimates = [row for name, one in found.items() for row in estimates_of(name, one)]
+    profiles = {name: traded(one, run.quick) for name, one in found.items()}
+    estimates = [row for name, one in found.items() for row in estimates_of(name, one, profiles[name])]
     run.table("parameters", estimates, "Estimates with standard errors and 90 % intervals.", show=SHOWN)
     quality = [
         Quality(record=name, rows=len(one.residuals), noise=one.noise, freedom=one.freedom,
@@ -241,7 +246,6 @@ def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
         for name, one in found.items() for (i, a), (j, b) in combinations(enumerate(one.names), 2)
     ]  # fmt: skip
     run.table("correlations", correlations, "Correlations of the estimates.", show=())
-    profiles = {name: traded(one, run.quick) for name, one in found.items()}
     run.table("profile", [row for rows in profiles.values() for row in rows],
               "Likelihood along one of two parameters that trade off.", show=())  # fmt: skip
     run.arrays("residuals", **{name: one.residuals for name, one in found.items()})
@@ -257,15 +261,21 @@ def as_scene(scene: Scene, found: Fit, rows: Sequence[Estimate]) -> str:
     return "\n".join([*about, "", fitted_scene(scene, found.oscillator, frequencies).dump()])
 
 
-def estimates_of(name: str, found: Fit) -> list[Estimate]:
-    """The rows of a fit."""
-    known = parameters_of(found.oscillator)
+def estimates_of(name: str, found: Fit, profiles: Sequence[Profile]) -> list[Estimate]:
+    """The rows of a fit; intervals are those of the likelihood where its profile is known."""
+    known, intervals = parameters_of(found.oscillator), dict(zip(found.names, found.intervals(), strict=True))
+    for one in {row.parameter for row in profiles}:
+        points = [row for row in profiles if row.parameter == one]
+        values, depth = np.array([(row.value, max(row.depth, 0.0)) for row in points]).T
+        middle = found.estimate[found.names.index(one)]
+        roots, reach = np.copysign(depth**0.5, values - middle), found.reach()
+        intervals[one] = np.interp([-reach, reach], roots, values)
     return [
         Estimate(
             record=name, parameter=one, unit=known[one].unit, start=float(found.start[i]), low90=float(low),
             estimate=float(found.estimate[i]), standard_error=float(found.errors[i]), high90=float(high),
             told=in_short(float(found.estimate[i]), float(found.errors[i])), scene=float(found.before[i]),
-        ) for i, (one, (low, high)) in enumerate(zip(found.names, found.intervals(), strict=True))
+        ) for i, (one, (low, high)) in enumerate(intervals.items())
     ]  # fmt: skip
 
 

@@ -22,6 +22,7 @@ CAPTION = (
 SHOWN = 6
 """Drive periods of a displacement that are shown."""
 
+FITTED: plotting.Style = {"linestyle": "none", "marker": "_", "color": "black", "zorder": 5, "label": "fit"}
 DOTS: plotting.Style = {"linestyle": "none", "marker": ".", "markersize": 2, "rasterized": True}
 
 DEPTH = 2.71
@@ -55,13 +56,13 @@ def _record(left: Any, middle: Any, one: Fit) -> None:
     elif kind == "strobe":
         place, across = np.arange(len(seen), dtype=float), ("strobe", "1")
         left.plot(place, unit * seen, **plotting.points(1), label="record")
-        left.plot(place, unit * fitted, linestyle="none", marker="_", color=plotting.BLACK, label="fit")
+        left.plot(place, unit * fitted, **FITTED)
     else:
         place, across, unit, words = rows[:, 0], ("drive frequency", "Hz"), 1e2, "end of $p_m$, excess"
         residuals = 1e2 * one.residuals[:, 0]
         errors = unit * one.record.units(one.noise)[:, 0]
         left.errorbar(place, unit * seen, errors, **plotting.points(1), label="record")
-        left.plot(place, unit * fitted, linestyle="none", marker="_", color=plotting.BLACK, label="fit")
+        left.plot(place, unit * fitted, **FITTED)
     middle.plot(place, residuals, **DOTS, color=plotting.BLUE)
     middle.axhline(0.0, **plotting.GUIDE)
     for axis in (left, middle):

@@ -88,11 +88,14 @@ class Fit:
         """Whether the residuals are no noise, so that the model is too small for the record."""
         return self.chance < TOO_SMALL
 
-    def intervals(self, level: float = LEVEL) -> Array:
-        """Lower and upper ends, shape (n, 2), by Student's t; of the normal law where the noise is known."""
+    def reach(self, level: float = LEVEL) -> float:
+        """Half an interval in standard errors, by Student's t; of the normal law where the noise is known."""
         tail = 0.5 + 0.5 * level
-        width = stats.norm.ppf(tail) if self.noise_known else stats.t.ppf(tail, self.freedom)
-        return self.estimate[:, None] + np.outer(self.errors, [-width, width])
+        return float(stats.norm.ppf(tail) if self.noise_known else stats.t.ppf(tail, self.freedom))
+
+    def intervals(self, level: float = LEVEL) -> Array:
+        """Lower and upper ends, shape (n, 2)."""
+        return self.estimate[:, None] + np.outer(self.errors, [-self.reach(level), self.reach(level)])
 
 
 class Problem:
