@@ -11,6 +11,7 @@ the autocorrelation of its residuals (Ljung and Box, Biometrika 65 (1978) 297).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -42,6 +43,9 @@ TOO_SMALL = 1e-3
 
 LAGS = 10
 """Of the autocorrelation of residuals."""
+
+LEASH = 1.0
+"""Of the parameters while the beginning of a record is fitted, which need not tell all of them."""
 
 REGION, PART = 2.0, 0.3
 """Half axes of the confidence region in standard errors; part of the largest from which a parameter takes
@@ -99,18 +103,25 @@ class Fit:
 
 
 class Problem:
-    """Residuals and Jacobian in units of the noise, by unknowns in units of their size."""
+    """Residuals and Jacobian in units of the noise, by unknowns in units of their size.
+
+    The further unknowns are held by their prior, the parameters by a `leash`: a standard deviation about
+    where they start, in units of their size.
+    """
 
     def __init__(
-        self, prediction: Prediction, oscillator: ImpactOscillator, names: tuple[str, ...], noise: float
-    ) -> None:
+        self, prediction: Prediction, oscillator: ImpactOscillator, names: tuple[str, ...], noise: float,
+        leash: float = math.inf,
+    ) -> None:  # fmt: skip
         self.prediction, self.oscillator, self.names = prediction, oscillator, names
         known = parameters_of(oscillator)
         self.sizes = np.concatenate([[known[name].size for name in names], prediction.sizes])
         self.start = np.concatenate([[known[name].value for name in names], prediction.extra]) / self.sizes
         self.weights = 1.0 / prediction.record.units(noise).ravel()
         self.observed = prediction.record.observed.ravel()
-        self.held, self.noise = 1.0 / prediction.prior, noise
+        self.noise, own = noise, np.arange(self.sizes.size) < len(names)
+        self.held = 1.0 / np.append(np.full(len(names), leash), prediction.prior / prediction.sizes)
+        self.middle = np.where(own, self.start, 0.0)
         self.evaluations = 0
         self.last: tuple[Array, ImpactOscillator, Array] | None = None
 
@@ -123,21 +134,21 @@ class Problem:
         return self.last[1], self.last[2]
 
     def residuals(self, unknowns: Array) -> Array:
-        """Shape (rows + priors,); not a number where there is no orbit, which rejects the step."""
+        """Shape (rows + unknowns,), the last those of what is held; not a number where there is no orbit, so that
+        the step is rejected."""
         self.evaluations += 1
         try:
             oscillator, extra = self.at(unknowns)
             predicted = self.prediction.values(oscillator, extra).ravel()
         except (ContactError, ValueError):
             return np.full(self.observed.size + self.held.size, np.nan)
-        return np.concatenate([(predicted - self.observed) * self.weights, extra * self.held])
+        off = (predicted - self.observed) * self.weights
+        return np.concatenate([off, (unknowns - self.middle) * self.held])
 
     def jacobian(self, unknowns: Array) -> Array:
-        """Shape (rows + priors, unknowns)."""
-        oscillator, extra = self.at(unknowns)
-        rows = self.prediction.jacobian(oscillator, extra, self.names) * self.weights[:, None]
-        priors = np.hstack([np.zeros((extra.size, len(self.names))), np.diag(self.held)])
-        return np.vstack([rows, priors]) * self.sizes
+        """Shape (rows + unknowns, unknowns)."""
+        rows = self.prediction.jacobian(*self.at(unknowns), self.names) * self.weights[:, None]
+        return np.vstack([rows * self.sizes, np.diag(self.held)])
 
     def solve(self, start: Array, fixed: int | None = None) -> Any:
         """``scipy.optimize.least_squares`` from `start`, perhaps with one unknown held."""
@@ -192,7 +203,7 @@ def fit(
         raise ValueError(f"the record has {rows} numbers, too short for {unknowns} unknowns and their errors")
     at = start = problem.start
     for part in prediction.parts(begun)[:-1]:
-        start = Problem(part, begun, names, unit).solve(start).x
+        start = Problem(part, begun, names, unit, LEASH).solve(start).x
     found = problem.solve(start)
     freedom = max(rows - unknowns, 1)
     spread = 1.0 if known else float(np.sqrt(2.0 * found.cost / freedom))

@@ -58,6 +58,9 @@ WINDOW, DENSEST, ENOUGH = 0.08, 40, 100
 """Part of a drive period on either side that tells the velocity at an impact; rows a period at least, and as
 many as are looked at."""
 
+LOWER = (1.0, 0.999, 0.997, 0.99)
+"""Parts of the gap found that are tried as well: above what the motion reaches there would be no impact."""
+
 STRETCHES, ROWS, SHORTEST = 8, 60, 0.1
 """Stretches between impacts, and rows of each, that tell free period and decay rate; drive periods of the
 shortest."""
@@ -95,11 +98,13 @@ def _strobes(
     record: Record, oscillator: ImpactOscillator, names: Sequence[str]
 ) -> tuple[Strobes, ImpactOscillator]:
     period, size = repetition(record), float(record.observed[:, 0].std())
+    if (told := period * record.observed.shape[1]) < len(names):
+        raise ValueError(f"p{period} gives {told} numbers, which cannot tell {len(names)} parameters")
 
     def misfit(prediction: Strobes) -> float:
         try:
             off = prediction.values(prediction.orbit.oscillator, prediction.extra) - record.observed
-        except ContactError:
+        except (ContactError, ValueError):
             return math.inf
         return float(np.sqrt(np.mean(off[:, 0] ** 2)))
 
@@ -220,8 +225,22 @@ def _displacement(
     stretches = [(a, b) for a, b in zip(*cuts, strict=True) if b - a > SHORTEST * density]
     if oscillator.n_modes == 1:
         values |= _rung(times, x, stretches, oscillator, names)
-    begun = with_values(oscillator, {name: values[name] for name in names if name in values})
-    return Displacement(record, begun, _start(times, x, stretches[0], begun)), begun
+    begin = stretches[0][0]
+    far = [one for one in corners if one.before > begin][:2]
+    first = int(far[-1].after + 0.5 * density) - begin if far else x.size
+
+    def tried(values: dict[str, float]) -> tuple[tuple[bool, float], Displacement, ImpactOscillator]:
+        """Whether the first impacts are missed, and by how much their surroundings."""
+        begun = with_values(oscillator, {name: values[name] for name in names if name in values})
+        found = Displacement(record, begun, _start(times, x, stretches[0], begun), first)
+        return found.misfit(begun, len(far)), found, begun
+
+    law = {name: known[name].value for name in ("restitution", "delay") if name in known}
+    choices = [values | own | {"gap": part * values["gap"]} for part in LOWER for own in ({}, law)]
+    found = tried(choices[0])
+    if found[0] > (False, CLOSE):
+        found = min(map(tried, choices), key=lambda one: one[0])
+    return found[1:]
 
 
 def _rung(
