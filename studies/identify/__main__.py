@@ -240,7 +240,8 @@ def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
     run.table("quality", quality, "What is left of the records.")
     for row in quality:
         if row.too_small:
-            run.say(f"{row.record}: the model is too small: its residuals are no noise (p {row.chance:.0e})")
+            run.say(f"{row.record}: residuals are no noise (p {row.chance:.0e}), errors mean little: the model "
+                    "is too small, or the start was too far off")  # fmt: skip
     correlations = [
         Correlation(record=name, parameter=a, other=b, correlation=float(one.correlations[i, j]))
         for name, one in found.items() for (i, a), (j, b) in combinations(enumerate(one.names), 2)

@@ -44,6 +44,9 @@ TOO_SMALL = 1e-3
 LAGS = 10
 """Of the autocorrelation of residuals."""
 
+MOST = 200
+"""Steps of a fit: a dozen are usual, a hundred along a valley of two parameters that trade off."""
+
 LEASH = 1.0
 """Of the parameters while the beginning of a record is fitted, which need not tell all of them."""
 
@@ -134,8 +137,8 @@ class Problem:
         return self.last[1], self.last[2]
 
     def residuals(self, unknowns: Array) -> Array:
-        """Shape (rows + unknowns,), the last those of what is held; not a number where there is no orbit, so that
-        the step is rejected."""
+        """Shape (rows + unknowns,), the last those of what is held; not a number where there is no orbit, so
+        that the step is rejected."""
         self.evaluations += 1
         try:
             oscillator, extra = self.at(unknowns)
@@ -164,7 +167,7 @@ class Problem:
                 "no motion like the record's was found to start from: fit more, or give better values"
             )
         found = least_squares(
-            lambda part: self.residuals(filled(part)), start[free], x_scale="jac", max_nfev=60,
+            lambda part: self.residuals(filled(part)), start[free], x_scale="jac", max_nfev=MOST,
             jac=lambda part: self.jacobian(filled(part))[:, free], xtol=1e-10, ftol=1e-12, gtol=1e-12,
         )  # fmt: skip
         found.x = filled(found.x).copy()
@@ -205,6 +208,8 @@ def fit(
     for part in prediction.parts(begun)[:-1]:
         start = Problem(part, begun, names, unit, LEASH).solve(start).x
     found = problem.solve(start)
+    if found.status == 0:
+        raise ValueError(f"the fit has not settled after {MOST} steps: give better values, or fit fewer")
     freedom = max(rows - unknowns, 1)
     spread = 1.0 if known else float(np.sqrt(2.0 * found.cost / freedom))
     n, sizes, shape = len(names), problem.sizes, prediction.record.observed.shape
