@@ -45,7 +45,7 @@ from studies.identify.parameters import Description, described, fitted_scene, pa
 from studies.identify.records import Kind, Record, read_record, synthetic
 from studies.options import POSITIONAL
 from studies.run import Run, study
-from studies.scene import Scene, harmonic
+from studies.scene import Scene, corresponding, harmonic, periods_of
 
 __all__ = ["identify"]
 
@@ -175,7 +175,7 @@ def identify(
     results = report(run, found)
     first = next(iter(found))
     run.text("fitted.toml", as_scene(scene, found[first], [r for r in results["rows"] if r.record == first]))
-    if record is None:
+    if record is None and corresponding(scene, FREQUENCY_HZ) == FREQUENCY_HZ:  # else not the letter's spring
         results |= letters_rig(scene, run, 1e-3 * delay_ms)
     if coverage is not None:
         results |= truth(scene, run, coverage)
@@ -186,8 +186,8 @@ def examples(scene: Scene, run: Run, delay: float) -> dict[str, tuple[Record, Im
     """A record of each kind, stored, and the oscillator of which it is."""
     found = dict[str, tuple[Record, ImpactOscillator]]()
     for kind, description in EXAMPLES.items():
-        oscillator = described(scene, description, delay, FREQUENCY_HZ)
-        found[kind] = synthetic(kind, oscillator, seed=SEED), oscillator
+        oscillator = described(scene, description, delay, corresponding(scene, FREQUENCY_HZ))
+        found[kind] = synthetic(kind, oscillator, tuple(periods_of(scene).items()), seed=SEED), oscillator
         run.text(f"{kind}.csv", found[kind][0].text())
     return found
 
@@ -222,7 +222,7 @@ def truth(scene: Scene, run: Run, records: int) -> dict[str, object]:
     rows = covering.coverage(scene, beam, run, records=records, beam_records=records // 4)
     run.table("coverage", rows, covering.COVERED)
     run.figure("coverage", covering.draw_coverage(rows), covering.COVERED)
-    paths = gradients.gradients(described(scene, "one_mode", 0.0, FREQUENCY_HZ))
+    paths = gradients.gradients(described(scene, "one_mode", 0.0, corresponding(scene, FREQUENCY_HZ)))
     run.table("gradients", paths, gradients.CHART, show=())
     run.figure("gradients", gradients.draw_gradients(paths), gradients.CHART)
     return {"coverage": rows, "gradients": paths}
@@ -240,8 +240,8 @@ def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
     run.table("quality", quality, "What is left of the records.")
     for row in quality:
         if row.too_small:
-            run.say(f"{row.record}: residuals are no noise (p {row.chance:.0e}), errors mean little: the model "
-                    "is too small, or the start was too far off")  # fmt: skip
+            run.say(f"{row.record}: residuals are no noise (p {row.chance:.0e}), errors mean little: the "
+                    "model is too small, or the start was too far off")  # fmt: skip
     correlations = [
         Correlation(record=name, parameter=a, other=b, correlation=float(one.correlations[i, j]))
         for name, one in found.items() for (i, a), (j, b) in combinations(enumerate(one.names), 2)
