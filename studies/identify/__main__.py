@@ -148,7 +148,8 @@ def identify(
     drive: Annotated[tuple[float, float] | None,
                      "frequency (Hz) and amplitude of the base (mm), in place of the record's"] = None,
     noise_um: Annotated[float | None, "noise of the read-out, where it is known"] = None,
-    delay_ms: Annotated[float, "two_parameters: the delay, or where its fit starts"] = 0.3,
+    delay_ms: Annotated[float | None,
+                        "two_parameters: the delay, or where its fit starts (default: T/136)"] = None,
     coverage: Annotated[int | None, "also fit so many synthetic records of each kind: is 90 % 90 %?"] = None,
 ) -> Mapping[str, object]:  # fmt: skip
     """Read or make, fit, report and draw."""
@@ -156,18 +157,19 @@ def identify(
     if noise_um is not None and not 0.0 < noise_um < math.inf:
         raise ValueError(f"noise_um is {noise_um} um; it must be finite and above zero")
     noise = None if noise_um is None else 1e-6 * noise_um
+    delay = scene.single_mode.free_period_s / 136.0 if delay_ms is None else 1e-3 * delay_ms
     if description == "beam":
         scene = run.choose_modes(scene, {"fold": 0.05})
     if record is not None:
         read = read_record(record)
         if drive is not None:
             read = replace(read, frequency=drive[0], amplitude=1e-3 * drive[1])
-        oscillator = described(scene, description, 1e-3 * delay_ms, frequency_of(read))
+        oscillator = described(scene, description, delay, frequency_of(read))
         given = {record.stem: (read, oscillator)}
     elif fit:
         raise ValueError(f"fit names {' '.join(fit)}, but no record is given: put its file before --fit")
     else:
-        given = examples(scene, run, 1e-3 * delay_ms)
+        given = examples(scene, run, delay)
     found = {
         name: fitted(one, driven(one, oscillator, fit), fit or usual(one, oscillator), noise=noise)
         for name, (one, oscillator) in given.items()
@@ -176,7 +178,7 @@ def identify(
     first = next(iter(found))
     run.text("fitted.toml", as_scene(scene, found[first], [r for r in results["rows"] if r.record == first]))
     if record is None and corresponding(scene, FREQUENCY_HZ) == FREQUENCY_HZ:  # else not the letter's spring
-        results |= letters_rig(scene, run, 1e-3 * delay_ms)
+        results |= letters_rig(scene, run, delay)
     if coverage is not None:
         results |= truth(scene, run, coverage)
     return results

@@ -166,10 +166,11 @@ class Problem:
             raise ValueError(
                 "no motion like the record's was found to start from: fit more, or give better values"
             )
-        found = least_squares(
-            lambda part: self.residuals(filled(part)), start[free], x_scale="jac", max_nfev=MOST,
-            jac=lambda part: self.jacobian(filled(part))[:, free], xtol=1e-10, ftol=1e-12, gtol=1e-12,
-        )  # fmt: skip
+        with np.errstate(all="ignore"):  # of the trust region, along what is not seen
+            found = least_squares(
+                lambda part: self.residuals(filled(part)), start[free], x_scale="jac", max_nfev=MOST,
+                jac=lambda part: self.jacobian(filled(part))[:, free], xtol=1e-10, ftol=1e-12, gtol=1e-12,
+            )  # fmt: skip
         found.x = filled(found.x).copy()
         return found
 

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from contact import (
     ContactError,
+    ImpactKind,
     ImpactOscillator,
     MaximalFamily,
     NewtonRestitution,
@@ -185,7 +186,7 @@ class Transitions:
 
 
 class Displacement:
-    """The tip at the times of the record; its `first` rows have two impacts."""
+    """The tip at the times of the record; its `first` rows have an impact."""
 
     period = 0
 
@@ -246,6 +247,8 @@ class Displacement:
         """The displacement of the tip; ValueError for another number of impacts than before."""
         run = self._run(oscillator, extra)
         hits = self._hits(run)
+        if np.any(run.impacts.kind != ImpactKind.IMPACT):
+            raise ValueError("the motion grazes the stop or comes to rest on it")
         if self.hits is None:
             self.hits = hits
         if hits != self.hits:

@@ -172,7 +172,8 @@ def synthetic(
     periods : int
         Drive periods that are recorded.
     rate : float, optional
-        Rows a second of a displacement record, 90 a drive period by default [Hz].
+        Rows a second of a displacement record [Hz]; by default 90 a drive period and some more, so that not
+        every impact meets a row in the same way.
     velocity : bool
         Whether strobe points have their velocity.
     transitions : pairs of (frequency [Hz], m)
@@ -192,7 +193,7 @@ def synthetic(
         strobed = StroboscopicMap(oscillator=oscillator)
         start = born(strobed, oscillator.excess).end
         begin = round(start.time * drive.frequency) / drive.frequency
-        pace = rate or 90.0 * drive.frequency
+        pace = rate or 90.09 * drive.frequency
         times = np.arange(int(periods / drive.frequency * pace)) / pace
         asked = times if kind == "displacement" else np.arange(periods) / drive.frequency
         motion = simulate(oscillator, start, periods=periods + 1, times=np.maximum(start.time, begin + asked))
