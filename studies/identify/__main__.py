@@ -53,8 +53,8 @@ TRADE = 0.95
 """Correlation from which on two parameters trade off."""
 
 USUAL: Mapping[Kind, tuple[str, ...]] = {
-    "strobe": ("free_period", "decay_rate", "gap", "restitution"),
-    "displacement": ("free_period", "decay_rate", "gap", "amplitude", "restitution", "delay"),
+    "strobe": ("free_period", "decay_rate", "gap", "restitution", "stiffness"),
+    "displacement": ("free_period", "decay_rate", "gap", "amplitude", "restitution", "delay", "stiffness"),
     "transitions": ("free_period", "restitution"),
 }
 """What is fitted of a kind of record if nobody says, as far as the oscillator has it."""
@@ -62,9 +62,7 @@ USUAL: Mapping[Kind, tuple[str, ...]] = {
 EXAMPLES: Mapping[Kind, Description] = {
     "strobe": "one_mode", "displacement": "two_parameters", "transitions": "one_mode"
 }  # fmt: skip
-FREQUENCY_HZ, SEED = 22.20, 1996
-"""Of the example: the letter's p5."""
-
+FREQUENCY_HZ, SEED = 22.20, 1996  # of the example: the letter's p5
 
 SHOWN = ("record", "parameter", "unit", "start", "told", "low90", "high90", "scene")
 """Columns of the estimates on the terminal."""
@@ -112,11 +110,9 @@ class Quality:
 
 def frequency_of(record: Record) -> float:
     """The drive frequency of a record, the first of a table [Hz]."""
-    if record.kind == "transitions":
-        return float(record.rows[0, 0])
-    if record.frequency is None:
+    if (frequency := float(record.rows[0, 0]) if record.kind == "transitions" else record.frequency) is None:
         raise ValueError("the record does not say the frequency of the drive: give --drive HZ MM")
-    return record.frequency
+    return frequency
 
 
 def usual(record: Record, oscillator: ImpactOscillator) -> tuple[str, ...]:
@@ -125,7 +121,7 @@ def usual(record: Record, oscillator: ImpactOscillator) -> tuple[str, ...]:
     names = [name for name in USUAL[record.kind] if name in known]
     if record.kind == "strobe" and "delay" in known:
         names[names.index("gap")] = "delay"
-    return (*names, *(name for name in ("stiffness",) if name in known and "restitution" not in known))
+    return tuple(names)
 
 
 def driven(record: Record, oscillator: ImpactOscillator, names: Sequence[str]) -> ImpactOscillator:
@@ -133,9 +129,7 @@ def driven(record: Record, oscillator: ImpactOscillator, names: Sequence[str]) -
     if record.amplitude is not None:
         return oscillator.with_amplitude(record.amplitude)
     if record.kind != "transitions" and "amplitude" not in names:
-        raise ValueError(
-            "the record does not say the amplitude of the base: give --drive HZ MM, or --fit amplitude ..."
-        )
+        raise ValueError("the record does not say the amplitude of the base: give --drive HZ MM, or fit it")
     return oscillator
 
 
@@ -209,9 +203,8 @@ def letters_rig(scene: Scene, run: Run, delay: float) -> dict[str, object]:
     best = design.best(found)
     run.table("measurements", found, "What an orbit tells of T, restitution and delay.", show=())
     run.table("next", best, "The five best of them.", show=("frequency_hz", "excess", "period", "together"))
-    caption = ("Standard errors over drive frequency and excess; stars: the letter's points; numbers: the "
-               "best five; grey: the orbit does not outlive its errors.")  # fmt: skip
-    run.figure("next", design.draw(found, plan), caption)
+    run.figure("next", design.draw(found, plan), "Standard errors over frequency and excess; stars: letter; "
+               "numbers: the best five; grey: the orbit does not outlive its errors.")  # fmt: skip
     told = [design.answer(of, found, plan), *([] if run.quick else [pairs.sentence(single, rows)])]
     for sentence in told:
         run.say(sentence)
@@ -240,18 +233,17 @@ def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
                 chance=one.chance, too_small=one.too_small) for name, one in found.items()
     ]  # fmt: skip
     run.table("quality", quality, "What is left of the records.")
-    for row in quality:
-        if row.too_small:
-            run.say(f"{row.record}: residuals are no noise (p {row.chance:.0e}), errors mean little: the "
-                    "model is too small, or the start was too far off")  # fmt: skip
+    for row in (row for row in quality if row.too_small):
+        run.say(f"{row.record}: residuals are no noise (p {row.chance:.0e}), errors mean little: the model "
+                "is too small, or the start was too far off")  # fmt: skip
     correlations = [
         Correlation(record=name, parameter=a, other=b, correlation=float(one.correlations[i, j]))
         for name, one in found.items() for (i, a), (j, b) in combinations(enumerate(one.names), 2)
     ]  # fmt: skip
     run.table("correlations", correlations, "Correlations of the estimates.", show=())
-    run.table("profile", [row for rows in profiles.values() for row in rows],
-              "Likelihood along one of two parameters that trade off.", show=())  # fmt: skip
-    run.arrays("residuals", **{name: one.residuals for name, one in found.items()})
+    points = [row for rows in profiles.values() for row in rows]
+    run.table("profile", points, "Likelihood along one of two parameters that trade off.", show=())
+    run.arrays("residuals", **{f"residuals_{name}": one.residuals for name, one in found.items()})
     run.figure("identify", figures.draw(found, profiles), figures.CAPTION)
     return {"rows": estimates, "quality": quality, "correlations": correlations}
 
@@ -271,7 +263,7 @@ def estimates_of(name: str, found: Fit, profiles: Sequence[Profile]) -> list[Est
         points = [row for row in profiles if row.parameter == one]
         values, depth = np.array([(row.value, max(row.depth, 0.0)) for row in points]).T
         middle = found.estimate[found.names.index(one)]
-        roots, reach = np.copysign(depth**0.5, values - middle), found.reach()
+        roots, reach = np.copysign(depth**0.5, values - middle), found.reach
         intervals[one] = np.interp([-reach, reach], roots, values)
     return [
         Estimate(

@@ -76,7 +76,6 @@ class Fit:
     freedom: int
     residuals: Array
     chance: float
-    evaluations: int
     problem: Problem
     unknowns: Array
 
@@ -95,14 +94,15 @@ class Fit:
         """Whether the residuals are no noise, so that the model is too small for the record."""
         return self.chance < TOO_SMALL
 
-    def reach(self, level: float = LEVEL) -> float:
-        """Half an interval in standard errors, by Student's t; of the normal law where the noise is known."""
-        tail = 0.5 + 0.5 * level
+    @property
+    def reach(self) -> float:
+        """Half a 90 % interval in standard errors, by Student's t; the normal law's if noise is known."""
+        tail = 0.5 + 0.5 * LEVEL
         return float(stats.norm.ppf(tail) if self.noise_known else stats.t.ppf(tail, self.freedom))
 
-    def intervals(self, level: float = LEVEL) -> Array:
+    def intervals(self) -> Array:
         """Lower and upper ends, shape (n, 2)."""
-        return self.estimate[:, None] + np.outer(self.errors, [-self.reach(level), self.reach(level)])
+        return self.estimate[:, None] + np.outer(self.errors, [-self.reach, self.reach])
 
 
 class Problem:
@@ -125,7 +125,6 @@ class Problem:
         self.noise, own = noise, np.arange(self.sizes.size) < len(names)
         self.held = 1.0 / np.append(np.full(len(names), leash), prediction.prior / prediction.sizes)
         self.middle = np.where(own, self.start, 0.0)
-        self.evaluations = 0
         self.last: tuple[Array, ImpactOscillator, Array] | None = None
 
     def at(self, unknowns: Array) -> tuple[ImpactOscillator, Array]:
@@ -139,7 +138,6 @@ class Problem:
     def residuals(self, unknowns: Array) -> Array:
         """Shape (rows + unknowns,), the last those of what is held; not a number where there is no orbit, so
         that the step is rejected."""
-        self.evaluations += 1
         try:
             oscillator, extra = self.at(unknowns)
             predicted = self.prediction.values(oscillator, extra).ravel()
@@ -180,20 +178,8 @@ def fit(
 ) -> Fit:
     """Fit the named parameters; the others keep the values of `oscillator`, driven as the record was.
 
-    Parameters
-    ----------
-    record : Record
-    oscillator : ImpactOscillator
-        Where the fit starts and what is not fitted.
-    names : sequence of str
-        Of ``parameters.parameters_of(oscillator)``.
-    noise : float, optional
-        Standard deviation of the read-out where it is known [m]; for a table of excesses [1].
-
-    Raises
-    ------
-    ValueError
-        In one sentence, for a record that cannot tell what is asked.
+    `noise` is the standard deviation of the read-out where it is known [m], or of the excesses of a table.
+    ValueError is raised, in one sentence, for a record that cannot tell what is asked.
     """
     require_names(names, oscillator)
     names = tuple(names)
@@ -223,7 +209,7 @@ def fit(
         before=np.array([parameters_of(oscillator)[name].value for name in names]),
         estimate=(found.x * sizes)[:n], covariance=covariance, noise=spread * unit, noise_known=known,
         freedom=freedom, residuals=(-found.fun[:rows] / problem.weights).reshape(shape),
-        chance=_chance(found.fun[:rows], prediction, known, freedom), evaluations=problem.evaluations,
+        chance=_chance(found.fun[:rows], prediction, known, freedom),
         problem=problem, unknowns=found.x,
     )  # fmt: skip
     if not result.too_small:  # else errors mean little, and that is told
