@@ -77,11 +77,11 @@ print("drawn in", *save(figure, folder, "tour"))
 # %% Records of this rig as an experiment gives them, for `python -m studies.identify results/tour_strobe.csv`
 rig = f"# frequency_hz = 21.5\n# amplitude_m = {beam.driven.amplitude!r}\n"
 noise = np.random.default_rng(1996).normal(0.0, 0.5e-6, (40 + times.size, 1))  # of the read-out, in metres
-points = np.tile(strobes[:, None], (10, 1)) + noise[:40]
+seen = np.tile(strobes[:, None], (10, 1)) + noise[:40]
 trace = np.column_stack([times - settled.time, beam.tip(motion.displacement) + noise[40:, 0]])
 table = np.array([[21.5, 4, fold.excess, 2.5e-4]])
 for name, rows, heading in (
-    ("strobe", points, f"{rig}x_m"),
+    ("strobe", seen, f"{rig}x_m"),
     ("displacement", trace, f"{rig}time_s,x_m"),
     ("transitions", table, "frequency_hz,period,excess,error"),
 ):

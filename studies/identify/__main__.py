@@ -13,11 +13,15 @@ The oscillator is that of the scene: Eq. (1) (one_mode), the same with a constan
 the spring on its stop (beam). Least squares with exact derivatives; errors and intervals from (J^T J)^-1 and
 the scatter of the residuals; where two parameters trade off (correlation beyond 0.95) the likelihood along
 one of them, the others fitted again (`profile`). Residuals that are no noise say that the model is too small.
-Without a record three synthetic ones, with 0.5 um of read-out noise, are made and fitted.
+Without a record three synthetic ones, with 0.5 um of read-out noise, are made and fitted; --coverage N asks
+of N records of each kind whether 90 % intervals hold the truth 90 % of the time.
 
-Run:     python -m studies.identify RECORD.csv --fit free_period restitution gap     10 s
-Writes:  parameters.csv, correlations.csv, profile.csv, residuals.npz, identify.png (record and fit,
-         residuals, profile), fitted.toml, a scene that every study takes; the example also its three records
+Run:     python -m studies.identify [RECORD.csv --fit free_period restitution gap] [--coverage N]     30 s;
+         a record 2 s
+Writes:  parameters.csv, quality.csv, correlations.csv, profile.csv, residuals.npz, identify.png (record and
+         fit, residuals, profile), fitted.toml, a scene that every study takes; the example also its three
+         records, pairs (T in motion by the letter's six pairs) and next (what to measure next), each csv and
+         png; --coverage also coverage and gradients
 """
 
 from __future__ import annotations
@@ -41,7 +45,7 @@ from studies.identify.parameters import Description, described, fitted_scene, pa
 from studies.identify.records import Kind, Record, read_record, synthetic
 from studies.options import POSITIONAL
 from studies.run import Run, study
-from studies.scene import Scene, harmonic
+from studies.scene import Scene, corresponding, harmonic, periods_of
 
 __all__ = ["identify"]
 
@@ -49,8 +53,8 @@ TRADE = 0.95
 """Correlation from which on two parameters trade off."""
 
 USUAL: Mapping[Kind, tuple[str, ...]] = {
-    "strobe": ("free_period", "decay_rate", "gap", "restitution"),
-    "displacement": ("free_period", "decay_rate", "gap", "amplitude", "restitution", "delay"),
+    "strobe": ("free_period", "decay_rate", "gap", "restitution", "stiffness"),
+    "displacement": ("free_period", "decay_rate", "gap", "amplitude", "restitution", "delay", "stiffness"),
     "transitions": ("free_period", "restitution"),
 }
 """What is fitted of a kind of record if nobody says, as far as the oscillator has it."""
@@ -58,9 +62,7 @@ USUAL: Mapping[Kind, tuple[str, ...]] = {
 EXAMPLES: Mapping[Kind, Description] = {
     "strobe": "one_mode", "displacement": "two_parameters", "transitions": "one_mode"
 }  # fmt: skip
-FREQUENCY_HZ, SEED = 22.20, 1996
-"""Of the example: the letter's p5."""
-
+FREQUENCY_HZ, SEED = 22.20, 1996  # of the example: the letter's p5
 
 SHOWN = ("record", "parameter", "unit", "start", "told", "low90", "high90", "scene")
 """Columns of the estimates on the terminal."""
@@ -68,8 +70,8 @@ SHOWN = ("record", "parameter", "unit", "start", "told", "low90", "high90", "sce
 
 @dataclass(frozen=True, kw_only=True)
 class Estimate:
-    """One parameter: where the fit started, what it found, standard error and 90 % interval, the value of the
-    scene, and estimate and error in short, 40.80(2)."""
+    """One parameter: where the fit started, what it found, standard error and 90 % interval (of the profile
+    likelihood where there is one), the value of the scene, and estimate and error in short, 40.80(2)."""
 
     record: str
     parameter: str
@@ -108,11 +110,9 @@ class Quality:
 
 def frequency_of(record: Record) -> float:
     """The drive frequency of a record, the first of a table [Hz]."""
-    if record.kind == "transitions":
-        return float(record.rows[0, 0])
-    if record.frequency is None:
+    if (frequency := float(record.rows[0, 0]) if record.kind == "transitions" else record.frequency) is None:
         raise ValueError("the record does not say the frequency of the drive: give --drive HZ MM")
-    return record.frequency
+    return frequency
 
 
 def usual(record: Record, oscillator: ImpactOscillator) -> tuple[str, ...]:
@@ -121,7 +121,7 @@ def usual(record: Record, oscillator: ImpactOscillator) -> tuple[str, ...]:
     names = [name for name in USUAL[record.kind] if name in known]
     if record.kind == "strobe" and "delay" in known:
         names[names.index("gap")] = "delay"
-    return (*names, *(name for name in ("stiffness",) if name in known and "restitution" not in known))
+    return tuple(names)
 
 
 def driven(record: Record, oscillator: ImpactOscillator, names: Sequence[str]) -> ImpactOscillator:
@@ -129,9 +129,7 @@ def driven(record: Record, oscillator: ImpactOscillator, names: Sequence[str]) -
     if record.amplitude is not None:
         return oscillator.with_amplitude(record.amplitude)
     if record.kind != "transitions" and "amplitude" not in names:
-        raise ValueError(
-            "the record does not say the amplitude of the base: give --drive HZ MM, or --fit amplitude ..."
-        )
+        raise ValueError("the record does not say the amplitude of the base: give --drive HZ MM, or fit it")
     return oscillator
 
 
@@ -144,7 +142,8 @@ def identify(
     drive: Annotated[tuple[float, float] | None,
                      "frequency (Hz) and amplitude of the base (mm), in place of the record's"] = None,
     noise_um: Annotated[float | None, "noise of the read-out, where it is known"] = None,
-    delay_ms: Annotated[float, "two_parameters: the delay, or where its fit starts"] = 0.3,
+    delay_ms: Annotated[float | None,
+                        "two_parameters: the delay, or where its fit starts (default: T/136)"] = None,
     coverage: Annotated[int | None, "also fit so many synthetic records of each kind: is 90 % 90 %?"] = None,
 ) -> Mapping[str, object]:  # fmt: skip
     """Read or make, fit, report and draw."""
@@ -152,18 +151,19 @@ def identify(
     if noise_um is not None and not 0.0 < noise_um < math.inf:
         raise ValueError(f"noise_um is {noise_um} um; it must be finite and above zero")
     noise = None if noise_um is None else 1e-6 * noise_um
+    delay = scene.single_mode.free_period_s / 136.0 if delay_ms is None else 1e-3 * delay_ms
     if description == "beam":
         scene = run.choose_modes(scene, {"fold": 0.05})
     if record is not None:
         read = read_record(record)
         if drive is not None:
             read = replace(read, frequency=drive[0], amplitude=1e-3 * drive[1])
-        oscillator = described(scene, description, 1e-3 * delay_ms, frequency_of(read))
+        oscillator = described(scene, description, delay, frequency_of(read))
         given = {record.stem: (read, oscillator)}
     elif fit:
         raise ValueError(f"fit names {' '.join(fit)}, but no record is given: put its file before --fit")
     else:
-        given = examples(scene, run, 1e-3 * delay_ms)
+        given = examples(scene, run, delay)
     found = {
         name: fitted(one, driven(one, oscillator, fit), fit or usual(one, oscillator), noise=noise)
         for name, (one, oscillator) in given.items()
@@ -171,8 +171,8 @@ def identify(
     results = report(run, found)
     first = next(iter(found))
     run.text("fitted.toml", as_scene(scene, found[first], [r for r in results["rows"] if r.record == first]))
-    if record is None:
-        results |= letters_rig(scene, run, 1e-3 * delay_ms)
+    if record is None and corresponding(scene, FREQUENCY_HZ) == FREQUENCY_HZ:  # else not the letter's spring
+        results |= letters_rig(scene, run, delay)
     if coverage is not None:
         results |= truth(scene, run, coverage)
     return results
@@ -182,15 +182,16 @@ def examples(scene: Scene, run: Run, delay: float) -> dict[str, tuple[Record, Im
     """A record of each kind, stored, and the oscillator of which it is."""
     found = dict[str, tuple[Record, ImpactOscillator]]()
     for kind, description in EXAMPLES.items():
-        oscillator = described(scene, description, delay, FREQUENCY_HZ)
-        found[kind] = synthetic(kind, oscillator, seed=SEED), oscillator
+        oscillator = described(scene, description, delay, corresponding(scene, FREQUENCY_HZ))
+        found[kind] = synthetic(kind, oscillator, tuple(periods_of(scene).items()), seed=SEED), oscillator
         run.text(f"{kind}.csv", found[kind][0].text())
     return found
 
 
 def letters_rig(scene: Scene, run: Run, delay: float) -> dict[str, object]:
     """What the letter's six pairs say of the free period, and what to measure next."""
-    kinds, single = pairs.KINDS[: 2 if run.quick else None], described(scene, "one_mode", 0.0, FREQUENCY_HZ)
+    kinds = pairs.KINDS[: 2 if run.quick else len(pairs.WAYS)]
+    single = described(scene, "one_mode", 0.0, FREQUENCY_HZ)
     rows = [row for found in run.map(partial(pairs.intervals_of, single), kinds, "pairs") for row in found]
     run.table("pairs", rows, "Free periods at which the letter's six pairs are born.", show=())
     run.figure("pairs", pairs.draw(rows), "Free periods at which the letter's pairs are born, each and all.")
@@ -202,9 +203,8 @@ def letters_rig(scene: Scene, run: Run, delay: float) -> dict[str, object]:
     best = design.best(found)
     run.table("measurements", found, "What an orbit tells of T, restitution and delay.", show=())
     run.table("next", best, "The five best of them.", show=("frequency_hz", "excess", "period", "together"))
-    caption = ("Standard errors over drive frequency and excess; stars: the letter's points; numbers: the "
-               "best five; grey: the orbit does not outlive its errors.")  # fmt: skip
-    run.figure("next", design.draw(found, plan), caption)
+    run.figure("next", design.draw(found, plan), "Standard errors over frequency and excess; stars: letter; "
+               "numbers: the best five; grey: the orbit does not outlive its errors.")  # fmt: skip
     told = [design.answer(of, found, plan), *([] if run.quick else [pairs.sentence(single, rows)])]
     for sentence in told:
         run.say(sentence)
@@ -217,7 +217,7 @@ def truth(scene: Scene, run: Run, records: int) -> dict[str, object]:
     rows = covering.coverage(scene, beam, run, records=records, beam_records=records // 4)
     run.table("coverage", rows, covering.COVERED)
     run.figure("coverage", covering.draw_coverage(rows), covering.COVERED)
-    paths = gradients.gradients(described(scene, "one_mode", 0.0, FREQUENCY_HZ))
+    paths = gradients.gradients(described(scene, "one_mode", 0.0, corresponding(scene, FREQUENCY_HZ)))
     run.table("gradients", paths, gradients.CHART, show=())
     run.figure("gradients", gradients.draw_gradients(paths), gradients.CHART)
     return {"coverage": rows, "gradients": paths}
@@ -225,25 +225,25 @@ def truth(scene: Scene, run: Run, records: int) -> dict[str, object]:
 
 def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
     """Tables and figure of the fits."""
-    estimates = [row for name, one in found.items() for row in estimates_of(name, one)]
+    profiles = {name: traded(one, run.quick) for name, one in found.items()}
+    estimates = [row for name, one in found.items() for row in estimates_of(name, one, profiles[name])]
     run.table("parameters", estimates, "Estimates with standard errors and 90 % intervals.", show=SHOWN)
     quality = [
         Quality(record=name, rows=len(one.residuals), noise=one.noise, freedom=one.freedom,
                 chance=one.chance, too_small=one.too_small) for name, one in found.items()
     ]  # fmt: skip
     run.table("quality", quality, "What is left of the records.")
-    for row in quality:
-        if row.too_small:
-            run.say(f"{row.record}: the model is too small: its residuals are no noise (p {row.chance:.0e})")
+    for row in (row for row in quality if row.too_small):
+        run.say(f"{row.record}: residuals are no noise (p {row.chance:.0e}), errors mean little: the model "
+                "is too small, or the start was too far off")  # fmt: skip
     correlations = [
         Correlation(record=name, parameter=a, other=b, correlation=float(one.correlations[i, j]))
         for name, one in found.items() for (i, a), (j, b) in combinations(enumerate(one.names), 2)
     ]  # fmt: skip
     run.table("correlations", correlations, "Correlations of the estimates.", show=())
-    profiles = {name: traded(one, 5 if run.quick else 9) for name, one in found.items()}
-    run.table("profile", [row for rows in profiles.values() for row in rows],
-              "Likelihood along one of two parameters that trade off.", show=())  # fmt: skip
-    run.arrays("residuals", **{name: one.residuals for name, one in found.items()})
+    points = [row for rows in profiles.values() for row in rows]
+    run.table("profile", points, "Likelihood along one of two parameters that trade off.", show=())
+    run.arrays("residuals", **{f"residuals_{name}": one.residuals for name, one in found.items()})
     run.figure("identify", figures.draw(found, profiles), figures.CAPTION)
     return {"rows": estimates, "quality": quality, "correlations": correlations}
 
@@ -256,15 +256,21 @@ def as_scene(scene: Scene, found: Fit, rows: Sequence[Estimate]) -> str:
     return "\n".join([*about, "", fitted_scene(scene, found.oscillator, frequencies).dump()])
 
 
-def estimates_of(name: str, found: Fit) -> list[Estimate]:
-    """The rows of a fit."""
-    known = parameters_of(found.oscillator)
+def estimates_of(name: str, found: Fit, profiles: Sequence[Profile]) -> list[Estimate]:
+    """The rows of a fit; intervals are those of the likelihood where its profile is known."""
+    known, intervals = parameters_of(found.oscillator), dict(zip(found.names, found.intervals(), strict=True))
+    for one in {row.parameter for row in profiles}:
+        points = [row for row in profiles if row.parameter == one]
+        values, depth = np.array([(row.value, max(row.depth, 0.0)) for row in points]).T
+        middle = found.estimate[found.names.index(one)]
+        roots, reach = np.copysign(depth**0.5, values - middle), found.reach
+        intervals[one] = np.interp([-reach, reach], roots, values)
     return [
         Estimate(
             record=name, parameter=one, unit=known[one].unit, start=float(found.start[i]), low90=float(low),
             estimate=float(found.estimate[i]), standard_error=float(found.errors[i]), high90=float(high),
             told=in_short(float(found.estimate[i]), float(found.errors[i])), scene=float(found.before[i]),
-        ) for i, (one, (low, high)) in enumerate(zip(found.names, found.intervals(), strict=True))
+        ) for i, (one, (low, high)) in enumerate(intervals.items())
     ]  # fmt: skip
 
 
@@ -276,15 +282,16 @@ def in_short(value: float, error: float) -> str:
     return f"{value:.{max(digits, 0)}f}({round(error * 10.0 ** max(digits, 0))})"
 
 
-def traded(found: Fit, points: int) -> list[Profile]:
-    """The profile of each parameter that trades off with another, the most correlated pair first."""
+def traded(found: Fit, quick: bool) -> list[Profile]:
+    """The profile of each parameter that trades off with another, the most correlated pair first; or this
+    alone, of few points."""
     size = np.abs(found.correlations) - np.eye(len(found.names))
     partners = {i: int(np.argmax(row)) for i, row in enumerate(size) if row.max() > TRADE}
     order = sorted(partners, key=lambda i: -size[i, partners[i]])
     kept = [i for k, i in enumerate(order) if partners[i] not in order[:k] or partners[partners[i]] != i]
     return [
-        row for i in kept
-        for row in profile(found, found.names[i], found.names[partners[i]], points=points)
+        row for i in kept[: 1 if quick else None]
+        for row in profile(found, found.names[i], found.names[partners[i]], points=5 if quick else 9)
     ]  # fmt: skip
 
 

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from contact import ContactError, ImpactOscillator
 from studies import letter, plotting
+from studies.files import fingerprint
 from studies.identify.fit import LEVEL, fit
 from studies.identify.parameters import parameters_of
 from studies.identify.records import READ_OUT, Kind, Record, synthetic
@@ -118,8 +119,9 @@ def coverage(scene: Scene, beam: Scene, run: Run, *, records: int, beam_records:
     rows = list[Coverage]()
     for key, trial in enumerate(trials(scene, beam)):
         chunks = math.ceil((beam_records if trial.of == "beam" else records) / CHUNK)
-        settings = {"scene": beam.values(), "trial": trial.name, "seed": SEED}
-        columns = sweep(run, f"coverage-{key}", settings, range(chunks), partial(trial.column, key))
+        settings = {"trial": trial.name, "seed": SEED, "chunks": chunks}
+        own = fingerprint(beam.values(), settings)[:12]  # of the sources too: another fit is done again
+        columns = sweep(run, f"coverage-{own}", settings, range(chunks), partial(trial.column, key))
         whole = {name: np.concatenate([one[name] for one in columns if one]) for name in columns[0] or ()}
         fitted = np.isfinite(whole["error"][:, 0])
         count, small = max(int(fitted.sum()), 1), float(np.mean(whole["small"][fitted]))

@@ -22,6 +22,9 @@ CAPTION = (
 SHOWN = 6
 """Drive periods of a displacement that are shown."""
 
+FITTED: plotting.Style = {"linestyle": "none", "marker": "_", "color": "black", "zorder": 5, "label": "fit"}
+DOTS: plotting.Style = {"linestyle": "none", "marker": ".", "markersize": 2, "rasterized": True}
+
 DEPTH = 2.71
 """Rise of chi^2 at the ends of a 90 % interval."""
 
@@ -47,21 +50,20 @@ def _record(left: Any, middle: Any, one: Fit) -> None:
     if kind == "displacement":
         place, across = 1e3 * rows[:, 0], ("time", "ms")
         end = 1e3 * (rows[0, 0] + SHOWN * one.oscillator.period)
-        dots = {"linestyle": "none", "marker": ".", "markersize": 2, "color": plotting.SKY}
-        left.plot(place, unit * seen, **dots, label="record")
+        left.plot(place, unit * seen, **DOTS, color=plotting.SKY, label="record")
         left.plot(place, unit * fitted, color=plotting.BLACK, linewidth=0.6, label="fit")
         left.set_xlim(place[0], end)
     elif kind == "strobe":
         place, across = np.arange(len(seen), dtype=float), ("strobe", "1")
         left.plot(place, unit * seen, **plotting.points(1), label="record")
-        left.plot(place, unit * fitted, linestyle="none", marker="_", color=plotting.BLACK, label="fit")
+        left.plot(place, unit * fitted, **FITTED)
     else:
         place, across, unit, words = rows[:, 0], ("drive frequency", "Hz"), 1e2, "end of $p_m$, excess"
         residuals = 1e2 * one.residuals[:, 0]
         errors = unit * one.record.units(one.noise)[:, 0]
         left.errorbar(place, unit * seen, errors, **plotting.points(1), label="record")
-        left.plot(place, unit * fitted, linestyle="none", marker="_", color=plotting.BLACK, label="fit")
-    middle.plot(place, residuals, linestyle="none", marker=".", markersize=2, color=plotting.BLUE)
+        left.plot(place, unit * fitted, **FITTED)
+    middle.plot(place, residuals, **DOTS, color=plotting.BLUE)
     middle.axhline(0.0, **plotting.GUIDE)
     for axis in (left, middle):
         plotting.label(axis.xaxis, *across)

@@ -11,6 +11,7 @@ the autocorrelation of its residuals (Ljung and Box, Biometrika 65 (1978) 297).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -43,6 +44,12 @@ TOO_SMALL = 1e-3
 LAGS = 10
 """Of the autocorrelation of residuals."""
 
+MOST = 200
+"""Steps of a fit: a dozen are usual, a hundred along a valley of two parameters that trade off."""
+
+LEASH = 1.0
+"""Of the parameters while the beginning of a record is fitted, which need not tell all of them."""
+
 REGION, PART = 2.0, 0.3
 """Half axes of the confidence region in standard errors; part of the largest from which a parameter takes
 part in a direction that is not seen."""
@@ -69,7 +76,6 @@ class Fit:
     freedom: int
     residuals: Array
     chance: float
-    evaluations: int
     problem: Problem
     unknowns: Array
 
@@ -88,27 +94,37 @@ class Fit:
         """Whether the residuals are no noise, so that the model is too small for the record."""
         return self.chance < TOO_SMALL
 
-    def intervals(self, level: float = LEVEL) -> Array:
-        """Lower and upper ends, shape (n, 2), by Student's t; of the normal law where the noise is known."""
-        tail = 0.5 + 0.5 * level
-        width = stats.norm.ppf(tail) if self.noise_known else stats.t.ppf(tail, self.freedom)
-        return self.estimate[:, None] + np.outer(self.errors, [-width, width])
+    @property
+    def reach(self) -> float:
+        """Half a 90 % interval in standard errors, by Student's t; the normal law's if noise is known."""
+        tail = 0.5 + 0.5 * LEVEL
+        return float(stats.norm.ppf(tail) if self.noise_known else stats.t.ppf(tail, self.freedom))
+
+    def intervals(self) -> Array:
+        """Lower and upper ends, shape (n, 2)."""
+        return self.estimate[:, None] + np.outer(self.errors, [-self.reach, self.reach])
 
 
 class Problem:
-    """Residuals and Jacobian in units of the noise, by unknowns in units of their size."""
+    """Residuals and Jacobian in units of the noise, by unknowns in units of their size.
+
+    The further unknowns are held by their prior, the parameters by a `leash`: a standard deviation about
+    where they start, in units of their size.
+    """
 
     def __init__(
-        self, prediction: Prediction, oscillator: ImpactOscillator, names: tuple[str, ...], noise: float
-    ) -> None:
+        self, prediction: Prediction, oscillator: ImpactOscillator, names: tuple[str, ...], noise: float,
+        leash: float = math.inf,
+    ) -> None:  # fmt: skip
         self.prediction, self.oscillator, self.names = prediction, oscillator, names
         known = parameters_of(oscillator)
         self.sizes = np.concatenate([[known[name].size for name in names], prediction.sizes])
         self.start = np.concatenate([[known[name].value for name in names], prediction.extra]) / self.sizes
         self.weights = 1.0 / prediction.record.units(noise).ravel()
         self.observed = prediction.record.observed.ravel()
-        self.held, self.noise = 1.0 / prediction.prior, noise
-        self.evaluations = 0
+        self.noise, own = noise, np.arange(self.sizes.size) < len(names)
+        self.held = 1.0 / np.append(np.full(len(names), leash), prediction.prior / prediction.sizes)
+        self.middle = np.where(own, self.start, 0.0)
         self.last: tuple[Array, ImpactOscillator, Array] | None = None
 
     def at(self, unknowns: Array) -> tuple[ImpactOscillator, Array]:
@@ -120,21 +136,20 @@ class Problem:
         return self.last[1], self.last[2]
 
     def residuals(self, unknowns: Array) -> Array:
-        """Shape (rows + priors,); not a number where there is no orbit, which rejects the step."""
-        self.evaluations += 1
+        """Shape (rows + unknowns,), the last those of what is held; not a number where there is no orbit, so
+        that the step is rejected."""
         try:
             oscillator, extra = self.at(unknowns)
             predicted = self.prediction.values(oscillator, extra).ravel()
         except (ContactError, ValueError):
             return np.full(self.observed.size + self.held.size, np.nan)
-        return np.concatenate([(predicted - self.observed) * self.weights, extra * self.held])
+        off = (predicted - self.observed) * self.weights
+        return np.concatenate([off, (unknowns - self.middle) * self.held])
 
     def jacobian(self, unknowns: Array) -> Array:
-        """Shape (rows + priors, unknowns)."""
-        oscillator, extra = self.at(unknowns)
-        rows = self.prediction.jacobian(oscillator, extra, self.names) * self.weights[:, None]
-        priors = np.hstack([np.zeros((extra.size, len(self.names))), np.diag(self.held)])
-        return np.vstack([rows, priors]) * self.sizes
+        """Shape (rows + unknowns, unknowns)."""
+        rows = self.prediction.jacobian(*self.at(unknowns), self.names) * self.weights[:, None]
+        return np.vstack([rows * self.sizes, np.diag(self.held)])
 
     def solve(self, start: Array, fixed: int | None = None) -> Any:
         """``scipy.optimize.least_squares`` from `start`, perhaps with one unknown held."""
@@ -149,10 +164,11 @@ class Problem:
             raise ValueError(
                 "no motion like the record's was found to start from: fit more, or give better values"
             )
-        found = least_squares(
-            lambda part: self.residuals(filled(part)), start[free], x_scale="jac", max_nfev=60,
-            jac=lambda part: self.jacobian(filled(part))[:, free], xtol=1e-10, ftol=1e-12, gtol=1e-12,
-        )  # fmt: skip
+        with np.errstate(all="ignore"):  # of the trust region, along what is not seen
+            found = least_squares(
+                lambda part: self.residuals(filled(part)), start[free], x_scale="jac", max_nfev=MOST,
+                jac=lambda part: self.jacobian(filled(part))[:, free], xtol=1e-10, ftol=1e-12, gtol=1e-12,
+            )  # fmt: skip
         found.x = filled(found.x).copy()
         return found
 
@@ -162,20 +178,8 @@ def fit(
 ) -> Fit:
     """Fit the named parameters; the others keep the values of `oscillator`, driven as the record was.
 
-    Parameters
-    ----------
-    record : Record
-    oscillator : ImpactOscillator
-        Where the fit starts and what is not fitted.
-    names : sequence of str
-        Of ``parameters.parameters_of(oscillator)``.
-    noise : float, optional
-        Standard deviation of the read-out where it is known [m]; for a table of excesses [1].
-
-    Raises
-    ------
-    ValueError
-        In one sentence, for a record that cannot tell what is asked.
+    `noise` is the standard deviation of the read-out where it is known [m], or of the excesses of a table.
+    ValueError is raised, in one sentence, for a record that cannot tell what is asked.
     """
     require_names(names, oscillator)
     names = tuple(names)
@@ -189,8 +193,10 @@ def fit(
         raise ValueError(f"the record has {rows} numbers, too short for {unknowns} unknowns and their errors")
     at = start = problem.start
     for part in prediction.parts(begun)[:-1]:
-        start = Problem(part, begun, names, unit).solve(start).x
+        start = Problem(part, begun, names, unit, LEASH).solve(start).x
     found = problem.solve(start)
+    if found.status == 0:
+        raise ValueError(f"the fit has not settled after {MOST} steps: give better values, or fit fewer")
     freedom = max(rows - unknowns, 1)
     spread = 1.0 if known else float(np.sqrt(2.0 * found.cost / freedom))
     n, sizes, shape = len(names), problem.sizes, prediction.record.observed.shape
@@ -203,7 +209,7 @@ def fit(
         before=np.array([parameters_of(oscillator)[name].value for name in names]),
         estimate=(found.x * sizes)[:n], covariance=covariance, noise=spread * unit, noise_known=known,
         freedom=freedom, residuals=(-found.fun[:rows] / problem.weights).reshape(shape),
-        chance=_chance(found.fun[:rows], prediction, known, freedom), evaluations=problem.evaluations,
+        chance=_chance(found.fun[:rows], prediction, known, freedom),
         problem=problem, unknowns=found.x,
     )  # fmt: skip
     if not result.too_small:  # else errors mean little, and that is told

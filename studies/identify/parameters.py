@@ -11,12 +11,13 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from typing import Any, Literal
 
-from beam import decay_rate_change, free_period_change
+from beam import SuspiciousValue, decay_rate_change, free_period_change
 from contact import ContactLaw, DelayedRestitution, HertzContact, ImpactOscillator, LinearContact
 from contact.orbits import Change
 from studies.scene import Scene, beam_at, hertz_of, single_mode_at
@@ -94,7 +95,16 @@ def require_names(names: Sequence[str], oscillator: ImpactOscillator) -> None:
 
 
 def with_values(oscillator: ImpactOscillator, values: Mapping[str, float]) -> ImpactOscillator:
-    """The oscillator with other values of some parameters; ValueError where one is out of range."""
+    """The oscillator with other values of some parameters; ValueError where one is out of range.
+
+    A search may pass through any values: none is suspicious here.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", SuspiciousValue)
+        return _with_values(oscillator, values)
+
+
+def _with_values(oscillator: ImpactOscillator, values: Mapping[str, float]) -> ImpactOscillator:
     model, stop, drive, law = oscillator.model, oscillator.stop, oscillator.driven, oscillator.stop.law
     if "free_period" in values or "decay_rate" in values:
         before = float(model.decay_rate[0])

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from contact import (
     ContactError,
+    ImpactKind,
     ImpactOscillator,
     MaximalFamily,
     NewtonRestitution,
@@ -42,9 +43,9 @@ __all__ = ["PRIOR", "Displacement", "Prediction", "Strobes", "Transitions", "fam
 
 Array = NDArray[np.float64]
 
-FIRST, CLOSE, END = 3.0, 0.01, 0.002
-"""Drive periods that a displacement is first fitted over if its start is not close; residuals over the size
-of the record that are close; part of a record at whose end impacts do not count."""
+CLOSE, END = 0.01, 0.002
+"""Residuals over the size of the record that are close; part of a record at whose end impacts do not
+count."""
 
 PRIOR = 0.01
 """Standard deviation of a mode beyond the first at the start of a record, in gaps at the tip."""
@@ -185,14 +186,14 @@ class Transitions:
 
 
 class Displacement:
-    """The tip at the times of the record, or up to some row of it."""
+    """The tip at the times of the record; its `first` rows have an impact."""
 
     period = 0
 
-    def __init__(self, record: Record, oscillator: ImpactOscillator, start: State) -> None:
-        self.record, model = record, oscillator.model
-        first = int(np.searchsorted(record.rows[:, 0], start.time - 1e-12))
-        self.record = replace(record, rows=record.rows[first:])
+    def __init__(self, record: Record, oscillator: ImpactOscillator, start: State, first: int) -> None:
+        self.first, model = first, oscillator.model
+        begin = int(np.searchsorted(record.rows[:, 0], start.time - 1e-12))
+        self.record = replace(record, rows=record.rows[begin:])
         self.time, self.times = float(start.time), self.record.rows[:, 0]
         tip = oscillator.stop.gap / np.abs(model.phi)
         self.sizes = np.concatenate([tip, tip * model.omega])
@@ -210,10 +211,19 @@ class Displacement:
                 return [self]
         except (ContactError, ValueError):
             pass
-        self.hits = None
-        first, rows = FIRST * oscillator.period / (self.times[1] - self.times[0]), len(seen)
-        counts = [int(first * 2**k) for k in range(64) if first * 2**k < 0.75 * rows]
+        self.hits, most = None, 0.75 * len(seen)
+        counts = [self.first * 2**k for k in range(64) if self.first * 2**k < most]
         return [*(self._upto(count) for count in counts), self]
+
+    def misfit(self, oscillator: ImpactOscillator, hits: int) -> tuple[bool, float]:
+        """Whether the first rows do not have so many `hits`, and residuals there over their size."""
+        part = self._upto(self.first)
+        seen = part.record.observed
+        try:
+            off = part.values(oscillator, self.extra) - seen
+        except (ContactError, ValueError):
+            return True, math.inf
+        return part.hits != hits, float(off.std() / seen.std())
 
     def _upto(self, count: int) -> Displacement:
         part = copy.copy(self)
@@ -237,6 +247,8 @@ class Displacement:
         """The displacement of the tip; ValueError for another number of impacts than before."""
         run = self._run(oscillator, extra)
         hits = self._hits(run)
+        if np.any(run.impacts.kind != ImpactKind.IMPACT):
+            raise ValueError("the motion grazes the stop or comes to rest on it")
         if self.hits is None:
             self.hits = hits
         if hits != self.hits:

@@ -156,9 +156,9 @@ def _check(record: Record, path: Path) -> None:
 
 
 def synthetic(
-    kind: Kind, oscillator: ImpactOscillator, *, seed: int | None = None, noise: float | None = None,
-    periods: int = 40, rate: float = 2000.0, velocity: bool = False,
-    transitions: tuple[tuple[float, int], ...] = tuple(letter.PERIODS.items()),
+    kind: Kind, oscillator: ImpactOscillator,
+    transitions: tuple[tuple[float, int], ...] = tuple(letter.PERIODS.items()), *, seed: int | None = None,
+    noise: float | None = None, periods: int = 40, rate: float | None = None, velocity: bool = False,
 ) -> Record:  # fmt: skip
     """What an oscillator at its drive gives to measure, with read-out noise unless `seed` is None.
 
@@ -171,8 +171,9 @@ def synthetic(
         Of the noise [m, or excess for a table].
     periods : int
         Drive periods that are recorded.
-    rate : float
-        Rows a second of a displacement record [Hz].
+    rate : float, optional
+        Rows a second of a displacement record [Hz]; by default 90 a drive period and some more, so that not
+        every impact meets a row in the same way.
     velocity : bool
         Whether strobe points have their velocity.
     transitions : pairs of (frequency [Hz], m)
@@ -192,7 +193,8 @@ def synthetic(
         strobed = StroboscopicMap(oscillator=oscillator)
         start = born(strobed, oscillator.excess).end
         begin = round(start.time * drive.frequency) / drive.frequency
-        times = np.arange(int(periods / drive.frequency * rate)) / rate
+        pace = rate or 90.09 * drive.frequency
+        times = np.arange(int(periods / drive.frequency * pace)) / pace
         asked = times if kind == "displacement" else np.arange(periods) / drive.frequency
         motion = simulate(oscillator, start, periods=periods + 1, times=np.maximum(start.time, begin + asked))
         rows = [oscillator.tip(motion.displacement), oscillator.tip(motion.velocity)][: 1 + velocity]

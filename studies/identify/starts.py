@@ -58,6 +58,9 @@ WINDOW, DENSEST, ENOUGH = 0.08, 40, 100
 """Part of a drive period on either side that tells the velocity at an impact; rows a period at least, and as
 many as are looked at."""
 
+SHARES, OF_CORNERS = np.linspace(1.0, 0.0, 5), ("gap", "restitution", "delay")
+"""Places of the top between where the curves on both sides meet and the highest row, and what they give."""
+
 STRETCHES, ROWS, SHORTEST = 8, 60, 0.1
 """Stretches between impacts, and rows of each, that tell free period and decay rate; drive periods of the
 shortest."""
@@ -95,11 +98,13 @@ def _strobes(
     record: Record, oscillator: ImpactOscillator, names: Sequence[str]
 ) -> tuple[Strobes, ImpactOscillator]:
     period, size = repetition(record), float(record.observed[:, 0].std())
+    if (told := period * record.observed.shape[1]) < len(names):
+        raise ValueError(f"p{period} gives {told} numbers, which cannot tell {len(names)} parameters")
 
     def misfit(prediction: Strobes) -> float:
         try:
             off = prediction.values(prediction.orbit.oscillator, prediction.extra) - record.observed
-        except ContactError:
+        except (ContactError, ValueError):
             return math.inf
         return float(np.sqrt(np.mean(off[:, 0] ** 2)))
 
@@ -159,13 +164,11 @@ def _searched(
 
 class Corner(NamedTuple):
     """An impact in a displacement: the last row before it, the first after it, and what the cubics through
-    the rows on both sides say: height [m], restitution [1], delay [s]."""
+    the rows on both sides say of height [m], restitution [1] and delay [s], shape (n_shares, 3)."""
 
     before: int
     after: int
-    height: float
-    restitution: float
-    delay: float
+    told: Array
 
 
 def _corners(times: Array, x: Array, oscillator: ImpactOscillator, waits: bool) -> list[Corner]:
@@ -184,16 +187,17 @@ def _corners(times: Array, x: Array, oscillator: ImpactOscillator, waits: bool) 
         apart = times[there] - times[here]
         s = np.linspace(0.0, apart, FINE)
         left, right = np.polyval(back, -s), np.polyval(ahead, s - apart)
-        met = gone = int(np.argmin(np.abs(left - right)))
-        slope, slope_after = np.polyder(back), np.polyder(ahead)
-        if -np.polyval(slope, -s[met]) - np.polyval(slope_after, s[gone] - apart) < CORNER * speed:
+        meet = int(np.argmin(np.abs(left - right)))
+        v_in, v_out = -np.polyval(np.polyder(back), -s), np.polyval(np.polyder(ahead), s - apart)
+        if v_in[meet] - v_out[meet] < CORNER * speed:
             continue
-        top = float(left[met])
-        if waits:  # one shorter than a step leaves the top between the highest row and where the curves meet
-            top = float(x[i]) if there - here > 2 else 0.5 * (top + float(x[i]))
+        # the top lies between the highest row and where the curves meet, or is seen where the tip rests on it
+        over = left[meet] - x[i] if there - here == 2 else 0.0
+        told = []
+        for top in x[i] + over * SHARES:
             met, gone = int(np.argmax(left >= top)), FINE - 1 - int(np.argmax(right[::-1] >= top))
-        bounce = float(np.polyval(slope_after, s[gone] - apart) / np.polyval(slope, -s[met]))
-        found.append(Corner(here, there, top, bounce, float(s[gone] - s[met])))
+            told.append((top, np.clip(-v_out[gone] / v_in[met], 0.0, 1.0), max(s[gone] - s[met], 0.0)))
+        found.append(Corner(here, there, np.array(told)))
     return found
 
 
@@ -213,15 +217,29 @@ def _displacement(
     ]
     if not corners:
         raise ValueError("there is no impact in the record")
-    told = np.median([corner[2:] for corner in corners], axis=0)
-    told = np.clip(told, (x.max(), 0.0, 0.0), (math.inf, 1.0, math.inf))
-    values = dict(zip(("gap", "restitution", "delay"), told.tolist(), strict=True))
     cuts = [0, *(one.after + 1 for one in corners)], [*(one.before for one in corners), x.size]
     stretches = [(a, b) for a, b in zip(*cuts, strict=True) if b - a > SHORTEST * density]
-    if oscillator.n_modes == 1:
-        values |= _rung(times, x, stretches, oscillator, names)
-    begun = with_values(oscillator, {name: values[name] for name in names if name in values})
-    return Displacement(record, begun, _start(times, x, stretches[0], begun)), begun
+    rung = _rung(times, x, stretches, oscillator, names) if oscillator.n_modes == 1 else {}
+    begin = stretches[0][0]
+    near = [int(one.after) - begin for one in corners if one.before > begin]
+    first = int(max([*near[:1], 2.5 * density]) + 0.5 * density)
+    expected = sum(row < first for row in near)
+
+    def tried(values: dict[str, float]) -> tuple[tuple[bool, float], Displacement, ImpactOscillator]:
+        """Whether the first impacts are missed, and by how much their surroundings."""
+        begun = with_values(oscillator, {name: values[name] for name in names if name in values})
+        found = Displacement(record, begun, _start(times, x, stretches[0], begun), first)
+        return found.misfit(begun, expected), found, begun
+
+    law: dict[str, float] = {name: known[name].value for name in ("restitution", "delay") if name in known}
+    medians = np.median([one.told for one in corners], axis=0)
+    told = [dict(zip(OF_CORNERS, row, strict=True)) for row in medians.tolist()]
+    highest = {"gap": max(told[0]["gap"], float(x.max()))}
+    choices: list[dict[str, float]] = [rung | one | other for one in told for other in (highest, law, {})]
+    found = tried(choices[0])
+    if found[0] > (False, CLOSE):
+        found = min(map(tried, choices), key=lambda one: one[0])
+    return found[1:]
 
 
 def _rung(

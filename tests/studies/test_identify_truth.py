@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -52,8 +53,10 @@ def test_errors_stated_wrong_are_seen(stated, agrees, trials, run, letter_scene,
 
 
 def test_a_record_depends_on_its_trial_and_its_number_alone(trials):
+    """The same in another process."""
     trial = trials["Eq. (1), transitions"]
-    first, again, other, later = (trial.column(*at) for at in ((2, 1), (2, 1), (3, 1), (2, 2)))
+    again = pickle.loads(pickle.dumps(trial.column))(2, 1)
+    first, other, later = (trial.column(*at) for at in ((2, 1), (3, 1), (2, 2)))
     assert all(np.array_equal(first[name], again[name]) for name in first)
     assert np.unique(np.concatenate([one["estimate"][:, 0] for one in (first, other, later)])).size == 30
 

@@ -98,3 +98,10 @@ def test_collisions_without_restitution_are_left_out(letter_scene, letter_model,
     row, failures = row_at(letter_scene, 22.2, letter_model)
     assert (row.beam, row.two_parameters, row.extracted) == (5, None, None)
     assert [where for where, _ in failures] == ["22.2 Hz, two_parameters"]
+
+
+def test_one_mode_under_newtons_law_rebounds_at_once(letter_scene):
+    """Rounding of its first collisions is no delay, which no contact could wait for."""
+    law = law_of(single_mode_at(letter_scene, 22.2))
+    assert [law.delay(v) for v in (1e-4, 0.1, 1.0)] == [0.0, 0.0, 0.0]
+    assert law.restitution(0.1) == pytest.approx(0.1, rel=1e-9)
