@@ -41,7 +41,7 @@ from studies.identify import coverage as covering
 from studies.identify import design, figures, gradients, pairs
 from studies.identify.fit import Fit, Profile, profile
 from studies.identify.fit import fit as fitted
-from studies.identify.parameters import Description, described, fitted_scene, parameters_of
+from studies.parameters import Description, described, fitted_scene, parameters_of
 from studies.identify.records import Kind, Record, read_record, synthetic
 from studies.options import POSITIONAL
 from studies.run import Run, study
@@ -171,8 +171,6 @@ def identify(
     results = report(run, found)
     first = next(iter(found))
     run.text("fitted.toml", as_scene(scene, found[first], [r for r in results["rows"] if r.record == first]))
-    if record is None and corresponding(scene, FREQUENCY_HZ) == FREQUENCY_HZ:  # else not the letter's spring
-        results |= letters_rig(scene, run, delay)
     if coverage is not None:
         results |= truth(scene, run, coverage)
     return results
@@ -186,29 +184,6 @@ def examples(scene: Scene, run: Run, delay: float) -> dict[str, tuple[Record, Im
         found[kind] = synthetic(kind, oscillator, tuple(periods_of(scene).items()), seed=SEED), oscillator
         run.text(f"{kind}.csv", found[kind][0].text())
     return found
-
-
-def letters_rig(scene: Scene, run: Run, delay: float) -> dict[str, object]:
-    """What the letter's six pairs say of the free period, and what to measure next."""
-    kinds = pairs.KINDS[: 2 if run.quick else len(pairs.WAYS)]
-    single = described(scene, "one_mode", 0.0, FREQUENCY_HZ)
-    rows = [row for found in run.map(partial(pairs.intervals_of, single), kinds, "pairs") for row in found]
-    run.table("pairs", rows, "Free periods at which the letter's six pairs are born.", show=())
-    run.figure("pairs", pairs.draw(rows), "Free periods at which the letter's pairs are born, each and all.")
-    plan, thin = design.Plan(), 6 if run.quick else 2
-    of = partial(described, scene, "two_parameters", delay)
-    ask = partial(design.measurements_at, of, plan, design.EXCESSES[::thin])
-    measured = run.map(ask, design.FREQUENCIES_HZ[::thin], "orbits")
-    found = [one for column in measured for one in column]
-    best = design.best(found)
-    run.table("measurements", found, "What an orbit tells of T, restitution and delay.", show=())
-    run.table("next", best, "The five best of them.", show=("frequency_hz", "excess", "period", "together"))
-    run.figure("next", design.draw(found, plan), "Standard errors over frequency and excess; stars: letter; "
-               "numbers: the best five; grey: the orbit does not outlive its errors.")  # fmt: skip
-    told = [design.answer(of, found, plan), *([] if run.quick else [pairs.sentence(single, rows)])]
-    for sentence in told:
-        run.say(sentence)
-    return {"pairs": rows, "next": best, "told": told}
 
 
 def truth(scene: Scene, run: Run, records: int) -> dict[str, object]:

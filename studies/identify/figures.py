@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from studies import plotting
 from studies.identify.fit import Fit, Profile
-from studies.identify.parameters import parameters_of
+from studies.parameters import parameters_of
 
 __all__ = ["CAPTION", "draw"]
 

@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 from contact import ImpactOscillator, State, simulate
 from contact.orbits import motion_derivatives
 from studies import plotting
-from studies.identify.parameters import changes_of, parameters_of, with_values
+from studies.parameters import changes_of, parameters_of, with_values
 from studies.peers import installed_solvers
 
 __all__ = ["CHART", "Gradient", "closed_form", "draw_gradients", "gradients", "motion_of"]

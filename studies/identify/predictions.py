@@ -36,7 +36,7 @@ from contact.orbits import (
     motion_derivatives,
     orbit_derivatives,
 )
-from studies.identify.parameters import changes_of
+from studies.parameters import changes_of
 from studies.identify.records import Record
 
 __all__ = ["PRIOR", "Displacement", "Prediction", "Strobes", "Transitions", "family_of"]

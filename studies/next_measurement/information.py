@@ -34,10 +34,9 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from contact import ContactError, ImpactOscillator, NewtonRestitution, NordmarkMap, maximal_period
-from contact.orbits import PeriodicOrbit, Shooting, excess_derivatives, orbit_derivatives
+from contact.orbits import KickFamily, PeriodicOrbit, Shooting, excess_derivatives, orbit_derivatives
 from studies import letter, plotting
-from studies.identify.parameters import changes_of, parameters_of
-from studies.identify.predictions import family_of
+from studies.parameters import changes_of, parameters_of
 
 Array = NDArray[np.float64]
 Of = Callable[[float], ImpactOscillator]
@@ -151,7 +150,7 @@ class Nodes:
     """The stable, admissible orbits p_m, m = `period`, at approach speeds above that of the fold."""
 
     def __init__(self, oscillator: ImpactOscillator, period: int) -> None:
-        self.family = family_of(oscillator, period)
+        self.family = KickFamily(oscillator=oscillator, period=period)
         self.exact, low = Shooting(oscillator=oscillator, period=period), self.family.fold()
         self.fold = self.exact.at_speed(low.speed) if low else None
         slow, fast = (part * oscillator.unit_speed for part in SPEEDS)

@@ -1,0 +1,1 @@
+"""Which orbit tells most of the parameters; see `__main__`."""
