@@ -81,17 +81,18 @@ def changes_of(oscillator: ImpactOscillator, names: Sequence[str]) -> list[Chang
     return [found[name] for name in names]
 
 
-def require_names(names: Sequence[str], oscillator: ImpactOscillator) -> None:
+def require_names(names: Sequence[str], oscillator: ImpactOscillator, option: str = "fit") -> None:
     """ValueError unless each is the name of a parameter of this oscillator, given once."""
     known, law = parameters_of(oscillator), type(oscillator.stop.law).__name__
     for name in names:
         if name not in known and name in OF_LAWS:
-            raise ValueError(f"fit names {name}, which {law} does not have; there are {', '.join(known)}")
+            others = ", ".join(known)
+            raise ValueError(f"{option} names {name}, which {law} does not have; there are {others}")
         if name not in known:
             nearest = get_close_matches(name[:60], [*known, *OF_LAWS], n=1, cutoff=0.0)[0]
-            raise ValueError(f"fit names {name[:60]!r}, which is no parameter; the nearest is {nearest}")
+            raise ValueError(f"{option} names {name[:60]!r}, which is no parameter; the nearest is {nearest}")
     if len(set(names)) < len(names) or not names:
-        raise ValueError(f"fit names {', '.join(names) or 'nothing'}; it must name each parameter once")
+        raise ValueError(f"{option} names {', '.join(names) or 'nothing'}; it must name each parameter once")
 
 
 def with_values(oscillator: ImpactOscillator, values: Mapping[str, float]) -> ImpactOscillator:
@@ -124,13 +125,19 @@ def _with_values(oscillator: ImpactOscillator, values: Mapping[str, float]) -> I
     return replace(oscillator, model=model, stop=stop, drive=replace(drive, **moved) if moved else drive)
 
 
-def described(scene: Scene, description: Description, delay: float, frequency: float) -> ImpactOscillator:
-    """The oscillator of the scene at a drive frequency [Hz], at the excess at which periods are born."""
+def described(
+    scene: Scene, description: Description, delay: float | None, frequency: float
+) -> ImpactOscillator:
+    """The oscillator of the scene at a drive frequency [Hz], at the excess at which periods are born.
+
+    A `delay` [s] that is not given is T/136, 0.3 ms for the letter's spring: about that of its collisions.
+    """
     if description == "beam":
         oscillator = beam_at(scene, frequency)
     else:
         oscillator = single_mode_at(scene, frequency)
     if description == "two_parameters":
+        delay = scene.single_mode.free_period_s / 136.0 if delay is None else delay
         law = DelayedRestitution(restitution=scene.single_mode.restitution, delay=delay)
         oscillator = replace(oscillator, stop=replace(oscillator.stop, law=law))
     return oscillator.with_excess(scene.scan.born_excess)

@@ -21,8 +21,8 @@ from contact import ContactError, ImpactOscillator
 from studies import letter, plotting
 from studies.files import fingerprint
 from studies.identify.fit import LEVEL, fit
-from studies.parameters import parameters_of
 from studies.identify.records import READ_OUT, Kind, Record, synthetic
+from studies.parameters import parameters_of
 from studies.run import Run
 from studies.scene import Scene, beam_at, model_of, single_mode_at
 from studies.sweep import sweep

@@ -23,10 +23,10 @@ from scipy.optimize import least_squares
 
 from contact import ContactError, ImpactOscillator
 from studies import letter
-from studies.parameters import parameters_of, require_names, with_values
 from studies.identify.predictions import Prediction
 from studies.identify.records import READ_OUT, Record
 from studies.identify.starts import prediction_of
+from studies.parameters import parameters_of, require_names, with_values
 
 __all__ = ["Fit", "Profile", "fit", "profile"]
 

@@ -36,8 +36,8 @@ from contact.orbits import (
     motion_derivatives,
     orbit_derivatives,
 )
-from studies.parameters import changes_of
 from studies.identify.records import Record
+from studies.parameters import changes_of
 
 __all__ = ["PRIOR", "Displacement", "Prediction", "Strobes", "Transitions", "family_of"]
 

@@ -24,9 +24,9 @@ from scipy.ndimage import maximum_filter1d
 from scipy.optimize import least_squares
 
 from contact import ContactError, ImpactOscillator, SingleImpactOrbit, State
-from studies.parameters import parameters_of, with_values
 from studies.identify.predictions import PRIOR, Displacement, Prediction, Strobes, Transitions, family_of
 from studies.identify.records import Record
+from studies.parameters import parameters_of, with_values
 
 __all__ = ["prediction_of", "repetition"]
 

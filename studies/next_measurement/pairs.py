@@ -22,8 +22,8 @@ from matplotlib.figure import Figure
 from contact import ContactError, ImpactOscillator, MapFamily, NordmarkMap, StroboscopicMap
 from contact.orbits import MaximalFamily, born_period
 from studies import plotting
-from studies.parameters import with_values
 from studies.letter import AMPLITUDE_STABILITY, FREE_PERIOD_ERROR_S, FREE_PERIOD_S, PERIODS
+from studies.parameters import with_values
 
 FREQUENCY_ERROR_HZ, CYCLES, GRID, HALVINGS = 0.005, 8000, 121, 14
 """Half the last digit of f; most drive periods to settle; places of a grid; halvings at a stretch's ends."""

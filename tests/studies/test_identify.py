@@ -10,9 +10,9 @@ import pytest
 
 from contact import DelayedRestitution, simulate
 from studies.identify.fit import fit, profile
-from studies.parameters import fitted_scene, parameters_of, with_values
 from studies.identify.records import read_record, synthetic
 from studies.identify.starts import prediction_of, repetition
+from studies.parameters import fitted_scene, parameters_of, with_values
 from studies.scene import beam_at, read_scene, single_mode_at
 
 NAMES = ("free_period", "decay_rate", "gap", "restitution")

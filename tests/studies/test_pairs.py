@@ -7,9 +7,9 @@ import pytest
 from matplotlib.figure import Figure
 
 from contact import band
+from studies.letter import FREE_PERIOD_S, PERIODS
 from studies.next_measurement import pairs
 from studies.next_measurement.pairs import KINDS, WAYS, excesses_of_all, intervals_of, is_born, longest
-from studies.letter import FREE_PERIOD_S, PERIODS
 from studies.scene import single_mode_at
 
 
