@@ -28,16 +28,14 @@ Array = NDArray[np.float64]
 
 @kernel
 def fly_through(vary, tangent, u, v, clock, times, table):  # type: ignore[no-untyped-def]
-    """A flight with tangents from the time `clock` over rising `times` [s]; see ``Retraced.through``."""
+    """A flight with tangents from the time `clock` over rising `times` [s]; see ``Retraced.along``."""
     motion = vary.motion
     for i in range(times.size):
         if times[i] > clock:
             tangent_flight(vary, tangent, u, v, clock % motion.period, times[i] - clock)
             propagate(motion, u, v, times[i] - clock, u, v)
             clock = times[i]
-        for j in range(table.shape[1]):
-            for k in range(table.shape[2]):
-                table[i, j, k] = tangent[j, k]
+        table[i] = tangent[:-2]
 
 
 class Retraced:
@@ -112,17 +110,19 @@ class Retraced:
         self._fly(time)
         return self.tangent
 
-    def through(self, times: Array, table: Array) -> int:
-        """The tangents of (u, v) at the first of the rising `times`, and at those that follow in the same
-        flight, as rows of `table`, shape (n_times, 2 n_modes, columns); returns how many these are."""
-        table[0] = self.to(float(times[0]))[: table.shape[1]]
-        if self.touching(float(times[0])):
-            return 1
-        following = self.start[self._i] if self._i < self.start.size else math.inf
-        count = max(1, int(np.searchsorted(times, following)))
-        fly_through(self.vary, self.tangent, self.u, self.v, self.clock, times[1:count], table[1:count])
-        self.clock = float(times[count - 1])
-        return count
+    def along(self, times: Array) -> Array:
+        """The tangents of (u, v) at rising `times` [s], shape (n_times, 2 n_modes, columns)."""
+        found, i = np.empty((len(times), len(self.tangent) - 2, self.tangent.shape[1])), 0
+        while i < len(times):
+            found[i], last = self.to(float(times[i]))[:-2], i + 1
+            if self.clock == times[i]:  # not in touch
+                following = self.start[self._i] if self._i < self.start.size else math.inf
+                last = max(last, int(np.searchsorted(times, following)))
+                ahead = times[i + 1 : last], found[i + 1 : last]
+                fly_through(self.vary, self.tangent, self.u, self.v, self.clock, *ahead)
+                self.clock = float(times[last - 1])
+            i = last
+        return found
 
     def _waiting(self, tangent: Array, u: Array, v: Array, at: float, time: float) -> Array:
         """The tangents at `time` [s], when the tip waits on the stop since `at`, as the drive leaves them to

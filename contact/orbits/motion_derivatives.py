@@ -89,20 +89,18 @@ def motion_derivatives(
     tangent[2 * n, 2 * n :] = several.amplitude * sine + turned * cosine
     tangent[2 * n + 1, 2 * n :] = several.amplitude * cosine - turned * sine
 
-    states, done, traced = np.empty((wanted.size, 2 * n, 2 * n + count)), 0, Retraced(several, run, state)
-    traced.tangent = tangent.copy()
-    while done < wanted.size:
-        done += traced.through(wanted[done:], states[done:])
-    states[:, :, 2 * n :] += several.steady(wanted)
+    traced = Retraced(several, run, state)
+    traced.tangent = tangent
 
-    strobes, traced = np.empty((run.strobe_time.size, 2 * n, 2 * n + count)), Retraced(several, run, state)
-    traced.tangent, still, longer = tangent, several.steady(0.0), several.of_period
-    for i, time in enumerate(run.strobe_time):
-        strobes[i] = traced.to(float(time))[: 2 * n]
+    times, place = np.unique([*run.strobe_time, *wanted, run.end.time], return_inverse=True)
+    ends = [run.strobe_time.size, run.strobe_time.size + wanted.size]
+    strobes, states, _end = np.split(traced.along(times)[place], ends)
+    states[:, :, 2 * n :] += several.steady(wanted)
+    strobes[:, :, 2 * n :] += several.steady(0.0)
+    for i, time in enumerate(run.strobe_time.tolist()):
         q = np.concatenate([run.strobe_displacement[i], run.strobe_velocity[i]])
-        pace = pace_of_deviations(oscillator, q, traced.touching(float(time)))
-        late = round(time / oscillator.period) * longer
-        strobes[i, :, 2 * n :] += still + np.multiply.outer(pace, late)
-    traced.to(float(run.end.time))
+        pace = pace_of_deviations(oscillator, q, traced.touching(time))
+        number = round(time / oscillator.period)
+        strobes[i, :, 2 * n :] += np.multiply.outer(pace, number * several.of_period)
     late = np.array([traced.late[i] for i in range(len(run.impacts))]).reshape(-1, 2 * n + count)
     return MotionDerivatives(run=run, impact_time=late, strobes=strobes, states=states)
