@@ -108,9 +108,10 @@ def add_options(parser: Parser, function: Callable[..., object]) -> dict[str, ob
         if get_origin(kind) in (Union, types.UnionType):  # T | None
             kind = next(part for part in get_args(kind) if part is not types.NoneType)
         default = defaults[name] = entry.default
-        flag, told = f"--{name.replace('_', '-')}", words
-        if default is not None and kind is not bool:
-            told += f" (default: {default})"
+        flag, told = f"--{name.replace('_', '-')}", words.replace("%", "%%")  # argparse formats its help
+        if default not in (None, ()) and kind is not bool:
+            shown = " ".join(map(str, default)) if isinstance(default, tuple) else default
+            told += f" (default: {shown})"
         about: dict[str, object] = {"default": argparse.SUPPRESS, "help": told}
         if kind is bool:
             about["action"] = "store_true"

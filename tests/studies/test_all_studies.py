@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import signal
 import subprocess
@@ -21,6 +22,15 @@ def test_the_studies_are_the_programs_with_results_of_a_scene():
     assert programs.studies()[0] == programs.MAIN
     assert {"report", "export", "tour"}.isdisjoint(programs.studies())
     assert set(programs.studies()) < set(programs.names())
+
+
+def test_every_study_tells_its_claim_its_command_and_its_options(capsys):
+    for name in programs.studies():
+        study = getattr(importlib.import_module(programs.module_of(name)), name)
+        assert study.main(["--help"]) == 0
+        told = capsys.readouterr().out
+        assert "Run: " in told and all(f"--{each.replace('_', '-')}" in told or each.upper() in told
+                                       for each in study.defaults(False))  # fmt: skip
 
 
 @pytest.fixture
