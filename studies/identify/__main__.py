@@ -148,7 +148,7 @@ def identify(
     noise_um: Annotated[float | None, "noise of the read-out, where it is known"] = None,
     delay_ms: Annotated[float | None,
                         "two_parameters: the delay, or where its fit starts (default: T/136)"] = None,
-    coverage: Annotated[int | None, "also fit so many synthetic records of each kind: are the errors true?"] = None,
+    coverage: Annotated[int | None, "also fit so many synthetic records of each kind: true errors?"] = None,
 ) -> Mapping[str, object]:  # fmt: skip
     """Read or make, fit, report and draw."""
     harmonic(scene)
