@@ -142,5 +142,7 @@ QUESTIONS: Mapping[str, tuple[str, tuple[str, ...]]] = MappingProxyType({
                      ("effective_impact", "soft_wall")),
     "two_parameters": ("Do energy loss and delay stand for the higher modes?", ("transitions",)),
     "last_period": ("Why p10 at 23.40 Hz, where the map has p11?", ("sensitivity",)),
+    "period": ("What do the six periods say of the free period in motion, and what would have told more?",
+               ("next_measurement",)),
 })  # fmt: skip
 """The questions that the letter leaves open, and the studies that answer them (`run.answer`)."""

@@ -73,6 +73,8 @@ def next_measurement(
         told += [] if run.quick else [pairs.sentence(described(scene, "one_mode", 0.0, FREQUENCY_HZ), rows)]
     for sentence in told:
         run.say(sentence)
+    if told:
+        run.answer("period", " ".join(reversed(told)))
     return {"rows": best, "pairs": rows, "told": told}
 
 
