@@ -82,9 +82,10 @@ class Retraced:
             q, q_rate = steady_motion(motion, start.time % motion.period)
             self.u, self.v = start.displacement - q, start.velocity - q_rate
 
-    def touching(self, time: float) -> bool:
-        """Whether the tip is in touch with the stop at a time [s]."""
-        return bool(np.any((self.start < time) & (self.end > time)))
+    def touching(self, times: float | Array) -> NDArray[np.bool_]:
+        """Whether the tip is in touch with the stop at `times` [s]."""
+        at = np.asarray(times)[..., None]
+        return np.asarray(np.any((self.start < at) & (self.end > at), axis=-1))
 
     def to(self, time: float) -> Array:
         """The tangents at `time` [s], later than where they are; shape (2 n_modes + 2, columns).

@@ -100,7 +100,7 @@ class OrbitDerivatives:
         for j in range(1, orbit.period + 1):
             tangent = traced.to(j * period)[: 2 * n]
             q = np.concatenate([run.strobe_displacement[j - 1], run.strobe_velocity[j - 1]])
-            pace = pace_of_deviations(orbit.oscillator, q, traced.touching(j * period))
+            pace = pace_of_deviations(orbit.oscillator, q, bool(traced.touching(j * period)))
             moved = tangent[:, :size] @ self.start + tangent[:, size:]
             moved += np.multiply.outer(pace, j * changes.of_period - self.time)
             found[j - 1] = moved + changes.steady(0.0)
@@ -137,17 +137,17 @@ def at_touch(orbit: PeriodicOrbit, changes: Changes) -> tuple[Array, Array]:
 
 
 def pace_of_deviations(oscillator: ImpactOscillator, q: Array, touching: bool, clock: float = 0.0) -> Array:
-    """d(u, v)/dt of the deviations where the state is `q` at `clock` [s] after a strobe, in touch or not."""
-    motion = oscillator.motion()
-    u, v = q.reshape(2, -1) - np.array(steady_motion(motion, clock))
-    reach, rate = oscillator.tip(q[: u.size]) - motion.gap, oscillator.tip(q[u.size :])
+    """d(u, v)/dt of the deviations in the state `q`, (2 n_modes,), or (..., 2 n_modes) off the stop, at
+    `clock` [s] after a strobe."""
+    motion, n = oscillator.motion(), oscillator.n_modes
+    steady, steady_rate = steady_motion(motion, clock)
+    u, v = q[..., :n] - steady, q[..., n:] - steady_rate
     slowing = -motion.decay * v - motion.omega**2 * u
     if touching and motion.law == DELAYED:  # the tip rests, and the mode follows the drive
-        steady = oscillator.steady_response() * np.exp(1j * motion.drive * clock)
-        slowing = motion.drive**2 * oscillator.driven.amplitude * steady.imag
-    elif touching and reach > 0.0:
-        slowing = slowing - motion.phi * force(motion, reach, rate)
-    return np.concatenate([v, slowing])
+        slowing = motion.drive**2 * steady
+    elif touching and (reach := oscillator.tip(q[:n]) - motion.gap) > 0.0:
+        slowing = slowing - motion.phi * force(motion, reach, oscillator.tip(q[n:]))
+    return np.concatenate([v, slowing], axis=-1)
 
 
 def _solved(orbit: PeriodicOrbit, changes: Changes, *, at_speed: bool) -> Array:

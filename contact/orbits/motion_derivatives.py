@@ -97,10 +97,11 @@ def motion_derivatives(
     strobes, states, _end = np.split(traced.along(times)[place], ends)
     states[:, :, 2 * n :] += several.steady(wanted)
     strobes[:, :, 2 * n :] += several.steady(0.0)
-    for i, time in enumerate(run.strobe_time.tolist()):
-        q = np.concatenate([run.strobe_displacement[i], run.strobe_velocity[i]])
-        pace = pace_of_deviations(oscillator, q, traced.touching(time))
-        number = round(time / oscillator.period)
-        strobes[i, :, 2 * n :] += np.multiply.outer(pace, number * several.of_period)
+    q = np.hstack([run.strobe_displacement, run.strobe_velocity])
+    pace = pace_of_deviations(oscillator, q, False)
+    for i in np.flatnonzero(traced.touching(run.strobe_time)):
+        pace[i] = pace_of_deviations(oscillator, q[i], True)
+    number = np.round(run.strobe_time / oscillator.period)
+    strobes[:, :, 2 * n :] += np.multiply.outer(number[:, None] * pace, several.of_period)
     late = np.array([traced.late[i] for i in range(len(run.impacts))]).reshape(-1, 2 * n + count)
     return MotionDerivatives(run=run, impact_time=late, strobes=strobes, states=states)
