@@ -24,16 +24,20 @@ LOOKED_AT = {
 
 #: Options that keep a small form small.
 SMALLER = {"stability": ["--families", "false_restitution,accumulation"],
-           "finite_amplitude": ["--set", "drive.frequencies_hz=[22.2]"],
-           "spring_shape": ["--set", "modes.count=4", "--set", "spring.elements_per_leg=12"],
+           "finite_amplitude": ["--set", "drive.frequencies_hz=[22.2]", "--set", "scan.settle_cycles=400",
+                                "--set", "spring.bend_radius_m=0.0075"],
+           "spring_shape": ["--set", "modes.count=4", "--set", "spring.elements_per_leg=12",
+                            "--set", "spring.elements_on_arc=8"],
            "claims": ["--positions", "3", "--across", "12", "--restitutions", "3", "--inside", "6",
-                      "--alphas", "3"],
+                      "--alphas", "3", "--set", "modes.count=4"],
            "calibrate": ["--set", "modes.count=4", "--set", "spring.elements_per_leg=12"]}  # fmt: skip
 
 
 #: Names of a study's main module that give a small form less to do, and what stands in for them.
-FEWER = {"work_precision": ("problems_of", lambda scene, modes: problems_of(scene, 2)[:2]),
-         "spring_shape": ("COARSE", [replace(mesh, legs=mesh.legs // 2) for mesh in COARSE])}  # fmt: skip
+FEWER = {
+    "work_precision": {"problems_of": lambda scene, modes: problems_of(scene, 2)[:2], "SLOWEST_QUICK": 1e-3},
+    "spring_shape": {"COARSE": [replace(mesh, legs=mesh.legs // 2) for mesh in COARSE], "COUNTS": (3, 2)},
+}  # fmt: skip
 
 #: Studies of driven motions, and those that change the dimensions of a spring.
 DRIVEN = (
@@ -54,8 +58,8 @@ SLOW = ("calibrate",)
      for name in ON_THE_FRAME if name not in LOOKED_AT],
 )  # fmt: skip
 def test_the_small_form_runs_and_leaves_a_table_a_figure_and_a_summary(run_study, monkeypatch, name):
-    if name in FEWER:
-        monkeypatch.setattr(f"studies.{name}.__main__.{FEWER[name][0]}", FEWER[name][1])
+    for what, fewer in FEWER.get(name, {}).items():
+        monkeypatch.setattr(f"studies.{name}.__main__.{what}", fewer)
     ran = run_study(name, "--quick", "--json", *SMALLER.get(name, ()))
     assert ran.code == 0, ran.err
     assert json.loads(ran.out)["study"] == ran.summary["study"] == name
