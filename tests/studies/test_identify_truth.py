@@ -8,9 +8,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from mpmath import mpf
 
-from contact import simulate
 from studies.identify import coverage as truth
 from studies.identify import gradients
 from studies.record import Run
@@ -80,15 +78,6 @@ def test_one_mode_is_too_small_for_the_beam_and_its_own_modes_are_not(trials, mo
         assert np.all(np.isfinite(found["error"])) and found["small"].sum() == small
         off = (found["estimate"] - np.array(list(trials[name].truth.values()))) / found["error"]
         assert small or np.abs(off).max() < 3.5
-
-
-def test_closed_form_is_the_motion(letter_scene):
-    oscillator = single_mode_at(letter_scene, 22.2).with_excess(1e-3)
-    start, values, hits = gradients.motion_of(oscillator)
-    end = simulate(oscillator, start, periods=gradients.PERIODS).end
-    found = gradients.closed_form([mpf(value) for value in values.tolist()], start, hits)
-    expected = [hits[-1], end.displacement[0], end.velocity[0]]
-    np.testing.assert_allclose(np.array(found, dtype=float), expected, rtol=1e-11)
 
 
 def test_errors_of_gradients_fall_as_the_order_of_the_differences_says(letter_scene):
