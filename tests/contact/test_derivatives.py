@@ -4,7 +4,7 @@ in 50 digits, published folds, invariances, and differences."""
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import mpmath as mp
@@ -64,54 +64,60 @@ def of_equation_1(frequency: float) -> list[Change]:
     ]  # fmt: skip
 
 
+def exact_flow(square: mp.mpf, c: mp.mpf, t: mp.mpf) -> tuple[mp.mpf, mp.mpf, mp.mpf, mp.mpf]:
+    """The matrix that takes (q, q') of a mode through t, row by row; at critical damping too."""
+    root = mp.sqrt(c * c / 4 - square + mp.mpf("1e-50"))
+    low, high = mp.exp((root - c / 2) * t), mp.exp((-root - c / 2) * t)
+    sn, cn = mp.re((low - high) / (2 * root)), mp.re((low + high) / 2)
+    return cn + c / 2 * sn, sn, -square * sn, cn - c / 2 * sn
+
+
+def exact_slopes(of: Callable[[list], list[mp.mpf]], point: Sequence[float]) -> np.ndarray:
+    """Derivatives in 50 digits, a column for each number of the point."""
+    columns = []
+    for j in range(len(point)):
+        ends = [of([mp.mpf(x) + (i == j) * step for i, x in enumerate(point)]) for step in (H, -H)]
+        columns.append([float((a - b) / (2 * H)) for a, b in zip(*ends, strict=True)])
+    return np.array(columns).T
+
+
 @pytest.mark.parametrize("name", [*MODES, "nearly critical"])
 def test_flow_of_a_mode_against_differentiation_in_50_digits(name: str) -> None:
     modes = MODES.get(name, {"omega": [600.0], "decay_rate": [1200.0 - 1e-7]})
     law, rates = NewtonRestitution(local_restitution=0.0), modes["decay_rate"]
     table = motion_of(modes["omega"], rates, np.ones(len(rates)), law=law, gap=1.0).modes
     for k, (omega, decay) in enumerate(zip(modes["omega"], rates, strict=True)):
+        unit = max(1.0, omega) ** np.array([1, 0, 1, 1])
         for t in (1e-5, 3e-3, 0.2):
             with mp.workdps(90):
-
-                def flow(square: mp.mpf, c: mp.mpf, t: float = t) -> list[mp.mpf]:
-                    root = mp.sqrt(c * c / 4 - square + mp.mpf("1e-50"))
-                    low, high = mp.exp((root - c / 2) * t), mp.exp((-root - c / 2) * t)
-                    sn = mp.re((low - high) / (2 * root))
-                    cn = mp.re((low + high) / 2)
-                    return [cn + c / 2 * sn, sn, -square * sn, cn - c / 2 * sn]
-
-                point = (mp.mpf(omega) ** 2, mp.mpf(decay))
-                for entry in range(4):
-                    for which, (square, c) in enumerate([(1.0, 0.0), (0.0, 1.0)]):
-                        n = (1, 0) if which == 0 else (0, 1)
-                        exact = mp.diff(lambda a, b, i=entry: flow(a, b)[i], point, n, h=mp.mpf("1e-18"))
-                        size = max(abs(float(x)) for x in flow(*point)) * t * (t if which == 0 else 1.0)
-                        found = flow_derivative(table, k, square, c, t)[entry]
-                        unit = max(1.0, omega) if entry in (0, 2, 3) else 1.0
-                        assert abs(found - float(exact)) < 2e-13 * (abs(float(exact)) + size * unit)
+                point = [mp.mpf(omega) ** 2, mp.mpf(decay)]
+                exact = exact_slopes(lambda x, t=t: exact_flow(*x, t), point)
+                largest = max(abs(float(x)) for x in exact_flow(*point, t))
+            for direction, power, column in zip(np.eye(2), (2, 1), exact.T, strict=True):
+                found = np.array(flow_derivative(table, k, *direction, t))
+                assert np.all(np.abs(found - column) < 2e-13 * (np.abs(column) + largest * t**power * unit))
 
 
-def exact_orbit(m: int) -> Callable[..., list[mp.mpf]]:
+def exact_orbit(m: int) -> Callable[[Sequence[float]], list[mp.mpf]]:
     """Closed form of the p_m node of Eq. (1): excess, time and speed of the impact, trace and determinant of
     its monodromy matrix, and tip displacement and velocity at the m strobes after it."""
 
-    def orbit(t: float, mu: float, tau: float, gap: float, f: float, amplitude: float) -> list[mp.mpf]:
-        t, mu, tau, gap, f, amplitude = (mp.mpf(x) for x in (t, mu, tau, gap, f, amplitude))
-        w, d = 2 * mp.pi * f, 2 * mp.pi / t
+    def orbit(numbers: Sequence[float]) -> list[mp.mpf]:
+        t, mu, tau, gap, f, amplitude = (mp.mpf(x) for x in numbers)
+        w, square = 2 * mp.pi * f, (2 * mp.pi / t) ** 2 + mu * mu / 4
 
         def flow(s: mp.mpf) -> mp.matrix:
-            fade, sn, cn = mp.exp(-mu * s / 2), mp.sin(d * s) / d, mp.cos(d * s)
-            square = d * d + mu * mu / 4
-            return fade * mp.matrix([[cn + mu / 2 * sn, sn], [-square * sn, cn - mu / 2 * sn]])
+            a, b, c, d = exact_flow(square, mu, s)
+            return mp.matrix([[a, b], [c, d]])
 
-        response = w**2 / (d * d + mu * mu / 4 - w * w + 1j * mu * w)
+        response = w**2 / (square - w * w + 1j * mu * w)
         n, shrink = flow(m / f), mp.exp(-mu * m / f)
         per = (n - shrink * mp.eye(2)) * mp.matrix([0, -(1 + tau)]) / (1 - n[0, 0] - n[1, 1] + shrink)
         a, b = per[0], (1 - per[1]) / w
         size = amplitude * abs(response)
         # (gap - a v)^2 + (b v)^2 = size^2, the larger root
-        half, square = a * gap, a * a + b * b
-        v = (half + mp.sqrt(half * half - square * (gap * gap - size * size))) / square
+        half, both = a * gap, a * a + b * b
+        v = (half + mp.sqrt(half * half - both * (gap * gap - size * size))) / both
         psi = mp.atan2(gap - a * v, b * v)
         time = (psi - mp.arg(response)) / w
         time -= mp.floor(time * f) / f
@@ -120,9 +126,9 @@ def exact_orbit(m: int) -> Callable[..., list[mp.mpf]]:
         for j in range(1, m + 1):
             deviation, turn = flow(j / f - time) * after, amplitude * response
             points += [deviation[0] + mp.im(turn), deviation[1] + w * mp.re(turn)]
-        # saltation of Newton's law on (u, u'), then the flow
-        # accelerations of the deviation before and after, and of the steady motion
-        before, behind = (-(d * d + mu * mu / 4) * x[0] - mu * x[1] for x in (per * v, after))
+        # saltation of Newton's law on (u, u'), then the flow: accelerations of the deviation before and
+        # after, and of the steady motion
+        before, behind = (-square * x[0] - mu * x[1] for x in (per * v, after))
         steady = -w * w * (gap - a * v)
         jump = mp.matrix([[-tau, 0], [(tau * (before + steady) + behind + steady) / v, -tau]])
         monodromy = n * jump
@@ -150,12 +156,8 @@ def test_orbit_of_equation_1_against_its_closed_form_in_50_digits(
     sums = [pair.sum(axis=0).real, (orbit.multipliers[::-1, None] * pair).sum(axis=0).real]
     point = (T, MU, TAU, GAP, frequency, orbit.amplitude)
     with mp.workdps(50):
-        closed = exact_orbit(m)
-        here = np.array([float(x) for x in closed(*point)])
-        there = np.empty((here.size, 6))
-        for j in range(6):
-            ends = [closed(*point[:j], point[j] + step, *point[j + 1 :]) for step in (H, -H)]
-            there[:, j] = [float((a - b) / (2 * H)) for a, b in zip(*ends, strict=True)]
+        here = np.array([float(x) for x in exact_orbit(m)(point)])
+        there = exact_slopes(exact_orbit(m), point)
     values = [orbit.excess, orbit.phase, orbit.speed, *found.strobes.reshape(-1)]
     assert values == pytest.approx(np.delete(here, (3, 4)), rel=1e-9, abs=1e-14)
     exact = np.delete(there, (3, 4), axis=0)
@@ -176,20 +178,19 @@ def test_folds_under_newtons_law_move_as_their_closed_form_does(name: str) -> No
     model, tau, f = oscillator.model, oscillator.stop.law.numbers[0], oscillator.driven.frequency
     n = model.n_modes
 
-    def excess(numbers: list[mp.mpf]) -> mp.mpf:
+    def excess(numbers: Sequence[float]) -> list[mp.mpf]:
         """From omega_k, c_k, phi_k, restitution and frequency."""
-        *rows, tau, f = numbers
+        *rows, tau, f = (mp.mpf(x) for x in numbers)
         omega, decay, phi = rows[:n], rows[n : 2 * n], rows[2 * n :]
         t, p, r, mobility = m / f, mp.mpf(0), mp.mpf(0), sum(x * x for x in phi)
         for k in range(n):
-            root = mp.sqrt(mp.mpc(omega[k] ** 2 - decay[k] ** 2 / 4))
-            fade, sn, cn = mp.exp(-decay[k] * t / 2), mp.re(mp.sin(root * t) / root), mp.re(mp.cos(root * t))
-            shrink, kick = fade * fade, -(1 + tau) * phi[k] / mobility
-            closing = 1 - 2 * fade * cn + shrink
-            p += phi[k] * fade * sn * kick / closing
-            r += phi[k] * (fade * (cn - decay[k] / 2 * sn) - shrink) * kick / closing
+            first, sn, _, last = exact_flow(omega[k] ** 2, decay[k], t)
+            shrink, kick = mp.exp(-decay[k] * t), -(1 + tau) * phi[k] / mobility
+            closing = 1 - first - last + shrink
+            p += phi[k] * sn * kick / closing
+            r += phi[k] * (last - shrink) * kick / closing
         ratio = p * 2 * mp.pi * f / (1 - r)
-        return 1 / mp.sqrt(1 + ratio * ratio) - 1
+        return [1 / mp.sqrt(1 + ratio * ratio) - 1]
 
     def unit(array: str, k: int) -> Change:
         return Change(model=of_modes(n, **{array: np.eye(n)[k]}))
@@ -199,72 +200,70 @@ def test_folds_under_newtons_law_move_as_their_closed_form_does(name: str) -> No
     fold = fold_of(Shooting(oscillator=oscillator, period=m))
     found = excess_derivatives(fold, changes)
     with mp.workdps(50):
-        point = [mp.mpf(x) for x in (*model.omega, *model.decay_rate, *model.phi, tau, f)]
-        assert fold.excess == pytest.approx(float(excess(point)), rel=1e-9)
-        for i, ours in enumerate(np.delete(found, [*range(3 * n, 4 * n), -2, -1])):
-            ends = [excess([x + (i == j) * step for j, x in enumerate(point)]) for step in (H, -H)]
-            # the place of the fold is good to 1e-10 of the speed, its excess to the square of it
-            exact = float((ends[0] - ends[1]) / (2 * H))
-            assert ours == pytest.approx(exact, rel=2e-9, abs=1e-12 / float(abs(point[i]) + 1))
+        point = np.array([*model.omega, *model.decay_rate, *model.phi, tau, f])
+        assert fold.excess == pytest.approx(float(excess(point)[0]), rel=1e-9)
+        ours, exact = np.delete(found, [*range(3 * n, 4 * n), -2, -1]), exact_slopes(excess, point)[0]
+    # the place of the fold is good to 1e-10 of the speed, its excess to the square of it
+    assert np.all(np.abs(ours - exact) < np.maximum(2e-9 * np.abs(exact), 1e-12 / (point + 1.0)))
     still = [*(found[3 * n : 4 * n] * model.participation), found[-2] * oscillator.stop.gap]
     assert np.max(np.abs([*still, found[-1] * fold.amplitude])) < 1e-12
 
 
-def ghosh_and_simpson(w: float) -> tuple[Shooting, float]:
-    """p2 of x'' + 0.04 x' + x = F cos(w t), wall at 1, restitution 0.9, and its grazing F."""
+def ghosh_and_simpson(w: float) -> Shooting:
+    """p2 of x'' + 0.04 x' + x = F cos(w t), wall at 1, restitution 0.9; F_g is |1 - w^2 + 0.04 i w|."""
     one = np.ones(1)
     oscillator = ImpactOscillator(
         model=ModalModel(omega=one, decay_rate=0.04 * one, phi=one, participation=one),
         stop=Stop(gap=1.0, law=NewtonRestitution(local_restitution=0.9)),
         drive=HarmonicDrive(frequency=w / (2 * math.pi)),
     )
-    return Shooting(oscillator=oscillator, period=2), math.hypot(1 - w * w, 0.04 * w)
+    return Shooting(oscillator=oscillator, period=2)
 
 
-def force_slope(
-    orbit: PeriodicOrbit, derivative: Callable[..., np.ndarray], w: float, grazing: float
+def rise_between(
+    low: float, high: float, points: int, at: Callable[[float], PeriodicOrbit], rates: Callable
 ) -> float:
-    """dF/dw along a curve of bifurcations, F = (1 + excess) F_g."""
-    rate = float(derivative(orbit, [Change(frequency=1 / (2 * math.pi))])[0])
-    return rate * grazing + (1 + orbit.excess) * (-2 * w * (1 - w * w) + 0.0016 * w) / grazing
+    """The integral of dF/dw along a curve of bifurcations, F = (1 + excess) F_g, by points of Gauss."""
+    total, half = 0.0, 0.5 * (high - low)
+    for x, weight in zip(*np.polynomial.legendre.leggauss(points), strict=True):
+        orbit = at(w := low + half * (1.0 + x))
+        grazing = math.hypot(1 - w * w, 0.04 * w)
+        rate = float(rates(orbit, [Change(frequency=1 / (2 * math.pi))])[0]) * grazing
+        total += half * weight * (rate + (1 + orbit.excess) * (-2 * w * (1 - w * w) + 0.0016 * w) / grazing)
+    return total
 
 
 def test_slopes_of_the_published_folds() -> None:
-    """Table of arXiv:2510.16218: F = 0.3628362020 and 0.3634213706 at w = 0.799 and 0.794578, good to 1e-10,
-    and the integral of dF/dw between them, by four points of Gauss."""
-    low, high = 0.794578, 0.799
-    nodes, weights = np.polynomial.legendre.leggauss(4)
-    total = 0.0
-    for x, weight in zip(nodes, weights, strict=True):
-        w = 0.5 * (low + high) + 0.5 * (high - low) * x
-        family, grazing = ghosh_and_simpson(w)
-        fold = MaximalFamily(oscillator=family.oscillator, period=2).fold()
-        total += 0.5 * (high - low) * weight * force_slope(
-            family.at_speed(fold.speed), excess_derivatives, w, grazing
-        )  # fmt: skip
-    assert total == pytest.approx(0.3628362019762544 - 0.3634213705816635, abs=4e-10)
+    """Table of arXiv:2510.16218: F = 0.3628362020 and 0.3634213706 at w = 0.799 and 0.794578, to 1e-10."""
+
+    def fold(w: float) -> PeriodicOrbit:
+        family = ghosh_and_simpson(w)
+        return family.at_speed(MaximalFamily(oscillator=family.oscillator, period=2).fold().speed)
+
+    rise = rise_between(0.794578, 0.799, 4, fold, excess_derivatives)
+    assert rise == pytest.approx(0.3628362019762544 - 0.3634213705816635, abs=4e-10)
 
 
 def test_slopes_of_the_published_doublings() -> None:
     """F = 0.3475333989 and 0.3601817821 at w = 0.81 and 0.80079 (same table), impacts at 0.0653 and 0.0060;
     there the multiplier is -1 to 3e-6 and 1e-5, which is 1.5e-9 and 4e-11 in F."""
+    table = {0.80079: (0.0060385158, 0.3601817820562527), 0.81: (0.0653039883, 0.3475333988945534)}
+    near = 0.0
 
-    def doubling(w: float, near: float) -> tuple[PeriodicOrbit, float]:
-        family, grazing = ghosh_and_simpson(w)
+    def doubling(w: float) -> PeriodicOrbit:
+        """The one closest in speed to the last, or to the table's."""
+        nonlocal near
+        near = table[w][0] if w in table else near
+        family = ghosh_and_simpson(w)
         branch = follow(family, family.at_speed(near), low=0.3 * near, high=20 * near)
-        return min(branch.of_kind("period doubling"), key=lambda orbit: abs(orbit.speed - near)), grazing
+        found = min(branch.of_kind("period doubling"), key=lambda orbit: abs(orbit.speed - near))
+        near = found.speed
+        return found
 
-    ends, forces = [(0.80079, 0.0060385158), (0.81, 0.0653039883)], (0.3601817820562527, 0.3475333988945534)
-    ours = [(1 + orbit.excess) * grazing for orbit, grazing in (doubling(*end) for end in ends)]
-    assert ours == pytest.approx(forces, abs=2e-9)
-    (low, near), (high, _speed) = ends
-    total, (nodes, weights) = 0.0, np.polynomial.legendre.leggauss(6)
-    for x, weight in zip(nodes, weights, strict=True):
-        w = 0.5 * (low + high) + 0.5 * (high - low) * x
-        orbit, grazing = doubling(w, near)
-        near = orbit.speed
-        total += 0.5 * (high - low) * weight * force_slope(orbit, doubling_derivatives, w, grazing)
-    assert total == pytest.approx(ours[1] - ours[0], abs=3e-11)
+    ours = {w: (1 + doubling(w).excess) * math.hypot(1 - w * w, 0.04 * w) for w in (0.81, 0.80079)}
+    assert ours == pytest.approx({w: force for w, (_, force) in table.items()}, abs=2e-9)
+    rise = rise_between(0.80079, 0.81, 6, doubling, doubling_derivatives)
+    assert rise == pytest.approx(ours[0.81] - ours[0.80079], abs=3e-11)
 
 
 def in_other_units(oscillator: ImpactOscillator) -> list[Change]:
@@ -319,6 +318,12 @@ def random_change(oscillator: ImpactOscillator, rng: np.random.Generator) -> Cha
     )  # fmt: skip
 
 
+def slopes(observed: Callable[[float], list[np.ndarray]], step: float) -> list[np.ndarray]:
+    """Differences of order four of everything observed."""
+    ends = zip(*(observed(j * step) for j in (1, -1, 2, -2)), strict=True)
+    return [(8 * (a - b) - (c - d)) / (12 * step) for a, b, c, d in ends]
+
+
 def along(oscillator: ImpactOscillator, change: Change, step: float) -> ImpactOscillator:
     """The oscillator with its numbers moved by a step along a change."""
     model = ModalModel(
@@ -366,35 +371,29 @@ def test_a_simulated_motion_against_differences(name: str) -> None:
     found = motion_derivatives(oscillator, start, [change], periods=5, times=times)
     direction = np.concatenate([kicked.reshape(-1), [1.0]])
     assert len(found.run.impacts) >= 2
-    step = 1e-7
-    ends = [observed(j * step) for j in (1, -1, 2, -2)]
-    for ours, a, b, c, d in zip((found.impact_time, found.strobes, found.states), *ends, strict=True):
-        exact = ours @ direction
-        difference = (8 * (a - b) - (c - d)) / (12 * step)
+    ours = (found.impact_time, found.strobes, found.states)
+    for exact, difference in zip((one @ direction for one in ours), slopes(observed, 1e-7), strict=True):
         assert np.max(np.abs(difference - exact) / np.abs(exact).max(axis=0)) < 2e-5
 
 
 def test_orbits_and_folds_of_the_letters_spring_under_hertz_against_differences() -> None:
     oscillator = beam(22.20, LAWS["hertz"], modes=10)
     family, rng = Shooting(oscillator=oscillator, period=5), np.random.default_rng(3)
-    fold, step = fold_of(family), 1e-7
+    fold = fold_of(family)
     orbit = family.at_speed(1.5 * fold.speed, fold)
     change = random_change(orbit.oscillator, rng)
     found = orbit_derivatives(orbit, [change])
     ours = [found.time, found.speed, multiplier_derivatives(found)[:2, 0], excess_derivatives(fold, [change])]
 
-    def observed(step: float) -> list[np.ndarray]:
+    def observed(step: float) -> list:
         moved = along(orbit.oscillator, change, step)
         near, beside = Shooting(oscillator=moved, period=5), moved.excess
         there = near.at_excess(beside, orbit)
-        return [
-            np.array([there.phase]), np.array([there.speed]), there.multipliers[:2],
-            np.array([fold_of(near, fold).excess]),
-        ]  # fmt: skip
+        return [there.phase, there.speed, there.multipliers[:2], fold_of(near, fold).excess]
 
-    ends = [observed(j * step) for j in (1, -1, 2, -2)]
-    for exact, a, b, c, d, allowed in zip(ours, *ends, (1e-6, 1e-6, 1e-4, 1e-4), strict=True):
-        assert (8 * (a - b) - (c - d)) / (12 * step) == pytest.approx(exact, rel=allowed)
+    differences = slopes(observed, 1e-7)
+    for exact, difference, allowed in zip(ours, differences, (1e-6, 1e-6, 1e-4, 1e-4), strict=True):
+        assert difference == pytest.approx(exact, rel=allowed)
 
 
 def test_grazings_of_equation_1_move_as_located_ones_do() -> None:
@@ -407,10 +406,10 @@ def test_grazings_of_equation_1_move_as_located_ones_do() -> None:
         return follow(family, fold, low=0.5 * fold.speed, high=20 * fold.speed).of_kind("grazing")[0]
 
     changes, orbit = of_equation_1(22.2), graze_at(T)
-    found, step = graze_derivatives(orbit, changes), 1e-4 * T
+    found = graze_derivatives(orbit, changes)
     before = Shooting(oscillator=orbit.oscillator, period=5).at_speed(0.5 * orbit.speed, orbit)
-    a, b, c, d = (graze_at(T + j * step).excess for j in (1, -1, 2, -2))
-    assert (8 * (a - b) - (c - d)) / (12 * step) == pytest.approx(found[0], rel=1e-5)
+    (difference,) = slopes(lambda step: [graze_at(T + step).excess], 1e-4 * T)
+    assert difference == pytest.approx(found[0], rel=1e-5)
     assert T * found[0] - MU * found[1] - 22.2 * found[4] == pytest.approx(0.0, abs=1e-7 * abs(T * found[0]))
     with pytest.raises(NoDerivative, match="no peak of the orbit"):
         graze_derivatives(before, changes)
