@@ -70,7 +70,7 @@ def next_measurement(
         if plan.names == information.Plan().names:
             told.append(information.answer(of, found, plan))
         rows = letters_pairs(scene, run)
-        told += [] if run.quick else [pairs.sentence(described(scene, "one_mode", 0.0, FREQUENCY_HZ), rows)]
+        told += [] if run.quick else [pairs.sentence(rows)]
     for sentence in told:
         run.say(sentence)
     return {"rows": best, "pairs": rows, "told": told}
@@ -78,9 +78,9 @@ def next_measurement(
 
 def letters_pairs(scene: Scene, run: Run) -> list[pairs.Interval]:
     """What the letter's six pairs say of the free period."""
-    kinds = pairs.KINDS[: 2 if run.quick else len(pairs.WAYS)]
+    excesses = pairs.EXCESSES[: 2 if run.quick else None]
     single = described(scene, "one_mode", 0.0, FREQUENCY_HZ)
-    rows = [row for found in run.map(partial(pairs.intervals_of, single), kinds, "pairs") for row in found]
+    rows = [row for found in run.map(partial(pairs.intervals_of, single), excesses, "pairs") for row in found]
     run.table("pairs", rows, "Free periods at which the letter's six pairs are born.", show=())
     run.figure("pairs", pairs.draw(rows), "Free periods at which the letter's pairs are born, each and all.")
     return rows
