@@ -65,8 +65,7 @@ SHOWN = {
 @dataclass(frozen=True, kw_only=True)
 class Plan:
     """Wanted `names`; standard errors `before` of what else is unknown, in its unit (inf: nothing known), and
-    of any drive amplitude [m]; number of `strobes`; `noise` of the read-out [m]; whether velocity is read
-    too, to 2 pi f `noise`."""
+    of any drive amplitude [m]; number of `strobes`; `noise` of the read-out [m]."""
 
     names: tuple[str, ...] = ("free_period", "restitution", "delay")
     before: Mapping[str, float] = field(
@@ -75,7 +74,6 @@ class Plan:
     amplitude_error: float = letter.AMPLITUDE_STABILITY_M
     strobes: int = 1000
     noise: float = 0.5e-6
-    velocity: bool = False
 
     @property
     def unknown(self) -> tuple[str, ...]:
@@ -87,8 +85,8 @@ class Plan:
 class Measurement:
     """Standard errors by an orbit p_m, in the order of the plan's names: with all else unknown, and alone.
 
-    `together`: the D-criterion [1]; `correlation`: the largest of two wanted ones; `distance` of the excess
-    from the fold, and its standard error; `kept`: whether the orbit outlives that.
+    `together`: the D-criterion [1]; `distance` of the excess from the fold, and its standard error; `kept`:
+    whether the orbit outlives that.
     """
 
     frequency_hz: float
@@ -97,7 +95,6 @@ class Measurement:
     errors: tuple[float, ...]
     alone: tuple[float, ...]
     together: float
-    correlation: float
     distance: float
     distance_error: float
     kept: bool
@@ -113,12 +110,9 @@ def changed(orbit: PeriodicOrbit, plan: Plan) -> tuple[Array, Array]:
     """Changes of what is measured, over its noise, and of the excess, by what is unknown over its sizes."""
     found = orbit_derivatives(orbit, changes_of(orbit.oscillator, plan.unknown))
     phi, weight = orbit.oscillator.model.phi, math.sqrt(plan.strobes / orbit.period) / plan.noise
-    rows = [weight * np.einsum("i,jip->jp", phi, found.strobes_changed[:, : phi.size])]
-    if plan.velocity:
-        rates = np.einsum("i,jip->jp", phi, found.strobes_changed[:, phi.size :])
-        rows.append(weight * rates / orbit.oscillator.driven.angular_frequency)
+    rows = weight * np.einsum("i,jip->jp", phi, found.strobes_changed[:, : phi.size])
     grazing, sizes = found.changes.grazing_amplitude / plan.amplitude_error, sizes_of(orbit, plan)
-    return np.vstack([*rows, grazing]) * sizes, found.excess * sizes
+    return np.vstack([rows, grazing]) * sizes, found.excess * sizes
 
 
 def covariance(orbits: Sequence[PeriodicOrbit], plan: Plan) -> Array:
@@ -175,11 +169,10 @@ def measurement(orbit: PeriodicOrbit, nodes: Nodes, plan: Plan) -> Measurement:
     (rows, away), told = changed(orbit, plan), bool(np.isfinite(cov[0, 0]))
     if nodes.fold is not None:
         away = away - excess_derivatives(nodes.fold, changes_of(orbit.oscillator, plan.unknown)) * sizes
-    widths, off = np.sqrt(np.diag(cov)[:n]), math.sqrt(away @ cov @ away) if told else math.inf
-    mutual = cov[:n, :n] / np.outer(widths, widths) - np.eye(n) if told else np.ones((n, n))
+    off = math.sqrt(away @ cov @ away) if told else math.inf
     return Measurement(
         frequency_hz=orbit.oscillator.driven.frequency, excess=orbit.excess, period=orbit.period,
-        errors=tuple((widths * sizes[:n]).tolist()), correlation=float(np.max(np.abs(mutual))),
+        errors=tuple((np.sqrt(np.diag(cov)[:n]) * sizes[:n]).tolist()),
         alone=tuple((sizes / np.linalg.norm(rows, axis=0))[:n].tolist()),
         together=float(np.linalg.det(cov[:n, :n]) ** (0.5 / n)) if told else math.inf,
         distance=orbit.excess - nodes.excesses[0], distance_error=off,
@@ -217,22 +210,19 @@ def answer(of: Of, found: Sequence[Measurement], plan: Plan) -> str:
     """What the letter's points and the best place tell, for the page; the plan wants T, tau and the delay."""
     six, first = letters_orbits(of), best(found, 1)[0]
     alone = {orbit.period: errors_of([orbit], plan) for orbit in six}
-    few = min(alone, key=lambda m: alone[m][1])
     pairs = [pair for pair in combinations(six, 2) if abs(pair[0].speed / pair[1].speed - 1.0) < ALIKE]
     one, other = min(pairs, key=lambda pair: errors_of(pair, plan)[1])
 
     def words(errors: Sequence[float]) -> str:
-        return f"tau to {errors[1]:.1g} and the delay to {1e6 * errors[2]:.2g} us"
+        return f"tau to {errors[1]:.1g} and the delay to {1e6 * errors[2]:.2g} \u00b5s"
 
     return (
-        f"Of {plan.strobes} strobes read to {1e6 * plan.noise:g} um, at an excess of 1e-3, amplitudes known "
-        f"to {1e6 * plan.amplitude_error:g} um: T follows to "
+        f"Of {plan.strobes} strobes read to {1e6 * plan.noise:g} \u00b5m, at an excess of 1e-3: T follows to "
         + ", ".join(f"{1e3 * errors[0]:.1g} ms (p{m})" for m, errors in alone.items())
-        + ". No single p_m tells gap, tau and delay apart; with the gap from the amplitude at grazing "
-        f"p{few} gives {words(alone[few])}, the best place, p{first.period} at {first.frequency_hz:.2f} Hz "
-        f"and {first.excess:.1e}, {words(first.errors)}. p{one.period} and p{other.period}, which meet the "
-        f"stop at {one.speed:.2f} and {other.speed:.2f} m/s, give {words(errors_of([one, other], plan))} "
-        f"whatever these are at other speeds; all six, if they are constant, {words(errors_of(six, plan))}."
+        + ". No single p_m tells gap, tau and delay apart; with the gap from the amplitude at grazing the "
+        f"best place, p{first.period} at {first.frequency_hz:.2f} Hz and {first.excess:.1e}, gives "
+        f"{words(first.errors)}. p{one.period} and p{other.period}, which meet the stop at {one.speed:.2f} "
+        f"and {other.speed:.2f} m/s, give {words(errors_of([one, other], plan))}."
     )
 
 
