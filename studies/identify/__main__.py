@@ -199,7 +199,6 @@ def truth(scene: Scene, run: Run, records: int) -> dict[str, object]:
     beam = run.choose_modes(scene, {"fold": 0.05})
     rows = covering.coverage(scene, beam, run, records=records, beam_records=records // 4)
     run.table("coverage", rows, covering.COVERED)
-    run.figure("coverage", covering.draw_coverage(rows), covering.COVERED)
     paths = gradients.gradients(described(scene, "one_mode", 0.0, corresponding(scene, FREQUENCY_HZ)))
     run.table("gradients", paths, gradients.CHART, show=())
     run.figure("gradients", gradients.draw_gradients(paths), gradients.CHART)
