@@ -45,8 +45,7 @@ Of = Callable[[float], ImpactOscillator]
 STABLE = letter.AMPLITUDE_STABILITY
 FREQUENCIES_HZ = np.linspace(20.5, 23.6, 63).tolist()
 EXCESSES = sorted({0.0, *(way * STABLE * 2.0 ** (0.5 * k) for k in range(13) for way in (-1, 1))})
-MARKS = [0.0, *(way * STABLE * 4.0**k for k in (1, 2, 3) for way in (-1, 1))]
-"""The plane of the map, and the excesses written on its axis."""
+"""The plane of the map."""
 
 UNSEEN, SPEEDS = 1e-11, (1e-4, 1.0)
 """Ratio of singular values below which a direction of the parameters is not seen; approach speeds over
@@ -236,23 +235,21 @@ def draw(found: Sequence[Measurement], plan: Plan) -> Figure:
         1, len(plan.names), width=plotting.PAGE, height=0.082, sharey=True, squeeze=False
     )
     shown = dict(sorted(zip(places, found, strict=True), key=lambda pair: (pair[1].kept, -pair[1].together)))
-    heights = {excess: i for i, excess in enumerate(up)}
     for k, (axis, name) in enumerate(zip(axes.flat, plan.names, strict=True)):
         told, lost = np.full((2, len(up), len(across)), np.nan)
         for (f, excess), one in shown.items():
-            (told if one.kept else lost)[heights[excess], across.index(f)] = one.errors[k] * SHOWN[name][1]
-        axis.pcolormesh(across, range(len(up)), 0.0 * lost, cmap="Greys", vmin=-1.0, vmax=3.0)
-        mesh = axis.pcolormesh(across, range(len(up)), told, cmap="viridis_r", norm=LogNorm())
+            (told if one.kept else lost)[up.index(excess), across.index(f)] = one.errors[k] * SHOWN[name][1]
+        axis.pcolormesh(across, up, 0.0 * lost, cmap="Greys", vmin=-1.0, vmax=3.0)
+        mesh = axis.pcolormesh(across, up, told, cmap="viridis_r", norm=LogNorm())
         bar = figure.colorbar(mesh, ax=axis, location="top", label=SHOWN[name][0])
         bar.ax.xaxis.set_minor_formatter("")
-        axis.plot(list(letter.PERIODS), [np.interp(1e-3, up, range(len(up)))] * 6, **plotting.LETTER_POINTS)
+        axis.plot(list(letter.PERIODS), [1e-3] * 6, **plotting.LETTER_POINTS)
         for number, one in enumerate(best(found), 1):
             axis.annotate(
-                str(number), (one.frequency_hz, heights[round(one.excess, 9)]), ha="center", va="center",
+                str(number), (one.frequency_hz, one.excess), ha="center", va="center",
                 fontsize=plotting.NOTE, bbox={"boxstyle": "circle,pad=0.15", "fc": "white", "lw": 0.5},
             )  # fmt: skip
-        marks = {f"{1e3 * mark:g}": heights[round(mark, 9)] for mark in MARKS if round(mark, 9) in heights}
-        axis.set_yticks(list(marks.values()), list(marks))
+        axis.set_yscale("symlog", linthresh=STABLE)
         plotting.label(axis.xaxis, "drive frequency", "Hz")
-    plotting.label(axes[0, 0].yaxis, plotting.EXCESS, "10$^{-3}$")
+    plotting.label(axes[0, 0].yaxis, plotting.EXCESS)
     return figure

@@ -14,11 +14,9 @@ from functools import partial
 from itertools import groupby
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from contact import ContactError, ImpactOscillator, MapFamily, NordmarkMap, StroboscopicMap
 from contact.orbits import born_period
-from studies import plotting
 from studies.letter import AMPLITUDE_STABILITY, FREE_PERIOD_ERROR_S, FREE_PERIOD_S, PERIODS
 from studies.parameters import with_values
 
@@ -108,26 +106,3 @@ def sentence(rows: Sequence[Interval]) -> str:
         f"{told[0.0, f'all but p{band.to_m}']}. Eq. (1) gives {told[1e-3, 'all']} at an excess of 1e-3 and "
         f"{told[4e-3, 'all']} at 4e-3."
     )
-
-
-@plotting.in_house_style
-def draw(rows: Sequence[Interval]) -> Figure:
-    """The intervals of each pair and of all, beside the printed period."""
-    figure, axis = plotting.new_figure(height=0.085)
-    names = [*(f"p{m}" for m in PERIODS.values()), "all"][::-1]
-    for number, excess in enumerate(EXCESSES):
-        kept = [row for row in rows if row.excess == excess and row.pairs in names]
-        kept = [row for row in kept if row.lowest_s <= row.highest_s]
-        axis.barh(
-            [names.index(row.pairs) + 0.33 - 0.13 * number for row in kept], height=0.11,
-            width=[1e3 * (row.highest_s - row.lowest_s) for row in kept], color=plotting.PALETTE[number],
-            left=[1e3 * row.lowest_s for row in kept],
-            label=f"Eq. (1), {excess:g}" if excess else "map's band",
-        )  # fmt: skip
-    axis.axvspan(1e3 * PRINTED_S[0], 1e3 * PRINTED_S[2], color="0.85", zorder=0)
-    axis.set_xlim(40.4, 41.1)
-    axis.set_yticks(range(len(names)), names)
-    plotting.mark_letter(axis.xaxis, 1e3 * FREE_PERIOD_S)
-    plotting.label(axis.xaxis, "free period $T$", "ms")
-    plotting.legend_below(figure, [axis], 2)
-    return figure

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
 from contact import band
 from contact.orbits import MaximalFamily
 from studies.letter import FREE_PERIOD_S, PERIODS
 from studies.next_measurement import pairs
-from studies.next_measurement.pairs import EXCESSES, intervals_of, is_born, longest
+from studies.next_measurement.pairs import intervals_of, is_born, longest
 from studies.parameters import with_values
 from studies.scene import single_mode_at
 
@@ -95,10 +94,8 @@ def test_the_error_of_a_frequency_moves_the_period_as_it_moves_the_edge(single, 
     assert held == [True, False]
 
 
-def test_stretches_words_and_figure(single, rows):
+def test_stretches_and_words(single, rows):
     assert longest(lambda x: x < 0.05 or 0.2 < x < 0.7, 0.0, 1.0) == pytest.approx((0.2, 0.7), abs=1e-6)
     assert longest(lambda x: False, 0.0, 1.0) == (np.inf, -np.inf)
     letters = [row for key, row in rows.items() if key[3] == 0.1]
     assert "p10 alone disagrees, by 0.046 Hz" in pairs.sentence(letters)
-    drawn = pairs.draw(letters)
-    assert isinstance(drawn, Figure) and len(drawn.axes[0].containers) == len(EXCESSES)
