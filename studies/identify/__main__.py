@@ -17,9 +17,9 @@ Without a record three synthetic ones, with 0.5 um of read-out noise, are made a
 of N records of each kind whether 90 % intervals hold the truth 90 % of the time.
 
 Run:     python -m studies.identify [RECORD.csv --fit free_period restitution gap] [--coverage N]     8 s
-Writes:  parameters.csv, quality.csv, correlations.csv, profile.csv, residuals.npz, identify.png (record and
-         fit, residuals, profile), fitted.toml, a scene that every study takes; the example also its three
-         records; --coverage also coverage and gradients
+Writes:  parameters.csv with correlations, quality.csv, profile.csv, residuals.npz, identify.png (record
+         and fit, residuals, profile), fitted.toml, a scene that every study takes; the example also its
+         three records; --coverage also coverage.csv, gradients.csv, gradients.png
 """
 
 from __future__ import annotations
@@ -27,7 +27,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -68,7 +67,8 @@ SHOWN = ("record", "parameter", "unit", "start", "told", "low90", "high90", "sce
 @dataclass(frozen=True, kw_only=True)
 class Estimate:
     """One parameter: where the fit started, what it found, standard error and 90 % interval (of the profile
-    likelihood where there is one), the value of the scene, and estimate and error in short, 40.80(2)."""
+    likelihood where there is one), the value of the scene, estimate and error in short, 40.80(2), and its
+    correlations with all that the record told, in their order."""
 
     record: str
     parameter: str
@@ -80,16 +80,7 @@ class Estimate:
     high90: float
     scene: float
     told: str
-
-
-@dataclass(frozen=True, kw_only=True)
-class Correlation:
-    """Of two estimates."""
-
-    record: str
-    parameter: str
-    other: str
-    correlation: float
+    correlations: tuple[float, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -199,7 +190,6 @@ def truth(scene: Scene, run: Run, records: int) -> dict[str, object]:
     beam = run.choose_modes(scene, {"fold": 0.05})
     rows = covering.coverage(scene, beam, run, records=records, beam_records=records // 4)
     run.table("coverage", rows, covering.COVERED)
-    run.figure("coverage", covering.draw_coverage(rows), covering.COVERED)
     paths = gradients.gradients(described(scene, "one_mode", 0.0, corresponding(scene, FREQUENCY_HZ)))
     run.table("gradients", paths, gradients.CHART, show=())
     run.figure("gradients", gradients.draw_gradients(paths), gradients.CHART)
@@ -219,16 +209,11 @@ def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
     for row in (row for row in quality if row.too_small):
         run.say(f"{row.record}: residuals are no noise (p {row.chance:.0e}), errors mean little: the model "
                 "is too small, or the start was too far off")  # fmt: skip
-    correlations = [
-        Correlation(record=name, parameter=a, other=b, correlation=float(one.correlations[i, j]))
-        for name, one in found.items() for (i, a), (j, b) in combinations(enumerate(one.names), 2)
-    ]  # fmt: skip
-    run.table("correlations", correlations, "Correlations of the estimates.", show=())
     points = [row for rows in profiles.values() for row in rows]
     run.table("profile", points, "Likelihood along one of two parameters that trade off.", show=())
     run.arrays("residuals", **{f"residuals_{name}": one.residuals for name, one in found.items()})
     run.figure("identify", figures.draw(found, profiles), figures.CAPTION)
-    return {"rows": estimates, "quality": quality, "correlations": correlations}
+    return {"rows": estimates, "quality": quality}
 
 
 def as_scene(scene: Scene, found: Fit, rows: Sequence[Estimate]) -> str:
@@ -253,6 +238,7 @@ def estimates_of(name: str, found: Fit, profiles: Sequence[Profile]) -> list[Est
             record=name, parameter=one, unit=known[one].unit, start=float(found.start[i]), low90=float(low),
             estimate=float(found.estimate[i]), standard_error=float(found.errors[i]), high90=float(high),
             told=in_short(float(found.estimate[i]), float(found.errors[i])), scene=float(found.before[i]),
+            correlations=tuple(found.correlations[i].tolist()),
         ) for i, (one, (low, high)) in enumerate(intervals.items())
     ]  # fmt: skip
 

@@ -9,30 +9,27 @@ of the beam: its intervals mean nothing, and the residuals must say so.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from contact import ContactError, ImpactOscillator
-from studies import letter, plotting
-from studies.files import fingerprint
+from studies import letter
 from studies.identify.fit import LEVEL, fit
 from studies.identify.records import READ_OUT, Kind, Record, synthetic
 from studies.parameters import parameters_of
 from studies.run import Run
 from studies.scene import Scene, beam_at, model_of, single_mode_at
-from studies.sweep import sweep
 
-__all__ = ["COVERED", "Coverage", "coverage", "draw_coverage"]
+__all__ = ["COVERED", "Coverage", "coverage"]
 
-COVERED = "Share of 90 % intervals that hold the true value, with its binomial error; grey is what agrees."
+COVERED = "Share of 90 % intervals that hold the true value, with its binomial error."
 SEED, FREQUENCY_HZ = 1996, 22.20
 CHUNK = 10
-"""Records a column of the sweep."""
+"""Records that are fitted at once."""
 
 KINDS: dict[Kind, tuple[str, ...]] = {
     "strobe": ("free_period", "decay_rate", "gap"),
@@ -119,10 +116,8 @@ def coverage(scene: Scene, beam: Scene, run: Run, *, records: int, beam_records:
     rows = list[Coverage]()
     for key, trial in enumerate(trials(scene, beam)):
         chunks = math.ceil((beam_records if trial.of == "beam" else records) / CHUNK)
-        settings = {"trial": trial.name, "seed": SEED, "chunks": chunks}
-        own = fingerprint(beam.values(), settings)[:12]  # of the sources too: another fit is done again
-        columns = sweep(run, f"coverage-{own}", settings, range(chunks), partial(trial.column, key))
-        whole = {name: np.concatenate([one[name] for one in columns if one]) for name in columns[0] or ()}
+        columns = list(run.map(partial(trial.column, key), range(chunks), trial.name))
+        whole = {name: np.concatenate([one[name] for one in columns]) for name in columns[0]}
         fitted = np.isfinite(whole["error"][:, 0])
         count, small = max(int(fitted.sum()), 1), float(np.mean(whole["small"][fitted]))
         off = whole["estimate"][fitted] - np.array(list(trial.truth.values()))
@@ -137,18 +132,3 @@ def coverage(scene: Scene, beam: Scene, run: Run, *, records: int, beam_records:
                 agrees=small > 1.0 - OFTEN if trial.short else right,
             ))  # fmt: skip
     return rows
-
-
-@plotting.in_house_style
-def draw_coverage(rows: Sequence[Coverage]) -> Figure:
-    """Shares with their errors, a line a parameter; not those of the model that is too small."""
-    rows = [row for row in rows if row.too_small < OFTEN]
-    figure, axis = plotting.new_figure(width=plotting.PAGE, height=0.02 + 0.004 * len(rows))
-    axis.axvspan(100.0 * (LEVEL - 0.025), 100.0 * (LEVEL + 0.025), color="0.9")
-    for i, row in enumerate(rows):
-        colour = plotting.BLUE if row.agrees else plotting.VERMILION
-        axis.errorbar(100.0 * row.share, -i, xerr=100.0 * row.share_error, fmt="o", color=colour)
-    words = [f"{row.trial}: {row.parameter.replace('_', ' ')}" for row in rows]
-    axis.set_yticks(-np.arange(len(rows)), words)
-    plotting.label(axis.xaxis, "90 % intervals that hold the true value", "%")
-    return figure

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from studies import plotting
 from studies.identify.fit import Fit, Profile
@@ -16,7 +17,7 @@ __all__ = ["CAPTION", "draw"]
 
 CAPTION = (
     "Each record with its fit (left), residuals (middle), and the profile likelihood of the two parameters "
-    "that trade off most (blue: chi^2, dashed the 90 % interval; red: the other, fitted again), or the "
+    "that trade off most (blue: $\\chi^2$, dashed the 90 % interval; red: the other, fitted again), or the "
     "correlations of all (right)."
 )
 SHOWN = 6
@@ -27,6 +28,9 @@ DOTS: plotting.Style = {"linestyle": "none", "marker": ".", "markersize": 2, "ra
 
 DEPTH = 2.71
 """Rise of chi^2 at the ends of a 90 % interval."""
+
+DARK = 0.6
+"""Correlation from which on its cell is dark."""
 
 
 @plotting.in_house_style
@@ -45,30 +49,30 @@ def draw(found: Mapping[str, Fit], profiles: Mapping[str, Sequence[Profile]]) ->
 def _record(left: Any, middle: Any, one: Fit) -> None:
     """Record and fit, and residuals below the same axis."""
     kind, rows = one.record.kind, one.record.rows
-    seen, unit, words = one.record.observed[:, 0], 1e3, "tip displacement"
-    fitted, residuals = seen - one.residuals[:, 0], 1e6 * one.residuals[:, 0]
+    table = kind == "transitions"
+    unit, fine, words = (1e2, 1e2, "end of $p_m$, excess") if table else (1e3, 1e6, "tip displacement")
+    seen, residuals = one.record.observed[:, 0], one.residuals[:, 0]
+    fitted = seen - residuals
     if kind == "displacement":
         place, across = 1e3 * rows[:, 0], ("time", "ms")
-        end = 1e3 * (rows[0, 0] + SHOWN * one.oscillator.period)
         left.plot(place, unit * seen, **DOTS, color=plotting.SKY, label="record")
         left.plot(place, unit * fitted, color=plotting.BLACK, linewidth=0.6, label="fit")
-        left.set_xlim(place[0], end)
+        left.set_xlim(place[0], place[0] + 1e3 * SHOWN * one.oscillator.period)
     elif kind == "strobe":
         place, across = np.arange(len(seen), dtype=float), ("strobe", "1")
         left.plot(place, unit * seen, **plotting.points(1), label="record")
         left.plot(place, unit * fitted, **FITTED)
     else:
-        place, across, unit, words = rows[:, 0], ("drive frequency", "Hz"), 1e2, "end of $p_m$, excess"
-        residuals = 1e2 * one.residuals[:, 0]
+        place, across = rows[:, 0], ("drive frequency", "Hz")
         errors = unit * one.record.units(one.noise)[:, 0]
         left.errorbar(place, unit * seen, errors, **plotting.points(1), label="record")
         left.plot(place, unit * fitted, **FITTED)
-    middle.plot(place, residuals, **DOTS, color=plotting.BLUE)
+    middle.plot(place, fine * residuals, **DOTS, color=plotting.BLUE)
     middle.axhline(0.0, **plotting.GUIDE)
     for axis in (left, middle):
         plotting.label(axis.xaxis, *across)
-    plotting.label(left.yaxis, words, "%" if kind == "transitions" else "mm")
-    plotting.label(middle.yaxis, "observed less fitted", "%" if kind == "transitions" else "um")
+    plotting.label(left.yaxis, words, "%" if table else "mm")
+    plotting.label(middle.yaxis, "observed less fitted", "%" if table else "\u00b5m")
     left.margins(y=0.25)
     left.legend(loc="upper right", ncols=2)
 
@@ -76,27 +80,28 @@ def _record(left: Any, middle: Any, one: Fit) -> None:
 def _trade(axis: Any, one: Fit, rows: Sequence[Profile]) -> None:
     """The profile of the most correlated pair, else all correlations."""
     if not rows:
-        n = len(one.names)
         axis.imshow(one.correlations, vmin=-1.0, vmax=1.0, cmap="RdBu")
         names = [name.replace("_", "\n") for name in one.names]
-        axis.set_xticks(range(n), names)
-        axis.set_yticks(range(n), names)
-        for i in range(n):
-            for j in range(n):
-                axis.text(j, i, f"{one.correlations[i, j]:.2f}", ha="center", va="center")
+        axis.set_xticks(range(len(names)), names)
+        axis.set_yticks(range(len(names)), names)
+        for (i, j), number in np.ndenumerate(one.correlations):
+            colour = "white" if abs(number) > DARK else "black"
+            axis.text(j, i, f"{number:.2f}", ha="center", va="center", color=colour)
         return
-    first = rows[0].parameter
-    own, unit = [row for row in rows if row.parameter == first], parameters_of(one.oscillator)[first].unit
-    scale, shown = (1e3, f"m{unit}") if unit in ("s", "m") else (1.0, unit)
-    value = scale * np.array([row.value for row in own])
+    own = [row for row in rows if row.parameter == rows[0].parameter]
+    other, known = axis.twinx(), parameters_of(one.oscillator)
+
+    def shown(along: Any, name: str, values: Sequence[float]) -> NDArray[np.float64]:
+        unit = known[name].unit
+        scale, unit = (1e3, f"m{unit}") if unit in ("s", "m") else (1.0, unit)
+        plotting.label(along, name.replace("_", " "), unit)
+        return scale * np.array(values)
+
+    value = shown(axis.xaxis, own[0].parameter, [row.value for row in own])
     axis.plot(value, [row.depth for row in own], **plotting.series(1))
     axis.axhline(DEPTH, **plotting.GUIDE)
     axis.locator_params(axis="x", nbins=5)
-    plotting.label(axis.xaxis, first.replace("_", " "), shown)
-    plotting.label(axis.yaxis, "rise of chi^2")
-    other = axis.twinx()
-    known = parameters_of(one.oscillator)[own[0].other]
-    scale, shown = (1e3, f"m{known.unit}") if known.unit in ("s", "m") else (1.0, known.unit)
-    other.plot(value, scale * np.array([row.other_value for row in own]), **plotting.series(2))
-    plotting.label(other.yaxis, own[0].other.replace("_", " "), shown)
+    plotting.label(axis.yaxis, "rise of $\\chi^2$")
+    fitted = shown(other.yaxis, own[0].other, [row.other_value for row in own])
+    other.plot(value, fitted, **plotting.series(2))
     other.spines["right"].set_visible(True)

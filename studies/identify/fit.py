@@ -151,26 +151,17 @@ class Problem:
         rows = self.prediction.jacobian(*self.at(unknowns), self.names) * self.weights[:, None]
         return np.vstack([rows * self.sizes, np.diag(self.held)])
 
-    def solve(self, start: Array, fixed: int | None = None) -> Any:
-        """``scipy.optimize.least_squares`` from `start`, perhaps with one unknown held."""
-        free = np.arange(start.size) != (-1 if fixed is None else fixed)
-        whole = start.copy()
-
-        def filled(part: Array) -> Array:
-            whole[free] = part
-            return whole
-
+    def solve(self, start: Array) -> Any:
+        """``scipy.optimize.least_squares`` from `start`."""
         if not np.all(np.isfinite(self.residuals(start))):
             raise ValueError(
                 "no motion like the record's was found to start from: fit more, or give better values"
             )
         with np.errstate(all="ignore"):  # of the trust region, along what is not seen
-            found = least_squares(
-                lambda part: self.residuals(filled(part)), start[free], x_scale="jac", max_nfev=MOST,
-                jac=lambda part: self.jacobian(filled(part))[:, free], xtol=1e-10, ftol=1e-12, gtol=1e-12,
+            return least_squares(
+                self.residuals, start, jac=self.jacobian, x_scale="jac", max_nfev=MOST,
+                xtol=1e-10, ftol=1e-12, gtol=1e-12,
             )  # fmt: skip
-        found.x = filled(found.x).copy()
-        return found
 
 
 def fit(
@@ -282,18 +273,20 @@ class Profile:
 
 def profile(found: Fit, name: str, other: str, *, points: int = 9, reach: float = 3.0) -> list[Profile]:
     """The profile likelihood of `name`, `reach` standard errors to both sides."""
-    problem, i, j, n = found.problem, found.names.index(name), found.names.index(other), len(found.names)
-    variance, scale = (found.noise / problem.noise) ** 2, problem.sizes[:n]
+    problem, i, variance = found.problem, found.names.index(name), (found.noise / found.problem.noise) ** 2
     best, rows = np.sum(problem.residuals(found.unknowns) ** 2), list[Profile]()
+    others = tuple(one for one in found.names if one != name)
     for side in np.linspace(-reach, reach, points):
-        start, along = found.unknowns.copy(), found.covariance[:, i] / found.errors[i]
-        start[:n] += side * along / scale
+        values = found.unknowns * problem.sizes
+        values[: len(found.names)] += side * found.covariance[:, i] / found.errors[i]
         try:
-            held = problem.solve(start, fixed=i)
+            at = with_values(found.oscillator, {name: float(values[i])})
+            fewer = Problem(problem.prediction, at, others, problem.noise)
+            held = fewer.solve(np.delete(values, i) / fewer.sizes)
         except ValueError:
             continue
         rows.append(Profile(
-            parameter=name, value=float(held.x[i] * scale[i]), other=other,
-            other_value=float(held.x[j] * scale[j]), depth=float(2.0 * held.cost - best) / variance,
+            parameter=name, value=float(values[i]), depth=float(2.0 * held.cost - best) / variance,
+            other=other, other_value=float((held.x * fewer.sizes)[others.index(other)]),
         ))  # fmt: skip
     return rows

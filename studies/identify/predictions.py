@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import copy
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,28 +51,33 @@ PRIOR = 0.01
 """Standard deviation of a mode beyond the first at the start of a record, in gaps at the tip."""
 
 
-class Prediction(Protocol):
-    """What is predicted of one record; `extra` are the unknowns beside the parameters."""
+class Prediction(ABC):
+    """What is predicted of one record; `extra` are the unknowns beside the parameters.
+
+    `sizes` measure changes of them, `prior` holds each about zero with this standard deviation (infinite:
+    not), all of shape (n_extra,). Rows repeat after `period`, unless it is 0.
+    """
 
     record: Record
-    period: int
-    """After so many rows they repeat; 0 for rows that do not."""
-    extra: Array
-    """Start of the further unknowns, shape (n_extra,)."""
-    sizes: Array
-    """By which changes of them are measured, shape (n_extra,)."""
-    prior: Array
-    """Standard deviation of each about zero; infinite for none, shape (n_extra,)."""
+    period: int = 0
+    extra: Array = np.empty(0)
+    sizes: Array = np.empty(0)
+    prior: Array = np.empty(0)
 
     def parts(self, oscillator: ImpactOscillator) -> Sequence[Prediction]:
         """What is fitted one after the other, itself last."""
+        return [self]
 
+    @abstractmethod
     def values(self, oscillator: ImpactOscillator, extra: Array) -> Array:
         """The predicted rows, shape of `record.observed`; ContactError or ValueError where there are none."""
 
     def touches(self, oscillator: ImpactOscillator, extra: Array) -> int:
-        """Number of impacts in what is predicted; errors as of `values`."""
+        """Number of impacts in what is predicted, of an orbit 1; errors as of `values`."""
+        self.values(oscillator, extra)
+        return 1
 
+    @abstractmethod
     def jacobian(self, oscillator: ImpactOscillator, extra: Array, names: Sequence[str]) -> Array:
         """Derivatives of `values` by the named parameters and `extra`, shape (values.size, n_unknowns)."""
 
@@ -83,10 +88,8 @@ def family_of(oscillator: ImpactOscillator, period: int) -> MaximalFamily | Kick
     return (MaximalFamily if newton else KickFamily)(oscillator=oscillator, period=period)
 
 
-class Strobes:
+class Strobes(Prediction):
     """The m strobe points of p_m."""
-
-    extra = sizes = prior = np.empty(0)
 
     def __init__(self, record: Record, period: int, orbit: SingleImpactOrbit) -> None:
         self.record, self.period = record, period
@@ -95,14 +98,14 @@ class Strobes:
         self.at, rows = orbit.oscillator, record.observed
         self.mean = np.array([rows[k::period].mean(axis=0) for k in range(period)])
 
-    def parts(self, oscillator: ImpactOscillator) -> Sequence[Prediction]:
-        """Itself."""
-        return [self]
-
     def values(self, oscillator: ImpactOscillator, extra: Array) -> Array:
         """The strobe points of the orbit next to the last one, a row for each of the record."""
         if oscillator is not self.at:
-            self.touches(oscillator, extra)
+            family = Shooting(oscillator=oscillator, period=self.period)
+            orbit = family.at_excess(oscillator.excess, self.orbit)
+            if not orbit.admissible:
+                raise ValueError(f"p{self.period} has another impact with these parameters")
+            self.orbit, self.at = orbit, oscillator
         return self.of_orbit()
 
     def of_orbit(self) -> Array:
@@ -119,14 +122,6 @@ class Strobes:
         best = places[np.argmin(np.sum((x[places] - self.mean[:, 0]) ** 2, axis=1))]
         return np.asarray(values[best[np.arange(len(self.record.rows)) % self.period]])
 
-    def touches(self, oscillator: ImpactOscillator, extra: Array) -> int:
-        """1; ValueError where the orbit next to the last one touches the stop besides."""
-        orbit = Shooting(oscillator=oscillator, period=self.period).at_excess(oscillator.excess, self.orbit)
-        if not orbit.admissible:
-            raise ValueError(f"p{self.period} has another impact with these parameters")
-        self.orbit, self.at = orbit, oscillator
-        return 1
-
     def jacobian(self, oscillator: ImpactOscillator, extra: Array, names: Sequence[str]) -> Array:
         """Derivatives of `values`."""
         points = self.values(oscillator, extra)
@@ -137,58 +132,37 @@ class Strobes:
         return self._in_order(tips[:, : points.shape[1]], x).reshape(points.size, -1)
 
 
-class Transitions:
+class Transitions(Prediction):
     """The fold of each p_m of a table."""
-
-    extra = sizes = prior = np.empty(0)
-    period = 0
 
     def __init__(self, record: Record) -> None:
         self.record = record
-        self.folds: list[PeriodicOrbit | SingleImpactOrbit | None] = [None] * len(record.rows)
-
-    def parts(self, oscillator: ImpactOscillator) -> Sequence[Prediction]:
-        """Itself."""
-        return [self]
+        self.folds: list[PeriodicOrbit | None] = [None] * len(record.rows)
 
     def values(self, oscillator: ImpactOscillator, extra: Array) -> Array:
         """F/F_g - 1 at the folds."""
         for i, (frequency, period) in enumerate(self.record.rows[:, :2]):
             there = replace(oscillator, drive=replace(oscillator.driven, frequency=float(frequency)))
+            exact = Shooting(oscillator=there, period=int(period))
             if isinstance(oscillator.stop.law, NewtonRestitution):
-                self.folds[i] = MaximalFamily(oscillator=there, period=int(period)).fold()
+                linear = MaximalFamily(oscillator=there, period=int(period)).fold()
+                fold = exact.at_speed(linear.speed) if linear else None
             else:
-                self.folds[i] = fold_of(Shooting(oscillator=there, period=int(period)), self._near(i))
-            if self.folds[i] is None:
+                fold = fold_of(exact, self.folds[i])
+            self.folds[i] = fold
+            if fold is None:
                 raise ValueError(f"p{period:g} has no fold at {frequency:g} Hz with these parameters")
         return np.array([[fold.excess] for fold in self.folds if fold is not None])
-
-    def _near(self, i: int) -> PeriodicOrbit | None:
-        """The fold of before, to start from."""
-        before = self.folds[i]
-        return before if isinstance(before, PeriodicOrbit) else None
-
-    def touches(self, oscillator: ImpactOscillator, extra: Array) -> int:
-        """1 where all folds exist."""
-        self.values(oscillator, extra)
-        return 1
 
     def jacobian(self, oscillator: ImpactOscillator, extra: Array, names: Sequence[str]) -> Array:
         """Derivatives of `values`."""
         self.values(oscillator, extra)
-        folds = [fold for fold in self.folds if fold is not None]
-        orbits = [
-            fold if isinstance(fold, PeriodicOrbit)
-            else Shooting(oscillator=fold.oscillator, period=fold.period).at_speed(fold.speed)
-            for fold in folds
-        ]  # fmt: skip
+        orbits = [fold for fold in self.folds if fold is not None]
         return np.array([excess_derivatives(one, changes_of(one.oscillator, names)) for one in orbits])
 
 
-class Displacement:
+class Displacement(Prediction):
     """The tip at the times of the record; its `first` rows have an impact."""
-
-    period = 0
 
     def __init__(self, record: Record, oscillator: ImpactOscillator, start: State, first: int) -> None:
         self.first, model = first, oscillator.model
@@ -204,26 +178,25 @@ class Displacement:
 
     def parts(self, oscillator: ImpactOscillator) -> Sequence[Prediction]:
         """Itself if it starts close to the record, else first its beginning, twice as long each time."""
-        seen = self.record.observed
-        try:
-            off = self.values(oscillator, self.extra) - seen
-            if off.std() < CLOSE * seen.std():
-                return [self]
-        except (ContactError, ValueError):
-            pass
-        self.hits, most = None, 0.75 * len(seen)
+        if self._off(oscillator) < CLOSE:
+            return [self]
+        self.hits, most = None, 0.75 * len(self.times)
         counts = [self.first * 2**k for k in range(64) if self.first * 2**k < most]
         return [*(self._upto(count) for count in counts), self]
 
     def misfit(self, oscillator: ImpactOscillator, hits: int) -> tuple[bool, float]:
         """Whether the first rows do not have so many `hits`, and residuals there over their size."""
         part = self._upto(self.first)
-        seen = part.record.observed
+        off = part._off(oscillator)
+        return part.hits != hits or off == math.inf, off
+
+    def _off(self, oscillator: ImpactOscillator) -> float:
+        """Residuals at the start over the size of the record."""
+        seen = self.record.observed
         try:
-            off = part.values(oscillator, self.extra) - seen
+            return float((self.values(oscillator, self.extra) - seen).std() / seen.std())
         except (ContactError, ValueError):
-            return True, math.inf
-        return part.hits != hits, float(off.std() / seen.std())
+            return math.inf
 
     def _upto(self, count: int) -> Displacement:
         part = copy.copy(self)
@@ -238,15 +211,15 @@ class Displacement:
     def _periods(self, oscillator: ImpactOscillator) -> int:
         return math.ceil((self.times[-1] - self.time) / oscillator.period + 1e-9)
 
-    def _run(self, oscillator: ImpactOscillator, extra: Array) -> Trajectory:
-        return simulate(
-            oscillator, self._state(extra), periods=self._periods(oscillator), times=self.times
-        )
+    def _run(self, oscillator: ImpactOscillator, extra: Array) -> tuple[Trajectory, int]:
+        """The motion, and its impacts up to the last rows, among which one more may come and go."""
+        run = simulate(oscillator, self._state(extra), periods=self._periods(oscillator), times=self.times)
+        end = self.times[-1] - END * (self.times[-1] - self.time)
+        return run, int(np.sum(run.impacts.start <= end))
 
     def values(self, oscillator: ImpactOscillator, extra: Array) -> Array:
         """The displacement of the tip; ValueError for another number of impacts than before."""
-        run = self._run(oscillator, extra)
-        hits = self._hits(run)
+        run, hits = self._run(oscillator, extra)
         if np.any(run.impacts.kind != ImpactKind.IMPACT):
             raise ValueError("the motion grazes the stop or comes to rest on it")
         if self.hits is None:
@@ -255,13 +228,9 @@ class Displacement:
             raise ValueError(f"the motion has {hits} impacts instead of {self.hits}")
         return oscillator.tip(run.displacement)[:, None]
 
-    def _hits(self, run: Trajectory) -> int:
-        """Impacts up to the last rows, among which one more may come and go."""
-        return int(np.sum(run.impacts.start <= self.times[-1] - END * (self.times[-1] - self.time)))
-
     def touches(self, oscillator: ImpactOscillator, extra: Array) -> int:
         """Impacts in the record."""
-        return self._hits(self._run(oscillator, extra))
+        return self._run(oscillator, extra)[1]
 
     def jacobian(self, oscillator: ImpactOscillator, extra: Array, names: Sequence[str]) -> Array:
         """Derivatives of `values`."""

@@ -67,9 +67,10 @@ class Record:
 
     @property
     def observed(self) -> Array:
-        """What a model has to give, shape (n_rows, 1 or 2): x [m] and perhaps v [m/s], or excess [1]."""
+        """What a model has to give, shape (n_rows, 1 or 2): x [m] and perhaps v [m/s], or excess [1]; a view
+        of the rows."""
         first = {"strobe": 0, "displacement": 1, "transitions": 2}[self.kind]
-        return self.rows[:, first : first + len(self.columns) if self.kind == "strobe" else first + 1]
+        return self.rows[:, first : len(self.columns) if self.kind == "strobe" else first + 1]
 
     def units(self, noise: float) -> Array:
         """Standard deviation of each observed number if that of x is `noise`; shape of `observed`."""
@@ -81,11 +82,10 @@ class Record:
 
     def noisy(self, seed: int, noise: float = READ_OUT) -> Record:
         """The record with normal noise on what is observed, standard deviations as in `units`."""
-        rows, seen = self.rows.copy(), self.observed
-        first = len(self.columns) - 1 if self.kind == "displacement" else 2 * (self.kind == "transitions")
-        off = np.random.default_rng(seed).standard_normal(seen.shape) * self.units(noise)
-        rows[:, first : first + seen.shape[1]] += off
-        return replace(self, rows=rows)
+        found = replace(self, rows=self.rows.copy())
+        off = np.random.default_rng(seed).standard_normal(self.observed.shape) * self.units(noise)
+        found.observed[:] += off
+        return found
 
     def text(self) -> str:
         """The record as CSV."""
@@ -158,42 +158,27 @@ def _check(record: Record, path: Path) -> None:
 def synthetic(
     kind: Kind, oscillator: ImpactOscillator,
     transitions: tuple[tuple[float, int], ...] = tuple(letter.PERIODS.items()), *, seed: int | None = None,
-    noise: float | None = None, periods: int = 40, rate: float | None = None, velocity: bool = False,
+    noise: float | None = None, periods: int = 40, velocity: bool = False,
 ) -> Record:  # fmt: skip
-    """What an oscillator at its drive gives to measure, with read-out noise unless `seed` is None.
+    """What an oscillator at its drive gives to measure, with `noise` [m, or excess] unless `seed` is None.
 
-    Parameters
-    ----------
-    kind : str
-    oscillator : ImpactOscillator
-        At its drive amplitude; the motion is the one it settles on from just below grazing.
-    seed, noise
-        Of the noise [m, or excess for a table].
-    periods : int
-        Drive periods that are recorded.
-    rate : float, optional
-        Rows a second of a displacement record [Hz]; by default 90 a drive period and some more, so that not
-        every impact meets a row in the same way.
-    velocity : bool
-        Whether strobe points have their velocity.
-    transitions : pairs of (frequency [Hz], m)
-        Of the table; the folds are those of the oscillator driven there.
+    The motion is the one it settles on from just below grazing, recorded for so many drive `periods`, as
+    strobe points perhaps with their `velocity`, or 90 times a drive period and some more, so that not every
+    impact meets a row in the same way. A table has the folds of `transitions` (frequency [Hz], m).
     """
     drive = oscillator.driven
     if kind == "transitions":
-        found = []
-        for frequency, period in transitions:
-            there = replace(oscillator, drive=replace(drive, frequency=frequency))
-            fold = Shooting(oscillator=there, period=period).fold()
-            if fold is not None:
-                found.append([frequency, float(period), fold.excess])
+        there = [replace(oscillator, drive=replace(drive, frequency=f)) for f, _ in transitions]
+        pairs = zip(there, transitions, strict=True)
+        folds = [Shooting(oscillator=one, period=m).fold() for one, (_, m) in pairs]
+        found = [[*at, one.excess] for at, one in zip(transitions, folds, strict=True) if one is not None]
         record = Record(columns=("frequency_hz", "period", "excess"), rows=np.array(found))
         usual = letter.AMPLITUDE_STABILITY
     else:
         strobed = StroboscopicMap(oscillator=oscillator)
         start = born(strobed, oscillator.excess).end
         begin = round(start.time * drive.frequency) / drive.frequency
-        pace = rate or 90.09 * drive.frequency
+        pace = 90.09 * drive.frequency
         times = np.arange(int(periods / drive.frequency * pace)) / pace
         asked = times if kind == "displacement" else np.arange(periods) / drive.frequency
         motion = simulate(oscillator, start, periods=periods + 1, times=np.maximum(start.time, begin + asked))

@@ -101,34 +101,26 @@ def _strobes(
     if (told := period * record.observed.shape[1]) < len(names):
         raise ValueError(f"p{period} gives {told} numbers, which cannot tell {len(names)} parameters")
 
-    def misfit(prediction: Strobes) -> float:
+    def near(at: ImpactOscillator, most: float) -> Strobes | None:
+        """The orbit at the drive of this oscillator, if it is off by less than this part of the record."""
         try:
-            off = prediction.values(prediction.orbit.oscillator, prediction.extra) - record.observed
-        except (ContactError, ValueError):
-            return math.inf
-        return float(np.sqrt(np.mean(off[:, 0] ** 2)))
+            found = Strobes(record, period, family_of(at, period).orbits(at.excess)[-1])
+            off = (found.values(at, found.extra) - record.observed)[:, 0]
+        except (ContactError, ValueError, IndexError):
+            return None
+        return found if np.sqrt(np.mean(off**2)) < most * size else None
 
-    try:
-        orbits = family_of(oscillator, period).orbits(oscillator.excess)
-    except (ContactError, ValueError):
-        orbits = ()
-    if orbits:
-        found = Strobes(record, period, orbits[-1])
-        if misfit(found) < CLOSE * size:
-            return found, oscillator
-    begun, orbit = _searched(record, oscillator, names, period)
-    try:
-        if "amplitude" not in names:
-            orbit = family_of(begun, period).orbits(begun.excess)[-1]
-        found = Strobes(record, period, orbit)
-        if misfit(found) > SIMILAR * size:
-            raise ValueError
-    except (ContactError, ValueError, IndexError):
+    found, begun = near(oscillator, CLOSE), oscillator
+    if found is None:
+        begun, orbit = _searched(record, oscillator, names, period)
+        begun = orbit.oscillator if "amplitude" in names else begun
+        found = near(begun, SIMILAR)
+    if found is None:
         raise ValueError(
             f"no p{period} with one impact was found near the record: give better values of what is not "
             "fitted, or fit more"
-        ) from None
-    return found, orbit.oscillator
+        )
+    return found, begun
 
 
 def _searched(
@@ -236,10 +228,7 @@ def _displacement(
     told = [dict(zip(OF_CORNERS, row, strict=True)) for row in medians.tolist()]
     highest = {"gap": max(told[0]["gap"], float(x.max()))}
     choices: list[dict[str, float]] = [rung | one | other for one in told for other in (highest, law, {})]
-    found = tried(choices[0])
-    if found[0] > (False, CLOSE):
-        found = min(map(tried, choices), key=lambda one: one[0])
-    return found[1:]
+    return min(map(tried, choices), key=lambda one: one[0])[1:]
 
 
 def _rung(

@@ -15,7 +15,7 @@ p_m is born by the map's bands, and by Eq. (1) at several excesses, and what the
 those of the letter's spring and left out for another.
 
 Run:     python -m studies.next_measurement --wanted free_period restitution delay     30 s
-Writes:  measurements.csv (a row an orbit), next.csv (the best five), next.png; pairs.csv, pairs.png
+Writes:  measurements.csv (a row an orbit), next.csv (the best five), next.png; pairs.csv
 """
 
 from __future__ import annotations
@@ -69,23 +69,16 @@ def next_measurement(
     if corresponding(scene, FREQUENCY_HZ) == FREQUENCY_HZ:
         if plan.names == information.Plan().names:
             told.append(information.answer(of, found, plan))
-        rows = letters_pairs(scene, run)
-        told += [] if run.quick else [pairs.sentence(described(scene, "one_mode", 0.0, FREQUENCY_HZ), rows)]
+        ask_pairs = partial(pairs.intervals_of, described(scene, "one_mode", 0.0, FREQUENCY_HZ))
+        columns = run.map(ask_pairs, pairs.EXCESSES[: 2 if run.quick else None], "pairs")
+        rows = [row for column in columns for row in column]
+        run.table("pairs", rows, "Free periods at which the letter's six pairs are born.", show=())
+        told += [] if run.quick else [pairs.sentence(rows)]
     for sentence in told:
         run.say(sentence)
     if told:
         run.answer("period", " ".join(reversed(told)))
     return {"rows": best, "pairs": rows, "told": told}
-
-
-def letters_pairs(scene: Scene, run: Run) -> list[pairs.Interval]:
-    """What the letter's six pairs say of the free period."""
-    kinds = pairs.KINDS[: 2 if run.quick else len(pairs.WAYS)]
-    single = described(scene, "one_mode", 0.0, FREQUENCY_HZ)
-    rows = [row for found in run.map(partial(pairs.intervals_of, single), kinds, "pairs") for row in found]
-    run.table("pairs", rows, "Free periods at which the letter's six pairs are born.", show=())
-    run.figure("pairs", pairs.draw(rows), "Free periods at which the letter's pairs are born, each and all.")
-    return rows
 
 
 if __name__ == "__main__":

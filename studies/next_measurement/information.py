@@ -45,8 +45,7 @@ Of = Callable[[float], ImpactOscillator]
 STABLE = letter.AMPLITUDE_STABILITY
 FREQUENCIES_HZ = np.linspace(20.5, 23.6, 63).tolist()
 EXCESSES = sorted({0.0, *(way * STABLE * 2.0 ** (0.5 * k) for k in range(13) for way in (-1, 1))})
-MARKS = [0.0, *(way * STABLE * 4.0**k for k in (1, 2, 3) for way in (-1, 1))]
-"""The plane of the map, and the excesses written on its axis."""
+"""The plane of the map."""
 
 UNSEEN, SPEEDS = 1e-11, (1e-4, 1.0)
 """Ratio of singular values below which a direction of the parameters is not seen; approach speeds over
@@ -65,8 +64,7 @@ SHOWN = {
 @dataclass(frozen=True, kw_only=True)
 class Plan:
     """Wanted `names`; standard errors `before` of what else is unknown, in its unit (inf: nothing known), and
-    of any drive amplitude [m]; number of `strobes`; `noise` of the read-out [m]; whether velocity is read
-    too, to 2 pi f `noise`."""
+    of any drive amplitude [m]; number of `strobes`; `noise` of the read-out [m]."""
 
     names: tuple[str, ...] = ("free_period", "restitution", "delay")
     before: Mapping[str, float] = field(
@@ -75,7 +73,6 @@ class Plan:
     amplitude_error: float = letter.AMPLITUDE_STABILITY_M
     strobes: int = 1000
     noise: float = 0.5e-6
-    velocity: bool = False
 
     @property
     def unknown(self) -> tuple[str, ...]:
@@ -87,8 +84,8 @@ class Plan:
 class Measurement:
     """Standard errors by an orbit p_m, in the order of the plan's names: with all else unknown, and alone.
 
-    `together`: the D-criterion [1]; `correlation`: the largest of two wanted ones; `distance` of the excess
-    from the fold, and its standard error; `kept`: whether the orbit outlives that.
+    `together`: the D-criterion [1]; `distance` of the excess from the fold, and its standard error; `kept`:
+    whether the orbit outlives that.
     """
 
     frequency_hz: float
@@ -97,7 +94,6 @@ class Measurement:
     errors: tuple[float, ...]
     alone: tuple[float, ...]
     together: float
-    correlation: float
     distance: float
     distance_error: float
     kept: bool
@@ -113,12 +109,9 @@ def changed(orbit: PeriodicOrbit, plan: Plan) -> tuple[Array, Array]:
     """Changes of what is measured, over its noise, and of the excess, by what is unknown over its sizes."""
     found = orbit_derivatives(orbit, changes_of(orbit.oscillator, plan.unknown))
     phi, weight = orbit.oscillator.model.phi, math.sqrt(plan.strobes / orbit.period) / plan.noise
-    rows = [weight * np.einsum("i,jip->jp", phi, found.strobes_changed[:, : phi.size])]
-    if plan.velocity:
-        rates = np.einsum("i,jip->jp", phi, found.strobes_changed[:, phi.size :])
-        rows.append(weight * rates / orbit.oscillator.driven.angular_frequency)
+    rows = weight * np.einsum("i,jip->jp", phi, found.strobes_changed[:, : phi.size])
     grazing, sizes = found.changes.grazing_amplitude / plan.amplitude_error, sizes_of(orbit, plan)
-    return np.vstack([*rows, grazing]) * sizes, found.excess * sizes
+    return np.vstack([rows, grazing]) * sizes, found.excess * sizes
 
 
 def covariance(orbits: Sequence[PeriodicOrbit], plan: Plan) -> Array:
@@ -175,11 +168,10 @@ def measurement(orbit: PeriodicOrbit, nodes: Nodes, plan: Plan) -> Measurement:
     (rows, away), told = changed(orbit, plan), bool(np.isfinite(cov[0, 0]))
     if nodes.fold is not None:
         away = away - excess_derivatives(nodes.fold, changes_of(orbit.oscillator, plan.unknown)) * sizes
-    widths, off = np.sqrt(np.diag(cov)[:n]), math.sqrt(away @ cov @ away) if told else math.inf
-    mutual = cov[:n, :n] / np.outer(widths, widths) - np.eye(n) if told else np.ones((n, n))
+    off = math.sqrt(away @ cov @ away) if told else math.inf
     return Measurement(
         frequency_hz=orbit.oscillator.driven.frequency, excess=orbit.excess, period=orbit.period,
-        errors=tuple((widths * sizes[:n]).tolist()), correlation=float(np.max(np.abs(mutual))),
+        errors=tuple((np.sqrt(np.diag(cov)[:n]) * sizes[:n]).tolist()),
         alone=tuple((sizes / np.linalg.norm(rows, axis=0))[:n].tolist()),
         together=float(np.linalg.det(cov[:n, :n]) ** (0.5 / n)) if told else math.inf,
         distance=orbit.excess - nodes.excesses[0], distance_error=off,
@@ -217,22 +209,19 @@ def answer(of: Of, found: Sequence[Measurement], plan: Plan) -> str:
     """What the letter's points and the best place tell, for the page; the plan wants T, tau and the delay."""
     six, first = letters_orbits(of), best(found, 1)[0]
     alone = {orbit.period: errors_of([orbit], plan) for orbit in six}
-    few = min(alone, key=lambda m: alone[m][1])
     pairs = [pair for pair in combinations(six, 2) if abs(pair[0].speed / pair[1].speed - 1.0) < ALIKE]
     one, other = min(pairs, key=lambda pair: errors_of(pair, plan)[1])
 
     def words(errors: Sequence[float]) -> str:
-        return f"tau to {errors[1]:.1g} and the delay to {1e6 * errors[2]:.2g} us"
+        return f"tau to {errors[1]:.1g} and the delay to {1e6 * errors[2]:.2g} \u00b5s"
 
     return (
-        f"Of {plan.strobes} strobes read to {1e6 * plan.noise:g} um, at an excess of 1e-3, amplitudes known "
-        f"to {1e6 * plan.amplitude_error:g} um: T follows to "
+        f"Of {plan.strobes} strobes read to {1e6 * plan.noise:g} \u00b5m, at an excess of 1e-3: T follows to "
         + ", ".join(f"{1e3 * errors[0]:.1g} ms (p{m})" for m, errors in alone.items())
-        + ". No single p_m tells gap, tau and delay apart; with the gap from the amplitude at grazing "
-        f"p{few} gives {words(alone[few])}, the best place, p{first.period} at {first.frequency_hz:.2f} Hz "
-        f"and {first.excess:.1e}, {words(first.errors)}. p{one.period} and p{other.period}, which meet the "
-        f"stop at {one.speed:.2f} and {other.speed:.2f} m/s, give {words(errors_of([one, other], plan))} "
-        f"whatever these are at other speeds; all six, if they are constant, {words(errors_of(six, plan))}."
+        + ". No single p_m tells gap, tau and delay apart; with the gap from the amplitude at grazing the "
+        f"best place, p{first.period} at {first.frequency_hz:.2f} Hz and {first.excess:.1e}, gives "
+        f"{words(first.errors)}. p{one.period} and p{other.period}, which meet the stop at {one.speed:.2f} "
+        f"and {other.speed:.2f} m/s, give {words(errors_of([one, other], plan))}."
     )
 
 
@@ -246,23 +235,21 @@ def draw(found: Sequence[Measurement], plan: Plan) -> Figure:
         1, len(plan.names), width=plotting.PAGE, height=0.082, sharey=True, squeeze=False
     )
     shown = dict(sorted(zip(places, found, strict=True), key=lambda pair: (pair[1].kept, -pair[1].together)))
-    heights = {excess: i for i, excess in enumerate(up)}
     for k, (axis, name) in enumerate(zip(axes.flat, plan.names, strict=True)):
         told, lost = np.full((2, len(up), len(across)), np.nan)
         for (f, excess), one in shown.items():
-            (told if one.kept else lost)[heights[excess], across.index(f)] = one.errors[k] * SHOWN[name][1]
-        axis.pcolormesh(across, range(len(up)), 0.0 * lost, cmap="Greys", vmin=-1.0, vmax=3.0)
-        mesh = axis.pcolormesh(across, range(len(up)), told, cmap="viridis_r", norm=LogNorm())
+            (told if one.kept else lost)[up.index(excess), across.index(f)] = one.errors[k] * SHOWN[name][1]
+        axis.pcolormesh(across, up, 0.0 * lost, cmap="Greys", vmin=-1.0, vmax=3.0)
+        mesh = axis.pcolormesh(across, up, told, cmap="viridis_r", norm=LogNorm())
         bar = figure.colorbar(mesh, ax=axis, location="top", label=SHOWN[name][0])
         bar.ax.xaxis.set_minor_formatter("")
-        axis.plot(list(letter.PERIODS), [np.interp(1e-3, up, range(len(up)))] * 6, **plotting.LETTER_POINTS)
+        axis.plot(list(letter.PERIODS), [1e-3] * 6, **plotting.LETTER_POINTS)
         for number, one in enumerate(best(found), 1):
             axis.annotate(
-                str(number), (one.frequency_hz, heights[round(one.excess, 9)]), ha="center", va="center",
+                str(number), (one.frequency_hz, one.excess), ha="center", va="center",
                 fontsize=plotting.NOTE, bbox={"boxstyle": "circle,pad=0.15", "fc": "white", "lw": 0.5},
             )  # fmt: skip
-        marks = {f"{1e3 * mark:g}": heights[round(mark, 9)] for mark in MARKS if round(mark, 9) in heights}
-        axis.set_yticks(list(marks.values()), list(marks))
+        axis.set_yscale("symlog", linthresh=STABLE)
         plotting.label(axis.xaxis, "drive frequency", "Hz")
-    plotting.label(axes[0, 0].yaxis, plotting.EXCESS, "10$^{-3}$")
+    plotting.label(axes[0, 0].yaxis, plotting.EXCESS)
     return figure

@@ -86,7 +86,7 @@ def test_the_errors_are_the_spread_of_fits():
 
 def test_one_orbit_does_not_tell_gap_restitution_and_delay_apart():
     """However much is read; with the gap from the amplitude at grazing, or with a second orbit, it does."""
-    three = Plan(names=("gap", "restitution", "delay"), before={}, velocity=True)
+    three = Plan(names=("gap", "restitution", "delay"), before={})
     for f, m in ((20.90, 3), (21.50, 4), (22.60, 6)):
         rows = design.changed(node(f, m, 1e-3)[0], three)[0][:-1, :3]
         values = np.linalg.svd(rows / np.linalg.norm(rows, axis=0), compute_uv=False)
