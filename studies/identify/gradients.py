@@ -182,6 +182,7 @@ def draw_gradients(rows: Sequence[Gradient]) -> Figure:
         axes[1].plot([row.milliseconds for row in own], error, **plotting.points(i), label=name)
     for i, across in enumerate((("relative step, or tolerance",), ("time", "ms"))):
         axes[i].set(xscale="log", yscale="log")
+        axes[i].xaxis.set_minor_formatter("")
         plotting.label(axes[i].xaxis, *across)
         plotting.label(axes[i].yaxis, "error of the gradient")
         plotting.panel(axes[i], i)

@@ -1,8 +1,9 @@
 """Where a measurement tells most of the parameters, and what the letter's own six tell.
 
-Claim: a thousand strobes of one orbit tell the period in motion twenty times better than the letter's +- 0.02
-ms; gap, restitution and delay no single orbit tells apart, two unlike ones do. The six printed pairs of
-frequency and period cannot: they leave an interval of T, by the map one that ends below 40.80 ms.
+Claim: a thousand strobes of one orbit tell the period in motion ten times better than the letter's +- 0.02
+ms, but for those of p3; gap, restitution and delay no single orbit tells apart, two unlike ones do. The six
+printed pairs of frequency and period cannot: they leave an interval of T, by the map one that ends below
+40.80 ms.
 
 The information of an orbit is that of its strobe points, read with noise (`information`):
 
