@@ -18,18 +18,20 @@ from numpy.typing import NDArray
 
 from contact import ContactError, ImpactOscillator
 from studies import letter
+from studies.files import fingerprint
 from studies.identify.fit import LEVEL, fit
 from studies.identify.records import READ_OUT, Kind, Record, synthetic
 from studies.parameters import parameters_of
 from studies.run import Run
 from studies.scene import Scene, beam_at, model_of, single_mode_at
+from studies.sweep import sweep
 
 __all__ = ["COVERED", "Coverage", "coverage"]
 
 COVERED = "Share of 90 % intervals that hold the true value, with its binomial error."
 SEED, FREQUENCY_HZ = 1996, 22.20
 CHUNK = 10
-"""Records that are fitted at once."""
+"""Records a column of the sweep, which is stored: an interrupted count goes on."""
 
 KINDS: dict[Kind, tuple[str, ...]] = {
     "strobe": ("free_period", "decay_rate", "gap"),
@@ -116,8 +118,10 @@ def coverage(scene: Scene, beam: Scene, run: Run, *, records: int, beam_records:
     rows = list[Coverage]()
     for key, trial in enumerate(trials(scene, beam)):
         chunks = math.ceil((beam_records if trial.of == "beam" else records) / CHUNK)
-        columns = list(run.map(partial(trial.column, key), range(chunks), trial.name))
-        whole = {name: np.concatenate([one[name] for one in columns]) for name in columns[0]}
+        settings = {"trial": trial.name, "seed": SEED, "chunks": chunks}
+        own = fingerprint(beam.values(), settings)[:12]  # of the sources too: another fit is done again
+        columns = sweep(run, f"coverage-{own}", settings, range(chunks), partial(trial.column, key))
+        whole = {name: np.concatenate([one[name] for one in columns if one]) for name in columns[0] or ()}
         fitted = np.isfinite(whole["error"][:, 0])
         count, small = max(int(fitted.sum()), 1), float(np.mean(whole["small"][fitted]))
         off = whole["estimate"][fitted] - np.array(list(trial.truth.values()))

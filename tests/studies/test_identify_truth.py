@@ -49,6 +49,12 @@ def test_errors_stated_wrong_are_seen(stated, agrees, trials, run, letter_scene,
     assert row.agrees is agrees and row.records == 2000 and 60 < row.refused < 140
     assert row.spread == pytest.approx(1.0 / stated, rel=0.05) and abs(row.bias) < 0.1
 
+    def again(*_):
+        raise AssertionError("what is stored is fitted again")
+
+    monkeypatch.setattr(truth, "fit", again)
+    assert truth.coverage(letter_scene, letter_scene, run, records=2000, beam_records=1) == [row]
+
 
 def test_a_record_depends_on_its_trial_and_its_number_alone(trials, monkeypatch):
     """The same in another process."""
