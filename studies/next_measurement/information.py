@@ -225,6 +225,12 @@ def answer(of: Of, found: Sequence[Measurement], plan: Plan) -> str:
     )
 
 
+def edges(centres: Array) -> Array:
+    """Borders of cells around rising `centres`, halfway between them."""
+    half = 0.5 * np.diff(centres) if centres.size > 1 else np.full(1, 0.5)
+    return np.concatenate([centres[:1] - half[:1], centres[:-1] + half, centres[-1:] + half[-1:]])
+
+
 @plotting.in_house_style
 def draw(found: Sequence[Measurement], plan: Plan) -> Figure:
     """The error of each wanted parameter by the orbit that tells most at a place; stars: the letter's pairs
@@ -234,13 +240,14 @@ def draw(found: Sequence[Measurement], plan: Plan) -> Figure:
     figure, axes = plotting.new_figure(
         1, len(plan.names), width=plotting.PAGE, height=0.082, sharey=True, squeeze=False
     )
+    cells = edges(np.array(across)), STABLE * np.sinh(edges(np.arcsinh(np.array(up) / STABLE)))
     shown = dict(sorted(zip(places, found, strict=True), key=lambda pair: (pair[1].kept, -pair[1].together)))
     for k, (axis, name) in enumerate(zip(axes.flat, plan.names, strict=True)):
         told, lost = np.full((2, len(up), len(across)), np.nan)
         for (f, excess), one in shown.items():
             (told if one.kept else lost)[up.index(excess), across.index(f)] = one.errors[k] * SHOWN[name][1]
-        axis.pcolormesh(across, up, 0.0 * lost, cmap="Greys", vmin=-1.0, vmax=3.0)
-        mesh = axis.pcolormesh(across, up, told, cmap="viridis_r", norm=LogNorm())
+        axis.pcolormesh(*cells, 0.0 * lost, cmap="Greys", vmin=-1.0, vmax=3.0)
+        mesh = axis.pcolormesh(*cells, told, cmap="viridis_r", norm=LogNorm())
         bar = figure.colorbar(mesh, ax=axis, location="top", label=SHOWN[name][0])
         bar.ax.xaxis.set_minor_formatter("")
         axis.plot(list(letter.PERIODS), [1e-3] * 6, **plotting.LETTER_POINTS)
