@@ -12,7 +12,7 @@ numbers, and, by the chain rule, of the steady motion (``contact.oscillator``)
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -25,10 +25,14 @@ from contact.laws import DELAYED
 from contact.oscillator import ImpactOscillator
 from contact.touch.tangents import Variation, variation
 
-__all__ = ["Change", "Changes"]
+__all__ = ["Change", "Changes", "Path", "change_along"]
 
 Array = NDArray[np.float64]
 ARRAYS = ("omega", "decay_rate", "phi", "participation")
+Path = Callable[[float], ImpactOscillator]
+
+STRIDE, STENCIL = 1e-3, np.arange(-2.0, 3.0)
+"""Part of the range of a path, and steps of it, for the differences of an oscillator's numbers along it."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -168,3 +172,26 @@ class Changes:
         moved = (size + 1j * times * drive.amplitude * pace * steady) * turn
         rate = w * moved + pace * drive.amplitude * steady * turn
         return np.concatenate([np.swapaxes(part, -1, -2) for part in (moved.imag, rate.real)], axis=-2)
+
+
+def change_along(path: Path, p: float, low: float, high: float) -> Change:
+    """How the numbers of ``path(p)`` change with p, per unit of p: of numbers, so that differences of order
+    four within [low, high] are good to 1e-12 of them per range."""
+    stride = STRIDE * (high - low)
+    middle = min(max(p, low + 2.0 * stride), high - 2.0 * stride)
+    rows = np.array([_numbers(path(q)) for q in middle + STENCIL * stride])
+    powers = np.vander((middle - p) / stride + STENCIL, increasing=True)
+    rates, n = np.linalg.solve(powers, rows)[1] / stride, (rows.shape[1] - 5) // 4
+    *model, (gap, first, second, frequency, amplitude) = np.split(rates, n * np.arange(1, 5))
+    return Change(
+        model=ModalChange(**dict(zip(ARRAYS, model, strict=True))), gap=float(gap),
+        law=(float(first), float(second)), frequency=float(frequency), amplitude=float(amplitude),
+    )  # fmt: skip
+
+
+def _numbers(oscillator: ImpactOscillator) -> Array:
+    """The four rows of its model, gap, numbers of the law, drive frequency and amplitude."""
+    law, drive = oscillator.stop.law, oscillator.driven
+    numbers = law.table[[1, 3], 0] if law.code == DELAYED else law.numbers
+    rows = [getattr(oscillator.model, name) for name in ARRAYS]
+    return np.concatenate([*rows, [oscillator.stop.gap, *numbers, drive.frequency, drive.amplitude]])

@@ -61,20 +61,23 @@ belong to amplitudes far beyond the letter's."""
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Branch:
-    """A branch of periodic orbits in the order of the approach velocity.
+    """A branch of periodic orbits in the order of the approach velocity, or along a path.
 
     Parameters
     ----------
     orbits : tuple of PeriodicOrbit
     events : tuple of Event
     ended_low, ended_high : str
-        Why the branch ends there: "range", or the sentence of the failure.
+        Why the branch ends there: "range", or the sentence of the failure; on a path also "closed".
+    parameters : tuple of float
+        Where the orbits lie on a path (``contact.orbits.path``); empty for other branches.
     """
 
     orbits: tuple[PeriodicOrbit, ...]
     events: tuple[Event, ...]
     ended_low: str
     ended_high: str
+    parameters: tuple[float, ...] = ()
 
     def of_kind(self, kind: str) -> list[PeriodicOrbit]:
         """The orbits at the events of one kind."""
@@ -231,7 +234,7 @@ def lowest_of(family: Followed, near: PeriodicOrbit | None = None) -> Event | No
     if fold is not None and fold.excess < 0.0 and fold.admissible:
         return Event(kind="fold", orbit=fold)
     events = _whole_branch(family, near if fold is None else fold).events
-    ends = [event for event in events if event.kind != "period doubling" and event.orbit.admissible]
+    ends = [event for event in events if event.kind in ("fold", "grazing") and event.orbit.admissible]
     return min(ends, key=lambda event: event.orbit.excess, default=None)
 
 

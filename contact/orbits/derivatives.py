@@ -150,10 +150,14 @@ def pace_of_deviations(oscillator: ImpactOscillator, q: Array, touching: bool, c
     return np.concatenate([v, slowing], axis=-1)
 
 
-def _solved(orbit: PeriodicOrbit, changes: Changes, *, at_speed: bool) -> Array:
-    """dz with the parameters, and last with the speed or the amplitude itself; (2 n_modes + 2, P + 1)."""
-    n, drive = orbit.deviations.size, drive_of(orbit)
-    _end, flow, _record = flown(
+def equations_of(orbit: PeriodicOrbit, changes: Changes) -> tuple[Array, Array, Array, Array]:
+    """(u, v) at the end of the flow from the touch of `orbit`, which need not close; its record, its
+    monodromy matrix; and the derivatives of the equations with z and the parameters.
+
+    Their rows are those of (u, v) closing, of y, of the amplitude and of y', shape (2 n_modes + 3, .).
+    """
+    n = orbit.deviations.size
+    end, flow, record = flown(
         orbit.oscillator, orbit.period, orbit.phase, orbit.deviations, orbit.impacts, changes.variation
     )
     reach, rate = at_touch(orbit, changes)
@@ -161,8 +165,14 @@ def _solved(orbit: PeriodicOrbit, changes: Changes, *, at_speed: bool) -> Array:
     q = orbit.deviations + np.concatenate(steady_motion(changes.variation.motion, orbit.phase))
     pace = pace_of_deviations(orbit.oscillator, q, False, orbit.phase)
     closing[:, n + 2 :] += np.multiply.outer(pace, orbit.period * changes.of_period)
-    ahead = np.concatenate([np.zeros(n), drive / orbit.amplitude, -changes.amplitude])
-    equations = np.vstack([closing, reach, rate if at_speed else ahead])
+    ahead = np.concatenate([np.zeros(n), drive_of(orbit) / orbit.amplitude, -changes.amplitude])
+    return end, record, flow[:n, :n], np.vstack([closing, reach, ahead, rate])
+
+
+def _solved(orbit: PeriodicOrbit, changes: Changes, *, at_speed: bool) -> Array:
+    """dz with the parameters, and last with the speed or the amplitude itself; (2 n_modes + 2, P + 1)."""
+    n = orbit.deviations.size
+    equations = np.delete(equations_of(orbit, changes)[-1], n + 1 if at_speed else n + 2, axis=0)
     unit = orbit.oscillator.unit_speed if at_speed else orbit.amplitude
     scale = np.concatenate([sizes_of(orbit), np.full(2, orbit.amplitude)])
     weight = np.concatenate([sizes_of(orbit), [orbit.oscillator.stop.gap, unit]])

@@ -5,6 +5,8 @@ zero is located by Brent's method on log v, which bisects where the number is a 
 
     fold              dZ/dv: two orbits, one stable, meet
     period doubling   det(M + I): a multiplier passes -1
+    torus             prod (1 - m_i m_j), i < j: a complex pair of multipliers passes the unit circle
+                      (Neimark-Sacker); two real ones with m_i m_j = 1 are no event
     grazing           +1 or -1: the orbit gains or loses a touch of the stop (certified flights)
 """
 
@@ -30,15 +32,31 @@ and three halvings tell apart folds closer than a hundredth of a step."""
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Event:
-    """A point on a branch: "fold", "period doubling" or "grazing"."""
+    """A point on a branch: "fold", "period doubling", "torus" or "grazing", and `parameter`, where it lies on
+    a path (``contact.orbits.path``)."""
 
     kind: str
     orbit: PeriodicOrbit
+    parameter: float | None = None
+
+
+def torus(orbit: PeriodicOrbit) -> float:
+    """prod (1 - m_i m_j) over all pairs of multipliers."""
+    i, j = np.triu_indices(orbit.multipliers.size, 1)
+    return float(np.prod(1.0 - orbit.multipliers[i] * orbit.multipliers[j]).real)
+
+
+def is_torus(orbit: PeriodicOrbit) -> bool:
+    """Whether the pair of multipliers whose product is nearest to 1 is a complex one."""
+    m = orbit.multipliers
+    i, j = np.triu_indices(m.size, 1)
+    return bool(m[i[np.argmin(np.abs(1.0 - m[i] * m[j]))]].imag)
 
 
 TESTS: dict[str, Callable[[PeriodicOrbit], float]] = {
     "fold": lambda orbit: orbit.slope,
     "period doubling": lambda orbit: float(np.prod(orbit.multipliers + 1.0).real),
+    "torus": torus,
     "grazing": lambda orbit: 1.0 if orbit.admissible else -1.0,
 }
 """What changes sign at each kind of event."""
@@ -96,4 +114,5 @@ def events_between(family: Followed, a: PeriodicOrbit, b: PeriodicOrbit) -> list
         for kind, test in TESTS.items()
         if passes(test(a), test(b))
     ]
+    found = [event for event in found if event.kind != "torus" or is_torus(event.orbit)]
     return sorted(found, key=lambda event: abs(math.log(event.orbit.speed / a.speed)))
