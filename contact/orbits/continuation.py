@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -18,7 +18,7 @@ import numpy as np
 from beam.parameters import require_array, require_kind, require_within
 from contact.errors import ContactError
 from contact.laws import NEWTON
-from contact.orbits.events import Event, events_between, locate, passes, probed
+from contact.orbits.events import Branch, Event, events_between, locate, passes, probed
 from contact.orbits.periodic_orbit import Followed, PeriodicOrbit
 
 __all__ = [
@@ -57,31 +57,6 @@ STARTS = (0.1, 0.03, 0.3, 0.01)
 LEAST_SPEED, GREATEST_SPEED = 1e-6, 2.0
 """Approach velocities, over 2 pi f gap, between which a fold is looked for: faster ones than 2 pi f gap
 belong to amplitudes far beyond the letter's."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Branch:
-    """A branch of periodic orbits in the order of the approach velocity, or along a path.
-
-    Parameters
-    ----------
-    orbits : tuple of PeriodicOrbit
-    events : tuple of Event
-    ended_low, ended_high : str
-        Why the branch ends there: "range", or the sentence of the failure; on a path also "closed".
-    parameters : tuple of float
-        Where the orbits lie on a path (``contact.orbits.path``); empty for other branches.
-    """
-
-    orbits: tuple[PeriodicOrbit, ...]
-    events: tuple[Event, ...]
-    ended_low: str
-    ended_high: str
-    parameters: tuple[float, ...] = ()
-
-    def of_kind(self, kind: str) -> list[PeriodicOrbit]:
-        """The orbits at the events of one kind."""
-        return [event.orbit for event in self.events if event.kind == kind]
 
 
 Pairs = Iterator[tuple[PeriodicOrbit, PeriodicOrbit]]

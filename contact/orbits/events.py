@@ -20,7 +20,7 @@ import numpy as np
 
 from contact.orbits.periodic_orbit import Followed, PeriodicOrbit
 
-__all__ = ["Event", "events_between", "locate", "passes", "probed"]
+__all__ = ["Branch", "Event", "events_between", "locate", "passes", "probed"]
 
 PLACE = 1e-10
 """Accuracy of log v at a located point; the excess there is good to the square of it at a fold."""
@@ -38,6 +38,31 @@ class Event:
     kind: str
     orbit: PeriodicOrbit
     parameter: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Branch:
+    """A branch of periodic orbits in the order of the approach velocity, or along a path.
+
+    Parameters
+    ----------
+    orbits : tuple of PeriodicOrbit
+    events : tuple of Event
+    ended_low, ended_high : str
+        Why the branch ends there: "range", or the sentence of the failure; on a path also "closed".
+    parameters : tuple of float
+        Where the orbits lie on a path (``contact.orbits.path``); empty for other branches.
+    """
+
+    orbits: tuple[PeriodicOrbit, ...]
+    events: tuple[Event, ...]
+    ended_low: str
+    ended_high: str
+    parameters: tuple[float, ...] = ()
+
+    def of_kind(self, kind: str) -> list[PeriodicOrbit]:
+        """The orbits at the events of one kind."""
+        return [event.orbit for event in self.events if event.kind == kind]
 
 
 def torus(orbit: PeriodicOrbit) -> float:

@@ -25,9 +25,8 @@ from beam.parameters import require, require_kind, require_within
 from contact.change import Changes, Path, change_along
 from contact.errors import ContactError, NotPeriodic
 from contact.flight.modal_flow import steady_motion
-from contact.orbits.continuation import Branch
 from contact.orbits.derivatives import drive_of, equations_of, sizes_of
-from contact.orbits.events import TESTS, Event, is_torus, passes
+from contact.orbits.events import TESTS, Branch, Event, is_torus, passes
 from contact.orbits.periodic_orbit import PeriodicOrbit
 from contact.simulation import simulate
 from contact.virtual_motion import deviations
@@ -242,8 +241,8 @@ class _Curve:
             turn = orbit.amplitude * np.exp(1j * orbit.oscillator.driven.angular_frequency * time)
             start = deviations(orbit.oscillator.motion(), time, q, rate)
             z = np.concatenate([start, [turn.imag, turn.real, self.parameter(here.x)]])
-            there = self.solve(z / self.scale, p_axis, orbit.impacts)
-            here = there.along(p_axis * here.direction[-1])
+            forward = p_axis * here.direction[-1]
+            here = self.solve(z / self.scale, p_axis, orbit.impacts).along(forward)
         for touches in (orbit.impacts + 1, orbit.impacts - 1):
             for length in ACROSS if touches else ():
                 there = self.near(here, length, touches)
