@@ -89,9 +89,7 @@ class OrbitDerivatives:
         orbit, changes, n = self.orbit, self.changes, self.orbit.oscillator.n_modes
         if not orbit.admissible:
             raise NoDerivative(
-                time=orbit.phase,
-                gap=0.0,
-                velocity=orbit.speed,
+                time=orbit.phase, gap=0.0, velocity=orbit.speed,
                 detail="the orbit meets the stop at another time than its touches",
             )
         state, period = orbit.state(), orbit.oscillator.period
@@ -186,9 +184,7 @@ def _solved(orbit: PeriodicOrbit, changes: Changes, *, at_speed: bool) -> Array:
         inverse = np.full_like(matrix, np.inf)
     if not np.max(np.abs(inverse)) < STEEPEST:
         raise NoDerivative(
-            time=orbit.phase,
-            gap=0.0,
-            velocity=orbit.speed,
+            time=orbit.phase, gap=0.0, velocity=orbit.speed,
             detail=f"the orbit of period {orbit.period} does not follow from its "
             f"{'approach speed' if at_speed else 'amplitude'} here, as at a fold",
         )

@@ -38,14 +38,13 @@ Array = NDArray[np.float64]
 CONVERGED, MOST_ITERATIONS = 1e-11, 8
 """Largest residual in units of the sizes, and iterations of Newton's method."""
 
-LEAST_PART, SMALLEST, MOST_STEPS = 0.02, 1e-9, 5000
-"""Part of the longest step below which a gained or lost touch is looked for, arc length to which it is
-located, and bound of steps."""
+SMALLEST, MOST_STEPS = 1e-9, 5000
+"""Arc length to which a graze is located, and bound of steps."""
 
 BEND = 0.3
 """Largest angle between the directions of neighbours [rad], and part of a step by which it may miss."""
 
-ACROSS = (1e-6, 1e-5, 1e-4, 1e-3)
+ACROSS = tuple(10.0**-k for k in range(9, 2, -1))
 """Steps tried from a grazing orbit to the first one with another number of touches."""
 
 PLACE = 1e-11
@@ -197,19 +196,14 @@ class _Curve:
         points, events, here, step = [first], list[Event](), first, 0.3 * self.step
         while len(points) < MOST_STEPS:
             there = self.near(here, step, here.orbit.impacts)
-            if there is None and step > LEAST_PART * self.step:
+            if there is None and step > SMALLEST:
                 step *= 0.5
                 continue
             if there is None:
-                last = self.last_before(here, step)
-                p, there = self.parameter(last.x), self.with_other_touches(last)
-                events.append(Event(kind="grazing", orbit=last.orbit, parameter=p))
+                p, there = self.parameter(here.x), self.with_other_touches(here)
+                events.append(Event(kind="grazing", orbit=here.orbit, parameter=p))
                 if there is None:
-                    return (
-                        [*points, last],
-                        events,
-                        f"at {p:.9g} one of {last.orbit.impacts} touches is a graze",
-                    )
+                    return points, events, f"at {p:.9g} one of {here.orbit.impacts} touches is a graze"
             else:
                 events += self.events_between(here, there)
             points.append(there)
@@ -219,15 +213,6 @@ class _Curve:
                 return points, events, "closed"
             here, step = there, min(1.5 * step, self.step)
         return points, events, f"{MOST_STEPS} steps"
-
-    def last_before(self, here: _Point, step: float) -> _Point:
-        """The last point within a step on which the tip touches the stop as it does here."""
-        last, good, bad = here, 0.0, step
-        while bad - good > SMALLEST:
-            middle = 0.5 * (good + bad)
-            there = self.near(here, middle, here.orbit.impacts)
-            last, good, bad = (last, good, middle) if there is None else (there, middle, bad)
-        return last
 
     def with_other_touches(self, here: _Point) -> _Point | None:
         """The first point beyond a grazing orbit, with a touch more or less, started from its fastest touch:

@@ -18,10 +18,11 @@ from dataclasses import asdict
 from studies.run import Run, study
 from studies.scene import Scene
 from studies.validation.rows import Row, Section
+from studies.validation.two_masses import two_masses
 
 __all__ = ["validation"]
 
-SECTIONS: Mapping[str, Callable[[Run], Section]] = {}
+SECTIONS: Mapping[str, Callable[[Run], Section]] = {"two_masses": two_masses}
 
 
 @study()

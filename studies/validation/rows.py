@@ -26,14 +26,19 @@ class Row:
 
 def compared(
     source: str, quantity: str, published: float | None, ours: float | None,
-    source_error: float | None = None, note: str = "",
+    source_error: float | None = None, note: str = "", holds: bool | None = None,
 ) -> Row:  # fmt: skip
     """A row: "agrees" within the source's error, "differs" beyond it, "open" where nothing is published,
-    "not found" where we have none."""
+    "not found" where we have none.
+
+    `holds` says whether what the source tells in words, or a second route of ours, bears the number out.
+    """
     difference = None if published is None or ours is None else ours - published
     verdict = "open" if ours is not None else "not found"
     if difference is not None and source_error is not None:
-        verdict = "agrees" if abs(difference) <= source_error else "differs"
+        holds = abs(difference) <= source_error
+    if holds is not None:
+        verdict = "agrees" if holds else "differs"
     return Row(source=source, quantity=quantity, published=published, ours=ours, difference=difference,
                source_error=source_error, verdict=verdict, note=note)  # fmt: skip
 

@@ -1,0 +1,144 @@
+"""Two masses and a one-sided spring: example 03 of NLvib (M. Krack and J. Gross, Harmonic Balance for
+Nonlinear Vibration Problems, Springer 2019; maltekrack/NLvib at 69598c5).
+
+Masses 1 and 1, springs 0, 1, 1 with dampers 0.03 times these, a one-sided spring of 100 at gap 1 on mass 1, a
+force 0.1 cos(W t) on mass 2.  The source shows an amplitude curve that overhangs, with period doublings near
+its top, a stable stretch at W = 0.635 and a torus bifurcation below it, and prints no position.  A constant
+force f on coordinate j is participation_k = phi_k(j) with the base amplitude Z = f/W^2.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from scipy.optimize import brentq
+
+from beam import ModalModel
+from contact import HarmonicDrive, ImpactOscillator, LinearContact, State, Stop, simulate
+from contact.orbits import Branch, Event, PeriodicOrbit, Shooting, follow_path
+from studies.run import Run
+from studies.validation.rows import Curve, Panel, Row, Section, compared
+
+__all__ = ["response", "two_masses"]
+
+SOURCE, FORCE = "NLvib 03", 0.1
+SLOW, FAST, STABLE = 0.5, 0.8, 0.635
+"""W from and to which the source follows the response, and where it says it is stable."""
+
+SETTLING = 400
+"""Periods after which the motion at W = 0.635 has settled: its multipliers are 0.89."""
+
+ASIDE, NUDGE, DECADES, LONGEST = 1e-6, 1e-7, 2.0, 400_000
+"""Simulated motions on both sides of an event: distance in W (a third of the way to the next event, if it is
+closer); their first distance from the orbit; how far it should have grown or shrunk in the end by the
+multipliers, in powers of ten; and the most periods."""
+
+STEP, STEP_QUICK, SAMPLES = 0.1, 0.4, 128
+"""Longest steps along the curve; samples of a period for its first harmonic."""
+
+
+def oscillator(w: float) -> ImpactOscillator:
+    """The system driven at W = `w` [rad/s]; the second read-out is mass 2, which the source plots."""
+    squares, shapes = np.linalg.eigh(np.array([[1.0, -1.0], [-1.0, 2.0]]))
+    model = ModalModel(
+        omega=np.sqrt(squares), decay_rate=0.03 * squares, phi=shapes[0], participation=shapes[1],
+        readouts={"mass 2": shapes[1]},
+    )  # fmt: skip
+    drive = HarmonicDrive(frequency=w / (2.0 * np.pi), amplitude=FORCE / w**2)
+    return ImpactOscillator(model=model, stop=Stop(gap=1.0, law=LinearContact(stiffness=100.0)), drive=drive)
+
+
+def response(step: float) -> Branch:
+    """The orbits of period 1 with impacts, from the frequency where they begin to where they end."""
+    here = oscillator(STABLE)
+    settled = simulate(here, State(displacement=np.zeros(2), velocity=np.zeros(2)), periods=SETTLING).end
+    start = Shooting(oscillator=here, period=1).from_state(replace(settled, time=0.0))
+    return follow_path(oscillator, start, STABLE, low=SLOW, high=FAST, step=step)
+
+
+def simulated(event: Event, w: float) -> float:
+    """By how many powers of ten a simulated motion at W = `w`, started beside the orbit of an event, has left
+    it, or come back, below zero.
+
+    It runs as long as the multipliers need for `DECADES`; beside a fold, where one of them is 1, from the
+    orbit of the fold itself as long as can be.
+    """
+    here, state, periods = oscillator(w), replace(event.orbit.strobe_state(), time=0.0), LONGEST
+    if event.kind != "fold":
+        orbit = Shooting(oscillator=here, period=1).from_state(state)
+        state = replace(orbit.strobe_state(), time=0.0)
+        periods = min(math.ceil(DECADES / abs(math.log10(abs(orbit.multipliers[0])))), LONGEST)
+    end = simulate(here, replace(state, displacement=state.displacement + NUDGE), periods=periods).end
+    away = np.append(end.displacement - state.displacement, end.velocity - state.velocity)
+    return math.log10(np.linalg.norm(away) / NUDGE)
+
+
+def harmonic(orbit: PeriodicOrbit) -> float:
+    """Amplitude of the first harmonic of mass 2 along an orbit, as the source draws it."""
+    times = np.arange(SAMPLES) / SAMPLES * orbit.duration
+    run = simulate(orbit.oscillator, replace(orbit.strobe_state(), time=0.0), periods=1, times=times)
+    moved = run.displacement @ orbit.oscillator.model.readouts["mass 2"]
+    return float(2.0 / SAMPLES * abs(np.exp(-2j * np.pi * times / orbit.duration) @ moved))
+
+
+def contact_begins(near: float) -> float:
+    """W where the steady motion without contact reaches the gap, |sum phi_k f_k/(w_k^2 - W^2 + i c_k W)| = 1."""
+
+    def reach(w: float) -> float:
+        return abs(oscillator(w).tip_response()) * FORCE / w**2 - 1.0
+
+    return float(brentq(reach, near - 1e-3, near + 1e-3, xtol=1e-15))
+
+
+def two_masses(run: Run) -> Section:
+    """Rows of the events along the response curve, each by multipliers and by simulated motions."""
+    branch = response(STEP_QUICK if run.quick else STEP)
+    w, size = np.array(branch.parameters), np.array([harmonic(orbit) for orbit in branch.orbits])
+    leading = np.array([orbit.multipliers[0] for orbit in branch.orbits])
+    rows = [*claims(w, size, leading)]
+    places = np.array([event.parameter for event in branch.events], dtype=float)
+    for event, place in zip(branch.events, run.track(places, "events of two masses"), strict=True):
+        if event.kind == "grazing":
+            exact = contact_begins(place)
+            rows.append(compared(SOURCE, "W where contact begins, closed form", exact, place, 1e-9))
+            continue
+        aside = min(ASIDE, *(abs(places[places != place] - place) / 3.0))
+        left = [simulated(event, place + side * aside) for side in (-1.0, 1.0)]
+        words = f"simulated motions at W -+ {aside:.0e} move off by 10^{left[0]:.1f} and 10^{left[1]:.1f}"
+        holds = max(left) - min(left) > 1.0 and (event.kind == "fold" or min(left) < 0.0)
+        rows.append(compared(SOURCE, f"W of a {event.kind}", None, place, note=words, holds=holds))
+    stable = np.abs(leading) < 1.0
+    drawn = [
+        Curve(x=np.where(part, w, np.nan), y=np.where(part, size, np.nan), name=name, look=look, line=True)
+        for part, name, look in ((stable, "stable", 0), (~stable, "unstable", 2))
+    ]
+    for look, kind in enumerate(("fold", "period doubling", "torus", "grazing"), start=3):
+        met = [i for i, event in enumerate(branch.events) if event.kind == kind]
+        heights = [harmonic(branch.events[i].orbit) for i in met]
+        drawn.append(Curve(x=places[met], y=heights, name=kind, look=look, line=False))
+    frequency = ("drive frequency W", "rad/s")
+    return Section(
+        rows=rows,
+        panels=[
+            Panel(title="response", x=frequency, y=("first harmonic of mass 2", "1"), curves=drawn),
+            Panel(title="stability", x=frequency, y=("largest multiplier", "1"),
+                  curves=[Curve(x=w, y=np.abs(leading))]),
+        ],
+        caption="Two masses and a one-sided spring (NLvib 03): response of period 1 and its bifurcations.",
+    )  # fmt: skip
+
+
+def claims(w: np.ndarray, size: np.ndarray, leading: np.ndarray) -> Iterator[Row]:
+    """What the source says of three points of its curve."""
+    top = int(np.argmax(size))
+    yield compared(SOURCE, "multiplier at the largest response", None, float(leading[top].real),
+                   holds=bool(leading[top].real < -1.0), note=f"beyond a period doubling; at W = {w[top]:.4f}")  # fmt: skip
+    for place, words, holds in (
+        (STABLE, "stable", lambda m: abs(m) < 1.0),
+        (0.6, "beyond a torus bifurcation", lambda m: abs(m) > 1.0 and m.imag != 0.0),
+    ):
+        m = leading[np.argmin(np.abs(w - place))]
+        yield compared(SOURCE, f"largest multiplier at W = {place}", None, abs(m), holds=holds(m), note=words)
