@@ -224,7 +224,7 @@ class _Curve:
                 part[fastest] for part in (hit.start, hit.displacement_start, hit.velocity_start)
             )
             turn = orbit.amplitude * np.exp(1j * orbit.oscillator.driven.angular_frequency * time)
-            start = deviations(orbit.oscillator.motion(), time, q, rate)
+            start = deviations(orbit.oscillator.motion(), time, q, rate).ravel()
             z = np.concatenate([start, [turn.imag, turn.real, self.parameter(here.x)]])
             forward = p_axis * here.direction[-1]
             here = self.solve(z / self.scale, p_axis, orbit.impacts).along(forward)
