@@ -38,7 +38,7 @@ from contact import (
 )
 from contact import orbits as periodic
 from contact.errors import ContactError
-from contact.orbits import continuation, kick, lyapunov, shooting, single_impact
+from contact.orbits import continuation, kick, lyapunov, path, shooting, single_impact
 
 ROOT = Path(__file__).parent.parent.parent
 LONGEST = 120.0
@@ -191,6 +191,9 @@ def orbits(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], obj
     yield "lowest_of", lambda: periodic.lowest_of(family)
     yield "first_event", lambda: periodic.first_event(family, family.at_speed(0.1 * unit), -0.5)
     yield "fold_along_frequency", lambda: continuation.fold_along_frequency(family, np.array([22.2]))
+    yield "follow_path", lambda: path.follow_path(
+        oscillator.with_excess, near := family.at_speed(0.1 * unit), near.excess, low=-0.5, high=0.5, step=0.5
+    )
     several = shooting.Shooting(oscillator=oscillator, period=2, impacts=3)
     yield "Shooting.at_speed", lambda: several.at_speed(0.1 * unit)
     driven = oscillator.with_excess(0.02)

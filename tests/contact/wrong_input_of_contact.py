@@ -12,7 +12,7 @@ from wrong_input_of_beam import INF, NAN, each, fields_of, of, told
 import beam
 import contact
 from contact import Regime, integrators
-from contact.orbits import continuation, kick, lyapunov, shooting
+from contact.orbits import continuation, kick, lyapunov, path, shooting
 
 
 @cache
@@ -239,6 +239,11 @@ ORBITS = (
        kind=dict(family=each(None, eq_1()), near=0.1)),
     of(continuation.fold_along_frequency, lambda: dict(family=family(), frequencies=[22.2]),
        kind=dict(family=5, frequencies=["22.2"]), value=dict(frequencies=each(22.2, [NAN]))),
+    of(path.follow_path, lambda: dict(path=family().oscillator.with_excess, start=orbit(), at=orbit().excess,
+                                     low=-0.1, high=0.2),
+       kind=dict(start=0.1), value=dict(
+           path=told(None, "path is None; it must be a function"), at=told(0.3, "at is 0.3 [of p]"),
+           low=NAN, high=told(-0.2, "high is -0.2 [of p]"), step=told(0.0, "step is 0.0 [1]"))),
     of(continuation.orbits_at, lambda: dict(family=family(), excess=0.01),
        kind=dict(family=None), value=dict(excess=each(-1.5, NAN))),
     of(lyapunov.map_exponents, lambda: dict(strobed=system(), state=np.array([0.0, 0.0]), count=10, align=0),

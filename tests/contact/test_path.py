@@ -1,0 +1,180 @@
+"""Orbits along a path p -> oscillator, against branches by approach speed and simulated motions."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from oscillators import apart, equation_1
+from simulated_orbit import DELAYED, HERTZ, beam
+
+from beam import ModalModel
+from contact import (
+    HarmonicDrive,
+    ImpactOscillator,
+    LinearContact,
+    NewtonRestitution,
+    NotPeriodic,
+    State,
+    Stop,
+    simulate,
+)
+from contact.change import change_along
+from contact.orbits import Branch, Shooting, follow, follow_path
+from contact.orbits.events import TESTS, is_torus
+
+LAWS = {
+    "newton": equation_1(20.90, NewtonRestitution(local_restitution=0.1)),
+    "delayed": equation_1(20.90, DELAYED["constant"]),
+    "beam with Hertz contact": beam(20.90, HERTZ, modes=4),
+}
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_a_path_in_amplitude_is_the_branch_in_approach_speed(name: str) -> None:
+    family = Shooting(oscillator=LAWS[name], period=3)
+    fold = family.fold()
+    node = family.at_speed(1.3 * fold.speed, fold)
+    by_speed = follow(family, node, low=0.5 * fold.speed, high=8.0 * fold.speed)
+    highest = by_speed.orbits[-1].excess
+    found = follow_path(family.oscillator.with_excess, node, node.excess, low=-0.1, high=highest, step=0.2)
+    single = [e for e in found.events if e.orbit.impacts == 1 and e.orbit.speed > 0.5 * fold.speed]
+    for kind in ("fold", "period doubling", "grazing"):
+        expected = [event.orbit for event in by_speed.events if event.kind == kind]
+        met = sorted((event for event in single if event.kind == kind), key=lambda e: e.orbit.speed)
+        assert len(expected) >= (kind == "fold")
+        for event, orbit in zip(met, expected, strict=True):
+            digits = {"fold": (2e-12, 1e-6), "period doubling": (2e-12, 1e-9), "grazing": (1e-9, 1e-8)}[kind]
+            assert event.parameter == pytest.approx(orbit.excess, abs=digits[0])
+            assert event.orbit.speed == pytest.approx(orbit.speed, rel=digits[1])
+    for orbit, p in zip(found.orbits[::7], found.parameters[::7], strict=True):
+        like = replace(family, impacts=orbit.impacts).at_speed(orbit.speed, orbit)
+        assert orbit.excess == pytest.approx(p, abs=1e-11)
+        assert like.excess == pytest.approx(p, abs=1e-11)
+        assert orbit.slope == pytest.approx(like.slope, rel=1e-5)
+        assert apart(orbit.multipliers[:1] / like.multipliers[0], np.ones(1)) < 1e-7
+    assert found.ended_high == "range" and found.parameters[-1] == highest
+
+
+# --------------------------------------------------------------- two masses, of which one meets a spring
+
+SQUARES, SHAPES = np.linalg.eigh(np.array([[1.0, -1.0], [-1.0, 2.0]]))
+
+
+def two_masses(w: float, force: float = 1.0) -> ImpactOscillator:
+    model = ModalModel(
+        omega=np.sqrt(SQUARES), decay_rate=0.03 * SQUARES, phi=SHAPES[0], participation=SHAPES[1]
+    )
+    drive = HarmonicDrive(frequency=w / (2.0 * np.pi), amplitude=force / w**2)
+    return ImpactOscillator(model=model, stop=Stop(gap=1.0, law=LinearContact(stiffness=100.0)), drive=drive)
+
+
+def followed(w: float, touches: int, low: float, high: float, force: float = 1.0) -> Branch:
+    """From the motion that has settled at `w`."""
+    path, rest = partial(two_masses, force=force), State(displacement=np.zeros(2), velocity=np.zeros(2))
+    settled = replace(simulate(path(w), rest, periods=500).end, time=0.0)
+    start = Shooting(oscillator=path(w), period=1, impacts=touches).from_state(settled)
+    return follow_path(path, start, w, low=low, high=high, step=0.2)
+
+
+@pytest.fixture(scope="module")
+def curve() -> Branch:
+    return followed(0.3, 1, 0.24, 0.42)
+
+
+@pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
+def test_touches_are_gained_and_lost_along_the_curve(curve: Branch) -> None:
+    """Two starts with one and two touches lead along the same curve, and simulated motions repeat it."""
+    other = followed(0.4, 2, 0.24, 0.42)
+    places = [[(e.kind, e.parameter) for e in branch.events] for branch in (curve, other)]
+    assert [kind for kind, _ in places[0]] == [kind for kind, _ in places[1]] and len(places[0]) > 15
+    assert [p for _, p in places[0]] == pytest.approx([p for _, p in places[1]], abs=1e-8)
+    counts = [orbit.impacts for orbit in curve.orbits]
+    assert set(counts) == {1, 2, 3}
+    changes = [(a, b) for a, b in pairwise(curve.orbits) if a.impacts != b.impacts]
+    assert len(changes) >= 5 and all(abs(a.impacts - b.impacts) == 1 for a, b in changes)
+    for a, b in changes:  # the touch that comes or goes is a graze
+        more = max(a, b, key=lambda orbit: orbit.impacts)
+        assert more.approach.min() < 1e-3 * more.approach.max()
+    for orbit in curve.orbits[:: len(curve.orbits) // 40]:
+        run = simulate(orbit.oscillator, orbit.state(), periods=orbit.period)
+        start = orbit.state()
+        assert np.allclose(run.end.displacement, start.displacement, rtol=0.0, atol=1e-9)
+        assert run.impacts.kind.size - (run.impacts.start[-1] > start.time + 0.999999 * orbit.duration) == (
+            orbit.impacts
+        )
+
+
+@pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
+def test_events_say_what_simulated_motions_do(curve: Branch) -> None:
+    """Multipliers from small simulated deviations, without the tangents: 1, -1 or a pair on the circle."""
+    expected = {"fold": 0.0, "period doubling": np.pi}
+    for event in curve.events:
+        if event.kind == "grazing" or event.orbit.approach.min() < 0.01:
+            continue
+        start, columns = replace(event.orbit.strobe_state(), time=0.0), []
+        for axis in np.eye(4):
+            q, v = start.displacement, start.velocity
+            ends = [
+                simulate(
+                    event.orbit.oscillator, State(displacement=q + h[:2], velocity=v + h[2:]), periods=1
+                ).end
+                for h in (1e-6 * axis, -1e-6 * axis)
+            ]
+            plus, minus = (np.concatenate([end.displacement, end.velocity]) for end in ends)
+            columns.append((plus - minus) / 2e-6)
+        values = np.linalg.eigvals(np.array(columns).T)
+        if event.kind == "torus":
+            distances = np.abs(np.abs(values) - 1.0) + 10.0 * (values.imag == 0.0)
+        else:
+            distances = np.abs(values - np.exp(1j * expected[event.kind]))
+        assert distances.min() < 1e-5
+    kinds = {event.kind for event in curve.events}
+    assert kinds == {"fold", "period doubling", "torus", "grazing"}
+
+
+@pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
+def test_real_pairs_of_product_one_are_no_torus(curve: Branch) -> None:
+    signs = [TESTS["torus"](orbit) for orbit in curve.orbits]
+    passed = sum(a * b < 0.0 for a, b in pairwise(signs))
+    tori = [event for event in curve.events if event.kind == "torus"]
+    assert 0 < len(tori) < passed
+    assert all(is_torus(event.orbit) for event in tori)
+
+
+@pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
+def test_numbers_of_an_oscillator_along_a_path() -> None:
+    """Constant force is Z = f/w^2: dZ/dW = -2 Z/W, at the ends of the range too."""
+    for w in (0.3, 0.61, 0.9):
+        change = change_along(two_masses, w, 0.3, 0.9)
+        assert change.amplitude == pytest.approx(-2.0 / w**3, rel=5e-9)
+        assert change.frequency == pytest.approx(0.5 / np.pi, rel=1e-11)
+        assert np.max(np.abs(change.model.omega)) < 1e-11 and abs(change.gap) < 1e-11
+
+
+def test_a_fold_in_frequency_is_one_in_amplitude() -> None:
+    """At the frequency where the response turns round, the amplitude of its orbits is least just there."""
+    branch = followed(0.635, 1, 0.6, 0.8, force=0.1)
+    fold = next(event for event in branch.events if event.kind == "fold")
+    orbit = fold.orbit
+    family = Shooting(oscillator=two_masses(fold.parameter, 0.1), period=1)
+    sides = [family.at_speed(orbit.speed * (1.0 + h), orbit).excess - orbit.excess for h in (-1e-3, 1e-3)]
+    assert min(sides) > 1e-7 or max(sides) < -1e-7
+    assert abs(orbit.slope) * orbit.speed < 1e-7
+    assert orbit.excess == pytest.approx(two_masses(fold.parameter, 0.1).excess, abs=1e-11)
+
+
+def test_no_orbit_next_to_the_start() -> None:
+    family = Shooting(oscillator=LAWS["newton"], period=3)
+    start = family.at_speed(1.3 * family.fold().speed)
+    with pytest.raises(NotPeriodic, match="orbit of period 3"):
+        follow_path(
+            lambda f: equation_1(f, NewtonRestitution(local_restitution=0.9)),
+            start,
+            22.0,
+            low=21.0,
+            high=23.0,
+        )
