@@ -35,8 +35,9 @@ __all__ = ["follow_path"]
 
 Array = NDArray[np.float64]
 
-CONVERGED, MOST_ITERATIONS = 1e-11, 8
-"""Largest residual in units of the sizes, and iterations of Newton's method."""
+CONVERGED, ROUNDED, MOST_ITERATIONS = 1e-12, 1e-9, 8
+"""Largest residual in units of the sizes; below which an iterate that no longer improves counts, as in
+``contact.orbits.shooting``; and iterations of Newton's method."""
 
 SMALLEST, MOST_STEPS = 1e-9, 5000
 """Arc length to which a graze is located, and bound of steps."""
@@ -139,20 +140,24 @@ class _Curve:
 
     def solve(self, x: Array, normal: Array, touches: int) -> _Point:
         """The point of the curve next to `x`, in the plane through it across `normal`."""
-        guess, error = x, math.inf
+        guess, best, found = x, math.inf, _Point(x=x, direction=normal, orbit=self.like)
         for iteration in range(MOST_ITERATIONS):
             orbit, residual, rows = self.equations(x, touches)
             error = float(np.max(np.abs(residual)))
+            if iteration > 0 and best < ROUNDED and not error < best:
+                return found
             try:
                 inverse = np.linalg.inv(np.vstack([rows[:-1], normal]))
             except np.linalg.LinAlgError:
                 break
-            if iteration > 0 and error < CONVERGED:
-                direction = inverse[:, -1] / np.linalg.norm(inverse[:, -1])
+            if iteration > 0:
+                direction, best = inverse[:, -1] / np.linalg.norm(inverse[:, -1]), error
                 slope = _slope(orbit, rows[:, :-1] / self.scale[:-1])
-                return _Point(x=x, direction=direction, orbit=replace(orbit, slope=slope, residual=error))
+                found = _Point(x=x, direction=direction, orbit=replace(orbit, slope=slope, residual=error))
+                if error < CONVERGED:
+                    return found
             x = x - inverse @ np.append(residual, normal @ (x - guess))
-        words = f"Newton's method found no orbit of period {self.like.period} (residual {error:.1e})"
+        words = f"Newton's method found no orbit of period {self.like.period} (residual {best:.1e})"
         raise NotPeriodic(time=0.0, gap=0.0, velocity=0.0, detail=words)
 
     def equations(self, x: Array, touches: int) -> tuple[PeriodicOrbit, Array, Array]:

@@ -50,12 +50,15 @@ def test_a_path_in_amplitude_is_the_branch_in_approach_speed(name: str) -> None:
             digits = {"fold": (2e-12, 1e-6), "period doubling": (2e-12, 1e-9), "grazing": (1e-9, 1e-8)}[kind]
             assert event.parameter == pytest.approx(orbit.excess, abs=digits[0])
             assert event.orbit.speed == pytest.approx(orbit.speed, rel=digits[1])
-    for orbit, p in zip(found.orbits[::7], found.parameters[::7], strict=True):
-        like = replace(family, impacts=orbit.impacts).at_speed(orbit.speed, orbit)
+    for orbit, p in zip(found.orbits, found.parameters, strict=True):
         assert orbit.excess == pytest.approx(p, abs=1e-11)
-        assert like.excess == pytest.approx(p, abs=1e-11)
-        assert orbit.slope == pytest.approx(like.slope, rel=1e-5)
-        assert apart(orbit.multipliers[:1] / like.multipliers[0], np.ones(1)) < 1e-7
+        # towards grazing multipliers grow as 1/v, and rounding with them; with several touches the speed of
+        # the first one turns round along the curve
+        if orbit.impacts == 1 and orbit.speed > 1e-3 * fold.speed:
+            like = family.at_speed(orbit.speed, orbit)
+            assert like.excess == pytest.approx(p, abs=1e-12)
+            assert orbit.slope == pytest.approx(like.slope, rel=1e-6, abs=1e-9)
+            assert apart(orbit.multipliers[:1] / like.multipliers[0], np.ones(1)) < 1e-7
     assert found.ended_high == "range" and found.parameters[-1] == highest
 
 
