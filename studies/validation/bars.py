@@ -31,7 +31,7 @@ LAST = np.arange(-127, 1) / 128.0  # of the last drive period, where the tip is 
 
 def series(count: int, held: bool) -> tuple[Array, Array]:
     """The first exact modes."""
-    k: Array = np.arange(count) + 0.5 * held
+    k = np.array([i + 0.5 * held for i in range(count)])
     return math.pi * k, np.where(k == 0.0, 1.0, math.sqrt(2.0))
 
 
