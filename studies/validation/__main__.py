@@ -17,12 +17,18 @@ from dataclasses import asdict
 
 from studies.run import Run, study
 from studies.scene import Scene
+from studies.validation.bars import bar_at_wall, bouncing_bar, two_bars
 from studies.validation.rows import Row, Section
 from studies.validation.two_masses import two_masses
 
 __all__ = ["validation"]
 
-SECTIONS: Mapping[str, Callable[[Run], Section]] = {"two_masses": two_masses}
+SECTIONS: Mapping[str, Callable[[Run], Section]] = {
+    "two_masses": two_masses,
+    "bouncing_bar": bouncing_bar,
+    "two_bars": two_bars,
+    "bar_at_wall": bar_at_wall,
+}
 
 
 @study()

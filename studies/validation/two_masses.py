@@ -31,13 +31,13 @@ SLOW, FAST, STABLE = 0.5, 0.8, 0.635
 SETTLING = 400
 """Periods after which the motion at W = 0.635 has settled: its multipliers are 0.89."""
 
-ASIDE, NUDGE, DECADES, LONGEST = 1e-6, 1e-7, 2.0, 400_000
-"""Simulated motions on both sides of an event: distance in W (a third of the way to the next event, if it is
-closer); their first distance from the orbit; how far it should have grown or shrunk in the end by the
-multipliers, in powers of ten; and the most periods."""
+FULL, QUICK = (0.1, 1e-6, 400_000), (0.4, 1e-5, 200_000)
+"""Longest step along the curve; distance in W at which each event is asked of simulated motions on both sides
+(a third of the way to the next event, if it is closer); and their most periods."""
 
-STEP, STEP_QUICK, SAMPLES = 0.1, 0.4, 128
-"""Longest steps along the curve; samples of a period for its first harmonic."""
+NUDGE, DECADES, SAMPLES = 1e-7, 2.0, 128
+"""First distance of a simulated motion from the orbit; how far it should have grown or shrunk in the end by
+the multipliers, in powers of ten; samples of a period for its first harmonic."""
 
 
 def oscillator(w: float) -> ImpactOscillator:
@@ -59,18 +59,18 @@ def response(step: float) -> Branch:
     return follow_path(oscillator, start, STABLE, low=SLOW, high=FAST, step=step)
 
 
-def simulated(event: Event, w: float) -> float:
+def simulated(event: Event, w: float, longest: int) -> float:
     """By how many powers of ten a simulated motion at W = `w`, started beside the orbit of an event, has left
     it, or come back, below zero.
 
     It runs as long as the multipliers need for `DECADES`; beside a fold, where one of them is 1, from the
     orbit of the fold itself as long as can be.
     """
-    here, state, periods = oscillator(w), replace(event.orbit.strobe_state(), time=0.0), LONGEST
+    here, state, periods = oscillator(w), replace(event.orbit.strobe_state(), time=0.0), longest
     if event.kind != "fold":
         orbit = Shooting(oscillator=here, period=1).from_state(state)
         state = replace(orbit.strobe_state(), time=0.0)
-        periods = min(math.ceil(DECADES / abs(math.log10(abs(orbit.multipliers[0])))), LONGEST)
+        periods = min(math.ceil(DECADES / abs(math.log10(abs(orbit.multipliers[0])))), longest)
     end = simulate(here, replace(state, displacement=state.displacement + NUDGE), periods=periods).end
     away = np.append(end.displacement - state.displacement, end.velocity - state.velocity)
     return math.log10(np.linalg.norm(away) / NUDGE)
@@ -85,7 +85,8 @@ def harmonic(orbit: PeriodicOrbit) -> float:
 
 
 def contact_begins(near: float) -> float:
-    """W where the steady motion without contact reaches the gap, |sum phi_k f_k/(w_k^2 - W^2 + i c_k W)| = 1."""
+    """W where the steady motion without contact reaches the gap:
+    |sum phi_k f_k/(w_k^2 - W^2 + i c_k W)| = 1."""
 
     def reach(w: float) -> float:
         return abs(oscillator(w).tip_response()) * FORCE / w**2 - 1.0
@@ -95,7 +96,8 @@ def contact_begins(near: float) -> float:
 
 def two_masses(run: Run) -> Section:
     """Rows of the events along the response curve, each by multipliers and by simulated motions."""
-    branch = response(STEP_QUICK if run.quick else STEP)
+    step, apart, longest = QUICK if run.quick else FULL
+    branch = response(step)
     w, size = np.array(branch.parameters), np.array([harmonic(orbit) for orbit in branch.orbits])
     leading = np.array([orbit.multipliers[0] for orbit in branch.orbits])
     rows = [*claims(w, size, leading)]
@@ -105,8 +107,8 @@ def two_masses(run: Run) -> Section:
             exact = contact_begins(place)
             rows.append(compared(SOURCE, "W where contact begins, closed form", exact, place, 1e-9))
             continue
-        aside = min(ASIDE, *(abs(places[places != place] - place) / 3.0))
-        left = [simulated(event, place + side * aside) for side in (-1.0, 1.0)]
+        aside = min(apart, *(abs(places[places != place] - place) / 3.0))
+        left = [simulated(event, place + side * aside, longest) for side in (-1.0, 1.0)]
         words = f"simulated motions at W -+ {aside:.0e} move off by 10^{left[0]:.1f} and 10^{left[1]:.1f}"
         holds = max(left) - min(left) > 1.0 and (event.kind == "fold" or min(left) < 0.0)
         rows.append(compared(SOURCE, f"W of a {event.kind}", None, place, note=words, holds=holds))
@@ -134,8 +136,10 @@ def two_masses(run: Run) -> Section:
 def claims(w: np.ndarray, size: np.ndarray, leading: np.ndarray) -> Iterator[Row]:
     """What the source says of three points of its curve."""
     top = int(np.argmax(size))
-    yield compared(SOURCE, "multiplier at the largest response", None, float(leading[top].real),
-                   holds=bool(leading[top].real < -1.0), note=f"beyond a period doubling; at W = {w[top]:.4f}")  # fmt: skip
+    words, highest = f"beyond a period doubling; at W = {w[top]:.4f}", float(leading[top].real)
+    yield compared(
+        SOURCE, "multiplier at the largest response", None, highest, holds=highest < -1.0, note=words
+    )
     for place, words, holds in (
         (STABLE, "stable", lambda m: abs(m) < 1.0),
         (0.6, "beyond a torus bifurcation", lambda m: abs(m) > 1.0 and m.imag != 0.0),
