@@ -25,8 +25,10 @@ def draw(panels: Sequence[Panel]) -> Figure:
     for number, (panel, axis) in enumerate(zip(panels, axes.flat, strict=False)):
         for curve in panel.curves:
             style = plotting.series(curve.look) | ({"marker": ""} if curve.line else {"linestyle": "none"})
+            style |= {"alpha": 0.4, "linewidth": 0.8} if curve.faint else {}
             axis.plot(curve.x, curve.y, label=curve.name or "_", **style)
-        plotting.panel(axis, number, panel.title)
+        if len(panels) > 1:
+            plotting.panel(axis, number, panel.title)
         plotting.label(axis.xaxis, *panel.x)
         plotting.label(axis.yaxis, *panel.y)
         if any(curve.name for curve in panel.curves):

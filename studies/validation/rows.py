@@ -45,13 +45,15 @@ def compared(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Curve:
-    """Points (x, y) of one kind; `look` is a number of the house's series, `line` False for markers only."""
+    """Points (x, y) of one kind; `look` is a number of the house's series, `line` False for markers only,
+    `faint` for what is not stable."""
 
     x: ArrayLike
     y: ArrayLike
     name: str = ""
     look: int = 0
     line: bool = True
+    faint: bool = False
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -17,27 +17,25 @@ import numpy as np
 from scipy.optimize import brentq
 
 from beam import ModalModel
-from contact import HarmonicDrive, ImpactOscillator, LinearContact, State, Stop, simulate
-from contact.orbits import Branch, Event, PeriodicOrbit, Shooting, follow_path
+from contact import HarmonicDrive, ImpactOscillator, LinearContact, Stop, simulate
+from contact.orbits import Event, PeriodicOrbit, Shooting
 from studies.run import Run
+from studies.validation.responses import drawn, followed, motion
 from studies.validation.rows import Curve, Panel, Row, Section, compared
 
-__all__ = ["response", "two_masses"]
+__all__ = ["two_masses"]
 
 SOURCE, FORCE = "NLvib 03", 0.1
 SLOW, FAST, STABLE = 0.5, 0.8, 0.635
 """W from and to which the source follows the response, and where it says it is stable."""
 
-SETTLING = 400
-"""Periods after which the motion at W = 0.635 has settled: its multipliers are 0.89."""
-
 FULL, QUICK = (0.1, 1e-6, 400_000), (0.4, 1e-5, 200_000)
 """Longest step along the curve; distance in W at which each event is asked of simulated motions on both sides
 (a third of the way to the next event, if it is closer); and their most periods."""
 
-NUDGE, DECADES, SAMPLES = 1e-7, 2.0, 128
+NUDGE, DECADES = 1e-7, 2.0
 """First distance of a simulated motion from the orbit; how far it should have grown or shrunk in the end by
-the multipliers, in powers of ten; samples of a period for its first harmonic."""
+the multipliers, in powers of ten."""
 
 
 def oscillator(w: float) -> ImpactOscillator:
@@ -49,14 +47,6 @@ def oscillator(w: float) -> ImpactOscillator:
     )  # fmt: skip
     drive = HarmonicDrive(frequency=w / (2.0 * np.pi), amplitude=FORCE / w**2)
     return ImpactOscillator(model=model, stop=Stop(gap=1.0, law=LinearContact(stiffness=100.0)), drive=drive)
-
-
-def response(step: float) -> Branch:
-    """The orbits of period 1 with impacts, from the frequency where they begin to where they end."""
-    here = oscillator(STABLE)
-    settled = simulate(here, State(displacement=np.zeros(2), velocity=np.zeros(2)), periods=SETTLING).end
-    start = Shooting(oscillator=here, period=1).from_state(replace(settled, time=0.0))
-    return follow_path(oscillator, start, STABLE, low=SLOW, high=FAST, step=step)
 
 
 def simulated(event: Event, w: float, longest: int) -> float:
@@ -78,10 +68,9 @@ def simulated(event: Event, w: float, longest: int) -> float:
 
 def harmonic(orbit: PeriodicOrbit) -> float:
     """Amplitude of the first harmonic of mass 2 along an orbit, as the source draws it."""
-    times = np.arange(SAMPLES) / SAMPLES * orbit.duration
-    run = simulate(orbit.oscillator, replace(orbit.strobe_state(), time=0.0), periods=1, times=times)
-    moved = run.displacement @ orbit.oscillator.model.readouts["mass 2"]
-    return float(2.0 / SAMPLES * abs(np.exp(-2j * np.pi * times / orbit.duration) @ moved))
+    times, modes = motion(orbit)
+    turning = np.exp(-2j * np.pi * times / orbit.duration)
+    return float(2.0 * abs(np.mean(turning * (modes @ orbit.oscillator.model.readouts["mass 2"]))))
 
 
 def contact_begins(near: float) -> float:
@@ -97,7 +86,7 @@ def contact_begins(near: float) -> float:
 def two_masses(run: Run) -> Section:
     """Rows of the events along the response curve, each by multipliers and by simulated motions."""
     step, apart, longest = QUICK if run.quick else FULL
-    branch = response(step)
+    branch = followed(oscillator, STABLE, low=SLOW, high=FAST, step=step)
     w, size = np.array(branch.parameters), np.array([harmonic(orbit) for orbit in branch.orbits])
     leading = np.array([orbit.multipliers[0] for orbit in branch.orbits])
     rows = [*claims(w, size, leading)]
@@ -112,20 +101,16 @@ def two_masses(run: Run) -> Section:
         words = f"simulated motions at W -+ {aside:.0e} move off by 10^{left[0]:.1f} and 10^{left[1]:.1f}"
         holds = max(left) - min(left) > 1.0 and (event.kind == "fold" or min(left) < 0.0)
         rows.append(compared(SOURCE, f"W of a {event.kind}", None, place, note=words, holds=holds))
-    stable = np.abs(leading) < 1.0
-    drawn = [
-        Curve(x=np.where(part, w, np.nan), y=np.where(part, size, np.nan), name=name, look=look, line=True)
-        for part, name, look in ((stable, "stable", 0), (~stable, "unstable", 2))
-    ]
+    curves = drawn(branch, harmonic)
     for look, kind in enumerate(("fold", "period doubling", "torus", "grazing"), start=3):
         met = [i for i, event in enumerate(branch.events) if event.kind == kind]
         heights = [harmonic(branch.events[i].orbit) for i in met]
-        drawn.append(Curve(x=places[met], y=heights, name=kind, look=look, line=False))
+        curves.append(Curve(x=places[met], y=heights, name=kind, look=look, line=False))
     frequency = ("drive frequency W", "rad/s")
     return Section(
         rows=rows,
         panels=[
-            Panel(title="response", x=frequency, y=("first harmonic of mass 2", "1"), curves=drawn),
+            Panel(title="response", x=frequency, y=("first harmonic of mass 2", "1"), curves=curves),
             Panel(title="stability", x=frequency, y=("largest multiplier", "1"),
                   curves=[Curve(x=w, y=np.abs(leading))]),
         ],
