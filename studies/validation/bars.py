@@ -139,7 +139,9 @@ def bar_at_wall(run: Run) -> Section:
     """Clamped-free bar against an elastic wall (Vadcard, Batailly, Thouverez 2022): response curves to where
     they turn round."""
     rows, panels = [], []
-    known = {"20 elements": elements(20, True), "40 exact modes": series(40, True)}
+    known = {"20 elements": elements(20, True)}
+    if not run.quick:
+        known["40 exact modes"] = series(40, True)
     for words, modes in known.items():
         curves = []
         for look, wall in enumerate(run.track(WALLS[:2] if run.quick else WALLS, words)):
@@ -156,5 +158,5 @@ def bar_at_wall(run: Run) -> Section:
             stable, unstable = drawn(found, half_span, 1e3, look)
             curves += [replace(stable, name=f"{wall:g} EA/L"), replace(unstable, name="")]
         panels.append(Panel(title=words, x=("frequency", "krad/s"), y=("half span", "gaps"), curves=curves))
-    caption = "Periodic responses of a bar at a wall, pale where unstable; 20 elements are few at stiff walls."
+    caption = "A bar at a wall, pale where unstable; 20 elements are few at stiff walls."
     return Section(rows=rows, panels=panels, caption=caption)

@@ -29,7 +29,7 @@ SOURCE, FORCE = "NLvib 03", 0.1
 SLOW, FAST, STABLE = 0.5, 0.8, 0.635
 """W from and to which the source follows the response, and where it says it is stable."""
 
-FULL, QUICK = (0.1, 1e-6, 400_000), (0.4, 1e-5, 200_000)
+FULL, QUICK = (0.1, 1e-6, 400_000), (0.4, 1e-5, 50_000)
 """Longest step along the curve; distance in W at which each event is asked of simulated motions on both sides
 (a third of the way to the next event, if it is closer); and their most periods."""
 
