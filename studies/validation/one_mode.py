@@ -117,7 +117,7 @@ def coco(run: Run) -> Section:
     """Grazing, and which orbits of one impact a period pierce the wall, for A from 0.01 to 1."""
     row, rows, panels = partial(compared, "COCO 15.2"), [], []
     stop = Stop(gap=1.0, law=NewtonRestitution(local_restitution=0.8))
-    for w in (1.0, 0.3):
+    for w in (1.0, 0.6):
         family = orbits.MaximalFamily(oscillator=driven(w, 0.1, stop), period=1)
         grazing = family.oscillator.grazing_amplitude() * w * w
         fast = family.orbits(1 / grazing - 1)[-1].speed * np.geomspace(1e-4, 2, 40 if run.quick else 400)
@@ -190,11 +190,11 @@ def aberdeen(run: Run) -> Section:
             chaos = [w for w, name, *_ in cells if name == "chaos"]
             told = ", ".join(f"{name} {next(w)[0]:.5f}" for name, w in groupby(cells, lambda one: one[1]))
             w, _, largest, x = zip(*cells, strict=True)
-            rows += [row(f"chaos from w, a = {a}, {words}", None, min(chaos, default=None), note=told),
-                     row(f"chaos to w, a = {a}, {words}", None, max(chaos, default=None),
-                         note=f"largest exponent {max(largest):.3f}, w in steps of {step}")]  # fmt: skip
+            band = f"chaos from {min(chaos):.5f} to {max(chaos):.5f}" if chaos else "no chaos"
+            rows += [row(f"width of chaos in w, a = {a}, {words}", None, step * len(chaos), note=told),
+                     row(f"largest exponent, a = {a}, {words}", None, max(largest), note=band)]  # fmt: skip
             exponents.append(Curve(x=w, y=largest, name=words, look=look))
             points.append(Curve(x=np.repeat(w, 12), y=np.concatenate(x), name=words, look=look, line=False))
         panels += [Panel(title=f"a = {a}", x=("w", "1"), y=("x/e at the strobe", "1"), curves=points),
                    Panel(title="", x=("w", "1"), y=("exponent", "1/period"), curves=exponents)]  # fmt: skip
-    return Section(rows=rows, panels=panels, caption="Orbit diagrams and largest Lyapunov exponents.")
+    return Section(rows=rows, panels=panels, caption=f"Orbit diagrams and exponents, w in steps of {step}.")
