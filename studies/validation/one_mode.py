@@ -45,7 +45,7 @@ def driven(w: float, decay: float, stop: Stop, base: float = 1.0) -> ImpactOscil
     return ImpactOscillator(model=model, stop=stop, drive=drive)
 
 
-rig = partial(driven, decay=0.02, stop=Stop(gap=1.26, law=LinearContact(stiffness=29.0)))  # Aberdeen's
+rig = partial(driven, decay=0.02, stop=Stop(gap=1.0, law=LinearContact(stiffness=29.0)))  # x, a over e
 
 
 def p2(w: float) -> orbits.Shooting:
@@ -117,7 +117,7 @@ def coco(run: Run) -> Section:
     """Grazing, and which orbits of one impact a period pierce the wall, for A from 0.01 to 1."""
     row, rows, panels = partial(compared, "COCO 15.2"), [], []
     stop = Stop(gap=1.0, law=NewtonRestitution(local_restitution=0.8))
-    for w in (1.0, 0.3):
+    for w in (1.0, 0.6):
         family = orbits.MaximalFamily(oscillator=driven(w, 0.1, stop), period=1)
         grazing = family.oscillator.grazing_amplitude() * w * w
         fast = family.orbits(1 / grazing - 1)[-1].speed * np.geomspace(1e-4, 2, 40 if run.quick else 400)
@@ -157,7 +157,7 @@ def scan(run: Run, a: float, ws: np.ndarray, state: contact.State) -> list[Cell]
     """w, attractor, largest exponent and strobe points, the state carried along; 3000 periods at each w."""
     found = []
     for w in run.track(ws, f"a = {a}"):
-        strobed = StroboscopicMap(oscillator=rig(w, base=a))
+        strobed = StroboscopicMap(oscillator=rig(w, base=a / 1.26))
         try:
             end = orbits.settle(strobed, replace(state, time=0.0), most_cycles=3000)
             name, state = f"p{end.period}/{end.impacts}", replace(end.end, time=0.0)
@@ -176,25 +176,25 @@ def aberdeen(run: Run) -> Section:
     """Grazing, and the attractors around it by scans of w (experiments: Ing, Pavlovskaia et al. 2008)."""
     row, rows, panels, step = partial(compared, "Aberdeen rig"), [], [], 2e-4 if run.quick else 2e-5
     for a in (0.7, 0.8, 0.9):
-        graze = brentq(lambda w, a=a: rig(w, base=a).grazing_amplitude() - a, 0.7, 0.9, xtol=1e-15)
+        graze = brentq(lambda w, a=a: 1.26 * rig(w).grazing_amplitude() - a, 0.7, 0.9, xtol=1e-15)
         rows.append(row(f"w at grazing, a = {a}", 0.80193 if a == 0.7 else None, graze, 5e-6))
         ws, points, exponents = graze + np.arange(-0.0014, 0.003, step) + 0.5 * step, [], []
-        below, steady = ws[ws < graze][::-1], StroboscopicMap(oscillator=rig(ws[0], base=a)).steady()
-        strobed = StroboscopicMap(oscillator=rig(below[0], base=a))
-        starts = [contact.State(displacement=x, velocity=0 * x) for x in np.linspace(-1.2, 1.2, 25)[:, None]]
+        below, steady = ws[ws < graze][::-1], StroboscopicMap(oscillator=rig(ws[0], base=a / 1.26)).steady()
+        strobed = StroboscopicMap(oscillator=rig(below[0], base=a / 1.26))
+        starts = [contact.State(displacement=x, velocity=0 * x) for x in np.linspace(-1, 1, 25)[:, None]]
         ends = (orbits.settle(strobed, start, most_cycles=3000) for start in starts)
         other = next((end.end for end in ends if end.period not in (1, 2, 5)), steady)
-        scans = (("up", ws, steady), ("down", ws[::-1], steady), ("another", below, other))
+        scans = (("up", ws, steady), ("down", ws[::-1], steady), ("coexisting", below, other))
         for look, (words, order, start) in enumerate(scans):
             cells = scan(run, a, order, start)
             chaos = [w for w, name, *_ in cells if name == "chaos"]
             told = ", ".join(f"{name} {next(w)[0]:.5f}" for name, w in groupby(cells, lambda one: one[1]))
             w, _, largest, x = zip(*cells, strict=True)
-            rows += [row(f"chaos from w, a = {a}, {words}", None, min(chaos, default=None), note=told),
-                     row(f"chaos to w, a = {a}, {words}", None, max(chaos, default=None),
-                         note=f"largest exponent {max(largest):.3f}, w in steps of {step}")]  # fmt: skip
+            band = f"chaos from {min(chaos):.5f} to {max(chaos):.5f}" if chaos else "no chaos"
+            rows += [row(f"width of chaos in w, a = {a}, {words}", None, step * len(chaos), note=told),
+                     row(f"largest exponent, a = {a}, {words}", None, max(largest), note=band)]  # fmt: skip
             exponents.append(Curve(x=w, y=largest, name=words, look=look))
             points.append(Curve(x=np.repeat(w, 12), y=np.concatenate(x), name=words, look=look, line=False))
-        panels += [Panel(title=f"a = {a}", x=("w", "1"), y=("x at the strobe", "1"), curves=points),
+        panels += [Panel(title=f"a = {a}", x=("w", "1"), y=("x/e at the strobe", "1"), curves=points),
                    Panel(title="", x=("w", "1"), y=("exponent", "1/period"), curves=exponents)]  # fmt: skip
-    return Section(rows=rows, panels=panels, caption="Orbit diagrams and largest Lyapunov exponents.")
+    return Section(rows=rows, panels=panels, caption=f"Orbit diagrams and exponents, w in steps of {step}.")
