@@ -18,12 +18,17 @@ from dataclasses import asdict
 from studies.run import Run, study
 from studies.scene import Scene
 from studies.validation.bars import bar_at_wall, bouncing_bar, two_bars
+from studies.validation.one_mode import aberdeen, coco, ghosh_simpson, sdnd122
 from studies.validation.rows import Row, Section
 from studies.validation.two_masses import two_masses
 
 __all__ = ["validation"]
 
 SECTIONS: Mapping[str, Callable[[Run], Section]] = {
+    "ghosh_simpson": ghosh_simpson,
+    "coco": coco,
+    "sdnd122": sdnd122,
+    "aberdeen": aberdeen,
     "two_masses": two_masses,
     "bouncing_bar": bouncing_bar,
     "two_bars": two_bars,
