@@ -54,10 +54,6 @@ GRAZED = 1e-2
 STARTS = (0.1, 0.03, 0.3, 0.01)
 """Approach velocities, over 2 pi f gap, at which a branch is entered where kicks show no fold."""
 
-FLAT = 1e-14
-"""Change of the excess with log v below which an orbit is a fold: it is rounding, of either sign, where the
-kick description is exact and leads to the fold itself."""
-
 LEAST_SPEED, GREATEST_SPEED = 1e-6, 2.0
 """Approach velocities, over 2 pi f gap, between which a fold is looked for: faster ones than 2 pi f gap
 belong to amplitudes far beyond the letter's."""
@@ -255,8 +251,6 @@ def _fold_near(family: Followed, near: PeriodicOrbit | None) -> PeriodicOrbit | 
         return None
     start, unit = family.at_speed(guess.speed, near), family.oscillator.unit_speed
     slow, fast = LEAST_SPEED * unit, GREATEST_SPEED * unit
-    if abs(start.slope) * start.speed < FLAT:
-        return start
     if slow < start.speed < fast:
         for a, b in _downhill(family, start, slow, fast):
             if passes(a.slope, b.slope):
