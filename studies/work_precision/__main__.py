@@ -6,9 +6,9 @@ that proves nothing (note [11]), costs about the same, and so does heyoka where 
 as the run.
 
 Five problems: Eq. (1) with the hard wall; the scene's beam with a linear contact that lasts as long as
-Hertz's; the same with Hertz's contact; the beam of code_aster's SDNL32 swung on a spring; the
-periodic motion of NLvib's two masses, by harmonic balance, shooting and settling. For every method,
-the package's own and outside solvers, and every setting:
+Hertz's; the same with Hertz's contact; the beam of code_aster's SDNL32 swung on a spring; the periodic motion
+of NLvib's two masses, found by harmonic balance, shooting or settling. For every method, the package's own
+and outside solvers, and every setting:
 
     error     of mode 1 past the first collision
     missed    share of shallow crossings of known depth that are not noticed by the free modes' motion

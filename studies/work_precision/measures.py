@@ -184,14 +184,17 @@ def orbit_rows(*, quick: bool, repeats: int) -> tuple[Reference, list[Row]]:
 
     def balance(order: int) -> State:
         found = balanced(o, order, SAMPLES[order], start)
-        return State(displacement=found.modes(0.0)[0], velocity=found.modes(0.0, 1)[0])
+        return State(displacement=found.modes(np.zeros(1))[0], velocity=found.modes(np.zeros(1), 1)[0])
+
+    def later(periods: int) -> State:
+        return simulate(o, start, periods=periods).end
 
     def shot() -> State:
         return Shooting(oscillator=o, period=1).from_state(start).strobe_state()
 
     jobs = [("harmonic balance", f"order {n}", partial(balance, n)) for n in SAMPLES if n < 81 or not quick]
-    jobs += [("settling", f"{n} periods", lambda n=n: simulate(o, start, periods=n).end) for n in SETTLING]
-    for label, text, work in [*jobs, ("shooting", "1e-12", shot)]:
+    jobs += [("settling", f"{n} periods", partial(later, n)) for n in SETTLING]
+    for label, text, work in [*jobs, ("shooting", "1e-12", partial(shot))]:
         row = Row(problem=problem.name, method=label, family=PERIODIC, setting=text, value=None,
                   certified=label != "harmonic balance")  # fmt: skip
         try:
