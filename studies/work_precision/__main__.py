@@ -5,9 +5,10 @@ the exact method that `simulate` takes by default; the letter's own scheme, the 
 that proves nothing (note [11]), costs about the same, and so does heyoka where one soft contact lasts as long
 as the run.
 
-Four problems: Eq. (1) with the hard wall; the scene's beam with a linear contact that lasts as long as
-Hertz's; the same with Hertz's contact; the beam of code_aster's SDNL32 swung on a spring. For every method,
-the package's own and outside solvers, and every setting:
+Five problems: Eq. (1) with the hard wall; the scene's beam with a linear contact that lasts as long as
+Hertz's; the same with Hertz's contact; the beam of code_aster's SDNL32 swung on a spring; the periodic motion
+of NLvib's two masses, found by harmonic balance, shooting or settling. For every method, the package's own
+and outside solvers, and every setting:
 
     error     of mode 1 past the first collision
     missed    share of shallow crossings of known depth that are not noticed by the free modes' motion
@@ -31,7 +32,7 @@ from dataclasses import dataclass
 from studies.peers import missing_solvers
 from studies.run import Run, study
 from studies.scene import Scene, harmonic
-from studies.work_precision.measures import REPEATS, SLOWEST, Row, cheapest, reference_of, rows_of
+from studies.work_precision.measures import REPEATS, SLOWEST, Row, cheapest, orbit_rows, reference_of, rows_of
 from studies.work_precision.methods import EXACT, SAMPLED, sweeps_for
 from studies.work_precision.problems import MODES, problems_of
 
@@ -66,6 +67,8 @@ def work_precision(scene: Scene, run: Run) -> Mapping[str, object]:
     rows: list[Row] = []
     for reference, sweep in run.track(jobs, "errors and costs"):  # nothing runs beside a timing
         rows += rows_of(reference, sweep, slowest=slowest, repeats=repeats)
+    reference, periodic = orbit_rows(quick=run.quick, repeats=repeats)
+    references, rows = [*references, reference], [*rows, *periodic]
     run.table("rows", rows, "Every method at every setting.", show=())
     run.table(
         "cheapest", cheapest_of(rows), "Time per drive period [us] for an error of mode 1, crossings missed."

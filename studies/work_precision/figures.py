@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from studies import plotting
 from studies.plotting import MARKERS, PALETTE
 from studies.work_precision.measures import Reference, Row
-from studies.work_precision.methods import EXACT, OUTSIDE, STEPPED
+from studies.work_precision.methods import EXACT, OUTSIDE, PERIODIC, STEPPED
 
 __all__ = ["draw_errors"]
 
@@ -33,7 +33,7 @@ def styles_of(rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
         row.method: {"marker": "*", "color": PALETTE[0], "linestyle": "none", "markersize": 9, "zorder": 5}
         for row in rows if row.family == EXACT
     }  # fmt: skip
-    for family, line in ((STEPPED, "-"), (OUTSIDE, "--")):
+    for family, line in ((STEPPED, "-"), (OUTSIDE, "--"), (PERIODIC, ":")):
         for i, name in enumerate(dict.fromkeys(row.method for row in rows if row.family == family)):
             colour, outside = COLOURS[i % len(COLOURS)], family == OUTSIDE
             found[name] = {
@@ -49,7 +49,7 @@ def styles_of(rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
 @plotting.in_house_style
 def draw_errors(rows: Sequence[Row], references: Sequence[Reference]) -> Figure:
     """Error of mode 1 against time, one panel a problem."""
-    figure, axes = plotting.new_figure(2, 2, width=plotting.PAGE, height=0.175, squeeze=False)
+    figure, axes = plotting.new_figure(3, 2, width=plotting.PAGE, height=0.25, squeeze=False)
     styles = styles_of(rows)
     for number, (reference, axis) in enumerate(zip(references, axes.flat, strict=False)):
         problem = reference.problem
@@ -65,5 +65,7 @@ def draw_errors(rows: Sequence[Row], references: Sequence[Reference]) -> Figure:
         plotting.panel(axis, number, f"{problem.title}\nreference good to 10$^{{{own}}}$")
         plotting.label(axis.xaxis, f"time per {problem.unit}", "µs")
         plotting.label(axis.yaxis, "error of mode 1")
+    for axis in axes.flat[len(references) :]:
+        axis.set_axis_off()
     plotting.legend_below(figure, axes.flat, 4)
     return figure

@@ -10,7 +10,8 @@
 All methods here use one thread, whose time is on a free core the time that passes, and does not grow on a
 busy one. None stands for what does not exist (no drive). A setting that fails is a row with the sentence of
 its failure; one whose drive period is expected to take longer than a bound, from the setting before it, is a
-row that says so.
+row that says so. For a periodic motion the error is that of mode 1 at a strobe in flight, the cost the time
+that finds it from the state 40 periods after rest. The reference has settled and errs by what does not close.
 """
 
 from __future__ import annotations
@@ -21,19 +22,22 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
+from functools import partial
 
 import numpy as np
 
-from contact import simulate
+from contact import ContactError, State, simulate
 from contact.integrators import Integrator
+from contact.orbits import Shooting
 from studies.crossings import Swing
-from studies.work_precision.methods import Sweep
-from studies.work_precision.problems import Problem
+from studies.harmonic_balance import balanced
+from studies.work_precision.methods import PERIODIC, Sweep
+from studies.work_precision.problems import Problem, driven_problem, two_masses
 from studies.work_precision.reference import DIGITS, extended_motion
 
 __all__ = [
     "REPEATS", "RINGING", "SLOWEST", "Reference", "Row", "cheapest", "cost_of", "missed_share",
-    "reference_of", "rows_of",
+    "orbit_rows", "reference_of", "rows_of",
 ]  # fmt: skip
 
 REPEATS = 9
@@ -51,6 +55,11 @@ MOST_PERIODS = 512
 PATIENCE = 0.4
 """Time spent on the repetitions of one point at most [s]; a slower run is timed once."""
 
+SAMPLES = {5: 1024, 11: 1024, 21: 1024, 41: 4096, 81: 16384, 161: 65536}
+"""Orders of harmonic balance; samples grow with their square, so that both errors fall together."""
+
+SETTLING = (20, 80, 320)
+"""Drive periods of settling: deviations fall to 0.886 in each."""
 
 OVERSHOOTS, PHASES = tuple(10.0**-p for p in range(2, 9)), 4
 """Depths of the crossings over the gap, and starts for each."""
@@ -163,6 +172,42 @@ def rows_of(
                 row = replace(row, failed=f"{type(error).__name__}: {' '.join(str(error).split())}")
         rows.append(row)
     return rows
+
+
+def orbit_rows(*, quick: bool, repeats: int) -> tuple[Reference, list[Row]]:
+    """The reference of the two masses; rows of harmonic balance, shooting and settling."""
+    problem = replace(driven_problem("two masses", "two masses, an orbit", two_masses()), unit="orbit")
+    o, settled, start = problem.oscillator, problem.cost_start, simulate(problem.oscillator, periods=40).end
+    reference = reference_of(replace(problem, start=settled, probe=problem.period))
+    found = reference.error_of(settled.displacement[0], settled.velocity[0])  # what it fails to close by
+    reference, rows = replace(reference, own_error=found), list[Row]()
+
+    def balance(order: int) -> State:
+        found = balanced(o, order, SAMPLES[order], start)
+        return State(displacement=found.modes(np.zeros(1))[0], velocity=found.modes(np.zeros(1), 1)[0])
+
+    def later(periods: int) -> State:
+        return simulate(o, start, periods=periods).end
+
+    def shot() -> State:
+        return Shooting(oscillator=o, period=1).from_state(start).strobe_state()
+
+    jobs = [("harmonic balance", f"order {n}", partial(balance, n)) for n in SAMPLES if n < 81 or not quick]
+    jobs += [("settling", f"{n} periods", partial(later, n)) for n in SETTLING]
+    for label, text, work in [*jobs, ("shooting", "1e-12", partial(shot))]:
+        row = Row(problem=problem.name, method=label, family=PERIODIC, setting=text, value=None,
+                  certified=label != "harmonic balance")  # fmt: skip
+        try:
+            end, spent = work(), list[float]()
+            for _ in range(repeats):
+                begun = time.thread_time()
+                work()
+                spent.append(1e6 * (time.thread_time() - begun))
+            error = reference.error_of(end.displacement[0], end.velocity[0])
+            rows.append(replace(row, error=error, us_per_period=statistics.median(spent)))
+        except ContactError as failure:
+            rows.append(replace(row, failed=str(failure)))
+    return reference, rows
 
 
 def cheapest(rows: Sequence[Row], target: float) -> Row | None:

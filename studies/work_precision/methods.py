@@ -26,9 +26,9 @@ from contact.integrators import (
 from studies.peers import OutsideSolver, installed_solvers
 from studies.work_precision.problems import Problem
 
-__all__ = ["EXACT", "OUTSIDE", "SAMPLED", "STEPPED", "Setting", "Sweep", "sweeps_for"]
+__all__ = ["EXACT", "OUTSIDE", "PERIODIC", "SAMPLED", "STEPPED", "Setting", "Sweep", "sweeps_for"]
 
-EXACT, STEPPED, OUTSIDE = "exact", "fixed step", "outside"
+EXACT, STEPPED, OUTSIDE, PERIODIC = "exact", "fixed step", "outside", "periodic motion"
 SAMPLED = "sampled flight"
 """The letter's own scheme, note [11]."""
 
