@@ -39,8 +39,9 @@ CONVERGED, ROUNDED, MOST_ITERATIONS = 1e-12, 1e-9, 8
 """Largest residual in units of the sizes; below which an iterate that no longer improves counts, as in
 ``contact.orbits.shooting``; and iterations of Newton's method."""
 
-SMALLEST, MOST_STEPS = 1e-9, 5000
-"""Arc length to which a graze is located, and bound of steps."""
+SMALLEST, NOISY, MOST_STEPS = 1e-9, 1e-6, 5000
+"""Arc length to which a graze is located; over which no other event is looked for, since there the tests are
+rounding; and bound of steps."""
 
 BEND = 0.3
 """Largest angle between the directions of neighbours [rad], and part of a step by which it may miss."""
@@ -199,6 +200,7 @@ class _Curve:
     def arm(self, first: _Point) -> tuple[list[_Point], list[Event], str]:
         """Points and events along the direction of `first`, and why they end."""
         points, events, here, step = [first], list[Event](), first, 0.3 * self.step
+        looked = first  # up to where events have been looked for
         while len(points) < MOST_STEPS:
             there = self.near(here, step, here.orbit.impacts)
             if there is None and step > SMALLEST:
@@ -209,8 +211,10 @@ class _Curve:
                 events.append(Event(kind="grazing", orbit=here.orbit, parameter=p))
                 if there is None:
                     return points, events, f"at {p:.9g} one of {here.orbit.impacts} touches is a graze"
-            else:
-                events += self.events_between(here, there)
+                looked = there
+            elif np.linalg.norm(there.x - looked.x) > NOISY:
+                events += self.events_between(looked, there)
+                looked = there
             points.append(there)
             if self.parameter(there.x) in (self.low, self.high):
                 return points, events, "range"

@@ -20,6 +20,7 @@ from studies.scene import Scene
 from studies.validation.bars import bar_at_wall, bouncing_bar, two_bars
 from studies.validation.one_mode import aberdeen, coco, ghosh_simpson, sdnd122
 from studies.validation.rows import Row, Section
+from studies.validation.two_beams import two_beams
 from studies.validation.two_masses import two_masses
 
 __all__ = ["validation"]
@@ -33,6 +34,7 @@ SECTIONS: Mapping[str, Callable[[Run], Section]] = {
     "bouncing_bar": bouncing_bar,
     "two_bars": two_bars,
     "bar_at_wall": bar_at_wall,
+    "two_beams": two_beams,
 }
 
 
