@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from studies import plotting
 from studies.validation.rows import Panel
 
 __all__ = ["draw"]
+
+MANY = 50
+"""Points beyond which they are dots."""
 
 
 @plotting.in_house_style
@@ -25,6 +29,8 @@ def draw(panels: Sequence[Panel]) -> Figure:
     for number, (panel, axis) in enumerate(zip(panels, axes.flat, strict=False)):
         for curve in panel.curves:
             style = plotting.series(curve.look) | ({"marker": ""} if curve.line else {"linestyle": "none"})
+            if not curve.line and np.size(curve.x) > MANY:
+                style |= {"markersize": 1.2, "markeredgewidth": 0.0, "rasterized": True}
             style |= {"alpha": 0.4, "linewidth": 0.8} if curve.faint else {}
             axis.plot(curve.x, curve.y, label=curve.name or "_", **style)
         if len(panels) > 1:

@@ -99,7 +99,7 @@ def ghosh_simpson(run: Run) -> Section:
     curves = [Curve(x=ws, y=[bifurcation(w).excess for w in ws], name="folds"),
               Curve(x=[*excess][:3], y=[*excess.values()][:3], name="published", line=False),
               Curve(x=ws, y=bend * (ws - resonance) ** 2, name="tangent parabola", look=1)]  # fmt: skip
-    panel = Panel(title="", x=("w", "1"), y=("F/F_g - 1", "1"), curves=curves)
+    panel = Panel(title="", x=("w", "1"), y=(r"$F/F_g - 1$", "1"), curves=curves)
     return Section(rows=rows, panels=[panel], caption="Folds of p2 touch grazing at resonance.")
 
 
@@ -149,7 +149,7 @@ def sdnd122(run: Run) -> Section:
             row(f"f at e = {e[-2]:.5g}", None, f[-2], note=f"bouncing limit {limit:.9f}")]  # fmt: skip
     curves = [Curve(x=np.log10(e[:-1]), y=f[:-1], name="simulated"),
               Curve(x=np.log10(e[-1:]), y=[0.646694], name="published", look=1, line=False)]  # fmt: skip
-    panel = Panel(title="", x=("log10 E/(k gap^2)", "1"), y=("frequency", "Hz"), curves=curves)
+    panel = Panel(title="", x=(r"$\log_{10}\,E/(k\,gap^2)$", "1"), y=("frequency", "Hz"), curves=curves)
     return Section(rows=rows, panels=[panel], caption="Frequency of free oscillation against a spring.")
 
 

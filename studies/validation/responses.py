@@ -42,10 +42,12 @@ def motion(orbit: PeriodicOrbit) -> tuple[Array, Array]:
 def drawn(
     branch: Branch, size: Callable[[PeriodicOrbit], float], unit: float = 1.0, look: int = 0
 ) -> list[Curve]:
-    """Sizes of the orbits along a curve over its parameter in `unit`, stable and unstable ones apart."""
+    """Sizes of the orbits along a curve over its parameter in `unit`: the stable ones, and the others up to
+    their neighbours."""
     stable = np.array([orbit.stable for orbit in branch.orbits])
     x, y = np.array(branch.parameters) / unit, np.array([size(orbit) for orbit in branch.orbits])
+    beside = np.convolve(~stable, np.ones(3), "same") > 0.0
     return [
         Curve(x=np.where(part, x, np.nan), y=y, name=name, look=look, faint=name == "unstable")
-        for part, name in ((stable, "stable"), (~stable, "unstable"))
+        for part, name in ((stable, "stable"), (beside, "unstable"))
     ]

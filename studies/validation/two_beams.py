@@ -217,7 +217,7 @@ def two_beams(run: Run) -> Section:
         for k, f, a, b in zip(range(1, 6), measured, here.frequencies_hz, out.frequencies_hz, strict=False)
     ]
     curves, size = list[Curve](), lambda orbit: abs(fundamental(orbit))
-    for look, level in enumerate(run.track(LEVELS, "responses of two beams")):
+    for look, level in enumerate(run.track(LEVELS[-1:] if run.quick else LEVELS, "responses of two beams")):
         for words, branch in (("response", rig.response(level)), ("detached curve", rig.upper(level))):
             if branch is not None:
                 top, low, high = max(map(size, branch.orbits)), min(branch.parameters), max(branch.parameters)
@@ -231,8 +231,9 @@ def two_beams(run: Run) -> Section:
     places, sizes, levels = backbone(rig, np.arange(1.002, 1.024, 4e-3 if run.quick else 5e-4))
     reached = float(np.interp(1.7, sizes, places))
     rows.append(row("W/w1 of the backbone at 1.7 gaps", None, reached, note="theirs stays below 1.03"))
-    cases = {"as assumed": rig}
+    cases = {}
     if not run.quick:
+        cases = {"as assumed": rig}
         cases |= {f"other modes {x:.2%}": Rig(others=x) for x in (0.0005, 0.0015)}
         cases |= {f"mode 1 {x:.2%}": Rig(first=x) for x in (0.0025, 0.003)}
         cases |= {f"left mode 2 {x:+.1%}": Rig(left_2=(1.0 + x) * LEFT[1]) for x in (-0.005, 0.005)}

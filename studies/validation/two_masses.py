@@ -98,7 +98,7 @@ def two_masses(run: Run) -> Section:
             continue
         aside = min(apart, *(abs(places[places != place] - place) / 3.0))
         left = [simulated(event, place + side * aside, longest) for side in (-1.0, 1.0)]
-        words = f"simulated motions at W -+ {aside:.0e} move off by 10^{left[0]:.1f} and 10^{left[1]:.1f}"
+        words = f"{place:.10f}; motions at W -+ {aside:.0e} go off by 10^{left[0]:.1f} and 10^{left[1]:.1f}"
         holds = max(left) - min(left) > 1.0 and (event.kind == "fold" or min(left) < 0.0)
         rows.append(compared(SOURCE, f"W of a {event.kind}", None, place, note=words, holds=holds))
     curves = drawn(branch, harmonic)

@@ -1,0 +1,52 @@
+"""The comparison with published numbers as a program: what agrees, what differs, what is open."""
+
+from __future__ import annotations
+
+import csv
+
+import pytest
+
+from studies.validation import __main__ as program
+from studies.validation.rows import Section, compared
+
+
+@pytest.mark.parametrize(
+    ("numbers", "holds", "verdict"),
+    [
+        ((1.0, 1.05, 0.1), None, "agrees"), ((1.0, 0.85, 0.1), None, "differs"), ((0, 0, 0), None, "agrees"),
+        ((None, 2.0, None), None, "open"), ((1.0, 2.0, None), None, "open"), ((1.0, None, 0.1), None, "not found"),
+        ((None, 2.0, None), True, "agrees"), ((None, 2.0, None), False, "differs"),
+    ],
+)  # fmt: skip
+def test_verdicts(numbers, holds, verdict):
+    row = compared("a", "b", *numbers, holds=holds)
+    assert row.verdict == verdict
+    assert (row.difference is None) == (numbers[0] is None or numbers[1] is None)
+
+
+FAST = ("ghosh_simpson", "coco", "sdnd122", "two_masses", "bouncing_bar", "two_bars")
+
+
+def test_every_source_has_its_table_and_its_tally(run_study, monkeypatch):
+    sections = {name: program.SECTIONS[name] for name in FAST}
+    sections["nothing"] = lambda run: Section(rows=[compared("none", "a number", 1.0, 3.0, 0.5, "wrong")])
+    monkeypatch.setattr(program, "SECTIONS", sections)
+    ran = run_study("validation", "--quick")
+    differ = {each["source"]: each["differs"] for each in ran.summary["sources"]}
+    assert differ == {
+        "Ghosh and Simpson": 0, "COCO 15.2": 0, "SDND122": 1, "NLvib 03": 0, "bouncing bar": 0, "SDNL111": 0,
+        "none": 1,
+    }  # fmt: skip
+    assert sum(each["agrees"] for each in ran.summary["sources"]) >= 40
+    with (ran.folder / "rows.csv").open(newline="") as stream:
+        told = [row["verdict"] for row in csv.DictReader(stream)]
+    assert told == [row["verdict"] for row in ran.summary["rows"]]
+    assert {f"{name}.csv" for name in sections} <= {path.name for path in ran.folder.iterdir()}
+
+
+@pytest.mark.slow
+def test_the_whole_small_form(run_study):
+    ran = run_study("validation", "--quick")
+    rows = {(row["source"], row["quantity"]): row for row in ran.summary["rows"]}
+    wrong = [key for key, row in rows.items() if row["verdict"] == "differs"]
+    assert wrong == [("SDND122", "f at 0.00650108 J"), ("Woiwode and Krack 2024", "right, mode 5 [Hz]")]
