@@ -19,6 +19,7 @@ from beam.parameters import require_array, require_kind, require_within
 from contact.errors import ContactError
 from contact.laws import NEWTON
 from contact.orbits.events import Branch, Event, events_between, locate, passes, probed
+from contact.orbits.kick import SPEEDS
 from contact.orbits.periodic_orbit import Followed, PeriodicOrbit
 
 __all__ = [
@@ -246,7 +247,7 @@ def _whole_branch(family: Followed, near: PeriodicOrbit | None) -> Branch:
 def _fold_near(family: Followed, near: PeriodicOrbit | None) -> PeriodicOrbit | None:
     """The first fold downhill from `near`, or from the fold of the kick description."""
     require_followed(family, near)
-    guess = near or family.kicks.fold()
+    guess = near or family.kicks.fold() or family.kicks.fold((SPEEDS[0], GREATEST_SPEED))
     if guess is None:
         return None
     start, unit = family.at_speed(guess.speed, near), family.oscillator.unit_speed

@@ -45,7 +45,7 @@ MOST_TOUCHES = 200
 WINDOW = 0.5
 """Part of a drive period after the first touch in which further touches belong to the collision."""
 
-SPEEDS = (1e-4, 2.0)
+SPEEDS = (1e-4, 1.0)
 """Approach velocities, over 2 pi f gap, among which orbits are looked for; one beyond the upper belongs to an
 amplitude far above the letter's."""
 
