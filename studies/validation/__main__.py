@@ -25,10 +25,10 @@ from dataclasses import dataclass
 from studies.run import Run, study
 from studies.scene import Scene
 from studies.validation.bars import bar_at_wall, bouncing_bar, two_bars
+from studies.validation.nlvib import nlvib
 from studies.validation.one_mode import aberdeen, coco, ghosh_simpson, sdnd122
 from studies.validation.rows import Row, Section
 from studies.validation.two_beams import two_beams
-from studies.validation.two_masses import two_masses
 
 __all__ = ["validation"]
 
@@ -37,7 +37,7 @@ SECTIONS: Mapping[str, Callable[[Run], Section]] = {
     "coco": coco,
     "sdnd122": sdnd122,
     "aberdeen": aberdeen,
-    "two_masses": two_masses,
+    "nlvib": nlvib,
     "bouncing_bar": bouncing_bar,
     "two_bars": two_bars,
     "bar_at_wall": bar_at_wall,

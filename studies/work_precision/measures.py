@@ -31,8 +31,9 @@ from contact.integrators import Integrator
 from contact.orbits import Shooting
 from studies.crossings import Swing
 from studies.harmonic_balance import balanced
+from studies.two_masses import two_masses
 from studies.work_precision.methods import PERIODIC, Sweep
-from studies.work_precision.problems import Problem, driven_problem, two_masses
+from studies.work_precision.problems import Problem, driven_problem
 from studies.work_precision.reference import DIGITS, extended_motion
 
 __all__ = [
@@ -176,7 +177,7 @@ def rows_of(
 
 def orbit_rows(*, quick: bool, repeats: int) -> tuple[Reference, list[Row]]:
     """The reference of the two masses; rows of harmonic balance, shooting and settling."""
-    problem = replace(driven_problem("two masses", "two masses, an orbit", two_masses()), unit="orbit")
+    problem = replace(driven_problem("two masses", "two masses, an orbit", two_masses(0.635)), unit="orbit")
     o, settled, start = problem.oscillator, problem.cost_start, simulate(problem.oscillator, periods=40).end
     reference = reference_of(replace(problem, start=settled, probe=problem.period))
     found = reference.error_of(settled.displacement[0], settled.velocity[0])  # what it fails to close by

@@ -25,7 +25,6 @@ from scipy.optimize import brentq
 
 from beam import ModalModel, UniformBeam, exact_modes
 from contact import (
-    HarmonicDrive,
     ImpactOscillator,
     LinearContact,
     State,
@@ -40,7 +39,7 @@ from studies.scene import Scene, beam_at, hertz_of, single_mode_at
 
 __all__ = [
     "EXCESS", "FREQUENCY", "MODES", "Problem", "driven_problem", "hertz_beam", "linear_beam", "problems_of",
-    "swung_beam", "swung_problem", "two_masses",
+    "swung_beam", "swung_problem",
 ]  # fmt: skip
 
 FREQUENCY, EXCESS = 21.50, 0.013
@@ -157,15 +156,6 @@ def swung_problem() -> Problem:
         speed=start.velocity[0], cost_start=start, cost_periods=1,
         contact_time=float(touches.end[0] - touches.start[0]), unit=f"{1e3 * DURATION:g} ms",
     )  # fmt: skip
-
-
-def two_masses(speed: float = 0.635) -> ImpactOscillator:
-    """NLvib's example 03: masses 1 kg, springs 0, 1, 1 N/m, dampers 0.03 s times these, 100 N/m at 1 m on
-    mass 1, 0.1 N cos(w t) on mass 2, w = `speed`; at 0.635/s its stable orbit touches once a period."""
-    square, shape = np.linalg.eigh([[1.0, -1.0], [-1.0, 2.0]])
-    model = ModalModel(omega=square**0.5, decay_rate=0.03 * square, phi=shape[0], participation=shape[1])
-    drive = HarmonicDrive(frequency=speed / (2.0 * math.pi), amplitude=0.1 / speed**2)
-    return ImpactOscillator(model=model, stop=Stop(gap=1.0, law=LinearContact(stiffness=100.0)), drive=drive)
 
 
 def problems_of(scene: Scene, modes: int = MODES) -> list[Problem]:

@@ -11,20 +11,18 @@ import pytest
 from oscillators import apart, equation_1
 from simulated_orbit import DELAYED, HERTZ, beam
 
-from beam import ModalModel
 from contact import (
-    HarmonicDrive,
-    ImpactOscillator,
-    LinearContact,
     NewtonRestitution,
     NotPeriodic,
     State,
-    Stop,
     simulate,
 )
 from contact.change import change_along
 from contact.orbits import Branch, Shooting, follow, follow_path
 from contact.orbits.events import TESTS, is_torus
+from studies.two_masses import two_masses
+
+PATH = partial(two_masses, force=1.0)
 
 LAWS = {
     "newton": equation_1(20.90, NewtonRestitution(local_restitution=0.1)),
@@ -63,16 +61,6 @@ def test_a_path_in_amplitude_is_the_branch_in_approach_speed(name: str) -> None:
 
 
 # --------------------------------------------------------------- two masses, of which one meets a spring
-
-SQUARES, SHAPES = np.linalg.eigh(np.array([[1.0, -1.0], [-1.0, 2.0]]))
-
-
-def two_masses(w: float, force: float = 1.0) -> ImpactOscillator:
-    model = ModalModel(
-        omega=np.sqrt(SQUARES), decay_rate=0.03 * SQUARES, phi=SHAPES[0], participation=SHAPES[1]
-    )
-    drive = HarmonicDrive(frequency=w / (2.0 * np.pi), amplitude=force / w**2)
-    return ImpactOscillator(model=model, stop=Stop(gap=1.0, law=LinearContact(stiffness=100.0)), drive=drive)
 
 
 def followed(w: float, touches: int, low: float, high: float, force: float = 1.0) -> Branch:
@@ -152,7 +140,7 @@ def test_real_pairs_of_product_one_are_no_torus(curve: Branch) -> None:
 def test_numbers_of_an_oscillator_along_a_path() -> None:
     """Constant force is Z = f/w^2: dZ/dW = -2 Z/W, at the ends of the range too."""
     for w in (0.3, 0.61, 0.9):
-        change = change_along(two_masses, w, 0.3, 0.9)
+        change = change_along(PATH, w, 0.3, 0.9)
         assert change.amplitude == pytest.approx(-2.0 / w**3, rel=5e-9)
         assert change.frequency == pytest.approx(0.5 / np.pi, rel=1e-11)
         assert np.max(np.abs(change.model.omega)) < 1e-11 and abs(change.gap) < 1e-11

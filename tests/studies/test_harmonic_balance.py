@@ -10,11 +10,11 @@ import pytest
 
 from contact import ImpactOscillator, LinearContact, NewtonRestitution, NotPeriodic, Stop, simulate
 from studies.harmonic_balance import balanced
-from studies.work_precision.problems import two_masses
+from studies.two_masses import two_masses
 
 
 def sprung(damping: float) -> ImpactOscillator:
-    return replace(two_masses(), stop=Stop(gap=1.0, law=LinearContact(stiffness=100.0, damping=damping)))
+    return replace(two_masses(0.635), stop=Stop(gap=1.0, law=LinearContact(stiffness=100.0, damping=damping)))
 
 
 @pytest.mark.parametrize("damping", [0.0, 3.0])
@@ -42,7 +42,7 @@ def errors_of(oscillator: ImpactOscillator, order: int) -> tuple[float, ...]:
 def test_coefficients_and_errors_are_those_that_the_kinks_of_the_force_leave() -> None:
     """x''' jumps by k v: C_h = w/pi sum jump exp(-i h w t)/(h w)^4 up to (10/h w)^2, 10 rad/s being the
     frequency in contact; beyond H the series adds up to no more than if all were in phase."""
-    oscillator, h = two_masses(), np.arange(60, 151)
+    oscillator, h = two_masses(0.635), np.arange(60, 151)
     w, start = oscillator.driven.angular_frequency, simulate(oscillator, periods=400).end
     met = simulate(oscillator, start, periods=1).impacts
     times, jumps = [*met.start, *met.end], 100.0 * np.append(-met.approach, met.rebound)
@@ -65,6 +65,6 @@ def test_a_dashpot_costs_an_order() -> None:
 def test_what_cannot_be_balanced_is_refused_and_what_is_not_found_is_told() -> None:
     hard = Stop(gap=1.0, law=NewtonRestitution(local_restitution=0.5))
     with pytest.raises(ValueError, match="NewtonRestitution"):
-        balanced(replace(two_masses(), stop=hard), 21, 1024)
+        balanced(replace(two_masses(0.635), stop=hard), 21, 1024)
     with pytest.raises(NotPeriodic, match="order 21"):  # the steady response goes twice as far as the gap
-        balanced(two_masses(), 21, 1024)
+        balanced(two_masses(0.635), 21, 1024)

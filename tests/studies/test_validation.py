@@ -6,8 +6,9 @@ import csv
 
 import pytest
 
+from studies.two_masses import two_masses
 from studies.validation import __main__ as program
-from studies.validation import two_masses
+from studies.validation.nlvib import harmonic
 from studies.validation.responses import followed
 from studies.validation.rows import Section, compared
 
@@ -31,21 +32,21 @@ BY_A_BOUNDARY_PROBLEM = {
     "torus": (0.581900650365, 0.618606874267), "period doubling": (0.738783025373, 0.755586159356),
     "fold": (0.755627352609, 0.653440134549),
 }  # fmt: skip
-"""W of the two masses' bifurcations from a solution in 40 digits by a program of its own: contact and flight as
-two pieces of unknown durations, closed, with a condition on the eigenvalues of their product."""
+"""W from a solution in 40 digits by a program of its own: contact and flight as two pieces of unknown
+durations, closed, with a condition on the eigenvalues of their product."""
 
 
 def test_the_bifurcations_of_two_masses_by_a_boundary_problem_in_40_digits():
-    branch = followed(two_masses.oscillator, 0.635, low=0.5, high=0.8, step=0.3)
+    branch = followed(two_masses, 0.635, low=0.5, high=0.8, step=0.3)
     for kind, exact in BY_A_BOUNDARY_PROBLEM.items():
         found = [event.parameter for event in branch.events if event.kind == kind]
         assert found == pytest.approx(list(exact), abs=2e-12)
     here = min(branch.orbits, key=lambda orbit: abs(orbit.oscillator.drive.angular_frequency - 0.635))
     assert abs(here.multipliers[0]) == pytest.approx(0.885750370466, abs=2e-12)
-    assert two_masses.harmonic(here) == pytest.approx(0.678123770452, abs=1e-7)  # 128 samples alias a kink
+    assert harmonic(here) == pytest.approx(0.678123770452, abs=1e-7)  # 128 samples alias a kink
 
 
-FAST = ("ghosh_simpson", "coco", "sdnd122", "two_masses", "bouncing_bar", "two_bars")
+FAST = ("ghosh_simpson", "coco", "sdnd122", "nlvib", "bouncing_bar", "two_bars")
 
 
 def test_every_source_has_its_table_and_its_tally(run_study, monkeypatch):

@@ -1,10 +1,7 @@
-"""Two masses and a one-sided spring: example 03 of NLvib (M. Krack and J. Gross, Harmonic Balance for
-Nonlinear Vibration Problems, Springer 2019; maltekrack/NLvib at 69598c5).
+"""The response of NLvib's two masses: its turns, period doublings and tori.
 
-Masses 1 and 1, springs 0, 1, 1 with dampers 0.03 times these, a one-sided spring of 100 at gap 1 on mass 1, a
-force 0.1 cos(W t) on mass 2.  The source shows an amplitude curve that overhangs, with period doublings near
-its top, a stable stretch at W = 0.635 and a torus bifurcation below it, and prints no position.  A constant
-force f on coordinate j is participation_k = phi_k(j) with the base amplitude Z = f/W^2.
+The source shows an amplitude curve that overhangs, with period doublings near its top, a stable stretch at
+W = 0.635 and a torus bifurcation below it, and prints no position.
 """
 
 from __future__ import annotations
@@ -16,16 +13,16 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import brentq
 
-from beam import ModalModel
-from contact import HarmonicDrive, ImpactOscillator, LinearContact, Stop, simulate
+from contact import simulate
 from contact.orbits import Event, PeriodicOrbit, Shooting
 from studies.run import Run
+from studies.two_masses import two_masses
 from studies.validation.responses import drawn, followed, motion
 from studies.validation.rows import Curve, Panel, Row, Section, compared
 
-__all__ = ["two_masses"]
+__all__ = ["harmonic", "nlvib"]
 
-SOURCE, FORCE = "NLvib 03", 0.1
+SOURCE = "NLvib 03"
 SLOW, FAST, STABLE = 0.5, 0.8, 0.635
 """W from and to which the source follows the response, and where it says it is stable."""
 
@@ -38,17 +35,6 @@ NUDGE, DECADES = 1e-7, 2.0
 the multipliers, in powers of ten."""
 
 
-def oscillator(w: float) -> ImpactOscillator:
-    """The system driven at W = `w` [rad/s]; the second read-out is mass 2, which the source plots."""
-    squares, shapes = np.linalg.eigh(np.array([[1.0, -1.0], [-1.0, 2.0]]))
-    model = ModalModel(
-        omega=np.sqrt(squares), decay_rate=0.03 * squares, phi=shapes[0], participation=shapes[1],
-        readouts={"mass 2": shapes[1]},
-    )  # fmt: skip
-    drive = HarmonicDrive(frequency=w / (2.0 * np.pi), amplitude=FORCE / w**2)
-    return ImpactOscillator(model=model, stop=Stop(gap=1.0, law=LinearContact(stiffness=100.0)), drive=drive)
-
-
 def simulated(event: Event, w: float, longest: int) -> float:
     """By how many powers of ten a simulated motion at W = `w`, started beside the orbit of an event, has left
     it, or come back, below zero.
@@ -56,7 +42,7 @@ def simulated(event: Event, w: float, longest: int) -> float:
     It runs as long as the multipliers need for `DECADES`; beside a fold, where one of them is 1, from the
     orbit of the fold itself as long as can be.
     """
-    here, state, periods = oscillator(w), replace(event.orbit.strobe_state(), time=0.0), longest
+    here, state, periods = two_masses(w), replace(event.orbit.strobe_state(), time=0.0), longest
     if event.kind != "fold":
         orbit = Shooting(oscillator=here, period=1).from_state(state)
         state = replace(orbit.strobe_state(), time=0.0)
@@ -78,15 +64,15 @@ def contact_begins(near: float) -> float:
     |sum phi_k f_k/(w_k^2 - W^2 + i c_k W)| = 1."""
 
     def reach(w: float) -> float:
-        return abs(oscillator(w).tip_response()) * FORCE / w**2 - 1.0
+        return abs(two_masses(w).tip_response()) * two_masses(w).driven.amplitude - 1.0
 
     return float(brentq(reach, near - 1e-3, near + 1e-3, xtol=1e-15))
 
 
-def two_masses(run: Run) -> Section:
+def nlvib(run: Run) -> Section:
     """Rows of the events along the response curve, each by multipliers and by simulated motions."""
     step, apart, longest = QUICK if run.quick else FULL
-    branch = followed(oscillator, STABLE, low=SLOW, high=FAST, step=step)
+    branch = followed(two_masses, STABLE, low=SLOW, high=FAST, step=step)
     w, size = np.array(branch.parameters), np.array([harmonic(orbit) for orbit in branch.orbits])
     leading = np.array([orbit.multipliers[0] for orbit in branch.orbits])
     rows = [*claims(w, size, leading)]
