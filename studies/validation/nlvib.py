@@ -17,10 +17,10 @@ from contact import simulate
 from contact.orbits import Event, PeriodicOrbit, Shooting
 from studies.run import Run
 from studies.two_masses import two_masses
-from studies.validation.responses import drawn, followed, motion
+from studies.validation.responses import drawn, followed, harmonic
 from studies.validation.rows import Curve, Panel, Row, Section, compared
 
-__all__ = ["harmonic", "nlvib"]
+__all__ = ["nlvib"]
 
 SOURCE = "NLvib 03"
 SLOW, FAST, STABLE = 0.5, 0.8, 0.635
@@ -52,11 +52,9 @@ def simulated(event: Event, w: float, longest: int) -> float:
     return math.log10(np.linalg.norm(away) / NUDGE)
 
 
-def harmonic(orbit: PeriodicOrbit) -> float:
-    """Amplitude of the first harmonic of mass 2 along an orbit, as the source draws it."""
-    times, modes = motion(orbit)
-    turning = np.exp(-2j * np.pi * times / orbit.duration)
-    return float(2.0 * abs(np.mean(turning * (modes @ orbit.oscillator.model.readouts["mass 2"]))))
+def size(orbit: PeriodicOrbit) -> float:
+    """Amplitude of the first harmonic of mass 2, as the source draws it."""
+    return abs(harmonic(orbit, "mass 2"))
 
 
 def contact_begins(near: float) -> float:
@@ -73,9 +71,9 @@ def nlvib(run: Run) -> Section:
     """Rows of the events along the response curve, each by multipliers and by simulated motions."""
     step, apart, longest = QUICK if run.quick else FULL
     branch = followed(two_masses, STABLE, low=SLOW, high=FAST, step=step)
-    w, size = np.array(branch.parameters), np.array([harmonic(orbit) for orbit in branch.orbits])
+    w, sizes = np.array(branch.parameters), np.array([size(orbit) for orbit in branch.orbits])
     leading = np.array([orbit.multipliers[0] for orbit in branch.orbits])
-    rows = [*claims(w, size, leading)]
+    rows = [*claims(w, sizes, leading)]
     places = np.array([event.parameter for event in branch.events], dtype=float)
     for event, place in zip(branch.events, run.track(places, "events of two masses"), strict=True):
         if event.kind == "grazing":
@@ -87,10 +85,10 @@ def nlvib(run: Run) -> Section:
         words = f"{place:.10f}; motions at W -+ {aside:.0e} go off by 10^{left[0]:.1f} and 10^{left[1]:.1f}"
         holds = max(left) - min(left) > 1.0 and (event.kind == "fold" or min(left) < 0.0)
         rows.append(compared(SOURCE, f"W of a {event.kind}", None, place, note=words, holds=holds))
-    curves = drawn(branch, harmonic)
+    curves = drawn(branch, size)
     for look, kind in enumerate(("fold", "period doubling", "torus", "grazing"), start=3):
         met = [i for i, event in enumerate(branch.events) if event.kind == kind]
-        heights = [harmonic(branch.events[i].orbit) for i in met]
+        heights = [size(branch.events[i].orbit) for i in met]
         curves.append(Curve(x=places[met], y=heights, name=kind, look=look, line=False))
     frequency = ("drive frequency W", "rad/s")
     return Section(

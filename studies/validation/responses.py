@@ -12,7 +12,7 @@ from contact import ImpactOscillator, State, simulate
 from contact.orbits import Branch, PeriodicOrbit, Shooting, follow_path
 from studies.validation.rows import Curve
 
-__all__ = ["drawn", "followed", "motion"]
+__all__ = ["drawn", "followed", "harmonic", "motion"]
 
 Array = NDArray[np.float64]
 Path = Callable[[float], ImpactOscillator]
@@ -31,12 +31,17 @@ def followed(path: Path, at: float, *, low: float, high: float, step: float, set
 
 
 def motion(orbit: PeriodicOrbit) -> tuple[Array, Array]:
-    """Times from a strobe on [s] and modal displacements, shape (`SAMPLES`, n_modes), over one period."""
+    """Times from a strobe on [s] and modal displacements, shape (`SAMPLES`, n_modes), over one orbit."""
     times = np.arange(SAMPLES) / SAMPLES * orbit.duration
-    run = simulate(
-        orbit.oscillator, replace(orbit.strobe_state(), time=0.0), periods=orbit.period, times=times
-    )
-    return times, run.displacement
+    start = replace(orbit.strobe_state(), time=0.0)
+    return times, simulate(orbit.oscillator, start, periods=orbit.period, times=times).displacement
+
+
+def harmonic(orbit: PeriodicOrbit, readout: str) -> complex:
+    """First harmonic of a read-out [m]; along -i it is a quarter period later than the base."""
+    times, modes = motion(orbit)
+    turning = np.exp(-2j * np.pi * times / orbit.duration)
+    return complex(2j * np.mean(turning * (modes @ orbit.oscillator.model.readouts[readout])))
 
 
 def drawn(
