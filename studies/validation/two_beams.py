@@ -41,11 +41,13 @@ LEFT, RIGHT = (30.95, 199.04, 556.82, 1085.93), (28.20, 205.54, 277.74, 594.98, 
 MODEL_ERROR = 0.03  # of frequencies: their beam model, tuned by hand, meets them to 1 ... 3 %
 LENGTH, WIDTH, HEIGHT, E, DENSITY, GAP = 0.3925, 0.060, 0.006, 210e9, 7720.0, 0.17e-3
 CONTACT, ROOT, PLATE = LENGTH - 0.0115, LENGTH - 0.0625, 0.040
-LEVELS, RAISED = (0.020, 0.028, 0.0305), 0.040  # base acceleration, m/s^2; one where all is one curve
+LEVELS, RAISED = (0.020, 0.028, 0.0305), 0.040  # base acceleration [m/s^2]; there all is one curve
 LOW, HIGH, BEYOND = 0.95, 1.08, 1.016  # W/w1: range of a response, and where its large motions are
-CAPTION = """Two beams, pale where unstable: where (b) falls, large motions are detached.  Damping and frequency
-of the left beam's mode 2 decide; only the raw records have them.  Mode 5 of the right beam is off in the
-factors of the drawing: exact transfer matrices of it give our number."""
+CAPTION = (
+    "Two beams, pale where unstable: where (b) falls, large motions are detached.  Damping and frequency of the "
+    "left beam's mode 2 decide; only the raw records have them.  Mode 5 of the right beam is off in the factors "
+    "of the drawing: exact transfer matrices of it give our number."
+)
 SETTLE = 250  # drive periods at each step of a scan: free motions die out by a factor of 70
 
 
