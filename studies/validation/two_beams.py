@@ -44,9 +44,9 @@ CONTACT, ROOT, PLATE = LENGTH - 0.0115, LENGTH - 0.0625, 0.040
 LEVELS, RAISED = (0.020, 0.028, 0.0305), 0.040  # base acceleration [m/s^2]; there all is one curve
 LOW, HIGH, BEYOND = 0.95, 1.08, 1.016  # W/w1: range of a response, and where its large motions are
 CAPTION = (
-    "Two beams, pale where unstable: where (b) falls, large motions are detached.  Damping and frequency of the "
-    "left beam's mode 2 decide; only the raw records have them.  Mode 5 of the right beam is off in the factors "
-    "of the drawing: exact transfer matrices of it give our number."
+    "Two beams, pale where unstable: where (b) falls, large motions are detached.  Damping and frequency of "
+    "the left beam's mode 2 decide; only the raw records have them.  Mode 5 of the right beam is off in the "
+    "factors of the drawing: exact transfer matrices of it give our number."
 )
 SETTLE = 250  # drive periods at each step of a scan: free motions die out by a factor of 70
 
