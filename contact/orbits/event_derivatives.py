@@ -30,7 +30,7 @@ from contact.simulation import simulate
 from contact.touch.tangents import all_tip_changes, variation
 from contact.touch_flow import FLOWN, flow_from_touch
 
-__all__ = ["doubling_derivatives", "graze_derivatives", "multiplier_derivatives"]
+__all__ = ["doubling_derivatives", "graze_derivatives", "multiplier_derivatives", "peaks"]
 
 Array = NDArray[np.float64]
 
@@ -79,7 +79,7 @@ def graze_derivatives(orbit: PeriodicOrbit, changes: Sequence[Change]) -> Array:
     found = with_speed(orbit, changes)
     oscillator, state = orbit.oscillator, orbit.state()
     none = 0, oscillator.period, -np.inf
-    last, wait, height = max(_peaks(orbit), key=lambda peak: peak[2], default=none)
+    last, wait, height = max(peaks(orbit), key=lambda peak: peak[2], default=none)
     released = orbit.record[last, 1]
     run = simulate(oscillator, state, duration=released + 0.5 * wait)
     traced, size = Retraced(found.changes, run, state), len(found.start)
@@ -96,7 +96,7 @@ def graze_derivatives(orbit: PeriodicOrbit, changes: Sequence[Change]) -> Array:
     return np.asarray(found.excess[:-1] - found.excess[-1] * risen[:-1] / risen[-1])
 
 
-def _peaks(orbit: PeriodicOrbit) -> list[tuple[int, float, float]]:
+def peaks(orbit: PeriodicOrbit) -> list[tuple[int, float, float]]:
     """The peaks of all flights, the wall ignored: after which touch, how long after it [s], and height over
     the stop [m]."""
     from scipy.optimize import brentq  # slow to import

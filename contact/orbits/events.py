@@ -30,6 +30,10 @@ PROBE, MOST_PROBES = 0.25, 4
 and three halvings tell apart folds closer than a hundredth of a step."""
 
 
+LEAST = {"torus": 1e-12}
+"""Size of a test below which its sign is rounding, as without damping, where some m_i m_j is 1."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Event:
     """A point on a branch: "fold", "period doubling", "torus" or "grazing", and `parameter`, where it lies on
@@ -87,10 +91,11 @@ TESTS: dict[str, Callable[[PeriodicOrbit], float]] = {
 """What changes sign at each kind of event."""
 
 
-def passes(here: float, there: float) -> bool:
+def passes(here: float, there: float, kind: str = "") -> bool:
     """Whether a number is zero here, as the slope of a fold that a branch starts from, or between here and
     there."""
-    return here == 0.0 or here * there < 0.0
+    least = LEAST.get(kind, 0.0)
+    return (here == 0.0 and not least) or (here * there < 0.0 and min(abs(here), abs(there)) >= least)
 
 
 def locate(
@@ -137,7 +142,7 @@ def events_between(family: Followed, a: PeriodicOrbit, b: PeriodicOrbit) -> list
     found = [
         Event(kind=kind, orbit=locate(family, a, b, test))
         for kind, test in TESTS.items()
-        if passes(test(a), test(b))
+        if passes(test(a), test(b), kind)
     ]
     found = [event for event in found if event.kind != "torus" or is_torus(event.orbit)]
     return sorted(found, key=lambda event: abs(math.log(event.orbit.speed / a.speed)))

@@ -15,13 +15,14 @@ from studies.validation.rows import Curve
 __all__ = ["drawn", "followed", "harmonic", "motion"]
 
 Array = NDArray[np.float64]
-Path = Callable[[float], ImpactOscillator]
-
 SAMPLES = 128
 """Of a period."""
 
 
-def followed(path: Path, at: float, *, low: float, high: float, step: float, settling: int = 400) -> Branch:
+def followed(
+    path: Callable[[float], ImpactOscillator], at: float, *, low: float, high: float, step: float,
+    settling: int = 400,
+) -> Branch:  # fmt: skip
     """The curve through the motion that has settled at `at`, from rest in `settling` periods."""
     here = path(at)
     settled = replace(simulate(here, State.rest(here.n_modes), periods=settling).end, time=0.0)
