@@ -119,6 +119,8 @@ def _arm(curve: Curve, first: Point, longest: float) -> Arm:
                 looked = there = beyond
             else:
                 closing = _closing(firsts, here, there) if len(points) > 3 else None
+                if closing is not None and closing.direction @ there.direction < 0.0:
+                    return points, events, "back the other way: a step was too long"
                 there = closing or there
                 if np.linalg.norm(there.x - looked.x) > NOISY:
                     events += _events_between(curve, looked, there)
@@ -148,11 +150,11 @@ def _with_other_touches(curve: Curve, here: Point) -> Point | None:
 
 def _closing(firsts: Sequence[Point], a: Point, b: Point) -> Point | None:
     """The first point of the curve, started from one of its touches, if the curve comes by it between
-    neighbours a and b in its direction."""
+    neighbours a and b, either way."""
     chord = b.x - a.x
     for first in firsts:
         way = first.x - a.x
-        part, straight = way @ chord / (chord @ chord), first.direction @ b.direction > 0.5
+        part, straight = way @ chord / (chord @ chord), abs(first.direction @ b.direction) > 0.5
         if straight and first.orbit.impacts == b.orbit.impacts and 0.0 < part <= 1.0:
             if np.linalg.norm(way - part * chord) < BEND * np.linalg.norm(chord):
                 return first

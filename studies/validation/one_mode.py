@@ -125,8 +125,11 @@ def coco(run: Run) -> Section:
         flights = [orbit for orbit in flights if 0.01 <= orbit.amplitude * w * w <= 1]
         through = np.array([highest(orbit) > 1 + 1e-12 for orbit in flights])
         wrong, note = np.sum(through == [orbit.admissible for orbit in flights]), f"{through.sum()} pierce it"
-        rows += [row(f"A at grazing, w = {w}", math.hypot(1 - w * w, 0.1 * w), grazing, 1e-15),
-                 row(f"misjudged of {len(flights)} orbits, w = {w}", 0, int(wrong), 0, note)]  # fmt: skip
+        exact, known = math.hypot(1 - w * w, 0.1 * w), (0.1, 1e-15) if w == 1.0 else (None, None)
+        rows += [row(f"A at grazing, w = {w}", known[0], grazing, known[1], f"closed form {exact:.15g}",
+                     holds=abs(grazing - exact) < 1e-15),
+                 row(f"misjudged of {len(flights)} orbits, w = {w}", None, int(wrong), None, note,
+                     holds=not wrong)]  # fmt: skip
         x, y = np.array([(orbit.amplitude * w * w, orbit.speed) for orbit in flights]).T
         curves = [Curve(x=x[~through], y=y[~through], name="admissible", line=False),
                   Curve(x=x[through], y=y[through], name="pierces the wall", look=1, line=False)]  # fmt: skip
@@ -145,7 +148,8 @@ def sdnd122(run: Run) -> Section:
     exact, limit = math.sqrt(10) / (2 * angles), math.sqrt(10) / math.pi / (1 + 1 / math.sqrt(6))
     row = partial(compared, "SDND122")
     rows = [row("f at 0.00650108 J", 0.646694, f[-1], 5e-7, f"regularised wall; closed form {exact[-1]:.9f}"),
-            row("largest f/f(closed form) - 1", 0, float(np.max(np.abs(f / exact - 1))), 1e-13),
+            row("largest f/f(closed form) - 1", None, off := float(np.max(np.abs(f / exact - 1))),
+                holds=off < 1e-13),
             row(f"f at e = {e[-2]:.5g}", None, f[-2], note=f"bouncing limit {limit:.9f}")]  # fmt: skip
     curves = [Curve(x=np.log10(e[:-1]), y=f[:-1], name="simulated"),
               Curve(x=np.log10(e[-1:]), y=[0.646694], name="published", look=1, line=False)]  # fmt: skip
@@ -177,7 +181,8 @@ def aberdeen(run: Run) -> Section:
     row, rows, panels, step = partial(compared, "Aberdeen rig"), [], [], 2e-4 if run.quick else 2e-5
     for a in (0.7, 0.8, 0.9):
         graze = brentq(lambda w, a=a: 1.26 * rig(w).grazing_amplitude() - a, 0.7, 0.9, xtol=1e-15)
-        rows.append(row(f"w at grazing, a = {a}", 0.80193 if a == 0.7 else None, graze, 5e-6))
+        known = (0.80193, 5e-6) if a == 0.7 else (None, None)
+        rows.append(row(f"w at grazing, a = {a}", known[0], graze, known[1]))
         ws, points, exponents = graze + np.arange(-0.0014, 0.003, step) + 0.5 * step, [], []
         below, steady = ws[ws < graze][::-1], StroboscopicMap(oscillator=rig(ws[0], base=a / 1.26)).steady()
         strobed = StroboscopicMap(oscillator=rig(below[0], base=a / 1.26))

@@ -31,14 +31,15 @@ def compared(
     """A row: "agrees" within the source's error, "differs" beyond it, "open" where nothing is published,
     "not found" where we have none.
 
-    `holds` says whether what the source tells in words, or a second route of ours, bears the number out.
+    `holds` says whether what the source tells in words, or a second route of ours, bears the number out:
+    "holds" or "fails".
     """
     difference = None if published is None or ours is None else ours - published
     verdict = "open" if ours is not None else "not found"
     if difference is not None and source_error is not None:
-        holds = abs(difference) <= source_error
-    if holds is not None:
-        verdict = "agrees" if holds else "differs"
+        verdict = "agrees" if abs(difference) <= source_error else "differs"
+    elif holds is not None:
+        verdict = "holds" if holds else "fails"
     return Row(source=source, quantity=quantity, published=published, ours=ours, difference=difference,
                source_error=source_error, verdict=verdict, note=note)  # fmt: skip
 

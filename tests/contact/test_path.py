@@ -11,10 +11,15 @@ import pytest
 from oscillators import apart, equation_1
 from simulated_orbit import DELAYED, HERTZ, beam
 
+from beam import ModalModel
 from contact import (
+    HarmonicDrive,
+    ImpactOscillator,
+    LinearContact,
     NewtonRestitution,
     NotPeriodic,
     State,
+    Stop,
     simulate,
 )
 from contact.change import change_along
@@ -102,10 +107,11 @@ def test_touches_are_gained_and_lost_along_the_curve(curve: Branch) -> None:
 @pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
 def test_events_say_what_simulated_motions_do(curve: Branch) -> None:
     """Multipliers from small simulated deviations, without the tangents: 1, -1 or a pair on the circle."""
-    expected = {"fold": 0.0, "period doubling": np.pi}
+    expected, checked = {"fold": 0.0, "period doubling": np.pi}, 0
     for event in curve.events:
         if event.kind == "grazing" or event.orbit.approach.min() < 0.01:
             continue
+        checked += 1
         start, columns = replace(event.orbit.strobe_state(), time=0.0), []
         for axis in np.eye(4):
             q, v = start.displacement, start.velocity
@@ -123,6 +129,7 @@ def test_events_say_what_simulated_motions_do(curve: Branch) -> None:
         else:
             distances = np.abs(values - np.exp(1j * expected[event.kind]))
         assert distances.min() < 1e-5
+    assert checked >= 12
     kinds = {event.kind for event in curve.events}
     assert kinds == {"fold", "period doubling", "torus", "grazing"}
 
@@ -169,3 +176,40 @@ def test_no_orbit_next_to_the_start() -> None:
             low=21.0,
             high=23.0,
         )
+
+
+@pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
+def test_any_event_is_a_start(curve: Branch) -> None:
+    """From a fold, where p does not tell an orbit from its neighbours, and from the ends of the range."""
+    fold = next(e for e in curve.events if e.kind == "fold")
+    doubling = next(e for e in curve.events if e.kind == "period doubling" and e.orbit.approach.min() > 0.01)
+    for event in (fold, doubling):
+        found = follow_path(PATH, event.orbit, event.parameter, low=0.24, high=0.42, step=0.3)
+        others = [e.parameter for e in curve.events if abs(e.parameter - event.parameter) > 1e-7]
+        met = [e.parameter for e in found.events if abs(e.parameter - event.parameter) > 1e-7]
+        assert sorted(met) == pytest.approx(sorted(others), abs=1e-8)
+    at_end = follow_path(PATH, curve.orbits[0], 0.24, low=0.24, high=0.26, step=0.3)
+    assert at_end.parameters[0] == 0.24 < at_end.parameters[1] and at_end.ended_low == "range"
+
+
+def test_the_reason_for_an_end_is_told() -> None:
+    """The drive may not be faster than the highest mode: no graze; an orbit that pierces the wall is none."""
+    stop = Stop(gap=1.0, law=LinearContact(stiffness=5.0))
+    unit = ModalModel(omega=[1.0], decay_rate=[0.02], phi=[1.0], participation=[1.0])
+
+    def driven(w: float) -> ImpactOscillator:
+        drive = HarmonicDrive(frequency=w / (2.0 * np.pi), amplitude=0.6)
+        return ImpactOscillator(model=unit, stop=stop, drive=drive)
+
+    start = Shooting(oscillator=driven(0.9), period=1).at_excess(
+        driven(0.9).excess, Shooting(oscillator=driven(0.9), period=1).at_speed(1.0)
+    )
+    found = follow_path(driven, start, 0.9, low=0.88, high=1.1, step=0.1)
+    assert "highest retained mode" in found.ended_high and not [
+        e for e in found.events if e.kind == "grazing"
+    ]
+    family = Shooting(oscillator=LAWS["newton"], period=3)
+    through = family.at_speed(20.0 * family.fold().speed)
+    assert not through.admissible
+    with pytest.raises(NotPeriodic, match="at another time than its touches"):
+        follow_path(family.oscillator.with_excess, through, through.excess, low=-0.1, high=1.0)
