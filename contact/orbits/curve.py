@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from contact.change import Changes, Path, change_along
+from contact.change import Change, Changes, Path, change_along
 from contact.errors import ContactError, NotPeriodic
 from contact.flight.modal_flow import steady_motion
 from contact.orbits.derivatives import drive_of, equations_of, sizes_of
@@ -85,7 +85,7 @@ class Curve:
         try:
             return self.solve(x, np.eye(x.size)[-1], touches)
         except NotPeriodic:
-            across = np.linalg.svd(self.equations(x, touches)[-1][:-1])[-1][-1]
+            across = np.linalg.svd(self.equations(x, touches, self.change(x))[-1][:-1])[-1][-1]
             return self.solve(x, across, touches)
 
     def start(self, p: float) -> Point:
@@ -95,8 +95,9 @@ class Curve:
     def solve(self, x: Array, normal: Array, touches: int) -> Point:
         """The point of the curve next to `x`, in the plane through it across `normal`."""
         guess, best, found = x, math.inf, Point(x=x, direction=normal, orbit=self.like)
+        change = self.change(x)  # p hardly moves: of the direction it touches the length of its p alone
         for iteration in range(MOST_ITERATIONS):
-            orbit, residual, rows = self.equations(x, touches)
+            orbit, residual, rows = self.equations(x, touches, change)
             error = float(np.max(np.abs(residual)))
             if iteration > 0 and best < ROUNDED and not error < best:
                 return found
@@ -114,7 +115,11 @@ class Curve:
         words = f"Newton's method found no orbit of period {self.like.period} (residual {best:.1e})"
         raise NotPeriodic(time=0.0, gap=0.0, velocity=0.0, detail=words)
 
-    def equations(self, x: Array, touches: int) -> tuple[PeriodicOrbit, Array, Array]:
+    def change(self, x: Array) -> Change:
+        """How the numbers of the oscillator change with p there."""
+        return change_along(self.path, self.parameter(x), self.low, self.high)
+
+    def equations(self, x: Array, touches: int, change: Change) -> tuple[PeriodicOrbit, Array, Array]:
         """The motion from these unknowns, which need not close; the residual of its equations, and their
         derivatives with the last row that of the approach speed, all scaled."""
         z, n, p = x * self.scale, x.size - 3, self.parameter(x)
@@ -127,7 +132,7 @@ class Curve:
             excess=reached / here.grazing_amplitude() - 1.0, speed=float(here.tip(v + q_rate)),
             record=np.empty((touches, 4 + n)), tangent=np.eye(n), slope=math.nan, residual=math.nan,
         )  # fmt: skip
-        changes = Changes(oscillator=driven, changes=(change_along(self.path, p, self.low, self.high),))
+        changes = Changes(oscillator=driven, changes=(change,))
         end, record, tangent, rows = equations_of(orbit, changes)
         weight = np.append(self.scale[:n], [here.stop.gap, self.scale[-2], here.unit_speed])
         reach = float(here.tip(u + q)) - driven.motion().gap

@@ -30,8 +30,9 @@ PROBE, MOST_PROBES = 0.25, 4
 and three halvings tell apart folds closer than a hundredth of a step."""
 
 
-LEAST = {"torus": 1e-12}
-"""Size of a test below which its sign is rounding, as without damping, where some m_i m_j is 1."""
+LEAST = {"torus": 1e-12, "turn": 1e-6}
+"""Size of a test below which its sign is rounding: without damping, where some m_i m_j is 1, and next to a
+graze, where the parameter of a path hardly changes along the curve."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -180,7 +180,7 @@ def _events_between(curve: Curve, a: Point, b: Point) -> list[Event]:
         return float(there.direction[-1]) if kind == "fold" else TESTS[kind](there.orbit)
 
     for kind in ("fold", "period doubling", "torus"):
-        if passes(test(kind, 0.0), test(kind, 1.0), kind):
+        if passes(test(kind, 0.0), test(kind, 1.0), "turn" if kind == "fold" else kind):
             place = float(brentq(partial(test, kind), 0.0, 1.0, xtol=PLACE))
             there = point(place)
             if kind != "torus" or is_torus(there.orbit):
