@@ -95,7 +95,7 @@ class Curve:
     def solve(self, x: Array, normal: Array, touches: int) -> Point:
         """The point of the curve next to `x`, in the plane through it across `normal`."""
         guess, best, found = x, math.inf, Point(x=x, direction=normal, orbit=self.like)
-        change = self.change(x)  # p hardly moves: of the direction it touches the length of its p alone
+        change = self.change(x)  # p hardly moves; where the curve turns round does not depend on it
         for iteration in range(MOST_ITERATIONS):
             orbit, residual, rows = self.equations(x, touches, change)
             error = float(np.max(np.abs(residual)))

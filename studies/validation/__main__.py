@@ -23,6 +23,7 @@ from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+from contact import ContactError
 from studies.run import Run, study
 from studies.scene import Scene
 from studies.validation.bars import bar_at_wall, bouncing_bar, two_bars
@@ -67,7 +68,11 @@ def validation(scene: Scene, run: Run) -> Mapping[str, object]:
     rows, sources = list[Row](), list[Source]()
     for name, section in SECTIONS.items():
         begun = run.wall_time
-        found = section(run)
+        try:
+            found = section(run)
+        except ContactError as error:
+            run.failed(name, error)
+            continue
         rows += found.rows
         run.table(name, found.rows, found.caption)
         if found.panels:

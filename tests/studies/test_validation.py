@@ -6,6 +6,7 @@ import csv
 
 import pytest
 
+from contact import NotPeriodic
 from studies.two_masses import two_masses
 from studies.validation import __main__ as program
 from studies.validation.responses import followed, harmonic
@@ -66,6 +67,17 @@ def test_every_source_has_its_table_and_its_tally(run_study, monkeypatch):
         told = [row["verdict"] for row in csv.DictReader(stream)]
     assert told == [row["verdict"] for row in ran.summary["rows"]]
     assert {f"{name}.csv" for name in sections} <= {path.name for path in ran.folder.iterdir()}
+
+
+def test_a_source_that_fails_does_not_take_the_others_along(run_study, monkeypatch):
+    def lost(run):
+        raise NotPeriodic(time=0.0, gap=0.0, velocity=0.0, detail="as a test has it")
+
+    sections = {"lost": lost, "two_bars": program.SECTIONS["two_bars"]}
+    monkeypatch.setattr(program, "SECTIONS", sections)
+    ran = run_study("validation")
+    assert ran.code == 3 and "as a test has it" in ran.summary["failures"][0]
+    assert [each["source"] for each in ran.summary["sources"]] == ["SDNL111"]
 
 
 @pytest.mark.slow
