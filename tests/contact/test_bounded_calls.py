@@ -192,8 +192,9 @@ def orbits(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], obj
     yield "first_event", lambda: periodic.first_event(family, family.at_speed(0.1 * unit), -0.5)
     yield "fold_along_frequency", lambda: continuation.fold_along_frequency(family, np.array([22.2]))
     yield "follow_path", lambda: path.follow_path(
-        oscillator.with_excess, near := family.at_speed(0.1 * unit), near.excess, low=-0.5, high=0.5, step=0.5
-    )
+        oscillator.with_excess, near := family.at_speed(0.1 * unit), near.excess,
+        low=near.excess, high=near.excess + 0.05, step=1.0,
+    )  # fmt: skip
     several = shooting.Shooting(oscillator=oscillator, period=2, impacts=3)
     yield "Shooting.at_speed", lambda: several.at_speed(0.1 * unit)
     driven = oscillator.with_excess(0.02)
