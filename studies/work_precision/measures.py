@@ -30,8 +30,8 @@ from contact import ContactError, State, simulate
 from contact.integrators import Integrator
 from contact.orbits import Shooting
 from studies.crossings import Swing
-from studies.harmonic_balance import balanced
 from studies.two_masses import two_masses
+from studies.work_precision.harmonic_balance import balanced
 from studies.work_precision.methods import PERIODIC, Sweep
 from studies.work_precision.problems import Problem, driven_problem
 from studies.work_precision.reference import DIGITS, extended_motion
