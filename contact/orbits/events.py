@@ -5,7 +5,7 @@ zero is located by Brent's method on log v, which bisects where the number is a 
 
     fold              dZ/dv: two orbits, one stable, meet
     period doubling   det(M + I): a multiplier passes -1
-    torus             prod (1 - m_i m_j), i < j: a complex pair of multipliers passes the unit circle
+    torus             sign of prod (1 - m_i m_j), i < j: a complex pair of multipliers passes the unit circle
                       (Neimark-Sacker); two real ones with m_i m_j = 1 are no event
     grazing           +1 or -1: the orbit gains or loses a touch of the stop (certified flights)
 """
@@ -71,9 +71,12 @@ class Branch:
 
 
 def torus(orbit: PeriodicOrbit) -> float:
-    """prod (1 - m_i m_j) over all pairs of multipliers."""
+    """The least |1 - m_i m_j| with the sign of the product over all pairs of multipliers: the product itself
+    of many modes is as small as rounding."""
     i, j = np.triu_indices(orbit.multipliers.size, 1)
-    return float(np.prod(1.0 - orbit.multipliers[i] * orbit.multipliers[j]).real)
+    factors = 1.0 - orbit.multipliers[i] * orbit.multipliers[j]
+    sizes = np.abs(factors)
+    return float(sizes.min() * np.prod(factors / sizes).real) if sizes.min() > 0.0 else 0.0
 
 
 def is_torus(orbit: PeriodicOrbit) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -78,6 +79,23 @@ def test_off_the_wall_the_bar_answers_as_a_bar():
     found = [abs(bar.tip_response()) * bar.drive.amplitude for bar in bars_at]
     b, static = rates * 0.13 / math.sqrt(210e9 / 7800.0), 25e3 * 0.13 / (210e9 * 15.6e-4)
     np.testing.assert_allclose(found, static * np.abs(np.tan(b) / b), rtol=3e-3)
+
+
+def test_stability_changes_at_events_only():
+    """Twenty modes: two tori, where a pair of multipliers leaves the unit circle and comes back; folds."""
+    path = partial(bars.at_wall, bars.elements(20, True), 4.0)
+    branch = followed(path, 6.25e4, low=5.8e4, high=7.4e4, step=0.3)
+    met = [event.parameter for event in branch.events if event.kind != "grazing"]
+    neighbours = list(pairwise(zip(branch.parameters, branch.orbits, strict=True)))
+    flips = [sorted((p, q)) for (p, a), (q, b) in neighbours if a.stable != b.stable]
+    assert len(flips) >= 3
+    last = -1 if branch.orbits[-1].stable else None  # that fold is next to the graze
+    for low, high in flips[:last]:
+        assert any(low - 100.0 < place < high + 100.0 for place in met)
+    tori = [event.orbit for event in branch.events if event.kind == "torus"]
+    assert len(tori) == 2
+    for orbit in tori:
+        assert abs(orbit.multipliers[0]) == pytest.approx(1.0, abs=1e-9) and orbit.multipliers[0].imag != 0.0
 
 
 @pytest.mark.parametrize("wall", [0.4, 4.0])
