@@ -149,7 +149,7 @@ def bar_at_wall(run: Run) -> Section:
         for look, wall in enumerate(run.track(WALLS[:2] if run.quick else WALLS, words)):
             what = f"turning frequency, wall {wall:g} EA/L, {words} [rad/s]"
             try:
-                found = followed(partial(at_wall, modes, wall), 6.25e4, low=5.8e4, high=7.4e4, step=0.3)
+                found = followed(partial(at_wall, modes, wall), 6.25e4, low=5.8e4, high=7.4e4, step=0.15)
             except ContactError as error:
                 run.failed(what, error)
                 continue
