@@ -61,12 +61,12 @@ YLine = Literal["corrected", "printed"]
 
 @kernel
 def iterate_map(x, y, alpha, gamma, gamma_impact, rho, delay_term, out):  # type: ignore[no-untyped-def]
-    """Fill `out`, shape (count, 2), with the `count` states that follow (x, y)."""
+    """Fill `out`, shape (count, 2), with the states that follow (x, y), each by its `rho`, shape (count,)."""
     for n in range(out.shape[0]):
         if x > 0.0:
-            x, y = -math.sqrt(x) + delay_term + y + rho, -gamma_impact * x
+            x, y = -math.sqrt(x) + delay_term + y + rho[n], -gamma_impact * x
         else:
-            x, y = alpha * x + y + rho, -gamma * x
+            x, y = alpha * x + y + rho[n], -gamma * x
         out[n, 0] = x
         out[n, 1] = y
 
@@ -226,12 +226,20 @@ class NordmarkMap:
         """The state (x, y), shape (2,), one drive period later."""
         return self.iterate(state, rho, 1)[0]
 
-    def iterate(self, state: ArrayLike, rho: float, count: int) -> NDArray[np.float64]:
-        """The `count` states that follow `state`, shape (count, 2); row 0 is one period later."""
+    def iterate(self, state: ArrayLike, rho: ArrayLike, count: int) -> NDArray[np.float64]:
+        """The `count` states that follow `state`, shape (count, 2); row 0 is one period later.
+
+        `rho` is one number, or one for each step, shape (count,).
+        """
         out = np.empty((require_whole("count", count, "periods", low=0), 2))
-        value = require_within("rho", rho, "[1]")
+        single = not isinstance(rho, list | tuple | np.ndarray)
+        words = "a number, or one for each step"
+        each = np.full(
+            count, require_within("rho", rho, "[1]") if single
+            else require_array("rho", rho, "[1]", shape=(count,), words=words),
+        )  # fmt: skip
         iterate_map(
-            *pair_of(state), self.alpha, self.gamma, self.gamma_impact, value, self.delay_term, out
+            *pair_of(state), self.alpha, self.gamma, self.gamma_impact, each, self.delay_term, out
         )
         return out
 

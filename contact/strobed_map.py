@@ -12,8 +12,11 @@ from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-__all__ = ["DifferentiableMap", "Jacobians", "StrobedMap", "StrobedOrbit"]
+from beam.parameters import require_array
+
+__all__ = ["DifferentiableMap", "Jacobians", "StrobedMap", "StrobedOrbit", "amplitude_factors"]
 
 S = TypeVar("S")
 
@@ -60,6 +63,22 @@ class StrobedMap(Protocol[S]):
 
     def orbit(self, state: S, count: int) -> StrobedOrbit[S]:
         """`count` periods from `state`."""
+
+
+def amplitude_factors(factors: ArrayLike | None, count: int) -> np.ndarray:
+    """Factors of the drive amplitude, one for each of `count` periods; none, shape (0,), for None.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If they are not `count` numbers above zero.
+    """
+    if factors is None:
+        return np.empty(0)
+    found = require_array("factors", factors, "[1]", shape=(count,), words="one number for each period")
+    if found.size and not found.min() > 0.0:
+        raise ValueError(f"factors holds {found.min()} [1]; every factor of the amplitude must be above 0")
+    return found.copy()  # one that may be written to, as kernels are compiled for
 
 
 @runtime_checkable

@@ -15,12 +15,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contact.compiled import kernel
+from contact.compiled import inlined, kernel
+from contact.event_loop import DONE
 from contact.flight.modal_flow import steady_motion
 from contact.flight.motion import COSINE, OFFSET, SINE, Motion, with_drive
 from contact.oscillator import ImpactOscillator
 from contact.single_mode.loop import any_periods, one_mode_periods
-from contact.single_mode.period_table import PeriodTable, period_table, table_at
+from contact.single_mode.period_table import PeriodTable, mode_at, period_table
 
 __all__ = ["StrobedSystem", "at_amplitude", "strobed_motion", "strobed_system"]
 
@@ -58,11 +59,11 @@ def strobed_system(oscillator: ImpactOscillator) -> StrobedSystem:
 
 @kernel
 def _table_at(table, motion, factor):
-    """`table` at `factor` times the amplitude, where `motion` is the motion; None stays None."""
+    """`table` at `factor` times the amplitude of its `motion`; None stays None."""
     if table is None:
         return table
     else:
-        return table_at(table, motion, factor)
+        return PeriodTable(mode_at(table.mode, motion, factor), table.rows)
 
 
 @kernel
@@ -73,11 +74,11 @@ def at_amplitude(system, factor):
     for k in range(n):
         mean[k] = motion.modes[OFFSET, k] + motion.modes[COSINE, k]
         mean[n + k] = motion.drive * motion.modes[SINE, k]
-    return StrobedSystem(motion, _table_at(system.table, motion, factor), mean, system.weight)
+    return StrobedSystem(motion, _table_at(system.table, system.motion, factor), mean, system.weight)
 
 
 @kernel
-def strobed_motion(table, system, u, v, runs, points, counts):
+def strobed_motion(table, system, factors, u, v, runs, points, counts):
     """Carry the deviation (u, v) from a strobe over as many drive periods as `counts` has places.
 
     Parameters
@@ -85,8 +86,11 @@ def strobed_motion(table, system, u, v, runs, points, counts):
     table : PeriodTable or None
         That of the system: told apart by its type, the loop that does not fit is not compiled.
     system : StrobedSystem
+    factors : ndarray, shape (periods,) or (0,)
+        By which each period multiplies the amplitude of the system [1]; none leave it as it is.  The physical
+        state goes on where the amplitude changes, at the strobe: (u, v) jumps as the steady motion does.
     u, v : ndarray, shape (n_modes,)
-        Overwritten.
+        From the steady motion of the system, before and after; overwritten.
     runs : record array of ``contact.event_loop.STATE``, shape (1,)
         Where the run stands; overwritten.
     points, counts : ndarray, shapes (periods, 2 n_modes) and (periods,)
@@ -95,13 +99,41 @@ def strobed_motion(table, system, u, v, runs, points, counts):
     Returns
     -------
     status : int
-        As that of ``event_loop.advance``.
+        As that of ``event_loop.advance``; after a failure (u, v) is from the steady motion of that period.
     """
     if table is None:
-        status = any_periods(system.motion, u, v, runs, points, counts)
-        for i in range(counts.size):
-            for k in range(points.shape[1]):
-                points[i, k] = (points[i, k] + system.mean[k]) * system.weight[k]
-        return status
+        return _any_periods(system, factors, u, v, runs, points, counts)
     else:
-        return one_mode_periods(table, system, u, v, runs, points, counts)[0]
+        return one_mode_periods(table, system, factors, u, v, runs, points, counts)[0]
+
+
+@kernel
+def _any_periods(system, factors, u, v, runs, points, counts):
+    """`strobed_motion` of any oscillator."""
+    local, run, status, factor, at = system, runs[0], DONE, 1.0, 0
+    while at < counts.size and status == DONE:
+        end = counts.size
+        if factors.size > 0:
+            end = at + 1
+            while end < counts.size and factors[end] == factors[at]:
+                end += 1
+            add_steady(system.motion, factor - factors[at], u, v)
+            factor, run.root, run.speed = factors[at], -1.0, -1.0
+            local = at_amplitude(system, factor)
+        status = any_periods(local.motion, u, v, runs, points[at:end], counts[at:end])
+        for i in range(at, end):
+            for k in range(points.shape[1]):
+                points[i, k] = (points[i, k] + local.mean[k]) * system.weight[k]
+        at = end
+    if status == DONE:
+        add_steady(system.motion, factor - 1.0, u, v)
+    return status
+
+
+@inlined
+def add_steady(motion, factor, u, v):
+    """Add `factor` times the driven part of the steady motion at a strobe to (u, v)."""
+    if factor != 0.0:
+        for k in range(motion.size):
+            u[k] += factor * motion.modes[COSINE, k]
+            v[k] += factor * motion.drive * motion.modes[SINE, k]

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from beam.parameters import require_kind, require_within
 from contact.nordmark import NordmarkMap, pair_of
-from contact.strobed_map import Jacobians, StrobedOrbit
+from contact.strobed_map import Jacobians, StrobedOrbit, amplitude_factors
 
 __all__ = ["StrobedNordmarkMap"]
 
@@ -53,9 +53,17 @@ class StrobedNordmarkMap:
         x = self.rho / (1.0 - self.map.alpha + self.map.gamma)
         return np.array([x, -self.map.gamma * x])
 
-    def orbit(self, state: ArrayLike, count: int) -> StrobedOrbit[NDArray[np.float64]]:
-        """`count` steps from `state`; the points are (x, y), shape (count, 2)."""
-        points = np.vstack([pair_of(state), self.map.iterate(state, self.rho, count)])
+    def orbit(
+        self, state: ArrayLike, count: int, *, factors: ArrayLike | None = None
+    ) -> StrobedOrbit[NDArray[np.float64]]:
+        """`count` steps from `state`; the points are (x, y), shape (count, 2).
+
+        With `factors`, one for each step, the amplitude is that of the map times the factor of the step.
+        """
+        changing, rho = amplitude_factors(factors, count), np.full(count, self.rho)
+        if changing.size:
+            rho += (self.map.rho_per_excess + self.rho) * (changing - 1.0)
+        points = np.vstack([pair_of(state), self.map.iterate(state, rho, count)])
         impacts = (points[:-1, 0] > 0).astype(np.int64)
         return StrobedOrbit(end=points[-1].copy(), points=points[1:], impacts=impacts)
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from beam.parameters import require_kind, require_whole
 from contact.change import Changes
@@ -19,7 +20,7 @@ from contact.exact_run import failure, start_of, state_of
 from contact.oscillator import ImpactOscillator
 from contact.retraced import Retraced
 from contact.simulation import simulate
-from contact.strobed_map import Jacobians, StrobedMap, StrobedOrbit
+from contact.strobed_map import Jacobians, StrobedMap, StrobedOrbit, amplitude_factors
 from contact.strobed_motion import StrobedSystem, strobed_motion, strobed_system
 from contact.trajectory import Regime, State
 
@@ -88,8 +89,11 @@ class StroboscopicMap:
         """The numbers of the oscillator, made once for many short orbits."""
         return strobed_system(self.oscillator)
 
-    def orbit(self, state: State, count: int) -> StrobedOrbit[State]:
+    def orbit(self, state: State, count: int, *, factors: ArrayLike | None = None) -> StrobedOrbit[State]:
         """`count` drive periods from `state`, which must lie at a strobe.
+
+        With `factors`, one for each period, the amplitude is that of the oscillator times the factor of the
+        period: it changes at strobes, where the physical state goes on.
 
         Returns
         -------
@@ -101,12 +105,13 @@ class StroboscopicMap:
         Raises
         ------
         ValueError
-            If the state is not at a strobe.
+            If the state is not at a strobe, or factors are not above zero.
         ContactError
             If the motion could not be followed.
         """
         require_kind("state", state, State, "a State")
         count = require_whole("count", count, "drive periods", low=0)
+        changing = amplitude_factors(factors, count)
         system, motion, n = self._system, self._system.motion, self.oscillator.n_modes
         index = round(state.time / motion.period)
         if index * motion.period != state.time:  # within rounding it may be a strobe nevertheless
@@ -115,8 +120,11 @@ class StroboscopicMap:
                 raise ValueError(f"time of the state is {state.time} s; it must be a strobe time n/f")
         u, v, runs = start_of(motion, state, index, 0.0, steady=(system.mean[:n], system.mean[n:]))
         points, impacts = np.empty((count, 2 * n)), np.empty(count, dtype=np.int64)
-        status = strobed_motion(system.table, system, u, v, runs, points, impacts)
+        status = strobed_motion(system.table, system, changing, u, v, runs, points, impacts)
         if status != DONE:
+            if changing.size:
+                amplitude = self.oscillator.driven.amplitude * changing[int(runs[0]["period"]) - index]
+                motion = self.oscillator.with_amplitude(float(amplitude)).motion()
             raise failure(status, motion, runs, u, v)
         end = state_of(motion, runs, u + system.mean[:n], v + system.mean[n:])
         return StrobedOrbit(end=end, points=points, impacts=impacts)

@@ -7,11 +7,13 @@ and `curve`: the same along any path p -> oscillator; `settling`: on what a moti
 diagrams, the state carried along; `ends`: where an orbit ends when the drive is lowered, by a scan and by its
 fold; `amplitude_scan`: the compiled column of a chart; `lyapunov`: exponents; `derivatives`,
 `event_derivatives`, `motion_derivatives`: how orbits, their folds, doublings and grazings, and simulated
-motions change with the numbers of the oscillator, a `Change` each.
+motions change with the numbers of the oscillator, a `Change` each; `clouds`: strobe points under noise of the
+drive.
 """
 
 from contact.change import Change
 from contact.orbits.amplitude_scan import AmplitudeScan, ScannedColumn
+from contact.orbits.clouds import cloud, strobe_derivatives
 from contact.orbits.continuation import (
     Branch,
     first_event,
@@ -62,6 +64,7 @@ __all__ = [
     "SingleImpactOrbit",
     "born",
     "born_period",
+    "cloud",
     "doubling_derivatives",
     "excess_derivatives",
     "first_event",
@@ -82,4 +85,5 @@ __all__ = [
     "orbit_exponents",
     "period_of",
     "settle",
+    "strobe_derivatives",
 ]

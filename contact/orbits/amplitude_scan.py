@@ -92,6 +92,7 @@ def settled_column(system, amplitudes, state, most_cycles, tolerance, found, u, 
     """
     n, run, capacity = system.motion.size, runs[0], 2 * LARGEST_PERIOD
     points, impacts = np.empty((capacity, 2 * n)), np.zeros(capacity, dtype=np.int64)
+    as_is = np.empty(0)
     for a in range(amplitudes.size):
         local = at_amplitude(system, amplitudes[a])
         here, mean = local.motion, local.mean.copy()
@@ -114,7 +115,7 @@ def settled_column(system, amplitudes, state, most_cycles, tolerance, found, u, 
                     rows -= BLOCK
                     points[:rows], impacts[:rows] = points[BLOCK:], impacts[BLOCK:]
                 new = slice(rows, rows + BLOCK)
-                status = strobed_motion(local.table, local, u, v, runs, points[new], impacts[new])
+                status = strobed_motion(local.table, local, as_is, u, v, runs, points[new], impacts[new])
                 rows, cycles, stretch = rows + BLOCK, cycles + BLOCK, np.int64(SHORTEST)
                 while status == DONE and period == 0 and 2 * stretch <= rows:
                     period = repetition(points, impacts, rows, stretch, tolerance)

@@ -39,9 +39,10 @@ import math
 
 from contact.compiled import borrowed, inlined, kernel, part
 from contact.event_loop import DONE, advance
+from contact.flight.motion import COSINE, SINE, with_drive
 from contact.recorder import strobes_only
 from contact.single_mode.one_impact import guessed, is_settled, one_impact, rising_zero
-from contact.single_mode.period_table import flow_over, through, tip_near
+from contact.single_mode.period_table import flow_over, mode_at, through, tip_near
 from contact.trajectory import OUTSIDE
 
 __all__ = ["any_periods", "one_mode_periods"]
@@ -93,7 +94,7 @@ def settled_period(n, rows, rho, p, q, u, v):
 
 
 @kernel
-def one_mode_periods(table, system, u, v, runs, points, counts):
+def one_mode_periods(table, system, factors, u, v, runs, points, counts):
     """``strobed_motion`` for the one mode of `table`, a field of `system` which numba cannot tell from None.
 
     Returns
@@ -106,12 +107,21 @@ def one_mode_periods(table, system, u, v, runs, points, counts):
     table, u, v, points = borrowed(table), borrowed(u), borrowed(v), borrowed(points)
     counts, n, rows, weight = borrowed(counts), table.mode, table.rows, system.weight[0]
     mean_u, mean_v = system.mean[0] * weight, system.mean[1] * weight
+    driven_u = weight * system.motion.modes[COSINE, 0]
+    driven_v = weight * system.motion.drive * system.motion.modes[SINE, 0]
     slowness = system.weight[1] / weight
-    left, run = 0, runs[0]
+    left, run, factor = 0, runs[0], 1.0
     first = run.period
     un, vn = weight * u[0], weight * v[0]
     outside = run.regime == OUTSIDE and run.order == 0
     for i in range(counts.size):
+        if factors.size > 0 and factors[i] != factor:
+            change, factor = factors[i] - factor, factors[i]
+            n = mode_at(table.mode, system.motion, factor)
+            un, vn, mean_u, mean_v = (
+                un - change * driven_u, vn - change * driven_v, mean_u + change * driven_u,
+                mean_v + change * driven_v,
+            )  # fmt: skip
         impacts = 0
         rho = math.sqrt(un * un + n.inverse * vn * vn)
         height = n.gap - n.detuning * rho
@@ -126,7 +136,8 @@ def one_mode_periods(table, system, u, v, runs, points, counts):
             if impacts < 0:
                 left += 1
                 u[0], v[0], run.period = un / weight, vn / weight, first + i
-                status = any_periods(system.motion, u, v, runs, points[i : i + 1], counts[i : i + 1])
+                motion = system.motion if factor == 1.0 else with_drive(system.motion, factor)
+                status = any_periods(motion, u, v, runs, points[i : i + 1], counts[i : i + 1])
                 if status != DONE:
                     return status, left
                 impacts, ui, vi = counts[i], weight * u[0], weight * v[0]
@@ -135,5 +146,7 @@ def one_mode_periods(table, system, u, v, runs, points, counts):
         points[i, 0] = un + mean_u
         points[i, 1] = (vn + mean_v) * slowness
         counts[i] = impacts
+    change = 1.0 - factor
+    un, vn = un - change * driven_u, vn - change * driven_v
     u[0], v[0], run.period = un / weight, vn / weight, first + counts.size
     return DONE, left

@@ -122,7 +122,7 @@ def one_impact(n, rows, t, rho, u, v):
     x = t - k * n.stretch
     u0, v0 = flow_to(rows, k, u, v)
     u0, v0, back_u, back_v = short_flow(n, x, u0, v0)
-    swing, glide = steady_near(n, x, rows[k, 0], rows[k, 1])
+    swing, glide = steady_near(n, rows, k, x)
     y0, y1, y2, y3, y4 = tip_derivatives(n, u0, v0, swing, glide)
     d, rest, approach = zero_of(y0, y1, y2, y3, y4)
     u0, v0 = carried(n, u0, v0, d)

@@ -32,7 +32,7 @@ from contact.flight.motion import DAMPED, DECAY, LOW, OMEGA, Motion
 from contact.laws import NEWTON
 
 __all__ = ["SMALL", "OneMode", "PeriodTable", "flow_over", "flow_to", "period_table", "short_flow",
-           "steady_near", "table_at", "through", "tip_near"]  # fmt: skip
+           "mode_at", "steady_near", "through", "tip_near"]  # fmt: skip
 
 FEWEST, MOST = 64, 4096
 """Stretches of a period: 64 where the drive is fastest (w x <= pi/64), more for a faster mode; beyond 4096,
@@ -58,7 +58,7 @@ class OneMode(NamedTuple):
     per_second = K/P, peak = t_p [s]; period_flow = F_P; peak_flow = F_tp; kick = j/y' = -(1 + e), j the jump
     of v in an impact at tip velocity y'; detuning = d/rho; inverse = 1/omega^2, slow = 1/w^2 [s^2]; most =
     rho below which (*) is used, not above zero if never [m]; second: |y''| <= crest + second rho; margin = m
-    [m]; reach = greatest |d| of a step to a zero [s].
+    [m]; reach = greatest |d| of a step to a zero [s]; factor: of the amplitude over that of the rows.
     """
 
     drive: float
@@ -82,6 +82,7 @@ class OneMode(NamedTuple):
     second: float
     margin: float
     reach: float
+    factor: float
 
 
 class PeriodTable(NamedTuple):
@@ -102,25 +103,17 @@ def mode_flow(motion, t):
 @kernel
 def constants_of(motion, stretches):
     """The `OneMode` of a motion whose period is cut into `stretches`."""
-    modes, w, gap = motion.modes, motion.drive, -motion.level
+    modes, w = motion.modes, motion.drive
     peak = min((math.atan2(motion.tip_sine, motion.tip_cosine) % (2.0 * math.pi)) / w, motion.period)
     decay, omega, high = modes[DECAY, 0], modes[OMEGA, 0], modes[DAMPED, 0]
-    steady = abs(motion.level) + abs(motion.tip_sine) + abs(motion.tip_cosine) + motion.gap
-    margin = SAFETY * 4.0 * EPS * (steady + 2.0 * max(1.0, 0.5 * decay / omega) * abs(gap))
-    detuning = (abs(w * w - omega * omega) + decay * omega) / (w * w)
-    rho = (1.0 - LEAST_SLACK) * gap / max(1.0, detuning)
-    # (*) needs the peak in the middle half of the period
-    inner = abs(peak / motion.period - 0.5) <= 0.25 + 1e-12 and motion.amplitude <= HIGHEST * abs(gap)
-    most = rho if inner else -1.0
-    fourth = motion.amplitude * w**4 + omega * (omega + decay) ** 3 * abs(rho)
-    return OneMode(
+    at_rest = OneMode(
         drive=w,
         decay=decay,
         stiffness=omega * omega,
         determinant=math.copysign(high * (high + 2.0 * modes[LOW, 0]), omega - 0.5 * decay),
-        gap=gap,
-        above=motion.amplitude + motion.level,
-        crest=motion.amplitude * w * w,
+        gap=-motion.level,
+        above=0.0,
+        crest=0.0,
         period=motion.period,
         stretch=motion.period / stretches,
         per_second=stretches / motion.period,
@@ -128,14 +121,38 @@ def constants_of(motion, stretches):
         period_flow=mode_flow(motion, motion.period),
         peak_flow=mode_flow(motion, peak),
         kick=-(1.0 + motion.number0),
-        detuning=detuning,
+        detuning=(abs(w * w - omega * omega) + decay * omega) / (w * w),
         inverse=1.0 / (omega * omega),
-        most=most,
+        most=0.0,
         slow=1.0 / (w * w),
         second=omega * (omega + decay),
-        margin=margin,
-        reach=math.sqrt(math.sqrt(24.0 * SMALL * margin / fourth)),
+        margin=0.0,
+        reach=0.0,
+        factor=1.0,
     )
+    return mode_at(at_rest, motion, 1.0)
+
+
+@inlined
+def mode_at(mode, motion, factor):
+    """The constants of `motion`, `mode`, at `factor` times its drive amplitude.
+
+    The steady motion alone depends on the amplitude, and in proportion: the rows are shared.
+    """
+    m, w, amplitude = mode, mode.drive, factor * motion.amplitude
+    omega = motion.modes[OMEGA, 0]
+    steady = abs(motion.level) + factor * (abs(motion.tip_sine) + abs(motion.tip_cosine)) + motion.gap
+    margin = SAFETY * 4.0 * EPS * (steady + 2.0 * max(1.0, 0.5 * m.decay / omega) * abs(m.gap))
+    rho = (1.0 - LEAST_SLACK) * m.gap / max(1.0, m.detuning)
+    # (*) needs the peak in the middle half of the period
+    inner = abs(m.peak / m.period - 0.5) <= 0.25 + 1e-12 and amplitude <= HIGHEST * abs(m.gap)
+    fourth = amplitude * w**4 + omega * (omega + m.decay) ** 3 * abs(rho)
+    return OneMode(
+        w, m.decay, m.stiffness, m.determinant, m.gap, amplitude + motion.level, amplitude * w * w, m.period,
+        m.stretch, m.per_second, m.peak, m.period_flow, m.peak_flow, m.kick, m.detuning, m.inverse,
+        rho if inner else -1.0, m.slow, m.second, margin,
+        math.sqrt(math.sqrt(24.0 * SMALL * margin / fourth)), factor * m.factor,
+    )  # fmt: skip
 
 
 @kernel
@@ -167,19 +184,6 @@ def period_table(motion: Motion) -> PeriodTable | None:
         return None
     table: PeriodTable = full_table(motion, FEWEST * 2 ** math.ceil(math.log2(ratio)))
     return table
-
-
-@kernel
-def table_at(table, motion, factor):
-    """The table of the same oscillator at `factor` times the drive amplitude, `motion` its motion there.
-
-    The steady motion alone depends on the amplitude, and in proportion.
-    """
-    rows = table.rows.copy()
-    for k in range(rows.shape[0]):
-        rows[k, 0] *= factor
-        rows[k, 1] *= factor
-    return PeriodTable(constants_of(motion, rows.shape[0] - 1), rows)
 
 
 @inlined
@@ -235,10 +239,11 @@ def flow_over(mode, rows, t, u, v):
 
 
 @inlined
-def steady_near(mode, x, swing, glide):
-    """The steady motion X, R of a node a time `x` later."""
+def steady_near(mode, rows, k, x):
+    """The steady motion X, R a time `x` after node `k`."""
     even, odd = short_turn(mode.drive * mode.drive * x * x)
     odd *= mode.drive * x
+    swing, glide = mode.factor * rows[k, 0], mode.factor * rows[k, 1]
     return swing * even + glide * odd, glide * even - swing * odd
 
 
@@ -255,7 +260,7 @@ def tip_near(mode, rows, u, v, t):
     x = t - k * mode.stretch
     un, vn = flow_to(rows, k, u, v)
     un, vn, _back_u, _back_v = short_flow(mode, x, un, vn)
-    swing, glide = steady_near(mode, x, rows[k, 0], rows[k, 1])
+    swing, glide = steady_near(mode, rows, k, x)
     return (
         un, vn, swing - mode.gap + un, w * glide + vn,
         -w * w * swing - (mode.decay * vn + mode.stiffness * un),

@@ -62,7 +62,9 @@ class Period:
     def fast(self, u, v, runs):
         """Status, impacts and periods left; the arrays are overwritten."""
         counts = np.zeros(1, dtype=np.int64)
-        status, left = one_mode_periods(self.table, self.system, u, v, runs, np.empty((1, 2)), counts)
+        status, left = one_mode_periods(
+            self.table, self.system, np.empty(0), u, v, runs, np.empty((1, 2)), counts
+        )
         return status, int(counts[0]), left
 
     def general(self, u, v, runs):

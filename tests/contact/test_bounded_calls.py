@@ -130,6 +130,10 @@ def motions(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], ob
         yield "orbit_diagram", lambda state=state: periodic.orbit_diagram(
             strobed, [1e-3, -1e-3], state, observe=strobed.tip, settle_cycles=128
         )
+    below, noise = strobed.at(-0.1), 1.0 + 0.2 * np.sin(np.arange(20.0))
+    yield "StroboscopicMap.orbit", lambda: strobed.orbit(fast, 20, factors=noise)
+    yield "strobe_derivatives", lambda: periodic.strobe_derivatives(below, below.steady(), 2)
+    yield "cloud", lambda: periodic.cloud(below, below.steady(), 2, deviation=1e-3, memory=0.5)
     yield "orbit_end", lambda: periodic.orbit_end(strobed, fast, 0.02, most_cycles=128)
     yield "born", lambda: periodic.born(strobed, most_cycles=256)
     yield "fold_excess", lambda: periodic.fold_excess(strobed, 5)

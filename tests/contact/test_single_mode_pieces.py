@@ -21,7 +21,7 @@ from contact.errors import ContactError
 from contact.event_loop import FAILED_CHATTER
 from contact.laws import DelayedRestitution, HertzContact
 from contact.oscillator import ImpactOscillator
-from contact.single_mode.period_table import period_table, table_at
+from contact.single_mode.period_table import mode_at, period_table
 from contact.stop import Stop
 from contact.stroboscope import StroboscopicMap, strobed_orbits
 from contact.trajectory import State
@@ -39,13 +39,13 @@ def test_the_table_of_another_amplitude_is_a_scaled_one(factor):
     other = single.with_amplitude(factor * single.drive.amplitude).motion()
     table, wanted = period_table(single.motion()), period_table(other)
     assert table is not None and wanted is not None
-    found = table_at(table, other, factor)
-    assert found.rows == pytest.approx(wanted.rows, rel=1e-14, abs=1e-16 * GAP)
-    for name, value in wanted.mode._asdict().items():
-        assert getattr(found.mode, name) == pytest.approx(value, rel=1e-13), name
+    found = mode_at(table.mode, single.motion(), factor)
+    swing = found.factor * table.rows[:, :2]
+    assert swing == pytest.approx(wanted.rows[:, :2], rel=1e-14, abs=1e-16 * GAP)
+    for name, value in wanted.mode._replace(factor=factor)._asdict().items():
+        assert getattr(found, name) == pytest.approx(value, rel=1e-13), name
     # far beyond any amplitude the place of the peak is not good enough
-    far = single.with_amplitude(1e7 * single.drive.amplitude).motion()
-    assert wanted.mode.most > 0 > table_at(table, far, 1e7).mode.most
+    assert wanted.mode.most > 0 > mode_at(table.mode, single.motion(), 1e7).most
 
 
 # --- when it is used ---------------------------------------------------------------------------------------
@@ -123,11 +123,11 @@ def test_the_first_failure_in_their_order_ends_a_batch(monkeypatch):
     """A failure of the general loop, put in by hand: it does not occur with one mode."""
     compiled = stroboscope.strobed_motion
 
-    def failing(table, system, u, v, runs, points, counts):
+    def failing(table, system, factors, u, v, runs, points, counts):
         if system.motion.number0 == 0.5:
             runs["clock"] = 0.25 * system.motion.period
             return FAILED_CHATTER
-        return compiled(table, system, u, v, runs, points, counts)
+        return compiled(table, system, factors, u, v, runs, points, counts)
 
     monkeypatch.setattr(stroboscope, "strobed_motion", failing)
     slow = [oscillator(6.0, tau=tau, decay=20.0, excess=3.0) for tau in (0.1, 0.5, 0.5)]

@@ -12,7 +12,7 @@ from wrong_input_of_beam import INF, NAN, each, fields_of, of, told
 import beam
 import contact
 from contact import Regime, integrators
-from contact.orbits import continuation, kick, lyapunov, path, shooting
+from contact.orbits import clouds, continuation, kick, lyapunov, path, shooting
 
 
 @cache
@@ -141,6 +141,15 @@ CONTACT = (
        value=dict(excess=-2.0)),
     of(lambda time, count: strobed().orbit(contact.State(**START, time=time), count), dict(time=0.0, count=1),
        name="StroboscopicMap.orbit", value=dict(count=each(-5, 2.5), time=1e-3)),
+    of(lambda factors: strobed().orbit(strobed().steady(), 2, factors=factors), dict(factors=[1.0, 1.1]),
+       name="StroboscopicMap.orbit, factors", kind=dict(factors=each("1", ["a", "b"])),
+       value=dict(factors=each([1.0], [1.0, 0.0], [1.0, NAN], 1.0))),
+    of(clouds.strobe_derivatives,
+       lambda: dict(strobed=strobed().at(-0.1), state=strobed().steady(), period=1),
+       kind=dict(strobed=None, state=[0.0, 0.0]), value=dict(period=each(0, 1.5))),
+    of(clouds.cloud,
+       lambda: dict(strobed=strobed().at(-0.1), state=strobed().steady(), period=1, deviation=1e-4),
+       kind=dict(strobed=3.0), value=dict(deviation=each(-1e-4, NAN), memory=each(1.0, -0.1, NAN), period=0)),
     of(lambda name: strobed().readout(np.zeros((1, 2)), name), dict(name="laser"),
        name="StroboscopicMap.readout", value=dict(name="no such point")),
     of(lambda maps, states, workers: contact.strobed_orbits(

@@ -1,0 +1,131 @@
+"""Amplitudes that change from period to period, and the cloud of strobe points that noise makes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from oscillators import equation_1
+from scipy.signal import lfilter
+from simulated_orbit import HERTZ, beam
+
+from beam import ModalModel
+from contact import NewtonRestitution, NordmarkMap, NotPeriodic, StrobedNordmarkMap, StroboscopicMap
+from contact.maximal_orbits import MapFamily
+from contact.orbits import PeriodicOrbit, Shooting, cloud
+
+NEWTON = NewtonRestitution(local_restitution=0.1)
+PERIOD, SIGMA = 3, 1e-7
+
+
+def node(oscillator: object, faster: float = 2.0) -> tuple[PeriodicOrbit, float]:
+    """p3 beside its fold, and the excess of the fold."""
+    family = Shooting(oscillator=oscillator, period=PERIOD)
+    fold = family.fold()
+    return family.at_speed(faster * fold.speed, fold), fold.excess
+
+
+def settled(name: str) -> tuple[object, object, float]:
+    """A strobed system at its orbit of period 3, a strobe of it, and its excess."""
+    if name == "map":
+        family = MapFamily(NordmarkMap.from_oscillator(equation_1(20.9, NEWTON)), PERIOD)
+        excess = 0.5 * family.fold().excess
+        orbit = next(each for each in family.orbits(excess) if each.stable)
+        return StrobedNordmarkMap(map=family.map).at(excess), orbit.states[0], excess
+    orbit, _ = node(equation_1(20.9, NEWTON) if name == "Eq. (1)" else beam(20.9, HERTZ, modes=4))
+    return StroboscopicMap(oscillator=orbit.oscillator), replace(orbit.strobe_state(), time=0.0), orbit.excess
+
+
+@pytest.mark.parametrize("name", ["map", "Eq. (1)", "beam"])
+def test_a_constant_amplitude_is_no_change_and_a_new_one_leaves_the_state(name: str) -> None:
+    strobed, state, excess = settled(name)
+    whole = strobed.orbit(state, 12)
+    same = strobed.at(2.0 * excess).orbit(
+        state, 12, factors=np.full(12, (1.0 + excess) / (1.0 + 2.0 * excess))
+    )
+    assert same.points == pytest.approx(whole.points, rel=1e-11, abs=1e-12 * strobed.scale)
+    assert same.impacts.tolist() == whole.impacts.tolist()
+    levels = excess + np.repeat([0.0, 1e-3, -1e-4, 5.0], 4)
+    here, points = state, []
+    for level in levels[::4]:
+        part = strobed.at(float(level)).orbit(here, 4)
+        points.append(part.points)
+        here = replace(part.end, time=0.0) if name != "map" else part.end
+    found = strobed.orbit(state, 16, factors=(1.0 + levels) / (1.0 + excess))
+    assert found.points == pytest.approx(np.vstack(points), rel=1e-9, abs=1e-11 * strobed.scale)
+    assert strobed.coordinates(found.end) == pytest.approx(found.points[-1], rel=1e-12)
+
+
+def noise(count: int, sigma: float, memory: float) -> np.ndarray:
+    """Amplitude factors of `count` periods."""
+    steps = np.random.default_rng(1996).standard_normal(count)
+    steps[1:] *= np.sqrt(1.0 - memory**2)
+    return 1.0 + sigma * lfilter([1.0], [1.0, -memory], steps)
+
+
+def test_the_loop_of_one_mode_is_the_general_one_at_any_amplitudes() -> None:
+    """A second mode without weight at the tip takes the general loop."""
+    single = equation_1(20.9, NEWTON).with_excess(1e-3)
+    model = single.model
+    idle = ModalModel(
+        omega=np.append(model.omega, 900.0), decay_rate=np.append(model.decay_rate, 1.0),
+        phi=np.append(model.phi, 0.0), participation=np.append(model.participation, 0.0),
+    )  # fmt: skip
+    factors, found = noise(400, 1e-3, 0.5), []
+    for oscillator in (single, replace(single, model=idle)):
+        strobed = StroboscopicMap(oscillator=oscillator)
+        found.append(strobed.orbit(strobed.steady(), 400, factors=factors))
+    assert found[0].impacts.sum() > 100 and np.array_equal(found[0].impacts, found[1].impacts)
+    both = found[1].points[:, [0, 2]]
+    assert found[0].points == pytest.approx(both, rel=0.0, abs=1e-10 * strobed.scale)
+
+
+@pytest.mark.parametrize("memory", [0.0, 0.95])
+@pytest.mark.parametrize("name", ["map", "Eq. (1)", "beam"])
+def test_covariances_of_simulated_clouds(name: str, memory: float) -> None:
+    """60 000 periods, 10^6 in the study; errors from the spread of 60 blocks, far longer than the memory."""
+    strobed, state, _ = settled(name)
+    sigma = SIGMA if name != "map" else 1e-3 * SIGMA
+    expected = cloud(strobed, state, PERIOD, deviation=sigma, memory=memory)
+    exact = strobed.orbit(state, PERIOD).points
+    found = strobed.orbit(state, 60_000, factors=noise(60_000, sigma, memory)).points
+    for j in range(PERIOD):
+        away = found[999 + j + 3 - (999 % 3) :: PERIOD][: 60 * 320, :2] - exact[j, :2]
+        products = np.einsum("ni,nj->nij", away, away).reshape(60, -1, 2, 2).mean(axis=1)
+        error = products.std(axis=0) / np.sqrt(59)
+        assert np.max(error) < 0.1 * np.max(expected[j, :2, :2])
+        assert np.all(np.abs(products.mean(axis=0) - expected[j, :2, :2]) < 4.0 * error)
+
+
+def test_clouds_grow_as_the_inverse_root_of_the_distance_to_the_fold() -> None:
+    family = Shooting(oscillator=equation_1(20.9, NEWTON), period=PERIOD)
+    fold, sizes = family.fold(), []
+    distances = np.array([1e-4, 1e-5, 1e-6]) * abs(fold.excess)
+    for distance in distances:
+        near = family.at_speed(fold.speed * (1.0 + 2.0 * np.sqrt(distance / abs(fold.excess))), fold)
+        orbit = family.at_excess(fold.excess + distance, near)
+        strobed = StroboscopicMap(oscillator=orbit.oscillator)
+        found = cloud(strobed, replace(orbit.strobe_state(), time=0.0), PERIOD, deviation=1.0)
+        sizes.append(np.trace(found[0]))
+    slopes = np.diff(np.log(sizes)) / np.diff(np.log(distances))
+    assert slopes == pytest.approx([-0.5, -0.5], abs=0.01)
+    saddle = family.at_speed(0.9 * fold.speed, fold)
+    with pytest.raises(NotPeriodic, match="unstable orbit"):
+        state = replace(saddle.strobe_state(), time=0.0)
+        cloud(StroboscopicMap(oscillator=saddle.oscillator), state, PERIOD, deviation=1.0)
+
+
+def test_slow_drift_is_a_slow_change_of_amplitude() -> None:
+    """With a memory near one the cloud is the orbit's own change with the amplitude, times sigma."""
+    orbit, _ = node(equation_1(20.9, NEWTON))
+    family = Shooting(oscillator=orbit.oscillator, period=PERIOD)
+    strobed, state = StroboscopicMap(oscillator=orbit.oscillator), replace(orbit.strobe_state(), time=0.0)
+    found = cloud(strobed, state, PERIOD, deviation=1.0, memory=1.0 - 1e-9)
+    ends = [family.at_excess((1.0 + orbit.excess) * (1.0 + h) - 1.0, orbit) for h in (1e-6, -1e-6)]
+    moved = [
+        StroboscopicMap(oscillator=end.oscillator).orbit(replace(end.strobe_state(), time=0.0), PERIOD).points
+        for end in ends
+    ]
+    slope = (moved[0] - moved[1]) / 2e-6
+    assert found == pytest.approx(np.einsum("ni,nj->nij", slope, slope), rel=1e-5)
