@@ -1,4 +1,4 @@
-"""Folds after each change, and how far strobe points stay apart in noise."""
+"""Folds after each change."""
 
 from __future__ import annotations
 
@@ -9,18 +9,13 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from studies import letter, plotting
+from studies import plotting
 from studies.plotting import BLACK, BLUE, NOTE, PAGE, VERMILION
 from studies.sensitivity.changes import Row
-from studies.sensitivity.noise import KINDS, Clouds
 
 TORNADO = (
     "Factor on the hysteresis at each frequency after each change of one parameter, of the beam (bars) and "
     "of Eq. (1) (triangles); written: the period that is born instead."
-)
-NOISE = (
-    "Distance of neighbouring strobe points over the width of their clouds against the period, in noise of "
-    "the letter's size; below one they merge."
 )
 WAYS: dict[int, tuple[str, str, str, float]] = {
     -1: ("lowered", BLUE, "v", 0.2), 1: ("raised", plotting.tint(VERMILION, 0.6), "^", -0.2),
@@ -84,23 +79,3 @@ def draw_change(axis: Axes, row: Row, base: Row, place: int) -> None:
         axis.annotate(f"{words} at {row.change}", (0.99, y), xycoords=("axes fraction", "data"), ha="right",
                       va="center", fontsize=NOTE)  # fmt: skip
 
-
-@plotting.in_house_style
-def draw_noise(noise: Sequence[Clouds]) -> Figure:
-    """How far the strobe points stay apart, against m."""
-    figure, axis = plotting.new_figure(height=0.066)
-    for number, kind in enumerate(KINDS, 1):
-        for description, face in (("Eq. (1)", "none"), ("beam", plotting.PALETTE[number])):
-            found = [row for row in noise if (row.noise, row.description) == (kind, description)]
-            look = plotting.series(number) if description == "Eq. (1)" else plotting.points(number)
-            m, ratio = [row.m for row in found], [row.told_apart for row in found]
-            axis.plot(m, ratio, **look, mfc=face, label=f"{kind}, {description}")
-    axis.axhline(1.0, **plotting.GUIDE)
-    highest = max(letter.PERIODS.values())
-    plotting.mark_letter(axis.xaxis, highest, words="letter: highest $m$", along=0.98)
-    axis.set_yscale("log")
-    axis.locator_params(axis="x", integer=True)
-    plotting.label(axis.xaxis, "period $m$")
-    plotting.label(axis.yaxis, "distance of neighbours / width of clouds")
-    axis.legend(loc="lower left")
-    return figure

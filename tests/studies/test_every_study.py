@@ -47,7 +47,7 @@ FEWER = {
 #: Studies of driven motions, and those that change the dimensions of a spring.
 DRIVEN = (
     "adequacy", "attractors", "breakdown", "chart", "claims", "effective_impact", "finite_amplitude",
-    "hysteresis", "motion", "sensitivity", "soft_wall", "time_trace", "transitions", "work_precision",
+    "hysteresis", "motion", "noise", "sensitivity", "soft_wall", "time_trace", "transitions", "work_precision",
 )  # fmt: skip
 ON_A_SPRING = (
     "breakdown", "calibrate", "effective_impact", "finite_amplitude", "motion", "sensitivity", "spring_shape",

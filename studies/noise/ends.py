@@ -1,0 +1,101 @@
+"""What the scans say: where orbits end, and the hysteresis that an observer gets."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from studies.noise.places import Place
+from studies.noise.rates import law_of, quantiles
+from studies.noise.scans import ENDS, Protocol, named
+
+PARTS = (0.05, 0.5, 0.95)
+
+Scans = Mapping[str, np.ndarray]
+Made = tuple[Place, Protocol, Scans]
+
+
+@dataclass(frozen=True, kw_only=True)
+class End:
+    """Excess at which an orbit ended in scans: `median` with its standard `error`, 5 % (`low`) and 95 %.
+
+    `end`: p_m "slipped", was "lost", p_1 was "touched", was "left" (studies.noise.scans); `formula` and its
+    5 and 95 %: of the slips and touches of Eq. (1).
+    """
+
+    description: str
+    frequency_hz: float
+    m: int
+    noise: str
+    fold: float | None
+    end: str
+    scans: int
+    low: float
+    median: float
+    high: float
+    error: float
+    formula_low: float | None = None
+    formula: float | None = None
+    formula_high: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Observed:
+    """Hysteresis as observed, excess at which p_1 was left less that at which p_m was lost.
+
+    `median`, 5 and 95 % (`low`, `high`), beside it that of the folds without noise; `seen`: more than a step
+    in 95 % of the pairs of scans.
+    """
+
+    description: str
+    frequency_hz: float
+    m: int
+    noise: str
+    map: float | None
+    fold: float
+    low: float
+    median: float
+    high: float
+    seen: bool
+
+
+def ends_of(made: Made) -> list[End]:
+    """What ended where at one place in one noise."""
+    place, protocol, found = made
+    rows = []
+    for name in ENDS:
+        values = np.sort(found[name][np.isfinite(found[name])])
+        if values.size < 2:
+            continue
+        law: Sequence[float | None] = (None,) * len(PARTS)
+        if place.description == "Eq. (1)" and name in ("slipped", "touched"):
+            law = quantiles(law_of(place, protocol, name), PARTS)
+        # ranks half a binomial standard deviation, sqrt(n)/2, below and above the median
+        ranks = 0.5 * (values.size + np.array([-1.0, 1.0]) * math.sqrt(values.size))
+        below, above = np.interp(ranks, np.arange(values.size) + 0.5, values)
+        low, median, high = np.quantile(values, PARTS)
+        rows.append(End(
+            description=place.description, frequency_hz=place.frequency_hz, m=place.m,
+            noise=named(protocol.correlation_s), fold=None if place.fold is None else place.fold.excess,
+            end=name, scans=values.size, low=low, median=median, high=high, error=0.5 * float(above - below),
+            formula_low=law[0], formula=law[1], formula_high=law[2],
+        ))  # fmt: skip
+    return rows
+
+
+def observed_of(made: Made) -> Observed | None:
+    """The hysteresis at one place in one noise; None where p_m was not seen in most scans."""
+    place, protocol, found = made
+    widths = found["left"] - found["lost"]
+    if np.count_nonzero(np.isfinite(widths)) <= 0.5 * widths.size:
+        return None
+    low, median, high = np.nanquantile(widths, PARTS)
+    in_map = replace(place, description="map", model=None).fold
+    return Observed(
+        description=place.description, frequency_hz=place.frequency_hz, m=place.m,
+        noise=named(protocol.correlation_s), map=None if in_map is None else -in_map.excess,
+        fold=-place.fold.excess, low=low, median=median, high=high, seen=bool(low > protocol.step),
+    )  # fmt: skip

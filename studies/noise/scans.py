@@ -1,0 +1,194 @@
+"""Scans of the amplitude as an observer makes them, with noise of the drive.
+
+He raises or lowers the amplitude by a step, smoothly over `RAMP` of the time that he then waits, and notes
+what he saw: p_m if more than half of the periods lay between impacts m periods apart, p_1 if more than half
+of them lay in stretches without impact longer than `QUIET` periods.  p_m is *lost*, and p_1 *left*, at the
+first amplitude at which he did not see it.  Before that p_m *slips* where for the first time two impacts are
+not m periods apart, and p_1 is *touched* by the first impact (in the first half of the waiting, or they count
+for the next step): below its fold the motion can be thrown back to p_m many times before it dies out.
+The scan begins at a random part of a step, so that results do not lie on a grid.
+
+In period n the amplitude is (1 + x)(1 + e_n) times that at grazing, x the excess that he set; e_n is
+Gaussian, white or with the memory exp(-1/(f t_c)) of a drift of correlation time t_c, and stationary.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact import ContactError
+from studies.noise.places import Place
+
+QUIET = 64
+"""Drive periods without impact beyond which the motion counts as p_1: longer than any period that is told."""
+
+FAR = 6.0
+"""Standard deviations of the noise, beside two steps, from the start of a scan to the end of the orbit."""
+
+BEYOND = 30
+"""Steps beyond the end of an orbit after which a scan is given up: p_m held by noise alone lasts a few."""
+
+RAMP = 0.02
+"""Part of the waiting in which the amplitude goes to its new value: a sudden step would swing over."""
+
+LARGEST, FINEST, FEWEST = 0.02, 20.0, 1000
+"""Of noise and step [1]; steps in a standard deviation; drive periods waited: long against `QUIET`."""
+
+Array = NDArray[np.float64]
+ENDS = ("slipped", "lost", "touched", "left")
+"""What is noted of each scan: downwards of p_m, upwards of p_1."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Protocol:
+    """How the scan is made and what noise it has.
+
+    Parameters
+    ----------
+    step : float
+        Of the excess [1].
+    waiting : int
+        At each amplitude, in drive periods.
+    stability : float
+        Standard deviation of the amplitude over itself [1].
+    correlation_s : float
+        Correlation time of the drift [s]; 0 for white noise.
+    """
+
+    step: float
+    waiting: int
+    stability: float
+    correlation_s: float = 0.0
+
+    @property
+    def reach(self) -> float:
+        """How far from the end of an orbit a scan begins [1]."""
+        return FAR * self.stability + 2.0 * self.step
+
+    @property
+    def steps(self) -> int:
+        """Most steps of a scan."""
+        return math.ceil(2.0 * self.reach / self.step) + BEYOND
+
+    def __post_init__(self) -> None:
+        for name, value in (("stability", self.stability), ("amplitude_step", self.step)):
+            if not 0.0 < value <= LARGEST:
+                raise ValueError(f"{name} is {value:g} [1]; it must be above 0, and at most {LARGEST:g}")
+        if self.step < self.stability / FINEST:
+            raise ValueError(
+                f"amplitude_step is {self.step:g} [1]; with a stability of {self.stability:g} it must be at "
+                f"least {self.stability / FINEST:g}"
+            )
+        if self.waiting < FEWEST:
+            raise ValueError(f"waiting is {self.waiting} drive periods; it must be at least {FEWEST}")
+        if self.correlation_s < 0.0:
+            raise ValueError(f"correlation_times holds {self.correlation_s:g} s; it must be 0 or more")
+
+
+def memory_of(correlation_s: float, frequency_hz: float) -> float:
+    """Correlation of the noise in neighbouring periods."""
+    return math.exp(-1.0 / (frequency_hz * correlation_s)) if correlation_s else 0.0
+
+
+def named(correlation_s: float) -> str:
+    """A name for noise of this correlation time."""
+    return f"drift of {correlation_s:g} s" if correlation_s else "white"
+
+
+class Drift:
+    """e_n of one scan, piece by piece, of standard deviation `deviation`."""
+
+    def __init__(self, deviation: float, memory: float, dice: np.random.Generator) -> None:
+        self.deviation, self.memory, self.dice = deviation, memory, dice
+        self.last = float(dice.standard_normal())
+
+    def next(self, count: int) -> Array:
+        """The next `count` of them."""
+        fresh = self.dice.standard_normal(count)
+        if self.memory == 0.0:
+            return self.deviation * fresh
+        from scipy.signal import lfilter  # slow to import
+
+        source, memory = math.sqrt(1.0 - self.memory**2), self.memory
+        found, _ = lfilter([source], [1.0, -memory], fresh, zi=[memory * self.last])
+        self.last = float(found[-1])
+        return np.asarray(self.deviation * found)
+
+
+def watched(impacts: NDArray[np.int64], m: int) -> tuple[float, float]:
+    """Share of the periods in which p_m was seen, p_1 for m = 0, and what part of them had passed before it
+    was broken for the first time; 1 if it was not."""
+    size, hits = impacts.size, np.flatnonzero(impacts)
+    if m == 0:
+        gaps = np.diff(hits, prepend=0, append=size)
+        return float(gaps[gaps > QUIET].sum() / size), float(hits[0] / size) if hits.size else 1.0
+    regular = np.diff(hits) == m
+    kept = hits if regular.all() else hits[: int(np.argmin(regular)) + 1]
+    last = int(kept[-1]) + m if kept.size else 0
+    return float(m * np.count_nonzero(regular) / size), min(last / size, 1.0)
+
+
+def scan(strobed: Any, state: Any, levels: Array, m: int, protocol: Protocol, drift: Drift) -> Array:
+    """The first of `levels` at which p_m, p_1 for m = 0, is broken, and the first at which it is not seen.
+
+    NaN where the last one is reached.
+    """
+    count, found, before = protocol.waiting, np.full(2, math.nan), levels[0]
+    ramp = np.minimum(np.arange(count) / (RAMP * count), 1.0)
+    for k, level in enumerate(levels[:-1]):
+        factors = (1.0 + before + (level - before) * ramp) * (1.0 + drift.next(count))
+        try:
+            run = strobed.orbit(state, count, factors=factors)
+        except ContactError:  # what could not be followed has no end
+            return np.full(2, math.nan)
+        share, passed = watched(run.impacts, m)
+        if math.isnan(found[0]) and passed < 1.0:
+            found[0] = levels[k] if passed < 0.5 else levels[k + 1]
+        if not share > 0.5:
+            found[1] = level
+            break
+        before, state = level, run.end
+    return found
+
+
+def scans(place: Place, protocol: Protocol, count: int, seed: int) -> dict[str, Array]:
+    """`count` downward and upward scans: excesses at which p_m slipped and was lost, and at which p_1 was
+    touched and left, each (count,).
+
+    NaN where p_m was not seen at the first amplitude, or not lost in `Protocol.steps`.
+    """
+    key = [seed, round(1e3 * place.frequency_hz), place.m, round(1e3 * protocol.correlation_s)]
+    found, top = np.full((4, count), math.nan), start_of(place, protocol)
+    steps: Array = protocol.step * np.arange(protocol.steps, dtype=np.float64)
+    memory = memory_of(protocol.correlation_s, place.frequency_hz)
+    for i in range(count):
+        for falling in (True, False):
+            dice = np.random.default_rng([*key, i, falling])
+            drift, part = Drift(protocol.stability, memory, dice), protocol.step * dice.random()
+            if not falling:
+                levels = steps + part - protocol.reach
+                state = place.strobed.at(float(levels[0])).steady()
+                found[2:, i] = scan(place.strobed, state, levels, 0, protocol, drift)
+            elif top is not None:
+                levels = top[0] - steps - part
+                ends = scan(place.strobed, top[1], levels, place.m, protocol, drift)
+                found[:2, i] = ends if ends[1] != levels[0] else math.nan
+    return dict(zip(ENDS, found, strict=True))
+
+
+SHRINKING = (1.0, 0.7, 0.5, 0.35, 0.25)
+"""Parts of the reach at which p_m is looked for: it can be stable next to its fold only."""
+
+
+def start_of(place: Place, protocol: Protocol) -> tuple[float, Any] | None:
+    """Excess and strobe from which downward scans start; None without a stable p_m."""
+    for part in SHRINKING if place.fold is not None else ():
+        excess = place.fold.excess + part * protocol.reach
+        if (state := place.stable(excess)) is not None:
+            return excess, state
+    return None

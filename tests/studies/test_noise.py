@@ -1,0 +1,267 @@
+"""Noise of the drive: scans as an observer makes them, the formulas for them, clouds that merge."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.special import gamma
+
+from contact import StroboscopicMap
+from studies.noise.covariances import covariance_of, growth_of
+from studies.noise.last_period import apart, frequency_of, in_noise, separate, since_impact
+from studies.noise.places import Place
+from studies.noise.rates import LAG, in_drift, law_of, mean_time, quantiles
+from studies.noise.scans import Drift, Protocol, memory_of, scans, start_of, watched
+from studies.scene import band_of, single_mode_at
+
+SIGMA = 2.5e-4
+WHITE = Protocol(step=SIGMA, waiting=10_000, stability=SIGMA)
+DRIFT = Protocol(step=SIGMA, waiting=10_000, stability=SIGMA, correlation_s=100.0)
+
+
+@pytest.fixture(scope="module")
+def place(letter_scene):
+    """p_m of a description at a frequency."""
+    return lambda m, frequency, description="Eq. (1)": Place(
+        scene=letter_scene, description=description, m=m, frequency_hz=frequency
+    )
+
+
+# --- noise, and what an observer sees ----------------------------------------------------------------------
+
+
+def test_noise_is_stationary_remembers_and_goes_on_where_it_stopped():
+    memory = memory_of(1.0, 20.0)
+    assert memory == pytest.approx(math.exp(-0.05)) and memory_of(0.0, 20.0) == 0.0
+    for correlation in (0.0, memory):
+        starts = [Drift(SIGMA, correlation, np.random.default_rng([1, i])).next(1) for i in range(4000)]
+        assert np.std(starts) == pytest.approx(SIGMA, rel=0.05)
+        long = Drift(SIGMA, correlation, np.random.default_rng(2)).next(200_000)
+        assert np.std(long) == pytest.approx(SIGMA, rel=0.06)
+        assert np.corrcoef(long[:-1], long[1:])[0, 1] == pytest.approx(correlation, abs=0.01)
+    pieces = Drift(SIGMA, memory, np.random.default_rng(3))
+    whole = Drift(SIGMA, memory, np.random.default_rng(3)).next(300)
+    assert np.concatenate([pieces.next(100), pieces.next(200)]) == pytest.approx(whole, rel=1e-12)
+
+
+def test_what_the_observer_sees_of_a_row_of_impacts():
+    regular = (np.arange(900) % 3 == 1).astype(int)
+    assert watched(regular, 3) == (897 / 900, 1.0)  # the last interval is not over
+    assert watched(regular, 4) == (0.0, pytest.approx(5 / 900))
+    ends = regular.copy()
+    ends[300:] = 0  # the last impact at 298
+    assert watched(ends, 3) == (297 / 900, 301 / 900)
+    assert watched(ends, 0) == (pytest.approx(602 / 900), 1 / 900)
+    slips = regular.copy()
+    slips[400], slips[401] = 0, 1
+    share, passed = watched(slips, 3)
+    assert 0.98 < share < 1.0 and passed == 400 / 900
+    assert watched(np.zeros(900, dtype=int), 0) == (1.0, 1.0)
+    assert watched(np.zeros(900, dtype=int), 3) == (0.0, 0.0)
+
+
+def test_without_noise_orbits_end_within_a_step_of_fold_and_grazing(place):
+    quiet = Protocol(step=1e-4, waiting=20_000, stability=1e-9)
+    for m, frequency in ((4, 21.5), (5, 22.2)):
+        here = place(m, frequency)
+        assert here.stable(here.fold.excess + quiet.reach) is not None
+        found = scans(here, quiet, 12, 1)
+        # the next step counts if half of the waiting is not enough to pass the bottleneck
+        assert np.all((found["slipped"] < here.fold.excess) & (found["slipped"] > here.fold.excess - 1.5e-4))
+        assert np.all((found["touched"] > 0.0) & (found["touched"] < 1e-4))
+        assert np.all(found["lost"] <= found["slipped"]) and np.all(found["left"] >= found["touched"])
+
+
+def test_scans_depend_on_seed_and_place_alone(place):
+    short = Protocol(step=SIGMA, waiting=1000, stability=SIGMA, correlation_s=5.0)
+    first, again = (scans(place(4, 21.5), short, 3, 7) for _ in range(2))
+    longer, other = scans(place(4, 21.5), short, 5, 7), scans(place(4, 21.5), short, 3, 8)
+    for name, values in first.items():
+        assert np.array_equal(values, again[name]) and np.array_equal(values, longer[name][:3])
+        assert not np.array_equal(values, other[name])
+
+
+def test_where_there_is_no_fold_nothing_is_lost(letter_scene, place):
+    above = place(3, band_of(letter_scene, 3).upper + 0.05)
+    assert above.fold is None and start_of(above, DRIFT) is None
+    found = scans(above, Protocol(step=SIGMA, waiting=1000, stability=SIGMA), 2, 1)
+    assert np.isnan(found["lost"]).all() and np.isfinite(found["left"]).all()
+
+
+# --- the normal form ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("description", ["map", "Eq. (1)"])
+def test_the_multiplier_next_to_a_fold_and_how_noise_adds_up(place, description):
+    here = place(4, 21.5, description)
+    distance = 1e-5 * abs(here.fold.excess)
+    node = next(o for o in here.family.orbits(here.fold.excess + distance) if o.stable)
+    assert (1.0 - node.multipliers.real.max()) ** 2 == pytest.approx(here.steepness * distance, rel=0.02)
+    assert 1.0 <= here.unevenness * 2.0 < 1.4
+
+
+def test_the_mean_time_of_white_noise_in_its_three_limits(place):
+    here = place(4, 21.5)
+    strength = 0.5 * (0.25 * here.steepness * SIGMA * here.unevenness) ** 2
+    at_fold = 2.0 * math.sqrt(math.pi / strength) * (12.0 * strength) ** (1 / 6) * gamma(7 / 6)
+    assert mean_time(0.0, here, SIGMA) == pytest.approx(at_fold, rel=1e-6)
+    # Kramers' rate far above, the time through the bottleneck far below
+    for barrier in (20.0, 80.0):
+        mu = (0.75 * barrier * strength) ** (2 / 3)
+        found = mean_time(mu / (0.25 * here.steepness), here, SIGMA)
+        assert found == pytest.approx(math.exp(barrier) * math.pi / math.sqrt(mu), rel=0.4 / barrier)
+    below = math.pi / math.sqrt(0.25 * here.steepness * 1e-2)
+    assert mean_time(-1e-2, here, SIGMA) == pytest.approx(below, rel=1e-3)
+    assert mean_time(1.0, here, SIGMA) == math.inf
+
+
+def test_the_mean_time_of_white_noise_is_that_of_the_simulated_normal_form(place):
+    here, dice, step, count = place(4, 21.5), np.random.default_rng(5), 0.25, 1500
+    deviation = math.sqrt(step) * 0.25 * here.steepness * SIGMA * here.unevenness
+    for distance in (0.0, -1e-4):
+        mu, eta, times, now = 0.25 * here.steepness * distance, np.full(count, 2.0), list[float](), 0.0
+        while eta.size:
+            now += step
+            eta = eta + step * (mu - eta**2) + deviation * dice.standard_normal(eta.size)
+            times += [now] * int(np.count_nonzero(eta < -2.0))
+            eta = eta[eta >= -2.0]
+        # from 2 to -2 instead of from far above to far below: half a period each
+        error = np.std(times) / math.sqrt(count)
+        assert np.mean(times) + 1.0 == pytest.approx(mean_time(distance, here, SIGMA), abs=4.0 * error)
+
+
+def test_the_lag_of_a_fold_that_brownian_motion_carries_away():
+    dice, step, count = np.random.default_rng(6), 0.005, 4000
+    y, eta, ends = np.full(count, 4.0), np.full(count, 2.0), list[float]()
+    while y.size:
+        slow = np.abs(eta) < 3.0
+        # beyond, the square is solved exactly over a step
+        ahead = np.where(slow, eta + step * (y - eta**2), eta / np.maximum(1.0 + step * eta, 1e-9) + step * y)
+        out = ~slow & ((1.0 + step * eta <= 0.0) | (ahead < -60.0))
+        ends += y[out].tolist()
+        y, eta = y[~out], ahead[~out]
+        y = y + math.sqrt(2.0 * step) * dice.standard_normal(y.size)
+        y = np.where(y > 6.0, 12.0 - y, y)
+    assert -np.mean(ends) == pytest.approx(LAG, abs=4.0 * np.std(ends) / math.sqrt(count))
+
+
+@pytest.mark.parametrize("correlation", [100.0, 3600.0])
+def test_a_drift_that_crosses_an_end_is_that_of_simulated_drifts(correlation):
+    protocol, frequency, found = Protocol(
+        step=SIGMA, waiting=10_000, stability=SIGMA, correlation_s=correlation
+    ), 20.0, []  # fmt: skip
+    memory = memory_of(correlation, frequency)
+    for i in range(400):
+        dice = np.random.default_rng([9, i])
+        drift, part, late = Drift(SIGMA, memory, dice), dice.random(), False
+        for k in range(protocol.steps):
+            level = protocol.step * (k + part) - protocol.reach
+            past = np.flatnonzero(level + drift.next(protocol.waiting) > 0.0)
+            if late or (past.size and past[0] < 5000):
+                found.append(level)
+                break
+            late = past.size > 0
+    exact = quantiles(in_drift(0.0, 1.0, protocol, frequency), (0.1, 0.5, 0.9))
+    error = np.std(found) / math.sqrt(400) * np.array([1.7, 1.25, 1.7])
+    # sampled once a period, a drift crosses 0.58 of its step late
+    late = 0.58 * SIGMA * math.sqrt(2.0 / (frequency * correlation))
+    assert np.all(np.abs(np.quantile(found, (0.1, 0.5, 0.9)) - late - exact) < 4.0 * error)
+
+
+@pytest.mark.parametrize("protocol", [WHITE, DRIFT], ids=["white", "drift"])
+@pytest.mark.parametrize("m, frequency", [(4, 21.5), (5, 22.2), (6, 22.6)])
+def test_formulas_are_what_scans_find(place, protocol, m, frequency):
+    """Even where the noise is as large as the hysteresis, at 22.60 Hz."""
+    here = place(m, frequency)
+    found = scans(here, protocol, 80, 1996)
+    for end in ("slipped", "touched"):
+        low, median, high = quantiles(law_of(here, protocol, end), (0.16, 0.5, 0.84))
+        error = 1.25 * 0.5 * (high - low) / math.sqrt(80)
+        assert abs(np.median(found[end]) - median) < 3.5 * error
+        spread = np.subtract(*np.quantile(found[end], (0.84, 0.16)))
+        assert spread == pytest.approx(high - low, rel=0.35)
+
+
+# --- clouds ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("description", ["map", "Eq. (1)"])
+def test_covariances_and_growth_of_simulated_clouds(letter_scene, place, description):
+    inside, edge = place(3, 20.9, description), place(3, band_of(letter_scene, 3).upper, description)
+    for correlation in (0.0, 1.0):
+        row = covariance_of(60_000, 1996, (inside, correlation))
+        assert abs(row.ratio - 1.0) < 4.0 * row.error < 0.25 and row.worst < 4.0
+        assert row.readout == pytest.approx(1.0, abs=0.1)
+    rows = growth_of(100_000, 1996, (inside, edge))
+    assert [row.towards[:5] for row in rows] == ["fold", "grazi", "noise"]
+    for row in rows:
+        assert row.exponent == pytest.approx(row.expected, abs=0.03)
+
+
+def test_clouds_tell_well_separated_points_from_merged_ones():
+    n = np.arange(3000)
+    impacts = (n % 3 == 0).astype(int)
+    dice = np.random.default_rng(0)
+    level = np.array([0.0, 1.0, 5.0])[n % 3]
+    # 90 % of a normal distribution lie within 3.29 standard deviations
+    points = level + 0.1 * dice.standard_normal(n.size)
+    assert apart(points, impacts, 3) == pytest.approx(1 / 0.329, rel=0.05)
+    assert separate(points, impacts, 3) == 1.0
+    slow = level + np.repeat(dice.standard_normal(75), 40)  # a drift moves all points of a record
+    assert apart(slow, impacts, 3) < 0.5 and separate(slow, impacts, 3) == 1.0
+    wide = level + dice.standard_normal(n.size)
+    assert apart(wide, impacts, 3) < 0.5 and separate(wide, impacts, 3) < 0.05
+    assert np.isnan(apart(level, impacts, 4))  # no fourth cloud
+    missed = impacts.copy()
+    missed[1500] = 0
+    assert separate(points, missed, 3) == pytest.approx(1.0 - 1 / 74)
+    assert since_impact(np.array([0, 0, 1, 0, 0, 2, 1, 0])).tolist() == [-1, -1, 0, 1, 2, 0, 0, 1]
+
+
+def test_strobe_points_run_together_as_m_grows(letter_scene):
+    rows = {}
+    for m in (6, 9, 13):
+        oscillator = single_mode_at(letter_scene, frequency_of(letter_scene, m))
+        rows[m] = in_noise(0.0, 1996, (WHITE, "Eq. (1)", StroboscopicMap(oscillator=oscillator), m))
+        assert rows[m].born == m and rows[m].held == 1.0
+        assert rows[m].told_apart == pytest.approx(rows[m].predicted, rel=0.05)
+    assert rows[6].told_apart > 2 > rows[9].told_apart > 1 > 0.5 > rows[13].told_apart
+    assert rows[6].records > 0.99 and not rows[13].seen
+    assert abs(rows[6].fold) > 2 * SIGMA > SIGMA > 2 * abs(rows[13].fold)
+    blurred = in_noise(2e-4, 1996, (WHITE, "Eq. (1)", StroboscopicMap(
+        oscillator=single_mode_at(letter_scene, frequency_of(letter_scene, 6))), 6))  # fmt: skip
+    assert blurred.told_apart == pytest.approx(blurred.predicted, rel=0.1) and blurred.told_apart < 1.0
+
+
+# --- the study ---------------------------------------------------------------------------------------------
+
+
+def test_small_form(run_study):
+    options = ("--set", "modes.count=4", "--set", "drive.frequencies_hz=[21.5, 22.6]", "--scans", "10")
+    ran = run_study("noise", "--quick", *options)
+    assert ran.code == 0 and ran.summary["first_merged"]["white"] == 10
+    assert ran.verdicts["last_period"] == "agrees"
+    assert "hides the hysteresis of p6 at 22.60 Hz" in ran.summary["answers"]["hysteresis"]
+    rows = ran.rows("observed_at_letter")
+    shown = {(row["description"], row["frequency_hz"], row["noise"]): row for row in rows}
+    deep = shown["Eq. (1)", "21.5", "drift of 100 s"]
+    assert deep["seen"] == "True" and float(deep["median"]) == pytest.approx(float(deep["fold"]), rel=0.1)
+    assert shown["Eq. (1)", "22.6", "drift of 100 s"]["seen"] == "False"
+    assert all(float(row["worst"]) < 4.5 for row in ran.rows("covariances"))
+
+
+@pytest.mark.parametrize(
+    "options, words",
+    [
+        (("--stability", "0"), "stability is 0 [1]; it must be above 0"),
+        (("--amplitude-step", "1e-6"), "amplitude_step is 1e-06 [1]; with a stability of 0.00025"),
+        (("--waiting", "10"), "waiting is 10 drive periods; it must be at least 1000"),
+        (("--correlation-times", "-1"), "correlation_times holds -1 s; it must be 0 or more"),
+        (("--readout", "-1"), "readout is -1 m; it must be 0 or more"),
+    ],
+)
+def test_wrong_options_are_refused_in_a_sentence(run_study, options, words):
+    ran = run_study("noise", *options)
+    assert ran.code == 2 and words in ran.err and "Traceback" not in ran.err
