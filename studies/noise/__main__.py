@@ -36,7 +36,7 @@ from studies.noise.covariances import MEMORIES_S, covariance_of, growth_of
 from studies.noise.ends import Observed, Scans, ends_of, observed_of
 from studies.noise.last_period import LastPeriod, frequency_of, in_noise
 from studies.noise.places import Place
-from studies.noise.scans import Protocol, scans
+from studies.noise.scans import Protocol, named, scans
 from studies.run import Run, study
 from studies.scene import (
     Scene,
@@ -108,14 +108,16 @@ def noise(
     described = [("Eq. (1)", StroboscopicMap(oscillator=single_mode_at(scene, frequency_of(scene, m))), m)
                  for m in TOLD[run.quick]]  # fmt: skip
     described += [("beam", StroboscopicMap(oscillator=beam_at(scene, f, model)), m) for f, m in letters]
-    asked = [(each, *one) for each in protocols for one in described]
-    last = [row for row in run.attempt(partial(in_noise, readout, seed), asked, "periods in noise") if row]
-    run.table("last_period", last, "Which p_m can be told apart and live, at an excess of 1e-3.")
+    asked = partial(in_noise, readout, protocols, seed)
+    last = [row for row in run.attempt(asked, described, "periods in noise") if row]
+    kinds = [named(each.correlation_s) for each in protocols]
+    run.table("last_period", last, "Which p_m can be told apart at an excess of 1e-3, and lives where it is "
+              f"born; for each kind of noise: {', '.join(kinds)}.")  # fmt: skip
     from studies.noise import figure  # matplotlib is slow to import
 
     run.figure("observed", figure.draw_observed(scene, observed), figure.OBSERVED)
     run.figure("escape", figure.draw_escape(ends), figure.ESCAPE)
-    merged = judge(run, observed, last)
+    merged = judge(run, kinds, observed, last)
     return {"ends": ends, "observed": observed, "last_period": last, "first_merged": merged}
 
 
@@ -170,13 +172,14 @@ def cell(count: int, seed: int, where: tuple[Place, Protocol]) -> Scans:
     return scans(place, protocol, max(count // 5, 1) if place.description == "beam" else count, seed)
 
 
-def judge(run: Run, observed: Sequence[Observed], last: Sequence[LastPeriod]) -> dict[str, int | None]:
+def judge(
+    run: Run, kinds: Sequence[str], observed: Sequence[Observed], last: Sequence[LastPeriod]
+) -> dict[str, int | None]:
     """The answers and the verdict on the last period; first m of Eq. (1) whose clouds merge in each noise."""
-    kinds = list(dict.fromkeys(row.noise for row in last))
     of_eq_1 = [row for row in last if row.description == "Eq. (1)"]
     merged = {
-        kind: next((row.m for row in of_eq_1 if row.noise == kind and not row.told_apart >= 1.0), None)
-        for kind in kinds
+        kind: next((row.m for row in of_eq_1 if not row.told_apart[k] >= 1.0), None)
+        for k, kind in enumerate(kinds)
     }
     kind = next((kind for kind in kinds if kind != "white"), "white")
     rows = [row for row in observed if row.noise == kind and row.description == "Eq. (1)"]
@@ -208,12 +211,12 @@ def judge(run: Run, observed: Sequence[Observed], last: Sequence[LastPeriod]) ->
         found=", ".join(f"{f'p{m}' if m else 'none'} ({kind})" for kind, m in merged.items()),
         note="first period whose closest strobe points merge in noise of the size of the letter's stability",
     )
-    sharp = {kind: [row.m for row in of_eq_1 if row.noise == kind and row.seen] for kind in kinds}
+    sharp = {kind: [row.m for row in of_eq_1 if row.seen[k]] for k, kind in enumerate(kinds)}
     run.answer(
         "last_period",
         "Over a waiting, strobe points closer than the noise merge: from "
         + ", ".join(f"m = {m} on ({kind})" for kind, m in merged.items() if m)
-        + ". In one record of 40 strobes Eq. (1) can be told up to "
+        + ". In one record of 40 strobes, and living where it is born, Eq. (1) has up to "
         + ", ".join(f"p{max(found)} ({kind})" for kind, found in sharp.items() if found)
         + ": a slow drift moves all points together.",
     )

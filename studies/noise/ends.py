@@ -70,9 +70,9 @@ def ends_of(made: Made) -> list[End]:
         values = np.sort(found[name][np.isfinite(found[name])])
         if values.size < 2:
             continue
-        law: Sequence[float | None] = (None,) * len(PARTS)
-        if place.description == "Eq. (1)" and name in ("slipped", "touched"):
-            law = quantiles(law_of(place, protocol, name), PARTS)
+        by_formula = place.description == "Eq. (1)" and name in ("slipped", "touched")
+        law = law_of(place, protocol, name) if by_formula else None
+        formula: Sequence[float | None] = (None,) * len(PARTS) if law is None else quantiles(law, PARTS)
         # ranks half a binomial standard deviation, sqrt(n)/2, below and above the median
         ranks = 0.5 * (values.size + np.array([-1.0, 1.0]) * math.sqrt(values.size))
         below, above = np.interp(ranks, np.arange(values.size) + 0.5, values)
@@ -81,7 +81,7 @@ def ends_of(made: Made) -> list[End]:
             description=place.description, frequency_hz=place.frequency_hz, m=place.m,
             noise=named(protocol.correlation_s), fold=None if place.fold is None else place.fold.excess,
             end=name, scans=values.size, low=low, median=median, high=high, error=0.5 * float(above - below),
-            formula_low=law[0], formula=law[1], formula_high=law[2],
+            formula_low=formula[0], formula=formula[1], formula_high=formula[2],
         ))  # fmt: skip
     return rows
 

@@ -11,13 +11,14 @@ from matplotlib.ticker import NullLocator
 
 from studies import letter, plotting
 from studies.noise.ends import End, Observed
-from studies.plotting import BLACK, BLUE, GUIDE, PAGE, VERMILION, tint
+from studies.plotting import BLACK, BLUE, GUIDE, LETTER, PAGE, VERMILION, tint
 from studies.scene import Scene, corresponding
 
 OBSERVED = (
     "Hysteresis against the drive frequency as an observer would have measured it, median and 5 to 95 % of "
     "the scans of Eq. (1) (line and area) and of the beam (circles and bars), beside the folds of the map "
-    "and of Eq. (1) without noise. Linear below the printed stability of the amplitude, logarithmic above."
+    "and of Eq. (1) without noise; dotted: the letter's frequencies. Linear below the printed stability of "
+    "the amplitude, logarithmic above."
 )
 ESCAPE = (
     "Where orbits end in scans, from their end without noise (grazing for p1, the fold for the others): "
@@ -54,6 +55,8 @@ def draw_observed(scene: Scene, rows: Sequence[Observed]) -> Figure:
         axis.errorbar([row.frequency_hz for row in of_beam], middle, np.abs(ends - middle), fmt="o",
                       mfc="white", color=BLACK, elinewidth=0.8, label="observed, beam")  # fmt: skip
         axis.axhline(0.0, **GUIDE)
+        for frequency in scene.drive.frequencies_hz:
+            axis.axvline(frequency, **LETTER)
         axis.set_yscale("symlog", linthresh=letter.AMPLITUDE_STABILITY, linscale=0.4)
         axis.set_ylim(-1e-3, 0.2)
         axis.set_yticks([-5e-4, 0.0, 5e-4, 1e-3, 1e-2, 1e-1],

@@ -3,12 +3,15 @@
 At an excess of 1e-3 the m strobe points of p_m become m clouds, sorted by the strobes since the last impact.
 Over `WAITS` waitings, and by their covariances (``contact.orbits.cloud``), one is told from the next if they
 are further apart than wide (90 % of the points); in one record of the 40 strobes that the letter draws, which
-a slow drift leaves sharp, if no two of them overlap. Noise of the read-out is included.
+a slow drift leaves sharp, if no two of them overlap. Noise of the read-out is included. Whether p_m lives is
+asked where it is born, one standard deviation of the amplitude above grazing.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,7 +20,7 @@ from numpy.typing import NDArray
 from contact import ContactError, StroboscopicMap
 from contact.orbits import born, born_period, cloud, fold_excess
 from studies.letter import STROBE_POINTS
-from studies.noise.scans import Drift, Protocol, memory_of, named, watched
+from studies.noise.scans import Drift, Protocol, memory_of, watched
 from studies.scene import READOUT, Scene, band_of
 
 BORN_EXCESS = 1e-3
@@ -42,12 +45,12 @@ Counts = NDArray[np.int64]
 
 @dataclass(frozen=True, kw_only=True)
 class LastPeriod:
-    """p_m in noise, `born` without it at excess 1e-3, with its `fold` [1] (Eq. (1) alone).
+    """p_m in noise, a number for each kind of it; `born` without it at excess 1e-3, with its `fold` [1].
 
     `told_apart`: least distance of neighbouring clouds over their mean width; `predicted` by covariances,
-    None where the orbit has none; `records`: part of the records of 40 strobes, as the letter draws them, in
-    which no two of the m groups overlap; `held`: part of the waitings in which p_m was seen; `seen`: whether
-    it was held, and told apart in a record, in more than half of them.
+    None where the orbit has none; `records`: part of the records of 40 strobes in which no two of the m
+    groups overlap; `held`: part of the waitings in which p_m was seen at an excess of one standard deviation;
+    `seen`: whether both are above one half.
     """
 
     description: str
@@ -55,12 +58,11 @@ class LastPeriod:
     frequency_hz: float
     born: int
     fold: float | None
-    noise: str
-    told_apart: float
-    predicted: float | None
-    records: float
-    held: float
-    seen: bool
+    told_apart: tuple[float, ...]
+    predicted: tuple[float | None, ...]
+    records: tuple[float, ...]
+    held: tuple[float, ...]
+    seen: tuple[bool, ...]
 
 
 def frequency_of(scene: Scene, m: int) -> float:
@@ -105,36 +107,45 @@ def least_ratio(centre: Points, width: Points) -> float:
 
 
 def in_noise(
-    readout: float, seed: int, asked: tuple[Protocol, str, StroboscopicMap, int]
+    readout: float, protocols: Sequence[Protocol], seed: int, described: tuple[str, StroboscopicMap, int]
 ) -> LastPeriod:
     """p_m of a named description: the tip of Eq. (1), the read-out point of a beam."""
-    protocol, description, strobed, m = asked
+    description, strobed, m = described
+    single = strobed.oscillator.n_modes == 1
+    columns = zip(*(clouds_of(readout, protocol, seed, strobed, m) for protocol in protocols), strict=True)
+    told_apart, predicted, records, held = columns
+    return LastPeriod(
+        description=description, m=m, frequency_hz=strobed.oscillator.driven.frequency,
+        born=born_period(strobed, BORN_EXCESS), fold=fold_excess(strobed, m) if single else None,
+        told_apart=told_apart, predicted=predicted, records=records, held=held,
+        seen=tuple(min(pair) > 0.5 for pair in zip(records, held, strict=True)),
+    )  # fmt: skip
+
+
+def clouds_of(
+    readout: float, protocol: Protocol, seed: int, strobed: StroboscopicMap, m: int
+) -> tuple[float, float | None, float, float]:
+    """`told_apart`, `predicted`, `records` and `held` of p_m in one kind of noise."""
     here, frequency = strobed.at(BORN_EXCESS), strobed.oscillator.driven.frequency
     memory = memory_of(protocol.correlation_s, frequency)
     dice = np.random.default_rng([seed, m, round(1e3 * frequency), round(1e3 * protocol.correlation_s)])
     noise = Drift(protocol.stability, memory, dice).next(WAITS * protocol.waiting)
-    orbit = born(strobed, BORN_EXCESS)
+    orbit, low = born(strobed, BORN_EXCESS), strobed.at(protocol.stability)
     run = here.orbit(orbit.end, noise.size, factors=1.0 + noise)
-    seen = [watched(part, m)[0] > 0.5 for part in np.split(run.impacts, WAITS)]
+    lower = low.orbit(born(strobed, protocol.stability).end, noise.size, factors=1.0 + noise)
+    held = [watched(part, m)[0] > 0.5 for part in np.split(lower.impacts, WAITS)]
 
     def reading(points: Points) -> Points:
         at_laser = READOUT in strobed.oscillator.model.readouts
         return here.readout(points, READOUT) if at_laser else here.tip(points)
 
     predicted = None
-    try:
-        if orbit.period == m:
+    if orbit.period == m:
+        with suppress(ContactError, ValueError):  # a strobe in a touch, a graze
             spread = cloud(here, orbit.end, m, deviation=protocol.stability, memory=memory)
             row = reading(np.eye(spread.shape[1]))
             width = WIDTH * np.sqrt(np.einsum("i,jik,k->j", row, spread, row) + readout**2)
-            predicted = least_ratio(reading(here.orbit(orbit.end, m).points), width)
-    except (ContactError, ValueError):  # a strobe in a touch, a graze
-        pass
+            predicted = round(least_ratio(reading(here.orbit(orbit.end, m).points), width), 3)
     points = reading(run.points) + readout * dice.standard_normal(noise.size)
-    records, held = separate(points, run.impacts, m), float(np.mean(seen))
-    return LastPeriod(
-        description=description, m=m, frequency_hz=frequency, born=born_period(strobed, BORN_EXCESS),
-        fold=fold_excess(strobed, m) if strobed.oscillator.n_modes == 1 else None,
-        noise=named(protocol.correlation_s), told_apart=apart(points, run.impacts, m), predicted=predicted,
-        records=records, held=held, seen=records > 0.5 and held > 0.5,
-    )  # fmt: skip
+    told_apart = round(apart(points, run.impacts, m), 3)
+    return told_apart, predicted, round(separate(points, run.impacts, m), 3), float(np.mean(held))

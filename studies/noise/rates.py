@@ -38,6 +38,9 @@ from studies.noise.scans import Protocol
 LAG = 1.86
 """Minus the mean y at which eta' = y - eta^2 leaves, from far above: simulated, good to 0.01."""
 
+SLOW = 500.0
+"""Correlation time in drive periods from which on a drift is slow: an orbit passes its fold in a hundred."""
+
 CELLS = 10
 """Cells of the density in a standard deviation of the drift."""
 
@@ -164,9 +167,11 @@ def touched_in_white_noise(place: Place, protocol: Protocol) -> Law:
     return of_rates(0.0, 1.0, protocol, lambda x: 2.0 * owens_t(-x / size, alike) if x < 0.0 else 1.0)
 
 
-def law_of(place: Place, protocol: Protocol, what: str) -> Law:
-    """The law of `what`: "slipped" (p_m, on the way down) or "touched" (p_1, on the way up)."""
+def law_of(place: Place, protocol: Protocol, what: str) -> Law | None:
+    """The law of `what`, "slipped" (p_m, on the way down) or "touched" (p_1, up); None if neither holds."""
     if protocol.correlation_s:
+        if protocol.correlation_s * place.frequency_hz < SLOW:
+            return None
         return slipped_in_drift(place, protocol) if what == "slipped" else in_drift(
             0.0, 1.0, protocol, place.frequency_hz
         )  # fmt: skip

@@ -47,7 +47,8 @@ FEWER = {
 #: Studies of driven motions, and those that change the dimensions of a spring.
 DRIVEN = (
     "adequacy", "attractors", "breakdown", "chart", "claims", "effective_impact", "finite_amplitude",
-    "hysteresis", "motion", "noise", "sensitivity", "soft_wall", "time_trace", "transitions", "work_precision",
+    "hysteresis", "motion", "noise", "sensitivity", "soft_wall", "time_trace", "transitions",
+    "work_precision",
 )  # fmt: skip
 ON_A_SPRING = (
     "breakdown", "calibrate", "effective_impact", "finite_amplitude", "motion", "sensitivity", "spring_shape",
@@ -80,7 +81,7 @@ REFUSED = [
     ("chart", "--points 1 9", "points"),
     ("hysteresis", "--step 0", "step"),
     ("hysteresis", "--set drive.frequencies_hz=[2000]", "2000 Hz"),
-    ("sensitivity", "--periods 5 3", "periods"),
+    ("noise", "--readout -1", "readout"),
     ("soft_wall", "--decades 5 3", "decades"),
     ("spring_shape", "--off-line 0", "--off-line"),
     ("spring_shape", "--channel-sheet 0", "--channel-sheet"),

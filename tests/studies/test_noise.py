@@ -222,17 +222,17 @@ def test_clouds_tell_well_separated_points_from_merged_ones():
 
 def test_strobe_points_run_together_as_m_grows(letter_scene):
     rows = {}
-    for m in (6, 9, 13):
-        oscillator = single_mode_at(letter_scene, frequency_of(letter_scene, m))
-        rows[m] = in_noise(0.0, 1996, (WHITE, "Eq. (1)", StroboscopicMap(oscillator=oscillator), m))
-        assert rows[m].born == m and rows[m].held == 1.0
-        assert rows[m].told_apart == pytest.approx(rows[m].predicted, rel=0.05)
-    assert rows[6].told_apart > 2 > rows[9].told_apart > 1 > 0.5 > rows[13].told_apart
-    assert rows[6].records > 0.99 and not rows[13].seen
-    assert abs(rows[6].fold) > 2 * SIGMA > SIGMA > 2 * abs(rows[13].fold)
-    blurred = in_noise(2e-4, 1996, (WHITE, "Eq. (1)", StroboscopicMap(
-        oscillator=single_mode_at(letter_scene, frequency_of(letter_scene, 6))), 6))  # fmt: skip
-    assert blurred.told_apart == pytest.approx(blurred.predicted, rel=0.1) and blurred.told_apart < 1.0
+    for m, readout in ((6, 0.0), (9, 0.0), (13, 0.0), (6, 2e-4)):
+        strobed = StroboscopicMap(oscillator=single_mode_at(letter_scene, frequency_of(letter_scene, m)))
+        row = rows[m, readout] = in_noise(readout, [WHITE, DRIFT], 1996, ("Eq. (1)", strobed, m))
+        assert row.born == m and row.told_apart[0] == pytest.approx(row.predicted[0], rel=0.1)
+    six, nine, thirteen, blurred = rows.values()
+    assert six.told_apart[0] > 2 > nine.told_apart[0] > 1 > 0.5 > thirteen.told_apart[0]
+    assert blurred.told_apart[0] < 1.0 and blurred.records[0] < six.records[0] == 1.0
+    # a drift moves all points of a record together, and throws out what it carries over the fold
+    assert nine.told_apart[1] < 0.5 and nine.records[1] == 1.0 and six.seen == (True, True)
+    assert abs(six.fold) > 2 * SIGMA > SIGMA > 2 * abs(thirteen.fold)
+    assert six.held[1] >= thirteen.held[1]
 
 
 # --- the study ---------------------------------------------------------------------------------------------
