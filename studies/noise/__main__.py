@@ -64,7 +64,7 @@ SPACING_HZ, CLOUD_PERIODS, TOLD = (0.1, 0.5), (1_000_000, 100_000), (range(3, 17
 """Along the bands; drive periods for a covariance; m that are told apart: the full form, the small one."""
 
 
-@study(needs={"fold": 0.05}, quick={"scans": 20, "correlation_times": (0.0, 100.0)})
+@study(needs={"fold": 0.05}, quick={"scans": 10, "correlation_times": (0.0, 100.0)})
 def noise(
     scene: Scene,
     run: Run,
@@ -95,7 +95,7 @@ def noise(
     }  # fmt: skip
     own = fingerprint(run.scene.values(), settings)[:12]
     found = sweep(run, f"scans-{own}", settings, cells, partial(cell, scans, seed))
-    made = [(*cell, one) for cell, one in zip(cells, found, strict=True) if one is not None]
+    made = [(*where, one) for where, one in zip(cells, found, strict=True) if one is not None]
     at_letter = [one for one in made if (one[0].frequency_hz, one[0].m) in letters]
     ends = [row for rows in run.attempt(ends_of, at_letter, "ends") for row in rows or ()]
     run.table("escape", ends, "Excess at which p_m and p_1 end in scans, simulated and by formula.",

@@ -38,13 +38,11 @@ class Place:
         """Its period map, at grazing."""
         if self.description == "map":
             return StrobedNordmarkMap(map=nordmark_at(self.scene, self.frequency_hz))
-        single = self.description == "Eq. (1)"
-        oscillator = (single_mode_at if single else beam_at)(self.scene, self.frequency_hz, *self._model)
+        if self.description == "Eq. (1)":
+            oscillator = single_mode_at(self.scene, self.frequency_hz)
+        else:
+            oscillator = beam_at(self.scene, self.frequency_hz, self.model)
         return StroboscopicMap(oscillator=oscillator.with_excess(0.0))
-
-    @property
-    def _model(self) -> tuple[ModalModel, ...]:
-        return () if self.model is None else (self.model,)
 
     @cached_property
     def family(self) -> Any:

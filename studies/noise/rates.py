@@ -12,7 +12,7 @@ beyond until the orbit has left.  In units t_0, y_0 of time (m periods) and exce
 and y_0^2 = s^2 m t_0/t_c this is eta' = y - eta^2, y a Brownian motion of variance 2t: y has come to -`LAG`
 on average when eta leaves.  So e is absorbed at the fold less `LAG` y_0.
 
-**Drift below grazing.**  p_1 is left when x + e > 0: the motion follows a slow drift.
+**Drift below grazing.**  p_1 is touched when x + e > 0: the motion follows a slow drift.
 
 **White noise below grazing.**  The peaks h_n of the tip are Gaussian, with the variance S^2 and correlation
 R of neighbours that the linear motion gives them; they pass the stop at the rate P(h_n < h < h_(n+1)) =
@@ -55,7 +55,7 @@ BELOW = -0.01
 
 Array = NDArray[np.float64]
 Law = tuple[Array, Array]
-"""Excesses, and the probability of each to be the one at which the orbit was lost or left."""
+"""Excesses, and the probability of each to be the one at which the orbit ended."""
 
 
 def mean_time(distance: float, place: Place, stability: float) -> float:
@@ -73,7 +73,7 @@ def mean_time(distance: float, place: Place, stability: float) -> float:
 
 
 def slipped_in_white_noise(place: Place, protocol: Protocol) -> Law:
-    """Where p_m is lost."""
+    """Where p_m slips."""
     return of_rates(
         place.fold.excess, -1.0, protocol,
         lambda x: 1.0 / (place.m * mean_time(x - place.fold.excess, place, protocol.stability)),
@@ -136,7 +136,7 @@ def in_drift(end: float, way: float, protocol: Protocol, frequency_hz: float) ->
 
 
 def slipped_in_drift(place: Place, protocol: Protocol) -> Law:
-    """Where p_m is lost."""
+    """Where p_m slips."""
     m, s, k = place.m, protocol.stability, place.steepness
     spread = s**2 * m / (place.frequency_hz * protocol.correlation_s)
     unit = (16.0 / (k**2 * spread)) ** 0.2
@@ -144,7 +144,7 @@ def slipped_in_drift(place: Place, protocol: Protocol) -> Law:
 
 
 def touched_in_white_noise(place: Place, protocol: Protocol) -> Law:
-    """Where p_1 of Eq. (1) is left."""
+    """Where p_1 of Eq. (1) is touched."""
     from scipy.special import owens_t  # slow to import
 
     strobed, s = place.strobed.at(BELOW), protocol.stability

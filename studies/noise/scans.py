@@ -36,8 +36,13 @@ BEYOND = 30
 RAMP = 0.02
 """Part of the waiting in which the amplitude goes to its new value: a sudden step would swing over."""
 
-LARGEST, FINEST, FEWEST = 0.02, 20.0, 1000
-"""Of noise and step [1]; steps in a standard deviation; drive periods waited: long against `QUIET`."""
+SHRINKING = (1.0, 0.7, 0.5, 0.35, 0.25)
+"""Parts of the reach at which p_m is looked for: it can be stable next to its fold only."""
+
+LARGEST, RATIO, FEWEST = 0.02, 20.0, 1000
+"""Of noise and step [1], and of their ratio; drive periods waited: long against `QUIET`."""
+
+EPS = 1e-9
 
 Array = NDArray[np.float64]
 ENDS = ("slipped", "lost", "touched", "left")
@@ -79,10 +84,11 @@ class Protocol:
         for name, value in (("stability", self.stability), ("amplitude_step", self.step)):
             if not 0.0 < value <= LARGEST:
                 raise ValueError(f"{name} is {value:g} [1]; it must be above 0, and at most {LARGEST:g}")
-        if self.step < self.stability / FINEST:
+        low, high = self.stability / RATIO, self.stability * RATIO
+        if not low * (1.0 - EPS) <= self.step <= high * (1.0 + EPS):
             raise ValueError(
-                f"amplitude_step is {self.step:g} [1]; with a stability of {self.stability:g} it must be at "
-                f"least {self.stability / FINEST:g}"
+                f"amplitude_step is {self.step:g} [1]; with a stability of {self.stability:g} it must lie "
+                f"between {low:g} and {high:g}"
             )
         if self.waiting < FEWEST:
             raise ValueError(f"waiting is {self.waiting} drive periods; it must be at least {FEWEST}")
@@ -160,29 +166,26 @@ def scans(place: Place, protocol: Protocol, count: int, seed: int) -> dict[str, 
     """`count` downward and upward scans: excesses at which p_m slipped and was lost, and at which p_1 was
     touched and left, each (count,).
 
-    NaN where p_m was not seen at the first amplitude, or not lost in `Protocol.steps`.
+    NaN where the orbit was not seen at the first amplitude, or not lost in `Protocol.steps`.
     """
     key = [seed, round(1e3 * place.frequency_hz), place.m, round(1e3 * protocol.correlation_s)]
-    found, top = np.full((4, count), math.nan), start_of(place, protocol)
-    steps: Array = protocol.step * np.arange(protocol.steps, dtype=np.float64)
+    below = place.strobed.at(-protocol.reach).steady()
+    ways = (
+        (start_of(place, protocol), -protocol.step, place.m),
+        ((-protocol.reach, below), protocol.step, 0),
+    )
     memory = memory_of(protocol.correlation_s, place.frequency_hz)
-    for i in range(count):
-        for falling in (True, False):
-            dice = np.random.default_rng([*key, i, falling])
-            drift, part = Drift(protocol.stability, memory, dice), protocol.step * dice.random()
-            if not falling:
-                levels = steps + part - protocol.reach
-                state = place.strobed.at(float(levels[0])).steady()
-                found[2:, i] = scan(place.strobed, state, levels, 0, protocol, drift)
-            elif top is not None:
-                levels = top[0] - steps - part
-                ends = scan(place.strobed, top[1], levels, place.m, protocol, drift)
-                found[:2, i] = ends if ends[1] != levels[0] else math.nan
-    return dict(zip(ENDS, found, strict=True))
-
-
-SHRINKING = (1.0, 0.7, 0.5, 0.35, 0.25)
-"""Parts of the reach at which p_m is looked for: it can be stable next to its fold only."""
+    found = np.full((len(ways), 2, count), math.nan)
+    for way, (start, step, m) in enumerate(ways):
+        if start is None:
+            continue
+        for i in range(count):
+            dice = np.random.default_rng([*key, i, way])
+            drift = Drift(protocol.stability, memory, dice)
+            levels: Array = start[0] + step * (np.arange(protocol.steps, dtype=np.float64) + dice.random())
+            ends = scan(place.strobed, start[1], levels, m, protocol, drift)
+            found[way, :, i] = ends if ends[1] != levels[0] else math.nan
+    return dict(zip(ENDS, found.reshape(-1, count), strict=True))
 
 
 def start_of(place: Place, protocol: Protocol) -> tuple[float, Any] | None:

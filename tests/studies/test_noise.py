@@ -62,15 +62,16 @@ def test_what_the_observer_sees_of_a_row_of_impacts():
     assert watched(np.zeros(900, dtype=int), 3) == (0.0, 0.0)
 
 
-def test_without_noise_orbits_end_within_a_step_of_fold_and_grazing(place):
-    quiet = Protocol(step=1e-4, waiting=20_000, stability=1e-9)
+def test_with_little_noise_orbits_end_within_a_step_of_fold_and_grazing(place):
+    quiet = Protocol(step=1e-4, waiting=20_000, stability=5e-6, correlation_s=1e4)
     for m, frequency in ((4, 21.5), (5, 22.2)):
         here = place(m, frequency)
         assert here.stable(here.fold.excess + quiet.reach) is not None
         found = scans(here, quiet, 12, 1)
         # the next step counts if half of the waiting is not enough to pass the bottleneck
-        assert np.all((found["slipped"] < here.fold.excess) & (found["slipped"] > here.fold.excess - 1.5e-4))
-        assert np.all((found["touched"] > 0.0) & (found["touched"] < 1e-4))
+        slipped, touched = found["slipped"] - here.fold.excess, found["touched"]
+        assert np.all((slipped < 2e-5) & (slipped > -1.7e-4)) and slipped.min() < -5e-5
+        assert np.all((touched > -2e-5) & (touched < 1.2e-4)) and touched.max() > 5e-5
         assert np.all(found["lost"] <= found["slipped"]) and np.all(found["left"] >= found["touched"])
 
 
@@ -256,7 +257,7 @@ def test_small_form(run_study):
     "options, words",
     [
         (("--stability", "0"), "stability is 0 [1]; it must be above 0"),
-        (("--amplitude-step", "1e-6"), "amplitude_step is 1e-06 [1]; with a stability of 0.00025"),
+        (("--amplitude-step", "1e-6"), "amplitude_step is 1e-06 [1]; with a stability of"),
         (("--waiting", "10"), "waiting is 10 drive periods; it must be at least 1000"),
         (("--correlation-times", "-1"), "correlation_times holds -1 s; it must be 0 or more"),
         (("--readout", "-1"), "readout is -1 m; it must be 0 or more"),
