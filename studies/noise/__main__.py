@@ -98,7 +98,9 @@ def noise(
     made = [(*where, one) for where, one in zip(cells, found, strict=True) if one is not None]
     at_letter = [one for one in made if (one[0].frequency_hz, one[0].m) in letters]
     ends = [row for rows in run.attempt(ends_of, at_letter, "ends") for row in rows or ()]
-    run.table("escape", ends, "Excess at which p_m and p_1 end in scans, simulated and by formula.",
+    off = [((row.median - row.formula) / row.error) ** 2 for row in ends if row.formula is not None]
+    run.table("escape", ends, "Excess at which p_m and p_1 end in scans, simulated and by formula; these "
+              f"medians are {np.sqrt(np.mean(off or np.nan)):.2f} standard errors apart (rms of {len(off)}).",
               show=() if run.quick else None)  # fmt: skip
     observed = [row for one in made if (row := observed_of(one)) is not None]
     shown = [row for row in observed if (row.frequency_hz, row.m) in letters]
