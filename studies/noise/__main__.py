@@ -33,10 +33,10 @@ from contact.orbits import born_period
 from studies.files import fingerprint
 from studies.letter import AMPLITUDE_STABILITY, PERIODS, SETTLE_CYCLES
 from studies.noise.covariances import MEMORIES_S, covariance_of, growth_of
-from studies.noise.ends import Observed, Scans, ends_of, observed_of
+from studies.noise.ends import Observed, ends_of, observed_of
 from studies.noise.last_period import LastPeriod, frequency_of, in_noise
 from studies.noise.places import Place
-from studies.noise.scans import Protocol, named, scans
+from studies.noise.scans import Protocol, cell, named
 from studies.run import Run, study
 from studies.scene import (
     Scene,
@@ -166,12 +166,6 @@ def places(
         found |= {(round(float(f), 4), m): None for f in grid if high > low}
     singles = [at(scene, model, "Eq. (1)", m, f) for f, m in sorted(found)]
     return singles + [at(scene, model, "beam", m, f) for f, m in letters]
-
-
-def cell(count: int, seed: int, where: tuple[Place, Protocol]) -> Scans:
-    """The scans at one place in one noise."""
-    place, protocol = where
-    return scans(place, protocol, max(count // 5, 1) if place.description == "beam" else count, seed)
 
 
 def judge(
