@@ -55,8 +55,8 @@ __all__ = ["noise"]
 LOWEST_HZ, HIGHEST_HZ, BANDS = 19.6, 23.8, range(3, 11)
 """Of Fig. 3."""
 
-PLACES = 4
-"""Frequencies in a band at least."""
+FEWEST, PLACES = 10, 4
+"""Scans, and frequencies in a band, at least."""
 
 CLOUD_PERIOD, HIGHEST = 3, max(PERIODS.values())
 
@@ -84,6 +84,8 @@ def noise(
     ]
     if not readout >= 0.0:
         raise ValueError(f"readout is {readout:g} m; it must be 0 or more")
+    if scans < FEWEST:
+        raise ValueError(f"scans is {scans}; quantiles need at least {FEWEST}")
     model, letters = model_of(harmonic(scene)), letter_periods(scene)
     clouds(scene, run, model, seed)
 
@@ -117,9 +119,12 @@ def noise(
               f"born; for each kind of noise: {', '.join(kinds)}.")  # fmt: skip
     from studies.noise import figure  # matplotlib is slow to import
 
-    run.figure("observed", figure.draw_observed(scene, observed), figure.OBSERVED)
-    run.figure("escape", figure.draw_escape(ends), figure.ESCAPE)
-    merged = judge(run, kinds, observed, last)
+    if observed:
+        run.figure("observed", figure.draw_observed(scene, observed), figure.OBSERVED)
+    if ends:
+        run.figure("escape", figure.draw_escape(ends), figure.ESCAPE)
+    answer_hysteresis(run, protocols, observed)
+    merged = judge(run, kinds, last)
     return {"ends": ends, "observed": observed, "last_period": last, "first_merged": merged}
 
 
@@ -168,52 +173,56 @@ def places(
     return singles + [at(scene, model, "beam", m, f) for f, m in letters]
 
 
-def judge(
-    run: Run, kinds: Sequence[str], observed: Sequence[Observed], last: Sequence[LastPeriod]
-) -> dict[str, int | None]:
-    """The answers and the verdict on the last period; first m of Eq. (1) whose clouds merge in each noise."""
+def answer_hysteresis(run: Run, protocols: Sequence[Protocol], observed: Sequence[Observed]) -> None:
+    """What noise does to the hysteresis of Eq. (1), in the fastest drift, or in white noise without one."""
+    drifts = sorted(each.correlation_s for each in protocols if each.correlation_s)
+    kind = named(drifts[0] if drifts else 0.0)
+    rows = [row for row in observed if row.noise == kind and row.description == "Eq. (1)"]
+    whole = [row for row in rows if row.map is not None and row.fold > protocols[0].stability]
+    if not whole:
+        return
+    shift = np.array([row.median - row.fold for row in whole])
+    part = np.abs(shift) / (np.abs(shift) + np.abs([row.fold - (row.map or 0.0) for row in whole]))
+    width = np.median([row.high - row.low for row in whole])
+    given = [row for row in rows if row.frequency_hz in run.scene.drive.frequencies_hz]
+    told = [f"{row.frequency_hz:.2f} Hz {row.median / row.fold - 1.0:+.0%}" for row in given if row.seen]
+    hidden = [f"p{row.m} at {row.frequency_hz:.2f} Hz" for row in given if not row.seen]
+    below = [band_of(run.scene, row.m).upper - row.frequency_hz for row in rows if not row.seen]
+    drowned = f" and hides it at {len(below)} of {len(rows)} places along Fig. 3" if below else ""
+    drowned += f", all within {max(below):.2g} Hz of the upper edge of a band" if below else ""
+    drowned += f" ({', '.join(hidden)})" if hidden else ""
+    run.answer(
+        "hysteresis",
+        f"Noise of {protocols[0].stability:.2g} of the amplitude ({kind}) changes the hysteresis that an "
+        f"observer measures by {np.median(shift):+.1e} (median of {len(whole)} folds; 5 to 95 % of his scans "
+        f"span {width:.1e}){': ' + ', '.join(told) + ',' if told else ''}{drowned}. {np.median(part):.0%} "
+        "(median) of what separates his hysteresis in Eq. (1) from the map's is noise, the rest the map's "
+        "own truncation.",
+    )
+
+
+def judge(run: Run, kinds: Sequence[str], last: Sequence[LastPeriod]) -> dict[str, int | None]:
+    """Verdict and answer on the last period; first m of Eq. (1) whose clouds merge in each noise."""
     of_eq_1 = [row for row in last if row.description == "Eq. (1)"]
     merged = {
         kind: next((row.m for row in of_eq_1 if not row.told_apart[k] >= 1.0), None)
         for k, kind in enumerate(kinds)
     }
-    kind = next((kind for kind in kinds if kind != "white"), "white")
-    rows = [row for row in observed if row.noise == kind and row.description == "Eq. (1)"]
-    whole = [row for row in rows if row.map is not None and row.fold > AMPLITUDE_STABILITY]
-    if whole:
-        shift = np.array([row.median - row.fold for row in whole])
-        part = np.abs(shift) / (np.abs(shift) + np.abs([row.fold - (row.map or 0.0) for row in whole]))
-        width = np.median([row.high - row.low for row in whole])
-        letters = [row for row in rows if row.frequency_hz in run.scene.drive.frequencies_hz]
-        unseen = [band_of(run.scene, row.m).upper - row.frequency_hz for row in rows if not row.seen]
-        hidden = [f"p{row.m} at {row.frequency_hz:.2f} Hz" for row in letters if not row.seen]
-        told = "; ".join(
-            f"{row.frequency_hz:.2f} Hz {row.median / row.fold - 1.0:+.0%}" for row in letters if row.seen
-        )
-        run.answer(
-            "hysteresis",
-            f"Noise of the printed size, read as a {kind}, changes what an observer measures by "
-            f"{np.median(shift):+.1e} (median of {len(whole)} folds; 5 to 95 % of his scans span "
-            f"{width:.1e}), however deep the fold ({told}), and hides the hysteresis of "
-            f"{', '.join(hidden) or 'none'}, and of {len(unseen)} of {len(rows)} places along Fig. 3, all "
-            f"within {max(unseen, default=0.0):.2g} Hz of the upper edge of a band: {np.median(part):.0%} "
-            "(median) of what separates his hysteresis in Eq. (1) from the map's is noise, the rest the "
-            "map's own truncation.",
-        )
     first = merged[kinds[0]]
     run.verdict(
         "last_period",
         "agrees" if first is not None and 0 <= first - HIGHEST <= 1 else "in part",
         found=", ".join(f"{f'p{m}' if m else 'none'} ({kind})" for kind, m in merged.items()),
-        note="first period whose closest strobe points merge in noise of the size of the letter's stability",
+        note="first period whose closest strobe points merge in noise of the amplitude's stability",
     )
     sharp = {kind: [row.m for row in of_eq_1 if row.seen[k]] for k, kind in enumerate(kinds)}
     run.answer(
         "last_period",
-        "Over a waiting, strobe points closer than the noise merge: from "
-        + ", ".join(f"m = {m} on ({kind})" for kind, m in merged.items() if m)
-        + ". In one record of 40 strobes, and living where it is born, Eq. (1) has up to "
-        + ", ".join(f"p{max(found)} ({kind})" for kind, found in sharp.items() if found)
+        "Over a waiting, strobe points closer than the noise merge: of Eq. (1)"
+        f"{f', p{of_eq_1[0].m} to p{of_eq_1[-1].m} asked, ' if of_eq_1 else ' '}"
+        + ", ".join(f"{f'from p{m} on' if m else 'none'} ({kind})" for kind, m in merged.items())
+        + ". In one record of 40 strobes, and living where it is born, the last is "
+        + ", ".join(f"{f'p{max(found)}' if found else 'none'} ({kind})" for kind, found in sharp.items())
         + ": a slow drift moves all points together.",
     )
     return merged

@@ -276,7 +276,7 @@ def test_small_form(run_study):
     ran = run_study("noise", "--quick", *options)
     assert ran.code == 0 and ran.summary["first_merged"]["white"] == 10
     assert ran.verdicts["last_period"] == "agrees"
-    assert "hides the hysteresis of p6 at 22.60 Hz" in ran.summary["answers"]["hysteresis"]
+    assert "(p6 at 22.60 Hz)" in ran.summary["answers"]["hysteresis"]
     rows = ran.rows("observed_at_letter")
     shown = {(row["description"], row["frequency_hz"], row["noise"]): row for row in rows}
     deep = shown["Eq. (1)", "21.5", "drift of 100 s"]
@@ -292,6 +292,7 @@ def test_small_form(run_study):
         (("--amplitude-step", "1e-6"), "amplitude_step is 1e-06 [1]; with a stability of"),
         (("--waiting", "10"), "waiting is 10 drive periods; it must be at least 1000"),
         (("--correlation-times", "-1"), "correlation_times holds -1 s; it must be 0 or more"),
+        (("--scans", "3"), "scans is 3; quantiles need at least 10"),
         (("--readout", "-1"), "readout is -1 m; it must be 0 or more"),
     ],
 )
