@@ -271,8 +271,10 @@ def test_strobe_points_run_together_as_m_grows(letter_scene):
 # --- the study ---------------------------------------------------------------------------------------------
 
 
-def test_small_form(run_study):
-    options = ("--set", "modes.count=4", "--set", "drive.frequencies_hz=[21.5, 22.6]", "--scans", "10")
+def test_small_form(run_study, monkeypatch):
+    for name, less in (("CLOUD_PERIODS", (0, 20_000)), ("TOLD", ((), range(9, 11))), ("PLACES", 2)):
+        monkeypatch.setattr(f"studies.noise.__main__.{name}", less)
+    options = ("--set", "modes.count=2", "--set", "drive.frequencies_hz=[21.5, 22.6]", "--waiting", "3000")
     ran = run_study("noise", "--quick", *options)
     assert ran.code == 0 and ran.summary["first_merged"]["white"] == 10
     assert ran.verdicts["last_period"] == "agrees"
