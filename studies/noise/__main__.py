@@ -29,7 +29,7 @@ import numpy as np
 
 from beam import ModalModel
 from contact import StroboscopicMap
-from contact.orbits import born_period
+from contact.orbits import born
 from studies.files import fingerprint
 from studies.letter import AMPLITUDE_STABILITY, PERIODS, SETTLE_CYCLES
 from studies.noise.covariances import MEMORIES_S, covariance_of, growth_of
@@ -139,7 +139,8 @@ def clouds(scene: Scene, run: Run, model: ModalModel, seed: int) -> None:
     found = [row for row in run.attempt(partial(covariance_of, periods, seed), cases, "covariances") if row]
     run.table("covariances", found, f"Simulated covariances of the points of p{m} over the predicted ones.")
     grown = run.attempt(partial(growth_of, periods, seed), pairs, "growth of clouds")
-    run.table("growth", [row for rows in grown for row in rows or ()], "Exponents with which clouds grow.")
+    run.table("growth", [row for rows in grown for row in rows or ()],
+              "Exponents with which clouds grow; expected: at a hard stop.")  # fmt: skip
 
 
 def at(scene: Scene, model: ModalModel, description: str, m: int, frequency_hz: float) -> Place:
@@ -149,12 +150,12 @@ def at(scene: Scene, model: ModalModel, description: str, m: int, frequency_hz: 
 
 
 def letter_periods(scene: Scene) -> list[tuple[float, int]]:
-    """The frequencies of the scene, by default the letter's, with the period that Eq. (1) has there."""
-    found = [
-        (f, born_period(StroboscopicMap(oscillator=single_mode_at(scene, f)), AMPLITUDE_STABILITY))
-        for f in sorted(scene.drive.frequencies_hz)
-    ]
-    return [(f, m) for f, m in found if m > 1]
+    """The frequencies of the scene, by default the letter's, at which p_m of Eq. (1) is born, with m."""
+    found = []
+    for f in sorted(scene.drive.frequencies_hz):
+        orbit = born(StroboscopicMap(oscillator=single_mode_at(scene, f)), AMPLITUDE_STABILITY)
+        found += [(f, orbit.period)] if orbit.period > 1 and orbit.impacts == 1 else []
+    return found
 
 
 def places(
@@ -203,9 +204,9 @@ def answer_hysteresis(run: Run, protocols: Sequence[Protocol], observed: Sequenc
 
 def judge(run: Run, kinds: Sequence[str], last: Sequence[LastPeriod]) -> dict[str, int | None]:
     """Verdict and answer on the last period; first m of Eq. (1) whose clouds merge in each noise."""
-    of_eq_1 = [row for row in last if row.description == "Eq. (1)"]
+    of_eq_1 = [row for row in last if row.description == "Eq. (1)" and row.told_apart]
     merged = {
-        kind: next((row.m for row in of_eq_1 if not row.told_apart[k] >= 1.0), None)
+        kind: next((row.m for row in of_eq_1 if row.told_apart and not row.told_apart[k] >= 1.0), None)
         for k, kind in enumerate(kinds)
     }
     first = merged[kinds[0]]
@@ -223,7 +224,7 @@ def judge(run: Run, kinds: Sequence[str], last: Sequence[LastPeriod]) -> dict[st
         + ", ".join(f"{f'from p{m} on' if m else 'none'} ({kind})" for kind, m in merged.items())
         + ". In one record of 40 strobes, and living where it is born, the last is "
         + ", ".join(f"{f'p{max(found)}' if found else 'none'} ({kind})" for kind, found in sharp.items())
-        + ": a slow drift moves all points together.",
+        + (": a slow drift moves all points together." if len(kinds) > 1 else "."),
     )
     return merged
 

@@ -66,7 +66,7 @@ class Covariance:
 
 @dataclass(frozen=True, kw_only=True)
 class Growth:
-    """Exponent with which the standard deviation of the points grows, simulated, and what is expected."""
+    """Exponent with which the deviation of the points grows, simulated, and expected at a hard stop."""
 
     description: str
     towards: str
@@ -112,10 +112,10 @@ def covariance_of(periods: int, seed: int, case: tuple[Place, float]) -> Covaria
     error = products.std(axis=1, ddof=1) / math.sqrt(BLOCKS)
     off = np.abs(products.mean(axis=1) - predicted[:, :size, :size]) / error
     traces = np.einsum("jbii->b", products) / np.einsum("jii->", predicted[:, :size, :size])
-    across, n = place.across(found.shape[2]), np.arange(place.m)
+    across = place.across(found.shape[2])
     expected = np.einsum("i,jik,k->j", across, predicted, across)
     reading = np.random.default_rng([seed, 1]).standard_normal(found.shape[:2]) * np.sqrt(expected)[:, None]
-    readout = np.var(found @ across + reading, axis=1)[n] / (2.0 * expected)
+    readout = np.var(found @ across + reading, axis=1) / (2.0 * expected)
     return Covariance(
         description=place.description, m=place.m, frequency_hz=place.frequency_hz, noise=named(correlation_s),
         periods=periods, ratio=float(traces.mean()), error=float(traces.std(ddof=1) / math.sqrt(BLOCKS)),

@@ -46,8 +46,8 @@ class End:
 class Observed:
     """Hysteresis as observed, excess at which p_1 was left less that at which p_m was lost.
 
-    `median`, 5 and 95 % (`low`, `high`), beside it that of the folds without noise; `seen`: more than a step
-    in 95 % of the pairs of scans.
+    `median`, 5 and 95 % (`low`, `high`) of pairs of `scans`, beside it that of the folds without noise;
+    `seen`: more than a step in 95 % of the pairs.
     """
 
     description: str
@@ -56,6 +56,7 @@ class Observed:
     noise: str
     map: float | None
     fold: float
+    scans: int
     low: float
     median: float
     high: float
@@ -90,12 +91,14 @@ def observed_of(made: Made) -> Observed | None:
     """The hysteresis at one place in one noise; None where p_m was not seen in most scans."""
     place, protocol, found = made
     widths = found["left"] - found["lost"]
-    if np.count_nonzero(np.isfinite(widths)) <= 0.5 * widths.size:
+    count = int(np.count_nonzero(np.isfinite(widths)))
+    if count <= 0.5 * widths.size:
         return None
     low, median, high = np.nanquantile(widths, PARTS)
     in_map = replace(place, description="map", model=None).fold
     return Observed(
         description=place.description, frequency_hz=place.frequency_hz, m=place.m,
         noise=named(protocol.correlation_s), map=None if in_map is None else -in_map.excess,
-        fold=-place.fold.excess, low=low, median=median, high=high, seen=bool(low > protocol.step),
+        fold=-place.fold.excess, scans=count, low=low, median=median, high=high,
+        seen=bool(low > protocol.step),
     )  # fmt: skip

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,10 +47,10 @@ Counts = NDArray[np.int64]
 class LastPeriod:
     """p_m in noise, a number for each kind of it; `born` without it at excess 1e-3, with its `fold` [1].
 
-    `told_apart`: least distance of neighbouring clouds over their mean width; `predicted` by covariances,
-    None where the orbit has none; `records`: part of the records of 40 strobes in which no two of the m
-    groups overlap; `held`: part of the waitings in which p_m was seen at an excess of one standard deviation;
-    `seen`: whether both are above one half.
+    None where another period is born.  `told_apart`: least distance of neighbouring clouds over their mean
+    width, in one realisation; `predicted` by covariances, None where the orbit has none; `records`: part of
+    the records of 40 strobes in which no two of the m groups overlap; `held`: part of the waitings in which
+    p_m was seen at an excess of one standard deviation; `seen`: whether both are above one half.
     """
 
     description: str
@@ -58,11 +58,11 @@ class LastPeriod:
     frequency_hz: float
     born: int
     fold: float | None
-    told_apart: tuple[float, ...]
-    predicted: tuple[float | None, ...]
-    records: tuple[float, ...]
-    held: tuple[float, ...]
-    seen: tuple[bool, ...]
+    told_apart: tuple[float, ...] | None = None
+    predicted: tuple[float | None, ...] | None = None
+    records: tuple[float, ...] | None = None
+    held: tuple[float, ...] | None = None
+    seen: tuple[bool, ...] = ()
 
 
 def frequency_of(scene: Scene, m: int) -> float:
@@ -111,15 +111,19 @@ def in_noise(
 ) -> LastPeriod:
     """p_m of a named description: the tip of Eq. (1), the read-out point of a beam."""
     description, strobed, m = described
-    single = strobed.oscillator.n_modes == 1
+    row = LastPeriod(
+        description=description, m=m, frequency_hz=strobed.oscillator.driven.frequency,
+        born=born_period(strobed, BORN_EXCESS),
+        fold=fold_excess(strobed, m) if strobed.oscillator.n_modes == 1 else None,
+    )  # fmt: skip
+    if row.born != m:
+        return row
     columns = zip(*(clouds_of(readout, protocol, seed, strobed, m) for protocol in protocols), strict=True)
     told_apart, predicted, records, held = columns
-    return LastPeriod(
-        description=description, m=m, frequency_hz=strobed.oscillator.driven.frequency,
-        born=born_period(strobed, BORN_EXCESS), fold=fold_excess(strobed, m) if single else None,
-        told_apart=told_apart, predicted=predicted, records=records, held=held,
-        seen=tuple(min(pair) > 0.5 for pair in zip(records, held, strict=True)),
-    )  # fmt: skip
+    seen = tuple(min(pair) > 0.5 for pair in zip(records, held, strict=True))
+    return replace(
+        row, told_apart=told_apart, predicted=predicted, records=records, held=held, seen=seen
+    )
 
 
 def clouds_of(
@@ -140,12 +144,11 @@ def clouds_of(
         return here.readout(points, READOUT) if at_laser else here.tip(points)
 
     predicted = None
-    if orbit.period == m:
-        with suppress(ContactError, ValueError):  # a strobe in a touch, a graze
-            spread = cloud(here, orbit.end, m, deviation=protocol.stability, memory=memory)
-            row = reading(np.eye(spread.shape[1]))
-            width = WIDTH * np.sqrt(np.einsum("i,jik,k->j", row, spread, row) + readout**2)
-            predicted = round(least_ratio(reading(here.orbit(orbit.end, m).points), width), 3)
+    with suppress(ContactError, ValueError):  # a strobe in a touch, a graze
+        spread = cloud(here, orbit.end, m, deviation=protocol.stability, memory=memory)
+        row = reading(np.eye(spread.shape[1]))
+        width = WIDTH * np.sqrt(np.einsum("i,jik,k->j", row, spread, row) + readout**2)
+        predicted = round(least_ratio(reading(here.orbit(orbit.end, m).points), width), 3)
     points = reading(run.points) + readout * dice.standard_normal(noise.size)
     told_apart = round(apart(points, run.impacts, m), 3)
     return told_apart, predicted, round(separate(points, run.impacts, m), 3), float(np.mean(held))

@@ -9,8 +9,8 @@ unevenness.  Its mean time from far above to far below is known without approxim
 
 **Drift next to a fold.**  A drift e slower than the orbit ends it where x + e crosses the fold, if it stays
 beyond until the orbit has left.  In units t_0, y_0 of time (m periods) and excess with (K/4) y_0 t_0^2 = 1
-and y_0^2 = s^2 m t_0/t_c this is eta' = y - eta^2, y a Brownian motion of variance 2t: y has come to -`LAG`
-on average when eta leaves.  So e is absorbed at the fold less `LAG` y_0.
+and y_0^2 = s^2 m t_0/t_c, t_c in drive periods, this is eta' = y - eta^2, y a Brownian motion of variance 2t:
+y has come to -`LAG` on average when eta leaves.  So e is absorbed at the fold less `LAG` y_0.
 
 **Drift below grazing.**  p_1 is touched when x + e > 0: the motion follows a slow drift.
 
