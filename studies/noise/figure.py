@@ -86,7 +86,7 @@ def draw_escape(rows: Sequence[End]) -> Figure:
         axis.set_yticks(range(len(places)), [f"{f:.2f} Hz, p$_{{{m}}}$" for f, m in places])
         axis.set_ylim(len(places) - 0.5, -0.5)
         plotting.panel(axis, number, kind)
-    figure.supxlabel("excess from the end without noise (10$^{-4}$)")
+    plotting.label(axes[0, len(kinds) // 2].xaxis, "excess from the end without noise", "10$^{-4}$")
     plotting.legend_below(figure, axes[0], 5)
     return figure
 
