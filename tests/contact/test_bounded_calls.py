@@ -75,7 +75,8 @@ THE_SAME_SEARCH = {
     "fold_along_frequency", "folds_of", "lowest_of", "KickFamily.orbits", "Shooting.fold", "Shooting.orbits",
 }  # fmt: skip
 """Searches made of ``fold_of``, ``follow`` and ``orbits_at``: with the extreme laws only these three run,
-of the general motion where there is one; every one of them in the long form."""
+of the general motion where there is one, and with the others each with two modes; all of them in the long
+form."""
 
 WITHOUT_A_LAW = {
     # closed forms of the letter's map and of flights
@@ -225,10 +226,12 @@ def unknown_of(orbit: single_impact.SingleImpactOrbit) -> np.ndarray:
 
 
 def left_to_the_long_form(name: str, modes: int, call: str, what: object) -> bool:
-    """Whether another call or another number of modes covers this one with an extreme law."""
-    if name not in EXTREME or isinstance(EXTREME[name], DelayedRestitution):
-        return False
-    return call in THE_SAME_SEARCH or (what is orbits and modes == 1)
+    """Whether another call or another number of modes covers this one."""
+    if name in EXTREME:
+        alone = isinstance(EXTREME[name], DelayedRestitution)
+        return not alone and (call in THE_SAME_SEARCH or (what is orbits and modes == 1))
+    alone = isinstance(LAWS[name], DelayedRestitution)
+    return not alone and modes == 1 and call in THE_SAME_SEARCH | {"follow_path"}
 
 
 def run_all(said: Callable[[str], None], long: bool) -> None:

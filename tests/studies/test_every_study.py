@@ -30,13 +30,18 @@ SMALLER = {"stability": ["--families", "false_restitution,accumulation"],
                             "--set", "spring.elements_on_arc=8"],
            "claims": ["--positions", "3", "--across", "12", "--restitutions", "3", "--inside", "6",
                       "--alphas", "3", "--set", "modes.count=4"],
+           "next_measurement": ["--thin", "12"],
            "calibrate": ["--set", "modes.count=4", "--set", "spring.elements_per_leg=12"]}  # fmt: skip
 
 
 #: Names in a study's modules that give a small form less to do, and what stands in for them; the letter's
 #: spring is calibrated as it stands.
 FEWER = {
-    "work_precision": {"__main__.problems_of": lambda scene, modes: problems_of(scene, 2)[:2]},
+    "work_precision": {
+        "__main__.problems_of": lambda scene, modes: problems_of(scene, 2)[:2],
+        "measures.LONG_ENOUGH": 1e-3, "measures.PATIENCE": 0.02,
+    },
+    "next_measurement": {"pairs.GRID": 31},
     "spring_shape": {
         "__main__.COARSE": [replace(mesh, legs=mesh.legs // 2) for mesh in COARSE],
         "__main__.COUNTS": (3, 2),
@@ -81,7 +86,12 @@ REFUSED = [
     ("chart", "--points 1 9", "points"),
     ("hysteresis", "--step 0", "step"),
     ("hysteresis", "--set drive.frequencies_hz=[2000]", "2000 Hz"),
-    ("noise", "--readout -1", "readout"),
+    ("noise", "--stability 0", "stability is 0 [1]; it must be above 0"),
+    ("noise", "--amplitude-step 1e-6", "amplitude_step is 1e-06 [1]; with a stability of"),
+    ("noise", "--waiting 10", "waiting is 10 drive periods; it must be at least 1000"),
+    ("noise", "--correlation-times -1", "correlation_times holds -1 s; it must be 0 or more"),
+    ("noise", "--scans 3", "scans is 3; quantiles need at least 10"),
+    ("noise", "--readout -1", "readout is -1 m; it must be 0 or more"),
     ("soft_wall", "--decades 5 3", "decades"),
     ("spring_shape", "--off-line 0", "--off-line"),
     ("spring_shape", "--channel-sheet 0", "--channel-sheet"),

@@ -285,19 +285,3 @@ def test_small_form(run_study, monkeypatch):
     assert deep["seen"] == "True" and float(deep["median"]) == pytest.approx(float(deep["fold"]), rel=0.1)
     assert shown["Eq. (1)", "22.6", "drift of 100 s"]["seen"] == "False"
     assert all(float(row["worst"]) < 4.5 for row in ran.rows("covariances"))
-
-
-@pytest.mark.parametrize(
-    "options, words",
-    [
-        (("--stability", "0"), "stability is 0 [1]; it must be above 0"),
-        (("--amplitude-step", "1e-6"), "amplitude_step is 1e-06 [1]; with a stability of"),
-        (("--waiting", "10"), "waiting is 10 drive periods; it must be at least 1000"),
-        (("--correlation-times", "-1"), "correlation_times holds -1 s; it must be 0 or more"),
-        (("--scans", "3"), "scans is 3; quantiles need at least 10"),
-        (("--readout", "-1"), "readout is -1 m; it must be 0 or more"),
-    ],
-)
-def test_wrong_options_are_refused_in_a_sentence(run_study, options, words):
-    ran = run_study("noise", *options)
-    assert ran.code == 2 and words in ran.err and "Traceback" not in ran.err
