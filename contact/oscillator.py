@@ -22,7 +22,7 @@ import numpy as np
 from beam import ModalModel
 from beam.parameters import require_array, require_kind, require_within, suspect
 from contact.drive import HarmonicDrive
-from contact.flight.motion import Motion, motion_of
+from contact.flight.motion import Motion, motion_of, with_drive
 from contact.laws import DELAYED
 from contact.stop import Stop
 
@@ -215,9 +215,15 @@ class ImpactOscillator:
 
     @cached_property
     def _motion(self) -> Motion:
-        response = self.steady_response() * (0.0 if self.drive is None else self.drive.amplitude)
+        return self._at_one_metre if self.drive is None else with_drive(
+            self._at_one_metre, self.drive.amplitude
+        )  # fmt: skip
+
+    @cached_property
+    def _at_one_metre(self) -> Motion:
+        """The numbers at an amplitude of 1 m: the same of all with another amplitude."""
         return motion_of(
             self.model.omega, self.model.decay_rate, self.model.phi, law=self.stop.law, gap=self.stop.gap,
             drive=0.0 if self.drive is None else self.drive.angular_frequency, period=self.period,
-            response=response, load=self.load,
+            response=self.steady_response(), load=self.load,
         )  # fmt: skip
