@@ -101,46 +101,30 @@ def in_drift(end: float, way: float, protocol: Protocol, frequency_hz: float) ->
     s, waiting = protocol.stability, protocol.waiting / (frequency_hz * protocol.correlation_s)
     fine = math.ceil(CELLS * protocol.step / s)
     width = protocol.step / fine
-    levels, found = [], []
+    jump, levels, found = (s / width) ** 2, [], []
     for phase in range(PHASES):
         first = protocol.reach - protocol.step * (phase + 0.5) / PHASES  # room before the end
         x = first - protocol.step * np.arange(protocol.steps)
         # cells from the end inwards, up to `WIDEST` deviations; the end moves by `fine` cells a step
         count = math.ceil((WIDEST * s + first) / width)
-        places = -first + width * (np.arange(count) + 0.5)
-        density, held = np.exp(-0.5 * (places / s) ** 2), [1.0]
-        density /= density.sum()
+        root = np.exp(-0.25 * ((-first + width * (np.arange(count) + 0.5)) / s) ** 2)
+        density, held = root**2 / np.sum(root**2), [1.0]
         for level in range(protocol.steps):
-            kept = places[level * fine :]
+            kept, inside = root[level * fine :], density[level * fine :]
             if kept.size < 3 or held[-1] < 1e-9:
                 break
-            moved = density[level * fine :]
-            # jumps between cells in detailed balance; half a cell from the end
-            root = np.exp(-0.25 * ((kept - kept[0]) / s) ** 2 - 0.5 * kept[0] * (kept - kept[0]) / s**2)
-            jump = (s / width) ** 2
-            up = jump * np.exp(-0.25 * width * (kept[:-1] + kept[1:]) / s**2)
-            down = jump * np.exp(0.25 * width * (kept[:-1] + kept[1:]) / s**2)
-            diagonal = np.zeros(kept.size)
-            diagonal[:-1] -= up
-            diagonal[1:] -= down
-            diagonal[0] -= 2.0 * jump
-            values, vectors = eigh_tridiagonal(diagonal, np.sqrt(up * down))
-            inner = vectors.T @ (moved / root)
-            half, whole = (root * (vectors @ (np.exp(t * values) * inner)) for t in (0.5 * waiting, waiting))
+            # jumps between cells in detailed balance; the end is half a cell from the first
+            ratio = kept[1:] / kept[:-1]
+            leaving = np.append(ratio, 0.0) + np.append(2.0, 1.0 / ratio)
+            values, vectors = eigh_tridiagonal(-jump * leaving, np.full(ratio.size, jump))
+            parts = vectors.T @ (inside / kept)
+            half, whole = (kept * (vectors @ (np.exp(t * values) * parts)) for t in (0.5 * waiting, waiting))
             held.append(float(half.sum()))
             density[level * fine :] = whole
         held += [0.0] * (protocol.steps + 1 - len(held))
         levels.append(end - way * x)
         found.append(-np.diff(held) / PHASES)
     return np.concatenate(levels), np.concatenate(found)
-
-
-def slipped_in_drift(place: Place, protocol: Protocol) -> Law:
-    """Where p_m slips."""
-    m, s, k = place.m, protocol.stability, place.steepness
-    spread = s**2 * m / (place.frequency_hz * protocol.correlation_s)
-    unit = (16.0 / (k**2 * spread)) ** 0.2
-    return in_drift(place.fold.excess - LAG * 4.0 / (k * unit**2), -1.0, protocol, place.frequency_hz)
 
 
 def touched_in_white_noise(place: Place, protocol: Protocol) -> Law:
@@ -169,13 +153,16 @@ def touched_in_white_noise(place: Place, protocol: Protocol) -> Law:
 
 def law_of(place: Place, protocol: Protocol, what: str) -> Law | None:
     """The law of `what`, "slipped" (p_m, on the way down) or "touched" (p_1, up); None if neither holds."""
-    if protocol.correlation_s:
-        if protocol.correlation_s * place.frequency_hz < SLOW:
-            return None
-        return slipped_in_drift(place, protocol) if what == "slipped" else in_drift(
-            0.0, 1.0, protocol, place.frequency_hz
-        )  # fmt: skip
-    return (slipped_in_white_noise if what == "slipped" else touched_in_white_noise)(place, protocol)
+    frequency, periods = place.frequency_hz, place.frequency_hz * protocol.correlation_s
+    if not periods:
+        return (slipped_in_white_noise if what == "slipped" else touched_in_white_noise)(place, protocol)
+    if periods < SLOW:
+        return None
+    if what == "touched":
+        return in_drift(0.0, 1.0, protocol, frequency)
+    k = place.steepness
+    unit = (16.0 * periods / (k**2 * place.m * protocol.stability**2)) ** 0.2
+    return in_drift(place.fold.excess - LAG * 4.0 / (k * unit**2), -1.0, protocol, frequency)
 
 
 def quantiles(law: Law, parts: tuple[float, ...]) -> list[float]:
