@@ -81,23 +81,6 @@ def test_the_loop_of_one_mode_is_the_general_one_at_any_amplitudes() -> None:
     assert found[0].points == pytest.approx(both, rel=0.0, abs=1e-10 * strobed.scale)
 
 
-@pytest.mark.parametrize("memory", [0.0, 0.95])
-@pytest.mark.parametrize("name", ["map", "Eq. (1)", "beam"])
-def test_covariances_of_simulated_clouds(name: str, memory: float) -> None:
-    """60 000 periods, 10^6 in the study; errors from the spread of 60 blocks, far longer than the memory."""
-    strobed, state, _ = settled(name)
-    sigma = SIGMA if name != "map" else 1e-3 * SIGMA
-    expected = cloud(strobed, state, PERIOD, deviation=sigma, memory=memory)
-    exact = strobed.orbit(state, PERIOD).points
-    found = strobed.orbit(state, 60_000, factors=noise(60_000, sigma, memory)).points
-    for j in range(PERIOD):
-        away = found[999 + j + 3 - (999 % 3) :: PERIOD][: 60 * 320, :2] - exact[j, :2]
-        products = np.einsum("ni,nj->nij", away, away).reshape(60, -1, 2, 2).mean(axis=1)
-        error = products.std(axis=0) / np.sqrt(59)
-        assert np.max(error) < 0.1 * np.max(expected[j, :2, :2])
-        assert np.all(np.abs(products.mean(axis=0) - expected[j, :2, :2]) < 4.0 * error)
-
-
 def test_clouds_grow_as_the_inverse_root_of_the_distance_to_the_fold() -> None:
     family = Shooting(oscillator=equation_1(20.9, NEWTON), period=PERIOD)
     fold, sizes = family.fold(), []
