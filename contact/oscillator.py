@@ -215,9 +215,8 @@ class ImpactOscillator:
 
     @cached_property
     def _motion(self) -> Motion:
-        return self._at_one_metre if self.drive is None else with_drive(
-            self._at_one_metre, self.drive.amplitude
-        )  # fmt: skip
+        one, drive = self._at_one_metre, self.drive
+        return one if drive is None else with_drive(one, drive.amplitude)
 
     @cached_property
     def _at_one_metre(self) -> Motion:

@@ -14,8 +14,9 @@ hysteresis is the excess at which p_1 is left less that at which p_m is lost.
 
 Run:     python -m studies.noise [--stability X] [--correlation-times S ...]     3 min; --quick 20 s
 Writes:  covariances.csv, growth.csv, escape.csv (a row an end of an orbit: quantiles of the excess, simulated
-         and by formula), observed.csv (a row a frequency, period and noise), last_period.csv, the scans and
-         their seed (scans-*, where a run that was stopped goes on), and the figures observed and escape
+         and by formula), observed.csv (a row a frequency, period and noise), both also *_at_letter.csv,
+         last_period.csv, the scans and their seed (scans-*, where a run that was stopped goes on), and the
+         figures observed and escape
 """
 
 from __future__ import annotations
@@ -55,13 +56,14 @@ __all__ = ["noise"]
 LOWEST_HZ, HIGHEST_HZ, BANDS = 19.6, 23.8, range(3, 11)
 """Of Fig. 3."""
 
-FEWEST, PLACES = 10, 4
-"""Scans, and frequencies in a band, at least."""
+FEWEST = 10
+"""Scans at least."""
 
 CLOUD_PERIOD, HIGHEST = 3, max(PERIODS.values())
 
-SPACING_HZ, CLOUD_PERIODS, TOLD = (0.1, 0.5), (1_000_000, 100_000), (range(3, 17), range(8, 12))
-"""Along the bands; drive periods for a covariance; m that are told apart: the full form, the small one."""
+CLOUD_PERIODS, TOLD, PLACES = (1_000_000, 50_000), (range(3, 17), range(8, 12)), ((0.1, 4), (0.5, 2))
+"""Drive periods for a covariance; m that are told apart; Hz between places in a band, and places at least:
+the full form, the small one."""
 
 
 @study(needs={"fold": 0.05}, quick={"scans": 10, "correlation_times": (0.0, 100.0)})
@@ -89,7 +91,7 @@ def noise(
     model, letters = model_of(harmonic(scene)), letter_periods(scene)
     clouds(scene, run, model, seed)
 
-    along = places(scene, model, letters, SPACING_HZ[run.quick])
+    along = places(scene, model, letters, *PLACES[run.quick])
     cells = [(place, each) for place in along for each in protocols]
     settings = {
         "seed": seed, "scans": scans, "protocols": [asdict(each) for each in protocols],
@@ -98,14 +100,14 @@ def noise(
     own = fingerprint(run.scene.values(), settings)[:12]
     found = sweep(run, f"scans-{own}", settings, cells, partial(cell, scans, seed))
     made = [(*where, one) for where, one in zip(cells, found, strict=True) if one is not None]
-    at_letter = [one for one in made if (one[0].frequency_hz, one[0].m) in letters]
-    ends = [row for rows in run.attempt(ends_of, at_letter, "ends") for row in rows or ()]
-    off = [((row.median - row.formula) / row.error) ** 2 for row in ends if row.formula is not None]
-    run.table("escape", ends, "Excess at which p_m and p_1 end in scans, simulated and by formula; these "
-              f"medians are {np.sqrt(np.mean(off or np.nan)):.2f} standard errors apart (rms of {len(off)}).",
-              show=() if run.quick else None)  # fmt: skip
+    ends = [row for rows in run.attempt(ends_of, made, "ends") for row in rows or ()]
     observed = [row for one in made if (row := observed_of(one)) is not None]
+    at_letter = [row for row in ends if (row.frequency_hz, row.m) in letters]
     shown = [row for row in observed if (row.frequency_hz, row.m) in letters]
+    off = [row.off**2 for row in ends if row.off is not None]
+    run.table("escape", ends, "Excess at which p_m and p_1 end, simulated and by formula.", show=())
+    run.table("escape_at_letter", at_letter, "The same at the letter's frequencies; along Fig. 3 formulas "
+              f"are {np.sqrt(np.mean(off or np.nan)):.2f} standard errors off (rms of {len(off)} medians).")
     run.table("observed", observed, "Hysteresis along Fig. 3 as an observer would measure it.", show=())
     run.table("observed_at_letter", shown, "The same at the letter's frequencies.")
 
@@ -122,8 +124,8 @@ def noise(
 
     if observed:
         run.figure("observed", figure.draw_observed(scene, observed), figure.OBSERVED)
-    if ends:
-        run.figure("escape", figure.draw_escape(ends), figure.ESCAPE)
+    if at_letter:
+        run.figure("escape", figure.draw_escape(at_letter), figure.ESCAPE)
     answer_hysteresis(run, protocols, observed)
     merged = judge(run, kinds, last)
     return {"ends": ends, "observed": observed, "last_period": last, "first_merged": merged}
@@ -160,7 +162,7 @@ def letter_periods(scene: Scene) -> list[tuple[float, int]]:
 
 
 def places(
-    scene: Scene, model: ModalModel, letters: Sequence[tuple[float, int]], spacing: float
+    scene: Scene, model: ModalModel, letters: Sequence[tuple[float, int]], spacing_hz: float, least: int
 ) -> list[Place]:
     """p_m of Eq. (1) along the bands of Fig. 3, of Eq. (1) and the beam at the letter's frequencies."""
     found = dict.fromkeys(letters)
@@ -168,7 +170,7 @@ def places(
         edges = band_of(scene, m)
         low = max(edges.lower, corresponding(scene, LOWEST_HZ))
         high = min(edges.upper, corresponding(scene, HIGHEST_HZ))
-        count = max(PLACES, int(np.ceil((high - low) / spacing)))
+        count = max(least, int(np.ceil((high - low) / spacing_hz)))
         grid = high - (high - low) * (np.arange(count) + 0.5) / count
         found |= {(round(float(f), 4), m): None for f in grid if high > low}
     singles = [at(scene, model, "Eq. (1)", m, f) for f, m in sorted(found)]
@@ -180,16 +182,17 @@ def answer_hysteresis(run: Run, protocols: Sequence[Protocol], observed: Sequenc
     drifts = sorted(each.correlation_s for each in protocols if each.correlation_s)
     kind = named(drifts[0] if drifts else 0.0)
     rows = [row for row in observed if row.noise == kind and row.description == "Eq. (1)"]
-    whole = [row for row in rows if row.map is not None and row.fold > protocols[0].stability]
+    met = [row for row in rows if np.isfinite(row.median)]
+    whole = [row for row in met if row.map is not None and row.fold > protocols[0].stability]
     if not whole:
         return
     shift = np.array([row.median - row.fold for row in whole])
     part = np.abs(shift) / (np.abs(shift) + np.abs([row.fold - (row.map or 0.0) for row in whole]))
     width = np.median([row.high - row.low for row in whole])
-    given = [row for row in rows if row.frequency_hz in run.scene.drive.frequencies_hz]
+    given = [row for row in met if row.frequency_hz in run.scene.drive.frequencies_hz]
     told = [f"{row.frequency_hz:.2f} Hz {row.median / row.fold - 1.0:+.0%}" for row in given if row.seen]
     hidden = [f"p{row.m} at {row.frequency_hz:.2f} Hz" for row in given if not row.seen]
-    below = [band_of(run.scene, row.m).upper - row.frequency_hz for row in rows if not row.seen]
+    below = [band_of(run.scene, row.m).upper - row.frequency_hz for row in met if not row.seen]
     drowned = f" and hides it at {len(below)} of {len(rows)} places along Fig. 3" if below else ""
     drowned += f", all within {max(below):.2g} Hz of the upper edge of a band" if below else ""
     drowned += f" ({', '.join(hidden)})" if hidden else ""
@@ -199,7 +202,8 @@ def answer_hysteresis(run: Run, protocols: Sequence[Protocol], observed: Sequenc
         f"observer measures by {np.median(shift):+.1e} (median of {len(whole)} folds; 5 to 95 % of his scans "
         f"span {width:.1e}){': ' + ', '.join(told) + ',' if told else ''}{drowned}. {np.median(part):.0%} "
         "(median) of what separates his hysteresis in Eq. (1) from the map's is noise, the rest the map's "
-        "own truncation.",
+        f"own truncation. At {len(rows) - len(met)} of the {len(rows)} places, low in a band, he does not "
+        "come to p_m: his scan from above grazing ends in p1 before, or noise throws it over a second touch.",
     )
 
 

@@ -23,7 +23,7 @@ class End:
     """Excess at which an orbit ended in scans: `median` with its standard `error`, 5 % (`low`) and 95 %.
 
     `end`: p_m "slipped", was "lost", p_1 was "touched", was "left" (studies.noise.scans); `formula` and its
-    5 and 95 %: of the slips and touches of Eq. (1).
+    5 and 95 %: of the slips and touches of Eq. (1); `off`: formula less median in standard errors.
     """
 
     description: str
@@ -40,14 +40,16 @@ class End:
     formula_low: float | None = None
     formula: float | None = None
     formula_high: float | None = None
+    off: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class Observed:
     """Hysteresis as observed, excess at which p_1 was left less that at which p_m was lost.
 
-    `median`, 5 and 95 % (`low`, `high`) of pairs of `scans`, beside it that of the folds without noise;
-    `seen`: more than a step in 95 % of the pairs.
+    `median`, 5 and 95 % (`low`, `high`) of pairs of `scans`, beside that of the folds without noise; `met`:
+    part of the scans from above grazing that come to p_m, and not to p_1 before; NaN where most do not, or
+    noise throws p_m out at once; `seen`: more than a step in 95 % of the pairs.
     """
 
     description: str
@@ -60,6 +62,7 @@ class Observed:
     low: float
     median: float
     high: float
+    met: float
     seen: bool
 
 
@@ -77,28 +80,30 @@ def ends_of(made: Made) -> list[End]:
         # ranks half a binomial standard deviation, sqrt(n)/2, below and above the median
         ranks = 0.5 * (values.size + np.array([-1.0, 1.0]) * math.sqrt(values.size))
         below, above = np.interp(ranks, np.arange(values.size) + 0.5, values)
-        low, median, high = np.quantile(values, PARTS)
+        (low, median, high), error = np.quantile(values, PARTS), 0.5 * float(above - below)
         rows.append(End(
             description=place.description, frequency_hz=place.frequency_hz, m=place.m,
             noise=named(protocol.correlation_s), fold=None if place.fold is None else place.fold.excess,
-            end=name, scans=values.size, low=low, median=median, high=high, error=0.5 * float(above - below),
+            end=name, scans=values.size, low=low, median=median, high=high, error=error,
             formula_low=formula[0], formula=formula[1], formula_high=formula[2],
+            off=None if formula[1] is None else (formula[1] - float(median)) / error,
         ))  # fmt: skip
     return rows
 
 
 def observed_of(made: Made) -> Observed | None:
-    """The hysteresis at one place in one noise; None where p_m was not seen in most scans."""
+    """The hysteresis at one place in one noise; None without a fold."""
     place, protocol, found = made
-    widths = found["left"] - found["lost"]
-    count = int(np.count_nonzero(np.isfinite(widths)))
-    if count <= 0.5 * widths.size:
+    if place.fold is None:
         return None
-    low, median, high = np.nanquantile(widths, PARTS)
+    widths = found["left"] - found["lost"]
+    count, met = int(np.count_nonzero(np.isfinite(widths))), float(found["met"].mean())
+    often = count > 0.5 * widths.size and met > 0.5
+    low, median, high = np.nanquantile(widths, PARTS) if often else (math.nan,) * 3
     in_map = replace(place, description="map", model=None).fold
     return Observed(
         description=place.description, frequency_hz=place.frequency_hz, m=place.m,
         noise=named(protocol.correlation_s), map=None if in_map is None else -in_map.excess,
-        fold=-place.fold.excess, scans=count, low=low, median=median, high=high,
+        fold=-place.fold.excess, scans=count, low=low, median=median, high=high, met=met,
         seen=bool(low > protocol.step),
     )  # fmt: skip

@@ -16,9 +16,9 @@ from studies.scene import Scene, corresponding
 
 OBSERVED = (
     "Hysteresis against the drive frequency as an observer would have measured it, median and 5 to 95 % of "
-    "the scans of Eq. (1) (line and area) and of the beam (circles and bars), beside the folds of the map "
-    "and of Eq. (1) without noise; dotted: the letter's frequencies. Linear below the printed stability of "
-    "the amplitude, logarithmic above."
+    "the scans of Eq. (1) (line and area, as far as a scan from above grazing comes to p_m) and of the beam "
+    "(circles and bars), beside the folds of the map and of Eq. (1) without noise; dotted: the letter's "
+    "frequencies. Linear below the printed stability of the amplitude, logarithmic above."
 )
 ESCAPE = (
     "Where orbits end in scans, from their end without noise (grazing for p1, the fold for the others): "

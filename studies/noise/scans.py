@@ -15,6 +15,8 @@ Gaussian, white or with the memory exp(-1/(f t_c)) of a drift of correlation tim
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact import ContactError
+from contact.orbits import born
 from studies.noise.places import Place
 
 QUIET = 64
@@ -36,8 +39,13 @@ BEYOND = 30
 RAMP = 0.02
 """Part of the waiting in which the amplitude goes to its new value: a sudden step would swing over."""
 
-SHRINKING = (1.0, 0.7, 0.5, 0.35, 0.25)
-"""Parts of the reach at which p_m is looked for: it can be stable next to its fold only."""
+BORN, MEETINGS = 1e-3, 10
+"""Excess from which an observer scans downwards, and how often it is asked whether he meets p_m."""
+
+ROOM = 3.0
+"""Standard deviations of the noise above the start of a scan at which p_m must still be: in the low half of a
+band Eq. (1) has it in a window above its fold only, up to the graze of another touch, at the end of the band
+too narrow to hold it in noise."""
 
 LARGEST, RATIO, FEWEST = 0.02, 20.0, 1000
 """Of noise and step [1], and of their ratio; drive periods waited: long against `QUIET`."""
@@ -139,62 +147,94 @@ def watched(impacts: NDArray[np.int64], m: int) -> tuple[float, float]:
     return float(m * np.count_nonzero(regular) / size), min(last / size, 1.0)
 
 
+def waitings(
+    strobed: Any, state: Any, levels: Array, protocol: Protocol, drift: Drift
+) -> Iterator[NDArray[np.int64]]:
+    """Impacts of each period at the first of the `levels`, at the next one, and so on."""
+    count, before = protocol.waiting, levels[0]
+    ramp = np.minimum(np.arange(count) / (RAMP * count), 1.0)
+    for level in levels:
+        factors = (1.0 + before + (level - before) * ramp) * (1.0 + drift.next(count))
+        run = strobed.orbit(state, count, factors=factors)
+        yield run.impacts
+        before, state = level, run.end
+
+
 def scan(strobed: Any, state: Any, levels: Array, m: int, protocol: Protocol, drift: Drift) -> Array:
     """The first of `levels` at which p_m, p_1 for m = 0, is broken, and the first at which it is not seen.
 
     NaN where the last one is reached.
     """
-    count, found, before = protocol.waiting, np.full(2, math.nan), levels[0]
-    ramp = np.minimum(np.arange(count) / (RAMP * count), 1.0)
-    for k, level in enumerate(levels[:-1]):
-        factors = (1.0 + before + (level - before) * ramp) * (1.0 + drift.next(count))
-        try:
-            run = strobed.orbit(state, count, factors=factors)
-        except ContactError:  # what could not be followed has no end
-            return np.full(2, math.nan)
-        share, passed = watched(run.impacts, m)
-        if math.isnan(found[0]) and passed < 1.0:
-            found[0] = levels[k] if passed < 0.5 else levels[k + 1]
-        if not share > 0.5:
-            found[1] = level
-            break
-        before, state = level, run.end
+    found = np.full(2, math.nan)
+    try:
+        for k, impacts in enumerate(waitings(strobed, state, levels[:-1], protocol, drift)):
+            share, passed = watched(impacts, m)
+            if math.isnan(found[0]) and passed < 1.0:
+                found[0] = levels[k] if passed < 0.5 else levels[k + 1]
+            if not share > 0.5:
+                found[1] = levels[k]
+                break
+    except ContactError:  # what could not be followed has no end
+        found[:] = math.nan
     return found
+
+
+def meets(strobed: Any, state: Any, levels: Array, m: int, protocol: Protocol, drift: Drift) -> bool:
+    """Whether p_m is seen at one of the falling `levels`, and not p_1 before."""
+    with suppress(ContactError):
+        for impacts in waitings(strobed, state, levels, protocol, drift):
+            if watched(impacts, m)[0] > 0.5:
+                return True
+            if watched(impacts, 0)[0] > 0.5:
+                return False
+    return False
 
 
 def scans(place: Place, protocol: Protocol, count: int, seed: int) -> dict[str, Array]:
     """`count` downward and upward scans: excesses at which p_m slipped and was lost, and at which p_1 was
-    touched and left, each (count,).
+    touched and left, each (count,); whether a scan from `BORN` "met" p_m, 0 or 1, of `MEETINGS` at most.
 
     NaN where the orbit was not seen at the first amplitude, or not lost in `Protocol.steps`.
     """
     key = [seed, round(1e3 * place.frequency_hz), place.m, round(1e3 * protocol.correlation_s)]
+    memory = memory_of(protocol.correlation_s, place.frequency_hz)
+
+    def dice_of(i: int, way: int) -> tuple[Drift, float]:
+        dice = np.random.default_rng([*key, i, way])
+        return Drift(protocol.stability, memory, dice), dice.random()
+
     below = place.strobed.at(-protocol.reach).steady()
     ways = (
         (start_of(place, protocol), -protocol.step, place.m),
         ((-protocol.reach, below), protocol.step, 0),
     )
-    memory = memory_of(protocol.correlation_s, place.frequency_hz)
     found = np.full((len(ways), 2, count), math.nan)
     for way, (start, step, m) in enumerate(ways):
         if start is None:
             continue
         for i in range(count):
-            dice = np.random.default_rng([*key, i, way])
-            drift = Drift(protocol.stability, memory, dice)
-            levels: Array = start[0] + step * (np.arange(protocol.steps, dtype=np.float64) + dice.random())
+            drift, part = dice_of(i, way)
+            levels: Array = start[0] + step * (np.arange(protocol.steps, dtype=np.float64) + part)
             ends = scan(place.strobed, start[1], levels, m, protocol, drift)
             found[way, :, i] = ends if ends[1] != levels[0] else math.nan
-    return dict(zip(ENDS, found.reshape(-1, count), strict=True))
+    met = np.empty(min(count, MEETINGS) if place.fold else 0)
+    state = born(place.strobed, BORN).end if place.fold else None
+    for i in range(met.size):
+        drift, part = dice_of(i, len(ways))
+        levels = np.arange(BORN - part * protocol.step, place.fold.excess, -protocol.step)
+        met[i] = meets(place.strobed, state, levels, place.m, protocol, drift)
+    return {**dict(zip(ENDS, found.reshape(-1, count), strict=True)), "met": met}
 
 
 def start_of(place: Place, protocol: Protocol) -> tuple[float, Any] | None:
-    """Excess and strobe from which downward scans start; None without a stable p_m."""
-    for part in SHRINKING if place.fold is not None else ():
-        excess = place.fold.excess + part * protocol.reach
-        if (state := place.stable(excess)) is not None:
-            return excess, state
-    return None
+    """Excess and strobe from which downward scans start; None where noise throws p_m out at once."""
+    if place.fold is None:
+        return None
+    excess = place.fold.excess + protocol.reach
+    if place.stable(excess + ROOM * protocol.stability) is None:
+        return None
+    state = place.stable(excess)
+    return None if state is None else (excess, state)
 
 
 def cell(count: int, seed: int, where: tuple[Place, Protocol]) -> dict[str, Array]:

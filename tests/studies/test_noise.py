@@ -82,12 +82,18 @@ def test_scans_depend_on_seed_and_place_alone(place):
     longer, other = scans(place(4, 21.5), short, 5, 7), scans(place(4, 21.5), short, 3, 8)
     for name, values in first.items():
         assert np.array_equal(values, again[name]) and np.array_equal(values, longer[name][:3])
-        assert not np.array_equal(values, other[name])
+        assert name == "met" or not np.array_equal(values, other[name])
 
 
-def test_where_there_is_no_fold_nothing_is_lost(letter_scene, place):
+def test_where_there_is_no_fold_or_no_room_above_it_nothing_is_lost(letter_scene, place):
     above = place(3, band_of(letter_scene, 3).upper + 0.05)
     assert above.fold is None and start_of(above, DRIFT) is None
+    narrow = place(5, 21.8327)  # p5 touches the stop a second time 6e-4 above its fold
+    assert narrow.stable(narrow.fold.excess + 5e-4) and not narrow.stable(narrow.fold.excess + 7e-4)
+    assert start_of(narrow, DRIFT) is None and start_of(place(5, 21.9325), DRIFT)
+    # chaos above grazing ends in p1 before it comes to p4, which lives from -0.045 to -0.040
+    assert not scans(place(4, 21.2475), DRIFT, 3, 1)["met"].any()
+    assert scans(place(4, 21.3455), DRIFT, 3, 1)["met"].all()
     found = scans(above, Protocol(step=SIGMA, waiting=1000, stability=SIGMA), 2, 1)
     assert np.isnan(found["lost"]).all() and np.isfinite(found["left"]).all()
 
@@ -276,7 +282,7 @@ def test_strobe_points_run_together_as_m_grows(letter_scene):
 
 
 def test_small_form(run_study, monkeypatch):
-    for name, less in (("CLOUD_PERIODS", (0, 20_000)), ("TOLD", ((), range(9, 11))), ("PLACES", 2)):
+    for name, less in (("CLOUD_PERIODS", (0, 20_000)), ("TOLD", ((), range(9, 11)))):
         monkeypatch.setattr(f"studies.noise.__main__.{name}", less)
     options = ("--set", "modes.count=2", "--set", "drive.frequencies_hz=[21.5, 22.6]", "--waiting", "3000")
     ran = run_study("noise", "--quick", *options)
