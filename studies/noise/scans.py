@@ -6,7 +6,9 @@ of them lay in stretches without impact longer than `QUIET` periods.  p_m is *lo
 first amplitude at which he did not see it.  Before that p_m *slips* where for the first time two impacts are
 not m periods apart, and p_1 is *touched* by the first impact (in the first half of the waiting, or they count
 for the next step): below its fold the motion can be thrown back to p_m many times before it dies out.
-The scan begins at a random part of a step, so that results do not lie on a grid.
+The scan begins at a random part of a step, so that results do not lie on a grid; downwards it begins on p_m
+next to its fold, where that has room for the noise.  Whether a scan from above grazing comes to p_m at all is
+asked apart (`meets`): low in a band Eq. (1) is chaotic there, and can end in p_1 first.
 
 In period n the amplitude is (1 + x)(1 + e_n) times that at grazing, x the excess that he set; e_n is
 Gaussian, white or with the memory exp(-1/(f t_c)) of a drift of correlation time t_c, and stationary.
