@@ -22,7 +22,7 @@ from contact.orbits.periodic_orbit import Followed, PeriodicOrbit
 
 __all__ = ["Branch", "Event", "events_between", "locate", "passes", "probed"]
 
-PLACE = 1e-10
+PLACE = 1e-12
 """Accuracy of log v at a located point; the excess there is good to the square of it at a fold."""
 
 PROBE, MOST_PROBES = 0.25, 4
