@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -99,6 +100,7 @@ def test_twenty_positions_of_eq_1_and_what_they_take(seen, monkeypatch, capsys):
 
 @pytest.mark.parametrize(("argv", "told"), [([], "display"), (["--set", "drive.kind=none"], "drive.kind")])
 def test_without_a_window_or_a_drive_it_says_so_in_a_sentence(capsys, argv, told):
+    plt.switch_backend("agg")
     assert explore.main(argv) == 2
     said = capsys.readouterr().err
     assert told in said and len(said.splitlines()) == 1
