@@ -55,10 +55,13 @@ def test_a_failure_is_told_and_what_is_stored_is_not_run_again(run_all, tmp_path
     assert "python -m studies.breakdown: " in err and "free_period_s" in err
     assert (tmp_path / "report" / "index.html").exists()
     manifest = json.loads((tmp_path / "time_trace" / "manifest.json").read_text())
-    monkeypatch.setattr(every_study, "studies", lambda: ["time_trace"])
     answer, _ = run_all()
-    assert (answer["exit_code"], answer["stored"]) == (0, ["time_trace"])
+    assert (answer["stored"], answer["exit_codes"]) == (["time_trace"], {"breakdown": 2})
     assert json.loads((tmp_path / "time_trace" / "manifest.json").read_text()) == manifest
+    monkeypatch.setattr(every_study, "studies", lambda: ["time_trace"])
+    assert run_all()[0]["exit_code"] == 0
+    monkeypatch.setattr(every_study, "studies", lambda: ["breakdown"])  # refused, whatever is asked
+    assert run_all("--fresh")[0]["stored"] == []
 
 
 @pytest.mark.parametrize(
