@@ -193,6 +193,7 @@ def answer_hysteresis(run: Run, protocols: Sequence[Protocol], observed: Sequenc
     told = [f"{row.frequency_hz:.2f} Hz {row.median / row.fold - 1.0:+.0%}" for row in given if row.seen]
     hidden = [f"p{row.m} at {row.frequency_hz:.2f} Hz" for row in given if not row.seen]
     below = [band_of(run.scene, row.m).upper - row.frequency_hz for row in met if not row.seen]
+    missed = len(rows) - len(met)
     drowned = f" and hides it at {len(below)} of {len(rows)} places along Fig. 3" if below else ""
     drowned += f", all within {max(below):.2g} Hz of the upper edge of a band" if below else ""
     drowned += f" ({', '.join(hidden)})" if hidden else ""
@@ -202,9 +203,10 @@ def answer_hysteresis(run: Run, protocols: Sequence[Protocol], observed: Sequenc
         f"observer measures by {np.median(shift):+.1e} (median of {len(whole)} folds; 5 to 95 % of his scans "
         f"span {width:.1e}){': ' + ', '.join(told) + ',' if told else ''}{drowned}. {np.median(part):.0%} "
         "(median) of what separates his hysteresis in Eq. (1) from the map's is noise, the rest the map's "
-        f"own truncation. At {len(rows) - len(met)} of the {len(rows)} places, low in a band, he does not "
-        "come to p_m: his scan from above grazing ends in p1 before, or noise throws it over a second touch.",
-    )
+        "own truncation."
+        + (f" At {missed} of {len(rows)} places he does not come to p_m: his scan from above grazing ends in "
+           "p1 before, or noise throws it over a second touch." if missed else ""),
+    )  # fmt: skip
 
 
 def judge(run: Run, kinds: Sequence[str], last: Sequence[LastPeriod]) -> dict[str, int | None]:

@@ -41,8 +41,8 @@ BEYOND = 30
 RAMP = 0.02
 """Part of the waiting in which the amplitude goes to its new value: a sudden step would swing over."""
 
-BORN, MEETINGS = 1e-3, 10
-"""Excess from which an observer scans downwards, and how often it is asked whether he meets p_m."""
+MEETINGS = 10
+"""Scans from the scene's `born_excess` that are asked whether they meet p_m."""
 
 ROOM = 3.0
 """Standard deviations of the noise above the start of a scan at which p_m must still be: in the low half of a
@@ -194,7 +194,7 @@ def meets(strobed: Any, state: Any, levels: Array, m: int, protocol: Protocol, d
 
 def scans(place: Place, protocol: Protocol, count: int, seed: int) -> dict[str, Array]:
     """`count` downward and upward scans: excesses at which p_m slipped and was lost, and at which p_1 was
-    touched and left, each (count,); whether a scan from `BORN` "met" p_m, 0 or 1, of `MEETINGS` at most.
+    touched and left, each (count,); whether a scan from above "met" p_m, 0 or 1, of `MEETINGS` at most.
 
     NaN where the orbit was not seen at the first amplitude, or not lost in `Protocol.steps`.
     """
@@ -219,11 +219,11 @@ def scans(place: Place, protocol: Protocol, count: int, seed: int) -> dict[str, 
             levels: Array = start[0] + step * (np.arange(protocol.steps, dtype=np.float64) + part)
             ends = scan(place.strobed, start[1], levels, m, protocol, drift)
             found[way, :, i] = ends if ends[1] != levels[0] else math.nan
-    met = np.empty(min(count, MEETINGS) if place.fold else 0)
-    state = born(place.strobed, BORN).end if place.fold else None
+    met, top = np.empty(min(count, MEETINGS) if place.fold else 0), place.scene.scan.born_excess
+    state = born(place.strobed, top).end if place.fold else None
     for i in range(met.size):
         drift, part = dice_of(i, len(ways))
-        levels = np.arange(BORN - part * protocol.step, place.fold.excess, -protocol.step)
+        levels = np.arange(top - part * protocol.step, place.fold.excess, -protocol.step)
         met[i] = meets(place.strobed, state, levels, place.m, protocol, drift)
     return {**dict(zip(ENDS, found.reshape(-1, count), strict=True)), "met": met}
 

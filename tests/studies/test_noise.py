@@ -295,3 +295,9 @@ def test_small_form(run_study, monkeypatch):
     assert deep["seen"] == "True" and float(deep["median"]) == pytest.approx(float(deep["fold"]), rel=0.1)
     assert shown["Eq. (1)", "22.6", "drift of 100 s"]["seen"] == "False"
     assert all(float(row["worst"]) < 4.5 for row in ran.rows("covariances"))
+    by_formula = [row for row in ran.rows("escape") if row["off"]]
+    assert {row["end"] for row in by_formula} == {"slipped", "touched"} and len(by_formula) > 40
+    assert np.median([abs(float(row["off"])) for row in by_formula]) < 1.5
+    for row in by_formula:
+        off = (float(row["formula"]) - float(row["median"])) / float(row["error"])
+        assert float(row["off"]) == pytest.approx(off, rel=1e-6)
