@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import mpmath as mp
 import numpy as np
 import pytest
+from oscillators import spring
 
 from beam import ModalModel
 from contact.drive import HarmonicDrive
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import flow_matrix, mode_acceleration, propagate, tip_rounding, tip_state
-from contact.flight.motion import COSINE, OFFSET, SINE, damped_frequency
+from contact.flight.motion import COSINE, OFFSET, SINE, damped_frequency, motion_of
 from contact.laws import NewtonRestitution
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
@@ -223,6 +225,22 @@ def test_rounding_bound_holds_and_is_not_idle(n_modes):
             assert error <= bound
             worst = max(worst, error / bound)
     assert worst > 1 / 20
+
+
+@pytest.mark.parametrize("amplitude", [0.0, 1e-9, 2e-4, 3.0])
+def test_numbers_at_another_amplitude_are_those_made_for_it(amplitude):
+    """And none are left of a part that was replaced."""
+    first = spring(3, NewtonRestitution(local_restitution=0.1), drive=(21.5, 1e-3))
+    for other in (first, replace(first, drive=replace(first.drive, frequency=23.0)), first.with_excess(0.1)):
+        _ = other.motion()
+        found, drive, model = other.with_amplitude(amplitude).motion(), other.drive, other.model
+        made = motion_of(
+            model.omega, model.decay_rate, model.phi, law=first.stop.law, gap=first.stop.gap,
+            drive=drive.angular_frequency, period=drive.period, load=first.load,
+            response=amplitude * other.steady_response(),
+        )  # fmt: skip
+        for name, value in made._asdict().items():
+            assert getattr(found, name) == pytest.approx(value, rel=1e-13, abs=0.0), name
 
 
 # ------------------------------------------------------------------------------------------- the strobe clock
