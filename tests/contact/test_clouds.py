@@ -6,14 +6,22 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oscillators import equation_1
+from oscillators import GAP, PHI, equation_1, spring
 from scipy.signal import lfilter
 from simulated_orbit import HERTZ, beam
 
 from beam import ModalModel
-from contact import NewtonRestitution, NordmarkMap, NotPeriodic, StrobedNordmarkMap, StroboscopicMap
+from contact import (
+    NewtonRestitution,
+    NordmarkMap,
+    NotPeriodic,
+    State,
+    StrobedNordmarkMap,
+    StroboscopicMap,
+    UnresolvedCrossing,
+)
 from contact.maximal_orbits import MapFamily
-from contact.orbits import PeriodicOrbit, Shooting, cloud
+from contact.orbits import PeriodicOrbit, Shooting, cloud, orbit_exponents
 
 NEWTON = NewtonRestitution(local_restitution=0.1)
 PERIOD, SIGMA = 3, 1e-7
@@ -97,6 +105,10 @@ def test_clouds_grow_as_the_inverse_root_of_the_distance_to_the_fold() -> None:
     with pytest.raises(NotPeriodic, match="unstable orbit"):
         state = replace(saddle.strobe_state(), time=0.0)
         cloud(StroboscopicMap(oscillator=saddle.oscillator), state, PERIOD, deviation=1.0)
+    off = strobed, state, PERIOD  # a state of another amplitude
+    for refused in (lambda: cloud(*off, deviation=1.0), lambda: orbit_exponents(*off)):
+        with pytest.raises(NotPeriodic, match="from the state, of a scale of"):
+            refused()
 
 
 def test_slow_drift_is_a_slow_change_of_amplitude() -> None:
@@ -112,3 +124,13 @@ def test_slow_drift_is_a_slow_change_of_amplitude() -> None:
     ]
     slope = (moved[0] - moved[1]) / 2e-6
     assert found == pytest.approx(np.einsum("ni,nj->nij", slope, slope), rel=1e-5)
+
+
+@pytest.mark.parametrize("factors", [None, [1.0, 1.2, 0.3]])
+def test_no_later_amplitude_hides_that_a_motion_could_not_be_followed(factors):
+    """A tip at rest on the stop: whether it leaves at once is below rounding."""
+    oscillator = spring(2, NEWTON, drive=(21.0, 0.0)).with_excess(0.5)
+    start = State(displacement=[GAP / PHI[0], 0.0], velocity=[0.0, 0.0])
+    with pytest.raises(UnresolvedCrossing) as caught:
+        StroboscopicMap(oscillator=oscillator).orbit(start, 3, factors=factors)
+    assert caught.value.time < oscillator.period

@@ -22,6 +22,7 @@ from contact.laws import (
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
+from contact.touch.series import LOOSE, WINDOW, within_force
 from contact.trajectory import State
 
 # ------------------------------------------------------------------------------------------ Hertz's constant
@@ -216,3 +217,17 @@ def test_hunt_crossley_never_pulls() -> None:
     run = simulate(oscillator, state, duration=0.05, times=times)
     acceleration = np.diff(run.velocity[:, 0]) / np.diff(times)
     assert np.max(acceleration) < -50.0 + 50.0 * 1e-6
+
+
+# ------------------------------------------------------------------------------------- the length of a step
+
+
+def test_a_step_is_as_long_as_each_late_order_of_the_force_allows():
+    """By the root test of order n alone: s_n = edge (speed (n + 1)/(mobility |N_n|))^(1/(n + 1))."""
+    random, mobility, speed, edge, last = np.random.default_rng(8), 3.0, 0.5, 0.2, 20
+    orders = np.arange(last - WINDOW + 1, last + 1) + 1
+    for asked in 1e-3 * random.uniform(0.5, 2.5, 200):
+        allowed, push = 1e-3 * random.uniform(1.0, 2.0, WINDOW), np.zeros(last + 1)
+        push[-WINDOW:] = speed * orders * (edge / allowed) ** orders / mobility
+        wanted = asked if asked <= LOOSE * allowed.min() else allowed.min()
+        assert within_force(asked, push, last, mobility, speed, edge) == pytest.approx(wanted, rel=1e-12)

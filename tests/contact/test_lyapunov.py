@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from contact import State, StrobedOrbit, StroboscopicMap
+from contact import NordmarkMap, State, StrobedNordmarkMap, StrobedOrbit, StroboscopicMap
 from contact.orbits import (
     Shooting,
     map_exponents,
@@ -106,10 +106,13 @@ def test_the_logistic_map_has_ln_2_at_4_by_both_routes():
 
 
 def test_the_jacobians_are_the_differences_of_the_period_map(single, beam):
-    for strobed, excess in ((single, 0.02), (beam, 1e-3), (beam, 0.02)):
+    letters = StrobedNordmarkMap(map=NordmarkMap.from_oscillator(single.oscillator))
+    for strobed, excess in ((letters, 0.02), (single, 0.02), (beam, 1e-3), (beam, 0.02)):
         here = strobed.at(excess)
         state = settle(here, strobed.steady(), most_cycles=2000).end
-        found, _end = here.jacobians(state, 4)
+        found, end = here.jacobians(state, 4)
+        there = here.coordinates(here.orbit(state, 4).end)
+        assert here.coordinates(end) == pytest.approx(there, rel=1e-9, abs=1e-12 * here.scale)
         matrix = np.linalg.multi_dot([m for m, _span in found][::-1])
         start = here.coordinates(state)
         for direction in (0, start.size // 2):

@@ -62,6 +62,17 @@ def test_equation_1_needs_two_points_and_one_is_too_few():
     assert len(blind.impacts) == 0  # sampled at the strobes alone, the tip never seems to arrive
 
 
+@pytest.mark.parametrize("point", range(1, 7))
+def test_a_start_at_a_point_is_that_point_though_it_be_rounded(point):
+    oscillator, method = equation_1(22.2, excess=-0.01), SampledFlight(points=7)
+    start = point * (oscillator.period / 7)
+    exact, before = (
+        simulate(oscillator, State(displacement=[0.0], velocity=[0.0], time=time), periods=2, method=method)
+        for time in (start, np.nextafter(start, 0.0))
+    )
+    assert before.evaluations == exact.evaluations
+
+
 def first_seen(y: np.ndarray, v: np.ndarray, per_interval: int) -> int:
     """The number of the interval in which the rule sees a crossing first, from fine samples; -1 for none."""
     for start in range(0, y.size - 1, per_interval):
