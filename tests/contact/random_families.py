@@ -1,0 +1,356 @@
+"""Random families of periodic orbits, and a judge of the points and branches that the package finds on them.
+
+    python tests/contact/random_families.py --families 300 --seed 1
+
+prints every answer that is wrong, and how many answers and refusals there were; with --quick without paths.
+The judge continues the curve of the orbits over a parameter p by itself: from the package it takes the flow
+from touch to touch alone.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import math
+import warnings
+from collections import Counter
+from collections.abc import Callable, Collection, Iterator
+from dataclasses import replace
+from functools import cache, partial
+from itertools import pairwise
+
+import numpy as np
+from simulated_orbit import touches
+from tip_judge import Signal
+
+import contact
+from beam import ModalChange, ModalModel
+from contact import ContactError, DelayedRestitution, HarmonicDrive, ImpactOscillator, Stop, orbits
+from contact.orbits import Change, Event, PeriodicOrbit, Shooting
+from contact.orbits.derivatives import sizes_of
+
+ARRAYS = ("omega", "decay_rate", "phi", "participation")
+GAP, PLACE, ROUNDING = 0.01, 1e-6, 1e-11
+"""Gap [m]; how far a multiplier, or in gaps a peak, may be off; part of a matrix that is rounding."""
+
+Path = Callable[[float], ImpactOscillator]
+
+
+def random_oscillator(rng: np.random.Generator) -> ImpactOscillator:
+    """One to six modes under one of the five laws; under `DelayedRestitution` one."""
+    name, unit = rng.choice(["newton", "linear", "hertz", "hunt-crossley", "delayed"]), 150.0
+    n = 1 if name == "delayed" else int(rng.integers(1, 7))
+    omega = unit * np.append(1.0, np.sort(rng.uniform(1.2, 30.0, n - 1)))
+    model = ModalModel(
+        omega=omega, decay_rate=2.0 * 10.0 ** rng.uniform(-2.7, -0.8, n) * omega,
+        phi=np.append(1.0, rng.uniform(-1.0, 1.0, n - 1)),
+        participation=np.append(1.0, rng.uniform(-0.5, 0.5, n - 1)),
+    )  # fmt: skip
+    w = unit * rng.uniform(0.35, 0.99 if n == 1 else min(1.7, 0.99 * omega[-1] / unit))
+    mobility, e = float(model.phi @ model.phi), rng.uniform(0.05, 0.9)
+    stiffness = (unit * 10.0 ** rng.uniform(0.5, 2.0)) ** 2 / mobility
+    hertz, chi = stiffness / math.sqrt(0.1 * GAP), 10.0 ** rng.uniform(-2.0, 0.3) / (w * GAP)
+    dashpot = 0.5 * e * math.sqrt(stiffness / mobility)
+    law: contact.ContactLaw = {
+        "newton": contact.NewtonRestitution(local_restitution=e),
+        "linear": contact.LinearContact(stiffness=stiffness, damping=dashpot),
+        "hertz": contact.HertzContact(stiffness=hertz),
+        "hunt-crossley": contact.HuntCrossley(stiffness=hertz, dissipation=chi),
+        "delayed": DelayedRestitution(restitution=e, delay=10.0 ** rng.uniform(-3.0, -0.5) / w),
+    }[name]
+    drive = HarmonicDrive(frequency=w / (2.0 * np.pi))
+    return ImpactOscillator(model=model, stop=Stop(gap=GAP, law=law), drive=drive)
+
+
+def random_family(rng: np.random.Generator) -> tuple[Shooting, PeriodicOrbit]:
+    """A settled motion of one to four touches, mostly several, in one to five drive periods."""
+    fewest = int(rng.random() < 0.9) + 1
+    while True:
+        oscillator = random_oscillator(rng).with_excess(10.0 ** rng.uniform(-2.5, 0.6))
+        strobed = contact.StroboscopicMap(oscillator=oscillator)
+        start = strobed.at(-1e-3).steady() if rng.random() < 0.5 else contact.State.rest(oscillator.n_modes)
+        try:
+            found = orbits.settle(strobed, start, most_cycles=512, largest_period=16)
+            if not (1 <= found.period <= 5 and fewest <= found.impacts <= 4):
+                continue
+            family = Shooting(oscillator=oscillator, period=found.period, impacts=found.impacts)
+            return family, family.from_state(replace(found.end, time=0.0))
+        except ContactError:
+            continue
+
+
+def random_change(oscillator: ImpactOscillator, rng: np.random.Generator) -> Change:
+    model, law = oscillator.model, oscillator.stop.law
+    arrays = {name: rng.normal(size=model.n_modes) * getattr(model, name) for name in ARRAYS}
+    return Change(
+        model=ModalChange(**arrays), gap=oscillator.stop.gap * rng.normal(),
+        law=(law.numbers[0] * rng.normal(), law.numbers[1] * rng.normal()),
+        frequency=oscillator.driven.frequency * rng.normal(),
+        amplitude=oscillator.driven.amplitude * rng.normal(),
+    )  # fmt: skip
+
+
+def along(oscillator: ImpactOscillator, change: Change, step: float) -> ImpactOscillator:
+    """The oscillator with its numbers moved by a step along a change."""
+    model = ModalModel(
+        **{name: getattr(oscillator.model, name) + step * getattr(change.model, name) for name in ARRAYS}
+    )
+    law: contact.ContactLaw = oscillator.stop.law
+    moved = {
+        unit: number + step * rate
+        for unit, number, rate in zip(law.units, law.numbers, change.law, strict=False)
+    }
+    if isinstance(law, DelayedRestitution):
+        moved = {"restitution": law.restitution, "delay": law.delay}
+    drive = oscillator.driven
+    return ImpactOscillator(
+        model=model, stop=Stop(gap=oscillator.stop.gap + step * change.gap, law=replace(law, **moved)),
+        drive=HarmonicDrive(
+            frequency=drive.frequency + step * change.frequency,
+            amplitude=drive.amplitude + step * change.amplitude,
+        ),
+    )  # fmt: skip
+
+
+class Curve:
+    """The orbits with the touches of `like` over p, in scaled unknowns (u, v, approach velocity, p)."""
+
+    def __init__(self, path: Path, like: PeriodicOrbit, unit: float) -> None:
+        self.path, self.like = path, like
+        self.scale = np.concatenate([sizes_of(like.oscillator), [like.oscillator.unit_speed, unit]])
+
+    def unknowns(self, orbit: PeriodicOrbit, p: float) -> np.ndarray:
+        return np.concatenate([orbit.deviations, [orbit.speed, p]]) / self.scale
+
+    def equations(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """What is left of them, their derivatives with all unknowns but p, and the record of the touches."""
+        (*start, speed, p), n = x * self.scale, x.size - 2
+        oscillator = self.path(p)
+        tip = np.kron(np.eye(2), oscillator.model.phi)
+        response, w = oscillator.tip_response(), oscillator.driven.angular_frequency
+        steady = np.array([[response.real, response.imag], [-w * response.imag, w * response.real]])
+        drive = np.linalg.solve(steady, [oscillator.stop.gap, speed] - tip @ start)  # Z (sin, cos)
+        with_start = np.linalg.solve(steady, np.column_stack([-tip, [0.0, 1.0]]))
+        family = Shooting(oscillator=oscillator, period=self.like.period, impacts=self.like.impacts)
+        end, tangent, record = family.flow(np.append(start, drive))
+        size, weight = math.hypot(*drive), np.append(self.scale[:n], self.like.amplitude)
+        rest = np.append(end - start, size - oscillator.driven.amplitude) / weight
+        closing = tangent[:n] @ np.vstack([np.eye(n, n + 1), with_start]) - np.eye(n, n + 1)
+        rows = np.vstack([closing, drive @ with_start / size]) * self.scale[:-1] / weight[:, None]
+        return rest, rows, record
+
+    def solve(self, x: np.ndarray, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+        """The orbit next to `x` in the plane across `normal`, and the tangent there; None: not found."""
+        guess, h = x, 1e-6 * np.eye(x.size)[-1]
+        for side in (1.0, -1.0):  # a touch is lost on one side of a graze
+            with contextlib.suppress(ContactError, ValueError, np.linalg.LinAlgError):
+                with_p = (self.equations(x + side * h)[0] - self.equations(x)[0]) / (side * 1e-6)
+                for _ in range(10):
+                    rest, rows, _record = self.equations(x)
+                    inverse = np.linalg.inv(np.vstack([np.column_stack([rows, with_p]), normal]))
+                    step = inverse @ np.append(rest, normal @ (x - guess))
+                    x = x - step
+                    if np.max(np.abs(step)) < 1e-9:
+                        return x, inverse[:, -1] / np.linalg.norm(inverse[:, -1])
+                return None
+        return None
+
+    def joins(self, start: PeriodicOrbit, p: float, end: PeriodicOrbit, q: float) -> bool:
+        """Whether the curve leads from one orbit to the other, on either way and wherever it bends."""
+        a, b = self.unknowns(start, p), self.unknowns(end, q)
+        length = float(np.linalg.norm(b - a))
+        first = self.solve(a, (b - a) / max(length, 1e-300))
+        sides = self.unlike(start.approach) @ self.unlike(end.approach)
+        return length < 5e-5 or sides < 0.0 or (  # next to a graze; two curves cross in between
+            first is not None and any(self.leads(a, sign * first[1], b, length) for sign in (1.0, -1.0))
+        )
+
+    def leads(self, x: np.ndarray, way: np.ndarray, b: np.ndarray, length: float) -> bool:
+        """Whether the curve leads from `x` along `way` to `b`, which is `length` away."""
+        step = 0.3 * length
+        for _ in range(60):
+            ahead, off = (b - x) @ way, np.linalg.norm(b - x)
+            over = 0.0 < ahead <= step and off < 2.0 * step
+            guess = x + (ahead if over else step) * way
+            there = None if off > 3.0 * length else self.solve(guess, way)
+            if there is None or np.linalg.norm(there[0] - guess) > 0.3 * step or there[1] @ way < 0.8:
+                step *= 0.5
+                continue
+            if over and np.linalg.norm(there[0] - b) < PLACE * max(length, 1.0):
+                return True
+            x, way, step = there[0], there[1], min(2.0 * step, 0.3 * length)
+        return False
+
+    def unlike(self, speeds: np.ndarray) -> np.ndarray:
+        """How far an orbit is from a shorter one that is run through several times; 1 if it cannot be."""
+        parts, k = math.gcd(self.like.period, self.like.impacts), self.like.impacts
+        shifts = [speeds - np.roll(speeds, k // q) for q in (2, 3, 5) if parts % q == 0]
+        return min(shifts, key=np.linalg.norm, default=speeds) / speeds.max()
+
+    def wrong_fold(self, fold: PeriodicOrbit, p: float) -> str:
+        """What is wrong with a fold: p must turn round, no orbit be on one side and two on the other."""
+        x = self.unknowns(fold, p)
+        try:
+            across = np.append(np.linalg.svd(self.equations(x)[1])[2][-1], 0.0)  # the curve runs along this
+        except ContactError as error:
+            return f"is no orbit: {error}"
+        for step in (1e-3, 1e-4, 1e-5):
+            ends = [self.solve(x + h * across, across) for h in (step, -step)]
+            if None not in ends:
+                sides = [end[0][-1] - x[-1] for end in ends]
+                speeds = [self.equations(y)[2][:, 2] for y in (x, ends[0][0])]
+                if np.divide(*(np.linalg.norm(self.unlike(row)) for row in speeds)) < 0.01:
+                    return "is a branch point: a shorter orbit, run through several times"
+                return "" if sides[0] * sides[1] > 0.0 else "has an orbit on either side"
+        return "has no orbits beside it"
+
+
+def wrong_multiplier(kind: str, orbit: PeriodicOrbit) -> str:
+    """What is wrong with the multipliers at an event.
+
+    One may be off by more where no method can tell it: where rounding of the matrix puts it in its place.
+    """
+    size, torus = sizes_of(orbit.oscillator), kind == "torus"
+    matrix = orbit.monodromy() * size / size[:, None]
+    values = np.linalg.eigvals(matrix).astype(complex)
+    values = values[values.imag != 0.0] if torus else values
+    if not values.size:
+        return "has no complex multipliers"
+    places = values / np.abs(values) if torus else np.full(values.size, -1.0 if "doubling" in kind else 1.0)
+    nearest = int(np.argmin(np.abs(values - places)))
+    least = np.linalg.svd(matrix - places[nearest] * np.eye(len(matrix)), compute_uv=False)
+    if abs(values[nearest] - places[nearest]) < PLACE or least[-1] < ROUNDING * least[0]:
+        return ""
+    return f"has the multiplier {values[nearest]:.7g}"
+
+
+@cache
+def nearest_graze(orbit: PeriodicOrbit) -> float:
+    """The height over the stop, in gaps, of the extremum of the tip nearest to it: 0 for a slow touch, else a
+    peak of a flight, the touch at its end ignored, or its lowest point, or the least depth in a contact."""
+    oscillator, n, heights = orbit.oscillator, orbit.oscillator.n_modes, [math.inf]
+    if orbit.approach.min() < math.sqrt(PLACE) * oscillator.unit_speed:
+        return 0.0
+    motion, gap, state = oscillator.motion(), oscillator.stop.gap, orbit.state()
+    ends = np.append(orbit.record[1:, 0], orbit.duration)
+    for row, end in zip(orbit.record, ends, strict=True):
+        tip = Signal(motion, float(orbit.phase + row[1]), row[4 : 4 + n], row[4 + n :])
+        length = float(end - row[1])
+        heights += list(tip(tip.peaks(length + 0.1 * oscillator.period)) / gap - 1.0)
+        heights.append(float(np.min(tip(tip.samples(length)))) / gap - 1.0)
+        low, high = row[0], row[1]
+        for _ in range(3 if high > low and orbit.admissible else 0):
+            times = np.linspace(low, high, 202)[1:-1]
+            run = contact.simulate(oscillator, state, duration=float(high), times=state.time + times)
+            depth = oscillator.tip(run.displacement) / gap - 1.0
+            inner = np.flatnonzero((depth[1:-1] <= depth[:-2]) & (depth[1:-1] <= depth[2:])) + 1
+            if not inner.size:
+                break
+            least = inner[np.argmin(np.abs(depth[inner]))]
+            heights.append(float(depth[least]))
+            low, high = times[least - 1], times[least + 1]
+    return min(heights, key=abs)
+
+
+def wrong_orbit(orbit: PeriodicOrbit) -> str:
+    """What is wrong with an orbit: it must close, and say rightly whether it touches the stop only then."""
+    if abs(nearest_graze(orbit)) < PLACE:
+        return ""  # rounding decides on the touch that grazes
+    curve = Curve(orbit.oscillator.with_excess, orbit, 1.0)
+    try:
+        open_by = float(np.max(np.abs(curve.equations(curve.unknowns(orbit, orbit.excess))[0])))
+        met = touches(orbit)
+    except contact.NotPeriodic as error:
+        return f"is no orbit: {error}"
+    if open_by > 1e-8:
+        return f"does not close by {open_by:.1e}"
+    right = orbit.touches == met and (met == orbit.impacts) == orbit.admissible
+    return "" if right else f"has {orbit.impacts} touches, admissible {orbit.admissible}; its motion {met}"
+
+
+def wrong_event(event: Event, path: Path, p: float, unit: float) -> str:
+    """What is wrong with an event of a branch along `path`; nothing if it is right."""
+    kind, height = event.kind, abs(nearest_graze(event.orbit))
+    if kind == "grazing" and height >= PLACE:
+        return f"has no extremum of the tip closer to the stop than {height:.1e} gaps"
+    if kind in ("grazing", "undecided"):
+        return ""
+    return wrong_multiplier(kind, event.orbit) or (
+        Curve(path, event.orbit, unit).wrong_fold(event.orbit, p) if kind == "fold" else ""
+    )
+
+
+def judged(
+    family: Shooting, start: PeriodicOrbit, change: Change, names: Collection[str]
+) -> Iterator[tuple[str, str]]:
+    """Kinds of answers of the calls `names`, and what is wrong with each: nothing where it is right; a
+    refusal that says why is right too."""
+    by_excess, by_change = family.oscillator.with_excess, partial(along, start.oscillator, change)
+    low, at, high, speed = 0.9 * start.excess - 0.1, start.excess, start.excess + 0.1, start.speed
+    calls: dict[str, Callable] = {
+        "fold_of": lambda: [orbits.fold_of(family, start)],
+        "folds_of": lambda: [*orbits.folds_of(family, start)],
+        "first_event": lambda: [orbits.first_event(family, start, -0.9)],
+        "lowest_of": lambda: [orbits.lowest_of(family, start)],
+        "follow": lambda: orbits.follow(family, start, low=0.6 * speed, high=1.8 * speed),
+        "path in amplitude": lambda: orbits.follow_path(by_excess, start, at, low=low, high=high),
+        "path": lambda: orbits.follow_path(by_change, start, 0.0, low=-0.01, high=0.01),
+    }
+    for name in names:
+        try:
+            answer = calls[name]()
+        except ContactError as error:
+            yield f"{name} refuses", "" if len(str(error)) > 30 else f"gives no reason: {error}"
+            continue
+        path, unit = (by_change, 2e-3) if name == "path" else (by_excess, 2e-2)
+        found = () if isinstance(answer, list) else answer.orbits
+        events = [
+            Event(kind="fold", orbit=event) if isinstance(event, PeriodicOrbit) else event
+            for event in (answer.events if found else answer)
+        ]
+        for event in filter(None, events):
+            p = event.parameter if name == "path" else event.orbit.excess
+            with contextlib.suppress(contact.UnresolvedCrossing):  # what cannot be simulated is not judged
+                wrong = wrong_orbit(event.orbit) or wrong_event(event, path, p, unit)
+                yield f"{name}: {event.kind}", f"at {p:.9g} {wrong}" if wrong else ""
+        places = answer.parameters if name == "path" else [orbit.excess for orbit in found]
+        for (a, p), (b, q) in [*pairwise(zip(found, places, strict=True))][:: 1 + len(found) // 60]:
+            slow = min(a.approach.min(), b.approach.min()) < math.sqrt(PLACE) * a.oscillator.unit_speed
+            if a.impacts == b.impacts and not slow:  # next to a graze the judge's differences fail
+                same = Curve(path, a, unit).joins(a, p, b, q)
+                yield f"{name}: neighbours", "" if same else f"at {p:.9g} and {q:.9g} lie on two curves"
+        for orbit in found[:: 1 + len(found) // 10]:
+            with contextlib.suppress(contact.UnresolvedCrossing):
+                yield f"{name}: orbit", wrong_orbit(orbit)
+
+
+QUICK = ("fold_of", "folds_of", "first_event", "lowest_of", "follow")
+ALL = (*QUICK, "path in amplitude", "path")
+
+
+def judged_family(seed: int, number: int, names: Collection[str] = ALL) -> tuple[Counter[str], list[str]]:
+    """How many answers of each kind there are for one family, and a sentence for each wrong one."""
+    counts, wrong, rng = Counter[str](), list[str](), np.random.default_rng([seed, number])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        family, start = random_family(rng)
+        law = f"{type(family.oscillator.stop.law).__name__}, {family.oscillator.n_modes} modes"
+        for kind, sentence in judged(family, start, random_change(start.oscillator, rng), names):
+            counts.update([kind, f"{kind}, wrong"] if sentence else [kind])
+            if sentence:
+                orbit = f"p{family.period} with {family.impacts} touches, {law}"
+                wrong.append(f"family {number} of seed {seed} ({orbit}): {kind} {sentence}")
+    return counts, wrong
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    for option, default in (("--families", 300), ("--first", 0), ("--seed", 1)):
+        parser.add_argument(option, type=int, default=default)
+    parser.add_argument("--quick", action="store_true")
+    options, total = parser.parse_args(), Counter[str]()
+    for number in range(options.first, options.first + options.families):
+        counted, sentences = judged_family(options.seed, number, QUICK if options.quick else ALL)
+        total += counted
+        print(*(f"{sentence}\n" for sentence in sentences), sep="", end="", flush=True)
+    print(*(f"{count:7d}  {kind}" for kind, count in sorted(total.items())), sep="\n")
