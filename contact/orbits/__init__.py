@@ -2,8 +2,9 @@
 
 `family`: what all families of orbits offer; `single_impact`: one collision every m drive periods, under
 Newton's law in closed form; `kick`: one collision of any law, by linear algebra; `shooting`: any law and any
-number of touches, with exact tangents; `continuation`: branches, with the points of `events` on them; `path`
-and `curve`: the same along any path p -> oscillator; `settling`: on what a motion settles; `scan`: orbit
+number of touches, with exact tangents; `curve`: a curve of orbits, point beside point; `events` on it;
+`branch`: a curve followed both ways; `continuation`: branches over the amplitude; `path`: branches along any
+path p -> oscillator; `settling`: on what a motion settles; `scan`: orbit
 diagrams, the state carried along; `ends`: where an orbit ends when the drive is lowered, by a scan and by its
 fold; `amplitude_scan`: the compiled column of a chart; `lyapunov`: exponents; `derivatives`,
 `event_derivatives`, `motion_derivatives`: how orbits, their folds, doublings and grazings, and simulated

@@ -22,7 +22,6 @@ the next one goes on from the last state that was reached.  The amplitude enters
 the loop scales the steady motion at grazing.
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
@@ -30,7 +29,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from beam.parameters import require_array
+from beam.parameters import require_array, require_kind, require_whole
 from contact.compiled import kernel
 from contact.event_loop import DONE, STATE
 from contact.exact_run import failure
@@ -42,8 +41,6 @@ from contact.oscillator import ImpactOscillator
 from contact.strobed_motion import at_amplitude, strobed_motion, strobed_system
 from contact.stroboscope import StroboscopicMap
 from contact.trajectory import OUTSIDE
-
-__all__ = ["AmplitudeScan", "ScannedColumn"]
 
 LARGEST_PERIOD = 64
 """Longest period told, as in the other studies."""
@@ -165,11 +162,10 @@ class AmplitudeScan:
     most_cycles: int
 
     def __post_init__(self) -> None:
-        if self.most_cycles < 2 * LARGEST_PERIOD:
-            raise ValueError(
-                f"most_cycles is {self.most_cycles} drive periods; a period of up to {LARGEST_PERIOD} takes "
-                f"at least {2 * LARGEST_PERIOD} to be seen"
-            )
+        require_kind("oscillator", self.oscillator, ImpactOscillator, "an ImpactOscillator")
+        _ = self.oscillator.driven
+        why = f", to see a period of up to {LARGEST_PERIOD}"
+        require_whole("most_cycles", self.most_cycles, "drive periods", low=2 * LARGEST_PERIOD, why=why)
 
     def __call__(self, frequency: float, excesses: ArrayLike) -> ScannedColumn:
         """The column at drive `frequency` [Hz] over rising `excesses` F/F_g - 1 [1]."""

@@ -25,11 +25,10 @@ from beam.parameters import require, require_kind, require_whole, require_within
 from contact.change import Change
 from contact.errors import NotPeriodic
 from contact.orbits.motion_derivatives import motion_derivatives
+from contact.orbits.repetition import require_orbit
 from contact.strobed_nordmark import StrobedNordmarkMap
 from contact.stroboscope import StroboscopicMap
 from contact.trajectory import State
-
-__all__ = ["cloud", "strobe_derivatives"]
 
 Array = NDArray[np.float64]
 Strobed = StroboscopicMap | StrobedNordmarkMap
@@ -99,16 +98,18 @@ def cloud(
     Raises
     ------
     NotPeriodic
-        If the orbit is not stable.
+        If the state lies on no orbit of this period, or the orbit is not stable.
     ValueError, NoDerivative
         As `strobe_derivatives`.
     """
     require_within("deviation", deviation, "[1]", low=0)
     require_within("memory", memory, "[1]", low=0)
     require(memory < 1.0, f"memory is {memory} [1]; it must be below 1")
+    made = strobe_derivatives(strobed, state, period)
+    require_orbit(strobed, state, period)
     steps = [
         np.block([[m, b[:, None]], [np.zeros((1, b.size)), np.array([[memory]])]])
-        for m, b in strobe_derivatives(strobed, state, period)
+        for m, b in made
     ]
     size = len(steps[0])
     source = np.zeros((size, size))

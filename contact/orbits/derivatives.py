@@ -14,7 +14,7 @@ derivative of the excess, which does not depend on s at a fold, is that of the f
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -32,10 +32,6 @@ from contact.retraced import Retraced
 from contact.simulation import simulate
 from contact.touch import force
 from contact.touch.tangents import all_tip_changes
-
-__all__ = [
-    "OrbitDerivatives", "excess_derivatives", "orbit_derivatives", "pace_of_deviations", "with_speed",
-]  # fmt: skip
 
 Array = NDArray[np.float64]
 
@@ -174,8 +170,8 @@ def _solved(orbit: PeriodicOrbit, changes: Changes, *, at_speed: bool) -> Array:
     n = orbit.deviations.size
     equations = np.delete(equations_of(orbit, changes)[-1], n + 1 if at_speed else n + 2, axis=0)
     unit = orbit.oscillator.unit_speed if at_speed else orbit.amplitude
-    scale = np.concatenate([sizes_of(orbit), np.full(2, orbit.amplitude)])
-    weight = np.concatenate([sizes_of(orbit), [orbit.oscillator.stop.gap, unit]])
+    scale = np.concatenate([sizes_of(orbit.oscillator), np.full(2, orbit.amplitude)])
+    weight = np.concatenate([sizes_of(orbit.oscillator), [orbit.oscillator.stop.gap, unit]])
     known = np.column_stack([-equations[:, n + 2 :], np.eye(n + 2)[-1]]) / weight[:, None]
     matrix = equations[:, : n + 2] * scale / weight[:, None]
     try:
@@ -191,11 +187,11 @@ def _solved(orbit: PeriodicOrbit, changes: Changes, *, at_speed: bool) -> Array:
     return np.asarray(scale[:, None] * (inverse @ known))
 
 
-def sizes_of(orbit: PeriodicOrbit) -> Array:
+def sizes_of(oscillator: ImpactOscillator) -> Array:
     """Sizes of the deviations (u, v)."""
-    model, w = orbit.oscillator.model, orbit.oscillator.driven.angular_frequency
-    size = orbit.oscillator.stop.gap / np.abs(model.phi).max()
-    return np.concatenate([np.full(orbit.oscillator.n_modes, size), size * np.maximum(model.omega, w)])
+    model, size = oscillator.model, oscillator.stop.gap / np.abs(oscillator.model.phi).max()
+    speed = np.maximum(model.omega, oscillator.driven.angular_frequency)
+    return np.concatenate([np.full(oscillator.n_modes, size), size * speed])
 
 
 def orbit_derivatives(
@@ -211,7 +207,7 @@ def orbit_derivatives(
         If a touch of the orbit is lost.
     """
     require_kind("orbit", orbit, PeriodicOrbit, "a PeriodicOrbit")
-    several = Changes(oscillator=orbit.oscillator, changes=tuple(changes))
+    several = Changes(oscillator=orbit.oscillator, changes=changes)
     return OrbitDerivatives(
         orbit=orbit, changes=several, start=_solved(orbit, several, at_speed=at_speed)[:, :-1]
     )
@@ -225,6 +221,7 @@ def excess_derivatives(orbit: PeriodicOrbit, changes: Sequence[Change]) -> Array
 def with_speed(orbit: PeriodicOrbit, changes: Sequence[Change]) -> OrbitDerivatives:
     """Derivatives at given approach speed, and last those with the approach speed itself [s/m]."""
     require_kind("orbit", orbit, PeriodicOrbit, "a PeriodicOrbit")
-    several = Changes(oscillator=orbit.oscillator, changes=(*changes, Change()))
+    given = Changes(oscillator=orbit.oscillator, changes=changes)
+    several = replace(given, changes=(*given.changes, Change()))
     start = np.delete(_solved(orbit, several, at_speed=True), -2, axis=1)
     return OrbitDerivatives(orbit=orbit, changes=several, start=start)

@@ -9,11 +9,11 @@ width, made from an orbit that held.  That step brackets the end.
 
 **Exact end.** The orbit that held is then followed, as an orbit and not as a motion, through the bracket: by
 shooting for an impact oscillator (``contact.orbits.continuation``), in closed form for the Nordmark map
-(``contact.maximal_orbits``).  What is met first is the end, a "fold", "period doubling" or "grazing"
-(``contact.orbits.events``), with the excess of that very point.  If the orbit leaves the bracket at its lower
-end, stable, the motion had been lost too early, and the scan goes on from the orbit there.  Where nothing of
-this is found (a map without these tools, several impacts in the map, a pair of complex multipliers that
-passes the unit circle) the end is known to its "bracket" only.
+(``contact.maximal_orbits``).  What is met first is the end, a "fold", "period doubling", "torus", "branch
+point" or "grazing" (``contact.orbits.events``), with the excess of that very point.  If the orbit leaves the
+bracket at its lower end, stable, the motion had been lost too early, and the scan goes on from the orbit
+there.  Where nothing of this is found (a map without these tools, several impacts in the map, two events
+closer than 1e-6) the end is known to its "bracket" only.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
-from beam.parameters import require_kind
+from beam.parameters import require_kind, require_whole, require_within
 from contact.errors import ContactError
 from contact.laws import NEWTON
 from contact.maximal_orbits import MapFamily
@@ -32,10 +32,9 @@ from contact.orbits.kick import KickFamily
 from contact.orbits.settling import Settled, orbit_near, settle
 from contact.orbits.shooting import Shooting
 from contact.orbits.single_impact import MaximalFamily
+from contact.strobed_map import require_map
 from contact.strobed_nordmark import StrobedNordmarkMap
 from contact.stroboscope import StrobedMap, StroboscopicMap
-
-__all__ = ["OrbitEnd", "fold_excess", "orbit_end"]
 
 S = TypeVar("S")
 
@@ -57,7 +56,8 @@ class OrbitEnd(Generic[S]):
     excess : float
         F/F_g - 1 at which it ends [1]; the middle of the bracket if that is all that is known.
     kind : str
-        "fold", "period doubling" or "grazing"; "bracket" if none of these was found in it.
+        "fold", "period doubling", "torus", "branch point" or "grazing"; "bracket" if none of these was found
+        in it.
     held, lost : float
         Excess at which the motion held the orbit last, and that one step below at which it lost it [1].
     state : State
@@ -105,6 +105,11 @@ def orbit_end(
     -------
     OrbitEnd, or None if the motion at `excess` is not periodic with impacts, or never ends above `lowest`.
     """
+    require_map(strobed)
+    require_within("relative", relative, "[1]", low=0)
+    require_within("absolute", absolute, "[1]", above=0)
+    require_within("first_step", first_step, "[1]", above=0)
+    require_within("lowest", lowest, "[1]", above=-1)
     start = settle(strobed.at(excess), state, most_cycles=most_cycles)
     if start.period == 0 or start.impacts == 0:
         return None
@@ -160,6 +165,8 @@ def _exact_end(
     family = Shooting(oscillator=orbit.oscillator, period=start.period, impacts=start.impacts)
     try:
         event = first_event(family, orbit, lost)
+        if event is not None and event.kind == "undecided":
+            return unknown
         if event is not None and event.orbit.excess >= lost:
             return (event.kind, event.orbit.excess), None
         below = family.at_excess(lost, orbit)
@@ -201,7 +208,7 @@ def fold_excess(strobed: StrobedMap[Any], period: int) -> float | None:
     NotPeriodic
         If the orbits around the place where the fold should be are not found.
     """
-    if period < 2:
+    if require_whole("period", period, "drive periods") < 2:
         return None
     family: Family
     if isinstance(strobed, StrobedNordmarkMap):

@@ -20,17 +20,14 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from contact.errors import NotPeriodic
 from contact.flight.crossing import CROSSES, FREE, first_crossing
 from contact.flight.modal_flow import flow_over, steady_motion, tip_state
 from contact.flight.motion import Motion
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.touch.tangents import Variation, variation
-from contact.touch_flow import FLOWN, flow_from_touch
+from contact.touch_flow import FLOWN, flow_from_touch, lost
 from contact.trajectory import State
-
-__all__ = ["Family", "Orbit", "Release", "TouchOrbit", "flown", "modal_flow"]
 
 Array = NDArray[np.float64]
 CLOSING = 1e-9  # part of a flight by which it is prolonged, so that the touch at its end is met
@@ -94,16 +91,16 @@ def flown(
     ------
     NotPeriodic
         If the motion has fewer touches, or a contact does not end.
+    ContactTooStiff
+        If a contact needs more steps than the bound allows.
     """
     (u, v), size, duration = deviations.reshape(2, -1).copy(), deviations.size, period * oscillator.period
     vary = variation(oscillator.motion(), oscillator.tip_response()) if vary is None else vary
     tangent, record = np.eye(size + 2, size + 2 + len(vary.rest)), np.empty((touches, 4 + size))
     outcome = flow_from_touch(vary, phase, u, v, duration, tangent, record)
     if outcome != FLOWN:
-        raise NotPeriodic(
-            time=phase, gap=0.0, velocity=float(record[0, 2]),
-            detail=f"an orbit of period {period} with {touches} touches was lost",
-        )  # fmt: skip
+        words = f"an orbit of period {period} with {touches} touches was lost"
+        raise lost(outcome, phase, float(record[0, 2]), words)
     return np.concatenate([u, v]), tangent, record
 
 

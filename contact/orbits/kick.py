@@ -33,7 +33,7 @@ from contact.orbits.family import modal_flow
 from contact.orbits.single_impact import SINGULAR, Kick, SingleImpactFamily, SingleImpactOrbit
 from contact.touch.delayed import numbers_at
 from contact.touch.tangents import variation
-from contact.touch_flow import FEWER_TOUCHES, flow_from_touch
+from contact.touch_flow import FEWER_TOUCHES, flow_from_touch, lost
 
 __all__ = ["Kick", "KickFamily"]
 
@@ -100,10 +100,7 @@ class KickFamily(SingleImpactFamily):
         (u, v), record = w.T.copy(), np.full((MOST_TOUCHES + 1, 4 + 2 * n), np.nan)
         outcome = flow_from_touch(vary, phase, u, v, window, np.empty((0, 0)), record)
         if outcome != FEWER_TOUCHES:
-            raise NotPeriodic(
-                time=phase + window, gap=0.0, velocity=speed,
-                detail="the collision does not end within half a drive period",
-            )
+            raise lost(outcome, phase, speed, "the collision does not end within half a drive period")
         touches = int(np.count_nonzero(np.isfinite(record[:, 0])))
         _start, end, _approach, rebound = record[touches - 1, :4].tolist()
         left = record[touches - 1, 4:].reshape(2, n).T

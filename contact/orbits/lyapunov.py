@@ -30,9 +30,10 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from beam.parameters import require_kind, require_whole
-from contact.errors import NotPeriodic
-from contact.strobed_map import DifferentiableMap
+from beam.parameters import require_whole
+from contact.errors import NoDerivative, NotPeriodic
+from contact.orbits.repetition import require_orbit
+from contact.strobed_map import DifferentiableMap, require_map
 
 __all__ = ["Exponents", "map_exponents", "orbit_exponents"]
 
@@ -73,10 +74,11 @@ class Exponents:
         return float(self.values[0])
 
 
-def require_strobed(strobed: object) -> None:
-    """TypeError unless this is a strobed map."""
-    words = "a strobed map with derivatives, such as a StroboscopicMap"
-    require_kind("strobed", strobed, DifferentiableMap, words)
+def _finite(matrix: Array) -> Array:
+    """The matrix; NoDerivative if it has left the range of numbers."""
+    if not np.all(np.isfinite(matrix)):
+        raise NoDerivative(time=0.0, gap=0.0, velocity=0.0, detail="those along the orbit are too large")
+    return matrix
 
 
 def _weighted(rates: Array, spans: Array) -> tuple[Array, float]:
@@ -113,14 +115,14 @@ def map_exponents(
     ContactError
         If the motion could not be followed, or the tip came to rest on the wall.
     """
-    require_strobed(strobed)
+    require_map(strobed, DifferentiableMap)
     count = require_whole("count", count, "steps", low=2, why=": an average needs them")
     align = require_whole("align", align, "steps", low=0)
     frame, rates, spans, done = np.eye(strobed.coordinates(state).size), [], [], 0
     while done < align + count:
         found, state = strobed.jacobians(state, min(BLOCK, align + count - done))
         for matrix, span in found:
-            frame, triangle = np.linalg.qr(matrix @ frame)
+            frame, triangle = np.linalg.qr(_finite(matrix @ frame))
             done += span
             if done > align:
                 rates.append(np.log(np.maximum(np.abs(np.diag(triangle)), SMALLEST)) / span)
@@ -131,8 +133,9 @@ def map_exponents(
 
 def orbit_exponents(strobed: DifferentiableMap[S], state: S, period: int) -> Exponents:
     """Exponents log|mu_i|/m of the periodic orbit of `period` m on which `state` lies, per step."""
-    require_strobed(strobed)
+    require_map(strobed, DifferentiableMap)
     period = require_whole("period", period, "drive periods")
+    require_orbit(strobed, state, period)
     matrix = np.eye(strobed.coordinates(state).size)
     done = 0
     while done % period or done == 0:  # a strobe in contact is never the last: m periods later it is again
@@ -142,6 +145,6 @@ def orbit_exponents(strobed: DifferentiableMap[S], state: S, period: int) -> Exp
             )
         found, state = strobed.jacobians(state, period - done % period)
         for step, span in found:
-            matrix, done = step @ matrix, done + span
+            matrix, done = _finite(step @ matrix), done + span
     sizes = np.maximum(np.abs(np.linalg.eigvals(matrix)), SMALLEST)
     return Exponents(values=np.sort(np.log(sizes))[::-1] / done, error=0.0)

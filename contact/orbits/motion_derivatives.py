@@ -21,8 +21,6 @@ from contact.retraced import Retraced
 from contact.simulation import simulate
 from contact.trajectory import Regime, State, Trajectory
 
-__all__ = ["MotionDerivatives", "motion_derivatives"]
-
 Array = NDArray[np.float64]
 
 
@@ -78,7 +76,7 @@ def motion_derivatives(
     if state.regime != Regime.OUTSIDE:
         raise ValueError(f"regime of the state is {int(state.regime)}; it must be 0, off the stop")
     wanted = require_array("times", () if times is None else times, "s", dimensions=1, words="a rising array")
-    several = Changes(oscillator=oscillator, changes=tuple(changes))
+    several = Changes(oscillator=oscillator, changes=changes)
     run, n = simulate(oscillator, state, periods=periods, times=wanted), oscillator.n_modes
     count = len(several.changes)
     amplitude, w = oscillator.driven.amplitude, oscillator.driven.angular_frequency

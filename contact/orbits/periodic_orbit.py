@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Protocol, runtime_checkable
+from functools import cached_property
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,10 +12,14 @@ from numpy.typing import NDArray
 from contact.orbits.family import Release, TouchOrbit
 from contact.orbits.kick import KickFamily
 from contact.oscillator import ImpactOscillator
-
-__all__ = ["Followed", "PeriodicOrbit"]
+from contact.simulation import simulate
+from contact.trajectory import ImpactKind
 
 Array = NDArray[np.float64]
+ALIKE = 1e-5
+"""Difference between touches that is taken for none: behind a branch point they part in proportion to the
+distance, and the equations are singular up to about this distance."""
+
 SLACK = 1e-6
 """Part of a drive period by which the touch that closes an orbit may miss it, beside the residual."""
 
@@ -50,6 +55,28 @@ class PeriodicOrbit(TouchOrbit):
         """Approach velocities of all touches in one period, shape (impacts,) [m/s]."""
         return self.record[:, 2]
 
+    @cached_property
+    def touches(self) -> int:
+        """Touches in one period of the motion simulated from the first touch on: `impacts`, if the orbit is
+        `admissible`."""
+        run = simulate(self.oscillator, self.state(), periods=self.period)
+        closing = (1.0 - SLACK) * self.duration
+        return int(np.count_nonzero((run.impacts.kind == ImpactKind.IMPACT)
+                                    & (run.impacts.start - self.phase < closing)))  # fmt: skip
+
+    def repeats(self, within: float = ALIKE) -> int:
+        """How often the orbit runs through one of a shorter period: 1 for most.
+
+        Times and speeds of its touches must be the same `within` this part of the largest.
+        """
+        k, rows, shift = self.impacts, self.record[:, :4], np.zeros(4)
+        for times in (times for times in range(k, 1, -1) if k % times == self.period % times == 0):
+            shift[:2] = self.duration / times
+            off = np.abs(rows[k // times :] - shift - rows[: -(k // times)])
+            if np.all(off <= within * np.max(np.abs(rows), axis=0)):
+                return times
+        return 1
+
     def monodromy(self) -> Array:
         """The field `tangent`."""
         return self.tangent
@@ -74,8 +101,17 @@ class Followed(Protocol):
     def kicks(self) -> KickFamily:
         """The description by kicks, from which a search starts."""
 
+    def equations(self, x: Array) -> Any:
+        """The equations at the unknowns, a ``contact.orbits.curve.Iterate``."""
+
+    def unknowns(self, start: Array, speed: float) -> Array:
+        """The unknowns of an orbit with deviations (u, v) and approach velocity [m/s] at its first touch."""
+
     def at_speed(self, speed: float, near: PeriodicOrbit | None = None) -> PeriodicOrbit:
         """The orbit whose first touch has approach velocity `speed` [m/s]; NotPeriodic if it is not found."""
 
     def of(self, oscillator: ImpactOscillator) -> Followed:
         """The same family of another oscillator."""
+
+    def with_impacts(self, impacts: int) -> Followed:
+        """The family with another number of touches."""

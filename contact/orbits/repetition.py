@@ -10,17 +10,19 @@ to a tolerance and the impacts of each strobe repeat exactly, p <= L.
 the tip never meets the stop again.
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 import numpy as np
 
-from beam.parameters import require, require_whole, require_within
+from beam.parameters import require, require_array, require_whole, require_within
 from contact.compiled import kernel
+from contact.errors import NotPeriodic
 from contact.flight.modal_flow import tip_bound
 from contact.flight.motion import OMEGA
+from contact.strobed_map import DifferentiableMap
 
-__all__ = ["free_for_good", "period_of", "repetition"]
+RETURNS = 1e-6
+"""Distance, over the scale, at which a state has returned: a settled one is back to 1e-9, chaos to 1e-2."""
 
 
 @kernel
@@ -58,11 +60,22 @@ def period_of(points: np.ndarray, impacts: np.ndarray, *, largest_period: int, t
     tolerance : float
         In the unit of the points.
     """
-    rows, stretch = len(points), require_whole("largest_period", largest_period, "strobes", low=0)
+    stretch = require_whole("largest_period", largest_period, "strobes", low=0)
+    given = require_array("points", points, "any unit", dimensions=2, words="rows of coordinates")
+    rows = len(given)
     require(rows >= 2 * stretch, f"points has {rows} strobes; it must have {2 * stretch} or more")
-    require_within("tolerance", tolerance, "(the unit of the points)", low=0)
-    given = np.ascontiguousarray(points, dtype=float), np.ascontiguousarray(impacts, dtype=np.int64)
-    return int(repetition(*given, rows, stretch, float(tolerance)))
+    require(given.shape[1] > 0, f"points has shape {given.shape}; it must have one coordinate or more")
+    counts = require_array("impacts", impacts, "[1]", shape=(rows,)).astype(np.int64)
+    fine = require_within("tolerance", tolerance, "(the unit of the points)", low=0)
+    return int(repetition(given.copy(), counts, rows, stretch, fine))
+
+
+def require_orbit(strobed: DifferentiableMap, state, period: int) -> None:
+    """NotPeriodic unless the motion from `state` is back after `period` steps, to `RETURNS` of the scale."""
+    away = np.abs(strobed.orbit(state, period).points[-1] - strobed.coordinates(state)).max()
+    if not away <= RETURNS * strobed.scale:
+        words = f"after {period} periods it is {away:.3g} from the state, of a scale of {strobed.scale:g}"
+        raise NotPeriodic(time=getattr(state, "time", 0.0), gap=0.0, velocity=0.0, detail=words)
 
 
 @kernel

@@ -13,12 +13,11 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
+from beam.parameters import require, require_array, require_kind, require_whole
 from contact.errors import ContactError
 from contact.orbits.repetition import period_of
 from contact.orbits.settling import TOLERANCE, settle
-from contact.stroboscope import StrobedMap
-
-__all__ = ["OrbitDiagram", "orbit_diagram"]
+from contact.strobed_map import StrobedMap, require_map
 
 S = TypeVar("S")
 
@@ -88,9 +87,13 @@ def orbit_diagram(
         End a transient as soon as the orbit is known (`settle`); otherwise every amplitude gets all
         `settle_cycles`.
     """
-    values = np.asarray(excesses, dtype=float)
-    if values.ndim != 1 or values.size == 0 or not np.all(np.isfinite(values)):
-        raise ValueError("excesses must be a non-empty list of finite numbers [1]")
+    require_map(strobed)
+    values = require_array("excesses", excesses, "[1]", dimensions=1, words="a row of numbers")
+    require(values.size > 0, "excesses is empty; it must hold one number or more [1]")
+    require_whole("settle_cycles", settle_cycles, "drive periods", low=0)
+    require_whole("record_cycles", record_cycles, "drive periods")
+    require_whole("largest_period", largest_period, "drive periods")
+    require_kind("observe", observe, Callable, "a function of strobed points")  # type: ignore[arg-type]
     points = np.full((values.size, record_cycles), np.nan)
     period, impacts, cycles = (np.zeros(values.size, dtype=np.int64) for _ in range(3))
     failures: list[str] = []
@@ -111,7 +114,8 @@ def orbit_diagram(
                 )  # fmt: skip
                 impacts[i] = recorded.impacts[-period[i] :].sum()
             state = recorded.end
-            points[i] = observe(recorded.points)[-record_cycles:]
+            shape, seen = (len(recorded.points),), observe(recorded.points)
+            points[i] = require_array("observe(points)", seen, "its unit", shape=shape)[-record_cycles:]
         except ContactError as error:
             # the next amplitude goes on from the last state that was reached
             failures.append(f"excess {excess:.6g}: {error}")

@@ -27,15 +27,15 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
+from beam.parameters import require_whole, require_within
 from contact.errors import ContactError
 from contact.orbits.periodic_orbit import PeriodicOrbit
 from contact.orbits.repetition import free_for_good, period_of
 from contact.orbits.shooting import Shooting
+from contact.strobed_map import require_map
 from contact.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap
 from contact.trajectory import State
 from contact.virtual_motion import deviations
-
-__all__ = ["BELOW", "TOLERANCE", "Settled", "born", "born_period", "orbit_near", "settle"]
 
 S = TypeVar("S")
 
@@ -116,7 +116,11 @@ def settle(
         End the transient of a StroboscopicMap where its orbit is proved; otherwise, and for any other map,
         where it repeats.
     """
-    block, cycles, fine = 2 * largest_period, 0, tolerance * strobed.scale
+    require_map(strobed)
+    require_whole("most_cycles", most_cycles, "drive periods", low=0)
+    largest_period = require_whole("largest_period", largest_period, "drive periods")
+    fine = require_within("tolerance", tolerance, "[1]", low=0) * strobed.scale
+    block, cycles = 2 * largest_period, 0
     proof: Any = None
     if prove and isinstance(strobed, StroboscopicMap):
         proof = _Proof(strobed, largest_period, fine)
@@ -150,6 +154,7 @@ def born(
     most_cycles : int
         Bound of the transient: orbits born at grazing settle within some hundred drive periods.
     """
+    require_map(strobed)
     return settle(strobed.at(excess), strobed.at(below).steady(), most_cycles=most_cycles)
 
 

@@ -19,15 +19,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from beam.parameters import is_whole, require, require_kind, require_within, shown
 from contact.errors import NotPeriodic
-from contact.orbits.continuation import fold_of, orbits_at
-from contact.orbits.family import TouchOrbit, flown
+from contact.orbits.continuation import lowest_fold, orbits_at
+from contact.orbits.curve import Iterate, newton
+from contact.orbits.derivatives import sizes_of
+from contact.orbits.family import flown
 from contact.orbits.kick import KickFamily
 from contact.orbits.periodic_orbit import PeriodicOrbit
 from contact.oscillator import ImpactOscillator
@@ -39,42 +40,9 @@ __all__ = ["PeriodicOrbit", "Shooting"]
 
 Array = NDArray[np.float64]
 
-MOST_ITERATIONS = 25
-"""Of Newton's method: from a kick's orbit it takes three to six."""
-
-LONGEST_STEP = 0.3
-"""Longest change of an unknown in one iteration, in units of its scale (the gap): larger ones are
-shortened."""
-
-CONVERGED = 1e-12
-"""Largest residual in units of gap and 2 pi f gap; rounding of the flow over m periods is about 1e-14."""
-
-ROUNDED = 1e-9
-"""Residual below which iterates that no longer improve count as an orbit: rounding, 1e-16, times the largest
-multiplier, which grows as 1/v towards grazing."""
-
 STEEPEST = 1e10
-"""Change of an unknown with the approach velocity, both in units of their scale, beyond which it is rounding:
-then the approach velocity does not tell an orbit from its neighbours."""
-
-
-class _Iterate(NamedTuple):
-    """An iterate of Newton's method: the unknowns, the drive (S, C) that goes with them, the tangent of the
-    flow, the record of its touches, the scaled residual and Jacobian of the equations, and its error: the
-    largest residual."""
-
-    unknown: Array
-    drive: Array
-    matrix: Array
-    record: Array
-    residual: Array
-    jacobian: Array
-    error: float
-
-
-def beside(orbit: TouchOrbit) -> Array:
-    """Unknowns of an orbit, to start a neighbouring one from."""
-    return np.append(orbit.deviations, orbit.speed)
+"""Change of an unknown along the branch, over that of the approach velocity, both in units of their size,
+beyond which it is rounding: then the approach velocity does not tell an orbit from its neighbours."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -101,6 +69,10 @@ class Shooting:
         """The same family of another oscillator."""
         return replace(self, oscillator=oscillator)
 
+    def with_impacts(self, impacts: int) -> Shooting:
+        """The family with another number of touches."""
+        return replace(self, impacts=impacts)
+
     @cached_property
     def kicks(self) -> KickFamily:
         """The description by kicks, from which the search starts."""
@@ -108,11 +80,8 @@ class Shooting:
 
     @cached_property
     def _scale(self) -> Array:
-        """Sizes of the unknowns (u, v, s)."""
-        model, gap = self.oscillator.model, self.oscillator.stop.gap
-        size = gap / np.abs(model.phi).max()
-        speed = np.maximum(model.omega, self.oscillator.driven.angular_frequency)
-        return np.concatenate([np.full(speed.size, size), size * speed, [self.oscillator.unit_speed]])
+        """Sizes of the deviations (u, v)."""
+        return sizes_of(self.oscillator)
 
     @cached_property
     def _drive(self) -> tuple[Array, Array]:
@@ -123,80 +92,54 @@ class Shooting:
         rows = np.array([[*-phi, *still, 0.0], [*still, *-phi, 1.0]])
         return np.linalg.solve(steady, rows), np.linalg.solve(steady, [self.oscillator.stop.gap, 0.0])
 
-    def _driven(self, drive: Array) -> tuple[ImpactOscillator, float]:
-        """The oscillator with the amplitude of `drive` = (S, C), and the drive time of the touch."""
-        angle, w = math.atan2(*drive), self.oscillator.driven.angular_frequency
-        return self.oscillator.with_amplitude(math.hypot(*drive)), angle % (2.0 * math.pi) / w
-
     def flow(self, start: Array) -> tuple[Array, Array, Array]:
         """End, tangent and record of the flow from a touch with (u, v, S, C) = `start`; see `flown`."""
         driven, phase = self._driven(start[-2:])
         return flown(driven, self.period, phase, start[:-2], self.impacts)
 
-    def _iterate(self, unknown: Array, speed: float | None, amplitude: float | None) -> _Iterate:
-        """The equations at `unknown`: closed, and with this speed or this amplitude."""
-        (rows, offset), size = self._drive, unknown.size - 1
-        drive = rows @ unknown + offset
-        reached = math.hypot(*drive)
-        end, matrix, record = self.flow(np.concatenate([unknown[:-1], drive]))
-        picked, gradient, unit = unknown[-1] - (speed or 0.0), np.eye(size + 1)[-1], self._scale[-1]
-        if amplitude is not None:
-            picked, gradient, unit = reached - amplitude, drive @ rows / reached, self.oscillator.stop.gap
+    def _driven(self, drive: Array) -> tuple[ImpactOscillator, float]:
+        """The oscillator with the amplitude of `drive` = (S, C), and the drive time of the touch."""
+        angle, w = math.atan2(*drive), self.oscillator.driven.angular_frequency
+        return self.oscillator.with_amplitude(math.hypot(*drive)), angle % (2.0 * math.pi) / w
+
+    def unknowns(self, start: Array, speed: float) -> Array:
+        """(u, v) in units of their sizes, and log v over 2 pi f gap, shape (2 n_modes + 1,)."""
+        return np.append(start / self._scale, math.log(speed / self.oscillator.unit_speed))
+
+    def equations(self, x: Array) -> Iterate:
+        """The equations of a closed orbit at these unknowns, with the excess as the parameter."""
+        (rows, offset), size, n = self._drive, x.size - 1, self.oscillator.n_modes
+        speed, start = self.oscillator.unit_speed * math.exp(x[-1]), x[:-1] * self._scale
+        drive, grazing = rows @ np.append(start, speed) + offset, self.oscillator.grazing_amplitude()
+        end, matrix, record = self.flow(np.concatenate([start, drive]))
+        driven, phase = self._driven(drive)
+        stretch, reached = np.append(self._scale, speed), driven.driven.amplitude
         closing = matrix[:size] @ np.vstack([np.eye(size, size + 1), rows]) - np.eye(size, size + 1)
-        weight = np.append(self._scale[:-1], unit)
-        residual = np.append(end - unknown[:-1], picked) / weight
-        jacobian = np.vstack([closing, gradient]) * self._scale / weight[:, None]
-        return _Iterate(unknown, drive, matrix, record, residual, jacobian, float(np.max(np.abs(residual))))
+        orbit = PeriodicOrbit(
+            oscillator=driven, period=self.period, excess=reached / grazing - 1.0, speed=speed, phase=phase,
+            displacement=start[:n], velocity=start[n:], record=record, tangent=matrix[:size, :size],
+            slope=math.nan, residual=math.nan,
+        )  # fmt: skip
+        return Iterate(
+            orbit, (end - start) / self._scale, closing * stretch / self._scale[:, None],
+            drive @ rows * stretch / (reached * grazing), speed * np.eye(size + 1)[-1],
+        )  # fmt: skip
 
-    def _solve(
-        self, guess: Array, *, speed: float | None = None, amplitude: float | None = None
-    ) -> PeriodicOrbit:
-        """The orbit next to `guess` with this approach velocity [m/s] or this base amplitude [m]."""
-        unknown, found = guess, None
-        for iteration in range(MOST_ITERATIONS):
-            here = self._iterate(unknown, speed, amplitude)
-            # one step in any case: near grazing a neighbour can lie within the tolerance, and is another
-            # orbit
-            if iteration > 0:
-                found = here if found is None or here.error < found.error else found
-                if found.error < (CONVERGED if found is here else ROUNDED):
-                    return self._orbit(found)
-            try:
-                change = np.linalg.solve(here.jacobian, here.residual)
-            except np.linalg.LinAlgError:
-                break
-            longest = float(np.max(np.abs(change)))
-            unknown = unknown - self._scale * change * min(1.0, LONGEST_STEP / max(longest, 1e-300))
+    def _solve(self, x: Array, *, speed: float | None = None, excess: float = 0.0) -> PeriodicOrbit:
+        """The orbit next to `x` with its approach velocity, or with this excess [1]."""
+
+        def pick(there: Array, here: Iterate) -> tuple[float, Array]:
             if speed is not None:
-                unknown[-1] = speed
-            if not np.all(np.isfinite(unknown)):
-                break
-        raise NotPeriodic(
-            time=0.0, gap=0.0, velocity=here.record[0, 2],
-            detail=f"Newton's method found no orbit of period {self.period} (residual {here.error:.1e})",
-        )
+                return 0.0, np.eye(x.size)[-1]
+            return here.orbit.excess - excess, here.rise
 
-    def _orbit(self, found: _Iterate) -> PeriodicOrbit:
-        """The orbit at an iterate, with the slope of the curve of those that close there."""
-        n, unknown, closing = self.oscillator.n_modes, found.unknown, found.jacobian[:-1]
-        driven, phase = self._driven(found.drive)
-        amplitude, grazing = driven.driven.amplitude, self.oscillator.grazing_amplitude()
-        try:
-            turn = np.append(np.linalg.solve(closing[:, :-1], -closing[:, -1]), 1.0)
-        except np.linalg.LinAlgError:
-            turn = np.full(unknown.size, np.inf)
-        if not np.max(np.abs(turn)) < STEEPEST:
+        point = newton(self.equations, x, pick, self.period)
+        if not abs(point.direction[-1]) * STEEPEST > 1.0:
             raise NotPeriodic(
-                time=phase, gap=0.0, velocity=float(unknown[-1]),
+                time=point.orbit.phase, gap=0.0, velocity=point.orbit.speed,
                 detail=f"the orbits of period {self.period} do not follow from their approach velocity here",
             )
-        change = self._drive[0] @ (self._scale * turn) / self._scale[-1]
-        return PeriodicOrbit(
-            oscillator=driven, period=self.period, excess=amplitude / grazing - 1.0,
-            speed=float(unknown[-1]), phase=phase, displacement=unknown[:n].copy(),
-            velocity=unknown[n : 2 * n].copy(), record=found.record, tangent=found.matrix[: 2 * n, : 2 * n],
-            slope=float(found.drive @ change) / amplitude / grazing, residual=found.error,
-        )  # fmt: skip
+        return point.orbit if speed is None else replace(point.orbit, speed=speed)
 
     def at_speed(self, speed: float, near: PeriodicOrbit | None = None) -> PeriodicOrbit:
         """The orbit whose first touch has approach velocity `speed` [m/s].
@@ -214,14 +157,14 @@ class Shooting:
         """
         require_within("speed", speed, "m/s", above=0)
         require_kind("near", near, (PeriodicOrbit, type(None)), "a PeriodicOrbit or None")
-        return self._solve(beside(near or self.kicks.orbit(speed)), speed=speed)
+        start = (near or self.kicks.orbit(speed)).deviations
+        return self._solve(self.unknowns(start, speed), speed=speed)
 
     def at_excess(self, excess: float, near: PeriodicOrbit) -> PeriodicOrbit:
         """The orbit at F/F_g - 1 = `excess` that is next to `near`."""
         require_within("excess", excess, "[1]", above=-1)
         require_kind("near", near, PeriodicOrbit, "a PeriodicOrbit")
-        amplitude = (1.0 + excess) * self.oscillator.grazing_amplitude()
-        return self._solve(beside(near), amplitude=amplitude)
+        return self._solve(self.unknowns(near.deviations, near.speed), excess=excess)
 
     def from_state(self, state: State) -> PeriodicOrbit:
         """The orbit on which a simulated motion has settled: its first touch from `state` starts the
@@ -236,8 +179,8 @@ class Shooting:
             )
         i = int(np.flatnonzero(hits)[0])
         motion, met = self.oscillator.motion(), run.impacts
-        start = deviations(motion, met.start[i], met.displacement_start[i], met.velocity_start[i])
-        return self._solve(np.append(start, met.approach[i]), amplitude=self.oscillator.driven.amplitude)
+        start = deviations(motion, met.clock[i], met.displacement_start[i], met.velocity_start[i])
+        return self._solve(self.unknowns(start.ravel(), met.approach[i]), excess=self.oscillator.excess)
 
     def orbit(self, speed: float) -> PeriodicOrbit:
         """`at_speed`, from the kick description."""
@@ -248,5 +191,5 @@ class Shooting:
         return orbits_at(self, excess)
 
     def fold(self) -> PeriodicOrbit | None:
-        """The orbit of least amplitude at which two meet (``continuation.fold_of``)."""
-        return fold_of(self)
+        """The orbit of least amplitude at which two meet; None if the branch has none."""
+        return lowest_fold(self)[0]

@@ -129,8 +129,8 @@ class SingleImpactFamily(ABC):
 
     def __post_init__(self) -> None:
         require_kind("oscillator", self.oscillator, ImpactOscillator, "an ImpactOscillator")
-        _ = self.oscillator.driven
         require(self.oscillator.load is None, "load is given; it must be None for orbits with one collision")
+        self.oscillator.grazing_amplitude()  # the drive moves the tip
         require_whole("period", self.period, "drive periods")
 
     @abstractmethod
@@ -210,8 +210,7 @@ class MaximalFamily(SingleImpactFamily):
     def __post_init__(self) -> None:
         super().__post_init__()
         restitution_of(self.oscillator)
-        self.oscillator.grazing_amplitude()  # the drive moves the tip
-        _ = self.arms  # and every mode that is kicked comes to rest
+        _ = self.arms  # every mode that is kicked comes to rest
 
     @classmethod
     def from_oscillator(

@@ -8,13 +8,30 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from oscillators import apart, equation_1
+from random_families import ALL, QUICK, judged_family
 from simulated_orbit import DELAYED, EQUATION_1, HERTZ, beam, settled, touches
 
+from beam import (
+    STEEL,
+    ConstantRatio,
+    ModalModel,
+    StripSection,
+    Tip,
+    assemble,
+    cantilever,
+    natural_modes,
+    reduce,
+)
 from contact import (
+    BranchEnded,
     ContactError,
+    HarmonicDrive,
+    HertzContact,
     ImpactOscillator,
+    LinearContact,
     NewtonRestitution,
     NordmarkMap,
+    Stop,
     StrobedNordmarkMap,
     StrobedOrbit,
     StroboscopicMap,
@@ -23,11 +40,15 @@ from contact import (
 from contact.orbits import (
     KickFamily,
     MaximalFamily,
+    PeriodicOrbit,
     Shooting,
     born,
+    first_event,
     fold_along_frequency,
     fold_of,
+    folds_of,
     follow,
+    follow_path,
     orbit_end,
 )
 from contact.orbits.events import passes
@@ -173,7 +194,7 @@ def test_a_narrow_range_or_a_wrong_band_has_no_kick_fold() -> None:
     assert kicks.fold(speeds=(1.5 * at, 1.0)) is None
     assert kicks.fold(speeds=(1e-4, 0.7 * at)) is None
     other = KickFamily(oscillator=equation_1(20.90), period=1)
-    assert other.fold() is None and fold_of(Shooting(oscillator=equation_1(20.90), period=1)) is None
+    assert other.fold() is None
 
 
 # ------------------------------------------------------------------------------------------------- branches
@@ -231,7 +252,7 @@ def test_a_branch_that_loses_a_touch_ends_with_its_last_good_orbit() -> None:
     start = family.from_state(run.end)
     branch = follow(family, start, low=0.9 * start.speed, high=2.0 * start.speed)
     assert branch.ended_low == "range"
-    assert "an orbit of period 3 with 2 touches was lost" in branch.ended_high
+    assert "one of 2 touches is a graze" in branch.ended_high
     last = branch.orbits[-1]
     assert f"{last.speed:.6g} m/s" in branch.ended_high and f"{last.excess:.6g}" in branch.ended_high
     assert last.residual < 1e-9 and last.approach[1] < 5e-3 * last.approach[0]
@@ -252,11 +273,91 @@ def test_folds_along_frequency_are_those_of_each_frequency() -> None:
         closed = MaximalFamily.from_oscillator(equation_1(frequency), period=4).fold()
         assert orbit.excess == pytest.approx(closed.excess, abs=1e-13)
         assert orbit.oscillator.drive.frequency == frequency
-    nothing = fold_along_frequency(Shooting(oscillator=oscillator, period=1), np.array([20.90]))
-    assert nothing == [None]
+    other = Shooting(oscillator=oscillator, period=1)
+    assert fold_along_frequency(other, np.array([20.90])) == [None]
+    with pytest.raises(BranchEnded, match="no fold, and its stable orbits end by a period d") as caught:
+        fold_of(other)
+    assert np.min(np.abs(caught.value.orbit.multipliers + 1.0)) < 1e-6
+
+
+def test_an_orbit_that_ends_by_a_torus_has_no_fold_and_says_so() -> None:
+    """A steel cantilever with a light ball: on the way down a complex pair of multipliers of its p3 passes
+    the unit circle."""
+    section = StripSection(material=STEEL, width=0.012, thickness=0.00079)
+    spring = cantilever(length=0.206, section=section, tip=Tip(mass=0.00072))
+    model = reduce(natural_modes(assemble(spring), 4), ConstantRatio(ratio=0.00701))
+    oscillator = ImpactOscillator(
+        model=model, stop=Stop(gap=0.0085, law=HERTZ), drive=HarmonicDrive(frequency=12.21)
+    ).with_excess(1e-3)
+    strobed = StroboscopicMap(oscillator=oscillator)
+    orbit = born(strobed, 1e-3)
+    assert (orbit.period, orbit.impacts) == (3, 1)
+    with pytest.raises(BranchEnded, match="no fold, and its stable orbits end by a torus") as caught:
+        fold_of(Shooting(oscillator=oscillator, period=3))
+    end = orbit_end(strobed, orbit.end, 1e-3, most_cycles=2000)
+    assert end.kind == "torus" and end.lost < end.excess < end.held
+    assert caught.value.orbit.excess == pytest.approx(end.excess, rel=1e-9)
+    assert abs(caught.value.orbit.multipliers[0]) == pytest.approx(1.0, abs=1e-6)
+
+
+def test_a_bound_that_is_used_up_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    family = Shooting(oscillator=equation_1(20.90), period=3)
+    start, unit = family.at_speed(10.0), family.oscillator.unit_speed
+    monkeypatch.setattr("contact.orbits.branch.MOST_STEPS", 3)
+    cut = follow(family, start, low=1e-3 * unit, high=1.5 * unit)
+    assert all("bound of 3 steps is used up" in ended for ended in (cut.ended_low, cut.ended_high))
+    fast = family.at_speed(300.0)
+    for search in (lambda: folds_of(family, start), lambda: first_event(family, fast, -0.9)):
+        with pytest.raises(BranchEnded, match="bound of 3 steps is used up") as caught:
+            search()
+        assert isinstance(caught.value.orbit, PeriodicOrbit)
+
+
+def test_where_the_approach_velocity_turns_round_a_fold_is_one() -> None:
+    """One mode under Hertz's law, two touches: an independent search puts the fold at -0.3838."""
+    model = ModalModel(omega=[150.0], decay_rate=[6.0], phi=[1.0], participation=[1.0])
+    stop, drive = Stop(gap=0.01, law=HertzContact(stiffness=1e7)), HarmonicDrive(frequency=14.0)
+    oscillator = ImpactOscillator(model=model, stop=stop, drive=drive).with_excess(0.1)
+    family = Shooting(oscillator=oscillator, period=1, impacts=2)
+    start = family.from_state(replace(settled(oscillator, 0.1).end, time=0.0))
+    (fold,) = folds_of(family, start)
+    for found in (fold_of(family, start), first_event(family, start, -0.9).orbit, fold):
+        assert found.excess == pytest.approx(-0.3838388673, abs=1e-9) and found.admissible
+        assert np.min(np.abs(found.multipliers - 1.0)) < 1e-6
+
+
+def test_orbits_run_twice_cross_at_a_branch_point() -> None:
+    """p1 under a linear contact doubles its period at 0.0929: p2 ends there, and p1 run twice passes."""
+    model = ModalModel(omega=[150.0], decay_rate=[6.0], phi=[1.0], participation=[1.0])
+    stop, drive = Stop(gap=0.01, law=LinearContact(stiffness=1e6)), HarmonicDrive(frequency=22.0)
+    oscillator = ImpactOscillator(model=model, stop=stop, drive=drive).with_excess(0.1)
+    single, double = (Shooting(oscillator=oscillator, period=m, impacts=m) for m in (1, 2))
+    near, unit = single.at_speed(0.3 * oscillator.unit_speed), oscillator.unit_speed
+    doubling = follow(single, near, low=1e-2 * unit, high=unit).of_kind("period doubling")[0].excess
+    apart = double.from_state(replace(settled(oscillator, 0.1).end, time=0.0))
+    once = single.at_excess(0.2, near)
+    for start in (apart, double.at_speed(once.speed, once)):
+        found = follow_path(oscillator.with_excess, start, start.excess, low=0.01, high=0.3)
+        (crossing,) = (event for event in found.events if event.kind == "branch point")
+        assert crossing.parameter == pytest.approx(doubling, abs=2e-8)
+        assert not [event for event in found.events if event.kind in ("fold", "undecided")]
+        assert ("shorter period" in found.ended_low) == (start is apart)
 
 
 @pytest.mark.parametrize("slopes", [(-2.0, -1.0, 1.0), (-2.0, 0.0, 1.0), (0.0, 1.0, 2.0)])
 def test_a_sign_that_changes_at_an_orbit_changes_once(slopes: tuple[float, ...]) -> None:
     """A branch that starts from a fold may have it to the last bit, with a slope of zero."""
     assert [passes(a, b) for a, b in pairwise(slopes)].count(True) == 1
+
+
+QUICKLY = [(n, QUICK) for n in (3, 5, 6, 7, 9, 12, 15, 62, 80, 101)]
+
+
+@pytest.mark.parametrize(
+    ("number", "names"), QUICKLY + [pytest.param(n, ALL, marks=pytest.mark.slow) for n in range(0, 60, 3)]
+)
+def test_random_orbits_with_several_touches(number: int, names: tuple[str, ...]) -> None:
+    """No event that is none, no step to another curve, no orbit that touches the stop more often than it
+    says."""
+    counts, wrong = judged_family(1, number, names)
+    assert not wrong and counts

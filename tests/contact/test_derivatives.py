@@ -3,6 +3,7 @@ in 50 digits, invariances, and differences."""
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -11,13 +12,14 @@ import mpmath as mp
 import numpy as np
 import pytest
 from oscillators import MODES, equation_1, many_modes
+from random_families import ARRAYS, along, random_change, random_family, wrong_multiplier
+from scipy.optimize import brentq, linear_sum_assignment, newton
 from simulated_orbit import DELAYED, EQUATION_1, LAWS, beam
 
-from beam import ModalChange, ModalModel, single_mode
+from beam import ModalChange, single_mode
 from contact import (
-    ContactLaw,
+    ContactError,
     DelayedRestitution,
-    HarmonicDrive,
     ImpactOscillator,
     NewtonRestitution,
     NoDerivative,
@@ -32,6 +34,7 @@ from contact.orbits import (
     MaximalFamily,
     PeriodicOrbit,
     Shooting,
+    doubling_derivatives,
     excess_derivatives,
     fold_of,
     follow,
@@ -44,8 +47,6 @@ from contact.orbits import (
 T, MU, TAU, GAP = 40.80e-3, 3.56, 0.1, 0.0107
 H = mp.mpf("1e-18")
 """Step of differences in 50 digits: their error is its square."""
-
-ARRAYS = ("omega", "decay_rate", "phi", "participation")
 
 
 def of_modes(size: int, **rates: object) -> ModalChange:
@@ -249,43 +250,10 @@ def test_other_units_change_nothing_but_units(name: str) -> None:
     assert np.max(np.abs(multiplier_derivatives(found))) < 1e-8 * max(sensitive, 1.0)
 
 
-def random_change(oscillator: ImpactOscillator, rng: np.random.Generator) -> Change:
-    model, law = oscillator.model, oscillator.stop.law
-    arrays = {name: rng.normal(size=model.n_modes) * getattr(model, name) for name in ARRAYS}
-    return Change(
-        model=ModalChange(**arrays), gap=oscillator.stop.gap * rng.normal(),
-        law=(law.numbers[0] * rng.normal(), law.numbers[1] * rng.normal()),
-        frequency=oscillator.driven.frequency * rng.normal(),
-        amplitude=oscillator.driven.amplitude * rng.normal(),
-    )  # fmt: skip
-
-
 def slopes(observed: Callable[[float], list[np.ndarray]], step: float) -> list[np.ndarray]:
     """Differences of order four of everything observed."""
     ends = zip(*(observed(j * step) for j in (1, -1, 2, -2)), strict=True)
     return [(8 * (a - b) - (c - d)) / (12 * step) for a, b, c, d in ends]
-
-
-def along(oscillator: ImpactOscillator, change: Change, step: float) -> ImpactOscillator:
-    """The oscillator with its numbers moved by a step along a change."""
-    model = ModalModel(
-        **{name: getattr(oscillator.model, name) + step * getattr(change.model, name) for name in ARRAYS}
-    )
-    law: ContactLaw = oscillator.stop.law
-    moved = {
-        unit: number + step * rate
-        for unit, number, rate in zip(law.units, law.numbers, change.law, strict=False)
-    }
-    if isinstance(law, DelayedRestitution):
-        moved = {"restitution": law.restitution, "delay": law.delay}
-    drive = oscillator.driven
-    return ImpactOscillator(
-        model=model, stop=Stop(gap=oscillator.stop.gap + step * change.gap, law=replace(law, **moved)),
-        drive=HarmonicDrive(
-            frequency=drive.frequency + step * change.frequency,
-            amplitude=drive.amplitude + step * change.amplitude,
-        ),
-    )  # fmt: skip
 
 
 @pytest.mark.parametrize("name", [*LAWS, "elastic"])
@@ -316,6 +284,63 @@ def test_a_simulated_motion_against_differences(name: str) -> None:
     ours = (found.impact_time, found.strobes, found.states)
     for exact, difference in zip((one @ direction for one in ours), slopes(observed, 1e-7), strict=True):
         assert np.max(np.abs(difference - exact) / np.abs(exact).max(axis=0)) < 2e-5
+
+
+def settled_slopes(observed: Callable[[float], np.ndarray], size: float) -> np.ndarray:
+    """Each difference of order four over the step at which it changes least from one step to the next."""
+    found = []
+    for step in 1e-3 * 0.2 ** np.arange(7):
+        with contextlib.suppress(ContactError, RuntimeError):
+            found.append(slopes(observed, step))
+    rows = np.array(found)
+    best = np.argmin(np.abs(np.diff(rows, axis=0)), axis=0)[None]
+    nearest, after = (np.take_along_axis(part, best, 0)[0] for part in (rows[:-1], rows[1:]))
+    assert np.max(np.abs(after - nearest)) < 3e-7 * max(size, np.abs(after).max())  # the judge is certain
+    return after
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize(
+    "number", [2, 7, 12, 15, 18, 21, 22, *(pytest.param(n, marks=pytest.mark.slow) for n in range(0, 200, 4))]
+)
+def test_random_multipliers_and_doublings_against_differences(number: int) -> None:
+    """Along a direction in all numbers, from orbits that are solved anew; next to slow touches too."""
+    rng = np.random.default_rng([2, number])
+    family, orbit = random_family(rng)
+    change = random_change(orbit.oscillator, rng)
+
+    def beside(step: float) -> Shooting:
+        return family.of(along(orbit.oscillator, change, step))
+
+    def multipliers(step: float) -> np.ndarray:
+        there = beside(step)
+        values = there.at_excess(there.oscillator.excess, orbit).multipliers
+        distances = np.abs(orbit.multipliers[:, None] - values)
+        return values[linear_sum_assignment(distances)[1]]
+
+    found = multiplier_derivatives(orbit_derivatives(orbit, [change]))[:, 0]
+    size = np.abs(orbit.multipliers).max()
+    exact = settled_slopes(multipliers, size)
+    assert np.max(np.abs(found - exact)) < 1e-6 * max(size, np.abs(exact).max())
+
+    try:
+        branch = follow(family, orbit, low=0.5 * orbit.speed, high=2.0 * orbit.speed)
+    except ContactError:
+        return
+    for doubled in branch.of_kind("period doubling")[:1]:
+
+        def excess(step: float, doubled: PeriodicOrbit = doubled) -> np.ndarray:
+            there, x = beside(step), math.log(doubled.speed)
+
+            def doubles(x: float) -> float:
+                return float(np.prod(there.at_speed(math.exp(x), doubled).multipliers + 1.0).real)
+
+            x = newton(doubles, x, x1=x + 1e-4, tol=1e-13, maxiter=30)
+            return np.array([there.at_speed(math.exp(x), doubled).excess])
+
+        if not wrong_multiplier("period doubling", doubled):
+            (exact,) = settled_slopes(excess, 1.0)
+            assert doubling_derivatives(doubled, [change])[0] == pytest.approx(exact, rel=1e-6, abs=1e-6)
 
 
 def test_orbits_and_folds_of_the_letters_spring_under_hertz_against_differences() -> None:
@@ -363,6 +388,12 @@ def test_where_there_is_no_derivative_a_sentence_says_so() -> None:
     exact = MaximalFamily(oscillator=oscillator, period=5).fold()
     with pytest.raises(NoDerivative, match="does not follow from its amplitude here, as at a fold"):
         orbit_derivatives(family.at_speed(exact.speed), of_equation_1(22.2))
+    # two real multipliers meet between these speeds, and turn complex
+    hard = Shooting(oscillator=equation_1(20.9, NewtonRestitution(local_restitution=0.7)), period=1)
+    unit = hard.oscillator.unit_speed
+    meet = brentq(lambda v: float((np.subtract(*hard.at_speed(v).multipliers) ** 2).real), 0.9 * unit, unit)
+    with pytest.raises(NoDerivative, match="where two of them coincide"):
+        multiplier_derivatives(orbit_derivatives(hard.at_speed(meet), of_equation_1(20.9)))
     grazing = oscillator.with_excess(0.0)
     steady = grazing.steady_response() * grazing.driven.amplitude
     start = State(displacement=steady.imag, velocity=grazing.driven.angular_frequency * steady.real)

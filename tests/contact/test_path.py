@@ -24,7 +24,7 @@ from contact import (
 )
 from contact.change import change_along
 from contact.orbits import Branch, Shooting, follow, follow_path
-from contact.orbits.events import TESTS, is_torus
+from contact.orbits.events import is_torus, torus
 from studies.two_masses import two_masses
 
 PATH = partial(two_masses, force=1.0)
@@ -85,7 +85,13 @@ def curve() -> Branch:
 def test_touches_are_gained_and_lost_along_the_curve(curve: Branch) -> None:
     """Two starts with one and two touches lead along the same curve, and simulated motions repeat it."""
     other = followed(0.4, 2, 0.24, 0.42)
-    places = [[(e.kind, e.parameter) for e in branch.events] for branch in (curve, other)]
+    places = []
+    for branch in (curve, other):  # within 1e-6 of a graze the other events are undecided
+        at = np.array([event.parameter for event in branch.events if event.kind == "grazing"])
+        places.append([
+            (event.kind, event.parameter) for event in branch.events
+            if event.kind == "grazing" or np.min(np.abs(at - event.parameter)) > 1e-7
+        ])  # fmt: skip
     assert [kind for kind, _ in places[0]] == [kind for kind, _ in places[1]] and len(places[0]) > 15
     assert [p for _, p in places[0]] == pytest.approx([p for _, p in places[1]], abs=1e-8)
     counts = [orbit.impacts for orbit in curve.orbits]
@@ -109,7 +115,7 @@ def test_events_say_what_simulated_motions_do(curve: Branch) -> None:
     """Multipliers from small simulated deviations, without the tangents: 1, -1 or a pair on the circle."""
     expected, checked = {"fold": 0.0, "period doubling": np.pi}, 0
     for event in curve.events:
-        if event.kind == "grazing" or event.orbit.approach.min() < 0.01:
+        if event.kind in ("grazing", "undecided") or event.orbit.approach.min() < 0.01:
             continue
         checked += 1
         start, columns = replace(event.orbit.strobe_state(), time=0.0), []
@@ -131,12 +137,12 @@ def test_events_say_what_simulated_motions_do(curve: Branch) -> None:
         assert distances.min() < 1e-5
     assert checked >= 12
     kinds = {event.kind for event in curve.events}
-    assert kinds == {"fold", "period doubling", "torus", "grazing"}
+    assert kinds - {"undecided"} == {"fold", "period doubling", "torus", "grazing"}
 
 
 @pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
 def test_real_pairs_of_product_one_are_no_torus(curve: Branch) -> None:
-    signs = [TESTS["torus"](orbit) for orbit in curve.orbits]
+    signs = [torus(orbit) for orbit in curve.orbits]
     passed = sum(a * b < 0.0 for a, b in pairwise(signs))
     tori = [event for event in curve.events if event.kind == "torus"]
     assert 0 < len(tori) < passed
