@@ -41,32 +41,32 @@ STEP = 1e-30j
 def free_period_change(model: ModalModel, *, ratios_kept: bool = False) -> ModalChange:
     """Return the change of `model` with T, per second, at fixed decay rates; with `ratios_kept` at fixed
     damping ratios."""
-    omega, rates = _rows(model)
+    omega, rates, k = _rows(model)
     if ratios_kept:
         return _of_numbers(-omega / model.free_period, -rates / model.free_period)
-    return _of_numbers(-omega / omega[0] ** 2 * (2.0 * np.pi) ** 2 / model.free_period**3, 0.0 * rates)
+    return _of_numbers(-omega / omega[k] ** 2 * (2.0 * np.pi) ** 2 / model.free_period**3, 0.0 * rates)
 
 
 def decay_rate_change(model: ModalModel, mode: int | None = 0) -> ModalChange:
     """Return the change of `model` at fixed T with c of one `mode`, from 0 on, per 1/s; None: of mode 1, all
     with it."""
-    omega, rates = _rows(model)
-    change = rates / rates[0] if mode is None else _one(model, mode)
-    return _of_numbers(0.25 * rates[0] * change[0] * omega / omega[0] ** 2, change)
+    omega, rates, k = _rows(model)
+    change = rates / rates[k] if mode is None else _one(model, mode)
+    return _of_numbers(0.25 * rates[k] * change[k] * omega / omega[k] ** 2, change)
 
 
 def damping_ratio_change(model: ModalModel, mode: int | None = None) -> ModalChange:
     """Return the change of `model` at fixed T with zeta of one `mode`, from 0 on; None: of all by the same
     amount."""
-    omega, rates = _rows(model)
+    omega, rates, k = _rows(model)
     change = np.ones(model.n_modes) if mode is None else _one(model, mode)
-    first = 0.5 * rates[0] * omega[0] * (model.free_period / (2.0 * np.pi)) ** 2 * change[0]
+    first = 0.5 * rates[k] * omega[k] * (model.free_period / (2.0 * np.pi)) ** 2 * change[k]
     return _of_numbers(first * omega, 2.0 * omega * change + first * rates)
 
 
 def frequency_change(model: ModalModel, mode: int) -> ModalChange:
     """Return the change of `model` with the undamped frequency of one `mode` alone, from 0 on, per Hz."""
-    omega, _rates = _rows(model)
+    omega, _rates, _k = _rows(model)
     return _of_numbers(2.0 * np.pi * _one(model, mode), 0.0 * omega)
 
 
@@ -137,10 +137,10 @@ class _Moving(Modes):
         """Complex numbers are valid."""
 
 
-def _rows(model: ModalModel) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """omega and decay rates."""
+def _rows(model: ModalModel) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
+    """omega, decay rates, and which of them are those of mode 1."""
     require_kind("model", model, ModalModel, "a ModalModel")
-    return model.omega, model.decay_rate
+    return model.omega, model.decay_rate, model.leading_mode
 
 
 def _one(model: ModalModel, mode: int) -> NDArray[np.float64]:

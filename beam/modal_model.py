@@ -44,7 +44,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import eigh
 
-from .parameters import require, require_array, require_kind, require_whole, require_within, suspect
+from .parameters import final, require, require_array, require_kind, require_whole, require_within, suspect
 
 LEAST_RESIDUAL = 1e-5
 """Residual compliance over the static one below which there is no residual mode: finite elements give statics
@@ -54,7 +54,17 @@ GREATEST_RATIO = 0.5
 """Damping ratio of the lowest mode beyond which a warning is given: it hardly swings, and no measured spring
 is like that; damping alloys reach 0.1."""
 
+STILL = 1e-9
+"""Frequency taken for zero where modes are compared [rad/s]; rounding of phi over it is a small part yet."""
 
+
+class _OfPoint(float):
+    """A number of the tip and the `phi` that it was given with: `replace` hands on both."""
+
+    phi: NDArray[np.float64]
+
+
+@final
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ModalModel:
     """The structure as the contact problem sees it: n_modes uncoupled oscillators behind one tip.
@@ -74,7 +84,7 @@ class ModalModel:
     static_compliance : float, optional
         Tip displacement per unit static tip force of the whole structure, all modes included [m/N].
     tip_mass : float, optional
-        Lumped mass at the tip [kg]; the limit of 1 / sum phi_k^2.
+        Lumped mass at the tip [kg]; the limit of 1 / sum phi_k^2.  With another `phi` both are given anew.
     readouts : mapping of str to array_like, shape (n_modes,), optional
         Values of the mode shapes at named places, in the units of phi for displacements: the motion seen
         there, relative to the base, is ``readouts[name] @ q``.
@@ -105,25 +115,25 @@ class ModalModel:
             name: _row(f"readouts[{name!r}]", row, "kg^(-1/2)") for name, row in self.readouts.items()
         }
         for name, row in (rows | readouts).items():
-            require(
-                row.shape == omega.shape,
-                f"{name} has shape {row.shape}; it must have the shape {omega.shape} of omega",
-            )
+            words = f"it must have the shape {omega.shape} of omega"
+            require(row.shape == omega.shape, f"{name} has shape {row.shape}; {words}")
         for name, row in rows.items():
             object.__setattr__(self, name, row)
         object.__setattr__(self, "readouts", readouts)
         for name, unit in (("static_compliance", "m/N"), ("tip_mass", "kg")):
             value = getattr(self, name)
             if value is not None:
-                require_within(name, value, unit, low=0)
-                object.__setattr__(self, name, float(value))
+                number = _OfPoint(require_within(name, value, unit, low=0))
+                pairs = zip(getattr(value, "phi", self.phi), self.phi, strict=False)
+                words = "which belongs to another phi; it must be that of this point, or None"
+                require(all(abs(a) == abs(b) for a, b in pairs), f"{name} is {value} {unit}, {words}")
+                number.phi = self.phi
+                object.__setattr__(self, name, number)
         lowest = int(np.argmin(np.where(omega > 0.0, omega, np.inf)))
         ratio = 0.5 * self.decay_rate[lowest] / omega[lowest] if omega[lowest] > 0.0 else 0.0
         if ratio > GREATEST_RATIO:
-            suspect(
-                f"decay_rate is {self.decay_rate[lowest]:g} 1/s in the lowest mode, a damping ratio of "
-                f"{ratio:.3g}; above {GREATEST_RATIO:g} it hardly swings"
-            )
+            words = f"a damping ratio of {ratio:.3g}; above {GREATEST_RATIO:g} it hardly swings"
+            suspect(f"decay_rate is {self.decay_rate[lowest]:g} 1/s in the lowest mode, {words}")
 
     @property
     def n_modes(self) -> int:
@@ -136,24 +146,25 @@ class ModalModel:
         return self.omega / (2.0 * np.pi)
 
     @property
+    def leading_mode(self) -> int:
+        """Index of "mode 1" of a single-mode description: the mode of largest phi^2/omega^2, its part in the
+        static compliance of the tip.  It need not be the lowest: an exciter brings its suspension."""
+        return int(np.argmax(np.abs(self.phi) / np.maximum(self.omega, STILL)))
+
+    @property
     def free_period(self) -> float:
         """Period of the free damped oscillation of mode 1 [s]; ValueError if it does not swing."""
-        square = self.omega[0] ** 2 - (0.5 * self.decay_rate[0]) ** 2
-        told = f"omega is {self.omega[0]} rad/s and decay_rate {self.decay_rate[0]} 1/s in mode 1"
+        omega, rate = self.omega[self.leading_mode], self.decay_rate[self.leading_mode]
+        square = omega**2 - (0.5 * rate) ** 2
+        told = f"omega is {omega} rad/s and decay_rate {rate} 1/s in mode 1"
         require(square > 0.0, f"{told}; it does not swing, so there is no free period")
         return float(2.0 * np.pi / np.sqrt(square))
 
     def truncated(self, count: int) -> ModalModel:
         """Return the same structure with its first `count` modes only, 1 <= count <= n_modes."""
         count = require_whole("count", count, "modes", high=self.n_modes, why=", those of the model")
-        return replace(
-            self,
-            omega=self.omega[:count],
-            decay_rate=self.decay_rate[:count],
-            phi=self.phi[:count],
-            participation=self.participation[:count],
-            readouts={name: row[:count] for name, row in self.readouts.items()},
-        )
+        rows = {name: getattr(self, name)[:count] for name in ("omega", "decay_rate", "phi", "participation")}
+        return replace(self, **rows, readouts={name: row[:count] for name, row in self.readouts.items()})
 
     def with_residual_mode(self) -> ModalModel:
         """Return the same modes and one more that stands for all the modes left out.
@@ -182,12 +193,10 @@ class ModalModel:
         mobility = 1.0 / self.tip_mass - float(self.phi @ self.phi)
         carried = np.where(oscillating, self.phi**2 / squares, 0.0)
         compliance = self.static_compliance - float(carried.sum())
-        require(
-            mobility > 0.0 and compliance > LEAST_RESIDUAL * self.static_compliance,
-            f"tip_mass is {self.tip_mass} kg and static_compliance {self.static_compliance} m/N; the modes "
-            f"leave {mobility:.3g} 1/kg of the one and {compliance:.3g} m/N of the other, which must be "
-            f"above zero and above {LEAST_RESIDUAL:g} of the whole",
-        )
+        given = f"tip_mass is {self.tip_mass} kg and static_compliance {self.static_compliance} m/N"
+        left = f"the modes leave {mobility:.3g} 1/kg of the one and {compliance:.3g} m/N of the other"
+        words = f"{given}; {left}, which must be above zero and above {LEAST_RESIDUAL:g} of the whole"
+        require(mobility > 0.0 and compliance > LEAST_RESIDUAL * self.static_compliance, words)
         phi, omega = np.sqrt(mobility), np.sqrt(mobility / compliance)
         ratio = self.decay_rate[-1] / self.omega[-1] if self.omega[-1] > 0.0 else 0.0
         participation = (1.0 - float(self.phi @ self.participation)) / phi
@@ -219,24 +228,24 @@ class ModalModel:
         """
         require_within("suspension_hz", suspension_hz, "Hz", low=0)
         require_within("damping_ratio", damping_ratio, "[1]", low=0)
-        gamma, square, n = self.participation, self.omega**2, self.n_modes
+        gamma, square, n, k = self.participation, self.omega**2, self.n_modes, self.leading_mode
         require_within("mass", mass, "kg", above=float(gamma @ gamma))
         own = (2.0 * np.pi * suspension_hz) ** 2
         if measured_on_it:
-            kept, others = square[0], np.sum(gamma[1:] ** 2 / (square[1:] - square[0]))
-            first = kept + (kept * gamma[0]) ** 2 / ((own - kept) * mass - kept**2 * others)
-            square = np.append(first, square[1:])
+            kept, others = square[k], np.sum(np.delete(gamma, k) ** 2 / (np.delete(square, k) - square[k]))
+            square[k] += (kept * gamma[k]) ** 2 / ((own - kept) * mass - kept**2 * others)
         inertia = np.diag(np.append(np.ones(n), mass))
         inertia[n, :n] = inertia[:n, n] = gamma
         found, shapes = eigh(np.diag(np.append(square, mass * own)), inertia)
         phi = self.phi @ shapes[:n]
         rates = np.append(self.decay_rate, 2.0 * damping_ratio * np.sqrt(own) * mass) @ shapes**2
         if measured_on_it:
-            rates[np.argmax(np.abs(phi))] = self.decay_rate[0]
+            rates[np.argmax(np.abs(phi))] = self.decay_rate[k]
         omega = np.sqrt(np.maximum(found, 0.0))
         return ModalModel(omega=omega, decay_rate=rates, phi=phi, participation=mass * shapes[n])
 
 
+@final
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ModalChange:
     """Derivatives of the four arrays of a `ModalModel` with respect to one parameter.

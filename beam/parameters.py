@@ -18,13 +18,16 @@ import warnings
 from collections.abc import Iterable
 from numbers import Real
 from operator import ge, gt, le, lt
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 LONGEST_SHOWN = 60
 """Characters of a value that a sentence quotes."""
+
+
+Class = TypeVar("Class", bound=type)
 
 
 class SuspiciousValue(UserWarning):
@@ -119,6 +122,17 @@ def require_whole(
     if not is_whole(value, low) or (high is not None and float(value) > high):
         raise ValueError(f"{name} is {shown(value)} {unit}; it must be {valid}{why}")
     return int(float(value))
+
+
+def final(kind: Class) -> Class:
+    """The class, which from now on refuses subclasses: a motion takes its numbers and calls no method."""
+
+    def refuse(cls: type) -> None:
+        why = "a motion takes the numbers of one and would ignore the methods of a subclass"
+        raise TypeError(f"{cls.__name__} is a subclass of {kind.__name__}; it must be an instance, as {why}")
+
+    kind.__init_subclass__ = classmethod(refuse)  # type: ignore[assignment]
+    return kind
 
 
 def require_kind(name: str, value: Any, kind: type | tuple[type, ...], words: str) -> Any:

@@ -52,6 +52,7 @@ in ``contact.oscillator``, flights and their bounds in ``contact.flight``, the c
 from contact.collision import Collision, before_collision, collisions, first_collision
 from contact.drive import HarmonicDrive
 from contact.errors import (
+    BranchEnded,
     Chatter,
     ContactError,
     ContactTooStiff,
@@ -93,6 +94,7 @@ from contact.trajectory import ImpactKind, Impacts, Regime, State, Trajectory
 
 __all__ = [
     "Band",
+    "BranchEnded",
     "Chatter",
     "Collision",
     "ContactError",

@@ -20,12 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam import ModalChange
-from beam.parameters import require, require_kind, shown
+from beam.parameters import final, require, require_array, require_each, require_kind, require_within, shown
 from contact.laws import DELAYED
 from contact.oscillator import ImpactOscillator
 from contact.touch.tangents import Variation, variation
-
-__all__ = ["Change", "Changes", "Path", "change_along"]
 
 Array = NDArray[np.float64]
 ARRAYS = ("omega", "decay_rate", "phi", "participation")
@@ -35,6 +33,7 @@ STRIDE, STENCIL = 1e-3, np.arange(-2.0, 3.0)
 """Part of the range of a path, and steps of it, for the differences of an oscillator's numbers along it."""
 
 
+@final
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Change:
     """The derivatives of an oscillator's numbers with respect to one parameter, per its unit.
@@ -58,6 +57,12 @@ class Change:
     frequency: float = 0.0
     amplitude: float = 0.0
 
+    def __post_init__(self) -> None:
+        require_kind("model", self.model, (ModalChange, type(None)), "a ModalChange or None")
+        for name, unit in (("gap", "m"), ("frequency", "Hz"), ("amplitude", "m")):
+            require_within(name, getattr(self, name), f"{unit} per unit of the parameter")
+        require_array("law", self.law, "its units", shape=(2,), words="two numbers")
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Changes:
@@ -79,6 +84,9 @@ class Changes:
     changes: Sequence[Change] = ()
 
     def __post_init__(self) -> None:
+        require_kind("oscillator", self.oscillator, ImpactOscillator, "an ImpactOscillator")
+        changes = require_each("changes", self.changes, Change, "Change objects")
+        object.__setattr__(self, "changes", changes)
         law, n = self.oscillator.stop.law, self.oscillator.n_modes
         known = 2 if law.code == DELAYED else len(law.units)
         require(
@@ -86,13 +94,10 @@ class Changes:
             "load is given; it must be None for derivatives with respect to numbers of the oscillator",
         )
         for change in self.changes:
-            require_kind("changes", change, Change, "Change objects")
             size = n if change.model is None else change.model.omega.size
             require(size == n, f"model of the change has {size} modes; the oscillator has {n}")
-            require(
-                len(change.law) == 2 and not any(change.law[known:]),
-                f"law of the change is {shown(change.law)}; {type(law).__name__} has {known} numbers",
-            )
+            words = f"law of the change is {shown(change.law)}; {type(law).__name__} has {known} numbers"
+            require(not any(change.law[known:]), words)
 
     def _row(self, name: str) -> Array:
         return np.array([getattr(each, name) for each in self.changes], dtype=float)

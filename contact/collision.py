@@ -5,6 +5,7 @@ virtual motion is the steady forced tip motion plus the free deviation of mode 1
 
     y(t) = x_s(t) + phi_1 u_1(t) - gap
 
+Mode 1 is the one that carries most of a static force on the tip (``ModalModel.leading_mode``).
 Before a collision this is the incoming virtual motion, after it the outgoing one; each is continued both ways
 by the free flow of mode 1.  A collision holds all impacts from a first touch until the next minimum of the
 outgoing virtual motion, and is final when that minimum has passed.  With
@@ -29,6 +30,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -40,7 +42,6 @@ from contact.simulation import simulate
 from contact.trajectory import ImpactKind, Impacts, State, Trajectory
 from contact.virtual_motion import VirtualMotion, deviations
 
-__all__ = ["Collision", "before_collision", "collisions", "first_collision"]
 
 @dataclass(frozen=True, kw_only=True)
 class Collision:
@@ -75,7 +76,7 @@ class Collision:
     ringing : float
         Amplitude of the free motion of the higher modes at the tip before the collision [m].
     energy_to_higher_modes : float
-        Gain of the free motion of the modes above the first [J].
+        Gain of the free motion of all modes but mode 1 [J].
     energy_lost : float
         Energy lost in the contact itself [J].
     forced_by_ringing : bool
@@ -104,27 +105,30 @@ class Collision:
     returns: bool
 
 
-def _higher_energy(motion: Motion, u: np.ndarray, v: np.ndarray) -> float:
-    """Energy of the free motion above the first mode [J]."""
-    return float(0.5 * np.sum(v[1:] ** 2 + (motion.omega * u)[1:] ** 2))
+def _higher_energy(motion: Motion, k: int, u: np.ndarray, v: np.ndarray) -> float:
+    """Energy of the free motion of all modes but mode 1, which is number `k` [J]."""
+    return float(0.5 * np.sum(np.delete(v, k) ** 2 + np.delete(motion.omega * u, k) ** 2))
 
 
-def _ringing(motion: Motion, u: np.ndarray, v: np.ndarray) -> float:
-    """Amplitude at the tip of the free motion above the first mode [m]."""
+def _ringing(motion: Motion, k: int, u: np.ndarray, v: np.ndarray) -> float:
+    """Amplitude at the tip of the same motion [m]."""
     sizes = np.hypot(u, v * motion.row(SLOWNESS))  # of zero frequency, the displacement alone
-    sizes[0] = 0.0
+    sizes[k] = 0.0
     return motion.most_at_tip(sizes)
 
 
 def collisions(
-    oscillator: ImpactOscillator, trajectory: Trajectory, *, unfinished: str = "refuse"
-) -> list[Collision]:
-    """Group the impacts of a trajectory into collisions.
+    oscillator: ImpactOscillator | Trajectory, trajectory: Trajectory | None = None, *,
+    unfinished: str = "refuse",
+) -> list[Collision]:  # fmt: skip
+    """Group the impacts of a trajectory into collisions: ``collisions(trajectory)``.
+
+    A collision that had begun before the trajectory is left out.
 
     Parameters
     ----------
-    oscillator : ImpactOscillator
-        The one that made the trajectory; its first mode is the letter's single mode.
+    oscillator : ImpactOscillator, optional
+        The one that made the trajectory, which knows it: ``collisions(oscillator, trajectory)`` checks it.
     trajectory : Trajectory
     unfinished : {"refuse", "drop"}
         What to do with a last collision that is not final when the trajectory ends.
@@ -136,62 +140,76 @@ def collisions(
     Raises
     ------
     ValueError
-        For an unfinished last collision, unless it may be dropped.
+        For an unfinished last collision, unless it may be dropped, and for another oscillator.
     """
-    require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
-    require_kind("trajectory", trajectory, Trajectory, "a Trajectory, from simulate")
+    given = oscillator if trajectory is None else trajectory
+    run = require_kind("trajectory", given, Trajectory, "a Trajectory, from simulate")
+    motion, impacts, k = run.oscillator.motion(), run.impacts, run.oscillator.model.leading_mode
+    if trajectory is not None:
+        other = require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
+        pairs: Any = zip(motion, other.motion(), strict=True)
+        same = all(np.shape(a) == np.shape(b) and np.allclose(a, b) for a, b in pairs)
+        require(same, "oscillator differs from the one that moves in the trajectory; it must be the same")
     if unfinished not in ("refuse", "drop"):
         raise ValueError(f'unfinished is {unfinished!r}; it must be "refuse" or "drop"')
-    motion = oscillator.motion()
-    single = single_mode(motion)
-    impacts = trajectory.impacts
     rows = np.flatnonzero(impacts.kind != ImpactKind.GRAZE).tolist()
     found: list[Collision] = []
     while rows:
         first = last = rows.pop(0)
-        outgoing, minimum = _outgoing(motion, single, impacts, last)
-        while rows and impacts.start[rows[0]] < minimum:
+        outgoing, minimum = _outgoing(motion, k, impacts, last)
+        while rows and -_length(motion, impacts, rows[0], last) < minimum:
             last = rows.pop(0)
-            outgoing, minimum = _outgoing(motion, single, impacts, last)
-        if minimum > trajectory.end.time:
-            if unfinished == "drop":
+            outgoing, minimum = _outgoing(motion, k, impacts, last)
+        under_way = math.isnan(impacts.approach[first])  # when the run began
+        if not impacts.end[last] + minimum <= run.end.time:
+            if unfinished == "drop" or under_way:
                 break
             raise ValueError(
-                f"trajectory ends at {trajectory.end.time:.6g} s, before the collision that began at "
+                f"trajectory ends at {run.end.time:.6g} s, before the collision that began at "
                 f"{impacts.start[first]:.6g} s is final; run it about one drive period longer"
             )
-        found.append(_measure(motion, impacts, slice(first, last + 1), outgoing))
+        if not under_way:
+            found.append(_measure(motion, k, impacts, slice(first, last + 1), outgoing))
     return found
 
 
-def _outgoing(motion: Motion, single: Motion, impacts: Impacts, last: int) -> tuple[VirtualMotion, float]:
-    """The virtual motion after an impact, and the time of its next minimum [s]; infinity where it is not
-    known."""
-    end = impacts.end[last]
+def _length(motion: Motion, impacts: Impacts, first: Any, last: Any) -> Any:
+    """Time from the start of one touch to the release of another, to rounding in a run of any length [s]."""
+    turns = impacts.period[last] - impacts.period[first]
+    return turns * motion.period + (impacts.end_clock[last] - impacts.clock[first])
+
+
+def _outgoing(motion: Motion, k: int, impacts: Impacts, last: int) -> tuple[VirtualMotion, float]:
+    """The virtual motion after an impact, and how long after it comes its next minimum [s]; infinity where
+    that is not known."""
+    end = impacts.end_clock[last]
     after = deviations(motion, end, impacts.displacement_end[last], impacts.velocity_end[last])
-    virtual = VirtualMotion(single, math.fmod(end, motion.period), *after[:, 0])
+    virtual = VirtualMotion(single_mode(motion, k), math.fmod(end, motion.period), *after[:, k])
     minima = virtual.extrema(0.0, 2.0 * motion.period, -1.0) if math.isfinite(end) else []
-    return virtual, end + minima[0] if minima else math.inf
+    return virtual, minima[0] if minima else math.inf
 
 
-def _measure(motion: Motion, impacts: Impacts, rows: slice, outgoing: VirtualMotion) -> Collision:
+def _measure(motion: Motion, k: int, impacts: Impacts, rows: slice, outgoing: VirtualMotion) -> Collision:
     """The numbers of the collision of these impacts."""
     first, last, single = rows.start, rows.stop - 1, outgoing.motion
-    touch, release = float(impacts.start[first]), float(impacts.end[last])
-    u_in, v_in = deviations(motion, touch, impacts.displacement_start[first], impacts.velocity_start[first])
-    u_out, v_out = deviations(motion, release, impacts.displacement_end[last], impacts.velocity_end[last])
-    incoming = VirtualMotion(single, math.fmod(touch, motion.period), u_in[0], v_in[0])
+    touch, start, end = float(impacts.start[first]), impacts.clock[first], impacts.end_clock[last]
+    length = float(_length(motion, impacts, first, last))
+    u_in, v_in = deviations(motion, start, impacts.displacement_start[first], impacts.velocity_start[first])
+    u_out, v_out = deviations(motion, end, impacts.displacement_end[last], impacts.velocity_end[last])
+    incoming = VirtualMotion(single, math.fmod(start, motion.period), u_in[k], v_in[k])
 
     # the hump of the incoming virtual motion that belongs to the touch
-    peak = incoming.peak_near(0.0)
-    forced = math.isnan(peak) or not incoming.at(peak)[0] > 0.0
-    s_in = 0.0 if forced else incoming.crossing(peak, -1.0)
+    peak, (height, rate, _) = incoming.peak_near(0.0), incoming.at(0.0)
+    # a virtual motion that makes the touch itself crosses the gap there, though another peak may be nearer
+    itself = rate > 0.0 and abs(height) <= 2.0 * tip_rounding(single, incoming.u, incoming.v)
+    forced = not itself and (math.isnan(peak) or not incoming.at(peak)[0] > 0.0)
+    s_in = 0.0 if forced or itself else incoming.crossing(peak, -1.0)
     speed = math.nan if forced else incoming.at(s_in)[1]
 
     # jump of mode 1 over the collision, carried back to t_in
-    u_free, v_free, back = np.empty_like(u_in), np.empty_like(v_in), touch + s_in - release
-    propagate(motion, u_in, v_in, release - touch, u_free, v_free)
-    jump = np.array([outgoing.u[0] - u_free[0], outgoing.v[0] - v_free[0]])
+    u_free, v_free, back = np.empty_like(u_in), np.empty_like(v_in), s_in - length
+    propagate(motion, u_in, v_in, length, u_free, v_free)
+    jump = np.array([outgoing.u[0] - u_free[k], outgoing.v[0] - v_free[k]])
     shift, change = single.tip(flow_over(single, back)[:, :4].reshape(1, 2, 2) @ jump).tolist()
 
     # the outgoing hump around t_in, and its fall through the gap
@@ -200,17 +218,17 @@ def _measure(motion: Motion, impacts: Impacts, rows: slice, outgoing: VirtualMot
     returns = not math.isnan(peak) and outgoing.at(peak)[0] >= reach
     restitution = delay = math.nan
     if returns and not forced:
-        s_out = outgoing.crossing(peak, 1.0)
+        s_out = peak if outgoing.at(peak)[0] <= -reach else outgoing.crossing(peak, 1.0)
         restitution, delay = -outgoing.at(s_out)[1] / speed, s_out - back
 
-    gained = _higher_energy(motion, u_out, v_out) - _higher_energy(motion, u_free, v_free)
+    gained = _higher_energy(motion, k, u_out, v_out) - _higher_energy(motion, k, u_free, v_free)
     return Collision(
-        time=touch + s_in, end=release, approach=speed, restitution=restitution, delay=delay,
+        time=touch + s_in, end=float(impacts.end[last]), approach=speed, restitution=restitution, delay=delay,
         kick=-change / speed, kick_velocity=-change, shift=shift,
         deceleration=-incoming.at(s_in)[2],
         impacts=int(np.count_nonzero(impacts.kind[rows] == ImpactKind.IMPACT)),
-        contact_time=float(np.sum((impacts.end - impacts.start)[rows])), first_touch=touch,
-        real_approach=float(impacts.approach[first]), ringing=_ringing(motion, u_in, v_in),
+        contact_time=float(np.sum(_length(motion, impacts, rows, rows))), first_touch=touch,
+        real_approach=float(impacts.approach[first]), ringing=_ringing(motion, k, u_in, v_in),
         energy_to_higher_modes=gained, energy_lost=float(np.sum(impacts.loss[rows])),
         forced_by_ringing=forced, returns=returns,
     )  # fmt: skip
@@ -240,7 +258,7 @@ def first_collision(
     start = before_collision(oscillator) if state is None else state
     for length in sorted({min(3, periods), periods}):
         trajectory = simulate(oscillator, start, periods=length)
-        found = collisions(oscillator, trajectory, unfinished="drop")
+        found = collisions(trajectory, unfinished="drop")
         if found:
             return found[0]
     raise ValueError(f"periods is {periods}; no collision was final within them")
@@ -260,5 +278,3 @@ def before_collision(oscillator: ImpactOscillator) -> State:
     lowest = math.atan2(-motion.tip_sine, -motion.tip_cosine) % (2 * math.pi) / motion.drive
     q, q_rate = steady_motion(motion, lowest)
     return State(displacement=q, velocity=q_rate, time=lowest)
-
-

@@ -10,7 +10,6 @@ folder is therefore named after a hash of all kernel sources: change one, and ev
 (A source counts if the word kernel occurs in it, which includes the constants that kernels take from it.)
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 import hashlib
@@ -24,8 +23,6 @@ import numba
 from numba.core import cgutils, types
 from numba.core import config as numba_config
 from numba.extending import intrinsic
-
-__all__ = ["borrowed", "held", "inlined", "kernel", "part"]
 
 config: Any = numba_config
 

@@ -12,13 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beam.parameters import require_array, require_within
-
-__all__ = ["HarmonicDrive", "split_time"]
+from beam.parameters import final, require_array, require_within
 
 EPS = 2.220446049250313e-16
 
 
+@final
 @dataclass(frozen=True, kw_only=True)
 class HarmonicDrive:
     """Base motion ``amplitude * sin(2 pi frequency t)``.

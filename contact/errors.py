@@ -7,17 +7,6 @@ finished: they carry the place where it happened, and never a number that might 
 
 from __future__ import annotations
 
-__all__ = [
-    "Chatter",
-    "ContactError",
-    "ContactTooStiff",
-    "Diverged",
-    "NoDerivative",
-    "NotPeriodic",
-    "StepTooLarge",
-    "UnresolvedCrossing",
-]
-
 
 class ContactError(RuntimeError):
     """A computation of impacts that could not be finished.
@@ -38,6 +27,10 @@ class ContactError(RuntimeError):
         self.time, self.gap, self.velocity = time, gap, velocity
         place = f"at t = {time:.9g} s, {gap:.3g} m from the stop, velocity {velocity:.3g} m/s"
         super().__init__(f"{self.reason} {place}{'; ' + detail if detail else ''}")
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """The sentence and all attributes, so that an error leaves a process of workers as itself."""
+        return type(self).__new__, (type(self), *self.args), self.__dict__
 
 
 class UnresolvedCrossing(ContactError):
@@ -74,6 +67,16 @@ class NotPeriodic(ContactError):
     """An orbit that was asked to be periodic is not."""
 
     reason = "the motion did not settle on a periodic orbit"
+
+
+class BranchEnded(ContactError):
+    """A branch of periodic orbits that ends before what is looked for on it.
+
+    Its `orbit` is the last one; None if there is no orbit to start from.
+    """
+
+    reason = "the branch of periodic orbits ends"
+    orbit: object = None
 
 
 class NoDerivative(ContactError):

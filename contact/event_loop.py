@@ -8,7 +8,6 @@ without a touch cost one multiplication by the flow of a period and a proof, mos
 alone.
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 import math
@@ -28,7 +27,6 @@ from contact.flight.modal_flow import (
     flow_over,
     load_state,
     new_flight,
-    propagate,
     tip_state,
 )
 from contact.flight.sampled_crossing import first_sampled_crossing
@@ -36,9 +34,6 @@ from contact.recorder import add_loss, close_touch, is_full, open_touch, put_sam
 from contact.touch.newton import hold
 from contact.touch.series import Series, new_series
 from contact.trajectory import GRAZE, IMPACT, OUTSIDE, STAY, SUSTAINED
-
-__all__ = ["DONE", "FAILED_CHATTER", "FAILED_CROSSING", "FAILED_SERIES", "FAILED_STEPS", "LOG_FULL", "STATE",
-           "advance"]  # fmt: skip
 
 DONE, FAILED_CROSSING, FAILED_CHATTER, FAILED_STEPS, FAILED_SERIES, LOG_FULL = range(6)
 GOING, CROSSED, GRAZED, RELEASED = range(-4, 0)
@@ -49,9 +44,9 @@ MOST_IMPACTS = 100_000
 """Bound of impacts in one drive period: accumulating impacts with e = 0.999 take about 2e4 before the hops
 drown in rounding, so a longer sequence is not on its way to rest."""
 
-MOST_STEPS = 1_000_000
-"""Bound of flights and series steps in one drive period: 1e6 steps of two radians reach modes of 3e5 drive
-frequencies."""
+MOST_STEPS = 200_000
+"""Bound of flights and series steps in one drive period: 2e5 steps of two radians reach modes of 6e4 drive
+frequencies, and with twelve modes they take half a second."""
 
 STATE = np.dtype([
     ("regime", "i8"), ("order", "i8"), ("period", "i8"), ("evaluations", "i8"), ("search", "i8"), ("steps",
@@ -103,11 +98,13 @@ def new_work(motion, search):
 
 
 @kernel
-def sample_flight(motion, run, until, work, recorder):
-    """States at the sample times of a flight up to the clock `until`."""
+def sample_flight(motion, run, until, held_down, work, recorder):
+    """States at the sample times of a flight, or of hops `held_down` on the wall, up to the clock `until`."""
     while sample_due(recorder, run.period, until):
         time = recorder.sample_clock[recorder.marks[0].sampled] - run.clock
         carry(motion, work.flight, time, work.u, work.v)
+        if held_down:
+            hold(motion, run.clock + time, work.u, work.v)
         put_sample(recorder, work.u, work.v)
 
 
@@ -143,7 +140,7 @@ def fly(motion, u, v, run, last, clock_end, work, recorder):
             run.steps += 1
             until = end if outcome == FREE else base + s
             if marks.sampled < samples and outcome != UNRESOLVED:
-                sample_flight(motion, run, until, work, recorder)
+                sample_flight(motion, run, until, False, work, recorder)
             if outcome == FREE and base == 0.0 and not at_last:
                 apply_flow(whole, u, v)
             else:
@@ -165,7 +162,7 @@ def fly(motion, u, v, run, last, clock_end, work, recorder):
 
 
 @part
-def land(motion, u, v, run, crosses, end, recorder):
+def land(motion, u, v, run, crosses, end, work, recorder):
     """What happens where a flight meets the stop."""
     approach = tip_state(motion, run.clock, u, v)[1]
     if crosses:
@@ -180,7 +177,9 @@ def land(motion, u, v, run, crosses, end, recorder):
             rest = min(run.wait, end - run.clock)
             run.wait = 0.0
             if rest > 0.0:
-                propagate(motion, u, v, rest, u, v)
+                load_state(work.flight, u, v)
+                sample_flight(motion, run, run.clock + rest, True, work, recorder)
+                carry(motion, work.flight, rest, u, v)
                 run.clock += rest
             hold(motion, run.clock, u, v)
     else:
@@ -221,6 +220,8 @@ def press_of(file: ModuleType) -> Callable[..., object]:
                     if following == OUTSIDE:
                         status = RELEASED
             if status == GOING and until >= end:
+                while sample_due(recorder, run.period, end):  # nearer to the end than a step can be
+                    put_sample(recorder, u, v)
                 if at_last:
                     run.clock, status = end, DONE
                 else:
@@ -276,7 +277,7 @@ def advance(motion, u, v, runs, last, clock_end, recorder):
             status = press(motion, u, v, run, last, clock_end, work, recorder)
         if status == CROSSED or status == GRAZED:
             end = clock_end if run.period == last else motion.period
-            land(motion, u, v, run, status == CROSSED, end, recorder)
+            land(motion, u, v, run, status == CROSSED, end, work, recorder)
         elif status == RELEASED:
             touch.leave(motion, run, u, v)
             velocity = tip_state(motion, run.clock, u, v)[1]

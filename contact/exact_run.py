@@ -22,9 +22,7 @@ from contact.flight.motion import Motion
 from contact.oscillator import ImpactOscillator
 from contact.recorder import grown, open_touch, recorder_for, trajectory_of
 from contact.touch import TOUCHES, force
-from contact.trajectory import CONTACT, IMPACT, INSIDE, OUTSIDE, SUSTAINED, WAITING, Run, State, Trajectory
-
-__all__ = ["exact_trajectory", "failure", "start_of", "state_of"]
+from contact.trajectory import OUTSIDE, SUSTAINED, WAITING, ImpactKind, Regime, Run, State, Trajectory
 
 HELD_WITHIN = 1e3
 """How far from the gap a tip that is said to rest on the wall may be, in rounding bounds."""
@@ -71,13 +69,13 @@ def start_of(
             "the gap, in contact at the gap or beyond"
         )
     if regime == OUTSIDE and height > rounding:
-        if CONTACT not in known:
+        if Regime.CONTACT not in known:
             raise ValueError(
                 f"displacement of the state puts the tip {height:.3g} m behind the stop; with an impact law "
                 "it must start on the near side"
             )
-        pushes = INSIDE not in known or force(motion, height, velocity) > 0.0
-        regime = CONTACT if pushes else INSIDE
+        pushes = Regime.INSIDE not in known or force(motion, height, velocity) > 0.0
+        regime = Regime.CONTACT if pushes else Regime.INSIDE
     runs[0] = (regime, 0, period, 0, search, 0, clock, state.wait, state.rebound, -1.0, -1.0)
     return u, v, runs
 
@@ -116,8 +114,8 @@ def exact_trajectory(oscillator: ImpactOscillator, run: Run, *, search: int = 0)
     u, v, runs = start_of(motion, run.start, run.first, run.clock, search=search)
     recorder = recorder_for(run, n)
     if runs[0]["regime"] != OUTSIDE:
-        velocity = tip_state(motion, run.clock, u, v)[1]
-        open_touch(recorder, run.first, run.clock, velocity, IMPACT, u, v)
+        kind = ImpactKind.STAY if runs[0]["regime"] == SUSTAINED else ImpactKind.UNDER_WAY
+        open_touch(recorder, run.first, run.clock, np.nan, int(kind), u, v)
         recorder.marks["impacts"] = 0  # it did not begin in this period
     while True:
         status = advance(motion, u, v, runs, run.last, run.clock_end, recorder)
@@ -129,4 +127,4 @@ def exact_trajectory(oscillator: ImpactOscillator, run: Run, *, search: int = 0)
     q, q_rate = steady_motion(motion, run.clock_end)
     end = state_of(motion, runs, u + q, v + q_rate)
     evaluations = int(runs[0]["evaluations"])
-    return trajectory_of(recorder, run, end, motion.period, evaluations=evaluations, motion=motion)
+    return trajectory_of(recorder, run, end, oscillator, evaluations=evaluations, motion=motion)

@@ -26,16 +26,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from beam.parameters import brief, require, require_array, require_kind, require_within, suspect
-
-__all__ = [
-    "ContactLaw",
-    "DelayedRestitution",
-    "HertzContact",
-    "HuntCrossley",
-    "LinearContact",
-    "NewtonRestitution",
-]
+from beam.parameters import brief, final, require, require_array, require_kind, require_within, suspect
 
 NEWTON, LINEAR, HERTZ, DELAYED = 0, 1, 2, 3
 
@@ -76,6 +67,7 @@ class ContactLaw:
         return np.empty((5, 0))
 
 
+@final
 @dataclass(frozen=True, kw_only=True)
 class NewtonRestitution(ContactLaw):
     """Instantaneous impact: the tip leaves with -`local_restitution` times its approach velocity.
@@ -99,6 +91,7 @@ SPEEDS = 1025
 1e-9."""
 
 
+@final
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DelayedRestitution(ContactLaw):
     """The tip stays on the wall for `delay` and leaves with -`restitution` times its approach velocity.
@@ -160,6 +153,7 @@ class DelayedRestitution(ContactLaw):
         return np.array(rows)
 
 
+@final
 @dataclass(frozen=True, kw_only=True)
 class LinearContact(ContactLaw):
     """Spring and dashpot at the stop: N = max(0, `stiffness` d + `damping` d') for d > 0.
@@ -178,6 +172,7 @@ class LinearContact(ContactLaw):
     units: ClassVar[dict[str, str]] = {"stiffness": "N/m", "damping": "N s/m"}
 
 
+@final
 @dataclass(frozen=True, kw_only=True)
 class HertzContact(ContactLaw):
     """Elastic contact of a ball: N = `stiffness` d^(3/2) for d > 0.
@@ -223,6 +218,7 @@ class HertzContact(ContactLaw):
         return HERTZ_TIME * self.greatest_approach(mass, velocity) / velocity
 
 
+@final
 @dataclass(frozen=True, kw_only=True)
 class HuntCrossley(ContactLaw):
     """Hertz's law with dissipation: N = `stiffness` d^(3/2) (1 + `dissipation` d') for d > 0.

@@ -46,10 +46,6 @@ from numpy.typing import NDArray
 from beam.parameters import require_kind, require_whole, require_within
 from contact.nordmark import NordmarkMap, YLine
 
-__all__ = ["Band", "MapFamily", "MaximalOrbit", "band", "bands", "fold", "maximal_orbits", "maximal_period",
-           "maximal_periods", "positive_roots", "stable_range"]  # fmt: skip
-
-
 MOST_PERIODS = 100_000
 """Longest period of an orbit, in drive periods; its states are computed one by one."""
 

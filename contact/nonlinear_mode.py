@@ -18,14 +18,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from beam.parameters import require_within
+from beam.parameters import require_array, require_whole, require_within
 from contact.errors import Chatter, Diverged, NotPeriodic
 from contact.single_mode.taylor import CHATTERED, FLOWN, ORDER, free_flow, periods
 from contact.strobed_map import StrobedOrbit
-
-__all__ = ["NonlinearMode"]
 
 Array = NDArray[np.float64]
 
@@ -186,7 +184,7 @@ class NonlinearMode:
         x, v = self._steady
         return np.array([x, v / math.sqrt(self.numbers[0])])
 
-    def orbit(self, state: Array, count: int) -> StrobedOrbit[Array]:
+    def orbit(self, state: ArrayLike, count: int) -> StrobedOrbit[Array]:
         """`count` drive periods from `state`; the points are states, shape (count, 2).
 
         Raises
@@ -196,12 +194,15 @@ class NonlinearMode:
         Diverged
             Where the tip goes so far out that its restoring force would fall.
         """
+        count = require_whole("count", count, "drive periods", low=0)
         points, impacts = np.empty((count, 2)), np.zeros(count, dtype=np.int64)
-        x, v = float(state[0]), float(state[1]) * math.sqrt(self.numbers[0])
+        end = require_array("state", state, "m", shape=(2,), words="two numbers")
+        x, v = float(end[0]), float(end[1]) * math.sqrt(self.numbers[0])
         force = (1.0 + self.excess) * self.grazing[0]
         stop = float(self.gap), float(self.restitution)
         outcome, time = periods(self.numbers, force, *stop, x, v, points, impacts)
         if outcome != FLOWN:
             gap, velocity = self.gap - points[0, 0], points[0, 1] * math.sqrt(self.numbers[0])
             raise (Chatter if outcome == CHATTERED else Diverged)(time=time, gap=gap, velocity=velocity)
-        return StrobedOrbit(end=points[-1].copy(), points=points, impacts=impacts)
+        end = points[-1] if count else end
+        return StrobedOrbit(end=end.copy(), points=points, impacts=impacts)

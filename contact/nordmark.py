@@ -171,7 +171,7 @@ class NordmarkMap:
         cls, oscillator: ImpactOscillator, *, restitution: float | None = None,
         y_line: YLine = "corrected", delay: float = 0.0,
     ) -> NordmarkMap:
-        """The map of the first mode of an `ImpactOscillator`, all higher modes ignored.
+        """The map of mode 1 of an `ImpactOscillator` (``ModalModel.leading_mode``), all others ignored.
 
         `restitution` is the effective one; left out, it is the `local_restitution` of the oscillator's law,
         and a law without one (a force law) raises TypeError.
@@ -179,8 +179,9 @@ class NordmarkMap:
         restitution = restitution_of(oscillator) if restitution is None else restitution
         if oscillator.drive is None:
             raise ValueError("drive is None; it must be a HarmonicDrive")
+        model, k = oscillator.model, oscillator.model.leading_mode
         return cls.from_mode(
-            omega=float(oscillator.model.omega[0]), decay_rate=float(oscillator.model.decay_rate[0]),
+            omega=float(model.omega[k]), decay_rate=float(model.decay_rate[k]),
             drive_frequency=float(oscillator.drive.frequency),
             restitution=restitution, y_line=y_line, delay=delay,
         )

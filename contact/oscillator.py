@@ -20,14 +20,11 @@ from functools import cached_property
 import numpy as np
 
 from beam import ModalModel
-from beam.parameters import require_array, require_kind, require_within, suspect
+from beam.parameters import final, require, require_array, require_kind, require_within, suspect
 from contact.drive import HarmonicDrive
 from contact.flight.motion import Motion, motion_of, with_drive
 from contact.laws import DELAYED
 from contact.stop import Stop
-
-__all__ = ["ImpactOscillator"]
-
 
 GREATEST_AMPLITUDE = 0.1
 """Amplitude of a base motion beyond which a warning is given [m]: the stroke of large vibration exciters is
@@ -38,6 +35,7 @@ SLOWEST_DRIVE = 0.01
 than 1e-4 of the base's motion, and nobody grazes a stop that way."""
 
 
+@final
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ImpactOscillator:
     """A modal spring on a moving base, with a stop at its tip.
@@ -80,20 +78,14 @@ class ImpactOscillator:
             object.__setattr__(self, "load", load)
         if self.drive is None:
             return
-        if not self.stop.gap > 0:
-            raise ValueError(f"gap is {self.stop.gap} m; a driven spring needs a gap above zero")
+        require(self.stop.gap > 0, f"gap is {self.stop.gap} m; a driven spring needs a gap above zero")
         highest = float(omega.max())
-        if highest > 0 and self.drive.angular_frequency > highest:
-            raise ValueError(
-                f"frequency of the drive is {self.drive.frequency:g} Hz; it must not exceed the highest "
-                f"retained mode at {highest / (2 * np.pi):g} Hz"
-            )
+        told = f"frequency of the drive is {self.drive.frequency:g} Hz"
+        words = f"it must not exceed the highest retained mode at {highest / (2 * np.pi):g} Hz"
+        require(highest <= 0 or self.drive.angular_frequency <= highest, f"{told}; {words}")
         resonant = (omega == self.drive.angular_frequency) & (decay == 0)
-        if np.any(resonant):
-            raise ValueError(
-                f"frequency of the drive is {self.drive.frequency:g} Hz, that of an undamped mode; "
-                "there is no steady motion, so it must differ"
-            )
+        words = "that of an undamped mode; there is no steady motion, so it must differ"
+        require(not np.any(resonant), f"{told}, {words}")
         self._suspect(self.drive)
 
     def _suspect(self, drive: HarmonicDrive) -> None:
@@ -188,14 +180,10 @@ class ImpactOscillator:
         """Base amplitude Z_g at which the steady tip motion just touches the stop [m]."""
         _ = self.driven
         level, gap = self.motion().level, self.stop.gap
-        if level >= 0.0:
-            raise ValueError(f"gap is {gap} m; the static displacement {level + gap:g} m must stay below it")
+        require(level < 0.0, f"gap is {gap} m; the static displacement {level + gap:g} m must stay below it")
         response = abs(self.tip_response())
-        if response == 0.0:
-            raise ValueError(
-                "phi and participation are such that the drive does not move the tip; at least one mode must "
-                "have both other than zero"
-            )
+        words = "the drive does not move the tip; at least one mode must have both other than zero"
+        require(response > 0.0, f"phi and participation are such that {words}")
         return -level / response
 
     @property

@@ -7,7 +7,6 @@ samples (``contact.integrators.fixed_step``).
 velocities themselves.
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 import math
@@ -17,12 +16,11 @@ from typing import NamedTuple
 import numpy as np
 
 from contact.compiled import inlined, kernel, part
+from contact.errors import ContactError
 from contact.flight.modal_flow import steady_motion
 from contact.flight.motion import Motion
+from contact.oscillator import ImpactOscillator
 from contact.trajectory import IMPACT, Impacts, Run, State, Trajectory
-
-__all__ = ["LOG", "MARKS", "Recorder", "add_loss", "close_touch", "grown", "is_full", "open_touch",
-           "put_sample", "recorder_for", "sample_due", "strobe", "strobes_only", "trajectory_of"]  # fmt: skip
 
 MARKS = np.dtype([(name, "i8") for name in ("logged", "sampled", "strobed", "impacts", "touching")])
 """Rows in use of the log, the samples and the strobes; impacts since the last strobe; whether the tip
@@ -168,8 +166,9 @@ def grown(recorder: Recorder) -> Recorder:
 
 
 def trajectory_of(
-    recorder: Recorder, run: Run, end: State, period: float, *, evaluations: int, motion: Motion | None = None
-) -> Trajectory:
+    recorder: Recorder, run: Run, end: State, oscillator: ImpactOscillator, *, evaluations: int,
+    motion: Motion | None = None,
+) -> Trajectory:  # fmt: skip
     """What was written down, as named arrays.
 
     Parameters
@@ -177,15 +176,19 @@ def trajectory_of(
     recorder : Recorder
     run : Run
     end : State
-        Where the run ended; samples beyond what was written get this state.
-    period : float
-        The drive period [s].
+        Where the run ended; samples at this time that were not written get this state.
+    oscillator : ImpactOscillator
     evaluations : int
         See ``Trajectory``.
     motion : Motion, optional
         If given, the rows are deviations from its steady motion.
     """
-    n, marks = end.displacement.size, recorder.marks[0]
+    n, marks, period = end.displacement.size, recorder.marks[0], oscillator.period
+    left = slice(int(marks["sampled"]), None)
+    if np.any((recorder.sample_period[left] < run.last) | (recorder.sample_clock[left] < run.clock_end)):
+        tip = oscillator.tip(np.array([end.displacement, end.velocity]))
+        place = {"time": end.time, "gap": oscillator.stop.gap - float(tip[0]), "velocity": float(tip[1])}
+        raise ContactError(**place, detail="the state at one of the times was not written down")
     logged, passed = marks["logged"], run.last - run.first
     log, log_state = recorder.log[:logged], recorder.log_state[:logged]
     rows = np.concatenate((log_state[:, : 2 * n], log_state[:, 2 * n :], recorder.strobes, recorder.samples))
@@ -197,15 +200,18 @@ def trajectory_of(
     (q_in, v_in), (q_out, v_out), (q_strobe, v_strobe), (q_sample, v_sample) = (
         (q[first:last], v[first:last]) for first, last in parts
     )
-    q_sample[marks["sampled"] :], v_sample[marks["sampled"] :] = end.displacement, end.velocity
+    q_sample[left], v_sample[left] = end.displacement, end.velocity
     impacts = Impacts(
         start=log["period"] * period + log["start"], end=log["end_period"] * period + log["end"],
+        period=log["period"].copy(), clock=log["start"].copy(),
+        end_clock=(log["end_period"] - log["period"]) * period + log["end"],
         approach=log["approach"].copy(), rebound=log["rebound"].copy(),
         loss=np.where(np.isnan(log["end"]), np.nan, log["loss"]), kind=log["kind"].copy(),
         displacement_start=q_in, velocity_start=v_in, displacement_end=q_out, velocity_end=v_out,
     )  # fmt: skip
     return Trajectory(
-        end=end, strobe_time=np.arange(run.first + 1, run.last + 1) * period, strobe_displacement=q_strobe,
-        strobe_velocity=v_strobe, strobe_impacts=recorder.counts, time=run.times, displacement=q_sample,
-        velocity=v_sample, impacts=impacts, evaluations=int(evaluations),
+        oscillator=oscillator, end=end, strobe_time=np.arange(run.first + 1, run.last + 1) * period,
+        strobe_displacement=q_strobe, strobe_velocity=v_strobe, strobe_impacts=recorder.counts,
+        time=run.times, displacement=q_sample, velocity=v_sample, impacts=impacts,
+        evaluations=int(evaluations),
     )  # fmt: skip

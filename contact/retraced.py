@@ -14,14 +14,12 @@ from numpy.typing import NDArray
 
 from contact.change import Changes
 from contact.compiled import kernel
-from contact.errors import NoDerivative, UnresolvedCrossing
+from contact.errors import NoDerivative
 from contact.flight.modal_flow import propagate, steady_motion
 from contact.laws import DELAYED
 from contact.touch.tangents import all_tip_changes, tangent_flight
-from contact.touch_flow import FLOWN, TOUCHING, flow_from_touch
+from contact.touch_flow import FLOWN, TOUCHING, flow_from_touch, lost
 from contact.trajectory import ImpactKind, State, Trajectory
-
-__all__ = ["Retraced"]
 
 Array = NDArray[np.float64]
 
@@ -65,11 +63,10 @@ class Retraced:
     def __init__(self, changes: Changes, run: Trajectory, start: State | None = None) -> None:
         self.vary, self.oscillator, met = changes.variation, changes.oscillator, run.impacts
         motion, n = self.vary.motion, self.oscillator.n_modes
+        words = "touches the stop", "grazes the stop", "comes to rest on the stop", "starts in the stop"
         for i in np.flatnonzero(met.kind != ImpactKind.IMPACT):
-            words = "grazes the stop" if met.kind[i] == ImpactKind.GRAZE else "comes to rest on the stop"
-            raise NoDerivative(
-                time=float(met.start[i]), gap=0.0, velocity=float(met.approach[i]), detail=f"it {words} there"
-            )
+            at, detail = float(met.start[i]), f"it {words[met.kind[i]]} there"
+            raise NoDerivative(time=at, gap=0.0, velocity=float(met.approach[i]), detail=detail)
         self.start, self.end = met.start, np.nan_to_num(met.end, nan=np.inf)
         self.approach = met.approach
         q, q_rate = steady_motion(motion, self.start % motion.period)
@@ -105,7 +102,8 @@ class Retraced:
             if outcome == TOUCHING and self.end[i] > time:
                 return self._waiting(tangent, u, v, at, time) if self.vary.motion.law == DELAYED else tangent
             if outcome != FLOWN:
-                raise UnresolvedCrossing(time=at, gap=0.0, velocity=float(self.approach[i]))
+                words = "a touch of the motion was lost on its way with derivatives"
+                raise lost(outcome, at, float(self.approach[i]), words)
             self.tangent, self.clock, self.u, self.v = tangent, until, u, v
             self._i += 1
         self._fly(time)

@@ -10,14 +10,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from beam.parameters import require, require_array, require_kind, require_whole, require_within
+from beam.parameters import require, require_array, require_kind, require_whole, require_within, suspect
 from contact.drive import split_time
+from contact.flight.modal_flow import steady_motion
 from contact.integrators import INTEGRATORS, Exact, Integrator, Run
 from contact.integrators.method import LAW_NAMES
 from contact.oscillator import ImpactOscillator
 from contact.trajectory import State, Trajectory
-
-__all__ = ["simulate"]
 
 MOST_STORED = 2.0**28
 """Numbers in the strobes of one run: 2 GB."""
@@ -48,6 +47,25 @@ def _method(method: Integrator | str | None, law: int) -> Integrator:
     return chosen
 
 
+def require_state(oscillator: ImpactOscillator, state: object) -> State:
+    """The state, if it is one of as many modes as the oscillator."""
+    given: State = require_kind("state", state, State, "a State")
+    modes, known = given.displacement.size, oscillator.n_modes
+    require(modes == known, f"displacement of the state has {modes} modes; the model has {known}")
+    return given
+
+
+def _suspect_rest(oscillator: ImpactOscillator, start: State) -> None:
+    """Warn of a driven spring that never moves; ValueError for one that rests just on the stop."""
+    motion, still = oscillator.motion(), not np.any(start.velocity)
+    if still and motion.amplitude == 0.0 and np.all(start.displacement == steady_motion(motion, 0.0)[0]):
+        words = "the spring just touches the stop at rest and never moves, so give a velocity or another gap"
+        require(motion.level != 0.0, f"gap is {motion.gap} m; {words}")
+        if oscillator.drive is not None and oscillator.drive.amplitude == 0.0:
+            words = "`with_excess` gives the same oscillator with one"
+            suspect(f"amplitude of the drive is 0 m and the spring starts at rest: nothing moves; {words}")
+
+
 def _run(
     oscillator: ImpactOscillator,
     start: State,
@@ -56,13 +74,8 @@ def _run(
     times: np.ndarray | None,
 ) -> Run:
     """What is asked for, checked."""
-    if start.displacement.size != oscillator.n_modes:
-        raise ValueError(
-            f"displacement of the state has {start.displacement.size} modes; "
-            f"the model has {oscillator.n_modes}"
-        )
-    if (duration is None) == (periods is None):
-        raise ValueError("duration and periods are both given or both missing; give exactly one of them")
+    words = "duration and periods are both given or both missing; give exactly one of them"
+    require((duration is None) != (periods is None), words)
     period = oscillator.period
     whole = 0 if periods is None else require_whole("periods", periods, "drive periods")
     length = whole * period if whole else require_within("duration", duration, "s", above=0)
@@ -128,17 +141,20 @@ def simulate(
     Raises
     ------
     ValueError
-        For a run of no length, times out of order or range, or a start behind the wall.
+        For a run of no length, times out of order or range, or a start behind the wall or at rest just on it.
     TypeError
         For a method that does not know the law of the stop.
     StepTooLarge
         For a step beyond the method's limit of stability.
     UnresolvedCrossing, Chatter, ContactTooStiff
         Where the motion could not be followed; see ``contact.errors``.
+
+    Warns of a driven spring at rest whose drive has no amplitude.
     """
     require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
-    require_kind("state", state, (State, type(None)), "a State or None")
     law = oscillator.stop.law.code
     chosen = _method(method, law)
-    start = State.rest(oscillator.n_modes) if state is None else state
-    return chosen.follow(oscillator, _run(oscillator, start, duration, periods, times))
+    start = State.rest(oscillator.n_modes) if state is None else require_state(oscillator, state)
+    run = _run(oscillator, start, duration, periods, times)
+    _suspect_rest(oscillator, start)
+    return chosen.follow(oscillator, run)

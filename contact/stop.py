@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from beam.parameters import require_within, suspect
+from beam.parameters import final, require_kind, require_within, suspect
 from contact.laws import ContactLaw
-
-__all__ = ["Stop"]
 
 GREATEST_GAP = 1.0
 """Distance of a stop beyond which a warning is given [m]; lengths in units of the gap give just this."""
 
 
+@final
 @dataclass(frozen=True, kw_only=True)
 class Stop:
     """A wall at tip displacement `gap` relative to the base, with the law of its contact.
@@ -40,7 +39,4 @@ class Stop:
                 f"gap is {self.gap:g} m; above {GREATEST_GAP:g} m no leaf spring moves that far, and "
                 "millimetres may have been meant"
             )
-        if not isinstance(self.law, ContactLaw):
-            raise TypeError(
-                f"law of the stop is {self.law!r}; it must be a contact law such as NewtonRestitution"
-            )
+        require_kind("law of the stop", self.law, ContactLaw, "a contact law such as NewtonRestitution")

@@ -14,9 +14,7 @@ from typing import Generic, Protocol, TypeVar, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from beam.parameters import require_array
-
-__all__ = ["DifferentiableMap", "Jacobians", "StrobedMap", "StrobedOrbit", "amplitude_factors"]
+from beam.parameters import require_array, require_kind
 
 S = TypeVar("S")
 
@@ -51,10 +49,6 @@ class StrobedMap(Protocol[S]):
     def scale(self) -> float:
         """The size of a coordinate at grazing, in the unit of `points`."""
 
-    @property
-    def period(self) -> float:
-        """Time of one step: the drive period [s], 1 for a map without time."""
-
     def at(self, excess: float) -> StrobedMap[S]:
         """The same system at another excess over grazing [1]."""
 
@@ -63,6 +57,12 @@ class StrobedMap(Protocol[S]):
 
     def orbit(self, state: S, count: int) -> StrobedOrbit[S]:
         """`count` periods from `state`."""
+
+
+def require_map(strobed: object, kind: type = StrobedMap) -> None:
+    """TypeError unless this is a strobed map of this kind."""
+    words = "with derivatives, " if kind is DifferentiableMap else ""
+    require_kind("strobed", strobed, kind, f"a strobed map {words}such as a StroboscopicMap")
 
 
 def amplitude_factors(factors: ArrayLike | None, count: int) -> np.ndarray:

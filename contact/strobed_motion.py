@@ -23,8 +23,6 @@ from contact.oscillator import ImpactOscillator
 from contact.single_mode.loop import any_periods, one_mode_periods
 from contact.single_mode.period_table import PeriodTable, mode_at, period_table
 
-__all__ = ["StrobedSystem", "at_amplitude", "strobed_motion", "strobed_system"]
-
 
 class StrobedSystem(NamedTuple):
     """An oscillator as the loops over its drive periods take it.

@@ -11,8 +11,6 @@ from beam.parameters import require_kind, require_within
 from contact.nordmark import NordmarkMap, pair_of
 from contact.strobed_map import Jacobians, StrobedOrbit, amplitude_factors
 
-__all__ = ["StrobedNordmarkMap"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class StrobedNordmarkMap:

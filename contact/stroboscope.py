@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from beam.parameters import require_kind, require_whole
+from beam.parameters import require, require_array, require_kind, require_whole
 from contact.change import Changes
 from contact.drive import split_time
 from contact.errors import UnresolvedCrossing
@@ -19,15 +19,14 @@ from contact.event_loop import DONE
 from contact.exact_run import failure, start_of, state_of
 from contact.oscillator import ImpactOscillator
 from contact.retraced import Retraced
-from contact.simulation import simulate
-from contact.strobed_map import Jacobians, StrobedMap, StrobedOrbit, amplitude_factors
+from contact.simulation import require_state, simulate
+from contact.strobed_map import Jacobians, StrobedOrbit, amplitude_factors
+from contact.strobed_map import StrobedMap as StrobedMap
 from contact.strobed_motion import StrobedSystem, strobed_motion, strobed_system
 from contact.trajectory import Regime, State
 
-__all__ = ["StrobedMap", "StrobedOrbit", "StroboscopicMap", "strobed_orbits"]
-
-MOST_STRETCHES = 64
-"""Bound on how often a stretch that ends in contact is prolonged; a contact lasts less than a period."""
+LONGER = (0, 1, 3, 7, 15, 31, 63)
+"""Drive periods by which a stretch that ends in contact is prolonged; a contact lasts less than a period."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -71,17 +70,18 @@ class StroboscopicMap:
     def readout(self, points: np.ndarray, name: str) -> np.ndarray:
         """The read-out quantity `name` of the model at strobed `points`, shape (n_strobes,)."""
         readouts = self.oscillator.model.readouts
-        if name not in readouts:
-            raise ValueError(f"name is {name!r}; the model has the read-out points {sorted(readouts)}")
+        require(name in readouts, f"name is {name!r}; the model has the read-out points {sorted(readouts)}")
         return self._displacements(points) @ readouts[name]
 
     def _displacements(self, points: np.ndarray) -> np.ndarray:
         """The modal displacements of strobed `points`, shape (n_strobes, n_modes)."""
-        n = self.oscillator.n_modes
-        return points[:, :n] / self._system.weight[:n]
+        n, given = self.oscillator.n_modes, require_array("points", points, "m", dimensions=2)
+        require(given.shape[1] == 2 * n, f"points has shape {given.shape}; it must have {2 * n} columns")
+        return given[:, :n] / self._system.weight[:n]
 
     def coordinates(self, state: State) -> np.ndarray:
         """phi_k q_k and phi_k q_k'/omega_k of a state, as in the points of an orbit [m]."""
+        require_state(self.oscillator, state)
         return self._system.weight * np.concatenate([state.displacement, state.velocity])
 
     @cached_property
@@ -109,7 +109,7 @@ class StroboscopicMap:
         ContactError
             If the motion could not be followed.
         """
-        require_kind("state", state, State, "a State")
+        require_state(self.oscillator, state)
         count = require_whole("count", count, "drive periods", low=0)
         changing = amplitude_factors(factors, count)
         system, motion, n = self._system, self._system.motion, self.oscillator.n_modes
@@ -142,14 +142,16 @@ class StroboscopicMap:
         UnresolvedCrossing
             If the motion comes to rest on the stop, or is in contact at every strobe.
         """
-        if state.regime != Regime.OUTSIDE:
-            raise ValueError("state is in contact; start from a strobe at which the tip is off the wall")
+        count = require_whole("count", count, "drive periods")
+        free = require_state(self.oscillator, state).regime == Regime.OUTSIDE
+        require(free, "state is in contact; start from a strobe at which the tip is off the wall")
         period, n, weight = self._system.motion.period, self.oscillator.n_modes, self._system.weight
-        for more in range(MOST_STRETCHES):
+        for more in LONGER:
             run = simulate(self.oscillator, replace(state, time=0.0), periods=count + more)
             retraced = Retraced(Changes(oscillator=self.oscillator), run)
             strobes = [j for j in range(1, count + more + 1) if not retraced.touching(j * period)]
             if strobes:
+                strobes = strobes[: len(strobes) if more == 0 else 1]
                 break
         else:
             raise UnresolvedCrossing(time=state.time, gap=0.0, velocity=0.0)
@@ -180,7 +182,7 @@ def strobed_orbits(
     """
     if workers is not None:
         require_whole("workers", workers, "threads")
-    if len(maps) != len(states):
-        raise ValueError(f"states has {len(states)} entries; it must have one for each of {len(maps)} maps")
+    words = f"states has {len(states)} entries; it must have one for each of {len(maps)} maps"
+    require(len(maps) == len(states), words)
     with ThreadPoolExecutor(max_workers=workers or os.cpu_count() or 1) as pool:
         return list(pool.map(lambda strobed, state: strobed.orbit(state, count), maps, states))

@@ -8,7 +8,6 @@ values (``contact.touch.tangents``).  Flights and touches are those of the simul
 series, and through what happens at once by saltation matrices.
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 import math
@@ -17,6 +16,7 @@ import numpy as np
 
 from contact import touch
 from contact.compiled import borrowed, held, kernel, part
+from contact.errors import ContactError, ContactTooStiff, NotPeriodic
 from contact.event_loop import STATE
 from contact.flight.crossing import CROSSES, first_crossing
 from contact.flight.modal_flow import propagate, tip_state
@@ -25,20 +25,18 @@ from contact.touch.tangent_series import new_room, tangent_step
 from contact.touch.tangents import onset, tangent_flight
 from contact.trajectory import CONTACT, OUTSIDE, SUSTAINED
 
-__all__ = ["FAILED", "FEWER_TOUCHES", "FLOWN", "TOUCHING", "flow_from_touch"]
-
-FLOWN, FEWER_TOUCHES, FAILED, TOUCHING = 0, 1, 2, 3
+FLOWN, FEWER_TOUCHES, FAILED, TOUCHING, TOO_STIFF = range(5)
 """Outcomes: at the end, the wall ignored after the last touch; too few touches; lost; at the end, which falls
-into the last touch of a force law."""
+into the last touch of a force law; a touch with more than `MOST_STEPS`."""
 
-MOST_STEPS = 1_500
-"""Bound of contact steps in one touch: they cover 3000 radians of the fastest mode, a hundred times the
-longest contact of the letter's beam."""
+MOST_STEPS = 800
+"""Bound of contact steps in one touch: they cover 1600 radians of the fastest mode, fifty times the longest
+contact of the letter's beam."""
 
 
 @part
 def through_touch(vary, run, u, v, end, tangent, record):
-    """From a touch to its release, at most to the drive time `end` [s]: FLOWN, TOUCHING or FAILED.
+    """From a touch to its release, at most to the drive time `end` [s]; FEWER_TOUCHES is no outcome.
 
     `record` gets approach and rebound velocity.
     """
@@ -63,7 +61,7 @@ def through_touch(vary, run, u, v, end, tangent, record):
         steps += 1
         s, h, following = touch.step(motion, run, u, v, end - run.clock, series)
         if steps > MOST_STEPS or not (0.0 <= h < math.inf):
-            return FAILED
+            return TOO_STIFF
         if with_tangent:
             terms = touch.slopes(motion, run, series, room.weights)
             if terms > 0:
@@ -111,7 +109,7 @@ def flow_from_touch(vary, base, u, v, duration, tangent, record):
     Returns
     -------
     outcome : int
-        FLOWN, FEWER_TOUCHES, FAILED or TOUCHING.
+        FLOWN, FEWER_TOUCHES, FAILED, TOUCHING or TOO_STIFF.
     """
     runs = np.zeros(1, dtype=STATE)
     run, end, outcome = runs[0], base + duration, FLOWN
@@ -142,3 +140,11 @@ def flow_from_touch(vary, base, u, v, duration, tangent, record):
         fly(vary, u, v, tangent, run.clock, end - run.clock)
     held(runs)  # a record does not keep the array it lies in
     return outcome
+
+
+def lost(outcome: int, time: float, velocity: float, detail: str) -> ContactError:
+    """The error of a flow from a touch at `time` [s] with `velocity` [m/s] that has not reached its end."""
+    if outcome == TOO_STIFF:
+        detail = f"more than {MOST_STEPS} steps in one touch, or a step of no length"
+        return ContactTooStiff(time=time, gap=0.0, velocity=velocity, detail=detail)
+    return NotPeriodic(time=time, gap=0.0, velocity=velocity, detail=detail)

@@ -12,9 +12,8 @@ from enum import IntEnum
 
 import numpy as np
 
-from beam.parameters import is_number, require_whole, require_within, shown
-
-__all__ = ["ImpactKind", "Impacts", "Regime", "Run", "State", "Trajectory"]
+from beam.parameters import final, is_number, require_whole, require_within, shown
+from contact.oscillator import ImpactOscillator
 
 
 class Regime(IntEnum):
@@ -41,13 +40,16 @@ class ImpactKind(IntEnum):
     """One without effect, within rounding."""
     STAY = 2
     """A stay on the wall after accumulated impacts."""
+    UNDER_WAY = 3
+    """A contact that had begun before the run."""
 
 
 OUTSIDE, CONTACT, INSIDE, SUSTAINED, WAITING = map(int, Regime)
-IMPACT, GRAZE, STAY = map(int, ImpactKind)
+IMPACT, GRAZE, STAY, UNDER_WAY = map(int, ImpactKind)
 """The same as plain integers, for the kernels."""
 
 
+@final
 @dataclass(frozen=True, kw_only=True, eq=False)
 class State:
     """Where a spring is: modal displacement and velocity at a time.
@@ -145,8 +147,11 @@ class Impacts:
     ----------
     start, end : ndarray
         First touch and release [s]; equal for an impact law, NaN for a contact that had not ended.
+    period, clock, end_clock : ndarray
+        Number of the drive period in which a touch begins, and both times since its strobe, to rounding
+        however long the run [s].
     approach, rebound : ndarray
-        Tip velocity at both, positive towards the wall [m/s].
+        Tip velocity at both, positive towards the wall [m/s]; an approach before the run is NaN.
     loss : ndarray
         Energy lost in the contact itself [J].
     kind : ndarray of int
@@ -157,6 +162,9 @@ class Impacts:
 
     start: np.ndarray
     end: np.ndarray
+    period: np.ndarray
+    clock: np.ndarray
+    end_clock: np.ndarray
     approach: np.ndarray
     rebound: np.ndarray
     loss: np.ndarray
@@ -176,6 +184,8 @@ class Trajectory:
 
     Parameters
     ----------
+    oscillator : ImpactOscillator
+        The one that moves.
     end : State
         The state at the end of the run.
     strobe_time : ndarray, shape (n_strobes,)
@@ -192,6 +202,7 @@ class Trajectory:
         Steps, or flights and sampled positions, that the method has made.
     """
 
+    oscillator: ImpactOscillator
     end: State
     strobe_time: np.ndarray
     strobe_displacement: np.ndarray

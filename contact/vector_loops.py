@@ -7,7 +7,6 @@ time, the sums in registers from the first term to the last.  Even and odd terms
 sums, whatever the registers of the processor hold.
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 import numpy as np
@@ -16,8 +15,6 @@ from numba.core import cgutils, types
 from numba.extending import intrinsic
 
 from contact.compiled import kernel
-
-__all__ = ["LANES", "aligned", "next_modes", "next_order", "weighted_rows"]
 
 LANES = 8
 """Numbers side by side: what the widest vector registers in use hold."""

@@ -12,14 +12,8 @@ import math
 import numpy as np
 
 from contact.flight.modal_flow import steady_motion
-from contact.flight.motion import Motion
-from contact.flight.tip_search import tip_at
-
-__all__ = ["VirtualMotion", "deviations"]
-
-SAMPLES = 96
-"""Samples per drive period in which the peaks and minima of a virtual motion are bracketed: it moves at
-the drive frequency and that of mode 1, which is of the same order, so a bracket holds one extremum."""
+from contact.flight.motion import WEIGHT, Motion
+from contact.flight.tip_search import peaks_of_flight, tip_at
 
 NEAR = 0.6
 """Drive periods within which the hump of a virtual motion belongs to a collision."""
@@ -40,19 +34,13 @@ class VirtualMotion:
         found: tuple[float, float, float] = tip_at(self.motion, self.clock, self.u, self.v, s)
         return found
 
-    def root(self, order: int, low: float, high: float) -> float:
-        """A root of height (0) or velocity (1) in [low, high], to rounding: it may lie at zero, the touch."""
-        from scipy.optimize import brentq  # slow to import
-
-        return float(brentq(lambda s: self.at(s)[order], low, high, xtol=1e-18, rtol=8.9e-16, maxiter=300))
-
     def extrema(self, low: float, high: float, sign: float) -> list[float]:
         """Times in [low, high] where the velocity goes through zero from `sign` to -`sign`."""
-        count = max(2, math.ceil(SAMPLES * (high - low) / self.motion.period))
-        grid = np.linspace(low, high, count + 1)
-        speed = np.array([sign * self.at(s)[1] for s in grid])
-        turns = np.flatnonzero((speed[:-1] > 0) & (speed[1:] <= 0))
-        return [self.root(1, grid[i], grid[i + 1]) for i in turns]
+        motion, modes = self.motion, self.motion.modes.copy()
+        modes[WEIGHT] *= sign  # and so upside down
+        sine, cosine = sign * motion.tip_sine, sign * motion.tip_cosine
+        turned = motion._replace(modes=modes, tip_sine=sine, tip_cosine=cosine)
+        return list(map(float, peaks_of_flight(turned, self.clock, self.u, self.v, (low, high), True)))
 
     def peak_near(self, s: float) -> float:
         """The peak next to `s`, NaN if there is none within most of a period."""
@@ -60,15 +48,18 @@ class VirtualMotion:
         return min(peaks, key=lambda peak: abs(peak - s), default=math.nan)
 
     def crossing(self, peak: float, direction: float) -> float:
-        """The crossing of the gap next to `peak` on its rising (-1) or falling (+1) side, NaN if none [s]."""
+        """The crossing of the gap next to `peak` on its rising (-1) or falling (+1) side, to rounding; NaN if
+        none comes within a drive period [s]."""
+        from scipy.optimize import brentq  # slow to import
+
+        near, far = peak, peak + direction * self.motion.period
         if self.at(peak)[0] <= 0.0:
             return peak
-        step = self.motion.period / SAMPLES
-        near, far = peak, peak + direction * step
-        for _ in range(SAMPLES):
-            if self.at(far)[0] < 0.0:
-                return self.root(0, min(near, far), max(near, far))
-            near, far = far, far + direction * step
+        for low in [*self.extrema(min(near, far), max(near, far), -1.0)[:: int(direction)], far]:
+            if self.at(low)[0] < 0.0:
+                tight = {"xtol": 1e-18, "rtol": 8.9e-16, "maxiter": 300}
+                return float(brentq(lambda s: self.at(s)[0], near, low, **tight))
+            near = low
         return math.nan
 
 

@@ -17,8 +17,6 @@ from contact.oscillator import ImpactOscillator
 from contact.stop import Stop
 from contact.stroboscope import StroboscopicMap
 
-__all__ = ["compile_kernels"]
-
 
 def _oscillator(law: ContactLaw) -> ImpactOscillator:
     return ImpactOscillator(

@@ -24,7 +24,7 @@ DOORS = ("beam", "beam.space", "contact", "contact.orbits", "contact.integrators
 FLOW = {
     "beam": ("parameters", "material", "section", "centreline", "spring", "assembly", "modes", "reduction",
              "space", "spring_mesh", "export"),
-    "contact": ("trajectory", "laws", "flight", "oscillator", "recorder", "touch", "event_loop", "exact_run",
+    "contact": ("laws", "flight", "oscillator", "trajectory", "recorder", "touch", "event_loop", "exact_run",
                 "integrators", "simulation", "stroboscope", "collision", "orbits", "warm_up"),
 }  # fmt: skip
 """Files and folders in the order in which they build on each other: none needs a later one."""

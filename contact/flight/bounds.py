@@ -38,7 +38,6 @@ all the time is so settled by the motion at t_p or at the peak next to it, one t
 y - R first comes within r of the stop.
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 import math
@@ -48,9 +47,6 @@ from contact.compiled import kernel, part
 from contact.flight.elementary import sine_cosine
 from contact.flight.modal_flow import START_U, START_V, mode_flow
 from contact.flight.motion import DECAY, OMEGA, SQUARE, WEIGHT
-
-__all__ = ["HIGHEST", "LEAST_SLACK", "NEAR", "PEAK", "ROOT", "SKIP", "STALL", "LowestMode", "certify",
-           "free_from", "free_until", "lowest_mode"]  # fmt: skip
 
 SKIP, ROOT, PEAK, NEAR, STALL = 0, 1, 2, 3, 4
 

@@ -17,7 +17,6 @@ A graze, |peak| within the rounding bound of y (at most 1e-13 of the gap), is an
 stretch that none of this settles, with h down to rounding, is reported as unresolved and never passed.
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 import math
@@ -44,9 +43,6 @@ from contact.flight.modal_flow import (
 from contact.flight.motion import DECAY, LOAD, SLOWNESS, SQUARE, WEIGHT
 from contact.flight.tip_search import find_peak, find_root, tip_now
 from contact.vector_loops import LANES
-
-__all__ = ["CROSSES", "FREE", "GRAZES", "GRAZE_TOLERANCE", "UNRESOLVED", "first_crossing",
-           "searched_flight"]  # fmt: skip
 
 FREE, CROSSES, GRAZES, UNRESOLVED = 0, 1, 2, 3
 

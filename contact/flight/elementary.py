@@ -8,7 +8,6 @@ Elementary Functions, Prentice-Hall 1980), and their Taylor sums on |x| <= pi/4;
 |x| <= ln 2/2.
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 import math
@@ -16,8 +15,6 @@ import math
 import numpy as np
 
 from contact.compiled import inlined, kernel
-
-__all__ = ["EPS", "FARTHEST", "exponential", "sine_cosine", "square_root", "turned", "two_product"]
 
 EPS = 2.220446049250313e-16
 """Distance from 1 to the next double."""

@@ -10,7 +10,6 @@ while the damping factor exp(-half t) falls by t/2 with c.  Where D t^2 is small
     e^(-half t) t^3 sum_k (-1)^k (D t^2)^(k-1) k/(2k + 1)!,      k = 1, 2, ...
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 import math
@@ -18,8 +17,6 @@ import math
 from contact.compiled import kernel
 from contact.flight.modal_flow import flow_matrix
 from contact.flight.motion import DAMPED, DECAY, LOW, OMEGA
-
-__all__ = ["flow_derivative"]
 
 TERMS = 10
 """Terms of the series for |D t^2| < 1: the next one is below 1e-19 of the first."""

@@ -24,7 +24,6 @@ all later times, whatever the damping,
 Units: SI with mass-normalised modes (u in m kg^0.5).
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 import math
@@ -47,10 +46,6 @@ from contact.flight.motion import (
     Motion,
 )
 from contact.vector_loops import aligned
-
-__all__ = ["acceleration_rounding", "at_tip", "flow", "flow_matrix", "mode_flow", "new_flight", "propagate",
-           "push_on", "speed_scale", "steady_motion", "tip_bound", "tip_rounding", "tip_state",
-           "tip_sum"]  # fmt: skip
 
 START_U, START_V, U, V, HEIGHT, RATE, BEND, THIRD, ABOVE = range(9)
 """Rows of the work space of a flight: deviation and velocity at its start, and now; what they add to the tip

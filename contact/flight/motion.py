@@ -6,7 +6,6 @@ one instruction.  (A table instead of a dozen arrays: to hand those on to a kern
 as to carry eight modes.)  Its equations are those of ``contact.flight.modal_flow``.
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 import math
@@ -17,8 +16,6 @@ import numpy as np
 from contact.compiled import kernel
 from contact.flight.elementary import square_root, two_product
 from contact.vector_loops import LANES
-
-__all__ = ["Motion", "damped_frequency", "motion_of", "single_mode", "with_drive"]
 
 DECAY, SQUARE, WEIGHT, LOAD, DAMPED, LOW, OMEGA, SLOWNESS, SHORTNESS, SINE, COSINE, OFFSET = range(12)
 """Rows of the table of modes: c, omega^2, phi, g of the modes of zero frequency, d = sqrt|D| as a sum of two,
@@ -180,11 +177,11 @@ def damped_frequency(omega, decay):
     return square_root(d, ((p - (d - back)) + (-r - back)) + (ep - er))  # with the rounding error (Knuth)
 
 
-def single_mode(motion: Motion) -> Motion:
-    """The same steady tip motion with only the first mode free."""
+def single_mode(motion: Motion, k: int) -> Motion:
+    """The same steady tip motion with only mode `k` free."""
     modes = np.zeros((len(motion.modes), LANES))
     modes[DAMPED] = 1.0
-    modes[:, 0] = motion.modes[:, 0]
+    modes[:, 0] = motion.modes[:, k]
     damped, omega, load = modes[DAMPED, 0], modes[OMEGA, 0], modes[LOAD, 0]
     plain = bool(damped > 0.0 and omega > 0.5 * modes[DECAY, 0] and load == 0.0)
     return motion._replace(modes=modes, size=1, plain=plain, phase_rate=float(damped))

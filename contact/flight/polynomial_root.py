@@ -4,14 +4,11 @@ The three proofs of ``contact.flight.bounds`` settle stretch after stretch; the 
 is the sum of the absolute terms at the far end.
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 from contact.compiled import kernel
 from contact.flight.bounds import PEAK, ROOT, SKIP, certify
 from contact.flight.elementary import EPS
-
-__all__ = ["first_polynomial_root", "horner", "polynomial_root"]
 
 
 @kernel

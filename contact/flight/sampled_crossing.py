@@ -14,7 +14,6 @@ of modes may lie as close together as they like, no k excludes it.  Where severa
 interval, the one located need not be the first.
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 import math
@@ -23,8 +22,6 @@ from contact.compiled import kernel
 from contact.flight.crossing import CROSSES, FREE
 from contact.flight.modal_flow import START_U, START_V, apply_flow, carry, tip_rounding, tip_state
 from contact.flight.tip_search import find_peak, find_root, tip_now
-
-__all__ = ["first_sampled_crossing"]
 
 ALIGNED = 1e-9
 """Part of the spacing by which an interval may differ from it and still be stepped over by its flow: the

@@ -1,20 +1,24 @@
-"""The tip during a flight, and where in a bracket it crosses the stop or turns back.
+"""The tip during a flight, where in a bracket it crosses the stop or turns back, and all its peaks.
 
 Both places are found on the exact flow by Newton's method within the bracket, the root of the parabola
 through a point in place of that of the tangent.  With a bound M of the third derivative the last step needs
 no check: one of length x ends within M x^3/6 of the height sought, or with y' within M x^2/2 of zero.
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from contact.compiled import kernel
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import U, V, flow, load_state, new_flight, tip_state
+from contact.flight.modal_flow import U, V, flow, load_state, new_flight, tip_bound, tip_rounding, tip_state
+from contact.flight.motion import DECAY, LOAD, SQUARE
 
-__all__ = ["find_peak", "find_root", "tip_at", "tip_now"]
+SHORTEST = 1e-9
+"""Part of a flight below which no stretch is divided, which bounds their number: peak and valley that lie as
+close differ by less than rounding."""
 
 
 @kernel
@@ -90,3 +94,34 @@ def find_peak(motion, flight, base, point, bracket, m3, margin):
         s = new
         _unused, y1, y2 = tip_now(motion, flight, base, s)
     return s
+
+
+@kernel
+def peaks_of_flight(motion, base, u, v, span, rising):
+    """All peaks of the tip in a `span` of times of the flight from (u, v) [s], shape (n,).
+
+    With |y'''| <= M, y' keeps its sign for (r - |y''|)/M, r = sqrt(y''^2 + 2 M |y'|), or for (r + |y''|)/M
+    where y'' leads away from zero, and y'' its own for |y''|/M: neither time holds two peaks.  `rising` says
+    whether the tip may rise at the start, unlike one that leaves the stop.
+    """
+    flight, modes, steady = new_flight(motion), motion.modes, motion.amplitude * motion.drive**3
+    load_state(flight, u, v)
+    margin = EPS * tip_rounding(motion, u, v)  # the place as exactly as the height
+    (s, end), found, before, m3 = span, [0.0], 0.0, 0.0
+    point, least = (s, 0.0, 0.0, 0.0), SHORTEST * (end - s)
+    while True:
+        y0, y1, y2 = tip_now(motion, flight, base, s)
+        if before > 0.0 >= y1:
+            found.append(find_peak(motion, flight, base, point, (point[0], s), m3, margin))
+            flow(motion, flight, 0, flight.shape[1], s)
+        if not s < end:
+            return np.array(found[1:])
+        before, point, m3 = y1 if rising else 0.0, (s, y0, y1, y2), steady
+        rising = True
+        for k in range(motion.size):
+            a = modes[LOAD, k] - modes[DECAY, k] * flight[V, k] - modes[SQUARE, k] * flight[U, k]
+            jerk = -modes[DECAY, k] * a - modes[SQUARE, k] * flight[V, k]
+            m3 += tip_bound(motion, k, jerk, math.sqrt(modes[SQUARE, k]) * a)
+        root, bend = math.sqrt(y2 * y2 + 2.0 * m3 * abs(y1)), abs(y2)
+        sure = root + bend if y1 * y2 > 0.0 else max(bend, root - bend)
+        s = min(s + max(sure / m3, least), end) if m3 > 0.0 else end

@@ -40,8 +40,6 @@ from contact.integrators.grid import (
 )
 from contact.laws import HERTZ, LINEAR
 
-__all__ = ["CentralDifference"]
-
 
 @kernel
 def central_difference(grid, numbers):

@@ -22,8 +22,6 @@ from contact.oscillator import ImpactOscillator
 from contact.touch import TOUCHES
 from contact.trajectory import Run, Trajectory
 
-__all__ = ["EXACT_NAMES", "Exact"]
-
 EXACT_NAMES = {
     NEWTON: "event-driven", DELAYED: "event-driven", LINEAR: "piecewise-linear", HERTZ: "contact-series"
 }  # fmt: skip

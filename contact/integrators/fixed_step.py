@@ -19,9 +19,7 @@ from contact.laws import LINEAR
 from contact.oscillator import ImpactOscillator
 from contact.recorder import Recorder, grown, open_touch, recorder_for, trajectory_of
 from contact.touch import TOUCHES
-from contact.trajectory import CONTACT, IMPACT, OUTSIDE, Run, State, Trajectory
-
-__all__ = ["FixedStep", "stiffness_at"]
+from contact.trajectory import CONTACT, OUTSIDE, UNDER_WAY, Run, State, Trajectory
 
 
 def stiffness_at(motion: Motion, square: float | np.ndarray) -> float:
@@ -136,7 +134,7 @@ class FixedStep(Integrator):
         recorder, order = _in_order(recorder_for(run, n), run, period)
         under_way = forced and here["gap"] < 0.0
         if under_way:
-            open_touch(recorder, run.first, run.clock, here["velocity"], IMPACT, q, v)
+            open_touch(recorder, run.first, run.clock, math.nan, UNDER_WAY, q, v)
         places = np.zeros(1, dtype=PLACE)
         places["due"] = -math.inf  # the first step has to look
         drive = oscillator.drive
@@ -165,6 +163,6 @@ class FixedStep(Integrator):
             regime=CONTACT if touching and motion.tip(q) > motion.gap else OUTSIDE,
         )  # fmt: skip
         return trajectory_of(
-            _sorted_out(recorder, run, order, period, under_way), run, end, period,
+            _sorted_out(recorder, run, order, period, under_way), run, end, oscillator,
             evaluations=grid.steps, motion=motion if self.deviations else None,
         )  # fmt: skip

@@ -69,8 +69,6 @@ from contact.integrators.grid import (
 )
 from contact.laws import HERTZ, LINEAR
 
-__all__ = ["AlphaNumbers", "GeneralisedAlpha", "carried_by", "chung_hulbert", "limit", "predict", "stable"]
-
 MARGIN = 1e-12
 """Slack of the conditions of stability, in units of their terms: on the limit itself they cancel up to
 rounding."""

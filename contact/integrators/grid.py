@@ -28,10 +28,6 @@ from contact.flight.motion import DECAY, SQUARE, Motion
 from contact.recorder import Recorder, add_loss, close_touch, is_full, open_touch, put_sample, sample_due
 from contact.trajectory import IMPACT
 
-__all__ = ["DIVERGED", "DONE", "FULL", "PLACE", "TOO_LARGE", "Grid", "accelerations",
-           "contact_force", "contact_tangent", "cubic_between", "end_contact_step", "ending",
-           "force_in_flight", "tip_of", "touches"]  # fmt: skip
-
 DONE, FULL, TOO_LARGE, DIVERGED = 0, 1, 2, 3
 """How a step or a run ends: well; with a full log; at a contact too stiff for the step; with a motion that is
 no longer finite."""
@@ -143,7 +139,9 @@ def ending(between: Between, write: Write) -> Callable[..., int]:
         recorder, place, h = grid.recorder, grid.places[0], count * grid.step
         start, marks, clock = grid.clock + place.step * grid.step, recorder.marks[0], recorder.sample_clock
         write(grid, method, (start, h), depth, done)
-        while sample_due(recorder, grid.first, start + h + ON_THE_GRID * h):
+        # rounding may put the end of a long run behind the last grid point by more than that
+        until = start + h + ON_THE_GRID * h if place.step + count < grid.steps else math.inf
+        while sample_due(recorder, grid.first, until):
             x = max(0.0, (clock[marks.sampled] - start) / h)
             between(grid, method, 1.0 if x > 1.0 - ON_THE_GRID else x, h, True)
             put_sample(recorder, grid.q_at, grid.v_at)
@@ -161,6 +159,7 @@ def ending(between: Between, write: Write) -> Callable[..., int]:
         place, status = grid.places[0], DONE
         end = grid.clock + (place.step + count) * grid.step
         quiet = apart and grid.recorder.marks[0].touching == 0 and abs(depth) < UNBOUNDED
+        quiet = quiet and place.step + count < grid.steps
         if not (quiet and end + ON_THE_GRID * grid.step < place.due):
             status = write_down(grid, method, count, depth, done)
         place.step += count

@@ -16,8 +16,6 @@ from contact.oscillator import ImpactOscillator
 from contact.touch import TOUCHES
 from contact.trajectory import Run, Trajectory
 
-__all__ = ["Integrator", "Run"]
-
 LAW_NAMES = {code: file.LAW for code, file in TOUCHES.items()}
 """The laws in words, by their codes."""
 

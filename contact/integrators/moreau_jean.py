@@ -59,8 +59,6 @@ from contact.laws import NEWTON
 from contact.recorder import add_loss, close_touch, open_touch
 from contact.trajectory import IMPACT
 
-__all__ = ["MoreauJean", "prepared_for", "through_percussions"]
-
 MARGIN = 1e-12
 """Slack of the test for stability, relative: on the limit itself its two terms cancel up to rounding."""
 

@@ -38,8 +38,6 @@ from contact.integrators.grid import Grid
 from contact.integrators.moreau_jean import prepared_for, through_percussions
 from contact.laws import NEWTON
 
-__all__ = ["NonsmoothGeneralisedAlpha"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class NonsmoothGeneralisedAlpha(FixedStep):

@@ -22,9 +22,6 @@ from contact.integrators.method import Integrator
 from contact.oscillator import ImpactOscillator
 from contact.trajectory import Run, Trajectory
 
-__all__ = ["SampledFlight"]
-
-
 MOST_POINTS = 10**9
 """Samples per drive period: some minutes for each."""
 

@@ -66,8 +66,6 @@ from contact.integrators.grid import Grid
 from contact.integrators.splitting_step import Composition, Split, march, sub_flows
 from contact.laws import HERTZ, LINEAR, LinearContact
 
-__all__ = ["COMPOSITIONS", "Splitting", "first_instability", "spectral_radius", "step_matrix"]
-
 SEARCH, SEARCH_BEYOND_PI, EACH = 1, 6, 100
 """Decades of k below the lowest root that are searched, for omega h < pi and beyond, and values in each."""
 

@@ -37,8 +37,6 @@ from contact.flight.modal_flow import at_tip, flow_over, propagate, push_on, tip
 from contact.flight.motion import LOAD, OMEGA
 from contact.integrators.grid import DONE, contact_force, contact_tangent, ending, touches
 
-__all__ = ["Composition", "Split", "kick", "march", "sub_flows", "tip_at", "tip_rate"]
-
 RENEW = 32
 """Steps after which sin and cos of the drive's phase are computed anew instead of turned on: their rounding
 error then stays below 1e-14."""

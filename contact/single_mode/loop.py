@@ -45,8 +45,6 @@ from contact.single_mode.one_impact import guessed, is_settled, one_impact, risi
 from contact.single_mode.period_table import flow_over, mode_at, through, tip_near
 from contact.trajectory import OUTSIDE
 
-__all__ = ["any_periods", "one_mode_periods"]
-
 
 @part
 def any_periods(motion, u, v, runs, points, counts):

@@ -36,8 +36,6 @@ import math
 from contact.compiled import inlined, kernel
 from contact.single_mode.period_table import SMALL, flow_to, short_flow, steady_near, through, tip_near
 
-__all__ = ["guessed", "is_settled", "one_impact", "rising_zero", "zero_of"]
-
 NEWTON_STEPS = 60
 """Bound of Newton steps; next to a graze each but halves the distance to the double root, from 1 to 1e-8."""
 

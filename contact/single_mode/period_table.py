@@ -31,9 +31,6 @@ from contact.flight.modal_flow import flow_matrix
 from contact.flight.motion import DAMPED, DECAY, LOW, OMEGA, Motion
 from contact.laws import NEWTON
 
-__all__ = ["SMALL", "OneMode", "PeriodTable", "flow_over", "flow_to", "period_table", "short_flow",
-           "mode_at", "steady_near", "through", "tip_near"]  # fmt: skip
-
 FEWEST, MOST = 64, 4096
 """Stretches of a period: 64 where the drive is fastest (w x <= pi/64), more for a faster mode; beyond 4096,
 for a mode some sixty times faster than the drive, the table would outgrow the nearest cache."""

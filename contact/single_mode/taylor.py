@@ -14,7 +14,6 @@ The cubic terms are those of small x: where the restoring force would fall, or t
 (`reach`), and where a drive period takes more than `MOST_STEPS`, the run ends without a result.
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 import math
@@ -23,8 +22,6 @@ import numpy as np
 
 from contact.compiled import kernel
 from contact.flight.polynomial_root import first_polynomial_root, horner
-
-__all__ = ["CHATTERED", "FLOWN", "LOST", "MOST_IMPACTS", "ORDER", "free_flow", "periods"]
 
 FLOWN, CHATTERED, LOST = range(3)
 """How drive periods end: all of them; impacts beyond `MOST_IMPACTS`; a motion beyond the model."""

@@ -40,7 +40,6 @@ A code that no file has is an error wherever a law is asked for.  Compiled code 
 arguments: `by_law` links the files of the table into one kernel for each function.
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 import inspect
@@ -50,9 +49,6 @@ from typing import TypeVar
 from contact.compiled import part
 from contact.laws import DELAYED, HERTZ, LINEAR, NEWTON
 from contact.touch import delayed, hertz, linear, newton
-
-__all__ = ["TOUCHES", "force", "leave", "place", "room", "saltation", "slopes", "state", "step", "stiffness",
-           "strike", "work"]  # fmt: skip
 
 Function = TypeVar("Function", bound=Callable[..., object])
 

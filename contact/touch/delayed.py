@@ -18,7 +18,6 @@ the saltation matrix of this law, of determinant tau (tau + tau' v); without del
 Newton's.
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 import numpy as np
@@ -28,9 +27,6 @@ from contact.flight.modal_flow import push_on, tip_state
 from contact.touch import newton
 from contact.touch.tangents import FIRST, all_tip_changes, tangent_flight
 from contact.trajectory import OUTSIDE, WAITING
-
-__all__ = ["LAW", "REGIMES", "force", "leave", "numbers_at", "place", "room", "saltation", "slopes", "state",
-           "step", "stiffness", "strike", "work"]  # fmt: skip
 
 LAW = "DelayedRestitution"
 REGIMES = (OUTSIDE, WAITING)

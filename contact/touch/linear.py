@@ -10,7 +10,6 @@ Motion in contact is linear, so that the propagation is the exponential of a mat
 (S. W. Shaw, P. J. Holmes, J. Sound Vib. 90 (1983) 129, for one mode).
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 import math
@@ -20,13 +19,12 @@ from contact.flight.elementary import EPS
 from contact.flight.modal_flow import tip_rounding
 from contact.flight.polynomial_root import first_polynomial_root
 from contact.touch import time_series
-from contact.touch.series import enter, leave, saltation
+from contact.touch.series import enter
+from contact.touch.series import leave as leave
+from contact.touch.series import saltation as saltation
 from contact.touch.tangents import FORCES
 from contact.touch.time_series import DEPTH, FORCE, begin, extend, longest_step
 from contact.trajectory import CONTACT, INSIDE, OUTSIDE
-
-__all__ = ["LAW", "REGIMES", "enter", "force", "leave", "place", "room", "saltation", "slopes", "state",
-           "step", "stiffness", "work"]  # fmt: skip
 
 LAW = "LinearContact"
 REGIMES = (OUTSIDE, CONTACT, INSIDE)

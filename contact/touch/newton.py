@@ -11,7 +11,6 @@ the sequence is taken in one step.  Then the tip stays on the wall (regime SUSTA
 makes d'' = 0, until that force would pull; the series is that of ``contact.touch.time_series``.
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 import math
@@ -31,9 +30,6 @@ from contact.touch import time_series
 from contact.touch.tangents import FIRST, all_tip_changes
 from contact.touch.time_series import FORCE, begin, extend, free_pull, longest_step
 from contact.trajectory import OUTSIDE, SUSTAINED
-
-__all__ = ["LAW", "REGIMES", "force", "hold", "leave", "newton_impact", "place", "room", "saltation",
-           "slopes", "state", "step", "stiffness", "strike", "work"]  # fmt: skip
 
 LAW = "NewtonRestitution"
 REGIMES = (OUTSIDE, SUSTAINED)

@@ -14,7 +14,6 @@ when the last two orders of the modes say too little: each order n estimates the
 root test, R_n = (A/|x_n|)^(1/n), and a step of R tol^(1/p) leaves terms of tol A at the order p.
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 import math
@@ -25,9 +24,6 @@ import numpy as np
 from contact.compiled import inlined, kernel, part
 from contact.trajectory import CONTACT
 from contact.vector_loops import aligned, weighted_rows
-
-__all__ = ["Series", "enter", "leave", "new_series", "powers_of", "reach", "saltation", "within_force",
-           "work_of"]  # fmt: skip
 
 WINDOW = 8
 """Orders of the force that are looked at."""

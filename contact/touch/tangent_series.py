@@ -5,7 +5,6 @@ The motion itself is one more column if there are parameters: pushed by r N, it 
 sources are made of.
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 from typing import NamedTuple
@@ -17,8 +16,6 @@ from contact.flight.motion import DECAY, LOAD, SQUARE, WEIGHT
 from contact.touch.series import powers_of
 from contact.touch.tangents import FIRST, FORCES, PACE, drive_now, own_changes, tip_changes
 from contact.vector_loops import LANES, aligned, weighted_rows
-
-__all__ = ["TangentRoom", "new_room", "tangent_step"]
 
 
 class TangentRoom(NamedTuple):

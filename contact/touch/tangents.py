@@ -24,7 +24,6 @@ and with (u, v, S, C) the motion itself,
 n_1, n_2 the two numbers of the law.  The motion itself is one more column of the series, pushed by r N.
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 import math
@@ -36,9 +35,6 @@ from contact.compiled import kernel, part
 from contact.flight.flow_derivative import flow_derivative
 from contact.flight.modal_flow import flow_over
 from contact.flight.motion import WEIGHT, Motion
-
-__all__ = ["FIRST", "FORCES", "NUMBERS", "PACE", "Variation", "all_tip_changes", "drive_now", "onset",
-           "own_changes", "tangent_flight", "tip_changes", "variation"]  # fmt: skip
 
 NUMBERS, PACE, FIRST = 6, 3, 4
 """Columns of `Variation.rest`, the changes of level, a, b, w, n_1 and n_2; those of w and of n_1 among

@@ -8,7 +8,6 @@ radians of the fastest mode.  Terms then reach e^3 times the sum, which costs a 
 nothing in the others; a higher order would take longer steps for less work and lose more.
 """
 
-# mypy: allow-untyped-defs, allow-incomplete-defs
 from __future__ import annotations
 
 import math
@@ -19,8 +18,6 @@ from contact.flight.modal_flow import speed_scale, tip_steady, tip_sum
 from contact.touch.series import powers_of, reach, within_force, work_of
 from contact.trajectory import INSIDE
 from contact.vector_loops import next_order, weighted_rows
-
-__all__ = ["ORDER", "begin", "extend", "free_pull", "longest_step", "place", "room", "state", "work"]
 
 ORDER = 30
 """Order of the series in time."""

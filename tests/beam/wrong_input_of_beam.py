@@ -178,6 +178,10 @@ BEAM = (
     of(beam.ModalModel, MODAL | dict(static_compliance=1e-3, tip_mass=0.004),
        kind=dict(omega=each("150", [150.0, 1j], [True, False]), readouts=[1.0, 2.0]),
        value=dict(omega=[], decay_rate=[-3.0, 9.0], phi=[10.0], participation=[NAN, 1.0], tip_mass=-1.0)),
+    of(lambda phi: dataclasses.replace(
+           beam.ModalModel(**MODAL, static_compliance=1e-2, tip_mass=0.004), phi=phi),  # type: ignore[arg-type]
+       dict(phi=[-10.0, 9.0]), name="ModalModel, at another point",
+       value=dict(phi=told([5.0, -3.0], "static_compliance is 0.01 m/N, which belongs to"))),
     of(beam.single_mode, dict(free_period=40.8e-3, decay_rate=3.56),
        kind=dict(free_period="40.8 ms"), value=dict(free_period=0.0, decay_rate=-3.56)),
     of(beam.ModalChange, lambda: dict(MODAL),

@@ -92,7 +92,11 @@ def test_accumulation_that_straddles_a_strobe_loses_no_time(e):
     strobe = 20 * oscillator.period
     for part in (0.1, 0.5, 0.9):
         at = strobe - plain.impacts.start[stay] - part * left
-        run = simulate(oscillator, State(time=at, **start), duration=length)
+        hops = plain.impacts.start[stay] + 0.5 * part * left  # the strobe comes after them
+        times = np.array([0.5 * total, hops, total + 1e-3, total + 0.03])
+        run = simulate(oscillator, State(time=at, **start), duration=length, times=at + times)
+        np.testing.assert_allclose(run.displacement[:, 1], np.sin(beside * times) / beside, atol=1e-12)
+        np.testing.assert_allclose(heights(oscillator, run.displacement)[1:], 0.0, atol=1e-15)
         assert run.end.displacement[1] == pytest.approx(math.sin(beside * length) / beside, abs=1e-12)
         assert run.end.velocity[1] == pytest.approx(math.cos(beside * length), abs=1e-11)
         assert run.end.regime == HELD

@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from light_spring import PHI, equation_1, newton, real_differs, spring
-from oscillators import GAP, OMEGA
+from oscillators import GAMMA, GAP, OMEGA
+from whole_motions import pressed
 
+from beam import ModalModel
+from contact import HarmonicDrive, NordmarkMap, Stop, StroboscopicMap
 from contact.collision import before_collision, collisions, first_collision
+from contact.integrators import CentralDifference, Integrator
 from contact.laws import (
     DelayedRestitution,
     HertzContact,
 )
+from contact.orbits import KickFamily
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
-from contact.trajectory import State
+from contact.trajectory import ImpactKind, State
 
 # ------------------------------------------------------------------------ planted restitution and delay
 
@@ -142,6 +148,89 @@ def test_contact_under_way_at_the_end_is_no_collision_yet() -> None:
     assert collisions(oscillator, run, unfinished="drop") == []
     free = simulate(oscillator, start, duration=0.5 * (whole.impacts.start[0] - start.time))
     assert collisions(oscillator, free) == []
+
+
+@pytest.mark.parametrize("method", [None, CentralDifference(step=1e-6)], ids=["exact", "stepped"])
+def test_contact_under_way_at_the_start_is_no_touch(method: Integrator | None) -> None:
+    """Cut in the second collision: it is logged as what it is, and the others are found as without a cut."""
+    oscillator = spring(4, HertzContact(stiffness=3e7))
+    start = before_collision(oscillator)
+    whole = simulate(oscillator, start, periods=12, method=method)
+    found = collisions(oscillator, whole, unfinished="drop")
+    chosen = np.flatnonzero(whole.impacts.start > found[1].time - 1e-4)[0]
+    middle = 0.5 * (whole.impacts.start[chosen] + whole.impacts.end[chosen])
+    state = simulate(oscillator, start, duration=middle - start.time, method=method).end
+    rest = simulate(oscillator, state, duration=whole.end.time - middle, method=method)
+    assert rest.impacts.kind[0] == ImpactKind.UNDER_WAY and math.isnan(rest.impacts.approach[0])
+    assert rest.impacts.end[0] == pytest.approx(whole.impacts.end[chosen], abs=1e-8)
+    assert np.all(rest.impacts.kind[1:] == ImpactKind.IMPACT)
+    again = collisions(oscillator, rest, unfinished="drop")
+    assert len(again) == len(found) - 2 >= 3
+    assert [c.kick for c in again] == pytest.approx([c.kick for c in found[2:]], abs=1e-4 if method else 1e-9)
+
+
+def test_stay_that_goes_on_is_a_stay() -> None:
+    oscillator = pressed(3, 0.5)
+    whole = simulate(oscillator, periods=30)
+    i = np.flatnonzero((whole.impacts.kind == ImpactKind.STAY) & np.isfinite(whole.impacts.end))[0]
+    length = whole.impacts.end[i] - whole.impacts.start[i]
+    held = simulate(oscillator, duration=float(whole.impacts.start[i] + 0.9 * length)).end
+    rest = simulate(oscillator, held, duration=whole.end.time - held.time).impacts
+    np.testing.assert_array_equal(rest.kind, whole.impacts.kind[i:])
+    assert rest.end[0] == pytest.approx(whole.impacts.end[i], abs=1e-10)
+
+
+def test_collisions_are_those_of_the_oscillator_that_moves() -> None:
+    still = spring(3, newton(0.3), excess=0.0)
+    oscillator = still.with_excess(0.05)
+    run = simulate(oscillator, before_collision(oscillator), periods=8)
+    found = collisions(run, unfinished="drop")
+    for same in (oscillator, still.with_excess(oscillator.excess), spring(3, newton(0.3))):
+        assert collisions(same, run, unfinished="drop") == found
+    for other in (still, spring(2, newton(0.3)), spring(3, newton(0.31))):
+        with pytest.raises(ValueError, match="oscillator differs from the one"):
+            collisions(other, run, unfinished="drop")
+
+
+def test_phase_is_kept_over_any_number_of_periods() -> None:
+    oscillator = equation_1(22.2, newton(0.1), 1e-4)
+    start = StroboscopicMap(oscillator=oscillator).steady()
+    first = first_collision(oscillator, start)
+    for periods in (10**6, 10**8):
+        later = first_collision(oscillator, replace(start, time=periods * oscillator.period))
+        for name in ("kick", "restitution", "delay", "shift", "approach"):
+            assert getattr(later, name) == pytest.approx(getattr(first, name), abs=1e-12), name
+
+
+def test_with_one_mode_each_impact_is_a_collision_however_slow_the_drive() -> None:
+    """Between two impacts the motion is the virtual one, and has a minimum."""
+    oscillator = equation_1(0.3, newton(0.5), 0.02)
+    run = simulate(oscillator, before_collision(oscillator), periods=3)
+    touches = run.impacts.start[run.impacts.kind == ImpactKind.IMPACT]
+    found = collisions(oscillator, run, unfinished="drop")
+    assert [c.first_touch for c in found] == touches[:-1].tolist() and touches.size > 40
+    assert [c.time for c in found] == pytest.approx(touches[:-1], abs=1e-9)
+    assert [c.approach for c in found] == pytest.approx([c.real_approach for c in found], abs=1e-9)
+
+
+def test_mode_1_is_the_one_that_moves_the_tip_most() -> None:
+    """A suspension of 3 Hz below it, or another order of the modes, changes nothing of what is said of it."""
+    rows = {"omega": OMEGA[:3], "decay_rate": 0.02 * OMEGA[:3], "phi": PHI[:3], "participation": GAMMA[:3]}
+    one, three = (ModalModel(**{name: row[:n] for name, row in rows.items()}) for n in (1, 3))
+    turned = ModalModel(**{name: row[[2, 0, 1]] for name, row in rows.items()})
+    stop, drive = Stop(gap=GAP, law=newton(0.1)), HarmonicDrive(frequency=21.5)
+    exciter = one.on_exciter(mass=20.0, suspension_hz=3.0)
+    for model, other, digits in ((one, exciter, 2e-2), (three, turned, 1e-9)):
+        first, second = (ImpactOscillator(model=m, stop=stop, drive=drive) for m in (model, other))
+        pairs = [(model.free_period, other.free_period)]
+        pairs.append((NordmarkMap.from_oscillator(first).alpha, NordmarkMap.from_oscillator(second).alpha))
+        speed = 0.1 * first.unit_speed
+        pairs.append(tuple(KickFamily(oscillator=o, period=3).orbit(speed).excess for o in (first, second)))
+        hits = [first_collision(oscillator.with_excess(0.02)) for oscillator in (first, second)]
+        pairs += [tuple(getattr(hit, name) for hit in hits) for name in ("kick", "restitution", "ringing")]
+        for expected, found in pairs:
+            assert found == pytest.approx(expected, rel=digits, abs=digits)
+        assert hits[0].kick == pytest.approx(1.1 if model is one else 0.45, abs=0.05)
 
 
 def test_grazes_are_no_collisions() -> None:

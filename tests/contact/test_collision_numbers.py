@@ -151,7 +151,8 @@ def test_minimum_of_the_outgoing_motion_ends_a_collision(before_minimum: float) 
     angle = 2 * math.pi * (second - 1.0)
     state = np.array([[-math.sin(angle) / (4 * math.pi)]]), np.array([[-0.5 * math.cos(angle)]])
     rows = {name: getattr(real.impacts, name)[:1] for name in real.impacts.__dataclass_fields__}
-    made_up = dict(start=second, end=second, approach=0.0, rebound=0.0, loss=0.0, kind=0)
+    made_up = {name: second for name in ("start", "end", "clock", "end_clock")}
+    made_up |= dict(period=0, approach=0.0, rebound=0.0, loss=0.0, kind=0)
     for name, value in made_up.items():
         rows[name] = np.append(rows[name], value).astype(rows[name].dtype)
     for i, name in enumerate(("displacement", "velocity")):

@@ -17,10 +17,13 @@ from tip_judge import (
 )
 
 from beam import ModalModel
+from contact.drive import HarmonicDrive
 from contact.flight.crossing import CROSSES, FREE, GRAZE_TOLERANCE, GRAZES, UNRESOLVED
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import propagate, tip_rounding
 from contact.laws import NewtonRestitution
+from contact.orbits import Shooting
+from contact.orbits.event_derivatives import peaks
 from contact.oscillator import ImpactOscillator
 from contact.stop import Stop
 
@@ -177,3 +180,29 @@ def test_thrown_body_turns_just_above_or_below_the_stop():
         if h > 0:
             exact = (Real(speed) - np.sqrt(16 * excess)) / 8
             assert abs(s - exact) < 4 * EPS + 20 * EPS * gap / np.sqrt(16 * excess)
+
+
+@pytest.mark.parametrize("hertz", [60.0, 900.0, 6000.0])
+def test_all_peaks_of_an_orbit_are_found(hertz):
+    """As many, and where, as a sampling of forty points a period of the higher mode shows."""
+    omega, decay = 2 * np.pi * np.array([24.5, hertz]), np.array([3.0, 20.0])
+    model = ModalModel(omega=omega, decay_rate=decay, phi=[7.0, 14.0], participation=[0.09, 0.0])
+    stop, drive = Stop(gap=0.01, law=NewtonRestitution(local_restitution=0.1)), HarmonicDrive(frequency=21.5)
+    family = Shooting(oscillator=ImpactOscillator(model=model, stop=stop, drive=drive), period=3)
+    orbit = family.at_speed(0.3 * family.oscillator.unit_speed)
+    (_start, left, _approach, _rebound, *state), w = orbit.record[0], drive.angular_frequency
+    u, v = np.array(state).reshape(2, 2)
+    times = np.linspace(0.0, orbit.duration - left, 1 + round(40 * max(100.0, hertz) * orbit.duration))
+    turns = np.sqrt(omega**2 - decay**2 / 4)
+    poles, sizes = -decay / 2 + 1j * turns, u - 1j * (v + decay * u / 2) / turns
+    turn = np.exp(1j * w * (orbit.phase + left + times))
+    driven = orbit.amplitude * family.oscillator.tip_response() * turn
+    free = model.phi * sizes * np.exp(np.multiply.outer(times, poles))
+    speed = (1j * w * driven).imag + (free @ poles).real
+    tops = np.flatnonzero((speed[:-1] > 0) & (speed[1:] <= 0))
+    found = peaks(orbit)
+    assert len(found) == tops.size > (40 if hertz > 1000 else 1)
+    places = np.array([s for _, s, _ in found])
+    assert np.all((times[tops] <= places) & (places <= times[tops + 1]))
+    heights = (driven.imag + free.sum(axis=1).real)[tops] - stop.gap
+    assert [height for *_, height in found] == pytest.approx(heights, abs=2e-6)

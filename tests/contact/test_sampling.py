@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 
 import numpy as np
 import pytest
@@ -23,7 +25,9 @@ from whole_motions import (
 )
 
 from beam import ModalModel
-from contact.errors import UnresolvedCrossing
+from contact import exact_run
+from contact.errors import ContactError, UnresolvedCrossing
+from contact.integrators import CentralDifference
 from contact.laws import DelayedRestitution, LinearContact, NewtonRestitution
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
@@ -134,6 +138,23 @@ def test_every_sample_is_filled_in_whatever_the_length():
         assert run.velocity[-1] == pytest.approx(run.end.velocity, abs=1e-12 * scale)
 
 
+def test_a_sample_that_was_not_written_is_an_error(monkeypatch):
+    monkeypatch.setattr(exact_run, "advance", lambda *_: exact_run.DONE)
+    with pytest.raises(ContactError, match="not written down"):
+        simulate(spring(1, NewtonRestitution(local_restitution=0.5)), duration=0.1, times=[0.05])
+
+
+def test_the_end_of_millions_of_steps_is_written_down():
+    """Rounding puts the end of this run two billionths of a step behind the last grid point."""
+    oscillator = spring(1, LinearContact(stiffness=2e4), drive=(21.5, 1e-4))
+    start, length = State(displacement=[1e-5], velocity=[0.0], time=0.0066015456780014106), 8.388849000000002
+    exact = simulate(oscillator, start, duration=length).end
+    step = CentralDifference(step=1e-6)
+    run = simulate(oscillator, start, duration=length, times=[start.time + length], method=step)
+    for found in (run.displacement[0], run.end.displacement):
+        assert found == pytest.approx(exact.displacement, abs=1e-9)
+
+
 def test_motion_without_drive_does_not_depend_on_the_clock():
     oscillator = spring(3, LinearContact(stiffness=2e4, damping=3.0))
     velocity = np.array([0.3, 0.0, 0.0])
@@ -178,6 +199,23 @@ def test_graze_is_logged_and_does_nothing():
 
 
 # ------------------------------------------------------------------------------------ what cannot be followed
+
+
+def fail(kind: type[ContactError]) -> None:
+    error = kind(time=1.5, gap=-2e-3, velocity=0.25, detail="why")
+    error.orbit = "the last one"
+    raise error
+
+
+def test_errors_leave_a_worker_as_themselves():
+    kinds = [ContactError, *ContactError.__subclasses__()]
+    assert len(kinds) > 7
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        for kind in kinds:
+            with pytest.raises(ContactError, match="^" + kind.reason + ".*; why$") as caught:
+                pool.submit(fail, kind).result()
+            assert type(caught.value) is kind and caught.value.orbit == "the last one"
+            assert (caught.value.time, caught.value.gap, caught.value.velocity) == (1.5, -2e-3, 0.25)
 
 
 def test_graze_lost_in_rounding_is_reported_and_not_passed():

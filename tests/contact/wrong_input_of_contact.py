@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 from functools import cache
 from typing import Any
@@ -12,7 +13,8 @@ from wrong_input_of_beam import INF, NAN, each, fields_of, of, told
 import beam
 import contact
 from contact import Regime, integrators
-from contact.orbits import clouds, continuation, kick, lyapunov, path, shooting
+from contact import orbits as periodic
+from contact.orbits import continuation, kick, lyapunov, path, shooting
 
 
 @cache
@@ -37,6 +39,14 @@ def nordmark() -> contact.NordmarkMap:
 
 
 @cache
+def bent() -> contact.NonlinearMode:
+    return contact.NonlinearMode(
+        free_period=40.8e-3, decay_rate=3.56, stiffness=-100.0, inertia=90.0, gap=0.0107, restitution=0.1,
+        frequency=22.2, excess=0.01,
+    )  # fmt: skip
+
+
+@cache
 def closed() -> contact.MaximalFamily:
     return contact.MaximalFamily.from_oscillator(eq_1(), period=5)
 
@@ -49,6 +59,16 @@ def family() -> shooting.Shooting:
 @cache
 def orbit() -> shooting.PeriodicOrbit:
     return family().at_speed(0.1)
+
+
+def unless_refused(derivatives: Any) -> Any:
+    """The derivatives of an event, of an orbit that need not be one."""
+
+    def call(orbit: Any, changes: Any) -> None:
+        with contextlib.suppress(contact.NoDerivative):
+            derivatives(orbit, changes)
+
+    return call
 
 
 @cache
@@ -65,6 +85,11 @@ def at(displacement: float, regime: Regime = Regime.OUTSIDE) -> contact.State:
 GAP = eq_1().stop.gap
 LOADED = dataclasses.replace(eq_1(), load=np.array([1.0]))
 UNDRIVEN = dataclasses.replace(eq_1(), drive=None)
+IDLE = dataclasses.replace(eq_1(), model=dataclasses.replace(eq_1().model, participation=[0.0]))
+RESTING = dataclasses.replace(UNDRIVEN, stop=contact.Stop(gap=0.0, law=eq_1().stop.law))
+CHANGE = periodic.Change(gap=1.0)
+FINAL = (beam.ModalChange, beam.ModalModel, contact.HarmonicDrive, contact.ImpactOscillator, contact.State,
+         contact.Stop, periodic.Change, *contact.ContactLaw.__subclasses__())  # fmt: skip
 PAIR = dict(radius=0.0025, youngs_modulus=370e9, poissons_ratio=0.22, other_modulus=210e9, other_ratio=0.29)
 BAND = dict(free_period=40.8e-3, decay_rate=3.56, restitution=0.1)
 FROM_F = dict(drive_frequency=22.2, **BAND)
@@ -72,6 +97,8 @@ START = dict(displacement=[0.0], velocity=[0.0])
 
 # fmt: off
 CONTACT = (
+    of(lambda parent: type("Own", (parent,), {}), dict(parent=contact.ContactLaw), name="final classes",
+       kind=dict(parent=each(*(told(one, f"is a subclass of {one.__name__};") for one in FINAL)))),
     of(contact.HarmonicDrive, dict(frequency=22.2, amplitude=1e-3),
        kind=dict(frequency="22.2 Hz"), value=dict(frequency=0.0, amplitude=-1e-3)),
     of(contact.Stop, dict(gap=0.0107, law=contact.NewtonRestitution(local_restitution=0.1)),
@@ -125,6 +152,7 @@ CONTACT = (
     of(contact.simulate, lambda: dict(oscillator=eq_1(), periods=2),
        kind=dict(oscillator=None, state=[0.0, 0.0], times="now", method=3),
        value=dict(periods=each(0, -2, 1.5, told(None, "duration and periods")),
+                  oscillator=told(RESTING, "gap is 0.0 m"),
                   times=told([0.02, 0.01], "times must be"), method="magic",
                   state=each(told(contact.State.rest(3), "displacement of the state has 3 modes"),
                              told(at(1.0), "m behind the stop"), told(at(0.0, Regime.SUSTAINED), "regime"),
@@ -144,12 +172,12 @@ CONTACT = (
     of(lambda factors: strobed().orbit(strobed().steady(), 2, factors=factors), dict(factors=[1.0, 1.1]),
        name="StroboscopicMap.orbit, factors", kind=dict(factors=each("1", ["a", "b"])),
        value=dict(factors=each([1.0], [1.0, 0.0], [1.0, NAN], 1.0))),
-    of(clouds.strobe_derivatives,
-       lambda: dict(strobed=strobed().at(-0.1), state=strobed().steady(), period=1),
-       kind=dict(strobed=None, state=[0.0, 0.0]), value=dict(period=each(0, 1.5))),
-    of(clouds.cloud,
-       lambda: dict(strobed=strobed().at(-0.1), state=strobed().steady(), period=1, deviation=1e-4),
-       kind=dict(strobed=3.0), value=dict(deviation=each(-1e-4, NAN), memory=each(1.0, -0.1, NAN), period=0)),
+    of(lambda points: strobed().tip(points), dict(points=[[0.0, 0.0]]), name="StroboscopicMap.tip",
+       kind=dict(points="p"), value=dict(points=each([0.0, 0.0], np.zeros((2, 0)), [[0.0, 0.0, 0.0]]))),
+    *(of(call, lambda: dict(state=strobed().steady()), name=name, kind=dict(state=[0.0, 0.0]),
+         value=dict(state=told(contact.State.rest(3), "displacement of the state has 3 modes")))
+      for name, call in {"StroboscopicMap.coordinates": lambda state: strobed().coordinates(state),
+                         "StroboscopicMap.jacobians": lambda state: strobed().jacobians(state, 1)}.items()),
     of(lambda name: strobed().readout(np.zeros((1, 2)), name), dict(name="laser"),
        name="StroboscopicMap.readout", value=dict(name="no such point")),
     of(lambda maps, states, workers: contact.strobed_orbits(
@@ -157,11 +185,13 @@ CONTACT = (
        dict(maps=2, states=2, workers=2), name="strobed_orbits",
        value=dict(workers=0, maps=told(1, "states has 2 entries"),
                   states=each(told(0, "states has 0 entries"), told(3, "states has 3 entries")))),
-    of(contact.NonlinearMode, dict(free_period=40.8e-3, decay_rate=3.56, stiffness=-100.0, inertia=90.0,
-                                   gap=0.0107, restitution=0.1, frequency=22.2, excess=0.01),
+    of(contact.NonlinearMode, lambda: fields_of(bent()),
        kind=dict(gap="1 cm", stiffness=None),
        value=dict(free_period=0.0, decay_rate=-1.0, gap=0.0, restitution=1.5, frequency=NAN, excess=-1.0,
                   stiffness=each(-1e4, INF), inertia=-1e4)),
+    of(lambda state, count: bent().orbit(state, count), dict(state=[0.0, 0.0], count=0),
+       name="NonlinearMode.orbit", kind=dict(state="rest"),
+       value=dict(state=each([0.0, 0.0, 0.0], 0.0, [NAN, 0.0]), count=-1)),
     of(contact.NordmarkMap, dict(alpha=0.5, gamma=0.8, restitution=0.1, delay_term=0.0, whole_turns=1),
        kind=dict(restitution="0.1"),
        value=dict(alpha=1.9, gamma=each(1.5, -0.1, NAN), restitution=1.5, delay_term=-1.0,
@@ -220,13 +250,15 @@ CONTACT = (
 ORBITS = (
     of(kick.KickFamily, lambda: dict(oscillator=eq_1(), period=5),
        kind=dict(oscillator=None),
-       value=dict(period=each(0, 2.5), oscillator=told(LOADED, "load is given"))),
+       value=dict(period=each(0, 2.5), oscillator=each(
+           told(LOADED, "load is given"), told(IDLE, "the drive does not move the tip")))),
     of(lambda speeds: kick.KickFamily(oscillator=eq_1(), period=5).fold(speeds), dict(speeds=(0.01, 0.5)),
        name="KickFamily.fold",
        kind=dict(speeds="all"), value=dict(speeds=each((0.5, 0.01), (0.0, 1.0)))),
     of(shooting.Shooting, lambda: dict(oscillator=family().oscillator, period=5),
        kind=dict(oscillator="eq_1"),
-       value=dict(period=each(0, 1.5), impacts=0, oscillator=told(UNDRIVEN, "drive is None"))),
+       value=dict(period=each(0, 1.5), impacts=0, oscillator=each(
+           told(UNDRIVEN, "drive is None"), told(IDLE, "the drive does not move the tip")))),
     of(lambda speed: kick.KickFamily(oscillator=eq_1(), period=5).kick(speed), dict(speed=0.1),
        name="KickFamily.kick", kind=dict(speed="fast"), value=dict(speed=each(0.0, -1.0, INF))),
     of(lambda **given: family().at_speed(**given), dict(speed=0.1), name="Shooting.at_speed",
@@ -255,9 +287,57 @@ ORBITS = (
            low=NAN, high=told(-0.2, "high is -0.2 [of p]"), step=told(0.0, "step is 0.0 [1]"))),
     of(continuation.orbits_at, lambda: dict(family=family(), excess=0.01),
        kind=dict(family=None), value=dict(excess=each(-1.5, NAN))),
+    of(periodic.Change, dict(gap=1.0, frequency=0.0, amplitude=0.0, law=(0.0, 0.0)),
+       kind=dict(model=eq_1().model, law=each("soft", ("1", 0.0))), value=dict(law=each((1.0,), (NAN, 0.0)))),
+    *(of(call, lambda: dict(orbit=orbit(), changes=[CHANGE]), name=name,
+         kind=dict(orbit=each(None, 0.1), changes=each(CHANGE, 3.0, ["gap"])))
+      for name, call in {"orbit_derivatives": periodic.orbit_derivatives,
+                         "excess_derivatives": periodic.excess_derivatives,
+                         "doubling_derivatives": unless_refused(periodic.doubling_derivatives),
+                         "graze_derivatives": unless_refused(periodic.graze_derivatives)}.items()),
+    of(periodic.multiplier_derivatives, lambda: dict(found=periodic.orbit_derivatives(orbit(), [CHANGE])),
+       kind=dict(found=each(None, 3.0, [CHANGE]))),
+    of(periodic.motion_derivatives,
+       lambda: dict(oscillator=eq_1(), state=contact.State.rest(1), periods=1, changes=[CHANGE]),
+       kind=dict(oscillator=None, state=[0.0], changes=each(CHANGE, [3.0])),
+       value=dict(oscillator=told(UNDRIVEN, "drive is None"), state=told(at(GAP, Regime.CONTACT), "regime"))),
+    of(periodic.settle, lambda: dict(strobed=system(), state=[0.0, 0.0], most_cycles=8, largest_period=2,
+                                     tolerance=1e-9),
+       kind=dict(strobed=each(None, eq_1())), value=dict(largest_period=0, most_cycles=-1, tolerance=-1.0)),
+    *(of(call, lambda: dict(strobed=strobed(), excess=1e-3, most_cycles=8),
+         kind=dict(strobed=each(None, eq_1())), value=dict(excess=-2.0, most_cycles=-1))
+      for call in (periodic.born, periodic.born_period)),
+    of(periodic.fold_excess, lambda: dict(strobed=system(), period=5),
+       kind=dict(strobed=each(None, eq_1(), 5)), value=dict(period=2.5)),
+    of(periodic.orbit_end,
+       lambda: dict(strobed=strobed(), state=strobed().steady(), excess=-1e-3, most_cycles=8, first_step=1e-4,
+                    relative=0.01, absolute=1e-7, lowest=-0.5),
+       kind=dict(strobed=eq_1()), value=dict(first_step=0.0, absolute=0.0, relative=-1.0, lowest=-1.0)),
+    of(periodic.orbit_diagram,
+       lambda: dict(strobed=strobed(), excesses=[-1e-3], state=strobed().steady(), observe=strobed().tip,
+                    settle_cycles=4, record_cycles=4, largest_period=2),
+       kind=dict(strobed=eq_1(), excesses="1", observe=each(3, told(lambda p: "tip", "observe(points) is"))),
+       value=dict(observe=told(lambda p: p, "observe(points) has shape"), settle_cycles=-1,
+                  excesses=each(told([], "excesses is empty"), [[1e-3]]))),
+    of(periodic.period_of, dict(points=[[0.0]] * 4, impacts=[0] * 4, largest_period=2, tolerance=1e-9),
+       kind=dict(points="p"), value=dict(impacts=[0], points=each(
+           [0.0], np.zeros((4, 0)), told([[0.0]] * 3, "points has 3 strobes")))),
+    of(periodic.AmplitudeScan, lambda: dict(oscillator=eq_1(), most_cycles=128),
+       kind=dict(oscillator=each(None, strobed())),
+       value=dict(oscillator=told(UNDRIVEN, "drive is None"), most_cycles=127)),
+    of(lambda **given: periodic.AmplitudeScan(oscillator=eq_1(), most_cycles=128)(**given),
+       dict(frequency=22.2, excesses=[-1e-3]), name="AmplitudeScan, a column", kind=dict(excesses="all"),
+       value=dict(frequency=0.0, excesses=told([1e-3, 0.0], "excesses must be"))),
+    of(periodic.strobe_derivatives,
+       lambda: dict(strobed=strobed().at(-0.1), state=strobed().at(-0.1).steady(), period=1),
+       kind=dict(strobed=None, state=[0.0, 0.0]), value=dict(period=each(0, 1.5))),
+    of(periodic.cloud,
+       lambda: dict(strobed=strobed().at(-0.1), state=strobed().at(-0.1).steady(), period=1, deviation=1e-4),
+       kind=dict(strobed=3.0), value=dict(deviation=each(-1e-4, NAN), memory=each(1.0, -0.1, NAN), period=0)),
     of(lyapunov.map_exponents, lambda: dict(strobed=system(), state=np.array([0.0, 0.0]), count=10, align=0),
        kind=dict(strobed=each(nordmark(), eq_1())), value=dict(count=1, align=-1)),
-    of(lyapunov.orbit_exponents, lambda: dict(strobed=system(), state=np.array([0.0, 0.0]), period=1),
+    of(lyapunov.orbit_exponents,
+       lambda: dict(strobed=strobed().at(-0.1), state=strobed().at(-0.1).steady(), period=1),
        kind=dict(strobed=None), value=dict(period=each(0, 1.5))),
 )
 
