@@ -38,8 +38,6 @@ from studies.scene import Scene, beam_at, harmonic, model_of, single_mode_at
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["BEAM", "HEYOKA", "OURS", "SINGLE", "Row", "benchmarks", "heyoka_orbit", "in_turns", "ratios_of"]
-
 OURS, HEYOKA = "grazing-spring", "heyoka"
 SINGLE, BEAM, FREE = "single mode", "beam, hertz contact", "beam, no touch"
 EXCESS, SINGLE_EXCESS, BELOW = letter.TIME_TRACE_EXCESS, 0.02, -0.02

@@ -17,8 +17,6 @@ from studies.calibration import Targets, calibrate_all, collision_at
 from studies.run import Run, study
 from studies.scene import Scene, beam_at, harmonic
 
-__all__ = ["KEYS", "Fitted", "calibrate"]
-
 KEYS = ("spring.thickness_m", "spring.tape_loss_factor", "stop.gap_m", "tip.mass_kg")
 
 

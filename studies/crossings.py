@@ -21,8 +21,6 @@ from beam import ModalModel
 from contact import ContactError, ImpactKind, ImpactOscillator, State, Stop, simulate
 from contact.integrators import Integrator
 
-__all__ = ["Swing"]
-
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
 

@@ -46,8 +46,6 @@ if TYPE_CHECKING:
 
 Answer = TypeVar("Answer")
 
-__all__ = ["Row", "finite_amplitude", "reading_of"]
-
 STRAIGHT = ("side_by_side", "channel", "plain")
 """Readings that bend as one leaf; in the plane a channel is a plain strip."""
 RADII = (4e-3, 5.5e-3, 7.5e-3, 10e-3, 15e-3, 20e-3, 25e-3, 30e-3, 40e-3)

@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 
 from contact import HertzContact, ImpactOscillator, LinearContact, NewtonRestitution, Trajectory
 
-__all__ = ["contact_force", "touching"]
-
 Array = NDArray[np.float64]
 
 

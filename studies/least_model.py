@@ -41,11 +41,6 @@ from contact.orbits import KickFamily, born, born_period
 from studies import letter
 from studies.scene import Scene, SceneError, beam_at, model_of
 
-__all__ = [
-    "COLLISIONS", "LADDER", "QUANTITIES", "REFERENCE", "Answer", "Ask", "At", "Distance", "collisions",
-    "distances", "error_of_fold", "largest_error", "least_modes", "middle_of", "questions", "reference_of",
-]  # fmt: skip
-
 REFERENCE = 40
 """Coupled modes of the reference: for the letter's spring 30 have its folds to 2e-4, 60 to 1e-4."""
 

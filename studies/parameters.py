@@ -22,11 +22,6 @@ from contact import ContactLaw, DelayedRestitution, HertzContact, ImpactOscillat
 from contact.orbits import Change
 from studies.scene import Scene, beam_at, hertz_of, single_mode_at
 
-__all__ = [
-    "Description", "Parameter", "changes_of", "described", "fitted_scene", "parameters_of", "require_names",
-    "with_values",
-]  # fmt: skip
-
 Description = Literal["one_mode", "two_parameters", "beam"]
 
 LEAST = {"delay": 1e-3, "restitution": 0.01, "decay_rate": 0.01}
@@ -57,7 +52,7 @@ def parameters_of(oscillator: ImpactOscillator) -> dict[str, Parameter]:
     law, drive, period = oscillator.stop.law, oscillator.driven, oscillator.period
     known = {
         "free_period": (oscillator.model.free_period, "s"),
-        "decay_rate": (float(oscillator.model.decay_rate[0]), "1/s"),
+        "decay_rate": (float(oscillator.model.decay_rate[oscillator.model.leading_mode]), "1/s"),
         "gap": (oscillator.stop.gap, "m"),
         "frequency": (drive.frequency, "Hz"),
         "amplitude": (drive.amplitude, "m"),
@@ -108,11 +103,12 @@ def with_values(oscillator: ImpactOscillator, values: Mapping[str, float]) -> Im
 def _with_values(oscillator: ImpactOscillator, values: Mapping[str, float]) -> ImpactOscillator:
     model, stop, drive, law = oscillator.model, oscillator.stop, oscillator.driven, oscillator.stop.law
     if "free_period" in values or "decay_rate" in values:
-        before = float(model.decay_rate[0])
+        k = model.leading_mode
+        before = float(model.decay_rate[k])
         rate, period = values.get("decay_rate", before), values.get("free_period", model.free_period)
         if not (period > 0.0 and rate >= 0.0):
             raise ValueError(f"free_period is {period:g} s, decay_rate {rate:g} 1/s; they must be above zero")
-        pace = math.hypot(2.0 * math.pi / period, 0.5 * rate) / float(model.omega[0])
+        pace = math.hypot(2.0 * math.pi / period, 0.5 * rate) / float(model.omega[k])
         rates = model.decay_rate * (rate / before) if before > 0.0 else model.decay_rate + rate
         model = replace(model, omega=model.omega * pace, decay_rate=rates)
     own: dict[str, Any] = {

@@ -45,8 +45,6 @@ from studies.scene import Scene, free_period
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["Run"]
-
 SAME_SPRING = 0.005
 """Relative difference of two free periods beyond which the born period changes next to a band edge."""
 

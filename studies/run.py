@@ -38,8 +38,6 @@ from studies.programs import DONE, FAILED_CELLS, INTERRUPTED, as_program, perfor
 from studies.record import Run
 from studies.scene import Scene, beyond_linear, read_scene
 
-__all__ = ["Run", "study"]
-
 Function = Callable[..., Mapping[str, object]]
 
 

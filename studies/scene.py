@@ -36,28 +36,30 @@ from contact import (
 from studies import letter
 from studies.scene_keys import SceneError, shown
 from studies.scene_spring import (
-    READOUT,
+    READOUT as READOUT,
+)
+from studies.scene_spring import (
     backbone_of,
     damping_of,
-    elements_of,
-    free_period,
     model_of,
-    modes_of,
     require_drive_below,
-    sections_of,
     shift_at_gap,
     single_mode_of,
     spring_of,
 )
+from studies.scene_spring import (
+    elements_of as elements_of,
+)
+from studies.scene_spring import (
+    free_period as free_period,
+)
+from studies.scene_spring import (
+    modes_of as modes_of,
+)
+from studies.scene_spring import (
+    sections_of as sections_of,
+)
 from studies.scene_values import Scene, doubts, scene_from_text
-
-__all__ = [
-    "READOUT", "Scene", "SceneError", "approach_speed", "backbone_of", "band_of", "beam_at",
-    "beyond_linear", "contact_law_of", "corresponding", "damping_of", "elements_of", "free_period",
-    "harmonic", "hertz_of", "model_of", "modes_of", "nonlinear_mode_at", "nordmark_at", "period_shifts",
-    "periods_of", "read_scene", "require_drive_below", "sections_of", "shift_at_gap", "single_mode_at",
-    "single_mode_of", "spring_of",
-]  # fmt: skip
 
 SCENES = Path(__file__).resolve().parent / "scenes"
 

@@ -13,8 +13,6 @@ import numpy as np
 from beam import ModalModel
 from contact import HarmonicDrive, ImpactOscillator, LinearContact, Stop
 
-__all__ = ["two_masses"]
-
 
 def two_masses(w: float, force: float = 0.1) -> ImpactOscillator:
     """The system driven at W = `w` [rad/s] by `force` [N]; the read-out is mass 2, which the source plots."""

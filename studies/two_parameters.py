@@ -38,8 +38,6 @@ from contact import (
 from contact.orbits import Kick, KickFamily, Shooting, born_period, fold_excess
 from studies.scene import Scene, SceneError, beam_at, nordmark_at, single_mode_at
 
-__all__ = ["Extracted", "extracted", "fold_of_kicks", "law_of", "one_mode_fold", "two_parameters_at"]
-
 EXCESSES = np.geomspace(1e-6, 0.3, 45)
 """Of the first collisions."""
 

@@ -31,8 +31,6 @@ from studies.scene import Scene, harmonic, period_shifts
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["adequacy", "questions"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class AmplitudeRow:

@@ -17,8 +17,6 @@ from contact import ImpactOscillator
 from studies.least_model import LADDER, REFERENCE
 from studies.scene import Scene, beam_at, damping_of, model_of, modes_of, single_mode_at
 
-__all__ = ["EQ_1", "LAWS", "LEVELS", "MESHES", "MODES", "Choice", "Models"]
-
 LEVELS = {"single_mode": "Eq. (1)", "spring": "beam"}
 LAWS = ("newton", "linear", "hertz")
 MODES = (*LADDER, REFERENCE)

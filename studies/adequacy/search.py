@@ -40,8 +40,6 @@ from studies.least_model import (
 )
 from studies.scene import approach_speed
 
-__all__ = ["QUANTITIES", "Row", "Search", "first"]
-
 MESH_ORDER = 4
 """Of frequencies and shapes, with cubic Hermite elements."""
 

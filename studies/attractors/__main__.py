@@ -37,8 +37,6 @@ from studies.scene import (
     single_mode_at,
 )
 
-__all__ = ["attractors"]
-
 FREQUENCY = 21.50
 """Where the letter has period 4 [Hz]."""
 

@@ -16,8 +16,6 @@ from contact import ContactError, State, StroboscopicMap
 from contact.orbits import born, settle
 from studies.scene import Scene, single_mode_at
 
-__all__ = ["Plane", "parts", "plane_of"]
-
 FAR = 1.5
 """Half the side of the plane of starts, in x/gap and x'/(2 pi f gap)."""
 

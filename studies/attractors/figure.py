@@ -13,8 +13,6 @@ from studies.attractors.basins import Plane, parts
 from studies.attractors.scan import CHAOTIC, NOT_SETTLED, PERIODIC, TITLES, UNDECIDED, WITHOUT, Row
 from studies.plotting import BLUE, COLUMN, DOWN, EXCESS, GUIDE, ORANGE, PAGE, SKY, UP, VERMILION, tint
 
-__all__ = ["BASINS", "SCAN", "draw_basins", "draw_scan"]
-
 SCAN = (
     "Strobe points and largest Lyapunov exponent against the excess, for Eq. (1) and the beam. Filled: "
     "amplitude raised; open: lowered; pale: not periodic."

@@ -15,8 +15,6 @@ from contact import ContactError, State, StroboscopicMap
 from contact.orbits import Exponents, Settled, map_exponents, orbit_exponents, settle
 from studies.scene import READOUT, Scene
 
-__all__ = ["CHAOTIC", "KINDS", "TITLES", "Row", "carried", "kind_of"]
-
 TITLES = {"single_mode": "Eq. (1)", "beam": "beam"}
 
 SIGNIFICANT = 3.0

@@ -45,8 +45,6 @@ from studies.breakdown.scans import CHAOS_AT, Diagram, Island, Outcome, island, 
 from studies.run import Run, study
 from studies.scene import Scene, model_of, nordmark_at
 
-__all__ = ["breakdown"]
-
 RESTITUTIONS, QUICK_RESTITUTIONS = (0.0, 0.05, 0.06, 0.075, 0.1), (0.05, 0.1)
 MASSES_G = (3.0, 3.25, 3.5, 3.75, 4.0, 4.25, 4.5, 4.75, 5.0, 5.5, 6.0, 6.5, 7.0, 8.0)
 FACTORS = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 8.0)

@@ -21,8 +21,6 @@ from studies import letter
 from studies.calibration import calibrate, calibrate_thickness
 from studies.scene import Scene, SceneError, contact_law_of, harmonic, model_of, single_mode_of
 
-__all__ = ["Cell", "Spring", "cell_of", "fig_5", "fold_of_p3", "nearest_first", "single_mode", "tuned"]
-
 FREQUENCY_HZ, FREE_PERIOD_S = letter.BREAKDOWN["frequency_hz"], letter.BREAKDOWN["free_period_s"]
 DECAY_RATE_PER_S, BORN_PERIOD = letter.BREAKDOWN["decay_rate_per_s"], letter.BREAKDOWN["born_period"]
 

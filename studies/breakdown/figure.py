@@ -13,8 +13,6 @@ from studies.breakdown.beam import Cell
 from studies.breakdown.scans import CHAOS_AT, HIGHEST, Diagram, Outcome, periods
 from studies.plotting import DOWN, EXCESS, GREEN, GUIDE, NOTE, ORANGE, PAGE, SKY, UP, tint
 
-__all__ = ["BORN", "SCANS", "draw_born", "draw_scans"]
-
 SCANS = (
     "Orbit diagrams at the frequency of Fig. 5: Eq. (1), with the island of p3 and chaos in grey; the beam "
     "as calibrated; the beam found in the search. Filled: amplitude raised; open: lowered; at the right, "

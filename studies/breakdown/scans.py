@@ -14,8 +14,6 @@ from studies import letter
 from studies.breakdown.beam import BORN_EXCESS, Spring, fold_of_p3, single_mode
 from studies.scene import READOUT, Scene
 
-__all__ = ["CHAOS_AT", "HIGHEST", "Island", "Outcome", "island", "periods", "scanned"]
-
 CHAOS_AT = letter.BREAKDOWN["chaos_at"]
 LOWEST, HIGHEST = -0.14, 0.012
 """Least lower end of the scans, and their upper end: the letter's finer steps above grazing."""

@@ -37,8 +37,6 @@ from studies.run import Run, study
 from studies.scene import Scene, beam_at, corresponding, harmonic, single_mode_at
 from studies.sweep import Column, Shard, sweep
 
-__all__ = ["chart"]
-
 TITLES = {"single_mode": "Eq. (1)", "beam": "beam"}
 POINTS = {"single_mode": (400, 400), "beam": (120, 120)}
 QUICK_POINTS = {"single_mode": (46, 40), "beam": (10, 16)}

@@ -21,8 +21,6 @@ from numpy.typing import NDArray
 from contact.orbits import AmplitudeScan
 from studies.sweep import Column
 
-__all__ = ["Fold", "Plane", "column_at", "counts", "sheared", "side_by_side"]
-
 FREQUENCIES_HZ = (19.5, 24.0)
 EXCESSES = (-0.15, 0.1)
 KNEE = 0.005

@@ -23,8 +23,6 @@ from contact import Band
 from studies.chart.cells import Fold, Plane, sheared
 from studies.plotting import PAGE, PALETTE, house_style, label, new_figure, panel, tint
 
-__all__ = ["draw"]
-
 REST, NONE, FAILED, LONG = "white", "0.33", "black", "0.66"
 """No impact; no period; failed; a period beyond 28."""
 

@@ -17,8 +17,6 @@ from contact.orbits import Shooting, fold_along_frequency
 from studies.chart.cells import Fold
 from studies.scene import Scene, band_of
 
-__all__ = ["bands_in", "folds_of_beam", "folds_of_single_mode"]
-
 LARGEST = 24
 """Largest m that is drawn; its band ends at 23.98 Hz for the letter's period."""
 

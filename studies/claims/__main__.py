@@ -32,8 +32,6 @@ from studies.claims.universality import universality
 from studies.run import Run, study
 from studies.scene import Scene, harmonic
 
-__all__ = ["claims"]
-
 
 @study(
     needs={"fold": 0.05},

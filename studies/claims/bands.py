@@ -22,8 +22,6 @@ from studies.claims.energy_loss import falls
 from studies.run import Run
 from studies.scene import Scene, band_of, corresponding, nordmark_at, single_mode_at
 
-__all__ = ["Inside", "bands", "inside_band"]
-
 SPAN_HZ = (19.6, 23.8)
 """Where the letter measured, by its Figs. 3 and 5."""
 

@@ -27,9 +27,6 @@ from studies import letter, plotting
 from studies.run import Run
 from studies.scene import Scene, corresponding, nordmark_at, single_mode_at
 
-__all__ = ["RESTITUTIONS", "Node", "end_speed", "energy_loss", "falls", "family_at", "line_of", "lives",
-           "node_at", "trends"]  # fmt: skip
-
 RESTITUTIONS = tuple(np.round(np.linspace(0.0, 0.9, 19), 3).tolist())
 """tau of the curves."""
 

@@ -26,8 +26,6 @@ from numpy.typing import ArrayLike, NDArray
 from studies import plotting
 from studies.run import Run
 
-__all__ = ["Share", "exponents", "outside_windows", "overdamped", "shares"]
-
 KEPT = 120
 """Last iterates that `exponents` returns."""
 

@@ -24,8 +24,6 @@ from studies.calibration import bare_cantilever, with_mass_ratio
 from studies.run import Run
 from studies.scene import Scene, band_of, beam_at, model_of, nordmark_at, single_mode_of
 
-__all__ = ["Born", "Job", "born_at", "springs", "universality"]
-
 SPAN = (0.802, 0.956)
 """f T from the band of p3 to that of p11."""
 

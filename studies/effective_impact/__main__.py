@@ -49,8 +49,6 @@ from studies.record import Verdict
 from studies.run import Run, study
 from studies.scene import Scene, SceneError, harmonic
 
-__all__ = ["effective_impact"]
-
 FINE_MESH = {"spring.elements_per_leg": 120, "spring.elements_on_arc": 60}
 """Twice the default, for the collision that the answer quotes."""
 

@@ -41,8 +41,6 @@ from studies.record import Verdict
 from studies.run import Run, study
 from studies.scene import Scene, harmonic, model_of, periods_of, require_drive_below
 
-__all__ = ["hysteresis"]
-
 PERIODS = range(3, 11)
 NEARLY = 1.1
 """A factor up to this counts as none, and a description that is off by no more as enough."""

@@ -43,8 +43,6 @@ from studies.parameters import Description, described, fitted_scene, parameters_
 from studies.run import Run, study
 from studies.scene import Scene, corresponding, harmonic, periods_of
 
-__all__ = ["identify"]
-
 TRADE = 0.95
 """Correlation from which on two parameters trade off."""
 

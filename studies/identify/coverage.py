@@ -26,8 +26,6 @@ from studies.run import Run
 from studies.scene import Scene, beam_at, model_of, single_mode_at
 from studies.sweep import sweep
 
-__all__ = ["COVERED", "Coverage", "coverage"]
-
 COVERED = "Share of 90 % intervals that hold the true value, with its binomial error."
 SEED, FREQUENCY_HZ = 1996, 22.20
 CHUNK = 10

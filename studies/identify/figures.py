@@ -13,8 +13,6 @@ from studies import plotting
 from studies.identify.fit import Fit, Profile
 from studies.parameters import parameters_of
 
-__all__ = ["CAPTION", "draw"]
-
 CAPTION = (
     "Each record with its fit (left), residuals (middle), and the profile likelihood of the two parameters "
     "that trade off most (blue: $\\chi^2$, dashed the 90 % interval; red: the other, fitted again), or the "

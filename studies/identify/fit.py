@@ -28,8 +28,6 @@ from studies.identify.records import READ_OUT, Record
 from studies.identify.starts import prediction_of
 from studies.parameters import parameters_of, require_names, with_values
 
-__all__ = ["Fit", "Profile", "fit", "profile"]
-
 Array = NDArray[np.float64]
 
 LEVEL = 0.90

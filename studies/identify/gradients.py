@@ -32,8 +32,6 @@ from studies import plotting
 from studies.parameters import changes_of, parameters_of, with_values
 from studies.peers import installed_solvers
 
-__all__ = ["CHART", "Gradient", "closed_form", "draw_gradients", "gradients", "motion_of"]
-
 Array = NDArray[np.float64]
 
 CHART = "Error of a gradient through impacts against step or tolerance, and against the time it takes."

@@ -39,8 +39,6 @@ from contact.orbits import (
 from studies.identify.records import Record
 from studies.parameters import changes_of
 
-__all__ = ["PRIOR", "Displacement", "Prediction", "Strobes", "Transitions", "family_of"]
-
 Array = NDArray[np.float64]
 
 CLOSE, END = 0.01, 0.002

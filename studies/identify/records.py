@@ -24,8 +24,6 @@ from contact import ImpactOscillator, StroboscopicMap, simulate
 from contact.orbits import Shooting, born
 from studies import letter
 
-__all__ = ["READ_OUT", "Kind", "Record", "read_record", "synthetic"]
-
 Array = NDArray[np.float64]
 Kind = Literal["strobe", "displacement", "transitions"]
 

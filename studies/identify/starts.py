@@ -28,8 +28,6 @@ from studies.identify.predictions import PRIOR, Displacement, Prediction, Strobe
 from studies.identify.records import Record
 from studies.parameters import parameters_of, with_values
 
-__all__ = ["prediction_of", "repetition"]
-
 Array = NDArray[np.float64]
 
 LONGEST = 64

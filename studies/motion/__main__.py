@@ -39,8 +39,6 @@ from studies.scene import Scene, beam_at, corresponding, harmonic, model_of, mod
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["motion"]
-
 Array = NDArray[np.float64]
 
 FREQUENCY = 21.50

@@ -31,8 +31,6 @@ from studies.parameters import described, require_names
 from studies.run import Run, study
 from studies.scene import Scene, corresponding, harmonic
 
-__all__ = ["next_measurement"]
-
 FREQUENCY_HZ = 22.20
 """The letter's p5: a scene that has it where the letter does is the letter's spring."""
 

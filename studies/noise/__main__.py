@@ -51,8 +51,6 @@ from studies.scene import (
 )
 from studies.sweep import sweep
 
-__all__ = ["noise"]
-
 LOWEST_HZ, HIGHEST_HZ, BANDS = 19.6, 23.8, range(3, 11)
 """Of Fig. 3."""
 

@@ -28,8 +28,6 @@ from contact.integrators import Integrator, Run
 from studies.peers.adapters import cvode_pieces, heyoka_pieces, scipy_pieces
 from studies.peers.piecewise import Advance, Equations, pieced
 
-__all__ = ["SOLVERS", "OutsideSolver", "installed_solvers", "missing_solvers"]
-
 LIBRARIES = {"scipy": ("scipy", 2.5e-14), "heyoka": ("heyoka", 2.3e-16), "sundials": ("sksundae", 1e-15)}
 """The module of each library, and the least tolerance that it takes (solve_ivp replaces smaller ones)."""
 

@@ -22,8 +22,6 @@ import numpy as np
 
 from studies.peers.piecewise import Advance, Array, Equations, Piece
 
-__all__ = ["cvode_pieces", "heyoka_pieces", "scipy_pieces"]
-
 MOST_STEPS = 1_000_000
 """Bound of the steps of one piece, far beyond what a drive period takes at any tolerance."""
 

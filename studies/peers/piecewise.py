@@ -37,8 +37,6 @@ from contact import (
 )
 from contact.integrators import Run
 
-__all__ = ["EPS", "Advance", "Array", "Equations", "Piece", "pieced"]
-
 EPS = 2.220446049250313e-16
 
 FLIGHT, LINEAR, HERTZ = 0, 1, 2
@@ -162,10 +160,11 @@ class Equations:
         begin, end = (np.array([s for s, _y in log]).reshape(-1) for log in (touches, closed))
         before, after = (np.array([y for _s, y in log]).reshape(-1, 2 * n) for log in (touches, closed))
         approach, rebound = before[:, n:] @ self.phi, after[:, n:] @ self.phi
+        none, begin, end = np.zeros(begin.size, np.int64), self.start.time + begin, self.start.time + end
         return Impacts(
-            start=self.start.time + begin, end=self.start.time + end, approach=approach, rebound=rebound,
+            start=begin, end=end, period=none, clock=begin, end_clock=end, approach=approach, rebound=rebound,
             loss=0.5 * (approach**2 - rebound**2) / self.compliance if self.hard else 0.0 * rebound,
-            kind=np.zeros(begin.size, dtype=np.int64), displacement_start=before[:, :n],
+            kind=none, displacement_start=before[:, :n],
             velocity_start=before[:, n:], displacement_end=after[:, :n], velocity_end=after[:, n:],
         )  # fmt: skip
 
@@ -222,7 +221,7 @@ def pieced(
     end = State(displacement=last[0, :n], velocity=last[0, n:], time=run.last * period + run.clock_end,
                 regime=int(contact))  # fmt: skip
     return Trajectory(
-        end=end, strobe_time=passed * period, strobe_displacement=at_strobe[:, :n],
+        oscillator=oscillator, end=end, strobe_time=passed * period, strobe_displacement=at_strobe[:, :n],
         strobe_velocity=at_strobe[:, n:], strobe_impacts=counts.astype(np.int64), time=run.times,
         displacement=at_sample[:, :n], velocity=at_sample[:, n:], impacts=e.impacts(touches, releases),
         evaluations=spent,

@@ -25,8 +25,6 @@ from studies.scene import Scene, SceneError, harmonic, model_of
 from studies.sensitivity.changes import changes_of, row_at, rows_after
 from studies.sensitivity.p10 import Row, causes_of, row_of
 
-__all__ = ["sensitivity"]
-
 HIGHEST = max(PERIODS.values())
 """m of the last transition that the letter saw."""
 

@@ -104,8 +104,7 @@ def causes_of(scene: Scene, modes: ModalModel) -> list[Cause]:
         made = [{f: make(f) for f in letter} for make in makes]
         one, period = made[0][last], free
         if isinstance(one, ImpactOscillator):
-            model, k = one.model, np.argmax(np.abs(one.model.phi))  # the mode that moves the tip most
-            period = 2.0 * math.pi / math.sqrt(model.omega[k] ** 2 - 0.25 * model.decay_rate[k] ** 2)
+            period = one.model.free_period
             made = [{f: StroboscopicMap(oscillator=one) for f, one in made[0].items()}]
         found.append((words, known(getattr, one, "effective_period", period), made))
 

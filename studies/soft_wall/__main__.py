@@ -35,8 +35,6 @@ from studies.scene import Scene, SceneError, harmonic, single_mode_at
 from studies.soft_wall.closed_forms import SoftWall
 from studies.soft_wall.rows import Beam, Doubling, beam_of, doubling_of, kicks_of
 
-__all__ = ["soft_wall"]
-
 SHOWN_HZ = 22.2
 """Frequency of the curves and of the beam, or the one of the scene nearest to it."""
 

@@ -42,8 +42,6 @@ import numpy as np
 from contact import HertzContact, ImpactOscillator, LinearContact, Stop
 from contact.orbits import KickFamily
 
-__all__ = ["SoftWall", "hertz_doubling", "hertz_kick", "impulse_per_square", "survival_sums"]
-
 
 def survival_sums(oscillator: ImpactOscillator) -> tuple[float, float]:
     """(S_-, S_+) of the module [s/kg]."""

@@ -13,8 +13,6 @@ from studies.scene import Scene, single_mode_at
 from studies.soft_wall.closed_forms import SoftWall
 from studies.soft_wall.rows import Beam, Doubling, Kick
 
-__all__ = ["draw_kicks", "draw_orbits"]
-
 CASES = {"lossless": "Eq. (1), elastic wall: power 3/2", "beam": "beam, Hertz contact: power 2"}
 
 

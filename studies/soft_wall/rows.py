@@ -15,8 +15,6 @@ from studies import letter
 from studies.scene import Scene, approach_speed, beam_at
 from studies.soft_wall.closed_forms import SoftWall, hertz_doubling, hertz_kick
 
-__all__ = ["Beam", "Doubling", "Kick", "beam_of", "doubling_near", "doubling_of", "kicks_of"]
-
 SPAN = 3.0
 """The doubling is looked for between a third and three times the approach velocity that the formula gives."""
 

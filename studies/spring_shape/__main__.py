@@ -50,8 +50,6 @@ from studies.spring_shape.shapes import (
     shape_of,
 )
 
-__all__ = ["spring_shape"]
-
 FINE = (Mesh(legs=60, bend=24, across=2, halvings=4), Mesh(legs=120, bend=48, across=2, halvings=5))
 COARSE = (Mesh(legs=20, bend=24, across=1, halvings=3), Mesh(legs=40, bend=32, across=1, halvings=4))
 """From coarse to fine: each pair halves the length of the elements."""

@@ -18,8 +18,6 @@ import numpy as np
 from contact.integrators import GeneralisedAlpha, Integrator
 from studies.scene import Scene
 
-__all__ = ["FAMILIES", "IMPLICIT", "Findings", "Limit", "family", "findings", "threshold"]
-
 FAMILIES = (
     "explicit", "splitting", "implicit_energy", "false_restitution", "missed_crossings", "accumulation",
 )  # fmt: skip

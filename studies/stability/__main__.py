@@ -29,8 +29,6 @@ from studies.run import Run, study
 from studies.scene import Scene
 from studies.stability import FAMILIES, Limit, family, findings
 
-__all__ = ["stability"]
-
 
 @study()
 def stability(

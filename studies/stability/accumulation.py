@@ -28,8 +28,6 @@ from studies import plotting
 from studies.scene import Scene
 from studies.stability import Findings, Limit
 
-__all__ = ["ball", "draw", "event_loop", "measure", "rest_time", "time_of_rest"]
-
 HEIGHT, GRAVITY = 1.0, 9.81
 MOST_EVENTS = 1000
 """Bound of the events of the loop: three times what e = 0.9 needs to fall through."""

@@ -33,8 +33,6 @@ from studies.stability import Findings, Limit
 from studies.stability.free_mass import LAWS, energy_after
 from studies.stability.lasting_contact import limit, stiffest
 
-__all__ = ["SOFT", "draw", "energies", "flight", "lasting", "measure", "rebound_ratio"]
-
 SOFT = 1e-12
 """Stiffness of a stop that a mode of 1 rad/s, 1 kg^-0.5 does not feel: it is in flight [N/m]."""
 

@@ -28,8 +28,6 @@ from studies import letter, plotting
 from studies.scene import Scene, beam_at
 from studies.stability import IMPLICIT, Findings, Limit
 
-__all__ = ["draw", "measure", "outcome", "outcomes"]
-
 MODES = 10
 
 Row = partial(Limit, family="false_restitution", method=GeneralisedAlpha.name, refused=False)

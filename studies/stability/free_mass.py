@@ -15,8 +15,6 @@ from beam import ModalModel
 from contact import ContactLaw, HertzContact, ImpactOscillator, LinearContact, State, Stop, simulate
 from contact.integrators import Integrator
 
-__all__ = ["LAWS", "energy_after"]
-
 SPEED = 2.0**-10
 """Of the approach [m/s]: a power of two, so that the scaled motion rounds alike and the stop lies within a
 metre."""

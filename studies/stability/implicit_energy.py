@@ -34,8 +34,6 @@ from studies.scene import Scene
 from studies.stability import IMPLICIT, Findings, Limit
 from studies.stability.free_mass import energy_after
 
-__all__ = ["draw", "evenly", "measure", "single_contact", "stiff_contacts"]
-
 STIFF, STIFF_GROWTH = 1e4, 2.5 * math.log(3.0) - 2.0
 """h w of a contact that counts as infinitely stiff, (B) being met to 1/(h w); equation (B)."""
 

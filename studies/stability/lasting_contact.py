@@ -28,8 +28,6 @@ from contact import ImpactOscillator, LinearContact, State, StepTooLarge, Stop, 
 from contact.integrators import CentralDifference, Splitting
 from studies.stability import Limit, threshold
 
-__all__ = ["ROUNDED", "Stepped", "growth", "limit", "pressed", "stiffest"]
-
 Stepped = CentralDifference | Splitting
 """Methods with a fixed step and a limit that can be overridden."""
 

@@ -38,9 +38,6 @@ from studies.peers import OutsideSolver
 from studies.scene import Scene, model_of
 from studies.stability import Findings, Limit, threshold
 
-__all__ = ["RESTITUTION", "Trial", "draw", "invented", "measure", "of_package", "of_scipy", "share_missed",
-           "share_wrong", "swing_of", "tried"]  # fmt: skip
-
 OVERSHOOTS = 10.0 ** -np.arange(1, 13)
 FINE = np.geomspace(1e-12, 1e-1, 276)
 """Where the formulas are drawn, 25 points a decade."""

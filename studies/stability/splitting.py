@@ -29,8 +29,6 @@ from studies.scene import Scene, model_of
 from studies.stability import Findings, Limit
 from studies.stability.lasting_contact import pressed, stiffest
 
-__all__ = ["draw", "limit", "measure"]
-
 
 def limit(model: ModalModel, angle: float) -> Limit:
     """Largest stiffness of a lasting contact at h omega_N = `angle`, order 2."""

@@ -41,8 +41,6 @@ from studies.scene import (
 from studies.time_trace.spectrum import Peak, lines_of, peaks_of
 from studies.time_trace.trace import close_up, trace_of
 
-__all__ = ["time_trace"]
-
 FREQUENCY = 21.50
 """Where the letter has the period 4 of its Fig. 4 [Hz]."""
 

@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 from studies.plotting import BLUE, GUIDE, NOTE, PAGE, VERMILION, in_house_style, label, new_figure, panel
 from studies.time_trace.trace import CloseUp, Trace
 
-__all__ = ["draw_spectrum", "draw_trace"]
-
 Array = NDArray[np.float64]
 
 NUMBER_WIDTH = 13.0

@@ -15,8 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import find_peaks
 
-__all__ = ["Peak", "lines_of", "peaks_of"]
-
 CLEAR, LOUD = 1e-3, 1e-7
 """Least part of the largest line at which a peak away from the modes, and one at a mode, is told."""
 

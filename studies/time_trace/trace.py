@@ -11,8 +11,6 @@ from contact import Collision, ImpactOscillator, State, collisions, simulate
 from studies.force import contact_force
 from studies.scene import READOUT
 
-__all__ = ["CloseUp", "Trace", "close_up", "trace_of"]
-
 PER_PERIOD = 16_384
 """Samples in a drive period: at 21.5 Hz up to 176 kHz without folding, beyond what the spectrum shows."""
 

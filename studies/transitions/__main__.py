@@ -44,8 +44,6 @@ from studies.run import Run, study
 from studies.scene import Scene, harmonic, model_of
 from studies.transitions.descriptions import TITLES, Row, Scans, row_at, scans
 
-__all__ = ["Cell", "transitions"]
-
 QUICK_POINTS = 21
 """Amplitudes of a scan in the small form, at most."""
 

@@ -32,8 +32,6 @@ from studies.validation.one_mode import aberdeen, coco, ghosh_simpson, sdnd122
 from studies.validation.rows import Row, Section
 from studies.validation.two_beams import two_beams
 
-__all__ = ["validation"]
-
 SECTIONS: Mapping[str, Callable[[Run], Section]] = {
     "ghosh_simpson": ghosh_simpson,
     "coco": coco,

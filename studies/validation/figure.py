@@ -10,8 +10,6 @@ from matplotlib.figure import Figure
 from studies import plotting
 from studies.validation.rows import Panel
 
-__all__ = ["draw"]
-
 MANY = 50
 """Points beyond which they are dots."""
 

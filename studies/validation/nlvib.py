@@ -20,8 +20,6 @@ from studies.two_masses import two_masses
 from studies.validation.responses import drawn, followed, harmonic
 from studies.validation.rows import Curve, Panel, Row, Section, compared
 
-__all__ = ["nlvib"]
-
 SOURCE = "NLvib 03"
 SLOW, FAST, STABLE = 0.5, 0.8, 0.635
 """W from and to which the source follows the response, and where it says it is stable."""

@@ -22,7 +22,6 @@ from contact import ImpactOscillator, LinearContact, NewtonRestitution, Stop, St
 from studies.run import Run
 from studies.validation.rows import Curve, Panel, Section, compared
 
-__all__ = ["aberdeen", "coco", "ghosh_simpson", "sdnd122"]
 Cell = tuple[float, str, float, np.ndarray]
 
 PUBLISHED = {

@@ -12,8 +12,6 @@ from contact import ImpactOscillator, State, simulate
 from contact.orbits import Branch, PeriodicOrbit, Shooting, follow_path
 from studies.validation.rows import Curve
 
-__all__ = ["drawn", "followed", "harmonic", "motion"]
-
 Array = NDArray[np.float64]
 SAMPLES = 128
 """Of a period."""

@@ -7,8 +7,6 @@ from dataclasses import dataclass, field
 
 from numpy.typing import ArrayLike
 
-__all__ = ["Curve", "Panel", "Row", "Section", "compared"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Row:

@@ -33,8 +33,6 @@ from studies.run import Run
 from studies.validation.responses import drawn, followed, harmonic
 from studies.validation.rows import Curve, Panel, Row, Section, compared
 
-__all__ = ["Rig", "both_beams", "carried", "two_beams"]
-
 Array = NDArray[np.float64]
 
 LEFT, RIGHT = (30.95, 199.04, 556.82, 1085.93), (28.20, 205.54, 277.74, 594.98, 1168.62)  # measured, Hz

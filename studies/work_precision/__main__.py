@@ -36,8 +36,6 @@ from studies.work_precision.measures import REPEATS, SLOWEST, Row, cheapest, orb
 from studies.work_precision.methods import EXACT, SAMPLED, sweeps_for
 from studies.work_precision.problems import MODES, problems_of
 
-__all__ = ["Cheapest", "cheapest_of", "work_precision"]
-
 SLOWEST_QUICK = 0.01
 """Longest time for one drive period with --quick [s]."""
 

@@ -18,8 +18,6 @@ from studies.plotting import MARKERS, PALETTE
 from studies.work_precision.measures import Reference, Row
 from studies.work_precision.methods import EXACT, OUTSIDE, PERIODIC, STEPPED
 
-__all__ = ["draw_errors"]
-
 FLOOR = 1e-17
 """Errors that vanish are drawn here."""
 

@@ -22,8 +22,6 @@ from scipy.linalg import toeplitz
 
 from contact import ImpactOscillator, LinearContact, NotPeriodic, State, simulate
 
-__all__ = ["Balance", "balanced"]
-
 MOST_ITERATIONS, HALVINGS, CONVERGED = 50, 10, 1e-9
 """Of Newton's method and of each step; largest A_h r_h/gap: r is linear in pieces, x errs by 1e-16 A k."""
 

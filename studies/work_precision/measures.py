@@ -36,11 +36,6 @@ from studies.work_precision.methods import PERIODIC, Sweep
 from studies.work_precision.problems import Problem, driven_problem
 from studies.work_precision.reference import DIGITS, extended_motion
 
-__all__ = [
-    "REPEATS", "RINGING", "SLOWEST", "Reference", "Row", "cheapest", "cost_of", "missed_share",
-    "orbit_rows", "reference_of", "rows_of",
-]  # fmt: skip
-
 REPEATS = 9
 """Timed runs of a point."""
 

@@ -26,8 +26,6 @@ from contact.integrators import (
 from studies.peers import OutsideSolver, installed_solvers
 from studies.work_precision.problems import Problem
 
-__all__ = ["EXACT", "OUTSIDE", "PERIODIC", "SAMPLED", "STEPPED", "Setting", "Sweep", "sweeps_for"]
-
 EXACT, STEPPED, OUTSIDE, PERIODIC = "exact", "fixed step", "outside", "periodic motion"
 SAMPLED = "sampled flight"
 """The letter's own scheme, note [11]."""

@@ -37,11 +37,6 @@ from contact import (
 from contact.orbits import settle
 from studies.scene import Scene, beam_at, hertz_of, single_mode_at
 
-__all__ = [
-    "EXCESS", "FREQUENCY", "MODES", "Problem", "driven_problem", "hertz_beam", "linear_beam", "problems_of",
-    "swung_beam", "swung_problem",
-]  # fmt: skip
-
 FREQUENCY, EXCESS = 21.50, 0.013
 """Drive frequency [Hz] and F/F_g - 1 of the letter's Fig. 4."""
 

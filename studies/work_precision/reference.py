@@ -31,8 +31,6 @@ from numpy.polynomial.polynomial import polyder, polyval
 
 from contact import HertzContact, ImpactOscillator, LinearContact, NewtonRestitution, State
 
-__all__ = ["DIGITS", "ExtendedMotion", "extended_motion"]
-
 DIGITS = (24, 30)
 """Decimal digits of the run that is kept and of the one that tells its error."""
 
