@@ -138,7 +138,7 @@ class _Moving(Modes):
 
 
 def _rows(model: ModalModel) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
-    """omega, decay rates, and which of them are those of mode 1."""
+    """omega, the decay rates, and the number of mode 1 among them."""
     require_kind("model", model, ModalModel, "a ModalModel")
     return model.omega, model.decay_rate, model.leading_mode
 

@@ -58,7 +58,7 @@ SLOW, SHALLOW = 1e-3, 1e-6
 
 class Iterate(NamedTuple):
     """The equations at x: the motion from there, which need not close; the scaled residual, shape (n,), its
-    derivatives with x, (n, n + 1), and those of the parameter and of the approach velocity, (n + 1,)."""
+    derivatives with x, (n, n + 1); the derivatives of parameter and approach velocity with x, (n + 1,)."""
 
     orbit: PeriodicOrbit
     residual: Array
