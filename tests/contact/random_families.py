@@ -161,7 +161,7 @@ class Curve:
         length = float(np.linalg.norm(b - a))
         first = self.solve(a, (b - a) / max(length, 1e-300))
         sides = self.unlike(start.approach) @ self.unlike(end.approach)
-        return length < 5e-5 or sides < 0.0 or (  # next to a graze; two curves cross in between
+        return length < 1e-5 or sides < 0.0 or (  # next to a graze; two curves cross in between
             first is not None and any(self.leads(a, sign * first[1], b, length) for sign in (1.0, -1.0))
         )
 
