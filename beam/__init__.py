@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     )
     from .modal_model import ModalChange, ModalModel, single_mode
     from .modes import Modes, ShapesAlong, natural_modes
-    from .parameters import SuspiciousValue
+    from .parameters import InvalidType, InvalidValue, Refusal, SuspiciousValue
     from .reduction import reduce
     from .section import Layer, StripSection
     from .spring import LeafSpring, Readout, Support, Tip
@@ -82,7 +82,7 @@ _NAMES = {
     "modal_change": (*_CHANGES, "mode_changes", "tip_mass_change"),
     "modal_model": ("ModalChange", "ModalModel", "single_mode"),
     "modes": ("Modes", "ShapesAlong", "natural_modes"),
-    "parameters": ("SuspiciousValue",),
+    "parameters": ("InvalidType", "InvalidValue", "Refusal", "SuspiciousValue"),
     "reduction": ("reduce",),
     "section": ("Layer", "StripSection"),
     "spring": ("LeafSpring", "Readout", "Support", "Tip"),

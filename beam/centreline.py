@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .parameters import require, require_array, require_each, require_within
+from .parameters import InvalidValue, require, require_array, require_each, require_within
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -127,7 +127,7 @@ class Centreline:
         s = require_array("s", s, "m", words="arc lengths")
         outside = (s < -1e-12 * self.length) | (s > (1.0 + 1e-12) * self.length)
         if np.any(outside):
-            raise ValueError(f"s is {s[outside].flat[0]} m; it must lie between 0 and {self.length} m")
+            raise InvalidValue(f"s is {s[outside].flat[0]} m; it must lie between 0 and {self.length} m")
         inside = np.searchsorted(self.joints, s, side="right") - 1
         return np.clip(inside, 0, len(self.pieces) - 1)
 

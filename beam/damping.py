@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .modes import Modes
-from .parameters import require, require_kind, require_within, shown
+from .parameters import InvalidType, require, require_kind, require_within, shown
 
 
 class Damping(Protocol):
@@ -38,7 +38,9 @@ class Damping(Protocol):
 def require_rule(name: str, rule: object) -> None:
     """TypeError unless `rule` is one for decay rates."""
     if isinstance(rule, type) or not callable(getattr(rule, "decay_rates", None)):
-        raise TypeError(f"{name} is {shown(rule)}; it must be a rule for decay rates such as StripDamping()")
+        raise InvalidType(
+            f"{name} is {shown(rule)}; it must be a rule for decay rates such as StripDamping()"
+        )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -34,7 +34,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
-from .parameters import require, require_array, require_kind, require_whole, require_within
+from .parameters import InvalidValue, require, require_array, require_kind, require_whole, require_within
 from .spring import HELD, Support, two_supports
 
 #: Grid of beta L. Zeros lie near pi apart; a tip whose own rotation resonates with a bending mode brings two
@@ -157,7 +157,7 @@ def frequency_function(beam: UniformBeam, beta_length: ArrayLike) -> NDArray[np.
     require_kind("beam", beam, UniformBeam, "a UniformBeam")
     values = require_array("beta_length", beta_length, "[1]", words="positive numbers")
     if np.any(values <= 0.0):
-        raise ValueError(f"beta_length holds {values.min():g} [1]; every entry must be positive")
+        raise InvalidValue(f"beta_length holds {values.min():g} [1]; every entry must be positive")
     return np.linalg.det(_rows(beam, values))
 
 

@@ -27,7 +27,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.linalg import eigsh
 
 from .assembly import Discretization
-from .parameters import require_array, require_kind, require_whole
+from .parameters import InvalidValue, require_array, require_kind, require_whole
 from .pieces import along
 
 #: phi sqrt(m_total) and Gamma/sqrt(m_total) below this count as zero: far above rounding in symmetric springs
@@ -158,7 +158,7 @@ def natural_modes(discretization: Discretization, count: int) -> Modes:
     except np.linalg.LinAlgError as error:
         sizes = [size for piece in discretization.pieces for size in np.diff(piece.nodes)]
         told = f"elements are {min(sizes):.3g} to {max(sizes):.3g} m long"
-        raise ValueError(f"{told}; nearer to one another, or no modes are found to rounding") from error
+        raise InvalidValue(f"{told}; nearer to one another, or no modes are found to rounding") from error
     omega = np.sqrt(np.maximum(squares, 0.0))
     omega[: spring.rigid_motions] = 0.0
     shapes = shapes / np.sqrt(np.einsum("ik,ik->k", shapes, discretization.mass @ shapes))

@@ -3,8 +3,10 @@
 A parameter that makes no sense is refused where it is given, in one sentence with its name, its value, its
 unit and what would be valid:
 
-    TypeError     a value of the wrong kind: a text, a truth value, a complex number, an array for a number
-    ValueError    a value out of range, not finite, or of the wrong shape
+    InvalidType     a TypeError: a text, a truth value, a complex number, an array for a number
+    InvalidValue    a ValueError: a value out of range, not finite, or of the wrong shape
+
+Both are a `Refusal`. Any other ValueError or TypeError is a fault of the program.
 
 One that makes sense but can hardly be meant, such as a gap longer than the spring or a slip of a factor of
 1000 in a unit, is taken as it stands, with a warning of the category `SuspiciousValue` that says why.
@@ -28,6 +30,18 @@ LONGEST_SHOWN = 60
 
 
 Class = TypeVar("Class", bound=type)
+
+
+class Refusal(Exception):
+    """Wrong use; the message is one sentence that says what would be valid."""
+
+
+class InvalidValue(Refusal, ValueError):
+    """A value out of range, not finite, of the wrong shape, or one that does not fit the others."""
+
+
+class InvalidType(Refusal, TypeError):
+    """An argument of the wrong kind."""
 
 
 class SuspiciousValue(UserWarning):
@@ -65,9 +79,9 @@ def _cut(text: str) -> str:
 
 
 def require(condition: bool, sentence: str) -> None:
-    """ValueError of this sentence, put on one line, unless the condition holds."""
+    """InvalidValue with this sentence, put on one line, unless the condition holds."""
     if not condition:
-        raise ValueError(" ".join(sentence.split()))
+        raise InvalidValue(" ".join(sentence.split()))
 
 
 def is_number(value: object) -> bool:
@@ -105,9 +119,9 @@ def require_within(
     elif len(limits) < 2:
         valid = f"finite and {valid}" if limits else "finite"
     if isinstance(value, bool) or not isinstance(value, Real):
-        raise TypeError(f"{name} is {shown(value)}; it must be a number in {unit}, {valid}")
+        raise InvalidType(f"{name} is {shown(value)}; it must be a number in {unit}, {valid}")
     if not (is_number(value) and all(holds(float(value), bound) for bound, _, holds in limits)):
-        raise ValueError(f"{name} is {shown(value)} {unit}; it must be {valid}")
+        raise InvalidValue(f"{name} is {shown(value)} {unit}; it must be {valid}")
     return float(value)
 
 
@@ -118,9 +132,9 @@ def require_whole(
     least = {0: "zero or more", 1: "one or more"}.get(low, f"{low} or more")
     valid = f"a whole number, {least}" if high is None else f"a whole number between {low} and {high}"
     if isinstance(value, bool) or not isinstance(value, Real):
-        raise TypeError(f"{name} is {shown(value)}; it must be {valid}{why}")
+        raise InvalidType(f"{name} is {shown(value)}; it must be {valid}{why}")
     if not is_whole(value, low) or (high is not None and float(value) > high):
-        raise ValueError(f"{name} is {shown(value)} {unit}; it must be {valid}{why}")
+        raise InvalidValue(f"{name} is {shown(value)} {unit}; it must be {valid}{why}")
     return int(float(value))
 
 
@@ -129,7 +143,9 @@ def final(kind: Class) -> Class:
 
     def refuse(cls: type) -> None:
         why = "a motion takes the numbers of one and would ignore the methods of a subclass"
-        raise TypeError(f"{cls.__name__} is a subclass of {kind.__name__}; it must be an instance, as {why}")
+        raise InvalidType(
+            f"{cls.__name__} is a subclass of {kind.__name__}; it must be an instance, as {why}"
+        )
 
     kind.__init_subclass__ = classmethod(refuse)  # type: ignore[assignment]
     return kind
@@ -138,7 +154,7 @@ def final(kind: Class) -> Class:
 def require_kind(name: str, value: Any, kind: type | tuple[type, ...], words: str) -> Any:
     """The value, or TypeError unless it is of this kind, `words` in a sentence."""
     if not isinstance(value, kind):
-        raise TypeError(f"{name} is {shown(value)}; it must be {words}")
+        raise InvalidType(f"{name} is {shown(value)}; it must be {words}")
     return value
 
 
@@ -163,13 +179,13 @@ def require_array(
     except (TypeError, ValueError):
         given = np.asarray(None)
     if given.dtype.kind not in "iuf":
-        raise TypeError(f"{name} is {shown(values)}; it must be {words} in {unit}")
+        raise InvalidType(f"{name} is {shown(values)}; it must be {words} in {unit}")
     array = np.array(given, dtype=np.float64)
     if (dimensions is not None and array.ndim != dimensions) or (shape is not None and array.shape != shape):
         wanted = f" of shape {shape}" if shape is not None else ""
-        raise ValueError(f"{name} has shape {array.shape}; it must be {words} in {unit}{wanted}")
+        raise InvalidValue(f"{name} has shape {array.shape}; it must be {words} in {unit}{wanted}")
     if not np.all(np.isfinite(array)):
         found = f"is {shown(values)}" if shape is not None else f"holds {array[~np.isfinite(array)].flat[0]}"
-        raise ValueError(f"{name} {found} {unit}; it must be {words}, every entry finite")
+        raise InvalidValue(f"{name} {found} {unit}; it must be {words}, every entry finite")
     array.setflags(write=False)
     return array

@@ -12,7 +12,7 @@ import numpy as np
 from .damping import Damping, require_rule
 from .modal_model import ModalModel
 from .modes import Modes
-from .parameters import require_kind, require_whole
+from .parameters import InvalidValue, require_kind, require_whole
 
 
 def reduce(
@@ -50,7 +50,7 @@ def reduce(
     wanted = keep.size if count is None else require_whole("count", count, "modes", low=0)
     if not 1 <= wanted <= keep.size:
         kind = "coupled modes" if coupled_only else "modes"
-        raise ValueError(
+        raise InvalidValue(
             f"count is {wanted} modes; it must lie between 1 and the {keep.size} {kind} found among the "
             f"{modes.omega.size} computed (ask natural_modes for more)"
         )

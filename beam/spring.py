@@ -26,7 +26,16 @@ from typing import Any, Literal
 import numpy as np
 
 from .centreline import Centreline
-from .parameters import require, require_array, require_each, require_kind, require_within, shown, suspect
+from .parameters import (
+    InvalidValue,
+    require,
+    require_array,
+    require_each,
+    require_kind,
+    require_within,
+    shown,
+    suspect,
+)
 from .section import StripSection
 
 Support = Literal["clamped", "pinned", "guided", "free"]
@@ -130,7 +139,7 @@ class Readout:
     def __post_init__(self) -> None:
         require_within("at", self.at, "m", low=0)
         if self.quantity not in ("displacement", "rotation"):
-            raise ValueError(f"quantity is {self.quantity!r} [no unit]; valid: 'displacement', 'rotation'")
+            raise InvalidValue(f"quantity is {self.quantity!r} [no unit]; valid: 'displacement', 'rotation'")
 
 
 @dataclass(frozen=True, kw_only=True)

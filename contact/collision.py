@@ -34,7 +34,7 @@ from typing import Any
 
 import numpy as np
 
-from beam.parameters import require, require_kind, require_whole
+from beam.parameters import InvalidValue, require, require_kind, require_whole
 from contact.flight.modal_flow import flow_over, propagate, steady_motion, tip_rounding
 from contact.flight.motion import SLOWNESS, Motion, single_mode
 from contact.oscillator import ImpactOscillator
@@ -151,7 +151,7 @@ def collisions(
         same = all(np.shape(a) == np.shape(b) and np.allclose(a, b) for a, b in pairs)
         require(same, "oscillator differs from the one that moves in the trajectory; it must be the same")
     if unfinished not in ("refuse", "drop"):
-        raise ValueError(f'unfinished is {unfinished!r}; it must be "refuse" or "drop"')
+        raise InvalidValue(f'unfinished is {unfinished!r}; it must be "refuse" or "drop"')
     rows = np.flatnonzero(impacts.kind != ImpactKind.GRAZE).tolist()
     found: list[Collision] = []
     while rows:
@@ -164,7 +164,7 @@ def collisions(
         if not impacts.end[last] + minimum <= run.end.time:
             if unfinished == "drop" or under_way:
                 break
-            raise ValueError(
+            raise InvalidValue(
                 f"trajectory ends at {run.end.time:.6g} s, before the collision that began at "
                 f"{impacts.start[first]:.6g} s is final; run it about one drive period longer"
             )
@@ -261,7 +261,7 @@ def first_collision(
         found = collisions(trajectory, unfinished="drop")
         if found:
             return found[0]
-    raise ValueError(f"periods is {periods}; no collision was final within them")
+    raise InvalidValue(f"periods is {periods}; no collision was final within them")
 
 
 def before_collision(oscillator: ImpactOscillator) -> State:

@@ -8,23 +8,34 @@ The compiled code is cached between runs.  Numba's own cache looks at the one fi
 a kernel that calls kernels of other files would then be reused although its callee has changed.  The cache
 folder is therefore named after a hash of all kernel sources: change one, and everything is compiled anew.
 (A source counts if the word kernel occurs in it, which includes the constants that kernels take from it.)
+Folders of other sources are removed after an hour without use.
+
+The first kernel that a process has to compile is announced on standard error.
 """
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
+import multiprocessing
 import os
+import shutil
+import sys
 import tempfile
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
-from numba.core import cgutils, types
+from numba.core import cgutils, event, types
 from numba.core import config as numba_config
 from numba.extending import intrinsic
 
 config: Any = numba_config
+
+UNUSED = 3600.0
+"""Seconds after which a folder of machine code is removed: until then an older process may still use it."""
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -39,9 +50,8 @@ def _writable(folder: Path) -> bool:
         return False
 
 
-def _cache_folder() -> str:
+def _cache_folder(package: Path = Path(__file__).parent) -> str:
     """The first writable of: beside the sources, the user's cache; an empty string if there is none."""
-    package = Path(__file__).parent
     digest = hashlib.sha256(numba.__version__.encode())
     for source in sorted(package.rglob("*.py")):
         text = source.read_bytes()
@@ -50,12 +60,41 @@ def _cache_folder() -> str:
     name = "kernels-" + digest.hexdigest()[:16]
     user_cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "grazing-spring"
     for parent in (package / "__pycache__", user_cache):
-        if _writable(parent / name):
+        new = not (parent / name).exists()
+        if _writable(parent / name):  # which marks it as used now
+            if new:
+                _remove_unused(parent)
             return str(parent / name)
     return ""
 
 
+def _remove_unused(parent: Path) -> None:
+    """Remove the folders of machine code that no process has used for `UNUSED` seconds."""
+    for folder in parent.glob("kernels-*"):
+        with contextlib.suppress(OSError):
+            if time.time() - folder.stat().st_mtime > UNUSED:
+                shutil.rmtree(folder)
+
+
 _CACHE = os.environ.get("NUMBA_CACHE_DIR") or _cache_folder()
+
+
+class _Announcement(event.Listener):  # type: ignore[misc]
+    """Says once in a process that kernels are compiled; numba raises its event only where no code is kept."""
+
+    def on_start(self, event: Any) -> None:
+        """A kernel is being compiled."""
+        if event.data["dispatcher"].py_func.__module__.startswith("contact.") and not self.said:
+            self.said = True
+            print("compiling kernels, about 30 s, once", file=sys.stderr, flush=True)
+
+    def on_end(self, event: Any) -> None:
+        """A kernel is ready."""
+
+    said = multiprocessing.parent_process() is not None  # a process of workers stays silent
+
+
+event.register("numba:compile", _Announcement())
 
 
 def kernel(function: Function) -> Function:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from beam.parameters import InvalidValue
 from contact.errors import Chatter, ContactError, ContactTooStiff, UnresolvedCrossing
 from contact.event_loop import (
     DONE,
@@ -51,7 +52,7 @@ def start_of(
         where the tip is, or lies behind the stop of an impact law.
     """
     if state.displacement.size != motion.size:
-        raise ValueError(
+        raise InvalidValue(
             f"displacement of the state has {state.displacement.size} modes; the model has {motion.size}"
         )
     q, q_rate = steady_motion(motion, clock) if steady is None else steady
@@ -62,15 +63,17 @@ def start_of(
     rounding, known = tip_rounding(motion, u, v), TOUCHES[motion.law].REGIMES
     near = HELD_WITHIN * rounding
     if regime not in known:
-        raise ValueError(f"regime of the state is {regime}; with this contact law it must be one of {known}")
+        raise InvalidValue(
+            f"regime of the state is {regime}; with this contact law it must be one of {known}"
+        )
     if regime != OUTSIDE and (height < -near or (height > near and regime in (SUSTAINED, WAITING))):
-        raise ValueError(
+        raise InvalidValue(
             f"regime of the state is {regime}, but the tip is {height:.3g} m past the stop; it must be at "
             "the gap, in contact at the gap or beyond"
         )
     if regime == OUTSIDE and height > rounding:
         if Regime.CONTACT not in known:
-            raise ValueError(
+            raise InvalidValue(
                 f"displacement of the state puts the tip {height:.3g} m behind the stop; with an impact law "
                 "it must start on the near side"
             )

@@ -47,7 +47,15 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from beam.parameters import require, require_array, require_kind, require_whole, require_within
+from beam.parameters import (
+    InvalidType,
+    InvalidValue,
+    require,
+    require_array,
+    require_kind,
+    require_whole,
+    require_within,
+)
 from contact.compiled import kernel
 from contact.flight.modal_flow import flow_matrix
 from contact.flight.motion import damped_frequency
@@ -75,7 +83,7 @@ def restitution_of(oscillator: ImpactOscillator) -> float:
     """The `local_restitution` of an oscillator's contact law; TypeError if it has none."""
     law = require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator").stop.law
     if not isinstance(law, NewtonRestitution):
-        raise TypeError(f"law of the stop is a {type(law).__name__}; it has no restitution, so give one")
+        raise InvalidType(f"law of the stop is a {type(law).__name__}; it has no restitution, so give one")
     return law.local_restitution
 
 
@@ -178,7 +186,7 @@ class NordmarkMap:
         """
         restitution = restitution_of(oscillator) if restitution is None else restitution
         if oscillator.drive is None:
-            raise ValueError("drive is None; it must be a HarmonicDrive")
+            raise InvalidValue("drive is None; it must be a HarmonicDrive")
         model, k = oscillator.model, oscillator.model.leading_mode
         return cls.from_mode(
             omega=float(model.omega[k]), decay_rate=float(model.decay_rate[k]),

@@ -20,7 +20,16 @@ from functools import cached_property
 import numpy as np
 
 from beam import ModalModel
-from beam.parameters import final, require, require_array, require_kind, require_within, suspect
+from beam.parameters import (
+    InvalidType,
+    InvalidValue,
+    final,
+    require,
+    require_array,
+    require_kind,
+    require_within,
+    suspect,
+)
 from contact.drive import HarmonicDrive
 from contact.flight.motion import Motion, motion_of, with_drive
 from contact.laws import DELAYED
@@ -68,7 +77,7 @@ class ImpactOscillator:
         require_kind("drive", self.drive, (HarmonicDrive, type(None)), "a HarmonicDrive or None")
         omega, decay = self.model.omega, self.model.decay_rate
         if self.stop.law.code == DELAYED and omega.size > 1:
-            raise TypeError(
+            raise InvalidType(
                 "law of the stop is DelayedRestitution, which holds for one mode; "
                 f"the model has {omega.size}, so give a force law or NewtonRestitution, or truncate the model"
             )
@@ -121,7 +130,7 @@ class ImpactOscillator:
     def driven(self) -> HarmonicDrive:
         """The drive; ValueError for a base at rest."""
         if self.drive is None:
-            raise ValueError("drive is None; this needs a spring on a moving base, so give a HarmonicDrive")
+            raise InvalidValue("drive is None; this needs a spring on a moving base, so give a HarmonicDrive")
         return self.drive
 
     @property

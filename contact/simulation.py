@@ -10,7 +10,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from beam.parameters import require, require_array, require_kind, require_whole, require_within, suspect
+from beam.parameters import (
+    InvalidType,
+    InvalidValue,
+    require,
+    require_array,
+    require_kind,
+    require_whole,
+    require_within,
+    suspect,
+)
 from contact.drive import split_time
 from contact.flight.modal_flow import steady_motion
 from contact.integrators import INTEGRATORS, Exact, Integrator, Run
@@ -26,11 +35,11 @@ def _method(method: Integrator | str | None, law: int) -> Integrator:
     """The method asked for, if it knows the law."""
     if isinstance(method, str):
         if method not in INTEGRATORS:
-            raise ValueError(f"method is {method!r}; it must be one of {', '.join(INTEGRATORS)}")
+            raise InvalidValue(f"method is {method!r}; it must be one of {', '.join(INTEGRATORS)}")
         try:
             chosen = INTEGRATORS[method]()
         except TypeError:
-            raise TypeError(
+            raise InvalidType(
                 f"method is {method!r}, which needs a step; give {INTEGRATORS[method].__name__}(step=...)"
             ) from None
     elif method is None:
@@ -38,10 +47,10 @@ def _method(method: Integrator | str | None, law: int) -> Integrator:
     elif isinstance(method, Integrator):
         chosen = method
     else:
-        raise TypeError(f"method is {method!r}; it must be an Integrator or the name of one")
+        raise InvalidType(f"method is {method!r}; it must be an Integrator or the name of one")
     if not chosen.accepts(law):
         known = ", ".join(LAW_NAMES[code] for code in chosen.laws)
-        raise TypeError(
+        raise InvalidType(
             f"method is {chosen.name}, which follows {known}; the law of the stop is {LAW_NAMES[law]}"
         )
     return chosen
@@ -80,7 +89,7 @@ def _run(
     whole = 0 if periods is None else require_whole("periods", periods, "drive periods")
     length = whole * period if whole else require_within("duration", duration, "s", above=0)
     if length / period * 2 * oscillator.n_modes > MOST_STORED:
-        raise ValueError(
+        raise InvalidValue(
             f"duration is {length:g} s, {length / period:g} drive periods with {oscillator.n_modes} modes; "
             f"the strobes kept must stay below {MOST_STORED:g} numbers, so run it in pieces"
         )
@@ -92,7 +101,7 @@ def _run(
     require(bool(np.all(np.diff(wanted) >= 0)), "times must be a rising array [s]")
     stop_time = start.time + length
     if wanted.size and (wanted[0] < start.time - 1e-12 * length or wanted[-1] > stop_time + 1e-12 * length):
-        raise ValueError(
+        raise InvalidValue(
             f"times run from {wanted[0]} to {wanted[-1]} s; "
             f"they must lie within {start.time} to {stop_time} s"
         )

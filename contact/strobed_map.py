@@ -14,7 +14,7 @@ from typing import Generic, Protocol, TypeVar, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from beam.parameters import require_array, require_kind
+from beam.parameters import InvalidValue, require_array, require_kind
 
 S = TypeVar("S")
 
@@ -77,7 +77,7 @@ def amplitude_factors(factors: ArrayLike | None, count: int) -> np.ndarray:
         return np.empty(0)
     found = require_array("factors", factors, "[1]", shape=(count,), words="one number for each period")
     if found.size and not found.min() > 0.0:
-        raise ValueError(f"factors holds {found.min()} [1]; every factor of the amplitude must be above 0")
+        raise InvalidValue(f"factors holds {found.min()} [1]; every factor of the amplitude must be above 0")
     return found.copy()  # one that may be written to, as kernels are compiled for
 
 

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from beam.parameters import require, require_array, require_kind, require_whole
+from beam.parameters import InvalidValue, require, require_array, require_kind, require_whole
 from contact.change import Changes
 from contact.drive import split_time
 from contact.errors import UnresolvedCrossing
@@ -117,7 +117,7 @@ class StroboscopicMap:
         if index * motion.period != state.time:  # within rounding it may be a strobe nevertheless
             index, clock = (x.item() for x in split_time(state.time, motion.period))
             if clock != 0.0:
-                raise ValueError(f"time of the state is {state.time} s; it must be a strobe time n/f")
+                raise InvalidValue(f"time of the state is {state.time} s; it must be a strobe time n/f")
         u, v, runs = start_of(motion, state, index, 0.0, steady=(system.mean[:n], system.mean[n:]))
         points, impacts = np.empty((count, 2 * n)), np.empty(count, dtype=np.int64)
         status = strobed_motion(system.table, system, changing, u, v, runs, points, impacts)

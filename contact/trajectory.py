@@ -12,7 +12,7 @@ from enum import IntEnum
 
 import numpy as np
 
-from beam.parameters import final, is_number, require_whole, require_within, shown
+from beam.parameters import InvalidValue, final, is_number, require_whole, require_within, shown
 from contact.oscillator import ImpactOscillator
 
 
@@ -81,21 +81,21 @@ class State:
             except (TypeError, ValueError):
                 array = np.full(1, np.nan)
             if array.ndim != 1 or not array.size or not np.all(np.isfinite(array)):
-                raise ValueError(
+                raise InvalidValue(
                     f"{name} of the state must be a finite array of shape (n_modes,), not {shown(given)}"
                 )
             array.setflags(write=False)
             object.__setattr__(self, name, array)
         if type(self.regime) is not Regime:
             if not (is_number(self.regime) and self.regime in (0, 1, 2, 3, 4)):
-                raise ValueError(f"regime of the state is {shown(self.regime)}; it must be 0, 1, 2, 3 or 4")
+                raise InvalidValue(f"regime of the state is {shown(self.regime)}; it must be 0, 1, 2, 3 or 4")
             object.__setattr__(self, "regime", Regime(self.regime))
         for name, unit in (("time", "s"), ("wait", "s"), ("rebound", "m/s")):
             value = getattr(self, name)
             if type(value) is not float or not math.isfinite(value):  # the usual case without a call
                 require_within(f"{name} of the state", value, unit)
         if self.displacement.shape != self.velocity.shape:
-            raise ValueError(
+            raise InvalidValue(
                 f"velocity of the state has shape {self.velocity.shape}; it must be that of the "
                 f"displacement, {self.displacement.shape}"
             )

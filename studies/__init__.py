@@ -15,13 +15,13 @@ another study:
     every_study                                           all of them in turn
     letter, plotting, least_model, calibration, sweep, film, page
 
-Importing this package does two things, both of which have to come before numpy is imported:
+Importing this package changes nothing. `python -m studies...` does three things before numpy is imported:
 
-- it sets the thread count of the linear algebra libraries to 1 unless the environment already says otherwise:
-  several workers with several threads each slow one another down twentyfold;
-- it makes sure that `beam` and `contact` are the packages beside this one. Both names belong to other
-people's
-  packages on the public index, and with one of those in front every result would be an error at best.
+- It sets the thread count of the linear algebra libraries to 1, unless the environment sets it: several
+  workers with several threads each slow one another down twentyfold.
+- It makes sure that `beam` and `contact` are the packages beside this one. Both names belong to others on the
+  public index, and with one of those in front every result would be an error at best.
+- It ends with one sentence at Ctrl-C, and for a study that does not exist.
 """
 
 from __future__ import annotations
@@ -30,7 +30,6 @@ import importlib.util
 import os
 import signal
 import sys
-import warnings
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -62,8 +61,8 @@ def refuse_foreign_packages(root: Path = ROOT) -> None:
 
 
 def start_as_program() -> None:
-    """For `python -m studies...`: Ctrl-C while importing without a traceback, a sentence for an unknown
-    study."""
+    """For `python -m studies...`: threads, the check of packages, Ctrl-C while importing, unknown studies."""
+    single_blas_thread()
     if sys.stderr is None:  # started with 2>&-: no file of results may get its number
         os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
         sys.stderr = open(2, "w", encoding="utf-8", closefd=False)
@@ -74,6 +73,7 @@ def start_as_program() -> None:
             os._exit(130)
 
         signal.signal(signal.SIGINT, interrupted)
+    refuse_foreign_packages()
     from studies.programs import unknown, wrong_name
 
     name = wrong_name(sys.orig_argv[1:])
@@ -82,9 +82,5 @@ def start_as_program() -> None:
         raise SystemExit(2)
 
 
-single_blas_thread()
 if sys.argv[:1] == ["-m"]:  # as long as the interpreter looks for the module that it was told to run
     start_as_program()
-refuse_foreign_packages()
-if "--multiprocessing-fork" in sys.orig_argv:  # its parent has told what is suspicious
-    warnings.filterwarnings("ignore", category=UserWarning, module=r"(beam|contact|studies)\b")

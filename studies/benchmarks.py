@@ -29,6 +29,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
+from beam import InvalidValue
 from contact import ImpactOscillator, StroboscopicMap, simulate
 from studies import letter
 from studies.peers import OutsideSolver, missing_solvers
@@ -81,7 +82,9 @@ def benchmarks(
 ) -> Mapping[str, object]:
     """Time, store and draw."""
     if peers and "heyoka" in missing_solvers():
-        raise ValueError('heyoka is not installed; it comes with the extra peers: pip install -e ".[peers]"')
+        raise InvalidValue(
+            'heyoka is not installed; it comes with the extra peers: pip install -e ".[peers]"'
+        )
     frequencies = sorted(letter.PERIODS)[: 2 if run.quick else None]
     counts = COUNTS_QUICK if run.quick else COUNTS
     model = model_of(harmonic(scene).replace({"modes.count": max(counts)}))
@@ -120,7 +123,7 @@ def heyoka_orbit(oscillator: ImpactOscillator) -> tuple[Orbit, Any]:
 
     model, drive = oscillator.model, oscillator.drive
     if drive is None:
-        raise ValueError("oscillator has no drive; the orbit that is timed is driven")
+        raise InvalidValue("oscillator has no drive; the orbit that is timed is driven")
     w = drive.angular_frequency
     x, v = hy.make_vars("x", "v")
     push = model.participation[0] * drive.amplitude * w**2 * hy.sin(w * hy.time)

@@ -7,10 +7,13 @@ import multiprocessing
 import sys
 import threading
 import time
+import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
 from datetime import timedelta
+
+from beam import InvalidValue
 
 INTERVAL = 30.0
 """Seconds between two lines of progress where there is no terminal."""
@@ -78,10 +81,10 @@ def pool_of(place: str, workers: int) -> Iterator[Executor]:
             yield cluster
         return
     if colon or kind not in ("", "threads", "processes"):
-        raise ValueError(f"executor is {place!r}; it must be threads, processes or dask://host:port")
+        raise InvalidValue(f"executor is {place!r}; it must be threads, processes or dask://host:port")
     if kind == "processes":
         context = multiprocessing.get_context("spawn")
-        executor: Executor = ProcessPoolExecutor(workers, mp_context=context)
+        executor: Executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_quiet)
     else:
         executor = ThreadPoolExecutor(workers, thread_name_prefix="study")
     try:
@@ -94,22 +97,27 @@ def pool_of(place: str, workers: int) -> Iterator[Executor]:
     executor.shutdown()
 
 
+def _quiet() -> None:
+    """In a process of workers: its parent has printed what is suspicious."""
+    warnings.filterwarnings("ignore", category=UserWarning, module=r"(beam|contact|studies)\b")
+
+
 @contextmanager
 def _cluster(address: str) -> Iterator[Executor]:
     """The workers of a dask scheduler, which must have the same program and packages (extra `cluster`)."""
     try:
         from distributed import Client
     except ImportError as error:
-        raise ValueError(
+        raise InvalidValue(
             "a cluster needs the package distributed: python -m pip install 'grazing-spring[cluster]'"
         ) from error
     try:
         client = Client(f"tcp://{address}", timeout=PATIENCE)
     except (OSError, ValueError) as error:
-        raise ValueError(f"no scheduler answers at {address} within {PATIENCE:g} s") from error
+        raise InvalidValue(f"no scheduler answers at {address} within {PATIENCE:g} s") from error
     with client:
         if not client.nthreads():
-            raise ValueError(
+            raise InvalidValue(
                 f"the scheduler at {address} has no workers: start some with `dask worker {address}`"
             )
         yield client.get_executor(pure=False)

@@ -17,12 +17,14 @@ from dataclasses import replace
 from functools import lru_cache, partial
 from typing import Any
 
+import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.backend_bases import FigureManagerBase
 from matplotlib.figure import Figure
 from matplotlib.widgets import RadioButtons, Slider
 
+from beam import InvalidValue, Refusal
 from contact import ContactError, ImpactKind, StrobedMap, StrobedNordmarkMap, StroboscopicMap, simulate
 from contact.orbits import orbit_diagram, settle
 from studies.least_model import least_modes, middle_of
@@ -104,7 +106,7 @@ class Window:
             scans = [scan(values, strobed.at(min(BELOW, excess - SPAN)).steady())]
             scans.append(scan(values[::-1], scans[0].end))
             words = f"period {found.period}" if found.period else "no period up to 64"
-        except (ContactError, ValueError) as error:
+        except (ContactError, Refusal) as error:
             self.state, words = None, str(error)
         else:
             at, rate, scale = ("x", "y", 1.0) if kind == "map" else ("tip (mm)", "velocity (m/s)", 1e3)
@@ -130,8 +132,11 @@ def explore(given: Any) -> tuple[str, dict[str, object]]:
         figure = plt.figure(figsize=(PAGE / INCH, 0.75 * PAGE / INCH), dpi=140)
         if type(figure.canvas.manager) is FigureManagerBase:
             raise ImportError("matplotlib found none")
-    except ImportError as error:
-        raise ValueError(f"a window needs a display, and a toolkit such as python3-tk: {error}") from error
+    except (ImportError, RuntimeError) as error:  # the second where a web page needs another package
+        needs = "a window needs a display, and a toolkit such as python3-tk"
+        if package := getattr(error.__cause__ or error, "name", None):
+            needs = f"matplotlib's {matplotlib.get_backend()} needs the package {package}"
+        raise InvalidValue(f"{needs}: {error}") from error
     with house_style():
         window = Window(scene, figure)
         with suppress(KeyboardInterrupt):

@@ -20,6 +20,7 @@ from pathlib import Path
 
 import numpy as np
 
+from beam import InvalidValue
 from studies.files import write_atomically
 from studies.options import Parser, tool
 from studies.sweep import Column, read_columns
@@ -40,10 +41,10 @@ def export(given: Namespace) -> tuple[str, Mapping[str, object]]:
     """Write the columns of the sweep in a folder."""
     path = given.out or given.folder.with_name(f"{given.folder.name}.csv")
     if path.suffix != ".csv":
-        raise ValueError(f"--out is {path}; it must end in .csv")
+        raise InvalidValue(f"--out is {path}; it must end in .csv")
     _, columns = read_columns(given.folder)
     if not columns:
-        raise ValueError(f"no column of the sweep in {given.folder} is there yet")
+        raise InvalidValue(f"no column of the sweep in {given.folder} is there yet")
     write_atomically(path, csv_of([column for _, column in columns]))
     return f"{len(columns)} columns in {path}", {"columns": len(columns), "file": path}
 

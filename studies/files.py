@@ -120,8 +120,8 @@ def csv_text(rows: Sequence[object]) -> str:
 
 
 @cache
-def _source() -> str:
-    """A number of all modules of the three packages, in a checkout or not."""
+def source() -> str:
+    """A hash of all modules of the three packages, in a checkout or not."""
     files = sorted(path for name in ("beam", "contact", "studies") for path in (ROOT / name).rglob("*.py"))
     return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()
 
@@ -129,7 +129,7 @@ def _source() -> str:
 def fingerprint(scene: object, settings: Mapping[str, object]) -> str:
     """Equal for runs of a study whose numbers are the same: those of one source, scene and settings."""
     matters = {key: value for key, value in settings.items() if key != "fresh"}  # begins anew, ends the same
-    return hashlib.sha256(json_text([_source(), scene, matters]).encode()).hexdigest()
+    return hashlib.sha256(json_text([source(), scene, matters]).encode()).hexdigest()
 
 
 def versions() -> dict[str, str]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from beam import InvalidType
 from contact import HertzContact, ImpactOscillator, LinearContact, NewtonRestitution, Trajectory
 
 Array = NDArray[np.float64]
@@ -33,5 +34,5 @@ def contact_force(oscillator: ImpactOscillator, run: Trajectory) -> Array:
     elif isinstance(law, HertzContact):
         force = law.stiffness * depth**1.5
     else:
-        raise TypeError(f"the force of {type(law).__name__} is not known here")
+        raise InvalidType(f"the force of {type(law).__name__} is not known here")
     return np.where(touching(run), np.maximum(force, 0.0), 0.0)

@@ -35,7 +35,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from beam import ModalModel
+from beam import InvalidValue, ModalModel, Refusal
 from contact import ContactError, ImpactOscillator, StroboscopicMap, first_collision, simulate
 from contact.orbits import KickFamily, born, born_period
 from studies import letter
@@ -75,7 +75,7 @@ def distances(ask: Callable[[Choice], Answer], distance: Distance) -> Callable[[
     def answer(choice: Choice) -> Answer:
         try:
             return ask(choice)
-        except (ContactError, ValueError):  # such as a drive above all modes
+        except (ContactError, Refusal):  # such as a drive above all modes
             return None
 
     def off(reference: Choice, choice: Choice) -> float:
@@ -198,7 +198,7 @@ def least_modes(scene: Scene, needs: Mapping[str, float]) -> tuple[Scene, str]:
     others = {quantity: needs[quantity] for quantity in needs if not quantity.startswith("frequency ")}
     if not others.keys() <= QUANTITIES.keys():
         known = ", ".join(QUANTITIES)
-        raise ValueError(f"quantities are {', '.join(others)}; they must be of {known}, frequency K")
+        raise InvalidValue(f"quantities are {', '.join(others)}; they must be of {known}, frequency K")
     least = max(numbers, default=1)
     reason = f"frequency {least}" if numbers else "the least there is"
     if others:

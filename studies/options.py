@@ -16,6 +16,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated, Literal, NoReturn, TextIO, Union, get_args, get_origin
 
+from beam import InvalidValue
 from studies.files import SCHEMA
 from studies.programs import DONE, perform, tell
 
@@ -23,6 +24,19 @@ Answer = Mapping[str, object]
 
 POSITIONAL = "positional"
 """Beside the words of an argument: it needs no name on the command line."""
+
+
+MOST_CELLS = 1_000_000
+"""Most cells of a study, and the largest count on a command line. A million cells of a millisecond take a
+quarter of an hour, and their numbers fit into any memory."""
+
+
+def require_cells(option: str, value: object, count: float) -> None:
+    """Refuse an option that makes more cells than a study computes."""
+    if not count <= MOST_CELLS:
+        raise InvalidValue(
+            f"{option} is {value}, which makes {count:.3g} cells; at most {MOST_CELLS:g} are computed"
+        )
 
 
 class Parser(argparse.ArgumentParser):
@@ -37,7 +51,7 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Refuse."""
-        raise ValueError(f"{message} (--help lists the options)")
+        raise InvalidValue(f"{message} (--help lists the options)")
 
     def read(self, argv: Sequence[str], output: TextIO) -> argparse.Namespace:
         """The arguments; help goes to `output`."""
@@ -129,9 +143,9 @@ def add_options(parser: Parser, function: Callable[..., object]) -> dict[str, ob
 
 
 def _count(text: str) -> int:
-    """A whole number of at least 1."""
-    if not (text.isascii() and text.isdigit() and int(text) >= 1):
-        raise argparse.ArgumentTypeError(f"must be a whole number of at least 1, not {text!r}")
+    """A whole number from 1 to `MOST_CELLS`."""
+    if not (text.isascii() and text.isdigit() and len(text) < 20 and 1 <= int(text) <= MOST_CELLS):
+        raise argparse.ArgumentTypeError(f"must be a whole number from 1 to {MOST_CELLS}, not {text[:40]!r}")
     return int(text)
 
 

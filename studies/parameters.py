@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from typing import Any, Literal
 
-from beam import SuspiciousValue, decay_rate_change, free_period_change
+from beam import InvalidValue, SuspiciousValue, decay_rate_change, free_period_change
 from contact import ContactLaw, DelayedRestitution, HertzContact, ImpactOscillator, LinearContact
 from contact.orbits import Change
 from studies.scene import Scene, beam_at, hertz_of, single_mode_at
@@ -82,12 +82,12 @@ def require_names(names: Sequence[str], oscillator: ImpactOscillator, option: st
     for name in names:
         if name not in known and name in OF_LAWS:
             others = ", ".join(known)
-            raise ValueError(f"{option} names {name}, which {law} does not have; there are {others}")
+            raise InvalidValue(f"{option} names {name}, which {law} does not have; there are {others}")
         if name not in known:
             nearest = get_close_matches(name[:60], [*known, *OF_LAWS], n=1, cutoff=0.0)[0]
-            raise ValueError(f"{option} names {name[:60]!r}, which is no parameter; the nearest is {nearest}")
+            raise InvalidValue(f"{option} names {name[:60]!r}, no parameter; the nearest is {nearest}")
     if len(set(names)) < len(names) or not names:
-        raise ValueError(f"{option} names {', '.join(names) or 'nothing'}; it must name each parameter once")
+        raise InvalidValue(f"{option} names {', '.join(names) or 'nothing'}; it must name each one once")
 
 
 def with_values(oscillator: ImpactOscillator, values: Mapping[str, float]) -> ImpactOscillator:
@@ -107,7 +107,7 @@ def _with_values(oscillator: ImpactOscillator, values: Mapping[str, float]) -> I
         before = float(model.decay_rate[k])
         rate, period = values.get("decay_rate", before), values.get("free_period", model.free_period)
         if not (period > 0.0 and rate >= 0.0):
-            raise ValueError(f"free_period is {period:g} s, decay_rate {rate:g} 1/s; they must be above zero")
+            raise InvalidValue(f"free_period is {period:g} s, decay_rate {rate:g} 1/s; both must be positive")
         pace = math.hypot(2.0 * math.pi / period, 0.5 * rate) / float(model.omega[k])
         rates = model.decay_rate * (rate / before) if before > 0.0 else model.decay_rate + rate
         model = replace(model, omega=model.omega * pace, decay_rate=rates)

@@ -3,9 +3,10 @@
 A study is a file of this folder, or a folder with a `__main__`, that runs: nothing lists them. Nothing of
 this imports a study.
 
-Exit codes: 0 done; 2 wrong use, told in one sentence; 3 finished with failed cells; 130 interrupted. With
---json standard output carries one JSON object and nothing else; everything for a person goes to standard
-error. GRAZING_SPRING_TRACEBACK=1 shows where a refused input was noticed.
+Exit codes: 0 done; 2 wrong use (a `beam.Refusal`, or a file that cannot be read or written), in one sentence;
+3 finished with failed cells; 130 interrupted. Any other error is a fault of the program and shows its
+traceback. With --json standard output carries one JSON object and nothing else; everything for a person goes
+to standard error. GRAZING_SPRING_TRACEBACK=1 shows where a refused input was noticed.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import TextIO
 
+from beam import Refusal
 from studies.files import SCHEMA, json_text
 
 DONE, WRONG_USE, FAILED_CELLS, INTERRUPTED = 0, 2, 3, 130
@@ -100,7 +102,7 @@ def perform(study: str, command: str, arguments: Sequence[str], work: Callable[[
             return work(output)
         except SystemExit:  # --help
             return DONE
-        except (ValueError, TypeError, OSError) as error:
+        except (Refusal, OSError) as error:
             if os.environ.get(TRACEBACK) == "1":
                 traceback.print_exc()
             sentence = " ".join(str(error).split()) or f"{type(error).__name__} without a message"
@@ -109,6 +111,20 @@ def perform(study: str, command: str, arguments: Sequence[str], work: Callable[[
                 refusal = {"status": "refused", "error": sentence, "exit_code": WRONG_USE}
                 tell({"schema": SCHEMA, "study": study, **refusal}, output)
             return WRONG_USE
+
+
+def refuse_arguments(name: str, account: str) -> None:
+    """For a script without options: --help prints its account, any other argument is refused."""
+    if not as_program() or len(sys.argv) < 2:
+        return
+    if sys.argv[1] in ("-h", "--help"):
+        print(account)
+        raise SystemExit(DONE)
+    print(
+        f"python -m studies.{name}: takes no options, not {sys.argv[1]}; copy it and change it",
+        file=sys.stderr,
+    )
+    raise SystemExit(WRONG_USE)
 
 
 def as_program() -> bool:

@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, Literal, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from beam import Refusal
 from contact import ContactError
 from studies import letter
 from studies.executors import pool_of, progress, say
@@ -88,6 +89,11 @@ class Run:
     say = staticmethod(say)
     progress = staticmethod(progress)
 
+    def warn(self, sentence: str) -> None:
+        """Something that can hardly be meant: for the person, and kept in the summary."""
+        self.warnings = [*self.warnings, sentence]
+        self.say(f"warning: {sentence}")
+
     def track(self, items: Iterable[T], label: str) -> Iterator[T]:
         """The items one after the other, each counted when it has been dealt with."""
         known = list(items)
@@ -133,8 +139,7 @@ class Run:
             if abs(told / found - 1.0) > SAME_SPRING:
                 doubt = (f"single_mode.free_period_s is {told:g} s, but the first mode of the spring has "
                          f"{found:.5g} s: map and Eq. (1) describe another spring than the beam")  # fmt: skip
-                self.warnings = [*self.warnings, doubt]
-                self.say(f"warning: {doubt}")
+                self.warn(doubt)
         return self.scene
 
     # what it leaves
@@ -233,8 +238,10 @@ class Run:
         summary = {
             **common, "model_choice": self.model_choice, "failures": self.failures,
             "failed_cells": len(self.failures), "verdicts": self._verdicts, "answers": self._answers,
-            **{key: value for key, value in results.items() if key not in common},
         }  # fmt: skip
+        if taken := sorted(summary.keys() & results.keys()):
+            raise ValueError(f"{self.study} returns {', '.join(taken)}, which every summary has of its own")
+        summary |= results
         self.json("summary", summary)
         self.path("manifest.json")
         self.json("manifest", {
@@ -250,7 +257,7 @@ def _tried(function: Callable[[S], T], item: S) -> tuple[T | None, str]:
     """The value of an item, or None and why there is none."""
     try:
         return function(item), ""
-    except (ContactError, ValueError) as error:
+    except (ContactError, Refusal) as error:
         return None, str(error) or type(error).__name__
 
 

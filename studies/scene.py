@@ -18,7 +18,7 @@ import warnings
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from beam import Backbone, ModalModel, SuspiciousValue
+from beam import Backbone, ModalModel, Refusal, SuspiciousValue
 from contact import (
     Band,
     ContactError,
@@ -213,7 +213,7 @@ def period_shifts(scene: Scene) -> Mapping[float, tuple[float, float]]:
     for frequency in scene.drive.frequencies_hz:
         try:
             period = nonlinear_mode_at(scene, frequency, backbone).effective_period
-        except (ContactError, ValueError):
+        except (ContactError, Refusal):
             period = math.inf
         shift = period / scene.single_mode.free_period_s - 1.0
         ways = [math.copysign(1.0, shift) * (edge / frequency - 1.0) for edge in edges]

@@ -17,13 +17,15 @@ from dataclasses import dataclass, field
 from numbers import Real
 from typing import TypeVar
 
+from beam import InvalidValue
+
 LETTER, CALIBRATED, ASSUMED, GIVEN = "letter", "calibrated", "assumed", "given"
 
 MODE_LISTS = ("frequencies_hz", "decay_rates_per_s", "tip_values", "participation")
 """The lists of [modal_data], one entry a mode."""
 
 
-class SceneError(ValueError):
+class SceneError(InvalidValue):
     """A scene that cannot be used; the message is one sentence on one line."""
 
 

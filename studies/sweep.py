@@ -28,7 +28,8 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from studies.files import json_text, write_atomically
+from beam import InvalidValue
+from studies.files import json_text, source, write_atomically
 from studies.record import Run
 
 Column = Mapping[str, NDArray[np.generic]]
@@ -52,7 +53,7 @@ class Shard:
         """From k/n."""
         found = re.fullmatch(r"(\d+)/(\d+)", text, re.ASCII)
         if found is None or not 1 <= int(found[1]) <= int(found[2]):
-            raise ValueError(f"shard is {text!r}; it must be k/n with 1 <= k <= n, for instance 2/8")
+            raise InvalidValue(f"shard is {text!r}; it must be k/n with 1 <= k <= n, for instance 2/8")
         return Shard(number=int(found[1]), count=int(found[2]))
 
 
@@ -80,7 +81,7 @@ def read_columns(folder: Path) -> tuple[dict[str, object], list[tuple[int, Colum
     try:
         settings = json.loads((folder / SETTINGS).read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise ValueError(
+        raise InvalidValue(
             f"there is no sweep in {folder}: it needs {SETTINGS} and columns 00000.npz, ..."
         ) from error
     columns = ((int(path.stem), _read(path)) for path in sorted(folder.glob("[0-9]*.npz")))
@@ -97,7 +98,7 @@ def _begin(folder: Path, settings: Mapping[str, object], fresh: bool) -> None:
         there = json.loads(path.read_text(encoding="utf-8"))
         if there != wanted:
             other = [key for key in sorted({*there, *wanted}) if there.get(key) != wanted.get(key)]
-            raise ValueError(
+            raise InvalidValue(
                 f"{folder} holds a sweep with another {', '.join(other)}: begin anew with --fresh, or "
                 "choose another folder with --out"
             )
@@ -117,7 +118,8 @@ def sweep(
     name : str
         Of the folder in the folder of the run.
     settings : mapping, in terms of JSON
-        All that the numbers depend on; another mapping in the same folder is refused.
+        All that the numbers depend on besides the source, which is added; another mapping in the same folder
+        is refused, and so are columns of another source.
     arguments : sequence
         One for each column.
     compute : callable
@@ -132,7 +134,7 @@ def sweep(
         If other settings are stored in the folder.
     """
     folder, part = run.path(name), Shard() if shard is None else shard
-    _begin(folder, {"columns": len(arguments), **settings}, fresh)
+    _begin(folder, {"columns": len(arguments), "source": source(), **settings}, fresh)
     columns = [_read(_path(folder, number)) for number in range(len(arguments))]
     missing = [n for n in range(part.number - 1, len(arguments), part.count) if columns[n] is None]
     if not missing:

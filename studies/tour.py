@@ -1,9 +1,13 @@
 """From a brass strip to an orbit of period four: the whole package in one script, cell by cell.
 
 The letter's Fig. 4 (1996): a U with legs of 13 cm, driven at 21.50 Hz, 1.3 % above grazing. Each cell prints
-what it found. Run time: 3 s. Command: python -m studies.tour, or cell by cell in an editor that knows `# %%`.
-Output: results/tour.png and .pdf, and three records as CSV.
+what it found. Command: python -m studies.tour, or cell by cell in an editor that knows `# %%`. It has no
+options: copy it and change it. Output: results/tour.png and .pdf, and three records as CSV.
 """
+
+from studies.programs import refuse_arguments
+
+refuse_arguments("tour", __doc__)
 
 # %% A U cut out of a sheet of brass, damping tape on its legs; a ceramic ball with its mount at the bend
 from dataclasses import replace

@@ -26,7 +26,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from beam import ModalModel
+from beam import ModalModel, Refusal
 from contact import (
     ContactError,
     DelayedRestitution,
@@ -128,7 +128,7 @@ def extracted(
     family = Shooting(oscillator=oscillator.with_excess(excess), period=period)
     try:
         speed = abs(family.from_state(end).speed)
-    except (ContactError, ValueError):
+    except (ContactError, Refusal):
         return None
     assert isinstance(law, DelayedRestitution) and callable(law.restitution) and callable(law.delay)
     restitution = law.restitution(speed)

@@ -21,7 +21,7 @@ from wrong_input_of_contact import CONTACT, METHODS, ORBITS
 
 import beam
 import contact
-from beam.parameters import SuspiciousValue, shown
+from beam.parameters import Refusal, SuspiciousValue, shown
 from contact import integrators, orbits
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -82,6 +82,7 @@ def our_sentence(entry: Entry, field: str, value: object, error: Any) -> str:
     with pytest.raises(error) as caught:
         entry.call(**entry.right() | {field: value})
     text = str(caught.value)
+    assert isinstance(caught.value, Refusal)
     assert text.isprintable() and 0 < len(text) < 400 and not text.endswith("."), text
     place = Path(caught.traceback[-1].path)
     assert place.is_relative_to(ROOT / "beam") or place.is_relative_to(ROOT / "contact"), f"{place}: {text}"

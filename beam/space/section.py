@@ -38,7 +38,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ..material import Material
-from ..parameters import require, require_kind, require_within
+from ..parameters import InvalidValue, require, require_kind, require_within
 from ..section import StripSection
 
 
@@ -119,7 +119,7 @@ def channel(*, material: Material, width: float, flange: float, thickness: float
     require_within("flange", flange, "m", low=0)
     require_within("thickness", thickness, "m", above=0)
     if 2.0 * thickness > width:
-        raise ValueError(f"thickness is {thickness} m; it must not exceed half of the width {width} m")
+        raise InvalidValue(f"thickness is {thickness} m; it must not exceed half of the width {width} m")
     b, h, t = width, flange, thickness
     web, both = b * t, 2.0 * h * t
     area, arm = web + both, 0.5 * (h + t)  # arm: from the middle of the web to the middle of a flange

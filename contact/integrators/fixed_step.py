@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from beam.parameters import brief, is_number, require
+from beam.parameters import InvalidValue, brief, is_number, require
 from contact.errors import Diverged, StepTooLarge
 from contact.flight.modal_flow import steady_motion
 from contact.flight.motion import Motion
@@ -37,7 +37,7 @@ def _refuse(motion: Motion, run: Run, step: float, critical: float, place: dict[
     """ValueError for a start behind the stop, StepTooLarge for a step that cannot be stable."""
     within = step * motion.most_at_tip(run.start.velocity) + 1e-12 * max(motion.gap, 1e-6)
     if CONTACT not in TOUCHES[motion.law].REGIMES and -place["gap"] > within:
-        raise ValueError(
+        raise InvalidValue(
             f"displacement of the state puts the tip {-place['gap']:.3g} m behind the stop; with an impact "
             "law it must start on the near side"
         )

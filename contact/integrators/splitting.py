@@ -59,6 +59,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from beam.parameters import InvalidValue
 from contact.flight.modal_flow import flow_over
 from contact.flight.motion import DAMPED, Motion, motion_of
 from contact.integrators.fixed_step import FixedStep
@@ -201,7 +202,7 @@ class Splitting(FixedStep):
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.order not in COMPOSITIONS:
-            raise ValueError(f"order is {self.order!r}; it must be 2 or 4")
+            raise InvalidValue(f"order is {self.order!r}; it must be 2 or 4")
 
     def critical_stiffness(self, motion: Motion) -> float:
         """Lowest stiffness of a lasting contact at which a step is unstable [N/m].

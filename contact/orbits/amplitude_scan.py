@@ -29,7 +29,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from beam.parameters import require_array, require_kind, require_whole
+from beam.parameters import InvalidValue, require_array, require_kind, require_whole
 from contact.compiled import kernel
 from contact.event_loop import DONE, STATE
 from contact.exact_run import failure
@@ -171,7 +171,7 @@ class AmplitudeScan:
         """The column at drive `frequency` [Hz] over rising `excesses` F/F_g - 1 [1]."""
         rising = require_array("excesses", excesses, "[1]", dimensions=1, words="one row of rising numbers")
         if rising.size == 0 or not np.all(np.diff(rising) > 0.0):
-            raise ValueError("excesses must be at least one number, in rising order")
+            raise InvalidValue("excesses must be at least one number, in rising order")
         drive, n = replace(self.oscillator.driven, frequency=frequency), self.oscillator.n_modes
         oscillator = replace(self.oscillator, drive=drive).with_excess(0.0)
         steady = StroboscopicMap(oscillator=oscillator).at(float(rising[0])).steady()

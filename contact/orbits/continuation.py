@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from beam.parameters import require_array, require_kind, require_within
+from beam.parameters import InvalidValue, require_array, require_kind, require_within
 from contact.errors import ContactError
 from contact.orbits.branch import SMALLEST, Branch, branch_of
 from contact.orbits.events import Between, Event, event_of
@@ -72,7 +72,7 @@ def follow(family: Followed, start: PeriodicOrbit, *, low: float, high: float, s
         require_within(name, value, "m/s")
     require_within("step", step, "[1]", low=SMALLEST, high=GREATEST_STEP)
     if not 0 < low < start.speed < high:
-        raise ValueError(
+        raise InvalidValue(
             f"low and high are {low} and {high} m/s; they must enclose the start, {start.speed:g} m/s"
         )
     curve = FamilyCurve(like=start, family=family, slowest=low, fastest=high)

@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from beam.parameters import Refusal
 from contact.errors import ContactError, NotPeriodic
 from contact.orbits.event_derivatives import peaks
 from contact.orbits.periodic_orbit import PeriodicOrbit
@@ -204,7 +205,7 @@ class Curve(ABC):
             guess[-1], across = end, np.eye(guess.size)[-1]
         try:
             there = self.solve(guess, across, touches).along(here.direction)
-        except (ContactError, ValueError) as error:
+        except (ContactError, Refusal) as error:
             return str(error)
         if np.linalg.norm(there.x - guess) >= BEND * length:
             return "the curve leaves its tangent"

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from beam.parameters import require_array, require_kind
+from beam.parameters import InvalidValue, require_array, require_kind
 from contact.change import Change, Changes
 from contact.orbits.derivatives import pace_of_deviations
 from contact.oscillator import ImpactOscillator
@@ -74,7 +74,7 @@ def motion_derivatives(
     require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
     require_kind("state", state, State, "a State")
     if state.regime != Regime.OUTSIDE:
-        raise ValueError(f"regime of the state is {int(state.regime)}; it must be 0, off the stop")
+        raise InvalidValue(f"regime of the state is {int(state.regime)}; it must be 0, off the stop")
     wanted = require_array("times", () if times is None else times, "s", dimensions=1, words="a rising array")
     several = Changes(oscillator=oscillator, changes=changes)
     run, n = simulate(oscillator, state, periods=periods, times=wanted), oscillator.n_modes

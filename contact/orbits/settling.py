@@ -27,7 +27,7 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from beam.parameters import require_whole, require_within
+from beam.parameters import Refusal, require_whole, require_within
 from contact.errors import ContactError
 from contact.orbits.periodic_orbit import PeriodicOrbit
 from contact.orbits.repetition import free_for_good, period_of
@@ -170,7 +170,7 @@ def orbit_near(strobed: StroboscopicMap, state: State, period: int, impacts: int
     try:
         family = Shooting(oscillator=strobed.oscillator, period=period, impacts=impacts)
         orbit = family.from_state(replace(state, time=0.0))
-    except (ContactError, ValueError, TypeError):
+    except (ContactError, Refusal):
         return None
     return orbit if orbit.stable and orbit.admissible else None
 

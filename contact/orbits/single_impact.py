@@ -41,7 +41,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from beam.parameters import require, require_kind, require_whole, require_within
+from beam.parameters import InvalidValue, require, require_kind, require_whole, require_within
 from contact.laws import NewtonRestitution
 from contact.maximal_orbits import positive_roots
 from contact.nordmark import restitution_of
@@ -159,7 +159,7 @@ class SingleImpactFamily(ABC):
         matrices, trapped = self._closing
         back = np.flatnonzero(trapped & np.any(jump != 0.0, axis=1))  # one that is not kicked stays at rest
         if back.size:
-            raise ValueError(
+            raise InvalidValue(
                 f"omega[{back[0]}] is {self.oscillator.model.omega[back[0]]} rad/s, a mode that is back "
                 f"after {self.period} drive periods; it must have damping or another frequency"
             )

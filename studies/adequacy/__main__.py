@@ -1,7 +1,6 @@
 """How much model each question needs: level, mesh, modes, residual mode and contact law.
 
-Claim: the period that is born at grazing needs Eq. (1) at most frequencies, a collision some ten modes of the
-beam, and only the hysteresis needs Hertz's contact too.
+Question: what is the least model for the period that is born at grazing, a collision, or the hysteresis?
 
 For each quantity the cheapest model within the tolerance is found: Eq. (1) or the beam; with how many modes,
 with or without a residual one for those left out; with how many elements; with Newton's, a linear or Hertz's

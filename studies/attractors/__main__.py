@@ -23,9 +23,11 @@ from typing import Annotated, Literal
 
 import numpy as np
 
+from beam import InvalidValue
 from contact import StroboscopicMap
 from studies.attractors.basins import parts, plane_of
 from studies.attractors.scan import CHAOTIC, KINDS, TITLES, Row, carried
+from studies.options import require_cells
 from studies.run import Run, study
 from studies.scene import (
     Scene,
@@ -57,9 +59,10 @@ def attractors(
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
     if not -1.0 < lowest < highest:
-        raise ValueError(f"lowest is {lowest} and highest {highest}; -1 < lowest < highest must hold")
+        raise InvalidValue(f"lowest is {lowest} and highest {highest}; -1 < lowest < highest must hold")
     if not -1.0 < basin_excess < 0.0:
-        raise ValueError(f"basin-excess is {basin_excess}; it must lie above -1 and below grazing, 0")
+        raise InvalidValue(f"basin-excess is {basin_excess}; it must lie above -1 and below grazing, 0")
+    require_cells("side", side, side**2)
     f = corresponding(harmonic(scene), FREQUENCY) if frequency is None else frequency
     maps = {}
     if model != "beam":

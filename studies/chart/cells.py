@@ -18,7 +18,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from beam import InvalidValue
 from contact.orbits import AmplitudeScan
+from studies.options import require_cells
 from studies.sweep import Column
 
 FREQUENCIES_HZ = (19.5, 24.0)
@@ -44,11 +46,14 @@ class Plane:
 
     def __post_init__(self) -> None:
         if self.columns < 2 or self.rows < 2:
-            raise ValueError(f"points of the chart are {self.columns} by {self.rows}; each must be 2 or more")
+            raise InvalidValue(
+                f"points of the chart are {self.columns} by {self.rows}; each must be 2 or more"
+            )
+        require_cells("points", f"{self.columns} {self.rows}", self.columns * self.rows)
         for name, lowest in (("frequencies_hz", 0.0), ("excesses", -1.0)):
             low, high = getattr(self, name)
             if not lowest < low < high:
-                raise ValueError(
+                raise InvalidValue(
                     f"{name} of the chart are {low} to {high}; they must rise from above {lowest:g}"
                 )
 

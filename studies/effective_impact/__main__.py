@@ -14,13 +14,8 @@ v the approach speed, v/a the time to the top of the arc beyond the gap, a = (2 
 time: excess and tip mass (free period and drive amplitude at grazing kept); and tip mass together with loss
 in the contact, in search of the letter's tau.
 
-What comes out for the letter's scene: tau is |1 - kick| with a floor near sqrt(contact time * a/v). The floor
-is the time that the contact takes, not loss: at the excess of Fig. 4 (0.013) a ceramic ball on steel leaves
-tau = 0.22 to 0.23 for any loss in the contact, each at its own tip mass. tau = 0.1 asks for a contact of 12
-us, thirty times as stiff, or for an excess of 0.21; or for a settled orbit, where what is left of the ringing
-shifts the touch: there tau lies anywhere from 0.07 (on the orbit of Fig. 4) to 0.73, or does not exist, as
-mode 1 does not come back to the gap. A bare tip has tau = 0.7 and a delay longer than v/a. (How the kick
-fades towards grazing: studies.soft_wall; how many modes this takes: studies.adequacy.)
+How the kick fades towards grazing is in `studies.soft_wall`, how many modes a collision needs in
+`studies.adequacy`.
 
 Run:     python -m studies.effective_impact [--quick]     20 s; --quick ten seconds
 Writes:  collisions.csv (a row an approach), floors.csv (smallest restitution over the tip mass), and the

@@ -35,8 +35,10 @@ from typing import Annotated
 
 import numpy as np
 
-from studies.hysteresis.descriptions import CAUSES, DESCRIPTIONS, Row, column
+from beam import InvalidValue
+from studies.hysteresis.descriptions import CAUSES, DESCRIPTIONS, FREQUENCIES_HZ, Row, column
 from studies.letter import AMPLITUDE_STABILITY
+from studies.options import require_cells
 from studies.record import Verdict
 from studies.run import Run, study
 from studies.scene import Scene, harmonic, model_of, periods_of, require_drive_below
@@ -76,7 +78,8 @@ def hysteresis(
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
     if step <= 0.0:
-        raise ValueError(f"step is {step:g} Hz; it must be greater than 0")
+        raise InvalidValue(f"step is {step:g} Hz; it must be greater than 0")
+    require_cells("step", f"{step:g} Hz", len(PERIODS) * (FREQUENCIES_HZ[1] - FREQUENCIES_HZ[0]) / step)
     model, seen = model_of(harmonic(scene)), periods_of(scene)
     require_drive_below(scene, model)
     columns = run.map(partial(column, scene, model, step), PERIODS, "periods")
@@ -125,7 +128,8 @@ def accuracy(description: str, rows: Sequence[Row]) -> Accuracy:
 def judge(run: Run, rows: Sequence[Row], off: Mapping[str, Accuracy], median: Causes) -> None:
     """The answer, and the verdicts on Fig. 3 and the two parameters."""
     factors = {name: value for name in CAUSES if (value := getattr(median, name)) is not None}
-    if not factors:
+    if "truncation_of_the_map" not in factors:
+        run.say("no p_m has a fold in the map, Eq. (1) and the beam: there is nothing to compare")
         return
     up, down = max(factors, key=factors.__getitem__), min(factors, key=factors.__getitem__)
 

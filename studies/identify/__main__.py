@@ -32,6 +32,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from beam import InvalidValue
 from contact import ImpactOscillator
 from studies.identify import coverage as covering
 from studies.identify import figures, gradients
@@ -97,7 +98,7 @@ class Quality:
 def frequency_of(record: Record) -> float:
     """The drive frequency of a record, the first of a table [Hz]."""
     if (frequency := float(record.rows[0, 0]) if record.kind == "transitions" else record.frequency) is None:
-        raise ValueError("the record does not say the frequency of the drive: give --drive HZ MM")
+        raise InvalidValue("the record does not say the frequency of the drive: give --drive HZ MM")
     return frequency
 
 
@@ -122,7 +123,7 @@ def driven(record: Record, oscillator: ImpactOscillator, names: Sequence[str]) -
     if record.amplitude is not None:
         return oscillator.with_amplitude(record.amplitude)
     if record.kind != "transitions" and "amplitude" not in names:
-        raise ValueError("the record does not say the amplitude of the base: give --drive HZ MM, or fit it")
+        raise InvalidValue("the record does not say the amplitude of the base: give --drive HZ MM, or fit it")
     return oscillator
 
 
@@ -142,7 +143,7 @@ def identify(
     """Read or make, fit, report and draw."""
     harmonic(scene)
     if noise_um is not None and not 0.0 < noise_um < math.inf:
-        raise ValueError(f"noise_um is {noise_um} um; it must be finite and above zero")
+        raise InvalidValue(f"noise_um is {noise_um} um; it must be finite and above zero")
     noise = None if noise_um is None else 1e-6 * noise_um
     delay = None if delay_ms is None else 1e-3 * delay_ms
     if description == "beam":
@@ -154,7 +155,7 @@ def identify(
         oscillator = described(scene, description, delay, frequency_of(read))
         given = {record.stem: (read, oscillator)}
     elif fit:
-        raise ValueError(f"fit names {' '.join(fit)}, but no record is given: put its file before --fit")
+        raise InvalidValue(f"fit names {' '.join(fit)}, but no record is given: put its file before --fit")
     else:
         given = examples(scene, run, delay)
     found = {

@@ -16,6 +16,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from beam import Refusal
 from contact import ContactError, ImpactOscillator
 from studies import letter
 from studies.files import fingerprint
@@ -68,7 +69,7 @@ class Trial:
             seed = np.random.SeedSequence([SEED, key, chunk * CHUNK + i]).generate_state(1)
             try:
                 one = fit(self.record.noisy(int(seed[0]), noise), self.start, tuple(self.truth))
-            except (ContactError, ValueError):
+            except (ContactError, Refusal):
                 continue
             found[:, i] = one.estimate, one.errors, one.intervals()[:, 1] - one.estimate
             small[i] = one.too_small

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from scipy import stats
 from scipy.optimize import least_squares
 
+from beam import InvalidValue, Refusal
 from contact import ContactError, ImpactOscillator
 from studies import letter
 from studies.identify.predictions import Prediction
@@ -139,7 +140,7 @@ class Problem:
         try:
             oscillator, extra = self.at(unknowns)
             predicted = self.prediction.values(oscillator, extra).ravel()
-        except (ContactError, ValueError):
+        except (ContactError, Refusal):
             return np.full(self.observed.size + self.held.size, np.nan)
         off = (predicted - self.observed) * self.weights
         return np.concatenate([off, (unknowns - self.middle) * self.held])
@@ -152,7 +153,7 @@ class Problem:
     def solve(self, start: Array) -> Any:
         """``scipy.optimize.least_squares`` from `start`."""
         if not np.all(np.isfinite(self.residuals(start))):
-            raise ValueError(
+            raise InvalidValue(
                 "no motion like the record's was found to start from: fit more, or give better values"
             )
         with np.errstate(all="ignore"):  # of the trust region, along what is not seen
@@ -179,19 +180,21 @@ def fit(
     problem = Problem(prediction, begun, names, unit)
     rows, unknowns = problem.observed.size, problem.start.size - int(np.isfinite(prediction.prior).sum())
     if rows < unknowns + (not known):
-        raise ValueError(f"the record has {rows} numbers, too short for {unknowns} unknowns and their errors")
+        raise InvalidValue(
+            f"the record has {rows} numbers, too short for {unknowns} unknowns and their errors"
+        )
     at = start = problem.start
     for part in prediction.parts(begun)[:-1]:
         start = Problem(part, begun, names, unit, LEASH).solve(start).x
     found = problem.solve(start)
     if found.status == 0:
-        raise ValueError(f"the fit has not settled after {MOST} steps: give better values, or fit fewer")
+        raise InvalidValue(f"the fit has not settled after {MOST} steps: give better values, or fit fewer")
     freedom = max(rows - unknowns, 1)
     spread = 1.0 if known else float(np.sqrt(2.0 * found.cost / freedom))
     n, sizes, shape = len(names), problem.sizes, prediction.record.observed.shape
     _u, singular, axes = np.linalg.svd(found.jac, full_matrices=False)
     if not singular[-1] > SINGULAR * singular[0]:
-        raise ValueError(f"the record cannot {_blind(axes, names)}: fit fewer parameters or another record")
+        raise InvalidValue(f"the record cannot {_blind(axes, names)}: fit fewer parameters or another record")
     covariance = (axes.T / singular**2 @ axes * np.outer(sizes, sizes) * spread**2)[:n, :n]
     result = Fit(
         record=prediction.record, oscillator=problem.at(found.x)[0], names=names, start=(at * sizes)[:n],
@@ -205,7 +208,7 @@ def fit(
         lost = result.errors > sizes[:n] * np.maximum(np.abs(found.x[:n]), 1.0)
         if np.any(lost):
             worst = names[int(np.argmax(lost))]
-            raise ValueError(
+            raise InvalidValue(
                 f"the record cannot {_blind(axes, names)}: the standard error of {worst} is above its value"
             )
         _require_same_impacts(problem, found.x, axes * spread / singular[:, None])
@@ -225,10 +228,10 @@ def _require_same_impacts(problem: Problem, unknowns: Array, axes: Array) -> Non
     for axis in [sign * axis for axis in axes for sign in (-REGION, REGION)]:
         try:
             same = touches(*problem.at(unknowns + axis)) == before
-        except (ContactError, ValueError):
+        except (ContactError, Refusal):
             same = False
         if not same:
-            raise ValueError(
+            raise InvalidValue(
                 "the orbit changes its impacts inside the confidence region, so that errors mean nothing: "
                 "record it longer, or farther from where it ends"
             )
@@ -281,7 +284,7 @@ def profile(found: Fit, name: str, other: str, *, points: int = 9, reach: float 
             at = with_values(found.oscillator, {name: float(values[i])})
             fewer = Problem(problem.prediction, at, others, problem.noise)
             held = fewer.solve(np.delete(values, i) / fewer.sizes)
-        except ValueError:
+        except Refusal:
             continue
         rows.append(Profile(
             parameter=name, value=float(values[i]), depth=float(2.0 * held.cost - best) / variance,

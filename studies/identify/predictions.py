@@ -16,6 +16,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from beam import InvalidValue, Refusal
 from contact import (
     ContactError,
     ImpactKind,
@@ -102,7 +103,7 @@ class Strobes(Prediction):
             family = Shooting(oscillator=oscillator, period=self.period)
             orbit = family.at_excess(oscillator.excess, self.orbit)
             if not orbit.admissible:
-                raise ValueError(f"p{self.period} has another impact with these parameters")
+                raise InvalidValue(f"p{self.period} has another impact with these parameters")
             self.orbit, self.at = orbit, oscillator
         return self.of_orbit()
 
@@ -149,7 +150,7 @@ class Transitions(Prediction):
                 fold = fold_of(exact, self.folds[i])
             self.folds[i] = fold
             if fold is None:
-                raise ValueError(f"p{period:g} has no fold at {frequency:g} Hz with these parameters")
+                raise InvalidValue(f"p{period:g} has no fold at {frequency:g} Hz with these parameters")
         return np.array([[fold.excess] for fold in self.folds if fold is not None])
 
     def jacobian(self, oscillator: ImpactOscillator, extra: Array, names: Sequence[str]) -> Array:
@@ -193,7 +194,7 @@ class Displacement(Prediction):
         seen = self.record.observed
         try:
             return float((self.values(oscillator, self.extra) - seen).std() / seen.std())
-        except (ContactError, ValueError):
+        except (ContactError, Refusal):
             return math.inf
 
     def _upto(self, count: int) -> Displacement:
@@ -219,11 +220,11 @@ class Displacement(Prediction):
         """The displacement of the tip; ValueError for another number of impacts than before."""
         run, hits = self._run(oscillator, extra)
         if np.any(run.impacts.kind != ImpactKind.IMPACT):
-            raise ValueError("the motion grazes the stop or comes to rest on it")
+            raise InvalidValue("the motion grazes the stop or comes to rest on it")
         if self.hits is None:
             self.hits = hits
         if hits != self.hits:
-            raise ValueError(f"the motion has {hits} impacts instead of {self.hits}")
+            raise InvalidValue(f"the motion has {hits} impacts instead of {self.hits}")
         return oscillator.tip(run.displacement)[:, None]
 
     def touches(self, oscillator: ImpactOscillator, extra: Array) -> int:

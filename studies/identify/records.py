@@ -20,6 +20,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from beam import InvalidValue
 from contact import ImpactOscillator, StroboscopicMap, simulate
 from contact.orbits import Shooting, born
 from studies import letter
@@ -99,7 +100,7 @@ def read_record(path: Path) -> Record:
         lines = [line.strip() for line in path.read_text(encoding="utf-8-sig").splitlines()]
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "it is not text in UTF-8"
-        raise ValueError(f"the record {path} cannot be read: {reason}") from error
+        raise InvalidValue(f"the record {path} cannot be read: {reason}") from error
     notes = dict[str, float]()
     for line in lines:
         name, equals, value = (part.strip() for part in line.lstrip("#").partition("="))
@@ -110,11 +111,11 @@ def read_record(path: Path) -> Record:
     if heading not in HEADINGS:
         known = "; ".join(",".join(names) for names in HEADINGS)
         found = ",".join(heading)[:60] or "nothing"
-        raise ValueError(f"the record {path} has the heading {found!r}; it must be one of {known}")
+        raise InvalidValue(f"the record {path} has the heading {found!r}; it must be one of {known}")
     cells = [line.split(",") for line in kept[1:]]
     for i, row in enumerate(cells, 1):
         if len(row) != len(heading):
-            raise ValueError(f"row {i} of {path} has {len(row)} cells, the heading {len(heading)}")
+            raise InvalidValue(f"row {i} of {path} has {len(row)} cells, the heading {len(heading)}")
     numbers = [[_number(cell, f"row {i}", path) for cell in row] for i, row in enumerate(cells, 1)]
     rows = np.array(numbers, dtype=float).reshape(-1, len(heading))
     record = Record(columns=heading, rows=rows, frequency=notes.get(NOTES[0]), amplitude=notes.get(NOTES[1]))
@@ -128,7 +129,7 @@ def _number(text: str, place: str, path: Path) -> float:
     except ValueError:
         number = math.nan
     if not math.isfinite(number):
-        raise ValueError(f"{place} of {path} has {text.strip()[:40]!r}, which is not a finite number")
+        raise InvalidValue(f"{place} of {path} has {text.strip()[:40]!r}, which is not a finite number")
     return number
 
 
@@ -136,18 +137,18 @@ def _check(record: Record, path: Path) -> None:
     """ValueError for rows that no record of its kind has."""
     rows, fewest = record.rows, FEWEST[record.kind]
     if len(rows) < fewest:
-        raise ValueError(f"the record {path} has {len(rows)} rows; one of its kind needs {fewest} at least")
+        raise InvalidValue(f"the record {path} has {len(rows)} rows; one of its kind needs {fewest} at least")
     if record.kind == "displacement":
         steps = np.diff(rows[:, 0])
         uneven = np.flatnonzero(np.abs(steps - np.median(steps)) > UNEQUAL * np.median(steps))
         if uneven.size or not np.median(steps) > 0.0 or rows[0, 0] < 0.0:
             row = int(uneven[0]) + 2 if uneven.size else 1
-            raise ValueError(f"time_s of {path} must rise from 0 or later in equal steps; see row {row}")
+            raise InvalidValue(f"time_s of {path} must rise from 0 or later in equal steps; see row {row}")
     if record.kind == "transitions":
         wrong = (rows[:, 0] <= 0.0) | (rows[:, 1] % 1 != 0) | (rows[:, 1] < 1) | (rows[:, 2] <= -1.0)
         wrong |= np.any(rows[:, 3:] <= 0.0, axis=1)
         if np.any(wrong):
-            raise ValueError(
+            raise InvalidValue(
                 f"row {int(np.argmax(wrong)) + 1} of {path} needs a frequency above 0 Hz, a whole period, an "
                 "excess above -1 and an error above 0"
             )

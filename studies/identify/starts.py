@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
 from scipy.optimize import least_squares
 
+from beam import InvalidValue, Refusal
 from contact import ContactError, ImpactOscillator, SingleImpactOrbit, State
 from studies.identify.predictions import PRIOR, Displacement, Prediction, Strobes, Transitions, family_of
 from studies.identify.records import Record
@@ -82,13 +83,13 @@ def repetition(record: Record) -> int:
     off = np.array([np.sqrt(np.mean((rows[m:] - rows[:-m]) ** 2)) for m in range(1, most + 1)])
     period = int(np.argmax(off <= ALIKE * off.min())) + 1
     if rows.std() < FLAT * np.abs(rows).max():
-        raise ValueError("the strobe points stay where they are: there is no impact in the record")
+        raise InvalidValue("the strobe points stay where they are: there is no impact in the record")
     if off[period - 1] > SIMILAR * rows.std():
-        raise ValueError(
+        raise InvalidValue(
             f"the record is too short, or its strobe points do not repeat: no period up to {most} rows"
         )
     if period == 1:
-        raise ValueError("the strobe points repeat after one drive period: nothing tells an impact in it")
+        raise InvalidValue("the strobe points repeat after one drive period: nothing tells an impact in it")
     return period
 
 
@@ -97,14 +98,17 @@ def _strobes(
 ) -> tuple[Strobes, ImpactOscillator]:
     period, size = repetition(record), float(record.observed[:, 0].std())
     if (told := period * record.observed.shape[1]) < len(names):
-        raise ValueError(f"p{period} gives {told} numbers, which cannot tell {len(names)} parameters")
+        raise InvalidValue(f"p{period} gives {told} numbers, which cannot tell {len(names)} parameters")
 
     def near(at: ImpactOscillator, most: float) -> Strobes | None:
         """The orbit at the drive of this oscillator, if it is off by less than this part of the record."""
         try:
-            found = Strobes(record, period, family_of(at, period).orbits(at.excess)[-1])
+            orbits = family_of(at, period).orbits(at.excess)
+            if not orbits:
+                return None
+            found = Strobes(record, period, orbits[-1])
             off = (found.values(at, found.extra) - record.observed)[:, 0]
-        except (ContactError, ValueError, IndexError):
+        except (ContactError, Refusal):
             return None
         return found if np.sqrt(np.mean(off**2)) < most * size else None
 
@@ -114,7 +118,7 @@ def _strobes(
         begun = orbit.oscillator if "amplitude" in names else begun
         found = near(begun, SIMILAR)
     if found is None:
-        raise ValueError(
+        raise InvalidValue(
             f"no p{period} with one impact was found near the record: give better values of what is not "
             "fitted, or fit more"
         )
@@ -137,7 +141,7 @@ def _searched(
         try:
             at, orbit = orbit_at(unknowns)
             rows = ((Strobes(record, period, orbit).of_orbit() - record.observed) / scale).ravel()
-        except (ContactError, ValueError):
+        except (ContactError, Refusal):
             return np.full(scale.size + 1, np.nan)
         drive = orbit.amplitude / at.driven.amplitude - 1.0
         return np.append(rows, kept * drive * math.sqrt(rows.size) / CLOSE)
@@ -147,7 +151,9 @@ def _searched(
     costs = np.array([np.sum(off(start) ** 2) for start in starts])
     best = [starts[i] for i in np.argsort(costs)[:TRIED] if np.isfinite(costs[i])]
     if not best:
-        raise ValueError(f"the scene has no p{period} with one impact at {oscillator.driven.frequency:g} Hz")
+        raise InvalidValue(
+            f"the scene has no p{period} with one impact at {oscillator.driven.frequency:g} Hz"
+        )
     found = [least_squares(off, start, max_nfev=30, x_scale="jac") for start in best]
     return orbit_at(min(found, key=lambda one: one.cost).x)
 
@@ -196,9 +202,9 @@ def _displacement(
 ) -> tuple[Displacement, ImpactOscillator]:
     times, x = record.rows.T
     if (times[-1] - times[0]) < 2.0 * oscillator.period:
-        raise ValueError("the record is too short: it must be two drive periods long at least")
+        raise InvalidValue("the record is too short: it must be two drive periods long at least")
     if (density := oscillator.period / (times[1] - times[0])) < DENSEST:
-        raise ValueError(f"the record has {density:.3g} rows a drive period; it needs {DENSEST} at least")
+        raise InvalidValue(f"the record has {density:.3g} rows a drive period; it needs {DENSEST} at least")
     known = parameters_of(oscillator)
     thin = max(1, int(density / ENOUGH))  # a slow rebound hides in the noise of the next row
     corners = [
@@ -206,7 +212,7 @@ def _displacement(
         for one in _corners(times[::thin], x[::thin], oscillator, "delay" in known)
     ]
     if not corners:
-        raise ValueError("there is no impact in the record")
+        raise InvalidValue("there is no impact in the record")
     cuts = [0, *(one.after + 1 for one in corners)], [*(one.before for one in corners), x.size]
     stretches = [(a, b) for a, b in zip(*cuts, strict=True) if b - a > SHORTEST * density]
     rung = _rung(times, x, stretches, oscillator, names) if oscillator.n_modes == 1 else {}

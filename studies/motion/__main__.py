@@ -34,7 +34,16 @@ from studies.film import (
 )  # fmt: skip
 from studies.motion.filmed_orbit import FilmedOrbit, FrameRow, drawn_shapes, film_orbit
 from studies.run import Run, study
-from studies.scene import Scene, beam_at, corresponding, harmonic, model_of, modes_of, require_drive_below
+from studies.scene import (
+    Scene,
+    beam_at,
+    corresponding,
+    harmonic,
+    model_of,
+    modes_of,
+    require_drive_below,
+    shift_at_gap,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -43,6 +52,9 @@ Array = NDArray[np.float64]
 
 FREQUENCY = 21.50
 """Where the letter has the period 4 of its Fig. 4 [Hz]."""
+
+LARGEST_SHIFT = 0.01
+"""Relative change of the free frequency by the amplitude of a film beyond which a linear spring misleads."""
 
 RATE = 20.0
 """Frames a second: gif keeps time in hundredths of a second."""
@@ -70,6 +82,9 @@ def motion(
     settled = born(strobed, excess, most_cycles=most)
     orbit = film_orbit(oscillator, settled.end, settled.period, frames=frames, rate=RATE)
     swing, radius = max(abs(row.tip_m) for row in orbit.rows), scene.tip.ball_radius_m
+    if (shift := abs(shift_at_gap(scene)) * (swing / scene.stop.gap_m) ** 2) > LARGEST_SHIFT:
+        off = f"{100.0 * shift:.2g} % off the free frequency of small swings"
+        run.warn(f"the model is linear, but the tip swings by {swing:.3g} m, where a spring is {off}")
     scenery = Scenery.of(modes, ball_radius=radius, gap=scene.stop.gap_m, swing=swing)
     drawn, magnification = drawn_shapes(scenery.mesh, modes, orbit.coordinates, magnify)
     carried = DRIVE * (seen_from == "laboratory")

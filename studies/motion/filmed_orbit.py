@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam import Modes, SpringMesh
-from contact import ImpactOscillator, State, simulate
+from contact import ImpactKind, ImpactOscillator, State, simulate
 from studies.force import contact_force, touching
 
 Array = NDArray[np.float64]
@@ -98,7 +98,7 @@ def film_orbit(
     length = period or APERIODIC
     duration, begin = length * oscillator.period, state.time
     whole = simulate(oscillator, state, periods=length + 1)
-    felt = (whole.impacts.kind != 1) & (whole.impacts.start < begin + duration)
+    felt = (whole.impacts.kind != ImpactKind.GRAZE) & (whole.impacts.start < begin + duration)
     spans = zip(whole.impacts.start[felt] - begin, whole.impacts.end[felt] - begin, strict=True)
     contacts = [(float(a), float(b) if math.isfinite(b) else duration) for a, b in spans]
     times = frame_times(duration, contacts, frames)

@@ -1,9 +1,7 @@
 """Where a measurement tells most of the parameters, and what the letter's own six tell.
 
-Claim: a thousand strobes of one orbit tell the period in motion ten times better than the letter's +- 0.02
-ms, but for those of p3; gap, restitution and delay no single orbit tells apart, two unlike ones do. The six
-printed pairs of frequency and period cannot: they leave an interval of T, by the map one that ends below
-40.80 ms.
+Question: how well do the strobes of one orbit, or of two, determine period, gap, restitution and delay? And
+which free periods agree with the six pairs of frequency and period that the letter prints?
 
 The information of an orbit is that of its strobe points, read with noise (`information`):
 
@@ -26,6 +24,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Annotated
 
+from beam import InvalidValue
 from studies.next_measurement import information, pairs
 from studies.parameters import described, require_names
 from studies.run import Run, study
@@ -48,12 +47,14 @@ def next_measurement(
     harmonic(scene)
     for name, value in {"strobes": strobes, "noise_um": noise_um, "thin": thin}.items():
         if not value > 0:
-            raise ValueError(f"{name} is {value}; it must be above zero")
+            raise InvalidValue(f"{name} is {value}; it must be above zero")
     delay = None if delay_ms is None else 1e-3 * delay_ms
     of = partial(described, scene, "two_parameters", delay)
     require_names(wanted, of(corresponding(scene, FREQUENCY_HZ)), "wanted")
     if "amplitude" in wanted:
-        raise ValueError("wanted names amplitude, which is measured with each orbit; name another parameter")
+        raise InvalidValue(
+            "wanted names amplitude, which is measured with each orbit; name another parameter"
+        )
     plan = information.Plan(names=wanted, strobes=strobes, noise=1e-6 * noise_um)
     plan = replace(plan, before={name: error for name, error in plan.before.items() if name not in wanted})
     ask = partial(information.measurements_at, of, plan, information.EXCESSES[::thin])

@@ -207,22 +207,32 @@ def letters_orbits(of: Of, excess: float = 1e-3) -> list[PeriodicOrbit]:
 
 def answer(of: Of, found: Sequence[Measurement], plan: Plan) -> str:
     """What the letter's points and the best place tell, for the page; the plan wants T, tau and the delay."""
-    six, first = letters_orbits(of), best(found, 1)[0]
+    six = letters_orbits(of)
     alone = {orbit.period: errors_of([orbit], plan) for orbit in six}
     pairs = [pair for pair in combinations(six, 2) if abs(pair[0].speed / pair[1].speed - 1.0) < ALIKE]
-    one, other = min(pairs, key=lambda pair: errors_of(pair, plan)[1])
 
     def words(errors: Sequence[float]) -> str:
         return f"tau to {errors[1]:.1g} and the delay to {1e6 * errors[2]:.2g} \u00b5s"
 
-    return (
+    text = (
         f"Of {plan.strobes} strobes read to {1e6 * plan.noise:g} \u00b5m, at an excess of 1e-3: T follows to "
         + ", ".join(f"{1e3 * errors[0]:.1g} ms (p{m})" for m, errors in alone.items())
-        + ". No single p_m tells gap, tau and delay apart; with the gap from the amplitude at grazing the "
-        f"best place, p{first.period} at {first.frequency_hz:.2f} Hz and {first.excess:.1e}, gives "
-        f"{words(first.errors)}. p{one.period} and p{other.period}, which meet the stop at {one.speed:.2f} "
-        f"and {other.speed:.2f} m/s, give {words(errors_of([one, other], plan))}."
+        + ". No single p_m tells gap, tau and delay apart; "
     )
+    if not (chosen := best(found, 1)):
+        return f"{text}with this noise no orbit of the plane outlives its errors."
+    first = chosen[0]
+    text += (
+        f"with the gap from the amplitude at grazing the best place, p{first.period} at "
+        f"{first.frequency_hz:.2f} Hz and {first.excess:.1e}, gives {words(first.errors)}."
+    )
+    if pairs:
+        one, other = min(pairs, key=lambda pair: errors_of(pair, plan)[1])
+        text += (
+            f" p{one.period} and p{other.period}, which meet the stop at {one.speed:.2f} and "
+            f"{other.speed:.2f} m/s, give {words(errors_of([one, other], plan))}."
+        )
+    return text
 
 
 def edges(centres: Array) -> Array:

@@ -28,7 +28,7 @@ from typing import Annotated
 
 import numpy as np
 
-from beam import ModalModel
+from beam import InvalidValue, ModalModel
 from contact import StroboscopicMap
 from contact.orbits import born
 from studies.files import fingerprint
@@ -83,9 +83,9 @@ def noise(
         for time in dict.fromkeys(correlation_times)
     ]
     if not readout >= 0.0:
-        raise ValueError(f"readout is {readout:g} m; it must be 0 or more")
+        raise InvalidValue(f"readout is {readout:g} m; it must be 0 or more")
     if scans < FEWEST:
-        raise ValueError(f"scans is {scans}; quantiles need at least {FEWEST}")
+        raise InvalidValue(f"scans is {scans}; quantiles need at least {FEWEST}")
     model, letters = model_of(harmonic(scene)), letter_periods(scene)
     clouds(scene, run, model, seed)
 

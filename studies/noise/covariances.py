@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from beam import InvalidValue
 from contact.orbits import cloud
 from studies.noise.places import Place
 from studies.noise.scans import Drift, memory_of, named
@@ -77,7 +78,7 @@ class Growth:
 def folded(place: Place) -> Any:
     """The orbit at the fold of a place; ValueError without one."""
     if place.fold is None:
-        raise ValueError(f"p{place.m} has no fold below grazing at {place.frequency_hz:g} Hz")
+        raise InvalidValue(f"p{place.m} has no fold below grazing at {place.frequency_hz:g} Hz")
     return place.fold
 
 

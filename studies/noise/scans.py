@@ -25,6 +25,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from beam import InvalidValue
 from contact import ContactError
 from contact.orbits import born
 from studies.noise.places import Place
@@ -93,17 +94,17 @@ class Protocol:
     def __post_init__(self) -> None:
         for name, value in (("stability", self.stability), ("amplitude_step", self.step)):
             if not 0.0 < value <= LARGEST:
-                raise ValueError(f"{name} is {value:g} [1]; it must be above 0, and at most {LARGEST:g}")
+                raise InvalidValue(f"{name} is {value:g} [1]; it must be above 0, and at most {LARGEST:g}")
         low, high = self.stability / RATIO, self.stability * RATIO
         if not low * (1.0 - EPS) <= self.step <= high * (1.0 + EPS):
-            raise ValueError(
+            raise InvalidValue(
                 f"amplitude_step is {self.step:g} [1]; with a stability of {self.stability:g} it must lie "
                 f"between {low:g} and {high:g}"
             )
         if self.waiting < FEWEST:
-            raise ValueError(f"waiting is {self.waiting} drive periods; it must be at least {FEWEST}")
+            raise InvalidValue(f"waiting is {self.waiting} drive periods; it must be at least {FEWEST}")
         if self.correlation_s < 0.0:
-            raise ValueError(f"correlation_times holds {self.correlation_s:g} s; it must be 0 or more")
+            raise InvalidValue(f"correlation_times holds {self.correlation_s:g} s; it must be 0 or more")
 
 
 def memory_of(correlation_s: float, frequency_hz: float) -> float:

@@ -25,6 +25,7 @@ from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader
 
+from beam import InvalidValue
 from studies import letter
 from studies.files import write_atomically
 from studies.programs import ALL, account_of, studies
@@ -125,7 +126,7 @@ def read_results(results: Path) -> list[Stored]:
     """
     found = [read_stored(results / name) for name in studies() if (results / name / "summary.json").exists()]
     if not found:
-        raise ValueError(f"there are no results in {results}: run python -m studies first")
+        raise InvalidValue(f"there are no results in {results}: run python -m studies first")
     return found
 
 

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from jinja2 import ChoiceLoader, DictLoader
 
+from beam import InvalidValue
 from studies import ROOT
 from studies.files import told
 from studies.programs import names
@@ -39,7 +40,7 @@ def write_site(results: Path, page: Path, modules: Sequence[str]) -> Path:
     try:
         from pdoc import doc, render
     except ImportError as error:
-        raise ValueError("a site needs pdoc: python -m pip install 'grazing-spring[docs]'") from error
+        raise InvalidValue("a site needs pdoc: python -m pip install 'grazing-spring[docs]'") from error
     readme, folder = ROOT / "README.md", results / "site"
     render.configure(docformat="numpy", show_source=False)
     usual = [render.env.loader] if render.env.loader else []

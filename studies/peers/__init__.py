@@ -23,6 +23,7 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from typing import ClassVar
 
+from beam import InvalidValue
 from contact import HertzContact, ImpactOscillator, LinearContact, NewtonRestitution, Trajectory
 from contact.integrators import Integrator, Run
 from studies.peers.adapters import cvode_pieces, heyoka_pieces, scipy_pieces
@@ -70,10 +71,10 @@ class OutsideSolver(Integrator):
 
     def __post_init__(self) -> None:
         if self.solver not in SOLVERS:
-            raise ValueError(f"solver is {self.solver!r}; it must be one of {', '.join(SOLVERS)}")
+            raise InvalidValue(f"solver is {self.solver!r}; it must be one of {', '.join(SOLVERS)}")
         module, least = LIBRARIES[SOLVERS[self.solver][0]]
         if not (isinstance(self.tolerance, int | float) and least <= self.tolerance < 1):
-            raise ValueError(f"tolerance is {self.tolerance}; it must lie between {least:g} and 1")
+            raise InvalidValue(f"tolerance is {self.tolerance}; it must lie between {least:g} and 1")
         if find_spec(module) is None:
             raise ImportError(
                 f'{module} is not installed; it comes with the extra peers: pip install -e ".[peers]"'

@@ -24,6 +24,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from beam import InvalidType, InvalidValue
 from contact import (
     Chatter,
     ContactError,
@@ -96,7 +97,9 @@ class Equations:
         self.hard, self.hertz = law.code == NewtonRestitution.code, law.code == HertzContact.code
         elastic = (self.hertz or law.code == LinearContact.code) and not any(law.numbers[1:])
         if not (self.hard or elastic) or oscillator.load is not None:
-            raise TypeError(f"law of the stop is {law}; outside solvers follow elastic contacts without load")
+            raise InvalidType(
+                f"law of the stop is {law}; outside solvers follow elastic contacts without load"
+            )
         self.n, self.phi, self.start, self.tolerance = oscillator.n_modes, model.phi, run.start, tolerance
         self.compliance, self.number = float(model.phi @ model.phi), law.numbers[0]
         amplitude, w = (0.0, 0.0) if drive is None else (drive.amplitude, drive.angular_frequency)
@@ -178,7 +181,7 @@ def pieced(
     y = np.concatenate([start.displacement, start.velocity])
     depth, rate = e.tip(y)
     if start.regime != 0 or depth > e.rounding:
-        raise ValueError(f"regime of the state is {start.regime}, {depth:.3g} m behind the stop; outside "
+        raise InvalidValue(f"regime of the state is {start.regime}, {depth:.3g} m behind the stop; outside "
                          "solvers begin off the stop")  # fmt: skip
     touches, releases = list[tuple[float, Array]](), list[tuple[float, Array]]()
 

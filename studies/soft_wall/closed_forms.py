@@ -39,6 +39,7 @@ from functools import cached_property
 
 import numpy as np
 
+from beam import InvalidType, InvalidValue
 from contact import HertzContact, ImpactOscillator, LinearContact, Stop
 from contact.orbits import KickFamily
 
@@ -56,7 +57,7 @@ def impulse_per_square(oscillator: ImpactOscillator) -> float:
     """k (3 pi/8) sqrt(2/a) of a Hertz contact: impulse over h^2 [N s/m^2]."""
     law, gap = oscillator.stop.law, oscillator.stop.gap
     if not isinstance(law, HertzContact):
-        raise TypeError(f"law of the stop is {type(law).__name__}; these formulas are for HertzContact")
+        raise InvalidType(f"law of the stop is {type(law).__name__}; these formulas are for HertzContact")
     return law.stiffness * (3.0 * math.pi / 8.0) * math.sqrt(2.0 / gap) * oscillator.period / (2.0 * math.pi)
 
 
@@ -87,7 +88,7 @@ class SoftWall:
 
     def __post_init__(self) -> None:
         if not 1.0 < self.hardness < math.inf:
-            raise ValueError(f"hardness is {self.hardness}; the wall's K must be finite and above 1")
+            raise InvalidValue(f"hardness is {self.hardness}; the wall's K must be finite and above 1")
 
     def __str__(self) -> str:
         return f"{self.frequency:g} Hz, K = {self.hardness:g}"

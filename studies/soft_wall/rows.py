@@ -104,8 +104,11 @@ def loss_of_stability(oscillator: ImpactOscillator, doubling: PeriodicOrbit) -> 
         orbit = family.at_speed(speed, orbit)
         return float(np.abs(orbit.multipliers).max()) - 1.0
 
-    speeds = doubling.speed * np.geomspace(1.0 - 1e-4, 0.02, 40)
-    sizes = [largest(speed) for speed in speeds.tolist()]
+    speeds = (doubling.speed * np.geomspace(1.0 - 1e-4, 0.02, 40)).tolist()
+    sizes = [largest(speed) for speed in speeds]
+    while sizes[-1] > 0.0:  # a weak touch leaves the free motion, which is stable
+        speeds.append(0.5 * speeds[-1])
+        sizes.append(largest(speeds[-1]))
     outside = np.flatnonzero(np.array(sizes) > 0.0)
     if not outside.size:
         return doubling.excess, False

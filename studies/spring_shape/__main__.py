@@ -34,6 +34,7 @@ from typing import Annotated
 
 import numpy as np
 
+from beam import InvalidValue
 from beam.space import spatial_modes
 from studies.run import Run, study
 from studies.scene import Scene, single_mode_of
@@ -72,9 +73,9 @@ def spring_shape(
 ) -> Mapping[str, object]:
     """Compute, store and draw; by default the ball is as far off as careful gluing leaves it."""
     if off_line <= 0.0:
-        raise ValueError(f"--off-line must be a distance in m, greater than 0, not {off_line:g}")
+        raise InvalidValue(f"--off-line must be a distance in m, greater than 0, not {off_line:g}")
     if channel_sheet <= 0.0:
-        raise ValueError(f"--channel-sheet must be greater than 0, not {channel_sheet:g}")
+        raise InvalidValue(f"--channel-sheet must be greater than 0, not {channel_sheet:g}")
     shapes = shapes_of(scene, channel_sheet)
     readings = {name: reading_row(shape, off_line) for name, shape in shapes.items()}
     errors: list[ErrorRow] = []

@@ -18,7 +18,7 @@ import numpy as np
 import skfem as sk
 from numpy.typing import NDArray
 
-from beam import Centreline
+from beam import Centreline, InvalidValue
 
 Profile = tuple[NDArray[np.float64], NDArray[np.float64]]
 """Half of a cross-section: grid lines y and z [m], rising, z from 0 on, that cut it into rectangles."""
@@ -37,7 +37,7 @@ def sweep(
     """
     reach = float(np.max(np.outer(line.curvatures, profile[0])))
     if reach >= 1.0:
-        raise ValueError(f"y reaches {reach:.3g} bend radii [1]; it must stay below 1")
+        raise InvalidValue(f"y reaches {reach:.3g} bend radii [1]; it must stay below 1")
     joints = line.joints
     pieces = zip(joints[:-1], joints[1:], elements, strict=True)
     s = np.concatenate([[0.0], *(np.linspace(start, end, n + 1)[1:] for start, end, n in pieces)])
@@ -49,7 +49,9 @@ def sweep(
     }
     box = sk.MeshHex2.from_mesh(sk.MeshHex.init_tensor(s, *profile)).with_boundaries(faces, False)
     if not box.boundaries["tip"].size:
-        raise ValueError(f"tip_at is {tip_at} m; the nearest elements meet {np.abs(s - tip_at).min()} m off")
+        raise InvalidValue(
+            f"tip_at is {tip_at} m; the nearest elements meet {np.abs(s - tip_at).min()} m off"
+        )
     s_of, y, z = box.doflocs
     s_of = np.clip(s_of, 0.0, line.length)
     places = line.points(s_of) + y[:, None] * line.frame(s_of)[1]

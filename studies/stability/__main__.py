@@ -25,6 +25,7 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Annotated
 
+from beam import InvalidValue
 from studies.run import Run, study
 from studies.scene import Scene
 from studies.stability import FAMILIES, Limit, family, findings
@@ -41,7 +42,7 @@ def stability(
     names = [name.strip() for name in families.split(",")] if families else list(FAMILIES)
     for name in names:
         if name not in FAMILIES:
-            raise ValueError(f"families names {name!r}; it must be among {', '.join(FAMILIES)}")
+            raise InvalidValue(f"families names {name!r}; it must be among {', '.join(FAMILIES)}")
     rows: list[Limit] = []
     found = run.attempt(partial(findings, scene=scene, quick=run.quick), names, "families")
     for name, result in zip(names, found, strict=True):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from contact import Collision, ImpactOscillator, State, collisions, simulate
+from contact import Collision, ImpactKind, ImpactOscillator, State, collisions, simulate
 from studies.force import contact_force
 from studies.scene import READOUT
 
@@ -47,7 +47,7 @@ def trace_of(oscillator: ImpactOscillator, state: State, length: int) -> Trace:
     begin, span = state.time, length * oscillator.period
     time = span * np.arange(length * PER_PERIOD) / (length * PER_PERIOD)
     run = simulate(oscillator, state, periods=length + 2, times=begin + time)
-    touches = run.impacts.start[(run.impacts.kind == 0) & (run.impacts.start < begin + span)]
+    touches = run.impacts.start[(run.impacts.kind == ImpactKind.IMPACT) & (run.impacts.start < begin + span)]
     final = collisions(oscillator, run, unfinished="drop")
     return Trace(
         time=time,

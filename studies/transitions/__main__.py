@@ -39,6 +39,7 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 
+from studies.letter import FREE_PERIOD_S
 from studies.record import Verdict
 from studies.run import Run, study
 from studies.scene import Scene, harmonic, model_of
@@ -121,11 +122,11 @@ def sentence(row: Row) -> str:
 
 
 def judge(run: Run, row: Row) -> bool:
-    """Verdict on the transition at a frequency; returns whether all three agree."""
+    """Verdict on the transition at a frequency; returns whether all descriptions agree."""
     same = [period == row.letter for period in row.periods().values()]
     above = [word(getattr(row, f"born_{name}").get("0.01")) for name in TITLES]
     note = "" if all(same) else f"at excess 0.01 {', '.join(above)}"
-    if note and row.frequency_hz == 23.40:
+    if note and row.frequency_hz == 23.40 and run.scene.single_mode.free_period_s == FREE_PERIOD_S:
         note += f"; {AT_THE_EDGE}"
     verdict: Verdict = "agrees" if all(same) else "in part" if any(same) else "differs"
     found = ", ".join(f"{TITLES[name]} {word(period)}" for name, period in row.periods().items())

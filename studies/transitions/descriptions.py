@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from beam import ModalModel
+from beam import ModalModel, Refusal
 from contact import ContactError, State, StrobedMap, StrobedNordmarkMap, StroboscopicMap
 from contact.orbits import OrbitDiagram, born, born_period, fold_excess, orbit_diagram, orbit_end
 from studies import letter
@@ -102,7 +102,7 @@ def describe(
     }
     try:
         found["two_parameters"] = StroboscopicMap(oscillator=two_parameters_at(scene, frequency, model))
-    except (ContactError, ValueError) as error:
+    except (ContactError, Refusal) as error:
         if failures is not None:
             failures.append((f"{frequency:g} Hz, two_parameters", str(error)))
     return found

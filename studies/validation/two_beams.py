@@ -27,7 +27,7 @@ from scipy.linalg import null_space
 from scipy.sparse import block_diag, csr_array
 
 import beam
-from contact import HarmonicDrive, ImpactOscillator, LinearContact, State, Stop, simulate
+from contact import BranchEnded, HarmonicDrive, ImpactOscillator, LinearContact, State, Stop, simulate
 from contact.orbits import Branch, Shooting, follow_path
 from studies.run import Run
 from studies.validation.responses import drawn, followed, harmonic
@@ -142,7 +142,13 @@ class Rig:
         """The first W/w1 from `ratio` on of an orbit at `RAISED`, and the curve over the acceleration through
         it."""
         pairs = zip(self.raised.parameters, self.raised.orbits, strict=True)
-        place, start = next(pair for pair in pairs if pair[0] >= ratio)
+        beyond = [pair for pair in pairs if pair[0] >= ratio]
+        if not beyond:
+            at = dict(time=0.0, gap=0.0, velocity=0.0)
+            raise BranchEnded(
+                **at, detail=f"the response at {RAISED:g} m/s^2 does not reach W/w1 = {ratio:g}"
+            )
+        place, start = beyond[0]
         return place, follow_path(partial(self.at, place), start, RAISED, low=0.01, high=0.05, step=0.2)
 
     @cached_property

@@ -20,6 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import toeplitz
 
+from beam import InvalidValue
 from contact import ImpactOscillator, LinearContact, NotPeriodic, State, simulate
 
 MOST_ITERATIONS, HALVINGS, CONVERGED = 50, 10, 1e-9
@@ -49,7 +50,7 @@ def balanced(oscillator: ImpactOscillator, order: int, samples: int, guess: Stat
     """The motion of period 1/f near that from `guess`, or the steady response; NotPeriodic if not found."""
     o, model, law = oscillator, oscillator.model, oscillator.stop.law
     if not isinstance(law, LinearContact) or not samples > 4 * order > 0 or not np.all(model.omega > 0):
-        raise ValueError(f"law is {law}, order {order}, samples {samples}; harmonic balance needs modes "
+        raise InvalidValue(f"law is {law}, order {order}, samples {samples}; harmonic balance needs modes "
                          "above 0 Hz, LinearContact and 0 < 4 order < samples")  # fmt: skip
     h, gap, (k, c) = np.arange(-order, order + 1), o.stop.gap, law.numbers
     rate = 1j * o.driven.angular_frequency * h

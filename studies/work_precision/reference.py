@@ -29,6 +29,7 @@ import numpy as np
 from mpmath import mp
 from numpy.polynomial.polynomial import polyder, polyval
 
+from beam import InvalidValue
 from contact import HertzContact, ImpactOscillator, LinearContact, NewtonRestitution, State
 
 DIGITS = (24, 30)
@@ -72,7 +73,7 @@ class ExtendedSpring:
         self.hard, self.hertz = isinstance(law, NewtonRestitution), isinstance(law, HertzContact)
         linear = isinstance(law, LinearContact) and law.damping == 0.0
         if not (self.hard or self.hertz or linear) or oscillator.load is not None:
-            raise ValueError(
+            raise InvalidValue(
                 f"law of the stop is {law}; the extended reference knows NewtonRestitution, LinearContact "
                 "without damping and HertzContact, without a constant load"
             )
@@ -189,7 +190,7 @@ def extended_motion(
             following = polyval(h if event is None else event, rows)
             if following[-1] >= end:
                 if contact:
-                    raise ValueError(f"probe is {probe} s, which is in a contact")
+                    raise InvalidValue(f"probe is {probe} s, which is in a contact")
                 there = polyval(end - point[-1], rows)
                 return ExtendedMotion(displacement=there[:n], velocity=there[n : 2 * n], touches=touches)
             point = following

@@ -18,6 +18,7 @@ from typing import Annotated, Literal
 import numpy as np
 import pytest
 
+from beam import InvalidValue
 from contact import NotPeriodic
 from studies import ROOT
 from studies.files import write_atomically
@@ -37,6 +38,9 @@ class Row:
     pair: tuple[float, float]
 
 
+FAULTS = {error.__name__: error for error in (ValueError, TypeError, IndexError, KeyError, StopIteration)}
+
+
 @study(quick={"points": 2})
 def small(
     scene: Scene,
@@ -52,7 +56,9 @@ def small(
 ):
     """A study that stores something of every kind."""
     if what == "value":
-        raise ValueError("the value is\nwrong")
+        raise InvalidValue("the value is\nwrong")
+    if what in FAULTS:
+        raise FAULTS[what]("a fault of the program")
     if what == "contact":
         raise NotPeriodic(time=0.0, gap=0.0, velocity=0.0, detail="no orbit")
     if what.startswith("interrupt"):
@@ -158,6 +164,20 @@ def test_an_interrupted_run_keeps_what_it_stored_and_says_how_to_go_on(tmp_path,
     assert f"python -m studies.small --what {shlex.quote(what)} --out {tmp_path}" in err
 
 
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_fault_of_the_program_is_no_wrong_use(tmp_path, letter_scene, fault):
+    """Nor a failed cell."""
+    with pytest.raises(FAULTS[fault]):
+        start("--what", fault, out=tmp_path)
+
+    def cell(number: int) -> int:
+        raise FAULTS[fault]("a fault of the program")
+
+    run = Run(study="x", folder=tmp_path, scene=letter_scene, command="")
+    with pytest.raises((FAULTS[fault], RuntimeError)):
+        run.attempt(cell, [1], "cells")
+
+
 @pytest.mark.parametrize(
     ("argv", "code"), [([], 0), (["--fail"], 3), (["--what", "value"], 2), (["--what", "interrupt"], 130)]
 )
@@ -197,6 +217,9 @@ def test_what_a_study_may_not_store_is_refused(tmp_path, letter_scene):
         run.answer("hysteresis", "because")
     with pytest.raises(TypeError, match="set"):
         run.json("no_json", {"numbers": {1}})
+    for name in ("failures", "failed_cells", "verdicts", "answers", "model_choice", "warnings", "status"):
+        with pytest.raises(ValueError, match=name):
+            run.close("done", {name: []})
     assert run.close("done", {})["verdicts"] == {"p3": {"verdict": "agrees", "found": "p3", "note": ""}}
 
 
@@ -232,9 +255,32 @@ def test_an_unknown_study_is_answered_with_the_nearest():
 def test_a_foreign_package_of_the_same_name_is_refused(tmp_path):
     (tmp_path / "beam").mkdir()
     (tmp_path / "beam" / "__init__.py").write_text("")
-    code = f"import sys; sys.path[:0] = [{str(tmp_path)!r}, {str(ROOT)!r}]; import studies"
-    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True)
+    env = os.environ | {"PYTHONPATH": str(ROOT)}
+    command = [sys.executable, "-m", "studies"]
+    done = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, text=True)
     assert done.returncode == 1 and "pip uninstall beam" in done.stderr
+
+
+def test_importing_the_studies_changes_nothing():
+    """Environment, signals, streams and filters of warnings are as they were."""
+    code = """
+import os, signal, sys, warnings
+seen = lambda: (dict(os.environ), signal.getsignal(signal.SIGINT), list(warnings.filters), sys.stderr)
+before = seen()
+import studies
+assert seen() == before
+"""
+    env = {name: value for name, value in os.environ.items() if not name.endswith("_NUM_THREADS")}
+    subprocess.run([sys.executable, "-c", code], cwd=ROOT, env=env, check=True)
+
+
+def test_a_script_without_options_refuses_them(tmp_path):
+    env = os.environ | {"PYTHONPATH": str(ROOT)}
+    for word, code in (("--scene", 2), ("--help", 0)):
+        command = [sys.executable, "-m", "studies.tour", word]
+        done = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, text=True)
+        assert done.returncode == code and not list(tmp_path.iterdir())
+        assert ("takes no options, not --scene" in done.stderr) == (code == 2), done.stderr
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

@@ -85,13 +85,17 @@ def test_a_shard_that_is_none_is_refused(text):
         Shard.of(text)
 
 
-def test_another_sweep_in_the_same_folder_is_refused_unless_it_begins_anew(tmp_path):
+def test_another_sweep_in_the_same_folder_is_refused_unless_it_begins_anew(tmp_path, monkeypatch):
+    """Columns that older source has made are another sweep."""
     run = run_in(tmp_path)
     sweep(run, "toy", SETTINGS, ARGUMENTS[:2], Powers())
     with pytest.raises(ValueError, match="rows"):
         sweep(run, "toy", {**SETTINGS, "rows": 4}, ARGUMENTS[:2], Powers())
     sweep(run, "toy", {**SETTINGS, "rows": 4}, ARGUMENTS[:2], Powers(), fresh=True)
     assert read_columns(tmp_path / "toy")[0]["rows"] == 4
+    monkeypatch.setattr("studies.sweep.source", lambda: "another")
+    with pytest.raises(ValueError, match="another source"):
+        sweep(run, "toy", {**SETTINGS, "rows": 4}, ARGUMENTS[:2], Powers())
 
 
 def test_a_failure_of_the_program_ends_the_sweep_and_keeps_what_is_there(tmp_path):
