@@ -12,7 +12,7 @@ methods at the tolerance 1e-7, with which mode 1 errs by less than 1e-8 past a c
 (`studies.work_precision`). What is compared is timed in turns, A B A B ..., so that a machine that slows down
 slows both; medians are taken, and nothing else of the study runs meanwhile.
 
-Run:     python -m studies.benchmarks [--peers]     30 s, --quick 10 s
+Run:     python -m studies.benchmarks [--peers]
 Writes:  costs.csv, costs.png
 """
 

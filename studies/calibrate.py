@@ -4,7 +4,7 @@ Thickness from the free period (40.80 ms), tape from the decay rate of mode 1 (3
 amplitude at grazing (2 mm at 22.2 Hz), and the mass of ball and mount from a collision that stops mode 1
 (kick 1 at excess 0.013), where the restitution is smallest (``studies.calibration`` has the equations).
 
-Run:     python -m studies.calibrate     30 s
+Run:     python -m studies.calibrate
 Writes:  keys.csv (before and after), calibrated.toml, a scene that every study takes with --scene
 """
 

@@ -6,12 +6,12 @@ Each study runs in a process of its own, with its options at their defaults; the
 study that is stored as done, of the same scene, options and source, is not run again, unless with --fresh:
 the same command goes on where Ctrl-C stopped it, and tries again what was refused or had failed cells.
 Programs without results of a scene (`report`, `export`, `tour`) are no studies. Time left is counted from
-the run times that the docstrings tell, and the speed until then.
+the table of run times, and the speed until then; what a study has taken goes into the table of the folder.
 
 Exit codes: 0 done; 2 wrong use; 3 a study failed, was refused or has failed cells; 130 interrupted.
 
-Run:     python -m studies --all     12 min on two cores; --quick 4 min
-Writes:  DIR/NAME/ of each study, DIR/report/index.html
+Run:     python -m studies --all
+Writes:  DIR/NAME/ of each study, DIR/report/index.html, DIR/run_times.csv
 """
 
 from __future__ import annotations
@@ -33,15 +33,25 @@ from pathlib import Path
 from typing import TextIO
 
 from studies.executors import duration, progress, say
-from studies.files import SCHEMA, fingerprint
+from studies.files import SCHEMA, csv_text, fingerprint, make_folder, write_atomically
 from studies.options import parser_of
 from studies.page import told_page
-from studies.programs import ALL, DONE, FAILED_CELLS, INTERRUPTED, module_of, perform, run_time, studies, tell
+from studies.programs import (
+    ALL,
+    DONE,
+    FAILED_CELLS,
+    INTERRUPTED,
+    RUN_TIMES,
+    RunTime,
+    in_words,
+    module_of,
+    perform,
+    run_times,
+    studies,
+    tell,
+)
 from studies.run import Study, read_told
 from studies.scene import Scene
-
-QUICK = 10
-"""What the small form of a study takes, about [s]."""
 
 OWN_OPTIONS = ("--all", "--fresh", "--json")
 """Not passed on to the studies."""
@@ -61,13 +71,17 @@ def arguments_of(name: str, scene: Scene, given: Namespace, passed_on: Sequence[
     return [*passed_on, *(["--fresh"] if "fresh" in settings and not same else [])]
 
 
-def run_in_turn(plan: Mapping[str, Sequence[str]], quick: bool) -> tuple[dict[str, int], bool]:
-    """Run the studies with these arguments; returns their exit codes, and whether a signal ended the series.
+def run_in_turn(
+    plan: Mapping[str, Sequence[str]], quick: bool
+) -> tuple[dict[str, int], dict[str, float], bool]:
+    """Run the studies with these arguments; returns their exit codes, the seconds that those took which ended
+    with code 0, and whether a signal ended the series.
 
     Each has a process group of its own, so that Ctrl-C reaches it once, passed on from here: it stores what
     it has and ends.
     """
-    codes, running, stopped = dict[str, int](), list[subprocess.Popen[str]](), False
+    codes, took = dict[str, int](), dict[str, float]()
+    running, stopped, known = list[subprocess.Popen[str]](), False, run_times()
 
     def signalled(number: int, frame: types.FrameType | None) -> None:
         nonlocal stopped
@@ -75,7 +89,7 @@ def run_in_turn(plan: Mapping[str, Sequence[str]], quick: bool) -> tuple[dict[st
         for child in running:
             child.send_signal(number)
 
-    expected = {name: QUICK if quick else round(run_time(name)) for name in plan}
+    expected = {name: round(known[name].quick_s if quick else known[name].full_s) for name in plan}
     say(f"{len(plan)} studies to run, about {duration(sum(expected.values()))}")
     with ExitStack() as after, progress("all studies, in seconds", sum(expected.values())) as tick:
         for number in (signal.SIGINT, signal.SIGTERM):
@@ -84,7 +98,7 @@ def run_in_turn(plan: Mapping[str, Sequence[str]], quick: bool) -> tuple[dict[st
         for name, arguments in plan.items():
             if stopped:
                 break
-            label = f"python -m studies.{name}"
+            label, begun = f"python -m studies.{name}", time.monotonic()
             command = [sys.executable, *label.split()[1:], *arguments]
             with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as log:
                 running[:] = [subprocess.Popen(
@@ -97,10 +111,23 @@ def run_in_turn(plan: Mapping[str, Sequence[str]], quick: bool) -> tuple[dict[st
                     except subprocess.TimeoutExpired:
                         tick(int(left > 1))
                 tick(max(left, 1))  # as many seconds as expected, however long it took
+                if codes[name] == DONE:
+                    took[name] = time.monotonic() - begun
                 log.seek(0)
                 last = next((line for line in reversed(log.read().splitlines()) if line.strip()), "")
             say(last if last.startswith(label) else f"{label}: exit code {codes[name]}; {last.strip()}")
-    return codes, stopped
+    return codes, took, stopped
+
+
+def keep_times(took: Mapping[str, float], quick: bool, table: Path) -> None:
+    """Write these seconds into the table of run times at `table`, the others as they were."""
+    rows = run_times(table) if table.exists() else run_times()
+    for name, seconds in took.items():
+        full_s, quick_s = (
+            (rows[name].full_s, round(seconds, 1)) if quick else (round(seconds, 1), rows[name].quick_s)
+        )
+        rows[name] = RunTime(study=name, full_s=full_s, quick_s=quick_s)
+    write_atomically(table, csv_text(list(rows.values())).encode())
 
 
 def run_all(given: Namespace, arguments: Sequence[str], output: TextIO) -> int:
@@ -114,7 +141,8 @@ def run_all(given: Namespace, arguments: Sequence[str], output: TextIO) -> int:
     for sentence in [*(f"warning: {doubt}" for doubt in doubtful), *known]:
         say(sentence)
     plan = {name: arguments for name, arguments in found.items() if arguments is not None}
-    codes, stopped = run_in_turn(plan, given.quick)
+    codes, took, stopped = run_in_turn(plan, given.quick)
+    keep_times(took, given.quick, make_folder(Path(given.out)) / RUN_TIMES)
     failed = [name for name, code in codes.items() if code != DONE]
     code = INTERRUPTED if stopped else FAILED_CELLS if failed else DONE
     status = {DONE: "done", FAILED_CELLS: "finished with failed studies", INTERRUPTED: "interrupted"}[code]
@@ -132,7 +160,9 @@ def main(arguments: Sequence[str]) -> int:
     """Read the arguments of `python -m studies --all` and run the studies; returns the exit code."""
 
     def work(output: TextIO) -> int:
-        parser = parser_of(ALL, __doc__ or "")
+        full, quick = map(sum, zip(*((row.full_s, row.quick_s) for row in run_times().values()), strict=True))
+        words = f"Run time: {in_words(full)}, with --quick {in_words(quick)}, on two cores."
+        parser = parser_of(ALL, f"{__doc__}\n{words}")
         parser.add_argument("--all", action="store_true", help="every study instead of the main job")
         parser.add_argument("--fresh", action="store_true", help="run again what is stored, too")
         return run_all(parser.read(arguments, output), arguments, output)

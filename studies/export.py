@@ -6,7 +6,7 @@ The csv has one line a cell: the arrays of each column (frequency_hz, direction,
 cycles, reason for the chart) broadcast against one another. What a running sweep has stored so far is given,
 too. Exit codes: 0 done, 2 wrong use or a file that cannot be read or written.
 
-Run:     python -m studies.export FOLDER [--out FILE]     1 s for 100 000 cells
+Run:     python -m studies.export FOLDER [--out FILE]
 Writes:  FILE
 """
 

@@ -17,7 +17,7 @@ the one that gives the frame's.
 A touch of the nonlinear mode is located to 1e-14 of the gap within a step of a Taylor series; what the cubic
 terms leave out is the difference to the frame.
 
-Run:     python -m studies.finite_amplitude [--quick]     1 min; --quick 10 s
+Run:     python -m studies.finite_amplitude [--quick]
 Writes:  springs.csv (a row a reading, bend radius, gap and ball), frame.csv (effective periods of the frame
          beside the mode's), finite_amplitude.png (the map of surviving periods)
 """

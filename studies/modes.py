@@ -8,7 +8,7 @@ of modes: sway modes do, breathing modes move the ball along the legs at most, a
 Of each mode the impacts see the frequency f = omega/(2 pi) [Hz], the decay rate c [1/s], the tip value phi
 [kg^(-1/2)] and the participation Gamma [kg^(1/2)] in a motion of the base.
 
-Run:     python -m studies.modes [--mode 3] [--frames 24]     10 s
+Run:     python -m studies.modes [--mode 3] [--frames 24]
 Writes:  modes.csv (the table), modes.npz (shapes along the strip), modes.png; for ParaView modes.vtu (Warp By
          Vector, choose a mode) and motion.pvd with motion_frames (one period of one mode: press play);
          mode_1.gif ... (films of the first)

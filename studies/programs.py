@@ -13,11 +13,13 @@ from __future__ import annotations
 
 import ast
 import contextlib
+import csv
 import os
 import re
 import sys
 import traceback
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 from typing import TextIO
@@ -34,6 +36,9 @@ PROGRAM = re.compile(r'^(if __name__ == "__main__":|# %%)', re.MULTILINE)
 
 STUDY = re.compile(r"^@study\(", re.MULTILINE)
 """What a study has: the others (report, export, tour ...) are programs without results of a scene."""
+
+RUN_TIMES = "run_times.csv"
+"""The table of run times, here and where `python -m studies --all` writes it: copy it here to keep it."""
 
 MAIN = "transitions"
 """What `python -m studies` runs."""
@@ -66,12 +71,43 @@ def account_of(name: str) -> str:
     return ast.get_docstring(ast.parse(source_of(name).read_text("utf-8"))) or ""
 
 
-def run_time(name: str) -> float:
-    """What its docstring says of its run time [s]."""
-    found = re.search(r"^Run:.*?\s(\d[\d.]*) (s\b|min)", account_of(name), re.MULTILINE)
+@dataclass(frozen=True, kw_only=True)
+class RunTime:
+    """Seconds that the full and the small form of a study take on two cores, where the machine code is kept.
+
+    The defaults hold for a study that no table has yet.
+    """
+
+    study: str
+    full_s: float = 60.0
+    quick_s: float = 10.0
+
+
+def run_times(table: Path = FOLDER / RUN_TIMES) -> dict[str, RunTime]:
+    """Run time of each study, from a table that `python -m studies --all` has written."""
+    with table.open(newline="", encoding="utf-8") as stream:
+        found = {
+            row["study"]: (float(row["full_s"]), float(row["quick_s"])) for row in csv.DictReader(stream)
+        }
+    times = {name: RunTime(study=name) for name in studies() if name not in found}
+    return times | {
+        name: RunTime(study=name, full_s=full, quick_s=quick) for name, (full, quick) in found.items()
+    }
+
+
+def in_words(seconds: float) -> str:
+    """A run time for a person: 8 s, 35 s, 2 min, 3.5 min."""
+    if seconds < 90.0:
+        return f"{max(round(seconds) if seconds < 10.0 else 5 * round(seconds / 5.0), 1)} s"
+    return f"{0.5 * round(seconds / 30.0):g} min"
+
+
+def run_time_of(name: str) -> str:
+    """What `--help` says of the run time of a study; nothing for one that is not in the table."""
+    found = run_times().get(name)
     if found is None:
-        raise ValueError(f"the docstring of {name} gives no run time")
-    return float(found[1]) * {"s": 1.0, "min": 60.0}[found[2]]
+        return ""
+    return f"Run time: {in_words(found.full_s)}, with --quick {in_words(found.quick_s)}, on two cores."
 
 
 def module_of(name: str) -> str:

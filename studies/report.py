@@ -4,7 +4,7 @@ Gathered: the two answers (hysteresis; what higher modes do to a collision), the
 each study its account, figures and tables, what was assumed, and versions. Nothing is computed and no result
 is typed in (``studies.page``).
 
-Run:     python -m studies.report [--site] [--out DIR]     2 s; --site 15 s; DIR is the folder of results
+Run:     python -m studies.report [--site] [--out DIR]     DIR is the folder of results
 Writes:  DIR/report/index.html; with --site DIR/site, that page with the documentation of the packages
 """
 

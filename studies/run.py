@@ -34,7 +34,7 @@ from contact import ContactError
 from studies.executors import duration
 from studies.files import SCHEMA
 from studies.options import add_options, parser_of
-from studies.programs import DONE, FAILED_CELLS, INTERRUPTED, as_program, perform, tell
+from studies.programs import DONE, FAILED_CELLS, INTERRUPTED, as_program, perform, run_time_of, tell
 from studies.record import Run
 from studies.scene import Scene, beyond_linear, read_scene
 
@@ -89,7 +89,8 @@ class Study:
         )
 
     def _perform(self, command: str, argv: list[str], output: TextIO) -> int:
-        parser = parser_of(command, sys.modules[self.function.__module__].__doc__ or "")
+        account = sys.modules[self.function.__module__].__doc__ or ""
+        parser = parser_of(command, f"{account}\n{run_time_of(self.name)}")
         options = add_options(parser, self.function)
         given = vars(parser.read(argv, output))
         scene, doubtful = read_told(given["scene"], given["overrides"])

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from studies.least_model import least_modes
+from studies.programs import MAIN, in_words, run_times
 from studies.programs import names as programs
 from studies.scene import model_of, read_scene
 from studies.transitions.__main__ import transitions
@@ -35,6 +36,15 @@ def test_every_study_named_exists_and_every_study_is_named():
     named = set(re.findall(r"python -m studies\.([a-z_]+)", TEXT))
     there = set(programs())
     assert named == there - {"transitions"}
+
+
+def test_the_run_times_are_those_of_the_table():
+    """`python -m studies --all` has measured it."""
+    row = r"^\| `python -m studies(?:\.([a-z_]+))?` \|.*\| ([\d.]+ (?:s|min)) \|$"
+    written = {name or MAIN: words for name, words in re.findall(row, TEXT, flags=re.MULTILINE)}
+    assert written == {name: in_words(known.full_s) for name, known in run_times().items()}
+    (whole,) = re.findall(r"--all` runs every study \(([\d.]+ min)\)", TEXT)
+    assert whole == in_words(sum(known.full_s for known in run_times().values()))
 
 
 @pytest.mark.parametrize("frequency", [21.50, 22.20])

@@ -8,7 +8,7 @@ contact. An error is the distance from a reference of 40 modes and 96 elements o
 coarseness alone changes there if that is more: errors that happen to cancel get no credit; that of the
 reference itself is added.
 
-Run:     python -m studies.adequacy [--quick]     15 s; --quick 5 s
+Run:     python -m studies.adequacy [--quick]
 Writes:  least.csv (a row a question: the least model, its error, that of the best one a step smaller in one
          thing), least.png (both errors over the tolerance), amplitude.csv (whether a linear spring is enough
          for the period that is born: what the amplitude of the gap moves, and the distance of a band's edge)

@@ -9,7 +9,7 @@ Computed at one drive frequency (--frequency, 21.50 Hz) for Eq. (1) and for the 
     exponent, kind      largest Lyapunov exponent per drive period, and periodic or chaotic by it
     basins              for Eq. (1) at --basin-excess (-0.006): where each start on the strobe plane leads
 
-Run:     python -m studies.attractors [--model single_mode] [--quick]     15 s; --quick ten seconds
+Run:     python -m studies.attractors [--model single_mode] [--quick]
 Writes:  rows.csv (a row an amplitude), attractors.npz (strobe points), basins.npz; attractors, basins (png,
          pdf)
 """

@@ -15,7 +15,7 @@ Computed:
                 the first
     found       the scans of the cell that departs least from the scene, has period 6, and ends on p3
 
-Run:     python -m studies.breakdown [--full] [--quick]     35 s; --quick ten seconds; --full some minutes
+Run:     python -m studies.breakdown [--full] [--quick]     --full takes some minutes
 Writes:  outcomes.csv (a row a beam), islands.csv, born_period.csv (a row a cell of the search),
          breakdown.npz (the scans), and the figures breakdown, born_period
 """

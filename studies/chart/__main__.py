@@ -16,7 +16,7 @@ impacts of the orbit on which the motion settles, within --cycles drive periods
 Every finished column is a file in MODEL-NxM (``studies.sweep``); the same command goes on where the last one
 was stopped, in whatever way; --fresh begins anew.
 
-Run:     python -m studies.chart [--model beam] [--quick]     40 s on two cores, for the beam as well
+Run:     python -m studies.chart [--model beam] [--quick]
 Writes:  chart_MODEL.npz (cells), folds_MODEL.csv, chart_MODEL.png; `python -m studies.export` for a csv of
 cells
 """

@@ -15,7 +15,7 @@ Equations: fold of p_m and its first bifurcation in closed form, of the map and 
 (contact.maximal_orbits, MaximalFamily; x'' + mu x' + omega^2 x = ..., x' -> -tau x' at the wall); the born
 period of the beams by following their motion; Lyapunov exponents of the overdamped map.
 
-Run:     python -m studies.claims [--positions N]     35 s; --quick 8 s
+Run:     python -m studies.claims [--positions N]
 Writes:  loss, bands, universality, overdamped (.csv); loss, secondary, bands, universality, overdamped (.png,
          .pdf)
 """

@@ -17,7 +17,7 @@ in the contact, in search of the letter's tau.
 How the kick fades towards grazing is in `studies.soft_wall`, how many modes a collision needs in
 `studies.adequacy`.
 
-Run:     python -m studies.effective_impact [--quick]     20 s; --quick ten seconds
+Run:     python -m studies.effective_impact [--quick]
 Writes:  collisions.csv (a row an approach), floors.csv (smallest restitution over the tip mass), and the
          figures speed, mass, search
 """

@@ -19,7 +19,7 @@ that chain differ in one thing, so that the beam's hysteresis over the map's is 
 Statistics are of folds below the letter's amplitude stability, 2.5e-4: next to a band edge hysteresis
 vanishes, and its ratios say nothing.
 
-Run:     python -m studies.hysteresis [--step HZ]     20 s; --quick some seconds
+Run:     python -m studies.hysteresis [--step HZ]
 Writes:  hysteresis.csv (a row a frequency and period), causes.csv (factors at the letter's frequencies and
          over all folds), accuracy.csv (how far each description is off), and the figure hysteresis (as
          Fig. 3)

@@ -16,7 +16,7 @@ one of them, the others fitted again (`profile`). Residuals that are no noise sa
 Without a record three synthetic ones, with 0.5 um of read-out noise, are made and fitted; --coverage N asks
 of N records of each kind whether 90 % intervals hold the truth 90 % of the time.
 
-Run:     python -m studies.identify [RECORD.csv --fit free_period restitution gap] [--coverage N]     8 s
+Run:     python -m studies.identify [RECORD.csv --fit free_period restitution gap] [--coverage N]
 Writes:  parameters.csv with correlations, quality.csv, profile.csv, residuals.npz, identify.png (record
          and fit, residuals, profile), fitted.toml, a scene that every study takes; the example also its
          three records; --coverage also coverage.csv, gradients.csv, gradients.png

@@ -4,7 +4,7 @@ The orbit settles at F/F_g - 1 = 0.013 and 21.50 Hz (the letter's Fig. 4) or whe
 say. Higher modes are drawn enlarged, so that they show, the ball where the tip is: it meets the plate when
 the computed tip does; the plate turns orange while they touch. Below, the tip against time.
 
-Run:     python -m studies.motion [--excess E] [--frequency HZ] [--magnify M] [--seen-from base]     40 s
+Run:     python -m studies.motion [--excess E] [--frequency HZ] [--magnify M] [--seen-from base]
 Writes:  motion.gif, motion.mp4 with the extra `video`, motion.png (the tip), frames.csv; for ParaView
          motion.pvd with motion_frames (arrays `displacement`, true, and the points as they are drawn)
 """

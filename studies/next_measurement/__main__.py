@@ -13,7 +13,7 @@ constant restitution and delay. The letter's pairs are taken one by one (`pairs`
 p_m is born by the map's bands, and by Eq. (1) at several excesses, and what they have in common. They are
 those of the letter's spring and left out for another.
 
-Run:     python -m studies.next_measurement --wanted free_period restitution delay     25 s
+Run:     python -m studies.next_measurement --wanted free_period restitution delay
 Writes:  measurements.csv (a row an orbit), next.csv (the best five), next.png; pairs.csv
 """
 

@@ -12,7 +12,7 @@ scans of Eq. (1) along Fig. 3, and of the beam at the letter's frequencies (stud
 formulas (studies.noise.rates); which p_m can be told apart and live (studies.noise.last_period). The observed
 hysteresis is the excess at which p_1 is left less that at which p_m is lost.
 
-Run:     python -m studies.noise [--stability X] [--correlation-times S ...]   3.5 min; --quick 20 s
+Run:     python -m studies.noise [--stability X] [--correlation-times S ...]
 Writes:  covariances.csv, growth.csv, escape.csv (a row an end of an orbit: quantiles of the excess, simulated
          and by formula), observed.csv (a row a frequency, period and noise), both also *_at_letter.csv,
          last_period.csv, the scans and their seed (scans-*, where a run that was stopped goes on), and the

@@ -5,7 +5,7 @@ Claims (letter 1996): T = 40.80 +- 0.02 ms; the last of the six transitions goes
 Computed: born period at excess 1e-3 and fold F_m/F_g - 1 at each of the six frequencies after each change of
 one parameter, in Nordmark's map, Eq. (1) and the beam; which changes bring p10. (Noise: studies.noise.)
 
-Run:     python -m studies.sensitivity     60 s; --quick ten seconds
+Run:     python -m studies.sensitivity
 Writes:  sensitivity.csv (a row a frequency and change), p10.csv (a row a cause), and the figure
          fold_against_parameter
 """

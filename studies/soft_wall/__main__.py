@@ -16,7 +16,7 @@ and for the beam with Hertz contact the excess at which the kick leaves the squa
 below it, where p1 loses its stability (before, if it rings), and whether the letter could have seen that. The
 equations are derived in `closed_forms`.
 
-Run:     python -m studies.soft_wall [--decades 1 6] [--quick]     10 s; --quick 5 s
+Run:     python -m studies.soft_wall [--decades 1 6] [--quick]
 Writes:  kicks.csv, doublings.csv; figures kick and orbits
 """
 

@@ -20,7 +20,7 @@ brought to omega_1^2 = (2 pi/T)^2 + (c/2)^2 by its sheet's thickness, the channe
 gives length, width, bend radius, sheet material, ball and period; its tape and its spring.kind play no part.
 The rotary inertia of ball and mount counts about every axis; it is 0 in the letter's scene.
 
-Run:     python -m studies.spring_shape [--off-line 0.0005] [--channel-sheet 0.25] [--quick]     50 s
+Run:     python -m studies.spring_shape [--off-line 0.0005] [--channel-sheet 0.25] [--quick]
 Writes:  readings.csv (one row a shape), theory_error.csv (one row a mode), candidates.csv (one row a spring,
          calibrated), shapes.npz; figures shapes and theory_error
 """

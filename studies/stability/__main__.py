@@ -15,7 +15,7 @@ A row: family; method; case; the parameter with its unit; theory (empty where it
 (empty where the failure did not appear); refused: whether the package refuses to go beyond before a number
 comes out (empty where there is nothing to refuse).
 
-Run:     python -m studies.stability [--families explicit,splitting] [--quick]      1.5 minutes; quick 20 s
+Run:     python -m studies.stability [--families explicit,splitting] [--quick]
 Writes:  limits.csv (all rows); for each family NAME.npz (arrays of its figure) and NAME.png
 """
 

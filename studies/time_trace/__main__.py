@@ -13,7 +13,7 @@ Computed, at 21.50 Hz, where the letter's p1 goes over into p4:
 
 A motion without a period up to 64 drive periods is drawn and told as such; its spectrum then has leakage.
 
-Run:     python -m studies.time_trace [--excess E] [--frequency HZ]     5 s
+Run:     python -m studies.time_trace [--excess E] [--frequency HZ]
 Writes:  time_trace.npz (time, tip, read-out), collisions.csv (contact.Collision: SI units), spectrum.npz,
          peaks.csv, time_trace.png, spectrum.png
 """

@@ -20,7 +20,7 @@ In the figures filled points are the upward scan, open ones the downward scan; t
 the band around it as wide as the letter's amplitude was stable; a grey line marks an amplitude at which the
 motion did not settle: its points, those of a moment, are stored but not drawn.
 
-Run:     python -m studies, or python -m studies.transitions [--quick] [--full]     15 s; --full some minutes;
+Run:     python -m studies, or python -m studies.transitions [--quick] [--full]     --full takes some minutes;
          python -m studies --all runs every study
 Writes:  transitions.csv (a row a frequency), orbit_diagram.csv (a row an amplitude: period, and whether the
          motion settled), orbit_diagram.npz (points), orbit_diagram.png (beam, at its read-out point),

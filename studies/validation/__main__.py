@@ -13,7 +13,7 @@ source is good to ("agrees", "differs"); whether words of the source or a second
 out ("holds", "fails"); or that nothing is printed ("open").  Responses are followed as periodic orbits
 through turning points, gained and lost touches, stable or not (``contact.orbits.follow_path``).
 
-Run:     python -m studies.validation     2 min, --quick 20 s
+Run:     python -m studies.validation
 Writes:  sources.csv, rows.csv; for each source a table (csv) and a figure (png, pdf)
 """
 

@@ -20,7 +20,7 @@ why; a setting at which a drive period would take longer than half a second is a
 taken one at a time, so that --workers makes no difference. What the modes left out of the beam weigh beside
 all this is told by `studies.adequacy`.
 
-Run:     python -m studies.work_precision     5 min, --quick 20 s
+Run:     python -m studies.work_precision
 Writes:  rows.csv, cheapest.csv; work_precision (png, pdf)
 """
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from studies import plotting
-from studies.programs import account_of, names, run_time, studies
+from studies.programs import account_of, names, run_times, studies
 from studies.spring_shape.__main__ import COARSE
 from studies.work_precision.problems import problems_of
 
@@ -129,10 +129,10 @@ def test_a_figure_is_kept_as_png_and_as_pdf_without_a_date(tmp_path):
 
 
 @pytest.mark.parametrize("name", names())
-def test_a_docstring_says_command_run_time_and_outputs(name):
+def test_a_docstring_says_command_and_outputs_and_the_table_the_run_time(name):
     account = account_of(name)
     title = " ".join(account.partition("\n\n")[0].split())
     assert title.endswith(".") and len(title) < 200
     if name in ON_THE_FRAME:
         assert "\nRun:" in account and "\nWrites:" in account and f"python -m studies.{name}" in account
-        assert 1 <= run_time(name) <= 600
+        assert 1.0 <= run_times()[name].quick_s <= run_times()[name].full_s <= 600.0
