@@ -84,14 +84,16 @@ class _Announcement(event.Listener):  # type: ignore[misc]
 
     def on_start(self, event: Any) -> None:
         """A kernel is being compiled."""
-        if event.data["dispatcher"].py_func.__module__.startswith("contact.") and not self.said:
+        ours = event.data["dispatcher"].py_func.__module__.startswith("contact.")
+        worker = multiprocessing.parent_process() is not None
+        if ours and not worker and not self.said:
             self.said = True
-            print("compiling kernels, about 30 s, once", file=sys.stderr, flush=True)
+            print("compiling kernels, about 60 s, once", file=sys.stderr, flush=True)
 
     def on_end(self, event: Any) -> None:
         """A kernel is ready."""
 
-    said = multiprocessing.parent_process() is not None  # a process of workers stays silent
+    said = False
 
 
 event.register("numba:compile", _Announcement())

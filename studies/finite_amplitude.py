@@ -3,7 +3,7 @@
 Claim: a folded U with a tight bend softens so much at 11 mm that it loses the letter's periods; a single
 leaf, legs side by side or a wide bend keep them.
 
-    f = f_0 (1 + kappa (A/L)^2)   of the spring (``beam.backbone_coefficient``), L the leg
+    f = f_0 (1 + kappa (A/L)^2)   of the spring (``beam.backbone_coefficient``), L its straight run
     effective period              of small deviations from the motion that grazes (``contact.NonlinearMode``),
                                   beside that of the spring with finite rotations (``beam.harmonic_balance``)
     born period                   of Eq. (1) with the cubic stiffness and inertia of kappa, excess counted
@@ -68,15 +68,17 @@ class Row:
     """One spring; lists go with the scene's drive frequencies. Born period 0: not settled; nothing: no motion
     that grazes, or one whose deviations do not turn, as next to a turning point of the response.
 
-    `shift`: kappa (gap/L)^2, L the straight run; `survive` says how many of the letter's periods are born
-    both at 2.5e-4 and at 1e-3; `frame` whether the frame was solved, whose effective period then
-    counts where it differs by more than 0.005 ms.
+    `shift`: kappa (gap/L)^2, L = `length_m`, the first straight run (legs side by side: a leg and the straight
+    length equivalent to the bend). `survive`: how many of the letter's periods are born both at 2.5e-4 and at
+    1e-3. `frame`: whether the frame was solved, whose effective period then counts where it differs by more
+    than 0.005 ms.
     """
 
     reading: str
     bend_radius_m: float
     gap_m: float
     tip_mass_kg: float
+    length_m: float
     kappa: float
     kappa_elastic: float
     kappa_inertial: float
@@ -196,7 +198,8 @@ class Spring:
         wanted = [letter.get(mode.frequency) for mode in modes]
         return Row(
             reading=self.reading, bend_radius_m=self.radius, gap_m=scene.stop.gap_m, tip_mass_kg=self.ball,
-            kappa=backbone.kappa, kappa_elastic=backbone.elastic, kappa_inertial=backbone.inertial,
+            length_m=backbone.length, kappa=backbone.kappa,
+            kappa_elastic=backbone.elastic, kappa_inertial=backbone.inertial,
             shift=backbone.kappa * (scene.stop.gap_m / backbone.length) ** 2,
             effective_period_s=tuple(effective), born_period=middle, born_2p5e_4=low, born_1e_2=high,
             survive=sum(a == b == c for a, b, c in zip(wanted, low, middle, strict=True)), frame=frame,
@@ -217,7 +220,9 @@ def finite_amplitude(scene: Scene, run: Run) -> Mapping[str, object]:
     found = run.map(partial(Spring.__call__, gaps=gaps), springs, "springs")
     rows, frames = [row for part, _ in found for row in part], [row for _, part in found for row in part]
     rows += [replace(row, reading="channel") for row in rows if row.reading == "plain"]
-    shown = ("reading", "bend_radius_m", "gap_m", "tip_mass_kg", "kappa", "born_period", "survive")
+    shown = (
+        "reading", "bend_radius_m", "gap_m", "tip_mass_kg", "length_m", "kappa", "born_period", "survive"
+    )  # fmt: skip
     run.table("springs", rows, "Springs by reading, radius, gap and ball; born period at 1e-3.", show=shown)
     run.table("frame", frames, "Effective period of deviations: mode with cubic terms, frame.", show=())
     run.figure("finite_amplitude", draw(scene, rows), "How many of the letter's periods are born at 2.5e-4 "

@@ -97,7 +97,7 @@ def run_times(table: Path = FOLDER / RUN_TIMES) -> dict[str, RunTime]:
 
 def in_words(seconds: float) -> str:
     """A run time for a person: 8 s, 35 s, 2 min, 3.5 min."""
-    if seconds < 90.0:
+    if seconds < 57.5:
         return f"{max(round(seconds) if seconds < 10.0 else 5 * round(seconds / 5.0), 1)} s"
     return f"{0.5 * round(seconds / 30.0):g} min"
 

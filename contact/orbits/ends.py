@@ -29,6 +29,7 @@ from contact.maximal_orbits import MapFamily
 from contact.orbits.continuation import first_event
 from contact.orbits.family import Family
 from contact.orbits.kick import KickFamily
+from contact.orbits.periodic_orbit import PeriodicOrbit
 from contact.orbits.settling import Settled, orbit_near, settle
 from contact.orbits.shooting import Shooting
 from contact.orbits.single_impact import MaximalFamily
@@ -62,6 +63,9 @@ class OrbitEnd(Generic[S]):
         Excess at which the motion held the orbit last, and that one step below at which it lost it [1].
     state : State
         On the orbit at `held`.
+    orbit : PeriodicOrbit, optional
+        The orbit at its end; None for the Nordmark map, and where only a bracket is known.  Several orbits of
+        one period may exist side by side: its approach velocity and touches say which one ends here.
     """
 
     period: int
@@ -71,6 +75,7 @@ class OrbitEnd(Generic[S]):
     held: float
     lost: float
     state: S
+    orbit: PeriodicOrbit | None = None
 
 
 def orbit_end(
@@ -137,7 +142,7 @@ def orbit_end(
             if end is not None:
                 return OrbitEnd(
                     period=start.period, impacts=start.impacts, kind=end[0], excess=end[1], held=held,
-                    lost=trial, state=state,
+                    lost=trial, state=state, orbit=end[2],
                 )  # fmt: skip
         if now is None:
             lost = trial
@@ -146,15 +151,15 @@ def orbit_end(
     return None
 
 
-End = tuple[str, float]
-"""Kind of an end, and its excess."""
+End = tuple[str, float, PeriodicOrbit | None]
+"""Kind of an end, its excess, and the orbit there if it is known."""
 
 
 def _exact_end(
     strobed: Any, state: Any, start: Settled[Any], held: float, lost: float
 ) -> tuple[End | None, Any]:
     """The end in the bracket; or None and the state at `lost`, if the orbit is still there."""
-    unknown = (BRACKET, 0.5 * (held + lost)), None
+    unknown = (BRACKET, 0.5 * (held + lost), None), None
     if isinstance(strobed, StrobedNordmarkMap) and start.impacts == 1:
         return _map_end(MapFamily(strobed.map, start.period), held, lost) or unknown
     if not isinstance(strobed, StroboscopicMap):
@@ -168,7 +173,7 @@ def _exact_end(
         if event is not None and event.kind == "undecided":
             return unknown
         if event is not None and event.orbit.excess >= lost:
-            return (event.kind, event.orbit.excess), None
+            return (event.kind, event.orbit.excess, event.orbit), None
         below = family.at_excess(lost, orbit)
     except ContactError:
         return unknown
@@ -184,9 +189,9 @@ def _map_end(family: MapFamily, held: float, lost: float) -> tuple[End | None, A
     if end < lost:
         return None, family.orbits(lost)[-1].states[0]
     if stable[0] == at_fold.rho:
-        return ("fold", end), None
+        return ("fold", end, None), None
     doubles = family.at_rho(stable[0])[-1].multipliers.real.min() < -1.0 + 1e-6
-    return ("period doubling" if doubles else "grazing", end), None
+    return ("period doubling" if doubles else "grazing", end, None), None
 
 
 def fold_excess(strobed: StrobedMap[Any], period: int) -> float | None:

@@ -93,7 +93,7 @@ def transitions(
                 run.failed(where, reason)
     run.json("rows", rows)
     shown = ["frequency_hz", "letter", *TITLES]
-    shown += [f"excess_down_{model}" for model in TITLES]
+    shown += [*(f"excess_down_{model}" for model in TITLES), "end_speed_beam"]
     run.table("transitions", rows, "Born period, and excess F/F_g - 1 at which the orbit ends.", show=shown)
     diagrams = run.map(partial(scans, scene, model=model, full=full), rows, "orbit diagrams")
     store(run, rows, diagrams)

@@ -38,6 +38,7 @@ class Transition:
     period: int | None = None
     excess_down: float | None = None
     ends_by: str | None = None
+    end_speed: float | None = None
     bracket: tuple[float, float] | None = None
     born: Mapping[str, int]
     state: State | None = None
@@ -47,8 +48,9 @@ class Transition:
 class Row:
     """One frequency: periods (0: did not settle), ends on the way down [1], the letter's period.
 
-    `exact`: the fold in closed form; of the two parameters from the kicks that the beam's collisions give
-    mode 1, without a simulation.
+    `end_speed` is the approach velocity [m/s] of the beam's orbit at its end, which says which of several
+    orbits of that period ends there. `exact`: the fold in closed form; of the two parameters from the kicks
+    that the beam's collisions give mode 1, without a simulation.
     """
 
     frequency_hz: float
@@ -65,6 +67,7 @@ class Row:
     ends_by_single_mode: str | None
     ends_by_two_parameters: str | None
     ends_by_beam: str | None
+    end_speed_beam: float | None
     exact_map: float | None
     exact_single_mode: float | None
     exact_two_parameters: float | None
@@ -121,7 +124,8 @@ def transition(strobed: Strobed, excess: float, cycles: int) -> Transition:
     if end is None:
         return Transition(period=orbit.period, born=also, state=orbit.end)
     return Transition(
-        period=orbit.period, excess_down=end.excess, ends_by=end.kind, bracket=(end.lost, end.held),
+        period=orbit.period, excess_down=end.excess, ends_by=end.kind,
+        end_speed=None if end.orbit is None else abs(end.orbit.speed), bracket=(end.lost, end.held),
         born=also, state=orbit.end,
     )  # fmt: skip
 
@@ -160,6 +164,7 @@ def row_at(scene: Scene, frequency: float, model: ModalModel) -> tuple[Row, list
         exact_two_parameters=None if parameters is None else parameters.fold,
         beam_linear=found["beam_linear"].period, not_settled=not_settled,
         excess_down_beam_linear=found["beam_linear"].excess_down,
+        end_speed_beam=found["beam"].end_speed,
         grazing_amplitude_m=beam_at(scene, frequency, model).grazing_amplitude(),
     )  # fmt: skip
     return row, failures
