@@ -1,6 +1,6 @@
 """Everything that the studies stored, as one page to read, print and pass on.
 
-Gathered: the two answers (hysteresis; what higher modes do to a collision), the letter point by point, for
+Gathered: the answers to the questions that the letter raises, the letter point by point, for
 each study its account, figures and tables, what was assumed, and versions. Nothing is computed and no result
 is typed in (``studies.page``).
 

@@ -19,7 +19,7 @@ from tip_judge import (
 from beam import ModalModel
 from contact.flight.crossing import CROSSES, FREE, GRAZES, UNRESOLVED
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import tip_rounding, tip_state
+from contact.flight.modal_flow import acceleration_rounding, tip_bound, tip_rounding, tip_state
 from contact.laws import NewtonRestitution
 from contact.oscillator import ImpactOscillator
 from contact.stop import Stop
@@ -271,3 +271,22 @@ def test_tip_on_the_wall_within_rounding_is_told_by_its_velocity(speed):
         assert outcome == CROSSES
         assert 0.0 <= s <= 3 * EPS * 0.01 / speed
         assert search(motion, 0.0, u, np.array([-speed, 0.0]), 1e-3) == (FREE, 1e-3)
+
+
+@pytest.mark.parametrize("mode", [0, 1, 2])
+@pytest.mark.parametrize("part", ["displacement", "velocity"])
+def test_the_bounds_of_rounding_follow_the_mode_that_moves(mode, part):
+    """One mode carries the tip, the others have their node there: half a unit in the last place at least."""
+    phi = np.full(3, 1e-9)
+    phi[mode] = 2.0
+    omega, rates = [100.0, 200.0, 400.0], [1.0, 1.0, 1.0]
+    model = ModalModel(omega=omega, decay_rate=rates, phi=phi, participation=np.ones(3))
+    law = NewtonRestitution(local_restitution=0.5)
+    motion = ImpactOscillator(model=model, stop=Stop(gap=1e-3, law=law)).motion()
+    u, v = np.zeros(3), np.zeros(3)
+    (u if part == "displacement" else v)[mode] = 1.0
+    amplitude = 2.0 if part == "displacement" else 2.0 / model.omega[mode]
+    assert 0.5 * EPS * amplitude < tip_rounding(motion, u, v) < 100.0 * EPS * amplitude
+    pull = 2.0 * (model.omega[mode] ** 2 if part == "displacement" else model.decay_rate[mode])
+    assert 0.5 * EPS * pull < acceleration_rounding(motion, u, v) < 100.0 * EPS * pull
+    assert tip_bound(motion, mode, 3.0, 4.0) == pytest.approx(10.0, rel=1e-15)

@@ -12,12 +12,14 @@ from contact.orbits import (
     born,
     born_period,
     fold_excess,
+    fold_of,
     lowest_of,
     orbit_diagram,
     orbit_end,
     settle,
 )  # fmt: skip
 from studies.letter import PERIODS
+from studies.scene import beam_at, model_of, read_scene
 from studies.transitions.descriptions import describe, row_at
 
 EXPECTED = {20.90: 3, 21.50: 4, 22.20: 5, 22.60: 6, 23.05: 8, 23.40: 11}
@@ -101,7 +103,11 @@ def test_rows_have_the_promised_keys_and_every_amplitude_says_whether_it_settled
     wanted = {f"{key}_{name}" for key in ("excess_down", "ends_by", "bracket", "born") for name in models}
     assert wanted | {"frequency_hz", "letter", *models, "exact_map", "exact_single_mode",
                      "exact_two_parameters", "extracted", "not_settled",
-                     "beam_linear", "excess_down_beam_linear", "grazing_amplitude_m"} == row.keys()
+                     "beam_linear", "excess_down_beam_linear", "end_speed_beam",
+                     "grazing_amplitude_m"} == row.keys()
+    scene = read_scene("letter", ["modes.count=10"])
+    fold = fold_of(Shooting(oscillator=beam_at(scene, 22.2, model_of(scene)), period=5))
+    assert row["end_speed_beam"] == pytest.approx(abs(fold.speed), rel=1e-4)
     assert (row["letter"], row["map"], row["single_mode"], row["beam"]) == (5, 5, 5, 5)
     assert row["exact_map"] == pytest.approx(row["excess_down_map"], rel=1e-9)
     assert ran.summary["modes"] == 10 and ran.verdicts["p5"] == "agrees"
