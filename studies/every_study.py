@@ -33,7 +33,7 @@ from pathlib import Path
 from typing import TextIO
 
 from studies.executors import duration, progress, say
-from studies.files import SCHEMA, csv_text, fingerprint, make_folder, write_atomically
+from studies.files import SCHEMA, fingerprint, make_folder, write_atomically
 from studies.options import parser_of
 from studies.page import told_page
 from studies.programs import (
@@ -41,15 +41,13 @@ from studies.programs import (
     DONE,
     FAILED_CELLS,
     INTERRUPTED,
-    RUN_TIMES,
-    RunTime,
-    in_words,
     module_of,
     perform,
+    run_time_of,
     run_times,
     studies,
     tell,
-)
+)  # fmt: skip
 from studies.run import Study, read_told
 from studies.scene import Scene
 
@@ -89,7 +87,7 @@ def run_in_turn(
         for child in running:
             child.send_signal(number)
 
-    expected = {name: round(known[name].quick_s if quick else known[name].full_s) for name in plan}
+    expected = {name: round(known[name][quick]) for name in plan}
     say(f"{len(plan)} studies to run, about {duration(sum(expected.values()))}")
     with ExitStack() as after, progress("all studies, in seconds", sum(expected.values())) as tick:
         for number in (signal.SIGINT, signal.SIGTERM):
@@ -122,12 +120,9 @@ def run_in_turn(
 def keep_times(took: Mapping[str, float], quick: bool, table: Path) -> None:
     """Write these seconds into the table of run times at `table`, the others as they were."""
     rows = run_times(table) if table.exists() else run_times()
-    for name, seconds in took.items():
-        full_s, quick_s = (
-            (rows[name].full_s, round(seconds, 1)) if quick else (round(seconds, 1), rows[name].quick_s)
-        )
-        rows[name] = RunTime(study=name, full_s=full_s, quick_s=quick_s)
-    write_atomically(table, csv_text(list(rows.values())).encode())
+    rows |= {name: (rows[name][0], new) if quick else (new, rows[name][1]) for name, new in took.items()}
+    lines = [f"{name},{full:.0f},{small:.0f}\n" for name, (full, small) in rows.items()]
+    write_atomically(table, "".join(["study,full_s,quick_s\n", *lines]).encode())
 
 
 def run_all(given: Namespace, arguments: Sequence[str], output: TextIO) -> int:
@@ -142,7 +137,7 @@ def run_all(given: Namespace, arguments: Sequence[str], output: TextIO) -> int:
         say(sentence)
     plan = {name: arguments for name, arguments in found.items() if arguments is not None}
     codes, took, stopped = run_in_turn(plan, given.quick)
-    keep_times(took, given.quick, make_folder(Path(given.out)) / RUN_TIMES)
+    keep_times(took, given.quick, make_folder(Path(given.out)) / "run_times.csv")
     failed = [name for name, code in codes.items() if code != DONE]
     code = INTERRUPTED if stopped else FAILED_CELLS if failed else DONE
     status = {DONE: "done", FAILED_CELLS: "finished with failed studies", INTERRUPTED: "interrupted"}[code]
@@ -160,9 +155,7 @@ def main(arguments: Sequence[str]) -> int:
     """Read the arguments of `python -m studies --all` and run the studies; returns the exit code."""
 
     def work(output: TextIO) -> int:
-        full, quick = map(sum, zip(*((row.full_s, row.quick_s) for row in run_times().values()), strict=True))
-        words = f"Run time: {in_words(full)}, with --quick {in_words(quick)}, on two cores."
-        parser = parser_of(ALL, f"{__doc__}\n{words}")
+        parser = parser_of(ALL, f"{__doc__}\n{run_time_of(studies())}")
         parser.add_argument("--all", action="store_true", help="every study instead of the main job")
         parser.add_argument("--fresh", action="store_true", help="run again what is stored, too")
         return run_all(parser.read(arguments, output), arguments, output)

@@ -40,7 +40,7 @@ def require_cells(option: str, value: object, count: float) -> None:
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser that refuses with a ValueError and names the nearest option to an unknown one."""
+    """A parser that refuses in a sentence and names the nearest option to an unknown one."""
 
     def __init__(self, command: str, account: str) -> None:
         super().__init__(

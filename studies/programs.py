@@ -19,7 +19,6 @@ import re
 import sys
 import traceback
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 from typing import TextIO
@@ -36,9 +35,6 @@ PROGRAM = re.compile(r'^(if __name__ == "__main__":|# %%)', re.MULTILINE)
 
 STUDY = re.compile(r"^@study\(", re.MULTILINE)
 """What a study has: the others (report, export, tour ...) are programs without results of a scene."""
-
-RUN_TIMES = "run_times.csv"
-"""The table of run times, here and where `python -m studies --all` writes it: copy it here to keep it."""
 
 MAIN = "transitions"
 """What `python -m studies` runs."""
@@ -71,28 +67,14 @@ def account_of(name: str) -> str:
     return ast.get_docstring(ast.parse(source_of(name).read_text("utf-8"))) or ""
 
 
-@dataclass(frozen=True, kw_only=True)
-class RunTime:
-    """Seconds that the full and the small form of a study take on two cores, where the machine code is kept.
+def run_times(table: Path = FOLDER / "run_times.csv") -> dict[str, tuple[float, float]]:
+    """Seconds that the full and the small form of each study take; a minute and ten where the table has none.
 
-    The defaults hold for a study that no table has yet.
+    `python -m studies --all` has measured them on two cores, with the machine code in place.
     """
-
-    study: str
-    full_s: float = 60.0
-    quick_s: float = 10.0
-
-
-def run_times(table: Path = FOLDER / RUN_TIMES) -> dict[str, RunTime]:
-    """Run time of each study, from a table that `python -m studies --all` has written."""
     with table.open(newline="", encoding="utf-8") as stream:
-        found = {
-            row["study"]: (float(row["full_s"]), float(row["quick_s"])) for row in csv.DictReader(stream)
-        }
-    times = {name: RunTime(study=name) for name in studies() if name not in found}
-    return times | {
-        name: RunTime(study=name, full_s=full, quick_s=quick) for name, (full, quick) in found.items()
-    }
+        found = {name: (float(full), float(quick)) for name, full, quick in list(csv.reader(stream))[1:]}
+    return {name: found.get(name, (60.0, 10.0)) for name in studies()}
 
 
 def in_words(seconds: float) -> str:
@@ -102,12 +84,11 @@ def in_words(seconds: float) -> str:
     return f"{0.5 * round(seconds / 30.0):g} min"
 
 
-def run_time_of(name: str) -> str:
-    """What `--help` says of the run time of a study; nothing for one that is not in the table."""
-    found = run_times().get(name)
-    if found is None:
-        return ""
-    return f"Run time: {in_words(found.full_s)}, with --quick {in_words(found.quick_s)}, on two cores."
+def run_time_of(names: Sequence[str]) -> str:
+    """What `--help` says of the run time of these studies."""
+    known = run_times()
+    full, quick = (sum(known[name][form] for name in names if name in known) for form in (0, 1))
+    return f"Run time: {in_words(full)}, with --quick {in_words(quick)}, on two cores." if full else ""
 
 
 def module_of(name: str) -> str:
@@ -151,16 +132,12 @@ def perform(study: str, command: str, arguments: Sequence[str], work: Callable[[
 
 def refuse_arguments(name: str, account: str) -> None:
     """For a script without options: --help prints its account, any other argument is refused."""
-    if not as_program() or len(sys.argv) < 2:
-        return
-    if sys.argv[1] in ("-h", "--help"):
-        print(account)
-        raise SystemExit(DONE)
-    print(
-        f"python -m studies.{name}: takes no options, not {sys.argv[1]}; copy it and change it",
-        file=sys.stderr,
-    )
-    raise SystemExit(WRONG_USE)
+    if as_program() and (words := sys.argv[1:]):
+        if words[0] in ("-h", "--help"):
+            tell(account, sys.stdout)
+            raise SystemExit(DONE)
+        print(f"python -m studies.{name}: takes no options, not {words[0]}", file=sys.stderr)
+        raise SystemExit(WRONG_USE)
 
 
 def as_program() -> bool:

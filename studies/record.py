@@ -118,7 +118,7 @@ class Run:
             return [future.result() for future in futures]
 
     def attempt(self, function: Callable[[S], T], items: Iterable[S], label: str) -> list[T | None]:
-        """Like `map`; an item that ends with a ContactError or ValueError is told as failed, and is None."""
+        """Like `map`; an item that ends with a ContactError or a Refusal counts as failed, and is None."""
         known = list(items)
         tried = self.map(partial(_tried, function), known, label)
         for item, (_, error) in zip(known, tried, strict=True):

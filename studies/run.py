@@ -90,7 +90,7 @@ class Study:
 
     def _perform(self, command: str, argv: list[str], output: TextIO) -> int:
         account = sys.modules[self.function.__module__].__doc__ or ""
-        parser = parser_of(command, f"{account}\n{run_time_of(self.name)}")
+        parser = parser_of(command, f"{account}\n{run_time_of([self.name])}")
         options = add_options(parser, self.function)
         given = vars(parser.read(argv, output))
         scene, doubtful = read_told(given["scene"], given["overrides"])

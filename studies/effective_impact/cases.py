@@ -56,7 +56,7 @@ class Case:
         return f"{self.row.curve}, {self.row.series}, {self.row.value:g}"
 
     def measured(self) -> Row:
-        """The row with its numbers; ContactError or ValueError if there is no collision."""
+        """The row with its numbers; ContactError or Refusal if there is no collision."""
         found, row = None, self.row
         if row.curve == "orbit":
             found, period = orbit_collision(self.oscillator)

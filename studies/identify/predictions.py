@@ -69,7 +69,7 @@ class Prediction(ABC):
 
     @abstractmethod
     def values(self, oscillator: ImpactOscillator, extra: Array) -> Array:
-        """The predicted rows, shape of `record.observed`; ContactError or ValueError where there are none."""
+        """The predicted rows, shape of `record.observed`; ContactError or Refusal where there are none."""
 
     def touches(self, oscillator: ImpactOscillator, extra: Array) -> int:
         """Number of impacts in what is predicted, of an orbit 1; errors as of `values`."""
