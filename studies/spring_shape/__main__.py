@@ -21,7 +21,7 @@ A flat U is a sheet, which the beam of the scene simplifies. As a Kirchhoff plat
 and modes in which the legs twist. Claim: the plate keeps the periods that are born, and moves the ends of
 the orbits. A scene whose spring.kind is not flat_u goes without this part.
 
-Run:     python -m studies.spring_shape [--off-line 0.0005] [--channel-sheet 0.25] [--quick]     60 s
+Run:     python -m studies.spring_shape [--off-line 0.0005] [--channel-sheet 0.25] [--quick]     2 min
 Writes:  readings.csv (one row a shape), candidates.csv (one row a spring, calibrated), shapes.npz; of a flat
          U plate_modes.csv, plate_collisions.csv (one row a spring), plate_ends.csv (one row a frequency);
          figures shapes and plate
@@ -107,7 +107,7 @@ def compare_plate(scene: Scene, run: Run) -> list[OrbitEnds]:
         run.say("The part on the plate is left out: it needs a flat U with a harmonic drive.")
         return []
     beam, plates = model_of(scene), plates_of(scene, COARSE if run.quick else FINE)
-    modes, springs = mode_rows(plates, beam), springs_of(scene, plates, beam, refit=not run.quick)
+    modes, springs = mode_rows(plates, beam), springs_of(scene, run, plates, beam)
     run.table("plate_modes", modes, "Symmetric modes of the flat U as a plate, and of its beam.")
     collisions = [collision_row(scene, spring) for spring in springs]
     run.table("plate_collisions", collisions, "First collision of beam and plates.")

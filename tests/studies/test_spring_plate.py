@@ -126,7 +126,7 @@ def test_a_mass_added_in_the_space_of_modes_is_one_added_to_the_plate(letter_sce
 
 
 def test_plates_have_period_and_damping_of_the_beam_and_refitted_ones_its_kick(letter_scene, plates):
-    beam, *others = springs_of(letter_scene, plates, model_of(letter_scene), refit=True)
+    beam, *others = springs_of(letter_scene, SimpleNamespace(quick=False), plates, model_of(letter_scene))
     kick = beam.collision(letter_scene).kick
     for spring in others:
         assert spring.model.free_period == pytest.approx(beam.model.free_period, rel=1e-12)
