@@ -82,7 +82,8 @@ def spring_shape(
     draw(run, shapes, readings)
     orbits = compare_plate(scene, run)
     springs = drawn_springs(scene, off_line, run.quick)
-    fitted = scene.replace({"spring.elements_per_leg": FEW_ELEMENTS}) if run.quick else scene
+    few = scene.spring.elements_per_leg or (FEW_ELEMENTS if run.quick else 0)
+    fitted = scene.replace({"spring.elements_per_leg": few})
     found = run.attempt(partial(Drawn.calibrated, scene=fitted), springs, "candidates")
     run.table("candidates", [row for row in found if row],
               "Springs calibrated alike, and how far each is from linear at its gap.")  # fmt: skip
@@ -119,7 +120,7 @@ def compare_plate(scene: Scene, run: Run) -> list[OrbitEnds]:
     words = [f"As a plate the spring {'keeps every' if same else 'changes a'} period that is born."]
     if factors := [max(row.most, 1.0 / row.least) for row in orbits if row.most and row.least]:
         words.append(f"Beam theory moves the ends of the orbits by a factor of up to {max(factors):.1f}.")
-    if doubtful := [row for row in orbits if row.beam and row.least is None]:
+    if doubtful := [row for row in orbits if row.beam and row.point and row.least is None]:
         words.append(f"It leaves the sign of the end at {doubtful[0].frequency_hz:.2f} Hz open.")
     run.answer("hysteresis", " ".join(words))
     return orbits
