@@ -137,7 +137,8 @@ POINTS: Mapping[str, Point] = MappingProxyType(
 """What the letter says, in its order; a study that judges a point calls `run.verdict` with its key."""
 
 QUESTIONS: Mapping[str, tuple[str, tuple[str, ...]]] = MappingProxyType({
-    "hysteresis": ("Why does the measured hysteresis differ from the map's?", ("hysteresis", "noise")),
+    "hysteresis": ("Why does the measured hysteresis differ from the map's?",
+                   ("hysteresis", "noise", "spring_shape")),
     "higher_modes": ("What do higher modes do to restitution, delay and the square root?",
                      ("effective_impact", "soft_wall")),
     "two_parameters": ("Do energy loss and delay stand for the higher modes?", ("transitions",)),

@@ -1,1 +1,1 @@
-"""What "U shaped" can mean: four springs of one period, and strip theory against solids."""
+"""What "U shaped" can mean: springs of one period; the flat U as a plate."""

@@ -1,35 +1,35 @@
-"""What "U shaped" means: four springs of one free period, their twist modes, and the error of strip theory.
+"""What "U shaped" means: springs of one free period and their twist modes; the flat U as a plate.
 
-Claim (letter 1996, Fig. 1 and text): the spring is U shaped to suppress torsional modes. Of the three U's
-that the words allow, legs side by side in the plane of the sheet, a channel, and a strip folded into a U, the
-folded strip has its first twist mode highest above the first bending mode. (A channel gets there only with
-flanges less than twice as high as its sheet is thick, --channel-sheet.) A plain strip of the same width and
-period has it higher still. With legs side by side it is low, but the ball turns least in it, a tenth of what
-it does on a plain strip. In every reading the ball sees a twist mode only as far as it sits off the plane of
-symmetry. So torsion leaves the reading open. What decides is how far each spring, calibrated, is from linear
-at its gap against what the bands of the p_m allow: legs side by side a fifth of it, a folded strip with a
-bend of 40 mm nine tenths, tighter ones more than it. Against solids, strip theory gives the bending modes of
-the folded U 1.2 to 1.5 % too low, those of the plain strip 0.6 to 1.2 %, and their twist modes within 1.5 %.
+Claim (letter 1996, Fig. 1 and text): the spring is U shaped to suppress torsional modes. The words allow
+three shapes: legs side by side in the plane of the sheet, a channel, and a strip folded into a U. A plain
+strip of the same width and period is their measure. In every shape the ball moves in a twist mode only as far
+as it sits off the plane of symmetry. Torsion leaves the reading open. What decides is how far each spring is
+from linear at its gap (`studies.finite_amplitude`).
 
-Centreline r(s), displacements u t + w n + v z, twist phi about t, in plane and out of it, tied to the ball:
+Strip theory, of centreline r(s), displacements u t + w n + v z and twist phi about t, tied to the ball, has
 
     (EA, u' - k w), (EI_z, w'' + k u'), (EI_n, v'' - k phi), (GJ, phi' + k v'), (EG, phi'' + k v'')
 
-as stiffness and strain (beam.space); beside the two strips solids of quadratic hexahedra. Each shape is
-brought to omega_1^2 = (2 pi/T)^2 + (c/2)^2 by its sheet's thickness, the channel by its flanges. The scene
-gives length, width, bend radius, sheet material, ball and period; its tape and its spring.kind play no part.
-The rotary inertia of ball and mount counts about every axis; it is 0 in the letter's scene.
+as stiffness and strain (beam.space). Each shape is brought to omega_1^2 = (2 pi/T)^2 + (c/2)^2 by its sheet's
+thickness, the channel by its flanges. The scene gives length, width, bend radius, sheet material, ball and
+period; its tape plays no part. The rotary inertia of ball and mount counts about every axis.
+
+A flat U is a sheet, which the beam of the scene simplifies. As a Kirchhoff plate that deflects by w it has
+
+    int D ((1 - nu) w_ij v_ij + nu lap w lap v) + m (w.. + y..) v dA + M (w.. + y..) v (tip) = F v (tip),
+
+and modes in which the legs twist. Claim: the plate keeps the periods that are born, and moves the ends of
+the orbits. A scene whose spring.kind is not flat_u goes without this part.
 
 Run:     python -m studies.spring_shape [--off-line 0.0005] [--channel-sheet 0.25] [--quick]
-Writes:  readings.csv (one row a shape), theory_error.csv (one row a mode), candidates.csv (one row a spring,
-         calibrated), shapes.npz; figures shapes and theory_error
+Writes:  readings.csv (one row a shape), shapes.npz; of a flat U plate_modes.csv, plate_collisions.csv (one row
+         a spring), plate_ends.csv (one row a frequency); figures shapes and plate
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
-from functools import partial
 from typing import Annotated
 
 import numpy as np
@@ -37,28 +37,21 @@ import numpy as np
 from beam import InvalidValue
 from beam.space import spatial_modes
 from studies.run import Run, study
-from studies.scene import Scene, single_mode_of
-from studies.spring_shape.candidates import Drawn, drawn_springs
-from studies.spring_shape.rows import MODES, ErrorRow, ReadingRow, error_rows, reading_row
-from studies.spring_shape.shapes import (
-    READINGS,
-    TITLES,
-    Mesh,
-    Reading,
-    Shape,
-    brought_to,
-    kinds_of,
-    shape_of,
+from studies.scene import Scene, model_of, single_mode_of
+from studies.spring_shape.model_error import (
+    OrbitEnds,
+    collision_row,
+    mode_rows,
+    orbit_rows,
+    plates_of,
+    springs_of,
 )
+from studies.spring_shape.rows import MODES, ReadingRow, reading_row
+from studies.spring_shape.shapes import READINGS, TITLES, Reading, Shape, brought_to, kinds_of, shape_of
 
-FINE = (Mesh(legs=60, bend=24, across=2, halvings=4), Mesh(legs=120, bend=48, across=2, halvings=5))
-COARSE = (Mesh(legs=20, bend=24, across=1, halvings=3), Mesh(legs=40, bend=32, across=1, halvings=4))
-"""From coarse to fine: each pair halves the length of the elements."""
+FINE, COARSE = (2, 3), (1, 2)
+"""Triangles across the seat of the ball and the rim beside it, in the coarsest of three meshes."""
 
-COUNTS = (10, 5)
-"""Modes compared with solids in the plane of symmetry and out of it, first bending and twist among them."""
-
-SOLIDS: tuple[Reading, ...] = ("folded", "plain")
 LARGEST = 0.06
 """Largest step of a drawn mode over the length of the spring."""
 
@@ -78,19 +71,11 @@ def spring_shape(
         raise InvalidValue(f"--channel-sheet must be greater than 0, not {channel_sheet:g}")
     shapes = shapes_of(scene, channel_sheet)
     readings = {name: reading_row(shape, off_line) for name, shape in shapes.items()}
-    errors: list[ErrorRow] = []
-    for reading in run.track(SOLIDS, "solids"):
-        errors += error_rows(shapes[reading], COARSE if run.quick else FINE, COUNTS)
     run.table("readings", list(readings.values()), "Four springs of one free period.", show=(
         "reading", "thickness_m", "flange_m", "first_bending_hz", "first_twist_hz", "ratio_twist", "ratio",
         "tip_value_bending", "tip_value_twist_off_line", "turn_of_twist"))  # fmt: skip
-    run.table("theory_error", errors, "Strip theory against solids.", show=(
-        "reading", "family", "number", "kind", "solid_hz", "error", "mesh_change"))  # fmt: skip
-    draw(run, shapes, readings, errors)
-    springs = drawn_springs(scene, off_line, run.quick)
-    found = run.attempt(partial(Drawn.calibrated, scene=scene), springs, "candidates")
-    run.table("candidates", [row for row in found if row],
-              "Springs calibrated alike, and how far each is from linear at its gap.")  # fmt: skip
+    draw(run, shapes, readings)
+    orbits = compare_plate(scene, run)
     ranks = {name: row.ratio_twist for name, row in readings.items() if name != "plain"}
     highest, plain = max(ranks, key=lambda name: ranks[name]), readings["plain"].ratio_twist
     turns = {name: row.turn_of_twist / readings["plain"].turn_of_twist for name, row in readings.items()}
@@ -100,7 +85,34 @@ def spring_shape(
                 note=f"Of the shapes that the words allow, \"{TITLES[highest]}\" has its twist highest; "
                 f"a plain strip of the same period has it at {plain:.1f} times; in that of "
                 f"\"{TITLES[least]}\" the ball turns least, {turns[least]:.2f} of this.")  # fmt: skip
-    return {"highest_twist": highest, "least_turn": least, "plain_strip_is_higher": plain > ranks[highest]}
+    return {"highest_twist": highest, "least_turn": least, "plain_strip_is_higher": plain > ranks[highest],
+            "rows": orbits}  # fmt: skip
+
+
+def compare_plate(scene: Scene, run: Run) -> list[OrbitEnds]:
+    """Tables and figure of the flat U as a plate; none for another spring or drive."""
+    from studies.spring_shape.figures import draw_plate
+
+    if (scene.spring.kind, scene.drive.kind) != ("flat_u", "harmonic"):
+        run.say("The part on the plate is left out: it needs a flat U with a harmonic drive.")
+        return []
+    beam, plates = model_of(scene), plates_of(scene, COARSE if run.quick else FINE)
+    modes, springs = mode_rows(plates, beam), springs_of(scene, run, plates, beam)
+    run.table("plate_modes", modes, "Symmetric modes of the flat U as a plate, and of its beam.")
+    collisions = [collision_row(scene, spring) for spring in springs]
+    run.table("plate_collisions", collisions, "First collision of beam and plates.")
+    orbits = orbit_rows(scene, run, springs, scene.drive.frequencies_hz[:: 2 if run.quick else 1])
+    run.table("plate_ends", orbits, "Ends of the orbits on the way down, by beam and plates.")
+    run.figure("plate", draw_plate(modes, orbits), "The flat U as a plate and as a beam: tip values of the "
+               "symmetric modes, and the ends of the orbits.")  # fmt: skip
+    same = all(row.same_period for row in orbits)
+    words = [f"As a plate the spring {'keeps every' if same else 'changes a'} period that is born."]
+    if factors := [max(row.most, 1.0 / row.least) for row in orbits if row.most and row.least]:
+        words.append(f"Beam theory moves the ends of the orbits by a factor of up to {max(factors):.1f}.")
+    if doubtful := [row for row in orbits if row.beam and row.point and row.least is None]:
+        words.append(f"It leaves the sign of the end at {doubtful[0].frequency_hz:.2f} Hz open.")
+    run.answer("hysteresis", " ".join(words))
+    return orbits
 
 
 def shapes_of(scene: Scene, sheet: float = 0.25) -> dict[Reading, Shape]:
@@ -120,10 +132,9 @@ def draw(
     run: Run,
     shapes: Mapping[Reading, Shape],
     readings: Mapping[Reading, ReadingRow],
-    errors: Sequence[ErrorRow],
 ) -> None:
-    """Store the nets of the twist modes and write the figures."""
-    from studies.spring_shape.figures import draw_errors, draw_shapes, net_of
+    """Store the nets of the twist modes and draw them."""
+    from studies.spring_shape.figures import draw_shapes, net_of
 
     nets: dict[str, np.ndarray] = {}
     for name, shape in shapes.items():
@@ -135,9 +146,6 @@ def draw(
     run.figure("shapes", draw_shapes(nets, list(readings.values())),
                "First twist mode of four springs of one free period, enlarged; grey, at rest; the left ends "
                "are clamped.")  # fmt: skip
-    run.figure(
-        "theory_error", draw_errors(errors), "Error of strip theory in the frequencies, against solids."
-    )
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Figures of the readings of "U shaped": twist modes, and errors of strip theory.
+"""Figures of the readings of "U shaped": twist modes, and the flat U as a plate beside its beam.
 
 A sheet at rest and in one mode is a net of points of its middle line, c = y n + z e_z from the centroid;
 sections move as wholes,
@@ -18,16 +18,14 @@ from numpy.typing import NDArray
 
 from beam.space import SpatialModes, channel_centroid
 from studies.plotting import GUIDE, NOTE, PAGE, PALETTE, in_house_style, label, new_figure, panel, series
-from studies.spring_shape.rows import ErrorRow, ReadingRow
+from studies.spring_shape.model_error import PLATES, OrbitEnds, PlateMode
+from studies.spring_shape.rows import ReadingRow
 from studies.spring_shape.shapes import TITLES, Shape
 
 Points = NDArray[np.float64]
 
 BRASS = "#D8B24A"
 """Colour of the metal in the drawings."""
-
-COLOURS = {"bending": 1, "breathing": 4, "lengthwise": 5, "sideways": 3, "twist": 2}
-"""Series of each kind of mode."""
 
 ACROSS = 5
 """Points across a strip or a web."""
@@ -83,35 +81,36 @@ def draw_shapes(nets: Mapping[str, Points], rows: Sequence[ReadingRow]) -> Figur
     length = 1e3 * np.ptp(nets["plain_rest"][..., 0])
     figure.supxlabel(
         f"grey: outline at rest, {length:.0f} mm long; net: first twist mode, enlarged; dot: the ball; "
-        "the left ends are clamped", fontsize=NOTE,
+        "the left ends are clamped",
+        fontsize=NOTE,
     )
     return figure
 
 
 @in_house_style
-def draw_errors(rows: Sequence[ErrorRow]) -> Figure:
-    """Error of strip theory against frequency, each mode with its number in its family."""
-    figure, axes = new_figure(1, 2, width=PAGE, height=0.072, sharey=True)
-    for place, (ax, reading) in enumerate(zip(axes, ("folded", "plain"), strict=True)):
-        ax.axhline(0.0, **GUIDE)
-        own = [row for row in rows if row.reading == reading]
-        for kind, number in COLOURS.items():
-            chosen = [row for row in own if row.kind == kind]
-            if not chosen:
-                continue
-            f, error = [row.solid_hz for row in chosen], [100.0 * row.error for row in chosen]
-            bars = [100.0 * abs(row.mesh_change) for row in chosen]
-            ax.errorbar(f, error, yerr=bars, **series(number), linewidth=0.8, capsize=1.5, label=kind)
-            for row, x, y in zip(chosen, f, error, strict=True):
-                ax.annotate(str(row.number), (x, y), xytext=(2.5, 3.0), textcoords="offset points",
-                            fontsize=NOTE)  # fmt: skip
-        ax.set_xscale("log")
-        panel(ax, place, f"{TITLES[reading]}; numbers: modes in and out of the plane")
-        label(ax.xaxis, "frequency of the solid", "Hz")
-        ax.legend(loc="upper left")
-    label(axes[0].yaxis, "error of strip theory in frequency", "%")
-    low, high = axes[0].get_ylim()
-    axes[0].set_ylim(low, high + 0.30 * (high - low))
+def draw_plate(modes: Sequence[PlateMode], orbits: Sequence[OrbitEnds]) -> Figure:
+    """Tip values of beam and plates against frequency; ends of the plates over those of the beam."""
+    figure, (left, right) = new_figure(1, 2, width=PAGE, height=0.072)
+    for number, (name, title) in enumerate({"beam": "beam", **PLATES}.items()):
+        style = series(number) | ({} if name == "beam" else {"linestyle": "none"})
+        own = [vars(row) for row in modes if vars(row).get(f"{name}_hz")]
+        if own:
+            left.plot([row[f"{name}_hz"] for row in own], [row[f"tip_value_{name}"] for row in own],
+                      **style, label=title)  # fmt: skip
+        if name != "beam":
+            ratios = [(vars(row)[name] or np.nan) / (row.beam or np.nan) for row in orbits]
+            right.plot(ratios, **style, label=title)
+    left.set_xscale("log")
+    panel(left, 0, "symmetric modes")
+    label(left.xaxis, "frequency", "Hz")
+    label(left.yaxis, "tip value", "kg$^{-1/2}$")
+    right.axhline(1.0, **GUIDE)
+    right.set_xticks(range(len(orbits)), [f"p{row.period}\n{row.frequency_hz:.2f}" for row in orbits])
+    panel(right, 1, "ends of the orbits on the way down")
+    label(right.xaxis, "orbit, and drive frequency", "Hz")
+    label(right.yaxis, "end of plate over end of beam")
+    for ax in (left, right):
+        ax.legend(loc="lower left")
     return figure
 
 

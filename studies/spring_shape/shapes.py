@@ -1,4 +1,4 @@
-"""The readings of "U shaped", each as a strip in space (two of them as solids too), brought to one period.
+"""The readings of "U shaped", each as a strip in space, brought to one period.
 
     side_by_side   a U cut out of the sheet: the legs lie side by side in its plane, the ball sits at the bend
                    and moves across the sheet
@@ -26,7 +26,6 @@ from typing import Literal
 
 import numpy as np
 from scipy.optimize import brentq
-from skfem import MeshHex2
 
 from beam import Arc, Centreline, Material, Straight, StripSection, Support, Tip
 from beam.space import (
@@ -40,7 +39,6 @@ from beam.space import (
     upright,
 )
 from studies.scene import Scene, SceneError, sections_of
-from studies.spring_shape.swept_mesh import sweep
 
 Reading = Literal["side_by_side", "channel", "folded", "plain"]
 READINGS: tuple[Reading, ...] = ("side_by_side", "channel", "folded", "plain")
@@ -55,16 +53,6 @@ FLANGE_REACH = 1.0
 
 ACCURACY = 1e-12
 """Of the fitted size [m]."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Mesh:
-    """Elements of a solid on a leg, on the bend, across half of the width, and halvings at a clamp."""
-
-    legs: int
-    bend: int
-    across: int
-    halvings: int
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -130,24 +118,6 @@ class Shape:
         return SpatialSpring(
             centreline=line, sections=(self.section,) * len(line.pieces), supports=supports, tip=self.tip,
             tip_at=self.tip_at, tip_offset=(x, y, z), drive=self.stop,
-        )  # fmt: skip
-
-    def swept(self, mesh: Mesh) -> MeshHex2:
-        """Half of the folded or the plain strip as a solid.
-
-        Beside `mesh.across` elements across the half, two lie in a margin as wide as the sheet is thick:
-        there the shear of torsion turns round.
-        """
-        half = 0.5 * self.width
-        inner = half - min(self.thickness, 0.5 * half)
-        edge = [half - (half - inner) / 3.0, half]
-        profile = (
-            0.5 * self.thickness * np.array([-1.0, 1.0]),
-            np.concatenate((np.linspace(0.0, inner, mesh.across + 1), edge)),
-        )
-        return sweep(
-            profile, self.centreline, (mesh.legs, mesh.bend, mesh.legs) if self.bent else (mesh.legs,),
-            tip_at=self.tip_at, halvings=(mesh.halvings, mesh.halvings if self.bent else 0),
         )  # fmt: skip
 
 

@@ -1,13 +1,11 @@
-"""The readings of "U shaped": sizes by second routes, twist modes; solids against theory and strips."""
+"""The readings of "U shaped": sizes by second routes, twist modes."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
 
-import numpy as np
 import pytest
-import skfem as sk
 
 from beam import (
     StripSection,
@@ -19,13 +17,11 @@ from beam import (
     folded_u,
     natural_modes,
 )
-from beam.space import channel_centroid, spatial_modes
+from beam.space import spatial_modes
 from studies.scene import SceneError, read_scene, single_mode_of
-from studies.spring_shape.__main__ import COARSE, shapes_of
-from studies.spring_shape.elasticity import solid_modes
-from studies.spring_shape.rows import error_rows, reading_row
-from studies.spring_shape.shapes import Shape, brought_to, kinds_of, shape_of
-from studies.spring_shape.swept_mesh import sweep
+from studies.spring_shape.__main__ import shapes_of
+from studies.spring_shape.rows import reading_row
+from studies.spring_shape.shapes import brought_to, kinds_of, shape_of
 
 
 @pytest.fixture(scope="module")
@@ -104,49 +100,6 @@ def test_a_mount_with_rotary_inertia_lowers_the_twist_of_the_plain_strip_most(fo
 def test_kinds_of_the_folded_strip(shapes):
     kinds = kinds_of(shapes["folded"], spatial_modes(shapes["folded"].spring(), 7))
     assert kinds == ["bending", "breathing", "bending", "sideways", "breathing", "bending", "twist"]
-
-
-def test_errors_of_strip_theory_mode_by_mode(shapes):
-    """On coarse meshes: plain -0.7 %, folded twice that, half of it from the bend, which acts as a plate."""
-    plain, folded = (error_rows(shapes[name], COARSE, (3, 2)) for name in ("plain", "folded"))
-    assert all(-0.009 < row.error < -0.006 for row in plain[:3])
-    assert all(-0.021 < row.error < -0.011 for row in folded[:3])
-    assert all(abs(row.mesh_change) < 0.006 for row in plain[:3] + folded[:3])
-    plain_twist, folded_twist = (
-        next(row.error for row in rows if row.kind == "twist") for rows in (plain, folded)
-    )
-    assert -0.004 < plain_twist < -0.002 and abs(folded_twist) < 0.02
-    spring = shapes["folded"].spring()
-    leg, bend, _ = spring.sections
-    stiff = bend.in_plane_stiffness / (1.0 - shapes["folded"].material.poissons_ratio ** 2)
-    plates = spatial_modes(replace(spring, sections=(leg, replace(bend, in_plane_stiffness=stiff), leg)), 3)
-    plate = plates.frequencies_hz / [row.solid_hz for row in folded[:3]] - 1.0
-    assert np.all((-0.010 < plate) & (plate < -0.004))
-
-
-def channel_solid(shape: Shape) -> sk.MeshHex2:
-    """A swept rectangle around the channel, less what lies between its flanges; its line is straight."""
-    t, high = shape.thickness, 0.5 * shape.width
-    web, inner = 0.5 * t - channel_centroid(**shape.channel_sizes), high - t
-    profile = (
-        np.array([web - t, web, web + shape.flange]), np.array([0.0, 0.5 * inner, inner, high])
-    )  # fmt: skip
-    swept = sweep(profile, shape.centreline, [40], tip_at=shape.tip_at, halvings=(4, 0))
-    box = replace(sk.MeshHex.from_mesh(swept), _boundaries=swept.boundaries)
-    _, y, z = box.p[:, box.t].mean(axis=1)
-    box = box.remove_elements(np.flatnonzero((y > web) & (z < inner)))
-    return replace(sk.MeshHex2.from_mesh(box), _boundaries=box.boundaries)
-
-
-def test_a_channel_against_a_solid(shapes):
-    """The shear centre matters: with the centroid in its place the modes out of the plane are far off."""
-    shape, spring = shapes["channel"], shapes["channel"].spring()
-    strip = spatial_modes(spring, 8)
-    for apart, (solid_hz, _) in enumerate(solid_modes(shape, channel_solid(shape), (2, 2))):
-        f = strip.frequencies_hz[(strip.out_of_plane > 0.5) == apart][:2]
-        assert np.all(np.abs(f / solid_hz - 1.0) < [3e-3, 1e-2])
-    blind = spatial_modes(replace(spring, sections=(replace(spring.sections[0], shear_offset=0.0),)), 8)
-    assert np.abs(blind.frequencies_hz[blind.out_of_plane > 0.5][:2] / f - 1.0).max() > 0.05
 
 
 def test_a_channel_twists_as_high_as_the_folded_strip_only_with_low_flanges(folded_scene, rows):

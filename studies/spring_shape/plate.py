@@ -1,0 +1,119 @@
+"""Modes of the flat U as a Kirchhoff plate, in Morley's triangles.
+
+The sheet deflects by w(x, z) [m] relative to a base that moves by y [m] across it. A ball of mass M [kg] sits
+at the tip, and a force F [N] acts there. For all test functions v
+
+    int D ((1 - nu) w_ij v_ij + nu lap w lap v) + m (w.. + y..) v dA + M (w.. + y..) v (tip) = F v (tip),
+
+with w = 0 and dw/dn = 0 on the clamped edges. A section has D (1 + nu) and D (1 - nu) [N m], which are the
+bending stiffnesses per width of its plies with the moduli E/(1 - nu) and E/(1 + nu), and m [kg/m^2].
+
+Morley's element is quadratic on a triangle, with w at the vertices and dw/dn at the middles of the edges as
+unknowns (L. S. D. Morley, Aeronaut. Q. 19 (1968) 149). It does not conform; frequencies converge as h^2.
+
+The ball is held by a point, or by a round seat that is rigid: w = a + c x there, x along the legs. The sheet
+is free to dimple under a point. The rotary inertia of the ball counts with c.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import skfem as sk
+from numpy.typing import NDArray
+from scipy.linalg import eigh
+from scipy.sparse import csc_array, csr_array, eye_array, hstack
+from scipy.sparse.linalg import LinearOperator, eigsh, splu
+from skfem.helpers import dd, ddot, trace
+
+from beam import Material, StripSection, Tip
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlateModes:
+    """The lowest modes, mass-normalised with phi >= 0, each array of shape (n_modes,).
+
+    omega [rad/s], phi [kg^(-1/2)] at the ball, participation [kg^(1/2)].
+    """
+
+    omega: Array
+    phi: Array
+    participation: Array
+
+    def extrapolated(self, coarser: PlateModes) -> PlateModes:
+        """The limit of fine meshes, from these modes and those on elements twice as long."""
+        pairs = [(fine, vars(coarser)[name]) for name, fine in vars(self).items()]
+        return PlateModes(**dict(zip(vars(self), (a + (a - b) / 3.0 for a, b in pairs), strict=True)))
+
+    def with_more_mass(self, mass: float) -> PlateModes:
+        """The modes with `mass` [kg] added at the ball, in the space of these modes."""
+        square, a = eigh(np.diag(self.omega**2), np.eye(self.phi.size) + mass * np.outer(self.phi, self.phi))
+        a *= np.sign(self.phi @ a)
+        participation = (self.participation + mass * self.phi) @ a
+        return PlateModes(omega=np.sqrt(square), phi=self.phi @ a, participation=participation)
+
+
+def per_area(section: StripSection) -> tuple[float, float, float]:
+    """D (1 + nu) and D (1 - nu) [N m], m [kg/m^2]."""
+
+    def stiffness(sign: float) -> float:
+        def changed(ply: Material) -> Material:
+            return replace(ply, youngs_modulus=ply.youngs_modulus / (1.0 + sign * ply.poissons_ratio))
+
+        layer = section.layer and replace(section.layer, material=changed(section.layer.material))
+        return replace(section, material=changed(section.material), layer=layer).bending_stiffness
+
+    return (stiffness(-1.0) / section.width, stiffness(1.0) / section.width,
+            section.mass_per_length / section.width)  # fmt: skip
+
+
+@sk.BilinearForm
+def bending(u, v, w):  # type: ignore[no-untyped-def]
+    """D ((1 - nu) u_ij v_ij + nu lap u lap v), with `bulk` D (1 + nu) and `shear` D (1 - nu)."""
+    return w.shear * ddot(dd(u), dd(v)) + 0.5 * (w.bulk - w.shear) * trace(dd(u)) * trace(dd(v))
+
+
+def plate_modes(
+    mesh: sk.MeshTri, bare: StripSection, taped: StripSection, tip: Tip, count: int, *, seated: bool
+) -> PlateModes:
+    """The `count` lowest modes; where the mesh is half of a plate, the symmetric ones of the whole.
+
+    The mesh names the edges "clamped" and "symmetry", the elements "taped" and "seat", and has its ball at
+    the origin.
+    """
+    basis = sk.Basis(mesh, sk.ElementTriMorley(), intorder=4)
+    halves = 2.0 if mesh.boundaries["symmetry"].size else 1.0
+    values = halves * np.outer(per_area(bare), np.ones(mesh.nelements))
+    values[:, mesh.subdomains["taped"]] = halves * np.array(per_area(taped))[:, None]
+    bulk, shear, density = map(basis.with_element(sk.ElementTriP0()).interpolate, values)
+    stiffness = bending.assemble(basis, bulk=bulk, shear=shear)
+    mass = sk.BilinearForm(lambda u, v, w: w.m * u * v).assemble(basis, m=density)
+
+    held = np.union1d(basis.get_dofs("clamped").all(), basis.get_dofs("symmetry").all("u_n"))
+    rigid = np.setdiff1d(basis.get_dofs(elements="seat").all(), held)[: basis.N if seated else 0]
+    unknowns = np.arange(basis.N)
+    moved, turned = np.isin(unknowns, basis.nodal_dofs[0]) * 1.0, np.zeros(basis.N)
+    ball = basis.nodal_dofs[0, np.argmin(np.linalg.norm(mesh.p, axis=0))]
+    ties = eye_array(basis.N, format="csc")[:, np.setdiff1d(unknowns, np.union1d(held, rigid))]
+    if seated:
+        turned[rigid] = basis.project(lambda x: x[0])[rigid]
+        seat = np.stack((moved * np.isin(unknowns, rigid), turned), axis=1)
+        ties = hstack((ties, csc_array(seat)), format="csc")
+    lumped = np.zeros((2, ties.shape[1]))
+    lumped[0], lumped[1, -1] = ties[[ball]].toarray()[0], 1.0 * seated
+    carried = csr_array(np.sqrt([[tip.mass], [tip.rotary_inertia]]) * lumped)
+    k, m = csc_array(ties.T @ stiffness @ ties), csc_array(ties.T @ mass @ ties + carried.T @ carried)
+
+    factors = splu(k, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    inverse = LinearOperator(k.shape, factors.solve, dtype=np.float64)
+    start = np.cos(np.arange(k.shape[0]))  # fixed, so that results repeat, and orthogonal to no mode
+    squares, x = eigsh(k, count, M=m, sigma=0.0, OPinv=inverse, v0=start)
+    order = np.argsort(squares)
+    x = x[:, order] / np.sqrt(np.einsum("ik,ik->k", x, m @ x))[order]
+    x *= np.where(lumped[0] @ x < 0.0, -1.0, 1.0)
+    phi = lumped[0] @ x
+    participation = moved @ mass @ (ties @ x) + tip.mass * phi
+    return PlateModes(omega=np.sqrt(squares[order]), phi=phi, participation=participation)

@@ -1,0 +1,141 @@
+"""The flat U as a plate: closed forms of plates and strips, an independent program, and what impacts see."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import skfem as sk
+
+from beam import BRASS, StripSection, Tip
+from beam.space import spatial_modes
+from studies.scene import model_of, read_scene
+from studies.spring_shape.__main__ import COARSE, compare_plate
+from studies.spring_shape.model_error import mode_rows, plates_of, springs_of
+from studies.spring_shape.plate import per_area, plate_modes
+from studies.spring_shape.plate_mesh import half_u
+from studies.spring_shape.shapes import Shape
+
+SHEET = StripSection(material=BRASS, width=12e-3, thickness=1e-3)
+NU = BRASS.poissons_ratio
+RIGIDITY = BRASS.youngs_modulus * 1e-9 / 12.0 / (1.0 - NU**2)
+
+
+def named(mesh, clamped, symmetry=(), seat=()):
+    parts = {"taped": np.array([], dtype=int), "seat": np.asarray(seat, dtype=int)}
+    edges = {"clamped": clamped, "symmetry": symmetry or (lambda x: np.zeros(x.shape[1], dtype=bool))}
+    return mesh.with_subdomains(parts).with_boundaries(edges)
+
+
+@pytest.fixture(scope="module")
+def plates(letter_scene):
+    return plates_of(letter_scene, COARSE)
+
+
+def test_stiffnesses_per_area_are_those_of_a_plate():
+    bulk, shear, mass = per_area(SHEET)
+    assert (bulk, shear) == pytest.approx((RIGIDITY * (1.0 + NU), RIGIDITY * (1.0 - NU)))
+    assert mass == pytest.approx(8.5)
+
+
+def test_a_square_cantilever_against_published_values():
+    """omega a^2 sqrt(m/D) for nu = 0.3: 3.471, 8.507, 21.28, 27.20, 30.96, to which errors fall as h^2."""
+    sheet = replace(SHEET, material=replace(BRASS, poissons_ratio=0.3))
+    found = []
+    for n in (8, 16, 32):
+        line = np.linspace(0.0, 0.1, n + 1)
+        mesh = named(sk.MeshTri.init_tensor(line, line), lambda x: x[0] == 0.0)
+        modes = plate_modes(mesh, sheet, sheet, Tip(), 5, seated=False)
+        found.append(modes)
+    scale = 0.1**2 * math.sqrt(8.5 * 12.0 * (1.0 - 0.3**2) / BRASS.youngs_modulus / 1e-9)
+    limit = found[2].extrapolated(found[1]).omega * scale
+    np.testing.assert_allclose(limit, [3.471, 8.507, 21.28, 27.20, 30.96], rtol=1.5e-3)
+    errors = [np.abs(modes.omega * scale / limit - 1.0) for modes in found]
+    assert np.all(errors[1] < 0.4 * errors[0]) and np.all(errors[2] < 0.4 * errors[1])
+
+
+@pytest.mark.parametrize("seated", [False, True])
+def test_a_heavy_ball_on_a_clamped_disc_against_the_closed_form(seated):
+    """C = (a^2 - b^2 - 4 a^2 b^2 ln(a/b)^2/(a^2 - b^2))/(16 pi D), b that of the seat; half of a disc."""
+    a, b, found = 0.1, 0.02, []
+    for n in (10, 20, 40):
+        right = sk.MeshTri.init_tensor(np.arange(n + 1.0), np.arange(n + 1.0))
+        mesh = right + sk.MeshTri(right.p * [[-1.0], [1.0]], right.t)
+        far = np.abs(mesh.p).max(axis=0) * a / n
+        p = far * mesh.p / np.maximum(np.linalg.norm(mesh.p, axis=0), 1e-99)
+        seat = np.flatnonzero(far[mesh.t].max(axis=0) < b * (1.0 + 1e-6))
+        edge = a * math.cos(0.6 / n)
+        disc = named(
+            sk.MeshTri(p, mesh.t),
+            lambda x, edge=edge: np.linalg.norm(x, axis=0) > edge,
+            lambda x: x[1] == 0.0,
+            seat,
+        )
+        found.append(plate_modes(disc, SHEET, SHEET, Tip(mass=1e5), 1, seated=seated))
+    ring = a**2 - b**2 - 4.0 * (a * b * math.log(a / b)) ** 2 / (a**2 - b**2)
+    closed = (ring if seated else a**2) / (16.0 * math.pi * RIGIDITY)
+    found.append(found[2].extrapolated(found[1]))
+    errors = np.abs(1.0 / (1e5 * np.array([modes.omega[0] for modes in found]) ** 2) / closed - 1.0)
+    assert np.all(errors[1:3] < 0.4 * errors[:2]) and errors[3] < 0.2 * errors[2]
+
+
+def test_a_narrow_u_that_does_not_contract_is_that_of_strip_theory():
+    """The modes in which the legs twist are there too."""
+    material = replace(BRASS, poissons_ratio=0.0)
+    shape = Shape(reading="side_by_side", material=material, length=0.13, width=3e-3, bend_radius=9e-3,
+                  thickness=2e-4, tip=Tip(mass=1e-4))  # fmt: skip
+    strip = spatial_modes(shape.spring(), 16)
+    seen = np.flatnonzero(np.abs(strip.phi) > 1e-3 * np.abs(strip.phi).max())[:5]
+    sheet = StripSection(material=material, width=3e-3, thickness=2e-4)
+    sizes = {"leg": 0.13, "radius": 9e-3, "width": 3e-3, "seat": 5e-4, "covered": 0.13, "cells": (1, 1)}
+    first, second = (
+        plate_modes(half_u(**sizes, times=times), sheet, sheet, shape.tip, 5, seated=False)
+        for times in (1, 2)
+    )
+    plate = second.extrapolated(first)
+    np.testing.assert_allclose(plate.omega, strip.omega[seen], rtol=0.01)
+    np.testing.assert_allclose(plate.phi, np.abs(strip.phi[seen]), rtol=0.03)
+
+
+def test_the_letters_spring_against_an_independent_program(letter_scene, plates):
+    """Beam over plate - 1 of modes 1 to 6, and the first mode in which the legs twist, ball on a point."""
+    rows = mode_rows(plates, model_of(letter_scene))
+    bending, (twist, _, _) = (
+        [row for row in rows if row.beam_hz],
+        [row for row in rows if row.beam_hz is None],
+    )
+    differences = [100.0 * row.difference for row in bending[:6]]
+    assert differences == pytest.approx([-0.50, -0.23, 0.04, 0.52, 0.45, 2.3], abs=0.03)
+    assert (twist.number, twist.point_hz) == (5, pytest.approx(1414.0, rel=1e-3))
+    assert twist.tip_value_point == pytest.approx(0.56, abs=0.01)
+    assert twist.participation_point == pytest.approx(0.0055, abs=1e-4)
+    assert all(row.mesh_change < 2e-3 and row.seat_hz > row.point_hz for row in rows)
+
+
+def test_a_mass_added_in_the_space_of_modes_is_one_added_to_the_plate(letter_scene, plates):
+    added = 5e-4
+    heavier = letter_scene.replace({"tip.mass_kg": letter_scene.tip.mass_kg + added})
+    for name, (direct, _) in plates_of(heavier, COARSE).items():
+        modes = plates[name][0].with_more_mass(added)
+        np.testing.assert_allclose(modes.omega[:12], direct.omega[:12], rtol=1e-4)
+        np.testing.assert_allclose(modes.phi[:12], direct.phi[:12], rtol=5e-3, atol=5e-3)
+        np.testing.assert_allclose(modes.participation[:12], direct.participation[:12], rtol=5e-3, atol=5e-5)
+
+
+def test_plates_have_period_and_damping_of_the_beam_and_refitted_ones_its_kick(letter_scene, plates):
+    beam, *others = springs_of(letter_scene, SimpleNamespace(quick=False), plates, model_of(letter_scene))
+    kick = beam.collision(letter_scene).kick
+    for spring in others:
+        assert spring.model.free_period == pytest.approx(beam.model.free_period, rel=1e-12)
+        assert spring.model.decay_rate[0] == pytest.approx(3.56)
+        fitted = spring.collision(letter_scene).kick == pytest.approx(kick, rel=1e-6)
+        assert fitted == spring.name.endswith("refitted")
+
+
+def test_a_spring_that_is_no_flat_u_goes_without_the_plate():
+    told = []
+    assert compare_plate(read_scene("tight_fold"), SimpleNamespace(say=told.append)) == []
+    assert len(told) == 1 and "flat U" in told[0]
