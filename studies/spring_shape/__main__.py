@@ -22,8 +22,8 @@ and modes in which the legs twist. Claim: the plate keeps the periods that are b
 the orbits. A scene whose spring.kind is not flat_u goes without this part.
 
 Run:     python -m studies.spring_shape [--off-line 0.0005] [--channel-sheet 0.25] [--quick]
-Writes:  readings.csv (one row a shape), shapes.npz; of a flat U plate_modes.csv, plate_collisions.csv (one row
-         a spring), plate_ends.csv (one row a frequency); figures shapes and plate
+Writes:  readings.csv (a row a shape), shapes.npz; of a flat U plate_modes.csv, plate_collisions.csv (a row a
+         spring), plate_ends.csv (a row a frequency); figures shapes and plate
 """
 
 from __future__ import annotations
