@@ -48,10 +48,11 @@ def free_period_change(model: ModalModel, *, ratios_kept: bool = False) -> Modal
 
 
 def decay_rate_change(model: ModalModel, mode: int | None = 0) -> ModalChange:
-    """Return the change of `model` at fixed T with c of one `mode`, from 0 on, per 1/s; None: of mode 1, all
-    with it."""
+    """Return the change of `model` at fixed T with c of one `mode`, from 0 on, per 1/s; None: of mode 1, the
+    others in proportion, or by the same amount where mode 1 has no damping."""
     omega, rates, k = _rows(model)
-    change = rates / rates[k] if mode is None else _one(model, mode)
+    together = rates / rates[k] if rates[k] > 0.0 else np.ones(model.n_modes)
+    change = together if mode is None else _one(model, mode)
     return _of_numbers(0.25 * rates[k] * change[k] * omega / omega[k] ** 2, change)
 
 

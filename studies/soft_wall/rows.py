@@ -94,9 +94,15 @@ def doubling_near(oscillator: ImpactOscillator, peak: float) -> PeriodicOrbit | 
     return next(iter(branch.of_kind("period doubling")), None)
 
 
-def loss_of_stability(oscillator: ImpactOscillator, doubling: PeriodicOrbit) -> tuple[float, bool]:
+FAINTEST = 1e-6
+"""Speed of a touch, over that of the period doubling, below which no stable p1 is looked for."""
+
+
+def loss_of_stability(
+    oscillator: ImpactOscillator, doubling: PeriodicOrbit
+) -> tuple[float | None, bool]:
     """Excess at which p1, from its first touch up to its `doubling`, is stable no more, and whether a complex
-    pair of multipliers is why."""
+    pair of multipliers is why; None where faint touches find it unstable already, as without damping."""
     family, orbit = Shooting(oscillator=oscillator, period=1), doubling
 
     def largest(speed: float) -> float:
@@ -109,6 +115,8 @@ def loss_of_stability(oscillator: ImpactOscillator, doubling: PeriodicOrbit) -> 
     while sizes[-1] > 0.0:  # a weak touch leaves the free motion, which is stable
         speeds.append(0.5 * speeds[-1])
         sizes.append(largest(speeds[-1]))
+        if speeds[-1] < FAINTEST * doubling.speed:
+            return None, False
     outside = np.flatnonzero(np.array(sizes) > 0.0)
     if not outside.size:
         return doubling.excess, False

@@ -92,6 +92,12 @@ def test_a_change_moves_its_own_parameter_and_keeps_the_others(
         assert np.abs((found[name] - expected) / at[name]).max() < 1e-11 * size, name
 
 
+def test_without_damping_all_modes_get_the_same() -> None:
+    """There is no proportion to keep; the frequencies do not move to first order."""
+    change = beam.decay_rate_change(replace(THREE, decay_rate=np.zeros(3)), None)
+    assert np.array_equal(change.decay_rate, np.ones(3)) and not np.any(change.omega)
+
+
 @pytest.mark.parametrize("ratio", [0.1, 0.3, 1.0])
 def test_frequencies_of_a_cantilever_with_a_ball(ratio: float) -> None:
     """1 + cos x cosh x + (M/m_b) x (cos x sinh x - sin x cosh x) = 0 at x = beta L, differentiated."""

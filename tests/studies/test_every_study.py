@@ -5,11 +5,20 @@ from __future__ import annotations
 import json
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
+from contact import BranchEnded
 from studies import plotting
+from studies.hysteresis.__main__ import Causes, judge
+from studies.hysteresis.descriptions import CAUSES
+from studies.next_measurement import information
 from studies.programs import account_of, names, run_times, studies
+from studies.record import Run
+from studies.soft_wall.rows import loss_of_stability
+from studies.validation.two_beams import Rig
 from studies.work_precision.problems import problems_of
 
 ON_THE_FRAME = studies()
@@ -130,3 +139,32 @@ def test_a_docstring_says_command_and_outputs_and_the_table_the_run_time(name):
     if name in ON_THE_FRAME:
         assert "\nRun:" in account and "\nWrites:" in account and f"python -m studies.{name}" in account
         assert 1.0 <= run_times()[name][1] <= run_times()[name][0] <= 600.0
+
+
+def test_where_nothing_is_found_a_study_says_so(monkeypatch, tmp_path, letter_scene, capsys):
+    """No orbit outlives its errors, no fold in the map, and a response that does not reach its frequency."""
+    monkeypatch.setattr(information, "letters_orbits", lambda of: [])
+    assert "no orbit of the plane outlives its errors" in information.answer(None, [], information.Plan())
+    run = Run(study="hysteresis", folder=tmp_path, scene=letter_scene, command="")
+    judge(run, [], {}, Causes(at="", **{name: None if "map" in name else 1.0 for name in CAUSES}))
+    assert "nothing to compare" in capsys.readouterr().err and not run.close("done", {})["verdicts"]
+    rig = Rig()
+    vars(rig)["raised"] = SimpleNamespace(parameters=[1.0], orbits=[None])
+    with pytest.raises(BranchEnded, match=r"does not reach W/w1 = 1\.2"):
+        rig.lowered(1.2)
+
+
+def test_a_p1_unstable_down_to_faint_touches_loses_its_stability_there(monkeypatch):
+    """Unstable at 2 % of the doubling's speed, where the search begins, and stable below 0.3 %."""
+
+    class Orbits:
+        def __init__(self, **_):
+            pass
+
+        def at_speed(self, speed, near):
+            size = 1.0 + (speed - 0.003)
+            return SimpleNamespace(speed=speed, excess=speed**2, multipliers=np.array([1j, -1j]) * size)
+
+    monkeypatch.setattr("studies.soft_wall.rows.Shooting", Orbits)
+    excess, turns = loss_of_stability(None, SimpleNamespace(speed=1.0, excess=1.0))
+    assert turns and excess == pytest.approx(0.003**2, rel=1e-5)
