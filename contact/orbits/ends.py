@@ -206,14 +206,14 @@ def fold_excess(strobed: StrobedMap[Any], period: int) -> float | None:
     strobed : StrobedMap
         A StrobedNordmarkMap or a StroboscopicMap; its own amplitude does not matter.
     period : int
-        m, in drive periods.
+        m, in drive periods; 0 is the period of a motion that did not settle.
 
     Raises
     ------
     NotPeriodic
         If the orbits around the place where the fold should be are not found.
     """
-    if require_whole("period", period, "drive periods") < 2:
+    if require_whole("period", period, "drive periods", low=0) < 2:
         return None
     family: Family
     if isinstance(strobed, StrobedNordmarkMap):

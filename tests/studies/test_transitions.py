@@ -46,6 +46,7 @@ def test_the_orbits_end_where_the_closed_forms_say(letter_scene, letter_model, f
     for name in ("map", "single_mode"):
         strobed = descriptions[name]
         exact = fold_excess(strobed, EXPECTED[frequency])
+        assert fold_excess(strobed, 0) is fold_excess(strobed, 1) is None  # 0: the motion did not settle
         end = orbit_end(strobed, born(strobed).end, 1e-3, most_cycles=1000)
         assert end.lost <= exact <= end.held and end.held - end.lost <= 0.0101 * abs(end.held), name
         assert end.kind == "fold" and end.excess == pytest.approx(exact, rel=1e-10), name
