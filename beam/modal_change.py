@@ -48,8 +48,11 @@ def free_period_change(model: ModalModel, *, ratios_kept: bool = False) -> Modal
 
 
 def decay_rate_change(model: ModalModel, mode: int | None = 0) -> ModalChange:
-    """Return the change of `model` at fixed T with c of one `mode`, from 0 on, per 1/s; None: of mode 1, the
-    others in proportion, or by the same amount where mode 1 has no damping."""
+    """Return the change of `model` at fixed T, per change [1/s] of the decay rate c of `mode` (0 is mode 1).
+
+    With None, c of mode 1 changes, and the other rates in proportion. If mode 1 has no damping, all rates
+    change by the same amount.
+    """
     omega, rates, k = _rows(model)
     together = rates / rates[k] if rates[k] > 0.0 else np.ones(model.n_modes)
     change = together if mode is None else _one(model, mode)

@@ -35,7 +35,7 @@ from numba.extending import intrinsic
 config: Any = numba_config
 
 UNUSED = 3600.0
-"""Seconds after which a folder of machine code is removed: until then an older process may still use it."""
+"""Time without use [s] after which a folder of machine code is removed; an older process may need it."""
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -80,7 +80,7 @@ _CACHE = os.environ.get("NUMBA_CACHE_DIR") or _cache_folder()
 
 
 class _Announcement(event.Listener):  # type: ignore[misc]
-    """Says once in a process that kernels are compiled; numba raises its event only where no code is kept."""
+    """Prints once in a process that kernels are compiled; numba's event comes only without cached code."""
 
     def on_start(self, event: Any) -> None:
         """A kernel is being compiled."""

@@ -1,9 +1,8 @@
 """What can go wrong in a computation of impacts, as one small family.
 
 Wrong use (a negative stiffness, a law that a method cannot handle) is a ``beam.Refusal``, a ValueError or
-TypeError, where the object is made.  The classes here are for computations that were asked for rightly and
-could not be finished: they carry the place where it happened, and never a number that might be taken for a
-result.
+TypeError, where the object is made.  The classes here are for valid computations that could not be finished.
+They carry the place where it happened, and never a number that might be taken for a result.
 """
 
 from __future__ import annotations

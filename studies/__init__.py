@@ -15,13 +15,13 @@ another study:
     every_study                                           all of them in turn
     letter, plotting, least_model, calibration, sweep, film, page
 
-Importing this package changes nothing. `python -m studies...` does three things before numpy is imported:
+Importing this package changes nothing. `python -m studies...` does three things before the study is imported:
 
-- It sets the thread count of the linear algebra libraries to 1, unless the environment sets it: several
+- It sets the thread count of the linear algebra libraries to 1, unless the environment sets it. Several
   workers with several threads each slow one another down twentyfold.
-- It makes sure that `beam` and `contact` are the packages beside this one. Both names belong to others on the
-  public index, and with one of those in front every result would be an error at best.
-- It ends with one sentence at Ctrl-C, and for a study that does not exist.
+- It makes sure that `beam` and `contact` are the packages beside this one. The public index has other
+  packages of both names, with which the studies would fail or compute something else.
+- It ends with one sentence for a study that does not exist, and at Ctrl-C during the imports.
 """
 
 from __future__ import annotations

@@ -5,8 +5,8 @@
 Each study runs in a process of its own, with its options at their defaults; the main job is the first. A
 study that is stored as done, of the same scene, options and source, is not run again, unless with --fresh:
 the same command goes on where Ctrl-C stopped it, and tries again what was refused or had failed cells.
-Programs without results of a scene (`report`, `export`, `tour`) are no studies. Time left is counted from
-the table of run times, and the speed until then; what a study has taken goes into the table of the folder.
+Programs without results of a scene (`report`, `export`, `tour`) are no studies. The time left is estimated
+from `studies/run_times.csv` and the speed so far. The measured run times go to DIR/run_times.csv.
 
 Exit codes: 0 done; 2 wrong use; 3 a study failed, was refused or has failed cells; 130 interrupted.
 
@@ -72,8 +72,10 @@ def arguments_of(name: str, scene: Scene, given: Namespace, passed_on: Sequence[
 def run_in_turn(
     plan: Mapping[str, Sequence[str]], quick: bool
 ) -> tuple[dict[str, int], dict[str, float], bool]:
-    """Run the studies with these arguments; returns their exit codes, the seconds that those took which ended
-    with code 0, and whether a signal ended the series.
+    """Run the studies with these arguments.
+
+    Returns the exit codes by study, the run times [s] of the studies that ended with code 0, and whether a
+    signal ended the series.
 
     Each has a process group of its own, so that Ctrl-C reaches it once, passed on from here: it stores what
     it has and ends.
@@ -118,7 +120,7 @@ def run_in_turn(
 
 
 def keep_times(took: Mapping[str, float], quick: bool, table: Path) -> None:
-    """Write these seconds into the table of run times at `table`, the others as they were."""
+    """Write the run times `took` [s] into the csv file `table`; its other numbers stay as they are."""
     rows = run_times(table) if table.exists() else run_times()
     rows |= {name: (rows[name][0], new) if quick else (new, rows[name][1]) for name, new in took.items()}
     lines = [f"{name},{full:.0f},{small:.0f}\n" for name, (full, small) in rows.items()]

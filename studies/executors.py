@@ -98,7 +98,7 @@ def pool_of(place: str, workers: int) -> Iterator[Executor]:
 
 
 def _quiet() -> None:
-    """In a process of workers: its parent has printed what is suspicious."""
+    """Silence the warnings in a worker process, as its parent has printed them."""
     warnings.filterwarnings("ignore", category=UserWarning, module=r"(beam|contact|studies)\b")
 
 

@@ -68,9 +68,10 @@ class Row:
     """One spring; lists go with the scene's drive frequencies. Born period 0: not settled; nothing: no motion
     that grazes, or one whose deviations do not turn, as next to a turning point of the response.
 
-    `shift`: kappa (gap/L)^2, L = `length_m`, the first straight run (legs side by side: a leg and what the
-    bend is worth). `survive`: how many of the letter's periods are born both at 2.5e-4 and at 1e-3.
-    `frame`: whether the frame was solved, whose effective period then counts if it is off by over 0.005 ms.
+    `shift` is kappa (gap/L)^2. L = `length_m` is the first straight run; with legs side by side it is a leg
+    and the straight length equivalent to the bend. `survive` counts the letter's periods that are born both
+    at 2.5e-4 and at 1e-3. `frame`: whether the frame was solved. Its effective period is used if it differs
+    by more than 0.005 ms.
     """
 
     reading: str

@@ -27,8 +27,8 @@ POSITIONAL = "positional"
 
 
 MOST_CELLS = 1_000_000
-"""Most cells of a study, and the largest count on a command line. A million cells of a millisecond take a
-quarter of an hour, and their numbers fit into any memory."""
+"""Bound on the cells of a study, and on a count on the command line. At 1 ms a cell, a million take a quarter
+of an hour, and their numbers fit into memory."""
 
 
 def require_cells(option: str, value: object, count: float) -> None:

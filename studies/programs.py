@@ -68,9 +68,9 @@ def account_of(name: str) -> str:
 
 
 def run_times(table: Path = FOLDER / "run_times.csv") -> dict[str, tuple[float, float]]:
-    """Seconds that the full and the small form of each study take; a minute and ten where the table has none.
+    """Run times [s] of each study in full and with --quick; 60 s and 10 s for a study not in the table.
 
-    `python -m studies --all` has measured them on two cores, with the machine code in place.
+    `python -m studies --all` measures them. The table holds those of two cores, with compiled kernels.
     """
     with table.open(newline="", encoding="utf-8") as stream:
         found = {name: (float(full), float(quick)) for name, full, quick in list(csv.reader(stream))[1:]}
@@ -85,7 +85,7 @@ def in_words(seconds: float) -> str:
 
 
 def run_time_of(names: Sequence[str]) -> str:
-    """What `--help` says of the run time of these studies."""
+    """The sentence on the run time of these studies for `--help`; empty if there is none."""
     known = run_times()
     full, quick = (sum(known[name][form] for name in names if name in known) for form in (0, 1))
     return f"Run time: {in_words(full)}, with --quick {in_words(quick)}, on two cores." if full else ""
@@ -136,7 +136,7 @@ def refuse_arguments(name: str, account: str) -> None:
         if words[0] in ("-h", "--help"):
             tell(account, sys.stdout)
             raise SystemExit(DONE)
-        print(f"python -m studies.{name}: takes no options, not {words[0]}", file=sys.stderr)
+        print(f"python -m studies.{name}: {words[0]} is refused; it takes no options", file=sys.stderr)
         raise SystemExit(WRONG_USE)
 
 

@@ -90,7 +90,7 @@ class Run:
     progress = staticmethod(progress)
 
     def warn(self, sentence: str) -> None:
-        """Something that can hardly be meant: for the person, and kept in the summary."""
+        """Print a warning to standard error, and keep it in the summary."""
         self.warnings = [*self.warnings, sentence]
         self.say(f"warning: {sentence}")
 
@@ -240,7 +240,7 @@ class Run:
             "failed_cells": len(self.failures), "verdicts": self._verdicts, "answers": self._answers,
         }  # fmt: skip
         if taken := sorted(summary.keys() & results.keys()):
-            raise ValueError(f"{self.study} returns {', '.join(taken)}, which every summary has of its own")
+            raise ValueError(f"{self.study} returns {', '.join(taken)}, keys that every summary has already")
         summary |= results
         self.json("summary", summary)
         self.path("manifest.json")

@@ -59,7 +59,7 @@ SCENES: dict[str, tuple[list[str], list[str]]] = {
 
 
 def run(name: str, scene: str, out: Path) -> list[str]:
-    """Study, scene, exit code ("traceback" for a fault), seconds, last line."""
+    """Study, scene, exit code (or "traceback", or "too long" after 600 s), run time [s], last line."""
     words, keys = SCENES[scene]
     command = [sys.executable, "-m", f"studies.{name}", "--quick", "--workers=1", f"--out={out / scene}"]
     command += [*words, *(word for key in keys for word in ("--set", key))]
@@ -79,7 +79,7 @@ def run(name: str, scene: str, out: Path) -> list[str]:
 def main() -> None:
     """Run what is not in the table yet, two at a time; a line for each."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--only", default="", help="words in 'study, scene'")
+    parser.add_argument("--only", default="", help="text that 'study, scene' must contain")
     parser.add_argument("--out", type=Path, default=Path(tempfile.gettempdir()) / "varied-scenes")
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)

@@ -64,8 +64,8 @@ class OrbitEnd(Generic[S]):
     state : State
         On the orbit at `held`.
     orbit : PeriodicOrbit, optional
-        The orbit at its end; None for the Nordmark map, and where only a bracket is known.  Several orbits of
-        one period may exist side by side: its approach velocity and touches say which one ends here.
+        The orbit at its end; None for the Nordmark map, and where only a bracket is known.  If several orbits
+        have this period, the approach velocity and the touches of `orbit` identify the one that ends.
     """
 
     period: int

@@ -14,8 +14,8 @@ v the approach speed, v/a the time to the top of the arc beyond the gap, a = (2 
 time: excess and tip mass (free period and drive amplitude at grazing kept); and tip mass together with loss
 in the contact, in search of the letter's tau.
 
-How the kick fades towards grazing is in `studies.soft_wall`, how many modes a collision needs in
-`studies.adequacy`.
+`studies.soft_wall` shows how the kick fades towards grazing, `studies.adequacy` how many modes a collision
+needs.
 
 Run:     python -m studies.effective_impact [--quick]
 Writes:  collisions.csv (a row an approach), floors.csv (smallest restitution over the tip mass), and the

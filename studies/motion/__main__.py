@@ -54,7 +54,7 @@ FREQUENCY = 21.50
 """Where the letter has the period 4 of its Fig. 4 [Hz]."""
 
 LARGEST_SHIFT = 0.01
-"""Relative change of the free frequency by the amplitude of a film beyond which a linear spring misleads."""
+"""Relative change of the free frequency with amplitude [1]; a linear film above this bound is misleading."""
 
 RATE = 20.0
 """Frames a second: gif keeps time in hundredths of a second."""
@@ -83,8 +83,8 @@ def motion(
     orbit = film_orbit(oscillator, settled.end, settled.period, frames=frames, rate=RATE)
     swing, radius = max(abs(row.tip_m) for row in orbit.rows), scene.tip.ball_radius_m
     if (shift := abs(shift_at_gap(scene)) * (swing / scene.stop.gap_m) ** 2) > LARGEST_SHIFT:
-        off = f"{100.0 * shift:.2g} % off the free frequency of small swings"
-        run.warn(f"the model is linear, but the tip swings by {swing:.3g} m, where a spring is {off}")
+        off = f"would change its free frequency by {100.0 * shift:.2g} %"
+        run.warn(f"the model is linear, but the tip moves by {swing:.3g} m, which {off}")
     scenery = Scenery.of(modes, ball_radius=radius, gap=scene.stop.gap_m, swing=swing)
     drawn, magnification = drawn_shapes(scenery.mesh, modes, orbit.coordinates, magnify)
     carried = DRIVE * (seen_from == "laboratory")

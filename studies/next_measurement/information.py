@@ -220,7 +220,7 @@ def answer(of: Of, found: Sequence[Measurement], plan: Plan) -> str:
         + ". No single p_m tells gap, tau and delay apart; "
     )
     if not (chosen := best(found, 1)):
-        return f"{text}with this noise no orbit of the plane outlives its errors."
+        return f"{text}with this noise no orbit exists at one standard error from its excess."
     first = chosen[0]
     text += (
         f"with the gap from the amplitude at grazing the best place, p{first.period} at "

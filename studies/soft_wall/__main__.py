@@ -12,9 +12,9 @@ K = 10 ... 10^6:
     doubling   excess at which p1, which survives its first touch, loses stability by a multiplier -1: by
                shooting, against a closed form that goes like K^(-2)
 
-and for the beam with Hertz contact the excess at which the kick leaves the square root, where p1 loses its
-stability, where a multiplier passes -1, and whether the letter could have seen that. `closed_forms` derives
-the equations.
+and for the beam with Hertz contact the excess at which the kick leaves the square root, at which p1 loses its
+stability, and at which a multiplier passes -1. The study compares the loss of stability with the letter's
+amplitude stability. `closed_forms` derives the equations.
 
 Run:     python -m studies.soft_wall [--decades 1 6] [--quick]
 Writes:  kicks.csv, doublings.csv; figures kick and orbits
@@ -40,7 +40,7 @@ SHOWN_HZ = 22.2
 
 QUICK_HZ = (22.2, 22.6)
 UNSEEN = 1e-9
-"""An excess of a loss of stability below this is that of a hard wall."""
+"""A loss of stability below this excess counts as one at grazing, as at a hard wall."""
 
 
 @study(needs={"kick": 0.005}, quick={"decades": (3, 5), "points": 13})
@@ -112,11 +112,11 @@ def judge_beam(run: Run, beam: Beam) -> None:
         loss = (f"p1 loses its stability at {lost:.2g} by a complex pair of multipliers; a multiplier passes "
                 f"-1 at {end:.2g}, where p1 is unstable already")  # fmt: skip
     run.verdict("smoothing", "differs" if lost >= stable else "in part" if lost > UNSEEN else "agrees",
-                found=f"beam: {loss}", note=f"the square root is smoothed; this lies {below}")  # fmt: skip
+                found=f"beam: {loss}", note=f"the square root is smoothed; the loss is {below}")  # fmt: skip
     if beam.square_root_from is not None and beam.half_excess is not None:
         run.answer("higher_modes", f"The square root holds from an excess of {beam.square_root_from:.1e} on; "
                    f"half of the kick is left at {beam.half_excess:.1e}. Below, the Hertz contact smooths "
-                   f"it: {loss}. This lies {below}.")  # fmt: skip
+                   f"it: {loss}. This loss of stability is {below}.")  # fmt: skip
 
 
 if __name__ == "__main__":

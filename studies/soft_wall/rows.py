@@ -95,14 +95,16 @@ def doubling_near(oscillator: ImpactOscillator, peak: float) -> PeriodicOrbit | 
 
 
 FAINTEST = 1e-6
-"""Speed of a touch, over that of the period doubling, below which no stable p1 is looked for."""
+"""Least speed of a touch, over the speed at the period doubling [1], in the search for a stable p1."""
 
 
 def loss_of_stability(
     oscillator: ImpactOscillator, doubling: PeriodicOrbit
 ) -> tuple[float | None, bool]:
-    """Excess at which p1, from its first touch up to its `doubling`, is stable no more, and whether a complex
-    pair of multipliers is why; None where faint touches find it unstable already, as without damping."""
+    """Excess [1] at which p1 loses its stability below its `doubling`, and whether by a complex pair.
+
+    None if p1 is unstable even at the faintest touch, as without damping.
+    """
     family, orbit = Shooting(oscillator=oscillator, period=1), doubling
 
     def largest(speed: float) -> float:
@@ -112,7 +114,7 @@ def loss_of_stability(
 
     speeds = (doubling.speed * np.geomspace(1.0 - 1e-4, 0.02, 40)).tolist()
     sizes = [largest(speed) for speed in speeds]
-    while sizes[-1] > 0.0:  # a weak touch leaves the free motion, which is stable
+    while sizes[-1] > 0.0:  # with damping the free motion is stable, and so is p1 if its touch is weak enough
         speeds.append(0.5 * speeds[-1])
         sizes.append(largest(speeds[-1]))
         if speeds[-1] < FAINTEST * doubling.speed:

@@ -14,12 +14,12 @@ as stiffness and strain (beam.space). Each shape is brought to omega_1^2 = (2 pi
 thickness, the channel by its flanges. The scene gives length, width, bend radius, sheet material, ball and
 period; its tape plays no part. The rotary inertia of ball and mount counts about every axis.
 
-A flat U is a sheet, which the beam of the scene simplifies. As a Kirchhoff plate that deflects by w it has
+The beam of the scene simplifies the flat U, which is a sheet. As a Kirchhoff plate its deflection w obeys
 
-    int D ((1 - nu) w_ij v_ij + nu lap w lap v) + m (w.. + y..) v dA + M (w.. + y..) v (tip) = F v (tip),
+    int D ((1 - nu) w_ij v_ij + nu lap w lap v) + m (w.. + y..) v dA + M (w.. + y..) v (tip) = F v (tip)
 
-and modes in which the legs twist. Claim: the plate keeps the periods that are born, and moves the ends of
-the orbits. A scene whose spring.kind is not flat_u goes without this part.
+(symbols in `plate`), and in some of its modes the legs twist. Question: does the plate change the born
+periods and the ends of the orbits? This part needs spring.kind = "flat_u" and a harmonic drive.
 
 Run:     python -m studies.spring_shape [--off-line 0.0005] [--channel-sheet 0.25] [--quick]
 Writes:  readings.csv (a row a shape), shapes.npz; of a flat U plate_modes.csv, plate_collisions.csv (a row a
@@ -50,7 +50,7 @@ from studies.spring_shape.rows import MODES, ReadingRow, reading_row
 from studies.spring_shape.shapes import READINGS, TITLES, Reading, Shape, brought_to, kinds_of, shape_of
 
 FINE, COARSE = (2, 3), (1, 2)
-"""Triangles across the seat of the ball and the rim beside it, in the coarsest of three meshes."""
+"""Cells over the radius of the seat and over the rim beside it, in the coarsest of three meshes."""
 
 LARGEST = 0.06
 """Largest step of a drawn mode over the length of the spring."""
@@ -110,7 +110,7 @@ def compare_plate(scene: Scene, run: Run) -> list[OrbitEnds]:
     if factors := [max(row.most, 1.0 / row.least) for row in orbits if row.most and row.least]:
         words.append(f"Beam theory moves the ends of the orbits by a factor of up to {max(factors):.1f}.")
     if doubtful := [row for row in orbits if row.beam and row.point and row.least is None]:
-        words.append(f"It leaves the sign of the end at {doubtful[0].frequency_hz:.2f} Hz open.")
+        words.append(f"At {doubtful[0].frequency_hz:.2f} Hz plates and beam differ in the sign of the end.")
     run.answer("hysteresis", " ".join(words))
     return orbits
 

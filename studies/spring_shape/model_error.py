@@ -1,10 +1,11 @@
 """The error of beam theory: the flat U of the scene as a plate beside its beam, by modes and by orbits.
 
 The plate replaces the beam in the contact problem. It carries the ball on a point of the sheet, or on a rigid
-seat of the ball's radius; the real mount was not measured. One factor on all frequencies, as from Young's
-moduli, gives mode 1 the frequency of the beam. The beam's decay rates at the same frequencies are taken over.
-Gap, drive and contact law stay. A "refitted" plate has a ball whose first collision has the beam's kick.
-Modes are extrapolated from two meshes, one with elements of half the length; their errors fall as h^2.
+seat of the ball's radius; the real mount was not measured. All frequencies of a plate are multiplied by one
+factor, so that mode 1 has the frequency of the beam's. Its decay rates are interpolated in the frequency from
+the beam's. Gap, drive and contact law stay. A "refitted" plate has another mass of the ball, chosen so that
+its first collision has the same kick as the beam's. Each mesh of three has elements half as long as the one
+before. The modes are extrapolated from the two finest, as their errors fall as h^2.
 """
 
 from __future__ import annotations
@@ -26,13 +27,13 @@ from studies.spring_shape.plate import PlateModes, plate_modes
 from studies.spring_shape.plate_mesh import half_u
 
 MODES, LISTED = 30, 10
-"""Symmetric modes of a plate, after which the kick of a collision has converged; those in the table."""
+"""Symmetric modes computed for a plate, with which the kick has converged; modes listed in the table."""
 
 WIDEST_SEAT = 0.8
 """Radius of the seat over half of the width, at most: the rim beside it needs room."""
 
 REFITS = (-0.7, 2.0)
-"""Mass added to the ball over its mass, where the kick of the beam is looked for."""
+"""Bounds of the search for the refitted ball: added mass over the mass of the ball."""
 
 PLATES = {"point": "ball on a point", "seat": "ball on a rigid seat",
           "point_refitted": "on a point, refitted", "seat_refitted": "on a seat, refitted"}  # fmt: skip
@@ -40,10 +41,12 @@ PLATES = {"point": "ball on a point", "seat": "ball on a rigid seat",
 
 @dataclass(frozen=True, kw_only=True)
 class PlateMode:
-    """A symmetric mode, ball on a point or on a seat; None: the beam has no mode whose nearest it is.
+    """A symmetric mode of the plate, with the ball on a point and on a seat, beside a mode of the beam.
 
-    `difference`: beam over plate - 1. `mesh_change`: the larger one of the two extrapolated frequencies, from
-    the coarser two of three meshes over the finer two - 1.
+    The columns of the beam are None if no mode of the beam has this mode as its nearest in frequency. Tip
+    values are in kg^(-1/2), participations in kg^(1/2). `difference` is beam_hz/point_hz - 1 [1].
+    `mesh_change` [1] is the relative difference of two extrapolated frequencies: one from the two coarser
+    meshes, one from the two finer meshes. The larger of point and seat is given.
     """
 
     number: int
@@ -74,9 +77,11 @@ class FirstCollision:
 
 @dataclass(frozen=True, kw_only=True)
 class OrbitEnds:
-    """The orbit just above grazing, and the excess at which it ends on the way down, by each spring.
+    """The orbit just above grazing, and the excess [1] at which it ends on the way down, for each spring.
 
-    `least`, `most`: end of a plate over that of the beam; None where one has the other sign.
+    `period` is the period of the beam's orbit; `same_period` says whether all springs have it. `least` and
+    `most` are the extremes of plate end over beam end. They are None if a plate's end has the other sign, or
+    if no plate's end is known.
     """
 
     frequency_hz: float
@@ -93,7 +98,7 @@ class OrbitEnds:
 
 @dataclass(frozen=True, kw_only=True)
 class Spring:
-    """Beam or plate as an impact sees it, with the mass of its ball [kg]."""
+    """The modal model of the beam or of a plate, with the mass of its ball [kg]."""
 
     name: str
     mass: float
@@ -107,7 +112,10 @@ class Spring:
 
 
 def plates_of(scene: Scene, cells: tuple[int, int]) -> dict[str, tuple[PlateModes, PlateModes]]:
-    """Modes with the ball on a point and a seat, from the finer and from the coarser two of three meshes."""
+    """Modes by name of the mount, "point" and "seat": extrapolated from the finer and the coarser two meshes.
+
+    `cells` are the numbers of cells across seat and rim in the coarsest of the three meshes (`half_u`).
+    """
     keys, (bare, taped), found = scene.spring, sections_of(scene), {}
     leg, width, covered = keys.leg_length_m, keys.width_m, keys.tape_coverage * keys.leg_length_m
     seat = min(scene.tip.ball_radius_m, 0.5 * WIDEST_SEAT * width)
@@ -122,7 +130,7 @@ def plates_of(scene: Scene, cells: tuple[int, int]) -> dict[str, tuple[PlateMode
 
 
 def mode_rows(plates: Mapping[str, tuple[PlateModes, PlateModes]], beam: ModalModel) -> list[PlateMode]:
-    """The first modes of the plate, each beside the mode of the beam that is nearest to it."""
+    """The first `LISTED` modes of the plate; each mode of the beam is beside the nearest in frequency."""
     (point, _), (seat, _) = plates.values()
     change = np.max([np.abs(rough.omega / fine.omega - 1.0) for fine, rough in plates.values()], axis=0)
     nearest = {int(np.argmin(np.abs(point.omega - omega))): k for k, omega in enumerate(beam.omega)}
@@ -143,7 +151,7 @@ def mode_rows(plates: Mapping[str, tuple[PlateModes, PlateModes]], beam: ModalMo
 def springs_of(
     scene: Scene, run: Run, plates: Mapping[str, tuple[PlateModes, PlateModes]], beam: ModalModel
 ) -> list[Spring]:
-    """The beam and the plates, in the full form with refitted ones."""
+    """The beam, the two plates and, without --quick, the two refitted plates."""
     own = scene.tip.mass_kg
     found = [Spring(name="beam", mass=own, model=beam)]
     kick = found[0].collision(scene).kick
@@ -166,7 +174,7 @@ def springs_of(
         if excess(low) < 0.0 < excess(high):
             found.append(plate(f"{name}_refitted", modes, float(brentq(excess, low, high, xtol=1e-9 * own))))
         else:
-            run.failed(f"plate, {PLATES[name]}", "no ball gives its first collision the kick of the beam's")
+            run.failed(f"plate, {PLATES[name]}", "no mass of the ball gives the kick of the beam")
     return found
 
 

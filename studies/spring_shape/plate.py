@@ -5,14 +5,15 @@ at the tip, and a force F [N] acts there. For all test functions v
 
     int D ((1 - nu) w_ij v_ij + nu lap w lap v) + m (w.. + y..) v dA + M (w.. + y..) v (tip) = F v (tip),
 
-with w = 0 and dw/dn = 0 on the clamped edges. A section has D (1 + nu) and D (1 - nu) [N m], which are the
-bending stiffnesses per width of its plies with the moduli E/(1 - nu) and E/(1 + nu), and m [kg/m^2].
+with w = 0 and dw/dn = 0 on the clamped edges. D [N m] is the bending stiffness of the sheet, nu [1] Poisson's
+ratio, m [kg/m^2] the mass per area. D (1 + nu) and D (1 - nu) are the bending stiffness per width of the
+section if each ply has the modulus E/(1 - nu) or E/(1 + nu).
 
 Morley's element is quadratic on a triangle, with w at the vertices and dw/dn at the middles of the edges as
 unknowns (L. S. D. Morley, Aeronaut. Q. 19 (1968) 149). It does not conform; frequencies converge as h^2.
 
-The ball is held by a point, or by a round seat that is rigid: w = a + c x there, x along the legs. The sheet
-is free to dimple under a point. The rotary inertia of the ball counts with c.
+The ball is fixed to a point of the sheet or to a rigid round seat, where w = a + c x and x runs along the
+legs. The sheet can dimple under a point. The rotary inertia of the ball acts on c; it is ignored at a point.
 """
 
 from __future__ import annotations
@@ -34,9 +35,9 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class PlateModes:
-    """The lowest modes, mass-normalised with phi >= 0, each array of shape (n_modes,).
+    """The lowest modes with unit modal mass and phi >= 0, each array of shape (n_modes,).
 
-    omega [rad/s], phi [kg^(-1/2)] at the ball, participation [kg^(1/2)].
+    omega [rad/s], phi [kg^(-1/2)] at the ball, participation [kg^(1/2)] in a motion of the base along y.
     """
 
     omega: Array
@@ -44,7 +45,7 @@ class PlateModes:
     participation: Array
 
     def extrapolated(self, coarser: PlateModes) -> PlateModes:
-        """The limit of fine meshes, from these modes and those on elements twice as long."""
+        """Extrapolation to h = 0 by h^2, from these modes and `coarser` ones on elements twice as long."""
         pairs = [(fine, vars(coarser)[name]) for name, fine in vars(self).items()]
         return PlateModes(**dict(zip(vars(self), (a + (a - b) / 3.0 for a, b in pairs), strict=True)))
 
@@ -79,10 +80,27 @@ def bending(u, v, w):  # type: ignore[no-untyped-def]
 def plate_modes(
     mesh: sk.MeshTri, bare: StripSection, taped: StripSection, tip: Tip, count: int, *, seated: bool
 ) -> PlateModes:
-    """The `count` lowest modes; where the mesh is half of a plate, the symmetric ones of the whole.
+    """Return the `count` lowest modes of a plate.
 
-    The mesh names the edges "clamped" and "symmetry", the elements "taped" and "seat", and has its ball at
-    the origin.
+    Parameters
+    ----------
+    mesh : MeshTri
+        Triangles in the plane of the sheet [m], the ball at the origin. Boundaries "clamped" and "symmetry"
+        and subdomains "taped" and "seat" are named. If "symmetry" has edges, the mesh is half of the plate,
+        and the symmetric modes of the whole plate are computed.
+    bare, taped : StripSection
+        Sections outside and inside the subdomain "taped".
+    tip : Tip
+        Mass of the ball [kg]; its rotary inertia [kg m^2] counts only with a seat.
+    count : int
+        Number of modes.
+    seated : bool
+        True: the ball is on the rigid subdomain "seat"; False: on a point.
+
+    Returns
+    -------
+    PlateModes
+        Arrays of shape (count,), in rising order of frequency.
     """
     basis = sk.Basis(mesh, sk.ElementTriMorley(), intorder=4)
     halves = 2.0 if mesh.boundaries["symmetry"].size else 1.0

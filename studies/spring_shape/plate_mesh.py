@@ -1,14 +1,15 @@
 """Triangles on half of a flat U, along its centreline.
 
 A grid has lines of constant s (along the centreline, from the clamp) and t (across, outwards) [m]. It covers
-one leg and half of the bend. With the angle a = (s - L)/r on the bend, a = 0 on the leg, (s, t) goes to
+one leg, of length L [m], and half of the bend, of radius r [m]. The angle is a = 0 on the leg and
+a = (s - L)/r on the bend. The grid point (s, t) is mapped to
 
     x = min(s, L) - L - r + (r + t) sin a,      z = (r + t) cos a,
 
 so that the ball is at the origin and z = 0 is the line of symmetry. Squares of the grid about the ball become
-circles, up to the edge of its seat; beyond the seat they turn back into the grid within half a width. Each
-cell is cut in two triangles by the diagonal that points to the ball. The lines are closer next to the clamp,
-which holds the sheet against curving across: there s rises as a square.
+circles up to the edge of the seat. Beyond it the circles blend into the grid, up to the edge of the sheet. A
+diagonal that points to the ball cuts each cell in two triangles. Next to the clamp, which keeps the sheet
+from curving across its width, s grows as the square of the line number.
 """
 
 from __future__ import annotations
@@ -26,9 +27,22 @@ def half_u(
     *, leg: float, radius: float, width: float, seat: float, covered: float, cells: tuple[int, int],
     times: int,
 ) -> sk.MeshTri:  # fmt: skip
-    """The half z >= 0 of the U with tape up to s = `covered` [m].
+    """The half z >= 0 of the U.
 
-    `cells` lie across the radius of the seat and across the rim beside it; each is cut in `times`.
+    Parameters
+    ----------
+    leg, radius, width, seat, covered : float
+        Length of a leg, radius of the bend's centreline, width of the sheet, radius of the seat, length of
+        the tape from the clamp [m].
+    cells : (int, int)
+        Cells over the radius of the seat, and from the seat to the edge of the sheet.
+    times : int
+        Number of parts into which each of these cells is divided along each side.
+
+    Returns
+    -------
+    MeshTri
+        With boundaries "clamped" and "symmetry" and subdomains "taped" and "seat".
     """
     end, half = leg + 0.5 * math.pi * radius, 0.5 * width
     longest, near = LONGEST * half / sum(cells), min(width, 0.5 * covered)

@@ -1,11 +1,11 @@
-"""Rows of the table of readings: what each does.
+"""Rows of the table of the readings of "U shaped": frequencies, tip values and compliance of each shape.
 
 With ball and contact off the plane of symmetry by d [m], a twist mode that turns the ball by theta has
 
     phi = d theta + what a bending mode close by in frequency lends,
 
-computed with the ball where it is, not to first order. What a slow force at the contact sees of a mode is its
-compliance phi^2/omega^2 [m/N].
+computed with the ball where it is, not to first order. The response of a mode to a slow force at the contact
+is its compliance phi^2/omega^2 [m/N].
 """
 
 from __future__ import annotations

@@ -48,9 +48,9 @@ class Transition:
 class Row:
     """One frequency: periods (0: did not settle), ends on the way down [1], the letter's period.
 
-    `end_speed` is the approach velocity [m/s] of the beam's orbit at its end, which says which of several
-    orbits of that period ends there. `exact`: the fold in closed form; of the two parameters from the kicks
-    that the beam's collisions give mode 1, without a simulation.
+    `end_speed_beam` is the approach velocity [m/s] of the beam's orbit at its end. It identifies the orbit if
+    several of that period exist. `exact_*` is the excess [1] of the fold in closed form; for the two
+    parameters it follows from the kicks of mode 1 in the beam's collisions, without a simulation.
     """
 
     frequency_hz: float

@@ -1,4 +1,4 @@
-"""Machine code: where it is kept, what is removed, and that the first user hears of it."""
+"""The cache of machine code: its folder, the removal of old folders, and the message on compilation."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ CALL = "from contact.flight.elementary import square_root; square_root(2.0, 0.0)
 
 
 def test_folders_of_older_sources_are_removed_when_nobody_uses_them(tmp_path):
-    """The first process of a new source clears up; a folder used within the hour may have a process in it."""
+    """The first process with a new source removes old folders, but keeps one used within the last hour."""
     (tmp_path / "source.py").write_text("# a kernel")
     old, used = tmp_path / "__pycache__" / "kernels-old", tmp_path / "__pycache__" / "kernels-used"
     for folder in (old, used):

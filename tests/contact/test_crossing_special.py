@@ -276,7 +276,7 @@ def test_tip_on_the_wall_within_rounding_is_told_by_its_velocity(speed):
 @pytest.mark.parametrize("mode", [0, 1, 2])
 @pytest.mark.parametrize("part", ["displacement", "velocity"])
 def test_the_bounds_of_rounding_follow_the_mode_that_moves(mode, part):
-    """One mode carries the tip, the others have their node there: half a unit in the last place at least."""
+    """Only one mode moves the tip; each bound lies between 0.5 and 100 EPS times that mode's amplitude."""
     phi = np.full(3, 1e-9)
     phi[mode] = 2.0
     omega, rates = [100.0, 200.0, 400.0], [1.0, 1.0, 1.0]

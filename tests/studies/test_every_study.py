@@ -155,7 +155,7 @@ def test_where_nothing_is_found_a_study_says_so(monkeypatch, tmp_path, letter_sc
 
 
 def test_a_p1_unstable_down_to_faint_touches_loses_its_stability_there(monkeypatch):
-    """Unstable at 2 % of the doubling's speed, where the search begins, and stable below 0.3 %."""
+    """p1 is unstable at 2 % of the doubling's speed, where the first speeds end, and stable below 0.3 %."""
 
     class Orbits:
         def __init__(self, **_):

@@ -1,4 +1,4 @@
-"""The flat U as a plate: closed forms of plates and strips, an independent program, and what impacts see."""
+"""The flat U as a plate against closed forms, strip theory and an independent program; its modal models."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def test_stiffnesses_per_area_are_those_of_a_plate():
 
 
 def test_a_square_cantilever_against_published_values():
-    """omega a^2 sqrt(m/D) for nu = 0.3: 3.471, 8.507, 21.28, 27.20, 30.96, to which errors fall as h^2."""
+    """omega a^2 sqrt(m/D) for nu = 0.3, extrapolated; errors against it fall at least as h^1.3."""
     sheet = replace(SHEET, material=replace(BRASS, poissons_ratio=0.3))
     found = []
     for n in (8, 16, 32):
@@ -59,7 +59,7 @@ def test_a_square_cantilever_against_published_values():
 
 @pytest.mark.parametrize("seated", [False, True])
 def test_a_heavy_ball_on_a_clamped_disc_against_the_closed_form(seated):
-    """C = (a^2 - b^2 - 4 a^2 b^2 ln(a/b)^2/(a^2 - b^2))/(16 pi D), b that of the seat; half of a disc."""
+    """Compliance C = (a^2 - b^2 - 4 a^2 b^2 ln(a/b)^2/(a^2 - b^2))/(16 pi D), radii a of disc, b of seat."""
     a, b, found = 0.1, 0.02, []
     for n in (10, 20, 40):
         right = sk.MeshTri.init_tensor(np.arange(n + 1.0), np.arange(n + 1.0))
@@ -82,8 +82,8 @@ def test_a_heavy_ball_on_a_clamped_disc_against_the_closed_form(seated):
     assert np.all(errors[1:3] < 0.4 * errors[:2]) and errors[3] < 0.2 * errors[2]
 
 
-def test_a_narrow_u_that_does_not_contract_is_that_of_strip_theory():
-    """The modes in which the legs twist are there too."""
+def test_a_narrow_u_without_poissons_effect_against_strip_theory():
+    """Poisson's ratio is 0; the modes include one in which the legs twist."""
     material = replace(BRASS, poissons_ratio=0.0)
     shape = Shape(reading="side_by_side", material=material, length=0.13, width=3e-3, bend_radius=9e-3,
                   thickness=2e-4, tip=Tip(mass=1e-4))  # fmt: skip
