@@ -142,9 +142,9 @@ def test_a_docstring_says_command_and_outputs_and_the_table_the_run_time(name):
 
 
 def test_where_nothing_is_found_a_study_says_so(monkeypatch, tmp_path, letter_scene, capsys):
-    """No orbit outlives its errors, no fold in the map, and a response that does not reach its frequency."""
+    """No orbit within its errors, no fold in the map, and a response that does not reach its frequency."""
     monkeypatch.setattr(information, "letters_orbits", lambda of: [])
-    assert "no orbit of the plane outlives its errors" in information.answer(None, [], information.Plan())
+    assert "no orbit exists at one standard error" in information.answer(None, [], information.Plan())
     run = Run(study="hysteresis", folder=tmp_path, scene=letter_scene, command="")
     judge(run, [], {}, Causes(at="", **{name: None if "map" in name else 1.0 for name in CAUSES}))
     assert "nothing to compare" in capsys.readouterr().err and not run.close("done", {})["verdicts"]
