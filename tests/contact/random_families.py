@@ -315,7 +315,8 @@ def judged(
                 yield f"{name}: {event.kind}", f"at {p:.9g} {wrong}" if wrong else ""
         places = answer.parameters if name == "path" else [orbit.excess for orbit in found]
         for (a, p), (b, q) in [*pairwise(zip(found, places, strict=True))][:: 1 + len(found) // 60]:
-            slow = min(a.approach.min(), b.approach.min()) < math.sqrt(PLACE) * a.oscillator.unit_speed
+            fast = max(a.approach.max(), a.oscillator.unit_speed)
+            slow = min(a.approach.min(), b.approach.min()) < math.sqrt(PLACE) * fast
             if a.impacts == b.impacts and not slow:  # next to a graze the judge's differences fail
                 same = Curve(path, a, unit).joins(a, p, b, q)
                 yield f"{name}: neighbours", "" if same else f"at {p:.9g} and {q:.9g} lie on two curves"
