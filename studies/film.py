@@ -55,6 +55,9 @@ PATIENCE = 120.0
 WIDTH, HEIGHT = 880, 400
 """Of a picture, in points; both even, as video wants them."""
 
+MOST_FRAMES = 10_000
+"""Of a film: eight minutes at 20 a second, and half a gigabyte of drawn points."""
+
 ROWS = 120
 """Rows of cells along the spring, at least: a bend looks round."""
 

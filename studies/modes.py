@@ -25,7 +25,7 @@ import numpy as np
 
 from beam import Modes, write_mode_motion, write_modes
 from studies import letter
-from studies.film import Moment, Scenery, stage_of, write_gif
+from studies.film import MOST_FRAMES, Moment, Scenery, stage_of, write_gif
 from studies.run import Run, study
 from studies.scene import Scene, SceneError, damping_of, free_period, model_of, modes_of
 
@@ -65,6 +65,8 @@ def modes(
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
     solved = None if scene.spring.kind == "modal_data" else modes_of(scene)
+    if frames % 2 or frames > MOST_FRAMES:
+        raise SceneError(f"--frames must be an even number, at most {MOST_FRAMES}, not {frames}")
     rows = rows_of(scene, solved)
     if mode > len(rows):
         raise SceneError(f"--mode must be at most {len(rows)}, the modes of this scene, not {mode}")

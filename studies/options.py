@@ -8,6 +8,7 @@ import contextlib
 import inspect
 import math
 import os
+import re
 import sys
 import types
 import typing
@@ -83,8 +84,8 @@ def parser_of(command: str, account: str) -> Parser:
     cores = os.cpu_count() or 1
     runs("--quick", action="store_true", help="a small form of the study, for a first look")
     runs("--workers", type=_count, default=cores, metavar="N", help="threads or processes (default: cores)")
-    runs("--executor", default="", metavar="URL", help="threads (default), processes or dask://host:port")
-    runs("--out", default="results", metavar="DIR", help="folder in which the study makes its own")
+    runs("--executor", type=_executor, default="", metavar="URL", help="threads (default), processes, dask://HOST")
+    runs("--out", type=_folder, default="results", metavar="DIR", help="folder of all results")
     return parser
 
 
@@ -147,6 +148,20 @@ def _count(text: str) -> int:
     if not (text.isascii() and text.isdigit() and len(text) < 20 and 1 <= int(text) <= MOST_CELLS):
         raise argparse.ArgumentTypeError(f"must be a whole number from 1 to {MOST_CELLS}, not {text[:40]!r}")
     return int(text)
+
+
+def _executor(text: str) -> str:
+    """Threads, processes or the address of a scheduler."""
+    if text not in ("", "threads", "processes") and not re.fullmatch(r"dask://.+", text):
+        raise argparse.ArgumentTypeError(f"must be threads, processes or dask://host:port, not {text!r}")
+    return text
+
+
+def _folder(text: str) -> str:
+    """A folder that has a name."""
+    if not text.strip():
+        raise argparse.ArgumentTypeError(f"must be a folder, not {text!r}")
+    return text
 
 
 def _finite(text: str) -> float:

@@ -105,11 +105,9 @@ def unknown(name: str) -> str:
 
 
 def wrong_name(arguments: Sequence[str]) -> str | None:
-    """The NAME in `-m studies.NAME` among the arguments of the interpreter, if there is no such module."""
+    """The NAME in `-m studies.NAME` among the arguments of the interpreter, if there is no such program."""
     found = re.search(r"(?:^| )-m ?studies\.(\w+)", " ".join(arguments))
-    if found is None or (FOLDER / found[1]).is_dir() or (FOLDER / f"{found[1]}.py").exists():
-        return None
-    return found[1]
+    return None if found is None or found[1] in names() else found[1]
 
 
 def perform(study: str, command: str, arguments: Sequence[str], work: Callable[[TextIO], int]) -> int:

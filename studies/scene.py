@@ -88,11 +88,16 @@ def read_scene(name: str | Path = "letter", overrides: Iterable[str] = ()) -> Sc
     return scene
 
 
+SMALLEST_GAP = 1e-12
+"""Gap in front of which a drive can graze [m]: a hundredth of an atom, and its square is finite."""
+
+
 def check(scene: Scene) -> None:
     """SceneError unless everything but the modes can be built from the scene."""
     spring, damping = scene.spring, scene.damping
-    if scene.drive.kind == "harmonic" and scene.stop.gap_m == 0.0:
-        raise SceneError("stop.gap_m must be greater than 0 (unit m) when there is a drive, not 0.0")
+    if scene.drive.kind == "harmonic" and not scene.stop.gap_m >= SMALLEST_GAP:
+        gap, least = scene.stop.gap_m, SMALLEST_GAP
+        raise SceneError(f"stop.gap_m must be at least {least:g} (unit m) when there is a drive, not {gap:g}")
     scene.make(Stop, {"gap": "stop.gap_m"}, law=contact_law_of(scene))
     for frequency in scene.drive.frequencies_hz:
         scene.make(HarmonicDrive, {"frequency": "drive.frequencies_hz"}, frequency=frequency)

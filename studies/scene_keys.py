@@ -102,12 +102,15 @@ def key(
     low: float = -math.inf, high: float = math.inf, choices: tuple[str, ...] = (),
 ) -> T:  # fmt: skip
     """The field of a section for one key."""
-    known = Key(default, unit, provenance, meaning, low, high, choices)
+    known = Key(default, unit, provenance, meaning, low, min(high, HIGHEST.get(unit, math.inf)), choices)
     return field(default=default, metadata={"key": known})
 
 
+HIGHEST = {"m": 1e3, "kg": 1e6, "kg/m^3": 1e6, "kg m^2": 1e6, "Pa": 1e15, "s": 1e6, "Hz": 1e7, "1/s": 1e8,
+           "N/m": 1e15, "N s/m": 1e12}  # fmt: skip
+"""Unit -> what a key with this unit must not exceed: far beyond any spring, and squares stay finite."""
+
 SUPPORTS = ("clamped", "pinned", "guided", "free")
-LONGEST = 1e3  # m
 MOST_ELEMENTS = 2000  # of a leg or a bend: a slip of the pen must not fill the memory
 
 
@@ -118,15 +121,12 @@ class SpringKeys:
     kind: str = key("flat_u", "", ASSUMED,
         "shape of the spring, or modal_data for modes that were measured",
         choices=("flat_u", "folded_u", "cantilever", "straight_strip", "modal_data"))
-    leg_length_m: float = key(0.13, "m", LETTER, "length of one leg, or of a straight strip",
-        low=0.0, high=LONGEST)
-    bend_radius_m: float = key(0.009, "m", ASSUMED, "radius of the bend of a U, to its middle line",
-        low=0.0, high=LONGEST)
-    width_m: float = key(0.012, "m", ASSUMED, "width of the strip, or of one leg of a flat_u",
-        high=LONGEST)
+    leg_length_m: float = key(0.13, "m", LETTER, "length of one leg, or of a straight strip", low=0.0)
+    bend_radius_m: float = key(0.009, "m", ASSUMED, "radius of the bend of a U, to its middle line", low=0.0)
+    width_m: float = key(0.012, "m", ASSUMED, "width of the strip, or of one leg of a flat_u")
     thickness_m: float = key(0.0011760560469233, "m", CALIBRATED,
-        "thickness of the sheet, from the free period")
-    young_modulus_pa: float = key(105e9, "Pa", ASSUMED, "Young's modulus of the sheet (brass)")
+        "thickness of the sheet, from the free period", low=1e-9)
+    young_modulus_pa: float = key(105e9, "Pa", ASSUMED, "Young's modulus of the sheet (brass)", low=1.0)
     poisson_ratio: float = key(0.34, "1", ASSUMED, "Poisson's ratio of the sheet (brass)")
     density_kg_m3: float = key(8500.0, "kg/m^3", ASSUMED, "density of the sheet (brass)")
     loss_factor: float = key(1e-3, "1", ASSUMED, "loss factor of the sheet (brass)")
@@ -228,7 +228,7 @@ class ModalDataKeys:
 class SingleModeKeys:
     """Eq. (1) of the letter."""
 
-    free_period_s: float = key(0.0408, "s", LETTER, "damped period of the free motion")
+    free_period_s: float = key(0.0408, "s", LETTER, "damped period of the free motion", low=1e-6)
     decay_rate_per_s: float = key(3.56, "1/s", LETTER, "mu (printed with Fig. 5)")
     restitution: float = key(0.1, "1", LETTER, "tau, about 0.1")
 
@@ -248,7 +248,7 @@ class StopKeys:
     """The plate, fixed to the base."""
 
     gap_m: float = key(0.011883925614219, "m", CALIBRATED,
-        "from the ball at rest to the plate; 2 mm of drive at grazing")
+        "from the ball at rest to the plate; 2 mm of drive at grazing", low=0.0)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -63,6 +63,8 @@ def attractors(
     if not -1.0 < basin_excess < 0.0:
         raise InvalidValue(f"basin-excess is {basin_excess}; it must lie above -1 and below grazing, 0")
     require_cells("side", side, side**2)
+    if min(side, points) < 2:
+        raise InvalidValue(f"side is {side} and points {points}; each must be 2 or more")
     f = corresponding(harmonic(scene), FREQUENCY) if frequency is None else frequency
     maps = {}
     if model != "beam":

@@ -28,6 +28,7 @@ from typing import Annotated
 
 import numpy as np
 
+from beam import InvalidValue
 from contact import maximal_period
 from studies import letter
 from studies.breakdown.beam import (
@@ -42,6 +43,7 @@ from studies.breakdown.beam import (
     tuned,
 )
 from studies.breakdown.scans import CHAOS_AT, Diagram, Island, Outcome, island, periods, scanned
+from studies.options import require_cells
 from studies.run import Run, study
 from studies.scene import Scene, model_of, nordmark_at
 
@@ -65,6 +67,9 @@ def breakdown(
     cycles: Annotated[int, "most drive periods at an amplitude"] = 2000,
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
+    require_cells("points", points, 5 * points)
+    if points < 2:
+        raise InvalidValue(f"points is {points}; it must be 2 or more")
     scene = fig_5(scene)
     tau, nordmark = scene.single_mode.restitution, nordmark_at(scene, FREQUENCY_HZ)
     taus = sorted({*(QUICK_RESTITUTIONS if run.quick else RESTITUTIONS), tau})

@@ -144,6 +144,10 @@ def identify(
     harmonic(scene)
     if noise_um is not None and not 0.0 < noise_um < math.inf:
         raise InvalidValue(f"noise_um is {noise_um} um; it must be finite and above zero")
+    if drive is not None and (min(drive) <= 0.0 or record is None):
+        raise InvalidValue(f"drive is {drive[0]:g} Hz, {drive[1]:g} mm; it needs a record, and both above 0")
+    if delay_ms is not None and description != "two_parameters" and record is not None:
+        raise InvalidValue(f"delay_ms is {delay_ms:g} ms; only --description two_parameters has a delay")
     noise = None if noise_um is None else 1e-6 * noise_um
     delay = None if delay_ms is None else 1e-3 * delay_ms
     if description == "beam":

@@ -106,12 +106,14 @@ def read_record(path: Path) -> Record:
         name, equals, value = (part.strip() for part in line.lstrip("#").partition("="))
         if line.startswith("#") and equals and name in NOTES:
             notes[name] = _number(value, f"the note {name}", path)
+            if notes[name] <= 0.0:
+                raise InvalidValue(f"the note {name} of {path} is {notes[name]:g}; it must be above zero")
     kept = [line for line in lines if line and not line.startswith("#")]
     heading = tuple(word.strip().lower() for word in kept[0].split(",")) if kept else ()
     if heading not in HEADINGS:
         known = "; ".join(",".join(names) for names in HEADINGS)
-        found = ",".join(heading)[:60] or "nothing"
-        raise InvalidValue(f"the record {path} has the heading {found!r}; it must be one of {known}")
+        found = f"has the heading {','.join(heading)[:60]!r}" if kept else "is empty"
+        raise InvalidValue(f"the record {path} {found}; its heading must be one of {known}")
     cells = [line.split(",") for line in kept[1:]]
     for i, row in enumerate(cells, 1):
         if len(row) != len(heading):

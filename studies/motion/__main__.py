@@ -17,12 +17,13 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from beam import write_frames
+from beam import InvalidValue, write_frames
 from contact import StroboscopicMap
 from contact.orbits import born
 from studies import letter
 from studies.film import (
     DRIVE,
+    MOST_FRAMES,
     WIDTH,
     Moment,
     Picture,
@@ -74,6 +75,8 @@ def motion(
     seen_from: Annotated[Literal["laboratory", "base"], "where the viewer stands"] = "laboratory",
 ) -> Mapping[str, object]:
     """Compute, store, draw."""
+    if frames > MOST_FRAMES:
+        raise InvalidValue(f"frames is {frames}; a film has at most {MOST_FRAMES}")
     drive_hz = corresponding(harmonic(scene), FREQUENCY) if frequency is None else frequency
     modes, model = modes_of(scene), model_of(scene)
     require_drive_below(scene, model, drive_hz)

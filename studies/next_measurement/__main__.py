@@ -45,9 +45,8 @@ def next_measurement(
 ) -> Mapping[str, object]:  # fmt: skip
     """Compute, tabulate, draw and say."""
     harmonic(scene)
-    for name, value in {"strobes": strobes, "noise_um": noise_um, "thin": thin}.items():
-        if not value > 0:
-            raise InvalidValue(f"{name} is {value}; it must be above zero")
+    if not noise_um > 0.0:
+        raise InvalidValue(f"noise_um is {noise_um:g} um; it must be above zero")
     delay = None if delay_ms is None else 1e-3 * delay_ms
     of = partial(described, scene, "two_parameters", delay)
     require_names(wanted, of(corresponding(scene, FREQUENCY_HZ)), "wanted")

@@ -151,7 +151,7 @@ def wave(rows, step=5e-4, height=0.01):
 
 
 REFUSED = {
-    "": "heading 'nothing'",
+    "": "is empty; its heading must be",
     "hello": "heading 'hello'",
     "x_m\n1\nnan\n": "row 2 .* 'nan'",
     "x_m\n1\nabc\n": "row 2 .* 'abc'",
