@@ -83,7 +83,8 @@ def breakdown(
     cycles = letter.SETTLE_CYCLES if full else cycles
     found_by = partial(scanned, points=points, cycles=cycles, early=not full)
     scans = run.map(found_by, jobs, "scans")
-    scans[0][1]["island"] = islands[taus.index(tau)][1]
+    if (own := islands[taus.index(tau)][1]).excess.size:
+        scans[0][1]["island"] = own
     outcomes = [outcome for outcome, _ in scans]
     # as in the letter: p3 in the downward scan; otherwise the first candidate
     candidates = [*(o for o in outcomes[2:] if o.p3_last is not None), *outcomes[2:]]

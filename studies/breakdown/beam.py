@@ -111,6 +111,10 @@ def fold_of_p3(strobed: StroboscopicMap) -> float | None:
 
 
 def nearest_first(springs: Iterable[Spring], mass: float) -> list[Spring]:
-    """Sorted by what they ask for: damping as the strips', then a mass near to `mass` [kg]."""
-    return sorted(springs, key=lambda one: (abs(math.log(one.higher_damping)),
-                                            abs(math.log(one.tip_mass_kg / mass))))  # fmt: skip
+    """Sorted by their distance from the scene: damping as the strips', then a mass near to `mass` [kg]."""
+
+    def distance(one: Spring) -> tuple[float, float]:
+        ratio = one.tip_mass_kg / mass if mass > 0.0 else 1.0 + one.tip_mass_kg
+        return abs(math.log(one.higher_damping)), abs(math.log(ratio))
+
+    return sorted(springs, key=distance)

@@ -110,4 +110,5 @@ def island(scene: Scene, restitution: float, *, step: float = ISLAND_STEP) -> tu
     kept = slice(0, int(free[0]) if free.size else None)
     columns = ("excess", "points", "period", "impacts", "cycles")
     diagram = replace(whole, **{name: getattr(whole, name)[kept] for name in columns})
-    return Island(restitution=restitution, fold_p3=fold.excess, end=float(diagram.excess[-1])), diagram
+    end = float(diagram.excess[-1]) if diagram.excess.size else fold.excess  # lost with the first step
+    return Island(restitution=restitution, fold_p3=fold.excess, end=end), diagram
