@@ -153,7 +153,7 @@ CONTACT = (
        kind=dict(oscillator=None, state=[0.0, 0.0], times="now", method=3),
        value=dict(periods=each(0, -2, 1.5, told(None, "duration and periods")),
                   oscillator=told(RESTING, "gap is 0.0 m"),
-                  times=told([0.02, 0.01], "times must be"), method="magic",
+                  times=told([0.02, 0.01], "times is [0.02, 0.01] s"), method="magic",
                   state=each(told(contact.State.rest(3), "displacement of the state has 3 modes"),
                              told(at(1.0), "m behind the stop"), told(at(0.0, Regime.SUSTAINED), "regime"),
                              told(at(GAP, Regime.CONTACT), "regime"),

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from beam import InvalidValue
 from studies.identify import coverage as truth
 from studies.identify import gradients
 from studies.record import Run
@@ -38,7 +39,7 @@ def test_errors_stated_wrong_are_seen(stated, agrees, trials, run, letter_scene,
 
     def fit(record, start, names):
         if random.random() < 0.05:
-            raise ValueError("refused")
+            raise InvalidValue("refused")
         at, error = np.array([random.normal(5.0, 0.1)]), np.array([0.1 * stated])
         ends = at[:, None] + 1.645 * np.array([-error, error]).T
         return SimpleNamespace(estimate=at, errors=error, intervals=lambda: ends, too_small=False)
