@@ -99,7 +99,8 @@ def _run(
     if not whole:
         last, clock_end = (x.item() for x in split_time(start.time + length, period))
     wanted = require_array("times", () if times is None else times, "s", dimensions=1, words="a rising array")
-    require(bool(np.all(np.diff(wanted) >= 0)), f"times is {shown(wanted.tolist())} s; it must be a rising array")
+    if np.any(np.diff(wanted) < 0.0):
+        raise InvalidValue(f"times is {shown(wanted.tolist())} s; it must be a rising array")
     stop_time = start.time + length
     if wanted.size and (wanted[0] < start.time - 1e-12 * length or wanted[-1] > stop_time + 1e-12 * length):
         raise InvalidValue(
