@@ -49,7 +49,7 @@ $(READY): pyproject.toml constraints.txt
 	@echo "installing into .venv (a few minutes the first time)"
 	@$(PYTHON) -m venv .venv
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[test]'
-	@echo "compiling the kernels (about half a minute, once)"
+	@echo "compiling the kernels (about a minute, once)"
 	@$(ONE_THREAD) $(BIN)/python -m contact.warm_up
 	@touch $@
 

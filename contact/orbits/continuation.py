@@ -209,11 +209,13 @@ def orbits_at(family: Followed, excess: float) -> tuple[PeriodicOrbit, ...]:
     """The orbits of the branch of `folds_of` at F/F_g - 1 = `excess`, by rising approach velocity."""
     require_within("excess", excess, "[1]", above=-1)
     curve, points, _ = whole_branch(family, None)
-    found = [
-        Between(curve, a, b).root(lambda point: point.orbit.excess - excess).orbit
-        for a, b in pairwise(points)
-        if (a.orbit.excess - excess) * (b.orbit.excess - excess) < 0.0
-    ]
+    found = []
+    for start, end in pairwise(points):
+        a, b = (point.along(end.x - start.x) for point in (start, end))
+        turns = [Between(curve, a, b).root(lambda point: point.rate)] if a.rate * b.rate < 0.0 else []
+        for c, d in pairwise([a, *turns, b]):  # both sides of a fold may have an orbit
+            if (c.orbit.excess - excess) * (d.orbit.excess - excess) < 0.0:
+                found.append(Between(curve, c, d).root(lambda point: point.orbit.excess - excess).orbit)
     return tuple(sorted(found, key=lambda orbit: orbit.speed))
 
 
