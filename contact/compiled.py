@@ -84,7 +84,8 @@ class _Announcement(event.Listener):  # type: ignore[misc]
 
     def on_start(self, event: Any) -> None:
         """A kernel is being compiled."""
-        ours = event.data["dispatcher"].py_func.__module__.startswith("contact.")
+        module = event.data["dispatcher"].py_func.__module__ or ""  # None: made from text, as tables of laws
+        ours = module.startswith("contact.")
         worker = multiprocessing.parent_process() is not None
         if ours and not worker and not self.said:
             self.said = True
