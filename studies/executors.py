@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import multiprocessing
+import re
 import sys
 import threading
 import time
@@ -69,19 +70,24 @@ def _rate(speed: float | None) -> str:
     return f"{speed:.3g} per s" if speed >= 1.0 else f"{1.0 / speed:.3g} s each"
 
 
+def require_place(place: str) -> str:
+    """The name of an executor, or InvalidValue."""
+    if not re.fullmatch(r"(threads|processes|dask://.+)?", place):
+        raise InvalidValue(f"executor is {place!r}; it must be threads, processes or dask://host:port")
+    return place
+
+
 @contextmanager
 def pool_of(place: str, workers: int) -> Iterator[Executor]:
     """The executor at `place`, threads, processes or dask://host:port, with so many threads or processes.
 
     If the body is left by an exception, what has not begun is dropped, and processes are ended.
     """
-    kind, colon, address = place.partition("://")
-    if kind == "dask" and address:
+    kind, _, address = require_place(place).partition("://")
+    if kind == "dask":
         with _cluster(address) as cluster:
             yield cluster
         return
-    if colon or kind not in ("", "threads", "processes"):
-        raise InvalidValue(f"executor is {place!r}; it must be threads, processes or dask://host:port")
     if kind == "processes":
         context = multiprocessing.get_context("spawn")
         executor: Executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_quiet)

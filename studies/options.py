@@ -8,7 +8,6 @@ import contextlib
 import inspect
 import math
 import os
-import re
 import sys
 import types
 import typing
@@ -18,6 +17,7 @@ from pathlib import Path
 from typing import Annotated, Literal, NoReturn, TextIO, Union, get_args, get_origin
 
 from beam import InvalidValue
+from studies.executors import require_place
 from studies.files import SCHEMA
 from studies.programs import DONE, perform, tell
 
@@ -61,6 +61,7 @@ class Parser(argparse.ArgumentParser):
         for word in rest:
             nearest = get_close_matches(word.partition("=")[0], self._option_string_actions, n=1)
             self.error(f"there is no option {word}" + (f"; did you mean {nearest[0]}?" if nearest else ""))
+        require_place(vars(arguments).get("executor", ""))
         return arguments
 
 
@@ -84,7 +85,7 @@ def parser_of(command: str, account: str) -> Parser:
     cores = os.cpu_count() or 1
     runs("--quick", action="store_true", help="a small form of the study, for a first look")
     runs("--workers", type=_count, default=cores, metavar="N", help="threads or processes (default: cores)")
-    runs("--executor", type=_executor, default="", metavar="URL", help="threads (default), processes, dask://HOST")
+    runs("--executor", default="", metavar="URL", help="threads (default), processes, dask://HOST")
     runs("--out", type=_folder, default="results", metavar="DIR", help="folder of all results")
     return parser
 
@@ -148,13 +149,6 @@ def _count(text: str) -> int:
     if not (text.isascii() and text.isdigit() and len(text) < 20 and 1 <= int(text) <= MOST_CELLS):
         raise argparse.ArgumentTypeError(f"must be a whole number from 1 to {MOST_CELLS}, not {text[:40]!r}")
     return int(text)
-
-
-def _executor(text: str) -> str:
-    """Threads, processes or the address of a scheduler."""
-    if text not in ("", "threads", "processes") and not re.fullmatch(r"dask://.+", text):
-        raise argparse.ArgumentTypeError(f"must be threads, processes or dask://host:port, not {text!r}")
-    return text
 
 
 def _folder(text: str) -> str:

@@ -93,7 +93,7 @@ REFUSED = [
     ("modes", "--frames 1000000", "--frames must be an even number, at most 10000"),
     ("motion", "--frames 1000000", "frames is 1000000; a film has at most 10000"),
     ("identify", "--drive 22.2 2", "drive is 22.2 Hz, 2 mm; it needs a record"),
-    ("modes", "--executor moon", "argument --executor: must be threads"),
+    ("modes", "--executor moon", "executor is 'moon'; it must be threads"),
     ("time_trace", "--set stop.gap_m=1e-300", "stop.gap_m must be at least 1e-12"),
     ("time_trace", "--set single_mode.free_period_s=1e-300", "single_mode.free_period_s"),
     ("time_trace", "--set spring.young_modulus_pa=1e300", "at most 1e+15 (unit Pa)"),
