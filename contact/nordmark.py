@@ -47,15 +47,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from beam.parameters import (
-    InvalidType,
-    InvalidValue,
-    require,
-    require_array,
-    require_kind,
-    require_whole,
-    require_within,
-)
+from beam.parameters import InvalidType, require, require_array, require_kind, require_whole, require_within
 from contact.compiled import kernel
 from contact.flight.modal_flow import flow_matrix
 from contact.flight.motion import damped_frequency
@@ -185,12 +177,10 @@ class NordmarkMap:
         and a law without one (a force law) raises TypeError.
         """
         restitution = restitution_of(oscillator) if restitution is None else restitution
-        if oscillator.drive is None:
-            raise InvalidValue("drive is None; it must be a HarmonicDrive")
         model, k = oscillator.model, oscillator.model.leading_mode
         return cls.from_mode(
             omega=float(model.omega[k]), decay_rate=float(model.decay_rate[k]),
-            drive_frequency=float(oscillator.drive.frequency),
+            drive_frequency=float(oscillator.driven.frequency),
             restitution=restitution, y_line=y_line, delay=delay,
         )
 

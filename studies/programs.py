@@ -70,7 +70,7 @@ def account_of(name: str) -> str:
 def run_times(table: Path = FOLDER / "run_times.csv") -> dict[str, tuple[float, float]]:
     """Run times [s] of each study in full and with --quick; 60 s and 10 s for a study not in the table.
 
-    `python -m studies --all` measures them. The table holds those of two cores, with compiled kernels.
+    `python -m studies --all` measures them; the table was measured on two cores, with compiled kernels.
     """
     with table.open(newline="", encoding="utf-8") as stream:
         found = {name: (float(full), float(quick)) for name, full, quick in list(csv.reader(stream))[1:]}

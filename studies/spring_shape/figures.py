@@ -89,7 +89,7 @@ def draw_shapes(nets: Mapping[str, Points], rows: Sequence[ReadingRow]) -> Figur
 
 @in_house_style
 def draw_plate(modes: Sequence[PlateMode], orbits: Sequence[OrbitEnds]) -> Figure:
-    """Tip values of beam and plates against frequency; ends of the plates over those of the beam."""
+    """Draw tip values against frequency, and the plates' orbit ends divided by the beam's."""
     figure, (left, right) = new_figure(1, 2, width=PAGE, height=0.072)
     for number, (name, title) in enumerate({"beam": "beam", **PLATES}.items()):
         style = series(number) | ({} if name == "beam" else {"linestyle": "none"})
