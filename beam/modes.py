@@ -120,12 +120,7 @@ class Modes:
         s, (moved, turned) = along(line, model.pieces, model.ties @ self.shapes, points_per_element)
         t, n = line.frame(s)
         return ShapesAlong(
-            s=s,
-            points=line.points(s),
-            tangent=t,
-            normal=n,
-            displacement=moved,
-            rotation=turned[..., 2],
+            s=s, points=line.points(s), tangent=t, normal=n, displacement=moved, rotation=turned[..., 2]
         )
 
 

@@ -87,9 +87,11 @@ class Piece(ABC):
         return basis, self.start + 0.5 * self.nodes[-1] + np.asarray(basis.global_coordinates())[0]
 
     def sampling(
-        self, local: NDArray[np.float64] | None = None, elements: NDArray[np.intp] | None = None,
+        self,
+        local: NDArray[np.float64] | None = None,
+        elements: NDArray[np.intp] | None = None,
         of: Callable[..., tuple[Field, ...]] | None = None,
-    ) -> tuple[NDArray[np.float64], list[csr_array]]:  # fmt: skip
+    ) -> tuple[NDArray[np.float64], list[csr_array]]:
         """Arc lengths [m] and matrices of what `moves`, or of other functions, at the points of `basis`."""
         basis, s = self.basis(local, elements)
         rows = np.tile(np.arange(s.size), basis.Nbfun)

@@ -96,9 +96,7 @@ def check_strip(spring: Any, section: type, axes: int) -> None:
 def check_place(name: str, s: float, line: Centreline) -> None:
     """ValueError unless s [m] is an arc length on the line."""
     require_within(name, s, "m", low=0)
-    require(
-        s <= line.length * (1.0 + 1e-12), f"{name} is {s} m; it must lie between 0 and {line.length} m"
-    )
+    require(s <= line.length * (1.0 + 1e-12), f"{name} is {s} m; it must lie between 0 and {line.length} m")
 
 
 @dataclass(frozen=True, kw_only=True)

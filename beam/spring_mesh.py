@@ -83,10 +83,7 @@ class SpringMesh:
         """Return the mesh as a `pyvista.UnstructuredGrid`, with other points [m] if they are given."""
         import pyvista
 
-        cells = {
-            pyvista.CellType.HEXAHEDRON: self.hexahedra,
-            pyvista.CellType.TRIANGLE: self.triangles,
-        }
+        cells = {pyvista.CellType.HEXAHEDRON: self.hexahedra, pyvista.CellType.TRIANGLE: self.triangles}
         kept = {kind: rows for kind, rows in cells.items() if rows.size}
         grid = pyvista.UnstructuredGrid(kept, self.points if points is None else points)
         grid.cell_data["part"] = self.part
@@ -151,9 +148,7 @@ def _plies(section: StripSection) -> list[tuple[int, float, float]]:
     return plies
 
 
-def _turned(
-    along: ShapesAlong, where: NDArray[np.intp], offsets: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _turned(along: ShapesAlong, where: NDArray[np.intp], offsets: NDArray[np.float64]) -> NDArray[np.float64]:
     """Shapes (n_modes, ..., 3) of points off the centreline by `offsets` (..., 3) [m]."""
     across = np.cross(np.array([0.0, 0.0, 1.0]), offsets)
     return along.displacement[:, where] + along.rotation[:, where, None] * across

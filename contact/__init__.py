@@ -70,27 +70,38 @@ from contact.laws import (
     LinearContact,
     NewtonRestitution,
 )
-from contact.maximal_orbits import (
-    Band,
+from contact.machine.renamed import forward_modules
+from contact.maps.nonlinear_mode import NonlinearMode
+from contact.maps.nordmark import NordmarkMap
+from contact.maps.nordmark_bands import Band, band, bands
+from contact.maps.nordmark_orbits import (
     MapFamily,
     MaximalOrbit,
-    band,
-    bands,
     fold,
     maximal_orbits,
     maximal_period,
     maximal_periods,
     stable_range,
 )
-from contact.nonlinear_mode import NonlinearMode
-from contact.nordmark import NordmarkMap
-from contact.orbits.single_impact import MaximalFamily, SingleImpactOrbit
+from contact.maps.strobed_nordmark import StrobedNordmarkMap
+from contact.maps.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap, strobed_orbits
+from contact.orbits.families.single_impact import MaximalFamily, SingleImpactOrbit
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
-from contact.strobed_nordmark import StrobedNordmarkMap
-from contact.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap, strobed_orbits
 from contact.trajectory import ImpactKind, Impacts, Regime, State, Trajectory
+
+forward_modules(
+    {
+        "contact.nordmark": "contact.maps.nordmark",
+        "contact.stroboscope": "contact.maps.stroboscope",
+        "contact.nonlinear_mode": "contact.maps.nonlinear_mode",
+        "contact.orbits.shooting": "contact.orbits.families.shooting",
+        "contact.orbits.single_impact": "contact.orbits.families.single_impact",
+        "contact.orbits.kick": "contact.orbits.families.kick",
+        "contact.orbits.continuation": "contact.orbits.branches.continuation",
+    }
+)
 
 __all__ = [
     "Band",

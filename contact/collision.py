@@ -118,9 +118,11 @@ def _ringing(motion: Motion, k: int, u: np.ndarray, v: np.ndarray) -> float:
 
 
 def collisions(
-    oscillator: ImpactOscillator | Trajectory, trajectory: Trajectory | None = None, *,
+    oscillator: ImpactOscillator | Trajectory,
+    trajectory: Trajectory | None = None,
+    *,
     unfinished: str = "refuse",
-) -> list[Collision]:  # fmt: skip
+) -> list[Collision]:
     """Group the impacts of a trajectory into collisions: ``collisions(trajectory)``.
 
     A collision that had begun before the trajectory is left out.
@@ -223,15 +225,25 @@ def _measure(motion: Motion, k: int, impacts: Impacts, rows: slice, outgoing: Vi
 
     gained = _higher_energy(motion, k, u_out, v_out) - _higher_energy(motion, k, u_free, v_free)
     return Collision(
-        time=touch + s_in, end=float(impacts.end[last]), approach=speed, restitution=restitution, delay=delay,
-        kick=-change / speed, kick_velocity=-change, shift=shift,
+        time=touch + s_in,
+        end=float(impacts.end[last]),
+        approach=speed,
+        restitution=restitution,
+        delay=delay,
+        kick=-change / speed,
+        kick_velocity=-change,
+        shift=shift,
         deceleration=-incoming.at(s_in)[2],
         impacts=int(np.count_nonzero(impacts.kind[rows] == ImpactKind.IMPACT)),
-        contact_time=float(np.sum(_length(motion, impacts, rows, rows))), first_touch=touch,
-        real_approach=float(impacts.approach[first]), ringing=_ringing(motion, k, u_in, v_in),
-        energy_to_higher_modes=gained, energy_lost=float(np.sum(impacts.loss[rows])),
-        forced_by_ringing=forced, returns=returns,
-    )  # fmt: skip
+        contact_time=float(np.sum(_length(motion, impacts, rows, rows))),
+        first_touch=touch,
+        real_approach=float(impacts.approach[first]),
+        ringing=_ringing(motion, k, u_in, v_in),
+        energy_to_higher_modes=gained,
+        energy_lost=float(np.sum(impacts.loss[rows])),
+        forced_by_ringing=forced,
+        returns=returns,
+    )
 
 
 def first_collision(

@@ -189,9 +189,13 @@ class HertzContact(ContactLaw):
 
     @staticmethod
     def of_bodies(
-        *, radius: float, youngs_modulus: float, poissons_ratio: float, other_modulus: float,
+        *,
+        radius: float,
+        youngs_modulus: float,
+        poissons_ratio: float,
+        other_modulus: float,
         other_ratio: float,
-    ) -> HertzContact:  # fmt: skip
+    ) -> HertzContact:
         """A ball of `radius` [m] on a plate: k = (4/3) sqrt(R) / ((1 - nu^2)/E + (1 - nu'^2)/E')
         [N/m^1.5]."""
         require_within("radius", radius, "m", above=0)

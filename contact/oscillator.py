@@ -219,7 +219,13 @@ class ImpactOscillator:
     def _at_one_metre(self) -> Motion:
         """The numbers at an amplitude of 1 m: the same of all with another amplitude."""
         return motion_of(
-            self.model.omega, self.model.decay_rate, self.model.phi, law=self.stop.law, gap=self.stop.gap,
-            drive=0.0 if self.drive is None else self.drive.angular_frequency, period=self.period,
-            response=self.steady_response(), load=self.load,
-        )  # fmt: skip
+            self.model.omega,
+            self.model.decay_rate,
+            self.model.phi,
+            law=self.stop.law,
+            gap=self.stop.gap,
+            drive=0.0 if self.drive is None else self.drive.angular_frequency,
+            period=self.period,
+            response=self.steady_response(),
+            load=self.load,
+        )

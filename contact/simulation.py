@@ -113,9 +113,16 @@ def _run(
     early = (sample_period < first) | ((sample_period == first) & (sample_clock < clock))
     sample_period[early], sample_clock[early] = first, clock
     return Run(
-        start=start, length=length, first=first, last=last, clock=clock, clock_end=clock_end, times=wanted,
-        sample_period=sample_period, sample_clock=sample_clock,
-    )  # fmt: skip
+        start=start,
+        length=length,
+        first=first,
+        last=last,
+        clock=clock,
+        clock_end=clock_end,
+        times=wanted,
+        sample_period=sample_period,
+        sample_clock=sample_clock,
+    )
 
 
 def simulate(

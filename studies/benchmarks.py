@@ -97,8 +97,11 @@ def benchmarks(
     ratios = ratios_of(rows)
     run.table("costs", rows, "Time per drive period and per collision.")
     run.say(", ".join(f"{name} {ratio:.3g}" for name, ratio in ratios.items()))
-    run.figure("costs", draw_costs(rows), "Time per drive period of the beam against the number of modes, "
-               "with and without a touch.")  # fmt: skip
+    run.figure(
+        "costs",
+        draw_costs(rows),
+        "Time per drive period of the beam against the number of modes, with and without a touch.",
+    )
     return {"rows": rows, "ratios": ratios}
 
 
@@ -156,10 +159,11 @@ def single_rows(scene: Scene, frequency: float, *, quick: bool, peers: bool) -> 
         orbit(SETTLING)
         runs[HEYOKA] = (orbit, 200 if quick else 2000)
     return [
-        Row(case=SINGLE, tool=tool, modes=1, frequency_hz=frequency, excess=SINGLE_EXCESS,
-            us_per_period=spent)
+        Row(
+            case=SINGLE, tool=tool, modes=1, frequency_hz=frequency, excess=SINGLE_EXCESS, us_per_period=spent
+        )
         for tool, spent in in_turns(runs, 3 if quick else 7).items()
-    ]  # fmt: skip
+    ]
 
 
 def beam_rows(oscillator: ImpactOscillator, *, quick: bool, peers: bool) -> list[Row]:
@@ -176,15 +180,21 @@ def beam_rows(oscillator: ImpactOscillator, *, quick: bool, peers: bool) -> list
     if peers:
         peer = OutsideSolver(solver="heyoka Taylor", tolerance=TOLERANCE)
         runs[HEYOKA] = (
-            lambda periods: simulate(driven, state, periods=periods, method=peer), 8 if quick else 40
-        )  # fmt: skip
+            lambda periods: simulate(driven, state, periods=periods, method=peer),
+            8 if quick else 40,
+        )
     spent = in_turns(runs, 3 if quick else 7)
     row = partial(Row, modes=oscillator.n_modes, frequency_hz=1.0 / oscillator.period)
     rows = [
-        row(case=BEAM, tool=OURS, excess=EXCESS, us_per_period=spent[OURS],
-            us_per_collision=(spent[OURS] - spent[FREE]) / impacts if impacts else None),
+        row(
+            case=BEAM,
+            tool=OURS,
+            excess=EXCESS,
+            us_per_period=spent[OURS],
+            us_per_collision=(spent[OURS] - spent[FREE]) / impacts if impacts else None,
+        ),
         row(case=FREE, tool=OURS, excess=BELOW, us_per_period=spent[FREE]),
-    ]  # fmt: skip
+    ]
     if peers:
         rows.append(row(case=BEAM, tool=HEYOKA, excess=EXCESS, us_per_period=spent[HEYOKA]))
     return rows

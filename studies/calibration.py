@@ -38,7 +38,7 @@ from beam import SuspiciousValue
 from contact import Collision, first_collision
 from studies import letter
 from studies.scene import Scene, SceneError, beam_at, damping_of, free_period, modes_of, spring_of
-from studies.scene_keys import CALIBRATED
+from studies.scene_key import CALIBRATED
 from studies.scene_spring import DAMPING
 from studies.scene_values import KEYS
 
@@ -64,9 +64,16 @@ KICK_ACCURACY = 1e-9
 
 
 def solve_for(
-    key: str, scene: Scene, quantity: Callable[[Scene], float], target: float, *, name: str, unit: str,
-    between: tuple[float, float], accuracy: float = ACCURACY,
-) -> Scene:  # fmt: skip
+    key: str,
+    scene: Scene,
+    quantity: Callable[[Scene], float],
+    target: float,
+    *,
+    name: str,
+    unit: str,
+    between: tuple[float, float],
+    accuracy: float = ACCURACY,
+) -> Scene:
     """The scene with `key` such that `quantity(scene)` is `target`, to the relative `accuracy`.
 
     Parameters
@@ -118,8 +125,15 @@ def strip_decay_rate(scene: Scene) -> float:
 
 def calibrate_thickness(scene: Scene, free_period_s: float) -> Scene:
     """The scene with the sheet so thick that mode 1, damped, has this period [s]."""
-    return solve_for("spring.thickness_m", scene, free_period, free_period_s, name="free period", unit="s",
-                     between=thicknesses(scene))  # fmt: skip
+    return solve_for(
+        "spring.thickness_m",
+        scene,
+        free_period,
+        free_period_s,
+        name="free period",
+        unit="s",
+        between=thicknesses(scene),
+    )
 
 
 def thicknesses(scene: Scene) -> tuple[float, float]:
@@ -149,9 +163,14 @@ def calibrate_damping(scene: Scene, decay_rate_per_s: float) -> Scene:
         raise SceneError("there is no tape to calibrate: spring.tape_thickness_m must be greater than 0")
     scene = scene.replace({"damping.decay_rate_per_s": decay_rate_per_s}, provenance=CALIBRATED)
     return solve_for(
-        "spring.tape_loss_factor", scene, strip_decay_rate, decay_rate_per_s, name="decay rate of mode 1",
-        unit="1/s", between=LOSS_FACTORS,
-    )  # fmt: skip
+        "spring.tape_loss_factor",
+        scene,
+        strip_decay_rate,
+        decay_rate_per_s,
+        name="decay rate of mode 1",
+        unit="1/s",
+        between=LOSS_FACTORS,
+    )
 
 
 def calibrate(scene: Scene, *, free_period_s: float, decay_rate_per_s: float) -> Scene:
@@ -185,8 +204,11 @@ class Targets:
     def of(cls, scene: Scene) -> Targets:
         """The measured period and decay of a scene, and the rest as the letter prints it."""
         keys = scene.single_mode
-        return cls(free_period_s=keys.free_period_s, decay_rate_per_s=keys.decay_rate_per_s,
-                   grazing_amplitude_m=letter.DRIVE_AMPLITUDE_M)  # fmt: skip
+        return cls(
+            free_period_s=keys.free_period_s,
+            decay_rate_per_s=keys.decay_rate_per_s,
+            grazing_amplitude_m=letter.DRIVE_AMPLITUDE_M,
+        )
 
 
 def calibrate_gap(scene: Scene, amplitude: float, frequency: float) -> Scene:
@@ -213,8 +235,16 @@ def calibrate_all(scene: Scene, targets: Targets) -> Scene:
         return collision_at(others(trial), targets.frequency_hz, targets.excess).kick
 
     between = (MASSES[0] * scene.tip.mass_kg, MASSES[1] * scene.tip.mass_kg)
-    fitted = solve_for("tip.mass_kg", scene, kick, targets.kick, name=f"kick at excess {targets.excess:g}",
-                       unit="1", between=between, accuracy=KICK_ACCURACY)  # fmt: skip
+    fitted = solve_for(
+        "tip.mass_kg",
+        scene,
+        kick,
+        targets.kick,
+        name=f"kick at excess {targets.excess:g}",
+        unit="1",
+        between=between,
+        accuracy=KICK_ACCURACY,
+    )
     return others(fitted)
 
 
@@ -240,9 +270,14 @@ def with_mass_ratio(scene: Scene, ratio: float, frequency: float) -> Scene:
         return trial.replace({"tip.mass_kg": ratio * leaf_mass(trial)}, provenance=CALIBRATED)
 
     fitted = solve_for(
-        "spring.thickness_m", scene, lambda trial: free_period(weighted(trial)),
-        scene.single_mode.free_period_s, name="free period", unit="s", between=thicknesses(scene),
-    )  # fmt: skip
+        "spring.thickness_m",
+        scene,
+        lambda trial: free_period(weighted(trial)),
+        scene.single_mode.free_period_s,
+        name="free period",
+        unit="s",
+        between=thicknesses(scene),
+    )
     return calibrate_gap(weighted(fitted), letter.DRIVE_AMPLITUDE_M, frequency)
 
 

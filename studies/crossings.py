@@ -47,8 +47,9 @@ class Swing:
         lead, spread, tail = (0.6, 0.25, 0.4) if n == 1 else (0.05, 0.02, 0.02)
         height = np.ones(1) if n == 1 else np.array([1.0 - ringing, *[ringing / (n - 1)] * (n - 1)])
         free = ImpactOscillator(model=replace(model, decay_rate=0.0 * model.decay_rate), stop=stop)
-        return Swing(oscillator=free, height=height, lead=lead * period, spread=spread * period,
-                     tail=tail * period)  # fmt: skip
+        return Swing(
+            oscillator=free, height=height, lead=lead * period, spread=spread * period, tail=tail * period
+        )
 
     @property
     def pace(self) -> float:

@@ -47,7 +47,7 @@ from studies.programs import (
     run_times,
     studies,
     tell,
-)  # fmt: skip
+)
 from studies.run import Study, read_told
 from studies.scene import Scene
 
@@ -101,9 +101,11 @@ def run_in_turn(
             label, begun = f"python -m studies.{name}", time.monotonic()
             command = [sys.executable, *label.split()[1:], *arguments]
             with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as log:
-                running[:] = [subprocess.Popen(
-                    command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, text=True, process_group=0
-                )]  # fmt: skip
+                running[:] = [
+                    subprocess.Popen(
+                        command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, text=True, process_group=0
+                    )
+                ]
                 for left in count(expected[name], -1):
                     try:
                         codes[name] = running[0].wait(1.0)

@@ -42,8 +42,13 @@ def progress(label: str, total: int | None = None) -> Iterator[Callable[..., Non
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(),
-               TextColumn("{task.fields[rate]}"), TimeRemainingColumn())  # fmt: skip
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[rate]}"),
+        TimeRemainingColumn(),
+    )
     told, lock, terminal = time.monotonic(), threading.Lock(), sys.stderr.isatty()
     console = Console(file=sys.stderr)
     with Progress(*columns, console=console, disable=not terminal, speed_estimate_period=math.inf) as bar:

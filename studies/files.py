@@ -32,9 +32,23 @@ SCHEMA = 2
 """Number of the layout of summary.json, manifest.json and the JSON on standard output."""
 
 PACKAGES = (
-    "grazing-spring", "numpy", "scipy", "scikit-fem", "meshio", "pyvista", "numba", "matplotlib", "mpmath",
-    "rich", "jinja2", "heyoka", "scikit-sundae", "distributed", "imageio-ffmpeg", "trame-vtk",
-)  # fmt: skip
+    "grazing-spring",
+    "numpy",
+    "scipy",
+    "scikit-fem",
+    "meshio",
+    "pyvista",
+    "numba",
+    "matplotlib",
+    "mpmath",
+    "rich",
+    "jinja2",
+    "heyoka",
+    "scikit-sundae",
+    "distributed",
+    "imageio-ffmpeg",
+    "trame-vtk",
+)
 """Packages whose versions go into a manifest, if they are installed."""
 
 

@@ -223,9 +223,7 @@ def can_encode() -> bool:
     return importlib.util.find_spec("imageio_ffmpeg") is not None
 
 
-def write_gif(
-    path: Path, pictures: Iterable[Picture], rate: float, *, samples: Sequence[Picture]
-) -> Path:
+def write_gif(path: Path, pictures: Iterable[Picture], rate: float, *, samples: Sequence[Picture]) -> Path:
     """Write pictures at `rate` a second, repeated for ever, with one palette of `samples`: what does not
     move does not flicker. One picture after the other is taken, and kept as a byte a pixel."""
     from PIL import Image
@@ -233,8 +231,15 @@ def write_gif(
     palette = Image.fromarray(np.concatenate(samples)).quantize(127, dither=Image.Dither.NONE)
     images = (Image.fromarray(one).quantize(palette=palette, dither=Image.Dither.NONE) for one in pictures)
     stream = io.BytesIO()
-    next(images).save(stream, format="GIF", save_all=True, append_images=images, loop=0, optimize=False,
-                   duration=10 * max(2, round(100.0 / rate)))  # fmt: skip
+    next(images).save(
+        stream,
+        format="GIF",
+        save_all=True,
+        append_images=images,
+        loop=0,
+        optimize=False,
+        duration=10 * max(2, round(100.0 / rate)),
+    )
     return write_atomically(path, stream.getvalue())
 
 
@@ -249,9 +254,15 @@ def written_as_mp4(path: Path, pictures: Iterable[Picture], rate: float) -> Iter
         for one in pictures:
             if writer is None:
                 writer = imageio_ffmpeg.write_frames(
-                    str(temporary), (one.shape[1], one.shape[0]), fps=rate, codec="libx264",
-                    pix_fmt_out="yuv420p", quality=8, macro_block_size=2, ffmpeg_log_level="error",
-                )  # fmt: skip
+                    str(temporary),
+                    (one.shape[1], one.shape[0]),
+                    fps=rate,
+                    codec="libx264",
+                    pix_fmt_out="yuv420p",
+                    quality=8,
+                    macro_block_size=2,
+                    ffmpeg_log_level="error",
+                )
                 writer.send(None)
             writer.send(np.ascontiguousarray(one))
             yield one

@@ -174,10 +174,16 @@ class Spring:
                 exact = [tried(partial(frame_period, scene, model, f)) for f in scene.drive.frequencies_hz]
                 pairs = list(zip(modes, effective, exact, strict=True))
                 frames += [
-                    FrameRow(reading=self.reading, bend_radius_m=self.radius, gap_m=gap,
-                             frequency_hz=mode.frequency, mode_s=mine, frame_s=other)
+                    FrameRow(
+                        reading=self.reading,
+                        bend_radius_m=self.radius,
+                        gap_m=gap,
+                        frequency_hz=mode.frequency,
+                        mode_s=mine,
+                        frame_s=other,
+                    )
                     for mode, mine, other in pairs
-                ]  # fmt: skip
+                ]
                 for i, (mode, mine, other) in enumerate(pairs):
                     if mine and other and abs(other - mine) > CLOSE:
                         fitted = tried(partial(matched, mode, other))
@@ -186,9 +192,13 @@ class Spring:
         return rows, frames
 
     def _row(
-        self, scene: Scene, backbone: Backbone, modes: Sequence[NonlinearMode],
-        effective: Sequence[float | None], frame: bool,
-    ) -> Row:  # fmt: skip
+        self,
+        scene: Scene,
+        backbone: Backbone,
+        modes: Sequence[NonlinearMode],
+        effective: Sequence[float | None],
+        frame: bool,
+    ) -> Row:
         cycles = scene.scan.settle_cycles
         low, middle, high = (
             tuple(tried(partial(born_period, mode, excess, most_cycles=cycles)) for mode in modes)
@@ -197,13 +207,22 @@ class Spring:
         letter = periods_of(scene)
         wanted = [letter.get(mode.frequency) for mode in modes]
         return Row(
-            reading=self.reading, bend_radius_m=self.radius, gap_m=scene.stop.gap_m, tip_mass_kg=self.ball,
-            length_m=backbone.length, kappa=backbone.kappa,
-            kappa_elastic=backbone.elastic, kappa_inertial=backbone.inertial,
+            reading=self.reading,
+            bend_radius_m=self.radius,
+            gap_m=scene.stop.gap_m,
+            tip_mass_kg=self.ball,
+            length_m=backbone.length,
+            kappa=backbone.kappa,
+            kappa_elastic=backbone.elastic,
+            kappa_inertial=backbone.inertial,
             shift=backbone.kappa * (scene.stop.gap_m / backbone.length) ** 2,
-            effective_period_s=tuple(effective), born_period=middle, born_2p5e_4=low, born_1e_2=high,
-            survive=sum(a == b == c for a, b, c in zip(wanted, low, middle, strict=True)), frame=frame,
-        )  # fmt: skip
+            effective_period_s=tuple(effective),
+            born_period=middle,
+            born_2p5e_4=low,
+            born_1e_2=high,
+            survive=sum(a == b == c for a, b, c in zip(wanted, low, middle, strict=True)),
+            frame=frame,
+        )
 
 
 @study()
@@ -221,13 +240,24 @@ def finite_amplitude(scene: Scene, run: Run) -> Mapping[str, object]:
     rows, frames = [row for part, _ in found for row in part], [row for _, part in found for row in part]
     rows += [replace(row, reading="channel") for row in rows if row.reading == "plain"]
     shown = (
-        "reading", "bend_radius_m", "gap_m", "tip_mass_kg", "length_m", "kappa", "born_period", "survive"
-    )  # fmt: skip
+        "reading",
+        "bend_radius_m",
+        "gap_m",
+        "tip_mass_kg",
+        "length_m",
+        "kappa",
+        "born_period",
+        "survive",
+    )
     run.table("springs", rows, "Springs by reading, radius, gap and ball; born period at 1e-3.", show=shown)
     run.table("frame", frames, "Effective period of deviations: mode with cubic terms, frame.", show=())
-    run.figure("finite_amplitude", draw(scene, rows), "How many of the letter's periods are born at 2.5e-4 "
-               "and at 1e-3: of the folded strip with the scene's ball over bend radius and gap; of all "
-               "springs against the shift of the frequency at the gap.")  # fmt: skip
+    run.figure(
+        "finite_amplitude",
+        draw(scene, rows),
+        "How many of the letter's periods are born at 2.5e-4 "
+        "and at 1e-3: of the folded strip with the scene's ball over bend radius and gap; of all "
+        "springs against the shift of the frequency at the gap.",
+    )
     return {"rows": rows, "frame": frames}
 
 

@@ -158,9 +158,11 @@ QUANTITIES: Mapping[str, tuple[Ask, Distance, bool]] = {
     "fold_middle": (_fold, error_of_fold, False),
     "tip_trace": (lambda at, f: tip_trace(at(f)), error_of_trace, False),
     "born_period": (
-        lambda at, f: np.array([float(born_period(StroboscopicMap(oscillator=at(f))))]), largest_error, True,
+        lambda at, f: np.array([float(born_period(StroboscopicMap(oscillator=at(f))))]),
+        largest_error,
+        True,
     ),
-}  # fmt: skip
+}
 """Name -> answer, distance, whether it is asked at every drive frequency. Born periods are asked last:
 transients are long where modes are missing."""
 

@@ -58,7 +58,8 @@ class Point:
     study: str
 
 
-_BEFORE, _AFTER = """\
+_BEFORE, _AFTER = (
+    """\
 period_adding | claims | introduction | no number
     The overdamped oscillator has an infinite series of period addings.
 torsion | spring_shape | Fig. 1 and text | no number
@@ -67,7 +68,8 @@ drive_amplitude | calibrate | text after Fig. 1 | typically 2 mm
     Amplitude of the excitation.
 free_period | modes | Fig. 2 | 40.80 +- 0.02 ms
     Period T of the freely swinging beam.
-""", """\
+""",
+    """\
 coexistence | attractors | text on Fig. 2 | hysteretic
     Below grazing the motion without impacts and p_m coexist.
 last_period | noise | text on Fig. 2 | p10
@@ -112,7 +114,8 @@ two_parameters_born | transitions | last paragraph | no number
     With these two parameters the single mode has the bifurcations of the beam.
 sampled | work_precision | note [11] | no number
     Positions are computed at a few points per period; crossings must not be missed.
-"""  # fmt: skip
+""",
+)
 
 
 def _points(table: str) -> dict[str, Point]:
@@ -136,14 +139,22 @@ POINTS: Mapping[str, Point] = MappingProxyType(
 )
 """What the letter says, in its order; a study that judges a point calls `run.verdict` with its key."""
 
-QUESTIONS: Mapping[str, tuple[str, tuple[str, ...]]] = MappingProxyType({
-    "hysteresis": ("Why does the measured hysteresis differ from the map's?",
-                   ("hysteresis", "noise", "spring_shape")),
-    "higher_modes": ("What do higher modes do to restitution, delay and the square root?",
-                     ("effective_impact", "soft_wall")),
-    "two_parameters": ("Do energy loss and delay stand for the higher modes?", ("transitions",)),
-    "last_period": ("Why p10 at 23.40 Hz, where the map has p11?", ("sensitivity", "noise")),
-    "period": ("What do the six periods say of the free period in motion, and what would have told more?",
-               ("next_measurement",)),
-})  # fmt: skip
+QUESTIONS: Mapping[str, tuple[str, tuple[str, ...]]] = MappingProxyType(
+    {
+        "hysteresis": (
+            "Why does the measured hysteresis differ from the map's?",
+            ("hysteresis", "noise", "spring_shape"),
+        ),
+        "higher_modes": (
+            "What do higher modes do to restitution, delay and the square root?",
+            ("effective_impact", "soft_wall"),
+        ),
+        "two_parameters": ("Do energy loss and delay stand for the higher modes?", ("transitions",)),
+        "last_period": ("Why p10 at 23.40 Hz, where the map has p11?", ("sensitivity", "noise")),
+        "period": (
+            "What do the six periods say of the free period in motion, and what would have told more?",
+            ("next_measurement",),
+        ),
+    }
+)
 """The questions that the letter leaves open, and the studies that answer them (`run.answer`)."""

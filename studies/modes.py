@@ -90,10 +90,16 @@ def rows_of(scene: Scene, solved: Modes | None) -> list[Row]:
         rates = damping_of(scene).decay_rates(solved)
         columns = (solved.frequencies_hz, rates, solved.phi, solved.participation, solved.coupled)
     return [
-        Row(mode=number, frequency_hz=float(f), decay_rate_per_s=float(c), tip_value=float(phi),
-            participation=float(gamma), coupled=bool(moves))
+        Row(
+            mode=number,
+            frequency_hz=float(f),
+            decay_rate_per_s=float(c),
+            tip_value=float(phi),
+            participation=float(gamma),
+            coupled=bool(moves),
+        )
         for number, (f, c, phi, gamma, moves) in enumerate(zip(*columns, strict=True), start=1)
-    ]  # fmt: skip
+    ]
 
 
 def largest_of(solved: Modes) -> float:
@@ -105,10 +111,15 @@ def write_shapes(scene: Scene, run: Run, solved: Modes, mode: int, frames: int) 
     """Arrays, meshes and the figure."""
     along, radius, largest = solved.displacement_along(2), scene.tip.ball_radius_m, largest_of(solved)
     run.arrays(
-        "modes", frequencies_hz=solved.frequencies_hz, coupled=solved.coupled, arc_length_m=along.s,
-        points_m=along.points, displacement=along.displacement, rotation=along.rotation,
+        "modes",
+        frequencies_hz=solved.frequencies_hz,
+        coupled=solved.coupled,
+        arc_length_m=along.s,
+        points_m=along.points,
+        displacement=along.displacement,
+        rotation=along.rotation,
         tip_at_m=solved.discretization.spring.tip_at,
-    )  # fmt: skip
+    )
     rates = np.nan_to_num(damping_of(scene).decay_rates(solved))
     write_modes(run.path("modes.vtu"), solved, decay_rates=rates, largest=largest, ball_radius=radius)
     write_mode_motion(

@@ -45,9 +45,12 @@ class Parser(argparse.ArgumentParser):
 
     def __init__(self, command: str, account: str) -> None:
         super().__init__(
-            prog=command, description=account, usage=f"{command} [options]", allow_abbrev=False,
+            prog=command,
+            description=account,
+            usage=f"{command} [options]",
+            allow_abbrev=False,
             formatter_class=argparse.RawDescriptionHelpFormatter,
-        )  # fmt: skip
+        )
         self.add_argument("--json", action="store_true", help="print the summary as one JSON object")
 
     def error(self, message: str) -> NoReturn:
@@ -71,8 +74,14 @@ def add_scene(parser: Parser) -> Callable[..., object]:
     scene(
         "--scene", default="letter", metavar="FILE.toml", help="a file, or the name of one in studies/scenes"
     )
-    scene("--set", action="append", default=[], metavar="section.key=value", dest="overrides",
-          help="change one key of the scene; may be repeated")  # fmt: skip
+    scene(
+        "--set",
+        action="append",
+        default=[],
+        metavar="section.key=value",
+        dest="overrides",
+        help="change one key of the scene; may be repeated",
+    )
     return scene
 
 

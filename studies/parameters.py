@@ -1,11 +1,11 @@
 """The parameters that a record may tell of an impact oscillator: values, derivatives, and other values.
 
-    free_period T, decay_rate c     of mode 1: omega_1^2 = (2 pi/T)^2 + (c/2)^2; the other frequencies keep
-                                    their ratio to omega_1, the other decay rates theirs to c
-    gap                             of the stop
-    restitution, delay, stiffness, damping, dissipation     the plain numbers of the contact law
-    frequency, amplitude            of the base motion; with one mode Z is that of Eq. (1), Gamma phi Z of a
-                                    spring, so that it is fitted where the record is not that of one mode
+free_period T, decay_rate c     of mode 1: omega_1^2 = (2 pi/T)^2 + (c/2)^2; the other frequencies keep
+                                their ratio to omega_1, the other decay rates theirs to c
+gap                             of the stop
+restitution, delay, stiffness, damping, dissipation     the plain numbers of the contact law
+frequency, amplitude            of the base motion; with one mode Z is that of Eq. (1), Gamma phi Z of a
+                                spring, so that it is fitted where the record is not that of one mode
 """
 
 from __future__ import annotations
@@ -71,8 +71,10 @@ def changes_of(oscillator: ImpactOscillator, names: Sequence[str]) -> list[Chang
     found: dict[str, Change] = {
         "free_period": Change(model=free_period_change(model)) if "free_period" in names else Change(),
         "decay_rate": Change(model=decay_rate_change(model, None)) if "decay_rate" in names else Change(),
-        "gap": Change(gap=1.0), "frequency": Change(frequency=1.0), "amplitude": Change(amplitude=1.0),
-    } | {name: Change(law=(1.0 - i, float(i))) for i, name in enumerate(law)}  # fmt: skip
+        "gap": Change(gap=1.0),
+        "frequency": Change(frequency=1.0),
+        "amplitude": Change(amplitude=1.0),
+    } | {name: Change(law=(1.0 - i, float(i))) for i, name in enumerate(law)}
     return [found[name] for name in names]
 
 

@@ -69,9 +69,14 @@ Array = NDArray[np.float64]
 GUIDE: Style = {"color": "0.6", "linewidth": 0.6, "linestyle": "--", "zorder": 0}
 LETTER: Style = {"color": "0.25", "linewidth": 0.9, "linestyle": (0, (1, 1)), "zorder": 1}
 LETTER_POINTS: Style = {
-    "color": "black", "marker": "*", "markersize": 6.5, "markeredgecolor": "white", "markeredgewidth": 0.4,
-    "linestyle": "none", "zorder": 6,
-}  # fmt: skip
+    "color": "black",
+    "marker": "*",
+    "markersize": 6.5,
+    "markeredgecolor": "white",
+    "markeredgewidth": 0.4,
+    "linestyle": "none",
+    "zorder": 6,
+}
 """Lines that lead the eye; a value that the letter prints; its points."""
 
 STYLE: Any = {
@@ -142,18 +147,29 @@ def points(number: int) -> Style:
 
 
 def strobe_points(
-    axes: Axes, amplitude: Array, points: Array, settled: NDArray[np.bool_],
-    look: tuple[str, str, float, int], words: str,
-) -> None:  # fmt: skip
+    axes: Axes,
+    amplitude: Array,
+    points: Array,
+    settled: NDArray[np.bool_],
+    look: tuple[str, str, float, int],
+    words: str,
+) -> None:
     """Strobe `points`, shape (n_amplitudes, n_strobes), of a scan: `UP` or `DOWN`; pale where not settled."""
     edge, face, size, order = look
     for kept, share in ((settled, 1.0), (~settled, PALE)):
         axes.plot(
-            np.repeat(amplitude[kept], points.shape[1]), points[kept].ravel(), linestyle="none", marker="o",
-            markersize=size, markeredgewidth=0.4, markeredgecolor=tint(edge, share), rasterized=True,
-            markerfacecolor=face if face == "none" else tint(face, share), zorder=order * share,
+            np.repeat(amplitude[kept], points.shape[1]),
+            points[kept].ravel(),
+            linestyle="none",
+            marker="o",
+            markersize=size,
+            markeredgewidth=0.4,
+            markeredgecolor=tint(edge, share),
+            rasterized=True,
+            markerfacecolor=face if face == "none" else tint(face, share),
+            zorder=order * share,
             label=words if share == 1.0 else f"_{words}",
-        )  # fmt: skip
+        )
 
 
 def tint(colour: str, share: float) -> str:
@@ -195,9 +211,16 @@ def mark_letter(axis: Axis, value: float, *, words: str = "letter", along: float
         place, offset, across = (along, value), (0.0, 2.0), axes.get_yaxis_transform()
         sides = ("right" if end else "left", "bottom")
     axes.annotate(
-        words, place, xycoords=across, xytext=offset, textcoords="offset points", ha=sides[0], va=sides[1],
-        fontsize=NOTE, color=LETTER["color"],
-    )  # fmt: skip
+        words,
+        place,
+        xycoords=across,
+        xytext=offset,
+        textcoords="offset points",
+        ha=sides[0],
+        va=sides[1],
+        fontsize=NOTE,
+        color=LETTER["color"],
+    )
 
 
 def save(figure: Figure, folder: Path, name: str) -> tuple[Path, Path]:

@@ -39,7 +39,7 @@ from studies.files import (
     make_folder,
     versions,
     write_atomically,
-)  # fmt: skip
+)
 from studies.least_model import least_modes
 from studies.scene import Scene, free_period
 
@@ -137,8 +137,10 @@ class Run:
         if scene.spring.kind != "modal_data":
             told, found = scene.single_mode.free_period_s, free_period(scene)
             if abs(told / found - 1.0) > SAME_SPRING:
-                doubt = (f"single_mode.free_period_s is {told:g} s, but the first mode of the spring has "
-                         f"{found:.5g} s: map and Eq. (1) describe another spring than the beam")  # fmt: skip
+                doubt = (
+                    f"single_mode.free_period_s is {told:g} s, but the first mode of the spring has "
+                    f"{found:.5g} s: map and Eq. (1) describe another spring than the beam"
+                )
                 self.warn(doubt)
         return self.scene
 
@@ -231,25 +233,42 @@ class Run:
         self.closed = True
         settings = {"quick": self.quick, "workers": self.workers, "executor": self.executor, **self.options}
         common = {
-            "schema": SCHEMA, "study": self.study, "status": status, "settings": settings,
-            "provenance": self.scene.provenance(), "warnings": list(self.warnings),
-        }  # fmt: skip
+            "schema": SCHEMA,
+            "study": self.study,
+            "status": status,
+            "settings": settings,
+            "provenance": self.scene.provenance(),
+            "warnings": list(self.warnings),
+        }
         wall_time = round(self.wall_time, 3)
         summary = {
-            **common, "model_choice": self.model_choice, "failures": self.failures,
-            "failed_cells": len(self.failures), "verdicts": self._verdicts, "answers": self._answers,
-        }  # fmt: skip
+            **common,
+            "model_choice": self.model_choice,
+            "failures": self.failures,
+            "failed_cells": len(self.failures),
+            "verdicts": self._verdicts,
+            "answers": self._answers,
+        }
         if taken := sorted(summary.keys() & results.keys()):
             raise ValueError(f"{self.study} returns {', '.join(taken)}, keys that every summary has already")
         summary |= results
         self.json("summary", summary)
         self.path("manifest.json")
-        self.json("manifest", {
-            **common, "command": self.command, "parameters": self.scene.values(), "versions": versions(),
-            "git": git_state(), "fingerprint": self._fingerprint,
-            "begun": self._date.isoformat(timespec="seconds"), "wall_time_s": wall_time,
-            "files": sorted(self.files), "captions": self._captions,
-        })  # fmt: skip
+        self.json(
+            "manifest",
+            {
+                **common,
+                "command": self.command,
+                "parameters": self.scene.values(),
+                "versions": versions(),
+                "git": git_state(),
+                "fingerprint": self._fingerprint,
+                "begun": self._date.isoformat(timespec="seconds"),
+                "wall_time_s": wall_time,
+                "files": sorted(self.files),
+                "captions": self._captions,
+            },
+        )
         return {**summary, "folder": self.folder, "wall_time_s": wall_time}
 
 

@@ -107,10 +107,16 @@ class Study:
         for sentence in doubtful:
             print(f"warning: {sentence}", file=sys.stderr)
         run = Run(
-            study=self.name, folder=Path(given["out"]) / self.name, scene=scene, quick=given["quick"],
-            workers=given["workers"], executor=given["executor"], options=chosen, warnings=doubtful,
+            study=self.name,
+            folder=Path(given["out"]) / self.name,
+            scene=scene,
+            quick=given["quick"],
+            workers=given["workers"],
+            executor=given["executor"],
+            options=chosen,
+            warnings=doubtful,
             command=shlex.join([*command.split(), *argv]),
-        )  # fmt: skip
+        )
 
         def close(code: int, status: str, results: Mapping[str, object]) -> None:
             summary = run.close(status, results)

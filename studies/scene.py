@@ -34,10 +34,8 @@ from contact import (
     band,
 )
 from studies import letter
-from studies.scene_keys import SceneError, shown
-from studies.scene_spring import (
-    READOUT as READOUT,
-)
+from studies.scene_key import SceneError, shown
+from studies.scene_spring import READOUT as READOUT
 from studies.scene_spring import (
     backbone_of,
     damping_of,
@@ -47,18 +45,10 @@ from studies.scene_spring import (
     single_mode_of,
     spring_of,
 )
-from studies.scene_spring import (
-    elements_of as elements_of,
-)
-from studies.scene_spring import (
-    free_period as free_period,
-)
-from studies.scene_spring import (
-    modes_of as modes_of,
-)
-from studies.scene_spring import (
-    sections_of as sections_of,
-)
+from studies.scene_spring import elements_of as elements_of
+from studies.scene_spring import free_period as free_period
+from studies.scene_spring import modes_of as modes_of
+from studies.scene_spring import sections_of as sections_of
 from studies.scene_values import Scene, doubts, scene_from_text
 
 SCENES = Path(__file__).resolve().parent / "scenes"
@@ -134,11 +124,16 @@ def approach_speed(frequency: float, gap: float, excess: float) -> float:
 
 def hertz_of(scene: Scene) -> HertzContact:
     """Hertz's law for the ball and the plate of the scene."""
-    return scene.make(HertzContact.of_bodies, {
-        "radius": "tip.ball_radius_m", "youngs_modulus": "tip.ball_young_modulus_pa",
-        "poissons_ratio": "tip.ball_poisson_ratio", "other_modulus": "tip.plate_young_modulus_pa",
-        "other_ratio": "tip.plate_poisson_ratio",
-    })  # fmt: skip
+    return scene.make(
+        HertzContact.of_bodies,
+        {
+            "radius": "tip.ball_radius_m",
+            "youngs_modulus": "tip.ball_young_modulus_pa",
+            "poissons_ratio": "tip.ball_poisson_ratio",
+            "other_modulus": "tip.plate_young_modulus_pa",
+            "other_ratio": "tip.plate_poisson_ratio",
+        },
+    )
 
 
 def contact_law_of(scene: Scene) -> ContactLaw:
@@ -194,17 +189,23 @@ def nordmark_at(scene: Scene, frequency: float) -> NordmarkMap:
 def band_of(scene: Scene, period: int) -> Band:
     """The band of p_m of the map with the scene's single mode, m = `period`."""
     keys = scene.single_mode
-    return band(period, free_period=keys.free_period_s, decay_rate=keys.decay_rate_per_s,
-                restitution=keys.restitution)  # fmt: skip
+    return band(
+        period, free_period=keys.free_period_s, decay_rate=keys.decay_rate_per_s, restitution=keys.restitution
+    )
 
 
 def nonlinear_mode_at(scene: Scene, frequency: float, backbone: Backbone | None = None) -> NonlinearMode:
     """Eq. (1) of the letter at `frequency` [Hz] with cubic stiffness and inertia, by default the spring's."""
     keys, cubic = scene.single_mode, backbone_of(scene) if backbone is None else backbone
     return NonlinearMode(
-        free_period=keys.free_period_s, decay_rate=keys.decay_rate_per_s, restitution=keys.restitution,
-        gap=scene.stop.gap_m, frequency=frequency, stiffness=cubic.stiffness, inertia=cubic.inertia,
-    )  # fmt: skip
+        free_period=keys.free_period_s,
+        decay_rate=keys.decay_rate_per_s,
+        restitution=keys.restitution,
+        gap=scene.stop.gap_m,
+        frequency=frequency,
+        stiffness=cubic.stiffness,
+        inertia=cubic.inertia,
+    )
 
 
 def period_shifts(scene: Scene) -> Mapping[float, tuple[float, float]]:

@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 import beam
 from beam import LeafSpring, ModalModel, Modes, StripSection
-from studies.scene_keys import MODE_LISTS, SceneError
+from studies.scene_key import SceneError
+from studies.scene_keys import MODE_LISTS
 from studies.scene_values import Scene
 
 READOUT = "readout"
@@ -44,27 +45,42 @@ DAMPING = {
     "strips": (beam.MeasuredDecay, {"decay_rate": "damping.decay_rate_per_s"}),
     "constant_ratio": (beam.ConstantRatio, {"ratio": "damping.ratio"}),
     "constant_loss_factor": (beam.ConstantLossFactor, {"loss_factor": "damping.loss_factor"}),
-    "rayleigh": (beam.Rayleigh, {"mass_coefficient": "damping.rayleigh_alpha_per_s",
-                                 "stiffness_coefficient": "damping.rayleigh_beta_s"}),
+    "rayleigh": (
+        beam.Rayleigh,
+        {
+            "mass_coefficient": "damping.rayleigh_alpha_per_s",
+            "stiffness_coefficient": "damping.rayleigh_beta_s",
+        },
+    ),
     "measured": (MeasuredRates, {"rates": "damping.measured_rates_per_s"}),
-}  # fmt: skip
+}
 """damping.kind -> the rule, and its arguments, to which the rates are proportional, with their keys."""
 
 
 def sections_of(scene: Scene) -> tuple[StripSection, StripSection | None]:
     """The bare sheet, and the sheet with its tape (None without tape)."""
-    sheet = scene.make(beam.Material, {
-        "youngs_modulus": "spring.young_modulus_pa", "poissons_ratio": "spring.poisson_ratio",
-        "density": "spring.density_kg_m3", "loss_factor": "spring.loss_factor",
-    })  # fmt: skip
+    sheet = scene.make(
+        beam.Material,
+        {
+            "youngs_modulus": "spring.young_modulus_pa",
+            "poissons_ratio": "spring.poisson_ratio",
+            "density": "spring.density_kg_m3",
+            "loss_factor": "spring.loss_factor",
+        },
+    )
     size = {"width": "spring.width_m", "thickness": "spring.thickness_m"}
     bare = scene.make(StripSection, size, material=sheet)
     if scene.spring.tape_thickness_m == 0.0:
         return bare, None
-    tape = scene.make(beam.Material, {
-        "youngs_modulus": "spring.tape_modulus_pa", "poissons_ratio": "spring.tape_poisson_ratio",
-        "density": "spring.tape_density_kg_m3", "loss_factor": "spring.tape_loss_factor",
-    })  # fmt: skip
+    tape = scene.make(
+        beam.Material,
+        {
+            "youngs_modulus": "spring.tape_modulus_pa",
+            "poissons_ratio": "spring.tape_poisson_ratio",
+            "density": "spring.tape_density_kg_m3",
+            "loss_factor": "spring.tape_loss_factor",
+        },
+    )
     both = scene.spring.tape_sides == 2
     layer = scene.make(beam.Layer, {"thickness": "spring.tape_thickness_m"}, material=tape, both_sides=both)
     return bare, dataclasses.replace(bare, layer=layer)
@@ -84,9 +100,12 @@ def spring_of(scene: Scene) -> LeafSpring:
     seen_at = scene.readout.arc_fraction * (leg + beyond.get(keys.kind, 0.0))
     readout = scene.make(beam.Readout, {"quantity": "readout.quantity"}, at=seen_at)
     common: dict[str, Any] = {
-        "section": bare, "damped_section": taped, "tip": ball, "readouts": {READOUT: readout},
+        "section": bare,
+        "damped_section": taped,
+        "tip": ball,
+        "readouts": {READOUT: readout},
         "damped_span": None if taped is None else (0.0, keys.tape_coverage * leg),
-    }  # fmt: skip
+    }
     length = {"length": "spring.leg_length_m"}
 
     def bent(length: float, radius: float, bend_radius: float) -> LeafSpring:
@@ -138,10 +157,14 @@ def modes_of(scene: Scene, count: int | None = None) -> Modes:
     shapes, omega = modes.shapes[:, :count], modes.omega[:count]
     energies = discretization.strain_energies(shapes).sum(axis=(0, 1))
     return dataclasses.replace(
-        modes, omega=np.where(omega > 0.0, np.sqrt(2.0 * energies), 0.0), shapes=shapes,
-        phi=modes.phi[:count], participation=modes.participation[:count], coupled=modes.coupled[:count],
+        modes,
+        omega=np.where(omega > 0.0, np.sqrt(2.0 * energies), 0.0),
+        shapes=shapes,
+        phi=modes.phi[:count],
+        participation=modes.participation[:count],
+        coupled=modes.coupled[:count],
         readouts={name: row[:count] for name, row in modes.readouts.items()},
-    )  # fmt: skip
+    )
 
 
 def damping_of(scene: Scene) -> beam.Damping:
@@ -164,10 +187,16 @@ def model_of(scene: Scene) -> ModalModel:
     frequencies, rates, tip_values, participation = (values[order] for values in lists)
     keys = {"omega": "modal_data.frequencies_hz", "decay_rate": "modal_data.decay_rates_per_s"}
     return scene.make(
-        ModalModel, keys, omega=2.0 * np.pi * frequencies, decay_rate=rates, phi=tip_values,
-        participation=participation, static_compliance=data.static_compliance_m_per_n or None,
-        tip_mass=data.tip_mass_kg or None, readouts={READOUT: tip_values},
-    )  # fmt: skip
+        ModalModel,
+        keys,
+        omega=2.0 * np.pi * frequencies,
+        decay_rate=rates,
+        phi=tip_values,
+        participation=participation,
+        static_compliance=data.static_compliance_m_per_n or None,
+        tip_mass=data.tip_mass_kg or None,
+        readouts={READOUT: tip_values},
+    )
 
 
 def require_drive_below(scene: Scene, model: ModalModel, frequency: float | None = None) -> None:

@@ -23,7 +23,8 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from studies import scene_keys
-from studies.scene_keys import GIVEN, MODE_LISTS, Key, SceneError, Value, shown
+from studies.scene_key import GIVEN, Key, SceneError, Value, shown
+from studies.scene_keys import MODE_LISTS
 
 T = TypeVar("T")
 
@@ -104,11 +105,13 @@ class Scene:
             section, name = split(key)
             about = " ".join((getattr(self, section).__doc__ or "").split())
             here = "" if self[key] == known.default else f"; here {provenance[key]}"
-            lines.setdefault(section, [f"# {about}", f"[{section}]"]).extend([
-                f"# {known.meaning}",
-                f"#   {known.valid()}; default {toml(known.default)}, {known.provenance}{here}",
-                f"{name} = {toml(self[key])}",
-            ])  # fmt: skip
+            lines.setdefault(section, [f"# {about}", f"[{section}]"]).extend(
+                [
+                    f"# {known.meaning}",
+                    f"#   {known.valid()}; default {toml(known.default)}, {known.provenance}{here}",
+                    f"{name} = {toml(self[key])}",
+                ]
+            )
         return "\n\n".join(map("\n".join, lines.values())) + "\n"
 
     @property

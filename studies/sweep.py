@@ -106,9 +106,15 @@ def _begin(folder: Path, settings: Mapping[str, object], fresh: bool) -> None:
 
 
 def sweep(
-    run: Run, name: str, settings: Mapping[str, object], arguments: Sequence[A],
-    compute: Callable[[A], Column], *, shard: Shard | None = None, fresh: bool = False,
-) -> list[Column | None]:  # fmt: skip
+    run: Run,
+    name: str,
+    settings: Mapping[str, object],
+    arguments: Sequence[A],
+    compute: Callable[[A], Column],
+    *,
+    shard: Shard | None = None,
+    fresh: bool = False,
+) -> list[Column | None]:
     """Compute the columns of `shard` (all by default) that are not stored yet; returns all that are there,
     in order.
 

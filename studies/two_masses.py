@@ -18,8 +18,11 @@ def two_masses(w: float, force: float = 0.1) -> ImpactOscillator:
     """The system driven at W = `w` [rad/s] by `force` [N]; the read-out is mass 2, which the source plots."""
     squares, shapes = np.linalg.eigh(np.array([[1.0, -1.0], [-1.0, 2.0]]))
     model = ModalModel(
-        omega=np.sqrt(squares), decay_rate=0.03 * squares, phi=shapes[0], participation=shapes[1],
+        omega=np.sqrt(squares),
+        decay_rate=0.03 * squares,
+        phi=shapes[0],
+        participation=shapes[1],
         readouts={"mass 2": shapes[1]},
-    )  # fmt: skip
+    )
     drive = HarmonicDrive(frequency=w / (2.0 * np.pi), amplitude=force / w**2)
     return ImpactOscillator(model=model, stop=Stop(gap=1.0, law=LinearContact(stiffness=100.0)), drive=drive)

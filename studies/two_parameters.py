@@ -66,9 +66,10 @@ def law_of(oscillator: ImpactOscillator) -> DelayedRestitution:
         return float(np.log(np.clip(v, speed[0], speed[-1])))
 
     return DelayedRestitution(
-        restitution=lambda v: float(tables[0](within(v))), delay=lambda v: v * float(tables[1](within(v))),
+        restitution=lambda v: float(tables[0](within(v))),
+        delay=lambda v: v * float(tables[1](within(v))),
         speeds=(1e-3 * float(speed[0]), float(speed[-1])),
-    )  # fmt: skip
+    )
 
 
 def two_parameters_at(scene: Scene, frequency: float, model: ModalModel | None = None) -> ImpactOscillator:
@@ -135,8 +136,13 @@ def extracted(
     strobed = StrobedNordmarkMap(map=replace(nordmark_at(scene, frequency), restitution=restitution))
     born = born_period(strobed, excess, most_cycles=max(scene.scan.settle_cycles, 1))
     return Extracted(
-        frequency_hz=frequency, m=period, approach_m_per_s=speed, restitution=restitution,
-        delay_s=law.delay(speed), map=born, fold_of_map=fold_excess(strobed, born),
+        frequency_hz=frequency,
+        m=period,
+        approach_m_per_s=speed,
+        restitution=restitution,
+        delay_s=law.delay(speed),
+        map=born,
+        fold_of_map=fold_excess(strobed, born),
         ringing_left=float(np.exp(-0.5 * model.decay_rate[1:] * period / frequency).max(initial=0.0)),
         fold=fold_of_kicks(KickFamily(oscillator=beam, period=period)),
-    )  # fmt: skip
+    )

@@ -47,12 +47,12 @@ STRIDE = "a stride in search of a bracket: the tip stays below the gap far longe
 EQUIVALENT = {
     "contact/flight/bounds.py: under = rate * rate - 2 * (2.0 * bend * (height + goal))": CHECKED,
     "contact/flight/bounds.py: a = -c * v - 2 * (o2 * u)": CHECKED,
-    "contact/single_mode/loop.py: twist = n.decay * drop + n.stiffness * q": CHECKED,
-    "contact/single_mode/one_impact.py: se = 1.0 / (rate + x * x * (0.5 * twist - x * bend / 6.0))": CHECKED,
-    "contact/single_mode/one_impact.py: d += d * (y2 * ratio)": CHECKED,
+    "contact/one_mode/loop.py: twist = n.decay * drop + n.stiffness * q": CHECKED,
+    "contact/one_mode/one_impact.py: se = 1.0 / (rate + x * x * (0.5 * twist - x * bend / 6.0))": CHECKED,
+    "contact/one_mode/one_impact.py: d += d * (y2 * ratio)": CHECKED,
     "contact/virtual_motion.py: near, far = (far, far + 2 * (direction * step))": STRIDE,
     "contact/virtual_motion.py: step = 2 * (self.motion.period / SAMPLES)": STRIDE,
-    "contact/orbits/events.py: if not 0.0 < t < 1.0:": "more orbits are tried for a pair of folds",
+    "contact/orbits/branches/events.py: if not 0.0 < t < 1.0:": "more orbits are tried for a pair of folds",
     "contact/touch/linear.py: for n in range(time_series.ORDER - 1 - 1):": "the last order is below rounding",
 }
 """Errors that change nothing observable: "file: line with the error", and why."""
@@ -173,7 +173,7 @@ def main() -> None:
     tree, table = args.out.resolve() / "tree", args.out / "planted.csv"
     ignore = shutil.ignore_patterns("__pycache__", ".*", "results")
     shutil.copytree(ROOT, tree, ignore=ignore, dirs_exist_ok=True)
-    subprocess.run([sys.executable, "-m", "contact.warm_up"], cwd=tree, check=True)
+    subprocess.run([sys.executable, "-m", "contact.machine.warm_up"], cwd=tree, check=True)
     kernels = set(tree.glob("contact/__pycache__/kernels-*"))
     done = {(row[0], row[1]): row for row in csv.reader(table.open())} if table.exists() else {}
     wanted, begun, missed = chosen(args.seed, args.places, args.only), time.monotonic(), []

@@ -22,11 +22,36 @@ DOORS = ("beam", "beam.space", "contact", "contact.orbits", "contact.integrators
 """Where studies get names from: what these export, and nothing behind them."""
 
 FLOW = {
-    "beam": ("parameters", "material", "section", "centreline", "spring", "assembly", "modes", "reduction",
-             "space", "spring_mesh", "export"),
-    "contact": ("laws", "flight", "oscillator", "trajectory", "recorder", "touch", "event_loop", "exact_run",
-                "integrators", "simulation", "stroboscope", "collision", "orbits", "warm_up"),
-}  # fmt: skip
+    "beam": (
+        "parameters",
+        "material",
+        "section",
+        "centreline",
+        "spring",
+        "assembly",
+        "modes",
+        "reduction",
+        "space",
+        "spring_mesh",
+        "export",
+    ),
+    "contact": (
+        "machine.compiled",
+        "laws",
+        "flight",
+        "oscillator",
+        "trajectory",
+        "touch",
+        "engine",
+        "integrators",
+        "simulation",
+        "sensitivity",
+        "maps",
+        "collision",
+        "orbits",
+        "machine.warm_up",
+    ),
+}
 """Files and folders in the order in which they build on each other: none needs a later one."""
 
 SLOW = ("matplotlib", "meshio", "pyvista", "skfem", "vtkmodules")

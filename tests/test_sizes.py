@@ -10,7 +10,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
 KERNELS = {"kernel", "inlined", "part"}
-"""Decorators of ``contact.compiled``: such functions may be longer, for a call costs them time."""
+"""Decorators of ``contact.machine.compiled``: such functions may be longer, for a call costs them time."""
 
 
 def files(package: str) -> Iterator[tuple[str, str]]:

@@ -33,35 +33,100 @@ NO_NUMBERS = ("a\nb" * 100, True, 1j, [1.0], [], np.arange(1000.0), {"deep": [1]
 """In place of a number: texts, truth values, complex numbers, lists, arrays, empty and long ones."""
 
 UNITS = {
-    "youngs_modulus": "Pa", "density": "kg/m^3", "mass": "kg", "tip_mass": "kg", "rotary_inertia": "kg m^2",
-    "length": "m", "width": "m", "thickness": "m", "radius": "m", "gap": "m", "tip_at": "m", "at": "m",
-    "angle": "rad", "omega": "rad/s", "decay_rate": "1/s", "frequency": "Hz", "drive_frequency": "Hz",
-    "free_period": "s", "duration": "s", "delay": "s", "time": "s", "step": "s", "amplitude": "m",
-    "speed": "m/s", "velocity": "m/s", "dissipation": "s/m", "damping": "N s/m", "bending_stiffness": "N m^2",
-    "mass_coefficient": "1/s", "stiffness_coefficient": "s",
-}  # fmt: skip
+    "youngs_modulus": "Pa",
+    "density": "kg/m^3",
+    "mass": "kg",
+    "tip_mass": "kg",
+    "rotary_inertia": "kg m^2",
+    "length": "m",
+    "width": "m",
+    "thickness": "m",
+    "radius": "m",
+    "gap": "m",
+    "tip_at": "m",
+    "at": "m",
+    "angle": "rad",
+    "omega": "rad/s",
+    "decay_rate": "1/s",
+    "frequency": "Hz",
+    "drive_frequency": "Hz",
+    "free_period": "s",
+    "duration": "s",
+    "delay": "s",
+    "time": "s",
+    "step": "s",
+    "amplitude": "m",
+    "speed": "m/s",
+    "velocity": "m/s",
+    "dissipation": "s/m",
+    "damping": "N s/m",
+    "bending_stiffness": "N m^2",
+    "mass_coefficient": "1/s",
+    "stiffness_coefficient": "s",
+}
 """Unit that the sentence gives with a number which is refused."""
 
 RESULTS = {
     "beam": {"Backbone", "ExactModes", "FiniteRotation", "PeriodicMotion", "ShapesAlong", "SpringMesh"},
-    "contact": {"Band", "Collision", "Impacts", "MaximalOrbit", "SingleImpactOrbit", "StrobedOrbit",
-                "Trajectory"},
-    "orbits": {"Branch", "Event", "Exponents", "Kick", "MotionDerivatives", "OrbitDerivatives",
-               "OrbitDiagram", "OrbitEnd", "PeriodicOrbit", "ScannedColumn", "Settled", "SingleImpactOrbit"},
+    "contact": {
+        "Band",
+        "Collision",
+        "Impacts",
+        "MaximalOrbit",
+        "SingleImpactOrbit",
+        "StrobedOrbit",
+        "Trajectory",
+    },
+    "orbits": {
+        "Branch",
+        "Event",
+        "Exponents",
+        "Kick",
+        "MotionDerivatives",
+        "OrbitDerivatives",
+        "OrbitDiagram",
+        "OrbitEnd",
+        "PeriodicOrbit",
+        "ScannedColumn",
+        "Settled",
+        "SingleImpactOrbit",
+    },
     "integrators": {"Run"},
-}  # fmt: skip
+}
 """What entries return; nobody has to make one by hand."""
 
 NO_ENTRIES = {
-    "beam": {"Damping", "InvalidType", "InvalidValue", "Refusal", "Support", "SuspiciousValue",
-             # in tests/beam/test_paraview_files.py:
-             "solid_spring", "write_frames", "write_mode_motion", "write_modes"},
-    "contact": {"BranchEnded", "Chatter", "ContactError", "ContactLaw", "ContactTooStiff", "Diverged",
-                "ImpactKind", "NoDerivative", "NotPeriodic", "Regime", "StepTooLarge", "StrobedMap",
-                "UnresolvedCrossing"},
+    "beam": {
+        "Damping",
+        "InvalidType",
+        "InvalidValue",
+        "Refusal",
+        "Support",
+        "SuspiciousValue",
+        # in tests/beam/test_paraview_files.py:
+        "solid_spring",
+        "write_frames",
+        "write_mode_motion",
+        "write_modes",
+    },
+    "contact": {
+        "BranchEnded",
+        "Chatter",
+        "ContactError",
+        "ContactLaw",
+        "ContactTooStiff",
+        "Diverged",
+        "ImpactKind",
+        "NoDerivative",
+        "NotPeriodic",
+        "Regime",
+        "StepTooLarge",
+        "StrobedMap",
+        "UnresolvedCrossing",
+    },
     "orbits": {"Family", "MaximalFamily", "Orbit"},  # the second is in the table of contact
     "integrators": {"Exact", "Integrator"},  # the first takes no numbers
-}  # fmt: skip
+}
 """Protocols, abstract classes, types, enumerations and errors."""
 
 NUMBERS = [
@@ -121,7 +186,7 @@ def test_the_sentence_names_the_field_and_the_value(entry: Entry, field: str, va
         return
     start = re.search(rf"\b{field}\b(\[.*?\])?( of the [a-z ]+?)? (is|has|holds|must|runs from) ", text)
     assert start, text
-    assert any(words in text[start.start():] for words in quoted(value)), text
+    assert any(words in text[start.start() :] for words in quoted(value)), text
     if error is ValueError and type(value) in (int, float) and field in UNITS:
         assert f"{shown(value)} {UNITS[field]}" in text
 

@@ -23,28 +23,60 @@ ROOT = Path(__file__).resolve().parent.parent
 RULER = ["--scene", "steel_ruler"]
 MODAL = ["--scene", "measured_modes"]
 TIGHT = ["--scene", "tight_fold"]
-FIVE = ["modal_data.frequencies_hz=[5.5,40.0,120.0]", "modal_data.decay_rates_per_s=[0.8,6.0,18.0]",
-        "modal_data.tip_values=[7.0,4.5,3.0]", "modal_data.participation=[0.17,-0.09,0.05]",
-        "modal_data.static_compliance_m_per_n=0", "single_mode.free_period_s=0.1818",
-        "single_mode.decay_rate_per_s=0.8", "drive.frequencies_hz=[4.7,5.0]"]  # fmt: skip
-FAST = ["modal_data.frequencies_hz=[216.0,1500.0]", "modal_data.decay_rates_per_s=[30.0,200.0]",
-        "modal_data.tip_values=[7.0,4.5]", "modal_data.participation=[0.17,-0.09]", "stop.gap_m=2e-4",
-        "modal_data.static_compliance_m_per_n=0", "single_mode.free_period_s=0.00463",
-        "single_mode.decay_rate_per_s=30", "drive.frequencies_hz=[184.0,200.0]"]  # fmt: skip
-ONE_MODE = ["modal_data.frequencies_hz=[24.51]", "modal_data.decay_rates_per_s=[3.56]",
-            "modal_data.tip_values=[7.688]", "modal_data.participation=[0.1707]",
-            "modal_data.static_compliance_m_per_n=0", "modal_data.tip_mass_kg=0"]  # fmt: skip
+FIVE = [
+    "modal_data.frequencies_hz=[5.5,40.0,120.0]",
+    "modal_data.decay_rates_per_s=[0.8,6.0,18.0]",
+    "modal_data.tip_values=[7.0,4.5,3.0]",
+    "modal_data.participation=[0.17,-0.09,0.05]",
+    "modal_data.static_compliance_m_per_n=0",
+    "single_mode.free_period_s=0.1818",
+    "single_mode.decay_rate_per_s=0.8",
+    "drive.frequencies_hz=[4.7,5.0]",
+]
+FAST = [
+    "modal_data.frequencies_hz=[216.0,1500.0]",
+    "modal_data.decay_rates_per_s=[30.0,200.0]",
+    "modal_data.tip_values=[7.0,4.5]",
+    "modal_data.participation=[0.17,-0.09]",
+    "stop.gap_m=2e-4",
+    "modal_data.static_compliance_m_per_n=0",
+    "single_mode.free_period_s=0.00463",
+    "single_mode.decay_rate_per_s=30",
+    "drive.frequencies_hz=[184.0,200.0]",
+]
+ONE_MODE = [
+    "modal_data.frequencies_hz=[24.51]",
+    "modal_data.decay_rates_per_s=[3.56]",
+    "modal_data.tip_values=[7.688]",
+    "modal_data.participation=[0.1707]",
+    "modal_data.static_compliance_m_per_n=0",
+    "modal_data.tip_mass_kg=0",
+]
 SCENES: dict[str, tuple[list[str], list[str]]] = {
-    "letter": ([], []), "tight_fold": (TIGHT, []), "steel_ruler": (RULER, []), "measured_modes": (MODAL, []),
-    "stiff sheet": ([], ["spring.thickness_m=0.0024", "single_mode.free_period_s=0.0172",
-                         "drive.frequencies_hz=[49.6,51.0,55.5]"]),
-    "soft sheet": ([], ["spring.thickness_m=0.0006", "single_mode.free_period_s=0.114",
-                        "drive.frequencies_hz=[7.5,8.0]"]),
-    "light ball": ([], ["tip.mass_kg=0.0005"]), "no ball": ([], ["tip.mass_kg=0"]),
+    "letter": ([], []),
+    "tight_fold": (TIGHT, []),
+    "steel_ruler": (RULER, []),
+    "measured_modes": (MODAL, []),
+    "stiff sheet": (
+        [],
+        [
+            "spring.thickness_m=0.0024",
+            "single_mode.free_period_s=0.0172",
+            "drive.frequencies_hz=[49.6,51.0,55.5]",
+        ],
+    ),
+    "soft sheet": (
+        [],
+        ["spring.thickness_m=0.0006", "single_mode.free_period_s=0.114", "drive.frequencies_hz=[7.5,8.0]"],
+    ),
+    "light ball": ([], ["tip.mass_kg=0.0005"]),
+    "no ball": ([], ["tip.mass_kg=0"]),
     "one mode": (MODAL, ONE_MODE),
     "heavy ball": ([], ["tip.mass_kg=0.012", "drive.frequencies_hz=[18.5]"]),
-    "one mode kept": ([], ["modes.count=1"]), "30 modes": ([], ["modes.count=30"]),
-    "5 Hz": (MODAL, FIVE), "200 Hz": (MODAL, FAST),
+    "one mode kept": ([], ["modes.count=1"]),
+    "30 modes": ([], ["modes.count=30"]),
+    "5 Hz": (MODAL, FIVE),
+    "200 Hz": (MODAL, FAST),
     "Newton's law": ([], ["contact.law=newton"]),
     "Newton's law with loss": ([], ["contact.law=newton", "contact.local_restitution=0.3"]),
     "linear contact": ([], ["contact.law=linear"]),
@@ -55,7 +87,7 @@ SCENES: dict[str, tuple[list[str], list[str]]] = {
     "well damped": (RULER, ["damping.ratio=0.1", "single_mode.decay_rate_per_s=10.9"]),
     "pinned strip": ([], ["spring.kind=straight_strip", "spring.end_support=pinned", "tip.arc_fraction=0.5"]),
     "restitution 0.9": ([], ["single_mode.restitution=0.9", "drive.frequencies_hz=[23.4]"]),
-}  # fmt: skip
+}
 
 
 def run(name: str, scene: str, out: Path) -> list[str]:

@@ -43,10 +43,10 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from contact.compiled import kernel, part
 from contact.flight.elementary import sine_cosine
 from contact.flight.modal_flow import START_U, START_V, mode_flow
 from contact.flight.motion import DECAY, OMEGA, SQUARE, WEIGHT
+from contact.machine.compiled import kernel, part
 
 SKIP, ROOT, PEAK, NEAR, STALL = 0, 1, 2, 3, 4
 
@@ -164,9 +164,11 @@ def without_others(motion, flight, base, s):
     a = -c * v - o2 * u
     phi = motion.modes[WEIGHT, 0]
     return (
-        motion.level + steady + phi * u, steady_rate + phi * v, phi * a - w * w * steady,
+        motion.level + steady + phi * u,
+        steady_rate + phi * v,
+        phi * a - w * w * steady,
         -w * w * steady_rate - phi * (c * a + o2 * v),
-    )  # fmt: skip
+    )
 
 
 @part

@@ -21,7 +21,6 @@ from __future__ import annotations
 
 import math
 
-from contact.compiled import kernel, part
 from contact.flight.bounds import PEAK, ROOT, SKIP, certify, free_from, free_until, lowest_mode
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import (
@@ -42,7 +41,8 @@ from contact.flight.modal_flow import (
 )
 from contact.flight.motion import DECAY, LOAD, SLOWNESS, SQUARE, WEIGHT
 from contact.flight.tip_search import find_peak, find_root, tip_now
-from contact.vector_loops import LANES
+from contact.machine.compiled import kernel, part
+from contact.machine.vector_loops import LANES
 
 FREE, CROSSES, GRAZES, UNRESOLVED = 0, 1, 2, 3
 
@@ -119,8 +119,13 @@ def tip_rows(modes, flight, start, stop):
     THIRD, from rows U, V."""
     decay, square, phi, load = modes[DECAY], modes[SQUARE], modes[WEIGHT], modes[LOAD]
     u, v, height, rate, bend, third = (
-        flight[U], flight[V], flight[HEIGHT], flight[RATE], flight[BEND], flight[THIRD]
-    )  # fmt: skip
+        flight[U],
+        flight[V],
+        flight[HEIGHT],
+        flight[RATE],
+        flight[BEND],
+        flight[THIRD],
+    )
     for k in range(start, stop):
         c, o2 = decay[k], square[k]
         a = load[k] - c * v[k] - o2 * u[k]

@@ -14,7 +14,7 @@ import math
 
 import numpy as np
 
-from contact.compiled import inlined, kernel
+from contact.machine.compiled import inlined, kernel
 
 EPS = 2.220446049250313e-16
 """Distance from 1 to the next double."""
@@ -27,9 +27,7 @@ _QUARTER, _QUARTER_LOW = 1.5707963267341256, 6.077100506506192e-11  # pi/2, its 
 _LN2, _LN2_LOW = 0.6931471803691238, 1.9082149292705877e-10  # ln 2, its first 32 bits and the rest
 _LOWEST, _HIGHEST = -708.0, 709.0  # exponents between which powers of two are tabulated
 _POWERS_OF_TWO = 2.0 ** np.arange(-1022.0, 1024.0)
-_S3, _S5, _S7, _S9, _S11, _S13, _S15, _S17 = (
-    (-1.0) ** n / math.factorial(2 * n + 1) for n in range(1, 9)
-)
+_S3, _S5, _S7, _S9, _S11, _S13, _S15, _S17 = ((-1.0) ** n / math.factorial(2 * n + 1) for n in range(1, 9))
 _C4, _C6, _C8, _C10, _C12, _C14, _C16 = ((-1.0) ** n / math.factorial(2 * n) for n in range(2, 9))
 _E2, _E3, _E4, _E5, _E6, _E7, _E8, _E9, _E10, _E11, _E12, _E13 = (
     1.0 / math.factorial(n) for n in range(2, 14)

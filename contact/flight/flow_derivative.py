@@ -14,9 +14,9 @@ from __future__ import annotations
 
 import math
 
-from contact.compiled import kernel
 from contact.flight.modal_flow import flow_matrix
 from contact.flight.motion import DAMPED, DECAY, LOW, OMEGA
+from contact.machine.compiled import kernel
 
 TERMS = 10
 """Terms of the series for |D t^2| < 1: the next one is below 1e-19 of the first."""

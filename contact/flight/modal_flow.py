@@ -30,7 +30,6 @@ import math
 
 import numpy as np
 
-from contact.compiled import inlined, kernel
 from contact.flight.elementary import EPS, FARTHEST, exponential, sine_cosine, turned, two_product
 from contact.flight.motion import (
     DAMPED,
@@ -45,7 +44,8 @@ from contact.flight.motion import (
     WEIGHT,
     Motion,
 )
-from contact.vector_loops import aligned
+from contact.machine.compiled import inlined, kernel
+from contact.machine.vector_loops import aligned
 
 START_U, START_V, U, V, HEIGHT, RATE, BEND, THIRD, ABOVE = range(9)
 """Rows of the work space of a flight: deviation and velocity at its start, and now; what they add to the tip
@@ -142,9 +142,7 @@ def flow(motion, flight, start, stop, t):
         ringing_flow(motion.modes, flight, start, stop, t)
     else:
         for k in range(start, stop):
-            flight[U, k], flight[V, k] = mode_flow(
-                motion.modes, k, flight[START_U, k], flight[START_V, k], t
-            )
+            flight[U, k], flight[V, k] = mode_flow(motion.modes, k, flight[START_U, k], flight[START_V, k], t)
 
 
 @kernel
@@ -278,3 +276,9 @@ def steady_motion(motion: Motion, clock: float | np.ndarray) -> tuple[np.ndarray
     phase = motion.drive * np.asarray(clock, dtype=float)[..., None]
     s, c = np.sin(phase), np.cos(phase)
     return offset + sine * s + cosine * c, motion.drive * (sine * c - cosine * s)
+
+
+def free_flow(motion: Motion, time: float) -> np.ndarray:
+    """Free flow (u, u') -> (u, u') of each mode over `time` [s], of either sign, shape (n_modes, 2, 2)."""
+    flows: np.ndarray = flow_over(motion, time)[:, :4].reshape(-1, 2, 2)
+    return flows

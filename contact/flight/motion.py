@@ -13,14 +13,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from contact.compiled import kernel
 from contact.flight.elementary import square_root, two_product
-from contact.vector_loops import LANES
+from contact.machine.compiled import kernel
+from contact.machine.vector_loops import LANES
 
 DECAY, SQUARE, WEIGHT, LOAD, DAMPED, LOW, OMEGA, SLOWNESS, SHORTNESS, SINE, COSINE, OFFSET = range(12)
 """Rows of the table of modes: c, omega^2, phi, g of the modes of zero frequency, d = sqrt|D| as a sum of two,
 omega, 1/omega (or zero), 1/max(omega, c/2) (or the period), S, C, g/omega^2.  The first four are those that
-``contact.vector_loops`` counts on."""
+``contact.machine.vector_loops`` counts on."""
 
 
 class Motion(NamedTuple):
@@ -105,9 +105,17 @@ class Motion(NamedTuple):
 
 
 def motion_of(
-    omega: np.ndarray, decay: np.ndarray, phi: np.ndarray, *, law: Any, gap: float, drive: float = 0.0,
-    period: float = 1.0, response: np.ndarray | None = None, load: np.ndarray | None = None,
-) -> Motion:  # fmt: skip
+    omega: np.ndarray,
+    decay: np.ndarray,
+    phi: np.ndarray,
+    *,
+    law: Any,
+    gap: float,
+    drive: float = 0.0,
+    period: float = 1.0,
+    response: np.ndarray | None = None,
+    load: np.ndarray | None = None,
+) -> Motion:
     """The numbers of an oscillator.
 
     Parameters
@@ -142,13 +150,25 @@ def motion_of(
     tip = complex(phi @ response)
     numbers = law.numbers
     return Motion(
-        modes=modes, size=n, level=float(phi @ offset) - float(gap), tip_sine=tip.real, tip_cosine=tip.imag,
-        amplitude=math.hypot(tip.real, tip.imag), drive=float(drive), period=float(period), gap=float(gap),
-        compliance=float(phi @ phi), steady_energy=float(drive**2 * np.sum(np.abs(response) ** 2)),
-        law=int(law.code), number0=float(numbers[0]), number1=float(numbers[1]), plain=plain,
-        phase_rate=float(pairs[:, 0].max()), fastest=float(max(drive, omega.max(), decay.max())),
+        modes=modes,
+        size=n,
+        level=float(phi @ offset) - float(gap),
+        tip_sine=tip.real,
+        tip_cosine=tip.imag,
+        amplitude=math.hypot(tip.real, tip.imag),
+        drive=float(drive),
+        period=float(period),
+        gap=float(gap),
+        compliance=float(phi @ phi),
+        steady_energy=float(drive**2 * np.sum(np.abs(response) ** 2)),
+        law=int(law.code),
+        number0=float(numbers[0]),
+        number1=float(numbers[1]),
+        plain=plain,
+        phase_rate=float(pairs[:, 0].max()),
+        fastest=float(max(drive, omega.max(), decay.max())),
         table=np.asarray(law.table),
-    )  # fmt: skip
+    )
 
 
 @kernel
@@ -160,10 +180,25 @@ def with_drive(motion, factor):
         modes[COSINE, k] *= factor
     m = motion
     return Motion(
-        modes, m.size, m.level, m.tip_sine * factor, m.tip_cosine * factor, m.amplitude * abs(factor),
-        m.drive, m.period, m.gap, m.compliance, m.steady_energy * factor * factor, m.law, m.number0,
-        m.number1, m.plain, m.phase_rate, m.fastest, m.table,
-    )  # fmt: skip
+        modes,
+        m.size,
+        m.level,
+        m.tip_sine * factor,
+        m.tip_cosine * factor,
+        m.amplitude * abs(factor),
+        m.drive,
+        m.period,
+        m.gap,
+        m.compliance,
+        m.steady_energy * factor * factor,
+        m.law,
+        m.number0,
+        m.number1,
+        m.plain,
+        m.phase_rate,
+        m.fastest,
+        m.table,
+    )
 
 
 @kernel

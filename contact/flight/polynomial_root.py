@@ -6,9 +6,9 @@ is the sum of the absolute terms at the far end.
 
 from __future__ import annotations
 
-from contact.compiled import kernel
 from contact.flight.bounds import PEAK, ROOT, SKIP, certify
 from contact.flight.elementary import EPS
+from contact.machine.compiled import kernel
 
 
 @kernel

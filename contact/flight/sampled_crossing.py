@@ -18,10 +18,10 @@ from __future__ import annotations
 
 import math
 
-from contact.compiled import kernel
 from contact.flight.crossing import CROSSES, FREE
 from contact.flight.modal_flow import START_U, START_V, apply_flow, carry, tip_rounding, tip_state
 from contact.flight.tip_search import find_peak, find_root, tip_now
+from contact.machine.compiled import kernel
 
 ALIGNED = 1e-9
 """Part of the spacing by which an interval may differ from it and still be stepped over by its flow: the

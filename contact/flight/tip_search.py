@@ -11,10 +11,10 @@ import math
 
 import numpy as np
 
-from contact.compiled import kernel
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import U, V, flow, load_state, new_flight, tip_bound, tip_rounding, tip_state
 from contact.flight.motion import DECAY, LOAD, SQUARE
+from contact.machine.compiled import kernel
 
 SHORTEST = 1e-9
 """Part of a flight below which no stretch is divided, which bounds their number: peak and valley that lie as

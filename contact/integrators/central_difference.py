@@ -25,7 +25,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from contact.compiled import kernel
 from contact.flight.modal_flow import push_on
 from contact.flight.motion import DECAY, Motion
 from contact.integrators.fixed_step import FixedStep, stiffness_at
@@ -39,6 +38,7 @@ from contact.integrators.grid import (
     tip_of,
 )
 from contact.laws import HERTZ, LINEAR
+from contact.machine.compiled import kernel
 
 
 @kernel

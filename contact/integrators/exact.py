@@ -15,7 +15,7 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from contact.exact_run import exact_trajectory
+from contact.engine.start import exact_trajectory
 from contact.integrators.method import Integrator
 from contact.laws import DELAYED, HERTZ, LINEAR, NEWTON
 from contact.oscillator import ImpactOscillator
@@ -23,8 +23,11 @@ from contact.touch import TOUCHES
 from contact.trajectory import Run, Trajectory
 
 EXACT_NAMES = {
-    NEWTON: "event-driven", DELAYED: "event-driven", LINEAR: "piecewise-linear", HERTZ: "contact-series"
-}  # fmt: skip
+    NEWTON: "event-driven",
+    DELAYED: "event-driven",
+    LINEAR: "piecewise-linear",
+    HERTZ: "contact-series",
+}
 """What the method is called with each law."""
 
 

@@ -10,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from beam.parameters import InvalidValue, brief, is_number, require
+from contact.engine.recorder import Recorder, grown, open_touch, recorder_for, trajectory_of
 from contact.errors import Diverged, StepTooLarge
 from contact.flight.modal_flow import steady_motion
 from contact.flight.motion import Motion
@@ -17,7 +18,6 @@ from contact.integrators.grid import DIVERGED, DONE, FULL, PLACE, Grid
 from contact.integrators.method import Integrator
 from contact.laws import LINEAR
 from contact.oscillator import ImpactOscillator
-from contact.recorder import Recorder, grown, open_touch, recorder_for, trajectory_of
 from contact.touch import TOUCHES
 from contact.trajectory import CONTACT, OUTSIDE, UNDER_WAY, Run, State, Trajectory
 
@@ -58,9 +58,10 @@ def _in_order(recorder: Recorder, run: Run, period: float) -> tuple[Recorder, np
     clock = np.concatenate([strobes, wanted, [run.clock + run.length]])
     order = np.argsort(clock, kind="stable")
     return recorder._replace(
-        sample_period=np.full(clock.size, run.first), sample_clock=clock[order],
+        sample_period=np.full(clock.size, run.first),
+        sample_clock=clock[order],
         samples=np.empty((clock.size, recorder.samples.shape[1])),
-    ), np.argsort(order)  # fmt: skip
+    ), np.argsort(order)
 
 
 def _sorted_out(recorder: Recorder, run: Run, order: np.ndarray, period: float, begun: bool) -> Recorder:
@@ -140,11 +141,23 @@ class FixedStep(Integrator):
         drive = oscillator.drive
         base = 0.0 if drive is None else drive.amplitude * drive.angular_frequency**2
         grid = Grid(
-            places=places, motion=motion, push=oscillator.model.participation * base,
-            constant=np.zeros(n) if oscillator.load is None else np.array(oscillator.load), step=step,
-            clock=run.clock, first=run.first, steps=math.ceil(run.length / step - 1e-9), critical=critical,
-            q=q, v=v, q0=q.copy(), v0=v.copy(), q_at=q.copy(), v_at=v.copy(), recorder=recorder,
-        )  # fmt: skip
+            places=places,
+            motion=motion,
+            push=oscillator.model.participation * base,
+            constant=np.zeros(n) if oscillator.load is None else np.array(oscillator.load),
+            step=step,
+            clock=run.clock,
+            first=run.first,
+            steps=math.ceil(run.length / step - 1e-9),
+            critical=critical,
+            q=q,
+            v=v,
+            q0=q.copy(),
+            v0=v.copy(),
+            q_at=q.copy(),
+            v_at=v.copy(),
+            recorder=recorder,
+        )
         carried = self.carried(grid)
         while (status := self.march(grid, carried)) == FULL:
             grid = grid._replace(recorder=grown(grid.recorder))
@@ -159,10 +172,16 @@ class FixedStep(Integrator):
         q, v = recorder.samples[-1].reshape(2, n) + steady(run.clock + run.length)
         touching = forced and recorder.marks[0]["touching"] == 1
         end = State(
-            displacement=q, velocity=v, time=run.last * period + run.clock_end,
+            displacement=q,
+            velocity=v,
+            time=run.last * period + run.clock_end,
             regime=CONTACT if touching and motion.tip(q) > motion.gap else OUTSIDE,
-        )  # fmt: skip
+        )
         return trajectory_of(
-            _sorted_out(recorder, run, order, period, under_way), run, end, oscillator,
-            evaluations=grid.steps, motion=motion if self.deviations else None,
-        )  # fmt: skip
+            _sorted_out(recorder, run, order, period, under_way),
+            run,
+            end,
+            oscillator,
+            evaluations=grid.steps,
+            motion=motion if self.deviations else None,
+        )

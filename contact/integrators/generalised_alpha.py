@@ -53,7 +53,6 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from beam.parameters import require_within
-from contact.compiled import inlined, kernel
 from contact.flight.modal_flow import push_on
 from contact.flight.motion import Motion
 from contact.integrators.fixed_step import FixedStep, stiffness_at
@@ -68,6 +67,7 @@ from contact.integrators.grid import (
     tip_of,
 )
 from contact.laws import HERTZ, LINEAR
+from contact.machine.compiled import inlined, kernel
 
 MARGIN = 1e-12
 """Slack of the conditions of stability, in units of their terms: on the limit itself they cancel up to
@@ -103,8 +103,11 @@ def limit(numbers: AlphaNumbers) -> float:
     a, f, g, b = numbers.letters()
     largest = math.inf
     for constant, slope in (
-        (4.0 * a, f * b), (4.0, b + f * g), (0.0, g + f), (4.0 * (g + f - a), g * (b + f * g + f * f)),
-    ):  # fmt: skip
+        (4.0 * a, f * b),
+        (4.0, b + f * g),
+        (0.0, g + f),
+        (4.0 * (g + f - a), g * (b + f * g + f * f)),
+    ):
         if constant < -MARGIN or (constant < MARGIN and slope < -MARGIN):
             return 0.0
         if slope < -MARGIN:
@@ -245,9 +248,12 @@ class GeneralisedAlpha(FixedStep):
         """The method of Hilber, Hughes and Taylor; `alpha` from 0 to 1/3 is minus that of their paper."""
         require_within("alpha of HHT-alpha, its sign turned,", alpha, "[1]", low=0, high=1.0 / 3.0)
         return GeneralisedAlpha(
-            step=step, beta=0.25 * (1.0 + alpha) ** 2, gamma=0.5 + alpha, alpha_f=alpha,
+            step=step,
+            beta=0.25 * (1.0 + alpha) ** 2,
+            gamma=0.5 + alpha,
+            alpha_f=alpha,
             beyond_limit=beyond_limit,
-        )  # fmt: skip
+        )
 
     @staticmethod
     def with_dissipation(*, step: float, rho: float, beyond_limit: bool = False) -> GeneralisedAlpha:

@@ -49,14 +49,14 @@ from typing import ClassVar
 import numpy as np
 
 from beam.parameters import require_within
-from contact.compiled import inlined, kernel
+from contact.engine.recorder import add_loss, close_touch, open_touch
 from contact.flight.modal_flow import push_on
 from contact.flight.motion import DECAY, SQUARE, Motion
 from contact.integrators.fixed_step import FixedStep
 from contact.integrators.generalised_alpha import AlphaNumbers, carried_by, predict
 from contact.integrators.grid import DONE, Grid, cubic_between, ending, force_in_flight, tip_of
 from contact.laws import NEWTON
-from contact.recorder import add_loss, close_touch, open_touch
+from contact.machine.compiled import inlined, kernel
 from contact.trajectory import IMPACT
 
 MARGIN = 1e-12

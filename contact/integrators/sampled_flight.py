@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from beam.parameters import require_whole
-from contact.exact_run import exact_trajectory
+from contact.engine.start import exact_trajectory
 from contact.integrators.exact import Exact
 from contact.integrators.method import Integrator
 from contact.oscillator import ImpactOscillator

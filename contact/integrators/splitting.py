@@ -82,8 +82,7 @@ _A1, _A2 = 0.245298957184271, 0.604872665711080
 _B0, _B1, _B2 = 0.0829844064174052, 0.3963098014983681, -0.0390563049223486
 _A3, _B3 = 0.5 - (_A1 + _A2), 1.0 - 2.0 * (_B0 + _B1 + _B2)
 BLANES_MOAN = Composition(
-    flows=np.array([_A1, _A2, _A3, _A3, _A2, _A1]),
-    kicks=np.array([_B0, _B1, _B2, _B3, _B2, _B1, _B0]),
+    flows=np.array([_A1, _A2, _A3, _A3, _A2, _A1]), kicks=np.array([_B0, _B1, _B2, _B3, _B2, _B1, _B0])
 )
 
 COMPOSITIONS = {2: STRANG, 4: BLANES_MOAN}

@@ -32,10 +32,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contact.compiled import inlined, kernel
 from contact.flight.modal_flow import at_tip, flow_over, propagate, push_on, tip_bound, tip_sum
 from contact.flight.motion import LOAD, OMEGA
 from contact.integrators.grid import DONE, contact_force, contact_tangent, ending, touches
+from contact.machine.compiled import inlined, kernel
 
 RENEW = 32
 """Steps after which sin and cos of the drive's phase are computed anew instead of turned on: their rounding

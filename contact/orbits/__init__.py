@@ -12,10 +12,7 @@ motions change with the numbers of the oscillator, a `Change` each; `clouds`: st
 drive.
 """
 
-from contact.change import Change
-from contact.orbits.amplitude_scan import AmplitudeScan, ScannedColumn
-from contact.orbits.clouds import cloud, strobe_derivatives
-from contact.orbits.continuation import (
+from contact.orbits.branches.continuation import (
     Branch,
     first_event,
     fold_along_frequency,
@@ -24,24 +21,27 @@ from contact.orbits.continuation import (
     follow,
     lowest_of,
 )
-from contact.orbits.derivatives import OrbitDerivatives, excess_derivatives, orbit_derivatives
-from contact.orbits.ends import OrbitEnd, fold_excess, orbit_end
-from contact.orbits.event_derivatives import (
+from contact.orbits.branches.event_derivatives import (
     doubling_derivatives,
     graze_derivatives,
     multiplier_derivatives,
 )
-from contact.orbits.events import Event
-from contact.orbits.family import Family, Orbit
-from contact.orbits.kick import KickFamily
-from contact.orbits.lyapunov import Exponents, map_exponents, orbit_exponents
-from contact.orbits.motion_derivatives import MotionDerivatives, motion_derivatives
-from contact.orbits.path import follow_path
-from contact.orbits.repetition import period_of
-from contact.orbits.scan import OrbitDiagram, orbit_diagram
-from contact.orbits.settling import Settled, born, born_period, settle
-from contact.orbits.shooting import PeriodicOrbit, Shooting
-from contact.orbits.single_impact import Kick, MaximalFamily, SingleImpactOrbit
+from contact.orbits.branches.events import Event
+from contact.orbits.branches.orbit_derivatives import OrbitDerivatives, excess_derivatives, orbit_derivatives
+from contact.orbits.branches.path import follow_path
+from contact.orbits.families.family import Family, Orbit
+from contact.orbits.families.kick import KickFamily
+from contact.orbits.families.shooting import PeriodicOrbit, Shooting
+from contact.orbits.families.single_impact import Kick, MaximalFamily, SingleImpactOrbit
+from contact.orbits.observation.amplitude_scan import AmplitudeScan, ScannedColumn
+from contact.orbits.observation.covariance import cloud, strobe_derivatives
+from contact.orbits.observation.ends import OrbitEnd, fold_excess, orbit_end
+from contact.orbits.observation.lyapunov import Exponents, map_exponents, orbit_exponents
+from contact.orbits.observation.repetition import period_of
+from contact.orbits.observation.scan import OrbitDiagram, orbit_diagram
+from contact.orbits.observation.settling import Settled, born, born_period, settle
+from contact.sensitivity.change import Change
+from contact.sensitivity.motion import MotionDerivatives, motion_derivatives
 
 __all__ = [
     "AmplitudeScan",

@@ -10,8 +10,8 @@ How to add a law, say N = k d^3
     3. Its line in `TOUCHES`.
     4. A test: the contact of a free mass conserves energy, and agrees with an outside solver.
 
-What a file offers.  `motion` is the oscillator, `run` where it stands (``contact.event_loop.STATE``), (u, v)
-its deviations, `series` the room of one step.
+What a file offers.  `motion` is the oscillator, `run` where it stands (``contact.engine.event_loop.STATE``),
+(u, v) its deviations, `series` the room of one step.
     LAW                                       its name in words
     REGIMES                                   where the tip can be: ``contact.trajectory.Regime``
     room(motion) -> order, columns            size of the room of a step
@@ -46,8 +46,8 @@ import inspect
 from collections.abc import Callable
 from typing import TypeVar
 
-from contact.compiled import part
 from contact.laws import DELAYED, HERTZ, LINEAR, NEWTON
+from contact.machine.compiled import part
 from contact.touch import delayed, hertz, linear, newton
 
 Function = TypeVar("Function", bound=Callable[..., object])
@@ -71,7 +71,16 @@ def by_law(functions: dict[int, Function]) -> Function:
 room, strike, step, place, state, work, leave, force, stiffness, slopes, saltation = (
     by_law({code: getattr(file, name) for code, file in TOUCHES.items()})
     for name in (
-        "room", "strike", "step", "place", "state", "work", "leave", "force", "stiffness", "slopes",
+        "room",
+        "strike",
+        "step",
+        "place",
+        "state",
+        "work",
+        "leave",
+        "force",
+        "stiffness",
+        "slopes",
         "saltation",
     )
-)  # fmt: skip
+)

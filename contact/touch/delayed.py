@@ -22,18 +22,23 @@ from __future__ import annotations
 
 import numpy as np
 
-from contact.compiled import kernel, part
 from contact.flight.modal_flow import push_on, tip_state
+from contact.flight.variation import FIRST, all_tip_changes, tangent_flight
+from contact.machine.compiled import kernel, part
 from contact.touch import newton
-from contact.touch.tangents import FIRST, all_tip_changes, tangent_flight
 from contact.trajectory import OUTSIDE, WAITING
 
 LAW = "DelayedRestitution"
 REGIMES = (OUTSIDE, WAITING)
 
 force, stiffness, slopes, room, place, work = (
-    newton.force, newton.stiffness, newton.slopes, newton.room, newton.place, newton.work
-)  # fmt: skip
+    newton.force,
+    newton.stiffness,
+    newton.slopes,
+    newton.room,
+    newton.place,
+    newton.work,
+)
 
 RESTITUTION, DELAY = 1, 3
 """Rows of the table, each with its slope behind; the first holds the approach speeds."""

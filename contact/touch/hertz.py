@@ -12,8 +12,9 @@ coefficients of one order follow from one set of sums over the orders before,
 
     sum_j r_(n-j) x_j    for x = d', d, r d, sin(w t), cos(w t), all u and all v,
 
-which fill the columns of one array and are taken eight at a time (``contact.vector_loops``).  The term with
-the newest x_n is added apart: nothing waits for it.  Cost per step: modes times the square of the order.
+which fill the columns of one array and are taken eight at a time (``contact.machine.vector_loops``).  The
+term with the newest x_n is added apart: nothing waits for it.  Cost per step: modes times the square of the
+order.
 
 A step holds up to the sigma at which the last terms, in every mode and in r, reach `TOLERANCE` of the modal
 speeds, so that the energy of a lossless contact is conserved to that order.  It ends earlier where r falls to
@@ -26,17 +27,17 @@ import math
 
 import numpy as np
 
-from contact.compiled import kernel, part
 from contact.flight.elementary import EPS, sine_cosine
 from contact.flight.modal_flow import speed_scale, tip_state, tip_sum
 from contact.flight.motion import SQUARE
 from contact.flight.polynomial_root import first_polynomial_root, horner, polynomial_root
+from contact.flight.variation import FORCES
+from contact.machine.compiled import kernel, part
+from contact.machine.vector_loops import LANES, next_modes, weighted_rows
 from contact.touch.series import enter, powers_of, reach, within_force, work_of
 from contact.touch.series import leave as leave
 from contact.touch.series import saltation as saltation
-from contact.touch.tangents import FORCES
 from contact.trajectory import CONTACT, OUTSIDE
-from contact.vector_loops import LANES, next_modes, weighted_rows
 
 LAW = "HertzContact or HuntCrossley"
 REGIMES = (OUTSIDE, CONTACT)
@@ -124,9 +125,7 @@ def fill(motion, base, u, v, series):
             for i in range(n + 1):
                 total += chi * push[i] * rows[n - i, SPEED]
         tip = next_modes(modes, sums, r0, inverse, rn, stiffness * inverse * total, n, rows)
-        sine, cosine = (
-            w * inverse * (sums[COSINE] + r0 * cosine), -w * inverse * (sums[SINE] + r0 * sine)
-        )  # fmt: skip
+        sine, cosine = (w * inverse * (sums[COSINE] + r0 * cosine), -w * inverse * (sums[SINE] + r0 * sine))
         speed = w * (a * cosine - b * sine) + tip
         rows[n + 1, SPEED], rows[n + 1, DEPTH] = speed, depth
         rows[n + 1, SINE], rows[n + 1, COSINE] = sine, cosine
@@ -191,9 +190,7 @@ def longest_step(motion, speed, series):
             linear = reach(abs(r[n]), n - 1, TOLERANCE * abs(r[1])) if r[1] != 0.0 else -math.inf
             if n == p or max(whole, linear) < power - FAR:
                 power = min(power, max(whole, linear))
-    s = within_force(
-        math.exp(power), series.scalars[PUSH], p - 1, math.sqrt(motion.compliance), speed, _EDGE
-    )
+    s = within_force(math.exp(power), series.scalars[PUSH], p - 1, math.sqrt(motion.compliance), speed, _EDGE)
     if r[1] < 0.0 < r[0]:
         # no further than well behind the release: with no force left the terms give no bound
         s = min(s, -4.0 * r[0] / r[1])

@@ -14,15 +14,15 @@ from __future__ import annotations
 
 import math
 
-from contact.compiled import kernel, part
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import tip_rounding
 from contact.flight.polynomial_root import first_polynomial_root
+from contact.flight.variation import FORCES
+from contact.machine.compiled import kernel, part
 from contact.touch import time_series
 from contact.touch.series import enter
 from contact.touch.series import leave as leave
 from contact.touch.series import saltation as saltation
-from contact.touch.tangents import FORCES
 from contact.touch.time_series import DEPTH, FORCE, begin, extend, longest_step
 from contact.trajectory import CONTACT, INSIDE, OUTSIDE
 

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import math
 
-from contact.compiled import kernel, part
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import (
     acceleration_rounding,
@@ -26,8 +25,9 @@ from contact.flight.modal_flow import (
     tip_sum,
 )
 from contact.flight.polynomial_root import first_polynomial_root
+from contact.flight.variation import FIRST, all_tip_changes
+from contact.machine.compiled import kernel, part
 from contact.touch import time_series
-from contact.touch.tangents import FIRST, all_tip_changes
 from contact.touch.time_series import FORCE, begin, extend, free_pull, longest_step
 from contact.trajectory import OUTSIDE, SUSTAINED
 

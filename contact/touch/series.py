@@ -21,9 +21,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contact.compiled import inlined, kernel, part
+from contact.machine.compiled import inlined, kernel, part
+from contact.machine.vector_loops import aligned, weighted_rows
 from contact.trajectory import CONTACT
-from contact.vector_loops import aligned, weighted_rows
 
 WINDOW = 8
 """Orders of the force that are looked at."""

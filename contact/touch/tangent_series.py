@@ -1,5 +1,5 @@
 """Tangents through a touch: further columns of the law's own power series; equations in
-``contact.touch.tangents``.
+``contact.flight.variation``.
 
 The motion itself is one more column if there are parameters: pushed by r N, it has the sums that their
 sources are made of.
@@ -11,11 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contact.compiled import kernel
 from contact.flight.motion import DECAY, LOAD, SQUARE, WEIGHT
+from contact.flight.variation import FIRST, FORCES, PACE, drive_now, own_changes, tip_changes
+from contact.machine.compiled import kernel
+from contact.machine.vector_loops import LANES, aligned, weighted_rows
 from contact.touch.series import powers_of
-from contact.touch.tangents import FIRST, FORCES, PACE, drive_now, own_changes, tip_changes
-from contact.vector_loops import LANES, aligned, weighted_rows
 
 
 class TangentRoom(NamedTuple):
@@ -48,9 +48,15 @@ def new_room(order, size, columns):
     """Room for `columns` tangents of `size` = 2 n_modes + 2 numbers, and the motion itself."""
     m = (columns + LANES) // LANES * LANES
     return TangentRoom(
-        aligned(order + 1, size * m), aligned(1, size * m)[0], aligned(order + 1, m), aligned(order + 1, m),
-        aligned(1, m)[0], aligned(1, m)[0], np.zeros((FORCES + 3, order + 1)), np.zeros(order + 1),
-    )  # fmt: skip
+        aligned(order + 1, size * m),
+        aligned(1, size * m)[0],
+        aligned(order + 1, m),
+        aligned(order + 1, m),
+        aligned(1, m)[0],
+        aligned(1, m)[0],
+        np.zeros((FORCES + 3, order + 1)),
+        np.zeros(order + 1),
+    )
 
 
 @kernel

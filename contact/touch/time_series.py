@@ -3,21 +3,21 @@
     u[n+2] = ( g - c (n+1) u[n+1] - omega^2 u[n] - phi_k N[n] ) / ((n+1)(n+2))      (g for n = 0 only)
 
 A law fills N[n] from d[n] and d[n+1] and lets `extend` find the next order of all modes, eight at a time
-(``contact.vector_loops``): cost per step, modes times the order.  With order 30 a step takes some three
-radians of the fastest mode.  Terms then reach e^3 times the sum, which costs a digit in a mode that fast and
-nothing in the others; a higher order would take longer steps for less work and lose more.
+(``contact.machine.vector_loops``): cost per step, modes times the order.  With order 30 a step takes some
+three radians of the fastest mode.  Terms then reach e^3 times the sum, which costs a digit in a mode that
+fast and nothing in the others; a higher order would take longer steps for less work and lose more.
 """
 
 from __future__ import annotations
 
 import math
 
-from contact.compiled import kernel, part
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import speed_scale, tip_steady, tip_sum
+from contact.machine.compiled import kernel, part
+from contact.machine.vector_loops import next_order, weighted_rows
 from contact.touch.series import powers_of, reach, within_force, work_of
 from contact.trajectory import INSIDE
-from contact.vector_loops import next_order, weighted_rows
 
 ORDER = 30
 """Order of the series in time."""

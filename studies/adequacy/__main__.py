@@ -66,8 +66,12 @@ def adequacy(scene: Scene, run: Run) -> Mapping[str, object]:
     run.table("least", rows, "The least model for each question.", show=shown)
     amplitude = amplitude_rows(scene)
     run.table("amplitude", amplitude, "Whether a linear spring is enough for the period that is born.")
-    run.figure("least", draw(rows), "Error of the least model for each question over its tolerance, and that "
-               "of the best one a step smaller in one thing.")  # fmt: skip
+    run.figure(
+        "least",
+        draw(rows),
+        "Error of the least model for each question over its tolerance, and that "
+        "of the best one a step smaller in one thing.",
+    )
     return {"rows": rows, "amplitude": amplitude}
 
 
@@ -91,8 +95,12 @@ def draw(rows: Sequence[Row]) -> Figure:
         for place, row in enumerate(shown):
             axis.plot(row.error / row.tolerance, place, **plotting.points(1), label="the least model")
             if row.error_one_less is not None and math.isfinite(row.error_one_less):
-                axis.plot(row.error_one_less / row.tolerance, place, **plotting.points(2),
-                          label="the best one a step smaller")  # fmt: skip
+                axis.plot(
+                    row.error_one_less / row.tolerance,
+                    place,
+                    **plotting.points(2),
+                    label="the best one a step smaller",
+                )
         axis.axvline(1.0, **plotting.GUIDE)
         axis.set_xscale("log")
         words = [f"{row.quantity.replace('_', ' ')}, {row.frequency_hz:.2f} Hz: {row.least}" for row in shown]

@@ -182,11 +182,17 @@ class Search:
             choice = min(found, key=lambda one: one.cost)
             found = [one for one in self.smaller(choice) if enough(one)]
         return Row(
-            **asdict(choice), quantity=self.quantity, frequency_hz=self.frequency, unit=self.unit,
-            tolerance=tolerance, reached=reached, error=self.error(choice) + own,
+            **asdict(choice),
+            quantity=self.quantity,
+            frequency_hz=self.frequency,
+            unit=self.unit,
+            tolerance=tolerance,
+            reached=reached,
+            error=self.error(choice) + own,
             error_one_less=min(map(self.error, self.smaller(choice)), default=None),
-            parts={**self.parts(choice), "reference": own}, least=choice.words,
-        )  # fmt: skip
+            parts={**self.parts(choice), "reference": own},
+            least=choice.words,
+        )
 
     def _below_corner(self, corner: Choice, enough: Callable[[Choice], bool]) -> Iterator[Choice]:
         """Few modes and a coarse mesh below `corner`, which is enough; then fewer and a residual one."""

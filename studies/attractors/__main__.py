@@ -93,16 +93,25 @@ def attractors(
     kinds = {name: {kind: counts[name, kind] for kind in KINDS} for name in maps}
     chaotic = {name: [r.excess for r in rows if (r.model, r.kind) == (name, CHAOTIC)] for name in maps}
     both = period > 1 and shares[f"p{period}"] > 0.0  # p1 without impacts is stable below grazing
-    run.verdict("coexistence", "agrees" if both else "differs",
-                found=f"Eq. (1): p1 and p{period}" if both else "Eq. (1): one of them alone",
-                note=f"at excess {basin_excess:g} the start decides which of them is reached")  # fmt: skip
+    run.verdict(
+        "coexistence",
+        "agrees" if both else "differs",
+        found=f"Eq. (1): p1 and p{period}" if both else "Eq. (1): one of them alone",
+        note=f"at excess {basin_excess:g} the start decides which of them is reached",
+    )
     spans = [f"{TITLES[name]}: {min(at):.3g} to {max(at):.3g}" for name, at in chaotic.items() if at]
-    run.verdict("chaos", "agrees" if spans else "differs", found="; ".join(spans) or "none",
-                note=f"excess with a positive Lyapunov exponent at {f:.2f} Hz")  # fmt: skip
+    run.verdict(
+        "chaos",
+        "agrees" if spans else "differs",
+        found="; ".join(spans) or "none",
+        note=f"excess with a positive Lyapunov exponent at {f:.2f} Hz",
+    )
     return {
-        "frequency_hz": f, "kinds": kinds, "chaotic": chaotic,
+        "frequency_hz": f,
+        "kinds": kinds,
+        "chaotic": chaotic,
         "basins": {"excess": basin_excess, "period": period, "parts": shares},
-    }  # fmt: skip
+    }
 
 
 if __name__ == "__main__":

@@ -85,7 +85,9 @@ def plane_of(scene: Scene, frequency: float, excess: float, side: int) -> Plane:
     end = settle(here, born(strobed, most_cycles=MOST_PERIODS).end, most_cycles=MOST_PERIODS)
     rest, gap, speed = here.coordinates(here.steady()), here.scale, here.oscillator.unit_speed
     return Plane(
-        strobed=here, orbits={max(end.period, 1): end.points[-max(end.period, 1) :], 1: rest[None]},
-        near=gap * min(NEAR, -OF_EXCESS * excess), x=np.linspace(-FAR, 1.0, side) * gap,
+        strobed=here,
+        orbits={max(end.period, 1): end.points[-max(end.period, 1) :], 1: rest[None]},
+        near=gap * min(NEAR, -OF_EXCESS * excess),
+        x=np.linspace(-FAR, 1.0, side) * gap,
         velocity=FAR * speed * np.linspace(-1.0, 1.0, side),
-    )  # fmt: skip
+    )

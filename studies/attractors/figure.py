@@ -22,9 +22,12 @@ BASINS = (
     "basin, p_m the rest."
 )
 LOOKS = {
-    WITHOUT: ("v", SKY), PERIODIC: ("o", BLUE), CHAOTIC: ("s", VERMILION), NOT_SETTLED: ("^", ORANGE),
+    WITHOUT: ("v", SKY),
+    PERIODIC: ("o", BLUE),
+    CHAOTIC: ("s", VERMILION),
+    NOT_SETTLED: ("^", ORANGE),
     UNDECIDED: ("x", "0.5"),
-}  # fmt: skip
+}
 """Marker and colour of a kind."""
 
 
@@ -33,9 +36,13 @@ def draw_scan(rows: Sequence[Row], strobes: Sequence[np.ndarray], frequency: flo
     """Strobe points and exponents against the excess, a column for each model."""
     names = {key: name for key, name in TITLES.items() if any(row.model == key for row in rows)}
     figure, axes = plotting.new_figure(
-        2, max(1, len(names)), width=PAGE if len(names) > 1 else COLUMN, height=0.112, squeeze=False,
+        2,
+        max(1, len(names)),
+        width=PAGE if len(names) > 1 else COLUMN,
+        height=0.112,
+        squeeze=False,
         sharex="col",
-    )  # fmt: skip
+    )
     for column, (name, title) in enumerate(names.items()):
         upper, lower = axes[:, column]
         for way, look in (("up", UP), ("down", DOWN)):
@@ -46,8 +53,15 @@ def draw_scan(rows: Sequence[Row], strobes: Sequence[np.ndarray], frequency: flo
         for kind, (marker, colour) in LOOKS.items():
             alike = [row for row in rows if (row.model, row.kind) == (name, kind)]
             if alike:
-                lower.plot([1e2 * row.excess for row in alike], [row.lyapunov_map for row in alike], marker,
-                           markersize=3.4, mfc="none", markeredgecolor=colour, label=kind)  # fmt: skip
+                lower.plot(
+                    [1e2 * row.excess for row in alike],
+                    [row.lyapunov_map for row in alike],
+                    marker,
+                    markersize=3.4,
+                    mfc="none",
+                    markeredgecolor=colour,
+                    label=kind,
+                )
         lower.axhline(0.0, **GUIDE)
         for axis in (upper, lower):
             axis.axvline(0.0, **GUIDE)
@@ -66,18 +80,35 @@ def draw_basins(plane: Plane, leads: np.ndarray, frequency: float) -> Figure:
     figure, axis = plotting.new_figure(height=0.088)
     oscillator, m = plane.strobed.oscillator, plane.period
     gap, speed = oscillator.stop.gap, oscillator.unit_speed
-    looks = {m: (BLUE, f"to p$_{{{m}}}$"), 1: (tint(SKY, 0.3), "to p$_1$ without impacts"),
-             0: (ORANGE, "to something else")}  # fmt: skip
+    looks = {
+        m: (BLUE, f"to p$_{{{m}}}$"),
+        1: (tint(SKY, 0.3), "to p$_1$ without impacts"),
+        0: (ORANGE, "to something else"),
+    }
     x, y, picture = plane.x / gap, plane.velocity / speed, np.full(leads.shape, np.nan)
     for place, code in enumerate(looks):
         picture[leads == code] = place
-    axis.pcolormesh(x, y, picture, shading="nearest", vmin=-0.5, vmax=len(looks) - 0.5, rasterized=True,
-                    cmap=ListedColormap([colour for colour, _ in looks.values()]))  # fmt: skip
+    axis.pcolormesh(
+        x,
+        y,
+        picture,
+        shading="nearest",
+        vmin=-0.5,
+        vmax=len(looks) - 0.5,
+        rasterized=True,
+        cmap=ListedColormap([colour for colour, _ in looks.values()]),
+    )
     axis.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
     for code in plane.orbits:
         marker, face = ("D", VERMILION) if code == 1 else ("o", "white")
-        axis.plot(*(plane.strobes(code) / (gap, speed)).T, marker, markersize=4, color=face,
-                  markeredgecolor="black", label=f"p$_{{{code}}}$")  # fmt: skip
+        axis.plot(
+            *(plane.strobes(code) / (gap, speed)).T,
+            marker,
+            markersize=4,
+            color=face,
+            markeredgecolor="black",
+            label=f"p$_{{{code}}}$",
+        )
     for code, (colour, words) in looks.items():
         if np.any(leads == code):
             axis.fill([], [], facecolor=colour, edgecolor="0.4", label=words)

@@ -24,8 +24,12 @@ ALIGN = 20
 """Periods in which tangents find their direction: the slowest contraction between two of them is e^-0.08."""
 
 KINDS = WITHOUT, PERIODIC, CHAOTIC, NOT_SETTLED, UNDECIDED = (
-    "without impacts", "periodic", "chaotic", "not settled", "undecided"
-)  # fmt: skip
+    "without impacts",
+    "periodic",
+    "chaotic",
+    "not settled",
+    "undecided",
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,9 +82,16 @@ def carried(
                 failures.append(f"{TITLES[name]}, excess {excess:.6g}, {direction}: {error}")
                 continue
             points.append(here.readout(orbit.points, READOUT))
-            rows.append(Row(
-                model=name, direction=direction, excess=excess, kind=kind, period=settled.period,
-                impacts=settled.impacts if settled.period else 0, lyapunov_map=exponents.largest,
-                error_map=exponents.error,
-            ))  # fmt: skip
+            rows.append(
+                Row(
+                    model=name,
+                    direction=direction,
+                    excess=excess,
+                    kind=kind,
+                    period=settled.period,
+                    impacts=settled.impacts if settled.period else 0,
+                    lyapunov_map=exponents.largest,
+                    error_map=exponents.error,
+                )
+            )
     return rows, points, failures

@@ -98,12 +98,17 @@ def breakdown(
     run.figure("born_period", figure.draw_born(cells, scene.tip.mass_kg, found), figure.BORN)
     judge(run, maximal_period(nordmark), outcomes, found, known)
     return {
-        "gap_m": scene.stop.gap_m, "thickness_m": scene.spring.thickness_m,
+        "gap_m": scene.stop.gap_m,
+        "thickness_m": scene.spring.thickness_m,
         "grazing_amplitude_m": calibrated.strobed().oscillator.grazing_amplitude(),
-        "excess_of_letters_chaos_as_rho": nordmark.excess(CHAOS_AT), "map_period": maximal_period(nordmark),
-        "islands": known, "outcomes": outcomes, "found": found, "cells": len(cells),
+        "excess_of_letters_chaos_as_rho": nordmark.excess(CHAOS_AT),
+        "map_period": maximal_period(nordmark),
+        "islands": known,
+        "outcomes": outcomes,
+        "found": found,
+        "cells": len(cells),
         "cells_with_period_6": [cell for cell in cells if cell.period == BORN_PERIOD],
-    }  # fmt: skip
+    }
 
 
 def search(scene: Scene, run: Run) -> tuple[list[Cell], list[Spring]]:
@@ -129,8 +134,12 @@ def store(run: Run, scans: Sequence[tuple[Outcome, Mapping[str, Diagram]]]) -> N
         name = outcome.description
         for way, diagram in ways.items():
             stem = f"{'single_mode' if name == 'Eq. (1)' else name.replace(' ', '_')}_{way}"
-            arrays |= {f"{stem}_excess": diagram.excess, f"{stem}_points": diagram.points,
-                       f"{stem}_period": periods(diagram), f"{stem}_impacts": diagram.impacts}  # fmt: skip
+            arrays |= {
+                f"{stem}_excess": diagram.excess,
+                f"{stem}_points": diagram.points,
+                f"{stem}_period": periods(diagram),
+                f"{stem}_impacts": diagram.impacts,
+            }
             for reason in diagram.failures:
                 run.failed(f"{name}, {way}", reason)
     run.arrays("breakdown", **arrays)
@@ -146,8 +155,10 @@ def judge(
 ) -> None:
     """The three points of the letter; `outcomes` begin with Eq. (1) and the calibrated beam."""
     single, beam = outcomes[:2]
-    said = (f"map {word(map_period)}, Eq. (1) {word(single.born_period)}, "
-            f"beam {word(beam.born_period)} as calibrated")  # fmt: skip
+    said = (
+        f"map {word(map_period)}, Eq. (1) {word(single.born_period)}, "
+        f"beam {word(beam.born_period)} as calibrated"
+    )
     note = "no cell of the search has it"
     if found is not None:
         said += f", {word(found.born_period)} found"
@@ -157,22 +168,36 @@ def judge(
             "the higher modes does, and the letter prints neither"
         )
     agrees, in_part = (one is not None and one.born_period == BORN_PERIOD for one in (beam, found))
-    run.verdict("breakdown", "agrees" if agrees else "in part" if in_part else "differs", found=said,
-                note="" if agrees else note)  # fmt: skip
+    run.verdict(
+        "breakdown",
+        "agrees" if agrees else "in part" if in_part else "differs",
+        found=said,
+        note="" if agrees else note,
+    )
     ends = next((outcome for outcome in (beam, found) if outcome is not None and outcome.ends_on_p3), None)
     if ends is None:
         run.verdict("breakdown_p3", "differs", found="beam: not so", note="no downward scan ends in p3")
     else:
-        run.verdict("breakdown_p3", "agrees" if ends is beam else "in part",
-                    found=f"beam: {ends.p3_first:.4f} to {ends.p3_last:.4f}",
-                    note="" if ends is beam else note)  # fmt: skip
+        run.verdict(
+            "breakdown_p3",
+            "agrees" if ends is beam else "in part",
+            found=f"beam: {ends.p3_first:.4f} to {ends.p3_last:.4f}",
+            note="" if ends is beam else note,
+        )
     alive = [entry.restitution for entry in islands if entry.end >= CHAOS_AT]
     printed = any(abs(tau - letter.RESTITUTION) < 1e-9 for tau in alive)
-    run.verdict("island", "agrees" if printed else "in part" if alive else "differs",
-                found="Eq. (1): " + "; ".join(
-                    f"{i.fold_p3:.3f} to {i.end:.3f} at tau = {i.restitution:g}" for i in islands),
-                note=(f"the island is there; at the quoted place it needs tau of {max(alive):g} or less, "
-                      "read as an excess") if alive else "no island reaches the quoted place")  # fmt: skip
+    run.verdict(
+        "island",
+        "agrees" if printed else "in part" if alive else "differs",
+        found="Eq. (1): "
+        + "; ".join(f"{i.fold_p3:.3f} to {i.end:.3f} at tau = {i.restitution:g}" for i in islands),
+        note=(
+            f"the island is there; at the quoted place it needs tau of {max(alive):g} or less, "
+            "read as an excess"
+        )
+        if alive
+        else "no island reaches the quoted place",
+    )
 
 
 if __name__ == "__main__":

@@ -67,10 +67,13 @@ class Spring:
         """Driven as in Fig. 5."""
         rates = np.array(self.model.decay_rate)
         rates[1:] *= self.higher_damping
-        return StroboscopicMap(oscillator=ImpactOscillator(
-            model=replace(self.model, decay_rate=rates), drive=HarmonicDrive(frequency=FREQUENCY_HZ),
-            stop=Stop(gap=self.scene.stop.gap_m, law=contact_law_of(self.scene)),
-        ))  # fmt: skip
+        return StroboscopicMap(
+            oscillator=ImpactOscillator(
+                model=replace(self.model, decay_rate=rates),
+                drive=HarmonicDrive(frequency=FREQUENCY_HZ),
+                stop=Stop(gap=self.scene.stop.gap_m, law=contact_law_of(self.scene)),
+            )
+        )
 
 
 def single_mode(scene: Scene, restitution: float) -> Spring:
@@ -96,10 +99,12 @@ def cell_of(spring: Spring) -> Cell:
     strobed = spring.strobed()
     settled = born(strobed, BORN_EXCESS, most_cycles=SEARCH_CYCLES)
     return Cell(
-        tip_mass_kg=spring.tip_mass_kg, higher_damping=spring.higher_damping, period=settled.period,
+        tip_mass_kg=spring.tip_mass_kg,
+        higher_damping=spring.higher_damping,
+        period=settled.period,
         impacts=settled.impacts,
         fold_p3=fold_of_p3(strobed) if settled.period == BORN_PERIOD else None,
-    )  # fmt: skip
+    )
 
 
 def fold_of_p3(strobed: StroboscopicMap) -> float | None:

@@ -23,9 +23,10 @@ BORN = (
     "(–: none up to 64; framed: the beam found)."
 )
 LOOKS = {
-    "down": (DOWN, "downward scan"), "up": (UP, "upward scan"),
+    "down": (DOWN, "downward scan"),
+    "up": (UP, "upward scan"),
     "island": (("0.55", "0.55", 0.8, 1), "island, followed upwards from its fold"),
-}  # fmt: skip
+}
 
 
 def title_of(outcome: Outcome) -> str:
@@ -42,9 +43,14 @@ def title_of(outcome: Outcome) -> str:
 def draw_scans(panels: Sequence[tuple[Outcome, Mapping[str, Diagram]]]) -> Figure:
     """The scans below one another: steps below grazing on the left, the finer ones above it on the right."""
     figure, axes = plotting.new_figure(
-        len(panels), 2, width=PAGE, height=0.052 * len(panels) + 0.014, squeeze=False, sharey="row",
+        len(panels),
+        2,
+        width=PAGE,
+        height=0.052 * len(panels) + 0.014,
+        squeeze=False,
+        sharey="row",
         width_ratios=[1.7, 1.0],
-    )  # fmt: skip
+    )
     lowest = min(float(d.excess.min()) for _, ways in panels for d in ways.values())
     for number, (pair, (outcome, ways)) in enumerate(zip(axes, panels, strict=True)):
         for axis in pair:
@@ -58,8 +64,14 @@ def draw_scans(panels: Sequence[tuple[Outcome, Mapping[str, Diagram]]]) -> Figur
         plotting.panel(pair[0], number, title_of(outcome))
         plotting.label(pair[0].yaxis, "tip displacement" if number == 0 else "read-out", "mm")
         if outcome.fold_p3 is not None:
-            pair[0].axvline(1e2 * outcome.fold_p3, color=GREEN, linestyle="-.", linewidth=0.9, zorder=0,
-                            label="fold of p$_3$")  # fmt: skip
+            pair[0].axvline(
+                1e2 * outcome.fold_p3,
+                color=GREEN,
+                linestyle="-.",
+                linewidth=0.9,
+                zorder=0,
+                label="fold of p$_3$",
+            )
     axes[0, 1].set_title("finer steps above grazing", loc="right")
     axes[-1, 1].set_title("letter: p$_6$ born here", loc="right")
     plotting.mark_letter(axes[0, 0].xaxis, 1e2 * CHAOS_AT, words="letter: chaos\nof Eq. (1)", along=0.98)
@@ -80,12 +92,27 @@ def draw_born(cells: Sequence[Cell], mass: float, found: Outcome | None) -> Figu
         x, y = factors.index(cell.higher_damping), masses.index(cell.tip_mass_kg)
         place = (cell.tip_mass_kg, cell.higher_damping)
         framed = found is not None and place == (found.tip_mass_kg, found.higher_damping)
-        axis.add_patch(Rectangle(
-            (x - 0.5, y - 0.5), 1.0, 1.0, facecolor=colours.get(cell.period, tint(GREEN, 0.2)),
-            edgecolor="black" if framed else "white", linewidth=1.2 if framed else 0.8, zorder=1 + framed,
-        ))  # fmt: skip
-        axis.text(x, y, str(cell.period or "–"), ha="center", va="center", fontsize=NOTE, zorder=3,
-                  fontweight="bold" if cell.period == 6 else "normal")  # fmt: skip
+        axis.add_patch(
+            Rectangle(
+                (x - 0.5, y - 0.5),
+                1.0,
+                1.0,
+                facecolor=colours.get(cell.period, tint(GREEN, 0.2)),
+                edgecolor="black" if framed else "white",
+                linewidth=1.2 if framed else 0.8,
+                zorder=1 + framed,
+            )
+        )
+        axis.text(
+            x,
+            y,
+            str(cell.period or "–"),
+            ha="center",
+            va="center",
+            fontsize=NOTE,
+            zorder=3,
+            fontweight="bold" if cell.period == 6 else "normal",
+        )
     axis.set(xlim=(-0.5, len(factors) - 0.5), ylim=(-0.5, len(masses) - 0.5))
     axis.set_xticks(np.arange(len(factors)), [f"{k:g}" for k in factors])
     axis.set_yticks(np.arange(len(masses)), [f"{1e3 * m:.2f}" for m in masses])
@@ -93,6 +120,9 @@ def draw_born(cells: Sequence[Cell], mass: float, found: Outcome | None) -> Figu
     axis.spines[:].set_visible(False)
     plotting.label(axis.xaxis, "damping of the higher modes / that of the strips")
     plotting.label(axis.yaxis, "ball and mount", "g")
-    figure.supxlabel("number: period born at excess 10$^{-3}$ (letter: 6);\n–: none up to 64; "
-                     f"the calibrated ball and mount have {1e3 * mass:.2f} g", fontsize=NOTE)  # fmt: skip
+    figure.supxlabel(
+        "number: period born at excess 10$^{-3}$ (letter: 6);\n–: none up to 64; "
+        f"the calibrated ball and mount have {1e3 * mass:.2f} g",
+        fontsize=NOTE,
+    )
     return figure

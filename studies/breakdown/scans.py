@@ -71,19 +71,29 @@ def scanned(
     below = np.linspace(lowest, 0.0, points)[:-1]
     values = np.concatenate([below, np.linspace(0.0, HIGHEST, points // 2 + 1)[1:]])
     scan = partial(
-        orbit_diagram, strobed, observe=partial(strobed.readout, name=READOUT), settle_cycles=cycles,
-        record_cycles=letter.STROBE_POINTS, early=early,
-    )  # fmt: skip
+        orbit_diagram,
+        strobed,
+        observe=partial(strobed.readout, name=READOUT),
+        settle_cycles=cycles,
+        record_cycles=letter.STROBE_POINTS,
+        early=early,
+    )
     up = scan(values, strobed.at(lowest).steady())
     down = scan(values[::-1], up.end)
     settled = born(strobed, BORN_EXCESS, most_cycles=cycles)
     on_p3 = down.excess[(down.period == 3) & (down.impacts == 1)].tolist() or [None]
     struck = down.excess[down.impacts > 0].tolist() or [None]
     outcome = Outcome(
-        description=name, tip_mass_kg=spring.tip_mass_kg or None, higher_damping=spring.higher_damping,
-        born_period=settled.period, born_impacts=settled.impacts, fold_p3=fold, p3_first=on_p3[0],
-        p3_last=on_p3[-1], impacts_end=struck[-1],
-    )  # fmt: skip
+        description=name,
+        tip_mass_kg=spring.tip_mass_kg or None,
+        higher_damping=spring.higher_damping,
+        born_period=settled.period,
+        born_impacts=settled.impacts,
+        fold_p3=fold,
+        p3_first=on_p3[0],
+        p3_last=on_p3[-1],
+        impacts_end=struck[-1],
+    )
     return outcome, {"up": up, "down": down}
 
 
@@ -103,9 +113,13 @@ def island(scene: Scene, restitution: float, *, step: float = ISLAND_STEP) -> tu
     assert fold is not None  # f T lies in the band of p3
     orbit = Shooting(oscillator=strobed.oscillator, period=3).at_speed(1.02 * fold.speed)
     whole = orbit_diagram(
-        strobed, np.arange(orbit.excess, 0.0, step), orbit.strobe_state(), observe=strobed.tip,
-        settle_cycles=ISLAND_CYCLES, record_cycles=letter.STROBE_POINTS,
-    )  # fmt: skip
+        strobed,
+        np.arange(orbit.excess, 0.0, step),
+        orbit.strobe_state(),
+        observe=strobed.tip,
+        settle_cycles=ISLAND_CYCLES,
+        record_cycles=letter.STROBE_POINTS,
+    )
     free = np.flatnonzero((whole.impacts == 0) & (np.array(whole.kind) != "failed"))
     kept = slice(0, int(free[0]) if free.size else None)
     columns = ("excess", "points", "period", "impacts", "cycles")

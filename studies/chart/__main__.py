@@ -85,9 +85,12 @@ def chart(
     there = [column for column in found if column is not None]
     tell_failures(run, there)
     result: dict[str, object] = {
-        "model": model, "modes": oscillator.n_modes, "points": [columns, rows], "most_cycles": bound,
+        "model": model,
+        "modes": oscillator.n_modes,
+        "points": [columns, rows],
+        "most_cycles": bound,
         "shard": shard,
-    }  # fmt: skip
+    }
     if part.count > 1 or len(there) < columns:
         run.say(f"shard {shard}: {len(there)} of {columns} columns are in {run.folder / name}")
         return result
@@ -130,9 +133,11 @@ def drawn(
     run.say(f"{100 * without:.1f} % of the cells without a period up to {LARGEST_PERIOD}")
     bands = [{"period": band.period, "lower_hz": band.lower, "upper_hz": band.upper} for band in edges]
     return {
-        "bands": bands, "counts": counts(cells["period"]), "share_without_period": without,
+        "bands": bands,
+        "counts": counts(cells["period"]),
+        "share_without_period": without,
         "folds": len(folds),
-    }  # fmt: skip
+    }
 
 
 if __name__ == "__main__":

@@ -75,9 +75,14 @@ def column_at(frequency: float, scan: AmplitudeScan, plane: Plane) -> Column:
     excesses = plane.rising_excesses()
     found = scan(frequency, excesses)
     return {
-        "frequency_hz": np.array(frequency), "direction": np.array(DIRECTIONS)[:, None], "excess": excesses,
-        "period": found.period, "impacts": found.impacts, "cycles": found.cycles, "reason": found.reason,
-    }  # fmt: skip
+        "frequency_hz": np.array(frequency),
+        "direction": np.array(DIRECTIONS)[:, None],
+        "excess": excesses,
+        "period": found.period,
+        "impacts": found.impacts,
+        "cycles": found.cycles,
+        "reason": found.reason,
+    }
 
 
 @dataclass(frozen=True, kw_only=True)

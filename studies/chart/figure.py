@@ -96,9 +96,12 @@ def draw(
             images = (_colours([*PERIODS, LONG], of_period, period), _colours(IMPACTS, classes, period))
             for axis, image in zip(axes[:, k], images, strict=True):
                 axis.imshow(
-                    image.swapaxes(0, 1), origin="lower", extent=extent, aspect="auto",
+                    image.swapaxes(0, 1),
+                    origin="lower",
+                    extent=extent,
+                    aspect="auto",
                     interpolation="nearest",
-                )  # fmt: skip
+                )
                 _draw_theory(axis, edges, folds)
                 axis.set(xlim=extent[:2], ylim=extent[2:])
             hit = np.where((period > 0) & (impacts > 0), period, 0)

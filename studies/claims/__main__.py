@@ -12,8 +12,8 @@ Claims (letter 1996), for the Nordmark map (Eqs. (2), (3)), for Eq. (1) and for 
     overdamped     "an infinite series of period addings for the overdamped oscillator"
 
 Equations: fold of p_m and its first bifurcation in closed form, of the map and of Eq. (1)
-(contact.maximal_orbits, MaximalFamily; x'' + mu x' + omega^2 x = ..., x' -> -tau x' at the wall); the born
-period of the beams by following their motion; Lyapunov exponents of the overdamped map.
+(contact.maps.nordmark_orbits, MaximalFamily; x'' + mu x' + omega^2 x = ..., x' -> -tau x' at the wall); the
+born period of the beams by following their motion; Lyapunov exponents of the overdamped map.
 
 Run:     python -m studies.claims [--positions N]
 Writes:  loss, bands, universality, overdamped (.csv); loss, secondary, bands, universality, overdamped (.png,

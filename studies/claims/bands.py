@@ -50,9 +50,11 @@ def inside_band(scene: Scene, period: int, count: int) -> list[Inside]:
     for frequency in places.tolist():
         of_map = fold_excess(StrobedNordmarkMap(map=nordmark_at(scene, frequency)), period)
         of_eq1 = fold_excess(StroboscopicMap(oscillator=single_mode_at(scene, frequency)), period)
-        rows.append(Inside(
-            period=period, frequency_hz=frequency, map=0.0 - (of_map or 0.0), eq1=0.0 - (of_eq1 or 0.0)
-        ))  # fmt: skip
+        rows.append(
+            Inside(
+                period=period, frequency_hz=frequency, map=0.0 - (of_map or 0.0), eq1=0.0 - (of_eq1 or 0.0)
+            )
+        )
     return rows
 
 
@@ -62,27 +64,37 @@ def bands(scene: Scene, run: Run, *, inside: int) -> Mapping[str, object]:
     low, high = (corresponding(scene, f) for f in SPAN_HZ)
     path = [nordmark_at(scene, f) for f in np.linspace(low, high, 200).tolist()]
     run.table("bands", rows, "Hysteresis 1 - F_m/F_g across the bands of p_m.", show=())
-    run.figure("bands", draw(scene, rows, path, (low, high)), "Bands of p_m in the plane of alpha and "
-               "gamma with the path of the experiment, and the hysteresis along that path.")  # fmt: skip
+    run.figure(
+        "bands",
+        draw(scene, rows, path, (low, high)),
+        "Bands of p_m in the plane of alpha and "
+        "gamma with the path of the experiment, and the hysteresis along that path.",
+    )
     of_band = {m: [row for row in rows if row.period == m] for m in PERIODS}
-    grows = {name: all(falls([getattr(row, name) for row in own]) for own in of_band.values())
-             for name in ("map", "eq1")}  # fmt: skip
+    grows = {
+        name: all(falls([getattr(row, name) for row in own]) for own in of_band.values())
+        for name in ("map", "eq1")
+    }
     zero = max(max(own[-1].map, own[-1].eq1) for own in of_band.values())
     crossed = sorted({maximal_period(place) for place in path})
     holds = zero < 1e-9 and all(grows.values())
     run.verdict(
-        "bands", "agrees" if holds else "differs",
+        "bands",
+        "agrees" if holds else "differs",
         found=f"m = {crossed[0]} to {crossed[-1]} from {low:g} to {high:g} Hz;"
         f" hysteresis at the upper edges of p3 to p11 at most {zero:.1g}, growing towards the lower:"
         f" {'yes' if all(grows.values()) else 'no'}",
         note=f"alpha from {path[0].alpha:.2f} to {path[-1].alpha:.2f}, gamma from {path[0].gamma:.3f} to"
         f" {path[-1].gamma:.3f}: the bands are crossed at almost constant gamma",
-    )  # fmt: skip
+    )
     return {
-        "holds": holds, "bands": [band_of(scene, m) for m in PERIODS],
-        "at_lower_edge": [own[0] for own in of_band.values()], "largest_at_upper_edge": zero,
-        "crossed": crossed, "grows": grows,
-    }  # fmt: skip
+        "holds": holds,
+        "bands": [band_of(scene, m) for m in PERIODS],
+        "at_lower_edge": [own[0] for own in of_band.values()],
+        "largest_at_upper_edge": zero,
+        "crossed": crossed,
+        "grows": grows,
+    }
 
 
 @plotting.in_house_style
@@ -93,19 +105,39 @@ def draw(
     figure, axes = plotting.new_figure(1, 2, width=plotting.PAGE, height=0.070)
     draw_plane(axes[0], scene, path)
     low, high = span
-    axes[0].annotate(f"{low:g} to {high:g} Hz", (path[60].alpha, path[60].gamma), xytext=(0.05, 0.62),
-                     fontsize=plotting.NOTE, arrowprops={"arrowstyle": "-", "linewidth": 0.6})  # fmt: skip
+    axes[0].annotate(
+        f"{low:g} to {high:g} Hz",
+        (path[60].alpha, path[60].gamma),
+        xytext=(0.05, 0.62),
+        fontsize=plotting.NOTE,
+        arrowprops={"arrowstyle": "-", "linewidth": 0.6},
+    )
     for m in PERIODS:
         shown = [row for row in rows if row.period == m and low <= row.frequency_hz <= high]
         frequency, names = [row.frequency_hz for row in shown], m == PERIODS[0]
-        axes[1].plot(frequency, [1e2 * row.map for row in shown], color=plotting.BLACK, linewidth=1.1,
-                     label="Nordmark map" if names else None)  # fmt: skip
-        axes[1].plot(frequency, [1e2 * row.eq1 for row in shown], color=plotting.BLUE, linestyle="--",
-                     linewidth=1.1, label="Eq. (1)" if names else None)  # fmt: skip
+        axes[1].plot(
+            frequency,
+            [1e2 * row.map for row in shown],
+            color=plotting.BLACK,
+            linewidth=1.1,
+            label="Nordmark map" if names else None,
+        )
+        axes[1].plot(
+            frequency,
+            [1e2 * row.eq1 for row in shown],
+            color=plotting.BLUE,
+            linestyle="--",
+            linewidth=1.1,
+            label="Eq. (1)" if names else None,
+        )
         if shown and m < PERIODS[-2]:
             whole = rows[[row.period for row in rows].index(m)].frequency_hz >= low
-            axes[1].text(0.7 * frequency[0] + 0.3 * frequency[-1], 105.0 * shown[0].eq1 if whole else 3.2,
-                         f"{m}", fontsize=plotting.NOTE)  # fmt: skip
+            axes[1].text(
+                0.7 * frequency[0] + 0.3 * frequency[-1],
+                105.0 * shown[0].eq1 if whole else 3.2,
+                f"{m}",
+                fontsize=plotting.NOTE,
+            )
     for f in letter.PERIODS:
         axes[1].axvline(f, **plotting.LETTER, label="letter, Fig. 2" if f == min(letter.PERIODS) else None)
     plotting.panel(axes[1], 1, "hysteresis along the path\n")
@@ -119,8 +151,10 @@ def draw_plane(axis: Axes, scene: Scene, path: Sequence[NordmarkMap]) -> None:
     """The bands as rho -> 0 and the path of the experiment."""
     mode, rates = scene.single_mode, np.geomspace(100.0, 1e-3, 80)
     for m in range(3, 9):
-        edges = [band(m, free_period=mode.free_period_s, decay_rate=mu, restitution=mode.restitution)
-                 for mu in rates.tolist()]  # fmt: skip
+        edges = [
+            band(m, free_period=mode.free_period_s, decay_rate=mu, restitution=mode.restitution)
+            for mu in rates.tolist()
+        ]
         f = np.array([*(one.upper for one in edges), *(one.lower for one in edges[::-1])])
         gamma = np.exp(-np.concatenate([rates, rates[::-1]]) / f)
         alpha = 2.0 * np.sqrt(gamma) * np.cos(2.0 * math.pi / (f * mode.free_period_s))

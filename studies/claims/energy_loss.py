@@ -103,12 +103,16 @@ def node_at(scene: Scene, frequency: float) -> Node:
     if least is not None and least.admissible:
         end = end_speed(family, least)
     return Node(
-        frequency_hz=frequency, period=m, restitution=nordmark.restitution,
+        frequency_hz=frequency,
+        period=m,
+        restitution=nordmark.restitution,
         rho=math.nan if of_map is None else of_map.rho,
-        fold_of_map=math.nan if of_map is None else of_map.excess, secondary_of_map=end_of_map(nordmark, m),
+        fold_of_map=math.nan if of_map is None else of_map.excess,
+        secondary_of_map=end_of_map(nordmark, m),
         fold=math.nan if least is None else least.excess,
-        secondary=family.excess(end) if math.isfinite(end) else end, admissible=not math.isnan(end),
-    )  # fmt: skip
+        secondary=family.excess(end) if math.isfinite(end) else end,
+        admissible=not math.isnan(end),
+    )
 
 
 def line_of(scene: Scene, frequencies: Sequence[float], restitution: float) -> list[Node]:
@@ -141,17 +145,28 @@ def energy_loss(scene: Scene, run: Run, *, across: int, restitutions: int) -> Ma
     plane = run.map(partial(below_grazing, scene, frequencies.tolist()), tau.tolist(), "plane of f and tau")
     below = np.array([part for part, _ in plane])
     run.table("loss", rows, "Fold and first bifurcation of p_m, F/F_g - 1.", show=())
-    run.figure("loss", draw_loss(rows), "Hysteresis against restitution at each frequency: a smaller "
-               "restitution, more energy lost, less hysteresis, in the map and in Eq. (1).")  # fmt: skip
-    run.figure("secondary", draw_secondary(rows, tau, below),
-               "Excess of the secondary bifurcation in Eq. (1) against the restitution, and at which part of "
-               "the frequencies it lies below grazing.")  # fmt: skip
+    run.figure(
+        "loss",
+        draw_loss(rows),
+        "Hysteresis against restitution at each frequency: a smaller "
+        "restitution, more energy lost, less hysteresis, in the map and in Eq. (1).",
+    )
+    run.figure(
+        "secondary",
+        draw_secondary(rows, tau, below),
+        "Excess of the secondary bifurcation in Eq. (1) against the restitution, and at which part of "
+        "the frequencies it lies below grazing.",
+    )
     found = trends(rows)
     both = found["map"] and found["eq1"]
     parts = ", ".join(f"{name} {'yes' if good else 'no'}" for name, good in found.items())
     note = "" if found["rho"] else "the hysteresis in F falls; |rho_m| rises, for rho per F falls faster"
-    run.verdict("loss", "differs" if not both else "agrees" if found["rho"] else "in part",
-                found=f"falls with the loss: {parts}", note=note)  # fmt: skip
+    run.verdict(
+        "loss",
+        "differs" if not both else "agrees" if found["rho"] else "in part",
+        found=f"falls with the loss: {parts}",
+        note=note,
+    )
     lowest = float(np.nanmin([end for _, end in plane]))
     simple = [row for row in rows if row.admissible]
     falling = [f for f in drives if falls([row.secondary for row in simple if row.frequency_hz == f])]
@@ -159,15 +174,21 @@ def energy_loss(scene: Scene, run: Run, *, across: int, restitutions: int) -> Ma
     at = {t: float(np.interp(t, tau, below)) for t in (0.0, letter.RESTITUTION, 0.9)}
     shares = ", ".join(f"{100 * part:.0f} % at tau = {t:g}" for t, part in at.items())
     run.verdict(
-        "secondary", "agrees" if holds else "differs",
+        "secondary",
+        "agrees" if holds else "differs",
         found=f"map: never below excess {lowest:.2g}; Eq. (1): below grazing in {shares}",
         note=f"at one frequency its excess falls throughout as tau grows at {len(falling)} of {len(drives)}",
-    )  # fmt: skip
+    )
     return {
         "loss": {"falls": found, "holds": both},
-        "secondary": {"holds": holds, "lowest_of_map": lowest, "restitution": tau,
-                      "part_below_grazing": below, "falls_with_restitution_hz": falling},
-    }  # fmt: skip
+        "secondary": {
+            "holds": holds,
+            "lowest_of_map": lowest,
+            "restitution": tau,
+            "part_below_grazing": below,
+            "falls_with_restitution_hz": falling,
+        },
+    }
 
 
 def trends(rows: Sequence[Node]) -> dict[str, bool]:
@@ -186,9 +207,12 @@ def curves(axis: Axes, rows: Sequence[Node], value: Callable[[Node], float]) -> 
     for number, frequency in enumerate(sorted({row.frequency_hz for row in rows})):
         mine = [row for row in rows if row.frequency_hz == frequency]
         axis.plot(
-            [row.restitution for row in mine], [1e2 * value(row) for row in mine], markevery=3,
-            **plotting.series(number % 8), label=f"{frequency:.2f} Hz, p$_{{{mine[0].period}}}$",
-        )  # fmt: skip
+            [row.restitution for row in mine],
+            [1e2 * value(row) for row in mine],
+            markevery=3,
+            **plotting.series(number % 8),
+            label=f"{frequency:.2f} Hz, p$_{{{mine[0].period}}}$",
+        )
     plotting.label(axis.xaxis, "restitution τ")
 
 

@@ -83,17 +83,22 @@ def overdamped(run: Run, *, alphas: int) -> Mapping[str, object]:
     count, *steps = (60, 2000, 3000) if run.quick else (120, 4000, 8000)
     rows = shares(np.linspace(0.05, 0.95, alphas), count, *steps)
     run.table("overdamped", rows, "Chaotic part of ln rho, by exponents and by windows.", show=())
-    run.figure("overdamped", draw(rows, 150 if run.quick else 500), "The overdamped map: periods fall by one "
-               "from window to window as rho rises, blue, with chaos between them, red; its part of ln rho "
-               "as alpha grows.")  # fmt: skip
+    run.figure(
+        "overdamped",
+        draw(rows, 150 if run.quick else 500),
+        "The overdamped map: periods fall by one "
+        "from window to window as rho rises, blue, with chaos between them, red; its part of ln rho "
+        "as alpha grows.",
+    )
     off = max(abs(row.chaotic_part - row.outside_windows) for row in rows)
     holds = off < (0.06 if run.quick else 0.03)  # a turn has few values of rho
     run.verdict(
-        "period_adding", "agrees" if holds else "differs",
+        "period_adding",
+        "agrees" if holds else "differs",
         found="windows of periods overlap for alpha below 1/4, are parted by chaos up to 2/3 and are gone"
         " above; the period falls by one from window to window as rho rises",
         note=f"the chaotic part of ln rho by exponents is that outside the windows within {off:.2g}",
-    )  # fmt: skip
+    )
     return {"holds": holds, "largest_difference_from_the_windows": off}
 
 
@@ -104,17 +109,35 @@ def draw(rows: Sequence[Share], drawn: int) -> Figure:
     rho = np.geomspace(TOP * SHOWN**TURNS, TOP, drawn)
     exponent, x = exponents(SHOWN, rho, 1000, 2000)
     for chosen, look in ((exponent <= 0.0, plotting.BLUE), (exponent > 0.0, plotting.VERMILION)):
-        first.plot(np.tile(rho[chosen], KEPT), (x[:, chosen] / np.sqrt(rho[chosen])).ravel(), ".",
-                   markersize=1.0, color=look, markeredgewidth=0.0, rasterized=True)  # fmt: skip
+        first.plot(
+            np.tile(rho[chosen], KEPT),
+            (x[:, chosen] / np.sqrt(rho[chosen])).ravel(),
+            ".",
+            markersize=1.0,
+            color=look,
+            markeredgewidth=0.0,
+            rasterized=True,
+        )
     first.set_xscale("log")
     plotting.panel(first, 0, f"α = {SHOWN:g}: chaos between windows")
     plotting.label(first.yaxis, "$x$ / √ρ")
     plotting.label(first.xaxis, "ρ")
     alphas = [row.alpha for row in rows]
-    last.plot(alphas, [row.outside_windows for row in rows], color=plotting.VERMILION,
-              label="outside the windows of p$_m$")  # fmt: skip
-    last.plot(alphas, [row.chaotic_part for row in rows], color="black", marker="o", markersize=2.2,
-              linestyle="none", label="exponent above 0")  # fmt: skip
+    last.plot(
+        alphas,
+        [row.outside_windows for row in rows],
+        color=plotting.VERMILION,
+        label="outside the windows of p$_m$",
+    )
+    last.plot(
+        alphas,
+        [row.chaotic_part for row in rows],
+        color="black",
+        marker="o",
+        markersize=2.2,
+        linestyle="none",
+        label="exponent above 0",
+    )
     for place, name in ((0.25, "1/4"), (2.0 / 3.0, "2/3")):
         last.axvline(place, **plotting.GUIDE)
         last.text(place + 0.01, 0.06, name, fontsize=plotting.NOTE)

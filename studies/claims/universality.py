@@ -100,10 +100,15 @@ def born_at(job: Job) -> int:
 def universality(scene: Scene, run: Run, *, positions: int) -> Mapping[str, object]:
     """Compute, store, draw and judge."""
     rows, excess = born_everywhere(scene, run, positions), scene.scan.born_excess
-    run.table("universality", rows, "Period born just above grazing, and that of the map as rho -> 0+.",
-              show=())  # fmt: skip
-    run.figure("universality", draw(scene, rows), "Period born at grazing for seven springs and contact laws"
-               "; grey, the bands of the map. Near the upper edge of a band all agree with it.")  # fmt: skip
+    run.table(
+        "universality", rows, "Period born just above grazing, and that of the map as rho -> 0+.", show=()
+    )
+    run.figure(
+        "universality",
+        draw(scene, rows),
+        "Period born at grazing for seven springs and contact laws"
+        "; grey, the bands of the map. Near the upper edge of a band all agree with it.",
+    )
     failed = any(row.period is None for row in rows)
     agree = {
         name: float(np.mean([row.agrees for row in rows if row.spring == name]))
@@ -119,15 +124,19 @@ def universality(scene: Scene, run: Run, *, positions: int) -> Mapping[str, obje
             who = ", ".join(dict.fromkeys(row.spring for row in odd))
             note += f"; exceptions: {who}; at a sixteenth of the excess {'none' if holds else 'still some'}"
         run.verdict(
-            "universality", "agrees" if holds else "in part",
+            "universality",
+            "agrees" if holds else "in part",
             found=f"next to the upper edges {len(top) - len(odd)} of {len(top)} pairs of frequency and"
-            f" spring have the period of the map at excess {excess:g}", note=note,
-        )  # fmt: skip
+            f" spring have the period of the map at excess {excess:g}",
+            note=note,
+        )
     return {
-        "holds": None if failed else holds, "agree": agree,
-        "exceptions_in_top_quarter": odd, "closer_excess": CLOSER * excess,
+        "holds": None if failed else holds,
+        "agree": agree,
+        "exceptions_in_top_quarter": odd,
+        "closer_excess": CLOSER * excess,
         "not_settled": sum(not row.settled for row in rows),
-    }  # fmt: skip
+    }
 
 
 def born_everywhere(scene: Scene, run: Run, count: int) -> list[Born]:
@@ -141,10 +150,16 @@ def born_everywhere(scene: Scene, run: Run, count: int) -> list[Born]:
         nordmark = nordmark_at(scene, frequency)
         edges = band_of(scene, maximal_period(nordmark))
         part = (frequency - edges.lower) / (edges.upper - edges.lower)
-        rows.append(Born(
-            spring=job.spring, f_times_t=job.f_times_t, period=period, map=maximal_periods(nordmark),
-            next_to_edge=part >= TOP, settled=bool(period),
-        ))  # fmt: skip
+        rows.append(
+            Born(
+                spring=job.spring,
+                f_times_t=job.f_times_t,
+                period=period,
+                map=maximal_periods(nordmark),
+                next_to_edge=part >= TOP,
+                settled=bool(period),
+            )
+        )
     again = [i for i, row in enumerate(rows) if row.next_to_edge and not row.agrees]
     nearer = [jobs[i]._replace(excess=CLOSER * excess) for i in again]
     for i, period in zip(again, run.attempt(born_at, nearer, "closer to grazing"), strict=True):
@@ -162,23 +177,43 @@ def draw(scene: Scene, rows: Sequence[Born]) -> Figure:
         shift, style = 0.1 * (number - 0.5 * (len(names) - 1)), plotting.points(number)
         heights = [row.period if row.period and 1 < row.period <= 12 else 1 for row in mine]
         axis.plot(
-            [row.f_times_t for row in mine], [height + shift for height in heights], **style, markersize=2.6,
-            markerfacecolor="none" if style["marker"] not in "xP*" else None, markeredgewidth=0.7, label=name,
-        )  # fmt: skip
+            [row.f_times_t for row in mine],
+            [height + shift for height in heights],
+            **style,
+            markersize=2.6,
+            markerfacecolor="none" if style["marker"] not in "xP*" else None,
+            markeredgewidth=0.7,
+            label=name,
+        )
     for m in range(2, 13):
         edges = band_of(scene, m)
-        axis.fill_between([edges.lower * period, edges.upper * period], m - 0.42, m + 0.42, color="0.88",
-                          linewidth=0.0, zorder=0, gid=f"band of the map, m = {m}")  # fmt: skip
+        axis.fill_between(
+            [edges.lower * period, edges.upper * period],
+            m - 0.42,
+            m + 0.42,
+            color="0.88",
+            linewidth=0.0,
+            zorder=0,
+            gid=f"band of the map, m = {m}",
+        )
     axis.set_xlim(SPAN[0] - 0.003, SPAN[1] + 0.003)
     axis.set_ylim(0.4, 12.6)
     axis.set_yticks([1, *range(2, 13)], ["other", *(str(m) for m in range(2, 13))])
     axis.errorbar(
-        [f * letter.FREE_PERIOD_S for f in letter.PERIODS], list(letter.PERIODS.values()),
-        xerr=[f * letter.FREE_PERIOD_ERROR_S for f in letter.PERIODS], **plotting.LETTER_POINTS,
-        elinewidth=0.7, ecolor="black", label="letter, error of T",
-    )  # fmt: skip
+        [f * letter.FREE_PERIOD_S for f in letter.PERIODS],
+        list(letter.PERIODS.values()),
+        xerr=[f * letter.FREE_PERIOD_ERROR_S for f in letter.PERIODS],
+        **plotting.LETTER_POINTS,
+        elinewidth=0.7,
+        ecolor="black",
+        label="letter, error of T",
+    )
     plotting.label(axis.xaxis, "$f T$")
     plotting.label(axis.yaxis, f"period $m$ born, excess {scene.scan.born_excess:g}")
-    figure.legend(loc="outside lower center", ncols=3, title="grey: bands of the Nordmark map",
-                  title_fontsize=plotting.NOTE)  # fmt: skip
+    figure.legend(
+        loc="outside lower center",
+        ncols=3,
+        title="grey: bands of the Nordmark map",
+        title_fontsize=plotting.NOTE,
+    )
     return figure

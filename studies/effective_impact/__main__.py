@@ -82,9 +82,12 @@ def effective_impact(scene: Scene, run: Run) -> Mapping[str, object]:
     if quoted is not None and any(floor.local_restitution == 1.0 for floor in floors):
         judge(run, quoted, on_orbits(rows), floors)
     return {
-        "frequency_hz": frequency, "reference": quoted, "on_settled_orbits": on_orbits(rows),
-        "floors": floors, "what_gives_the_letters_restitution": ways(rows),
-    }  # fmt: skip
+        "frequency_hz": frequency,
+        "reference": quoted,
+        "on_settled_orbits": on_orbits(rows),
+        "floors": floors,
+        "what_gives_the_letters_restitution": ways(rows),
+    }
 
 
 def ways(rows: Sequence[Row]) -> Mapping[str, float]:
@@ -108,12 +111,13 @@ def judge(run: Run, at: Row, orbits: Sequence[Row], floors: Sequence[Floor]) -> 
     near = least <= letter.RESTITUTION + NEAR
     verdict: Verdict = "agrees" if near else "in part" if reached else "differs"
     run.verdict(
-        "restitution", verdict,
+        "restitution",
+        verdict,
         found=f"{least:.2f} at least in a first collision; {span} on settled orbits",
         note="the time that the contact takes sets a floor which loss in the contact does not lower; on "
         f"settled orbits the ringing of the collision before moves the touch, and in {lost} of {len(orbits)} "
         "mode 1 does not come back to the gap",
-    )  # fmt: skip
+    )
     delay, share = f"{1e3 * at.delay_s:.3f} ms", f"{at.delay_s / at.arc_s:.2f} of the time"
     found = f"{delay} at excess {at.excess:g}"
     run.verdict(

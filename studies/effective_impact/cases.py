@@ -1,10 +1,10 @@
 """The approaches to the plate: one quantity varied at a time, each curve a list of cases.
 
-    speed        excess, hence approach speed v = 2 pi f gap sqrt((1 + excess)^2 - 1)
-    reference    the spring as it is on a finer mesh, at the excess of Fig. 4
-    mass         tip mass over leaf, free period and drive amplitude at grazing kept, at several excesses
-    orbit        the same, but the collision of the orbit that settles at the letter's Fig. 4
-    search       tip mass and restitution of the contact itself together
+speed        excess, hence approach speed v = 2 pi f gap sqrt((1 + excess)^2 - 1)
+reference    the spring as it is on a finer mesh, at the excess of Fig. 4
+mass         tip mass over leaf, free period and drive amplitude at grazing kept, at several excesses
+orbit        the same, but the collision of the orbit that settles at the letter's Fig. 4
+search       tip mass and restitution of the contact itself together
 """
 
 from __future__ import annotations
@@ -40,8 +40,29 @@ ORBIT_HZ = 21.50
 
 EXCESSES = (*np.geomspace(1e-5, 5e-2, 38).tolist(), *np.geomspace(5e-2, 0.4, 9)[1:].tolist())
 MASS_EXCESSES = (1e-4, 1e-3, TIME_TRACE_EXCESS, 5e-2)
-MASS_RATIOS = (0.0, 0.02, 0.05, 0.1, 0.125, 0.15, 0.175, 0.2, 0.225, 0.25, 0.275, 0.3, 0.325, 0.35, 0.4, 0.5,
-               0.7, 1.0, 1.4, 2.0, 3.0)  # fmt: skip
+MASS_RATIOS = (
+    0.0,
+    0.02,
+    0.05,
+    0.1,
+    0.125,
+    0.15,
+    0.175,
+    0.2,
+    0.225,
+    0.25,
+    0.275,
+    0.3,
+    0.325,
+    0.35,
+    0.4,
+    0.5,
+    0.7,
+    1.0,
+    1.4,
+    2.0,
+    3.0,
+)
 RESTITUTIONS = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1)
 
 
@@ -67,12 +88,19 @@ class Case:
             return row
         mode_1 = 2.0 * float(self.oscillator.model.phi[0]) ** 2
         return replace(
-            row, approach_m_s=found.approach, restitution=found.restitution, delay_s=found.delay,
-            kick=found.kick, shift_m=found.shift, contact_s=found.contact_time,
+            row,
+            approach_m_s=found.approach,
+            restitution=found.restitution,
+            delay_s=found.delay,
+            kick=found.kick,
+            shift_m=found.shift,
+            contact_s=found.contact_time,
             arc_s=found.approach / found.deceleration,
-            energy_share=found.energy_to_higher_modes * mode_1 / found.approach**2, impacts=found.impacts,
-            forced_by_ringing=found.forced_by_ringing, returns=found.returns,
-        )  # fmt: skip
+            energy_share=found.energy_to_higher_modes * mode_1 / found.approach**2,
+            impacts=found.impacts,
+            forced_by_ringing=found.forced_by_ringing,
+            returns=found.returns,
+        )
 
 
 def orbit_collision(oscillator: ImpactOscillator) -> tuple[Collision | None, int]:
@@ -126,17 +154,27 @@ class Spring:
         )
 
     def case(
-        self, curve: str, series: str, law: ContactLaw, *, value: float | None = None,
-        excess: float = TIME_TRACE_EXCESS, frequency: float | None = None,
-    ) -> Case:  # fmt: skip
+        self,
+        curve: str,
+        series: str,
+        law: ContactLaw,
+        *,
+        value: float | None = None,
+        excess: float = TIME_TRACE_EXCESS,
+        frequency: float | None = None,
+    ) -> Case:
         """The spring under this law; `value` on the axis of the curve is the ratio of masses by default."""
         oscillator = beam_at(self.scene, frequency or self.frequency, self.model)
         stop, ratio = Stop(gap=self.scene.stop.gap_m, law=law), self.mass_ratio
         row = Row(
-            curve=curve, series=series, value=ratio if value is None else value, excess=excess,
-            modes=self.model.n_modes, mass_ratio=ratio,
+            curve=curve,
+            series=series,
+            value=ratio if value is None else value,
+            excess=excess,
+            modes=self.model.n_modes,
+            mass_ratio=ratio,
             ball_limit=2.0 * float(self.model.tip_mass or 0.0) * float(self.model.phi[0]) ** 2,
-        )  # fmt: skip
+        )
         return Case(row=row, oscillator=replace(oscillator, stop=stop).with_excess(excess))
 
 

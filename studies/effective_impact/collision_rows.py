@@ -104,6 +104,8 @@ def floor_of(rows: Sequence[Row]) -> Floor | None:
     if least in (0, FINE - 1):
         return None
     return Floor(
-        local_restitution=float(kept[0].series), restitution=math.sqrt(square[least]),
-        mass_ratio=math.exp(fine[least]), kick=float(kick(fine[least])),
-    )  # fmt: skip
+        local_restitution=float(kept[0].series),
+        restitution=math.sqrt(square[least]),
+        mass_ratio=math.exp(fine[least]),
+        kick=float(kick(fine[least])),
+    )

@@ -29,10 +29,15 @@ SEARCHED = ("1", "0.7", "0.6", "0.4", "0.2", "0.1")
 def line(axis: Any, rows: Sequence[Row], column: str, number: int, name: str) -> None:
     """One series."""
     axis.plot(
-        [row.value for row in rows], [AXES[column][2] * getattr(row, column) for row in rows],
-        **plotting.series(number), markevery=max(1, len(rows) // 12), markersize=2.8,
-        markerfacecolor="white", markeredgewidth=0.7, label=name,
-    )  # fmt: skip
+        [row.value for row in rows],
+        [AXES[column][2] * getattr(row, column) for row in rows],
+        **plotting.series(number),
+        markevery=max(1, len(rows) // 12),
+        markersize=2.8,
+        markerfacecolor="white",
+        markeredgewidth=0.7,
+        label=name,
+    )
 
 
 def panels(rows: Sequence[Row], curve: str, quantity: str, *, log: bool = True) -> tuple[Figure, list[Any]]:
@@ -53,9 +58,14 @@ def panels(rows: Sequence[Row], curve: str, quantity: str, *, log: bool = True) 
 def guide(axis: Any, rows: Sequence[Row], y: Callable[[Row], float], name: str, style: str = "--") -> None:
     """A line that theory gives."""
     axis.plot(
-        [row.value for row in rows], [y(row) for row in rows], color="0.45", linewidth=0.8, linestyle=style,
-        zorder=1, label=name,
-    )  # fmt: skip
+        [row.value for row in rows],
+        [y(row) for row in rows],
+        color="0.45",
+        linewidth=0.8,
+        linestyle=style,
+        zorder=1,
+        label=name,
+    )
 
 
 def arc_ms(row: Row) -> float:
@@ -100,9 +110,15 @@ def mass(rows: Sequence[Row]) -> Figure:
     for returns, mark, name in looks:
         chosen = [row for row in on_orbits(rows) if row.returns is returns]
         axes[0].plot(
-            [row.value for row in chosen], [row.restitution if returns else 0.0 for row in chosen],
-            linestyle="none", marker=mark, markersize=4.0, color=PALETTE[4], label=name, clip_on=False,
-        )  # fmt: skip
+            [row.value for row in chosen],
+            [row.restitution if returns else 0.0 for row in chosen],
+            linestyle="none",
+            marker=mark,
+            markersize=4.0,
+            color=PALETTE[4],
+            label=name,
+            clip_on=False,
+        )
     for axis, top in zip(axes, (1.0, None, 1.7), strict=True):
         axis.set_xlim(0.0, 1.03)
         axis.set_ylim(top=top)

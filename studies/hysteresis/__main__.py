@@ -85,9 +85,11 @@ def hysteresis(
     columns = run.map(partial(column, scene, model, step), PERIODS, "periods")
     rows = [row for found in columns for row in found]
     run.table(
-        "hysteresis", rows, "Fold F_m/F_g - 1 of the orbits in nine descriptions.",
+        "hysteresis",
+        rows,
+        "Fold F_m/F_g - 1 of the orbits in nine descriptions.",
         show=("frequency_hz", "m", *DESCRIPTIONS) if run.quick else (),
-    )  # fmt: skip
+    )
     at_letter = [row for row in rows if seen.get(row.frequency_hz) == row.m]
     kept = resolved(rows)
     causes = [causes_over([row], f"{row.frequency_hz:.2f} Hz, p{row.m}") for row in at_letter]
@@ -119,10 +121,11 @@ def accuracy(description: str, rows: Sequence[Row]) -> Accuracy:
     ratios = (row.ratio(description) for row in rows)
     logs = [abs(math.log(ratio)) for ratio in ratios if ratio is not None]
     return Accuracy(
-        description=description, folds=len(logs),
+        description=description,
+        folds=len(logs),
         median=math.exp(float(np.median(logs))) if logs else math.nan,
         worst=math.exp(max(logs)) if logs else math.nan,
-    )  # fmt: skip
+    )
 
 
 def judge(run: Run, rows: Sequence[Row], off: Mapping[str, Accuracy], median: Causes) -> None:

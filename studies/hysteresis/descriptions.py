@@ -26,15 +26,23 @@ from contact.orbits import KickFamily, PeriodicOrbit, Shooting, fold_along_frequ
 from studies.scene import Scene, band_of, beam_at, corresponding, nordmark_at, periods_of, single_mode_at
 from studies.two_parameters import fold_of_kicks, one_mode_fold
 
-CHAIN = (
-    "map", "single_mode", "measured_kick", "kick_of_velocity", "two_parameters", "all_mode_kick", "beam",
-)  # fmt: skip
+CHAIN = ("map", "single_mode", "measured_kick", "kick_of_velocity", "two_parameters", "all_mode_kick", "beam")
 DESCRIPTIONS = ("map_printed", "map_measured_kick", *CHAIN)
 
-CAUSES = dict(zip((
-    "truncation_of_the_map", "size_of_the_kick", "kick_against_velocity", "delay",
-    "higher_modes_in_the_flight", "ringing_met_by_the_next_collision",
-), pairwise(CHAIN), strict=True))  # fmt: skip
+CAUSES = dict(
+    zip(
+        (
+            "truncation_of_the_map",
+            "size_of_the_kick",
+            "kick_against_velocity",
+            "delay",
+            "higher_modes_in_the_flight",
+            "ringing_met_by_the_next_collision",
+        ),
+        pairwise(CHAIN),
+        strict=True,
+    )
+)
 """Cause -> the two neighbours in the chain between which it lies."""
 
 FREQUENCIES_HZ = (19.6, 23.8)
@@ -92,10 +100,12 @@ def folds_at(
     """
     nordmark, oscillator = nordmark_at(scene, frequency), beam_at(scene, frequency, model)
     row = Row(
-        frequency_hz=frequency, m=m, map=map_fold(nordmark, m),
+        frequency_hz=frequency,
+        m=m,
+        map=map_fold(nordmark, m),
         map_printed=map_fold(replace(nordmark, y_line="printed"), m),
         single_mode=fold_excess(StroboscopicMap(oscillator=single_mode_at(scene, frequency)), m),
-    )  # fmt: skip
+    )
     kicks = KickFamily(oscillator=oscillator, period=m)
     whole = kicks.fold()
     if whole is None:
@@ -105,13 +115,15 @@ def folds_at(
     shooting = Shooting(oscillator=oscillator, period=m, impacts=whole.kick.touches)
     orbit = fold_along_frequency(shooting, np.array([frequency]), near)[0]
     row = replace(
-        row, map_measured_kick=map_fold(nordmark, m, -float(model.phi[0]) * slope),
+        row,
+        map_measured_kick=map_fold(nordmark, m, -float(model.phi[0]) * slope),
         measured_kick=one_mode_fold(kicks, lambda speed: (0.0, slope * speed)),
         kick_of_velocity=one_mode_fold(kicks, lambda speed: (0.0, float(kicks.kick(speed).jump[0, 1]))),
-        two_parameters=fold_of_kicks(kicks), all_mode_kick=whole.excess,
+        two_parameters=fold_of_kicks(kicks),
+        all_mode_kick=whole.excess,
         beam=None if orbit is None else orbit.excess,
         beam_admissible=None if orbit is None else orbit.admissible,
-    )  # fmt: skip
+    )
     return row, orbit
 
 

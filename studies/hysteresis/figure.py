@@ -41,8 +41,14 @@ def draw_curves(scene: Scene, rows: Sequence[Row]) -> Figure:
     for number, (axis, sign) in enumerate(zip(axes, (1.0, -1.0), strict=True)):
         curves(axis, rows, sign)
         for edge in edges:
-            axis.axvspan(edge.upper * (1.0 - unsure), edge.upper * (1.0 + unsure), color="0.82", linewidth=0,
-                         zorder=0, label="upper edge of a band, letter's error of T")  # fmt: skip
+            axis.axvspan(
+                edge.upper * (1.0 - unsure),
+                edge.upper * (1.0 + unsure),
+                color="0.82",
+                linewidth=0,
+                zorder=0,
+                label="upper edge of a band, letter's error of T",
+            )
         for seen in periods_of(scene):
             axis.axvline(seen, **LETTER, label="letter's Fig. 2: p$_m$ seen here")
         plotting.panel(axis, number)
@@ -68,8 +74,13 @@ def curves(axis: Axes, rows: Sequence[Row], sign: float) -> None:
             shown = [(row.frequency_hz, end) for row, end in ends if row.m == m and sign * end < 0.0]
             axis.plot(*np.array(shown).reshape(-1, 2).T, **style, linewidth=0.9)
     crossed = [(row.frequency_hz, end) for row, end in ends if sign * end < 0.0 and not row.beam_admissible]
-    axis.plot(*np.array(crossed).reshape(-1, 2).T, "x", markersize=3.5, color=VERMILION,
-              label="beam, not admissible")  # fmt: skip
+    axis.plot(
+        *np.array(crossed).reshape(-1, 2).T,
+        "x",
+        markersize=3.5,
+        color=VERMILION,
+        label="beam, not admissible",
+    )
 
 
 def names_of_bands(axes: Sequence[Axes], scene: Scene, edges: Sequence[Band]) -> None:
@@ -78,12 +89,24 @@ def names_of_bands(axes: Sequence[Axes], scene: Scene, edges: Sequence[Band]) ->
     axes[1].set_xlim(lowest, highest)
     for seen, m in periods_of(scene).items():
         axes[1].annotate(
-            f"p$_{{{m}}}$", (seen, 0.02), xytext=(-1.5, 0), textcoords="offset points", ha="right",
-            xycoords=("data", "axes fraction"), va="bottom", fontsize=NOTE,
-        )  # fmt: skip
+            f"p$_{{{m}}}$",
+            (seen, 0.02),
+            xytext=(-1.5, 0),
+            textcoords="offset points",
+            ha="right",
+            xycoords=("data", "axes fraction"),
+            va="bottom",
+            fontsize=NOTE,
+        )
     for edge in edges:
         middle = 0.5 * (max(edge.lower, lowest) + edge.upper)
         words = f"$m$ = {edge.period}" if edge.period < 6 else f"{edge.period}"
         if middle < highest:
-            axes[0].annotate(words, (middle, 1.01), xycoords=("data", "axes fraction"), ha="center",
-                             va="bottom", fontsize=NOTE)  # fmt: skip
+            axes[0].annotate(
+                words,
+                (middle, 1.01),
+                xycoords=("data", "axes fraction"),
+                ha="center",
+                va="bottom",
+                fontsize=NOTE,
+            )

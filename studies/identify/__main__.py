@@ -36,8 +36,9 @@ from beam import InvalidValue
 from contact import ImpactOscillator
 from studies.identify import coverage as covering
 from studies.identify import figures, gradients
-from studies.identify.fit import Fit, Profile, profile
+from studies.identify.fit import Fit
 from studies.identify.fit import fit as fitted
+from studies.identify.profiles import Profile, profile
 from studies.identify.records import Kind, Record, read_record, synthetic
 from studies.options import POSITIONAL
 from studies.parameters import Description, described, fitted_scene, parameters_of
@@ -55,8 +56,10 @@ USUAL: Mapping[Kind, tuple[str, ...]] = {
 """What is fitted of a kind of record if nobody says, as far as the oscillator has it."""
 
 EXAMPLES: Mapping[Kind, Description] = {
-    "strobe": "one_mode", "displacement": "two_parameters", "transitions": "one_mode"
-}  # fmt: skip
+    "strobe": "one_mode",
+    "displacement": "two_parameters",
+    "transitions": "one_mode",
+}
 FREQUENCY_HZ, SEED = 22.20, 1996  # of the example: the letter's p5
 
 SHOWN = ("record", "parameter", "unit", "start", "told", "low90", "high90", "scene")
@@ -129,17 +132,21 @@ def driven(record: Record, oscillator: ImpactOscillator, names: Sequence[str]) -
 
 @study()
 def identify(
-    scene: Scene, run: Run, *,
+    scene: Scene,
+    run: Run,
+    *,
     record: Annotated[Path | None, "CSV file; without one, the example", POSITIONAL] = None,
     fit: Annotated[tuple[str, ...], "parameters to fit (default: those that its kind of record tells)"] = (),
     description: Annotated[Description, "what stands for the spring"] = "one_mode",
-    drive: Annotated[tuple[float, float] | None,
-                     "frequency (Hz) and amplitude of the base (mm), in place of the record's"] = None,
+    drive: Annotated[
+        tuple[float, float] | None, "frequency (Hz) and amplitude of the base (mm), in place of the record's"
+    ] = None,
     noise_um: Annotated[float | None, "noise of the read-out, where it is known"] = None,
-    delay_ms: Annotated[float | None,
-                        "two_parameters: the delay, or where its fit starts (default: T/136)"] = None,
+    delay_ms: Annotated[
+        float | None, "two_parameters: the delay, or where its fit starts (default: T/136)"
+    ] = None,
     coverage: Annotated[int | None, "also fit so many synthetic records of each kind: true errors?"] = None,
-) -> Mapping[str, object]:  # fmt: skip
+) -> Mapping[str, object]:
     """Read or make, fit, report and draw."""
     harmonic(scene)
     if noise_um is not None and not 0.0 < noise_um < math.inf:
@@ -169,8 +176,10 @@ def identify(
     results = report(run, found)
     for name, (one, oscillator) in given.items():
         if one.kind == "displacement" and (rows := in_step(one, oscillator)):
-            run.say(f"{name}: {rows} rows a drive period, so that all impacts lie alike between two of them: "
-                    "errors of gap, restitution and delay are too small; record at another rate")  # fmt: skip
+            run.say(
+                f"{name}: {rows} rows a drive period, so that all impacts lie alike between two of them: "
+                "errors of gap, restitution and delay are too small; record at another rate"
+            )
     first = next(iter(found))
     run.text("fitted.toml", as_scene(scene, found[first], [r for r in results["rows"] if r.record == first]))
     if coverage is not None:
@@ -205,13 +214,22 @@ def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
     estimates = [row for name, one in found.items() for row in estimates_of(name, one, profiles[name])]
     run.table("parameters", estimates, "Estimates with standard errors and 90 % intervals.", show=SHOWN)
     quality = [
-        Quality(record=name, rows=len(one.residuals), noise=one.noise, freedom=one.freedom,
-                chance=one.chance, too_small=one.too_small) for name, one in found.items()
-    ]  # fmt: skip
+        Quality(
+            record=name,
+            rows=len(one.residuals),
+            noise=one.noise,
+            freedom=one.freedom,
+            chance=one.chance,
+            too_small=one.too_small,
+        )
+        for name, one in found.items()
+    ]
     run.table("quality", quality, "What is left of the records.")
     for row in (row for row in quality if row.too_small):
-        run.say(f"{row.record}: residuals are no noise (p {row.chance:.0e}), errors mean little: the model "
-                "is too small, or the start was too far off")  # fmt: skip
+        run.say(
+            f"{row.record}: residuals are no noise (p {row.chance:.0e}), errors mean little: the model "
+            "is too small, or the start was too far off"
+        )
     points = [row for rows in profiles.values() for row in rows]
     run.table("profile", points, "Likelihood along one of two parameters that trade off.", show=())
     run.arrays("residuals", **{f"residuals_{name}": one.residuals for name, one in found.items()})
@@ -238,12 +256,20 @@ def estimates_of(name: str, found: Fit, profiles: Sequence[Profile]) -> list[Est
         intervals[one] = np.interp([-reach, reach], roots, values)
     return [
         Estimate(
-            record=name, parameter=one, unit=known[one].unit, start=float(found.start[i]), low90=float(low),
-            estimate=float(found.estimate[i]), standard_error=float(found.errors[i]), high90=float(high),
-            told=in_short(float(found.estimate[i]), float(found.errors[i])), scene=float(found.before[i]),
+            record=name,
+            parameter=one,
+            unit=known[one].unit,
+            start=float(found.start[i]),
+            low90=float(low),
+            estimate=float(found.estimate[i]),
+            standard_error=float(found.errors[i]),
+            high90=float(high),
+            told=in_short(float(found.estimate[i]), float(found.errors[i])),
+            scene=float(found.before[i]),
             correlations=tuple(found.correlations[i].tolist()),
-        ) for i, (one, (low, high)) in enumerate(intervals.items())
-    ]  # fmt: skip
+        )
+        for i, (one, (low, high)) in enumerate(intervals.items())
+    ]
 
 
 def in_short(value: float, error: float) -> str:
@@ -262,9 +288,10 @@ def traded(found: Fit, quick: bool) -> list[Profile]:
     order = sorted(partners, key=lambda i: -size[i, partners[i]])
     kept = [i for k, i in enumerate(order) if partners[i] not in order[:k] or partners[partners[i]] != i]
     return [
-        row for i in kept[: 1 if quick else None]
+        row
+        for i in kept[: 1 if quick else None]
         for row in profile(found, found.names[i], found.names[partners[i]], points=5 if quick else 9)
-    ]  # fmt: skip
+    ]
 
 
 if __name__ == "__main__":

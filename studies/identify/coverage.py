@@ -98,18 +98,23 @@ class Coverage:
 def trials(scene: Scene, beam: Scene) -> Iterator[Trial]:
     """Each kind of record of Eq. (1), of the beam, and of the beam for Eq. (1)."""
     excess = scene.scan.born_excess
-    made = {"Eq. (1)": single_mode_at(scene, FREQUENCY_HZ).with_excess(excess),
-            "beam": beam_at(beam, FREQUENCY_HZ, model_of(beam)).with_excess(excess)}  # fmt: skip
+    made = {
+        "Eq. (1)": single_mode_at(scene, FREQUENCY_HZ).with_excess(excess),
+        "beam": beam_at(beam, FREQUENCY_HZ, model_of(beam)).with_excess(excess),
+    }
     for of, fitted in (("Eq. (1)", "Eq. (1)"), ("beam", "beam"), ("beam", "Eq. (1)")):
         for kind, names in KINDS.items():
             if of != fitted and kind == "transitions":
                 continue  # six numbers, that do not say how well they are known
             known, own = parameters_of(made[fitted]), names + ("restitution",) * (fitted == "Eq. (1)")
             yield Trial(
-                name=f"{of}, {kind}" + f", by {fitted}" * (of != fitted), of=of, short=of != fitted,
+                name=f"{of}, {kind}" + f", by {fitted}" * (of != fitted),
+                of=of,
+                short=of != fitted,
                 record=synthetic(kind, made[of], transitions=TABLE),
-                truth={name: known[name].value for name in own}, start=made[fitted],
-            )  # fmt: skip
+                truth={name: known[name].value for name in own},
+                start=made[fitted],
+            )
 
 
 def coverage(scene: Scene, beam: Scene, run: Run, *, records: int, beam_records: int) -> list[Coverage]:
@@ -128,10 +133,18 @@ def coverage(scene: Scene, beam: Scene, run: Run, *, records: int, beam_records:
         most = max(LARGEST[trial.of], 2.0 * math.sqrt(LEVEL * (1.0 - LEVEL) / count))
         for k, (name, share) in enumerate(zip(trial.truth, shares.tolist(), strict=True)):
             right = abs(share - LEVEL) <= most and small < OFTEN
-            rows.append(Coverage(
-                trial=trial.name, parameter=name, records=fitted.size, refused=int(np.sum(~fitted)),
-                share=share, share_error=math.sqrt(share * (1.0 - share) / count), too_small=small,
-                bias=float(ratios[:, k].mean()), spread=float(ratios[:, k].std()),
-                agrees=small > 1.0 - OFTEN if trial.short else right,
-            ))  # fmt: skip
+            rows.append(
+                Coverage(
+                    trial=trial.name,
+                    parameter=name,
+                    records=fitted.size,
+                    refused=int(np.sum(~fitted)),
+                    share=share,
+                    share_error=math.sqrt(share * (1.0 - share) / count),
+                    too_small=small,
+                    bias=float(ratios[:, k].mean()),
+                    spread=float(ratios[:, k].std()),
+                    agrees=small > 1.0 - OFTEN if trial.short else right,
+                )
+            )
     return rows

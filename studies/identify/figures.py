@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from studies import plotting
-from studies.identify.fit import Fit, Profile
+from studies.identify.fit import Fit
+from studies.identify.profiles import Profile
 from studies.parameters import parameters_of
 
 CAPTION = (

@@ -112,9 +112,13 @@ class Problem:
     """
 
     def __init__(
-        self, prediction: Prediction, oscillator: ImpactOscillator, names: tuple[str, ...], noise: float,
+        self,
+        prediction: Prediction,
+        oscillator: ImpactOscillator,
+        names: tuple[str, ...],
+        noise: float,
         leash: float = math.inf,
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.prediction, self.oscillator, self.names = prediction, oscillator, names
         known = parameters_of(oscillator)
         self.sizes = np.concatenate([[known[name].size for name in names], prediction.sizes])
@@ -158,9 +162,15 @@ class Problem:
             )
         with np.errstate(all="ignore"):  # of the trust region, along what is not seen
             return least_squares(
-                self.residuals, start, jac=self.jacobian, x_scale="jac", max_nfev=MOST,
-                xtol=1e-10, ftol=1e-12, gtol=1e-12,
-            )  # fmt: skip
+                self.residuals,
+                start,
+                jac=self.jacobian,
+                x_scale="jac",
+                max_nfev=MOST,
+                xtol=1e-10,
+                ftol=1e-12,
+                gtol=1e-12,
+            )
 
 
 def fit(
@@ -197,13 +207,21 @@ def fit(
         raise InvalidValue(f"the record cannot {_blind(axes, names)}: fit fewer parameters or another record")
     covariance = (axes.T / singular**2 @ axes * np.outer(sizes, sizes) * spread**2)[:n, :n]
     result = Fit(
-        record=prediction.record, oscillator=problem.at(found.x)[0], names=names, start=(at * sizes)[:n],
+        record=prediction.record,
+        oscillator=problem.at(found.x)[0],
+        names=names,
+        start=(at * sizes)[:n],
         before=np.array([parameters_of(oscillator)[name].value for name in names]),
-        estimate=(found.x * sizes)[:n], covariance=covariance, noise=spread * unit, noise_known=known,
-        freedom=freedom, residuals=(-found.fun[:rows] / problem.weights).reshape(shape),
+        estimate=(found.x * sizes)[:n],
+        covariance=covariance,
+        noise=spread * unit,
+        noise_known=known,
+        freedom=freedom,
+        residuals=(-found.fun[:rows] / problem.weights).reshape(shape),
         chance=_chance(found.fun[:rows], prediction, known, freedom),
-        problem=problem, unknowns=found.x,
-    )  # fmt: skip
+        problem=problem,
+        unknowns=found.x,
+    )
     if not result.too_small:  # else errors mean little, and that is told
         lost = result.errors > sizes[:n] * np.maximum(np.abs(found.x[:n]), 1.0)
         if np.any(lost):
@@ -255,39 +273,3 @@ def _chance(residuals: Array, prediction: Prediction, known: bool, freedom: int)
         box = size * (size + 2) * np.sum(lagged**2 / (size - np.arange(1, LAGS + 1)))
         found.append(float(stats.chi2.sf(box, LAGS)))
     return min(1.0, len(found) * min(found)) if found else 1.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class Profile:
-    """One point of a profile likelihood: `parameter` held at `value`, all others fitted again.
-
-    `other` is the parameter that trades off with it, `other_value` what it becomes; `depth` is the rise of
-    chi^2 in units of the noise's variance.
-    """
-
-    parameter: str
-    value: float
-    other: str
-    other_value: float
-    depth: float
-
-
-def profile(found: Fit, name: str, other: str, *, points: int = 9, reach: float = 3.0) -> list[Profile]:
-    """The profile likelihood of `name`, `reach` standard errors to both sides."""
-    problem, i, variance = found.problem, found.names.index(name), (found.noise / found.problem.noise) ** 2
-    best, rows = np.sum(problem.residuals(found.unknowns) ** 2), list[Profile]()
-    others = tuple(one for one in found.names if one != name)
-    for side in np.linspace(-reach, reach, points):
-        values = found.unknowns * problem.sizes
-        values[: len(found.names)] += side * found.covariance[:, i] / found.errors[i]
-        try:
-            at = with_values(found.oscillator, {name: float(values[i])})
-            fewer = Problem(problem.prediction, at, others, problem.noise)
-            held = fewer.solve(np.delete(values, i) / fewer.sizes)
-        except Refusal:
-            continue
-        rows.append(Profile(
-            parameter=name, value=float(values[i]), depth=float(2.0 * held.cost - best) / variance,
-            other=other, other_value=float((held.x * fewer.sizes)[others.index(other)]),
-        ))  # fmt: skip
-    return rows

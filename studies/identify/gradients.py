@@ -3,7 +3,7 @@
 Differentiated is a motion of Eq. (1): time of its last impact, displacement and velocity at its last strobe,
 by the six parameters of `NAMES`.
 
-    exact        tangents through flights and impacts (contact.orbits.motion_derivatives)
+    exact        tangents through flights and impacts (contact.sensitivity.motion)
     differences  central, of the same motion, at relative steps of 1e-3 ... 1e-12
     heyoka       automatic differentiation of the equations, integrated with them by a Taylor series; a touch
                  ends it, and what that does to a tangent (x', v') is added here: with y' = f(t, y)
@@ -155,8 +155,14 @@ def gradients(oscillator: ImpactOscillator) -> list[Gradient]:
             found = compute()
             times.append(time.process_time() - begun)
         error = float(np.linalg.norm((found - truth) / scale) / np.linalg.norm(truth / scale))
-        rows.append(Gradient(method=method, setting=setting, error=error if np.isfinite(error) else None,
-                             milliseconds=1e3 * float(np.median(times[1:]))))  # fmt: skip
+        rows.append(
+            Gradient(
+                method=method,
+                setting=setting,
+                error=error if np.isfinite(error) else None,
+                milliseconds=1e3 * float(np.median(times[1:])),
+            )
+        )
 
     measured("exact", None, exact)
     for step in np.logspace(-3, -12, 10):

@@ -234,8 +234,11 @@ class Displacement(Prediction):
     def jacobian(self, oscillator: ImpactOscillator, extra: Array, names: Sequence[str]) -> Array:
         """Derivatives of `values`."""
         found = motion_derivatives(
-            oscillator, self._state(extra), changes_of(oscillator, names), periods=self._periods(oscillator),
+            oscillator,
+            self._state(extra),
+            changes_of(oscillator, names),
+            periods=self._periods(oscillator),
             times=self.times,
-        )  # fmt: skip
+        )
         tip = np.tensordot(found.states[:, : oscillator.n_modes], oscillator.model.phi, (1, 0))
         return np.roll(tip, len(names), axis=1)

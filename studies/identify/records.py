@@ -157,10 +157,15 @@ def _check(record: Record, path: Path) -> None:
 
 
 def synthetic(
-    kind: Kind, oscillator: ImpactOscillator,
-    transitions: tuple[tuple[float, int], ...] = tuple(letter.PERIODS.items()), *, seed: int | None = None,
-    noise: float | None = None, periods: int = 40, velocity: bool = False,
-) -> Record:  # fmt: skip
+    kind: Kind,
+    oscillator: ImpactOscillator,
+    transitions: tuple[tuple[float, int], ...] = tuple(letter.PERIODS.items()),
+    *,
+    seed: int | None = None,
+    noise: float | None = None,
+    periods: int = 40,
+    velocity: bool = False,
+) -> Record:
     """What an oscillator at its drive gives to measure, with `noise` [m, or excess] unless `seed` is None.
 
     The motion is the one it settles on from just below grazing, recorded for so many drive `periods`, as

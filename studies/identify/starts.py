@@ -236,9 +236,12 @@ def _displacement(
 
 
 def _rung(
-    times: Array, x: Array, stretches: Sequence[tuple[int, int]], oscillator: ImpactOscillator,
+    times: Array,
+    x: Array,
+    stretches: Sequence[tuple[int, int]],
+    oscillator: ImpactOscillator,
     names: Sequence[str],
-) -> dict[str, float]:  # fmt: skip
+) -> dict[str, float]:
     """Free period, decay rate and drive amplitude of one mode, from between the impacts."""
     known, w = parameters_of(oscillator), oscillator.driven.angular_frequency
     free = [name for name in ("free_period", "decay_rate") if name in names]

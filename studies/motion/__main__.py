@@ -32,7 +32,7 @@ from studies.film import (
     stage_of,
     write_gif,
     written_as_mp4,
-)  # fmt: skip
+)
 from studies.motion.filmed_orbit import FilmedOrbit, FrameRow, drawn_shapes, film_orbit
 from studies.run import Run, study
 from studies.scene import (
@@ -105,10 +105,15 @@ def motion(
     slow = f"{min(slowed):.0f} to {max(slowed):.0f} times slower than life"
     run.say(f"{words}: {len(orbit.contacts)} contacts, {slow}")
     found = {
-        "frequency_hz": drive_hz, "excess": excess, "period": settled.period, "duration_s": orbit.duration,
-        "impacts": len(orbit.contacts), "contacts_s": orbit.contacts, "magnification": magnification,
+        "frequency_hz": drive_hz,
+        "excess": excess,
+        "period": settled.period,
+        "duration_s": orbit.duration,
+        "impacts": len(orbit.contacts),
+        "contacts_s": orbit.contacts,
+        "magnification": magnification,
         "film_s": frames / RATE,
-    }  # fmt: skip
+    }
     caption = f"The tip along the film, {words}; dashed: the plate."
     run.figure("motion", draw_tip(orbit, scene.stop.gap_m)[0], caption)
     told, most = f"higher modes x {magnification:g}", len(moments)

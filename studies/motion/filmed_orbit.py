@@ -105,17 +105,36 @@ def film_orbit(
     line = np.linspace(0.0, duration, length * LINE_POINTS + 1)
     run, drawn = (simulate(oscillator, state, periods=length + 1, times=begin + at) for at in (times, line))
     columns = (
-        times, 1.0 / (rate * np.diff(times, append=duration)), oscillator.tip(run.displacement),
-        oscillator.tip(run.velocity), oscillator.driven.displacement(times), contact_force(oscillator, run),
-    )  # fmt: skip
+        times,
+        1.0 / (rate * np.diff(times, append=duration)),
+        oscillator.tip(run.displacement),
+        oscillator.tip(run.velocity),
+        oscillator.driven.displacement(times),
+        contact_force(oscillator, run),
+    )
     rows = [
-        FrameRow(frame=number, time_s=t, slowed=slowed, tip_m=x, tip_velocity_m_per_s=v, base_m=b, force_n=n,
-                 contact=bool(touched))
+        FrameRow(
+            frame=number,
+            time_s=t,
+            slowed=slowed,
+            tip_m=x,
+            tip_velocity_m_per_s=v,
+            base_m=b,
+            force_n=n,
+            contact=bool(touched),
+        )
         for number, (touched, (t, slowed, x, v, b, n)) in enumerate(
-            zip(touching(run), np.array(columns).T.tolist(), strict=True), start=1)
-    ]  # fmt: skip
-    return FilmedOrbit(duration=duration, contacts=contacts, coordinates=run.displacement, rows=rows,
-                       line_time=line, line_tip=oscillator.tip(drawn.displacement))  # fmt: skip
+            zip(touching(run), np.array(columns).T.tolist(), strict=True), start=1
+        )
+    ]
+    return FilmedOrbit(
+        duration=duration,
+        contacts=contacts,
+        coordinates=run.displacement,
+        rows=rows,
+        line_time=line,
+        line_tip=oscillator.tip(drawn.displacement),
+    )
 
 
 def drawn_shapes(

@@ -36,13 +36,15 @@ FREQUENCY_HZ = 22.20
 
 @study(quick={"thin": 6})
 def next_measurement(
-    scene: Scene, run: Run, *,
+    scene: Scene,
+    run: Run,
+    *,
     wanted: Annotated[tuple[str, ...], "parameters to tell"] = ("free_period", "restitution", "delay"),
     strobes: Annotated[int, "strobes of an orbit"] = 1000,
     noise_um: Annotated[float, "noise of the read-out"] = 0.5,
     delay_ms: Annotated[float | None, "delay of a touch (default: T/136)"] = None,
     thin: Annotated[int, "every so many places of the plane, both ways"] = 2,
-) -> Mapping[str, object]:  # fmt: skip
+) -> Mapping[str, object]:
     """Compute, tabulate, draw and say."""
     harmonic(scene)
     if not noise_um > 0.0:
@@ -62,8 +64,12 @@ def next_measurement(
     best = information.best(found)
     run.table("measurements", found, f"What an orbit tells of {', '.join(wanted)}.", show=())
     run.table("next", best, "The five best of them.", show=("frequency_hz", "excess", "period", "together"))
-    run.figure("next", information.draw(found, plan), "Standard errors over frequency and excess; stars: "
-               "letter; numbers: the best five; grey: the orbit does not outlive its errors.")  # fmt: skip
+    run.figure(
+        "next",
+        information.draw(found, plan),
+        "Standard errors over frequency and excess; stars: "
+        "letter; numbers: the best five; grey: the orbit does not outlive its errors.",
+    )
     told, rows = list[str](), list[pairs.Interval]()
     if corresponding(scene, FREQUENCY_HZ) == FREQUENCY_HZ:
         if plan.names == information.Plan().names:

@@ -55,10 +55,12 @@ APART_HZ, ALIKE = 0.3, 0.1
 """Least distance of two of the best places; by which approach speeds may differ and count as one."""
 
 SHOWN = {
-    "free_period": ("error of $T$ (ms)", 1e3), "decay_rate": ("error of $\\mu$ (1/s)", 1.0),
-    "gap": ("error of the gap (mm)", 1e3), "restitution": ("error of $\\tau$", 1.0),
+    "free_period": ("error of $T$ (ms)", 1e3),
+    "decay_rate": ("error of $\\mu$ (1/s)", 1.0),
+    "gap": ("error of the gap (mm)", 1e3),
+    "restitution": ("error of $\\tau$", 1.0),
     "delay": ("error of the delay (\u00b5s)", 1e6),
-}  # fmt: skip
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -170,13 +172,16 @@ def measurement(orbit: PeriodicOrbit, nodes: Nodes, plan: Plan) -> Measurement:
         away = away - excess_derivatives(nodes.fold, changes_of(orbit.oscillator, plan.unknown)) * sizes
     off = math.sqrt(away @ cov @ away) if told else math.inf
     return Measurement(
-        frequency_hz=orbit.oscillator.driven.frequency, excess=orbit.excess, period=orbit.period,
+        frequency_hz=orbit.oscillator.driven.frequency,
+        excess=orbit.excess,
+        period=orbit.period,
         errors=tuple((np.sqrt(np.diag(cov)[:n]) * sizes[:n]).tolist()),
         alone=tuple((sizes / np.linalg.norm(rows, axis=0))[:n].tolist()),
         together=float(np.linalg.det(cov[:n, :n]) ** (0.5 / n)) if told else math.inf,
-        distance=orbit.excess - nodes.excesses[0], distance_error=off,
+        distance=orbit.excess - nodes.excesses[0],
+        distance_error=off,
         kept=told and None not in [nodes.at(orbit.excess + way * off) for way in (-1, 1)],
-    )  # fmt: skip
+    )
 
 
 def measurements_at(of: Of, plan: Plan, excesses: Sequence[float], frequency: float) -> list[Measurement]:
@@ -263,9 +268,13 @@ def draw(found: Sequence[Measurement], plan: Plan) -> Figure:
         axis.plot(list(letter.PERIODS), [1e-3] * 6, **plotting.LETTER_POINTS)
         for number, one in enumerate(best(found), 1):
             axis.annotate(
-                str(number), (one.frequency_hz, one.excess), ha="center", va="center",
-                fontsize=plotting.NOTE, bbox={"boxstyle": "circle,pad=0.15", "fc": "white", "lw": 0.5},
-            )  # fmt: skip
+                str(number),
+                (one.frequency_hz, one.excess),
+                ha="center",
+                va="center",
+                fontsize=plotting.NOTE,
+                bbox={"boxstyle": "circle,pad=0.15", "fc": "white", "lw": 0.5},
+            )
         axis.set_yscale("symlog", linthresh=STABLE)
         plotting.label(axis.xaxis, "drive frequency", "Hz")
     plotting.label(axes[0, 0].yaxis, plotting.EXCESS)

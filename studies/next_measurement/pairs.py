@@ -85,8 +85,15 @@ def intervals_of(single: ImpactOscillator, excess: float) -> list[Interval]:
         low, first = max((low * (1.0 - part), m) for low, _, m, part in known)
         high, last = min((high * (1.0 + part), m) for _, high, m, part in known)
         missed = PRINTED_S[0] - high if high < PRINTED_S[0] else min(PRINTED_S[2] - low, 0.0)
-        return Interval(pairs=words, excess=excess, lowest_s=low, highest_s=high, from_m=first, to_m=last,
-                        missed_by_s=missed)  # fmt: skip
+        return Interval(
+            pairs=words,
+            excess=excess,
+            lowest_s=low,
+            highest_s=high,
+            from_m=first,
+            to_m=last,
+            missed_by_s=missed,
+        )
 
     every = shared("all", list(ends))
     rows = [*(shared(f"p{m}", [m]) for m in ends), every]

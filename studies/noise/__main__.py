@@ -92,9 +92,11 @@ def noise(
     along = places(scene, model, letters, *PLACES[run.quick])
     cells = [(place, each) for place in along for each in protocols]
     settings = {
-        "seed": seed, "scans": scans, "protocols": [asdict(each) for each in protocols],
+        "seed": seed,
+        "scans": scans,
+        "protocols": [asdict(each) for each in protocols],
         "places": [[place.description, place.frequency_hz, place.m] for place in along],
-    }  # fmt: skip
+    }
     own = fingerprint(run.scene.values(), settings)[:12]
     found = sweep(run, f"scans-{own}", settings, cells, partial(cell, scans, seed))
     made = [(*where, one) for where, one in zip(cells, found, strict=True) if one is not None]
@@ -104,20 +106,32 @@ def noise(
     shown = [row for row in observed if (row.frequency_hz, row.m) in letters]
     off = [row.off**2 for row in ends if row.off is not None]
     run.table("escape", ends, "Excess at which p_m and p_1 end, simulated and by formula.", show=())
-    run.table("escape_at_letter", at_letter, "The same at the letter's frequencies; along Fig. 3 formulas "
-              f"are {np.sqrt(np.mean(off or np.nan)):.2f} standard errors off (rms of {len(off)} medians).")
+    run.table(
+        "escape_at_letter",
+        at_letter,
+        "The same at the letter's frequencies; along Fig. 3 formulas "
+        f"are {np.sqrt(np.mean(off or np.nan)):.2f} standard errors off (rms of {len(off)} medians).",
+    )
     run.table("observed", observed, "Hysteresis along Fig. 3 as an observer would measure it.", show=())
     run.table("observed_at_letter", shown, "The same at the letter's frequencies.")
 
-    described = [("Eq. (1)", StroboscopicMap(oscillator=single_mode_at(scene, frequency_of(scene, m))), m)
-                 for m in TOLD[run.quick]]  # fmt: skip
-    described += [("beam", StroboscopicMap(oscillator=beam_at(scene, f, model)), m)
-                  for f, m in letters[-2 if run.quick else 0 :]]  # fmt: skip
+    described = [
+        ("Eq. (1)", StroboscopicMap(oscillator=single_mode_at(scene, frequency_of(scene, m))), m)
+        for m in TOLD[run.quick]
+    ]
+    described += [
+        ("beam", StroboscopicMap(oscillator=beam_at(scene, f, model)), m)
+        for f, m in letters[-2 if run.quick else 0 :]
+    ]
     asked = partial(in_noise, readout, protocols, seed)
     last = [row for row in run.attempt(asked, described, "periods in noise") if row]
     kinds = [named(each.correlation_s) for each in protocols]
-    run.table("last_period", last, "Which p_m can be told apart at an excess of 1e-3, and lives where it is "
-              f"born; for each kind of noise: {', '.join(kinds)}.")  # fmt: skip
+    run.table(
+        "last_period",
+        last,
+        "Which p_m can be told apart at an excess of 1e-3, and lives where it is "
+        f"born; for each kind of noise: {', '.join(kinds)}.",
+    )
     from studies.noise import figure  # matplotlib is slow to import
 
     if observed:
@@ -140,8 +154,11 @@ def clouds(scene: Scene, run: Run, model: ModalModel, seed: int) -> None:
     found = [row for row in run.attempt(partial(covariance_of, periods, seed), cases, "covariances") if row]
     run.table("covariances", found, f"Simulated covariances of the points of p{m} over the predicted ones.")
     grown = run.attempt(partial(growth_of, periods, seed), pairs, "growth of clouds")
-    run.table("growth", [row for rows in grown for row in rows or ()],
-              "Exponents with which clouds grow; expected: at a hard stop.")  # fmt: skip
+    run.table(
+        "growth",
+        [row for rows in grown for row in rows or ()],
+        "Exponents with which clouds grow; expected: at a hard stop.",
+    )
 
 
 def at(scene: Scene, model: ModalModel, description: str, m: int, frequency_hz: float) -> Place:
@@ -202,9 +219,13 @@ def answer_hysteresis(run: Run, protocols: Sequence[Protocol], observed: Sequenc
         f"span {width:.1e}){': ' + ', '.join(told) + ',' if told else ''}{drowned}. {np.median(part):.0%} "
         "(median) of what separates his hysteresis in Eq. (1) from the map's is noise, the rest the map's "
         "own truncation."
-        + (f" At {missed} of {len(rows)} places he does not come to p_m: his scan from above grazing ends in "
-           "p1 before, or noise throws it over a second touch." if missed else ""),
-    )  # fmt: skip
+        + (
+            f" At {missed} of {len(rows)} places p_m is not reached: the scan from above grazing ends in "
+            "p1 before, or noise throws it over a second touch."
+            if missed
+            else ""
+        ),
+    )
 
 
 def judge(run: Run, kinds: Sequence[str], last: Sequence[LastPeriod]) -> dict[str, int | None]:

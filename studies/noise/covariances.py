@@ -118,10 +118,17 @@ def covariance_of(periods: int, seed: int, case: tuple[Place, float]) -> Covaria
     reading = np.random.default_rng([seed, 1]).standard_normal(found.shape[:2]) * np.sqrt(expected)[:, None]
     readout = np.var(found @ across + reading, axis=1) / (2.0 * expected)
     return Covariance(
-        description=place.description, m=place.m, frequency_hz=place.frequency_hz, noise=named(correlation_s),
-        periods=periods, ratio=float(traces.mean()), error=float(traces.std(ddof=1) / math.sqrt(BLOCKS)),
-        worst=float(off.max()), entries=place.m * size * (size + 1) // 2, readout=float(readout.mean()),
-    )  # fmt: skip
+        description=place.description,
+        m=place.m,
+        frequency_hz=place.frequency_hz,
+        noise=named(correlation_s),
+        periods=periods,
+        ratio=float(traces.mean()),
+        error=float(traces.std(ddof=1) / math.sqrt(BLOCKS)),
+        worst=float(off.max()),
+        entries=place.m * size * (size + 1) // 2,
+        readout=float(readout.mean()),
+    )
 
 
 def growth_of(periods: int, seed: int, case: tuple[Place, Place]) -> list[Growth]:
@@ -148,7 +155,7 @@ def growth_of(periods: int, seed: int, case: tuple[Place, Place]) -> list[Growth
         if len(found.get(name, ())) > 1:
             x, y = np.log(np.array(found[name])).T
             slope = float(np.polynomial.Polynomial.fit(x, y, 1).convert().coef[1])
-            rows.append(Growth(
-                description=inside.description, towards=name, exponent=slope, expected=expected
-            ))  # fmt: skip
+            rows.append(
+                Growth(description=inside.description, towards=name, exponent=slope, expected=expected)
+            )
     return rows

@@ -81,13 +81,25 @@ def ends_of(made: Made) -> list[End]:
         ranks = 0.5 * (values.size + np.array([-1.0, 1.0]) * math.sqrt(values.size))
         below, above = np.interp(ranks, np.arange(values.size) + 0.5, values)
         (low, median, high), error = np.quantile(values, PARTS), 0.5 * float(above - below)
-        rows.append(End(
-            description=place.description, frequency_hz=place.frequency_hz, m=place.m,
-            noise=named(protocol.correlation_s), fold=None if place.fold is None else place.fold.excess,
-            end=name, scans=values.size, low=low, median=median, high=high, error=error,
-            formula_low=formula[0], formula=formula[1], formula_high=formula[2],
-            off=None if formula[1] is None else (formula[1] - float(median)) / error,
-        ))  # fmt: skip
+        rows.append(
+            End(
+                description=place.description,
+                frequency_hz=place.frequency_hz,
+                m=place.m,
+                noise=named(protocol.correlation_s),
+                fold=None if place.fold is None else place.fold.excess,
+                end=name,
+                scans=values.size,
+                low=low,
+                median=median,
+                high=high,
+                error=error,
+                formula_low=formula[0],
+                formula=formula[1],
+                formula_high=formula[2],
+                off=None if formula[1] is None else (formula[1] - float(median)) / error,
+            )
+        )
     return rows
 
 
@@ -102,8 +114,16 @@ def observed_of(made: Made) -> Observed | None:
     low, median, high = np.nanquantile(widths, PARTS) if often else (math.nan,) * 3
     in_map = replace(place, description="map", model=None).fold
     return Observed(
-        description=place.description, frequency_hz=place.frequency_hz, m=place.m,
-        noise=named(protocol.correlation_s), map=None if in_map is None else -in_map.excess,
-        fold=-place.fold.excess, scans=count, low=low, median=median, high=high, met=met,
+        description=place.description,
+        frequency_hz=place.frequency_hz,
+        m=place.m,
+        noise=named(protocol.correlation_s),
+        map=None if in_map is None else -in_map.excess,
+        fold=-place.fold.excess,
+        scans=count,
+        low=low,
+        median=median,
+        high=high,
+        met=met,
         seen=bool(low > protocol.step),
-    )  # fmt: skip
+    )

@@ -25,8 +25,12 @@ ESCAPE = (
     "simulated (5 to 95 %, median with its error) and by formula (black ticks at 5, 50 and 95 %). Filled: "
     "the first slip or touch, which the formulas are for; open: where an observer no longer sees the orbit."
 )
-LOOKS = {"touched": (BLUE, "o", BLUE), "left": (BLUE, "o", "white"),
-         "slipped": (VERMILION, "s", VERMILION), "lost": (VERMILION, "s", "white")}  # fmt: skip
+LOOKS = {
+    "touched": (BLUE, "o", BLUE),
+    "left": (BLUE, "o", "white"),
+    "slipped": (VERMILION, "s", VERMILION),
+    "lost": (VERMILION, "s", "white"),
+}
 
 
 @plotting.in_house_style
@@ -46,21 +50,31 @@ def draw_observed(scene: Scene, rows: Sequence[Observed]) -> Figure:
                 folds = np.array([getattr(row, name) for row in own], dtype=float)
                 axis.plot(f, folds, line, color=colour, label=words)
             low, high = [row.low for row in own], [row.high for row in own]
-            axis.fill_between(f, low, high, color=tint(VERMILION, 0.3), linewidth=0,
-                              label="observed, Eq. (1), 5 to 95 %")  # fmt: skip
+            axis.fill_between(
+                f, low, high, color=tint(VERMILION, 0.3), linewidth=0, label="observed, Eq. (1), 5 to 95 %"
+            )
             axis.plot(f, [row.median for row in own], color=VERMILION, marker=".", label="its median")
         of_beam = [row for row in here if row.description == "beam"]
         middle = np.array([row.median for row in of_beam])
         ends = np.array([[row.low, row.high] for row in of_beam]).reshape(-1, 2).T
-        axis.errorbar([row.frequency_hz for row in of_beam], middle, np.abs(ends - middle), fmt="o",
-                      mfc="white", color=BLACK, elinewidth=0.8, label="observed, beam")  # fmt: skip
+        axis.errorbar(
+            [row.frequency_hz for row in of_beam],
+            middle,
+            np.abs(ends - middle),
+            fmt="o",
+            mfc="white",
+            color=BLACK,
+            elinewidth=0.8,
+            label="observed, beam",
+        )
         axis.axhline(0.0, **GUIDE)
         for frequency in scene.drive.frequencies_hz:
             axis.axvline(frequency, **LETTER)
         axis.set_yscale("symlog", linthresh=letter.AMPLITUDE_STABILITY, linscale=0.4)
         axis.set_ylim(-1e-3, 0.2)
-        axis.set_yticks([-5e-4, 0.0, 5e-4, 1e-3, 1e-2, 1e-1],
-                        ["-0.0005", "0", "0.0005", "0.001", "0.01", "0.1"])  # fmt: skip
+        axis.set_yticks(
+            [-5e-4, 0.0, 5e-4, 1e-3, 1e-2, 1e-1], ["-0.0005", "0", "0.0005", "0.001", "0.01", "0.1"]
+        )
         axis.yaxis.set_minor_locator(NullLocator())
         plotting.panel(axis, number, kind)
         plotting.label(axis.yaxis, plotting.HYSTERESIS)
@@ -98,8 +112,16 @@ def draw_end(axis: Axes, row: End, place: int) -> None:
     y = place - 0.3 + 0.2 * list(LOOKS).index(row.end)
     low, median, high = (1e4 * (value - origin) for value in (row.low, row.median, row.high))
     axis.plot([low, high], [y, y], color=colour, linewidth=0.8)
-    axis.errorbar(median, y, xerr=1e4 * row.error, color=colour, marker=marker, markersize=3.0, mfc=face,
-                  label=f"{'p$_1$' if row.end in ('touched', 'left') else 'p$_m$'} {row.end}")  # fmt: skip
+    axis.errorbar(
+        median,
+        y,
+        xerr=1e4 * row.error,
+        color=colour,
+        marker=marker,
+        markersize=3.0,
+        mfc=face,
+        label=f"{'p$_1$' if row.end in ('touched', 'left') else 'p$_m$'} {row.end}",
+    )
     if row.formula is not None:
         law = np.array([row.formula_low, row.formula, row.formula_high], dtype=float)
         found = 1e4 * (law - origin)

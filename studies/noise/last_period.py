@@ -112,18 +112,18 @@ def in_noise(
     """p_m of a named description: the tip of Eq. (1), the read-out point of a beam."""
     description, strobed, m = described
     row = LastPeriod(
-        description=description, m=m, frequency_hz=strobed.oscillator.driven.frequency,
+        description=description,
+        m=m,
+        frequency_hz=strobed.oscillator.driven.frequency,
         born=born_period(strobed, BORN_EXCESS),
         fold=fold_excess(strobed, m) if strobed.oscillator.n_modes == 1 else None,
-    )  # fmt: skip
+    )
     if row.born != m:
         return row
     columns = zip(*(clouds_of(readout, protocol, seed, strobed, m) for protocol in protocols), strict=True)
     told_apart, predicted, records, held = columns
     seen = tuple(min(pair) > 0.5 for pair in zip(records, held, strict=True))
-    return replace(
-        row, told_apart=told_apart, predicted=predicted, records=records, held=held, seen=seen
-    )
+    return replace(row, told_apart=told_apart, predicted=predicted, records=records, held=held, seen=seen)
 
 
 def clouds_of(

@@ -75,9 +75,11 @@ def mean_time(distance: float, place: Place, stability: float) -> float:
 def slipped_in_white_noise(place: Place, protocol: Protocol) -> Law:
     """Where p_m slips."""
     return of_rates(
-        place.fold.excess, -1.0, protocol,
+        place.fold.excess,
+        -1.0,
+        protocol,
         lambda x: 1.0 / (place.m * mean_time(x - place.fold.excess, place, protocol.stability)),
-    )  # fmt: skip
+    )
 
 
 def of_rates(end: float, way: float, protocol: Protocol, rate: Callable[[float], float]) -> Law:

@@ -1,8 +1,8 @@
 """The site: what the packages say of themselves (pdoc, from the docstrings), beside the page of all results.
 
-    results/site/index.html       README, every module, and a search through them
-                 results.html     the page; its links lead to the other files of results
-                 beam/..., contact/..., studies/...
+results/site/index.html       README, every module, and a search through them
+             results.html     the page; its links lead to the other files of results
+             beam/..., contact/..., studies/...
 """
 
 from __future__ import annotations

@@ -47,9 +47,16 @@ def scipy_pieces(e: Equations, solver: str) -> Advance:
             more["jac"] = e.jacobian(contact, y)  # constant
         with np.errstate(all="ignore"):  # trial steps too long may overflow, and are rejected
             found = solve_ivp(
-                lambda t, state: e.rates(contact, t, state, np.empty(2 * e.n)), (begin, times[-1]), y,
-                method=solver, t_eval=times, rtol=e.tolerance, atol=e.absolute, events=watched, **more,
-            )  # fmt: skip
+                lambda t, state: e.rates(contact, t, state, np.empty(2 * e.n)),
+                (begin, times[-1]),
+                y,
+                method=solver,
+                t_eval=times,
+                rtol=e.tolerance,
+                atol=e.absolute,
+                events=watched,
+                **more,
+            )
         samples = found.y.T if len(found.t) else np.empty((0, 2 * e.n))
         if not found.success:
             reached, last = (found.t[-1], samples[-1]) if len(found.t) else (begin, y)
@@ -78,8 +85,16 @@ def cvode_pieces(e: Equations, family: str) -> Advance:
 
         watched.direction = [1]  # type: ignore[attr-defined]
         # a new one for each piece: the library keeps, and reads again, every event that one has found
-        cvode: Any = CVODE(right, method=family, rtol=e.tolerance, atol=e.absolute, jacfn=slopes,
-                           eventsfn=watched, num_events=1, max_num_steps=MOST_STEPS)  # fmt: skip
+        cvode: Any = CVODE(
+            right,
+            method=family,
+            rtol=e.tolerance,
+            atol=e.absolute,
+            jacfn=slopes,
+            eventsfn=watched,
+            num_events=1,
+            max_num_steps=MOST_STEPS,
+        )
         cvode.init_step(begin, y)
         samples: list[Array] = []
         for time in times:
@@ -124,9 +139,10 @@ def heyoka_pieces(e: Equations) -> Advance:
                 taylor.reset_cooldowns()
             # in sigma the target ends the stretch as the second event
             outcome, _h, _low, steps, *_rest = (
-                taylor.propagate_for(FAR, max_steps=MOST_STEPS) if sigma
+                taylor.propagate_for(FAR, max_steps=MOST_STEPS)
+                if sigma
                 else taylor.propagate_until(target, max_steps=MOST_STEPS)
-            )  # fmt: skip
+            )
             spent, event = spent + steps, int(outcome) == -1
             end = float(taylor.state[-1] if sigma else taylor.time)
             if event:
@@ -165,6 +181,8 @@ def _compiled(n: int, contact: bool, sigma: bool, tolerance: float) -> Any:
     else:
         watched = [(depth, falling)] if contact else [(depth - rounding, rising)]
     return hy.taylor_adaptive(
-        system, [0.0] * len(system), tol=tolerance,
+        system,
+        [0.0] * len(system),
+        tol=tolerance,
         t_events=[hy.t_event(surface, direction=way) for surface, way in watched],
-    )  # fmt: skip
+    )

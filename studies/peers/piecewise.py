@@ -108,8 +108,11 @@ class Equations:
         self.scalars = np.array([w, w * run.clock, oscillator.stop.gap, self.number])
         lowest = w if w > 0.0 else 2.0 * math.pi / oscillator.period
         pace = np.maximum(model.omega, lowest)
-        vectors = (run.start.velocity, model.omega * run.start.displacement,
-                   amplitude * lowest * np.abs(oscillator.steady_response()))  # fmt: skip
+        vectors = (
+            run.start.velocity,
+            model.omega * run.start.displacement,
+            amplitude * lowest * np.abs(oscillator.steady_response()),
+        )
         reach = lowest * oscillator.stop.gap / math.sqrt(self.compliance)
         speed = max(reach, *(float(np.linalg.norm(vector)) for vector in vectors)) or 1.0
         self.absolute = tolerance * np.concatenate([speed / pace, np.full(self.n, speed)])
@@ -165,11 +168,20 @@ class Equations:
         approach, rebound = before[:, n:] @ self.phi, after[:, n:] @ self.phi
         none, begin, end = np.zeros(begin.size, np.int64), self.start.time + begin, self.start.time + end
         return Impacts(
-            start=begin, end=end, period=none, clock=begin, end_clock=end, approach=approach, rebound=rebound,
+            start=begin,
+            end=end,
+            period=none,
+            clock=begin,
+            end_clock=end,
+            approach=approach,
+            rebound=rebound,
             loss=0.5 * (approach**2 - rebound**2) / self.compliance if self.hard else 0.0 * rebound,
-            kind=none, displacement_start=before[:, :n],
-            velocity_start=before[:, n:], displacement_end=after[:, :n], velocity_end=after[:, n:],
-        )  # fmt: skip
+            kind=none,
+            displacement_start=before[:, :n],
+            velocity_start=before[:, n:],
+            displacement_end=after[:, :n],
+            velocity_end=after[:, n:],
+        )
 
 
 def pieced(
@@ -181,8 +193,10 @@ def pieced(
     y = np.concatenate([start.displacement, start.velocity])
     depth, rate = e.tip(y)
     if start.regime != 0 or depth > e.rounding:
-        raise InvalidValue(f"regime of the state is {start.regime}, {depth:.3g} m behind the stop; outside "
-                         "solvers begin off the stop")  # fmt: skip
+        raise InvalidValue(
+            f"regime of the state is {start.regime}, {depth:.3g} m behind the stop; outside "
+            "solvers begin off the stop"
+        )
     touches, releases = list[tuple[float, Array]](), list[tuple[float, Array]]()
 
     def touched(s: float, y: Array) -> tuple[bool, Array]:
@@ -221,11 +235,22 @@ def pieced(
     begun = [s for s, _y in touches]
     counts = np.bincount(np.searchsorted(strobe, begun), minlength=passed.size + 1)[: passed.size]
     at_strobe, at_sample, last = np.split(states[place], [passed.size, passed.size + sample.size])
-    end = State(displacement=last[0, :n], velocity=last[0, n:], time=run.last * period + run.clock_end,
-                regime=int(contact))  # fmt: skip
+    end = State(
+        displacement=last[0, :n],
+        velocity=last[0, n:],
+        time=run.last * period + run.clock_end,
+        regime=int(contact),
+    )
     return Trajectory(
-        oscillator=oscillator, end=end, strobe_time=passed * period, strobe_displacement=at_strobe[:, :n],
-        strobe_velocity=at_strobe[:, n:], strobe_impacts=counts.astype(np.int64), time=run.times,
-        displacement=at_sample[:, :n], velocity=at_sample[:, n:], impacts=e.impacts(touches, releases),
+        oscillator=oscillator,
+        end=end,
+        strobe_time=passed * period,
+        strobe_displacement=at_strobe[:, :n],
+        strobe_velocity=at_strobe[:, n:],
+        strobe_impacts=counts.astype(np.int64),
+        time=run.times,
+        displacement=at_sample[:, :n],
+        velocity=at_sample[:, n:],
+        impacts=e.impacts(touches, releases),
         evaluations=spent,
-    )  # fmt: skip
+    )

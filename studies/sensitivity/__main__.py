@@ -38,8 +38,12 @@ def sensitivity(scene: Scene, run: Run) -> Mapping[str, object]:
     run.table("sensitivity", rows, "Born period and fold after each change of one parameter.")
     causes = causes_of(scene, model)[: 20 if run.quick else None]
     p10 = run.map(partial(row_of, scene, 1.5 if run.quick else 1.05), causes, "causes of p10")
-    run.table("p10", p10, "Period born at the letter's last frequency at excess 2.5e-4, 1e-3, 4e-3 and 1e-2, "
-              "how many of its other five are; excesses with p10 and with all six.")  # fmt: skip
+    run.table(
+        "p10",
+        p10,
+        "Period born at the letter's last frequency at excess 2.5e-4, 1e-3, 4e-3 and 1e-2, "
+        "how many of its other five are; excesses with p10 and with all six.",
+    )
     from studies.sensitivity import figure  # matplotlib is slow to import
 
     run.figure("fold_against_parameter", figure.draw_tornado(rows), figure.TORNADO)
@@ -48,14 +52,17 @@ def sensitivity(scene: Scene, run: Run) -> Mapping[str, object]:
         "rows": rows,
         "p10": p10,
         "free_period_for_it_at_grazing_s": 2.0 * HIGHEST / ((2.0 * HIGHEST + 1.0) * frequencies[-1]),
-    }  # fmt: skip
+    }
 
 
 def judge(run: Run, rows: Sequence[Row]) -> None:
     """The answer why it is p10."""
+
     def told(found: Sequence[Row]) -> str:
-        return "; ".join(f"{row.cause}, " + (f"{row.six_from:.1e} to {row.six_to:.1e}" if row.six_from
-                                             else "nowhere") for row in found)  # fmt: skip
+        return "; ".join(
+            f"{row.cause}, " + (f"{row.six_from:.1e} to {row.six_to:.1e}" if row.six_from else "nowhere")
+            for row in found
+        )
 
     near = [row for row in rows if row.born[1] == HIGHEST and row.others[1] == len(PERIODS) - 1]
     run.answer(

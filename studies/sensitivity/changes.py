@@ -66,8 +66,9 @@ def _both(
 
 RATE_ERROR = BREAKDOWN["decay_rate_error_per_s"]
 PARAMETERS = (
-    _both("free period", "single_mode.free_period_s", -FREE_PERIOD_ERROR_S, FREE_PERIOD_ERROR_S, "s",
-          tune=True),
+    _both(
+        "free period", "single_mode.free_period_s", -FREE_PERIOD_ERROR_S, FREE_PERIOD_ERROR_S, "s", tune=True
+    ),
     _both("decay rate of mode 1", "single_mode.decay_rate_per_s", -RATE_ERROR, RATE_ERROR, "1/s"),
     _both("restitution of Eq. (1)", "single_mode.restitution", -0.05, 0.05, ""),
     _both("damping of higher modes", "", 0.5, 2.0),
@@ -79,7 +80,7 @@ PARAMETERS = (
     _both("modulus of the tape", "spring.tape_modulus_pa", 0.5, 2.0, tune=True),
     _both("coverage of the tape", "spring.tape_coverage", 0.75, 1.25, tune=True),
     _both("number of modes", "modes.count", -5, 5, ""),
-)  # fmt: skip
+)
 """The letter's errors, then the assumptions; the first four in the small form."""
 
 
@@ -154,7 +155,11 @@ def rows_after(scene: Scene, base: Sequence[Row], change: Change) -> list[Row]:
     """The rows of a change at the frequencies of `base`; SceneError if the scene does not allow it."""
     there, model = changed(scene, change)
     return [
-        replace(row_at(there, model, row.frequency_hz, row), parameter=change.parameter, change=change.text,
-                sign=change.sign)
+        replace(
+            row_at(there, model, row.frequency_hz, row),
+            parameter=change.parameter,
+            change=change.text,
+            sign=change.sign,
+        )
         for row in base
-    ]  # fmt: skip
+    ]

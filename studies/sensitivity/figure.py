@@ -18,8 +18,9 @@ TORNADO = (
     "of Eq. (1) (triangles); written: the period that is born instead."
 )
 WAYS: dict[int, tuple[str, str, str, float]] = {
-    -1: ("lowered", BLUE, "v", 0.2), 1: ("raised", plotting.tint(VERMILION, 0.6), "^", -0.2),
-}  # fmt: skip
+    -1: ("lowered", BLUE, "v", 0.2),
+    1: ("raised", plotting.tint(VERMILION, 0.6), "^", -0.2),
+}
 """Direction of a change -> its name, colour and place of its bar; marker of Eq. (1)."""
 LEFT, RIGHT = 0.22, 4.5
 """Where the axis of the factors ends."""
@@ -33,9 +34,14 @@ def draw_tornado(rows: Sequence[Row]) -> Figure:
     columns = min(3, len(before))
     lines = math.ceil(len(before) / columns)
     figure, axes = plotting.new_figure(
-        lines, columns, width=PAGE, height=(0.016 + 0.0044 * len(parameters)) * lines + 0.012, squeeze=False,
-        sharey=True, sharex=True,
-    )  # fmt: skip
+        lines,
+        columns,
+        width=PAGE,
+        height=(0.016 + 0.0044 * len(parameters)) * lines + 0.012,
+        squeeze=False,
+        sharey=True,
+        sharex=True,
+    )
     for axis in axes.flat[len(before) :]:
         axis.set_visible(False)
     for number, (axis, base) in enumerate(zip(axes.flat, before, strict=False)):
@@ -72,10 +78,16 @@ def draw_change(axis: Axes, row: Row, base: Row, place: int) -> None:
         axis.barh(y, factor - 1.0, 0.34, left=1.0, color=colour, zorder=2, label=f"{way}, beam")
     if row.fold_single_mode is not None and base.fold_single_mode is not None:
         factor = min(max(row.fold_single_mode / base.fold_single_mode, LEFT), RIGHT)
-        axis.plot(factor, y, marker, **look, linestyle="none", zorder=4, clip_on=False,
-                  label=f"{way}, Eq. (1)")  # fmt: skip
+        axis.plot(
+            factor, y, marker, **look, linestyle="none", zorder=4, clip_on=False, label=f"{way}, Eq. (1)"
+        )
     if row.born_beam != base.born_beam:
         words = f"p$_{{{row.born_beam}}}$" if row.born_beam else "no period"
-        axis.annotate(f"{words} at {row.change}", (0.99, y), xycoords=("axes fraction", "data"), ha="right",
-                      va="center", fontsize=NOTE)  # fmt: skip
-
+        axis.annotate(
+            f"{words} at {row.change}",
+            (0.99, y),
+            xycoords=("axes fraction", "data"),
+            ha="right",
+            va="center",
+            fontsize=NOTE,
+        )

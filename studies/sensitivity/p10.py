@@ -184,10 +184,15 @@ def row_of(scene: Scene, step: float, cause: Cause) -> Row:
         six = [e for e in ten if all(right(f, e) for f in five)]
         gaps = [sum(part[0] <= e <= part[-1] for e in grid) - len(part) if part else 0 for part in (ten, six)]
         return Row(
-            cause=cause[0], effective_period_s=cause[1], gaps=tuple(gaps), p10_from=min(ten, default=None),
-            p10_to=max(ten, default=None), six_from=min(six, default=None), six_to=max(six, default=None),
+            cause=cause[0],
+            effective_period_s=cause[1],
+            gaps=tuple(gaps),
+            p10_from=min(ten, default=None),
+            p10_to=max(ten, default=None),
+            six_from=min(six, default=None),
+            six_to=max(six, default=None),
             born=tuple(known(period_of, motions[last], e) for e in EXCESSES),
             others=tuple(sum(right(f, e) for f in five) for e in EXCESSES),
-        )  # fmt: skip
+        )
 
     return min(map(row, cause[2]), key=lambda row: row.p10_from or math.inf)

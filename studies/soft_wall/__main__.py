@@ -60,12 +60,16 @@ def soft_wall(
         frequencies = sorted({min(frequencies, key=lambda f: abs(f - g)) for g in QUICK_HZ})
     walls = [
         SoftWall(oscillator=single_mode_at(scene, f), hardness=10.0**k)
-        for f in frequencies for k in range(decades[0], decades[1] + 1)
-    ]  # fmt: skip
+        for f in frequencies
+        for k in range(decades[0], decades[1] + 1)
+    ]
     excesses = np.geomspace(1e-8, 3e-2, 14 if run.quick else 27)
     curves = [wall for wall in walls if wall.frequency == shown]
-    kicks = [row for rows in run.attempt(partial(kicks_of, excesses=excesses), curves, "kicks")
-             for row in rows or ()]  # fmt: skip
+    kicks = [
+        row
+        for rows in run.attempt(partial(kicks_of, excesses=excesses), curves, "kicks")
+        for row in rows or ()
+    ]
     doublings = [row for row in run.attempt(doubling_of, walls, "period doublings") if row]
     job = partial(beam_of, scene, excesses=np.geomspace(1e-7, 1e-1, points).tolist())
     (found,) = run.attempt(job, [shown], "beam")
@@ -74,13 +78,20 @@ def soft_wall(
     run.table("doublings", doublings, "Excess F/F_g - 1 at which p1 doubles its period.")
     from studies.soft_wall.figures import draw_kicks, draw_orbits
 
-    run.figure("kick", draw_kicks([*kicks, *more]), "Kick of one collision against the excess: points, "
-               "closed form (line) and, dashed, the law of a soft touch. All go over into the power 1/2 of a "
-               "hard one, the beam below what the letter's drive could resolve.")  # fmt: skip
-    run.figure("orbits", draw_orbits(scene, doublings, beam),
-               "(a) Excess of the period doubling of p1 at an elastic wall; closed form (line). "
-               "(b) The beam: p1 that survives its touch, and what an experiment sees that raises "
-               "the drive in finite steps.")  # fmt: skip
+    run.figure(
+        "kick",
+        draw_kicks([*kicks, *more]),
+        "Kick of one collision against the excess: points, "
+        "closed form (line) and, dashed, the law of a soft touch. All go over into the power 1/2 of a "
+        "hard one, the beam below what the letter's drive could resolve.",
+    )
+    run.figure(
+        "orbits",
+        draw_orbits(scene, doublings, beam),
+        "(a) Excess of the period doubling of p1 at an elastic wall; closed form (line). "
+        "(b) The beam: p1 that survives its touch, and what an experiment sees that raises "
+        "the drive in finite steps.",
+    )
     judge_wall(run, doublings)
     if beam:
         judge_beam(run, beam)
@@ -95,8 +106,12 @@ def judge_wall(run: Run, doublings: Sequence[Doubling]) -> None:
     falls = all(a[2] > b[2] for a, b in pairwise(found) if a[0] == b[0])
     first = [row for row in found if row[0] == found[0][0]]
     ends = ", ".join(f"{excess:.2g} at K = {hardness:g}" for _, hardness, excess in (first[0], first[-1]))
-    run.verdict("soft_wall", "agrees" if falls else "differs", found=f"Eq. (1): doubling at {ends}",
-                note=f"excess of the period doubling at {first[0][0]:.2f} Hz")  # fmt: skip
+    run.verdict(
+        "soft_wall",
+        "agrees" if falls else "differs",
+        found=f"Eq. (1): doubling at {ends}",
+        note=f"excess of the period doubling at {first[0][0]:.2f} Hz",
+    )
 
 
 def judge_beam(run: Run, beam: Beam) -> None:
@@ -104,19 +119,32 @@ def judge_beam(run: Run, beam: Beam) -> None:
     end, lost, stable = beam.doubling_excess, beam.unstable_excess, letter.AMPLITUDE_STABILITY
     if end is None or lost is None:
         return
-    below = "within what the letter could resolve" if lost >= stable else (
-        f"{stable / lost:.0f} times below the letter's amplitude stability, which is why it was not seen"
-    )  # fmt: skip
+    below = (
+        "within what the letter could resolve"
+        if lost >= stable
+        else (
+            f"{stable / lost:.0f} times below the letter's amplitude stability, which is why it was not seen"
+        )
+    )
     loss = f"p1 doubles its period at {end:.2g}"
     if beam.turns:
-        loss = (f"p1 loses its stability at {lost:.2g} by a complex pair of multipliers; a multiplier passes "
-                f"-1 at {end:.2g}, where p1 is unstable already")  # fmt: skip
-    run.verdict("smoothing", "differs" if lost >= stable else "in part" if lost > UNSEEN else "agrees",
-                found=f"beam: {loss}", note=f"the square root is smoothed; the loss is {below}")  # fmt: skip
+        loss = (
+            f"p1 loses its stability at {lost:.2g} by a complex pair of multipliers; a multiplier passes "
+            f"-1 at {end:.2g}, where p1 is unstable already"
+        )
+    run.verdict(
+        "smoothing",
+        "differs" if lost >= stable else "in part" if lost > UNSEEN else "agrees",
+        found=f"beam: {loss}",
+        note=f"the square root is smoothed; the loss is {below}",
+    )
     if beam.square_root_from is not None and beam.half_excess is not None:
-        run.answer("higher_modes", f"The square root holds from an excess of {beam.square_root_from:.1e} on; "
-                   f"half of the kick is left at {beam.half_excess:.1e}. Below, the Hertz contact smooths "
-                   f"it: {loss}. This loss of stability is {below}.")  # fmt: skip
+        run.answer(
+            "higher_modes",
+            f"The square root holds from an excess of {beam.square_root_from:.1e} on; "
+            f"half of the kick is left at {beam.half_excess:.1e}. Below, the Hertz contact smooths "
+            f"it: {loss}. This loss of stability is {below}.",
+        )
 
 
 if __name__ == "__main__":

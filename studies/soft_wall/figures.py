@@ -25,7 +25,7 @@ def draw_kicks(rows: Sequence[Kick]) -> Figure:
             curve = [row for row in rows if row.case == case and row.hardness == hardness]
             excess, simulated, closed, soft, hard = np.array(
                 [(r.excess, r.kick_velocity, r.closed_form or np.nan, r.soft_law, r.hard_law) for r in curve]
-            ).T  # fmt: skip
+            ).T
             style, near = plotting.points(i % 7), soft < 3.0 * hard
             axis.loglog(excess[near], soft[near], color=style["color"], linestyle="--", linewidth=0.8)
             axis.loglog(excess, closed, color=style["color"], linewidth=0.8)
@@ -52,20 +52,34 @@ def draw_orbits(scene: Scene, doublings: Sequence[Doubling], beam: Beam | None) 
         walls = [SoftWall(oscillator=oscillator, hardness=K) for K in hardness.tolist()]
         axes[0].loglog(hardness, [(wall.doubling() or (0.0, np.nan))[1] for wall in walls], color=colour)
         rows = [row for row in doublings if row.frequency_hz == frequency]
-        axes[0].loglog([row.hardness for row in rows], [row.excess or np.nan for row in rows], **style,
-                       markerfacecolor="white", label=f"{frequency:.2f} Hz")  # fmt: skip
+        axes[0].loglog(
+            [row.hardness for row in rows],
+            [row.excess or np.nan for row in rows],
+            **style,
+            markerfacecolor="white",
+            label=f"{frequency:.2f} Hz",
+        )
     plotting.mark_letter(axes[0].yaxis, letter.AMPLITUDE_STABILITY, words="letter: stability")
     if beam is not None:
-        axes[1].semilogx(*zip(*(one for one in beam.born if one[1]), strict=True), **plotting.points(2),
-                         markerfacecolor="white", label="raised in one step")  # fmt: skip
+        axes[1].semilogx(
+            *zip(*(one for one in beam.born if one[1]), strict=True),
+            **plotting.points(2),
+            markerfacecolor="white",
+            label="raised in one step",
+        )
         stable = (beam.born[0][0], beam.unstable_excess or np.nan)
         axes[1].semilogx(stable, (1, 1), color=PALETTE[1], marker="|", label="p$_1$ with a touch is stable")
         axes[1].set_ylim(0.0, 1.5 + axes[1].get_ylim()[1])
         plotting.mark_letter(axes[1].xaxis, letter.AMPLITUDE_STABILITY, along=0.3, words="letter:\nstability")
         axes[1].legend(loc="center left", bbox_to_anchor=(0.0, 0.55))
-    for number, (axis, name, across) in enumerate(zip(
-        axes, ("excess of the doubling of p$_1$", "beam: period born"), ("hardness K", EXCESS), strict=True
-    )):  # fmt: skip
+    for number, (axis, name, across) in enumerate(
+        zip(
+            axes,
+            ("excess of the doubling of p$_1$", "beam: period born"),
+            ("hardness K", EXCESS),
+            strict=True,
+        )
+    ):
         plotting.panel(axis, number, name)
         plotting.label(axis.xaxis, across)
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=6)

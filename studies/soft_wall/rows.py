@@ -77,12 +77,16 @@ def kicks_of(wall: SoftWall, excesses: np.ndarray) -> list[Kick]:
     """The simulated kicks of a wall, the closed form and the two power laws."""
     return [
         Kick(
-            case="lossless", hardness=wall.hardness, excess=e,
+            case="lossless",
+            hardness=wall.hardness,
+            excess=e,
             kick_velocity=first_collision(wall.struck.with_excess(e)).kick_velocity,
-            closed_form=wall.kick(e), soft_law=wall.soft_law(e), hard_law=wall.hard_law(e),
+            closed_form=wall.kick(e),
+            soft_law=wall.soft_law(e),
+            hard_law=wall.hard_law(e),
         )
         for e in excesses.tolist()
-    ]  # fmt: skip
+    ]
 
 
 def doubling_near(oscillator: ImpactOscillator, peak: float) -> PeriodicOrbit | None:
@@ -98,9 +102,7 @@ FAINTEST = 1e-6
 """Least speed of a touch, over the speed at the period doubling [1], in the search for a stable p1."""
 
 
-def loss_of_stability(
-    oscillator: ImpactOscillator, doubling: PeriodicOrbit
-) -> tuple[float | None, bool]:
+def loss_of_stability(oscillator: ImpactOscillator, doubling: PeriodicOrbit) -> tuple[float | None, bool]:
     """Excess [1] at which p1 loses its stability below its `doubling`, and whether by a complex pair.
 
     None if p1 is unstable even at the faintest touch, as without damping.
@@ -132,9 +134,11 @@ def doubling_of(wall: SoftWall) -> Doubling:
     closed = wall.doubling()
     orbit = doubling_near(wall.struck, wall.peak_of(1.0) if closed is None else closed[0])
     return Doubling(
-        frequency_hz=wall.frequency, hardness=wall.hardness,
-        excess=None if orbit is None else orbit.excess, closed_form=None if closed is None else closed[1],
-    )  # fmt: skip
+        frequency_hz=wall.frequency,
+        hardness=wall.hardness,
+        excess=None if orbit is None else orbit.excess,
+        closed_form=None if closed is None else closed[1],
+    )
 
 
 def zero_of(measure: Callable[[float], float], low: float, high: float) -> float | None:
@@ -161,17 +165,28 @@ def beam_of(scene: Scene, frequency: float, excesses: Sequence[float]) -> tuple[
     half = zero_of(lambda e: collision(e).kick - 0.5 * plateau, 1e-8, 1e-2)
     strobed = StroboscopicMap(oscillator=oscillator)
     beam = Beam(
-        frequency_hz=frequency, modes=oscillator.n_modes, plateau=plateau, half_excess=half,
+        frequency_hz=frequency,
+        modes=oscillator.n_modes,
+        plateau=plateau,
+        half_excess=half,
         share_at_stability=collision(letter.AMPLITUDE_STABILITY).kick / plateau,
         square_root_from=zero_of(lambda e: power(e) - 0.6, 1e-5, 1e-1),
         doubling_excess=None if doubling is None else doubling.excess,
-        doubling_theory=None if closed is None else closed[1], unstable_excess=lost[0], turns=lost[1],
+        doubling_theory=None if closed is None else closed[1],
+        unstable_excess=lost[0],
+        turns=lost[1],
         born=tuple((e, born_period(strobed, e)) for e in excesses if e <= 0.01),
-    )  # fmt: skip
+    )
     kicks = [
-        Kick(case="beam", hardness=None, excess=e, kick_velocity=collision(e).kick_velocity, closed_form=None,
-             soft_law=hertz_kick(oscillator, e),
-             hard_law=plateau * approach_speed(frequency, oscillator.stop.gap, e))
+        Kick(
+            case="beam",
+            hardness=None,
+            excess=e,
+            kick_velocity=collision(e).kick_velocity,
+            closed_form=None,
+            soft_law=hertz_kick(oscillator, e),
+            hard_law=plateau * approach_speed(frequency, oscillator.stop.gap, e),
+        )
         for e in excesses
-    ]  # fmt: skip
+    ]
     return beam, kicks

@@ -71,22 +71,43 @@ def spring_shape(
         raise InvalidValue(f"--channel-sheet must be greater than 0, not {channel_sheet:g}")
     shapes = shapes_of(scene, channel_sheet)
     readings = {name: reading_row(shape, off_line) for name, shape in shapes.items()}
-    run.table("readings", list(readings.values()), "Four springs of one free period.", show=(
-        "reading", "thickness_m", "flange_m", "first_bending_hz", "first_twist_hz", "ratio_twist", "ratio",
-        "tip_value_bending", "tip_value_twist_off_line", "turn_of_twist"))  # fmt: skip
+    run.table(
+        "readings",
+        list(readings.values()),
+        "Four springs of one free period.",
+        show=(
+            "reading",
+            "thickness_m",
+            "flange_m",
+            "first_bending_hz",
+            "first_twist_hz",
+            "ratio_twist",
+            "ratio",
+            "tip_value_bending",
+            "tip_value_twist_off_line",
+            "turn_of_twist",
+        ),
+    )
     draw(run, shapes, readings)
     orbits = compare_plate(scene, run)
     ranks = {name: row.ratio_twist for name, row in readings.items() if name != "plain"}
     highest, plain = max(ranks, key=lambda name: ranks[name]), readings["plain"].ratio_twist
     turns = {name: row.turn_of_twist / readings["plain"].turn_of_twist for name, row in readings.items()}
     least = min(turns, key=lambda name: turns[name])
-    run.verdict("torsion", "in part" if plain > ranks[highest] else "agrees",
-                found=f"{ranks[highest]:.1f} times the first bending",
-                note=f"Of the shapes that the words allow, \"{TITLES[highest]}\" has its twist highest; "
-                f"a plain strip of the same period has it at {plain:.1f} times; in that of "
-                f"\"{TITLES[least]}\" the ball turns least, {turns[least]:.2f} of this.")  # fmt: skip
-    return {"highest_twist": highest, "least_turn": least, "plain_strip_is_higher": plain > ranks[highest],
-            "rows": orbits}  # fmt: skip
+    run.verdict(
+        "torsion",
+        "in part" if plain > ranks[highest] else "agrees",
+        found=f"{ranks[highest]:.1f} times the first bending",
+        note=f'Of the shapes that the words allow, "{TITLES[highest]}" has its twist highest; '
+        f"a plain strip of the same period has it at {plain:.1f} times; in that of "
+        f'"{TITLES[least]}" the ball turns least, {turns[least]:.2f} of this.',
+    )
+    return {
+        "highest_twist": highest,
+        "least_turn": least,
+        "plain_strip_is_higher": plain > ranks[highest],
+        "rows": orbits,
+    }
 
 
 def compare_plate(scene: Scene, run: Run) -> list[OrbitEnds]:
@@ -103,8 +124,11 @@ def compare_plate(scene: Scene, run: Run) -> list[OrbitEnds]:
     run.table("plate_collisions", collisions, "First collision of beam and plates.")
     orbits = orbit_rows(scene, run, springs, scene.drive.frequencies_hz[:: 2 if run.quick else 1])
     run.table("plate_ends", orbits, "Ends of the orbits on the way down, by beam and plates.")
-    run.figure("plate", draw_plate(modes, orbits), "The flat U as a plate and as a beam: tip values of the "
-               "symmetric modes, and the ends of the orbits.")  # fmt: skip
+    run.figure(
+        "plate",
+        draw_plate(modes, orbits),
+        "The flat U as a plate and as a beam: tip values of the symmetric modes, and the ends of the orbits.",
+    )
     same = all(row.same_period for row in orbits)
     words = [f"As a plate the spring {'keeps every' if same else 'changes a'} period that is born."]
     if factors := [max(row.most, 1.0 / row.least) for row in orbits if row.most and row.least]:
@@ -128,11 +152,7 @@ def shapes_of(scene: Scene, sheet: float = 0.25) -> dict[Reading, Shape]:
     return {name: fitted[name] for name in READINGS}
 
 
-def draw(
-    run: Run,
-    shapes: Mapping[Reading, Shape],
-    readings: Mapping[Reading, ReadingRow],
-) -> None:
+def draw(run: Run, shapes: Mapping[Reading, Shape], readings: Mapping[Reading, ReadingRow]) -> None:
     """Store the nets of the twist modes and draw them."""
     from studies.spring_shape.figures import draw_shapes, net_of
 
@@ -143,9 +163,12 @@ def draw(
         nets[f"{name}_rest"], nets[f"{name}_moved"] = net_of(shape, modes, twist, LARGEST)
         nets[f"{name}_ball"] = shape.centreline.points(np.array(shape.tip_at))
     run.arrays("shapes", **nets)
-    run.figure("shapes", draw_shapes(nets, list(readings.values())),
-               "First twist mode of four springs of one free period, enlarged; grey, at rest; the left ends "
-               "are clamped.")  # fmt: skip
+    run.figure(
+        "shapes",
+        draw_shapes(nets, list(readings.values())),
+        "First twist mode of four springs of one free period, enlarged; grey, at rest; the left ends "
+        "are clamped.",
+    )
 
 
 if __name__ == "__main__":

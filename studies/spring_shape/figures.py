@@ -53,18 +53,28 @@ def net_of(shape: Shape, modes: SpatialModes, mode: int, largest: float) -> tupl
 @in_house_style
 def draw_shapes(nets: Mapping[str, Points], rows: Sequence[ReadingRow]) -> Figure:
     """Each reading at rest (outline) and in its first twist mode."""
-    figure, axes = new_figure(2, 2, width=PAGE, height=0.095,
-                              subplot_kw={"projection": "3d", "computed_zorder": False})  # fmt: skip
+    figure, axes = new_figure(
+        2, 2, width=PAGE, height=0.095, subplot_kw={"projection": "3d", "computed_zorder": False}
+    )
     for number, (ax, row) in enumerate(zip(axes.flat, rows, strict=True)):
         rest, moved, ball = (
             standing(row.reading, nets[f"{row.reading}_{kind}"]) for kind in ("rest", "moved", "ball")
         )
         for edge in (rest[:, 0], rest[:, -1], rest[0], rest[-1]):
             ax.plot(*edge.T, color="0.6", linewidth=0.7, zorder=1)
-        ax.plot_surface(*np.moveaxis(moved, -1, 0), color=BRASS, rcount=60, ccount=10, shade=False,
-                        edgecolor="0.35", linewidth=0.15, zorder=2)  # fmt: skip
-        ax.plot(*ball[:, None], marker="o", markersize=5.0, color=PALETTE[2], markeredgecolor="white",
-                zorder=3)  # fmt: skip
+        ax.plot_surface(
+            *np.moveaxis(moved, -1, 0),
+            color=BRASS,
+            rcount=60,
+            ccount=10,
+            shade=False,
+            edgecolor="0.35",
+            linewidth=0.15,
+            zorder=2,
+        )
+        ax.plot(
+            *ball[:, None], marker="o", markersize=5.0, color=PALETTE[2], markeredgecolor="white", zorder=3
+        )
         size = f"sheet {1e3 * row.thickness_m:.2f} mm"
         if row.flange_m:
             size += f", flanges {1e3 * row.flange_m:.2f} mm"
@@ -95,8 +105,12 @@ def draw_plate(modes: Sequence[PlateMode], orbits: Sequence[OrbitEnds]) -> Figur
         style = series(number) | ({} if name == "beam" else {"linestyle": "none"})
         own = [vars(row) for row in modes if vars(row).get(f"{name}_hz")]
         if own:
-            left.plot([row[f"{name}_hz"] for row in own], [row[f"tip_value_{name}"] for row in own],
-                      **style, label=title)  # fmt: skip
+            left.plot(
+                [row[f"{name}_hz"] for row in own],
+                [row[f"tip_value_{name}"] for row in own],
+                **style,
+                label=title,
+            )
         if name != "beam":
             ratios = [(vars(row)[name] or np.nan) / (row.beam or np.nan) for row in orbits]
             right.plot(ratios, **style, label=title)

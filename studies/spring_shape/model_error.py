@@ -35,8 +35,12 @@ WIDEST_SEAT = 0.8
 REFITS = (-0.7, 2.0)
 """Bounds of the search for the refitted ball: added mass over the mass of the ball."""
 
-PLATES = {"point": "ball on a point", "seat": "ball on a rigid seat",
-          "point_refitted": "on a point, refitted", "seat_refitted": "on a seat, refitted"}  # fmt: skip
+PLATES = {
+    "point": "ball on a point",
+    "seat": "ball on a rigid seat",
+    "point_refitted": "on a point, refitted",
+    "seat_refitted": "on a seat, refitted",
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,10 +125,25 @@ def plates_of(scene: Scene, cells: tuple[int, int]) -> dict[str, tuple[PlateMode
     seat = min(scene.tip.ball_radius_m, 0.5 * WIDEST_SEAT * width)
     tip = Tip(mass=scene.tip.mass_kg, rotary_inertia=scene.tip.rotary_inertia_kg_m2)
     for name in ("point", "seat"):
-        first, second, third = (plate_modes(
-            half_u(leg=leg, radius=keys.bend_radius_m, width=width, seat=seat, covered=covered, cells=cells,
-                   times=times), bare, taped or bare, tip, MODES, seated=name == "seat",
-        ) for times in (1, 2, 4))  # fmt: skip
+        first, second, third = (
+            plate_modes(
+                half_u(
+                    leg=leg,
+                    radius=keys.bend_radius_m,
+                    width=width,
+                    seat=seat,
+                    covered=covered,
+                    cells=cells,
+                    times=times,
+                ),
+                bare,
+                taped or bare,
+                tip,
+                MODES,
+                seated=name == "seat",
+            )
+            for times in (1, 2, 4)
+        )
         found[name] = third.extrapolated(second), second.extrapolated(first)
     return found
 
@@ -140,8 +159,11 @@ def mode_rows(plates: Mapping[str, tuple[PlateModes, PlateModes]], beam: ModalMo
         known: dict[str, ModalModel | PlateModes] = {"beam": beam} if i in nearest else {}
         for name, modes in (known | {"point": point, "seat": seat}).items():
             k = nearest[i] if name == "beam" else i
-            columns |= {f"{name}_hz": modes.omega[k] / (2.0 * np.pi), f"tip_value_{name}": modes.phi[k],
-                        f"participation_{name}": modes.participation[k]}  # fmt: skip
+            columns |= {
+                f"{name}_hz": modes.omega[k] / (2.0 * np.pi),
+                f"tip_value_{name}": modes.phi[k],
+                f"participation_{name}": modes.participation[k],
+            }
         if known:
             columns["difference"] = columns["beam_hz"] / columns["point_hz"] - 1.0
         rows.append(PlateMode(number=i + 1, **{name: float(value) for name, value in columns.items()}))
@@ -160,8 +182,13 @@ def springs_of(
         loaded = modes.with_more_mass(added)
         omega = loaded.omega * (beam.omega[0] / loaded.omega[0])
         rates = np.interp(omega, beam.omega, beam.decay_rate)
-        model = ModalModel(omega=omega, decay_rate=rates, phi=loaded.phi, participation=loaded.participation,
-                           readouts={READOUT: loaded.phi})  # fmt: skip
+        model = ModalModel(
+            omega=omega,
+            decay_rate=rates,
+            phi=loaded.phi,
+            participation=loaded.participation,
+            readouts={READOUT: loaded.phi},
+        )
         return Spring(name=name, mass=own + added, model=model)
 
     found += [plate(name, modes) for name, (modes, _) in plates.items()]
@@ -181,8 +208,14 @@ def springs_of(
 def collision_row(scene: Scene, spring: Spring) -> FirstCollision:
     """The first collision of a spring."""
     one = spring.collision(scene)
-    return FirstCollision(spring=spring.name, modes=spring.model.n_modes, ball_mass_kg=spring.mass,
-                          kick=one.kick, restitution=one.restitution, delay_s=one.delay)  # fmt: skip
+    return FirstCollision(
+        spring=spring.name,
+        modes=spring.model.n_modes,
+        ball_mass_kg=spring.mass,
+        kick=one.kick,
+        restitution=one.restitution,
+        delay_s=one.delay,
+    )
 
 
 @dataclass(frozen=True)
@@ -219,9 +252,14 @@ def orbit_rows(
         beam = ends.get("beam")
         ratios = [end / beam for name, end in ends.items() if end and beam and name != "beam"]
         good = bool(ratios) and min(ratios) > 0.0
-        rows.append(OrbitEnds(
-            frequency_hz=frequency, period=known["beam"][0] if "beam" in known else None, **ends,
-            same_period=len(set(periods)) == 1, least=min(ratios) if good else None,
-            most=max(ratios) if good else None,
-        ))  # fmt: skip
+        rows.append(
+            OrbitEnds(
+                frequency_hz=frequency,
+                period=known["beam"][0] if "beam" in known else None,
+                **ends,
+                same_period=len(set(periods)) == 1,
+                least=min(ratios) if good else None,
+                most=max(ratios) if good else None,
+            )
+        )
     return rows

@@ -67,8 +67,11 @@ def per_area(section: StripSection) -> tuple[float, float, float]:
         layer = section.layer and replace(section.layer, material=changed(section.layer.material))
         return replace(section, material=changed(section.material), layer=layer).bending_stiffness
 
-    return (stiffness(-1.0) / section.width, stiffness(1.0) / section.width,
-            section.mass_per_length / section.width)  # fmt: skip
+    return (
+        stiffness(-1.0) / section.width,
+        stiffness(1.0) / section.width,
+        section.mass_per_length / section.width,
+    )
 
 
 @sk.BilinearForm

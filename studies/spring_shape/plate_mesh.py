@@ -24,9 +24,15 @@ LONGEST = 2.0
 
 
 def half_u(
-    *, leg: float, radius: float, width: float, seat: float, covered: float, cells: tuple[int, int],
+    *,
+    leg: float,
+    radius: float,
+    width: float,
+    seat: float,
+    covered: float,
+    cells: tuple[int, int],
     times: int,
-) -> sk.MeshTri:  # fmt: skip
+) -> sk.MeshTri:
     """The half z >= 0 of the U.
 
     Parameters
@@ -74,6 +80,10 @@ def half_u(
     covers, seats = s[triangles].mean(axis=0) < covered, far[triangles].max(axis=0) <= seat * (1.0 + 1e-9)
     parts = {"taped": np.flatnonzero(covers), "seat": np.flatnonzero(seats)}
     start = -leg - radius
-    return sk.MeshTri(p, triangles).with_subdomains(parts).with_boundaries(
-        {"clamped": lambda x: x[0] < (1.0 - 1e-9) * start, "symmetry": lambda x: x[1] == 0.0}
-    )  # fmt: skip
+    return (
+        sk.MeshTri(p, triangles)
+        .with_subdomains(parts)
+        .with_boundaries(
+            {"clamped": lambda x: x[0] < (1.0 - 1e-9) * start, "symmetry": lambda x: x[1] == 0.0}
+        )
+    )

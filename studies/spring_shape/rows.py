@@ -58,12 +58,17 @@ def reading_row(shape: Shape, off_line: float) -> ReadingRow:
     moved, first = int(np.argmax(np.abs(off.rotation[:, 0]) * near)), kinds_of(shape, off).index("bending")
     compliance = (off.phi / off.omega) ** 2
     return ReadingRow(
-        reading=shape.reading, thickness_m=shape.thickness, flange_m=shape.flange,
-        first_bending_hz=float(f[bending]), first_twist_hz=float(f[twist]), first_sideways_hz=sideways,
+        reading=shape.reading,
+        thickness_m=shape.thickness,
+        flange_m=shape.flange,
+        first_bending_hz=float(f[bending]),
+        first_twist_hz=float(f[twist]),
+        first_sideways_hz=sideways,
         ratio_twist=float(f[twist] / f[bending]),
         ratio=float((f[twist] if sideways is None else min(f[twist], sideways)) / f[bending]),
-        tip_value_bending=abs(float(modes.phi[bending])), tip_value_twist=abs(float(modes.phi[twist])),
+        tip_value_bending=abs(float(modes.phi[bending])),
+        tip_value_twist=abs(float(modes.phi[twist])),
         tip_value_twist_off_line=abs(float(off.phi[moved])),
         compliance_share_off_line=float(compliance[moved] / compliance[first]),
         turn_of_twist=abs(float(modes.rotation[twist, 0])),
-    )  # fmt: skip
+    )

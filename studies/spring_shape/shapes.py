@@ -42,8 +42,12 @@ from studies.scene import Scene, SceneError, sections_of
 
 Reading = Literal["side_by_side", "channel", "folded", "plain"]
 READINGS: tuple[Reading, ...] = ("side_by_side", "channel", "folded", "plain")
-TITLES = {"side_by_side": "legs side by side", "channel": "channel", "folded": "folded",
-          "plain": "plain strip"}  # fmt: skip
+TITLES = {
+    "side_by_side": "legs side by side",
+    "channel": "channel",
+    "folded": "folded",
+    "plain": "plain strip",
+}
 
 THINNEST, THICKEST = 5e-4, 0.05
 """The sheet is looked for between these parts of the length."""
@@ -116,9 +120,14 @@ class Shape:
         supports: tuple[Support, Support] = ("clamped", "clamped" if self.bent else "free")
         x, y, z = (off_line * part for part in self.sideways)
         return SpatialSpring(
-            centreline=line, sections=(self.section,) * len(line.pieces), supports=supports, tip=self.tip,
-            tip_at=self.tip_at, tip_offset=(x, y, z), drive=self.stop,
-        )  # fmt: skip
+            centreline=line,
+            sections=(self.section,) * len(line.pieces),
+            supports=supports,
+            tip=self.tip,
+            tip_at=self.tip_at,
+            tip_offset=(x, y, z),
+            drive=self.stop,
+        )
 
 
 def shape_of(scene: Scene, reading: Reading) -> Shape:
@@ -131,10 +140,14 @@ def shape_of(scene: Scene, reading: Reading) -> Shape:
         )
     bare, _ = sections_of(scene)
     return Shape(
-        reading=reading, material=bare.material, length=keys.leg_length_m, width=bare.width,
-        bend_radius=keys.bend_radius_m, thickness=bare.thickness,
+        reading=reading,
+        material=bare.material,
+        length=keys.leg_length_m,
+        width=bare.width,
+        bend_radius=keys.bend_radius_m,
+        thickness=bare.thickness,
         tip=Tip(mass=scene.tip.mass_kg, rotary_inertia=scene.tip.rotary_inertia_kg_m2),
-    )  # fmt: skip
+    )
 
 
 def brought_to(shape: Shape, omega: float) -> Shape:

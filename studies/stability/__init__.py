@@ -19,8 +19,13 @@ from contact.integrators import GeneralisedAlpha, Integrator
 from studies.scene import Scene
 
 FAMILIES = (
-    "explicit", "splitting", "implicit_energy", "false_restitution", "missed_crossings", "accumulation",
-)  # fmt: skip
+    "explicit",
+    "splitting",
+    "implicit_energy",
+    "false_restitution",
+    "missed_crossings",
+    "accumulation",
+)
 """In the order of the table."""
 
 IMPLICIT: Mapping[str, Callable[[float], Integrator]] = {

@@ -84,21 +84,30 @@ def measure(scene: Scene, quick: bool) -> Findings:
     restitutions = np.array([0.3, 0.7, 0.9] if quick else [0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.999])
     found = np.array([time_of_rest(float(e)) for e in restitutions])
     limits = [
-        Row(method="event-driven", case=f"bouncing ball, e = {e:g}, rests after {count:.0f} impacts",
-            parameter="time of rest [s]", theory=rest_time(float(e)), measured=float(at))
+        Row(
+            method="event-driven",
+            case=f"bouncing ball, e = {e:g}, rests after {count:.0f} impacts",
+            parameter="time of rest [s]",
+            theory=rest_time(float(e)),
+            measured=float(at),
+        )
         for e, (at, count) in zip(restitutions, found, strict=True)
-    ]  # fmt: skip
+    ]
     arrays: dict[str, np.ndarray] = {}
     for e in (SHOWN,) if quick else (0.5, SHOWN, 0.9):
         for tolerance in TOLERANCES:
             how, times = event_loop(e, tolerance)
             arrays[f"events_{tolerance:g}_{e:g}"] = rest_time(e) - times
-            limits.append(Row(
-                method="scipy RK45, restarted at events",
-                case=f"bouncing ball, e = {e:g}, tolerance {tolerance:g}: {how}",
-                parameter="number of the last event [1]", theory=None, measured=float(times.size),
-                refused=False,
-            ))  # fmt: skip
+            limits.append(
+                Row(
+                    method="scipy RK45, restarted at events",
+                    case=f"bouncing ball, e = {e:g}, tolerance {tolerance:g}: {how}",
+                    parameter="number of the last event [1]",
+                    theory=None,
+                    measured=float(times.size),
+                    refused=False,
+                )
+            )
     return limits, arrays
 
 
@@ -109,8 +118,14 @@ def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
     for number, tolerance in enumerate(TOLERANCES):
         values = np.maximum(np.abs(arrays[f"events_{tolerance:g}_{SHOWN:g}"]), 1e-16)
         n, style = np.arange(1, values.size + 1), plotting.series(number)
-        axes.plot(n, values, **style, markevery=(number, 5), markerfacecolor="none",
-                  label=f"tolerance {tolerance:g}")  # fmt: skip
+        axes.plot(
+            n,
+            values,
+            **style,
+            markevery=(number, 5),
+            markerfacecolor="none",
+            label=f"tolerance {tolerance:g}",
+        )
         axes.plot(n[-1:], values[-1:], color=style["color"], marker="Xd"[number], markersize=8)
     axes.set_yscale("log")
     plotting.label(axes.xaxis, "number of the event")

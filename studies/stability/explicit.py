@@ -45,19 +45,22 @@ def flight(ratio: float, lagged: bool) -> Limit:
     model = ModalModel(omega=one, decay_rate=2.0 * ratio * one, phi=one, participation=one)
     case = f"one mode in flight, {'lagged' if lagged else 'centred'} damping, zeta = {ratio:g}"
     return limit(
-        partial(Row, case=case, parameter="h omega [1]"), model,
+        partial(Row, case=case, parameter="h omega [1]"),
+        model,
         2.0 * (math.sqrt(1.0 + ratio**2) - ratio) if lagged else 2.0,
         lambda h: (SOFT, CentralDifference(step=h, lagged=lagged)),
-    )  # fmt: skip
+    )
 
 
 def lasting(model: ModalModel, lagged: bool) -> Limit:
     """Largest stiffness of a lasting contact at h omega_N = 1."""
     damping = "lagged" if lagged else "centred"
     return stiffest(
-        model, CentralDifference(step=1.0 / float(model.omega[-1]), lagged=lagged), family="explicit",
+        model,
+        CentralDifference(step=1.0 / float(model.omega[-1]), lagged=lagged),
+        family="explicit",
         case=f"lasting contact, modes: {model.n_modes}, {damping} damping, h omega_N = 1",
-    )  # fmt: skip
+    )
 
 
 def rebound_ratio(frequency_step: float, part: float) -> float:
@@ -89,13 +92,14 @@ def measure(scene: Scene, quick: bool) -> Findings:
     grid = np.unique(np.concatenate([np.linspace(0.2, 1.98, 16 if quick else 72), whole]))
     short = [
         Row(
-            method=CentralDifference.name, case=f"one short linear contact, h omega_c = {x:.4g}{words}",
+            method=CentralDifference.name,
+            case=f"one short linear contact, h omega_c = {x:.4g}{words}",
             parameter="largest E_out/E_in over the phases of the grid [1]",
             theory=max(rebound_ratio(x, float(s)) ** 2 for s in parts),
             measured=float(energies("linear", x, parts).max()),
         )
         for x, words in ((1.2, ""), (1.8, ""), (whole[1], ", three steps"), (whole[6], ", eight steps"))
-    ]  # fmt: skip
+    ]
     arrays = {"frequency_step": grid}
     for law in LAWS:
         change = np.array([energies(law, x, parts) for x in grid.tolist()]) - 1.0
@@ -114,8 +118,16 @@ def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
     for (part, bound), colour in zip(bounds.items(), (plotting.VERMILION, plotting.BLUE), strict=True):
         axes.plot(fine, bound, color=colour, label=f"bound of the {part}, linear")
         for law, marker in (("linear", "o"), ("Hertz", "x")):
-            axes.plot(x, arrays[f"{law}_{part}"], color=colour, marker=marker, linestyle="none",
-                      markersize=2.5, markerfacecolor="none", label=f"{part}, {law}")  # fmt: skip
+            axes.plot(
+                x,
+                arrays[f"{law}_{part}"],
+                color=colour,
+                marker=marker,
+                linestyle="none",
+                markersize=2.5,
+                markerfacecolor="none",
+                label=f"{part}, {law}",
+            )
     axes.set_yscale("log")
     axes.set_ylim(1e-3, 1e2)
     plotting.label(axes.xaxis, "step × contact frequency h ω$_c$")

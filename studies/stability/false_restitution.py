@@ -68,9 +68,12 @@ def measure(scene: Scene, quick: bool) -> Findings:
         row = partial(Row, case=f"{label}, elastic Hertz, h / contact time = {sizes[last]:.3g}")
         limits += [
             row(parameter="restitution tau [1]", theory=exact.restitution, measured=float(table[0, last])),
-            row(parameter="local restitution 2 kick(h)/kick - 1 [1]", theory=1.0,
-                measured=float(2.0 * table[1, last] / exact.kick - 1.0)),
-        ]  # fmt: skip
+            row(
+                parameter="local restitution 2 kick(h)/kick - 1 [1]",
+                theory=1.0,
+                measured=float(2.0 * table[1, last] / exact.kick - 1.0),
+            ),
+        ]
     return limits, arrays
 
 
@@ -78,9 +81,9 @@ def measure(scene: Scene, quick: bool) -> Findings:
 def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
     """Restitution and kick against the step."""
     figure, axes = plotting.new_figure(1, 2, width=plotting.PAGE, height=0.065)
-    for column, (axis, quantity) in enumerate(zip(
-        axes, ("effective restitution", "kick of mode 1"), strict=True
-    )):  # fmt: skip
+    for column, (axis, quantity) in enumerate(
+        zip(axes, ("effective restitution", "kick of mode 1"), strict=True)
+    ):
         for number, label in enumerate(IMPLICIT):
             axis.plot(arrays["step"], arrays[label][column], **plotting.series(number), label=label)
         axis.set_xscale("log")

@@ -63,13 +63,28 @@ def stiff_contacts(count: int) -> list[Limit]:
     stiff = single_contact("trapezoidal rule", np.full(count, STIFF), places)
     resolved = single_contact("trapezoidal rule", *evenly(0.05, count)) - 1.0
     return [
-        Row(case=f"{case}, h w = {STIFF:g}", parameter="mean of ln(energy after/before) [1]",
-            theory=STIFF_GROWTH, measured=float(np.mean(np.log(stiff))), refused=False),
-        Row(case=f"{case}, h w = {STIFF:g}", parameter="largest energy after/before [1]", theory=9.0,
-            measured=float(stiff.max()), refused=False),
-        Row(case=f"{case}, h w = 0.05", parameter="rms of energy after/before - 1 [1]",
-            theory=0.05**2 / math.sqrt(90.0), measured=float(np.sqrt(np.mean(resolved**2))), refused=False),
-    ]  # fmt: skip
+        Row(
+            case=f"{case}, h w = {STIFF:g}",
+            parameter="mean of ln(energy after/before) [1]",
+            theory=STIFF_GROWTH,
+            measured=float(np.mean(np.log(stiff))),
+            refused=False,
+        ),
+        Row(
+            case=f"{case}, h w = {STIFF:g}",
+            parameter="largest energy after/before [1]",
+            theory=9.0,
+            measured=float(stiff.max()),
+            refused=False,
+        ),
+        Row(
+            case=f"{case}, h w = 0.05",
+            parameter="rms of energy after/before - 1 [1]",
+            theory=0.05**2 / math.sqrt(90.0),
+            measured=float(np.sqrt(np.mean(resolved**2))),
+            refused=False,
+        ),
+    ]
 
 
 def measure(scene: Scene, quick: bool) -> Findings:
@@ -87,8 +102,13 @@ def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
     """Growth in one contact against its resolution."""
     figure, axes = plotting.new_figure(width=plotting.COLUMN, height=0.070)
     for number, label in enumerate(IMPLICIT):
-        axes.plot(arrays["single_h_w"], arrays[f"single_{label}"], **plotting.series(number), markevery=3,
-                  label=label)  # fmt: skip
+        axes.plot(
+            arrays["single_h_w"],
+            arrays[f"single_{label}"],
+            **plotting.series(number),
+            markevery=3,
+            label=label,
+        )
     axes.axhline(STIFF_GROWTH, color="0.5", linewidth=0.8, linestyle=":")
     axes.text(0.1, STIFF_GROWTH + 0.02, "(5/2) ln 3 - 2", fontsize=plotting.NOTE)
     axes.axhline(0.0, **plotting.GUIDE)

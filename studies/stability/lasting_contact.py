@@ -100,9 +100,11 @@ def limit(
 
     stiffness, method = at((1.0 + SHARE) * theory)
     return row(
-        method=method.name, theory=theory, measured=threshold(fails, (0.5 * theory, 1.5 * theory), 1e-8),
+        method=method.name,
+        theory=theory,
+        measured=threshold(fails, (0.5 * theory, 1.5 * theory), 1e-8),
         refused=refused(*pressed(model, stiffness), method),
-    )  # fmt: skip
+    )
 
 
 def stiffest(model: ModalModel, method: Stepped, *, family: str, case: str) -> Limit:

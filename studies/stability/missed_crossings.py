@@ -122,10 +122,12 @@ def of_package(scene: Scene, kind: type[Integrator], options: Mapping[str, float
     known = {entry.name for entry in fields(kind)}  # type: ignore[arg-type]
     method = kind(**{name: value for name, value in options.items() if name in known})
     return Trial(
-        label=f"{kind.name}, {options['points']} points" if "points" in known else kind.name, method=method,
-        swing=swing_of(scene, method), kind="exact" if kind.certified else "step",
+        label=f"{kind.name}, {options['points']} points" if "points" in known else kind.name,
+        method=method,
+        swing=swing_of(scene, method),
+        kind="exact" if kind.certified else "step",
         spacings=np.array([options["step"]] if "step" in known else []),
-    )  # fmt: skip
+    )
 
 
 def of_scipy(scene: Scene, solver: str, tolerance: float) -> Trial:
@@ -141,15 +143,22 @@ def of_scipy(scene: Scene, solver: str, tolerance: float) -> Trial:
         x, v = start.displacement[0], start.velocity[0]
         speed = max(omega * reach, abs(v), abs(omega * x))
         looks = solve_ivp(
-            lambda _t, y: [y[1], -(omega**2) * y[0]], (0.0, lead + swing.tail), [x, v], method=solver,
-            rtol=tolerance, atol=tolerance * speed * np.array([1.0 / omega, 1.0]),
-        ).t  # fmt: skip
+            lambda _t, y: [y[1], -(omega**2) * y[0]],
+            (0.0, lead + swing.tail),
+            [x, v],
+            method=solver,
+            rtol=tolerance,
+            atol=tolerance * speed * np.array([1.0 / omega, 1.0]),
+        ).t
         after = int(np.searchsorted(looks, lead))
         spacings.append(looks[after] - looks[after - 1])
     return Trial(
-        method=OutsideSolver(solver=f"scipy {solver}", tolerance=tolerance), swing=swing, kind="control",
-        label=f"scipy {solver}, {tolerance:g}", spacings=np.array(spacings),
-    )  # fmt: skip
+        method=OutsideSolver(solver=f"scipy {solver}", tolerance=tolerance),
+        swing=swing,
+        kind="control",
+        label=f"scipy {solver}, {tolerance:g}",
+        spacings=np.array(spacings),
+    )
 
 
 def trials(scene: Scene, quick: bool) -> Iterator[Trial]:
@@ -184,15 +193,23 @@ def tried(trial: Trial, runs: int) -> tuple[list[Limit], dict[str, np.ndarray]]:
         )
         theory = threshold(lambda depth: bool(share(depth) > 0.5), ladder, relative=1e-12)
         arrays[f"theory|{trial.label}"] = share(FINE)
-    rows = [row(
-        case="half of the crossings missed, one mode", parameter="overshoot / gap [1]", theory=theory,
-        measured=threshold(lambda depth: wrong(depth) > 0.5, ladder, relative=0.05),
-    )]  # fmt: skip
+    rows = [
+        row(
+            case="half of the crossings missed, one mode",
+            parameter="overshoot / gap [1]",
+            theory=theory,
+            measured=threshold(lambda depth: wrong(depth) > 0.5, ladder, relative=0.05),
+        )
+    ]
     if trial.kind != "control":  # an error control errs by less than it misses
-        rows.append(row(
-            case="touches invented, one mode", parameter="undershoot / gap [1]", theory=invented(trial),
-            measured=threshold(lambda depth: wrong(-depth) > 0.0, ladder, relative=0.05),
-        ))  # fmt: skip
+        rows.append(
+            row(
+                case="touches invented, one mode",
+                parameter="undershoot / gap [1]",
+                theory=invented(trial),
+                measured=threshold(lambda depth: wrong(-depth) > 0.0, ladder, relative=0.05),
+            )
+        )
     return rows, arrays
 
 
@@ -219,8 +236,12 @@ def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
         for number, label in enumerate(labels, start=column):
             axis.plot(overshoot, 100 * arrays[f"{kind}|{label}"], **plotting.points(number), label=label)
             if f"theory|{label}" in arrays:
-                axis.plot(arrays["fine"], 100 * arrays[f"theory|{label}"], color=plotting.PALETTE[number],
-                          linewidth=0.7)  # fmt: skip
+                axis.plot(
+                    arrays["fine"],
+                    100 * arrays[f"theory|{label}"],
+                    color=plotting.PALETTE[number],
+                    linewidth=0.7,
+                )
         plotting.panel(axis, column, title)
         axis.set_xscale("log")
         axis.set_ylim(-4.0, 104.0)

@@ -33,9 +33,11 @@ from studies.stability.lasting_contact import pressed, stiffest
 def limit(model: ModalModel, angle: float) -> Limit:
     """Largest stiffness of a lasting contact at h omega_N = `angle`, order 2."""
     return stiffest(
-        model, Splitting(step=angle / float(model.omega[-1])), family="splitting",
+        model,
+        Splitting(step=angle / float(model.omega[-1])),
+        family="splitting",
         case=f"order 2, lasting contact, modes: {model.n_modes}, h omega_N = {angle:g}",
-    )  # fmt: skip
+    )
 
 
 def measure(scene: Scene, quick: bool) -> Findings:
@@ -58,8 +60,12 @@ def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
     """The stiffest lasting contact over the step, both orders."""
     figure, axes = plotting.new_figure(width=plotting.COLUMN, height=0.075)
     for number, order in enumerate((2, 4)):
-        axes.plot(arrays["fine"], arrays[f"limit_{order}"], color=plotting.PALETTE[number + 1],
-                  label=f"order {order}, limit of refusal")  # fmt: skip
+        axes.plot(
+            arrays["fine"],
+            arrays[f"limit_{order}"],
+            color=plotting.PALETTE[number + 1],
+            label=f"order {order}, limit of refusal",
+        )
     axes.plot(arrays["angle"], arrays["measured"], **plotting.points(1), label="order 2, found")
     axes.axvline(math.pi, color="black", linewidth=0.6, linestyle=":", label="h ω$_N$ = π")
     axes.set_yscale("log")

@@ -29,15 +29,7 @@ from contact.orbits import born
 from studies import letter
 from studies.record import Verdict
 from studies.run import Run, study
-from studies.scene import (
-    Scene,
-    beam_at,
-    corresponding,
-    harmonic,
-    model_of,
-    periods_of,
-    require_drive_below,
-)  # fmt: skip
+from studies.scene import Scene, beam_at, corresponding, harmonic, model_of, periods_of, require_drive_below
 from studies.time_trace.spectrum import Peak, lines_of, peaks_of
 from studies.time_trace.trace import close_up, trace_of
 

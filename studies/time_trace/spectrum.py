@@ -59,5 +59,6 @@ def peaks_of(frequency: Array, amplitude: Array, modes_hz: Array, width: float) 
     loud = CLEAR * float(amplitude[1:].max())
     return [
         Peak(frequency_hz=float(frequency[i]), amplitude=float(amplitude[i]), mode=modes.get(int(i)))
-        for i in places if int(i) in modes or amplitude[i] >= loud
-    ]  # fmt: skip
+        for i in places
+        if int(i) in modes or amplitude[i] >= loud
+    ]

@@ -105,9 +105,7 @@ def transitions(
         run.figure(stem, draw(scene, rows, diagrams, name), caption + TITLES[name] + ".")
     compare(run, rows)
     agrees = [row.frequency_hz for row in rows if row.letter is not None and judge(run, row)]
-    return {
-        "rows": rows, "modes": model.n_modes, "contact": scene.contact.law, "agrees_hz": agrees
-    }  # fmt: skip
+    return {"rows": rows, "modes": model.n_modes, "contact": scene.contact.law, "agrees_hz": agrees}
 
 
 def word(period: int | None) -> str:
@@ -137,16 +135,20 @@ def judge(run: Run, row: Row) -> bool:
 def compare(run: Run, rows: Sequence[Row]) -> None:
     """Where the two extracted parameters have the beam's bifurcations, and the map with them."""
     found = [(row, row.extracted) for row in rows if row.extracted and row.beam]
-    run.table("two_parameters", [parameters for _, parameters in found],
-              "Restitution and delay on the settled orbits, and what they give.")  # fmt: skip
+    run.table(
+        "two_parameters",
+        [parameters for _, parameters in found],
+        "Restitution and delay on the settled orbits, and what they give.",
+    )
     if not found:
         return
     same = [(row, one) for row, one in found if row.two_parameters == row.beam]
     ratios = [(row.excess_down_two_parameters or 0.0) / (row.excess_down_beam or math.inf) for row, _ in same]
     far = [
         f"{one.frequency_hz:g} Hz ({one.ringing_left:.0%})"
-        for (_, one), ratio in zip(same, ratios, strict=True) if not 1.0 / NEARLY < ratio < NEARLY
-    ]  # fmt: skip
+        for (_, one), ratio in zip(same, ratios, strict=True)
+        if not 1.0 / NEARLY < ratio < NEARLY
+    ]
     close, taus = len(same) - len(far), sorted(one.restitution for _, one in found)
     text = (
         f"With restitution, {taus[0]:.2f} to {taus[-1]:.2f}, and delay as the beam's own collisions have "
@@ -161,8 +163,12 @@ def compare(run: Run, rows: Sequence[Row]) -> None:
         )
     run.answer("two_parameters", f"{text}.")
     verdict: Verdict = "agrees" if close == len(found) else "in part" if same else "differs"
-    run.verdict("two_parameters_born", verdict, found=f"period at {len(same)}, end at {close} of "
-                f"{len(found)} frequencies", note=f"{text}.")  # fmt: skip
+    run.verdict(
+        "two_parameters_born",
+        verdict,
+        found=f"period at {len(same)}, end at {close} of {len(found)} frequencies",
+        note=f"{text}.",
+    )
 
 
 def store(run: Run, rows: Iterable[Row], diagrams: Iterable[Scans]) -> None:
@@ -174,11 +180,18 @@ def store(run: Run, rows: Iterable[Row], diagrams: Iterable[Scans]) -> None:
                 stem = f"{name}_{row.frequency_hz:.2f}_hz_{way}".replace(".", "p")
                 arrays[f"{stem}_excess"], arrays[f"{stem}_points"] = diagram.excess, diagram.points
                 for k, kind in enumerate(diagram.kind):
-                    cells.append(Cell(
-                        frequency_hz=row.frequency_hz, model=name, direction=way, kind=kind,
-                        excess=float(diagram.excess[k]), period=int(diagram.period[k]),
-                        impacts=int(diagram.impacts[k]), cycles=int(diagram.cycles[k]),
-                    ))  # fmt: skip
+                    cells.append(
+                        Cell(
+                            frequency_hz=row.frequency_hz,
+                            model=name,
+                            direction=way,
+                            kind=kind,
+                            excess=float(diagram.excess[k]),
+                            period=int(diagram.period[k]),
+                            impacts=int(diagram.impacts[k]),
+                            cycles=int(diagram.cycles[k]),
+                        )
+                    )
                 for reason in diagram.failures:
                     run.failed(f"{row.frequency_hz:g} Hz, {TITLES[name]}, {way}ward scan", reason)
     run.arrays("orbit_diagram", **arrays)

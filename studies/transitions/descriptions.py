@@ -21,9 +21,7 @@ from studies import letter
 from studies.scene import READOUT, Scene, beam_at, nordmark_at, single_mode_at
 from studies.two_parameters import Extracted, extracted, two_parameters_at
 
-TITLES = {
-    "map": "Nordmark map", "single_mode": "Eq. (1)", "two_parameters": "two parameters", "beam": "beam"
-}  # fmt: skip
+TITLES = {"map": "Nordmark map", "single_mode": "Eq. (1)", "two_parameters": "two parameters", "beam": "beam"}
 OTHER_EXCESSES = (2.5e-4, 1e-2)
 """Where the born period is given as well: the letter's amplitude stability, and well above grazing."""
 
@@ -124,10 +122,14 @@ def transition(strobed: Strobed, excess: float, cycles: int) -> Transition:
     if end is None:
         return Transition(period=orbit.period, born=also, state=orbit.end)
     return Transition(
-        period=orbit.period, excess_down=end.excess, ends_by=end.kind,
-        end_speed=None if end.orbit is None else abs(end.orbit.speed), bracket=(end.lost, end.held),
-        born=also, state=orbit.end,
-    )  # fmt: skip
+        period=orbit.period,
+        excess_down=end.excess,
+        ends_by=end.kind,
+        end_speed=None if end.orbit is None else abs(end.orbit.speed),
+        bracket=(end.lost, end.held),
+        born=also,
+        state=orbit.end,
+    )
 
 
 def row_at(scene: Scene, frequency: float, model: ModalModel) -> tuple[Row, list[tuple[str, str]]]:
@@ -160,13 +162,17 @@ def row_at(scene: Scene, frequency: float, model: ModalModel) -> tuple[Row, list
         except ContactError as error:
             failures.append((f"{frequency:g} Hz, parameters extracted", str(error)))
     row = Row(
-        frequency_hz=frequency, letter=letter.PERIODS.get(frequency), **columns, extracted=parameters,
+        frequency_hz=frequency,
+        letter=letter.PERIODS.get(frequency),
+        **columns,
+        extracted=parameters,
         exact_two_parameters=None if parameters is None else parameters.fold,
-        beam_linear=found["beam_linear"].period, not_settled=not_settled,
+        beam_linear=found["beam_linear"].period,
+        not_settled=not_settled,
         excess_down_beam_linear=found["beam_linear"].excess_down,
         end_speed_beam=found["beam"].end_speed,
         grazing_amplitude_m=beam_at(scene, frequency, model).grazing_amplitude(),
-    )  # fmt: skip
+    )
     return row, failures
 
 
@@ -181,10 +187,14 @@ def scans(scene: Scene, row: Row, model: ModalModel, full: bool) -> Scans:
     values = np.linspace(-scan.reach_below * reach, scan.reach_above * reach, scan.points)
     for name, strobed in describe(scene, row.frequency_hz, model).items():
         way = partial(
-            orbit_diagram, strobed, observe=partial(observe, strobed), early=not full,
+            orbit_diagram,
+            strobed,
+            observe=partial(observe, strobed),
+            early=not full,
             settle_cycles=letter.SETTLE_CYCLES if full else max(scan.settle_cycles, 1),
-            record_cycles=scan.record_cycles, largest_period=scan.largest_period,
-        )  # fmt: skip
+            record_cycles=scan.record_cycles,
+            largest_period=scan.largest_period,
+        )
         up = way(values, strobed.at(float(values[0])).steady())
         found[name] = {"up": up, "down": way(values[::-1], up.end)}
     return found

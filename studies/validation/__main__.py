@@ -76,11 +76,17 @@ def validation(scene: Scene, run: Run) -> Mapping[str, object]:
         if found.panels:
             run.figure(name, draw(found.panels), found.caption)
         tally = Counter(row.verdict for row in found.rows)
-        sources.append(Source(
-            source=found.rows[0].source, agrees=tally["agrees"], differs=tally["differs"],
-            holds=tally["holds"], fails=tally["fails"], open=tally["open"] + tally["not found"],
-            took_s=round(run.wall_time - begun, 1),
-        ))  # fmt: skip
+        sources.append(
+            Source(
+                source=found.rows[0].source,
+                agrees=tally["agrees"],
+                differs=tally["differs"],
+                holds=tally["holds"],
+                fails=tally["fails"],
+                open=tally["open"] + tally["not found"],
+                took_s=round(run.wall_time - begun, 1),
+            )
+        )
     run.table("sources", sources, "Verdicts on the numbers of each source.")
     run.table("rows", rows, "Published numbers and ours.", show=())
     return {"sources": sources, "rows": rows}

@@ -74,8 +74,17 @@ def bouncing_bar(run: Run) -> Section:
     exact, counts = lower_end(16), np.array([16, 32, 64] if run.quick else [16, 32, 64, 128, 256])
     times, name = np.linspace(0.0, 16.0 * TRANSIT, exact.size), "bouncing bar"
     back = float(exact[-1])
-    rows = [compared(name, "height after 16 L/c [m]", None, back, None, "by characteristics; from 5 m",
-                     holds=abs(back - FALL) < 1e-9)]  # fmt: skip
+    rows = [
+        compared(
+            name,
+            "height after 16 L/c [m]",
+            None,
+            back,
+            None,
+            "by characteristics; from 5 m",
+            holds=abs(back - FALL) < 1e-9,
+        )
+    ]
     curves = [Curve(x=times, y=exact, name="exact")]
     for look, (words, modes) in enumerate((("exact modes", series), ("linear elements", elements)), 1):
         found = [bounced(modes(int(n), False), times) for n in run.track(counts, words)]

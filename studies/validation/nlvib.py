@@ -76,8 +76,17 @@ def nlvib(run: Run) -> Section:
     for event, place in zip(branch.events, run.track(places, "events of two masses"), strict=True):
         if event.kind == "grazing":
             off = abs(contact_begins(place) - place)
-            rows.append(compared(SOURCE, "W where contact begins", None, place, None,
-                                 f"{place:.10f}; closed form {off:.0e} away", holds=off < 1e-9))  # fmt: skip
+            rows.append(
+                compared(
+                    SOURCE,
+                    "W where contact begins",
+                    None,
+                    place,
+                    None,
+                    f"{place:.10f}; closed form {off:.0e} away",
+                    holds=off < 1e-9,
+                )
+            )
             continue
         aside = min(apart, *(abs(places[places != place] - place) / 3.0))
         left = [simulated(event, place + side * aside, longest) for side in (-1.0, 1.0)]
@@ -94,11 +103,15 @@ def nlvib(run: Run) -> Section:
         rows=rows,
         panels=[
             Panel(title="response", x=frequency, y=("first harmonic of mass 2", "1"), curves=curves),
-            Panel(title="stability", x=frequency, y=("largest multiplier", "1"),
-                  curves=[Curve(x=w, y=np.abs(leading))]),
+            Panel(
+                title="stability",
+                x=frequency,
+                y=("largest multiplier", "1"),
+                curves=[Curve(x=w, y=np.abs(leading))],
+            ),
         ],
         caption="Two masses and a one-sided spring (NLvib 03): response of period 1 and its bifurcations.",
-    )  # fmt: skip
+    )
 
 
 def claims(w: np.ndarray, size: np.ndarray, leading: np.ndarray) -> Iterator[Row]:

@@ -77,8 +77,10 @@ def ghosh_simpson(run: Run) -> Section:
             rows.append(row(f"impact speed {there}", SPEEDS[w], theirs.speed, 1e-10))
         note = f"theirs has the multiplier {multipliers[0]}"
         rows.append(row(f"F at w = {w}", published, orbit.amplitude * w * w, errors[w], note))
-        rows += [row(f"multiplier {there}", one, float(ours.real), digit)
-                 for one, ours in zip(multipliers, theirs.multipliers, strict=True)]  # fmt: skip
+        rows += [
+            row(f"multiplier {there}", one, float(ours.real), digit)
+            for one, ours in zip(multipliers, theirs.multipliers, strict=True)
+        ]
     points, weights = np.polynomial.legendre.leggauss(6)
     for low, high in ((0.788138, 0.794578), (0.794578, 0.799), (0.80079, 0.81)):
         rates = orbits.excess_derivatives if high not in SPEEDS else orbits.doubling_derivatives
@@ -92,12 +94,16 @@ def ghosh_simpson(run: Run) -> Section:
     bend, exact = -(float(root.deriv()(resonance)) ** 2), 0.8 * math.sqrt(1 - 0.02**2)
     decay = math.exp(-0.08 * math.pi / exact)
     known = -8 * (math.pi * 1.9 * decay / (exact * (1 + decay) * (1 - 0.9 * decay))) ** 2
-    rows += [row("w_0, where folds graze", None, resonance, note=f"from folds; closed form {exact:.12f}"),
-             row("(F/F_g - 1)/(w - w_0)^2 there", None, bend, note=f"closed form {known:.6f}")]  # fmt: skip
+    rows += [
+        row("w_0, where folds graze", None, resonance, note=f"from folds; closed form {exact:.12f}"),
+        row("(F/F_g - 1)/(w - w_0)^2 there", None, bend, note=f"closed form {known:.6f}"),
+    ]
     ws = np.linspace(0.788138, 0.7998, 9 if run.quick else 60)
-    curves = [Curve(x=ws, y=[bifurcation(w).excess for w in ws], name="folds"),
-              Curve(x=[*excess][:3], y=[*excess.values()][:3], name="published", line=False),
-              Curve(x=ws, y=bend * (ws - resonance) ** 2, name="tangent parabola", look=1)]  # fmt: skip
+    curves = [
+        Curve(x=ws, y=[bifurcation(w).excess for w in ws], name="folds"),
+        Curve(x=[*excess][:3], y=[*excess.values()][:3], name="published", line=False),
+        Curve(x=ws, y=bend * (ws - resonance) ** 2, name="tangent parabola", look=1),
+    ]
     panel = Panel(title="", x=("w", "1"), y=(r"$F/F_g - 1$", "1"), curves=curves)
     return Section(rows=rows, panels=[panel], caption="Folds of p2 touch grazing at resonance.")
 
@@ -125,13 +131,24 @@ def coco(run: Run) -> Section:
         through = np.array([highest(orbit) > 1 + 1e-12 for orbit in flights])
         wrong, note = np.sum(through == [orbit.admissible for orbit in flights]), f"{through.sum()} pierce it"
         exact, known = math.hypot(1 - w * w, 0.1 * w), (0.1, 1e-15) if w == 1.0 else (None, None)
-        rows += [row(f"A at grazing, w = {w}", known[0], grazing, known[1], f"closed form {exact:.15g}",
-                     holds=abs(grazing - exact) < 1e-15),
-                 row(f"misjudged of {len(flights)} orbits, w = {w}", None, int(wrong), None, note,
-                     holds=not wrong)]  # fmt: skip
+        rows += [
+            row(
+                f"A at grazing, w = {w}",
+                known[0],
+                grazing,
+                known[1],
+                f"closed form {exact:.15g}",
+                holds=abs(grazing - exact) < 1e-15,
+            ),
+            row(
+                f"misjudged of {len(flights)} orbits, w = {w}", None, int(wrong), None, note, holds=not wrong
+            ),
+        ]
         x, y = np.array([(orbit.amplitude * w * w, orbit.speed) for orbit in flights]).T
-        curves = [Curve(x=x[~through], y=y[~through], name="admissible", line=False),
-                  Curve(x=x[through], y=y[through], name="pierces the wall", look=1, line=False)]  # fmt: skip
+        curves = [
+            Curve(x=x[~through], y=y[~through], name="admissible", line=False),
+            Curve(x=x[through], y=y[through], name="pierces the wall", look=1, line=False),
+        ]
         panels.append(Panel(title=f"w = {w}", x=("A", "1"), y=("impact speed", "1"), curves=curves))
     return Section(rows=rows, panels=panels, caption="Orbits with one impact a period.")
 
@@ -146,12 +163,20 @@ def sdnd122(run: Run) -> Section:
     angles = np.arccos(-1 / np.sqrt(2 * e)) + np.arccos(np.sqrt(10 / (120 * e - 50))) / math.sqrt(6)
     exact, limit = math.sqrt(10) / (2 * angles), math.sqrt(10) / math.pi / (1 + 1 / math.sqrt(6))
     row = partial(compared, "SDND122")
-    rows = [row("f at 0.00650108 J", 0.646694, f[-1], 5e-7, f"regularised wall; closed form {exact[-1]:.9f}"),
-            row("largest f/f(closed form) - 1", None, off := float(np.max(np.abs(f / exact - 1))),
-                holds=off < 1e-13),
-            row(f"f at e = {e[-2]:.5g}", None, f[-2], note=f"bouncing limit {limit:.9f}")]  # fmt: skip
-    curves = [Curve(x=np.log10(e[:-1]), y=f[:-1], name="simulated"),
-              Curve(x=np.log10(e[-1:]), y=[0.646694], name="published", look=1, line=False)]  # fmt: skip
+    rows = [
+        row("f at 0.00650108 J", 0.646694, f[-1], 5e-7, f"regularised wall; closed form {exact[-1]:.9f}"),
+        row(
+            "largest f/f(closed form) - 1",
+            None,
+            off := float(np.max(np.abs(f / exact - 1))),
+            holds=off < 1e-13,
+        ),
+        row(f"f at e = {e[-2]:.5g}", None, f[-2], note=f"bouncing limit {limit:.9f}"),
+    ]
+    curves = [
+        Curve(x=np.log10(e[:-1]), y=f[:-1], name="simulated"),
+        Curve(x=np.log10(e[-1:]), y=[0.646694], name="published", look=1, line=False),
+    ]
     panel = Panel(title="", x=(r"$\log_{10}\,E/(k\,gap^2)$", "1"), y=("frequency", "Hz"), curves=curves)
     return Section(rows=rows, panels=[panel], caption="Frequency of free oscillation against a spring.")
 
@@ -195,10 +220,14 @@ def aberdeen(run: Run) -> Section:
             told = ", ".join(f"{name} {next(w)[0]:.5f}" for name, w in groupby(cells, lambda one: one[1]))
             w, _, largest, x = zip(*cells, strict=True)
             band = f"chaos from {min(chaos):.5f} to {max(chaos):.5f}" if chaos else "no chaos"
-            rows += [row(f"width of chaos in w, a = {a}, {words}", None, step * len(chaos), note=told),
-                     row(f"largest exponent, a = {a}, {words}", None, max(largest), note=band)]  # fmt: skip
+            rows += [
+                row(f"width of chaos in w, a = {a}, {words}", None, step * len(chaos), note=told),
+                row(f"largest exponent, a = {a}, {words}", None, max(largest), note=band),
+            ]
             exponents.append(Curve(x=w, y=largest, name=words, look=look))
             points.append(Curve(x=np.repeat(w, 12), y=np.concatenate(x), name=words, look=look, line=False))
-        panels += [Panel(title=f"a = {a}", x=("w", "1"), y=("x/e at the strobe", "1"), curves=points),
-                   Panel(title="", x=("w", "1"), y=("exponent", "1/period"), curves=exponents)]  # fmt: skip
+        panels += [
+            Panel(title=f"a = {a}", x=("w", "1"), y=("x/e at the strobe", "1"), curves=points),
+            Panel(title="", x=("w", "1"), y=("exponent", "1/period"), curves=exponents),
+        ]
     return Section(rows=rows, panels=panels, caption=f"Orbit diagrams and exponents, w in steps of {step}.")

@@ -18,9 +18,14 @@ SAMPLES = 128
 
 
 def followed(
-    path: Callable[[float], ImpactOscillator], at: float, *, low: float, high: float, step: float,
+    path: Callable[[float], ImpactOscillator],
+    at: float,
+    *,
+    low: float,
+    high: float,
+    step: float,
     settling: int = 400,
-) -> Branch:  # fmt: skip
+) -> Branch:
     """The curve through the motion that has settled at `at`, from rest in `settling` periods."""
     here = path(at)
     settled = replace(simulate(here, State.rest(here.n_modes), periods=settling).end, time=0.0)

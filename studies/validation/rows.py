@@ -23,9 +23,14 @@ class Row:
 
 
 def compared(
-    source: str, quantity: str, published: float | None, ours: float | None,
-    source_error: float | None = None, note: str = "", holds: bool | None = None,
-) -> Row:  # fmt: skip
+    source: str,
+    quantity: str,
+    published: float | None,
+    ours: float | None,
+    source_error: float | None = None,
+    note: str = "",
+    holds: bool | None = None,
+) -> Row:
     """A row: "agrees" within the source's error, "differs" beyond it, "open" where nothing is published,
     "not found" where we have none.
 
@@ -38,8 +43,16 @@ def compared(
         verdict = "agrees" if abs(difference) <= source_error else "differs"
     elif holds is not None:
         verdict = "holds" if holds else "fails"
-    return Row(source=source, quantity=quantity, published=published, ours=ours, difference=difference,
-               source_error=source_error, verdict=verdict, note=note)  # fmt: skip
+    return Row(
+        source=source,
+        quantity=quantity,
+        published=published,
+        ours=ours,
+        difference=difference,
+        source_error=source_error,
+        verdict=verdict,
+        note=note,
+    )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -50,19 +50,31 @@ SETTLE = 250  # drive periods at each step of a scan: free motions die out by a 
 
 
 def _strip(
-    pieces: Sequence[tuple[float, float, float]], nut: float, width: float = WIDTH, height: float = HEIGHT,
-    held: beam.Support = "clamped", tip_at: float = CONTACT, tie: float = ROOT,
-) -> beam.Discretization:  # fmt: skip
+    pieces: Sequence[tuple[float, float, float]],
+    nut: float,
+    width: float = WIDTH,
+    height: float = HEIGHT,
+    held: beam.Support = "clamped",
+    tip_at: float = CONTACT,
+    tie: float = ROOT,
+) -> beam.Discretization:
     """A strip, free at its far end, of pieces (length, stiffness over that of steel, added mass)."""
-    steel = [beam.Material(youngs_modulus=factor * E, poissons_ratio=0.3,
-                           density=DENSITY + added / (length * width * height))
-             for length, factor, added in pieces]  # fmt: skip
-    return beam.assemble(beam.LeafSpring(
-        centreline=beam.Centreline(pieces=tuple(beam.Straight(length=piece[0]) for piece in pieces)),
-        sections=tuple(beam.StripSection(material=m, width=width, thickness=height) for m in steel),
-        supports=(held, "free"), tip=beam.Tip(mass=nut), tip_at=tip_at,
-        readouts={"w": beam.Readout(at=tie), "turn": beam.Readout(at=tie, quantity="rotation")},
-    ))  # fmt: skip
+    steel = [
+        beam.Material(
+            youngs_modulus=factor * E, poissons_ratio=0.3, density=DENSITY + added / (length * width * height)
+        )
+        for length, factor, added in pieces
+    ]
+    return beam.assemble(
+        beam.LeafSpring(
+            centreline=beam.Centreline(pieces=tuple(beam.Straight(length=piece[0]) for piece in pieces)),
+            sections=tuple(beam.StripSection(material=m, width=width, thickness=height) for m in steel),
+            supports=(held, "free"),
+            tip=beam.Tip(mass=nut),
+            tip_at=tip_at,
+            readouts={"w": beam.Readout(at=tie), "turn": beam.Readout(at=tie, quantity="rotation")},
+        )
+    )
 
 
 def both_beams(plate_end: float = ROOT, count: int = 6) -> tuple[beam.Modes, beam.Modes]:
@@ -78,13 +90,18 @@ def both_beams(plate_end: float = ROOT, count: int = 6) -> tuple[beam.Modes, bea
     excess = 0.0307 * 57 / 97 - DENSITY * 0.057 * 0.040 * 1e-3
     mini = _strip([(0.057, 1.07, excess)], 0.0, 0.040, 1e-3, "free", CONTACT - ROOT, 0.0)
     basis = null_space([np.append(right.readouts[x], -mini.readouts[x]) for x in ("w", "turn")])
-    both = {name: csr_array(basis.T @ (block_diag([getattr(x, name) for x in (right, mini)]) @ basis))
-            for name in ("stiffness", "mass", "loss_stiffness")}  # fmt: skip
+    both = {
+        name: csr_array(basis.T @ (block_diag([getattr(x, name) for x in (right, mini)]) @ basis))
+        for name in ("stiffness", "mass", "loss_stiffness")
+    }
     tied = replace(
-        right, **both, base_load=np.append(right.base_load, mini.base_load) @ basis,
-        tip=np.append(0.0 * right.tip, mini.tip) @ basis, ties=right.ties @ csr_array(basis[: -mini.n_dofs]),
+        right,
+        **both,
+        base_load=np.append(right.base_load, mini.base_load) @ basis,
+        tip=np.append(0.0 * right.tip, mini.tip) @ basis,
+        ties=right.ties @ csr_array(basis[: -mini.n_dofs]),
         readouts={"beam": np.append(right.tip, 0.0 * mini.tip) @ basis},
-    )  # fmt: skip
+    )
     return beam.natural_modes(left, count), beam.natural_modes(tied, count)
 
 
@@ -102,15 +119,17 @@ class Rig:
     def model(self) -> beam.ModalModel:
         """Modes of both by rising frequency; the read-out is the right beam at the contact."""
         left, right = both_beams()
-        hertz = np.array([*RIGHT, *right.frequencies_hz[5:], LEFT[0], self.left_2, *LEFT[2:],
-                          *left.frequencies_hz[4:]])  # fmt: skip
+        hertz = np.array(
+            [*RIGHT, *right.frequencies_hz[5:], LEFT[0], self.left_2, *LEFT[2:], *left.frequencies_hz[4:]]
+        )
         ratio, order = np.where(hertz == RIGHT[0], self.first, self.others), np.argsort(hertz)
         return beam.ModalModel(
-            omega=2.0 * np.pi * hertz[order], decay_rate=4.0 * np.pi * (ratio * hertz)[order],
+            omega=2.0 * np.pi * hertz[order],
+            decay_rate=4.0 * np.pi * (ratio * hertz)[order],
             phi=np.append(right.phi, -left.phi)[order],
             participation=np.append(right.participation, left.participation)[order],
             readouts={"beam": np.append(right.readouts["beam"], 0.0 * left.phi)[order]},
-        )  # fmt: skip
+        )
 
     @cached_property
     def contact(self) -> tuple[beam.ModalModel, Stop]:
@@ -261,8 +280,16 @@ def two_beams(run: Run) -> Section:
     rows.append(row("W/w1 of the backbone at 1.7 gaps", None, reached, note="theirs stays below 1.03"))
     rows += of_detachment(run, row, rig)
     curves.append(Curve(x=places, y=sizes, name="backbone", look=4))
-    return Section(rows=rows, panels=[
-        Panel(title="responses", x=("W/w1", "1"), y=("right beam / gap", "1"), curves=curves),
-        Panel(title="along the backbone", x=("W/w1", "1"), y=("base acceleration", "m/s$^2$"),
-              curves=[Curve(x=places, y=levels, look=4)]),
-    ], caption=CAPTION)  # fmt: skip
+    return Section(
+        rows=rows,
+        panels=[
+            Panel(title="responses", x=("W/w1", "1"), y=("right beam / gap", "1"), curves=curves),
+            Panel(
+                title="along the backbone",
+                x=("W/w1", "1"),
+                y=("base acceleration", "m/s$^2$"),
+                curves=[Curve(x=places, y=levels, look=4)],
+            ),
+        ],
+        caption=CAPTION,
+    )

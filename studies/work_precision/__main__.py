@@ -80,12 +80,17 @@ def work_precision(scene: Scene, run: Run) -> Mapping[str, object]:
 
     from studies.work_precision import figures  # matplotlib is slow to import
 
-    run.figure("work_precision", figures.draw_errors(rows, references), "Error of mode 1 past the first "
-               "collision against time per drive period; black star, the exact method.")  # fmt: skip
+    run.figure(
+        "work_precision",
+        figures.draw_errors(rows, references),
+        "Error of mode 1 past the first "
+        "collision against time per drive period; black star, the exact method.",
+    )
     return {
-        "rows": rows, "missing_solvers": missing_solvers(),
+        "rows": rows,
+        "missing_solvers": missing_solvers(),
         "reference_errors": {one.problem.name: one.own_error for one in references},
-    }  # fmt: skip
+    }
 
 
 def cheapest_of(rows: Sequence[Row]) -> list[Cheapest]:
@@ -95,10 +100,16 @@ def cheapest_of(rows: Sequence[Row]) -> list[Cheapest]:
         mine = [row for row in rows if (row.problem, row.method) == (problem, method)]
         best = [cheapest(mine, level) for level in (1e-4, 1e-8)]
         coarse, fine = ((row.us_per_period, row.missed) if row else (None, None) for row in best)
-        found.append(Cheapest(
-            problem=problem, method=method, us_for_1e_4=coarse[0], missed_at_1e_4=coarse[1],
-            us_for_1e_8=fine[0], missed_at_1e_8=fine[1],
-        ))  # fmt: skip
+        found.append(
+            Cheapest(
+                problem=problem,
+                method=method,
+                us_for_1e_4=coarse[0],
+                missed_at_1e_4=coarse[1],
+                us_for_1e_8=fine[0],
+                missed_at_1e_8=fine[1],
+            )
+        )
     return found
 
 

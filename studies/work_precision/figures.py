@@ -29,18 +29,21 @@ def styles_of(rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
     """Colour, marker and line of each method, the same in every panel, by family."""
     found: dict[str, dict[str, Any]] = {
         row.method: {"marker": "*", "color": PALETTE[0], "linestyle": "none", "markersize": 9, "zorder": 5}
-        for row in rows if row.family == EXACT
-    }  # fmt: skip
+        for row in rows
+        if row.family == EXACT
+    }
     for family, line in ((STEPPED, "-"), (OUTSIDE, "--"), (PERIODIC, ":")):
         for i, name in enumerate(dict.fromkeys(row.method for row in rows if row.family == family)):
             colour, outside = COLOURS[i % len(COLOURS)], family == OUTSIDE
             found[name] = {
-                "marker": MARKERS[(i + 3 * outside) % len(MARKERS)], "color": colour, "linestyle": line,
+                "marker": MARKERS[(i + 3 * outside) % len(MARKERS)],
+                "color": colour,
+                "linestyle": line,
                 "linewidth": 0.8,
                 # methods that agree are drawn on top of each other, the larger ones first
                 "markersize": 3.2 if outside else 5.0 if i % 2 == 0 else 2.6,
                 "markerfacecolor": "white" if outside else colour,
-            }  # fmt: skip
+            }
     return found
 
 

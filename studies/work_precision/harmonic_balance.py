@@ -50,8 +50,10 @@ def balanced(oscillator: ImpactOscillator, order: int, samples: int, guess: Stat
     """The motion of period 1/f near that from `guess`, or the steady response; NotPeriodic if not found."""
     o, model, law = oscillator, oscillator.model, oscillator.stop.law
     if not isinstance(law, LinearContact) or not samples > 4 * order > 0 or not np.all(model.omega > 0):
-        raise InvalidValue(f"law is {law}, order {order}, samples {samples}; harmonic balance needs modes "
-                         "above 0 Hz, LinearContact and 0 < 4 order < samples")  # fmt: skip
+        raise InvalidValue(
+            f"law is {law}, order {order}, samples {samples}; harmonic balance needs modes "
+            "above 0 Hz, LinearContact and 0 < 4 order < samples"
+        )
     h, gap, (k, c) = np.arange(-order, order + 1), o.stop.gap, law.numbers
     rate = 1j * o.driven.angular_frequency * h
     flexible = 1.0 / (model.omega**2 + np.outer(rate, model.decay_rate) + rate[:, None] ** 2)

@@ -103,15 +103,20 @@ def reference_of(problem: Problem) -> Reference:
     )
     found = Reference(
         problem=problem, displacement=one.displacement[0], velocity=one.velocity[0], own_error=0.0
-    )  # fmt: skip
+    )
     return replace(found, own_error=found.error_of(other.displacement[0], other.velocity[0]))
 
 
 def error_of(reference: Reference, method: Integrator) -> float:
     """Error of mode 1 by a method [1]."""
     problem = reference.problem
-    run = simulate(problem.oscillator, problem.start, duration=problem.duration,
-                   times=np.array([problem.probe]), method=method)  # fmt: skip
+    run = simulate(
+        problem.oscillator,
+        problem.start,
+        duration=problem.duration,
+        times=np.array([problem.probe]),
+        method=method,
+    )
     return reference.error_of(float(run.displacement[0, 0]), float(run.velocity[0, 0]))
 
 
@@ -151,8 +156,14 @@ def rows_of(
     rows, expected = [], 0.0
     for setting in sweep.settings:
         method = setting.method
-        row = Row(problem=reference.problem.name, method=sweep.label, family=sweep.family,
-                  setting=setting.text, value=setting.value, certified=method.certified)  # fmt: skip
+        row = Row(
+            problem=reference.problem.name,
+            method=sweep.label,
+            family=sweep.family,
+            setting=setting.text,
+            value=setting.value,
+            certified=method.certified,
+        )
         if expected > slowest:
             about = f"not run: a period would take about {expected:.2g} s, the bound is {slowest:g} s"
             row = replace(row, failed=about)
@@ -160,9 +171,11 @@ def rows_of(
         else:
             try:
                 row = replace(
-                    row, error=error_of(reference, method), missed=missed_share(reference.problem, method),
+                    row,
+                    error=error_of(reference, method),
+                    missed=missed_share(reference.problem, method),
                     us_per_period=(cost := cost_of(reference.problem, method, repeats)),
-                )  # fmt: skip
+                )
                 expected = 1e-6 * cost * sweep.growth
             except Exception as error:  # an outside solver may raise anything, and it is a result
                 row = replace(row, failed=f"{type(error).__name__}: {' '.join(str(error).split())}")
@@ -191,8 +204,14 @@ def orbit_rows(*, quick: bool, repeats: int) -> tuple[Reference, list[Row]]:
     jobs = [("harmonic balance", f"order {n}", partial(balance, n)) for n in SAMPLES if n < 81 or not quick]
     jobs += [("settling", f"{n} periods", partial(later, n)) for n in SETTLING]
     for label, text, work in [*jobs, ("shooting", "1e-12", partial(shot))]:
-        row = Row(problem=problem.name, method=label, family=PERIODIC, setting=text, value=None,
-                  certified=label != "harmonic balance")  # fmt: skip
+        row = Row(
+            problem=problem.name,
+            method=label,
+            family=PERIODIC,
+            setting=text,
+            value=None,
+            certified=label != "harmonic balance",
+        )
         try:
             end, spent = work(), list[float]()
             for _ in range(repeats):

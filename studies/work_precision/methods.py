@@ -88,11 +88,20 @@ def sweeps_for(problem: Problem, *, quick: bool = False) -> list[Sweep]:
     steps = (coarsest_step(problem) * 4.0 ** -np.arange(0, finest, stride)).tolist()
     for label, made in STEPS.items():
         add(label, STEPPED, 4.0, [Setting(h, f"step {h:.3g} s", made(h)) for h in steps])
-    add(SAMPLED, STEPPED, 4.0, [Setting(1.0 / n, f"{n} points per period", SampledFlight(points=n))
-                                for n in POINTS[::stride]])  # fmt: skip
+    add(
+        SAMPLED,
+        STEPPED,
+        4.0,
+        [Setting(1.0 / n, f"{n} points per period", SampledFlight(points=n)) for n in POINTS[::stride]],
+    )
     for label in installed_solvers():
-        add(label, OUTSIDE, 3.0, [
-            Setting(tol, f"tolerance {tol:.0e}", OutsideSolver(solver=label, tolerance=tol))
-            for tol in (TOLERANCES[1::3] if quick else TOLERANCES)
-        ])  # fmt: skip
+        add(
+            label,
+            OUTSIDE,
+            3.0,
+            [
+                Setting(tol, f"tolerance {tol:.0e}", OutsideSolver(solver=label, tolerance=tol))
+                for tol in (TOLERANCES[1::3] if quick else TOLERANCES)
+            ],
+        )
     return found

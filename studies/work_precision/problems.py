@@ -89,11 +89,19 @@ def driven_problem(name: str, title: str, oscillator: ImpactOscillator) -> Probl
     size, strobed = oscillator.stop.gap / abs(oscillator.model.phi[0]), StroboscopicMap(oscillator=oscillator)
     settled, start = settle(strobed, strobed.steady(), most_cycles=SETTLING), before_collision(oscillator)
     return Problem(
-        name=name, title=title, oscillator=oscillator, start=start, probe=start.time + oscillator.period,
-        duration=1.3 * oscillator.period, period=oscillator.period, size=size,
-        speed=2.0 * math.pi / oscillator.period * size, cost_start=replace(settled.end, time=0.0),
-        cost_periods=settled.period or UNSETTLED, contact_time=first_collision(oscillator).contact_time,
-    )  # fmt: skip
+        name=name,
+        title=title,
+        oscillator=oscillator,
+        start=start,
+        probe=start.time + oscillator.period,
+        duration=1.3 * oscillator.period,
+        period=oscillator.period,
+        size=size,
+        speed=2.0 * math.pi / oscillator.period * size,
+        cost_start=replace(settled.end, time=0.0),
+        cost_periods=settled.period or UNSETTLED,
+        contact_time=first_collision(oscillator).contact_time,
+    )
 
 
 def linear_beam(scene: Scene) -> ImpactOscillator:
@@ -105,10 +113,16 @@ def linear_beam(scene: Scene) -> ImpactOscillator:
         return replace(hertz, stop=Stop(gap=hertz.stop.gap, law=LinearContact(stiffness=stiffness)))
 
     guess = (math.pi / wanted) ** 2 / float(hertz.model.phi @ hertz.model.phi)
-    return with_stiffness(float(brentq(
-        lambda k: first_collision(with_stiffness(k)).contact_time - wanted, 0.25 * guess, 4.0 * guess,
-        xtol=1e-13 * guess,
-    )))  # fmt: skip
+    return with_stiffness(
+        float(
+            brentq(
+                lambda k: first_collision(with_stiffness(k)).contact_time - wanted,
+                0.25 * guess,
+                4.0 * guess,
+                xtol=1e-13 * guess,
+            )
+        )
+    )
 
 
 def hertz_beam(scene: Scene) -> ImpactOscillator:
@@ -128,14 +142,20 @@ def swung_beam(
     """
     side, modulus, density = 0.014, 6.7e10, 2400.0
     line = density * side**2
-    beam = UniformBeam(length=LENGTH, bending_stiffness=modulus * side**4 / 12, mass_per_length=line,
-                       supports=("pinned", "free"))  # fmt: skip
+    beam = UniformBeam(
+        length=LENGTH,
+        bending_stiffness=modulus * side**4 / 12,
+        mass_per_length=line,
+        supports=("pinned", "free"),
+    )
     bending = exact_modes(beam, bending_modes)
     phi = np.append(math.sqrt(3 / (line * LENGTH)), bending.phi)
     model = ModalModel(
-        omega=np.append(0.0, bending.omega), decay_rate=np.append(0.0, 2 * damping_ratio * bending.omega),
-        phi=phi, participation=np.zeros(phi.size),
-    )  # fmt: skip
+        omega=np.append(0.0, bending.omega),
+        decay_rate=np.append(0.0, 2 * damping_ratio * bending.omega),
+        phi=phi,
+        participation=np.zeros(phi.size),
+    )
     velocity = TURNING * LENGTH / phi[0] * np.eye(phi.size)[0]
     oscillator = ImpactOscillator(model=model, stop=Stop(gap=0.0, law=LinearContact(stiffness=stiffness)))
     return oscillator, State(displacement=np.zeros(phi.size), velocity=velocity)
@@ -146,11 +166,20 @@ def swung_problem() -> Problem:
     oscillator, start = swung_beam(SPRING)
     touches = simulate(oscillator, start, duration=DURATION).impacts
     return Problem(
-        name="swung beam", title="SDNL32, 10 modes, linear contact", oscillator=oscillator, start=start,
-        probe=DURATION, duration=DURATION, period=DURATION, size=0.005 / oscillator.model.phi[0],
-        speed=start.velocity[0], cost_start=start, cost_periods=1,
-        contact_time=float(touches.end[0] - touches.start[0]), unit=f"{1e3 * DURATION:g} ms",
-    )  # fmt: skip
+        name="swung beam",
+        title="SDNL32, 10 modes, linear contact",
+        oscillator=oscillator,
+        start=start,
+        probe=DURATION,
+        duration=DURATION,
+        period=DURATION,
+        size=0.005 / oscillator.model.phi[0],
+        speed=start.velocity[0],
+        cost_start=start,
+        cost_periods=1,
+        contact_time=float(touches.end[0] - touches.start[0]),
+        unit=f"{1e3 * DURATION:g} ms",
+    )
 
 
 def problems_of(scene: Scene, modes: int = MODES) -> list[Problem]:

@@ -42,11 +42,30 @@ def frame_frequencies(
             pair = np.ix_([first, second], [first, second])
             k[pair] = stiffness / h * np.array([[1, -1], [-1, 1]])
             g[pair] = mass * h / 6 * np.array([[2, 1], [1, 2]])
-        cubic = np.array([[12, 6 * h, -12, 6 * h], [6 * h, 4 * h * h, -6 * h, 2 * h * h],
-                          [-12, -6 * h, 12, -6 * h], [6 * h, 2 * h * h, -6 * h, 4 * h * h]]) / h**3
-        carried = m * h / 420 * np.array([
-            [156, 22 * h, 54, -13 * h], [22 * h, 4 * h * h, 13 * h, -3 * h * h],
-            [54, 13 * h, 156, -22 * h], [-13 * h, -3 * h * h, -22 * h, 4 * h * h]])
+        cubic = (
+            np.array(
+                [
+                    [12, 6 * h, -12, 6 * h],
+                    [6 * h, 4 * h * h, -6 * h, 2 * h * h],
+                    [-12, -6 * h, 12, -6 * h],
+                    [6 * h, 2 * h * h, -6 * h, 4 * h * h],
+                ]
+            )
+            / h**3
+        )
+        carried = (
+            m
+            * h
+            / 420
+            * np.array(
+                [
+                    [156, 22 * h, 54, -13 * h],
+                    [22 * h, 4 * h * h, 13 * h, -3 * h * h],
+                    [54, 13 * h, 156, -22 * h],
+                    [-13 * h, -3 * h * h, -22 * h, 4 * h * h],
+                ]
+            )
+        )
         for places, sign, ei in (
             ([1, 5, 7, 11], 1.0, section.in_plane_stiffness),
             ([2, 4, 8, 10], -1.0, section.out_of_plane_stiffness),

@@ -48,9 +48,12 @@ def hook() -> LeafSpring:
     """A leg and a bend of 100 degrees: swings of either sign differ."""
     line = Centreline(pieces=(Straight(length=LEG), Arc(radius=0.03, angle=1.75)))
     return LeafSpring(
-        centreline=line, sections=(STRIP, STRIP), supports=("clamped", "free"), tip=Tip(mass=5e-3),
+        centreline=line,
+        sections=(STRIP, STRIP),
+        supports=("clamped", "free"),
+        tip=Tip(mass=5e-3),
         tip_at=line.length,
-    )  # fmt: skip
+    )
 
 
 def bent(model: FiniteRotation, force: float) -> NDArray[np.float64]:

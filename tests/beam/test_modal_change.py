@@ -26,9 +26,13 @@ def letter_u(mass: float = 6e-3, modulus: float = beam.BRASS.youngs_modulus) -> 
     sheet = replace(STRIP, material=replace(beam.BRASS, youngs_modulus=modulus))
     taped = replace(sheet, layer=beam.Layer(material=beam.DAMPING_TAPE, thickness=0.2e-3))
     spring = beam.flat_u(
-        leg_length=LENGTH, bend_radius=9e-3, section=sheet, tip=beam.Tip(mass=mass), damped_section=taped,
+        leg_length=LENGTH,
+        bend_radius=9e-3,
+        section=sheet,
+        tip=beam.Tip(mass=mass),
+        damped_section=taped,
         damped_span=(0.0, 0.08),
-    )  # fmt: skip
+    )
     modes = beam.natural_modes(beam.assemble(spring), 8)
     energies = modes.discretization.strain_energies(modes.shapes).sum(axis=(0, 1))
     return replace(modes, omega=np.sqrt(2.0 * energies))
@@ -56,10 +60,14 @@ def seen(model: beam.ModalModel) -> Numbers:
     """What the changes speak of."""
     first = np.sqrt(model.omega[:1] ** 2 - 0.25 * model.decay_rate[:1] ** 2)
     return {
-        "period": 2.0 * np.pi / first, "hz": model.frequencies_hz, "rates": model.decay_rate,
-        "overtones": model.omega[1:] / model.omega[0], "ratios": 0.5 * model.decay_rate / model.omega,
-        "phi": model.phi, "participation": model.participation,
-    }  # fmt: skip
+        "period": 2.0 * np.pi / first,
+        "hz": model.frequencies_hz,
+        "rates": model.decay_rate,
+        "overtones": model.omega[1:] / model.omega[0],
+        "ratios": 0.5 * model.decay_rate / model.omega,
+        "phi": model.phi,
+        "participation": model.participation,
+    }
 
 
 KEPT = {"period": [0], "overtones": [0, 0]}
@@ -105,9 +113,11 @@ def test_frequencies_of_a_cantilever_with_a_ball(ratio: float) -> None:
     modes = beam.natural_modes(beam.assemble(spring, 60), 4)
     change = beam.tip_mass_change(modes, beam.ConstantRatio(ratio=0.01))
     uniform = beam.UniformBeam(
-        length=LENGTH, bending_stiffness=STRIP.bending_stiffness, mass_per_length=STRIP.mass_per_length,
+        length=LENGTH,
+        bending_stiffness=STRIP.bending_stiffness,
+        mass_per_length=STRIP.mass_per_length,
         tip_mass=ratio * OWN,
-    )  # fmt: skip
+    )
     x = beam.exact_modes(uniform, 4).wave_numbers * LENGTH
     c, s, ch, sh = np.cos(x), np.sin(x), np.cosh(x), np.sinh(x)
     by_x = c * sh - s * ch + ratio * (c * sh - s * ch - 2.0 * x * s * sh)

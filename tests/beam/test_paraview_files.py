@@ -29,15 +29,18 @@ from beam.spring_mesh import BALL, LAYER, STRIP, solid_spring
 RADIUS = 2.5e-3
 BARE = StripSection(material=BRASS, width=12e-3, thickness=0.65e-3)
 TAPED = StripSection(
-    material=BRASS, width=12e-3, thickness=0.65e-3,
+    material=BRASS,
+    width=12e-3,
+    thickness=0.65e-3,
     layer=Layer(material=DAMPING_TAPE, thickness=0.45e-3, both_sides=False),
 )
 
 
 @pytest.fixture(scope="module")
 def modes() -> Modes:
-    spring = folded_u(leg_length=0.13, bend_radius=7.5e-3, section=BARE, damped_section=TAPED,
-                      tip=Tip(mass=5e-3))
+    spring = folded_u(
+        leg_length=0.13, bend_radius=7.5e-3, section=BARE, damped_section=TAPED, tip=Tip(mass=5e-3)
+    )
     return natural_modes(assemble(spring), 4)
 
 
@@ -59,8 +62,9 @@ def test_the_mesh_has_the_masses_of_the_strip_and_the_surface_of_the_ball(modes)
 
 
 def test_a_flat_u_is_drawn_with_the_slot_between_its_legs():
-    spring = flat_u(leg_length=0.13, bend_radius=7.5e-3, section=BARE, damped_section=TAPED,
-                    tip=Tip(mass=5e-3))
+    spring = flat_u(
+        leg_length=0.13, bend_radius=7.5e-3, section=BARE, damped_section=TAPED, tip=Tip(mass=5e-3)
+    )
     mesh = solid_spring(natural_modes(assemble(spring), 2), ball_radius=RADIUS)
     sizes = mesh.grid().compute_cell_sizes()
     volume = [float(sizes["Volume"][mesh.part == part].sum()) for part in (STRIP, LAYER)]

@@ -119,12 +119,14 @@ def test_torsion_with_warping_held_at_the_clamp_solves_vlasovs_equation():
         c, s, decay = math.cos(a * LENGTH), math.sin(a * LENGTH), math.exp(-b * LENGTH)
         ta, tb = gj * a + eg * a**3, gj * b - eg * b**3
         # cos, sin, exp(-b x), exp(b (x - L)): phi and phi' at 0, phi'' and the torque at L
-        rows = np.array([
-            [1.0, 0.0, 1.0, decay],
-            [0.0, a, -b, b * decay],
-            [-a * a * c, -a * a * s, b * b * decay, b * b],
-            [-ta * s, ta * c, -tb * decay, tb],
-        ])
+        rows = np.array(
+            [
+                [1.0, 0.0, 1.0, decay],
+                [0.0, a, -b, b * decay],
+                [-a * a * c, -a * a * s, b * b * decay, b * b],
+                [-ta * s, ta * c, -tb * decay, tb],
+            ]
+        )
         return float(np.linalg.det(rows / np.abs(rows).max(axis=1, keepdims=True)))
 
     modes = spatial_modes(straight(section), 25)
@@ -224,8 +226,14 @@ def test_shapes_are_those_of_the_section_at_the_tip_and_mass_normalised():
 def test_a_channel_without_flanges_is_the_strip_but_for_its_edges():
     section = channel(material=BRASS, width=12e-3, flange=0.0, thickness=0.65e-3)
     strip = upright(STRIP)
-    for name in ("axial_stiffness", "in_plane_stiffness", "out_of_plane_stiffness", "mass_per_length",
-                 "polar_inertia", "warping_stiffness"):
+    for name in (
+        "axial_stiffness",
+        "in_plane_stiffness",
+        "out_of_plane_stiffness",
+        "mass_per_length",
+        "polar_inertia",
+        "warping_stiffness",
+    ):
         assert getattr(section, name) == pytest.approx(getattr(strip, name), rel=1e-12)
     assert strip.torsional_stiffness / section.torsional_stiffness == pytest.approx(
         1.0 - 0.63 * 0.65 / 12.0, rel=1e-4
@@ -276,9 +284,13 @@ def test_a_flat_u_bends_as_its_legs_do_in_space(width: float, mass: float) -> No
     leg, tip = replace(STRIP, width=width), Tip(mass=mass)
     plane = natural_modes(assemble(flat_u(leg_length=LENGTH, bend_radius=RADIUS, section=leg, tip=tip)), 3)
     legs = SpatialSpring(
-        centreline=U, sections=3 * (flat(leg),), supports=("clamped", "clamped"), tip=tip, tip_at=MIDDLE,
+        centreline=U,
+        sections=3 * (flat(leg),),
+        supports=("clamped", "clamped"),
+        tip=tip,
+        tip_at=MIDDLE,
         drive=(0.0, 0.0, 1.0),
-    )  # fmt: skip
+    )
     modes = spatial_modes(legs, 12)
     moving = np.flatnonzero(np.abs(modes.phi) > 0.1)[:3]
     assert np.all(np.abs(plane.frequencies_hz / modes.frequencies_hz[moving] - 1.0) < [1.5e-3, 4e-3, 5e-3])

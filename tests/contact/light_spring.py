@@ -8,10 +8,7 @@ import numpy as np
 import oscillators
 
 from contact.collision import Collision
-from contact.laws import (
-    ContactLaw,
-    NewtonRestitution,
-)
+from contact.laws import ContactLaw, NewtonRestitution
 from contact.oscillator import ImpactOscillator
 
 PHI = 10.0 * np.array([1.0, 0.9, 0.8, 0.7, 0.6, 0.5])

@@ -8,19 +8,19 @@ import numpy as np
 
 from beam import ModalModel
 from contact.drive import HarmonicDrive
-from contact.event_loop import DONE, advance
-from contact.exact_run import start_of
+from contact.engine.event_loop import DONE, advance
+from contact.engine.recorder import LOG, strobes_only
+from contact.engine.start import start_of
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import tip_state
 from contact.flight.motion import Motion
 from contact.laws import NewtonRestitution
+from contact.maps.strobed_motion import strobed_system
+from contact.one_mode.loop import one_mode_periods
+from contact.one_mode.period_table import flow_over
 from contact.oscillator import ImpactOscillator
-from contact.recorder import LOG, strobes_only
 from contact.simulation import simulate
-from contact.single_mode.loop import one_mode_periods
-from contact.single_mode.period_table import flow_over
 from contact.stop import Stop
-from contact.strobed_motion import strobed_system
 from contact.trajectory import IMPACT, State
 
 GAP = 0.01
@@ -31,7 +31,12 @@ DAMPINGS = {"undamped": 0.0, "letter": 3.56, "strong": 150.0, "over-damped": 2.5
 
 
 def oscillator(
-    frequency: float = 22.2, *, tau: float = 0.1, decay: float = 3.56, excess: float = 0.02, phi: float = 1.0,
+    frequency: float = 22.2,
+    *,
+    tau: float = 0.1,
+    decay: float = 3.56,
+    excess: float = 0.02,
+    phi: float = 1.0,
     participation: float | None = None,
 ) -> ImpactOscillator:
     """Eq. (1) of the letter in any scaling of its mode."""
@@ -41,11 +46,14 @@ def oscillator(
         omega = OMEGA
     one = np.ones(1)
     model = ModalModel(
-        omega=omega * one, decay_rate=decay * one, phi=phi * one,
+        omega=omega * one,
+        decay_rate=decay * one,
+        phi=phi * one,
         participation=one / phi if participation is None else participation * one,
     )
     return ImpactOscillator(
-        model=model, stop=Stop(gap=GAP, law=NewtonRestitution(local_restitution=tau)),
+        model=model,
+        stop=Stop(gap=GAP, law=NewtonRestitution(local_restitution=tau)),
         drive=HarmonicDrive(frequency=frequency),
     ).with_excess(excess)
 

@@ -6,15 +6,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from beam import ModalModel, single_mode
-from contact import (
-    ContactLaw,
-    HarmonicDrive,
-    ImpactOscillator,
-    LinearContact,
-    NewtonRestitution,
-    State,
-    Stop,
-)
+from contact import ContactLaw, HarmonicDrive, ImpactOscillator, LinearContact, NewtonRestitution, State, Stop
 
 OMEGA = 2 * np.pi * 24.5 * np.array([1.0, 6.1, 15.4, 29.0, 47.0, 70.0])
 PHI = 10.0 * np.array([1.0, 0.7, 0.5, 0.4, 0.3, 0.25])
@@ -27,7 +19,9 @@ THROWN = State(displacement=np.zeros(3), velocity=np.array([0.15, 0.02, 0.01]))
 # under-, over- and critically damped modes beside the first; a light and a heavy tip
 MODES = {
     "three modes": dict(
-        omega=[154.0, 960.0, 2690.0], decay_rate=[3.56, 19.2, 80.0], phi=[7.1, -6.5, 5.2],
+        omega=[154.0, 960.0, 2690.0],
+        decay_rate=[3.56, 19.2, 80.0],
+        phi=[7.1, -6.5, 5.2],
         participation=[0.09, -0.05, 0.03],
     ),
     "an overdamped mode": dict(
@@ -39,22 +33,30 @@ MODES = {
     "an undamped mode": dict(
         omega=[154.0, 1000.0], decay_rate=[3.56, 0.0], phi=[7.1, 3.0], participation=[0.09, 0.0]
     ),
-}  # fmt: skip
+}
 
 
 def spring(
-    n_modes: int, law: ContactLaw, *, damping: float = 0.02, drive: tuple[float, float] | None = None,
-    phi: np.ndarray = PHI, load: np.ndarray | None = None, turned: bool = False,
-) -> ImpactOscillator:  # fmt: skip
+    n_modes: int,
+    law: ContactLaw,
+    *,
+    damping: float = 0.02,
+    drive: tuple[float, float] | None = None,
+    phi: np.ndarray = PHI,
+    load: np.ndarray | None = None,
+    turned: bool = False,
+) -> ImpactOscillator:
     """The first modes of a spring of 24.5 Hz with a stop at 5 mm; drive = (frequency [Hz], amplitude [m]).
 
     `turned` is the same spring half a drive period later.
     """
     omega = OMEGA[:n_modes]
     model = ModalModel(
-        omega=omega, decay_rate=damping * omega, phi=phi[:n_modes],
+        omega=omega,
+        decay_rate=damping * omega,
+        phi=phi[:n_modes],
         participation=(-1 if turned else 1) * GAMMA[:n_modes],
-    )  # fmt: skip
+    )
     base = None if drive is None else HarmonicDrive(frequency=drive[0], amplitude=drive[1])
     return ImpactOscillator(model=model, stop=Stop(gap=GAP, law=law), drive=base, load=load)
 
@@ -63,9 +65,10 @@ def many_modes(name: str, *, restitution: float = 0.35, **changes: list[float]) 
     """One of `MODES` under Newton's law at 20.5 Hz."""
     numbers = {key: np.array(value) for key, value in (MODES[name] | changes).items()}
     return ImpactOscillator(
-        model=ModalModel(**numbers), drive=HarmonicDrive(frequency=20.5),
+        model=ModalModel(**numbers),
+        drive=HarmonicDrive(frequency=20.5),
         stop=Stop(gap=0.012, law=NewtonRestitution(local_restitution=restitution)),
-    )  # fmt: skip
+    )
 
 
 def equation_1(

@@ -27,7 +27,7 @@ import contact
 from beam import ModalChange, ModalModel
 from contact import ContactError, DelayedRestitution, HarmonicDrive, ImpactOscillator, Stop, orbits
 from contact.orbits import Change, Event, PeriodicOrbit, Shooting
-from contact.orbits.derivatives import sizes_of
+from contact.orbits.branches.orbit_derivatives import sizes_of
 
 ARRAYS = ("omega", "decay_rate", "phi", "participation")
 GAP, PLACE, ROUNDING = 0.01, 1e-6, 1e-11
@@ -42,10 +42,11 @@ def random_oscillator(rng: np.random.Generator) -> ImpactOscillator:
     n = 1 if name == "delayed" else int(rng.integers(1, 7))
     omega = unit * np.append(1.0, np.sort(rng.uniform(1.2, 30.0, n - 1)))
     model = ModalModel(
-        omega=omega, decay_rate=2.0 * 10.0 ** rng.uniform(-2.7, -0.8, n) * omega,
+        omega=omega,
+        decay_rate=2.0 * 10.0 ** rng.uniform(-2.7, -0.8, n) * omega,
         phi=np.append(1.0, rng.uniform(-1.0, 1.0, n - 1)),
         participation=np.append(1.0, rng.uniform(-0.5, 0.5, n - 1)),
-    )  # fmt: skip
+    )
     w = unit * rng.uniform(0.35, 0.99 if n == 1 else min(1.7, 0.99 * omega[-1] / unit))
     mobility, e = float(model.phi @ model.phi), rng.uniform(0.05, 0.9)
     stiffness = (unit * 10.0 ** rng.uniform(0.5, 2.0)) ** 2 / mobility
@@ -83,11 +84,12 @@ def random_change(oscillator: ImpactOscillator, rng: np.random.Generator) -> Cha
     model, law = oscillator.model, oscillator.stop.law
     arrays = {name: rng.normal(size=model.n_modes) * getattr(model, name) for name in ARRAYS}
     return Change(
-        model=ModalChange(**arrays), gap=oscillator.stop.gap * rng.normal(),
+        model=ModalChange(**arrays),
+        gap=oscillator.stop.gap * rng.normal(),
         law=(law.numbers[0] * rng.normal(), law.numbers[1] * rng.normal()),
         frequency=oscillator.driven.frequency * rng.normal(),
         amplitude=oscillator.driven.amplitude * rng.normal(),
-    )  # fmt: skip
+    )
 
 
 def along(oscillator: ImpactOscillator, change: Change, step: float) -> ImpactOscillator:
@@ -104,12 +106,13 @@ def along(oscillator: ImpactOscillator, change: Change, step: float) -> ImpactOs
         moved = {"restitution": law.restitution, "delay": law.delay}
     drive = oscillator.driven
     return ImpactOscillator(
-        model=model, stop=Stop(gap=oscillator.stop.gap + step * change.gap, law=replace(law, **moved)),
+        model=model,
+        stop=Stop(gap=oscillator.stop.gap + step * change.gap, law=replace(law, **moved)),
         drive=HarmonicDrive(
             frequency=drive.frequency + step * change.frequency,
             amplitude=drive.amplitude + step * change.amplitude,
         ),
-    )  # fmt: skip
+    )
 
 
 class Curve:
@@ -161,8 +164,12 @@ class Curve:
         length = float(np.linalg.norm(b - a))
         first = self.solve(a, (b - a) / max(length, 1e-300))
         sides = self.unlike(start.approach) @ self.unlike(end.approach)
-        return length < 1e-5 or sides < 0.0 or (  # next to a graze; two curves cross in between
-            first is not None and any(self.leads(a, sign * first[1], b, length) for sign in (1.0, -1.0))
+        return (
+            length < 1e-5
+            or sides < 0.0
+            or (  # next to a graze; two curves cross in between
+                first is not None and any(self.leads(a, sign * first[1], b, length) for sign in (1.0, -1.0))
+            )
         )
 
     def leads(self, x: np.ndarray, way: np.ndarray, b: np.ndarray, length: float) -> bool:

@@ -64,9 +64,11 @@ def beam(frequency: float, law: ContactLaw, modes: int = 6, ratio: float | None 
     if ratio is not None:
         decay[1:] = 2.0 * ratio * spring.omega[1:modes]
     model = ModalModel(
-        omega=spring.omega[:modes], decay_rate=decay, phi=spring.phi[:modes],
+        omega=spring.omega[:modes],
+        decay_rate=decay,
+        phi=spring.phi[:modes],
         participation=spring.participation[:modes],
-    )  # fmt: skip
+    )
     return ImpactOscillator(
         model=model, stop=Stop(gap=0.0107, law=law), drive=HarmonicDrive(frequency=frequency)
     )

@@ -80,21 +80,38 @@ MODES = {"dissipative": (2, 12), "creeping": (12,), "creeping longest": (12,)}
 TWELVE = ("born", "fold_of", "folds_of", "orbit_end", "orbit_exponents")
 """Calls that are made with twelve modes: each of them once took ten seconds and more."""
 THE_SAME_SEARCH = {
-    "fold_along_frequency", "folds_of", "lowest_of", "KickFamily.orbits", "Shooting.fold", "Shooting.orbits",
-}  # fmt: skip
+    "fold_along_frequency",
+    "folds_of",
+    "lowest_of",
+    "KickFamily.orbits",
+    "Shooting.fold",
+    "Shooting.orbits",
+}
 """Searches made of ``fold_of``, ``follow`` and ``orbits_at``: with the extreme laws only these three run,
 of the general motion where there is one, and with the others each with two modes; all of them in the long
 form."""
 
 WITHOUT_A_LAW = {
     # closed forms of the letter's map and of flights
-    "band", "bands", "before_collision", "fold", "maximal_orbits", "maximal_period", "maximal_periods",
-    "modal_flow", "stable_range",
-}  # fmt: skip
+    "band",
+    "bands",
+    "before_collision",
+    "fold",
+    "maximal_orbits",
+    "maximal_period",
+    "maximal_periods",
+    "modal_flow",
+    "stable_range",
+}
 CHANGE = periodic.Change(gap=1.0, frequency=1e3)
 COMPUTING = (
-    "KickFamily", "MaximalFamily", "PeriodicOrbit", "Shooting", "SingleImpactOrbit", "StroboscopicMap"
-)  # fmt: skip
+    "KickFamily",
+    "MaximalFamily",
+    "PeriodicOrbit",
+    "Shooting",
+    "SingleImpactOrbit",
+    "StroboscopicMap",
+)
 
 
 def oscillator_of(law: ContactLaw, modes: int) -> ImpactOscillator:
@@ -116,28 +133,41 @@ def motions(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], ob
     yield "StroboscopicMap.at", lambda: strobed.at(0.1)
     yield "StroboscopicMap.steady", strobed.steady
     for state in (strobed.steady(), fast):
-        yield "simulate", lambda state=state: contact.simulate(
-            driven, state, periods=5, times=np.linspace(0.0, 0.2, 50)
+        yield (
+            "simulate",
+            lambda state=state: contact.simulate(driven, state, periods=5, times=np.linspace(0.0, 0.2, 50)),
         )
-        yield "collisions", lambda state=state: contact.collisions(
-            driven, contact.simulate(driven, state, periods=5), unfinished="drop"
+        yield (
+            "collisions",
+            lambda state=state: contact.collisions(
+                driven, contact.simulate(driven, state, periods=5), unfinished="drop"
+            ),
         )
         yield "first_collision", lambda state=state: contact.first_collision(driven, state, periods=5)
         yield "StroboscopicMap.orbit", lambda state=state: strobed.orbit(state, 20)
         yield "StroboscopicMap.coordinates", lambda state=state: strobed.coordinates(state)
-        yield "motion_derivatives", lambda state=state: periodic.motion_derivatives(
-            driven, state, [CHANGE], periods=3, times=np.linspace(0.01, 0.1, 5)
+        yield (
+            "motion_derivatives",
+            lambda state=state: periodic.motion_derivatives(
+                driven, state, [CHANGE], periods=3, times=np.linspace(0.01, 0.1, 5)
+            ),
         )
         yield "StroboscopicMap.jacobians", lambda state=state: strobed.jacobians(state, 5)
         yield "strobed_orbits", lambda state=state: contact.strobed_orbits([strobed] * 2, [state] * 2, 20)
         for exponents in (lyapunov.map_exponents, lyapunov.orbit_exponents):
             yield exponents.__name__, lambda state=state, e=exponents: e(strobed, state, 5)
         for prove in (True, False):
-            yield "settle", lambda state=state, prove=prove: periodic.settle(
-                strobed, state, most_cycles=256, prove=prove
+            yield (
+                "settle",
+                lambda state=state, prove=prove: periodic.settle(
+                    strobed, state, most_cycles=256, prove=prove
+                ),
             )
-        yield "orbit_diagram", lambda state=state: periodic.orbit_diagram(
-            strobed, [1e-3, -1e-3], state, observe=strobed.tip, settle_cycles=128
+        yield (
+            "orbit_diagram",
+            lambda state=state: periodic.orbit_diagram(
+                strobed, [1e-3, -1e-3], state, observe=strobed.tip, settle_cycles=128
+            ),
         )
     settled = [strobed.at(-0.1), strobed.at(-0.1).steady(), 2]
     yield "orbit_exponents", lambda: lyapunov.orbit_exponents(*settled)
@@ -149,14 +179,20 @@ def motions(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], ob
     yield "born", lambda: periodic.born(strobed, most_cycles=256)
     yield "fold_excess", lambda: periodic.fold_excess(strobed, 5)
     yield "born_period", lambda: periodic.born_period(strobed, most_cycles=256)
-    yield "period_of", lambda: periodic.period_of(
-        (run := strobed.orbit(strobed.steady(), 20)).points, run.impacts, largest_period=8, tolerance=1e-9
+    yield (
+        "period_of",
+        lambda: periodic.period_of(
+            (run := strobed.orbit(strobed.steady(), 20)).points, run.impacts, largest_period=8, tolerance=1e-9
+        ),
     )
     for method in (
-        integrators.SampledFlight(points=64), integrators.NonsmoothGeneralisedAlpha(step=1e-5, rho=0.9),
-        integrators.Splitting(step=1e-5), integrators.CentralDifference(step=1e-5),
-        integrators.MoreauJean(step=1e-5), integrators.GeneralisedAlpha(step=1e-5),
-    ):  # fmt: skip
+        integrators.SampledFlight(points=64),
+        integrators.NonsmoothGeneralisedAlpha(step=1e-5, rho=0.9),
+        integrators.Splitting(step=1e-5),
+        integrators.CentralDifference(step=1e-5),
+        integrators.MoreauJean(step=1e-5),
+        integrators.GeneralisedAlpha(step=1e-5),
+    ):
         yield "simulate", lambda method=method: contact.simulate(driven, fast, periods=2, method=method)
     yield "first_collision", lambda: contact.first_collision(oscillator)
     yield "StroboscopicMap.tip", lambda: strobed.tip(strobed.orbit(strobed.steady(), 3).points)
@@ -165,9 +201,7 @@ def motions(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], ob
 
 def orbits(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], object]]]:
     """Calls that look for an orbit."""
-    kicks, family = (
-        make(oscillator=oscillator, period=5) for make in (kick.KickFamily, shooting.Shooting)
-    )
+    kicks, family = (make(oscillator=oscillator, period=5) for make in (kick.KickFamily, shooting.Shooting))
     unit = oscillator.drive.angular_frequency * GAP
     for part in (1e-6, 0.05, 0.3, 20.0):
         speed = part * unit
@@ -183,17 +217,23 @@ def orbits(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], obj
         yield "Shooting.at_excess", lambda v=speed: family.at_excess(0.01, family.at_speed(v))
         for name in ("state", "monodromy", "release", "repeats", "strobe_state"):
             yield f"PeriodicOrbit.{name}", lambda v=speed, name=name: getattr(family.at_speed(v), name)()
-        yield "follow", lambda v=speed: continuation.follow(
-            family, family.at_speed(v), low=0.5 * v, high=2.0 * v, step=0.3
+        yield (
+            "follow",
+            lambda v=speed: continuation.follow(
+                family, family.at_speed(v), low=0.5 * v, high=2.0 * v, step=0.3
+            ),
         )
     speed = 0.05 * unit
     for derivatives in (
-        periodic.excess_derivatives, periodic.doubling_derivatives, periodic.graze_derivatives,
+        periodic.excess_derivatives,
+        periodic.doubling_derivatives,
+        periodic.graze_derivatives,
         periodic.orbit_derivatives,
-    ):  # fmt: skip
+    ):
         yield derivatives.__name__, lambda d=derivatives: d(family.at_speed(speed), [CHANGE])
-    yield "multiplier_derivatives", lambda: periodic.multiplier_derivatives(
-        periodic.orbit_derivatives(family.at_speed(speed), [CHANGE])
+    yield (
+        "multiplier_derivatives",
+        lambda: periodic.multiplier_derivatives(periodic.orbit_derivatives(family.at_speed(speed), [CHANGE])),
     )
     yield "KickFamily.fold", lambda: kicks.fold()
     yield "KickFamily.orbits", lambda: kicks.orbits(0.01)
@@ -210,10 +250,17 @@ def orbits(oscillator: ImpactOscillator) -> Iterator[tuple[str, Callable[[], obj
     yield "lowest_of", lambda: periodic.lowest_of(family)
     yield "first_event", lambda: periodic.first_event(family, family.at_speed(0.1 * unit), -0.5)
     yield "fold_along_frequency", lambda: continuation.fold_along_frequency(family, np.array([22.2]))
-    yield "follow_path", lambda: path.follow_path(
-        oscillator.with_excess, near := family.at_speed(0.1 * unit), near.excess,
-        low=near.excess, high=near.excess + 0.05, step=1.0,
-    )  # fmt: skip
+    yield (
+        "follow_path",
+        lambda: path.follow_path(
+            oscillator.with_excess,
+            near := family.at_speed(0.1 * unit),
+            near.excess,
+            low=near.excess,
+            high=near.excess + 0.05,
+            step=1.0,
+        ),
+    )
     several = shooting.Shooting(oscillator=oscillator, period=2, impacts=3)
     yield "Shooting.at_speed", lambda: several.at_speed(0.1 * unit)
     driven = oscillator.with_excess(0.02)
@@ -294,9 +341,13 @@ def public_names() -> set[str]:
 def test_every_public_call_comes_back(form: str) -> None:
     path = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
     ended = subprocess.run(
-        [sys.executable, __file__, form], cwd=ROOT, env=os.environ | {"PYTHONPATH": path}, text=True,
-        capture_output=True, timeout=900,
-    )  # fmt: skip
+        [sys.executable, __file__, form],
+        cwd=ROOT,
+        env=os.environ | {"PYTHONPATH": path},
+        text=True,
+        capture_output=True,
+        timeout=900,
+    )
     lines = [line for line in ended.stdout.splitlines() if line]
     assert ended.returncode == 0, f"{lines[-1:]} did not come back\n{ended.stderr[-3000:]}"
     rows = [[part.strip() for part in line.split("|", 4)] for line in lines]

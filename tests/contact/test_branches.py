@@ -51,7 +51,7 @@ from contact.orbits import (
     follow_path,
     orbit_end,
 )
-from contact.orbits.events import passes
+from contact.orbits.branches.events import passes
 from studies.scene import hertz_of, read_scene
 
 HARD = equation_1(20.90, NewtonRestitution(local_restitution=0.7))
@@ -62,9 +62,7 @@ HARD = equation_1(20.90, NewtonRestitution(local_restitution=0.7))
 
 @pytest.mark.parametrize("ratio", [None, 1e-3], ids=["the letter's strips", "ringing"])
 @pytest.mark.parametrize(("frequency", "period"), [(20.90, 3), (21.50, 4), (22.20, 5)])
-def test_kicks_foretell_their_own_error(
-    ratio: float | None, frequency: float, period: int
-) -> None:
+def test_kicks_foretell_their_own_error(ratio: float | None, frequency: float, period: int) -> None:
     oscillator = beam(frequency, hertz_of(read_scene("tight_fold")), ratio=ratio)
     family = Shooting(oscillator=oscillator, period=period)
     kicks, unit = family.kicks, oscillator.unit_speed
@@ -81,11 +79,15 @@ def test_kicks_foretell_their_own_error(
 @pytest.mark.parametrize(
     ("oscillator", "period", "digits"),
     [
-        (beam(20.90, HERTZ, modes=4), 3, 0.015), (beam(22.20, HERTZ, modes=4), 5, 0.015),
-        *((equation_1(f, DELAYED[name], gap=0.0107), m, 1e-8)
-          for f, m in ((20.90, 3), (21.50, 4), (22.20, 5)) for name in ("constant", "falling")),
+        (beam(20.90, HERTZ, modes=4), 3, 0.015),
+        (beam(22.20, HERTZ, modes=4), 5, 0.015),
+        *(
+            (equation_1(f, DELAYED[name], gap=0.0107), m, 1e-8)
+            for f, m in ((20.90, 3), (21.50, 4), (22.20, 5))
+            for name in ("constant", "falling")
+        ),
     ],
-)  # fmt: skip
+)
 def test_folds_against_a_downward_scan(oscillator: ImpactOscillator, period: int, digits: float) -> None:
     """And against the fold of the kicks, which are exact where one mode waits."""
     family = Shooting(oscillator=oscillator, period=period)
@@ -94,9 +96,12 @@ def test_folds_against_a_downward_scan(oscillator: ImpactOscillator, period: int
     node = family.at_speed(1.3 * fold.speed)
     assert node.stable and node.admissible and node.excess > fold.excess
     end = orbit_end(
-        StroboscopicMap(oscillator=oscillator), replace(node.strobe_state(), time=0.0), node.excess,
-        most_cycles=10_000, relative=1e-2,
-    )  # fmt: skip
+        StroboscopicMap(oscillator=oscillator),
+        replace(node.strobe_state(), time=0.0),
+        node.excess,
+        most_cycles=10_000,
+        relative=1e-2,
+    )
     assert end.lost < fold.excess < end.held
     assert end.kind == "fold" and end.excess == pytest.approx(fold.excess, abs=1e-13)
     kick = family.kicks.fold()
@@ -110,9 +115,7 @@ def test_an_end_by_period_doubling_is_named_and_exact() -> None:
     branch = follow(family, family.at_speed(1.0 * unit), low=0.5 * unit, high=1.5 * unit)
     (doubled,) = branch.of_kind("period doubling")
     start = family.at_speed(1.1 * doubled.speed, doubled)
-    end = orbit_end(
-        StroboscopicMap(oscillator=HARD), start.strobe_state(), start.excess, most_cycles=4000
-    )
+    end = orbit_end(StroboscopicMap(oscillator=HARD), start.strobe_state(), start.excess, most_cycles=4000)
     assert end.kind == "period doubling" and end.lost < end.excess < end.held
     assert end.excess == pytest.approx(doubled.excess, rel=1e-9)
 
@@ -303,7 +306,7 @@ def test_an_orbit_that_ends_by_a_torus_has_no_fold_and_says_so() -> None:
 def test_a_bound_that_is_used_up_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     family = Shooting(oscillator=equation_1(20.90), period=3)
     start, unit = family.at_speed(10.0), family.oscillator.unit_speed
-    monkeypatch.setattr("contact.orbits.branch.MOST_STEPS", 3)
+    monkeypatch.setattr("contact.orbits.branches.branch.MOST_STEPS", 3)
     cut = follow(family, start, low=1e-3 * unit, high=1.5 * unit)
     assert all("bound of 3 steps is used up" in ended for ended in (cut.ended_low, cut.ended_high))
     fast = family.at_speed(300.0)

@@ -20,7 +20,7 @@ from contact import (
     StroboscopicMap,
     UnresolvedCrossing,
 )
-from contact.maximal_orbits import MapFamily
+from contact.maps.nordmark_orbits import MapFamily
 from contact.orbits import PeriodicOrbit, Shooting, cloud, orbit_exponents
 
 NEWTON = NewtonRestitution(local_restitution=0.1)
@@ -77,9 +77,11 @@ def test_the_loop_of_one_mode_is_the_general_one_at_any_amplitudes() -> None:
     single = equation_1(20.9, NEWTON).with_excess(1e-3)
     model = single.model
     idle = ModalModel(
-        omega=np.append(model.omega, 900.0), decay_rate=np.append(model.decay_rate, 1.0),
-        phi=np.append(model.phi, 0.0), participation=np.append(model.participation, 0.0),
-    )  # fmt: skip
+        omega=np.append(model.omega, 900.0),
+        decay_rate=np.append(model.decay_rate, 1.0),
+        phi=np.append(model.phi, 0.0),
+        participation=np.append(model.participation, 0.0),
+    )
     factors, found = noise(400, 1e-3, 0.5), []
     for oscillator in (single, replace(single, model=idle)):
         strobed = StroboscopicMap(oscillator=oscillator)

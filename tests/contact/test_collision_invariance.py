@@ -10,12 +10,7 @@ from light_spring import PHI, equation_1, newton, spring, steady
 from oscillators import GAP
 
 from contact.collision import Collision, before_collision, collisions, first_collision
-from contact.laws import (
-    ContactLaw,
-    HertzContact,
-    HuntCrossley,
-    LinearContact,
-)
+from contact.laws import ContactLaw, HertzContact, HuntCrossley, LinearContact
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.trajectory import State
@@ -34,10 +29,14 @@ def change_of_mode_1(c: Collision, oscillator: ImpactOscillator) -> float:
 
 
 LOSSES = [
-    newton(0.0), newton(0.5), newton(1.0), HertzContact(stiffness=3e7),
-    HuntCrossley(stiffness=3e7, dissipation=2.0), LinearContact(stiffness=3e4),
+    newton(0.0),
+    newton(0.5),
+    newton(1.0),
+    HertzContact(stiffness=3e7),
+    HuntCrossley(stiffness=3e7, dissipation=2.0),
+    LinearContact(stiffness=3e4),
     LinearContact(stiffness=3e5, damping=10.0),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize("law", LOSSES, ids=repr)
@@ -66,8 +65,20 @@ def test_energy_of_an_undriven_collision_is_all_accounted_for(n_modes: int, law:
 
 # ------------------------------------------------------------------------------------------- invariance
 
-SAME = ["approach", "restitution", "delay", "kick", "kick_velocity", "shift", "deceleration", "contact_time",
-        "real_approach", "ringing", "energy_to_higher_modes", "energy_lost"]  # fmt: skip
+SAME = [
+    "approach",
+    "restitution",
+    "delay",
+    "kick",
+    "kick_velocity",
+    "shift",
+    "deceleration",
+    "contact_time",
+    "real_approach",
+    "ringing",
+    "energy_to_higher_modes",
+    "energy_lost",
+]
 
 
 @pytest.mark.parametrize(
@@ -81,8 +92,14 @@ def test_collision_does_not_depend_on_where_the_motion_is_started(law: ContactLa
     found = collisions(oscillator, run, unfinished="drop")
     chosen = found[4]
     before = found[3].end
-    scale = {"ringing": GAP, "shift": 1e-3, "energy_to_higher_modes": 1e-3, "energy_lost": 1e-3,
-             "delay": 1e-2,             "contact_time": 1e-2}  # fmt: skip
+    scale = {
+        "ringing": GAP,
+        "shift": 1e-3,
+        "energy_to_higher_modes": 1e-3,
+        "energy_lost": 1e-3,
+        "delay": 1e-2,
+        "contact_time": 1e-2,
+    }
     times = before + np.array([0.05, 0.3, 0.6, 0.95, 0.9999]) * (chosen.first_touch - before)
     along = simulate(oscillator, start, periods=40, times=times)
     for i, later in ((0, 0), (1, 0), (2, 0), (3, 0), (4, 0), (2, 1), (2, 1000), (4, 100_000)):

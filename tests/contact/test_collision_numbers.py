@@ -14,13 +14,7 @@ from scipy.optimize import brentq
 from beam import ModalModel
 from contact.collision import before_collision, collisions, first_collision
 from contact.drive import HarmonicDrive
-from contact.laws import (
-    ContactLaw,
-    DelayedRestitution,
-    HertzContact,
-    HuntCrossley,
-    LinearContact,
-)
+from contact.laws import ContactLaw, DelayedRestitution, HertzContact, HuntCrossley, LinearContact
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
@@ -32,11 +26,17 @@ from studies.scene import beam_at, read_scene
 
 @pytest.mark.parametrize(
     "n_modes, law, frequency",
-    [(6, newton(0.3), 21.5), (3, newton(0.8), 21.5), (6, HertzContact(stiffness=3e7), 21.5),
-     (6, LinearContact(stiffness=3e4), 21.5), (4, HuntCrossley(stiffness=3e7, dissipation=2.0), 21.5),
-     (2, newton(1.0), 21.5), (2, newton(1.0), 12.0)],
+    [
+        (6, newton(0.3), 21.5),
+        (3, newton(0.8), 21.5),
+        (6, HertzContact(stiffness=3e7), 21.5),
+        (6, LinearContact(stiffness=3e4), 21.5),
+        (4, HuntCrossley(stiffness=3e7, dissipation=2.0), 21.5),
+        (2, newton(1.0), 21.5),
+        (2, newton(1.0), 12.0),
+    ],
     ids=repr,
-)  # fmt: skip
+)
 def test_every_number_is_what_its_definition_says(n_modes: int, law: ContactLaw, frequency: float) -> None:
     """The virtual motions by complex exponentials on a fine grid, collision by collision of a long run.
 
@@ -73,8 +73,10 @@ def test_every_number_is_what_its_definition_says(n_modes: int, law: ContactLaw,
         def hump(motion, near):
             grid = near + np.linspace(-0.6, 0.6, 241) * period
             speed = motion(grid)[1]
-            tops = [brentq(lambda t: motion(t)[1], grid[i], grid[i + 1], xtol=1e-16)
-                    for i in np.flatnonzero((speed[:-1] > 0) & (speed[1:] <= 0))]  # fmt: skip
+            tops = [
+                brentq(lambda t: motion(t)[1], grid[i], grid[i + 1], xtol=1e-16)
+                for i in np.flatnonzero((speed[:-1] > 0) & (speed[1:] <= 0))
+            ]
             return min(tops, key=lambda t: abs(t - near))
 
         def sides(motion, near):
@@ -120,9 +122,12 @@ def test_every_number_is_what_its_definition_says(n_modes: int, law: ContactLaw,
         before, after = steady(oscillator, impacts.start[first]), steady(oscillator, impacts.end[last])
         for k in range(1, n_modes):
             u, v = flow(
-                oscillator, impacts.displacement_start[first, k] - before[0][k],
-                impacts.velocity_start[first, k] - before[1][k], c.end - c.first_touch, k,
-            )  # fmt: skip
+                oscillator,
+                impacts.displacement_start[first, k] - before[0][k],
+                impacts.velocity_start[first, k] - before[1][k],
+                c.end - c.first_touch,
+                k,
+            )
             q = impacts.displacement_end[last, k] - after[0][k]
             rate = impacts.velocity_end[last, k] - after[1][k]
             gain += 0.5 * (rate**2 - v**2 + OMEGA[k] ** 2 * (q**2 - u**2))
@@ -205,10 +210,12 @@ def test_leading_order_relations_are_those_of_a_parabola() -> None:
         law = DelayedRestitution(restitution=0.4, delay=4e-4 * scale)
         c = first_collision(equation_1(22.2, law, 2e-2 * scale**2))
         a, v = c.deceleration, c.approach
-        errors.append([
-            abs(c.restitution**2 - (1 - c.kick) ** 2 - 2 * a * c.shift / v**2),
-            abs(c.delay * a / v - (1 + c.restitution - c.kick)),
-        ])  # fmt: skip
+        errors.append(
+            [
+                abs(c.restitution**2 - (1 - c.kick) ** 2 - 2 * a * c.shift / v**2),
+                abs(c.delay * a / v - (1 + c.restitution - c.kick)),
+            ]
+        )
     ratios = np.array(errors[:-1]) / np.array(errors[1:])
     assert np.all(ratios > 1.7) and np.all(ratios < 5)
     assert np.max(errors[-1]) < 3e-3

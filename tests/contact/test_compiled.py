@@ -8,7 +8,7 @@ import sys
 import time
 from pathlib import Path
 
-from contact.compiled import UNUSED, _cache_folder
+from contact.machine.compiled import PACKAGE, UNUSED, folder_of, sources_of
 
 ROOT = Path(__file__).parents[2]
 CALL = "from contact.flight.elementary import square_root; square_root(2.0, 0.0)"
@@ -16,17 +16,22 @@ CALL = "from contact.flight.elementary import square_root; square_root(2.0, 0.0)
 
 def test_folders_of_older_sources_are_removed_when_nobody_uses_them(tmp_path):
     """The first process with a new source removes old folders, but keeps one used within the last hour."""
-    (tmp_path / "source.py").write_text("# a kernel")
-    old, used = tmp_path / "__pycache__" / "kernels-old", tmp_path / "__pycache__" / "kernels-used"
+    old, used = tmp_path / "kernels-old", tmp_path / "kernels-used"
     for folder in (old, used):
         folder.mkdir(parents=True)
         (folder / "code.nbc").write_text("")
     os.utime(old, (0.0, time.time() - 2.0 * UNUSED))
-    own = Path(_cache_folder(tmp_path))
+    own = Path(folder_of("one", tmp_path))
     assert own.exists() and used.exists() and not old.exists()
-    assert Path(_cache_folder(tmp_path)) == own
-    (tmp_path / "source.py").write_text("# another kernel")
-    assert Path(_cache_folder(tmp_path)) != own and own.exists()
+    assert Path(folder_of("two", tmp_path)) != own and own.exists()
+
+
+def test_machine_code_is_keyed_by_all_sources_on_which_it_rests():
+    """What a file imports, through packages too: the event loop rests on each law, a law not on the loop."""
+    loop, law = PACKAGE / "engine" / "event_loop.py", PACKAGE / "touch" / "hertz.py"
+    assert {law, PACKAGE / "flight" / "elementary.py"} <= sources_of(loop)
+    assert loop not in sources_of(law) and PACKAGE / "__init__.py" not in sources_of(loop)
+    assert PACKAGE / "touch" / "newton.py" in sources_of(PACKAGE / "touch" / "__init__.py")
 
 
 def test_the_first_call_that_compiles_says_so_once(tmp_path):

@@ -12,11 +12,7 @@ from whole_motions import DASHPOT, HERTZ, LOSSY, SOFTER, SPRING, name_of
 from beam import ModalModel
 from contact.drive import HarmonicDrive
 from contact.errors import ContactTooStiff, UnresolvedCrossing
-from contact.laws import (
-    DelayedRestitution,
-    LinearContact,
-    NewtonRestitution,
-)
+from contact.laws import DelayedRestitution, LinearContact, NewtonRestitution
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
@@ -24,10 +20,14 @@ from contact.trajectory import State
 
 PERIOD = 1 / FREQUENCY
 STRADDLERS = [
-    (4, HERTZ), (1, SOFTER), (4, LOSSY), (4, SPRING), (4, DASHPOT),
+    (4, HERTZ),
+    (1, SOFTER),
+    (4, LOSSY),
+    (4, SPRING),
+    (4, DASHPOT),
     (1, DelayedRestitution(restitution=0.3, delay=4e-4)),
     (1, DelayedRestitution(restitution=lambda v: 0.3 / (1 + v), delay=lambda v: 4e-4 + 1e-4 * v)),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize("n_modes, law", STRADDLERS, ids=name_of)
@@ -54,9 +54,11 @@ def test_strobe_within_a_contact_changes_nothing(n_modes, law, share):
     marks = np.sort(np.concatenate([[PERIOD], PERIOD - lead + np.linspace(0, length, 301)]))
     within = simulate(plain, approaching(PERIOD - lead), duration=length, times=marks)
     apart = simulate(
-        turned, approaching(0.5 * PERIOD - lead), duration=length,
+        turned,
+        approaching(0.5 * PERIOD - lead),
+        duration=length,
         times=np.clip(marks - 0.5 * PERIOD, 0.5 * PERIOD - lead, None),
-    )  # fmt: skip
+    )
     unsampled = simulate(plain, approaching(PERIOD - lead), duration=length)
     assert within.impacts.start[0] < PERIOD < within.impacts.end[0]
     assert not 0 < apart.impacts.start[0] % PERIOD - apart.impacts.end[0] % PERIOD
@@ -158,9 +160,10 @@ def test_a_contact_beyond_the_range_of_doubles_is_refused_and_does_not_hang(rati
     )
     modal = float(model.omega[0] ** 2 / model.phi[0] ** 2)
     oscillator = ImpactOscillator(
-        model=model, stop=Stop(gap=0.01, law=LinearContact(stiffness=ratio * modal)),
+        model=model,
+        stop=Stop(gap=0.01, law=LinearContact(stiffness=ratio * modal)),
         drive=HarmonicDrive(frequency=22.0),
-    ).with_excess(0.01)  # fmt: skip
+    ).with_excess(0.01)
     try:
         run = simulate(oscillator, periods=60)
     except (ContactTooStiff, UnresolvedCrossing):

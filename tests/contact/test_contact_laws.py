@@ -13,12 +13,7 @@ from whole_motions import DASHPOT, FREE, HERTZ, LOSSY, SOFTER, SPRING, name_of
 
 from beam import ModalModel
 from contact.drive import HarmonicDrive
-from contact.laws import (
-    HertzContact,
-    HuntCrossley,
-    LinearContact,
-    NewtonRestitution,
-)
+from contact.laws import HertzContact, HuntCrossley, LinearContact, NewtonRestitution
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
@@ -62,9 +57,11 @@ def ladder(n: int, *, chi: float, damping: float, load: float = 0.0) -> ImpactOs
     k = np.arange(1.0, n + 1.0)
     omega = 150.0 * (2.0 * k - 1.0) ** 2
     model = ModalModel(
-        omega=omega * (k > 1 if load else 1.0), decay_rate=damping * omega, phi=8.0 / k**0.7,
+        omega=omega * (k > 1 if load else 1.0),
+        decay_rate=damping * omega,
+        phi=8.0 / k**0.7,
         participation=0.1 / k**2,
-    )  # fmt: skip
+    )
     stop = Stop(gap=0.01, law=HuntCrossley(stiffness=2e7, dissipation=chi))
     drive = HarmonicDrive(frequency=21.5, amplitude=1e-3)
     return ImpactOscillator(model=model, stop=stop, drive=drive, load=load * (k == 1))
@@ -94,9 +91,15 @@ def contact_by_solver(oscillator: ImpactOscillator, start: float, q: np.ndarray,
     small = [1e-4, 1e-4, scale**2, *scale / np.maximum(model.omega, 1.0), *np.full(n, scale)]
     x = np.concatenate([[0.0, start, 0.0], q, v])
     return solve_ivp(
-        rates, (0.0, 1e3), x, "DOP853", events=released, rtol=3e-14, atol=1e-15 * np.array(small),
+        rates,
+        (0.0, 1e3),
+        x,
+        "DOP853",
+        events=released,
+        rtol=3e-14,
+        atol=1e-15 * np.array(small),
         dense_output=True,
-    )  # fmt: skip
+    )
 
 
 @pytest.mark.parametrize(
@@ -148,8 +151,14 @@ def test_touch_and_release_lie_on_the_wall_to_rounding(law):
     np.testing.assert_allclose(impacts.velocity_end[finished] @ PHI, impacts.rebound[finished], rtol=1e-10)
     assert np.all(impacts.approach > 0) and np.all(impacts.rebound[finished] < 0)
     near = 1e-3 * (impacts.end[finished] - impacts.start[finished])
-    around = np.stack([impacts.start[finished] - near, impacts.start[finished] + near,
-                       impacts.end[finished] - near, impacts.end[finished] + near])  # fmt: skip
+    around = np.stack(
+        [
+            impacts.start[finished] - near,
+            impacts.start[finished] + near,
+            impacts.end[finished] - near,
+            impacts.end[finished] + near,
+        ]
+    )
     sampled = simulate(oscillator, periods=60, times=np.sort(around.ravel()))
     signs = np.sign(heights(oscillator, sampled.displacement)).reshape(-1, 4)
     assert np.all(signs == [-1, 1, 1, -1])
@@ -178,13 +187,19 @@ def test_energy_is_kept_over_1e4_contacts_of_a_conservative_spring(law, allowed)
     finished = np.isfinite(run.impacts.loss)
     assert np.max(np.abs(run.impacts.loss[finished])) < 1e-13 * first
 
+
 @pytest.mark.parametrize(
     "law",
-    [LOSSY, HuntCrossley(stiffness=1e6, dissipation=0.2), DASHPOT,
-     LinearContact(stiffness=1e5, damping=60.0), LinearContact(stiffness=2e4, damping=100.0),
-     NewtonRestitution(local_restitution=0.4)],
+    [
+        LOSSY,
+        HuntCrossley(stiffness=1e6, dissipation=0.2),
+        DASHPOT,
+        LinearContact(stiffness=1e5, damping=60.0),
+        LinearContact(stiffness=2e4, damping=100.0),
+        NewtonRestitution(local_restitution=0.4),
+    ],
     ids=name_of,
-)  # fmt: skip
+)
 @pytest.mark.parametrize("n_modes", [1, 6])
 def test_losses_reported_are_the_energy_that_is_gone(n_modes, law):
     oscillator = spring(n_modes, law, damping=0.0)

@@ -6,15 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from tip_judge import (
-    PLANTED,
-    Real,
-    Signal,
-    flights,
-    judge,
-    search,
-    with_gap,
-)
+from tip_judge import PLANTED, Real, Signal, flights, judge, search, with_gap
 
 from beam import ModalModel
 from contact.drive import HarmonicDrive
@@ -23,7 +15,7 @@ from contact.flight.elementary import EPS
 from contact.flight.modal_flow import propagate, tip_rounding
 from contact.laws import NewtonRestitution
 from contact.orbits import Shooting
-from contact.orbits.event_derivatives import peaks
+from contact.orbits.branches.event_derivatives import peaks
 from contact.oscillator import ImpactOscillator
 from contact.stop import Stop
 

@@ -11,17 +11,17 @@ import pytest
 from oscillators import apart
 from simulated_orbit import differences, touches
 
+from contact import band
 from contact.errors import NotPeriodic
 from contact.laws import DelayedRestitution
-from contact.maximal_orbits import band
-from contact.maximal_orbits import fold as fold_of_map
-from contact.nordmark import NordmarkMap
+from contact.maps.nordmark import NordmarkMap
+from contact.maps.nordmark_orbits import fold as fold_of_map
+from contact.maps.stroboscope import StroboscopicMap
 from contact.orbits import settle
-from contact.orbits.kick import KickFamily
-from contact.orbits.shooting import Shooting
-from contact.orbits.single_impact import MaximalFamily
+from contact.orbits.families.kick import KickFamily
+from contact.orbits.families.shooting import Shooting
+from contact.orbits.families.single_impact import MaximalFamily
 from contact.simulation import simulate
-from contact.stroboscope import StroboscopicMap
 from contact.trajectory import State
 
 T, MU, TAU, GAP = 40.80e-3, 3.56, 0.1, 0.0107

@@ -59,9 +59,13 @@ def of_equation_1(frequency: float) -> list[Change]:
     period = of_modes(1, omega=-((2 * math.pi / T) ** 2) / (T * omega))
     decay = of_modes(1, omega=MU / (4 * omega), decay_rate=1.0)
     return [
-        Change(model=period), Change(model=decay), Change(law=(1.0, 0.0)), Change(gap=1.0),
-        Change(frequency=1.0), Change(amplitude=1.0),
-    ]  # fmt: skip
+        Change(model=period),
+        Change(model=decay),
+        Change(law=(1.0, 0.0)),
+        Change(gap=1.0),
+        Change(frequency=1.0),
+        Change(amplitude=1.0),
+    ]
 
 
 def exact_flow(square: mp.mpf, c: mp.mpf, t: mp.mpf) -> tuple[mp.mpf, mp.mpf, mp.mpf, mp.mpf]:
@@ -133,9 +137,13 @@ def exact_orbit(m: int) -> Callable[[Sequence[float]], list[mp.mpf]]:
         jump = mp.matrix([[-tau, 0], [(tau * (before + steady) + behind + steady) / v, -tau]])
         monodromy = n * jump
         return [
-            size / gap - 1, time, v, monodromy[0, 0] + monodromy[1, 1],
-            monodromy[0, 0] * monodromy[1, 1] - monodromy[0, 1] * monodromy[1, 0], *points,
-        ]  # fmt: skip
+            size / gap - 1,
+            time,
+            v,
+            monodromy[0, 0] + monodromy[1, 1],
+            monodromy[0, 0] * monodromy[1, 1] - monodromy[0, 1] * monodromy[1, 0],
+            *points,
+        ]
 
     return orbit
 
@@ -172,8 +180,8 @@ CASES |= {name: (many_modes(name, restitution=0.3), 4) for name in ("three modes
 
 @pytest.mark.parametrize("name", CASES)
 def test_folds_under_newtons_law_move_as_their_closed_form_does(name: str) -> None:
-    """F_m/F_g = 1/sqrt(1 + (s/b)^2) of ``contact.orbits.single_impact``, with every number of every mode,
-    restitution and drive frequency; gap, participation and amplitude say nothing."""
+    """F_m/F_g = 1/sqrt(1 + (s/b)^2) of ``contact.orbits.families.single_impact``, with every number of every
+    mode, restitution and drive frequency; gap, participation and amplitude say nothing."""
     oscillator, m = CASES[name]
     model, tau, f = oscillator.model, oscillator.stop.law.numbers[0], oscillator.driven.frequency
     n = model.n_modes
@@ -226,8 +234,9 @@ def in_other_units(oscillator: ImpactOscillator) -> list[Change]:
     heavier = of_modes(n, phi=model.phi, participation=-model.participation)
     return [
         Change(model=faster, frequency=oscillator.driven.frequency, law=laws[0]),
-        Change(gap=gap, amplitude=amplitude, law=laws[1]), Change(model=heavier, law=laws[2]),
-    ]  # fmt: skip
+        Change(gap=gap, amplitude=amplitude, law=laws[1]),
+        Change(model=heavier, law=laws[2]),
+    ]
 
 
 @pytest.mark.parametrize("name", [*LAWS, "constant"])
@@ -274,9 +283,10 @@ def test_a_simulated_motion_against_differences(name: str) -> None:
         )
         run = simulate(along(oscillator, change, step), moved, periods=5, times=times)
         return [
-            run.impacts.start, np.hstack([run.strobe_displacement, run.strobe_velocity]),
+            run.impacts.start,
+            np.hstack([run.strobe_displacement, run.strobe_velocity]),
             np.hstack([run.displacement, run.velocity]),
-        ]  # fmt: skip
+        ]
 
     found = motion_derivatives(oscillator, start, [change], periods=5, times=times)
     direction = np.concatenate([kicked.reshape(-1), [1.0]])

@@ -26,8 +26,9 @@ def test_sine_cosine_and_exponential_are_good_to_one_unit_in_the_last_place():
                 worst[place] = max(worst[place], error / size)
             x = -float(10 ** generator.uniform(-6, 2.85))
             true = mp.exp(x)
-            worst[2] = max(worst[2], abs(float((mp.mpf(exponential(x)) - true) / math.ulp(float(true)))) /
-            1.5)
+            worst[2] = max(
+                worst[2], abs(float((mp.mpf(exponential(x)) - true) / math.ulp(float(true)))) / 1.5
+            )
     assert np.all(worst < 1.0)
     assert sine_cosine(0.0, 0.0) == (0.0, 1.0)
     assert exponential(0.0) == 1.0 and exponential(-800.0) == 0.0

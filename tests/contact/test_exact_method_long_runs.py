@@ -100,7 +100,9 @@ def test_too_elastic_a_law_is_refused_as_chatter_and_a_lesser_one_comes_to_rest(
 @pytest.mark.parametrize(
     ("method", "error"),
     [
-        (CentralDifference, 1 / 24), (GeneralisedAlpha.newmark, -1 / 12), (MoreauJean, -1 / 12),
+        (CentralDifference, 1 / 24),
+        (GeneralisedAlpha.newmark, -1 / 12),
+        (MoreauJean, -1 / 12),
         (Splitting, 0.0),
     ],
 )
@@ -111,9 +113,12 @@ def test_the_phase_of_a_free_mode_drifts_as_theory_says(method, error):
     law = NewtonRestitution(local_restitution=0.5) if method is MoreauJean else LinearContact(stiffness=1e-9)
     times = chosen.step * np.arange(1, steps + 1)
     run = simulate(
-        one_mode(law, 0.5), State(displacement=np.full(1, 0.01), velocity=np.zeros(1)),
-        duration=float(times[-1]), times=times, method=chosen,
-    )  # fmt: skip
+        one_mode(law, 0.5),
+        State(displacement=np.full(1, 0.01), velocity=np.zeros(1)),
+        duration=float(times[-1]),
+        times=times,
+        method=chosen,
+    )
     scale = math.sqrt(1.0 - 0.25 * x * x) if method is CentralDifference else 1.0  # its velocities are means
     turn = np.unwrap(np.angle(run.displacement[:, 0] * scale - 1j * run.velocity[:, 0] / OMEGA))
     rate = abs(turn[-1] - turn[0]) / (x * (steps - 1)) - 1.0

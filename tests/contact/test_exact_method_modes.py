@@ -46,9 +46,12 @@ def model_of(mass: float, count: int) -> ModalModel:
     modes = cantilever(mass)
     omega = modes.omega[:count] * (2.0 * math.pi * FIRST / modes.omega[0])
     return ModalModel(
-        omega=omega, decay_rate=0.02 * omega, phi=modes.phi[:count],
-        participation=modes.participation[:count], tip_mass=mass,
-    )  # fmt: skip
+        omega=omega,
+        decay_rate=0.02 * omega,
+        phi=modes.phi[:count],
+        participation=modes.participation[:count],
+        tip_mass=mass,
+    )
 
 
 def share(mass: float, count: int) -> float:
@@ -73,9 +76,11 @@ def one_impact(mass: float, count: int, restitution: float) -> float:
 def whole_collision(mass: float, count: int, restitution: float) -> Collision:
     """The collision that ends the steady motion at excess 0.013, 22.2 Hz."""
     law = NewtonRestitution(local_restitution=restitution)
-    return first_collision(ImpactOscillator(
-        model=model_of(mass, count), stop=Stop(gap=GAP, law=law), drive=HarmonicDrive(frequency=22.2)
-    ).with_excess(0.013))  # fmt: skip
+    return first_collision(
+        ImpactOscillator(
+            model=model_of(mass, count), stop=Stop(gap=GAP, law=law), drive=HarmonicDrive(frequency=22.2)
+        ).with_excess(0.013)
+    )
 
 
 @pytest.mark.parametrize("mass", [0.0, 0.1, 0.3, 1.0])

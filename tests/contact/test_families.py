@@ -24,7 +24,7 @@ from contact import (
     simulate,
 )
 from contact.orbits import KickFamily, Shooting
-from contact.orbits.family import Family
+from contact.orbits.families.family import Family
 
 UNDELAYED = DelayedRestitution(restitution=0.1, delay=0.0)
 PLACES = [(20.90, 3), (21.50, 4), (22.20, 5), (23.40, 11)]
@@ -164,12 +164,15 @@ def test_an_orbit_is_one_of_the_simulated_motion(name: str) -> None:
 @pytest.mark.parametrize(
     ("oscillator", "excess", "period", "impacts"),
     [
-        (one_mode(20.90), 0.1, 3, 2), (one_mode(21.50), 0.011, 8, 3), (one_mode(21.50), 0.02, 4, 2),
-        (beam(20.90, HERTZ, modes=4), 0.1, 3, 2), (beam(21.50, HERTZ, modes=4), 0.02, 4, 2),
+        (one_mode(20.90), 0.1, 3, 2),
+        (one_mode(21.50), 0.011, 8, 3),
+        (one_mode(21.50), 0.02, 4, 2),
+        (beam(20.90, HERTZ, modes=4), 0.1, 3, 2),
+        (beam(21.50, HERTZ, modes=4), 0.02, 4, 2),
         (one_mode(22.20, DelayedRestitution(restitution=0.1, delay=2e-3)), 1e-4, 6, 2),
         (one_mode(22.20, DelayedRestitution(restitution=0.1, delay=2e-3)), 1e-3, 6, 2),
     ],
-)  # fmt: skip
+)
 def test_orbits_with_several_touches(
     oscillator: ImpactOscillator, excess: float, period: int, impacts: int
 ) -> None:

@@ -65,15 +65,22 @@ def difference(a: np.ndarray, b: np.ndarray, scale: float) -> float:
 
 
 def oscillator(
-    omega: list[float], decay: list[float], *, drive: HarmonicDrive | None = None,
+    omega: list[float],
+    decay: list[float],
+    *,
+    drive: HarmonicDrive | None = None,
     load: list[float] | None = None,
-    phi: list[float] | None = None, participation: list[float] | None = None, gap: float = 0.01,
-) -> ImpactOscillator:  # fmt: skip
+    phi: list[float] | None = None,
+    participation: list[float] | None = None,
+    gap: float = 0.01,
+) -> ImpactOscillator:
     n = len(omega)
     model = ModalModel(
-        omega=omega, decay_rate=decay, phi=phi or [7.0 / (k + 1) for k in range(n)],
+        omega=omega,
+        decay_rate=decay,
+        phi=phi or [7.0 / (k + 1) for k in range(n)],
         participation=participation or [0.1 / (k + 1) for k in range(n)],
-    )  # fmt: skip
+    )
     stop = Stop(gap=gap, law=NewtonRestitution(local_restitution=0.5))
     return ImpactOscillator(
         model=model, stop=stop, drive=drive, load=None if load is None else np.array(load)
@@ -161,10 +168,9 @@ def test_flight_of_many_modes_is_the_exponential_of_the_whole_system(name):
         size = np.max(np.abs(exact), axis=0)
         displacement = u + motion.row(OFFSET) + motion.row(SINE) * s + motion.row(COSINE) * c
         velocity = du + motion.drive * (motion.row(SINE) * c - motion.row(COSINE) * s)
-        acceleration = (
-            np.array([mode_acceleration(motion, k, u[k], du[k]) for k in range(5)])
-            - motion.drive**2 * (motion.row(SINE) * s + motion.row(COSINE) * c)
-        )  # fmt: skip
+        acceleration = np.array(
+            [mode_acceleration(motion, k, u[k], du[k]) for k in range(5)]
+        ) - motion.drive**2 * (motion.row(SINE) * s + motion.row(COSINE) * c)
         for computed, column in zip((displacement, velocity, acceleration), range(3), strict=True):
             assert np.max(np.abs(computed - exact[:, column])) < 1e-12 * size[column]
         tip = np.array(tip_state(motion, start + time, u, du))
@@ -199,9 +205,12 @@ def test_rounding_bound_holds_and_is_not_idle(n_modes):
         omega = 150.0 * 10 ** np.sort(generator.uniform(0, 2, n_modes))
         decay = omega * 10 ** generator.uniform(-4, 0.6, n_modes)
         system = oscillator(
-            list(omega), list(decay), drive=HarmonicDrive(frequency=21.5, amplitude=amplitude),
-            phi=list(generator.normal(size=n_modes) * 7), participation=list(generator.normal(size=n_modes)),
-        )  # fmt: skip
+            list(omega),
+            list(decay),
+            drive=HarmonicDrive(frequency=21.5, amplitude=amplitude),
+            phi=list(generator.normal(size=n_modes) * 7),
+            participation=list(generator.normal(size=n_modes)),
+        )
         motion = system.motion()
         u, v = generator.normal(size=n_modes) * free, generator.normal(size=n_modes) * free * omega
         start, bound = float(generator.uniform(0, 0.02)), tip_rounding(motion, u, v)
@@ -235,10 +244,16 @@ def test_numbers_at_another_amplitude_are_those_made_for_it(amplitude):
         _ = other.motion()
         found, drive, model = other.with_amplitude(amplitude).motion(), other.drive, other.model
         made = motion_of(
-            model.omega, model.decay_rate, model.phi, law=first.stop.law, gap=first.stop.gap,
-            drive=drive.angular_frequency, period=drive.period, load=first.load,
+            model.omega,
+            model.decay_rate,
+            model.phi,
+            law=first.stop.law,
+            gap=first.stop.gap,
+            drive=drive.angular_frequency,
+            period=drive.period,
+            load=first.load,
             response=amplitude * other.steady_response(),
-        )  # fmt: skip
+        )
         for name, value in made._asdict().items():
             assert getattr(found, name) == pytest.approx(value, rel=1e-13, abs=0.0), name
 

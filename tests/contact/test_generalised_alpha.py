@@ -13,12 +13,7 @@ from scipy.optimize import brentq
 from beam import ModalModel
 from contact.errors import StepTooLarge
 from contact.integrators.fixed_step import stiffness_at
-from contact.integrators.generalised_alpha import (
-    AlphaNumbers,
-    GeneralisedAlpha,
-    limit,
-    stable,
-)
+from contact.integrators.generalised_alpha import AlphaNumbers, GeneralisedAlpha, limit, stable
 from contact.laws import ContactLaw, HertzContact, HuntCrossley, LinearContact
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate

@@ -51,9 +51,11 @@ def _fields(name: str) -> set[str]:
 def oscillator_with(law: ContactLaw, modes: int = 3, gap: float = 0.01) -> ImpactOscillator:
     """A light driven spring of up to three modes, 2 % above grazing."""
     model = ModalModel(
-        omega=[154.0, 980.0, 2500.0][:modes], decay_rate=[3.56, 20.0, 50.0][:modes],
-        phi=[10.0, 9.0, 8.0][:modes], participation=[0.10, 0.05, 0.03][:modes],
-    )  # fmt: skip
+        omega=[154.0, 980.0, 2500.0][:modes],
+        decay_rate=[3.56, 20.0, 50.0][:modes],
+        phi=[10.0, 9.0, 8.0][:modes],
+        participation=[0.10, 0.05, 0.03][:modes],
+    )
     return ImpactOscillator(
         model=model, stop=Stop(gap=gap, law=law), drive=HarmonicDrive(frequency=22.2)
     ).with_excess(0.02)
@@ -230,10 +232,11 @@ def test_a_step_beyond_the_limit_is_refused(name: str) -> None:
 @pytest.mark.parametrize(
     "method",
     [
-        INTEGRATORS["moreau-jean"](step=1e-4, theta=0.0), GeneralisedAlpha.newmark(step=1e-6, gamma=0.45),
+        INTEGRATORS["moreau-jean"](step=1e-4, theta=0.0),
+        GeneralisedAlpha.newmark(step=1e-6, gamma=0.45),
         GeneralisedAlpha.newmark(step=2.01 / 2500.0, beta=0.0),
     ],
-)  # fmt: skip
+)
 def test_a_method_that_makes_flights_grow_is_refused(method: Integrator) -> None:
     with pytest.raises(StepTooLarge, match="unstable even in flight"):
         simulate(oscillator_with(LAWS[method.laws[0]][0]), periods=1, method=method)

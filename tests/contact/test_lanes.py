@@ -17,8 +17,14 @@ def ladder(n: int, damping: float, load: float = 0.0) -> Motion:
     omega[0] = 0.0 if load else omega[0]
     decay = damping * omega
     return motion_of(
-        omega, decay, np.ones(n), law=NewtonRestitution(local_restitution=0.5), gap=0.01, drive=135.0,
-        period=math.tau / 135.0, load=load * (omega == 0),
+        omega,
+        decay,
+        np.ones(n),
+        law=NewtonRestitution(local_restitution=0.5),
+        gap=0.01,
+        drive=135.0,
+        period=math.tau / 135.0,
+        load=load * (omega == 0),
     )
 
 

@@ -33,17 +33,20 @@ def beam(generator: np.random.Generator, modes: int) -> tuple[Motion, np.ndarray
     ladder = np.arange(1.0, modes + 1.0)
     omega = 154.0 * (2.0 * ladder - 1.0) ** 2
     model = ModalModel(
-        omega=omega, decay_rate=generator.uniform(0.001, 0.05) * omega, phi=8.0 / ladder,
+        omega=omega,
+        decay_rate=generator.uniform(0.001, 0.05) * omega,
+        phi=8.0 / ladder,
         participation=0.1 / ladder,
-    )  # fmt: skip
+    )
     motion = (
         ImpactOscillator(
-            model=model, stop=Stop(gap=GAP, law=NewtonRestitution(local_restitution=0.1)),
+            model=model,
+            stop=Stop(gap=GAP, law=NewtonRestitution(local_restitution=0.1)),
             drive=HarmonicDrive(frequency=generator.uniform(14.0, 24.0)),
         )
         .with_excess(generator.uniform(-0.3, 0.3))
         .motion()
-    )  # fmt: skip
+    )
     size = GAP * 10 ** generator.uniform(-3, -0.5) / 10 ** (generator.uniform(1, 3) * (ladder > 1))
     angle = generator.uniform(0, math.tau, modes)
     return motion, size * np.cos(angle) / model.phi, size * omega * np.sin(angle) / model.phi

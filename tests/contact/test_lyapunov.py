@@ -9,12 +9,7 @@ import numpy as np
 import pytest
 
 from contact import NordmarkMap, State, StrobedNordmarkMap, StrobedOrbit, StroboscopicMap
-from contact.orbits import (
-    Shooting,
-    map_exponents,
-    orbit_exponents,
-    settle,
-)
+from contact.orbits import Shooting, map_exponents, orbit_exponents, settle
 from studies.scene import beam_at, read_scene, single_mode_at
 
 FREQUENCY = 21.50

@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from contact import Diverged, NotPeriodic, StroboscopicMap
-from contact.nonlinear_mode import NonlinearMode
+from contact.maps.nonlinear_mode import NonlinearMode
 from contact.orbits import born, born_period, orbit_diagram
 from tests.contact.one_mode import FREQUENCIES, GAP, oscillator
 
@@ -59,9 +59,14 @@ def test_free_flight_against_another_integrator(cubic: tuple[float, float]) -> N
     assert run.impacts.sum() == 0
     root = math.sqrt(one.numbers[0])
     exact = solve_ivp(
-        acceleration(one, force), (0.0, 5 * one.period), [state[0], state[1] * root], method="DOP853",
-        t_eval=np.arange(1, 6) * one.period, rtol=1e-13, atol=1e-16,
-    ).y.T / [1.0, root]  # fmt: skip
+        acceleration(one, force),
+        (0.0, 5 * one.period),
+        [state[0], state[1] * root],
+        method="DOP853",
+        t_eval=np.arange(1, 6) * one.period,
+        rtol=1e-13,
+        atol=1e-16,
+    ).y.T / [1.0, root]
     np.testing.assert_allclose(found, exact, atol=1e-11 * GAP)
 
 
@@ -79,9 +84,15 @@ def test_a_motion_with_impacts_against_events_of_another_integrator(cubic: tuple
     end = 6 * one.period
     while t < end:
         run = solve_ivp(
-            acceleration(one, force), (t, end), y, method="DOP853", events=gap_closes, rtol=1e-13, atol=1e-16,
+            acceleration(one, force),
+            (t, end),
+            y,
+            method="DOP853",
+            events=gap_closes,
+            rtol=1e-13,
+            atol=1e-16,
             max_step=one.period / 40,
-        )  # fmt: skip
+        )
         t, y = run.t[-1], run.y[:, -1]
         if run.status == 1:
             y, hits = np.array([GAP * (1 - 1e-15), -one.restitution * y[1]]), hits + 1
@@ -93,9 +104,14 @@ def test_grazing_motion_touches_at_rest_and_nowhere_else() -> None:
     one = mode()
     force, touch = one.grazing
     run = solve_ivp(
-        acceleration(one, force), (touch, touch + one.period), [GAP, 0.0], method="DOP853", rtol=1e-13,
-        atol=1e-16, dense_output=True,
-    )  # fmt: skip
+        acceleration(one, force),
+        (touch, touch + one.period),
+        [GAP, 0.0],
+        method="DOP853",
+        rtol=1e-13,
+        atol=1e-16,
+        dense_output=True,
+    )
     np.testing.assert_allclose(run.y[:, -1], [GAP, 0.0], atol=1e-10)
     assert run.sol(np.linspace(touch, touch + one.period, 1001))[0].max() < GAP * (1 + 1e-12)
     below, above = one.at(-1e-9), one.at(1e-7)

@@ -11,7 +11,8 @@ import pytest
 
 from beam import ModalModel
 from contact import HarmonicDrive, ImpactOscillator, NewtonRestitution, Stop
-from contact.maximal_orbits import (
+from contact.maps.nordmark import NordmarkMap
+from contact.maps.nordmark_orbits import (
     bands,
     fold,
     maximal_orbits,
@@ -19,7 +20,6 @@ from contact.maximal_orbits import (
     maximal_periods,
     stable_range,
 )
-from contact.nordmark import NordmarkMap
 
 T, MU, TAU = 0.0408, 3.56, 0.1
 # f [Hz], m of the map, F_m/F_g - 1 of the map
@@ -215,7 +215,9 @@ def test_map_of_an_oscillator() -> None:
     omega = math.hypot(2 * math.pi / T, MU / 2)
     oscillator = ImpactOscillator(
         model=ModalModel(
-            omega=np.array([omega, 900.0]), decay_rate=np.array([MU, 9.0]), phi=np.ones(2),
+            omega=np.array([omega, 900.0]),
+            decay_rate=np.array([MU, 9.0]),
+            phi=np.ones(2),
             participation=np.ones(2),
         ),
         drive=HarmonicDrive(frequency=21.5),

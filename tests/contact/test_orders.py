@@ -33,24 +33,47 @@ SOFT, DASHPOT = LinearContact(stiffness=3e5), LinearContact(stiffness=3e5, dampi
 NEWTON = NewtonRestitution(local_restitution=0.6)
 CASES = [
     # method, law, duration, numbers of steps before the touch, order
-    *((make, HERTZ, CONTACT, (450, 900, 1800), 2.0) for make in (
-        GeneralisedAlpha.newmark, partial(GeneralisedAlpha.newmark, beta=0.0),
-        partial(GeneralisedAlpha.hht, alpha=0.1), partial(GeneralisedAlpha.with_dissipation, rho=0.0),
-        partial(GeneralisedAlpha.with_dissipation, rho=0.8), CentralDifference,
-    )),
+    *(
+        (make, HERTZ, CONTACT, (450, 900, 1800), 2.0)
+        for make in (
+            GeneralisedAlpha.newmark,
+            partial(GeneralisedAlpha.newmark, beta=0.0),
+            partial(GeneralisedAlpha.hht, alpha=0.1),
+            partial(GeneralisedAlpha.with_dissipation, rho=0.0),
+            partial(GeneralisedAlpha.with_dissipation, rho=0.8),
+            CentralDifference,
+        )
+    ),
     (partial(GeneralisedAlpha.newmark, beta=0.5, gamma=0.8), HERTZ, CONTACT, (450, 900, 1800), 1.0),
-    *((partial(MoreauJean, theta=theta), NEWTON, FLIGHT, (150, 300, 600), order)
-      for theta, order in ((0.5, 2.0), (0.6, 1.0), (1.0, 1.0))),
-    *((partial(NonsmoothGeneralisedAlpha, rho=rho), NEWTON, FLIGHT, (300, 600, 1200), 2.0)
-      for rho in (0.0, 0.6)),
-    *((make, NEWTON, IMPACT, (400, 1600, 6400), 1.0) for make in (
-        MoreauJean, partial(NonsmoothGeneralisedAlpha, rho=0.0), partial(NonsmoothGeneralisedAlpha, rho=0.6),
-    )),
-    *((partial(Splitting, order=order), law, CONTACT, 3600 // order**2 * 2 ** np.arange(5), observed)
-      for law, order, observed in (
-          (HERTZ, 2, 2.0), (HERTZ, 4, 2.5), (LOSSY, 2, 2.0), (SOFT, 2, 2.0), (SOFT, 4, 2.0),
-          (DASHPOT, 2, 1.0), (DASHPOT, 4, 1.0))),
-]  # fmt: skip
+    *(
+        (partial(MoreauJean, theta=theta), NEWTON, FLIGHT, (150, 300, 600), order)
+        for theta, order in ((0.5, 2.0), (0.6, 1.0), (1.0, 1.0))
+    ),
+    *(
+        (partial(NonsmoothGeneralisedAlpha, rho=rho), NEWTON, FLIGHT, (300, 600, 1200), 2.0)
+        for rho in (0.0, 0.6)
+    ),
+    *(
+        (make, NEWTON, IMPACT, (400, 1600, 6400), 1.0)
+        for make in (
+            MoreauJean,
+            partial(NonsmoothGeneralisedAlpha, rho=0.0),
+            partial(NonsmoothGeneralisedAlpha, rho=0.6),
+        )
+    ),
+    *(
+        (partial(Splitting, order=order), law, CONTACT, 3600 // order**2 * 2 ** np.arange(5), observed)
+        for law, order, observed in (
+            (HERTZ, 2, 2.0),
+            (HERTZ, 4, 2.5),
+            (LOSSY, 2, 2.0),
+            (SOFT, 2, 2.0),
+            (SOFT, 4, 2.0),
+            (DASHPOT, 2, 1.0),
+            (DASHPOT, 4, 1.0),
+        )
+    ),
+]
 
 
 def errors(make: Callable[..., Integrator], law: ContactLaw, duration: float, counts, tries: int = 16):

@@ -22,9 +22,9 @@ from contact import (
     Stop,
     simulate,
 )
-from contact.change import change_along
 from contact.orbits import Branch, Shooting, follow, follow_path
-from contact.orbits.events import is_torus, torus
+from contact.orbits.branches.events import is_torus, torus
+from contact.sensitivity.change import change_along
 from studies.two_masses import two_masses
 
 PATH = partial(two_masses, force=1.0)
@@ -88,10 +88,13 @@ def test_touches_are_gained_and_lost_along_the_curve(curve: Branch) -> None:
     places = []
     for branch in (curve, other):  # within 1e-6 of a graze the other events are undecided
         at = np.array([event.parameter for event in branch.events if event.kind == "grazing"])
-        places.append([
-            (event.kind, event.parameter) for event in branch.events
-            if event.kind == "grazing" or np.min(np.abs(at - event.parameter)) > 1e-7
-        ])  # fmt: skip
+        places.append(
+            [
+                (event.kind, event.parameter)
+                for event in branch.events
+                if event.kind == "grazing" or np.min(np.abs(at - event.parameter)) > 1e-7
+            ]
+        )
     assert [kind for kind, _ in places[0]] == [kind for kind, _ in places[1]] and len(places[0]) > 15
     assert [p for _, p in places[0]] == pytest.approx([p for _, p in places[1]], abs=1e-8)
     counts = [orbit.impacts for orbit in curve.orbits]

@@ -73,9 +73,10 @@ def test_beam_swung_on_a_spring(stiffness: float) -> None:
     assert np.max(np.abs(found - SDNL32[stiffness])) < 0.008 * np.max(np.abs(SDNL32[stiffness]))
     # and the reading of the data is the only one that fits
     others = [
-        tip_of_swung_beam(stiffness, damping_ratio=0.0), tip_of_swung_beam(stiffness, bending_modes=3),
+        tip_of_swung_beam(stiffness, damping_ratio=0.0),
+        tip_of_swung_beam(stiffness, bending_modes=3),
         tip_of_swung_beam(1.02 * stiffness),
-    ]  # fmt: skip
+    ]
     for other in others:
         assert np.max(np.abs(other - SDNL32[stiffness])) > 0.05
 
@@ -165,14 +166,30 @@ class BarErrors:
             run = simulate(oscillator, state, duration=3.4, times=np.linspace(0.0, 3.4, 3401))
             error = -(run.displacement @ oscillator.model.phi) - exact_end(run.time, depth)
             energy = oscillator.energy(run.displacement, run.velocity)
-            rows.append([
-                np.max(np.abs(error)), np.sqrt(np.mean(error**2)), run.impacts.start[0] - 1 - 2 * depth,
-                run.impacts.end[np.isfinite(run.impacts.end)][-1] - 2,
-                0.125 - energy[-1], energy[-1] - energy[0],
-                np.sum(run.impacts.loss), np.count_nonzero(run.impacts.kind == 2), len(run.impacts),
-            ])  # fmt: skip
-        (self.largest, self.mean, self.touch, self.release, self.missing, self.change, self.loss, self.stays,
-         self.impacts) = np.array(rows).T  # fmt: skip
+            rows.append(
+                [
+                    np.max(np.abs(error)),
+                    np.sqrt(np.mean(error**2)),
+                    run.impacts.start[0] - 1 - 2 * depth,
+                    run.impacts.end[np.isfinite(run.impacts.end)][-1] - 2,
+                    0.125 - energy[-1],
+                    energy[-1] - energy[0],
+                    np.sum(run.impacts.loss),
+                    np.count_nonzero(run.impacts.kind == 2),
+                    len(run.impacts),
+                ]
+            )
+        (
+            self.largest,
+            self.mean,
+            self.touch,
+            self.release,
+            self.missing,
+            self.change,
+            self.loss,
+            self.stays,
+            self.impacts,
+        ) = np.array(rows).T
 
 
 @pytest.mark.parametrize(

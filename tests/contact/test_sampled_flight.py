@@ -11,13 +11,7 @@ from whole_motions import falling_body
 
 from beam import ModalModel
 from contact.integrators.sampled_flight import SampledFlight
-from contact.laws import (
-    DelayedRestitution,
-    HertzContact,
-    HuntCrossley,
-    LinearContact,
-    NewtonRestitution,
-)
+from contact.laws import DelayedRestitution, HertzContact, HuntCrossley, LinearContact, NewtonRestitution
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
@@ -116,9 +110,7 @@ def test_it_misses_what_its_rule_misses():
             if inside.max() > 1:
                 continue
             expected = first_seen(y, rate, per_interval)
-            run = simulate(
-                oscillator, state, duration=0.999999 * period, method=SampledFlight(points=points)
-            )
+            run = simulate(oscillator, state, duration=0.999999 * period, method=SampledFlight(points=points))
             if expected < 0:
                 assert len(run.impacts) == 0
             else:

@@ -48,7 +48,8 @@ SYSTEMS = {
     "four modes, dashpot": lambda: spring(4, DASHPOT, drive=(21.5, 2.2e-3)),
     "delayed": lambda: spring(1, DelayedRestitution(restitution=0.3, delay=4e-4), drive=(21.5, 2.2e-3)),
     "delayed by table": lambda: spring(
-        1, DelayedRestitution(restitution=lambda v: 0.3 / (1 + v), delay=lambda v: 4e-4 + 1e-4 * v),
+        1,
+        DelayedRestitution(restitution=lambda v: 0.3 / (1 + v), delay=lambda v: 4e-4 + 1e-4 * v),
         drive=(21.5, 2.2e-3),
     ),
 }

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from contact.maps.stroboscope import StroboscopicMap
 from contact.orbits import fold_of, period_of, settle
-from contact.orbits.shooting import Shooting
-from contact.stroboscope import StroboscopicMap
+from contact.orbits.families.shooting import Shooting
 from studies.letter import SETTLE_CYCLES
 from studies.scene import beam_at, model_of, read_scene, single_mode_at
 
@@ -24,9 +24,7 @@ CASES = [
 
 
 def strobed_at(name: str, frequency: float, excess: float) -> StroboscopicMap:
-    oscillator = (
-        beam_at(SCENE, frequency, MODEL) if name == "beam" else single_mode_at(SCENE, frequency)
-    )
+    oscillator = beam_at(SCENE, frequency, MODEL) if name == "beam" else single_mode_at(SCENE, frequency)
     return StroboscopicMap(oscillator=oscillator).at(excess)
 
 

@@ -11,23 +11,8 @@ from oscillators import equation_1
 from simulated_orbit import EQUATION_1, HERTZ, LAWS, beam, sizes, touches
 
 from beam import ModalModel
-from contact import (
-    HarmonicDrive,
-    HuntCrossley,
-    ImpactOscillator,
-    NotPeriodic,
-    Stop,
-    StroboscopicMap,
-)
-from contact.orbits import (
-    KickFamily,
-    Shooting,
-    fold_of,
-    folds_of,
-    follow,
-    lowest_of,
-    settle,
-)
+from contact import HarmonicDrive, HuntCrossley, ImpactOscillator, NotPeriodic, Stop, StroboscopicMap
+from contact.orbits import KickFamily, Shooting, fold_of, folds_of, follow, lowest_of, settle
 from studies.scene import beam_at, model_of, read_scene
 
 
@@ -204,8 +189,8 @@ def test_orbits_that_all_have_one_approach_velocity_are_refused() -> None:
     """There the approach velocity does not tell an orbit from its neighbours, and the curve has no slope."""
     drive = HarmonicDrive(frequency=20.0)
     model = ModalModel(  # twice the drive frequency: the rows of both equations are the same to the last bit
-        omega=[2.0 * drive.angular_frequency], decay_rate=[3.56], phi=[1.0], participation=[1.0],
-    )  # fmt: skip
+        omega=[2.0 * drive.angular_frequency], decay_rate=[3.56], phi=[1.0], participation=[1.0]
+    )
     oscillator = ImpactOscillator(model=model, stop=Stop(gap=1.0, law=LAWS["newton"]), drive=drive)
     plain = Shooting(oscillator=oscillator, period=1)
     near = plain.at_speed(0.3 * oscillator.unit_speed)

@@ -27,8 +27,6 @@ def test_equation_1_is_the_motion_of_an_independent_integration(frequency, exces
     assert_same_motion(run, other, digits=3e-10)
 
 
-
-
 # ------------------------------------------------------------------------------------------- many modes, laws
 
 

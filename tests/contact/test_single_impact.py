@@ -12,9 +12,9 @@ from simulated_orbit import EQUATION_1
 
 from beam import ModalModel, single_mode
 from contact import HarmonicDrive, ImpactOscillator, LinearContact, NewtonRestitution, Stop
-from contact.maximal_orbits import fold as map_fold
-from contact.nordmark import NordmarkMap
-from contact.orbits.single_impact import MaximalFamily
+from contact.maps.nordmark import NordmarkMap
+from contact.maps.nordmark_orbits import fold as map_fold
+from contact.orbits.families.single_impact import MaximalFamily
 
 T, MU, TAU = 0.0408, 3.56, 0.1
 
@@ -80,9 +80,11 @@ def test_many_modes_with_one_tip_value_are_equation_1() -> None:
     """A second mode that the tip does not see changes nothing, even if it is rigid and undamped."""
     plain = equation_1(21.5, 4)
     model = ModalModel(
-        omega=[*plain.oscillator.model.omega, 0.0], decay_rate=[MU, 0.0], phi=[2.0, 0.0],
+        omega=[*plain.oscillator.model.omega, 0.0],
+        decay_rate=[MU, 0.0],
+        phi=[2.0, 0.0],
         participation=[0.5, 1.0],
-    )  # fmt: skip
+    )
     stop = replace(plain.oscillator.stop, gap=0.01)
     family = replace(plain, oscillator=replace(plain.oscillator, model=model, stop=stop))
     assert family.fold().excess == pytest.approx(plain.fold().excess, rel=1e-12)

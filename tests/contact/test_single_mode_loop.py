@@ -22,12 +22,12 @@ from one_mode import (
     rest_of,
 )
 
-from contact.event_loop import DONE
+from contact.engine.event_loop import DONE
 from contact.flight.crossing import FREE, first_crossing
 from contact.flight.modal_flow import tip_rounding, tip_state
+from contact.maps.stroboscope import StroboscopicMap
+from contact.one_mode.period_table import period_table
 from contact.oscillator import ImpactOscillator
-from contact.single_mode.period_table import period_table
-from contact.stroboscope import StroboscopicMap
 from contact.trajectory import State
 
 
@@ -120,9 +120,7 @@ def test_planted_overshoots_are_found_and_none_is_invented(damping, size):
                 gap = peak * (1.0 - side * 10.0**-power)
                 if gap <= begins:
                     continue
-                here = ImpactOscillator(
-                    model=single.model, drive=drive, stop=replace(single.stop, gap=gap)
-                )
+                here = ImpactOscillator(model=single.model, drive=drive, stop=replace(single.stop, gap=gap))
                 period = Period(here)
                 fresh = (np.array([u]), np.array([v]), at_a_strobe())
                 status, impacts, left = period.fast(*fresh)

@@ -6,24 +6,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from one_mode import (
-    FREQUENCIES,
-    GAP,
-    OMEGA,
-    general_orbit,
-    oscillator,
-)
+from one_mode import FREQUENCIES, GAP, OMEGA, general_orbit, oscillator
 
 from beam import ModalModel, SuspiciousValue, single_mode
 from contact import stroboscope
 from contact.drive import HarmonicDrive
+from contact.engine.event_loop import FAILED_CHATTER
 from contact.errors import ContactError
-from contact.event_loop import FAILED_CHATTER
 from contact.laws import DelayedRestitution, HertzContact
+from contact.maps.stroboscope import StroboscopicMap, strobed_orbits
+from contact.one_mode.period_table import mode_at, period_table
 from contact.oscillator import ImpactOscillator
-from contact.single_mode.period_table import mode_at, period_table
 from contact.stop import Stop
-from contact.stroboscope import StroboscopicMap, strobed_orbits
 from contact.trajectory import State
 
 # --- the crossing in one evaluation ------------------------------------------------------------------------
@@ -106,8 +100,9 @@ def test_an_orbit_is_the_same_in_any_company():
     starts = [State.rest(1) if i % 2 else strobed.steady() for i, strobed in enumerate(maps)]
     impacts = 0
     for workers in (1, 3):
-        for strobed, start, orbit in zip(maps, starts, strobed_orbits(maps, starts, 700, workers=workers),
-                                         strict=True):  # fmt: skip
+        for strobed, start, orbit in zip(
+            maps, starts, strobed_orbits(maps, starts, 700, workers=workers), strict=True
+        ):
             wanted = strobed.orbit(start, 700)
             assert np.array_equal(wanted.points, orbit.points)
             assert np.array_equal(wanted.impacts, orbit.impacts)

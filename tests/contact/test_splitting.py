@@ -159,9 +159,11 @@ def random_beam(seed: int, n: int, ratio: float) -> ImpactOscillator:
     random = np.random.default_rng(seed)
     omega = np.sort(random.uniform(100.0, 5000.0, n))
     model = ModalModel(
-        omega=omega, decay_rate=2 * ratio * omega, phi=random.uniform(1.0, 10.0, n),
+        omega=omega,
+        decay_rate=2 * ratio * omega,
+        phi=random.uniform(1.0, 10.0, n),
         participation=0.1 * np.ones(n),
-    )  # fmt: skip
+    )
     return ImpactOscillator(model=model, stop=Stop(gap=0.01, law=SOFT))
 
 

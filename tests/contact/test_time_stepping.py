@@ -67,10 +67,14 @@ def by_all_unknowns(rho: float) -> tuple[np.ndarray, np.ndarray, int]:
     free = np.block([*rows, [np.zeros((1, 4 * n)), np.ones((1, 1))]])
     struck = np.block([*rows, [np.concatenate([np.zeros(n), TIP, np.zeros(2 * n + 1)])[None, :]]])
     for i in range(STEPS):
-        known = np.concatenate([
-            q + h * v + h**2 * (0.5 - beta) * a, v + h * (1 - gamma) * a, f * smooth - m * a,
-            PUSH * math.sin(W * (i + 1) * h),
-        ])  # fmt: skip
+        known = np.concatenate(
+            [
+                q + h * v + h**2 * (0.5 - beta) * a,
+                v + h * (1 - gamma) * a,
+                f * smooth - m * a,
+                PUSH * math.sin(W * (i + 1) * h),
+            ]
+        )
         before = TIP @ v
         answer = np.linalg.solve(free, np.append(known, 0.0))
         if TIP @ q - GAP + 0.5 * h * before >= 0 and TIP @ answer[n : 2 * n] + RESTITUTION * before > 0:
@@ -108,11 +112,12 @@ def test_the_step_of_the_nonsmooth_method_is_that_of_the_matrix_equations(rho: f
 @pytest.mark.parametrize(
     ("method", "kept"),
     [
-        (MoreauJean(step=2e-5), True), (MoreauJean(step=2e-5, theta=1.0), False),
+        (MoreauJean(step=2e-5), True),
+        (MoreauJean(step=2e-5, theta=1.0), False),
         (NonsmoothGeneralisedAlpha(step=2e-5, rho=1.0), True),
         (NonsmoothGeneralisedAlpha(step=2e-5, rho=0.5), False),
     ],
-)  # fmt: skip
+)
 def test_elastic_impacts_keep_the_energy_to_rounding_if_the_flight_does(method, kept: bool) -> None:
     beam = spring(3, newton(1.0), damping=0.0)
     motion = simulate(beam, THROWN, duration=4.0, method=method)
@@ -185,9 +190,7 @@ def test_samples_know_on_which_side_of_the_jump_they_lie() -> None:
     step = 0.3
     times = np.linspace(0.0, 2.0, 401)
     for theta, corner in ((0.5, 0.9 + 0.5 * step), (1.0, 0.9), (0.8, 0.9 + 0.2 * step)):
-        motion = simulate(
-            mass, start, duration=2.0, times=times, method=MoreauJean(step=step, theta=theta)
-        )  # fmt: skip
+        motion = simulate(mass, start, duration=2.0, times=times, method=MoreauJean(step=step, theta=theta))
         expected = np.where(times < corner, times, corner - 0.5 * (times - corner))
         np.testing.assert_allclose(motion.displacement[:, 0], expected, atol=1e-12)
         clear = np.abs(times - corner) > 1e-6
@@ -209,9 +212,7 @@ def test_a_stay_on_the_stop_does_not_drift() -> None:
     beam = spring(3, newton(0.0), damping=0.05, load=np.array([2000.0, 0.0, 0.0]))
     times = np.array([0.6, 0.7, 0.8])
     step = 2e-5
-    motion = simulate(
-        beam, duration=0.8, times=times, method=NonsmoothGeneralisedAlpha(step=step, rho=0.5)
-    )
+    motion = simulate(beam, duration=0.8, times=times, method=NonsmoothGeneralisedAlpha(step=step, rho=0.5))
     depth = motion.displacement @ TIP - GAP
     fastest = motion.impacts.approach.max()
     assert 0 <= depth[-1] < step * fastest
@@ -226,9 +227,11 @@ def test_a_stay_on_the_stop_does_not_drift() -> None:
 @pytest.mark.parametrize("zeta", [0.3, 1.7])
 def test_the_limit_is_where_the_growth_factor_of_a_step_leaves_one(zeta: float) -> None:
     model = ModalModel(
-        omega=np.array([100.0]), decay_rate=np.array([2 * zeta * 100.0]), phi=np.ones(1),
+        omega=np.array([100.0]),
+        decay_rate=np.array([2 * zeta * 100.0]),
+        phi=np.ones(1),
         participation=np.ones(1),
-    )  # fmt: skip
+    )
     motion = ImpactOscillator(model=model, stop=spring(1, newton(0.5)).stop).motion()
     for step in (1e-3, 3e-3, 6e-3, 1e-2, 2e-2, 4e-2):
         system = np.array([[0.0, 1.0], [-1e4, -200.0 * zeta]])

@@ -160,9 +160,11 @@ def random_oscillator(
     decay[generator.random(n_modes) < 0.1] = 0.0
     drive = HarmonicDrive(frequency=float(generator.uniform(14, 19)), amplitude=2e-3) if driven else None
     model = ModalModel(
-        omega=omega, decay_rate=decay, phi=generator.normal(size=n_modes) * 5 + 2,
+        omega=omega,
+        decay_rate=decay,
+        phi=generator.normal(size=n_modes) * 5 + 2,
         participation=generator.normal(size=n_modes) * 0.1,
-    )  # fmt: skip
+    )
     stop = Stop(gap=0.01, law=NewtonRestitution(local_restitution=0.5))
     return ImpactOscillator(model=model, stop=stop, drive=drive)
 

@@ -96,8 +96,12 @@ def integrate(oscillator: ImpactOscillator, state: State, times: np.ndarray, *, 
     y = np.concatenate([state.displacement, state.velocity, [0.0]])
     regime = HELD if held else FREE
     while t < end:
-        surface = {FREE: [(height, 1)], CONTACT: [(sign_of_force, -1)], HELD: [(sign_of_force, -1)],
-                   INSIDE: [(height, -1), (sign_of_force, 1)]}[regime]  # fmt: skip
+        surface = {
+            FREE: [(height, 1)],
+            CONTACT: [(sign_of_force, -1)],
+            HELD: [(sign_of_force, -1)],
+            INSIDE: [(height, -1), (sign_of_force, 1)],
+        }[regime]
         events = []
         for function, direction in surface:
 
@@ -110,8 +114,15 @@ def integrate(oscillator: ImpactOscillator, state: State, times: np.ndarray, *, 
         dt = min(1e-6 / omega.max() if omega.max() > 0 else 1e-6, 0.5 * (end - t))
         settings = dict(args=(regime,), method="DOP853", rtol=3e-14, atol=1e-18)
         first = solve_ivp(right, (t, t + dt), y, **settings)
-        rest = solve_ivp(right, (t + dt, end), first.y[:, -1], events=events, dense_output=True,
-                         max_step=1.0 / max(omega.max(), w, 1.0), **settings)  # fmt: skip
+        rest = solve_ivp(
+            right,
+            (t + dt, end),
+            first.y[:, -1],
+            events=events,
+            dense_output=True,
+            max_step=1.0 / max(omega.max(), w, 1.0),
+            **settings,
+        )
         inside = (times >= t) & (times <= rest.t[-1])
         for i in np.flatnonzero(inside):
             at = rest.sol(max(times[i], t + dt)) if times[i] > t else y

@@ -41,9 +41,15 @@ def nordmark() -> contact.NordmarkMap:
 @cache
 def bent() -> contact.NonlinearMode:
     return contact.NonlinearMode(
-        free_period=40.8e-3, decay_rate=3.56, stiffness=-100.0, inertia=90.0, gap=0.0107, restitution=0.1,
-        frequency=22.2, excess=0.01,
-    )  # fmt: skip
+        free_period=40.8e-3,
+        decay_rate=3.56,
+        stiffness=-100.0,
+        inertia=90.0,
+        gap=0.0107,
+        restitution=0.1,
+        frequency=22.2,
+        excess=0.01,
+    )
 
 
 @cache
@@ -88,8 +94,16 @@ UNDRIVEN = dataclasses.replace(eq_1(), drive=None)
 IDLE = dataclasses.replace(eq_1(), model=dataclasses.replace(eq_1().model, participation=[0.0]))
 RESTING = dataclasses.replace(UNDRIVEN, stop=contact.Stop(gap=0.0, law=eq_1().stop.law))
 CHANGE = periodic.Change(gap=1.0)
-FINAL = (beam.ModalChange, beam.ModalModel, contact.HarmonicDrive, contact.ImpactOscillator, contact.State,
-         contact.Stop, periodic.Change, *contact.ContactLaw.__subclasses__())  # fmt: skip
+FINAL = (
+    beam.ModalChange,
+    beam.ModalModel,
+    contact.HarmonicDrive,
+    contact.ImpactOscillator,
+    contact.State,
+    contact.Stop,
+    periodic.Change,
+    *contact.ContactLaw.__subclasses__(),
+)
 PAIR = dict(radius=0.0025, youngs_modulus=370e9, poissons_ratio=0.22, other_modulus=210e9, other_ratio=0.29)
 BAND = dict(free_period=40.8e-3, decay_rate=3.56, restitution=0.1)
 FROM_F = dict(drive_frequency=22.2, **BAND)
@@ -215,7 +229,7 @@ CONTACT = (
        kind=dict(periods=3), value=dict(periods=told((3, 1), "period is 1 drive periods"), restitution=1.5)),
     of(contact.fold, lambda: dict(nordmark=nordmark(), period=4),
        kind=dict(nordmark=None), value=dict(period=each(0, 10**9))),
-    of(contact.maximal_orbits, lambda: dict(nordmark=nordmark(), period=4, rho=0.01),
+    of(contact.maps.nordmark_orbits, lambda: dict(nordmark=nordmark(), period=4, rho=0.01),
        kind=dict(nordmark=0.5), value=dict(period=2.5, rho=NAN)),
     of(contact.stable_range, lambda: dict(nordmark=nordmark(), period=4),
        kind=dict(nordmark="map", period=None), value=dict(period=-4)),

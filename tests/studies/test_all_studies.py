@@ -29,8 +29,9 @@ def test_every_study_tells_its_claim_its_command_and_its_options(capsys):
         study = getattr(importlib.import_module(programs.module_of(name)), name)
         assert study.main(["--help"]) == 0
         told = capsys.readouterr().out
-        assert "Run: " in told and all(f"--{each.replace('_', '-')}" in told or each.upper() in told
-                                       for each in study.defaults(False))  # fmt: skip
+        assert "Run: " in told and all(
+            f"--{each.replace('_', '-')}" in told or each.upper() in told for each in study.defaults(False)
+        )
 
 
 @pytest.fixture

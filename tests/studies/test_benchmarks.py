@@ -40,10 +40,18 @@ def test_ratios_are_those_of_the_rows() -> None:
         for f, cost in zip((20.9, 21.5, 22.2), costs, strict=True)
     ]
     beam = Row(case=BEAM, tool=OURS, modes=8, excess=0.013, frequency_hz=21.5, us_per_period=12.3)
-    for changed in ({}, {"modes": 32, "us_per_period": 24.6}, {"tool": HEYOKA, "us_per_period": 2345.0},
-                    {"case": "beam, no touch", "modes": 64}):  # fmt: skip
+    for changed in (
+        {},
+        {"modes": 32, "us_per_period": 24.6},
+        {"tool": HEYOKA, "us_per_period": 2345.0},
+        {"case": "beam, no touch", "modes": 64},
+    ):
         rows.append(Row(**{**vars(beam), **changed}))
-    assert ratios_of(rows) == pytest.approx({
-        "single_mode_least": 30.0, "single_mode_median": 80.0, "single_mode_largest": 100.0,
-        "hertz_growth_with_modes": 0.5,
-    })  # fmt: skip
+    assert ratios_of(rows) == pytest.approx(
+        {
+            "single_mode_least": 30.0,
+            "single_mode_median": 80.0,
+            "single_mode_largest": 100.0,
+            "hertz_growth_with_modes": 0.5,
+        }
+    )

@@ -91,8 +91,12 @@ def test_other_kinds_of_damping_are_scaled_as_a_whole(changes):
         (lambda scene: calibrate_damping(scene, 0.01), ["spring.tape_loss_factor", "0.01 1/s"]),
         (lambda scene: calibrate_damping(scene, -1.0), ["decay rate of mode 1", "not -1.0"]),
         (lambda scene: calibrate_damping(scene.replace({"spring.tape_thickness_m": 0.0}), 3.0), ["tape"]),
-        (lambda scene: calibrate_damping(
-            scene.replace({"damping.kind": "constant_ratio", "damping.ratio": 0.0}), 3.0), ["damping.ratio"]),
+        (
+            lambda scene: calibrate_damping(
+                scene.replace({"damping.kind": "constant_ratio", "damping.ratio": 0.0}), 3.0
+            ),
+            ["damping.ratio"],
+        ),
     ],
 )
 def test_what_cannot_be_fitted_is_refused_in_one_sentence(fit, words):
@@ -105,8 +109,15 @@ def test_what_cannot_be_fitted_is_refused_in_one_sentence(fit, words):
 
 def test_a_jump_is_no_solution():
     with pytest.raises(SceneError, match="jumps across"):
-        solve_for("stop.gap_m", LETTER, lambda scene: 1.0 if scene.stop.gap_m < 0.01 else 3.0, 2.0,
-                  name="step", unit="m", between=(1e-3, 0.1))
+        solve_for(
+            "stop.gap_m",
+            LETTER,
+            lambda scene: 1.0 if scene.stop.gap_m < 0.01 else 3.0,
+            2.0,
+            name="step",
+            unit="m",
+            between=(1e-3, 0.1),
+        )
 
 
 def test_frequencies_repeat_to_rounding_where_the_solver_leaves_more():
@@ -133,8 +144,12 @@ def test_every_kind_of_spring_makes_a_model_with_a_readout():
     for kind in ("flat_u", "folded_u", "cantilever", "straight_strip"):
         model = model_of(LETTER.replace({**COARSE, "spring.kind": kind}))
         assert model.n_modes == 4 and model.readouts[READOUT].shape == (4,)
-    data = {"frequencies_hz": [150.0, 24.5], "decay_rates_per_s": [20.0, 3.5], "tip_values": [5.0, 8.0],
-            "participation": [-0.05, 0.14]}
+    data = {
+        "frequencies_hz": [150.0, 24.5],
+        "decay_rates_per_s": [20.0, 3.5],
+        "tip_values": [5.0, 8.0],
+        "participation": [-0.05, 0.14],
+    }
     lists = {f"modal_data.{name}": values for name, values in data.items()}
     measured = LETTER.replace({"spring.kind": "modal_data", **lists})
     model = model_of(measured)
@@ -150,8 +165,15 @@ def test_the_readout_sees_the_ball_where_the_ball_is_and_rotation_where_it_is_as
     for scene, place in ((LETTER, 1.0), (FOLDED, 0.5)):
         at_ball = model_of(scene.replace({**COARSE, "readout.arc_fraction": place}))
         np.testing.assert_allclose(at_ball.readouts[READOUT], at_ball.phi, rtol=1e-9)
-    tilted = LETTER.replace({**COARSE, "spring.kind": "cantilever", "readout.arc_fraction": 1.0,
-                             "readout.quantity": "rotation", "tip.mass_kg": 0.0})
+    tilted = LETTER.replace(
+        {
+            **COARSE,
+            "spring.kind": "cantilever",
+            "readout.arc_fraction": 1.0,
+            "readout.quantity": "rotation",
+            "tip.mass_kg": 0.0,
+        }
+    )
     model = model_of(tilted)
     assert model.readouts[READOUT][0] / model.phi[0] == pytest.approx(1.37650543 / 0.13, rel=1e-6)
 

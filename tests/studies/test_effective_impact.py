@@ -74,8 +74,10 @@ def test_energy_goes_where_it_is_said_to_go(spring):
     # kick 1 takes all of mode 1: the higher modes have it, 1 - restitution^2 within the work of the spring
     assert elastic.energy_share == pytest.approx(1.0 - elastic.restitution**2, abs=0.02)
     assert lossy.energy_share < elastic.energy_share
-    lost = [first_collision(spring.case("speed", "a", law).oscillator).energy_lost
-            for law in (hertz_of(LETTER), spring.lossy(0.3))]  # fmt: skip
+    lost = [
+        first_collision(spring.case("speed", "a", law).oscillator).energy_lost
+        for law in (hertz_of(LETTER), spring.lossy(0.3))
+    ]
     assert lost[0] == pytest.approx(0.0, abs=1e-12) and lost[1] > 0.0
 
 
@@ -108,15 +110,27 @@ def test_a_settled_orbit_has_its_collision_in_every_period():
 
 
 def test_the_smallest_restitution_lies_between_the_cases():
-    row = Row(curve="search", series="1", value=0.0, excess=0.01, modes=20, mass_ratio=0.3, orbit_period=None,
-              ball_limit=0.8, impacts=1, arc_s=1e-3)  # fmt: skip
+    row = Row(
+        curve="search",
+        series="1",
+        value=0.0,
+        excess=0.01,
+        modes=20,
+        mass_ratio=0.3,
+        orbit_period=None,
+        ball_limit=0.8,
+        impacts=1,
+        arc_s=1e-3,
+    )
     ratios = (0.1, 0.15, 0.2, 0.3, 0.4, 0.6, 1.0)
     kick = [1.0 + 0.5 * math.log(ratio / 0.25) for ratio in ratios]
     tau = [math.hypot(1.0 - k, 0.08) for k in kick]
-    found = floor_of([
-        replace(row, value=x, mass_ratio=x, kick=k, restitution=e)
-        for x, k, e in zip(ratios, kick, tau, strict=True)
-    ])  # fmt: skip
+    found = floor_of(
+        [
+            replace(row, value=x, mass_ratio=x, kick=k, restitution=e)
+            for x, k, e in zip(ratios, kick, tau, strict=True)
+        ]
+    )
     assert found.restitution == pytest.approx(0.08, abs=1e-4)
     assert found.mass_ratio == pytest.approx(0.25, rel=0.01)
     assert floor_of([]) is None

@@ -25,20 +25,47 @@ ON_THE_FRAME = studies()
 
 #: Studies whose small form a test looks at, with these checks of what it leaves.
 LOOKED_AT = {
-    name for path in Path(__file__).parent.glob("test_*.py")
+    name
+    for path in Path(__file__).parent.glob("test_*.py")
     for name in re.findall(r'= run_study\("(\w+)", "--quick"', path.read_text())
-}  # fmt: skip
+}
 
 #: Options that keep a small form small.
-SMALLER = {"stability": ["--families", "false_restitution,accumulation"],
-           "finite_amplitude": ["--set", "drive.frequencies_hz=[22.2]", "--set", "scan.settle_cycles=400",
-                                "--set", "spring.bend_radius_m=0.0075"],
-           "spring_shape": ["--set", "modes.count=4", "--set", "spring.elements_per_leg=12",
-                            "--set", "spring.elements_on_arc=8"],
-           "claims": ["--positions", "3", "--across", "12", "--restitutions", "3", "--inside", "6",
-                      "--alphas", "3", "--set", "modes.count=4"],
-           "next_measurement": ["--thin", "12"],
-           "calibrate": ["--set", "modes.count=4", "--set", "spring.elements_per_leg=12"]}  # fmt: skip
+SMALLER = {
+    "stability": ["--families", "false_restitution,accumulation"],
+    "finite_amplitude": [
+        "--set",
+        "drive.frequencies_hz=[22.2]",
+        "--set",
+        "scan.settle_cycles=400",
+        "--set",
+        "spring.bend_radius_m=0.0075",
+    ],
+    "spring_shape": [
+        "--set",
+        "modes.count=4",
+        "--set",
+        "spring.elements_per_leg=12",
+        "--set",
+        "spring.elements_on_arc=8",
+    ],
+    "claims": [
+        "--positions",
+        "3",
+        "--across",
+        "12",
+        "--restitutions",
+        "3",
+        "--inside",
+        "6",
+        "--alphas",
+        "3",
+        "--set",
+        "modes.count=4",
+    ],
+    "next_measurement": ["--thin", "12"],
+    "calibrate": ["--set", "modes.count=4", "--set", "spring.elements_per_leg=12"],
+}
 
 
 #: Names in a study's modules that give a small form less to do, and what stands in for them; the letter's
@@ -46,21 +73,40 @@ SMALLER = {"stability": ["--families", "false_restitution,accumulation"],
 FEWER = {
     "work_precision": {
         "__main__.problems_of": lambda scene, modes: problems_of(scene, 2)[:2],
-        "measures.LONG_ENOUGH": 1e-3, "measures.PATIENCE": 0.02,
+        "measures.LONG_ENOUGH": 1e-3,
+        "measures.PATIENCE": 0.02,
     },
     "next_measurement": {"pairs.GRID": 31},
     "spring_shape": {"__main__.COARSE": (1, 1)},
-}  # fmt: skip
+}
 
 #: Studies of driven motions, and those that change the dimensions of a spring.
 DRIVEN = (
-    "adequacy", "attractors", "breakdown", "chart", "claims", "effective_impact", "finite_amplitude",
-    "hysteresis", "motion", "noise", "sensitivity", "soft_wall", "time_trace", "transitions",
+    "adequacy",
+    "attractors",
+    "breakdown",
+    "chart",
+    "claims",
+    "effective_impact",
+    "finite_amplitude",
+    "hysteresis",
+    "motion",
+    "noise",
+    "sensitivity",
+    "soft_wall",
+    "time_trace",
+    "transitions",
     "work_precision",
-)  # fmt: skip
+)
 ON_A_SPRING = (
-    "breakdown", "calibrate", "effective_impact", "finite_amplitude", "motion", "sensitivity", "spring_shape",
-)  # fmt: skip
+    "breakdown",
+    "calibrate",
+    "effective_impact",
+    "finite_amplitude",
+    "motion",
+    "sensitivity",
+    "spring_shape",
+)
 
 #: A fit takes hundreds of meshes.
 SLOW = ("calibrate",)
@@ -68,9 +114,12 @@ SLOW = ("calibrate",)
 
 @pytest.mark.parametrize(
     "name",
-    [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ())
-     for name in ON_THE_FRAME if name not in LOOKED_AT],
-)  # fmt: skip
+    [
+        pytest.param(name, marks=pytest.mark.slow if name in SLOW else ())
+        for name in ON_THE_FRAME
+        if name not in LOOKED_AT
+    ],
+)
 def test_the_small_form_runs_and_leaves_a_table_a_figure_and_a_summary(run_study, monkeypatch, name):
     for what, fewer in FEWER.get(name, {}).items():
         monkeypatch.setattr(f"studies.{name}.{what}", fewer)

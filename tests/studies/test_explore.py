@@ -108,6 +108,11 @@ def test_without_a_window_or_a_drive_it_says_so_in_a_sentence(capsys, argv, told
 
 def test_without_a_display_it_says_so_in_a_sentence():
     around = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
-    ran = subprocess.run([sys.executable, "-m", "studies.explore"], cwd=ROOT, capture_output=True,
-                         text=True, env=around | {"MPLBACKEND": "tkagg"})  # fmt: skip
+    ran = subprocess.run(
+        [sys.executable, "-m", "studies.explore"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        env=around | {"MPLBACKEND": "tkagg"},
+    )
     assert ran.returncode == 2 and "display" in ran.stderr and len(ran.stderr.splitlines()) == 1

@@ -11,7 +11,8 @@ import pytest
 
 from contact import DelayedRestitution, simulate
 from contact.orbits import MaximalFamily
-from studies.identify.fit import fit, profile
+from studies.identify.fit import fit
+from studies.identify.profiles import profile
 from studies.identify.records import read_record, synthetic
 from studies.identify.starts import prediction_of, repetition
 from studies.parameters import fitted_scene, parameters_of, with_values

@@ -51,8 +51,11 @@ def test_the_reference_is_good_to_the_third_of_a_percent(letter_scene, monkeypat
 
 def test_what_the_scene_says_itself_is_not_changed(letter_scene):
     needs = {"fold": 0.05}
-    for scene in (letter_scene.replace({"modes.count": 7}), letter_scene.replace({"drive.kind": "none"}),
-                  read_scene("measured_modes")):  # fmt: skip
+    for scene in (
+        letter_scene.replace({"modes.count": 7}),
+        letter_scene.replace({"drive.kind": "none"}),
+        read_scene("measured_modes"),
+    ):
         assert least_modes(scene, needs) == (scene, "")
 
 

@@ -157,9 +157,11 @@ def test_the_lag_of_a_fold_that_brownian_motion_carries_away():
 
 @pytest.mark.parametrize("correlation", [100.0, 3600.0])
 def test_a_drift_that_crosses_an_end_is_that_of_simulated_drifts(correlation):
-    protocol, frequency, found = Protocol(
-        step=SIGMA, waiting=10_000, stability=SIGMA, correlation_s=correlation
-    ), 20.0, []  # fmt: skip
+    protocol, frequency, found = (
+        Protocol(step=SIGMA, waiting=10_000, stability=SIGMA, correlation_s=correlation),
+        20.0,
+        [],
+    )
     memory = memory_of(correlation, frequency)
     for i in range(400):
         dice = np.random.default_rng([9, i])

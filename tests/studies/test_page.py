@@ -75,9 +75,15 @@ def test_the_page_holds_what_is_stored_and_loads_nothing(tmp_path, letter_scene)
     assert sources and all(source.startswith("data:") for source in sources)
     assert "default-src 'none'" in text
     for words in (
-        "A caption &amp; more", "What is drawn.", "&lt;b&gt;bold", "0.12346", "A product of causes.",
-        "&lt;script&gt;no", "python -m studies.transitions --quick", "f T = 20/21",
-    ):  # fmt: skip
+        "A caption &amp; more",
+        "What is drawn.",
+        "&lt;b&gt;bold",
+        "0.12346",
+        "A product of causes.",
+        "&lt;script&gt;no",
+        "python -m studies.transitions --quick",
+        "f T = 20/21",
+    ):
         assert words in text, words
     assert "<b>bold" not in text and "<script>no" not in text
     assert text.count("<tr><td>x</td>") == 0  # a table of a hundred rows is left to its file

@@ -26,8 +26,9 @@ def rows(single):
         patch.setattr(pairs, "GRID", 61)
         return {
             ("settles" if excess else "map", excess, row.pairs): row
-            for excess in (0.0, 1e-3, 4e-3) for row in intervals_of(single, excess)
-        }  # fmt: skip
+            for excess in (0.0, 1e-3, 4e-3)
+            for row in intervals_of(single, excess)
+        }
 
 
 @pytest.mark.parametrize(("f", "m"), PERIODS.items())

@@ -118,13 +118,22 @@ def test_meets_its_tolerance_with_the_same_touches(label: str, name: str) -> Non
     run = case.follow(solver(label, tolerance))
     assert distance(run, exact, case.oscillator) < within
     np.testing.assert_array_equal(run.strobe_impacts, exact.strobe_impacts)
-    np.testing.assert_allclose(run.strobe_displacement, exact.strobe_displacement, rtol=0,
-                               atol=within * np.abs(exact.displacement).max())  # fmt: skip
+    np.testing.assert_allclose(
+        run.strobe_displacement,
+        exact.strobe_displacement,
+        rtol=0,
+        atol=within * np.abs(exact.displacement).max(),
+    )
     fastest = 2 * math.pi / case.oscillator.model.omega.max()
     speed = np.abs(exact.impacts.approach).max()
     lost = 0.5 * speed**2 / float(case.oscillator.model.phi @ case.oscillator.model.phi)
-    for part, room in (("start", 30 * fastest), ("end", 30 * fastest), ("approach", 100 * speed),
-                       ("rebound", 100 * speed), ("loss", 300 * lost)):  # fmt: skip
+    for part, room in (
+        ("start", 30 * fastest),
+        ("end", 30 * fastest),
+        ("approach", 100 * speed),
+        ("rebound", 100 * speed),
+        ("loss", 300 * lost),
+    ):
         found, truth = getattr(run.impacts, part), getattr(exact.impacts, part)
         np.testing.assert_allclose(found, truth, rtol=0, atol=room * within)
     assert run.end.time == exact.end.time and run.evaluations > 50
@@ -190,8 +199,17 @@ def test_jacobian_is_the_derivative_of_the_rates(law: ContactLaw) -> None:
     """Against central differences, tip behind the stop."""
     oscillator, none = spring(3, law), np.empty(0)
     start = State(displacement=np.zeros(3), velocity=np.zeros(3), time=0.003)
-    run = Run(start=start, length=oscillator.period, first=0, last=1, clock=0.003, clock_end=0.003,
-              times=none, sample_period=none, sample_clock=none)  # fmt: skip
+    run = Run(
+        start=start,
+        length=oscillator.period,
+        first=0,
+        last=1,
+        clock=0.003,
+        clock_end=0.003,
+        times=none,
+        sample_period=none,
+        sample_clock=none,
+    )
     e, y = Equations(oscillator, run, 1e-9), np.array([6e-4, 1e-5, -2e-5, 0.05, -0.1, 0.2])
     assert e.tip(y)[0] > 0.0
     for contact in (False, True):

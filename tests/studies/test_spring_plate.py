@@ -85,8 +85,15 @@ def test_a_heavy_ball_on_a_clamped_disc_against_the_closed_form(seated):
 def test_a_narrow_u_without_poissons_effect_against_strip_theory():
     """Poisson's ratio is 0; the modes include one in which the legs twist."""
     material = replace(BRASS, poissons_ratio=0.0)
-    shape = Shape(reading="side_by_side", material=material, length=0.13, width=3e-3, bend_radius=9e-3,
-                  thickness=2e-4, tip=Tip(mass=1e-4))  # fmt: skip
+    shape = Shape(
+        reading="side_by_side",
+        material=material,
+        length=0.13,
+        width=3e-3,
+        bend_radius=9e-3,
+        thickness=2e-4,
+        tip=Tip(mass=1e-4),
+    )
     strip = spatial_modes(shape.spring(), 16)
     seen = np.flatnonzero(np.abs(strip.phi) > 1e-3 * np.abs(strip.phi).max())[:5]
     sheet = StripSection(material=material, width=3e-3, thickness=2e-4)

@@ -7,16 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from beam import (
-    StripSection,
-    Tip,
-    UniformBeam,
-    assemble,
-    exact_modes,
-    flat_u,
-    folded_u,
-    natural_modes,
-)
+from beam import StripSection, Tip, UniformBeam, assemble, exact_modes, flat_u, folded_u, natural_modes
 from beam.space import spatial_modes
 from studies.scene import SceneError, read_scene, single_mode_of
 from studies.spring_shape.__main__ import shapes_of

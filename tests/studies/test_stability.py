@@ -19,9 +19,11 @@ from studies.stability.implicit_energy import STIFF_GROWTH, evenly, single_conta
 from studies.stability.lasting_contact import ROUNDED, growth, pressed
 
 MODEL = ModalModel(
-    omega=[154.0, 960.0, 2450.0], decay_rate=[3.56, 20.0, 55.0], phi=[8.0, 4.7, 3.6],
+    omega=[154.0, 960.0, 2450.0],
+    decay_rate=[3.56, 20.0, 55.0],
+    phi=[8.0, 4.7, 3.6],
     participation=[0.1, 0.05, 0.03],
-)  # fmt: skip
+)
 STILL = replace(MODEL, decay_rate=np.zeros(3))
 
 
@@ -80,10 +82,12 @@ def test_lagged_damping_has_a_sharp_limit_in_contact_and_the_package_refuses_at_
 def test_in_the_plane_of_step_and_stiffness_the_motion_agrees_with_theory():
     angles, parts = np.linspace(0.1, 2.3, 7), np.geomspace(1e-1, 1e6, 6)
     stiffness = parts * float(MODEL.omega[0] ** 2 / MODEL.phi[0] ** 2)
-    rate = np.array([
-        [growth(*pressed(MODEL, k), CentralDifference(step=x / MODEL.omega[-1])) for k in stiffness]
-        for x in angles
-    ])  # fmt: skip
+    rate = np.array(
+        [
+            [growth(*pressed(MODEL, k), CentralDifference(step=x / MODEL.omega[-1])) for k in stiffness]
+            for x in angles
+        ]
+    )
     motion = pressed(MODEL, 1.0)[0].motion()
     for x, row in zip(angles, rate, strict=True):
         limit = CentralDifference(step=x / MODEL.omega[-1]).critical_stiffness(motion)

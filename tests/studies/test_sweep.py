@@ -57,8 +57,9 @@ def test_columns_are_the_same_on_every_executor(tmp_path, executor):
 
 def test_columns_are_the_same_on_a_cluster(tmp_path):
     distributed = pytest.importorskip("distributed")
-    with distributed.LocalCluster(n_workers=1, threads_per_worker=2, processes=False, protocol="tcp",
-                                  dashboard_address=None) as cluster:  # fmt: skip
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=2, processes=False, protocol="tcp", dashboard_address=None
+    ) as cluster:
         address = cluster.scheduler_address.removeprefix("tcp://")
         columns = sweep(run_in(tmp_path, f"dask://{address}"), "toy", SETTINGS, ARGUMENTS, Powers())
     assert powers_in(columns) == EXPECTED

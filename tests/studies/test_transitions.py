@@ -17,7 +17,7 @@ from contact.orbits import (
     orbit_diagram,
     orbit_end,
     settle,
-)  # fmt: skip
+)
 from studies.letter import PERIODS
 from studies.scene import beam_at, model_of, read_scene
 from studies.transitions.descriptions import describe, row_at
@@ -71,9 +71,7 @@ def test_the_beams_p8_ends_where_another_touch_grazes(letter_scene, letter_model
             strobed.at(excess), end.state, most_cycles=6000, tolerance=1e-3 * excess, prove=False
         )
         seen[excess] = settled.period, settled.impacts
-    assert seen == {
-        2e-6: (8, 1), 1.39e-6: (8, 1), 1.37e-6: (8, 2), 1e-6: (1, 1), 3e-7: (1, 1), 1e-7: (1, 1),
-    }
+    assert seen == {2e-6: (8, 1), 1.39e-6: (8, 1), 1.37e-6: (8, 2), 1e-6: (1, 1), 3e-7: (1, 1), 1e-7: (1, 1)}
 
 
 def test_the_downward_scan_keeps_the_orbit_that_the_upward_scan_does_not_show(letter_scene, letter_model):
@@ -102,10 +100,24 @@ def test_rows_have_the_promised_keys_and_every_amplitude_says_whether_it_settled
     (row,) = ran.summary["rows"]
     models = ("map", "single_mode", "two_parameters", "beam")
     wanted = {f"{key}_{name}" for key in ("excess_down", "ends_by", "bracket", "born") for name in models}
-    assert wanted | {"frequency_hz", "letter", *models, "exact_map", "exact_single_mode",
-                     "exact_two_parameters", "extracted", "not_settled",
-                     "beam_linear", "excess_down_beam_linear", "end_speed_beam",
-                     "grazing_amplitude_m"} == row.keys()
+    assert (
+        wanted
+        | {
+            "frequency_hz",
+            "letter",
+            *models,
+            "exact_map",
+            "exact_single_mode",
+            "exact_two_parameters",
+            "extracted",
+            "not_settled",
+            "beam_linear",
+            "excess_down_beam_linear",
+            "end_speed_beam",
+            "grazing_amplitude_m",
+        }
+        == row.keys()
+    )
     scene = read_scene("letter", ["modes.count=10"])
     fold = fold_of(Shooting(oscillator=beam_at(scene, 22.2, model_of(scene)), period=5))
     assert row["end_speed_beam"] == pytest.approx(abs(fold.speed), rel=1e-4)
@@ -120,11 +132,19 @@ def test_rows_have_the_promised_keys_and_every_amplitude_says_whether_it_settled
 
 def test_own_modes_from_a_scene_go_through_everything(letter_scene, letter_model, run_study):
     """A spring given by its measured modes: the same numbers as the letter's spring give the same orbit."""
-    given = {"frequencies_hz": letter_model.frequencies_hz, "decay_rates_per_s": letter_model.decay_rate,
-             "tip_values": letter_model.phi, "participation": letter_model.participation}  # fmt: skip
+    given = {
+        "frequencies_hz": letter_model.frequencies_hz,
+        "decay_rates_per_s": letter_model.decay_rate,
+        "tip_values": letter_model.phi,
+        "participation": letter_model.participation,
+    }
     argv = [f"modal_data.{key}={values.tolist()}" for key, values in given.items()]
-    argv += ["spring.kind=modal_data", f"modes.count={letter_model.n_modes}", "drive.frequencies_hz=[22.2]",
-             f"modal_data.tip_mass_kg={letter_scene.tip.mass_kg}"]  # fmt: skip
+    argv += [
+        "spring.kind=modal_data",
+        f"modes.count={letter_model.n_modes}",
+        "drive.frequencies_hz=[22.2]",
+        f"modal_data.tip_mass_kg={letter_scene.tip.mass_kg}",
+    ]
     ran = run_study("transitions", "--quick", *(word for key in argv for word in ("--set", key)))
     (row,) = ran.summary["rows"]
     assert ran.code == 0 and row["beam"] == 5

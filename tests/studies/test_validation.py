@@ -16,12 +16,16 @@ from studies.validation.rows import Section, compared
 @pytest.mark.parametrize(
     ("numbers", "holds", "verdict"),
     [
-        ((1.0, 1.05, 0.1), None, "agrees"), ((1.0, 0.85, 0.1), None, "differs"), ((0, 0, 0), None, "agrees"),
-        ((None, 2.0, None), None, "open"), ((1.0, 2.0, None), None, "open"),
+        ((1.0, 1.05, 0.1), None, "agrees"),
+        ((1.0, 0.85, 0.1), None, "differs"),
+        ((0, 0, 0), None, "agrees"),
+        ((None, 2.0, None), None, "open"),
+        ((1.0, 2.0, None), None, "open"),
         ((1.0, None, 0.1), None, "not found"),
-        ((None, 2.0, None), True, "holds"), ((None, 2.0, None), False, "fails"),
+        ((None, 2.0, None), True, "holds"),
+        ((None, 2.0, None), False, "fails"),
     ],
-)  # fmt: skip
+)
 def test_verdicts(numbers, holds, verdict):
     row = compared("a", "b", *numbers, holds=holds)
     assert row.verdict == verdict
@@ -29,9 +33,10 @@ def test_verdicts(numbers, holds, verdict):
 
 
 BY_A_BOUNDARY_PROBLEM = {
-    "torus": (0.581900650365, 0.618606874267), "period doubling": (0.738783025373, 0.755586159356),
+    "torus": (0.581900650365, 0.618606874267),
+    "period doubling": (0.738783025373, 0.755586159356),
     "fold": (0.755627352609, 0.653440134549),
-}  # fmt: skip
+}
 """W from a solution in 40 digits by a program of its own: contact and flight as two pieces of unknown
 durations, closed, with a condition on the eigenvalues of their product."""
 
@@ -57,9 +62,14 @@ def test_every_source_has_its_table_and_its_tally(run_study, monkeypatch):
     ran = run_study("validation", "--quick")
     differ = {each["source"]: each["differs"] for each in ran.summary["sources"]}
     assert differ == {
-        "Ghosh and Simpson": 0, "COCO 15.2": 0, "SDND122": 1, "NLvib 03": 0, "bouncing bar": 0, "SDNL111": 0,
+        "Ghosh and Simpson": 0,
+        "COCO 15.2": 0,
+        "SDND122": 1,
+        "NLvib 03": 0,
+        "bouncing bar": 0,
+        "SDNL111": 0,
         "none": 1,
-    }  # fmt: skip
+    }
     assert sum(each["agrees"] for each in ran.summary["sources"]) >= 30
     assert sum(each["holds"] for each in ran.summary["sources"]) >= 15
     assert not any(each["fails"] for each in ran.summary["sources"])

@@ -55,9 +55,11 @@ def row(error: float | None, cost: float | None, **more: object) -> Row:
 def leaf(law: ContactLaw, excess: float = 0.013) -> ImpactOscillator:
     """Three modes near those of the letter's spring."""
     model = ModalModel(
-        omega=2 * np.pi * np.array([24.5, 152.0, 390.0]), decay_rate=np.array([3.56, 21.0, 55.0]),
-        phi=np.array([8.1, 4.7, 3.6]), participation=np.array([0.1, 0.03, 0.02]),
-    )  # fmt: skip
+        omega=2 * np.pi * np.array([24.5, 152.0, 390.0]),
+        decay_rate=np.array([3.56, 21.0, 55.0]),
+        phi=np.array([8.1, 4.7, 3.6]),
+        participation=np.array([0.1, 0.03, 0.02]),
+    )
     stop, drive = Stop(gap=0.0107, law=law), HarmonicDrive(frequency=21.5)
     return ImpactOscillator(model=model, stop=stop, drive=drive).with_excess(excess)
 
@@ -85,9 +87,10 @@ def second_route(
     y = mp.matrix([*modes, mp.sin(w * t0), mp.cos(w * t0)])
     near = mp.mpf(guess[0] - start.time)
     touch = mp.findroot(
-        lambda t: mp.fdot(phi, (mp.expm(free * t) * y)[:n]) - gap, (near * (1 - mp.mpf("1e-9")), near),
+        lambda t: mp.fdot(phi, (mp.expm(free * t) * y)[:n]) - gap,
+        (near * (1 - mp.mpf("1e-9")), near),
         tol=mp.mpf(10) ** (-2 * mp.dps + 8),
-    )  # fmt: skip
+    )
     y = mp.expm(free * touch) * y
     if isinstance(law, NewtonRestitution):
         jump = (1 + k) * mp.fdot(phi, y[n : 2 * n]) / mp.fdot(phi, phi)
@@ -220,8 +223,15 @@ def test_every_method_is_compared() -> None:
         sweeps = sweeps_for(problem)
         assert [sweep.family for sweep in sweeps].count(EXACT) == 1
         names |= {setting.method.name for sweep in sweeps for setting in sweep.settings}
-    assert {"splitting", "central-difference", "generalised-alpha", "moreau-jean", "sampled-flight",
-            "nonsmooth-generalised-alpha", "outside"} <= names  # fmt: skip
+    assert {
+        "splitting",
+        "central-difference",
+        "generalised-alpha",
+        "moreau-jean",
+        "sampled-flight",
+        "nonsmooth-generalised-alpha",
+        "outside",
+    } <= names
 
 
 def test_crossings_are_missed_by_a_coarse_grid_and_never_by_the_exact_method(few: Reference) -> None:

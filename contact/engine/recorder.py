@@ -1,0 +1,254 @@
+"""What a run writes down: impacts, strobes and samples, for exact and fixed-step methods alike.
+
+Times are kept as the number of a drive period and the time since its strobe, so that a million periods bring
+no loss of phase.  A method with a time step counts from one strobe throughout, and has its strobes among the
+samples (``contact.integrators.fixed_step``).
+(u, v) is the modal state as the method has it: deviations from the steady motion, or displacements and
+velocities themselves.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from contact.errors import ContactError
+from contact.flight.modal_flow import steady_motion
+from contact.flight.motion import Motion
+from contact.machine.compiled import inlined, kernel, part
+from contact.oscillator import ImpactOscillator
+from contact.trajectory import IMPACT, Impacts, Run, State, Trajectory
+
+MARKS = np.dtype([(name, "i8") for name in ("logged", "sampled", "strobed", "impacts", "touching")])
+"""Rows in use of the log, the samples and the strobes; impacts since the last strobe; whether the tip
+touches."""
+
+LOG = np.dtype(
+    [
+        ("period", "i8"),
+        ("start", "f8"),
+        ("end_period", "i8"),
+        ("end", "f8"),
+        ("approach", "f8"),
+        ("rebound", "f8"),
+        ("loss", "f8"),
+        ("kind", "i8"),
+    ]
+)
+"""A touch: period and clock of its start and of its end [s], tip velocity at both [m/s], energy lost [J] and
+``contact.trajectory.Kind``."""
+
+
+class Recorder(NamedTuple):
+    """Where a run writes.
+
+    marks : record array of `MARKS`, shape (1,)
+    log : record array of `LOG`, shape (capacity,); empty if no impacts are wanted
+    log_state : ndarray, shape (capacity, 4 n_modes)
+        (u, v) just before the touch and just after the release.
+    strobes, counts : ndarray, shapes (n_strobes, 2 n_modes) and (n_strobes,), or (0, ...)
+        (u, v) at the strobes, and the impacts since the one before.
+    sample_period, sample_clock, samples : ndarray, shapes (n,), (n,), (n, 2 n_modes)
+        Times wanted, and (u, v) there.
+    """
+
+    marks: np.ndarray
+    log: np.ndarray
+    log_state: np.ndarray
+    strobes: np.ndarray
+    counts: np.ndarray
+    sample_period: np.ndarray
+    sample_clock: np.ndarray
+    samples: np.ndarray
+
+
+@kernel
+def strobes_only(strobes, counts):
+    """A recorder of strobes and counts alone, either of which may be empty."""
+    wide = strobes.shape[1]
+    return Recorder(
+        np.zeros(1, dtype=MARKS),
+        np.empty(0, dtype=LOG),
+        np.empty((0, 2 * wide)),
+        strobes,
+        counts,
+        np.empty(0, dtype=np.int64),
+        np.empty(0),
+        np.empty((0, wide)),
+    )
+
+
+@part
+def put_state(row, at, u, v):
+    """(u, v) into a row from column `at` on."""
+    n = u.size
+    for k in range(n):
+        row[at + k] = u[k]
+        row[at + n + k] = v[k]
+
+
+@part
+def is_full(recorder):
+    """Whether a touch and the stay that may follow it do not fit into the log any more."""
+    return recorder.log.size > 0 and recorder.marks[0].logged >= recorder.log.size - 1
+
+
+@kernel
+def open_touch(recorder, period, clock, approach, kind, u, v):
+    """Start a row of the log."""
+    marks = recorder.marks[0]
+    marks.touching = 1
+    marks.impacts += 1 if kind == IMPACT else 0
+    i = marks.logged
+    marks.logged += 1
+    if recorder.log.size == 0:
+        return
+    row, n = recorder.log[i], u.size
+    row.period, row.start, row.end_period, row.end = period, clock, period, math.nan
+    row.approach, row.rebound, row.loss, row.kind = approach, math.nan, 0.0, kind
+    put_state(recorder.log_state[i], 0, u, v)
+    recorder.log_state[i, 2 * n :] = math.nan
+
+
+@part
+def add_loss(recorder, energy):
+    """Energy that the touch under way has taken [J]."""
+    if recorder.log.size > 0:
+        recorder.log[recorder.marks[0].logged - 1].loss += energy
+
+
+@kernel
+def close_touch(recorder, period, clock, rebound, u, v):
+    """Complete the last row of the log."""
+    recorder.marks[0].touching = 0
+    if recorder.log.size == 0:
+        return
+    i = recorder.marks[0].logged - 1
+    row = recorder.log[i]
+    row.end_period, row.end, row.rebound = period, clock, rebound
+    put_state(recorder.log_state[i], 2 * u.size, u, v)
+
+
+@part
+def sample_due(recorder, period, until):
+    """Whether the next sample lies in this period, at or before the clock `until`."""
+    i = recorder.marks[0].sampled
+    clock = recorder.sample_clock
+    return i < clock.size and recorder.sample_period[i] == period and clock[i] <= until
+
+
+@part
+def put_sample(recorder, u, v):
+    """The state at the next sample time."""
+    marks = recorder.marks[0]
+    put_state(recorder.samples[marks.sampled], 0, u, v)
+    marks.sampled += 1
+
+
+@inlined
+def strobe(marks, strobes, counts, u, v):
+    """The state at the next strobe, and the impacts since the one before; not in terms of a recorder, since
+    each array in a tuple costs some nanoseconds a call."""
+    if counts.size > 0:
+        counts[marks.strobed] = marks.impacts
+    if strobes.shape[0] > 0:
+        put_state(strobes[marks.strobed], 0, u, v)
+    marks.strobed += 1
+    marks.impacts = 0
+
+
+def recorder_for(run: Run, n_modes: int) -> Recorder:
+    """Room for what `run` asks for."""
+    strobes, times, capacity = run.last - run.first, run.times.size, 64
+    return Recorder(
+        marks=np.zeros(1, dtype=MARKS),
+        log=np.zeros(capacity, dtype=LOG),
+        log_state=np.empty((capacity, 4 * n_modes)),
+        strobes=np.empty((strobes, 2 * n_modes)),
+        counts=np.zeros(strobes, dtype=np.int64),
+        sample_period=np.asarray(run.sample_period, dtype=np.int64),
+        sample_clock=run.sample_clock,
+        samples=np.empty((times, 2 * n_modes)),
+    )
+
+
+def grown(recorder: Recorder) -> Recorder:
+    """The same with a log twice as long."""
+    log, state = recorder.log, recorder.log_state
+    return recorder._replace(
+        log=np.concatenate([log, np.zeros_like(log)]), log_state=np.concatenate([state, np.empty_like(state)])
+    )
+
+
+def trajectory_of(
+    recorder: Recorder,
+    run: Run,
+    end: State,
+    oscillator: ImpactOscillator,
+    *,
+    evaluations: int,
+    motion: Motion | None = None,
+) -> Trajectory:
+    """What was written down, as named arrays.
+
+    Parameters
+    ----------
+    recorder : Recorder
+    run : Run
+    end : State
+        Where the run ended; samples at this time that were not written get this state.
+    oscillator : ImpactOscillator
+    evaluations : int
+        See ``Trajectory``.
+    motion : Motion, optional
+        If given, the rows are deviations from its steady motion.
+    """
+    n, marks, period = end.displacement.size, recorder.marks[0], oscillator.period
+    left = slice(int(marks["sampled"]), None)
+    if np.any((recorder.sample_period[left] < run.last) | (recorder.sample_clock[left] < run.clock_end)):
+        tip = oscillator.tip(np.array([end.displacement, end.velocity]))
+        place = {"time": end.time, "gap": oscillator.stop.gap - float(tip[0]), "velocity": float(tip[1])}
+        raise ContactError(**place, detail="the state at one of the times was not written down")
+    logged, passed = marks["logged"], run.last - run.first
+    log, log_state = recorder.log[:logged], recorder.log_state[:logged]
+    rows = np.concatenate((log_state[:, : 2 * n], log_state[:, 2 * n :], recorder.strobes, recorder.samples))
+    clock = np.concatenate((log["start"], log["end"], np.zeros(passed), run.sample_clock))
+    # of all rows at once: a call costs more than a few rows
+    steady = (0.0, 0.0) if motion is None else steady_motion(motion, clock)
+    q, v = rows[:, :n] + steady[0], rows[:, n:] + steady[1]
+    parts = pairwise((0, logged, 2 * logged, 2 * logged + passed, len(rows)))
+    (q_in, v_in), (q_out, v_out), (q_strobe, v_strobe), (q_sample, v_sample) = (
+        (q[first:last], v[first:last]) for first, last in parts
+    )
+    q_sample[left], v_sample[left] = end.displacement, end.velocity
+    impacts = Impacts(
+        start=log["period"] * period + log["start"],
+        end=log["end_period"] * period + log["end"],
+        period=log["period"].copy(),
+        clock=log["start"].copy(),
+        end_clock=(log["end_period"] - log["period"]) * period + log["end"],
+        approach=log["approach"].copy(),
+        rebound=log["rebound"].copy(),
+        loss=np.where(np.isnan(log["end"]), np.nan, log["loss"]),
+        kind=log["kind"].copy(),
+        displacement_start=q_in,
+        velocity_start=v_in,
+        displacement_end=q_out,
+        velocity_end=v_out,
+    )
+    return Trajectory(
+        oscillator=oscillator,
+        end=end,
+        strobe_time=np.arange(run.first + 1, run.last + 1) * period,
+        strobe_displacement=q_strobe,
+        strobe_velocity=v_strobe,
+        strobe_impacts=recorder.counts,
+        time=run.times,
+        displacement=q_sample,
+        velocity=v_sample,
+        impacts=impacts,
+        evaluations=int(evaluations),
+    )

@@ -1,0 +1,48 @@
+"""`python -m contact.machine.warm_up`: compile the kernels once, so that the first study starts at once.
+
+The machine code is kept (``contact.machine.compiled``); without this the first run of a study takes half a
+minute longer than the next.  Two processes share the work: one what a motion needs, the other what an orbit
+needs.
+"""
+
+from __future__ import annotations
+
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+
+from beam import single_mode
+from contact.drive import HarmonicDrive
+from contact.laws import ContactLaw, HertzContact, NewtonRestitution
+from contact.maps.stroboscope import StroboscopicMap
+from contact.orbits.families.shooting import Shooting
+from contact.oscillator import ImpactOscillator
+from contact.stop import Stop
+
+
+def _oscillator(law: ContactLaw) -> ImpactOscillator:
+    return ImpactOscillator(
+        model=single_mode(free_period=40.80e-3, decay_rate=3.56),
+        stop=Stop(gap=0.01, law=law),
+        drive=HarmonicDrive(frequency=22.2),
+    ).with_excess(1e-3)
+
+
+def _motions() -> None:
+    for law in (HertzContact(stiffness=1e9), NewtonRestitution(local_restitution=0.1)):
+        strobed = StroboscopicMap(oscillator=_oscillator(law))
+        strobed.orbit(strobed.steady(), 10)
+
+
+def _orbits() -> None:
+    Shooting(oscillator=_oscillator(HertzContact(stiffness=1e9)), period=5).at_speed(0.1)
+
+
+def compile_kernels() -> None:
+    """Run every compiled kernel once on a small problem."""
+    with ProcessPoolExecutor(max_workers=2, mp_context=get_context("spawn")) as pool:
+        for task in [pool.submit(_motions), pool.submit(_orbits)]:
+            task.result()
+
+
+if __name__ == "__main__":
+    compile_kernels()

@@ -1,0 +1,152 @@
+"""Flights of a mode with cubic stiffness and inertia, by Taylor series in time.
+
+    (1 + a x^2) x'' + a x x'^2 + mu x' + W^2 (x + b x^3) = cosine cos(2 pi f t) + sine sin(2 pi f t)
+
+x and x' are series of order `ORDER`, each step as long as its last terms allow (`SMALL` of the gap), and the
+first crossing of the stop within a step is the first root of that polynomial, certified
+(``contact.flight.polynomial_root``). A flight that rises above the stop by less than `GRAZED` of the gap is
+taken as free: a touch is known to that, not to the last digit as for linear modes.  Of impacts that
+accumulate the first whose rebound stays within ten times that band ends on the stop; the tip leaves it where
+the force on it changes its sign.  Flights work on complex numbers too: an imaginary step gives a derivative
+exact to rounding.
+
+The cubic terms are those of small x: where the restoring force would fall, or the mass vanish, on the way out
+(`reach`), and where a drive period takes more than `MOST_STEPS`, the run ends without a result.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from contact.flight.polynomial_root import first_polynomial_root, horner
+from contact.machine.compiled import kernel
+
+FLOWN, CHATTERED, LOST = range(3)
+"""How drive periods end: all of them; impacts beyond `MOST_IMPACTS`; a motion beyond the model."""
+
+ORDER = 22
+"""Of the Taylor series: some eight steps for a drive period."""
+
+SMALL = 1e-16
+"""Size of the last term of a step, relative to the gap."""
+
+GRAZED = 1e-14
+"""Heights above the stop that count as none, relative to the gap."""
+
+MOST_IMPACTS, MOST_STEPS = 1000, 10_000
+"""In a drive period."""
+
+
+@kernel
+def series(p, cosine, sine, x, v, phase, room):
+    """The Taylor coefficients of x and x' in rising order, from x and v at `phase` = 2 pi f t.
+
+    p = (W^2, mu, b, a, 2 pi f); the force is cosine cos(2 pi f t) + sine sin(2 pi f t). Products by Leibniz'
+    rule. `room`, shape (4, order + 1), holds them, x^2 and x'^2.
+    """
+    stiffness, decay, b, a, w = p
+    xs, vs, square, rates = room[0], room[1], room[2], room[3]
+    xs[0], vs[0] = x, v
+    push = cosine * math.cos(phase) + sine * math.sin(phase)
+    lead = cosine * math.sin(phase) - sine * math.cos(phase)
+    for n in range(xs.size - 1):
+        squared, cubed, rated, swirl = 0.0 * x, 0.0 * x, 0.0 * x, 0.0 * x
+        for j in range(n + 1):
+            squared += xs[j] * xs[n - j]
+            rated += vs[j] * vs[n - j]
+        square[n], rates[n] = squared, rated
+        for j in range(n + 1):
+            cubed += square[j] * xs[n - j]
+            swirl += xs[j] * rates[n - j]
+        # (1 + a x^2) x'' term by term; vs[j + 1] (j + 1) are the coefficients of x'' that are there already
+        left = push - decay * vs[n] - stiffness * (xs[n] + b * cubed) - a * swirl
+        for j in range(1, n + 1):
+            left -= a * square[j] * vs[n - j + 1] * (n - j + 1)
+        xs[n + 1] = vs[n] / (n + 1)
+        vs[n + 1] = left / ((1.0 + a * square[0]) * (n + 1))
+        push, lead = -w * lead / (n + 1), w * push / (n + 1)
+
+
+@kernel
+def value(coefficients, s):
+    """A polynomial at `s`."""
+    return horner(coefficients, 1.0, 0.0, s)[0]
+
+
+@kernel
+def step_of(xs, gap, most):
+    """The step that the last two coefficients of a series allow, at most `most` [s]."""
+    h = most
+    for n in (xs.size - 2, xs.size - 1):
+        size = abs(xs[n])
+        if size > 0.0:
+            h = min(h, (SMALL * gap / size) ** (1.0 / n))
+    return h
+
+
+@kernel
+def reach(p):
+    """How far the tip may be from its place at rest [m]."""
+    return min(1.0 / math.sqrt(max(-3.0 * p[2], 1e-300)), 1.0 / math.sqrt(max(-p[3], 1e-300)))
+
+
+@kernel
+def free_flow(p, cosine, sine, x, v, start, time, gap, room):
+    """x and x' after `time` [s] without a stop, from the drive's time `start` [s]; no numbers if lost."""
+    t, steps, most = 0.0, 0, reach(p)
+    while t < time:
+        steps += 1
+        if steps > MOST_STEPS or not abs(x) <= most:
+            return x * math.nan, v * math.nan
+        series(p, cosine, sine, x, v, p[4] * (start + t), room)
+        h = step_of(room[0], gap, time - t)
+        x, v = value(room[0], h), value(room[1], h)
+        t = time if h >= time - t else t + h
+    return x, v
+
+
+@kernel
+def periods(p, force, gap, restitution, x, v, points, impacts):
+    """Drive periods from a strobe: x and x'/W at the strobes into `points`, impacts into `impacts`.
+
+    Returns how they ended, and when [s]; unless FLOWN, the first point is where.
+    """
+    size, most = ORDER + 1, reach(p)
+    room, height = np.zeros((4, size)), np.zeros(size)
+    xs, vs = room[0], room[1]
+    period, root = 2.0 * math.pi / p[4], math.sqrt(p[0])
+    against = p[0] * (gap + p[2] * gap**3)
+    for i in range(impacts.size):
+        t, steps = 0.0, 0
+        while t < period:
+            steps += 1
+            if steps > MOST_STEPS or not abs(x) <= most:
+                points[0, 0], points[0, 1] = x, v / root
+                return LOST, i * period + t
+            pressed = force * math.cos(p[4] * t) - against
+            if x >= gap and pressed > GRAZED * against and v * v <= 20.0 * GRAZED * gap * pressed:
+                # pressed against the stop until the force on it falls below `against`
+                x, v = gap, 0.0
+                left = math.acos(against / force) / p[4]
+                t = min(period, left if left >= t else left + period)
+                continue
+            series(p, force, 0.0, x, v, p[4] * t, room)
+            h = step_of(xs, gap, period - t)
+            for n in range(size):
+                height[n] = xs[n]
+            height[0] -= gap
+            hit = first_polynomial_root(height, 1.0, h, GRAZED * gap)
+            if hit >= 0.0:
+                x, v = gap, -restitution * value(vs, hit)
+                t += hit
+                impacts[i] += 1
+                if impacts[i] > MOST_IMPACTS:
+                    points[0, 0], points[0, 1] = x, v / root
+                    return CHATTERED, i * period + t
+            else:
+                x, v = value(xs, h), value(vs, h)
+                t = period if h >= period - t else t + h
+        points[i, 0], points[i, 1] = x, v / root
+    return FLOWN, impacts.size * period

@@ -1,0 +1,118 @@
+"""Frequency bands of Nordmark's map: where p_m is born at grazing.
+
+As rho -> 0- without delay, the orbit p_m of one impact (``contact.maps.nordmark_orbits``) is admissible for
+theta between
+
+    upper frequency   theta = pi/m, hence f = 2m/((2m j + 1) T): b = 0, no hysteresis, at any damping and tau
+    lower frequency   sin((m-1) theta)/sin(theta) = -(gamma_impact/gamma) gamma^(m/2): x_{m-1} = 0
+
+with theta = 2 pi/(f T) - 2 pi j and j = 1 in the letter (`whole_turns`); for m = 2 the lower end is at pi.
+Neighbouring bands overlap slightly, which is the coexistence noted under Fig. 3 of the letter. All of this is
+for an oscillating mode; an overdamped one has b > 0, and its orbits with one impact exist for rho > 0 only.
+
+Source: letter of 1996, Fig. 3 and text.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from beam.parameters import require_kind, require_whole, require_within
+from contact.maps.nordmark import NordmarkMap, YLine
+from contact.maps.nordmark_orbits import MOST_PERIODS
+
+
+@dataclass(frozen=True, kw_only=True)
+class Band:
+    """Drive frequencies `lower` to `upper` [Hz] at which p_m, m = `period`, is born at grazing."""
+
+    period: int
+    lower: float
+    upper: float
+
+
+def band(
+    period: int,
+    *,
+    free_period: float,
+    decay_rate: float,
+    restitution: float,
+    y_line: YLine = "corrected",
+    whole_turns: int = 1,
+) -> Band:
+    """The band of p_m of one mode, m = `period` >= 2.
+
+    Parameters
+    ----------
+    period : int
+        m, in drive periods.
+    free_period, decay_rate, restitution : float
+        Damped period T [s], mu [1/s] and tau of the mode.
+    y_line : {"corrected", "printed"}
+        Which second line the map has; see `NordmarkMap.from_frequencies`.
+    whole_turns : int
+        Free swings in a drive period, rounded down.
+
+    Raises
+    ------
+    ValueError
+        For m < 2 and for parameters that `NordmarkMap.from_frequencies` refuses.
+    """
+    m = require_whole("period", period, "drive periods", low=2, high=MOST_PERIODS)
+    require_within("free_period", free_period, "s", above=0)
+    require_whole("whole_turns", whole_turns, "turns", low=0)
+
+    def frequency(angle: float) -> float:
+        return 1.0 / (free_period * (whole_turns + angle / (2.0 * math.pi)))
+
+    middle = frequency(math.pi / (m - 0.5))  # wrong parameters are refused here
+    NordmarkMap.from_frequencies(
+        drive_frequency=middle,
+        free_period=free_period,
+        decay_rate=decay_rate,
+        restitution=restitution,
+        y_line=y_line,
+    )
+    ratio = restitution**2 if y_line == "corrected" else 1.0
+
+    from scipy.optimize import brentq  # slow to import
+
+    def excess_height(past: float) -> float:  # proportional to -x_{m-1}; `past` = (m - 1) theta - pi
+        angle = (math.pi + past) / (m - 1)
+        decay = math.exp(-0.5 * m * decay_rate / frequency(angle))
+        return ratio * decay * math.sin(angle) - math.sin(past)
+
+    lower = math.pi
+    if m > 2:  # the sign changes before past = pi/2, where sin(theta) < 1; 1e-15 rad is the rounding of theta
+        lower = (math.pi + float(brentq(excess_height, 0.0, 0.5 * math.pi, xtol=1e-15))) / (m - 1)
+    return Band(period=m, lower=frequency(lower), upper=frequency(math.pi / m))
+
+
+def bands(
+    periods: Iterable[int],
+    *,
+    free_period: float,
+    decay_rate: float,
+    restitution: float,
+    y_line: YLine = "corrected",
+    whole_turns: int = 1,
+) -> tuple[Band, ...]:
+    """`band` for each of `periods`, sorted by frequency.
+
+    `free_period`, `decay_rate`, `restitution`, `y_line` and `whole_turns` are as there.
+    """
+    require_kind("periods", periods, Iterable, "a sequence of periods")
+    found = [
+        band(
+            m,
+            free_period=free_period,
+            decay_rate=decay_rate,
+            restitution=restitution,
+            y_line=y_line,
+            whole_turns=whole_turns,
+        )
+        for m in periods
+    ]
+    return tuple(sorted(found, key=lambda entry: entry.upper))

@@ -1,0 +1,212 @@
+r"""Maximal orbits of Nordmark's map: one impact every m drive periods, in closed form.
+
+Without impacts the height obeys x_{n+1} = alpha x_n - gamma x_{n-1} + rho. Its answer to a unit impulse is
+
+    p_0 = 1,  p_k = alpha p_{k-1} - gamma p_{k-2}    (= gamma^(k/2) sin((k+1) theta)/sin(theta), underdamped)
+
+and its answer to an impulse repeated every m steps
+
+    G_k = (p_k + gamma^(k+1) p_{m-k-2}) / D,   k = 0 ... m-1 (mod m),   p_{-1} = 0,
+    D = 1 - (p_m - gamma p_{m-2}) + gamma^m    (= 1 - 2 g cos(m theta) + g^2,  g = gamma^(m/2)).
+
+An impact at x_0 = X^2 > 0 adds u_1 = d - X - alpha X^2 to x_1 and u_2 = (gamma - gamma_impact) X^2 to x_2:
+
+    x_k = c rho + G_{k-1} u_1 + G_{k-2} u_2,    c = 1/(1 - alpha + gamma),                              (a)
+    k = 0:   a X^2 + b X = c rho + b d,   b = G_{m-1},   a = 1 + alpha b - (gamma - gamma_impact) G_{m-2}.
+
+For b < 0 < a a node (larger X) and a saddle meet in a **fold**, X = -b/(2a), rho_m = -b^2/(4 a c) - b d/c.
+Multipliers: determinant gamma^(m-1) gamma_impact, trace -p_{m-1}/(2X) - (gamma_impact + gamma) p_{m-2};
+stable if |trace| < 1 + determinant. An orbit is *admissible* (an orbit of the map) if x_1 ... x_{m-1} <= 0;
+when one of them reaches zero a **second impact** ends it. With (a) each x_k is a quadratic in X, so these
+ends are in closed form too.
+
+Sources: letter of 1996, Fig. 3 and text; W. Chin, E. Ott, H. E. Nusse, C. Grebogi, Phys. Rev. E 50 (1994)
+4427. The formulae hold for either reading of the y-line; all quantities are pure numbers save f and T.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beam.parameters import require_kind, require_whole, require_within
+from contact.maps.nordmark import NordmarkMap
+
+MOST_PERIODS = 100_000
+"""Longest period of an orbit, in drive periods; its states are computed one by one."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MaximalOrbit:
+    """A periodic solution of the map with its impact at states[0].
+
+    Fields: `map` and `rho`; `period` m; `root` X = sqrt(x_0); `states`, shape (m, 2), the (x, y) in order of
+    time; `trace` and `determinant` of the derivative of m steps. All pure numbers.
+    """
+
+    map: NordmarkMap
+    rho: float
+    period: int
+    root: float
+    states: NDArray[np.float64]
+    trace: float
+    determinant: float
+
+    @property
+    def excess(self) -> float:
+        """F/F_g - 1 [1]."""
+        return self.map.excess(self.rho)
+
+    @property
+    def speed(self) -> float:
+        """The root X, in proportion to the approach speed [1]."""
+        return self.root
+
+    @property
+    def multipliers(self) -> NDArray[np.complex128]:
+        """Eigenvalues of the derivative of m steps, shape (2,), larger modulus first."""
+        pair = np.roots([1.0, -self.trace, self.determinant]).astype(complex)
+        return pair[np.argsort(-np.abs(pair))]
+
+    @property
+    def stable(self) -> bool:
+        """Whether both multipliers lie inside the unit circle."""
+        return abs(self.trace) < 1.0 + self.determinant and self.determinant < 1.0
+
+    @property
+    def admissible(self) -> bool:
+        """Whether no other iterate is an impact, so that the map has this orbit."""
+        return bool(np.all(self.states[1:, 0] <= 0.0))
+
+
+class MapFamily:
+    """The orbits p_m of a map, m = `period`: p, G and what follows from them in the module's docstring."""
+
+    def __init__(self, nordmark: NordmarkMap, period: int) -> None:
+        require_kind("nordmark", nordmark, NordmarkMap, "a NordmarkMap")
+        self.map, self.period = nordmark, require_whole("period", period, "drive periods", high=MOST_PERIODS)
+        m, alpha, gamma = self.period, nordmark.alpha, nordmark.gamma
+        p = [0.0, 1.0]  # p_{-1}, p_0, ...
+        for _ in range(m):
+            p.append(alpha * p[-1] - gamma * p[-2])
+        self.last, before = p[m], p[m - 1]  # p_{m-1}, p_{m-2}
+        size = 1.0 - (p[m + 1] - gamma * before) + gamma**m
+        self.periodic = np.array([p[k + 1] + gamma ** (k + 1) * p[m - k - 1] for k in range(m)]) / size
+        self.loss = gamma - nordmark.gamma_impact
+        self.c = 1.0 / (1.0 - alpha + gamma)
+        self.b = float(self.periodic[m - 1])
+        self.a = 1.0 + alpha * self.b - self.loss * float(self.periodic[(m - 2) % m])
+        self.trace_limit = -(nordmark.gamma_impact + gamma) * before
+        self.determinant = gamma ** (m - 1) * nordmark.gamma_impact
+
+    def _height(self, k: int) -> tuple[float, float, float]:
+        """Coefficients of X^2, X and 1 in x_k."""
+        m, first = self.period, float(self.periodic[(k - 1) % self.period]) - self.b
+        second = float(self.periodic[(k - 2) % m] - self.periodic[(m - 2) % m])
+        return 1.0 - self.map.alpha * first + self.loss * second, -first, self.map.delay_term * first
+
+    def orbit(self, speed: float) -> MaximalOrbit:
+        """The orbit with root X = `speed`, above zero [1]."""
+        root = require_within("speed", speed, "[1]", above=0)
+        return self._orbit(root, (self.a * root * root + self.b * (root - self.map.delay_term)) / self.c)
+
+    def _orbit(self, root: float, rho: float) -> MaximalOrbit:
+        m, square = self.period, root * root
+        later = [self._height(k) for k in range(1, m)]
+        x = np.array([square] + [two * square + one * root + none for two, one, none in later])
+        y = -self.map.gamma * np.roll(x, 1)
+        y[1 % m] = -self.map.gamma_impact * square
+        return MaximalOrbit(
+            map=self.map,
+            rho=rho,
+            period=m,
+            root=root,
+            states=np.column_stack([x, y]),
+            trace=-self.last / (2.0 * root) + self.trace_limit,
+            determinant=self.determinant,
+        )
+
+    def at_rho(self, rho: float) -> tuple[MaximalOrbit, ...]:
+        """The orbits at `rho`, 0 to 2, X rising: of two, the first is the saddle and the second the node."""
+        require_within("rho", rho, "[1]")
+        roots = positive_roots(self.a, self.b, -(self.c * rho + self.b * self.map.delay_term))
+        return tuple(self._orbit(root, rho) for root in roots)
+
+    def orbits(self, excess: float) -> tuple[MaximalOrbit, ...]:
+        """The same at F/F_g - 1 = `excess` [1]."""
+        return self.at_rho(self.map.rho(excess))
+
+    def fold(self) -> MaximalOrbit | None:
+        """The orbit at which node and saddle meet, its `rho` being rho_m; None for b >= 0 or a <= 0."""
+        return self.orbit(-self.b / (2.0 * self.a)) if self.b < 0.0 < self.a else None
+
+    def stable_range(self) -> tuple[float, float] | None:
+        """The first interval of rho, from the fold upwards, in which the node is stable and admissible.
+
+        Its lower end is rho_m, or the rho of a second impact; its upper end that of a second impact or of a
+        multiplier -1, or infinity. None where there is no fold or no such interval.
+        """
+        at_fold = self.fold()
+        if at_fold is None:
+            return None
+        ends = [root for k in range(1, self.period) for root in positive_roots(*self._height(k))]
+        flip = 1.0 + self.determinant + self.trace_limit
+        ends += [self.last / (2.0 * flip)] if flip < 0.0 else []
+        marks = [at_fold.root, *sorted(root for root in ends if root > at_fold.root), math.inf]
+        for low, high in pairwise(marks):
+            orbit = self.orbit(0.5 * (low + high) if high < math.inf else 2.0 * low)
+            if orbit.stable and orbit.admissible:
+                return self.orbit(low).rho, self.orbit(high).rho if high < math.inf else math.inf
+        return None
+
+
+def positive_roots(two: float, one: float, none: float) -> list[float]:
+    """The positive solutions of two X^2 + one X + none = 0, ascending."""
+    if two == 0.0:
+        found = [-none / one] if one != 0.0 else []
+    else:
+        square = one * one - 4.0 * two * none
+        if square < 0.0:
+            return []
+        half = -0.5 * (one + math.copysign(math.sqrt(square), one))
+        found = [half / two] + ([none / half] if half != 0.0 else [])
+    return sorted(root for root in found if root > 0.0)
+
+
+def maximal_orbits(nordmark: NordmarkMap, period: int, rho: float) -> tuple[MaximalOrbit, ...]:
+    """The orbits of a map `nordmark` with this `period` at `rho`: `MapFamily.at_rho`; ask each for
+    `admissible` and `stable`."""
+    return MapFamily(nordmark, period).at_rho(rho)
+
+
+def fold(nordmark: NordmarkMap, period: int) -> MaximalOrbit | None:
+    """The orbit of a map `nordmark` at which node and saddle of this `period` meet: `MapFamily.fold`."""
+    return MapFamily(nordmark, period).fold()
+
+
+def stable_range(nordmark: NordmarkMap, period: int) -> tuple[float, float] | None:
+    """The rho in which a map `nordmark` has a stable orbit of this `period`: `MapFamily.stable_range`."""
+    return MapFamily(nordmark, period).stable_range()
+
+
+def maximal_period(nordmark: NordmarkMap) -> int:
+    """The m with pi/m < theta <= pi/(m-1), theta the angle of the map `nordmark`; 0 without oscillation."""
+    angle = require_kind("nordmark", nordmark, NordmarkMap, "a NordmarkMap").angle
+    return math.floor(math.pi / angle) + 1 if angle > 0.0 else 0
+
+
+def maximal_periods(nordmark: NordmarkMap) -> tuple[int, ...]:
+    """All m for which p_m of the map `nordmark` is admissible as rho -> 0-.
+
+    They are `maximal_period`, and m + 1 where the bands overlap.
+    """
+    m = maximal_period(nordmark)
+    if m == 0:
+        return ()
+    parts, gamma = MapFamily(nordmark, m), nordmark.gamma
+    overlap = parts.last + nordmark.gamma_impact * gamma ** (m - 1) >= 0.0  # x_m <= 0 on p_{m+1}
+    return (m, m + 1) if overlap else (m,)

@@ -1,0 +1,137 @@
+"""The motion from strobe to strobe as compiled code: one door for any oscillator.
+
+One mode under Newton's law has a loop of its own (``contact.one_mode.loop``), which proves most periods
+free without a sine; everything else goes through ``event_loop.advance``.  The strobes of both agree within
+rounding.
+
+What a point is: phi_k q_k and phi_k q_k'/omega_k of all modes, contributions to the tip motion of one unit
+[m].  A mode of zero frequency counts with phi_k q_k'/(2 pi f), one with its node at the tip with the largest
+phi.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from contact.engine.event_loop import DONE
+from contact.flight.modal_flow import steady_motion
+from contact.flight.motion import COSINE, OFFSET, SINE, Motion, with_drive
+from contact.machine.compiled import inlined, kernel
+from contact.one_mode.loop import any_periods, one_mode_periods
+from contact.one_mode.period_table import PeriodTable, mode_at, period_table
+from contact.oscillator import ImpactOscillator
+
+
+class StrobedSystem(NamedTuple):
+    """An oscillator as the loops over its drive periods take it.
+
+    motion : Motion
+    table : PeriodTable or None
+        For one mode under Newton's law.
+    mean : ndarray, shape (2 n_modes,)
+        Steady displacements and velocities at a strobe, to which the deviations are added.
+    weight : ndarray, shape (2 n_modes,)
+        By which their sums are multiplied in the points.
+    """
+
+    motion: Motion
+    table: PeriodTable | None
+    mean: np.ndarray
+    weight: np.ndarray
+
+
+def strobed_system(oscillator: ImpactOscillator) -> StrobedSystem:
+    """The numbers of an oscillator, made once for many orbits."""
+    motion = oscillator.motion()
+    phi = np.where(motion.phi != 0, motion.phi, np.abs(motion.phi).max())
+    slow = motion.drive or 1.0
+    return StrobedSystem(
+        motion=motion,
+        table=period_table(motion),
+        mean=np.concatenate(steady_motion(motion, 0.0)),
+        weight=np.concatenate([phi, phi / np.where(motion.omega > 0, motion.omega, slow)]),
+    )
+
+
+@kernel
+def _table_at(table, motion, factor):
+    """`table` at `factor` times the amplitude of its `motion`; None stays None."""
+    if table is None:
+        return table
+    else:
+        return PeriodTable(mode_at(table.mode, motion, factor), table.rows)
+
+
+@kernel
+def at_amplitude(system, factor):
+    """The system at `factor` times its own base amplitude."""
+    motion, n = with_drive(system.motion, factor), system.motion.size
+    mean = np.empty(2 * n)
+    for k in range(n):
+        mean[k] = motion.modes[OFFSET, k] + motion.modes[COSINE, k]
+        mean[n + k] = motion.drive * motion.modes[SINE, k]
+    return StrobedSystem(motion, _table_at(system.table, system.motion, factor), mean, system.weight)
+
+
+@kernel
+def strobed_motion(table, system, factors, u, v, runs, points, counts):
+    """Carry the deviation (u, v) from a strobe over as many drive periods as `counts` has places.
+
+    Parameters
+    ----------
+    table : PeriodTable or None
+        That of the system: told apart by its type, the loop that does not fit is not compiled.
+    system : StrobedSystem
+    factors : ndarray, shape (periods,) or (0,)
+        By which each period multiplies the amplitude of the system [1]; none leave it as it is.  The physical
+        state goes on where the amplitude changes, at the strobe: (u, v) jumps as the steady motion does.
+    u, v : ndarray, shape (n_modes,)
+        From the steady motion of the system, before and after; overwritten.
+    runs : record array of ``contact.engine.event_loop.STATE``, shape (1,)
+        Where the run stands; overwritten.
+    points, counts : ndarray, shapes (periods, 2 n_modes) and (periods,)
+        Filled with the points of the module's docstring and the impacts since the strobe before.
+
+    Returns
+    -------
+    status : int
+        As that of ``event_loop.advance``; after a failure (u, v) is from the steady motion of that period.
+    """
+    if table is None:
+        return _any_periods(system, factors, u, v, runs, points, counts)
+    else:
+        return one_mode_periods(table, system, factors, u, v, runs, points, counts)[0]
+
+
+@kernel
+def _any_periods(system, factors, u, v, runs, points, counts):
+    """`strobed_motion` of any oscillator."""
+    local, run, status, factor, at = system, runs[0], DONE, 1.0, 0
+    while at < counts.size and status == DONE:
+        end = counts.size
+        if factors.size > 0:
+            end = at + 1
+            while end < counts.size and factors[end] == factors[at]:
+                end += 1
+            add_steady(system.motion, factor - factors[at], u, v)
+            factor, run.root, run.speed = factors[at], -1.0, -1.0
+            local = at_amplitude(system, factor)
+        status = any_periods(local.motion, u, v, runs, points[at:end], counts[at:end])
+        for i in range(at, end):
+            for k in range(points.shape[1]):
+                points[i, k] = (points[i, k] + local.mean[k]) * system.weight[k]
+        at = end
+    if status == DONE:
+        add_steady(system.motion, factor - 1.0, u, v)
+    return status
+
+
+@inlined
+def add_steady(motion, factor, u, v):
+    """Add `factor` times the driven part of the steady motion at a strobe to (u, v)."""
+    if factor != 0.0:
+        for k in range(motion.size):
+            u[k] += factor * motion.modes[COSINE, k]
+            v[k] += factor * motion.drive * motion.modes[SINE, k]

@@ -1,0 +1,188 @@
+"""The period map of an impact oscillator, State -> State; see ``contact.maps.protocol``."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from beam.parameters import InvalidValue, require, require_array, require_kind, require_whole
+from contact.drive import split_time
+from contact.engine.event_loop import DONE
+from contact.engine.start import failure, start_of, state_of
+from contact.errors import UnresolvedCrossing
+from contact.maps.protocol import Jacobians, StrobedOrbit, amplitude_factors
+from contact.maps.protocol import StrobedMap as StrobedMap
+from contact.maps.strobed_motion import StrobedSystem, strobed_motion, strobed_system
+from contact.oscillator import ImpactOscillator
+from contact.sensitivity.change import Changes
+from contact.sensitivity.replay import Retraced
+from contact.simulation import require_state, simulate
+from contact.trajectory import Regime, State
+
+LONGER = (0, 1, 3, 7, 15, 31, 63)
+"""Drive periods by which a stretch that ends in contact is prolonged; a contact lasts less than a period."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class StroboscopicMap:
+    """The period map of an impact oscillator.
+
+    Parameters
+    ----------
+    oscillator : ImpactOscillator
+        A driven one.
+    """
+
+    oscillator: ImpactOscillator
+
+    def __post_init__(self) -> None:
+        require_kind("oscillator", self.oscillator, ImpactOscillator, "an ImpactOscillator")
+
+    @property
+    def scale(self) -> float:
+        """The gap [m]."""
+        return self.oscillator.stop.gap
+
+    @property
+    def period(self) -> float:
+        """The drive period [s]; ValueError without a drive."""
+        return self.oscillator.driven.period
+
+    def at(self, excess: float) -> StroboscopicMap:
+        """The period map of the same oscillator driven at F/F_g - 1 = `excess`."""
+        return StroboscopicMap(oscillator=self.oscillator.with_excess(excess))
+
+    def steady(self) -> State:
+        """The steady motion at a strobe, which below grazing is the p1 orbit without impacts."""
+        mean, n = self._system.mean, self.oscillator.n_modes
+        return State(displacement=mean[:n], velocity=mean[n:])
+
+    def tip(self, points: np.ndarray) -> np.ndarray:
+        """Tip displacement of strobed `points`, shape (n_strobes,) [m]."""
+        return self.oscillator.tip(self._displacements(points))
+
+    def readout(self, points: np.ndarray, name: str) -> np.ndarray:
+        """The read-out quantity `name` of the model at strobed `points`, shape (n_strobes,)."""
+        readouts = self.oscillator.model.readouts
+        require(name in readouts, f"name is {name!r}; the model has the read-out points {sorted(readouts)}")
+        return self._displacements(points) @ readouts[name]
+
+    def _displacements(self, points: np.ndarray) -> np.ndarray:
+        """The modal displacements of strobed `points`, shape (n_strobes, n_modes)."""
+        n, given = self.oscillator.n_modes, require_array("points", points, "m", dimensions=2)
+        require(given.shape[1] == 2 * n, f"points has shape {given.shape}; it must have {2 * n} columns")
+        return given[:, :n] / self._system.weight[:n]
+
+    def coordinates(self, state: State) -> np.ndarray:
+        """phi_k q_k and phi_k q_k'/omega_k of a state, as in the points of an orbit [m]."""
+        require_state(self.oscillator, state)
+        return self._system.weight * np.concatenate([state.displacement, state.velocity])
+
+    @cached_property
+    def _system(self) -> StrobedSystem:
+        """The numbers of the oscillator, made once for many short orbits."""
+        return strobed_system(self.oscillator)
+
+    def orbit(self, state: State, count: int, *, factors: ArrayLike | None = None) -> StrobedOrbit[State]:
+        """`count` drive periods from `state`, which must lie at a strobe.
+
+        With `factors`, one for each period, the amplitude is that of the oscillator times the factor of the
+        period: it changes at strobes, where the physical state goes on.
+
+        Returns
+        -------
+        StrobedOrbit
+            Its points, shape (count, 2 n_modes) [m], are the contributions phi_k q_k and phi_k q_k' / omega_k
+            of all modes to the tip motion (see ``contact.maps.strobed_motion``); `tip` and `readout` turn
+            them into displacements.
+
+        Raises
+        ------
+        ValueError
+            If the state is not at a strobe, or factors are not above zero.
+        ContactError
+            If the motion could not be followed.
+        """
+        require_state(self.oscillator, state)
+        count = require_whole("count", count, "drive periods", low=0)
+        changing = amplitude_factors(factors, count)
+        system, motion, n = self._system, self._system.motion, self.oscillator.n_modes
+        index = round(state.time / motion.period)
+        if index * motion.period != state.time:  # within rounding it may be a strobe nevertheless
+            index, clock = (x.item() for x in split_time(state.time, motion.period))
+            if clock != 0.0:
+                raise InvalidValue(f"time of the state is {state.time} s; it must be a strobe time n/f")
+        u, v, runs = start_of(motion, state, index, 0.0, steady=(system.mean[:n], system.mean[n:]))
+        points, impacts = np.empty((count, 2 * n)), np.empty(count, dtype=np.int64)
+        status = strobed_motion(system.table, system, changing, u, v, runs, points, impacts)
+        if status != DONE:
+            if changing.size:
+                amplitude = self.oscillator.driven.amplitude * changing[int(runs[0]["period"]) - index]
+                motion = self.oscillator.with_amplitude(float(amplitude)).motion()
+            raise failure(status, motion, runs, u, v)
+        end = state_of(motion, runs, u + system.mean[:n], v + system.mean[n:])
+        return StrobedOrbit(end=end, points=points, impacts=impacts)
+
+    def jacobians(self, state: State, count: int) -> Jacobians[State]:
+        """Derivatives of the points along `count` drive periods from `state`, and the state at the end.
+
+        A strobe that falls into a contact is passed over: its derivative spans more than one period, and if
+        the last does, the orbit goes on to the next that does not, or ends before it.
+
+        Raises
+        ------
+        ValueError
+            If the state is in contact.
+        UnresolvedCrossing
+            If the motion comes to rest on the stop, or is in contact at every strobe.
+        """
+        count = require_whole("count", count, "drive periods")
+        free = require_state(self.oscillator, state).regime == Regime.OUTSIDE
+        require(free, "state is in contact; start from a strobe at which the tip is off the wall")
+        period, n, weight = self._system.motion.period, self.oscillator.n_modes, self._system.weight
+        for more in LONGER:
+            run = simulate(self.oscillator, replace(state, time=0.0), periods=count + more)
+            retraced = Retraced(Changes(oscillator=self.oscillator), run)
+            strobes = [j for j in range(1, count + more + 1) if not retraced.touching(j * period)]
+            if strobes:
+                strobes = strobes[: len(strobes) if more == 0 else 1]
+                break
+        else:
+            raise UnresolvedCrossing(time=state.time, gap=0.0, velocity=0.0)
+        found, first = [], 0
+        for last in strobes:
+            retraced.tangent = np.eye(2 * n + 2)
+            tangent = retraced.to(last * period)[: 2 * n, : 2 * n]
+            found.append((weight[:, None] * tangent / weight, last - first))
+            first = last
+        q, v = run.strobe_displacement[first - 1], run.strobe_velocity[first - 1]
+        return found, State(displacement=q, velocity=v)
+
+
+def strobed_orbits(
+    maps: Sequence[StroboscopicMap], states: Sequence[State], count: int, *, workers: int | None = None
+) -> list[StrobedOrbit[State]]:
+    """`count` drive periods of many orbits, one in each map from its state, on `workers` threads.
+
+    Every orbit is the one that `orbit` makes; the kernels release the interpreter lock, so that threads share
+    the cores.  `workers` is the number of cores unless given.
+
+    Raises
+    ------
+    ValueError
+        If there are not as many states as maps, or as `StroboscopicMap.orbit` does.
+    ContactError
+        Of the first orbit, in their order, that could not be followed.
+    """
+    if workers is not None:
+        require_whole("workers", workers, "threads")
+    words = f"states has {len(states)} entries; it must have one for each of {len(maps)} maps"
+    require(len(maps) == len(states), words)
+    with ThreadPoolExecutor(max_workers=workers or os.cpu_count() or 1) as pool:
+        return list(pool.map(lambda strobed, state: strobed.orbit(state, count), maps, states))

@@ -1,0 +1,11 @@
+"""Branches of periodic orbits, followed by arc length, and the events on them.
+
+`curve`               a curve of orbits: one point beside the other
+`branch`              a curve followed both ways
+`events`              folds, period doublings, tori, branch points and grazes, each verified
+`family_curve`        the curve of a family over the drive amplitude
+`continuation`        branches over the drive amplitude: `follow`, `fold_of`, `first_event`
+`path`                branches along any path p -> oscillator: `follow_path`
+`orbit_derivatives`   derivatives of an orbit with respect to parameters
+`event_derivatives`   derivatives of multipliers, doublings and grazes
+"""

@@ -1,0 +1,178 @@
+"""What all families of periodic orbits share, whatever describes the motion.
+
+A family holds the orbits of period m with one collision, or a given number of touches, in m drive periods. It
+is a curve, told by the approach speed v of the first touch; over the excess F/F_g - 1 it turns round at its
+fold, where a node and a saddle meet. Four descriptions offer it:
+
+    ``single_impact.MaximalFamily``      Newton's law, several modes, closed form
+    ``kick.KickFamily``                  any law, the collision as a kick of all modes
+    ``shooting.Shooting``                any law, any number of touches, Newton's method on exact tangents
+    ``contact.maps.nordmark_orbits.MapFamily`` the Nordmark map, closed form; its "speed" is sqrt(x) at the
+    impact
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact.flight.crossing import CROSSES, FREE, first_crossing
+from contact.flight.modal_flow import steady_motion, tip_state
+from contact.oscillator import ImpactOscillator
+from contact.simulation import simulate
+from contact.trajectory import State
+
+Array = NDArray[np.float64]
+CLOSING = 1e-9  # part of a flight by which it is prolonged, so that the touch at its end is met
+
+
+class Orbit(Protocol):
+    """A periodic orbit with impacts."""
+
+    @property
+    def period(self) -> int:
+        """m, in drive periods."""
+
+    @property
+    def excess(self) -> float:
+        """F/F_g - 1 [1]."""
+
+    @property
+    def speed(self) -> float:
+        """Approach speed of the first touch [m/s]."""
+
+    @property
+    def multipliers(self) -> NDArray[np.complex128]:
+        """Floquet multipliers, largest modulus first."""
+
+    @property
+    def stable(self) -> bool:
+        """Whether all multipliers lie inside the unit circle."""
+
+    @property
+    def admissible(self) -> bool:
+        """Whether the tip touches the stop at the impacts of the orbit only."""
+
+
+class Family(Protocol):
+    """The orbits of one period, in one description."""
+
+    @property
+    def period(self) -> int:
+        """m, in drive periods."""
+
+    def orbit(self, speed: float) -> Orbit:
+        """The orbit with approach speed `speed` [m/s]."""
+
+    def orbits(self, excess: float) -> tuple[Orbit, ...]:
+        """The orbits at F/F_g - 1 = `excess`, by rising speed."""
+
+    def fold(self) -> Orbit | None:
+        """The orbit of least amplitude, at which node and saddle meet; None if there is none."""
+
+
+class Release(NamedTuple):
+    """The end of the last touch of an orbit.
+
+    `time` since the first touch [s]; deviations (u, u') of all modes; whether the tip has a velocity away
+    from the wall, or is at rest on it; time by which the touch that closes the orbit may miss it [s].
+    """
+
+    time: float
+    displacement: Array
+    velocity: Array
+    leaves: bool
+    slack: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TouchOrbit(ABC):
+    """A periodic orbit of an impact oscillator, by its first touch.
+
+    Parameters
+    ----------
+    oscillator : ImpactOscillator
+        At the drive amplitude of the orbit.
+    period : int
+        m, in drive periods.
+    excess : float
+        F/F_g - 1 [1].
+    speed : float
+        Approach velocity of the first touch [m/s].
+    phase : float
+        Drive time of the first touch [s].
+    displacement, velocity : ndarray, shape (n_modes,)
+        Deviations from the steady motion just before it.
+    """
+
+    oscillator: ImpactOscillator = field(repr=False)
+    period: int
+    excess: float
+    speed: float
+    phase: float
+    displacement: Array
+    velocity: Array
+
+    @abstractmethod
+    def monodromy(self) -> Array:
+        """Derivative of (u, u') over m/f from touch to touch, at fixed drive; (2 n_modes, 2 n_modes)."""
+
+    @abstractmethod
+    def release(self) -> Release:
+        """Where the flight begins that ends with the first touch."""
+
+    @property
+    def deviations(self) -> Array:
+        """(u, v) of all modes just before the first touch, shape (2 n_modes,)."""
+        return np.concatenate([self.displacement, self.velocity])
+
+    @property
+    def amplitude(self) -> float:
+        """Base amplitude [m]."""
+        return self.oscillator.driven.amplitude
+
+    @property
+    def duration(self) -> float:
+        """m/f [s]."""
+        return self.period * self.oscillator.period
+
+    @cached_property
+    def multipliers(self) -> NDArray[np.complex128]:
+        """Floquet multipliers: eigenvalues of `monodromy`, largest modulus first, shape (2 n_modes,)."""
+        values = np.linalg.eigvals(self.monodromy()).astype(complex)
+        return np.asarray(values[np.argsort(-np.abs(values))])
+
+    @property
+    def stable(self) -> bool:
+        """Whether all multipliers lie inside the unit circle."""
+        return bool(np.abs(self.multipliers[0]) < 1.0)
+
+    @cached_property
+    def admissible(self) -> bool:
+        """Whether the last flight meets the wall at its end only (certified; a graze counts as a meeting)."""
+        time, u, v, leaves, slack = self.release()
+        length, motion = self.duration - time, self.oscillator.motion()
+        outcome, met = first_crossing(
+            motion, self.phase + time, u.copy(), v.copy(), length * (1.0 + CLOSING), 1 if leaves else 2
+        )
+        return bool(outcome == FREE or (outcome == CROSSES and abs(met - length) <= slack))
+
+    def state(self) -> State:
+        """The physical state just before the first touch, on the near side of the stop to the last digit."""
+        motion = self.oscillator.motion()
+        q, q_rate = steady_motion(motion, np.array([self.phase]))
+        behind = max(0.0, tip_state(motion, self.phase, self.displacement, self.velocity)[0])
+        back = motion.least_change(behind)  # rounding of the sum alone
+        return State(
+            displacement=self.displacement - back + q[0], velocity=self.velocity + q_rate[0], time=self.phase
+        )
+
+    def strobe_state(self) -> State:
+        """The state at the strobe that follows the first touch."""
+        period = self.oscillator.period
+        return simulate(self.oscillator, self.state(), duration=period - self.phase % period).end

@@ -1,0 +1,184 @@
+"""A collision as a kick, and the p_m orbits that follow by linear algebra.
+
+One simulated collision, entered with approach velocity v from the steady motion with all modes at rest above
+it, changes the deviations of all modes by B(v), referred to the touch by their free flow.  The orbit on which
+it happens once in m drive periods follows from B (``contact.orbits.families.single_impact``); the p_m orbit
+ends (fold) where its amplitude is smallest.  With Newton's law B is proportional to v and the result exact.
+
+``DelayedRestitution`` (one mode, ``contact.touch.delayed``) has its orbits in closed form.  With (p, r) the
+steady tip displacement and velocity at the touch, R their turn by the angle w delta and N the free flow over
+m/f - delta, the tip leaves with the deviation (gap, -tau v) - R (p, r) and comes back with (gap, v) - (p, r):
+
+    (I - N R) (p, r) = (gap, v) - N (gap, -tau v),      A(v)^2 = p^2 + (r/(2 pi f))^2.
+
+What this neglects is that the real collision starts with the ringing w left over from the last one and at
+another acceleration of the tip.  Both are there to be used: a second collision, simulated from w itself,
+gives another A at the same v, and the difference is the estimate of the error.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beam.parameters import require, require_array, require_within, shown
+from contact.errors import NotPeriodic
+from contact.flight.modal_flow import free_flow
+from contact.flight.variation import variation
+from contact.laws import DELAYED
+from contact.orbits.families.single_impact import SINGULAR, Kick, SingleImpactFamily, SingleImpactOrbit
+from contact.sensitivity.touch_flow import FEWER_TOUCHES, flow_from_touch, lost
+from contact.touch.delayed import numbers_at
+
+Array = NDArray[np.float64]
+
+MOST_TOUCHES = 200
+"""Bound of touches in one collision: a bare tip under a stiff spring makes some dozens."""
+
+WINDOW = 0.5
+"""Part of a drive period after the first touch in which further touches belong to the collision."""
+
+SPEEDS = (1e-4, 1.0)
+"""Approach velocities, over 2 pi f gap, among which orbits are looked for; one beyond the upper belongs to an
+amplitude far above the letter's."""
+
+GRID = 33
+"""Velocities of a search, on a logarithmic grid: eight a decade."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class KickFamily(SingleImpactFamily):
+    """The p_m orbits with one collision, of an oscillator with any contact law, from kicks.
+
+    Parameters
+    ----------
+    oscillator, period
+        As in `SingleImpactFamily`.
+    collision : callable, optional
+        Approach velocity [m/s] to Kick, in place of the simulated collision: a model of it, such as the
+        letter's with its restitution and delay.  `monodromy` and `multipliers` of the orbits remain those of
+        the oscillator's own collision.
+    """
+
+    collision: Callable[[float], Kick] | None = None
+
+    def kick(self, speed: float, deviations: Array | None = None) -> Kick:
+        """One collision with approach velocity `speed` [m/s], from rest or from given deviations.
+
+        From rest, that of `DelayedRestitution` is the one that repeats once in m drive periods.
+
+        Raises
+        ------
+        ValueError
+            If `speed` is not finite and above zero.
+        NotPeriodic
+            If the collision does not end within half a drive period, or a delay takes up the m periods.
+        """
+        require_within("speed", speed, "m/s", above=0)
+        if deviations is not None:
+            return self._simulated(speed, deviations)
+        if self.collision is not None:
+            return self.collision(speed)
+        if self.oscillator.motion().law == DELAYED:
+            return self._waiting(speed)
+        return self._simulated(speed, np.zeros((self.oscillator.n_modes, 2)))
+
+    def _simulated(self, speed: float, w: Array) -> Kick:
+        """The collision from the deviations `w`, shape (n_modes, 2)."""
+        n, window = self.oscillator.n_modes, WINDOW * self.oscillator.period
+        p, r = self.oscillator.motion().tip(w)
+        amplitude, phase = self.oscillator.drive_at(self.oscillator.stop.gap - p, speed - r)
+        motion = self.oscillator.with_amplitude(amplitude).motion()
+        vary = variation(motion, self.oscillator.tip_response())
+        (u, v), record = w.T.copy(), np.full((MOST_TOUCHES + 1, 4 + 2 * n), np.nan)
+        outcome = flow_from_touch(vary, phase, u, v, window, np.empty((0, 0)), record)
+        if outcome != FEWER_TOUCHES:
+            raise lost(outcome, phase, speed, "the collision does not end within half a drive period")
+        touches = int(np.count_nonzero(np.isfinite(record[:, 0])))
+        _start, end, _approach, rebound = record[touches - 1, :4].tolist()
+        left = record[touches - 1, 4:].reshape(2, n).T
+        # the flow turned back to the touch, less what was there
+        jump = np.einsum("kij,kj->ki", free_flow(motion, -end), left) - w
+        return Kick(speed=speed, jump=jump, touches=touches, duration=end, leaves=rebound < 0.0)
+
+    def _waiting(self, speed: float) -> Kick:
+        """The touch of `DelayedRestitution` that repeats once in m drive periods."""
+        motion, gap = self.oscillator.motion(), self.oscillator.stop.gap
+        restitution, _slope, delay, _slope = numbers_at(motion.table, speed)
+        left = self.period * self.oscillator.period - delay
+        w, angle = motion.drive, motion.drive * delay
+        turn = np.array([[np.cos(angle), np.sin(angle) / w], [-w * np.sin(angle), np.cos(angle)]])
+        before, after = np.array([gap, speed]), np.array([gap, -restitution * speed])
+        flow = free_flow(motion, max(left, 0.0))[0]
+        back = np.eye(2) - flow @ turn
+        if left <= 0.0 or abs(np.linalg.det(back)) <= SINGULAR:
+            raise NotPeriodic(
+                time=delay,
+                gap=0.0,
+                velocity=speed,
+                detail=f"no orbit of period {self.period} has a touch that waits for {delay:g} s",
+            )
+        steady = np.linalg.solve(back, before - flow @ after)
+        met, left_with = before - steady, after - turn @ steady
+        jump = free_flow(motion, -delay)[0] @ left_with - met
+        return Kick(
+            speed=speed, jump=motion.least_change(jump), duration=float(delay), leaves=restitution > 0.0
+        )
+
+    def error(self, orbit: SingleImpactOrbit) -> float:
+        """Estimated error of the excess of an orbit: the change when its collision starts from its own
+        ringing."""
+        ringing = orbit.deviations.reshape(2, -1).T
+        return self.orbit_of(self.kick(orbit.speed, ringing)).excess - orbit.excess
+
+    def _search(self, speeds: tuple[float, float]) -> tuple[list[float], float | None]:
+        """Logarithms of velocities in a range over 2 pi f gap, rising, with that of least excess inside."""
+        from scipy.optimize import minimize_scalar  # slow to import
+
+        low, high = require_array("speeds", speeds, "[1]", shape=(2,), words="two rising numbers above zero")
+        require(0.0 < low < high, f"speeds is {shown(speeds)}; it must be two rising numbers above zero")
+        unit = self.oscillator.unit_speed
+        grid = np.linspace(math.log(low * unit), math.log(high * unit), GRID).tolist()
+        values = [self._excess(x) for x in grid]
+        # a contact that is soft at low speed makes A(v) start from grazing upwards: look for minima inside
+        inside = [i for i in range(1, GRID - 1) if values[i - 1] > values[i] <= values[i + 1]]
+        if not inside:
+            return grid, None
+        i = min(inside, key=lambda k: values[k])
+        bracket, options = tuple(grid[i - 1 : i + 2]), {"xtol": 1e-9}
+        best = float(minimize_scalar(self._excess, bracket=bracket, method="brent", options=options).x)
+        return sorted([*grid, best]), best
+
+    def _excess(self, x: float) -> float:
+        """F/F_g - 1 of the orbit with x = log v."""
+        return self.excess(math.exp(x))
+
+    def orbits(self, excess: float, speeds: tuple[float, float] = SPEEDS) -> tuple[SingleImpactOrbit, ...]:
+        """The orbits at F/F_g - 1 = `excess` > -1, by rising speed, among `speeds` over 2 pi f gap."""
+        from scipy.optimize import brentq  # slow to import
+
+        require_within("excess", excess, "[1]", above=-1)
+
+        def above(x: float) -> float:
+            return self._excess(x) - excess
+
+        places = pairwise(self._search(speeds)[0])
+        roots = [brentq(above, a, b, xtol=1e-12) for a, b in places if above(a) * above(b) < 0.0]
+        return tuple(self.orbit(math.exp(root)) for root in roots)
+
+    def fold(self, speeds: tuple[float, float] = SPEEDS) -> SingleImpactOrbit | None:
+        """The orbit of smallest amplitude, where the p_m orbit ends; None if it is not inside the range.
+
+        Parameters
+        ----------
+        speeds : (float, float)
+            Range of approach velocities over 2 pi f gap, in which the amplitude is searched on a logarithmic
+            grid and then minimised by Brent's method.
+        """
+        lowest = self._search(speeds)[1]
+        return None if lowest is None else self.orbit(math.exp(lowest))

@@ -1,0 +1,255 @@
+r"""Orbits with one collision every m drive periods: closed by linear algebra, exact under Newton's law.
+
+    q_k = Z Im(H_k exp(i w t)) + u_k,   H_k = Gamma_k w^2/(omega_k^2 - w^2 + i c_k w),   w = 2 pi f
+
+u_k is free. A collision at approach speed v changes the deviations (u_k, u_k') by B_k(v), referred to its
+first touch. With N the free flow of mode k over m/f, G = det N = exp(-c_k m/f) and D = det(I - N) = 1 - tr N
++ G, the deviations that repeat after m/f are, just before the touch,
+
+    (I - N)^-1 N B = (N - G I) B/D,      and B more just after it.
+
+**Amplitude against speed.** With p = sum phi_k u_k, r = sum phi_k u_k' before the touch, and the steady tip
+amplitude A = Z |sum phi_k H_k|, the conditions x = gap, x' = v are
+
+    A sin(psi) = gap - p,   A cos(psi) = (v - r)/w,   psi = w t_0 + arg sum phi_k H_k.
+
+Hence
+
+    A^2 = (gap - p)^2 + ((v - r)/w)^2,      F/F_g - 1 = A/gap - 1.                                      (a)
+
+**Newton's law.** x' -> -e x' at once is the kick B_k = (0, -(1 + e) phi_k v/sum phi^2), linear in v, so that
+p = s v and (v - r)/w = b v: (a) is a quadratic. If s > 0, A has a least value, the **fold** of the node
+(larger v) and the saddle:
+
+    v = s gap/(s^2 + b^2),   A_m/gap = F_m/F_g = 1/sqrt(1 + k^2),   k = s/b.
+
+For one mode k = -w N12 (1 + e)/(1 - N11 + e N22 - e G), which is the F_m of Eq. (1) at any amplitude.
+
+All this is exact as long as the tip does not reach the wall at another time: `SingleImpactOrbit.admissible`
+says whether it does. Units: SI with mass-normalised modes (q in m kg^0.5).
+Sources: letter of 1996, Eq. (1) and Fig. 3; A. B. Nordmark, J. Sound Vib. 145 (1991) 279.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beam.parameters import InvalidValue, require, require_kind, require_whole, require_within
+from contact.flight.modal_flow import free_flow
+from contact.laws import NewtonRestitution
+from contact.maps.nordmark import restitution_of
+from contact.maps.nordmark_orbits import positive_roots
+from contact.orbits.families.family import CLOSING, Release, TouchOrbit
+from contact.oscillator import ImpactOscillator
+from contact.sensitivity.touch_flow import flown
+from contact.stop import Stop
+from contact.touch.newton import newton_impact
+
+Array = NDArray[np.float64]
+SINGULAR = 1e-13  # a D below this is rounding of 1 - tr N + G, terms of size 1: the mode is back after m/f
+HEIGHT = 1e-13  # the same in units of the gap: rounding of the height at which the flight ends
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Kick:
+    """What one collision does to all modes.
+
+    Parameters
+    ----------
+    speed : float
+        Approach speed v of the tip [m/s].
+    jump : ndarray, shape (n_modes, 2)
+        B: jumps of displacement and velocity of the modes, referred to the first touch.
+    touches : int
+        Contacts in the collision.
+    duration : float
+        From first touch to last release [s].
+    leaves : bool
+        Whether the tip then has a velocity away from the wall, or is at rest on it.
+    """
+
+    speed: float
+    jump: Array
+    touches: int = 1
+    duration: float = 0.0
+    leaves: bool = True
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SingleImpactOrbit(TouchOrbit):
+    """An orbit with one collision in m drive periods, built from the `kick` of that collision."""
+
+    kick: Kick
+
+    @property
+    def after(self) -> Array:
+        """Deviations (u, u') just after the collision, referred to its first touch, shape (n_modes, 2)."""
+        return self.deviations.reshape(2, -1).T + self.kick.jump
+
+    def release(self) -> Release:
+        """The end of the collision."""
+        motion, wait = self.oscillator.motion(), self.kick.duration
+        u, v = np.einsum("kij,kj->ik", free_flow(motion, wait), self.after)
+        slack = CLOSING * self.duration + HEIGHT * motion.gap / self.speed
+        return Release(wait, u, v, self.kick.leaves, slack)
+
+    def monodromy(self) -> Array:
+        """That of the oscillator's own collision (``contact.sensitivity.touch_flow``), met as this orbit
+        meets it.
+
+        Raises
+        ------
+        NotPeriodic
+            If that collision has fewer touches than the kick, or does not end.
+        """
+        tangent = flown(self.oscillator, self.period, self.phase, self.deviations, self.kick.touches)[1]
+        return tangent[:-2, :-2]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SingleImpactFamily(ABC):
+    """The orbits with one collision in m drive periods, from the kick of that collision.
+
+    Parameters
+    ----------
+    oscillator : ImpactOscillator
+        Without constant load; its drive amplitude does not matter.
+    period : int
+        m, one or more.
+    """
+
+    oscillator: ImpactOscillator
+    period: int
+
+    def __post_init__(self) -> None:
+        require_kind("oscillator", self.oscillator, ImpactOscillator, "an ImpactOscillator")
+        require(self.oscillator.load is None, "load is given; it must be None for orbits with one collision")
+        self.oscillator.grazing_amplitude()  # the drive moves the tip
+        require_whole("period", self.period, "drive periods")
+
+    @abstractmethod
+    def kick(self, speed: float) -> Kick:
+        """The collision with approach speed `speed`, above zero [m/s]."""
+
+    @cached_property
+    def flow(self) -> Array:
+        """N, mode by mode, shape (n_modes, 2, 2)."""
+        return free_flow(self.oscillator.motion(), self.period * self.oscillator.period)
+
+    @cached_property
+    def _closing(self) -> tuple[Array, NDArray[np.bool_]]:
+        """(N - G I)/D mode by mode, and which modes return to themselves after m/f (D = 0)."""
+        shrink = np.exp(-self.oscillator.motion().decay * self.period * self.oscillator.period)
+        distance = np.abs(1.0 - self.flow[:, 0, 0] - self.flow[:, 1, 1] + shrink)
+        trapped = distance <= SINGULAR
+        sizes = np.where(trapped, 1.0, distance)[:, None, None]
+        return (self.flow - shrink[:, None, None] * np.eye(2)) / sizes, trapped
+
+    def closed(self, jump: Array) -> Array:
+        """(N - G I) B/D: deviations before a collision that repeats, from its jump B; both (n_modes, 2).
+
+        ValueError if a mode that is kicked returns to itself after m/f: then nothing is periodic.
+        """
+        matrices, trapped = self._closing
+        back = np.flatnonzero(trapped & np.any(jump != 0.0, axis=1))  # one that is not kicked stays at rest
+        if back.size:
+            raise InvalidValue(
+                f"omega[{back[0]}] is {self.oscillator.model.omega[back[0]]} rad/s, a mode that is back "
+                f"after {self.period} drive periods; it must have damping or another frequency"
+            )
+        closed: Array = np.einsum("kij,kj->ki", matrices, jump)
+        return closed
+
+    def excess(self, speed: float) -> float:
+        """F/F_g - 1 of the orbit that meets the wall at `speed`, above zero [m/s]; errors as of `orbit`."""
+        kick, gap = self.kick(require_within("speed", speed, "m/s", above=0)), self.oscillator.stop.gap
+        p, r = self.oscillator.motion().tip(self.closed(kick.jump))
+        return excess_of(p / gap, (kick.speed - r) / self.oscillator.unit_speed)
+
+    def orbit_of(self, kick: Kick) -> SingleImpactOrbit:
+        """The orbit on which `kick` happens once in m drive periods."""
+        before, gap = self.closed(kick.jump), self.oscillator.stop.gap
+        p, r = self.oscillator.motion().tip(before)
+        rate = kick.speed - r
+        amplitude, phase = self.oscillator.drive_at(gap - p, rate)
+        return SingleImpactOrbit(
+            oscillator=self.oscillator.with_amplitude(amplitude),
+            period=self.period,
+            excess=excess_of(p / gap, rate / self.oscillator.unit_speed),
+            speed=kick.speed,
+            phase=phase,
+            displacement=before[:, 0].copy(),
+            velocity=before[:, 1].copy(),
+            kick=kick,
+        )
+
+    def orbit(self, speed: float) -> SingleImpactOrbit:
+        """The orbit that meets the wall at `speed`, above zero [m/s].
+
+        Raises
+        ------
+        ValueError
+            If `speed` is not finite and above zero.
+        NotPeriodic
+            If the collision does not end, or has no orbit.
+        """
+        return self.orbit_of(self.kick(require_within("speed", speed, "m/s", above=0)))
+
+
+def excess_of(p: float, rate: float) -> float:
+    """A/gap - 1 of Eq. (a), from p and (v - r)/w over the gap, without the cancellation."""
+    square = p * (p - 2.0) + rate * rate
+    return float(square / (1.0 + math.sqrt(max(1.0 + square, 0.0))))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MaximalFamily(SingleImpactFamily):
+    """The orbits under Newton's law, in closed form; TypeError for an oscillator with another law."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        restitution_of(self.oscillator)
+        _ = self.arms  # every mode that is kicked comes to rest
+
+    @classmethod
+    def from_oscillator(
+        cls, oscillator: ImpactOscillator, *, period: int, restitution: float | None = None
+    ) -> Self:
+        """The orbits of an oscillator; `restitution` [1] replaces its law."""
+        if restitution is not None:
+            require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
+            law = NewtonRestitution(local_restitution=restitution)
+            oscillator = replace(oscillator, stop=Stop(gap=oscillator.stop.gap, law=law))
+        return cls(oscillator=oscillator, period=period)
+
+    def kick(self, speed: float) -> Kick:
+        """B of Newton's law."""
+        motion, velocity = self.oscillator.motion(), np.zeros(self.oscillator.n_modes)
+        newton_impact(motion, velocity, speed, motion.number0)
+        jump = np.column_stack([np.zeros(velocity.size), velocity])
+        return Kick(speed=speed, jump=jump, leaves=motion.number0 > 0.0)
+
+    @cached_property
+    def arms(self) -> tuple[float, float]:
+        """(s, b): p and (v - r)/w of Eq. (a) per unit approach speed [s]."""
+        s, r = self.oscillator.motion().tip(self.closed(self.kick(1.0).jump))
+        return float(s), float((1.0 - r) / self.oscillator.driven.angular_frequency)
+
+    def orbits(self, excess: float) -> tuple[SingleImpactOrbit, ...]:
+        """The orbits at F/F_g - 1 = `excess` > -1, 0 to 2, by rising speed (of two, saddle, then node)."""
+        require_within("excess", excess, "[1]", above=-1)
+        s, b = self.arms
+        roots = positive_roots(s * s + b * b, -2.0 * s, -excess * (2.0 + excess))
+        return tuple(self.orbit(self.oscillator.stop.gap * root) for root in roots)
+
+    def fold(self) -> SingleImpactOrbit | None:
+        """The orbit of least amplitude, at which node and saddle meet; None if s <= 0 (no fold)."""
+        s, b = self.arms
+        return self.orbit(s * self.oscillator.stop.gap / (s * s + b * b)) if s > 0.0 else None

@@ -1,0 +1,204 @@
+r"""One column of a chart: the amplitude raised and lowered again at one drive frequency, in a compiled loop.
+
+    column = AmplitudeScan(oscillator=oscillator, most_cycles=1024)(frequency=22.2, excesses=excesses)
+    column.period[0], column.period[1]        # upward and downward scan, over the excesses in rising order
+
+At each amplitude the motion starts from the physical state (q, q') in which the amplitude before has left it,
+and is followed in blocks of `BLOCK` drive periods until it is known
+(``contact.orbits.observation.repetition``), at most for `most_cycles`:
+
+- **No impact any more**: period 1 without impacts, and the state is set on the steady motion.
+- **A periodic orbit** of period p <= L, for L = 16, 32, 64 as soon as 2 L strobes are there, to `TOLERANCE`
+  of the gap.  The next state follows from the last one alone, so that one whole period that repeats is all
+  that can be asked, and short periods need not wait for the longest.
+- **Nearly periodic at the bound.**  Next to a fold the motion comes to rest on its orbit as slowly as one
+  likes.  After `most_cycles` a repetition to `ROUGH` of that is taken for the period too; such cells have
+  cycles >= most_cycles.
+- Otherwise **period 0**: chaos, a period above 64, or a transient longer than `most_cycles`.  Its impacts are
+  those of the last 128 strobes.
+
+The end of the upward scan starts the downward one.  An amplitude that fails is marked with its reason, and
+the next one goes on from the last state that was reached.  The amplitude enters the motion linearly, so that
+the loop scales the steady motion at grazing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from beam.parameters import InvalidValue, require_array, require_kind, require_whole
+from contact.engine.event_loop import DONE, STATE
+from contact.engine.start import failure
+from contact.flight.modal_flow import tip_rounding, tip_state
+from contact.flight.motion import Motion
+from contact.machine.compiled import kernel
+from contact.maps.strobed_motion import at_amplitude, strobed_motion, strobed_system
+from contact.maps.stroboscope import StroboscopicMap
+from contact.orbits.observation.repetition import free_for_good, repetition
+from contact.orbits.observation.settling import TOLERANCE
+from contact.oscillator import ImpactOscillator
+from contact.trajectory import OUTSIDE
+
+LARGEST_PERIOD = 64
+"""Longest period told, as in the other studies."""
+
+SHORTEST = 16
+"""Strobes that have to repeat at least: a quarter of LARGEST_PERIOD, twice the letter's common periods."""
+
+ROUGH = 1e4
+"""Tolerance at the bound over the usual one, i.e. 1e-5 of the gap: after 512 drive periods an orbit of period
+3 whose multiplier is 0.97 still changes by 1e-6 per period."""
+
+BLOCK = 32
+"""Drive periods between two looks: the least that tells a period, 2 SHORTEST."""
+
+BEHIND = -1
+"""Status of a state that the amplitude before has left behind the stop, where no flight can start."""
+
+EXTRA = 3
+"""Numbers of a state beside (q, q'): regime, wait, rebound."""
+
+
+@kernel
+def settled_column(system, amplitudes, state, most_cycles, tolerance, found, u, v, runs):
+    """Settle at each of `amplitudes` in turn, or until one fails.
+
+    Parameters
+    ----------
+    system : StrobedSystem
+        At grazing.
+    amplitudes : ndarray, shape (n,)
+        Base amplitudes over that at grazing [1].
+    state : ndarray, shape (2 n_modes + 3,)
+        Start; overwritten by the last state that was reached.
+    most_cycles : int
+    tolerance : float
+        Of a repetition, in the unit of the coordinates [m].
+    found : ndarray of int, shape (n, 3)
+        Period, impacts and drive periods spent; overwritten.
+    u, v, runs : ndarray, shapes (n_modes,), (n_modes,) and (1,)
+        Deviations and run (`STATE`), at the end where a failure happened; overwritten.
+
+    Returns
+    -------
+    done, status : int
+        Amplitudes done; DONE, or why the next one failed.
+    """
+    n, run, capacity = system.motion.size, runs[0], 2 * LARGEST_PERIOD
+    points, impacts = np.empty((capacity, 2 * n)), np.zeros(capacity, dtype=np.int64)
+    as_is = np.empty(0)
+    for a in range(amplitudes.size):
+        local = at_amplitude(system, amplitudes[a])
+        here, mean = local.motion, local.mean.copy()
+        local.mean[:] = 0.0  # the points are those of the deviations
+        u[:], v[:] = state[:n] - mean[:n], state[n : 2 * n] - mean[n:]
+        run.regime, run.wait, run.rebound = int(state[2 * n]), state[2 * n + 1], state[2 * n + 2]
+        run.order, run.period, run.steps, run.clock, run.root, run.speed = 0, 0, 0, 0.0, -1.0, -1.0
+        rows, cycles, period, status = 0, 0, 0, DONE
+        if run.regime == OUTSIDE and tip_state(here, 0.0, u, v)[0] > tip_rounding(here, u, v):
+            status = BEHIND
+        while status == DONE and period == 0:
+            if run.regime == OUTSIDE and free_for_good(here, u, v):
+                u[:], v[:] = 0.0, 0.0
+                period, rows = 1, 0
+            elif cycles >= most_cycles:
+                period = repetition(points, impacts, rows, np.int64(LARGEST_PERIOD), ROUGH * tolerance)
+                break
+            else:
+                if rows == capacity:
+                    rows -= BLOCK
+                    points[:rows], impacts[:rows] = points[BLOCK:], impacts[BLOCK:]
+                new = slice(rows, rows + BLOCK)
+                status = strobed_motion(local.table, local, as_is, u, v, runs, points[new], impacts[new])
+                rows, cycles, stretch = rows + BLOCK, cycles + BLOCK, np.int64(SHORTEST)
+                while status == DONE and period == 0 and 2 * stretch <= rows:
+                    period = repetition(points, impacts, rows, stretch, tolerance)
+                    stretch *= 2
+        if status != DONE:
+            return a, status
+        state[:n], state[n : 2 * n] = u + mean[:n], v + mean[n:]
+        state[2 * n], state[2 * n + 1], state[2 * n + 2] = run.regime, run.wait, run.rebound
+        hits = impacts[max(0, rows - period) if period > 0 else 0 : rows].sum()
+        found[a, 0], found[a, 1], found[a, 2] = period, hits, cycles
+    return amplitudes.size, DONE
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ScannedColumn:
+    """What was found, all of shape (2, n_excesses): upward scan first, excesses rising in both.
+
+    Parameters
+    ----------
+    period : ndarray of int
+        Of the settled orbit in drive periods; 0 if none was found, -1 where the computation failed.
+    impacts, cycles : ndarray of int
+        Impacts in one such period; drive periods spent; -1 where the computation failed.
+    reason : ndarray of str
+        Why the computation failed; empty if it did not.
+    """
+
+    period: NDArray[np.int64]
+    impacts: NDArray[np.int64]
+    cycles: NDArray[np.int64]
+    reason: NDArray[np.str_]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class AmplitudeScan:
+    """Scans of one oscillator, at any drive frequency.
+
+    Parameters
+    ----------
+    oscillator : ImpactOscillator
+        A driven one; its own frequency and amplitude do not matter.
+    most_cycles : int
+        Bound of the drive periods at one amplitude.
+    """
+
+    oscillator: ImpactOscillator
+    most_cycles: int
+
+    def __post_init__(self) -> None:
+        require_kind("oscillator", self.oscillator, ImpactOscillator, "an ImpactOscillator")
+        _ = self.oscillator.driven
+        why = f", to see a period of up to {LARGEST_PERIOD}"
+        require_whole("most_cycles", self.most_cycles, "drive periods", low=2 * LARGEST_PERIOD, why=why)
+
+    def __call__(self, frequency: float, excesses: ArrayLike) -> ScannedColumn:
+        """The column at drive `frequency` [Hz] over rising `excesses` F/F_g - 1 [1]."""
+        rising = require_array("excesses", excesses, "[1]", dimensions=1, words="one row of rising numbers")
+        if rising.size == 0 or not np.all(np.diff(rising) > 0.0):
+            raise InvalidValue("excesses must be at least one number, in rising order")
+        drive, n = replace(self.oscillator.driven, frequency=frequency), self.oscillator.n_modes
+        oscillator = replace(self.oscillator, drive=drive).with_excess(0.0)
+        steady = StroboscopicMap(oscillator=oscillator).at(float(rising[0])).steady()
+        state = np.concatenate([steady.displacement, steady.velocity, np.zeros(EXTRA)])
+        system, tolerance = strobed_system(oscillator), TOLERANCE * oscillator.stop.gap
+        u, v, runs = np.empty(n), np.empty(n), np.zeros(1, dtype=STATE)
+        path = np.concatenate([rising, rising[::-1]])
+        found, reasons, at = np.full((path.size, 3), -1, dtype=np.int64), [""] * path.size, 0
+        while at < path.size:
+            done, status = settled_column(
+                system, 1.0 + path[at:], state, self.most_cycles, tolerance, found[at:], u, v, runs
+            )
+            at += done
+            if status != DONE:
+                # the next amplitude goes on from the last state that was reached
+                motion = oscillator.with_excess(float(path[at])).motion()
+                reasons[at], at = _reason(status, motion, runs, u, v), at + 1
+        period, impacts, cycles, reason = (
+            np.array([every[: rising.size], every[: rising.size - 1 : -1]])
+            for every in (*found.T, np.array(reasons))
+        )
+        return ScannedColumn(period=period, impacts=impacts, cycles=cycles, reason=reason)
+
+
+def _reason(status: int, motion: Motion, runs: np.ndarray, u: np.ndarray, v: np.ndarray) -> str:
+    """One sentence for an amplitude that failed."""
+    if status == BEHIND:
+        return f"the amplitude before left the tip {tip_state(motion, 0.0, u, v)[0]:.3g} m behind the stop"
+    error = failure(status, motion, runs, u, v)
+    return f"{type(error).__name__}: {error}"

@@ -1,0 +1,124 @@
+r"""The cloud of strobe points around an orbit under noise of the drive, to first order.
+
+In drive period n the amplitude is (1 + e_n) times that of the orbit, e_n Gaussian of standard deviation sigma
+and memory r: e_(n+1) = r e_n + sqrt(1 - r^2) sigma xi_n, white for r = 0; r = exp(-1/(f t_c)) for a drift of
+correlation time t_c.  With M_n the derivative of a strobe by the one before and b_n by e_n, the deviations
+obey x_(n+1) = M_n x_n + b_n e_n, and the covariance C_n of (x_n, e_n)
+
+    C_(n+1) = A_n C_n A_n^T + Q,   A_n = [[M_n, b_n], [0, r]],   Q = diag(0, (1 - r^2) sigma^2),
+
+repeats after the m periods of the orbit (as in Simpson, Hogan and Kuske, arXiv:1207.2703, for Nordmark's map
+and white noise).  White noise of the read-out adds its own covariance.  It holds as long as no touch comes or
+goes within the cloud, and ends at grazing, where b_n or M_n has a square root's slope, and at a fold, where a
+multiplier becomes 1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import reduce
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beam.parameters import require, require_kind, require_whole, require_within
+from contact.errors import NotPeriodic
+from contact.maps.strobed_nordmark import StrobedNordmarkMap
+from contact.maps.stroboscope import StroboscopicMap
+from contact.orbits.observation.repetition import require_orbit
+from contact.sensitivity.change import Change
+from contact.sensitivity.motion import motion_derivatives
+from contact.trajectory import State
+
+Array = NDArray[np.float64]
+Strobed = StroboscopicMap | StrobedNordmarkMap
+
+
+def strobe_derivatives(strobed: Strobed, state: State | Array, period: int) -> list[tuple[Array, Array]]:
+    """M_n and b_n along `period` drive periods from `state`, in the coordinates of the points.
+
+    Parameters
+    ----------
+    strobed : StroboscopicMap or StrobedNordmarkMap
+        At the excess of the orbit.
+    state : State or ndarray
+        A strobe, off the stop.
+    period : int
+        m, in drive periods.
+
+    Returns
+    -------
+    list of ndarray, shapes (n_coordinates, n_coordinates) and (n_coordinates,), in their unit
+        A pair for each period; an amplitude counts relative to that of the orbit.
+
+    Raises
+    ------
+    ValueError
+        If a strobe falls into a contact.
+    NoDerivative
+        If the motion grazes the stop, or rests on it.
+    """
+    require_kind("strobed", strobed, (StroboscopicMap, StrobedNordmarkMap), "a strobed oscillator or map")
+    require_whole("period", period, "drive periods")
+    if isinstance(strobed, StrobedNordmarkMap):
+        jacobians, _end = strobed.jacobians(state, period)  # type: ignore[arg-type]
+        pull = strobed.map.rho_per_excess + strobed.rho
+        return [(jacobian, np.array([pull, 0.0])) for jacobian, _span in jacobians]
+    oscillator = strobed.oscillator
+    here, found = require_kind("state", state, State, "a State"), list[tuple[Array, Array]]()
+    change, ones = Change(amplitude=oscillator.driven.amplitude), np.ones(oscillator.n_modes)
+    weight = strobed.coordinates(State(displacement=ones, velocity=ones))
+    for _ in range(period):
+        step = motion_derivatives(oscillator, replace(here, time=0.0), [change], periods=1)
+        tangent = weight[:, None] * step.strobes[0]
+        found.append((tangent[:, :-1] / weight, tangent[:, -1]))
+        here = step.run.end
+    return found
+
+
+def cloud(
+    strobed: Strobed, state: State | Array, period: int, *, deviation: float, memory: float = 0.0
+) -> Array:
+    """Covariance of the points of a stable orbit at its strobes, those of ``strobed.orbit(state, period)``.
+
+    Parameters
+    ----------
+    strobed, state, period
+        Those of `strobe_derivatives`: a periodic orbit.
+    deviation : float
+        sigma, relative to the amplitude [1].
+    memory : float
+        r, from 0 to below 1 [1].
+
+    Returns
+    -------
+    ndarray, shape (period, n_coordinates, n_coordinates)
+        In the unit of the points squared.
+
+    Raises
+    ------
+    NotPeriodic
+        If the state lies on no orbit of this period, or the orbit is not stable.
+    ValueError, NoDerivative
+        As `strobe_derivatives`.
+    """
+    require_within("deviation", deviation, "[1]", low=0)
+    require_within("memory", memory, "[1]", low=0)
+    require(memory < 1.0, f"memory is {memory} [1]; it must be below 1")
+    made = strobe_derivatives(strobed, state, period)
+    require_orbit(strobed, state, period)
+    steps = [np.block([[m, b[:, None]], [np.zeros((1, b.size)), np.array([[memory]])]]) for m, b in made]
+    size = len(steps[0])
+    source = np.zeros((size, size))
+    source[-1, -1] = (1.0 - memory**2) * deviation**2
+    whole = reduce(lambda done, step: step @ done, steps, np.eye(size))
+    if not np.max(np.abs(np.linalg.eigvals(whole))) < 1.0:
+        raise NotPeriodic(time=0.0, gap=0.0, velocity=0.0, detail="an unstable orbit has no cloud")
+    gathered = reduce(lambda c, step: step @ c @ step.T + source, steps, np.zeros((size, size)))
+
+    from scipy.linalg import solve_discrete_lyapunov  # slow to import
+
+    found = [solve_discrete_lyapunov(whole, gathered)]
+    for step in steps:
+        found.append(step @ found[-1] @ step.T + source)
+    return np.array(found)[1:, :-1, :-1]

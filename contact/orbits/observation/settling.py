@@ -1,0 +1,230 @@
+"""Settling on a periodic orbit and telling its period.
+
+**Repetition.** The motion is followed in blocks.  After each block the last points are compared with those
+before them (``contact.orbits.observation.repetition``), to `TOLERANCE` of the scale.  (A transient that
+alternates about p_m while it dies out, next to a period doubling, repeats after 2m first: a period is told
+when a repetition `ALIKE` times as rough has the same one.)  A motion that has not settled after `most_cycles`
+periods gets period 0: chaos, a longer period, or a transient that is not over.  Any strobed map settles this
+way.
+
+**Proof.** A transient of an impact oscillator ends as soon as its orbit is known, not when it has been
+reached.  A motion that seems to repeat to a part in a thousand is compared with a periodic orbit in its
+neighbourhood, found by shooting (``contact.orbits.families.shooting``) from the motion itself.  If that orbit
+is stable, touches the stop only where it should (certified), and the motion has come closer to it over a
+whole block of drive periods by what its largest multiplier says,
+
+    distance(n + block) <= SLACK |mu|^(block/m) distance(n) + rounding,
+
+the motion is in the linear neighbourhood of the orbit and ends on it: the rest of the transient need not be
+computed.  The motion without impacts is settled when the free motion that is left cannot reach the stop any
+more.  Near a fold, where |mu| comes close to 1, this saves thousands of periods.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+
+from beam.parameters import Refusal, require_whole, require_within
+from contact.errors import ContactError
+from contact.maps.protocol import require_map
+from contact.maps.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap
+from contact.orbits.families.periodic_orbit import PeriodicOrbit
+from contact.orbits.families.shooting import Shooting
+from contact.orbits.observation.repetition import free_for_good, period_of
+from contact.trajectory import State
+from contact.virtual_motion import deviations
+
+S = TypeVar("S")
+
+TOLERANCE = 1e-9
+"""Largest change over one period of a settled orbit, relative to the scale of its coordinates.  Rounding is
+at 1e-14; the slow drift past a vanished fold at relative distance 1e-7 moves by more than this per period."""
+
+ALIKE = 1000.0
+"""Repetitions of this ratio tell the same period, or the shorter one is waited for: next to a doubling with a
+multiplier of -0.999 points m apart differ by 1000 times as much as those 2m apart."""
+
+BELOW = -1e-3
+"""Excess of the motion without impacts from which the drive is raised: four times the letter's amplitude
+stability below grazing."""
+
+FIRST_LOOK = 1e-3
+"""Repetition, relative to the gap, at which an orbit is looked for: a search costs some ten drive periods."""
+
+CLOSER = 0.5
+"""A search in vain is made again when the motion repeats better by this factor, or much worse: in the slow
+passage of a vanished fold, and in chaos next to an unstable orbit, every block would be searched."""
+
+SLACK = 1.5
+"""Factor on the decay that the multiplier promises: the other multipliers and curvature need some room."""
+
+NEAR = 1e-3
+"""Distance from the orbit, relative to the gap, within which the linear neighbourhood is looked for."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Settled(Generic[S]):
+    """What a motion settled on.
+
+    Parameters
+    ----------
+    period : int
+        Smallest period in strobes, 0 if none was found.
+    impacts : int
+        Impacts in one such period (or in the last block, if there is none).
+    end : State
+        The state reached; where the orbit was proved, a state on it.
+    cycles : int
+        Periods of the drive that it took.
+    points : ndarray, shape (block, n_coordinates)
+        The last strobed points.
+    """
+
+    period: int
+    impacts: int
+    end: S
+    cycles: int
+    points: np.ndarray
+
+
+def settle(
+    strobed: StrobedMap[S],
+    state: S,
+    *,
+    most_cycles: int,
+    largest_period: int = 64,
+    tolerance: float = TOLERANCE,
+    prove: bool = True,
+) -> Settled[S]:
+    """Follow a motion until it is known to be periodic, or for `most_cycles` drive periods.
+
+    Parameters
+    ----------
+    strobed : StrobedMap
+        The beam, Eq. (1) or the Nordmark map at one drive amplitude.
+    state : State
+        Where to start.
+    most_cycles : int
+        The bound on the run; a block of 2 * `largest_period` is run in any case.
+    largest_period : int
+    tolerance : float
+        Relative to the scale of the strobed map.
+    prove : bool
+        End the transient of a StroboscopicMap where its orbit is proved; otherwise, and for any other map,
+        where it repeats.
+    """
+    require_map(strobed)
+    require_whole("most_cycles", most_cycles, "drive periods", low=0)
+    largest_period = require_whole("largest_period", largest_period, "drive periods")
+    fine = require_within("tolerance", tolerance, "[1]", low=0) * strobed.scale
+    block, cycles = 2 * largest_period, 0
+    proof: Any = None
+    if prove and isinstance(strobed, StroboscopicMap):
+        proof = _Proof(strobed, largest_period, fine)
+    while True:
+        run = strobed.orbit(state, block)
+        state, cycles = run.end, cycles + block
+        period = period_of(run.points, run.impacts, largest_period=largest_period, tolerance=fine)
+        over = cycles >= most_cycles
+        if not over and period != period_of(
+            run.points, run.impacts, largest_period=period, tolerance=ALIKE * fine
+        ):
+            period = 0
+        if proof is not None and not over and period == 0:
+            period, run = proof.after(run)
+        if over or period:
+            hits = int(run.impacts[-period:].sum())
+            return Settled(period=period, impacts=hits, end=run.end, cycles=cycles, points=run.points)
+
+
+def born(
+    strobed: StrobedMap[S], excess: float = 1e-3, *, below: float = BELOW, most_cycles: int = 4000
+) -> Settled[S]:
+    """What the motion without impacts at `below` turns into when the drive is raised to `excess` in one step.
+
+    Parameters
+    ----------
+    strobed : StrobedMap
+        Its own amplitude does not matter.
+    excess, below : float
+        F/F_g - 1 after and before the step [1].
+    most_cycles : int
+        Bound of the transient: orbits born at grazing settle within some hundred drive periods.
+    """
+    require_map(strobed)
+    return settle(strobed.at(excess), strobed.at(below).steady(), most_cycles=most_cycles)
+
+
+def born_period(
+    strobed: StrobedMap[Any], excess: float = 1e-3, *, below: float = BELOW, most_cycles: int = 4000
+) -> int:
+    """Period in drive periods of what is `born` at `excess`; 0 for none up to 64."""
+    return born(strobed, excess, below=below, most_cycles=most_cycles).period
+
+
+def orbit_near(strobed: StroboscopicMap, state: State, period: int, impacts: int) -> PeriodicOrbit | None:
+    """The stable, admissible orbit next to `state`, by shooting; None if there is none."""
+    try:
+        family = Shooting(oscillator=strobed.oscillator, period=period, impacts=impacts)
+        orbit = family.from_state(replace(state, time=0.0))
+    except (ContactError, Refusal):
+        return None
+    return orbit if orbit.stable and orbit.admissible else None
+
+
+Cycle = tuple[PeriodicOrbit, StrobedOrbit[State]]
+"""An orbit, and one period of its strobes."""
+
+
+class _Proof:
+    """Watches the blocks of a transient until it is certain on which orbit it ends; see the module."""
+
+    def __init__(self, strobed: StroboscopicMap, largest_period: int, rounding: float) -> None:
+        self.strobed, self.largest_period, self.rounding = strobed, largest_period, rounding
+        self.known: Cycle | None = None
+        self.before = np.inf
+        self.failed = np.inf  # how well the motion repeated when an orbit was looked for in vain
+
+    def look(self, state: State, period: int, impacts: int) -> Cycle | None:
+        """The orbit next to `state`; None also for one of a shorter period, run through more than once."""
+        orbit = orbit_near(self.strobed, state, period, impacts)
+        if orbit is None:
+            return None
+        cycle = self.strobed.orbit(replace(orbit.strobe_state(), time=0.0), period)
+        points, counts = np.tile(cycle.points, (2, 1)), np.zeros(2 * period)
+        shortest = period_of(points, counts, largest_period=period, tolerance=ALIKE * self.rounding)
+        return (orbit, cycle) if shortest == period else None
+
+    def after(self, run: StrobedOrbit[State]) -> tuple[int, StrobedOrbit[State]]:
+        """The period, and a block on the orbit in the phase of the motion; 0 and `run` while nothing is
+        certain."""
+        strobed, points, end = self.strobed, run.points, run.end
+        rough = period_of(
+            points, run.impacts, largest_period=self.largest_period, tolerance=FIRST_LOOK * strobed.scale
+        )
+        hits, found = int(run.impacts[-rough:].sum()), None
+        if self.known is None or (self.known[0].period, self.known[0].impacts) != (rough, hits):
+            self.known, self.before = None, np.inf
+            if rough and hits == 0:
+                motion = strobed.oscillator.motion()
+                if free_for_good(motion, *deviations(motion, 0.0, end.displacement, end.velocity)):
+                    found = 1, strobed.steady()
+            elif 0 < rough <= self.largest_period // 2:
+                open_by = float(np.max(np.abs(points[rough:] - points[:-rough])[-self.largest_period :]))
+                if not CLOSER * self.failed <= open_by <= self.failed / CLOSER**3:
+                    self.known = self.look(end, rough, hits)
+                    self.failed = open_by if self.known is None else np.inf
+        if self.known is not None:
+            orbit, cycle = self.known
+            gaps = [np.max(np.abs(points[-rough:] - np.roll(cycle.points, -k, axis=0))) for k in range(rough)]
+            distance, phase = float(min(gaps)), int(np.argmin(gaps))
+            promised = SLACK * abs(orbit.multipliers[0]) ** (len(points) / rough) * self.before
+            if self.before < NEAR * strobed.scale and distance <= promised + self.rounding:
+                found = rough, strobed.orbit(cycle.end, phase or rough).end
+            self.before = distance
+        if found is None:
+            return 0, run
+        return found[0], strobed.orbit(replace(found[1], time=end.time), len(points))
