@@ -11,7 +11,7 @@ import numpy as np
 
 from beam.parameters import InvalidValue, brief, is_number, require
 from contact.engine.recorder import Recorder, grown, open_touch, recorder_for, trajectory_of
-from contact.errors import Diverged, StepTooLarge
+from contact.errors import ContactError, Diverged, StepTooLarge
 from contact.flight.modal_flow import steady_motion
 from contact.flight.motion import Motion
 from contact.integrators.grid import DIVERGED, DONE, FULL, PLACE, Grid
@@ -76,6 +76,22 @@ def _sorted_out(recorder: Recorder, run: Run, order: np.ndarray, period: float, 
     return recorder._replace(strobes=rows[:passed], counts=counts, samples=rows[passed:-1])
 
 
+def _loads(oscillator: ImpactOscillator) -> tuple[np.ndarray, np.ndarray]:
+    """Amplitudes of the inertia forces of the drive and the constant loads of all modes [N kg^-0.5]."""
+    drive = oscillator.drive
+    base = 0.0 if drive is None else drive.amplitude * drive.angular_frequency**2
+    constant = np.zeros(oscillator.n_modes) if oscillator.load is None else np.array(oscillator.load)
+    return oscillator.model.participation * base, constant
+
+
+def _failure(status: int, step: float, here: dict[str, float]) -> ContactError:
+    """The error of a march that ended with `status` at this place."""
+    if status == DIVERGED:
+        return Diverged(**here)  # type: ignore[arg-type]
+    detail = f"step {step:.4g} s: the contact has become too stiff for it"
+    return StepTooLarge(**here, detail=detail)  # type: ignore[arg-type]
+
+
 @dataclass(frozen=True, kw_only=True)
 class FixedStep(Integrator):
     """A method with a time step; strobes, samples and the end of a run need not lie on its grid.
@@ -138,13 +154,12 @@ class FixedStep(Integrator):
             open_touch(recorder, run.first, run.clock, math.nan, UNDER_WAY, q, v)
         places = np.zeros(1, dtype=PLACE)
         places["due"] = -math.inf  # the first step has to look
-        drive = oscillator.drive
-        base = 0.0 if drive is None else drive.amplitude * drive.angular_frequency**2
+        push, constant = _loads(oscillator)
         grid = Grid(
             places=places,
             motion=motion,
-            push=oscillator.model.participation * base,
-            constant=np.zeros(n) if oscillator.load is None else np.array(oscillator.load),
+            push=push,
+            constant=constant,
             step=step,
             clock=run.clock,
             first=run.first,
@@ -164,19 +179,12 @@ class FixedStep(Integrator):
         if status != DONE:
             reached = run.clock + grid.places[0]["step"] * step
             here = place(start.time - run.clock + reached, *(np.array([grid.q, grid.v]) + steady(reached)))
-            if status == DIVERGED:
-                raise Diverged(**here)  # type: ignore[arg-type]
-            detail = f"step {step:.4g} s: the contact has become too stiff for it"
-            raise StepTooLarge(**here, detail=detail)  # type: ignore[arg-type]
+            raise _failure(status, step, here)
         recorder = grid.recorder
         q, v = recorder.samples[-1].reshape(2, n) + steady(run.clock + run.length)
-        touching = forced and recorder.marks[0]["touching"] == 1
-        end = State(
-            displacement=q,
-            velocity=v,
-            time=run.last * period + run.clock_end,
-            regime=CONTACT if touching and motion.tip(q) > motion.gap else OUTSIDE,
-        )
+        touching = forced and recorder.marks[0]["touching"] == 1 and motion.tip(q) > motion.gap
+        regime, time = CONTACT if touching else OUTSIDE, run.last * period + run.clock_end
+        end = State(displacement=q, velocity=v, time=time, regime=regime)
         return trajectory_of(
             _sorted_out(recorder, run, order, period, under_way),
             run,

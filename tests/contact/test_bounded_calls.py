@@ -39,7 +39,9 @@ from contact import (
 )
 from contact import orbits as periodic
 from contact.errors import ContactError
-from contact.orbits import continuation, kick, lyapunov, path, shooting, single_impact
+from contact.orbits.branches import continuation, path
+from contact.orbits.families import kick, shooting, single_impact
+from contact.orbits.observation import lyapunov
 
 ROOT = Path(__file__).parent.parent.parent
 LONGEST, COMPILED = 120.0, 20.0

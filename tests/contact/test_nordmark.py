@@ -12,14 +12,8 @@ import pytest
 from beam import ModalModel
 from contact import HarmonicDrive, ImpactOscillator, NewtonRestitution, Stop
 from contact.maps.nordmark import NordmarkMap
-from contact.maps.nordmark_orbits import (
-    bands,
-    fold,
-    maximal_orbits,
-    maximal_period,
-    maximal_periods,
-    stable_range,
-)
+from contact.maps.nordmark_bands import bands
+from contact.maps.nordmark_orbits import fold, maximal_orbits, maximal_period, maximal_periods, stable_range
 
 T, MU, TAU = 0.0408, 3.56, 0.1
 # f [Hz], m of the map, F_m/F_g - 1 of the map

@@ -25,7 +25,7 @@ from whole_motions import (
 )
 
 from beam import ModalModel
-from contact import exact_run
+from contact.engine import start as exact_run
 from contact.errors import ContactError, UnresolvedCrossing
 from contact.integrators import CentralDifference
 from contact.laws import DelayedRestitution, LinearContact, NewtonRestitution

@@ -9,11 +9,11 @@ import pytest
 from one_mode import FREQUENCIES, GAP, OMEGA, general_orbit, oscillator
 
 from beam import ModalModel, SuspiciousValue, single_mode
-from contact import stroboscope
 from contact.drive import HarmonicDrive
 from contact.engine.event_loop import FAILED_CHATTER
 from contact.errors import ContactError
 from contact.laws import DelayedRestitution, HertzContact
+from contact.maps import stroboscope
 from contact.maps.stroboscope import StroboscopicMap, strobed_orbits
 from contact.one_mode.period_table import mode_at, period_table
 from contact.oscillator import ImpactOscillator

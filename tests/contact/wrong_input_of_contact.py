@@ -14,7 +14,9 @@ import beam
 import contact
 from contact import Regime, integrators
 from contact import orbits as periodic
-from contact.orbits import continuation, kick, lyapunov, path, shooting
+from contact.orbits.branches import continuation, path
+from contact.orbits.families import kick, shooting
+from contact.orbits.observation import lyapunov
 
 
 @cache
@@ -229,7 +231,7 @@ CONTACT = (
        kind=dict(periods=3), value=dict(periods=told((3, 1), "period is 1 drive periods"), restitution=1.5)),
     of(contact.fold, lambda: dict(nordmark=nordmark(), period=4),
        kind=dict(nordmark=None), value=dict(period=each(0, 10**9))),
-    of(contact.maps.nordmark_orbits, lambda: dict(nordmark=nordmark(), period=4, rho=0.01),
+    of(contact.maximal_orbits, lambda: dict(nordmark=nordmark(), period=4, rho=0.01),
        kind=dict(nordmark=0.5), value=dict(period=2.5, rho=NAN)),
     of(contact.stable_range, lambda: dict(nordmark=nordmark(), period=4),
        kind=dict(nordmark="map", period=None), value=dict(period=-4)),
