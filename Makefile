@@ -17,7 +17,7 @@ study: $(READY)
 	$(BIN)/python -m studies
 
 site: $(READY)
-	$(BIN)/python -m studies.report --site
+	$(BIN)/python -m studies report --site
 
 # `python -m pytest` puts this folder first on the path, so that what is tested is what lies here.
 test: $(READY)

@@ -2,8 +2,8 @@
 
 Without a chosen method the exact one of the law is taken: event-driven for an impact law, piecewise-linear
 for a linear contact, the contact series for Hertz's and Hunt and Crossley's.  Their error is that of
-rounding, and ``studies.work_precision`` shows that nothing which proves its touches, and no outside solver,
-is both cheaper and as accurate.
+rounding, and ``studies.methods.work_precision`` shows that nothing which proves its touches, and no outside
+solver, is both cheaper and as accurate.
 """
 
 from __future__ import annotations

@@ -1,25 +1,24 @@
-"""Studies: one program per claim, on top of `beam` (the spring) and `contact` (the impacts).
+"""Studies: one program per question, on top of `beam` (the spring) and `contact` (the impacts).
 
-Run them from the root of the project as `python -m studies.NAME`; `python -m studies` runs the main one, with
---all every one, and writes the page of all results; `studies.tour` is the whole package in one script.
+    python -m studies             the main job: the letter's transitions, and the page of results
+    python -m studies NAME        any study, or `report`, `tour`, `explore`
+    python -m studies --list      the chapters, one line a study
+    python -m studies --all       every study
+
+The chapters are `experiment`, `spring`, `methods` and `measurement`.  They share `physics` and `shell`; a
+chapter never imports another one.  `letter` has the numbers and the points of the letter.
 
 A *scene* (studies/scenes/letter.toml, or one's own: --scene FILE, --set section.key=value) holds the
-physics, each value with its unit and whether it is the letter's, calibrated or assumed. A study takes from
-it the spring, with as many modes as its question needs, computes, stores, and draws from what it stored:
+physics, each value with its unit and whether it is the letter's, calibrated or assumed.  A study takes the
+spring from it, with as many modes as its question needs.  It computes, stores, and draws from what it stored:
 results/NAME/ has tables (csv), arrays (npz), figures (png, pdf), what was found (summary.json) and what it
-rests on (manifest.json). A study imports public names of `beam` and `contact` and the shared files, never
-another study:
+rests on (manifest.json).
 
-    scene (with scene_keys, scene_values, scene_spring)   from a TOML file to spring, modes and oscillators
-    run (options, record, executors, files, programs)     command line, results, progress, exit codes
-    every_study                                           all of them in turn
-    letter, plotting, least_model, calibration, sweep, film, page
+Importing this package changes nothing.  A program first does three things:
 
-Importing this package changes nothing. `python -m studies...` does three things before the study is imported:
-
-- It sets the thread count of the linear algebra libraries to 1, unless the environment sets it. Several
+- It sets the thread count of the linear algebra libraries to 1, unless the environment sets it.  Several
   workers with several threads each slow one another down twentyfold.
-- It makes sure that `beam` and `contact` are the packages beside this one. The public index has other
+- It makes sure that `beam` and `contact` are the packages beside this one.  The public index has other
   packages of both names, with which the studies would fail or compute something else.
 - It ends with one sentence for a study that does not exist, and at Ctrl-C during the imports.
 """
@@ -61,7 +60,9 @@ def refuse_foreign_packages(root: Path = ROOT) -> None:
 
 
 def start_as_program() -> None:
-    """For `python -m studies...`: threads, the check of packages, Ctrl-C while importing, unknown studies."""
+    """Prepare this process for a program: threads, check of the packages, Ctrl-C during the imports."""
+    global program
+    program = True
     single_blas_thread()
     if sys.stderr is None:  # started with 2>&-: no file of results may get its number
         os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
@@ -74,13 +75,23 @@ def start_as_program() -> None:
 
         signal.signal(signal.SIGINT, interrupted)
     refuse_foreign_packages()
-    from studies.programs import unknown, wrong_name
 
-    name = wrong_name(sys.orig_argv[1:])
+
+def run_old_name() -> None:
+    """Run ``python -m studies.NAME``, as programs were called once, and say how it is called now."""
+    from studies.shell.programs import old_name
+
+    name = old_name(sys.orig_argv[1:])
     if name is not None:
-        print(f"python -m studies.{name}: {unknown(name)}", file=sys.stderr)
-        raise SystemExit(2)
+        print(f"python -m studies.{name} is now python -m studies {name}", file=sys.stderr)
+        from studies.__main__ import main
 
+        raise SystemExit(main([name, *sys.argv[1:]]))
+
+
+program = False
+"""Whether this process runs a study as a program, and not as part of another one."""
 
 if sys.argv[:1] == ["-m"]:  # as long as the interpreter looks for the module that it was told to run
     start_as_program()
+    run_old_name()

@@ -1,36 +1,64 @@
-"""`python -m studies`: the main job on the letter's scene; `--all`: every study; and the page of results."""
+"""`python -m studies [NAME]`: run a study; without a name the main job; `--list`, `--all`."""
 
 from __future__ import annotations
 
+import importlib
+import runpy
 import sys
+from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
-from studies.programs import names, unknown
+from studies import start_as_program
+from studies.shell.programs import MAIN, WRONG_USE, chapters_in_words, module_of, names, studies, unknown
 
 
-def main() -> int:
-    """Run the transitions and write the page, or run every study."""
-    arguments = sys.argv[1:]
-    if arguments and not arguments[0].startswith("-"):
-        name = arguments[0].removeprefix("studies.")
-        words = f"a study runs as python -m studies.{name}" if name in names() else unknown(name)
-        print(f"python -m studies: {words}", file=sys.stderr)
-        return 2
-    if "--all" in arguments and "--dump-scene" not in arguments:
-        from studies import every_study
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run what the arguments name, those of the command line by default; returns the exit code."""
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    if given and not given[0].startswith("-"):
+        return run_program(given[0], given[1:])
+    if given == ["--list"]:
+        print(chapters_in_words())
+        return 0
+    if "--all" in given and "--dump-scene" not in given:
+        from studies.shell import every_study
 
-        return every_study.main(arguments)
-    from studies.page import told_page
-    from studies.transitions.__main__ import transitions
+        return every_study.main(given)
+    return main_job([word for word in given if word != "--all"])
 
-    arguments = [word for word in arguments if word != "--all"]
-    code = transitions.main(arguments, module="studies")
+
+def run_program(name: str, arguments: Sequence[str]) -> int:
+    """Run the program of this name; an unknown one is answered with the chapters."""
+    if name not in names():
+        print(f"python -m studies: {unknown(name)}\n{chapters_in_words()}", file=sys.stderr)
+        return WRONG_USE
+    if name == "tour":
+        sys.argv[1:] = arguments
+        runpy.run_module("studies.tour", run_name="__main__")
+        return 0
+    module = importlib.import_module(module_of(name))
+    program = getattr(module, name) if name in studies() else module
+    return int(program.main(arguments))
+
+
+def main_job(arguments: Sequence[str]) -> int:
+    """The main study, and then the page of all that is stored."""
+    from studies.shell.page import told_page
+
+    main_study = getattr(importlib.import_module(module_of(MAIN)), MAIN)
+    code = int(main_study.main(arguments, command="python -m studies"))
     if code in (0, 3) and not {"--help", "-h", "--dump-scene"}.intersection(arguments):
         out = next((b for a, b in pairwise(arguments) if a == "--out"), "results")
         out = next((word.partition("=")[2] for word in arguments if word.startswith("--out=")), out)
         print(told_page(Path(out)), file=sys.stderr)
     return code
+
+
+def console() -> int:
+    """The command ``grazing-spring``, which is the same."""
+    start_as_program()
+    return main()
 
 
 if __name__ == "__main__":

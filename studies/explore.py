@@ -5,7 +5,7 @@ over time with its impacts, the strobe points, and the orbit diagram around the 
 raised (dots), then lowered (rings). A motion with impacts is carried along, as on the shaker, to its fold; a
 click on the description ends it. Restitution is that of Newton's law.
 
-Run:     python -m studies.explore [--scene FILE.toml] [--set key=value]     on a display
+Run:     python -m studies explore [--scene FILE.toml] [--set key=value]     on a display
 Writes:  nothing
 """
 
@@ -27,11 +27,11 @@ from matplotlib.widgets import RadioButtons, Slider
 from beam import InvalidValue, Refusal
 from contact import ContactError, ImpactKind, StrobedMap, StrobedNordmarkMap, StroboscopicMap, simulate
 from contact.orbits import orbit_diagram, settle
-from studies.least_model import least_modes, middle_of
-from studies.options import Parser, add_scene, tool
-from studies.plotting import DOWN, EXCESS, GUIDE, INCH, PAGE, UP, house_style, points, strobe_points
-from studies.scene import Scene, beam_at, harmonic, model_of, nordmark_at, read_scene, single_mode_at
-from studies.two_parameters import two_parameters_at
+from studies.physics.least_model import least_modes, middle_of
+from studies.physics.two_parameters import two_parameters_at
+from studies.shell.options import Parser, add_scene, tool
+from studies.shell.plotting import DOWN, EXCESS, GUIDE, INCH, PAGE, UP, house_style, points, strobe_points
+from studies.shell.scene import Scene, beam_at, harmonic, model_of, nordmark_at, read_scene, single_mode_at
 
 KINDS = {"map": (61, 600), "Eq. (1)": (41, 600), "two parameters": (41, 600), "beam": (21, 200)}
 """Amplitudes of the diagram, drive periods at each: the letter's spring loses e^-16 of a motion in 200."""
@@ -146,10 +146,6 @@ def explore(given: Any) -> tuple[str, dict[str, object]]:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Explore from the command line; returns 0, or 2 for wrong use and where there is no display."""
-    parser = Parser("python -m studies.explore", __doc__ or "")
+    parser = Parser("python -m studies explore", __doc__ or "")
     add_scene(parser)
     return tool(parser, argv, explore)
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

@@ -2,9 +2,9 @@
 
 Gathered: the answers to the questions that the letter raises, the letter point by point, for
 each study its account, figures and tables, what was assumed, and versions. Nothing is computed and no result
-is typed in (``studies.page``).
+is typed in (``studies.shell.page``).
 
-Run:     python -m studies.report [--site] [--out DIR]     DIR is the folder of results
+Run:     python -m studies report [--site] [--out DIR]     DIR is the folder of results
 Writes:  DIR/report/index.html; with --site DIR/site, that page with the documentation of the packages
 """
 
@@ -14,9 +14,9 @@ from argparse import Namespace
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from studies.options import Parser, tool
-from studies.page import in_words, write_page
-from studies.page.documentation import module_names, write_site
+from studies.shell.options import Parser, tool
+from studies.shell.page import in_words, write_page
+from studies.shell.page.documentation import module_names, write_site
 
 
 def report(given: Namespace) -> tuple[str, Mapping[str, object]]:
@@ -33,11 +33,7 @@ def report(given: Namespace) -> tuple[str, Mapping[str, object]]:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Write the page; returns 0, or 2 for wrong use and where there are no results."""
-    parser = Parser("python -m studies.report", __doc__ or "")
+    parser = Parser("python -m studies report", __doc__ or "")
     parser.add_argument("--out", type=Path, default=Path("results"), metavar="DIR", help="folder of results")
     parser.add_argument("--site", action="store_true", help="write the documentation, too (needs pdoc)")
     return tool(parser, argv, report)
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

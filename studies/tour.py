@@ -1,11 +1,11 @@
 """From a brass strip to an orbit of period four: the whole package in one script, cell by cell.
 
 The letter's Fig. 4 (1996): a U with legs of 13 cm, driven at 21.50 Hz, 1.3 % above grazing. Each cell prints
-what it found. Command: python -m studies.tour, or cell by cell in an editor that knows `# %%`. It has no
+what it found. Command: python -m studies tour, or cell by cell in an editor that knows `# %%`. It has no
 options: copy it and change it. Output: results/tour.png and .pdf, and three records as CSV.
 """
 
-from studies.programs import refuse_arguments
+from studies.shell.programs import refuse_arguments
 
 refuse_arguments("tour", __doc__)
 
@@ -63,7 +63,7 @@ print(f"p4 ends {-100 * fold.excess:.2f} % below grazing; Floquet multiplier {fo
 # %% The picture: ball and plate over one orbit
 from pathlib import Path
 
-from studies.plotting import PALETTE, house_style, label, new_figure, points, save
+from studies.shell.plotting import PALETTE, house_style, label, new_figure, points, save
 
 figure, axes = new_figure()
 axes.plot(1e3 * (times - settled.time), 1e3 * beam.tip(motion.displacement), color=PALETTE[0], label="ball")
@@ -78,7 +78,7 @@ folder = Path("results")
 folder.mkdir(parents=True, exist_ok=True)
 print("drawn in", *save(figure, folder, "tour"))
 
-# %% Records of this rig as an experiment gives them, for `python -m studies.identify results/tour_strobe.csv`
+# %% Records of this rig as an experiment gives them, for `python -m studies identify results/tour_strobe.csv`
 rig = f"# frequency_hz = 21.5\n# amplitude_m = {beam.driven.amplitude!r}\n"
 noise = np.random.default_rng(1996).normal(0.0, 0.5e-6, (40 + times.size, 1))  # of the read-out, in metres
 seen = np.tile(strobes[:, None], (10, 1)) + noise[:40]

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from studies import programs
+from studies.shell.programs import CHAPTERS, chapter
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGES = ("beam", "contact", "studies")
@@ -135,14 +135,16 @@ def test_studies_import_public_names_only():
     assert {entry for entry in used if entry[1:] not in public} == set()
 
 
-def test_no_study_and_no_shared_file_imports_a_study():
-    """Only ``python -m studies`` does, which runs the main one."""
-    studies = set(programs.names())
-    assert studies
+def test_a_chapter_imports_no_other_and_no_shared_folder_imports_a_chapter():
+    """A study takes from its own folder, `physics`, `shell` and `letter`; no study imports another one."""
+    programs_of = {name: set(chapter(name)) for name in CHAPTERS}
+    assert all(programs_of.values())
     for name, targets in graph("studies").items():
-        own = name.split(".")[1]
-        others = {target for target in targets if target.split(".")[1] in studies - {own}}
-        assert not others or name == "studies.__main__", f"{name} imports {others}"
+        folder, own = [*name.split(".")[1:], ""][:2]
+        for target in targets:
+            other, study = [*target.split(".")[1:], ""][:2]
+            assert other not in CHAPTERS or other == folder, f"{name} imports {target}"
+            assert study not in programs_of.get(other, ()) or study == own, f"{name} imports {target}"
 
 
 @pytest.mark.parametrize(
@@ -150,8 +152,11 @@ def test_no_study_and_no_shared_file_imports_a_study():
     [
         ("import beam", ("numpy", "scipy", *SLOW)),
         ("import contact", ("scipy.optimize", *SLOW)),
-        ("import beam.export, beam.space, studies.modes", ("matplotlib", "meshio", "pyvista", "vtkmodules")),
-        ("import studies.peers; studies.peers.missing_solvers()", ("heyoka", "sksundae")),
+        (
+            "import beam.export, beam.space, studies.spring.modes",
+            ("matplotlib", "meshio", "pyvista", "vtkmodules"),
+        ),
+        ("import studies.methods.peers; studies.methods.peers.missing_solvers()", ("heyoka", "sksundae")),
     ],
 )
 def test_slow_packages_are_imported_only_where_they_are_used(statement, unwanted):

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from studies.least_model import least_modes
-from studies.programs import MAIN, in_words, run_times
-from studies.programs import names as programs
-from studies.scene import model_of, read_scene
-from studies.transitions.__main__ import transitions
-from studies.transitions.descriptions import row_at
+from studies.experiment.transitions.__main__ import transitions
+from studies.experiment.transitions.descriptions import row_at
+from studies.physics.least_model import least_modes
+from studies.shell.programs import MAIN, in_words, run_times
+from studies.shell.programs import names as programs
+from studies.shell.scene import model_of, read_scene
 
 ROOT = Path(__file__).parent.parent
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -33,14 +33,14 @@ def test_the_code_block_runs_and_says_what_its_comments_promise(capsys):
 
 
 def test_every_study_named_exists_and_every_study_is_named():
-    named = set(re.findall(r"python -m studies\.([a-z_]+)", TEXT))
+    named = set(re.findall(r"python -m studies ([a-z_]+)", TEXT))
     there = set(programs())
     assert named == there - {"transitions"}
 
 
 def test_the_run_times_are_those_of_the_table():
     """`python -m studies --all` has measured it."""
-    row = r"^\| `python -m studies(?:\.([a-z_]+))?` \|.*\| ([\d.]+ (?:s|min)) \|$"
+    row = r"^\| `python -m studies(?: ([a-z_]+))?` \|.*\| ([\d.]+ (?:s|min)) \|$"
     written = {name or MAIN: words for name, words in re.findall(row, TEXT, flags=re.MULTILINE)}
     assert written == {name: in_words(full) for name, (full, _) in run_times().items()}
     (whole,) = re.findall(r"--all` runs every study \(([\d.]+ min)\)", TEXT)

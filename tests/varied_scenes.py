@@ -17,7 +17,7 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from studies.programs import studies
+from studies.shell.programs import studies
 
 ROOT = Path(__file__).resolve().parent.parent
 RULER = ["--scene", "steel_ruler"]

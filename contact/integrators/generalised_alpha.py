@@ -40,7 +40,7 @@ linear in y,
 hence the limit: for Newmark's method (A = F = 1) y <= 1/(gamma/2 - beta), none if 2 beta >= gamma >= 1/2; for
 the others of order 2 none if alpha_m <= alpha_f <= 1/2 and beta >= 1/4 + (alpha_f - alpha_m)/2.  This is
 linear theory: a contact that opens and closes can feed energy to an unconditionally stable method, a finding
-of ``studies.stability`` and no ground to refuse a step.
+of ``studies.methods.stability`` and no ground to refuse a step.
 """
 
 from __future__ import annotations

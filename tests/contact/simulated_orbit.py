@@ -23,7 +23,7 @@ from contact import (
     simulate,
 )
 from contact.orbits import PeriodicOrbit, Settled, settle
-from studies.scene import model_of, read_scene
+from studies.shell.scene import model_of, read_scene
 
 HERTZ = HertzContact(stiffness=9.6154e9)
 LAWS = {

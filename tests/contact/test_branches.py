@@ -52,7 +52,7 @@ from contact.orbits import (
     orbit_end,
 )
 from contact.orbits.branches.events import passes
-from studies.scene import hertz_of, read_scene
+from studies.shell.scene import hertz_of, read_scene
 
 HARD = equation_1(20.90, NewtonRestitution(local_restitution=0.7))
 

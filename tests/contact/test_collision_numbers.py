@@ -19,7 +19,7 @@ from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
 from contact.trajectory import Impacts, State
-from studies.scene import beam_at, read_scene
+from studies.shell.scene import beam_at, read_scene
 
 # ------------------------------------------------------------------------------ each number by its definition
 

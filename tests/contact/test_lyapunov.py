@@ -10,7 +10,7 @@ import pytest
 
 from contact import NordmarkMap, State, StrobedNordmarkMap, StrobedOrbit, StroboscopicMap
 from contact.orbits import Shooting, map_exponents, orbit_exponents, settle
-from studies.scene import beam_at, read_scene, single_mode_at
+from studies.shell.scene import beam_at, read_scene, single_mode_at
 
 FREQUENCY = 21.50
 

@@ -25,7 +25,7 @@ from contact import (
 from contact.orbits import Branch, Shooting, follow, follow_path
 from contact.orbits.branches.events import is_torus, torus
 from contact.sensitivity.change import change_along
-from studies.two_masses import two_masses
+from studies.methods.two_masses import two_masses
 
 PATH = partial(two_masses, force=1.0)
 

@@ -14,7 +14,7 @@ from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
 from contact.trajectory import State
-from studies.work_precision.problems import swung_beam
+from studies.methods.work_precision.problems import swung_beam
 
 HELD = 3
 GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(24)

@@ -9,7 +9,7 @@ from contact.maps.stroboscope import StroboscopicMap
 from contact.orbits import fold_of, period_of, settle
 from contact.orbits.families.shooting import Shooting
 from studies.letter import SETTLE_CYCLES
-from studies.scene import beam_at, model_of, read_scene, single_mode_at
+from studies.shell.scene import beam_at, model_of, read_scene, single_mode_at
 
 SCENE = read_scene("letter", [])
 MODEL = model_of(SCENE)

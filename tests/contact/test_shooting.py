@@ -13,7 +13,7 @@ from simulated_orbit import EQUATION_1, HERTZ, LAWS, beam, sizes, touches
 from beam import ModalModel
 from contact import HarmonicDrive, HuntCrossley, ImpactOscillator, NotPeriodic, Stop, StroboscopicMap
 from contact.orbits import KickFamily, Shooting, fold_of, folds_of, follow, lowest_of, settle
-from studies.scene import beam_at, model_of, read_scene
+from studies.shell.scene import beam_at, model_of, read_scene
 
 
 @pytest.mark.parametrize(("frequency", "period", "excess", "second", "digit"), EQUATION_1)

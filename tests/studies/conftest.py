@@ -16,11 +16,11 @@ import pytest
 from matplotlib.figure import Figure
 
 from beam import ModalModel
-from studies import plotting
-from studies.programs import module_of
-from studies.record import Run
-from studies.run import Study
-from studies.scene import Scene, model_of, read_scene
+from studies.shell import plotting
+from studies.shell.programs import module_of
+from studies.shell.run import Run
+from studies.shell.scene import Scene, model_of, read_scene
+from studies.shell.study import Study
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,11 +9,11 @@ from functools import cache
 import numpy as np
 import pytest
 
-from studies.adequacy.__main__ import amplitude_rows
-from studies.adequacy.models import Choice, Models
-from studies.adequacy.search import QUANTITIES, Search, first
-from studies.least_model import least_modes
-from studies.scene import read_scene
+from studies.methods.adequacy.__main__ import amplitude_rows
+from studies.methods.adequacy.models import Choice, Models
+from studies.methods.adequacy.search import QUANTITIES, Search, first
+from studies.physics.least_model import least_modes
+from studies.shell.scene import read_scene
 
 LETTER, FOLDED = read_scene("letter"), read_scene("tight_fold")
 #: Of the heavy ball and of the soft contact.

@@ -12,10 +12,11 @@ from argparse import Namespace
 
 import pytest
 
-from studies import ROOT, every_study, programs
-from studies.chart.__main__ import chart
-from studies.files import fingerprint
-from studies.scene import read_scene
+from studies import ROOT
+from studies.experiment.chart.__main__ import chart
+from studies.shell import every_study, programs
+from studies.shell.files import fingerprint
+from studies.shell.scene import read_scene
 
 
 def test_the_studies_are_the_programs_with_results_of_a_scene():
@@ -53,7 +54,7 @@ def run_all(tmp_path, monkeypatch, capsys):
 def test_a_failure_is_told_and_what_is_stored_is_not_run_again(run_all, tmp_path, monkeypatch):
     answer, err = run_all()
     assert (answer["exit_code"], answer["exit_codes"]) == (3, {"time_trace": 0, "breakdown": 2})
-    assert "python -m studies.breakdown: " in err and "free_period_s" in err
+    assert "python -m studies breakdown: " in err and "free_period_s" in err
     assert (tmp_path / "report" / "index.html").exists()
     measured, known = programs.run_times(tmp_path / "run_times.csv"), programs.run_times()
     every_study.keep_times({"time_trace": 7.0}, True, tmp_path / "table.csv")

@@ -9,9 +9,9 @@ import pytest
 
 from contact import State, StroboscopicMap
 from contact.orbits import settle
-from studies.attractors.basins import parts, plane_of
-from studies.attractors.scan import CHAOTIC, NOT_SETTLED, PERIODIC, WITHOUT, kind_of
-from studies.scene import beam_at, single_mode_at
+from studies.experiment.attractors.basins import parts, plane_of
+from studies.experiment.attractors.scan import CHAOTIC, NOT_SETTLED, PERIODIC, WITHOUT, kind_of
+from studies.shell.scene import beam_at, single_mode_at
 
 FREQUENCY = 21.50
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from contact import StroboscopicMap
-from studies.benchmarks import BEAM, HEYOKA, OURS, SINGLE, Row, heyoka_orbit, in_turns, ratios_of
-from studies.peers import missing_solvers
-from studies.scene import Scene, single_mode_at
+from studies.methods.benchmarks import BEAM, HEYOKA, OURS, SINGLE, Row, heyoka_orbit, in_turns, ratios_of
+from studies.methods.peers import missing_solvers
+from studies.shell.scene import Scene, single_mode_at
 
 needs_heyoka = pytest.mark.skipif("heyoka" in missing_solvers(), reason="heyoka is not installed")
 

@@ -8,10 +8,18 @@ import pytest
 from contact import maximal_period, stable_range
 from contact.orbits import Shooting
 from studies import letter
-from studies.breakdown.beam import FREQUENCY_HZ, Spring, cell_of, fig_5, fold_of_p3, single_mode, tuned
-from studies.breakdown.scans import island, periods, scanned
-from studies.calibration import ACCURACY, calibrate_thickness, strip_decay_rate
-from studies.scene import free_period, model_of, nordmark_at
+from studies.experiment.breakdown.beam import (
+    FREQUENCY_HZ,
+    Spring,
+    cell_of,
+    fig_5,
+    fold_of_p3,
+    single_mode,
+    tuned,
+)
+from studies.experiment.breakdown.scans import island, periods, scanned
+from studies.physics.calibration import ACCURACY, calibrate_thickness, strip_decay_rate
+from studies.shell.scene import free_period, model_of, nordmark_at
 
 
 @pytest.fixture(scope="module")

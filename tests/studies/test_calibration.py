@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from beam import StripDamping, assemble, natural_modes
-from studies.calibration import (
+from studies.physics.calibration import (
     ACCURACY,
     calibrate,
     calibrate_damping,
@@ -16,7 +16,7 @@ from studies.calibration import (
     solve_for,
     strip_decay_rate,
 )
-from studies.scene import (
+from studies.shell.scene import (
     READOUT,
     Scene,
     SceneError,

@@ -9,8 +9,8 @@ import pytest
 
 from contact import NordmarkMap, StroboscopicMap, maximal_orbits, maximal_period
 from contact.orbits import Shooting, settle
-from studies.claims.bands import inside_band
-from studies.claims.energy_loss import (
+from studies.experiment.claims.bands import inside_band
+from studies.experiment.claims.energy_loss import (
     RESTITUTIONS,
     end_speed,
     falls,
@@ -20,9 +20,9 @@ from studies.claims.energy_loss import (
     node_at,
     trends,
 )
-from studies.claims.overdamped import exponents, outside_windows
-from studies.claims.universality import Job, born_at, springs
-from studies.scene import band_of, nordmark_at, single_mode_at
+from studies.experiment.claims.overdamped import exponents, outside_windows
+from studies.experiment.claims.universality import Job, born_at, springs
+from studies.shell.scene import band_of, nordmark_at, single_mode_at
 
 
 def with_tau(scene, restitution):

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from contact import LinearContact, NewtonRestitution, first_collision
-from studies.calibration import bare_cantilever, free_period, leaf_mass, with_mass_ratio
-from studies.effective_impact.cases import Spring
-from studies.effective_impact.collision_rows import Row, floor_of, on_orbits
+from studies.experiment.effective_impact.cases import Spring
+from studies.experiment.effective_impact.collision_rows import Row, floor_of, on_orbits
 from studies.letter import TIME_TRACE_EXCESS
-from studies.scene import beam_at, hertz_of, read_scene
+from studies.physics.calibration import bare_cantilever, free_period, leaf_mass, with_mass_ratio
+from studies.shell.scene import beam_at, hertz_of, read_scene
 
 pytestmark = pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
 """Calibration tries springs that nobody would build."""

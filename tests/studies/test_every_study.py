@@ -11,15 +11,15 @@ import numpy as np
 import pytest
 
 from contact import BranchEnded
-from studies import plotting
-from studies.hysteresis.__main__ import Causes, judge
-from studies.hysteresis.descriptions import CAUSES
-from studies.next_measurement import information
-from studies.programs import account_of, names, run_times, studies
-from studies.record import Run
-from studies.soft_wall.rows import loss_of_stability
-from studies.validation.two_beams import Rig
-from studies.work_precision.problems import problems_of
+from studies.experiment.hysteresis.__main__ import Causes, judge
+from studies.experiment.hysteresis.descriptions import CAUSES
+from studies.experiment.soft_wall.rows import loss_of_stability
+from studies.measurement.next_measurement import information
+from studies.methods.validation.two_beams import Rig
+from studies.methods.work_precision.problems import problems_of
+from studies.shell import plotting
+from studies.shell.programs import account_of, module_of, names, run_times, studies
+from studies.shell.run import Run
 
 ON_THE_FRAME = studies()
 
@@ -122,7 +122,7 @@ SLOW = ("calibrate",)
 )
 def test_the_small_form_runs_and_leaves_a_table_a_figure_and_a_summary(run_study, monkeypatch, name):
     for what, fewer in FEWER.get(name, {}).items():
-        monkeypatch.setattr(f"studies.{name}.{what}", fewer)
+        monkeypatch.setattr(f"{module_of(name).removesuffix('.__main__')}.{what}", fewer)
     ran = run_study(name, "--quick", "--json", *SMALLER.get(name, ()))
     assert ran.code == 0, ran.err
     assert json.loads(ran.out)["study"] == ran.summary["study"] == name
@@ -173,7 +173,7 @@ def test_what_a_study_cannot_use_is_refused_in_one_sentence(run_study, name, arg
     ran = run_study(name, "--set", "modes.count=4", *argv.split())
     assert ran.code == 2 and ran.summary == {}
     sentence = ran.err.splitlines()[-1]
-    assert sentence.startswith(f"python -m studies.{name}: ") and named in sentence, ran.err
+    assert sentence.startswith(f"python -m studies {name}: ") and named in sentence, ran.err
     assert "Traceback" not in ran.err
 
 
@@ -196,7 +196,7 @@ def test_a_docstring_says_command_and_outputs_and_the_table_the_run_time(name):
     title = " ".join(account.partition("\n\n")[0].split())
     assert title.endswith(".") and len(title) < 200
     if name in ON_THE_FRAME:
-        assert "\nRun:" in account and "\nWrites:" in account and f"python -m studies.{name}" in account
+        assert "\nRun:" in account and "\nWrites:" in account and f"python -m studies {name}" in account
         assert all(1.0 <= seconds <= 600.0 for seconds in run_times()[name])
 
 
@@ -224,6 +224,6 @@ def test_a_p1_unstable_down_to_faint_touches_loses_its_stability_there(monkeypat
             size = 1.0 + (speed - 0.003)
             return SimpleNamespace(speed=speed, excess=speed**2, multipliers=np.array([1j, -1j]) * size)
 
-    monkeypatch.setattr("studies.soft_wall.rows.Shooting", Orbits)
+    monkeypatch.setattr("studies.experiment.soft_wall.rows.Shooting", Orbits)
     excess, turns = loss_of_stability(None, SimpleNamespace(speed=1.0, excess=1.0))
     assert turns and excess == pytest.approx(0.003**2, rel=1e-5)

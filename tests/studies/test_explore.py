@@ -14,7 +14,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from studies import ROOT, explore
-from studies.scene import read_scene
+from studies.shell.scene import read_scene
 
 SLIDERS = ("frequency", "excess", "restitution")
 

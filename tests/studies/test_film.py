@@ -11,10 +11,10 @@ from PIL import Image
 
 from contact import StroboscopicMap
 from contact.orbits import born
-from studies import film
-from studies.film import Moment, Scenery, can_encode, stage_of, write_gif, written_as_mp4
-from studies.motion.filmed_orbit import drawn_shapes, film_orbit
-from studies.scene import beam_at, modes_of
+from studies.experiment.motion.filmed_orbit import drawn_shapes, film_orbit
+from studies.shell import film
+from studies.shell.film import Moment, Scenery, can_encode, stage_of, write_gif, written_as_mp4
+from studies.shell.scene import beam_at, modes_of
 
 COARSE = {"spring.elements_per_leg": 20, "spring.elements_on_arc": 12, "modes.count": 12}
 

@@ -7,8 +7,7 @@ import pytest
 
 from beam import FiniteRotation
 from studies import letter
-from studies.finite_amplitude import Spring, frame_period, matched, reading_of
-from studies.scene import (
+from studies.shell.scene import (
     beyond_linear,
     free_period,
     nonlinear_mode_at,
@@ -17,6 +16,7 @@ from studies.scene import (
     shift_at_gap,
     spring_of,
 )
+from studies.spring.finite_amplitude import Spring, frame_period, matched, reading_of
 
 SPRINGS = {"tight": ("folded", 7.5e-3), "wide": ("folded", 0.03), "legs": ("side_by_side", 9e-3)}
 OTHER_BALL = 6e-3

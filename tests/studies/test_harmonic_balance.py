@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from contact import ImpactOscillator, LinearContact, NewtonRestitution, NotPeriodic, Stop, simulate
-from studies.two_masses import two_masses
-from studies.work_precision.harmonic_balance import balanced
+from studies.methods.two_masses import two_masses
+from studies.methods.work_precision.harmonic_balance import balanced
 
 
 def sprung(damping: float) -> ImpactOscillator:

@@ -9,8 +9,8 @@ import pytest
 
 from contact import NewtonRestitution, StroboscopicMap
 from contact.orbits import born, orbit_end
-from studies.hysteresis.descriptions import CAUSES, CHAIN, folds_at
-from studies.scene import beam_at, model_of, single_mode_of
+from studies.experiment.hysteresis.descriptions import CAUSES, CHAIN, folds_at
+from studies.shell.scene import beam_at, model_of, single_mode_of
 
 
 @pytest.fixture(scope="module")

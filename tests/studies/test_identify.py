@@ -11,12 +11,12 @@ import pytest
 
 from contact import DelayedRestitution, simulate
 from contact.orbits import MaximalFamily
-from studies.identify.fit import fit
-from studies.identify.profiles import profile
-from studies.identify.records import read_record, synthetic
-from studies.identify.starts import prediction_of, repetition
-from studies.parameters import fitted_scene, parameters_of, with_values
-from studies.scene import beam_at, read_scene, single_mode_at
+from studies.measurement.identify.fit import fit
+from studies.measurement.identify.profiles import profile
+from studies.measurement.identify.records import read_record, synthetic
+from studies.measurement.identify.starts import prediction_of, repetition
+from studies.physics.parameters import fitted_scene, parameters_of, with_values
+from studies.shell.scene import beam_at, read_scene, single_mode_at
 
 NAMES = ("free_period", "decay_rate", "gap", "restitution")
 

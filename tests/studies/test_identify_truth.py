@@ -10,10 +10,9 @@ import numpy as np
 import pytest
 
 from beam import InvalidValue
-from studies.identify import coverage as truth
-from studies.identify import gradients
-from studies.record import Run
-from studies.scene import read_scene, single_mode_at
+from studies.measurement.identify import coverage as truth
+from studies.shell.run import Run
+from studies.shell.scene import read_scene
 
 
 @pytest.fixture(scope="module")
@@ -92,15 +91,3 @@ def test_one_mode_is_too_small_for_the_beam_and_its_own_modes_are_not(trials, mo
         assert np.all(np.isfinite(found["error"])) and found["small"].sum() == small
         off = (found["estimate"] - np.array(list(trials[name].truth.values()))) / found["error"]
         assert small or np.abs(off).max() < 3.5
-
-
-def test_errors_of_gradients_fall_as_the_order_of_the_differences_says(letter_scene):
-    """And then rise; derivatives are better than the best of them by five orders of magnitude."""
-    rows = gradients.gradients(single_mode_at(letter_scene, 22.2).with_excess(1e-3))
-    exact = next(row.error for row in rows if row.method == "exact")
-    error = {round(-np.log10(row.setting)): row.error for row in rows if row.method == "central differences"}
-    assert np.log10(error[5] / error[6]) == pytest.approx(2.0, abs=0.05)
-    assert error[12] > 10.0 * min(error.values()) > 1e5 * exact
-    assert exact < 1e-12
-    others = [row.error for row in rows if row.method == "heyoka"]
-    assert not others or (np.all(np.diff(others) < 0.0) and others[-1] < 1e-11)

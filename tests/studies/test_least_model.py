@@ -6,8 +6,8 @@ import pytest
 
 from contact import StroboscopicMap
 from contact.orbits import Shooting, born_period, fold_of
-from studies.least_model import LADDER, least_modes, questions, reference_of
-from studies.scene import beam_at, read_scene
+from studies.physics.least_model import LADDER, least_modes, questions, reference_of
+from studies.shell.scene import beam_at, read_scene
 
 #: What a search over modes, meshes and laws that followed every orbit found for the letter's scene.
 BY_SEARCH = [
@@ -42,7 +42,7 @@ def test_errors_of_folds_from_kicks_are_those_of_the_orbits_themselves(letter_sc
 
 def test_the_reference_is_good_to_the_third_of_a_percent(letter_scene, monkeypatch):
     """40 modes against 60: the folds differ by less than what the loosest and the tightest study asks for."""
-    monkeypatch.setattr("studies.least_model.REFERENCE", 60)
+    monkeypatch.setattr("studies.physics.least_model.REFERENCE", 60)
     whole = reference_of(letter_scene)
     assert whole.n_modes == 60
     for _, _, off in questions(letter_scene, {"fold": 0.05}, whole):

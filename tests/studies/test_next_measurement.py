@@ -12,9 +12,9 @@ from scipy.optimize import least_squares
 from beam import single_mode
 from contact import DelayedRestitution, HarmonicDrive, ImpactOscillator, Stop, simulate
 from contact.orbits import Shooting
-from studies.next_measurement import information as design
-from studies.next_measurement.information import Nodes, Plan, covariance, errors_of, measurement
-from studies.parameters import with_values
+from studies.measurement.next_measurement import information as design
+from studies.measurement.next_measurement.information import Nodes, Plan, covariance, errors_of, measurement
+from studies.physics.parameters import with_values
 
 PLAN = Plan()
 

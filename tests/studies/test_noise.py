@@ -10,12 +10,12 @@ from scipy.special import gamma
 
 from contact import StroboscopicMap
 from contact.orbits import cloud
-from studies.noise.covariances import covariance_of, growth_of
-from studies.noise.last_period import apart, frequency_of, in_noise, separate, since_impact
-from studies.noise.places import Place
-from studies.noise.rates import LAG, in_drift, law_of, mean_time, quantiles
-from studies.noise.scans import Drift, Protocol, memory_of, scans, start_of, watched
-from studies.scene import band_of, single_mode_at
+from studies.measurement.noise.covariances import covariance_of, growth_of
+from studies.measurement.noise.last_period import apart, frequency_of, in_noise, separate, since_impact
+from studies.measurement.noise.places import Place
+from studies.measurement.noise.rates import LAG, in_drift, law_of, mean_time, quantiles
+from studies.measurement.noise.scans import Drift, Protocol, memory_of, scans, start_of, watched
+from studies.shell.scene import band_of, single_mode_at
 
 SIGMA = 2.5e-4
 WHITE = Protocol(step=SIGMA, waiting=10_000, stability=SIGMA)
@@ -285,7 +285,7 @@ def test_strobe_points_run_together_as_m_grows(letter_scene):
 
 def test_small_form(run_study, monkeypatch):
     for name, less in (("CLOUD_PERIODS", (0, 20_000)), ("TOLD", ((), range(9, 11)))):
-        monkeypatch.setattr(f"studies.noise.__main__.{name}", less)
+        monkeypatch.setattr(f"studies.measurement.noise.__main__.{name}", less)
     options = ("--set", "modes.count=2", "--set", "drive.frequencies_hz=[21.5, 22.6]", "--waiting", "3000")
     ran = run_study("noise", "--quick", *options)
     assert ran.code == 0 and ran.summary["first_merged"]["white"] == 10

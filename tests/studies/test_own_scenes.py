@@ -10,7 +10,7 @@ import pytest
 from contact import StroboscopicMap, first_collision, maximal_period
 from contact.orbits import settle
 from studies.letter import PERIODS
-from studies.scene import SCENES, beam_at, corresponding, model_of, nordmark_at, periods_of, read_scene
+from studies.shell.scene import SCENES, beam_at, corresponding, model_of, nordmark_at, periods_of, read_scene
 
 OWN = sorted(path.stem for path in SCENES.glob("*.toml") if path.stem != "letter")
 KEPT = "modes.count=8"

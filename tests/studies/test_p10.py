@@ -10,9 +10,9 @@ from scipy.integrate import solve_ivp
 
 from beam import single_mode
 from contact import StroboscopicMap
+from studies.experiment.sensitivity.p10 import causes_of, cubic, distorted, period_of, row_of
 from studies.letter import PERIODS
-from studies.scene import single_mode_at
-from studies.sensitivity.p10 import causes_of, cubic, distorted, period_of, row_of
+from studies.shell.scene import single_mode_at
 
 
 def test_recoil_has_the_frequencies_and_the_mobility_of_two_bodies():

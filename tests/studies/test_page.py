@@ -10,12 +10,13 @@ from pathlib import Path
 
 import pytest
 
-from studies import letter, plotting, report
-from studies.page import read_results, told_page, write_page
-from studies.page.documentation import module_names, write_site
-from studies.programs import studies
-from studies.record import Run
-from studies.scene import Scene
+from studies import letter, report
+from studies.shell import plotting
+from studies.shell.page import read_results, told_page, write_page
+from studies.shell.page.documentation import module_names, write_site
+from studies.shell.programs import studies
+from studies.shell.run import Run
+from studies.shell.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -28,7 +29,7 @@ class Row:
 
 def stored(results: Path, scene: Scene, study: str = "transitions") -> Run:
     """Results of a study with a table, a figure, a verdict and a failed cell."""
-    run = Run(study=study, folder=results / study, scene=scene, command=f"python -m studies.{study} --quick")
+    run = Run(study=study, folder=results / study, scene=scene, command=f"python -m studies {study} --quick")
     run.table("rows", [Row("<b>bold</b>", 0.123456789)], "A caption & more", show=())
     run.table("long", [Row("x", float(n)) for n in range(100)], show=())
     figure, axes = plotting.new_figure()
@@ -81,7 +82,7 @@ def test_the_page_holds_what_is_stored_and_loads_nothing(tmp_path, letter_scene)
         "0.12346",
         "A product of causes.",
         "&lt;script&gt;no",
-        "python -m studies.transitions --quick",
+        "python -m studies transitions --quick",
         "f T = 20/21",
     ):
         assert words in text, words
@@ -105,7 +106,7 @@ def test_the_page_of_one_study_shows_its_points_and_one_command_for_the_rest(tmp
     assert text.count('class="verdict agrees"') == 1 and text.count('class="verdict differs"') == 1
     assert text.count('class="verdict ') == text.count('class="verdict not-stored"') + 2 == 7
     assert text.count("python -m studies --all</code>") == 1 and 'id="answers"' not in text
-    assert missing and not any(f"python -m studies.{name}" in text for name in missing)
+    assert missing and not any(f"python -m studies {name}" in text for name in missing)
     assert told_page(tmp_path).endswith(" makes the rest") and "\n" not in told_page(tmp_path)
 
 

@@ -8,10 +8,10 @@ import pytest
 from contact import band
 from contact.orbits import MaximalFamily
 from studies.letter import FREE_PERIOD_S, PERIODS
-from studies.next_measurement import pairs
-from studies.next_measurement.pairs import intervals_of, is_born, longest
-from studies.parameters import with_values
-from studies.scene import single_mode_at
+from studies.measurement.next_measurement import pairs
+from studies.measurement.next_measurement.pairs import intervals_of, is_born, longest
+from studies.physics.parameters import with_values
+from studies.shell.scene import single_mode_at
 
 
 @pytest.fixture(scope="module")

@@ -28,10 +28,10 @@ from contact import (
     simulate,
 )
 from contact.integrators import Integrator, Run
-from studies import peers
-from studies.peers import SOLVERS, OutsideSolver, adapters, installed_solvers, missing_solvers
-from studies.peers.piecewise import Equations
-from studies.work_precision.problems import DURATION, swung_problem
+from studies.methods import peers
+from studies.methods.peers import SOLVERS, OutsideSolver, adapters, installed_solvers, missing_solvers
+from studies.methods.peers.piecewise import Equations
+from studies.methods.work_precision.problems import DURATION, swung_problem
 
 FAST = ("scipy DOP853", "heyoka Taylor", "CVODE Adams")
 PROMISE = {"CVODE BDF": 2000.0, "CVODE Adams": 2000.0, "scipy RK45": 100.0, "scipy LSODA": 300.0}

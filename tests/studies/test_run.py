@@ -21,10 +21,10 @@ import pytest
 from beam import InvalidValue
 from contact import NotPeriodic
 from studies import ROOT
-from studies.files import write_atomically
-from studies.programs import wrong_name
-from studies.run import Run, study
-from studies.scene import Scene
+from studies.shell.files import write_atomically
+from studies.shell.programs import names, old_name
+from studies.shell.scene import Scene
+from studies.shell.study import Run, study
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -161,7 +161,7 @@ def test_an_interrupted_run_keeps_what_it_stored_and_says_how_to_go_on(tmp_path,
     err = capsys.readouterr().err
     assert code == 130 and (folder / "kept.txt").read_text() == "kept"
     assert summary_of(folder)["status"] == "interrupted"
-    assert f"python -m studies.small --what {shlex.quote(what)} --out {tmp_path}" in err
+    assert f"python -m studies small --what {shlex.quote(what)} --out {tmp_path}" in err
 
 
 @pytest.mark.parametrize("fault", FAULTS)
@@ -238,18 +238,26 @@ def test_files_are_complete_or_absent(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("place", ["moon", "ssh://there", "dask://127.0.0.1:1"])
 def test_an_executor_that_is_not_there_is_refused(tmp_path, letter_scene, place, monkeypatch):
-    monkeypatch.setattr("studies.executors.PATIENCE", 0.2)
+    monkeypatch.setattr("studies.shell.executors.PATIENCE", 0.2)
     run = Run(study="x", folder=tmp_path, scene=letter_scene, command="", executor=place)
     with pytest.raises(ValueError), run.pool():
         pass
 
 
-def test_an_unknown_study_is_answered_with_the_nearest():
-    assert wrong_name(["-m", "studies.transitons"]) == "transitons"
-    assert wrong_name(["-m", "studies.transitions"]) is wrong_name(["-m", "studies"]) is None
-    command = [sys.executable, "-m", "studies.transitons"]
+def test_an_unknown_study_is_answered_with_the_nearest_and_the_chapters():
+    assert old_name(["-m", "studies.hysteresis"]) == "hysteresis"
+    assert old_name(["-m", "studies.shell.programs"]) is old_name(["-m", "studies"]) is None
+    for command in (["studies", "transitons"], ["studies.transitons"]):
+        done = subprocess.run([sys.executable, "-m", *command], cwd=ROOT, capture_output=True, text=True)
+        assert done.returncode == 2 and "did you mean transitions?" in done.stderr and not done.stdout
+        assert all(f"    {name} " in done.stderr for name in names())
+
+
+def test_an_old_command_runs_and_names_the_new_one():
+    command = [sys.executable, "-m", "studies.calibrate", "--help"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
-    assert done.returncode == 2 and "studies.transitions" in done.stderr and done.stderr.count("\n") == 1
+    assert done.returncode == 0 and "usage: python -m studies calibrate" in done.stdout
+    assert done.stderr == "python -m studies.calibrate is now python -m studies calibrate\n"
 
 
 def test_a_foreign_package_of_the_same_name_is_refused(tmp_path):
@@ -277,7 +285,7 @@ assert seen() == before
 def test_a_script_without_options_refuses_them(tmp_path):
     env = os.environ | {"PYTHONPATH": str(ROOT)}
     for word, code in (("--scene", 2), ("--help", 0)):
-        command = [sys.executable, "-m", "studies.tour", word]
+        command = [sys.executable, "-m", "studies", "tour", word]
         done = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, text=True)
         assert done.returncode == code and not list(tmp_path.iterdir())
         assert ("--scene is refused" in done.stderr) == (code == 2), done.stderr
@@ -286,7 +294,7 @@ def test_a_script_without_options_refuses_them(tmp_path):
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_ends_a_program_with_what_it_stored(tmp_path, number):
     """A chart that would take minutes; interrupted when its first column is there, it stores a summary."""
-    argv = ["-m", "studies.chart", "--points", "4000", "60", "--cycles", "4096", "--json"]
+    argv = ["-m", "studies", "chart", "--points", "4000", "60", "--cycles", "4096", "--json"]
     argv += ["--out", str(tmp_path)]
     program = subprocess.Popen(
         [sys.executable, *argv], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
@@ -300,7 +308,7 @@ def test_a_signal_ends_a_program_with_what_it_stored(tmp_path, number):
     out, err = program.communicate(timeout=60)
     assert program.returncode == 130, err
     assert json.loads(out)["status"] == "interrupted" and "Traceback" not in err
-    assert "go on with: python -m studies.chart --points 4000 60" in err
+    assert "go on with: python -m studies chart --points 4000 60" in err
     assert summary_of(tmp_path / "chart")["status"] == "interrupted"
     for path in store.glob("[0-9]*.npz"):
         assert np.load(path)["period"].shape == (2, 60)

@@ -15,9 +15,9 @@ from hypothesis import strategies as st
 
 import beam
 from beam import SuspiciousValue
-from studies.scene import SCENES, Scene, SceneError, check, read_scene
-from studies.scene_keys import MODE_LISTS
-from studies.scene_values import KEYS, parse_override, scene_from_text
+from studies.shell.scene import SCENES, Scene, SceneError, check, read_scene
+from studies.shell.scene.keys import MODE_LISTS
+from studies.shell.scene.values import KEYS, parse_override, scene_from_text
 
 DELIVERED = sorted(file.stem for file in SCENES.glob("*.toml"))
 

@@ -6,11 +6,11 @@ import pytest
 
 from contact import StroboscopicMap
 from contact.orbits import born, settle
-from studies.calibration import free_period
+from studies.experiment.sensitivity.changes import NAMES, PARAMETERS, changed, changes_of, row_at
+from studies.experiment.sensitivity.p10 import causes_of
 from studies.letter import AMPLITUDE_STABILITY, FREE_PERIOD_ERROR_S
-from studies.scene import beam_at, single_mode_at
-from studies.sensitivity.changes import NAMES, PARAMETERS, changed, changes_of, row_at
-from studies.sensitivity.p10 import causes_of
+from studies.physics.calibration import free_period
+from studies.shell.scene import beam_at, single_mode_at
 
 
 def single(scene, frequency):
@@ -84,7 +84,9 @@ def test_the_fold_of_eq_1_and_map_know_nothing_of_the_higher_modes(letter_scene,
 
 
 def test_small_form(run_study, monkeypatch):
-    monkeypatch.setattr("studies.sensitivity.__main__.causes_of", lambda *given: causes_of(*given)[:5])
+    monkeypatch.setattr(
+        "studies.experiment.sensitivity.__main__.causes_of", lambda *given: causes_of(*given)[:5]
+    )
     ran = run_study("sensitivity", "--quick", "--set", "drive.frequencies_hz=[22.6, 23.4]")
     assert ran.code == 0 and len(ran.summary["rows"]) == 2 * (1 + 8)
     assert len(ran.rows("p10")) == 5 and ran.summary["p10"][1]["born"] == [11, 11, 10, 10]

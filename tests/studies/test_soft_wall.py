@@ -11,9 +11,9 @@ import pytest
 from contact import StroboscopicMap, first_collision
 from contact.orbits import Shooting, born_period, settle
 from studies import letter
-from studies.scene import beam_at, read_scene, single_mode_at
-from studies.soft_wall.closed_forms import SoftWall, hertz_doubling, hertz_kick
-from studies.soft_wall.rows import doubling_near, doubling_of, loss_of_stability
+from studies.experiment.soft_wall.closed_forms import SoftWall, hertz_doubling, hertz_kick
+from studies.experiment.soft_wall.rows import doubling_near, doubling_of, loss_of_stability
+from studies.shell.scene import beam_at, read_scene, single_mode_at
 
 SCENE = read_scene("letter")
 

@@ -12,12 +12,12 @@ import skfem as sk
 
 from beam import BRASS, StripSection, Tip
 from beam.space import spatial_modes
-from studies.scene import model_of, read_scene
-from studies.spring_shape.__main__ import COARSE, compare_plate
-from studies.spring_shape.model_error import mode_rows, plates_of, springs_of
-from studies.spring_shape.plate import per_area, plate_modes
-from studies.spring_shape.plate_mesh import half_u
-from studies.spring_shape.shapes import Shape
+from studies.shell.scene import model_of, read_scene
+from studies.spring.spring_shape.__main__ import COARSE, compare_plate
+from studies.spring.spring_shape.model_error import mode_rows, plates_of, springs_of
+from studies.spring.spring_shape.plate import per_area, plate_modes
+from studies.spring.spring_shape.plate_mesh import half_u
+from studies.spring.spring_shape.shapes import Shape
 
 SHEET = StripSection(material=BRASS, width=12e-3, thickness=1e-3)
 NU = BRASS.poissons_ratio

@@ -11,12 +11,12 @@ import pytest
 from beam import ModalModel
 from contact import first_collision, simulate
 from contact.integrators import CentralDifference, Exact, Splitting
-from studies.scene import beam_at
-from studies.stability import explicit, splitting, threshold
-from studies.stability.false_restitution import outcomes
-from studies.stability.free_mass import LAWS, energy_after
-from studies.stability.implicit_energy import STIFF_GROWTH, evenly, single_contact, stiff_contacts
-from studies.stability.lasting_contact import ROUNDED, growth, pressed
+from studies.methods.stability import explicit, splitting, threshold
+from studies.methods.stability.false_restitution import outcomes
+from studies.methods.stability.free_mass import LAWS, energy_after
+from studies.methods.stability.implicit_energy import STIFF_GROWTH, evenly, single_contact, stiff_contacts
+from studies.methods.stability.lasting_contact import ROUNDED, growth, pressed
+from studies.shell.scene import beam_at
 
 MODEL = ModalModel(
     omega=[154.0, 960.0, 2450.0],

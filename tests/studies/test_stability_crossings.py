@@ -10,10 +10,9 @@ import pytest
 
 from contact import Regime, simulate
 from contact.integrators import INTEGRATORS, CentralDifference, Exact, GeneralisedAlpha, MoreauJean
-from studies.crossings import Swing
-from studies.scene import model_of, read_scene
-from studies.stability import accumulation
-from studies.stability.missed_crossings import (
+from studies.methods.crossings import Swing
+from studies.methods.stability import accumulation
+from studies.methods.stability.missed_crossings import (
     OVERSHOOTS,
     invented,
     of_package,
@@ -23,6 +22,7 @@ from studies.stability.missed_crossings import (
     swing_of,
     tried,
 )
+from studies.shell.scene import model_of, read_scene
 
 SCENE = read_scene("letter")
 ONE = swing_of(SCENE)

@@ -1,8 +1,7 @@
-"""Sweeps: stored as they are made, gone on with after any end, the same on every executor; their export."""
+"""Sweeps: stored as they are made, gone on with after any end, the same on every executor."""
 
 from __future__ import annotations
 
-import csv
 import json
 import os
 import random
@@ -17,10 +16,9 @@ import pytest
 from beam import single_mode
 from contact import HarmonicDrive, ImpactOscillator, LinearContact, NewtonRestitution, Stop, StroboscopicMap
 from contact.orbits import AmplitudeScan, settle
-from studies import export
-from studies.record import Run
-from studies.scene import read_scene
-from studies.sweep import Shard, read_columns, sweep
+from studies.shell.run import Run
+from studies.shell.scene import read_scene
+from studies.shell.sweep import sweep
 
 SETTINGS = {"model": "toy", "rows": 3}
 
@@ -73,17 +71,14 @@ def test_what_is_there_is_not_computed_again(tmp_path):
         return Powers()(x)
 
     run = run_in(tmp_path)
-    sweep(run, "toy", SETTINGS, ARGUMENTS[:5], counted, shard=Shard.of("2/2"))
-    assert sorted(made) == ARGUMENTS[1:5:2]
+    sweep(run, "toy", SETTINGS, ARGUMENTS[:5], counted)
+    (tmp_path / "toy" / "00001.npz").unlink()
     (tmp_path / "toy" / "00003.npz").write_bytes(b"damaged")
     columns = sweep(run, "toy", SETTINGS, ARGUMENTS[:5], counted)
-    assert sorted(made) == sorted([*ARGUMENTS[:5], ARGUMENTS[3]]) and powers_in(columns) == EXPECTED[:5]
-
-
-@pytest.mark.parametrize("text", ["0/2", "3/2", "1", "a/b", "1/0", "-1/2"])
-def test_a_shard_that_is_none_is_refused(text):
-    with pytest.raises(ValueError, match="shard"):
-        Shard.of(text)
+    assert (
+        sorted(made) == sorted([*ARGUMENTS[:5], ARGUMENTS[1], ARGUMENTS[3]])
+        and powers_in(columns) == EXPECTED[:5]
+    )
 
 
 def test_another_sweep_in_the_same_folder_is_refused_unless_it_begins_anew(tmp_path, monkeypatch):
@@ -93,8 +88,8 @@ def test_another_sweep_in_the_same_folder_is_refused_unless_it_begins_anew(tmp_p
     with pytest.raises(ValueError, match="rows"):
         sweep(run, "toy", {**SETTINGS, "rows": 4}, ARGUMENTS[:2], Powers())
     sweep(run, "toy", {**SETTINGS, "rows": 4}, ARGUMENTS[:2], Powers(), fresh=True)
-    assert read_columns(tmp_path / "toy")[0]["rows"] == 4
-    monkeypatch.setattr("studies.sweep.source", lambda: "another")
+    assert json.loads((tmp_path / "toy" / "settings.json").read_text())["rows"] == 4
+    monkeypatch.setattr("studies.shell.sweep.source", lambda: "another")
     with pytest.raises(ValueError, match="another source"):
         sweep(run, "toy", {**SETTINGS, "rows": 4}, ARGUMENTS[:2], Powers())
 
@@ -108,7 +103,7 @@ def test_a_failure_of_the_program_ends_the_sweep_and_keeps_what_is_there(tmp_pat
     run = run_in(tmp_path, workers=1)
     with pytest.raises(RuntimeError):
         sweep(run, "toy", SETTINGS, ARGUMENTS[:8], fails)
-    assert len(read_columns(tmp_path / "toy")[1]) >= 3
+    assert len(list((tmp_path / "toy").glob("[0-9]*.npz"))) >= 3
     assert powers_in(sweep(run, "toy", SETTINGS, ARGUMENTS[:8], Powers())) == EXPECTED[:8]
 
 
@@ -133,22 +128,7 @@ def test_ten_kills_are_survived(tmp_path):
         assert os.waitpid(child, 0)[1] == (signal.SIGKILL if kill < 10 else 0)
         for path in (tmp_path / "toy").glob("[0-9]*.npz"):
             assert set(np.load(path)) == {"x", "power", "row"}
-    assert powers_in(column for _, column in read_columns(tmp_path / "toy")[1]) == EXPECTED
-
-
-def test_the_export_has_one_line_a_cell(tmp_path, capsys):
-    sweep(run_in(tmp_path), "toy", SETTINGS, ARGUMENTS[:4], Powers())
-    assert export.main([str(tmp_path / "toy"), "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["columns"] == 4
-    with (tmp_path / "toy.csv").open() as stream:
-        rows = [{key: float(cell) for key, cell in row.items()} for row in csv.DictReader(stream)]
-    assert len(rows) == 12 and all(row["power"] == row["x"] ** row["row"] for row in rows)
-
-
-@pytest.mark.parametrize("argv", [["nowhere"], ["toy", "--out", "toy.xls"], []])
-def test_an_export_that_makes_no_sense_is_refused(tmp_path, argv):
-    sweep(run_in(tmp_path), "toy", SETTINGS, ARGUMENTS[:1], Powers())
-    assert export.main([word if word.startswith("-") else str(tmp_path / word) for word in argv]) == 2
+    assert powers_in(map(np.load, sorted((tmp_path / "toy").glob("[0-9]*.npz")))) == EXPECTED
 
 
 def driven(law) -> ImpactOscillator:
@@ -175,15 +155,3 @@ def test_a_column_settles_where_the_same_motion_settles_step_by_step(law):
         settled = np.all(column.period > 0, axis=0)
         assert np.any((column.period[1] != column.period[0])[settled])  # hysteresis
     assert np.all(column.reason == "")
-
-
-def test_a_chart_is_the_same_by_shards_and_whole(run_study, tmp_path):
-    argv = ["--points", "6", "8", "--cycles", "256"]
-    whole = run_study("chart", "--quick", *argv)
-    cells = whole.arrays("chart_single_mode")
-    for part in ("1/2", "2/2"):
-        assert run_study("chart", *argv, *(["--fresh"] if part == "1/2" else []), "--shard", part).code == 0
-    again = run_study("chart", *argv)
-    for key, values in again.arrays("chart_single_mode").items():
-        np.testing.assert_array_equal(values, cells[key])
-    assert again.summary["folds"] == whole.summary["folds"] > 0

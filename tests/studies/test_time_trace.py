@@ -8,8 +8,8 @@ import pytest
 from contact import StroboscopicMap, first_collision
 from contact.collision import before_collision
 from contact.orbits import born
-from studies.scene import beam_at, single_mode_of
-from studies.time_trace.trace import close_up, trace_of
+from studies.experiment.time_trace.trace import close_up, trace_of
+from studies.shell.scene import beam_at, single_mode_of
 
 
 def test_the_orbit_of_figure_4_and_the_ringing_of_its_impact(run_study):

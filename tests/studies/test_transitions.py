@@ -18,9 +18,9 @@ from contact.orbits import (
     orbit_end,
     settle,
 )
+from studies.experiment.transitions.descriptions import describe, row_at
 from studies.letter import PERIODS
-from studies.scene import beam_at, model_of, read_scene
-from studies.transitions.descriptions import describe, row_at
+from studies.shell.scene import beam_at, model_of, read_scene
 
 EXPECTED = {20.90: 3, 21.50: 4, 22.20: 5, 22.60: 6, 23.05: 8, 23.40: 11}
 """m of the map, of Eq. (1) and of the beam; the letter saw 10 at the last."""

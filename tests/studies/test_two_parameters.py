@@ -12,10 +12,11 @@ import pytest
 
 from contact import StroboscopicMap, first_collision, simulate
 from contact.orbits import KickFamily, born, born_period, orbit_end
-from studies import letter, two_parameters
-from studies.scene import SceneError, approach_speed, beam_at, single_mode_at
-from studies.transitions.descriptions import row_at
-from studies.two_parameters import extracted, fold_of_kicks, law_of, two_parameters_at
+from studies import letter
+from studies.experiment.transitions.descriptions import row_at
+from studies.physics import two_parameters
+from studies.physics.two_parameters import extracted, fold_of_kicks, law_of, two_parameters_at
+from studies.shell.scene import SceneError, approach_speed, beam_at, single_mode_at
 
 
 @pytest.mark.parametrize("excess", [3.3e-6, 4.1e-4, 0.013, 0.21])

@@ -7,10 +7,10 @@ import csv
 import pytest
 
 from contact import NotPeriodic
-from studies.two_masses import two_masses
-from studies.validation import __main__ as program
-from studies.validation.responses import followed, harmonic
-from studies.validation.rows import Section, compared
+from studies.methods.two_masses import two_masses
+from studies.methods.validation import __main__ as program
+from studies.methods.validation.responses import followed, harmonic
+from studies.methods.validation.rows import Section, compared
 
 
 @pytest.mark.parametrize(

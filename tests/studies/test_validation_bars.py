@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from contact import State, simulate
-from studies.validation import bars
-from studies.validation.responses import followed
+from studies.methods.validation import bars
+from studies.methods.validation.responses import followed
 
 
 @pytest.mark.parametrize("held", [False, True])

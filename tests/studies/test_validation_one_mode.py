@@ -11,7 +11,7 @@ import pytest
 from scipy.optimize import brentq
 
 from contact import LinearContact, NewtonRestitution, State, Stop, StroboscopicMap, orbits, simulate
-from studies.validation.one_mode import PUBLISHED, SPEEDS, bifurcation, driven, highest, rig
+from studies.methods.validation.one_mode import PUBLISHED, SPEEDS, bifurcation, driven, highest, rig
 
 HARD = Stop(gap=1.0, law=NewtonRestitution(local_restitution=0.8))
 NARROW = {w: StroboscopicMap(oscillator=rig(w, base=0.7 / 1.26)) for w in (0.8022, 0.804)}

@@ -11,8 +11,8 @@ from scipy.optimize import brentq
 
 from contact import simulate
 from contact.integrators import CentralDifference
-from studies.validation.responses import harmonic
-from studies.validation.two_beams import GAP, LEVELS, Rig, backbone, both_beams, carried
+from studies.methods.validation.responses import harmonic
+from studies.methods.validation.two_beams import GAP, LEVELS, Rig, backbone, both_beams, carried
 
 E, DENSITY, WIDTH = 210e9, 7720.0, 0.060
 

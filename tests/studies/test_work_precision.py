@@ -25,11 +25,18 @@ from contact import (
     simulate,
 )
 from contact.integrators import CentralDifference, Exact
-from studies.scene import read_scene, single_mode_at
-from studies.work_precision.measures import Reference, Row, cheapest, missed_share, reference_of, rows_of
-from studies.work_precision.methods import EXACT, STEPPED, Setting, Sweep, sweeps_for
-from studies.work_precision.methods import STEPS as STEPS_OF
-from studies.work_precision.problems import (
+from studies.methods.work_precision import gradients
+from studies.methods.work_precision.measures import (
+    Reference,
+    Row,
+    cheapest,
+    missed_share,
+    reference_of,
+    rows_of,
+)
+from studies.methods.work_precision.methods import EXACT, STEPPED, Setting, Sweep, sweeps_for
+from studies.methods.work_precision.methods import STEPS as STEPS_OF
+from studies.methods.work_precision.problems import (
     EXCESS,
     FREQUENCY,
     driven_problem,
@@ -37,7 +44,8 @@ from studies.work_precision.problems import (
     linear_beam,
     swung_problem,
 )
-from studies.work_precision.reference import extended_motion
+from studies.methods.work_precision.reference import extended_motion
+from studies.shell.scene import read_scene, single_mode_at
 
 SCENE = read_scene("letter", [])
 FEW_MODES = SCENE.replace({"modes.count": 4})
@@ -240,3 +248,15 @@ def test_crossings_are_missed_by_a_coarse_grid_and_never_by_the_exact_method(few
     shares = [missed_share(problem, CentralDifference(step=step)) for step in (3e-4, 3e-5, 3e-6)]
     assert missed_share(few.problem, Exact()) == missed_share(problem, Exact()) == 0.0
     assert shares == sorted(shares, reverse=True) and shares[0] > 0.1 > shares[-1]
+
+
+def test_errors_of_gradients_fall_as_the_order_of_the_differences_says(letter_scene):
+    """And then rise; derivatives are better than the best of them by five orders of magnitude."""
+    rows = gradients.gradients(single_mode_at(letter_scene, 22.2).with_excess(1e-3))
+    exact = next(row.error for row in rows if row.method == "exact")
+    error = {round(-np.log10(row.setting)): row.error for row in rows if row.method == "central differences"}
+    assert np.log10(error[5] / error[6]) == pytest.approx(2.0, abs=0.05)
+    assert error[12] > 10.0 * min(error.values()) > 1e5 * exact
+    assert exact < 1e-12
+    others = [row.error for row in rows if row.method == "heyoka"]
+    assert not others or (np.all(np.diff(others) < 0.0) and others[-1] < 1e-11)

@@ -1,0 +1,121 @@
+"""Figures of the settled motions: strobe points and exponents of a scan, and basins on the strobe plane."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+
+from studies.experiment.attractors.basins import Plane, parts
+from studies.experiment.attractors.scan import CHAOTIC, NOT_SETTLED, PERIODIC, TITLES, UNDECIDED, WITHOUT, Row
+from studies.shell import plotting
+from studies.shell.plotting import BLUE, COLUMN, DOWN, EXCESS, GUIDE, ORANGE, PAGE, SKY, UP, VERMILION, tint
+
+SCAN = (
+    "Strobe points and largest Lyapunov exponent against the excess, for Eq. (1) and the beam. Filled: "
+    "amplitude raised; open: lowered; pale: not periodic."
+)
+BASINS = (
+    "Where starts on the strobe plane of Eq. (1) lead below grazing: the motion without impacts has a small "
+    "basin, p_m the rest."
+)
+LOOKS = {
+    WITHOUT: ("v", SKY),
+    PERIODIC: ("o", BLUE),
+    CHAOTIC: ("s", VERMILION),
+    NOT_SETTLED: ("^", ORANGE),
+    UNDECIDED: ("x", "0.5"),
+}
+"""Marker and colour of a kind."""
+
+
+@plotting.in_house_style
+def draw_scan(rows: Sequence[Row], strobes: Sequence[np.ndarray], frequency: float, quantity: str) -> Figure:
+    """Strobe points and exponents against the excess, a column for each model."""
+    names = {key: name for key, name in TITLES.items() if any(row.model == key for row in rows)}
+    figure, axes = plotting.new_figure(
+        2,
+        max(1, len(names)),
+        width=PAGE if len(names) > 1 else COLUMN,
+        height=0.112,
+        squeeze=False,
+        sharex="col",
+    )
+    for column, (name, title) in enumerate(names.items()):
+        upper, lower = axes[:, column]
+        for way, look in (("up", UP), ("down", DOWN)):
+            mine = [k for k, row in enumerate(rows) if (row.model, row.direction) == (name, way)]
+            excess, points = np.array([rows[k].excess for k in mine]), np.array([strobes[k] for k in mine])
+            settled = np.array([rows[k].period > 0 for k in mine])
+            plotting.strobe_points(upper, 1e2 * excess, 1e3 * points, settled, look, f"{way}ward scan")
+        for kind, (marker, colour) in LOOKS.items():
+            alike = [row for row in rows if (row.model, row.kind) == (name, kind)]
+            if alike:
+                lower.plot(
+                    [1e2 * row.excess for row in alike],
+                    [row.lyapunov_map for row in alike],
+                    marker,
+                    markersize=3.4,
+                    mfc="none",
+                    markeredgecolor=colour,
+                    label=kind,
+                )
+        lower.axhline(0.0, **GUIDE)
+        for axis in (upper, lower):
+            axis.axvline(0.0, **GUIDE)
+        plotting.panel(upper, column, f"{title}, {frequency:.2f} Hz")
+        plotting.panel(lower, column + len(names))
+        plotting.label(lower.xaxis, EXCESS, "%")
+    plotting.label(axes[0, 0].yaxis, quantity, "mrad" if quantity == "rotation" else "mm")
+    plotting.label(axes[1, 0].yaxis, "exponent per drive period")
+    plotting.legend_below(figure, axes.flat, 3 if len(names) > 1 else 2, markerscale=1.5)
+    return figure
+
+
+@plotting.in_house_style
+def draw_basins(plane: Plane, leads: np.ndarray, frequency: float) -> Figure:
+    """The strobe plane, coloured by where its points lead."""
+    figure, axis = plotting.new_figure(height=0.088)
+    oscillator, m = plane.strobed.oscillator, plane.period
+    gap, speed = oscillator.stop.gap, oscillator.unit_speed
+    looks = {
+        m: (BLUE, f"to p$_{{{m}}}$"),
+        1: (tint(SKY, 0.3), "to p$_1$ without impacts"),
+        0: (ORANGE, "to something else"),
+    }
+    x, y, picture = plane.x / gap, plane.velocity / speed, np.full(leads.shape, np.nan)
+    for place, code in enumerate(looks):
+        picture[leads == code] = place
+    axis.pcolormesh(
+        x,
+        y,
+        picture,
+        shading="nearest",
+        vmin=-0.5,
+        vmax=len(looks) - 0.5,
+        rasterized=True,
+        cmap=ListedColormap([colour for colour, _ in looks.values()]),
+    )
+    axis.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
+    for code in plane.orbits:
+        marker, face = ("D", VERMILION) if code == 1 else ("o", "white")
+        axis.plot(
+            *(plane.strobes(code) / (gap, speed)).T,
+            marker,
+            markersize=4,
+            color=face,
+            markeredgecolor="black",
+            label=f"p$_{{{code}}}$",
+        )
+    for code, (colour, words) in looks.items():
+        if np.any(leads == code):
+            axis.fill([], [], facecolor=colour, edgecolor="0.4", label=words)
+    share = 100 * parts(leads, m)["p1 without impacts"]
+    title = f"Eq. (1), {frequency:.2f} Hz, $F/F_g - 1$ = {oscillator.excess:g}"
+    axis.set_title(f"{title}\n{share:.1f} % lead to p$_1$")
+    plotting.label(axis.xaxis, "$ξ$ / gap at the strobe")
+    plotting.label(axis.yaxis, "$\\dot{ξ}$ / (2π f gap) at the strobe")
+    plotting.legend_below(figure, [axis], 2)
+    return figure

@@ -1,0 +1,200 @@
+"""Where the map fails near grazing: the letter's Fig. 5, f = 19.65 Hz, T = 41.2 ms, mu = 3.56 1/s.
+
+Claim (letter 1996, Fig. 5): where the map has p3, "at rho = 0 the trivial noncolliding p1 orbit gives way to
+a period-6 orbit. The stable periodic p3 orbit is found only at the very end of the downward scan"; and
+"Eq. (1) predicts for this case a chaotic state at rho = -0.0707 that is not connected to the state that is
+born at rho = 0".
+
+Computed:
+
+    Eq. (1)     upward and downward scan, and the island of p3 and chaos below grazing, for several
+                restitutions tau: it begins at the fold of p3 (closed form) and is followed upwards, the state
+                carried along, until the motion is free of impacts
+    beam        the scans of the scene's spring with its period and damping fitted again to T and mu
+    search      the born period over what is not printed: mass of ball and mount, damping of the modes above
+                the first
+    found       the scans of the cell that departs least from the scene, has period 6, and ends on p3
+
+Run:     python -m studies breakdown [--full] [--quick]     --full takes some minutes
+Writes:  outcomes.csv (a row a beam), islands.csv, born_period.csv (a row a cell of the search),
+         breakdown.npz (the scans), and the figures breakdown, born_period
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import Annotated
+
+import numpy as np
+
+from beam import InvalidValue
+from contact import maximal_period
+from studies import letter
+from studies.experiment.breakdown.beam import (
+    BORN_PERIOD,
+    FREQUENCY_HZ,
+    Cell,
+    Spring,
+    cell_of,
+    fig_5,
+    nearest_first,
+    single_mode,
+    tuned,
+)
+from studies.experiment.breakdown.scans import CHAOS_AT, Diagram, Island, Outcome, island, periods, scanned
+from studies.shell.options import require_cells
+from studies.shell.scene import Scene, model_of, nordmark_at
+from studies.shell.study import Run, study
+
+RESTITUTIONS, QUICK_RESTITUTIONS = (0.0, 0.05, 0.06, 0.075, 0.1), (0.05, 0.1)
+MASSES_G = (3.0, 3.25, 3.5, 3.75, 4.0, 4.25, 4.5, 4.75, 5.0, 5.5, 6.0, 6.5, 7.0, 8.0)
+FACTORS = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 8.0)
+QUICK_MASSES_G, QUICK_FACTORS = (3.5, 4.0), (1.0, 2.0)
+"""Ball and mount [g], factors on the damping of the higher modes."""
+
+MOST_SCANNED = 4
+"""Cells with period 6 whose scans are made: those that depart least from the scene."""
+
+
+@study(needs={"kick": 0.005}, quick={"points": 21, "cycles": 500})
+def breakdown(
+    scene: Scene,
+    run: Run,
+    *,
+    full: Annotated[bool, "as the experiment did: 10000 drive periods per amplitude, never fewer"] = False,
+    points: Annotated[int, "amplitudes of a scan below grazing"] = 81,
+    cycles: Annotated[int, "most drive periods at an amplitude"] = 2000,
+) -> Mapping[str, object]:
+    """Compute, store and draw."""
+    require_cells("points", points, 5 * points)
+    if points < 2:
+        raise InvalidValue(f"points is {points}; it must be 2 or more")
+    scene = fig_5(scene)
+    tau, nordmark = scene.single_mode.restitution, nordmark_at(scene, FREQUENCY_HZ)
+    taus = sorted({*(QUICK_RESTITUTIONS if run.quick else RESTITUTIONS), tau})
+    islands = run.map(partial(island, scene), taus, "islands")
+    known = [entry for entry, _ in islands]
+    run.table("islands", known, "Eq. (1): p3 and chaos below grazing.")
+    calibrated = Spring(scene=scene, model=model_of(scene), tip_mass_kg=scene.tip.mass_kg)
+    cells, with_6 = search(scene, run)
+    jobs = [("Eq. (1)", single_mode(scene, tau)), ("beam", calibrated)]
+    jobs += [(f"beam {number}", one) for number, one in enumerate(with_6[:MOST_SCANNED], start=1)]
+    cycles = letter.SETTLE_CYCLES if full else cycles
+    found_by = partial(scanned, points=points, cycles=cycles, early=not full)
+    scans = run.map(found_by, jobs, "scans")
+    if (own := islands[taus.index(tau)][1]).excess.size:
+        scans[0][1]["island"] = own
+    outcomes = [outcome for outcome, _ in scans]
+    # as in the letter: p3 in the downward scan; otherwise the first candidate
+    candidates = [*(o for o in outcomes[2:] if o.p3_last is not None), *outcomes[2:]]
+    found = candidates[0] if candidates else None
+    run.table("outcomes", outcomes, "What is born at grazing, and the end of the downward scan.")
+    store(run, scans)
+    from studies.experiment.breakdown import figure
+
+    shown = [pair for pair in scans if pair[0] in (*outcomes[:2], found)]
+    run.figure("breakdown", figure.draw_scans(shown), figure.SCANS)
+    run.figure("born_period", figure.draw_born(cells, scene.tip.mass_kg, found), figure.BORN)
+    judge(run, maximal_period(nordmark), outcomes, found, known)
+    return {
+        "gap_m": scene.stop.gap_m,
+        "thickness_m": scene.spring.thickness_m,
+        "grazing_amplitude_m": calibrated.strobed().oscillator.grazing_amplitude(),
+        "excess_of_letters_chaos_as_rho": nordmark.excess(CHAOS_AT),
+        "map_period": maximal_period(nordmark),
+        "islands": known,
+        "outcomes": outcomes,
+        "found": found,
+        "cells": len(cells),
+        "cells_with_period_6": [cell for cell in cells if cell.period == BORN_PERIOD],
+    }
+
+
+def search(scene: Scene, run: Run) -> tuple[list[Cell], list[Spring]]:
+    """The born period in every cell of mass and factor on the higher modes' damping; and the beams born with
+    period 6, those first that depart least from the scene."""
+    grams, factors = (QUICK_MASSES_G, QUICK_FACTORS) if run.quick else (MASSES_G, FACTORS)
+    masses = [m / 1000 for m in grams]
+    models = dict(zip(masses, run.map(partial(tuned, scene), masses, "springs"), strict=True))
+    springs = [
+        Spring(scene=scene, model=models[m], tip_mass_kg=m, higher_damping=k) for m in masses for k in factors
+    ]
+    found = run.attempt(cell_of, springs, "search")
+    cells = [cell for cell in found if cell is not None]
+    run.table("born_period", cells, "Period born at grazing over what the letter does not print.", show=())
+    with_6 = [one for one, cell in zip(springs, found, strict=True) if cell and cell.period == BORN_PERIOD]
+    return cells, nearest_first(with_6, scene.tip.mass_kg)
+
+
+def store(run: Run, scans: Sequence[tuple[Outcome, Mapping[str, Diagram]]]) -> None:
+    """All scans; failed amplitudes."""
+    arrays = dict[str, np.ndarray]()
+    for outcome, ways in scans:
+        name = outcome.description
+        for way, diagram in ways.items():
+            stem = f"{'single_mode' if name == 'Eq. (1)' else name.replace(' ', '_')}_{way}"
+            arrays |= {
+                f"{stem}_excess": diagram.excess,
+                f"{stem}_points": diagram.points,
+                f"{stem}_period": periods(diagram),
+                f"{stem}_impacts": diagram.impacts,
+            }
+            for reason in diagram.failures:
+                run.failed(f"{name}, {way}", reason)
+    run.arrays("breakdown", **arrays)
+
+
+def word(period: int) -> str:
+    """How verdicts name a period."""
+    return f"p{period}" if period else "no period"
+
+
+def judge(
+    run: Run, map_period: int, outcomes: Sequence[Outcome], found: Outcome | None, islands: Sequence[Island]
+) -> None:
+    """The three points of the letter; `outcomes` begin with Eq. (1) and the calibrated beam."""
+    single, beam = outcomes[:2]
+    said = (
+        f"map {word(map_period)}, Eq. (1) {word(single.born_period)}, "
+        f"beam {word(beam.born_period)} as calibrated"
+    )
+    note = "no cell of the search has it"
+    if found is not None:
+        said += f", {word(found.born_period)} found"
+        note = (
+            f"the calibrated ball of {1e3 * (beam.tip_mass_kg or 0.0):.2f} g does not; one of "
+            f"{1e3 * (found.tip_mass_kg or 0.0):.2f} g with {found.higher_damping:g} times the damping of "
+            "the higher modes does, and the letter prints neither"
+        )
+    agrees, in_part = (one is not None and one.born_period == BORN_PERIOD for one in (beam, found))
+    run.verdict(
+        "breakdown",
+        "agrees" if agrees else "in part" if in_part else "differs",
+        found=said,
+        note="" if agrees else note,
+    )
+    ends = next((outcome for outcome in (beam, found) if outcome is not None and outcome.ends_on_p3), None)
+    if ends is None:
+        run.verdict("breakdown_p3", "differs", found="beam: not so", note="no downward scan ends in p3")
+    else:
+        run.verdict(
+            "breakdown_p3",
+            "agrees" if ends is beam else "in part",
+            found=f"beam: {ends.p3_first:.4f} to {ends.p3_last:.4f}",
+            note="" if ends is beam else note,
+        )
+    alive = [entry.restitution for entry in islands if entry.end >= CHAOS_AT]
+    printed = any(abs(tau - letter.RESTITUTION) < 1e-9 for tau in alive)
+    run.verdict(
+        "island",
+        "agrees" if printed else "in part" if alive else "differs",
+        found="Eq. (1): "
+        + "; ".join(f"{i.fold_p3:.3f} to {i.end:.3f} at tau = {i.restitution:g}" for i in islands),
+        note=(
+            f"the island is there; at the quoted place it needs tau of {max(alive):g} or less, "
+            "read as an excess"
+        )
+        if alive
+        else "no island reaches the quoted place",
+    )

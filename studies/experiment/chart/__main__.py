@@ -1,0 +1,139 @@
+"""The plane of drive frequency and amplitude: which period, how many impacts, upwards and downwards.
+
+Claim (letter 1996, Figs. 1 to 3, for a whole plane): below grazing an orbit p_m coexists with the motion
+without impacts down to its fold; at grazing the period follows the bands of the map; above it periods
+double, and chaos lies between. Computed on a grid refined around grazing: at each frequency the amplitude is
+raised and lowered again with the state carried along, and each cell gets the period (up to 64) and the
+impacts of the orbit on which the motion settles, within --cycles drive periods
+(contact.orbits.AmplitudeScan). Drawn over it: the band edges of the map and the exact folds.
+
+    python -m studies chart                          Eq. (1), 400 x 400, both directions
+    python -m studies chart --model beam             the beam of the scene, 120 x 120
+    python -m studies chart --executor processes     or dask://host:port, for a cluster
+
+Every finished column is a file in MODEL-NxM (``studies.shell.sweep``); the same command goes on where the
+last one was stopped, in whatever way; --fresh begins anew.
+
+Run:     python -m studies chart [--model beam] [--quick]
+Writes:  chart_MODEL.npz (cells), folds_MODEL.csv, chart_MODEL.png
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from typing import Annotated, Literal
+
+import numpy as np
+
+from contact import ImpactOscillator
+from contact.orbits import AmplitudeScan
+from studies.experiment.chart.cells import (
+    EXCESSES,
+    FREQUENCIES_HZ,
+    KNEE,
+    Plane,
+    column_at,
+    counts,
+    side_by_side,
+)
+from studies.experiment.chart.overlays import bands_in, folds_of_beam, folds_of_single_mode
+from studies.shell.scene import Scene, beam_at, corresponding, harmonic, single_mode_at
+from studies.shell.study import Run, study
+from studies.shell.sweep import Column, sweep
+
+TITLES = {"single_mode": "Eq. (1)", "beam": "beam"}
+POINTS = {"single_mode": (400, 400), "beam": (120, 120)}
+QUICK_POINTS = {"single_mode": (46, 40), "beam": (10, 16)}
+CYCLES = {"single_mode": 8192, "beam": 1024}
+"""Bounds of settling in drive periods: free motion falls by e^-1 in 12 of them, so that a motion that is not
+periodic to 1e-9 of the gap after 512 is chaotic or next to a bifurcation. With one mode 8192 are cheap, and
+then the orbits next to all folds have come to rest."""
+
+QUICK_CYCLES = 256
+LARGEST_PERIOD = 64
+
+NEEDS = {"born_period": 0.0, "fold_middle": 0.07}
+"""What the chart of the beam rests on; Eq. (1) needs nothing."""
+
+MOST_REASONS = 20
+"""Failures that are told; all are in the columns."""
+
+
+@study()
+def chart(
+    scene: Scene,
+    run: Run,
+    *,
+    model: Annotated[Literal["single_mode", "beam"], "Eq. (1) or the beam"] = "single_mode",
+    points: Annotated[tuple[int, int] | None, "frequencies and amplitudes (400 400, beam 120 120)"] = None,
+    frequencies: Annotated[
+        tuple[float, float] | None, "range of drive frequencies [Hz] (19.5 24; other springs, same f T)"
+    ] = None,
+    excesses: Annotated[tuple[float, float], "range of F/F_g - 1"] = EXCESSES,
+    cycles: Annotated[int | None, "bound of drive periods at one amplitude (8192, beam 1024)"] = None,
+    fresh: Annotated[bool, "forget what is stored and begin anew"] = False,
+) -> Mapping[str, object]:
+    """Compute, store and draw."""
+    columns, rows = points or (QUICK_POINTS if run.quick else POINTS)[model]
+    low, high = frequencies or (corresponding(harmonic(scene), f) for f in FREQUENCIES_HZ)
+    plane = Plane(columns=columns, rows=rows, frequencies_hz=(low, high), excesses=excesses)
+    bound = cycles or (QUICK_CYCLES if run.quick else CYCLES[model])
+    if model == "beam":
+        scene = run.choose_modes(scene, NEEDS)
+    oscillator = (beam_at if model == "beam" else single_mode_at)(scene, 0.5 * (low + high))
+    scan = AmplitudeScan(oscillator=oscillator, most_cycles=bound)
+    settings = {"model": model, "plane": plane, "knee": KNEE, "most_cycles": bound, "scene": scene.values()}
+    work, name = partial(column_at, scan=scan, plane=plane), f"{model}-{columns}x{rows}"
+    found = sweep(run, name, settings, plane.frequencies().tolist(), work, fresh=fresh)
+    tell_failures(run, found)
+    result: dict[str, object] = {
+        "model": model,
+        "modes": oscillator.n_modes,
+        "points": [columns, rows],
+        "most_cycles": bound,
+    }
+    return result | drawn(scene, run, plane, oscillator, found, model)
+
+
+def tell_failures(run: Run, columns: list[Column]) -> None:
+    """Every failed cell counts; the first are told."""
+    for column in columns:
+        for way, place in np.argwhere(column["reason"] != ""):
+            where = f"{float(column['frequency_hz']):.6g} Hz, excess {float(column['excess'][place]):.6g}"
+            reason = str(column["reason"][way, place])
+            if len(run.failures) < MOST_REASONS:
+                run.failed(f"{where}, {column['direction'][way, 0]}", reason)
+            else:
+                run.failures.append(f"{where}: {reason}")
+
+
+def drawn(
+    scene: Scene, run: Run, plane: Plane, oscillator: ImpactOscillator, columns: list[Column], model: str
+) -> dict[str, object]:
+    """Store the cells and what theory says, draw both."""
+    from studies.experiment.chart.figure import draw  # matplotlib is slow to import
+
+    edges, cells = bands_in(scene, *plane.frequencies_hz), side_by_side(columns)
+    frequencies, excesses, lowest = plane.frequencies(), plane.rising_excesses(), plane.excesses[0]
+    if model == "single_mode":
+        folds = folds_of_single_mode(oscillator, frequencies, lowest)
+    else:
+        folds = folds_of_beam(oscillator, edges, frequencies, lowest)
+    run.arrays(f"chart_{model}", frequency_hz=frequencies, excess=excesses, **cells)
+    run.table(f"folds_{model}", folds, "Exact folds of p_m orbits with one impact.", show=())
+    title = f"{TITLES[model]}, {plane.columns} × {plane.rows}"
+    caption = (
+        "Period (above) and impacts in a period (below) over drive frequency and excess, in the upward scan "
+        "(left) and the downward scan (right); lines: exact folds and band edges of the map."
+    )
+    run.figure(f"chart_{model}", draw(plane, cells, edges, folds, title), caption)
+    without = float(np.mean(cells["period"] == 0))
+    run.say(f"{100 * without:.1f} % of the cells without a period up to {LARGEST_PERIOD}")
+    bands = [{"period": band.period, "lower_hz": band.lower, "upper_hz": band.upper} for band in edges]
+    return {
+        "bands": bands,
+        "counts": counts(cells["period"]),
+        "share_without_period": without,
+        "folds": len(folds),
+    }

@@ -1,0 +1,111 @@
+"""The plane of the chart, the cells of one column, and what all of them say.
+
+Frequencies are evenly spaced. Excesses are even in
+
+    s = asinh(excess/KNEE),   KNEE = 0.005,
+
+in steps of (range of s) KNEE/(n - 1) around grazing and in proportion to the excess far from it: the
+hysteresis of the letter's transitions, 1e-4 to 1.3e-2, would be lost within a step or two of an even grid of
+400 amplitudes over -0.15 ... 0.1; here the step at grazing is 1e-4 and the last ones are 3e-3, ten to the
+width of the islands near -0.1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beam import InvalidValue
+from contact.orbits import AmplitudeScan
+from studies.shell.options import require_cells
+from studies.shell.sweep import Column
+
+FREQUENCIES_HZ = (19.5, 24.0)
+EXCESSES = (-0.15, 0.1)
+KNEE = 0.005
+DIRECTIONS = ("up", "down")
+
+
+def sheared(excess: float | Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:
+    """s of the module's docstring: the upright coordinate of the chart [1]."""
+    found: NDArray[np.float64] = np.arcsinh(np.asarray(excess, dtype=float) / KNEE)
+    return found
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plane:
+    """`columns` frequencies [Hz] by `rows` excesses [1] between given ends."""
+
+    columns: int
+    rows: int
+    frequencies_hz: tuple[float, float] = FREQUENCIES_HZ
+    excesses: tuple[float, float] = EXCESSES
+
+    def __post_init__(self) -> None:
+        if self.columns < 2 or self.rows < 2:
+            raise InvalidValue(
+                f"points of the chart are {self.columns} by {self.rows}; each must be 2 or more"
+            )
+        require_cells("points", f"{self.columns} {self.rows}", self.columns * self.rows)
+        for name, lowest in (("frequencies_hz", 0.0), ("excesses", -1.0)):
+            low, high = getattr(self, name)
+            if not lowest < low < high:
+                raise InvalidValue(
+                    f"{name} of the chart are {low} to {high}; they must rise from above {lowest:g}"
+                )
+
+    def frequencies(self) -> NDArray[np.float64]:
+        """All of them, rising [Hz]."""
+        return np.linspace(*self.frequencies_hz, self.columns)
+
+    def rising_excesses(self) -> NDArray[np.float64]:
+        """All of them, rising [1]."""
+        low, high = sheared(self.excesses).tolist()
+        excesses: NDArray[np.float64] = KNEE * np.sinh(np.linspace(low, high, self.rows))
+        excesses[[0, -1]] = self.excesses
+        return excesses
+
+
+def column_at(frequency: float, scan: AmplitudeScan, plane: Plane) -> Column:
+    """The amplitude raised and lowered again at a frequency [Hz]: arrays that broadcast to (2, rows), the
+    upward scan first."""
+    excesses = plane.rising_excesses()
+    found = scan(frequency, excesses)
+    return {
+        "frequency_hz": np.array(frequency),
+        "direction": np.array(DIRECTIONS)[:, None],
+        "excess": excesses,
+        "period": found.period,
+        "impacts": found.impacts,
+        "cycles": found.cycles,
+        "reason": found.reason,
+    }
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fold:
+    """The exact end of a p_m orbit with one impact."""
+
+    period: int
+    frequency_hz: float
+    excess: float
+
+
+def side_by_side(columns: Sequence[Column]) -> dict[str, NDArray[np.int32]]:
+    """`period` (0: none found), `impacts` and `cycles` (drive periods spent) of all columns, arrays of shape
+    (2, n_frequencies, n_excesses): upward scan first, excesses rise in both; -1 where a cell failed."""
+    return {
+        name: np.stack([column[name] for column in columns], axis=1).astype(np.int32)
+        for name in ("period", "impacts", "cycles")
+    }
+
+
+def counts(period: NDArray[np.int32]) -> Mapping[str, Mapping[str, int]]:
+    """Cells of each period, by direction."""
+    return {
+        way: {str(p): int(n) for p, n in zip(*np.unique(period[k], return_counts=True), strict=True)}
+        for k, way in enumerate(DIRECTIONS)
+    }

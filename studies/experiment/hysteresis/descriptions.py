@@ -1,0 +1,150 @@
+"""One p_m orbit at one frequency in nine descriptions, from the map to the beam.
+
+Each differs from the one before in one thing:
+
+    map                     Eqs. (2), (3), corrected, tau of the letter
+    single_mode             Eq. (1): the map's own truncation removed
+    measured_kick           one mode, kick of the beam's collision at the fold, the same at every velocity
+    kick_of_velocity        one mode, kick against velocity
+    two_parameters          one mode, kick and shift against velocity: the letter's energy loss and time delay
+    all_mode_kick           all modes, the collision entered from rest
+    beam                    all modes, the collision entered with the ringing that the last one left
+
+Beside them: map_printed (the letter's y-line as stored) and map_measured_kick (the beam's kick for 1 + tau).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from beam import ModalModel
+from contact import NordmarkMap, StrobedNordmarkMap, StroboscopicMap
+from contact.orbits import KickFamily, PeriodicOrbit, Shooting, fold_along_frequency, fold_excess
+from studies.physics.two_parameters import fold_of_kicks, one_mode_fold
+from studies.shell.scene import (
+    Scene,
+    band_of,
+    beam_at,
+    corresponding,
+    nordmark_at,
+    periods_of,
+    single_mode_at,
+)
+
+CHAIN = ("map", "single_mode", "measured_kick", "kick_of_velocity", "two_parameters", "all_mode_kick", "beam")
+DESCRIPTIONS = ("map_printed", "map_measured_kick", *CHAIN)
+
+CAUSES = dict(
+    zip(
+        (
+            "truncation_of_the_map",
+            "size_of_the_kick",
+            "kick_against_velocity",
+            "delay",
+            "higher_modes_in_the_flight",
+            "ringing_met_by_the_next_collision",
+        ),
+        pairwise(CHAIN),
+        strict=True,
+    )
+)
+"""Cause -> the two neighbours in the chain between which it lies."""
+
+FREQUENCIES_HZ = (19.6, 23.8)
+"""Of the letter's spring; others at the same f T."""
+
+BELOW_BAND = 0.5
+"""How far below its band in the map a period is looked for, in widths of the band: there it coexists."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """F_m/F_g - 1 at the fold of p_m in all descriptions; None where there is none.
+
+    A fold of the beam that is not admissible is one of the equations alone: its orbit would touch the stop
+    elsewhere too.
+    """
+
+    frequency_hz: float
+    m: int
+    map_printed: float | None = None
+    map_measured_kick: float | None = None
+    map: float | None = None
+    single_mode: float | None = None
+    measured_kick: float | None = None
+    kick_of_velocity: float | None = None
+    two_parameters: float | None = None
+    all_mode_kick: float | None = None
+    beam: float | None = None
+    beam_admissible: bool | None = None
+
+    def ratio(self, description: str, reference: str = "beam") -> float | None:
+        """Its hysteresis over that of the reference; None unless both end on the same side of grazing."""
+        a, b = getattr(self, description), getattr(self, reference)
+        return None if a is None or b is None or a * b <= 0.0 else a / b
+
+    def factor(self, cause: str) -> float | None:
+        """What a cause multiplies the hysteresis by; the product of all leads from the map to the beam."""
+        before, after = CAUSES[cause]
+        return self.ratio(after, before)
+
+
+def map_fold(nordmark: NordmarkMap, m: int, kick: float | None = None) -> float | None:
+    """The fold of the map where it lies below grazing; `kick` stands for 1 + tau in the scale of rho."""
+    found = fold_excess(StrobedNordmarkMap(map=nordmark), m)
+    scale = 1.0 if kick is None else (kick / (1.0 + nordmark.restitution)) ** 2
+    return None if found is None or found >= 0.0 else scale * found
+
+
+def folds_at(
+    scene: Scene, frequency: float, m: int, model: ModalModel, near: PeriodicOrbit | None = None
+) -> tuple[Row, PeriodicOrbit | None]:
+    """All descriptions of the end of p_m at `frequency` [Hz], and the beam's orbit at its fold.
+
+    `near` is that at a neighbouring frequency, if known.
+    """
+    nordmark, oscillator = nordmark_at(scene, frequency), beam_at(scene, frequency, model)
+    row = Row(
+        frequency_hz=frequency,
+        m=m,
+        map=map_fold(nordmark, m),
+        map_printed=map_fold(replace(nordmark, y_line="printed"), m),
+        single_mode=fold_excess(StroboscopicMap(oscillator=single_mode_at(scene, frequency)), m),
+    )
+    kicks = KickFamily(oscillator=oscillator, period=m)
+    whole = kicks.fold()
+    if whole is None:
+        return row, None
+    slope = float(whole.kick.jump[0, 1]) / whole.kick.speed
+
+    shooting = Shooting(oscillator=oscillator, period=m, impacts=whole.kick.touches)
+    orbit = fold_along_frequency(shooting, np.array([frequency]), near)[0]
+    row = replace(
+        row,
+        map_measured_kick=map_fold(nordmark, m, -float(model.phi[0]) * slope),
+        measured_kick=one_mode_fold(kicks, lambda speed: (0.0, slope * speed)),
+        kick_of_velocity=one_mode_fold(kicks, lambda speed: (0.0, float(kicks.kick(speed).jump[0, 1]))),
+        two_parameters=fold_of_kicks(kicks),
+        all_mode_kick=whole.excess,
+        beam=None if orbit is None else orbit.excess,
+        beam_admissible=None if orbit is None else orbit.admissible,
+    )
+    return row, orbit
+
+
+def column(scene: Scene, model: ModalModel, step: float, m: int) -> list[Row]:
+    """The folds of p_m over the frequencies where it can exist, each started from its neighbour."""
+    edges = band_of(scene, m)
+    below = edges.lower - BELOW_BAND * (edges.upper - edges.lower)
+    low = max(corresponding(scene, FREQUENCIES_HZ[0]), below)
+    grid = np.arange(FREQUENCIES_HZ[0], FREQUENCIES_HZ[1] + 1e-9, step)
+    values = {round(corresponding(scene, float(f)), 6) for f in grid}
+    values |= {f for f, seen in periods_of(scene).items() if seen == m}
+    rows, near = list[Row](), None
+    for frequency in sorted((f for f in values if low <= f < edges.upper), reverse=True):
+        row, near = folds_at(scene, frequency, m, model, near)
+        rows.append(row)
+    return rows[::-1]

@@ -1,0 +1,113 @@
+"""The letter's Fig. 3 with four of the descriptions, all of them over the beam."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from contact import Band
+from studies import letter
+from studies.experiment.hysteresis.descriptions import FREQUENCIES_HZ, Row
+from studies.shell import plotting
+from studies.shell.plotting import BLACK, BLUE, GREEN, GUIDE, LETTER, NOTE, PAGE, VERMILION
+from studies.shell.scene import Scene, band_of, corresponding, periods_of
+
+CURVES = (
+    "The letter's Fig. 3, computed: where the p_m orbits end when the amplitude is lowered, against the "
+    "drive frequency, for m = 3 to 10; below the same on a logarithmic scale. The beam follows the bands of "
+    "the map, at another size and bent by the ringing of its second mode; crosses: folds of the equations "
+    "alone, whose orbit would touch the plate elsewhere too."
+)
+
+STYLES: dict[str, dict[str, Any]] = {
+    "map": {"label": "map", "color": BLACK, "linestyle": "-"},
+    "single_mode": {"label": "Eq. (1)", "color": BLUE, "linestyle": "--"},
+    "two_parameters": {"label": "one mode, loss and delay", "color": GREEN, "linestyle": "-."},
+    "beam": {"label": "beam", "color": VERMILION, "marker": "o", "markersize": 2.4, "mfc": "none"},
+}
+"""Descriptions in the figure like the letter's."""
+
+
+@plotting.in_house_style
+def draw_curves(scene: Scene, rows: Sequence[Row]) -> Figure:
+    """Folds against frequency, linear and logarithmic."""
+    figure, axes = plotting.new_figure(2, 1, width=PAGE, height=0.128, sharex=True)
+    edges = [band_of(scene, m) for m in sorted({row.m for row in rows})]
+    # f T at the edge is fixed: an error of T moves it by as much
+    unsure = letter.FREE_PERIOD_ERROR_S / letter.FREE_PERIOD_S
+    for number, (axis, sign) in enumerate(zip(axes, (1.0, -1.0), strict=True)):
+        curves(axis, rows, sign)
+        for edge in edges:
+            axis.axvspan(
+                edge.upper * (1.0 - unsure),
+                edge.upper * (1.0 + unsure),
+                color="0.82",
+                linewidth=0,
+                zorder=0,
+                label="upper edge of a band, letter's error of T",
+            )
+        for seen in periods_of(scene):
+            axis.axvline(seen, **LETTER, label="letter's Fig. 2: p$_m$ seen here")
+        plotting.panel(axis, number)
+    names_of_bands(axes, scene, edges)
+    axes[0].set_ylim(-0.16, 0.005)
+    axes[0].axhline(0.0, **GUIDE)
+    axes[1].set_yscale("log")
+    axes[1].set_ylim(1e-6, 0.3)
+    stable = "letter: stability of the amplitude"
+    plotting.mark_letter(axes[1].yaxis, letter.AMPLITUDE_STABILITY, words=stable, along=0.01)
+    plotting.label(axes[0].yaxis, "$F_m/F_g - 1$")
+    plotting.label(axes[1].yaxis, plotting.HYSTERESIS)
+    plotting.label(axes[1].xaxis, "excitation frequency", "Hz")
+    plotting.legend_below(figure, axes[:1], 3)
+    return figure
+
+
+def curves(axis: Axes, rows: Sequence[Row], sign: float) -> None:
+    """The descriptions, a line for each period, the beam last; crosses on its folds not admissible."""
+    for name, style in STYLES.items():
+        ends = [(row, sign * (getattr(row, name) or 0.0)) for row in rows]
+        for m in sorted({row.m for row in rows}):
+            shown = [(row.frequency_hz, end) for row, end in ends if row.m == m and sign * end < 0.0]
+            axis.plot(*np.array(shown).reshape(-1, 2).T, **style, linewidth=0.9)
+    crossed = [(row.frequency_hz, end) for row, end in ends if sign * end < 0.0 and not row.beam_admissible]
+    axis.plot(
+        *np.array(crossed).reshape(-1, 2).T,
+        "x",
+        markersize=3.5,
+        color=VERMILION,
+        label="beam, not admissible",
+    )
+
+
+def names_of_bands(axes: Sequence[Axes], scene: Scene, edges: Sequence[Band]) -> None:
+    """m of the bands on top, and at the letter's frequencies below."""
+    lowest, highest = (corresponding(scene, f) for f in FREQUENCIES_HZ)
+    axes[1].set_xlim(lowest, highest)
+    for seen, m in periods_of(scene).items():
+        axes[1].annotate(
+            f"p$_{{{m}}}$",
+            (seen, 0.02),
+            xytext=(-1.5, 0),
+            textcoords="offset points",
+            ha="right",
+            xycoords=("data", "axes fraction"),
+            va="bottom",
+            fontsize=NOTE,
+        )
+    for edge in edges:
+        middle = 0.5 * (max(edge.lower, lowest) + edge.upper)
+        words = f"$m$ = {edge.period}" if edge.period < 6 else f"{edge.period}"
+        if middle < highest:
+            axes[0].annotate(
+                words,
+                (middle, 1.01),
+                xycoords=("data", "axes fraction"),
+                ha="center",
+                va="bottom",
+                fontsize=NOTE,
+            )

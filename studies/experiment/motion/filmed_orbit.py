@@ -1,0 +1,168 @@
+"""A settled orbit at the times of a film: fast in flight, slow at the collision.
+
+Times count from the strobe at which the film begins. The step from frame to frame is that of the flight, at
+most the distance from the nearest contact over `NEARER`, and 1/`IN_CONTACT` of a contact while it lasts:
+
+    step(t) = clip(distance(t)/NEARER, contact/IN_CONTACT, flight)
+
+and the frames lie where the integral of dt/step reaches whole numbers.
+
+Drawn is the shape of mode 1 that carries the whole tip displacement x, and the departure from it, enlarged M
+times:
+
+    (x/phi_1) Phi_1 + M sum_{k>=2} q_k [Phi_k - (phi_k/phi_1) Phi_1]
+
+The departure leaves the tip where it is: with any M the ball meets the plate when the computed tip meets it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beam import Modes, SpringMesh
+from contact import ImpactKind, ImpactOscillator, State, simulate
+from studies.experiment.force import contact_force, touching
+
+Array = NDArray[np.float64]
+
+NEARER, IN_CONTACT = 8.0, 6.0
+FLIGHT_STEPS = 120.0
+"""Steps of the flight in a whole film, were there no contacts."""
+
+APERIODIC = 4
+"""Drive periods shown of a motion that has no period."""
+
+LINE_POINTS = 400
+"""Points of the drawn line in a drive period."""
+
+ROOM, MOST = 0.07, 100.0
+"""Largest enlarged departure over the greatest extent of the strip; enlargement beyond which nothing is
+seen."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrameRow:
+    """One frame: time, how many times slower than life it is shown, tip, base, force, whether they touch."""
+
+    frame: int
+    time_s: float
+    slowed: float
+    tip_m: float
+    tip_velocity_m_per_s: float
+    base_m: float
+    force_n: float
+    contact: bool
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FilmedOrbit:
+    """One period of an orbit; times from the strobe at which it begins [s]."""
+
+    duration: float
+    contacts: list[tuple[float, float]]
+    """Begin and end of each [s]."""
+    coordinates: Array
+    """Modal coordinates at the frames, shape (n_frames, n_modes); `rows` are the numbers behind them."""
+    rows: list[FrameRow]
+    line_time: Array
+    """Even times of the drawn line, and the tip there, `line_tip` [m]."""
+    line_tip: Array
+
+
+def frame_times(duration: float, contacts: list[tuple[float, float]], frames: int) -> Array:
+    """Times of `frames` frames over a period that begins again [s], shape (frames,)."""
+    around = [(a + n * duration, b + n * duration) for n in (-1, 0, 1) for a, b in contacts]
+    flight = duration / FLIGHT_STEPS
+    lengths = [last - first for first, last in contacts if last > first]
+    least = min(flight, float(np.median(lengths)) / IN_CONTACT if lengths else flight / 50.0)
+    edges = [place for span in around for place in span if 0.0 <= place <= duration]
+    near = [place + sign * least * 1.05**k for place in edges for k in range(200) for sign in (-1, 1)]
+    fine = np.unique(np.clip([*np.linspace(0.0, duration, 4001), *edges, *near], 0.0, duration))
+    step = np.full(fine.shape, flight)
+    for first, last in around:
+        distance = np.maximum(np.maximum(first - fine, fine - last), 0.0)
+        step = np.minimum(step, np.maximum(distance / NEARER, least))
+    passed = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(fine) * (1.0 / step[1:] + 1.0 / step[:-1]))])
+    times: Array = np.interp(np.arange(frames) / frames * passed[-1], passed, fine)
+    return times
+
+
+def film_orbit(
+    oscillator: ImpactOscillator, state: State, period: int, *, frames: int, rate: float
+) -> FilmedOrbit:
+    """The motion from `state`, which lies at a strobe, in so many frames at `rate` a second."""
+    length = period or APERIODIC
+    duration, begin = length * oscillator.period, state.time
+    whole = simulate(oscillator, state, periods=length + 1)
+    felt = (whole.impacts.kind != ImpactKind.GRAZE) & (whole.impacts.start < begin + duration)
+    spans = zip(whole.impacts.start[felt] - begin, whole.impacts.end[felt] - begin, strict=True)
+    contacts = [(float(a), float(b) if math.isfinite(b) else duration) for a, b in spans]
+    times = frame_times(duration, contacts, frames)
+    line = np.linspace(0.0, duration, length * LINE_POINTS + 1)
+    run, drawn = (simulate(oscillator, state, periods=length + 1, times=begin + at) for at in (times, line))
+    columns = (
+        times,
+        1.0 / (rate * np.diff(times, append=duration)),
+        oscillator.tip(run.displacement),
+        oscillator.tip(run.velocity),
+        oscillator.driven.displacement(times),
+        contact_force(oscillator, run),
+    )
+    rows = [
+        FrameRow(
+            frame=number,
+            time_s=t,
+            slowed=slowed,
+            tip_m=x,
+            tip_velocity_m_per_s=v,
+            base_m=b,
+            force_n=n,
+            contact=bool(touched),
+        )
+        for number, (touched, (t, slowed, x, v, b, n)) in enumerate(
+            zip(touching(run), np.array(columns).T.tolist(), strict=True), start=1
+        )
+    ]
+    return FilmedOrbit(
+        duration=duration,
+        contacts=contacts,
+        coordinates=run.displacement,
+        rows=rows,
+        line_time=line,
+        line_tip=oscillator.tip(drawn.displacement),
+    )
+
+
+def drawn_shapes(
+    mesh: SpringMesh, modes: Modes, coordinates: Array, magnification: float | None = None
+) -> tuple[Array, float]:
+    """Displacements of the points of the mesh relative to the base (n_frames, n_points, 3) [m], and M [1].
+
+    `coordinates` (n_frames, n_modes) are those of the coupled modes.
+
+    M is the largest round number with which the departures stay below `ROOM`, unless it is given.
+    """
+    kept = np.flatnonzero(modes.coupled)[: coordinates.shape[1]]
+    phi, strip = modes.phi[kept], np.unique(mesh.hexahedra)
+    first = mesh.shapes[kept[0]] / phi[0]
+    departures = np.tensordot(coordinates, mesh.shapes[kept] - phi[:, None, None] * first, axes=1)
+    carried = (coordinates @ phi)[:, None, None] * first
+    # the ball is drawn where the tip is, and does not turn
+    ball, drive = np.unique(mesh.triangles), np.array([*modes.discretization.spring.drive, 0.0])
+    departures[:, ball] = 0.0
+    carried[:, ball] = ((coordinates @ phi)[:, None] * drive)[:, None]
+    if magnification is None:
+        largest = float(np.linalg.norm(departures[:, strip], axis=2).max())
+        room = ROOM * float(np.ptp(mesh.points[strip], axis=0).max())
+        magnification = min(MOST, max(1.0, _rounded(room / largest))) if largest > 0.0 else 1.0
+    return carried + magnification * departures, magnification
+
+
+def _rounded(value: float) -> float:
+    """The largest of 1, 2, 5, 10, ... that is not above the value."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return max(step * power for step in (1.0, 2.0, 5.0) if step * power <= value * (1.0 + 1e-12))

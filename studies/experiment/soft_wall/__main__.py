@@ -1,0 +1,147 @@
+"""A wall of finite hardness: how the square root is smoothed, and what orbit that adds at grazing.
+
+Claim (letter 1996, last page): a wall "such that at impact the spring constant changes by a factor K >> 1"
+affects the bifurcations close to grazing in a characteristic manner, to larger amplitudes the smaller K; the
+experiment did not show it.
+
+Computed, for Eq. (1) with an elastic wall of K times the spring constant, at each drive frequency and
+K = 10 ... 10^6:
+
+    kick       of one collision against the peak h over the wall: J = (4/3) (K - 1) Omega^2 sqrt(2/a) h^(3/2)
+               below h = (3/2) a/((K - 1) Omega^2), a = omega^2 gap, and the square root above
+    doubling   excess at which p1, which survives its first touch, loses stability by a multiplier -1: by
+               shooting, against a closed form that goes like K^(-2)
+
+and for the beam with Hertz contact the excess at which the kick leaves the square root, at which p1 loses its
+stability, and at which a multiplier passes -1. The study compares the loss of stability with the letter's
+amplitude stability. `closed_forms` derives the equations.
+
+Run:     python -m studies soft_wall [--decades 1 6] [--quick]
+Writes:  kicks.csv, doublings.csv; figures kick and orbits
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from itertools import pairwise
+from typing import Annotated
+
+import numpy as np
+
+from studies import letter
+from studies.experiment.soft_wall.closed_forms import SoftWall
+from studies.experiment.soft_wall.rows import Beam, Doubling, beam_of, doubling_of, kicks_of
+from studies.shell.scene import Scene, SceneError, harmonic, single_mode_at
+from studies.shell.study import Run, study
+
+SHOWN_HZ = 22.2
+"""Frequency of the curves and of the beam, or the one of the scene nearest to it."""
+
+QUICK_HZ = (22.2, 22.6)
+UNSEEN = 1e-9
+"""A loss of stability below this excess counts as one at grazing, as at a hard wall."""
+
+
+@study(needs={"kick": 0.005}, quick={"decades": (3, 5), "points": 13})
+def soft_wall(
+    scene: Scene,
+    run: Run,
+    *,
+    decades: Annotated[tuple[int, int], "powers of ten between which K runs"] = (1, 6),
+    points: Annotated[int, "excesses of the curve of the beam"] = 37,
+) -> Mapping[str, object]:
+    """Compute, store and draw."""
+    if not decades[0] <= decades[1] <= 7:
+        raise SceneError(f"decades is {decades}; K runs upwards, to 10^7 at most")
+    frequencies = sorted(set(harmonic(scene).drive.frequencies_hz))
+    shown = min(frequencies, key=lambda f: abs(f - SHOWN_HZ))
+    if run.quick:
+        frequencies = sorted({min(frequencies, key=lambda f: abs(f - g)) for g in QUICK_HZ})
+    walls = [
+        SoftWall(oscillator=single_mode_at(scene, f), hardness=10.0**k)
+        for f in frequencies
+        for k in range(decades[0], decades[1] + 1)
+    ]
+    excesses = np.geomspace(1e-8, 3e-2, 14 if run.quick else 27)
+    curves = [wall for wall in walls if wall.frequency == shown]
+    kicks = [
+        row
+        for rows in run.attempt(partial(kicks_of, excesses=excesses), curves, "kicks")
+        for row in rows or ()
+    ]
+    doublings = [row for row in run.attempt(doubling_of, walls, "period doublings") if row]
+    job = partial(beam_of, scene, excesses=np.geomspace(1e-7, 1e-1, points).tolist())
+    (found,) = run.attempt(job, [shown], "beam")
+    beam, more = found or (None, [])
+    run.table("kicks", [*kicks, *more], "Kick velocity of one collision [m/s].", show=())
+    run.table("doublings", doublings, "Excess F/F_g - 1 at which p1 doubles its period.")
+    from studies.experiment.soft_wall.figures import draw_kicks, draw_orbits
+
+    run.figure(
+        "kick",
+        draw_kicks([*kicks, *more]),
+        "Kick of one collision against the excess: points, "
+        "closed form (line) and, dashed, the law of a soft touch. All go over into the power 1/2 of a "
+        "hard one, the beam below what the letter's drive could resolve.",
+    )
+    run.figure(
+        "orbits",
+        draw_orbits(scene, doublings, beam),
+        "(a) Excess of the period doubling of p1 at an elastic wall; closed form (line). "
+        "(b) The beam: p1 that survives its touch, and what an experiment sees that raises "
+        "the drive in finite steps.",
+    )
+    judge_wall(run, doublings)
+    if beam:
+        judge_beam(run, beam)
+    return {"doublings": doublings, "beam": beam}
+
+
+def judge_wall(run: Run, doublings: Sequence[Doubling]) -> None:
+    """Whether the doubling moves to larger amplitudes as K decreases, at every frequency."""
+    found = [(row.frequency_hz, row.hardness, row.excess) for row in doublings if row.excess is not None]
+    if not found:
+        return
+    falls = all(a[2] > b[2] for a, b in pairwise(found) if a[0] == b[0])
+    first = [row for row in found if row[0] == found[0][0]]
+    ends = ", ".join(f"{excess:.2g} at K = {hardness:g}" for _, hardness, excess in (first[0], first[-1]))
+    run.verdict(
+        "soft_wall",
+        "agrees" if falls else "differs",
+        found=f"Eq. (1): doubling at {ends}",
+        note=f"excess of the period doubling at {first[0][0]:.2f} Hz",
+    )
+
+
+def judge_beam(run: Run, beam: Beam) -> None:
+    """Whether the letter could have seen what the beam does at its first touches."""
+    end, lost, stable = beam.doubling_excess, beam.unstable_excess, letter.AMPLITUDE_STABILITY
+    if end is None or lost is None:
+        return
+    below = (
+        "within what the letter could resolve"
+        if lost >= stable
+        else (
+            f"{stable / lost:.0f} times below the letter's amplitude stability, which is why it was not seen"
+        )
+    )
+    loss = f"p1 doubles its period at {end:.2g}"
+    if beam.turns:
+        loss = (
+            f"p1 loses its stability at {lost:.2g} by a complex pair of multipliers; a multiplier passes "
+            f"-1 at {end:.2g}, where p1 is unstable already"
+        )
+    run.verdict(
+        "smoothing",
+        "differs" if lost >= stable else "in part" if lost > UNSEEN else "agrees",
+        found=f"beam: {loss}",
+        note=f"the square root is smoothed; the loss is {below}",
+    )
+    if beam.square_root_from is not None and beam.half_excess is not None:
+        run.answer(
+            "higher_modes",
+            f"The square root holds from an excess of {beam.square_root_from:.1e} on; "
+            f"half of the kick is left at {beam.half_excess:.1e}. Below, the Hertz contact smooths "
+            f"it: {loss}. This loss of stability is {below}.",
+        )

@@ -1,0 +1,130 @@
+"""A settled orbit against time, one of its collisions from close by, and its spectrum.
+
+Claim (letter 1996, Fig. 4): at F/F_g - 1 = 0.013 the orbit has period 4, and at impact "a multitude of
+high-order modes is excited in the beam".
+
+Computed, at 21.50 Hz, where the letter's p1 goes over into p4:
+
+    settled orbit    reached from below grazing; its period is found, not assumed
+    motion           tip and read-out point over two periods of the orbit, impacts marked
+    close-up         tip relative to the plate and contact force in one collision
+    collision        restitution, delay and kick of the single-mode description (contact.collisions)
+    spectrum         amplitudes of the read-out at the multiples of 1/(orbit period)
+
+A motion without a period up to 64 drive periods is drawn and told as such; its spectrum then has leakage.
+
+Run:     python -m studies time_trace [--excess E] [--frequency HZ]
+Writes:  time_trace.npz (time, tip, read-out), collisions.csv (contact.Collision: SI units), spectrum.npz,
+         peaks.csv, time_trace.png, spectrum.png
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Annotated
+
+from contact import Collision, StroboscopicMap
+from contact.orbits import born
+from studies import letter
+from studies.experiment.time_trace.spectrum import Peak, lines_of, peaks_of
+from studies.experiment.time_trace.trace import close_up, trace_of
+from studies.shell.run import Verdict
+from studies.shell.scene import (
+    Scene,
+    beam_at,
+    corresponding,
+    harmonic,
+    model_of,
+    periods_of,
+    require_drive_below,
+)
+from studies.shell.study import Run, study
+
+FREQUENCY = 21.50
+"""Where the letter has the period 4 of its Fig. 4 [Hz]."""
+
+ORBIT_PERIODS = 2
+"""Periods of the orbit in the figure."""
+
+APERIODIC = 8
+"""Drive periods shown of a motion that has no period."""
+
+TOLD = ("first_touch", "approach", "restitution", "delay", "kick", "impacts", "contact_time", "ringing")
+"""Columns of a collision that are shown to a person."""
+
+
+@study(needs={"tip_trace": 2e-3})
+def time_trace(
+    scene: Scene,
+    run: Run,
+    *,
+    excess: Annotated[float, "F/F_g - 1 of the orbit, above -1"] = letter.TIME_TRACE_EXCESS,
+    frequency: Annotated[
+        float | None, "drive frequency (Hz); 21.5, other springs at the same f T, by default"
+    ] = None,
+) -> Mapping[str, object]:
+    """Compute, store and draw."""
+    drive_hz = corresponding(harmonic(scene), FREQUENCY) if frequency is None else frequency
+    model = model_of(scene)
+    require_drive_below(scene, model, drive_hz)
+    oscillator = beam_at(scene, drive_hz, model).with_excess(excess)
+    strobed, most = StroboscopicMap(oscillator=oscillator), max(scene.scan.settle_cycles, 1)
+    settled = born(strobed, excess, most_cycles=most)
+    length = ORBIT_PERIODS * settled.period or APERIODIC
+    trace = trace_of(oscillator, settled.end, length)
+    # over one period of the orbit: a longer stretch only puts zeros between its lines
+    share = ORBIT_PERIODS if settled.period else 1
+    part = trace.readout[: trace.readout.size // share]
+    lines_hz, amplitude = lines_of(part, length / share * oscillator.period)
+    peaks = peaks_of(lines_hz, amplitude, model.frequencies_hz, drive_hz)
+    unit = "rad" if scene.readout.quantity == "rotation" else "m"
+    run.arrays("time_trace", time_s=trace.time, tip_m=trace.tip, **{f"readout_{unit}": trace.readout})
+    run.table("collisions", trace.collisions, "Collisions in the stretch that is shown.", show=TOLD)
+    run.arrays("spectrum", frequency_hz=lines_hz, **{f"amplitude_{unit}": amplitude})
+    run.table("peaks", peaks, f"Peaks of the read-out [{unit}], with the mode they belong to.", show=())
+    from studies.experiment.time_trace.figure import draw_spectrum, draw_trace  # matplotlib is slow to import
+
+    name = f"p{settled.period}" if settled.period else "no period up to 64"
+    near = close_up(oscillator, settled.end, trace.collisions[0]) if trace.collisions else None
+    run.figure(
+        "time_trace",
+        draw_trace(trace, near, scene.stop.gap_m, unit, f"{name}, {drive_hz:.2f} Hz"),
+        "Tip and read-out point of the settled orbit, impacts marked; on the right one collision: tip past "
+        "the plate and contact force, contact shaded.",
+    )
+    run.figure(
+        "spectrum",
+        draw_spectrum(lines_hz, amplitude, model.frequencies_hz, drive_hz, unit),
+        "Amplitudes of the read-out over one period of the orbit; dotted: the modes, dashed: the drive.",
+    )
+    run.say(f"{drive_hz:g} Hz, excess {excess:g}: {name}")
+    seen = periods_of(scene).get(drive_hz) if excess == letter.TIME_TRACE_EXCESS else None
+    if seen == letter.PERIODS[FREQUENCY]:
+        judge(run, name, seen, trace.collisions, peaks)
+    return {
+        "frequency_hz": drive_hz,
+        "excess": excess,
+        "period": settled.period,
+        "letter": seen,
+        "impacts": round(trace.impact_times.size / share),
+        "impact_times_s": trace.impact_times,
+        "collisions": trace.collisions,
+        "modes_hz": model.frequencies_hz,
+        "peaks": peaks,
+        "peak_unit": unit,
+    }
+
+
+def judge(run: Run, period: str, seen: int, found: Sequence[Collision], peaks: Sequence[Peak]) -> None:
+    """Verdicts on Fig. 4."""
+    run.verdict("time_trace", "agrees" if period == f"p{seen}" else "differs", found=period)
+    higher = sorted({peak.mode for peak in peaks if peak.mode is not None and peak.mode > 1})
+    verdict: Verdict = "agrees" if len(higher) > 2 else "in part" if higher else "differs"
+    told = f"modes {', '.join(map(str, higher)) or 'none'} have a peak in the spectrum"
+    run.verdict("many_modes", verdict, found=told)
+    if found and math.isfinite(found[0].restitution):
+        near = abs(found[0].restitution - letter.RESTITUTION) <= 0.5 * letter.RESTITUTION
+        note = f"delay {1e3 * found[0].delay:.3f} ms, kick {found[0].kick:.3f}"
+        verdict, told = "agrees" if near else "differs", f"{found[0].restitution:.3f}"
+        run.verdict("restitution_on_orbit", verdict, found=told, note=note)

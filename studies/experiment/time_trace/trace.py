@@ -1,0 +1,75 @@
+"""A stretch of a motion, and one of its collisions close by: tip past the plate, and the contact force."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact import Collision, ImpactKind, ImpactOscillator, State, collisions, simulate
+from studies.experiment.force import contact_force
+from studies.shell.scene import READOUT
+
+PER_PERIOD = 16_384
+"""Samples in a drive period: at 21.5 Hz up to 176 kHz without folding, beyond what the spectrum shows."""
+
+MARGIN, LEAST_MARGIN, SAMPLES = 2.0, 50e-6, 1201
+"""Time before and after in contact times, and at least [s]; samples."""
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Trace:
+    """The motion from a strobe on: tip [m] and read-out [m or rad] over time [s]."""
+
+    time: Array
+    tip: Array
+    readout: Array
+    impact_times: Array
+    collisions: list[Collision]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CloseUp:
+    """Time from the first touch [s], tip past the plate [m], contact force [N]; `spans` are the contacts
+    [s]."""
+
+    time: Array
+    height: Array
+    force: Array
+    spans: list[tuple[float, float]]
+
+
+def trace_of(oscillator: ImpactOscillator, state: State, length: int) -> Trace:
+    """The motion over `length` drive periods from `state`."""
+    begin, span = state.time, length * oscillator.period
+    time = span * np.arange(length * PER_PERIOD) / (length * PER_PERIOD)
+    run = simulate(oscillator, state, periods=length + 2, times=begin + time)
+    touches = run.impacts.start[(run.impacts.kind == ImpactKind.IMPACT) & (run.impacts.start < begin + span)]
+    final = collisions(oscillator, run, unfinished="drop")
+    return Trace(
+        time=time,
+        tip=oscillator.tip(run.displacement),
+        readout=run.displacement @ oscillator.model.readouts[READOUT],
+        impact_times=touches - begin,
+        collisions=[collision for collision in final if collision.first_touch < begin + span],
+    )
+
+
+def close_up(oscillator: ImpactOscillator, state: State, collision: Collision) -> CloseUp:
+    """A collision of the motion from `state`."""
+    margin = max(MARGIN * collision.contact_time, LEAST_MARGIN)
+    first, last = collision.first_touch - margin, collision.end + margin
+    times = np.linspace(max(first, state.time), last, SAMPLES)
+    run = simulate(oscillator, state, duration=last - state.time + margin, times=times)
+    impacts = run.impacts
+    inside = (impacts.start >= first) & (impacts.start <= collision.end)
+    ends = zip(impacts.start[inside], impacts.end[inside], strict=True)
+    return CloseUp(
+        time=times - collision.first_touch,
+        height=oscillator.tip(run.displacement) - oscillator.stop.gap,
+        force=contact_force(oscillator, run),
+        spans=[(float(a) - collision.first_touch, float(b) - collision.first_touch) for a, b in ends],
+    )

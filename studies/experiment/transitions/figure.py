@@ -1,0 +1,77 @@
+"""Orbit diagrams of the transitions, as in the letter's Fig. 2."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from studies import letter
+from studies.experiment.transitions.descriptions import Diagram, Row, Scans
+from studies.shell import plotting
+from studies.shell.plotting import GUIDE
+from studies.shell.scene import Scene, single_mode_at
+
+
+def draw(scene: Scene, rows: Sequence[Row], diagrams: Sequence[Scans], name: str) -> Figure:
+    """The panels of the letter's Fig. 2 for one description."""
+    columns = min(3, len(rows))
+    lines = math.ceil(len(rows) / columns)
+    with plotting.house_style():
+        size = {"width": plotting.PAGE, "height": 0.055 * lines + 0.012}
+        figure, axes = plotting.new_figure(lines, columns, squeeze=False, **size)
+        for axis in axes.flat[len(rows) :]:
+            axis.set_visible(False)
+        for number, (axis, row, found) in enumerate(zip(axes.flat, rows, diagrams, strict=False)):
+            grazing = row.grazing_amplitude_m
+            if name in ("single_mode", "two_parameters"):
+                grazing = single_mode_at(scene, row.frequency_hz).grazing_amplitude()
+            if name in found:
+                panel(axis, found[name], None if name == "map" else grazing)
+            seen = "" if row.letter is None else f" (letter: p$_{{{row.letter}}}$)"
+            period = row.periods()[name]
+            words = f"p$_{{{period}}}$" if period else "no period"
+            plotting.panel(axis, number, f"{row.frequency_hz:.2f} Hz: {words}{seen}")
+        sideways = (plotting.EXCESS, "10$^{-3}$") if name == "map" else ("excitation amplitude", "mm")
+        read = scene.readout.quantity
+        upwards = {
+            "map": ("$x$ of the map", "1"),
+            "single_mode": ("tip displacement $ξ$", "mm"),
+            "two_parameters": ("tip displacement $ξ$", "mm"),
+            "beam": (f"read-out {read}", "mm" if read == "displacement" else "mrad"),
+        }[name]
+        for axis in axes[-1, :]:
+            plotting.label(axis.xaxis, *sideways)
+        for axis in axes[:, 0]:
+            plotting.label(axis.yaxis, *upwards)
+        plotting.legend_below(figure, axes.flat, 5, markerscale=1.5)
+    return figure
+
+
+def panel(axis: Axes, found: Mapping[str, Diagram], grazing: float | None) -> None:
+    """Both scans at one frequency, against the amplitude [mm], for the map (no amplitude) the excess
+    [1e-3]."""
+    moving = set[float]()
+    for way, look in (("down", plotting.DOWN), ("up", plotting.UP)):
+        diagram = found[way]
+        amplitude = 1e3 * (diagram.excess if grazing is None else grazing * (1.0 + diagram.excess))
+        settled = diagram.period > 0
+        moving |= {a for a, kind in zip(amplitude, diagram.kind, strict=True) if kind == "not settled"}
+        points = diagram.points[settled] * (1.0 if grazing is None else 1e3)
+        plotting.strobe_points(axis, amplitude[settled], points, settled[settled], look, f"{way}ward scan")
+    for place, value in enumerate(sorted(moving)):
+        axis.axvline(value, color="0.75", linewidth=0.5, zorder=1, label="_" if place else "not settled")
+    at = 0.0 if grazing is None else 1e3 * grazing
+    stable = 1e3 * (letter.AMPLITUDE_STABILITY if grazing is None else letter.AMPLITUDE_STABILITY_M)
+    axis.axvspan(
+        at - stable,
+        at + stable,
+        color="0.88",
+        linewidth=0,
+        zorder=0,
+        label="letter: stability of the amplitude",
+    )
+    axis.axvline(at, **GUIDE, label="grazing")
+    axis.locator_params(axis="x", nbins=4)

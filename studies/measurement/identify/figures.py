@@ -1,0 +1,106 @@
+"""The figure: each record with its fit, what is left of it, and where two parameters trade off."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from studies.measurement.identify.fit import Fit
+from studies.measurement.identify.profiles import Profile
+from studies.physics.parameters import parameters_of
+from studies.shell import plotting
+
+CAPTION = (
+    "Each record with its fit (left), residuals (middle), and the profile likelihood of the two parameters "
+    "that trade off most (blue: $\\chi^2$, dashed the 90 % interval; red: the other, fitted again), or the "
+    "correlations of all (right)."
+)
+SHOWN = 6
+"""Drive periods of a displacement that are shown."""
+
+FITTED: plotting.Style = {"linestyle": "none", "marker": "_", "color": "black", "zorder": 5, "label": "fit"}
+DOTS: plotting.Style = {"linestyle": "none", "marker": ".", "markersize": 2, "rasterized": True}
+
+DEPTH = 2.71
+"""Rise of chi^2 at the ends of a 90 % interval."""
+
+DARK = 0.6
+"""Correlation from which on its cell is dark."""
+
+
+@plotting.in_house_style
+def draw(found: Mapping[str, Fit], profiles: Mapping[str, Sequence[Profile]]) -> Figure:
+    """Three panels a record."""
+    height = 0.055 * len(found) + 0.005
+    figure, axes = plotting.new_figure(len(found), 3, width=plotting.PAGE, height=height, squeeze=False)
+    for i, ((name, one), row) in enumerate(zip(found.items(), axes, strict=True)):
+        _record(row[0], row[1], one)
+        _trade(row[2], one, profiles[name])
+        for k, words in enumerate((name, "residuals", "")):
+            plotting.panel(row[k], 3 * i + k, words)
+    return figure
+
+
+def _record(left: Any, middle: Any, one: Fit) -> None:
+    """Record and fit, and residuals below the same axis."""
+    kind, rows = one.record.kind, one.record.rows
+    table = kind == "transitions"
+    unit, fine, words = (1e2, 1e2, "end of $p_m$, excess") if table else (1e3, 1e6, "tip displacement")
+    seen, residuals = one.record.observed[:, 0], one.residuals[:, 0]
+    fitted = seen - residuals
+    if kind == "displacement":
+        place, across = 1e3 * rows[:, 0], ("time", "ms")
+        left.plot(place, unit * seen, **DOTS, color=plotting.SKY, label="record")
+        left.plot(place, unit * fitted, color=plotting.BLACK, linewidth=0.6, label="fit")
+        left.set_xlim(place[0], place[0] + 1e3 * SHOWN * one.oscillator.period)
+    elif kind == "strobe":
+        place, across = np.arange(len(seen), dtype=float), ("strobe", "1")
+        left.plot(place, unit * seen, **plotting.points(1), label="record")
+        left.plot(place, unit * fitted, **FITTED)
+    else:
+        place, across = rows[:, 0], ("drive frequency", "Hz")
+        errors = unit * one.record.units(one.noise)[:, 0]
+        left.errorbar(place, unit * seen, errors, **plotting.points(1), label="record")
+        left.plot(place, unit * fitted, **FITTED)
+    middle.plot(place, fine * residuals, **DOTS, color=plotting.BLUE)
+    middle.axhline(0.0, **plotting.GUIDE)
+    for axis in (left, middle):
+        plotting.label(axis.xaxis, *across)
+    plotting.label(left.yaxis, words, "%" if table else "mm")
+    plotting.label(middle.yaxis, "observed less fitted", "%" if table else "\u00b5m")
+    left.margins(y=0.25)
+    left.legend(loc="upper right", ncols=2)
+
+
+def _trade(axis: Any, one: Fit, rows: Sequence[Profile]) -> None:
+    """The profile of the most correlated pair, else all correlations."""
+    if not rows:
+        axis.imshow(one.correlations, vmin=-1.0, vmax=1.0, cmap="RdBu")
+        names = [name.replace("_", "\n") for name in one.names]
+        axis.set_xticks(range(len(names)), names)
+        axis.set_yticks(range(len(names)), names)
+        for (i, j), number in np.ndenumerate(one.correlations):
+            colour = "white" if abs(number) > DARK else "black"
+            axis.text(j, i, f"{number:.2f}", ha="center", va="center", color=colour)
+        return
+    own = [row for row in rows if row.parameter == rows[0].parameter]
+    other, known = axis.twinx(), parameters_of(one.oscillator)
+
+    def shown(along: Any, name: str, values: Sequence[float]) -> NDArray[np.float64]:
+        unit = known[name].unit
+        scale, unit = (1e3, f"m{unit}") if unit in ("s", "m") else (1.0, unit)
+        plotting.label(along, name.replace("_", " "), unit)
+        return scale * np.array(values)
+
+    value = shown(axis.xaxis, own[0].parameter, [row.value for row in own])
+    axis.plot(value, [row.depth for row in own], **plotting.series(1))
+    axis.axhline(DEPTH, **plotting.GUIDE)
+    axis.locator_params(axis="x", nbins=5)
+    plotting.label(axis.yaxis, "rise of $\\chi^2$")
+    fitted = shown(other.yaxis, own[0].other, [row.other_value for row in own])
+    other.plot(value, fitted, **plotting.series(2))
+    other.spines["right"].set_visible(True)

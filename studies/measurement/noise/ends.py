@@ -1,0 +1,130 @@
+"""What the scans say: where orbits end, and the hysteresis that an observer gets."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from studies.measurement.noise.places import Place
+from studies.measurement.noise.rates import law_of, quantiles
+from studies.measurement.noise.scans import ENDS, Protocol, named
+
+PARTS = (0.05, 0.5, 0.95)
+
+Scans = Mapping[str, np.ndarray]
+Made = tuple[Place, Protocol, Scans]
+
+
+@dataclass(frozen=True, kw_only=True)
+class End:
+    """Excess at which an orbit ended in scans: `median` with its standard `error`, 5 % (`low`) and 95 %.
+
+    `end`: p_m "slipped", was "lost", p_1 was "touched", was "left" (studies.measurement.noise.scans);
+    `formula` and its 5 and 95 %: of the slips and touches of Eq. (1); `off`: formula less median in standard
+    errors.
+    """
+
+    description: str
+    frequency_hz: float
+    m: int
+    noise: str
+    fold: float | None
+    end: str
+    scans: int
+    low: float
+    median: float
+    high: float
+    error: float
+    formula_low: float | None = None
+    formula: float | None = None
+    formula_high: float | None = None
+    off: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Observed:
+    """Hysteresis as observed, excess at which p_1 was left less that at which p_m was lost.
+
+    `median`, 5 and 95 % (`low`, `high`) of pairs of `scans`, beside that of the folds without noise; `met`:
+    part of the scans from above grazing that come to p_m, and not to p_1 before; NaN where most do not, or
+    noise throws p_m out at once; `seen`: more than a step in 95 % of the pairs.
+    """
+
+    description: str
+    frequency_hz: float
+    m: int
+    noise: str
+    map: float | None
+    fold: float
+    scans: int
+    low: float
+    median: float
+    high: float
+    met: float
+    seen: bool
+
+
+def ends_of(made: Made) -> list[End]:
+    """What ended where at one place in one noise."""
+    place, protocol, found = made
+    rows = []
+    for name in ENDS:
+        values = np.sort(found[name][np.isfinite(found[name])])
+        if values.size < 2:
+            continue
+        by_formula = place.description == "Eq. (1)" and name in ("slipped", "touched")
+        law = law_of(place, protocol, name) if by_formula else None
+        formula: Sequence[float | None] = (None,) * len(PARTS) if law is None else quantiles(law, PARTS)
+        # ranks half a binomial standard deviation, sqrt(n)/2, below and above the median
+        ranks = 0.5 * (values.size + np.array([-1.0, 1.0]) * math.sqrt(values.size))
+        below, above = np.interp(ranks, np.arange(values.size) + 0.5, values)
+        (low, median, high), error = np.quantile(values, PARTS), 0.5 * float(above - below)
+        rows.append(
+            End(
+                description=place.description,
+                frequency_hz=place.frequency_hz,
+                m=place.m,
+                noise=named(protocol.correlation_s),
+                fold=None if place.fold is None else place.fold.excess,
+                end=name,
+                scans=values.size,
+                low=low,
+                median=median,
+                high=high,
+                error=error,
+                formula_low=formula[0],
+                formula=formula[1],
+                formula_high=formula[2],
+                off=None if formula[1] is None else (formula[1] - float(median)) / error,
+            )
+        )
+    return rows
+
+
+def observed_of(made: Made) -> Observed | None:
+    """The hysteresis at one place in one noise; None without a fold."""
+    place, protocol, found = made
+    if place.fold is None:
+        return None
+    widths = found["left"] - found["lost"]
+    count, met = int(np.count_nonzero(np.isfinite(widths))), float(found["met"].mean())
+    often = count > 0.5 * widths.size and met > 0.5
+    low, median, high = np.nanquantile(widths, PARTS) if often else (math.nan,) * 3
+    in_map = replace(place, description="map", model=None).fold
+    return Observed(
+        description=place.description,
+        frequency_hz=place.frequency_hz,
+        m=place.m,
+        noise=named(protocol.correlation_s),
+        map=None if in_map is None else -in_map.excess,
+        fold=-place.fold.excess,
+        scans=count,
+        low=low,
+        median=median,
+        high=high,
+        met=met,
+        seen=bool(low > protocol.step),
+    )

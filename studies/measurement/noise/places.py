@@ -1,0 +1,100 @@
+"""A p_m orbit at a drive frequency in one description: its fold, what noise makes of it there, its strobes.
+
+Next to a fold the m-th iterate is the normal form eta' = eta + (K/4)(x - x_fold) - eta^2 of one coordinate,
+in which K is the one number of the orbit: its multiplier there obeys (1 - lambda)^2 = K (x - x_fold), x the
+excess.  Noise e_j of the m periods moves the excess by their sum with weights w_j/(sum w), w_j how far e_j
+moves the critical coordinate: the left eigenvector of the multiplier 1 times what is left of b_j at the end.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from beam import ModalModel
+from contact import MapFamily, MaximalFamily, StrobedNordmarkMap, StroboscopicMap
+from contact.orbits import Shooting, strobe_derivatives
+from studies.shell.scene import Scene, beam_at, nordmark_at, single_mode_at
+
+BESIDE = 1e-3
+"""How far from the fold, in speed, a multiplier gives K: it is then good to 1e-3."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Place:
+    """p_m at a drive frequency; `description` is "map", "Eq. (1)" or "beam", `model` that of a beam."""
+
+    scene: Scene
+    description: str
+    m: int
+    frequency_hz: float
+    model: ModalModel | None = None
+
+    @cached_property
+    def strobed(self) -> Any:
+        """Its period map, at grazing."""
+        if self.description == "map":
+            return StrobedNordmarkMap(map=nordmark_at(self.scene, self.frequency_hz))
+        if self.description == "Eq. (1)":
+            oscillator = single_mode_at(self.scene, self.frequency_hz)
+        else:
+            oscillator = beam_at(self.scene, self.frequency_hz, self.model)
+        return StroboscopicMap(oscillator=oscillator.with_excess(0.0))
+
+    @cached_property
+    def family(self) -> Any:
+        """The orbits p_m."""
+        if self.description == "map":
+            return MapFamily(self.strobed.map, self.m)
+        if self.description == "Eq. (1)":
+            return MaximalFamily.from_oscillator(self.strobed.oscillator, period=self.m)
+        kicks = Shooting(oscillator=self.strobed.oscillator, period=self.m).kicks.fold()
+        return Shooting(
+            oscillator=self.strobed.oscillator, period=self.m, impacts=kicks.kick.touches if kicks else 1
+        )
+
+    @cached_property
+    def fold(self) -> Any:
+        """The orbit at the fold; None where there is none below grazing."""
+        found = self.family.fold()
+        return found if found is not None and found.excess < 0.0 else None
+
+    def stable(self, excess: float) -> Any:
+        """A strobe of the stable p_m at `excess`, or None."""
+        for orbit in self.family.orbits(excess):
+            if orbit.stable and orbit.admissible:
+                return self.strobe(orbit)
+        return None
+
+    def strobe(self, orbit: Any) -> Any:
+        """The state of an orbit at a strobe."""
+        return orbit.states[0] if self.description == "map" else orbit.strobe_state()
+
+    def across(self, size: int) -> np.ndarray:
+        """What coordinates, `size` of them, add up to the displacement of the tip (x of the map)."""
+        row = np.zeros(size)
+        row[: 1 if self.description == "map" else size // 2] = 1.0
+        return row
+
+    @cached_property
+    def steepness(self) -> float:
+        """K [1]."""
+        beside = self.family.orbit(self.fold.speed * (1.0 + BESIDE))
+        return float((1.0 - beside.multipliers.real.max()) ** 2 / (beside.excess - self.fold.excess))
+
+    @cached_property
+    def unevenness(self) -> float:
+        """Standard deviation of the weighted mean of the e_j over their own: 1/sqrt(m) or more."""
+        steps = strobe_derivatives(self.strobed.at(self.fold.excess), self.strobe(self.fold), self.m)
+        whole = np.eye(len(steps[0][1]))
+        for step, _pull in steps:
+            whole = step @ whole
+        values, left = np.linalg.eig(whole.T)
+        row, weights = left[:, np.argmin(np.abs(values - 1.0))].real, []
+        for step, pull in reversed(steps):
+            weights.append(row @ pull)
+            row = row @ step
+        return float(np.sqrt(np.sum(np.square(weights))) / abs(np.sum(weights)))

@@ -1,0 +1,246 @@
+"""Scans of the amplitude as an observer makes them, with noise of the drive.
+
+He raises or lowers the amplitude by a step, smoothly over `RAMP` of the time that he then waits, and notes
+what he saw: p_m if more than half of the periods lay between impacts m periods apart, p_1 if more than half
+of them lay in stretches without impact longer than `QUIET` periods.  p_m is *lost*, and p_1 *left*, at the
+first amplitude at which he did not see it.  Before that p_m *slips* where for the first time two impacts are
+not m periods apart, and p_1 is *touched* by the first impact (in the first half of the waiting, or they count
+for the next step): below its fold the motion can be thrown back to p_m many times before it dies out.
+The scan begins at a random part of a step, so that results do not lie on a grid; downwards it begins on p_m
+next to its fold, where that has room for the noise.  Whether a scan from above grazing comes to p_m at all is
+asked apart (`meets`): low in a band Eq. (1) is chaotic there, and can end in p_1 first.
+
+In period n the amplitude is (1 + x)(1 + e_n) times that at grazing, x the excess that he set; e_n is
+Gaussian, white or with the memory exp(-1/(f t_c)) of a drift of correlation time t_c, and stationary.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beam import InvalidValue
+from contact import ContactError
+from contact.orbits import born
+from studies.measurement.noise.places import Place
+
+QUIET = 64
+"""Drive periods without impact beyond which the motion counts as p_1: longer than any period that is told."""
+
+FAR = 6.0
+"""Standard deviations of the noise, beside two steps, from the start of a scan to the end of the orbit."""
+
+BEYOND = 30
+"""Steps beyond the end of an orbit after which a scan is given up: p_m held by noise alone lasts a few."""
+
+RAMP = 0.02
+"""Part of the waiting in which the amplitude goes to its new value: a sudden step would swing over."""
+
+MEETINGS = 10
+"""Scans from the scene's `born_excess` that are asked whether they meet p_m."""
+
+ROOM = 3.0
+"""Standard deviations of the noise above the start of a scan at which p_m must still be: in the low half of a
+band Eq. (1) has it in a window above its fold only, up to the graze of another touch, at the end of the band
+too narrow to hold it in noise."""
+
+LARGEST, RATIO, FEWEST = 0.02, 20.0, 1000
+"""Of noise and step [1], and of their ratio; drive periods waited: long against `QUIET`."""
+
+EPS = 1e-9
+
+Array = NDArray[np.float64]
+ENDS = ("slipped", "lost", "touched", "left")
+"""What is noted of each scan: downwards of p_m, upwards of p_1."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Protocol:
+    """How the scan is made and what noise it has.
+
+    Parameters
+    ----------
+    step : float
+        Of the excess [1].
+    waiting : int
+        At each amplitude, in drive periods.
+    stability : float
+        Standard deviation of the amplitude over itself [1].
+    correlation_s : float
+        Correlation time of the drift [s]; 0 for white noise.
+    """
+
+    step: float
+    waiting: int
+    stability: float
+    correlation_s: float = 0.0
+
+    @property
+    def reach(self) -> float:
+        """How far from the end of an orbit a scan begins [1]."""
+        return FAR * self.stability + 2.0 * self.step
+
+    @property
+    def steps(self) -> int:
+        """Most steps of a scan."""
+        return math.ceil(2.0 * self.reach / self.step) + BEYOND
+
+    def __post_init__(self) -> None:
+        for name, value in (("stability", self.stability), ("amplitude_step", self.step)):
+            if not 0.0 < value <= LARGEST:
+                raise InvalidValue(f"{name} is {value:g} [1]; it must be above 0, and at most {LARGEST:g}")
+        low, high = self.stability / RATIO, self.stability * RATIO
+        if not low * (1.0 - EPS) <= self.step <= high * (1.0 + EPS):
+            raise InvalidValue(
+                f"amplitude_step is {self.step:g} [1]; with a stability of {self.stability:g} it must lie "
+                f"between {low:g} and {high:g}"
+            )
+        if self.waiting < FEWEST:
+            raise InvalidValue(f"waiting is {self.waiting} drive periods; it must be at least {FEWEST}")
+        if self.correlation_s < 0.0:
+            raise InvalidValue(f"correlation_times holds {self.correlation_s:g} s; it must be 0 or more")
+
+
+def memory_of(correlation_s: float, frequency_hz: float) -> float:
+    """Correlation of the noise in neighbouring periods."""
+    return math.exp(-1.0 / (frequency_hz * correlation_s)) if correlation_s else 0.0
+
+
+def named(correlation_s: float) -> str:
+    """A name for noise of this correlation time."""
+    return f"drift of {correlation_s:g} s" if correlation_s else "white"
+
+
+class Drift:
+    """e_n of one scan, piece by piece, of standard deviation `deviation`."""
+
+    def __init__(self, deviation: float, memory: float, dice: np.random.Generator) -> None:
+        self.deviation, self.memory, self.dice = deviation, memory, dice
+        self.last = float(dice.standard_normal())
+
+    def next(self, count: int) -> Array:
+        """The next `count` of them."""
+        fresh = self.dice.standard_normal(count)
+        if self.memory == 0.0:
+            return self.deviation * fresh
+        from scipy.signal import lfilter  # slow to import
+
+        source, memory = math.sqrt(1.0 - self.memory**2), self.memory
+        found, _ = lfilter([source], [1.0, -memory], fresh, zi=[memory * self.last])
+        self.last = float(found[-1])
+        return np.asarray(self.deviation * found)
+
+
+def watched(impacts: NDArray[np.int64], m: int) -> tuple[float, float]:
+    """Share of the periods in which p_m was seen, p_1 for m = 0, and what part of them had passed before it
+    was broken for the first time; 1 if it was not."""
+    size, hits = impacts.size, np.flatnonzero(impacts)
+    if m == 0:
+        gaps = np.diff(hits, prepend=0, append=size)
+        return float(gaps[gaps > QUIET].sum() / size), float(hits[0] / size) if hits.size else 1.0
+    regular = np.diff(hits) == m
+    kept = hits if regular.all() else hits[: int(np.argmin(regular)) + 1]
+    last = int(kept[-1]) + m if kept.size else 0
+    return float(m * np.count_nonzero(regular) / size), min(last / size, 1.0)
+
+
+def waitings(
+    strobed: Any, state: Any, levels: Array, protocol: Protocol, drift: Drift
+) -> Iterator[NDArray[np.int64]]:
+    """Impacts of each period at the first of the `levels`, at the next one, and so on."""
+    count, before = protocol.waiting, levels[0]
+    ramp = np.minimum(np.arange(count) / (RAMP * count), 1.0)
+    for level in levels:
+        factors = (1.0 + before + (level - before) * ramp) * (1.0 + drift.next(count))
+        run = strobed.orbit(state, count, factors=factors)
+        yield run.impacts
+        before, state = level, run.end
+
+
+def scan(strobed: Any, state: Any, levels: Array, m: int, protocol: Protocol, drift: Drift) -> Array:
+    """The first of `levels` at which p_m, p_1 for m = 0, is broken, and the first at which it is not seen.
+
+    NaN where the last one is reached.
+    """
+    found = np.full(2, math.nan)
+    try:
+        for k, impacts in enumerate(waitings(strobed, state, levels[:-1], protocol, drift)):
+            share, passed = watched(impacts, m)
+            if math.isnan(found[0]) and passed < 1.0:
+                found[0] = levels[k] if passed < 0.5 else levels[k + 1]
+            if not share > 0.5:
+                found[1] = levels[k]
+                break
+    except ContactError:  # what could not be followed has no end
+        found[:] = math.nan
+    return found
+
+
+def meets(strobed: Any, state: Any, levels: Array, m: int, protocol: Protocol, drift: Drift) -> bool:
+    """Whether p_m is seen at one of the falling `levels`, and not p_1 before."""
+    with suppress(ContactError):
+        for impacts in waitings(strobed, state, levels, protocol, drift):
+            if watched(impacts, m)[0] > 0.5:
+                return True
+            if watched(impacts, 0)[0] > 0.5:
+                return False
+    return False
+
+
+def scans(place: Place, protocol: Protocol, count: int, seed: int) -> dict[str, Array]:
+    """`count` downward and upward scans: excesses at which p_m slipped and was lost, and at which p_1 was
+    touched and left, each (count,); whether a scan from above "met" p_m, 0 or 1, of `MEETINGS` at most.
+
+    NaN where the orbit was not seen at the first amplitude, or not lost in `Protocol.steps`.
+    """
+    key = [seed, round(1e3 * place.frequency_hz), place.m, round(1e3 * protocol.correlation_s)]
+    memory = memory_of(protocol.correlation_s, place.frequency_hz)
+
+    def dice_of(i: int, way: int) -> tuple[Drift, float]:
+        dice = np.random.default_rng([*key, i, way])
+        return Drift(protocol.stability, memory, dice), dice.random()
+
+    below = place.strobed.at(-protocol.reach).steady()
+    ways = (
+        (start_of(place, protocol), -protocol.step, place.m),
+        ((-protocol.reach, below), protocol.step, 0),
+    )
+    found = np.full((len(ways), 2, count), math.nan)
+    for way, (start, step, m) in enumerate(ways):
+        if start is None:
+            continue
+        for i in range(count):
+            drift, part = dice_of(i, way)
+            levels: Array = start[0] + step * (np.arange(protocol.steps, dtype=np.float64) + part)
+            ends = scan(place.strobed, start[1], levels, m, protocol, drift)
+            found[way, :, i] = ends if ends[1] != levels[0] else math.nan
+    met, top = np.empty(min(count, MEETINGS) if place.fold else 0), place.scene.scan.born_excess
+    state = born(place.strobed, top).end if place.fold else None
+    for i in range(met.size):
+        drift, part = dice_of(i, len(ways))
+        levels = np.arange(top - part * protocol.step, place.fold.excess, -protocol.step)
+        met[i] = meets(place.strobed, state, levels, place.m, protocol, drift)
+    return {**dict(zip(ENDS, found.reshape(-1, count), strict=True)), "met": met}
+
+
+def start_of(place: Place, protocol: Protocol) -> tuple[float, Any] | None:
+    """Excess and strobe from which downward scans start; None where noise throws p_m out at once."""
+    if place.fold is None:
+        return None
+    excess = place.fold.excess + protocol.reach
+    if place.stable(excess + ROOM * protocol.stability) is None:
+        return None
+    state = place.stable(excess)
+    return None if state is None else (excess, state)
+
+
+def cell(count: int, seed: int, where: tuple[Place, Protocol]) -> dict[str, Array]:
+    """`scans` at a place in one noise, a fifth of them for a beam."""
+    place, protocol = where
+    return scans(place, protocol, max(count // 5, 1) if place.description == "beam" else count, seed)

@@ -1,0 +1,139 @@
+r"""Central difference: its limits in flight and in contact, and the energy it makes within them.
+
+Steps beyond h omega = 2 (centred damping), 2 (sqrt(1 + zeta^2) - zeta) (lagged damping) grow in flight, and
+stiffnesses beyond that of ``CentralDifference.critical_stiffness`` in a lasting contact; its file derives
+both.
+
+Stable is not exact. A free mass meets a spring, x = h omega_c. While the force acts, E = v_{n+1/2}^2/2 +
+omega_c^2 y_n y_{n+1}/2 is constant; with a part s of a step inside at the first grid point and a part s' at
+the last one
+
+    (v_out/v_in)^2 = (1 - x^2 s (1 - s)) / (1 - x^2 s' (1 - s')),
+
+between 1 - x^2/4 and its inverse. With W = 2 arcsin(x/2) the grid points in contact are y_j = h v (s sin jW +
+(1 - s) sin (j-1)W)/sin W, which gives the last of them above zero and the velocity out: one short contact
+may make any energy as x -> 2. If it takes a whole number n of steps, x = 2 sin(pi/(2n)), then s' = 1 - s and
+no step is wrong in its energy: a test of convergence with commensurate steps shows none of the error.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import partial
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from beam import ModalModel
+from contact.integrators import CentralDifference
+from studies.methods.stability import Findings, Limit
+from studies.methods.stability.free_mass import LAWS, energy_after
+from studies.methods.stability.lasting_contact import limit, stiffest
+from studies.shell import plotting
+from studies.shell.scene import Scene, model_of
+
+SOFT = 1e-12
+"""Stiffness of a stop that a mode of 1 rad/s, 1 kg^-0.5 does not feel: it is in flight [N/m]."""
+
+Row = partial(Limit, family="explicit")
+
+
+def flight(ratio: float, lagged: bool) -> Limit:
+    """Largest step of one mode in flight, held off its rest position by 1 N."""
+    one = np.ones(1)
+    model = ModalModel(omega=one, decay_rate=2.0 * ratio * one, phi=one, participation=one)
+    case = f"one mode in flight, {'lagged' if lagged else 'centred'} damping, zeta = {ratio:g}"
+    return limit(
+        partial(Row, case=case, parameter="h omega [1]"),
+        model,
+        2.0 * (math.sqrt(1.0 + ratio**2) - ratio) if lagged else 2.0,
+        lambda h: (SOFT, CentralDifference(step=h, lagged=lagged)),
+    )
+
+
+def lasting(model: ModalModel, lagged: bool) -> Limit:
+    """Largest stiffness of a lasting contact at h omega_N = 1."""
+    damping = "lagged" if lagged else "centred"
+    return stiffest(
+        model,
+        CentralDifference(step=1.0 / float(model.omega[-1]), lagged=lagged),
+        family="explicit",
+        case=f"lasting contact, modes: {model.n_modes}, {damping} damping, h omega_N = 1",
+    )
+
+
+def rebound_ratio(frequency_step: float, part: float) -> float:
+    """v_out/v_in of a free mass on a spring for h omega_c and the part s of a step, in closed form [1]."""
+    turn = 2.0 * math.asin(0.5 * frequency_step)
+    delay = math.atan2((1.0 - part) * math.sin(turn), part + (1.0 - part) * math.cos(turn))
+    last = math.floor((math.pi + delay) / turn)
+
+    def depth(j: int) -> float:
+        return (part * math.sin(j * turn) + (1.0 - part) * math.sin((j - 1) * turn)) / math.sin(turn)
+
+    return depth(last) - depth(last + 1)
+
+
+def energies(law: str, x: float, parts: np.ndarray) -> np.ndarray:
+    """Energy after one contact that takes pi/x steps over that before it, the first grid point `parts` of a
+    step inside [1]."""
+    return energy_after(CentralDifference(step=1.0, beyond_limit=True), law, x, 1.0 - parts)
+
+
+def measure(scene: Scene, quick: bool) -> Findings:
+    """Limits on the modes of the scene, and the energy after one short contact over the phases of the grid,
+    for both laws."""
+    model = model_of(scene)
+    counts = sorted({min(n, model.n_modes) for n in ((1, 5) if quick else (1, 2, 5, 15))})
+    ratios = (0.0, 0.1, 1.0) if quick else (0.0, 0.01, 0.1, 0.3, 1.0, 3.0)
+    parts = (np.arange(16 if quick else 96) + 0.5) / (16 if quick else 96)
+    whole = [2.0 * math.sin(0.5 * math.pi / n) for n in range(2, 13)]
+    grid = np.unique(np.concatenate([np.linspace(0.2, 1.98, 16 if quick else 72), whole]))
+    short = [
+        Row(
+            method=CentralDifference.name,
+            case=f"one short linear contact, h omega_c = {x:.4g}{words}",
+            parameter="largest E_out/E_in over the phases of the grid [1]",
+            theory=max(rebound_ratio(x, float(s)) ** 2 for s in parts),
+            measured=float(energies("linear", x, parts).max()),
+        )
+        for x, words in ((1.2, ""), (1.8, ""), (whole[1], ", three steps"), (whole[6], ", eight steps"))
+    ]
+    arrays = {"frequency_step": grid}
+    for law in LAWS:
+        change = np.array([energies(law, x, parts) for x in grid.tolist()]) - 1.0
+        arrays[f"{law}_loss"], arrays[f"{law}_gain"] = -change.min(axis=1), change.max(axis=1)
+    single = [flight(ratio, lagged) for lagged in (False, True) for ratio in ratios]
+    contacts = [lasting(model.truncated(n), lagged) for lagged in (False, True) for n in counts]
+    return [*single, *contacts, *short], arrays
+
+
+@plotting.in_house_style
+def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
+    """Energy of one short contact."""
+    figure, axes = plotting.new_figure(width=plotting.COLUMN, height=0.080)
+    x, fine = arrays["frequency_step"], np.linspace(0.2, 1.985, 300)
+    bounds = {"gain": 1.0 / (1.0 - 0.25 * fine**2) - 1.0, "loss": 0.25 * fine**2}
+    for (part, bound), colour in zip(bounds.items(), (plotting.VERMILION, plotting.BLUE), strict=True):
+        axes.plot(fine, bound, color=colour, label=f"bound of the {part}, linear")
+        for law, marker in (("linear", "o"), ("Hertz", "x")):
+            axes.plot(
+                x,
+                arrays[f"{law}_{part}"],
+                color=colour,
+                marker=marker,
+                linestyle="none",
+                markersize=2.5,
+                markerfacecolor="none",
+                label=f"{part}, {law}",
+            )
+    axes.set_yscale("log")
+    axes.set_ylim(1e-3, 1e2)
+    plotting.label(axes.xaxis, "step × contact frequency h ω$_c$")
+    plotting.label(axes.yaxis, "largest relative change of energy")
+    figure.legend(loc="outside lower center", ncols=2)
+    return figure, (
+        "Central difference: energy made and lost in one short contact within the limit of stability, "
+        "largest over the phases of the grid: none if a linear contact takes a whole number of steps."
+    )

@@ -1,0 +1,119 @@
+"""Implicit methods on a stop that is met and left: stable by linear theory, and what the energy does.
+
+In flight and in a contact that lasts, the methods tried here have no limit by linear theory (J. Chung, G. M.
+Hulbert, J. Appl. Mech. 60 (1993) 371).
+
+One contact of a free mass m with a linear stop k by the trapezoidal rule (beta = 1/4, gamma = 1/2), which
+keeps the energy as long as the contact is closed. The step in which it opens, from penetration d to -d',
+gains k d d'/2, the step in which it closes loses as much; with d + d' = h v and the places u, u' of touch
+and release in their steps evenly distributed, (h w)^2 [u'(1-u') - u(1-u)] of the energy, w^2 = k/m, has
+the mean 0 and
+
+    rms = (h w)^2 / sqrt(90)                                                                           (A)
+
+for a contact of many steps. For h w -> infinity the force puts the tip on the stop at the end of a step:
+it leaves at speed (3 - 4u) v if u < 2/3 and (8u - 5) v if u > 2/3, anything from v/3 to 3 v, and
+
+    mean of ln(energy after/before) = (3/4) [x ln x - x] from 1/3 to 3 = (5/2) ln 3 - 2 = 0.7465       (B)
+
+so that the energy grows e-fold in less than two contacts, whatever the step.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import partial
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from contact.integrators import GeneralisedAlpha
+from studies.methods.stability import IMPLICIT, Findings, Limit
+from studies.methods.stability.free_mass import energy_after
+from studies.shell import plotting
+from studies.shell.scene import Scene
+
+STIFF, STIFF_GROWTH = 1e4, 2.5 * math.log(3.0) - 2.0
+"""h w of a contact that counts as infinitely stiff, (B) being met to 1/(h w); equation (B)."""
+
+Row = partial(Limit, family="implicit_energy", method=GeneralisedAlpha.name)
+
+
+def single_contact(label: str, products: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Energy after over energy before one contact of a free mass, by a method of `IMPLICIT`, for pairs of h w
+    and place u of the touch in its step."""
+    method = IMPLICIT[label](1.0)
+    pairs = zip(products.tolist(), places[:, None], strict=True)
+    return np.concatenate([energy_after(method, "linear", x, place) for x, place in pairs])
+
+
+def evenly(product: float, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """`count` pairs for `single_contact` around h w = `product`: touch and release spread evenly over their
+    steps, the release by contact times pi/w that spread over one step, or a third of themselves if less."""
+    index = np.arange(count)
+    place = (index * (math.sqrt(5.0) - 1.0) / 2.0) % 1.0 - 0.5
+    steps = math.pi / product + place * min(1.0, math.pi / (3.0 * product))
+    return math.pi / steps, (index + 0.5) / count
+
+
+def stiff_contacts(count: int) -> list[Limit]:
+    """One contact of a free mass by the trapezoidal rule against (A) and (B)."""
+    places, case = (np.arange(count) + 0.5) / count, "trapezoidal, one contact of a free mass"
+    stiff = single_contact("trapezoidal rule", np.full(count, STIFF), places)
+    resolved = single_contact("trapezoidal rule", *evenly(0.05, count)) - 1.0
+    return [
+        Row(
+            case=f"{case}, h w = {STIFF:g}",
+            parameter="mean of ln(energy after/before) [1]",
+            theory=STIFF_GROWTH,
+            measured=float(np.mean(np.log(stiff))),
+            refused=False,
+        ),
+        Row(
+            case=f"{case}, h w = {STIFF:g}",
+            parameter="largest energy after/before [1]",
+            theory=9.0,
+            measured=float(stiff.max()),
+            refused=False,
+        ),
+        Row(
+            case=f"{case}, h w = 0.05",
+            parameter="rms of energy after/before - 1 [1]",
+            theory=0.05**2 / math.sqrt(90.0),
+            measured=float(np.sqrt(np.mean(resolved**2))),
+            refused=False,
+        ),
+    ]
+
+
+def measure(scene: Scene, quick: bool) -> Findings:
+    """Single contacts; nothing depends on the scene."""
+    sizes, count = np.geomspace(0.1, 1e3, 9 if quick else 25), 60 if quick else 300
+    arrays = {"single_h_w": sizes}
+    for label in IMPLICIT:
+        after = [single_contact(label, *evenly(size, count)) for size in sizes.tolist()]
+        arrays[f"single_{label}"] = np.log(after).mean(axis=1)
+    return stiff_contacts(300 if quick else 4000), arrays
+
+
+@plotting.in_house_style
+def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
+    """Growth in one contact against its resolution."""
+    figure, axes = plotting.new_figure(width=plotting.COLUMN, height=0.070)
+    for number, label in enumerate(IMPLICIT):
+        axes.plot(
+            arrays["single_h_w"],
+            arrays[f"single_{label}"],
+            **plotting.series(number),
+            markevery=3,
+            label=label,
+        )
+    axes.axhline(STIFF_GROWTH, color="0.5", linewidth=0.8, linestyle=":")
+    axes.text(0.1, STIFF_GROWTH + 0.02, "(5/2) ln 3 - 2", fontsize=plotting.NOTE)
+    axes.axhline(0.0, **plotting.GUIDE)
+    axes.set_xscale("log")
+    plotting.label(axes.xaxis, "step × contact frequency, h ω")
+    plotting.label(axes.yaxis, "mean of ln(energy after/before)")
+    figure.legend(loc="outside lower center", ncols=2)
+    return figure, "Implicit methods: mean growth of energy in one contact of a free mass against the step."

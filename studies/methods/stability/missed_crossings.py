@@ -1,0 +1,254 @@
+r"""Crossings that a method does not see: change of sign at its steps against certified search.
+
+A crossing of known depth (``studies.methods.crossings``) is put at every phase of a method's looks, h apart;
+it sees the crossing with probability (duration)/h:
+
+    share missed = max(0, 1 - 2 sqrt(2 delta gap/a)/h),   one half at   delta = a h^2/(32 gap);            (a)
+
+where the spacing varies, the mean of that over the spacings around the peak. With delta < 0 the tip stays
+away, and any touch is invented. A method by percussions (``contact.integrators.moreau_jean``) strikes in the
+step from a grid point if d + (h/2) U >= 0 and U* + e U > 0 there. On the parabola, s steps before the peak,
+these are delta gap >= (a h^2/2) s (s - 1) and s > 1/(1 + e); so, with x (1 + x) = 2 delta gap/(a h^2),
+
+    share missed = max(0, 1/(1 + e) - x),                                                                  (b)
+    touches invented down to   delta = -(a h^2/(2 gap)) e/(1 + e)^2.                                       (c)
+
+That knows of the looks alone. A motion that is not exact puts the peak a little too high or too low: by
+(h omega)^2/8 for central difference, by its tolerance with an error control. Samples of exact flights look at
+the turning points as well, and miss a crossing only where the tip turns twice between two samples: they have
+no formula. Tried on the lowest mode of the scene; fixed steps are a hundredth of its period.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, fields
+from functools import cache, partial
+
+import numpy as np
+from matplotlib.figure import Figure
+from scipy.integrate import solve_ivp
+
+from contact import LinearContact, NewtonRestitution, Stop
+from contact.integrators import INTEGRATORS, CentralDifference, Integrator, SampledFlight
+from studies.methods.crossings import Swing
+from studies.methods.peers import OutsideSolver
+from studies.methods.stability import Findings, Limit, threshold
+from studies.shell import plotting
+from studies.shell.scene import Scene, model_of
+
+OVERSHOOTS = 10.0 ** -np.arange(1, 13)
+FINE = np.geomspace(1e-12, 1e-1, 276)
+"""Where the formulas are drawn, 25 points a decade."""
+PHASES = 64
+"""Runs for each overshoot. A share is good to 0.5/sqrt(runs) for a solver whose steps do not keep to a grid,
+and the overshoot at which it is one half to a factor exp(2/sqrt(runs)): 1.3."""
+LOOKED_AT = 12
+"""Flights in which the spacing of a solver's looks around the peak is measured."""
+RESTITUTION = 0.5
+"""Of the stops with Newton's law [1]."""
+
+Row = partial(Limit, family="missed_crossings")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Trial:
+    """A method to try."""
+
+    swing: Swing
+    method: Integrator
+    label: str
+    kind: str
+    """"exact", "step" (and samples) or "control" of the error."""
+    spacings: np.ndarray = field(default_factory=lambda: np.empty(0))
+    """Of its looks [s]; none for a method that searches between its steps."""
+
+    @property
+    def percussions(self) -> bool:
+        """Whether it strikes."""
+        return isinstance(self.swing.oscillator.stop.law, NewtonRestitution)
+
+
+def share_missed(
+    overshoot: float | np.ndarray, spacings: np.ndarray, pace: float, percussions: bool = False
+) -> np.ndarray:
+    """Share of crossings missed, (a) or (b), for overshoots over gap [1]."""
+    if percussions:
+        x = 0.5 * (np.sqrt(1.0 + 8.0 * overshoot / (pace * spacings[0]) ** 2) - 1.0)
+        return np.maximum(0.0, 1.0 / (1.0 + RESTITUTION) - x)
+    duration = 2.0 * np.sqrt(2.0 * overshoot) / pace
+    return np.maximum(0.0, 1.0 - np.multiply.outer(1.0 / spacings, duration)).mean(axis=0)
+
+
+def invented(trial: Trial) -> float | None:
+    """Theory of the undershoot over gap down to which a method invents touches: (c), and what central
+    difference swings too high [1]."""
+    if trial.percussions and trial.spacings.size:
+        part = 0.5 * RESTITUTION / (1.0 + RESTITUTION) ** 2
+    elif isinstance(trial.method, CentralDifference):
+        part = 0.125
+    else:
+        return None
+    return part * float(trial.swing.pace * trial.spacings[0]) ** 2
+
+
+def share_wrong(trial: Trial, overshoot: float, runs: int) -> float:
+    """Share of the runs that miss the crossing, or invent one if the overshoot is negative [1].
+
+    A first touch is the crossing if the tip is beyond the stop within two looks of it.
+    """
+    swing, wrong = trial.swing, 0
+    slack = 2.0 * float(trial.spacings.max()) if trial.spacings.size else 1e-6 / swing.pace
+    for lead in swing.leads(runs).tolist():
+        at = swing.touch(trial.method, overshoot, lead)
+        near = np.array([at - slack, at + slack, 0.0 if abs(at) <= slack else at])
+        seen = overshoot < 0.0 or bool(np.any(swing.height_at(overshoot, near) > 0.0))
+        wrong += (math.isfinite(at) and seen) == (overshoot < 0.0)
+    return wrong / runs
+
+
+def swing_of(scene: Scene, method: Integrator | None = None) -> Swing:
+    """The lowest mode of the scene before a stop with a law that `method` knows, soft enough for any step."""
+    model = model_of(scene).truncated(1)
+    soft = LinearContact(stiffness=0.01 * float((model.omega[0] / model.phi[0]) ** 2))
+    hard = NewtonRestitution(local_restitution=RESTITUTION)
+    law = soft if method is None or method.accepts(soft.code) else hard
+    return Swing.of(model, Stop(gap=scene.stop.gap_m, law=law), 0.0)
+
+
+def of_package(scene: Scene, kind: type[Integrator], options: Mapping[str, float]) -> Trial:
+    """A method of the package with those of the `options` that it knows."""
+    known = {entry.name for entry in fields(kind)}  # type: ignore[arg-type]
+    method = kind(**{name: value for name, value in options.items() if name in known})
+    return Trial(
+        label=f"{kind.name}, {options['points']} points" if "points" in known else kind.name,
+        method=method,
+        swing=swing_of(scene, method),
+        kind="exact" if kind.certified else "step",
+        spacings=np.array([options["step"]] if "step" in known else []),
+    )
+
+
+def of_scipy(scene: Scene, solver: str, tolerance: float) -> Trial:
+    """A solver of SciPy; the spacings are those of its steps around the peak in flights that meet nothing.
+
+    Absolute tolerances are those of one energy, as in ``studies.methods.peers``.
+    """
+    swing, spacings = swing_of(scene), []
+    model = swing.oscillator.model
+    omega, reach = float(model.omega[0]), swing.oscillator.stop.gap / float(model.phi[0])
+    for lead in swing.leads(LOOKED_AT).tolist():
+        start = swing.start(-0.01, lead)
+        x, v = start.displacement[0], start.velocity[0]
+        speed = max(omega * reach, abs(v), abs(omega * x))
+        looks = solve_ivp(
+            lambda _t, y: [y[1], -(omega**2) * y[0]],
+            (0.0, lead + swing.tail),
+            [x, v],
+            method=solver,
+            rtol=tolerance,
+            atol=tolerance * speed * np.array([1.0 / omega, 1.0]),
+        ).t
+        after = int(np.searchsorted(looks, lead))
+        spacings.append(looks[after] - looks[after - 1])
+    return Trial(
+        method=OutsideSolver(solver=f"scipy {solver}", tolerance=tolerance),
+        swing=swing,
+        kind="control",
+        label=f"scipy {solver}, {tolerance:g}",
+        spacings=np.array(spacings),
+    )
+
+
+def trials(scene: Scene, quick: bool) -> Iterator[Trial]:
+    """Every method of the package, and SciPy's solvers."""
+    step = 0.02 * math.pi / float(model_of(scene).omega[0])
+    options = {"step": 2.0 * step if quick else step, "rho": 0.8, "points": 24}
+    for kind in dict.fromkeys(INTEGRATORS.values()):
+        yield of_package(scene, kind, options)
+    yield of_package(scene, SampledFlight, {**options, "points": 96})
+    yield of_scipy(scene, "DOP853", 1e-8)
+    for name, tolerance in () if quick else (("DOP853", 1e-12), ("RK45", 1e-8), ("LSODA", 1e-8)):
+        yield of_scipy(scene, name, tolerance)
+
+
+def tried(trial: Trial, runs: int) -> tuple[list[Limit], dict[str, np.ndarray]]:
+    """Rows of one method, the shares missed over `OVERSHOOTS` and their theory over `FINE`; what follows two
+    decades in which nothing is seen is not tried."""
+    ladder, theory = OVERSHOOTS.tolist(), None
+    row = partial(Row, method=trial.label, refused=None if trial.kind == "exact" else False)
+
+    @cache
+    def wrong(overshoot: float) -> float:
+        return share_wrong(trial, overshoot, runs)
+
+    shares: list[float] = []
+    for overshoot in ladder:
+        shares.append(1.0 if shares[-2:] == [1.0, 1.0] else wrong(overshoot))
+    arrays = {f"{trial.kind}|{trial.label}": np.array(shares)}
+    if trial.spacings.size:
+        share = partial(
+            share_missed, spacings=trial.spacings, pace=trial.swing.pace, percussions=trial.percussions
+        )
+        theory = threshold(lambda depth: bool(share(depth) > 0.5), ladder, relative=1e-12)
+        arrays[f"theory|{trial.label}"] = share(FINE)
+    rows = [
+        row(
+            case="half of the crossings missed, one mode",
+            parameter="overshoot / gap [1]",
+            theory=theory,
+            measured=threshold(lambda depth: wrong(depth) > 0.5, ladder, relative=0.05),
+        )
+    ]
+    if trial.kind != "control":  # an error control errs by less than it misses
+        rows.append(
+            row(
+                case="touches invented, one mode",
+                parameter="undershoot / gap [1]",
+                theory=invented(trial),
+                measured=threshold(lambda depth: wrong(-depth) > 0.0, ladder, relative=0.05),
+            )
+        )
+    return rows, arrays
+
+
+def measure(scene: Scene, quick: bool) -> Findings:
+    """Crossings missed and touches invented by every method."""
+    limits: list[Limit] = []
+    arrays: dict[str, np.ndarray] = {"overshoot": OVERSHOOTS, "fine": FINE}
+    for trial in trials(scene, quick):
+        rows, found = tried(trial, 6 if quick else PHASES)
+        limits += rows
+        arrays |= found
+    return limits, arrays
+
+
+@plotting.in_house_style
+def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
+    """Share missed over overshoot: error control left, fixed steps right."""
+    figure, axes = plotting.new_figure(1, 2, width=plotting.PAGE, height=0.095, sharey=True)
+    overshoot, titles = arrays["overshoot"], {"control": "error control", "step": "fixed steps, samples"}
+    exact = np.max([arrays[key] for key in arrays if key.startswith("exact|")], axis=0)
+    axes[1].plot(overshoot, 100 * exact, **plotting.series(0), label="exact methods")
+    for column, (axis, (kind, title)) in enumerate(zip(axes, titles.items(), strict=True)):
+        labels = [key.split("|")[1] for key in arrays if key.startswith(f"{kind}|")]
+        for number, label in enumerate(labels, start=column):
+            axis.plot(overshoot, 100 * arrays[f"{kind}|{label}"], **plotting.points(number), label=label)
+            if f"theory|{label}" in arrays:
+                axis.plot(
+                    arrays["fine"],
+                    100 * arrays[f"theory|{label}"],
+                    color=plotting.PALETTE[number],
+                    linewidth=0.7,
+                )
+        plotting.panel(axis, column, title)
+        axis.set_xscale("log")
+        axis.set_ylim(-4.0, 104.0)
+        plotting.label(axis.xaxis, "overshoot / gap")
+        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.25), ncols=2)
+    plotting.label(axes[0].yaxis, "crossings missed", "%")
+    return figure, (
+        "Share of the crossings missed against their depth; lines: theory, from the spacing of the looks. "
+        "The number beside a solver is its tolerance."
+    )

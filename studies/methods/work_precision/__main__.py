@@ -1,0 +1,143 @@
+"""Error against cost of every method for impacts, over its step or tolerance.
+
+Claim: on these problems no outside solver and no method with a time step is both faster and as accurate as
+the exact method that `simulate` takes by default; the letter's own scheme, the same flights with a search
+that proves nothing (note [11]), costs about the same, and so does heyoka where one soft contact lasts as long
+as the run.
+
+Five problems: Eq. (1) with the hard wall; the scene's beam with a linear contact that lasts as long as
+Hertz's; the same with Hertz's contact; the beam of code_aster's SDNL32 swung on a spring; the periodic motion
+of NLvib's two masses, found by harmonic balance, shooting or settling. For every method, the package's own
+and outside solvers, and every setting:
+
+    error     of mode 1 past the first collision
+    missed    share of shallow crossings of known depth that are not noticed by the free modes' motion
+    cost      time per drive period along the settled orbit
+    against   a Taylor series in extended precision, whose own error is stated
+
+Then the cheapest setting of each method for two errors, and the errors of gradients through impacts. A method that fails at a setting is a row that says
+why; a setting at which a drive period would take longer than half a second is a row that says so. Timings are
+taken one at a time, so that --workers makes no difference. What the modes left out of the beam weigh beside
+all this is told by `studies.methods.adequacy`.
+
+Run:     python -m studies work_precision
+Writes:  rows.csv, cheapest.csv, gradients.csv; work_precision, gradients (png, pdf)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from studies.methods.peers import missing_solvers
+from studies.methods.work_precision import gradients
+from studies.methods.work_precision.measures import (
+    REPEATS,
+    SLOWEST,
+    Row,
+    cheapest,
+    orbit_rows,
+    reference_of,
+    rows_of,
+)
+from studies.methods.work_precision.methods import EXACT, SAMPLED, sweeps_for
+from studies.methods.work_precision.problems import MODES, problems_of
+from studies.shell.scene import Scene, harmonic, single_mode_at
+from studies.shell.study import Run, study
+
+SLOWEST_QUICK = 0.01
+"""Longest time for one drive period with --quick [s]."""
+
+GRADIENT_HZ = 22.2
+"""Drive frequency of the motion of Eq. (1) whose gradients are compared [Hz]."""
+
+MODES_QUICK = 4
+"""Modes of the beam with --quick."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cheapest:
+    """Least cost of a method for errors of 1e-4 and 1e-8, and the crossings that it misses there."""
+
+    problem: str
+    method: str
+    us_for_1e_4: float | None
+    missed_at_1e_4: float | None
+    us_for_1e_8: float | None
+    missed_at_1e_8: float | None
+
+
+@study()
+def work_precision(scene: Scene, run: Run) -> Mapping[str, object]:
+    """Measure, store, draw."""
+    problems = problems_of(harmonic(scene), MODES_QUICK if run.quick else MODES)
+    references = [reference_of(one) for one in run.track(problems, "references")]
+    jobs = [(one, sweep) for one in references for sweep in sweeps_for(one.problem, quick=run.quick)]
+    slowest, repeats = (SLOWEST_QUICK, 3) if run.quick else (SLOWEST, REPEATS)
+    rows: list[Row] = []
+    for reference, sweep in run.track(jobs, "errors and costs"):  # nothing runs beside a timing
+        rows += rows_of(reference, sweep, slowest=slowest, repeats=repeats)
+    reference, periodic = orbit_rows(quick=run.quick, repeats=repeats)
+    references, rows = [*references, reference], [*rows, *periodic]
+    run.table("rows", rows, "Every method at every setting.", show=())
+    run.table(
+        "cheapest", cheapest_of(rows), "Time per drive period [us] for an error of mode 1, crossings missed."
+    )
+    paths = [] if run.quick else gradients.gradients(single_mode_at(scene, GRADIENT_HZ).with_excess(1e-3))
+    if paths:
+        run.table("gradients", paths, gradients.CHART, show=())
+        run.figure("gradients", gradients.draw_gradients(paths), gradients.CHART)
+    for row in rows:
+        if row.family == EXACT and row.failed:
+            run.failed(f"{row.problem}, {row.method}", row.failed)
+    judge(run, rows)
+    if missing_solvers():
+        run.say(f"not installed: {', '.join(missing_solvers())}")
+
+    from studies.methods.work_precision import figures  # matplotlib is slow to import
+
+    run.figure(
+        "work_precision",
+        figures.draw_errors(rows, references),
+        "Error of mode 1 past the first "
+        "collision against time per drive period; black star, the exact method.",
+    )
+    return {
+        "rows": rows,
+        "gradients": paths,
+        "missing_solvers": missing_solvers(),
+        "reference_errors": {one.problem.name: one.own_error for one in references},
+    }
+
+
+def cheapest_of(rows: Sequence[Row]) -> list[Cheapest]:
+    """The cheapest setting of each method for both errors."""
+    found = []
+    for problem, method in dict.fromkeys((row.problem, row.method) for row in rows):
+        mine = [row for row in rows if (row.problem, row.method) == (problem, method)]
+        best = [cheapest(mine, level) for level in (1e-4, 1e-8)]
+        coarse, fine = ((row.us_per_period, row.missed) if row else (None, None) for row in best)
+        found.append(
+            Cheapest(
+                problem=problem,
+                method=method,
+                us_for_1e_4=coarse[0],
+                missed_at_1e_4=coarse[1],
+                us_for_1e_8=fine[0],
+                missed_at_1e_8=fine[1],
+            )
+        )
+    return found
+
+
+def judge(run: Run, rows: Sequence[Row]) -> None:
+    """Verdict on note [11]: the crossings of Eq. (1) that the letter's scheme misses."""
+    scheme = [row for row in rows if row.problem == "single mode" and row.method == SAMPLED]
+    missed = [row.missed for row in scheme if row.missed is not None]
+    if missed:
+        run.verdict(
+            "sampled",
+            "agrees" if max(missed) == 0.0 else "in part",
+            found=f"{min(missed):.0%} to {max(missed):.0%} of shallow crossings missed",
+            note=f"the scheme in Eq. (1) with {scheme[0].setting} to {scheme[-1].setting}; it proves nothing",
+        )

@@ -1,0 +1,194 @@
+"""Error and cost of a gradient through impacts: exact derivatives beside differences and other people's.
+
+Differentiated is a motion of Eq. (1): time of its last impact, displacement and velocity at its last strobe,
+by the six parameters of `NAMES`.
+
+    exact        tangents through flights and impacts (contact.sensitivity.motion)
+    differences  central, of the same motion, at relative steps of 1e-3 ... 1e-12
+    heyoka       automatic differentiation of the equations, integrated with them by a Taylor series; a touch
+                 ends it, and what that does to a tangent (x', v') is added here: with y' = f(t, y)
+
+                     t' = (gap' - x')/v,   y' -> y' + f t',   (gap', -tau v' - tau' v),   y' -> y' - f t'
+
+Errors are those of all 18 numbers, each parameter in units of its value, each result in units of its largest
+derivative, against differences of the closed form in 60 digits.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from matplotlib.figure import Figure
+from mpmath import matrix, mp, mpf
+from numpy.typing import NDArray
+
+from contact import ImpactOscillator, State, simulate
+from contact.orbits import motion_derivatives
+from studies.methods.peers import installed_solvers
+from studies.physics.parameters import changes_of, parameters_of, with_values
+from studies.shell import plotting
+
+Array = NDArray[np.float64]
+
+CHART = "Error of a gradient through impacts against step or tolerance, and against the time it takes."
+NAMES = ("free_period", "decay_rate", "gap", "restitution", "frequency", "amplitude")
+PERIODS, REPEATS = 20, 11
+"""Drive periods; runs of which the median processor time counts."""
+POLISHED = 3
+"""Steps of Newton's method from the 16 digits of a double to 60 and more."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gradient:
+    """`setting`: step or tolerance. Without an error it failed, as impacts are lost or added by the step."""
+
+    method: str
+    setting: float | None
+    error: float | None
+    milliseconds: float
+
+
+def motion_of(oscillator: ImpactOscillator) -> tuple[State, Array, Array]:
+    """Start, parameters and impact times of the motion."""
+    gap, known = oscillator.stop.gap, parameters_of(oscillator)
+    start = State(displacement=np.array([0.5 * gap]), velocity=np.array([0.12 * oscillator.unit_speed]))
+    hits = simulate(oscillator, start, periods=PERIODS).impacts.start
+    return start, np.array([known[name].value for name in NAMES]), hits
+
+
+def closed_form(values: Sequence[mpf], start: State, hits: Array) -> list[mpf]:
+    """The three results in mpmath's precision: exponentials of the matrix of (x, v, sin w t, cos w t), impact
+    times polished by Newton's method."""
+    period, c, gap, tau, f, amplitude = values
+    w, square, begun = 2 * mp.pi * f, (2 * mp.pi / period) ** 2 + c**2 / 4, mpf(0)
+    rates = matrix([[0, 1, 0, 0], [-square, -c, amplitude * w**2, 0], [0, 0, 0, w], [0, 0, -w, 0]])
+    y = matrix([float(start.displacement[0]), float(start.velocity[0]), 0, 1])
+    for hit in hits:
+        t = mpf(float(hit))
+        for _ in range(POLISHED):
+            there = mp.expm(rates * (t - begun)) * y
+            t -= (there[0] - gap) / there[1]
+        y, begun = mp.expm(rates * (t - begun)) * y, t
+        y[1] *= -tau
+    y = mp.expm(rates * (PERIODS / f - begun)) * y
+    return [begun, y[0], y[1]]
+
+
+def reference(values: Array, start: State, hits: Array) -> Array:
+    """Derivatives of the closed form times the parameters, shape (3, 6)."""
+    with mp.workdps(60):
+        step, columns, given = mpf(10) ** -20, [], [mpf(x) for x in values.tolist()]
+        for k in range(len(NAMES)):
+            ends = ([*given[:k], given[k] * (1 + by), *given[k + 1 :]] for by in (step, -step))
+            above, below = (closed_form(end, start, hits) for end in ends)
+            columns.append([float((a - b) / (2 * step)) for a, b in zip(above, below, strict=True)])
+    return np.array(columns).T
+
+
+def by_heyoka(values: Array, start: State, hits: Array, tolerance: float) -> Callable[[], Array]:
+    """The derivatives by variational equations in x, v and T, c, f, Z."""
+    import heyoka as hy
+
+    (period, c, gap, tau, f, amplitude), unit, end = values.tolist(), np.eye(6), PERIODS / values[4]
+    x, v = hy.make_vars("x", "v")
+    given, w = [hy.par[i] for i in range(4)], 2.0 * np.pi * hy.par[2]
+    pull = hy.par[1] * v + ((2.0 * np.pi / hy.par[0]) ** 2.0 + (0.5 * hy.par[1]) ** 2.0) * x
+    system = [(x, v), (v, hy.par[3] * w * w * hy.sin(w * hy.time) - pull)]
+    touch = hy.t_event(x - hy.par[4], direction=hy.event_direction.positive)
+    taylor = hy.taylor_adaptive(
+        hy.var_ode_sys(system, [x, v, *given], order=1), [0.0, 0.0], tol=tolerance, t_events=[touch]
+    )
+    taylor.pars[:] = [period, c, f, amplitude, gap]
+    drive, square = 2.0 * np.pi * f, (2.0 * np.pi / period) ** 2 + 0.25 * c * c
+
+    def moved(y: Array, late: Array) -> Array:
+        push = amplitude * drive**2 * np.sin(drive * taylor.time)
+        return np.multiply.outer([y[1], push - c * y[1] - square * y[0]], late)
+
+    def gradient() -> Array:
+        y, tangent, late = np.append(start.displacement, start.velocity), np.zeros((2, 6)), unit[0]
+        taylor.time = 0.0
+        taylor.reset_cooldowns()
+        for hit in range(hits.size + 1):
+            taylor.state[:] = [*y, *np.eye(2, 6).ravel()]
+            taylor.propagate_until(end)
+            y, flow = taylor.state[:2].copy(), taylor.state[2:].reshape(2, 6)
+            tangent = flow[:, :2] @ tangent + flow[:, 2:] @ unit[[0, 1, 4, 5]]
+            if hit < hits.size:
+                late = (unit[2] - tangent[0]) / y[1]
+                rate = (tangent + moved(y, late))[1]
+                tangent, y = np.array([unit[2], -tau * rate - y[1] * unit[3]]), np.array([gap, -tau * y[1]])
+                tangent -= moved(y, late)
+        return np.vstack([late, tangent - moved(y, unit[4] * end / f)]) * values
+
+    return gradient
+
+
+def gradients(oscillator: ImpactOscillator) -> list[Gradient]:
+    """Measure every way to the gradient; the oscillator is Eq. (1)."""
+    start, values, hits = motion_of(oscillator)
+    truth, rows = reference(values, start, hits), list[Gradient]()
+    scale = np.abs(truth).max(axis=1)[:, None]
+
+    def results(at: Array) -> list[float]:
+        there = with_values(oscillator, dict(zip(NAMES, at.tolist(), strict=True)))
+        run = simulate(there, start, periods=PERIODS)
+        last = run.impacts.start[-1] if len(run.impacts) == hits.size else np.nan
+        return [last, run.strobe_displacement[-1, 0], run.strobe_velocity[-1, 0]]
+
+    def exact() -> Array:
+        found = motion_derivatives(oscillator, start, changes_of(oscillator, NAMES), periods=PERIODS)
+        return np.vstack([found.impact_time[-1, 2:], found.strobes[-1, :, 2:]]) * values
+
+    def differences(step: float) -> Array:
+        ends = [[results(values * (1.0 + by * unit)) for unit in np.eye(6)] for by in (step, -step)]
+        return (np.array(ends[0]) - np.array(ends[1])).T / (2.0 * step)
+
+    def measured(method: str, setting: float | None, compute: Callable[[], Array]) -> None:
+        times = []
+        for _ in range(REPEATS + 1):
+            begun = time.process_time()
+            found = compute()
+            times.append(time.process_time() - begun)
+        error = float(np.linalg.norm((found - truth) / scale) / np.linalg.norm(truth / scale))
+        rows.append(
+            Gradient(
+                method=method,
+                setting=setting,
+                error=error if np.isfinite(error) else None,
+                milliseconds=1e3 * float(np.median(times[1:])),
+            )
+        )
+
+    measured("exact", None, exact)
+    for step in np.logspace(-3, -12, 10):
+        measured("central differences", step, partial(differences, step))
+    for tolerance in (1e-6, 1e-8, 1e-10, 1e-12) if "heyoka Taylor" in installed_solvers() else ():
+        measured("heyoka", tolerance, by_heyoka(values, start, hits, tolerance))
+    return rows
+
+
+@plotting.in_house_style
+def draw_gradients(rows: Sequence[Gradient]) -> Figure:
+    """Error against step or tolerance, and against time."""
+    figure, axes = plotting.new_figure(1, 2, width=plotting.PAGE, height=0.075)
+    for i, name in enumerate(dict.fromkeys(row.method for row in rows)):
+        own = [row for row in rows if row.method == name and row.error is not None]
+        error = [row.error for row in own]
+        if own[0].setting is None:
+            axes[0].axhline(error[0], color=plotting.BLACK)
+        else:
+            axes[0].plot([row.setting for row in own], error, **plotting.series(i))
+        axes[1].plot([row.milliseconds for row in own], error, **plotting.points(i), label=name)
+    for i, across in enumerate((("relative step, or tolerance",), ("time", "ms"))):
+        axes[i].set(xscale="log", yscale="log")
+        axes[i].xaxis.set_minor_formatter("")
+        plotting.label(axes[i].xaxis, *across)
+        plotting.label(axes[i].yaxis, "error of the gradient")
+        plotting.panel(axes[i], i)
+    axes[1].legend(loc="best")
+    return figure

@@ -1,0 +1,231 @@
+"""Errors and costs of every method at every setting.
+
+    error         mode 1 at the probe, past the collision: distance of (q/size, q'/speed) from the reference
+    missed        share of crossings of known depth that are not seen, each from `PHASES` starts with the free
+                  modes of the problem (``studies.methods.crossings``)
+    us_per_period processor time of the thread per drive period along the settled orbit, the median of warm
+                  runs long enough that the clock and the call do not count (the swung beam's 12 ms cannot be
+                  made longer: there the call, 0.1 ms, is part of the cost)
+
+All methods here use one thread, whose time is on a free core the time that passes, and does not grow on a
+busy one. None stands for what does not exist (no drive). A setting that fails is a row with the sentence of
+its failure; one whose drive period is expected to take longer than a bound, from the setting before it, is a
+row that says so. For a periodic motion the error is that of mode 1 at a strobe in flight, the cost the time
+that finds it from the state 40 periods after rest. The reference has settled and errs by what does not close.
+"""
+
+from __future__ import annotations
+
+import math
+import statistics
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from decimal import Decimal
+from functools import partial
+
+import numpy as np
+
+from contact import ContactError, State, simulate
+from contact.integrators import Integrator
+from contact.orbits import Shooting
+from studies.methods.crossings import Swing
+from studies.methods.two_masses import two_masses
+from studies.methods.work_precision.harmonic_balance import balanced
+from studies.methods.work_precision.methods import PERIODIC, Sweep
+from studies.methods.work_precision.problems import Problem, driven_problem
+from studies.methods.work_precision.reference import DIGITS, extended_motion
+
+REPEATS = 9
+"""Timed runs of a point."""
+
+SLOWEST = 0.5
+"""Longest time for one drive period of a setting that is run [s]: its errors and its cost take twenty."""
+
+LONG_ENOUGH = 0.01
+"""Length of a timed run [s], a hundred times the call's own."""
+
+MOST_PERIODS = 512
+"""Bound of the periods of a timed run."""
+
+PATIENCE = 0.4
+"""Time spent on the repetitions of one point at most [s]; a slower run is timed once."""
+
+SAMPLES = {5: 1024, 11: 1024, 21: 1024, 41: 4096, 81: 16384, 161: 65536}
+"""Orders of harmonic balance; samples grow with their square, so that both errors fall together."""
+
+SETTLING = (20, 80, 320)
+"""Drive periods of settling: deviations fall to 0.886 in each."""
+
+OVERSHOOTS, PHASES = tuple(10.0**-p for p in range(2, 9)), 4
+"""Depths of the crossings over the gap, and starts for each."""
+
+RINGING = 2e-3
+"""Part of the peak in the higher modes, as mode 2 rings between collisions of the scene's beam [1]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """A method at a setting on a problem."""
+
+    problem: str
+    method: str
+    family: str
+    setting: str
+    value: float | None
+    """Step [s], spacing of samples over the period, or tolerance [1]."""
+    certified: bool
+    error: float | None = None
+    missed: float | None = None
+    us_per_period: float | None = None
+    failed: str = ""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Reference:
+    """What the errors on one problem are measured with: mode 1 at the probe; `own_error` is its own."""
+
+    problem: Problem
+    displacement: Decimal
+    velocity: Decimal
+    own_error: float
+
+    def error_of(self, displacement: float | Decimal, velocity: float | Decimal) -> float:
+        """Scaled distance of mode 1 from the reference; differences are formed in extended precision [1]."""
+        away = float(Decimal(displacement) - self.displacement) / self.problem.size
+        return math.hypot(away, float(Decimal(velocity) - self.velocity) / self.problem.speed)
+
+
+def reference_of(problem: Problem) -> Reference:
+    """The reference of a problem, from the runs of both precisions."""
+    one, other = (
+        extended_motion(problem.oscillator, problem.start, problem.probe, digits) for digits in DIGITS
+    )
+    found = Reference(
+        problem=problem, displacement=one.displacement[0], velocity=one.velocity[0], own_error=0.0
+    )
+    return replace(found, own_error=found.error_of(other.displacement[0], other.velocity[0]))
+
+
+def error_of(reference: Reference, method: Integrator) -> float:
+    """Error of mode 1 by a method [1]."""
+    problem = reference.problem
+    run = simulate(
+        problem.oscillator,
+        problem.start,
+        duration=problem.duration,
+        times=np.array([problem.probe]),
+        method=method,
+    )
+    return reference.error_of(float(run.displacement[0, 0]), float(run.velocity[0, 0]))
+
+
+def missed_share(problem: Problem, method: Integrator) -> float | None:
+    """Share of the crossings not seen; a run that fails has seen none. None without a drive, for a stop that
+    is not met by swinging [1]."""
+    if problem.oscillator.drive is None:
+        return None
+    swing = Swing.of(problem.oscillator.model, problem.oscillator.stop, RINGING)
+    touches = [
+        swing.touch(method, depth, lead) for depth in OVERSHOOTS for lead in swing.leads(PHASES).tolist()
+    ]
+    return float(np.mean(np.isnan(touches)))
+
+
+def cost_of(problem: Problem, method: Integrator, repeats: int = REPEATS) -> float:
+    """Time per drive period of the settled orbit [us]."""
+    periods = problem.cost_periods
+
+    def once(count: int) -> float:
+        begun = time.thread_time()
+        simulate(problem.oscillator, problem.cost_start, duration=count * problem.period, method=method)
+        return time.thread_time() - begun
+
+    took = once(periods)
+    while took < LONG_ENOUGH and periods < MOST_PERIODS and problem.oscillator.drive is not None:
+        periods = min(MOST_PERIODS, periods * max(2, min(8, int(LONG_ENOUGH / took))))
+        took = once(periods)
+    times = [took, *(once(periods) for _ in range(min(repeats, int(PATIENCE / took))))]
+    return 1e6 * statistics.median(times) / periods
+
+
+def rows_of(
+    reference: Reference, sweep: Sweep, *, slowest: float = SLOWEST, repeats: int = REPEATS
+) -> list[Row]:
+    """One row for each setting of a sweep; settings that would take longer than `slowest` [s] are not run."""
+    rows, expected = [], 0.0
+    for setting in sweep.settings:
+        method = setting.method
+        row = Row(
+            problem=reference.problem.name,
+            method=sweep.label,
+            family=sweep.family,
+            setting=setting.text,
+            value=setting.value,
+            certified=method.certified,
+        )
+        if expected > slowest:
+            about = f"not run: a period would take about {expected:.2g} s, the bound is {slowest:g} s"
+            row = replace(row, failed=about)
+            expected *= sweep.growth
+        else:
+            try:
+                row = replace(
+                    row,
+                    error=error_of(reference, method),
+                    missed=missed_share(reference.problem, method),
+                    us_per_period=(cost := cost_of(reference.problem, method, repeats)),
+                )
+                expected = 1e-6 * cost * sweep.growth
+            except Exception as error:  # an outside solver may raise anything, and it is a result
+                row = replace(row, failed=f"{type(error).__name__}: {' '.join(str(error).split())}")
+        rows.append(row)
+    return rows
+
+
+def orbit_rows(*, quick: bool, repeats: int) -> tuple[Reference, list[Row]]:
+    """The reference of the two masses; rows of harmonic balance, shooting and settling."""
+    problem = replace(driven_problem("two masses", "two masses, an orbit", two_masses(0.635)), unit="orbit")
+    o, settled, start = problem.oscillator, problem.cost_start, simulate(problem.oscillator, periods=40).end
+    reference = reference_of(replace(problem, start=settled, probe=problem.period))
+    found = reference.error_of(settled.displacement[0], settled.velocity[0])  # what it fails to close by
+    reference, rows = replace(reference, own_error=found), list[Row]()
+
+    def balance(order: int) -> State:
+        found = balanced(o, order, SAMPLES[order], start)
+        return State(displacement=found.modes(np.zeros(1))[0], velocity=found.modes(np.zeros(1), 1)[0])
+
+    def later(periods: int) -> State:
+        return simulate(o, start, periods=periods).end
+
+    def shot() -> State:
+        return Shooting(oscillator=o, period=1).from_state(start).strobe_state()
+
+    jobs = [("harmonic balance", f"order {n}", partial(balance, n)) for n in SAMPLES if n < 81 or not quick]
+    jobs += [("settling", f"{n} periods", partial(later, n)) for n in SETTLING]
+    for label, text, work in [*jobs, ("shooting", "1e-12", partial(shot))]:
+        row = Row(
+            problem=problem.name,
+            method=label,
+            family=PERIODIC,
+            setting=text,
+            value=None,
+            certified=label != "harmonic balance",
+        )
+        try:
+            end, spent = work(), list[float]()
+            for _ in range(repeats):
+                begun = time.thread_time()
+                work()
+                spent.append(1e6 * (time.thread_time() - begun))
+            error = reference.error_of(end.displacement[0], end.velocity[0])
+            rows.append(replace(row, error=error, us_per_period=statistics.median(spent)))
+        except ContactError as failure:
+            rows.append(replace(row, failed=str(failure)))
+    return reference, rows
+
+
+def cheapest(rows: Sequence[Row], target: float) -> Row | None:
+    """The row of least cost with an error of at most `target`; None if there is none."""
+    known = [row for row in rows if row.error is not None and row.error <= target]
+    return min(known, key=lambda row: (row.us_per_period, row.error), default=None)

@@ -1,0 +1,194 @@
+"""The problems on which methods are compared, each with a motion for the errors and one for the cost.
+
+    single mode     Eq. (1) of the letter with the hard wall, tau, mu and T of the scene
+    linear          the scene's beam with a linear contact that lasts as long as Hertz's
+    hertz           the scene's beam with the scene's Hertz contact
+    two masses      NLvib's example 03: a periodic motion, by harmonic balance, shooting and settling
+    swung beam      code_aster's SDNL32: a square bar, pinned at one end, turns as a rigid body at -3.8 rad/s
+                    and meets a spring with its free end at t = 0; no drive
+
+Driven problems run at 21.50 Hz and F/F_g - 1 = 0.013 (the letter's Fig. 4, where its trace is p4; Eq. (1)
+settles on a p8 close to it). The error run starts from the steady motion at its lowest point, meets the stop
+once, and is compared one drive period after its start. The cost run follows the settled orbit.
+
+Errors of mode 1 are given in units of what it does at grazing: displacement gap/phi_1, velocity w gap/phi_1;
+for the swung beam 5 mm, the largest deflection in its source, and the tip's first speed.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import brentq
+
+from beam import ModalModel, UniformBeam, exact_modes
+from contact import (
+    ImpactOscillator,
+    LinearContact,
+    State,
+    Stop,
+    StroboscopicMap,
+    before_collision,
+    first_collision,
+    simulate,
+)
+from contact.orbits import settle
+from studies.shell.scene import Scene, beam_at, hertz_of, single_mode_at
+
+FREQUENCY, EXCESS = 21.50, 0.013
+"""Drive frequency [Hz] and F/F_g - 1 of the letter's Fig. 4."""
+
+MODES = 8
+"""Modes of the beam: the highest, at 3.3 kHz, swings a fifth of a turn during a contact."""
+
+SETTLING = 4000
+"""Drive periods within which the orbit has settled: a free motion falls to 0.92 in each."""
+
+UNSETTLED = 16
+"""Drive periods of the cost run where the motion has no period."""
+
+LENGTH, TURNING, SPRING = 0.783, 3.8, 45000.0
+"""Length of the swung beam [m], its first rate of turning [rad/s], the stiffer spring of its source [N/m]."""
+
+DURATION = 0.012
+"""The swung beam has left that spring before [s]."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Problem:
+    """A motion to be computed by every method."""
+
+    name: str
+    title: str
+    """Under which its rows are listed; what a figure says."""
+    oscillator: ImpactOscillator
+    start: State
+    """Of the error run."""
+    probe: float
+    duration: float
+    """Time at which mode 1 is compared, and length of the error run; with a drive it goes on beyond the
+    probe, so that no step is cut short for it [s]."""
+    period: float
+    """Unit of time: the drive period, or the swung beam's whole run [s]."""
+    size: float
+    speed: float
+    """Scales of mode 1's displacement and velocity [m kg^0.5], [m kg^0.5/s]."""
+    cost_start: State
+    cost_periods: int
+    """On the settled orbit; units of time in which that repeats."""
+    contact_time: float
+    """Of the first touch, 0 for an impact law [s]."""
+    unit: str = "drive period"
+    """What a cost is the time for."""
+
+
+def driven_problem(name: str, title: str, oscillator: ImpactOscillator) -> Problem:
+    """The problem of `oscillator`, driven above grazing."""
+    size, strobed = oscillator.stop.gap / abs(oscillator.model.phi[0]), StroboscopicMap(oscillator=oscillator)
+    settled, start = settle(strobed, strobed.steady(), most_cycles=SETTLING), before_collision(oscillator)
+    return Problem(
+        name=name,
+        title=title,
+        oscillator=oscillator,
+        start=start,
+        probe=start.time + oscillator.period,
+        duration=1.3 * oscillator.period,
+        period=oscillator.period,
+        size=size,
+        speed=2.0 * math.pi / oscillator.period * size,
+        cost_start=replace(settled.end, time=0.0),
+        cost_periods=settled.period or UNSETTLED,
+        contact_time=first_collision(oscillator).contact_time,
+    )
+
+
+def linear_beam(scene: Scene) -> ImpactOscillator:
+    """The scene's beam with a linear contact that lasts as long as Hertz's in the first collision."""
+    hertz = hertz_beam(scene)
+    wanted = first_collision(hertz).contact_time
+
+    def with_stiffness(stiffness: float) -> ImpactOscillator:
+        return replace(hertz, stop=Stop(gap=hertz.stop.gap, law=LinearContact(stiffness=stiffness)))
+
+    guess = (math.pi / wanted) ** 2 / float(hertz.model.phi @ hertz.model.phi)
+    return with_stiffness(
+        float(
+            brentq(
+                lambda k: first_collision(with_stiffness(k)).contact_time - wanted,
+                0.25 * guess,
+                4.0 * guess,
+                xtol=1e-13 * guess,
+            )
+        )
+    )
+
+
+def hertz_beam(scene: Scene) -> ImpactOscillator:
+    """The scene's beam with the scene's Hertz contact, at the excess of Fig. 4."""
+    stop = Stop(gap=scene.stop.gap_m, law=hertz_of(scene))
+    return replace(beam_at(scene, FREQUENCY), stop=stop).with_excess(EXCESS)
+
+
+def swung_beam(
+    stiffness: float, bending_modes: int = 9, damping_ratio: float = 0.01
+) -> tuple[ImpactOscillator, State]:
+    """The beam of SDNL32 as its free end meets the spring of `stiffness` [N/m].
+
+    Modes: the rotation, w = phi_0 s/L with phi_0 = sqrt(3/(rho A L)), and bending modes of the pinned-free
+    bar. The stop lies where the tip moves to, so that the model counts positive what the source counts
+    negative.
+    """
+    side, modulus, density = 0.014, 6.7e10, 2400.0
+    line = density * side**2
+    beam = UniformBeam(
+        length=LENGTH,
+        bending_stiffness=modulus * side**4 / 12,
+        mass_per_length=line,
+        supports=("pinned", "free"),
+    )
+    bending = exact_modes(beam, bending_modes)
+    phi = np.append(math.sqrt(3 / (line * LENGTH)), bending.phi)
+    model = ModalModel(
+        omega=np.append(0.0, bending.omega),
+        decay_rate=np.append(0.0, 2 * damping_ratio * bending.omega),
+        phi=phi,
+        participation=np.zeros(phi.size),
+    )
+    velocity = TURNING * LENGTH / phi[0] * np.eye(phi.size)[0]
+    oscillator = ImpactOscillator(model=model, stop=Stop(gap=0.0, law=LinearContact(stiffness=stiffness)))
+    return oscillator, State(displacement=np.zeros(phi.size), velocity=velocity)
+
+
+def swung_problem() -> Problem:
+    """SDNL32 with the stiffer spring."""
+    oscillator, start = swung_beam(SPRING)
+    touches = simulate(oscillator, start, duration=DURATION).impacts
+    return Problem(
+        name="swung beam",
+        title="SDNL32, 10 modes, linear contact",
+        oscillator=oscillator,
+        start=start,
+        probe=DURATION,
+        duration=DURATION,
+        period=DURATION,
+        size=0.005 / oscillator.model.phi[0],
+        speed=start.velocity[0],
+        cost_start=start,
+        cost_periods=1,
+        contact_time=float(touches.end[0] - touches.start[0]),
+        unit=f"{1e3 * DURATION:g} ms",
+    )
+
+
+def problems_of(scene: Scene, modes: int = MODES) -> list[Problem]:
+    """The four problems of the study, the beam with `modes` modes."""
+    beam = scene.replace({"modes.count": modes})
+    one = single_mode_at(scene, FREQUENCY).with_excess(EXCESS)
+    return [
+        driven_problem("single mode", "Eq. (1), hard wall", one),
+        driven_problem("linear", f"beam, {modes} modes, linear contact", linear_beam(beam)),
+        driven_problem("hertz", f"beam, {modes} modes, Hertz contact", hertz_beam(beam)),
+        swung_problem(),
+    ]

@@ -1,0 +1,178 @@
+"""The options of a study: those that all share, and its own, made of the keyword-only arguments of its
+function."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import inspect
+import math
+import os
+import sys
+import types
+import typing
+from collections.abc import Callable, Mapping, Sequence
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Annotated, Literal, NoReturn, TextIO, Union, get_args, get_origin
+
+from beam import InvalidValue
+from studies.shell.executors import require_place
+from studies.shell.files import SCHEMA
+from studies.shell.programs import DONE, perform, tell
+
+Answer = Mapping[str, object]
+
+POSITIONAL = "positional"
+"""Beside the words of an argument: it needs no name on the command line."""
+
+
+MOST_CELLS = 1_000_000
+"""Bound on the cells of a study, and on a count on the command line. At 1 ms a cell, a million take a quarter
+of an hour, and their numbers fit into memory."""
+
+
+def require_cells(option: str, value: object, count: float) -> None:
+    """Refuse an option that makes more cells than a study computes."""
+    if not count <= MOST_CELLS:
+        raise InvalidValue(
+            f"{option} is {value}, which makes {count:.3g} cells; at most {MOST_CELLS:g} are computed"
+        )
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser that refuses in a sentence and names the nearest option to an unknown one."""
+
+    def __init__(self, command: str, account: str) -> None:
+        super().__init__(
+            prog=command,
+            description=account,
+            usage=f"{command} [options]",
+            allow_abbrev=False,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        self.add_argument("--json", action="store_true", help="print the summary as one JSON object")
+
+    def error(self, message: str) -> NoReturn:
+        """Refuse."""
+        raise InvalidValue(f"{message} (--help lists the options)")
+
+    def read(self, argv: Sequence[str], output: TextIO) -> argparse.Namespace:
+        """The arguments; help goes to `output`."""
+        with contextlib.redirect_stdout(output):
+            arguments, rest = self.parse_known_intermixed_args(argv)
+        for word in rest:
+            nearest = get_close_matches(word.partition("=")[0], self._option_string_actions, n=1)
+            self.error(f"there is no option {word}" + (f"; did you mean {nearest[0]}?" if nearest else ""))
+        require_place(vars(arguments).get("executor", ""))
+        return arguments
+
+
+def add_scene(parser: Parser) -> Callable[..., object]:
+    """Add the options that name and change the scene; returns what adds another one to them."""
+    scene = parser.add_argument_group("the scene").add_argument
+    scene(
+        "--scene", default="letter", metavar="FILE.toml", help="a file, or the name of one in studies/scenes"
+    )
+    scene(
+        "--set",
+        action="append",
+        default=[],
+        metavar="section.key=value",
+        dest="overrides",
+        help="change one key of the scene; may be repeated",
+    )
+    return scene
+
+
+def parser_of(command: str, account: str) -> Parser:
+    """The options that all studies share."""
+    parser = Parser(command, account)
+    scene = add_scene(parser)
+    scene("--dump-scene", action="store_true", help="print every key with unit, default and provenance")
+    runs = parser.add_argument_group("how it runs, and where the results go").add_argument
+    cores = os.cpu_count() or 1
+    runs("--quick", action="store_true", help="a small form of the study, for a first look")
+    runs("--workers", type=_count, default=cores, metavar="N", help="threads or processes (default: cores)")
+    runs("--executor", default="", metavar="URL", help="threads (default), processes, dask://HOST")
+    runs("--out", type=_folder, default="results", metavar="DIR", help="folder of all results")
+    return parser
+
+
+def tool(parser: Parser, argv: Sequence[str] | None, work: Callable[..., tuple[str, Answer]]) -> int:
+    """Run a program that is no study: `work` takes the arguments, returns a sentence and --json's answer."""
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    name = parser.prog.rpartition(" ")[2]
+
+    def answered(output: TextIO) -> int:
+        given = parser.read(arguments, output)
+        sentence, done = work(given)
+        print(f"{parser.prog}: {sentence}", file=sys.stderr)
+        if given.json:
+            answer = {"schema": SCHEMA, "study": name, "status": "done", **done, "exit_code": DONE}
+            tell(answer, output)
+        return DONE
+
+    return perform(name, parser.prog, arguments, answered)
+
+
+def add_options(parser: Parser, function: Callable[..., object]) -> dict[str, object]:
+    """Make options of the keyword-only arguments of a study; returns their defaults.
+
+    One annotated with `POSITIONAL` as well is given without a name; `tuple[T, ...]` takes one value or more.
+    """
+    group = parser.add_argument_group("options of this study")
+    hints = typing.get_type_hints(function, include_extras=True)
+    defaults: dict[str, object] = {}
+    for name, entry in inspect.signature(function).parameters.items():
+        if entry.kind is not inspect.Parameter.KEYWORD_ONLY:
+            continue
+        kind, words, marks = hints[name], "", list[str]()
+        if get_origin(kind) is Annotated:
+            kind, words, *marks = get_args(kind)
+        if get_origin(kind) in (Union, types.UnionType):  # T | None
+            kind = next(part for part in get_args(kind) if part is not types.NoneType)
+        default = defaults[name] = entry.default
+        flag, told = f"--{name.replace('_', '-')}", words.replace("%", "%%")  # argparse formats its help
+        if default not in (None, ()) and kind is not bool:
+            shown = " ".join(map(str, default)) if isinstance(default, tuple) else default
+            told += f" (default: {shown})"
+        about: dict[str, object] = {"default": argparse.SUPPRESS, "help": told}
+        if kind is bool:
+            about["action"] = "store_true"
+        elif get_origin(kind) is Literal:
+            about["choices"] = get_args(kind)
+        else:
+            if get_origin(kind) is tuple:
+                several = Ellipsis in get_args(kind)
+                about["nargs"], kind = "+" if several else len(get_args(kind)), get_args(kind)[0]
+            about |= {"type": READERS[kind], "metavar": kind.__name__.upper()}
+            if POSITIONAL in marks:
+                flag, about = name, {**about, "nargs": "?", "metavar": name.upper(), "default": default}
+        group.add_argument(flag, **about)  # type: ignore[arg-type]
+    return defaults
+
+
+def _count(text: str) -> int:
+    """A whole number from 1 to `MOST_CELLS`."""
+    if not (text.isascii() and text.isdigit() and len(text) < 20 and 1 <= int(text) <= MOST_CELLS):
+        raise argparse.ArgumentTypeError(f"must be a whole number from 1 to {MOST_CELLS}, not {text[:40]!r}")
+    return int(text)
+
+
+def _folder(text: str) -> str:
+    """A folder that has a name."""
+    if not text.strip():
+        raise argparse.ArgumentTypeError(f"must be a folder, not {text!r}")
+    return text
+
+
+def _finite(text: str) -> float:
+    """A finite number."""
+    with contextlib.suppress(ValueError):
+        if math.isfinite(float(text)):
+            return float(text)
+    raise argparse.ArgumentTypeError(f"must be a finite number, not {text!r}")
+
+
+READERS: Mapping[type, Callable[[str], object]] = {int: _count, float: _finite, str: str, Path: Path}

@@ -1,0 +1,289 @@
+"""One run of a study, seen from the study: what it is asked for besides its scene, and what it leaves behind.
+
+    results/NAME/summary.json     what was found; NaN and infinity are null
+                 *.npz, *.csv     arrays and tables
+                 *.png, *.pdf     figures, drawn from what was stored
+                 manifest.json    versions, parameters with provenance, command, commit, wall time, captions
+
+Everything for a person goes to standard error. What an interrupted study has stored until then stays.
+"""
+
+from __future__ import annotations
+
+import io
+import sys
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from beam import Refusal
+from contact import ContactError
+from studies import letter
+from studies.physics.least_model import least_modes
+from studies.shell.executors import pool_of, progress, say
+from studies.shell.files import (
+    SCHEMA,
+    columns_of,
+    csv_text,
+    fingerprint,
+    git_state,
+    json_text,
+    make_folder,
+    versions,
+    write_atomically,
+)
+from studies.shell.scene import Scene, free_period
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+SAME_SPRING = 0.005
+"""Relative difference of two free periods beyond which the born period changes next to a band edge."""
+
+Verdict = Literal["agrees", "in part", "differs", "fitted", "not printed"]
+
+T = TypeVar("T")
+S = TypeVar("S")
+
+
+@dataclass(kw_only=True)
+class Run:
+    """What a study gets besides its scene; `files` lists what it has written, `scene` is the one it runs
+    on."""
+
+    study: str
+    folder: Path
+    scene: Scene
+    command: str
+    quick: bool = False
+    workers: int = 1
+    executor: str = ""
+    options: Mapping[str, object] = field(default_factory=dict)
+    warnings: Sequence[str] = ()
+    files: list[str] = field(default_factory=list)
+    failures: list[str] = field(default_factory=list)
+    model_choice: str = ""
+    interrupted: bool = False
+    closed: bool = False
+
+    def __post_init__(self) -> None:
+        make_folder(self.folder)
+        self._begun, self._date = time.perf_counter(), datetime.now(UTC)
+        # of the scene as it was given, before modes are chosen
+        self._fingerprint = fingerprint(self.scene.values(), {"quick": self.quick, **self.options})
+        self._captions: dict[str, str] = {}
+        self._verdicts: dict[str, dict[str, object]] = {}
+        self._answers: dict[str, str] = {}
+
+    # what a person sees
+
+    say = staticmethod(say)
+    progress = staticmethod(progress)
+
+    def warn(self, sentence: str) -> None:
+        """Print a warning to standard error, and keep it in the summary."""
+        self.warnings = [*self.warnings, sentence]
+        self.say(f"warning: {sentence}")
+
+    def track(self, items: Iterable[T], label: str) -> Iterator[T]:
+        """The items one after the other, each counted when it has been dealt with."""
+        known = list(items)
+        with self.progress(label, len(known)) as tick:
+            for item in known:
+                yield item
+                tick()
+
+    # where it is computed
+
+    def pool(self) -> AbstractContextManager[Executor]:
+        """The executor that the command line names."""
+        return pool_of(self.executor, self.workers)
+
+    def map(self, function: Callable[[S], T], items: Iterable[S], label: str) -> list[T]:
+        """[function(item) for item in items] on the executor, in order, with progress."""
+        known = list(items)
+        with self.pool() as pool, self.progress(label, len(known)) as tick:
+            futures = [pool.submit(function, item) for item in known]
+            for future in futures:
+                future.add_done_callback(lambda _: tick())
+            return [future.result() for future in futures]
+
+    def attempt(self, function: Callable[[S], T], items: Iterable[S], label: str) -> list[T | None]:
+        """Like `map`; an item that ends with a ContactError or a Refusal counts as failed, and is None."""
+        known = list(items)
+        tried = self.map(partial(_tried, function), known, label)
+        for item, (_, error) in zip(known, tried, strict=True):
+            if error:
+                self.failed(f"{label}, {item}", error)
+        return [found for found, _ in tried]
+
+    def choose_modes(self, scene: Scene, needs: Mapping[str, float]) -> Scene:
+        """The scene with the least number of modes for these quantities, unless it says the number.
+
+        A spring whose first mode is not that of [single_mode] is told: map and Eq. (1) describe another one.
+        """
+        self.scene, self.model_choice = least_modes(scene, needs)
+        if self.model_choice:
+            self.say(self.model_choice)
+        if scene.spring.kind != "modal_data":
+            told, found = scene.single_mode.free_period_s, free_period(scene)
+            if abs(told / found - 1.0) > SAME_SPRING:
+                doubt = (
+                    f"single_mode.free_period_s is {told:g} s, but the first mode of the spring has "
+                    f"{found:.5g} s: map and Eq. (1) describe another spring than the beam"
+                )
+                self.warn(doubt)
+        return self.scene
+
+    # what it leaves
+
+    def path(self, name: str) -> Path:
+        """The path of a file, or folder of files, that another library writes."""
+        if Path(name).name != name:
+            raise ValueError(f"a result needs a plain file name, not {name!r}")
+        if name not in self.files:
+            self.files.append(name)
+        return self.folder / name
+
+    def text(self, name: str, text: str) -> Path:
+        """A text file under its full name."""
+        return write_atomically(self.path(name), text.encode())
+
+    def json(self, name: str, value: object) -> Path:
+        """NAME.json."""
+        return self.text(f"{name}.json", json_text(value) + "\n")
+
+    def arrays(self, name: str, **arrays: ArrayLike) -> Path:
+        """NAME.npz with these named arrays of numbers or texts."""
+        stream = io.BytesIO()
+        known = {key: np.asarray(value) for key, value in arrays.items()}
+        for key, array in known.items():
+            if array.dtype.hasobject:
+                raise TypeError(f"{key} in {name}.npz must be an array of numbers or texts, not of objects")
+        np.savez_compressed(stream, **known)  # type: ignore[arg-type]
+        return write_atomically(self.path(f"{name}.npz"), stream.getvalue())
+
+    def table(
+        self, name: str, rows: Sequence[object], caption: str = "", *, show: Sequence[str] | None = None
+    ) -> Path:
+        """NAME.csv of rows of one dataclass; on the terminal the columns `show` (all by default)."""
+        from rich.console import Console
+        from rich.table import Table
+
+        if not rows:  # every cell failed
+            return self.text(f"{name}.csv", "")
+        shown = list(columns_of(rows) if show is None else show)
+        if shown:
+            table = Table(title=caption or None, title_justify="left", box=None, pad_edge=False)
+            for column in shown:
+                table.add_column(column, justify="right", overflow="fold")
+            for row in rows:
+                table.add_row(*(_cell(getattr(row, column)) for column in shown))
+            terminal = sys.stderr.isatty()
+            Console(file=sys.stderr, width=None if terminal else 200, markup=False, highlight=False).print(
+                table
+            )
+        self._captions[f"{name}.csv"] = caption
+        return self.text(f"{name}.csv", csv_text(rows))
+
+    def figure(self, name: str, figure: Figure, caption: str = "") -> None:
+        """NAME.png and NAME.pdf; the caption is what the page writes below it."""
+        from studies.shell.plotting import save  # matplotlib is slow to import
+
+        for path in save(figure, self.folder, name):
+            self.path(path.name)
+        self._captions[f"{name}.png"] = caption
+
+    def failed(self, where: str, error: object) -> None:
+        """One failed cell: the study goes on, and ends with exit code 3."""
+        self.failures.append(f"{where}: {' '.join(str(error).split()) or type(error).__name__}")
+        self.say(self.failures[-1])
+
+    def verdict(self, point: str, verdict: Verdict, *, found: str, note: str = "") -> None:
+        """What was found of a point of the letter (`letter.POINTS`), and a sentence on it.
+
+        "fitted": the scene was calibrated to that number; "not printed": the letter gives none to compare.
+        """
+        if point not in letter.POINTS or letter.POINTS[point].study != self.study:
+            raise KeyError(f"{self.study} judges no point {point!r} of letter.POINTS")
+        self._verdicts[point] = {"verdict": verdict, "found": found, "note": note}
+
+    def answer(self, question: str, text: str) -> None:
+        """The answer, or this study's part of it, to a question of `letter.QUESTIONS`."""
+        if question not in letter.QUESTIONS or self.study not in letter.QUESTIONS[question][1]:
+            raise KeyError(f"{self.study} answers no question {question!r} of letter.QUESTIONS")
+        self._answers[question] = text
+
+    @property
+    def wall_time(self) -> float:
+        """Seconds since the run began."""
+        return time.perf_counter() - self._begun
+
+    def close(self, status: str, results: Mapping[str, object]) -> dict[str, object]:
+        """Write summary.json and manifest.json; returns the summary."""
+        self.closed = True
+        settings = {"quick": self.quick, "workers": self.workers, "executor": self.executor, **self.options}
+        common = {
+            "schema": SCHEMA,
+            "study": self.study,
+            "status": status,
+            "settings": settings,
+            "provenance": self.scene.provenance(),
+            "warnings": list(self.warnings),
+        }
+        wall_time = round(self.wall_time, 3)
+        summary = {
+            **common,
+            "model_choice": self.model_choice,
+            "failures": self.failures,
+            "failed_cells": len(self.failures),
+            "verdicts": self._verdicts,
+            "answers": self._answers,
+        }
+        if taken := sorted(summary.keys() & results.keys()):
+            raise ValueError(f"{self.study} returns {', '.join(taken)}, keys that every summary has already")
+        summary |= results
+        self.json("summary", summary)
+        self.path("manifest.json")
+        self.json(
+            "manifest",
+            {
+                **common,
+                "command": self.command,
+                "parameters": self.scene.values(),
+                "versions": versions(),
+                "git": git_state(),
+                "fingerprint": self._fingerprint,
+                "begun": self._date.isoformat(timespec="seconds"),
+                "wall_time_s": wall_time,
+                "files": sorted(self.files),
+                "captions": self._captions,
+            },
+        )
+        return {**summary, "folder": self.folder, "wall_time_s": wall_time}
+
+
+def _tried(function: Callable[[S], T], item: S) -> tuple[T | None, str]:
+    """The value of an item, or None and why there is none."""
+    try:
+        return function(item), ""
+    except (ContactError, Refusal) as error:
+        return None, str(error) or type(error).__name__
+
+
+def _cell(value: object) -> str:
+    """A cell of a table for a person."""
+    if value is None or (isinstance(value, float) and np.isnan(value)):
+        return "-"
+    if isinstance(value, float | np.floating):
+        return f"{value:.5g}"
+    return {True: "yes", False: "no"}[value] if isinstance(value, bool) else str(value)

@@ -1,0 +1,258 @@
+"""From a TOML file to spring, modes, model and oscillators: what a study starts from.
+
+    scene = read_scene("letter", ["drive.frequencies_hz=[22.2]"])    # a scene of ours by name, or any file
+    spring_of(scene) -> modes_of(scene) -> model_of(scene)           # beam: drawing, modes, what impacts see
+    beam_at(scene, f)                                                # the spring on its stop, driven at f
+    [Hz]
+    single_mode_at(scene, f), nordmark_at(scene, f)                  # Eq. (1) and Eqs. (2), (3) of the letter
+
+Whatever is wrong is a `SceneError` of one sentence that names the key: the constructors of `beam` and
+`contact` refuse, and their names are put into those of the scene here. What is legal and can hardly be meant
+brings a `SuspiciousValue` warning. Reading a scene solves no eigenvalue problem.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+from beam import Backbone, ModalModel, Refusal, SuspiciousValue
+from contact import (
+    Band,
+    ContactError,
+    ContactLaw,
+    HarmonicDrive,
+    HertzContact,
+    ImpactOscillator,
+    LinearContact,
+    NewtonRestitution,
+    NonlinearMode,
+    NordmarkMap,
+    Stop,
+    band,
+)
+from studies import ROOT, letter
+from studies.shell.scene.key import SceneError, shown
+from studies.shell.scene.spring import READOUT as READOUT
+from studies.shell.scene.spring import (
+    backbone_of,
+    damping_of,
+    model_of,
+    require_drive_below,
+    shift_at_gap,
+    single_mode_of,
+    spring_of,
+)
+from studies.shell.scene.spring import elements_of as elements_of
+from studies.shell.scene.spring import free_period as free_period
+from studies.shell.scene.spring import modes_of as modes_of
+from studies.shell.scene.spring import sections_of as sections_of
+from studies.shell.scene.values import Scene, doubts, scene_from_text
+
+SCENES = ROOT / "studies" / "scenes"
+
+LARGEST_BANDS = range(3, 13)
+"""Periods whose bands are looked at: edges lie closer and closer beyond."""
+
+SAME_PERIOD = 1e-3
+"""Relative change of T within which a spring counts as the letter's: twice the error of its 40.80 ms."""
+
+
+def read_scene(name: str | Path = "letter", overrides: Iterable[str] = ()) -> Scene:
+    """The scene in a file, or of a name in studies/scenes, with overrides `section.key=value`; the last
+    wins."""
+    known = {file.stem: file for file in sorted(SCENES.glob("*.toml"))}
+    path = known.get(str(name), Path(name))
+    try:
+        text = path.read_bytes().decode("utf-8-sig")
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "it is not text in UTF-8"
+        choices = f"give a TOML file or one of {', '.join(known)}"
+        raise SceneError(f"the scene {shown(str(name))} cannot be read: {reason}; {choices}") from error
+    scene = scene_from_text(text, name=str(path), overrides=overrides, folder=path.parent)
+    check(scene)
+    for sentence in doubts(scene):
+        warnings.warn(sentence, SuspiciousValue, stacklevel=2)
+    return scene
+
+
+SMALLEST_GAP = 1e-12
+"""Gap in front of which a drive can graze [m]: a hundredth of an atom, and its square is finite."""
+
+
+def check(scene: Scene) -> None:
+    """SceneError unless everything but the modes can be built from the scene."""
+    spring, damping = scene.spring, scene.damping
+    if scene.drive.kind == "harmonic" and not scene.stop.gap_m >= SMALLEST_GAP:
+        gap, least = scene.stop.gap_m, SMALLEST_GAP
+        raise SceneError(f"stop.gap_m must be at least {least:g} (unit m) when there is a drive, not {gap:g}")
+    scene.make(Stop, {"gap": "stop.gap_m"}, law=contact_law_of(scene))
+    for frequency in scene.drive.frequencies_hz:
+        scene.make(HarmonicDrive, {"frequency": "drive.frequencies_hz"}, frequency=frequency)
+    scene.make(NewtonRestitution, {"local_restitution": "single_mode.restitution"})
+    single_mode_of(scene)
+    if spring.kind == "modal_data":
+        require_drive_below(scene, model_of(scene))
+        return
+    spring_of(scene)
+    damping_of(scene)
+    if damping.kind == "strips" and 0.0 in (spring.tape_thickness_m, spring.tape_loss_factor):
+        raise SceneError(
+            "damping.kind strips needs a tape that dissipates, spring.tape_thickness_m and "
+            "spring.tape_loss_factor greater than 0: give both or choose another damping.kind"
+        )
+    if damping.kind == "measured" and len(damping.measured_rates_per_s) < scene.kept_modes:
+        raise SceneError(
+            f"damping.kind measured needs a rate for each mode, {scene.kept_modes} (modes.count), but "
+            f"damping.measured_rates_per_s (unit 1/s) has {len(damping.measured_rates_per_s)}"
+        )
+
+
+def harmonic(scene: Scene) -> Scene:
+    """The scene itself, or SceneError if its base is at rest."""
+    if scene.drive.kind != "harmonic":
+        raise SceneError(f"drive.kind is {scene.drive.kind}; this study needs a harmonic drive")
+    return scene
+
+
+def approach_speed(frequency: float, gap: float, excess: float) -> float:
+    """Tip velocity at the stop, steady motion at excess e above 0: 2 pi f gap sqrt((1 + e)^2 - 1) [m/s]."""
+    return 2.0 * math.pi * frequency * gap * math.sqrt(excess * (2.0 + excess))
+
+
+def hertz_of(scene: Scene) -> HertzContact:
+    """Hertz's law for the ball and the plate of the scene."""
+    return scene.make(
+        HertzContact.of_bodies,
+        {
+            "radius": "tip.ball_radius_m",
+            "youngs_modulus": "tip.ball_young_modulus_pa",
+            "poissons_ratio": "tip.ball_poisson_ratio",
+            "other_modulus": "tip.plate_young_modulus_pa",
+            "other_ratio": "tip.plate_poisson_ratio",
+        },
+    )
+
+
+def contact_law_of(scene: Scene) -> ContactLaw:
+    """The contact law of the scene.
+
+    A linear contact whose stiffness is left open (0) gets k = M (pi/t_c)^2, M the mass of ball and mount and
+    t_c its contact time under Hertz's law at the approach speed of the letter's Fig. 4.
+    """
+    law, stiffness = scene.contact.law, scene.contact.stiffness_n_per_m
+    if law == "hertz":
+        return hertz_of(scene)
+    if law == "newton":
+        return scene.make(NewtonRestitution, {"local_restitution": "contact.local_restitution"})
+    if stiffness == 0.0:
+        mass = scene.modal_data.tip_mass_kg if scene.spring.kind == "modal_data" else scene.tip.mass_kg
+        if not mass > 0:
+            raise SceneError(
+                "contact.stiffness_n_per_m is 0, to be found from the contact time of the ball, but the "
+                "ball has no mass: give the stiffness or the mass above zero"
+            )
+        middle = sorted(scene.drive.frequencies_hz)[len(scene.drive.frequencies_hz) // 2]
+        speed = approach_speed(middle, scene.stop.gap_m, letter.TIME_TRACE_EXCESS)
+        stiffness = mass * (math.pi / hertz_of(scene).contact_time(mass, speed)) ** 2
+    keys = {"stiffness": "contact.stiffness_n_per_m", "damping": "contact.damping_ns_per_m"}
+    return scene.make(LinearContact, keys, stiffness=stiffness)
+
+
+def _on_stop(scene: Scene, model: ModalModel, law: ContactLaw, frequency: float) -> ImpactOscillator:
+    def driven(gap: float, frequency: float) -> ImpactOscillator:
+        drive = HarmonicDrive(frequency=frequency)
+        return ImpactOscillator(model=model, stop=Stop(gap=gap, law=law), drive=drive)
+
+    keys = {"gap": "stop.gap_m", "frequency": "drive.frequencies_hz"}
+    return scene.make(driven, keys, frequency=frequency)
+
+
+def beam_at(scene: Scene, frequency: float, model: ModalModel | None = None) -> ImpactOscillator:
+    """The spring of the scene at drive `frequency` [Hz]; `model` saves computing its modes again."""
+    return _on_stop(scene, model_of(scene) if model is None else model, contact_law_of(scene), frequency)
+
+
+def single_mode_at(scene: Scene, frequency: float) -> ImpactOscillator:
+    """Eq. (1) of the letter at drive frequency `frequency` [Hz], with the gap of the scene."""
+    law = scene.make(NewtonRestitution, {"local_restitution": "single_mode.restitution"})
+    return _on_stop(scene, single_mode_of(scene), law, frequency)
+
+
+def nordmark_at(scene: Scene, frequency: float) -> NordmarkMap:
+    """Eqs. (2), (3) of the letter, corrected, at drive frequency `frequency` [Hz]."""
+    return NordmarkMap.from_oscillator(single_mode_at(scene, frequency))
+
+
+def band_of(scene: Scene, period: int) -> Band:
+    """The band of p_m of the map with the scene's single mode, m = `period`."""
+    keys = scene.single_mode
+    return band(
+        period, free_period=keys.free_period_s, decay_rate=keys.decay_rate_per_s, restitution=keys.restitution
+    )
+
+
+def nonlinear_mode_at(scene: Scene, frequency: float, backbone: Backbone | None = None) -> NonlinearMode:
+    """Eq. (1) of the letter at `frequency` [Hz] with cubic stiffness and inertia, by default the spring's."""
+    keys, cubic = scene.single_mode, backbone_of(scene) if backbone is None else backbone
+    return NonlinearMode(
+        free_period=keys.free_period_s,
+        decay_rate=keys.decay_rate_per_s,
+        restitution=keys.restitution,
+        gap=scene.stop.gap_m,
+        frequency=frequency,
+        stiffness=cubic.stiffness,
+        inertia=cubic.inertia,
+    )
+
+
+def period_shifts(scene: Scene) -> Mapping[float, tuple[float, float]]:
+    """What the amplitude of the gap does to the period that small deviations feel, and what it may do.
+
+    Drive frequency [Hz] -> relative change of that period (infinite where no motion grazes as the linear one
+    does), and the distance of the nearest edge of a band of p_m on that side, both relative [1].
+    """
+    edges = [edge for m in LARGEST_BANDS for edge in (band_of(scene, m).lower, band_of(scene, m).upper)]
+    backbone, found = backbone_of(scene), dict[float, tuple[float, float]]()
+    for frequency in scene.drive.frequencies_hz:
+        try:
+            period = nonlinear_mode_at(scene, frequency, backbone).effective_period
+        except (ContactError, Refusal):
+            period = math.inf
+        shift = period / scene.single_mode.free_period_s - 1.0
+        ways = [math.copysign(1.0, shift) * (edge / frequency - 1.0) for edge in edges]
+        found[frequency] = shift, min((way for way in ways if way > 0.0), default=math.inf)
+    return found
+
+
+def beyond_linear(scene: Scene) -> str | None:
+    """One sentence if the spring is too nonlinear at the gap for the periods that are born, else None."""
+    if scene.drive.kind != "harmonic":
+        return None
+    shifts = period_shifts(scene)
+    moved = {f"{f:g}": shift for f, (shift, room) in shifts.items() if abs(shift) > room}
+    if not moved:
+        return None
+    most = max(moved.values(), key=abs)
+    feels = f"small deviations feel a period {most:+.2%} off" if math.isfinite(most) else "no motion grazes"
+    return (
+        f"at the gap, stop.gap_m = {scene.stop.gap_m:g} m, the free frequency is {shift_at_gap(scene):+.2%} "
+        f"off that of small swings and {feels}, which can change the periods born at {', '.join(moved)} Hz; "
+        "the model is linear, and `python -m studies finite_amplitude` says what is left of them"
+    )
+
+
+def corresponding(scene: Scene, letter_hz: float) -> float:
+    """The drive frequency of the scene's spring that has the f T of the letter's `letter_hz` [Hz].
+
+    By the letter's claim of universality the born period depends on f T alone, T the damped free period.
+    """
+    ratio = letter.FREE_PERIOD_S / scene.single_mode.free_period_s
+    return letter_hz if abs(ratio - 1.0) <= SAME_PERIOD else float(f"{letter_hz * ratio:.5g}")
+
+
+def periods_of(scene: Scene) -> Mapping[float, int]:
+    """The letter's frequencies, as those of the scene's spring [Hz], with the letter's periods."""
+    return {corresponding(scene, f): m for f, m in letter.PERIODS.items()}

@@ -1,0 +1,241 @@
+"""From a scene to the spring, its modes and the modal model that the impacts see.
+
+The names are public in `studies.shell.scene`.
+
+Every model has one read-out, `READOUT`: what the laser sees, displacement [m] or rotation [rad]. Modes that
+were measured and Eq. (1) have no shape but at the tip, so that their read-out is the tip. The tape covers
+each leg from its support by the part `spring.tape_coverage`; with damping.kind strips the modes decay as the
+strain energies of sheet and tape say, scaled by one factor that gives mode 1 `damping.decay_rate_per_s`.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import beam
+from beam import LeafSpring, ModalModel, Modes, StripSection
+from studies.shell.scene.key import SceneError
+from studies.shell.scene.keys import MODE_LISTS
+from studies.shell.scene.values import Scene
+
+READOUT = "readout"
+"""Name of the read-out in every model."""
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class MeasuredRates:
+    """Decay rates c [1/s] as measured, one a coupled mode, lowest first; not a number for the other modes."""
+
+    rates: tuple[float, ...]
+
+    def decay_rates(self, modes: Modes) -> NDArray[np.float64]:
+        """Return c [1/s], shape (n_modes,)."""
+        found = np.full_like(modes.omega, np.nan)
+        places = np.flatnonzero(modes.coupled)[: len(self.rates)]
+        found[places] = self.rates[: places.size]
+        return found
+
+
+DAMPING = {
+    "strips": (beam.MeasuredDecay, {"decay_rate": "damping.decay_rate_per_s"}),
+    "constant_ratio": (beam.ConstantRatio, {"ratio": "damping.ratio"}),
+    "constant_loss_factor": (beam.ConstantLossFactor, {"loss_factor": "damping.loss_factor"}),
+    "rayleigh": (
+        beam.Rayleigh,
+        {
+            "mass_coefficient": "damping.rayleigh_alpha_per_s",
+            "stiffness_coefficient": "damping.rayleigh_beta_s",
+        },
+    ),
+    "measured": (MeasuredRates, {"rates": "damping.measured_rates_per_s"}),
+}
+"""damping.kind -> the rule, and its arguments, to which the rates are proportional, with their keys."""
+
+
+def sections_of(scene: Scene) -> tuple[StripSection, StripSection | None]:
+    """The bare sheet, and the sheet with its tape (None without tape)."""
+    sheet = scene.make(
+        beam.Material,
+        {
+            "youngs_modulus": "spring.young_modulus_pa",
+            "poissons_ratio": "spring.poisson_ratio",
+            "density": "spring.density_kg_m3",
+            "loss_factor": "spring.loss_factor",
+        },
+    )
+    size = {"width": "spring.width_m", "thickness": "spring.thickness_m"}
+    bare = scene.make(StripSection, size, material=sheet)
+    if scene.spring.tape_thickness_m == 0.0:
+        return bare, None
+    tape = scene.make(
+        beam.Material,
+        {
+            "youngs_modulus": "spring.tape_modulus_pa",
+            "poissons_ratio": "spring.tape_poisson_ratio",
+            "density": "spring.tape_density_kg_m3",
+            "loss_factor": "spring.tape_loss_factor",
+        },
+    )
+    both = scene.spring.tape_sides == 2
+    layer = scene.make(beam.Layer, {"thickness": "spring.tape_thickness_m"}, material=tape, both_sides=both)
+    return bare, dataclasses.replace(bare, layer=layer)
+
+
+def spring_of(scene: Scene) -> LeafSpring:
+    """The leaf spring with its read-out; SceneError for spring.kind modal_data, which has no shape."""
+    keys, tip = scene.spring, scene.tip
+    if keys.kind == "modal_data":
+        raise SceneError(
+            "spring.kind modal_data gives modes without their shapes: this needs a spring that is drawn"
+        )
+    bare, taped = sections_of(scene)
+    leg = keys.leg_length_m
+    ball = scene.make(beam.Tip, {"mass": "tip.mass_kg", "rotary_inertia": "tip.rotary_inertia_kg_m2"})
+    beyond = {"folded_u": leg + math.pi * keys.bend_radius_m, "flat_u": keys.bend_radius_m}
+    seen_at = scene.readout.arc_fraction * (leg + beyond.get(keys.kind, 0.0))
+    readout = scene.make(beam.Readout, {"quantity": "readout.quantity"}, at=seen_at)
+    common: dict[str, Any] = {
+        "section": bare,
+        "damped_section": taped,
+        "tip": ball,
+        "readouts": {READOUT: readout},
+        "damped_span": None if taped is None else (0.0, keys.tape_coverage * leg),
+    }
+    length = {"length": "spring.leg_length_m"}
+
+    def bent(length: float, radius: float, bend_radius: float) -> LeafSpring:
+        shape = beam.folded_u if keys.kind == "folded_u" else beam.flat_u
+        return shape(leg_length=length, bend_radius=bend_radius, **common)
+
+    if keys.kind in beyond:  # refusals name the bend's radius either way
+        return scene.make(bent, length | dict.fromkeys(("radius", "bend_radius"), "spring.bend_radius_m"))
+    if keys.kind == "cantilever":
+        return scene.make(beam.cantilever, length, **common)
+    held = {"supports": (keys.start_support, keys.end_support), "tip_at": tip.arc_fraction * leg}
+    place = {"tip_at": "tip.arc_fraction times spring.leg_length_m"}
+    return scene.make(beam.straight_strip, length | place, **common, **held)
+
+
+def elements_of(scene: Scene, spring: LeafSpring) -> tuple[int, ...]:
+    """Number of elements on each piece: those asked for, shared by length on a leg, or the default."""
+    keys, counts = scene.spring, []
+    for piece, usual in zip(spring.centreline.pieces, beam.default_elements(spring), strict=True):
+        straight = piece.curvature == 0.0
+        wanted = keys.elements_per_leg if straight else keys.elements_on_arc
+        share = piece.length / keys.leg_length_m if straight else 1.0
+        counts.append(max(1, math.ceil(wanted * share - 1e-9)) if wanted else usual)
+    return tuple(counts)
+
+
+def modes_of(scene: Scene, count: int | None = None) -> Modes:
+    """The lowest modes up to the coupled one with number `count` (modes.count by default).
+
+    Frequencies come from the strain energies of the shapes, omega^2 = 2 energy (Rayleigh's quotient): the
+    solver leaves 1e-8 of rounding on the first, and an error of the shape enters the quotient squared.
+    """
+    wanted = scene.kept_modes if count is None else count
+    spring = spring_of(scene)
+    discretization = beam.assemble(spring, elements_of(scene, spring))
+    asked = min(discretization.n_dofs, wanted if spring.centreline.is_straight else 2 * wanted + 1)
+    while True:
+        modes = beam.natural_modes(discretization, asked)
+        coupled = np.flatnonzero(modes.coupled)
+        if coupled.size >= wanted:
+            break
+        if asked == discretization.n_dofs:
+            raise SceneError(
+                f"modes.count must be at most {coupled.size}, the coupled modes of this mesh, not {wanted}: "
+                "keep fewer or give spring.elements_per_leg and spring.elements_on_arc more elements"
+            )
+        asked = min(2 * asked, discretization.n_dofs)
+    count = int(coupled[wanted - 1]) + 1
+    shapes, omega = modes.shapes[:, :count], modes.omega[:count]
+    energies = discretization.strain_energies(shapes).sum(axis=(0, 1))
+    return dataclasses.replace(
+        modes,
+        omega=np.where(omega > 0.0, np.sqrt(2.0 * energies), 0.0),
+        shapes=shapes,
+        phi=modes.phi[:count],
+        participation=modes.participation[:count],
+        coupled=modes.coupled[:count],
+        readouts={name: row[:count] for name, row in modes.readouts.items()},
+    )
+
+
+def damping_of(scene: Scene) -> beam.Damping:
+    """The rule that gives each mode its decay rate."""
+    rule, keys = DAMPING[scene.damping.kind]
+    return scene.make(rule, keys)
+
+
+def model_of(scene: Scene) -> ModalModel:
+    """The modal model: `modes.count` coupled modes, or at most as many of those that were measured."""
+    if scene.spring.kind != "modal_data":
+        model = beam.reduce(modes_of(scene), damping_of(scene), scene.kept_modes)
+        require_drive_below(scene, model)
+        return model
+    data = scene.modal_data
+    order = np.argsort(data.frequencies_hz, kind="stable")[: scene.kept_modes]
+    lists = [np.array(getattr(data, name)) for name in MODE_LISTS]
+    if len({values.size for values in lists}) > 1 or not order.size:
+        raise SceneError("spring.kind modal_data needs lists of equal length in modal_data, one entry a mode")
+    frequencies, rates, tip_values, participation = (values[order] for values in lists)
+    keys = {"omega": "modal_data.frequencies_hz", "decay_rate": "modal_data.decay_rates_per_s"}
+    return scene.make(
+        ModalModel,
+        keys,
+        omega=2.0 * np.pi * frequencies,
+        decay_rate=rates,
+        phi=tip_values,
+        participation=participation,
+        static_compliance=data.static_compliance_m_per_n or None,
+        tip_mass=data.tip_mass_kg or None,
+        readouts={READOUT: tip_values},
+    )
+
+
+def require_drive_below(scene: Scene, model: ModalModel, frequency: float | None = None) -> None:
+    """SceneError if a drive frequency, or `frequency` [Hz], lies above the highest mode of the model."""
+    fastest, highest = frequency or max(scene.drive.frequencies_hz), float(model.frequencies_hz.max())
+    if scene.drive.kind == "harmonic" and fastest > highest:
+        raise SceneError(
+            f"drive.frequencies_hz has {fastest:g} Hz, above the highest of the modes kept ({highest:.6g} "
+            "Hz): drive more slowly or raise modes.count"
+        )
+
+
+def backbone_of(scene: Scene) -> beam.Backbone:
+    """How mode 1 depends on its amplitude; measured modes bring one number, taken as elastic."""
+    data = scene.modal_data
+    if scene.spring.kind == "modal_data":
+        return beam.Backbone(elastic=data.kappa, inertial=0.0, length=data.kappa_length_m)
+    spring = spring_of(scene)
+    if spring.rigid_motions:
+        return beam.Backbone(elastic=0.0, inertial=0.0, length=spring.centreline.length)
+    return scene.make(beam.backbone_coefficient, {}, spring=spring, elements=elements_of(scene, spring))
+
+
+def shift_at_gap(scene: Scene) -> float:
+    """What the amplitude of the gap changes in the free frequency, relative to small swings [1]."""
+    backbone = backbone_of(scene)
+    return backbone.kappa * (scene.stop.gap_m / backbone.length) ** 2
+
+
+def single_mode_of(scene: Scene) -> ModalModel:
+    """Eq. (1) of the letter: one mode of unit mass with the period and the decay rate in [single_mode]."""
+    keys = {"free_period": "single_mode.free_period_s", "decay_rate": "single_mode.decay_rate_per_s"}
+    model = scene.make(beam.single_mode, keys)
+    return dataclasses.replace(model, readouts={READOUT: model.phi})
+
+
+def free_period(scene: Scene) -> float:
+    """Damped period of the first mode of the spring [s]; infinite if it does not swing."""
+    modes = modes_of(scene, 1)
+    rate, omega = float(damping_of(scene).decay_rates(modes)[-1]), float(modes.omega[-1])
+    square = omega**2 - (0.5 * rate) ** 2
+    return 2.0 * math.pi / math.sqrt(square) if square > 0.0 else math.inf

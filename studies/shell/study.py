@@ -1,0 +1,213 @@
+"""A study as a program: the decorator, its command line, exit codes and interruptions.
+
+    @study(needs={"fold": 0.05}, quick={"points": 21})
+    def ends(scene: Scene, run: Run, *, points: Annotated[int, "amplitudes"] = 61) -> Mapping[str, object]:
+        ...
+
+    if __name__ == "__main__":
+        raise SystemExit(ends.main())
+
+Keyword-only arguments are the options; `--help` prints the docstring of the module; exit codes are those of
+`studies.shell.programs`, 3 for `run.failed` or a ContactError that escapes. Interrupted by Ctrl-C or SIGTERM
+(a KeyboardInterrupt in the study) it keeps what was stored and tells the command that goes on. A second
+signal, or one that comes where nothing can be raised (in a callback of the compiler), ends it at once.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import inspect
+import os
+import shlex
+import signal
+import sys
+import threading
+import types
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TextIO, cast
+
+from beam import SuspiciousValue
+from contact import ContactError
+from studies.shell.executors import duration
+from studies.shell.files import SCHEMA
+from studies.shell.options import add_options, parser_of
+from studies.shell.programs import DONE, FAILED_CELLS, INTERRUPTED, as_program, perform, run_time_of, tell
+from studies.shell.run import Run
+from studies.shell.scene import Scene, beyond_linear, read_scene
+
+Function = Callable[..., Mapping[str, object]]
+
+
+def study(
+    *, needs: Mapping[str, float] | None = None, quick: Mapping[str, object] | None = None
+) -> Callable[[Function], Study]:
+    """Decorator of the one function of a study.
+
+    Parameters
+    ----------
+    needs : mapping of quantity to tolerance
+        What its numbers rest on: where the scene leaves modes.count open it gets the least number of modes
+        that gives these quantities (``least_model``).
+    quick : mapping of option to value
+        Defaults of the small form, --quick.
+    """
+    return lambda function: Study(function=function, needs=dict(needs or {}), quick=dict(quick or {}))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Study:
+    """A study; `main` is its command line, calling it runs its function."""
+
+    function: Function
+    needs: Mapping[str, float]
+    quick: Mapping[str, object]
+
+    def __call__(self, scene: Scene, run: Run, **options: object) -> Mapping[str, object]:
+        """Run the function."""
+        return self.function(scene, run, **options)
+
+    @property
+    def name(self) -> str:
+        """The name of the study, of its file and of its folder of results."""
+        return self.function.__name__
+
+    def defaults(self, quick: bool) -> dict[str, object]:
+        """Its options, where the command line gives none, in the small or the full form."""
+        parameters = inspect.signature(self.function).parameters.values()
+        own = {one.name: one.default for one in parameters if one.kind is one.KEYWORD_ONLY}
+        return {**own, **(self.quick if quick else {})}
+
+    def main(self, argv: Sequence[str] | None = None, *, command: str | None = None) -> int:
+        """Read the arguments, run the study, store and report; returns the exit code."""
+        arguments = list(sys.argv[1:] if argv is None else argv)
+        words = command or f"python -m studies {self.name}"
+        return perform(self.name, words, arguments, lambda output: self._perform(words, arguments, output))
+
+    def _perform(self, command: str, argv: list[str], output: TextIO) -> int:
+        account = sys.modules[self.function.__module__].__doc__ or ""
+        parser = parser_of(command, f"{account}\n{run_time_of([self.name])}")
+        options = add_options(parser, self.function)
+        given = vars(parser.read(argv, output))
+        scene, doubtful = read_told(given["scene"], given["overrides"])
+        if given["dump_scene"]:
+            values = {"scene": scene.values(), "provenance": scene.provenance()}
+            whole = {"schema": SCHEMA, "study": self.name, **values}
+            tell(whole if given["json"] else scene.dump().rstrip(), output)
+            return DONE
+        with warnings.catch_warnings():  # told already
+            warnings.simplefilter("ignore", SuspiciousValue)
+            doubtful += [beyond] if (beyond := beyond_linear(scene)) else []
+        chosen = {**self.defaults(given["quick"]), **{name: given[name] for name in options if name in given}}
+        chosen = {name: tuple(v) if isinstance(v, list) else v for name, v in chosen.items()}
+        for sentence in doubtful:
+            print(f"warning: {sentence}", file=sys.stderr)
+        run = Run(
+            study=self.name,
+            folder=Path(given["out"]) / self.name,
+            scene=scene,
+            quick=given["quick"],
+            workers=given["workers"],
+            executor=given["executor"],
+            options=chosen,
+            warnings=doubtful,
+            command=shlex.join([*command.split(), *argv]),
+        )
+
+        def close(code: int, status: str, results: Mapping[str, object]) -> None:
+            summary = run.close(status, results)
+            took = f"{command}: {status} after {duration(run.wall_time)}"
+            if code == INTERRUPTED:
+                run.say(f"{took}; what was stored is in {run.folder}; go on with: {run.command}")
+            else:
+                failed = f"; {len(run.failures)} failed: {run.failures[0]}" if run.failures else ""
+                run.say(f"{took}; {len(run.files)} files in {run.folder}{failed}")
+            if given["json"]:
+                tell({**summary, "exit_code": code}, output)
+
+        with _signals(run, lambda: close(INTERRUPTED, "interrupted", {})):
+            code, status, results = self._compute(run, chosen)
+            close(code, status, results)
+        if code == INTERRUPTED and as_program():
+            _end(code)
+        return code
+
+    def _compute(self, run: Run, options: Mapping[str, object]) -> tuple[int, str, Mapping[str, object]]:
+        """Exit code, status and results of the run."""
+        try:
+            with warnings.catch_warnings():  # a study varies the scene on purpose; what the user gave is told
+                warnings.simplefilter("ignore", SuspiciousValue)
+                scene = run.choose_modes(run.scene, self.needs) if self.needs else run.scene
+                results = self.function(scene, run, **options)
+        except (KeyboardInterrupt, Exception) as error:
+            if _interrupted(error):
+                return INTERRUPTED, "interrupted", {}
+            if not isinstance(error, ContactError):
+                raise
+            run.failed(type(error).__name__, error)
+            return FAILED_CELLS, "failed", {}
+        if run.failures:
+            return FAILED_CELLS, "finished with failed cells", results
+        return DONE, "done", results
+
+
+def read_told(name: str, overrides: Sequence[str]) -> tuple[Scene, list[str]]:
+    """The scene of a command line, and sentences on what is suspicious in it."""
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always", SuspiciousValue)
+        scene = read_scene(name, overrides)
+    return scene, list(dict.fromkeys(str(w.message) for w in found if w.category is SuspiciousValue))
+
+
+def _interrupted(error: BaseException | None) -> bool:
+    """Whether this is an interrupt, or what a file said that was being written when one came."""
+    return error is not None and (isinstance(error, KeyboardInterrupt) or _interrupted(error.__context__))
+
+
+@contextlib.contextmanager
+def _signals(run: Run, leave: Callable[[], None]) -> Iterator[None]:
+    """Ctrl-C and SIGTERM as KeyboardInterrupt, until the run is closed; `leave` stores what there is where a
+    program ends at once."""
+    signals = dict[int, object]()
+    lost = sys.unraisablehook
+
+    def stop() -> None:
+        if as_program() and not run.closed:
+            with contextlib.suppress(Exception):
+                leave()
+            _end(INTERRUPTED)
+
+    def signalled(number: int, frame: types.FrameType | None) -> None:
+        if run.interrupted:
+            stop()
+        if not run.closed:
+            run.interrupted = True
+            raise KeyboardInterrupt
+
+    if threading.current_thread() is threading.main_thread():
+        for number in (signal.SIGINT, signal.SIGTERM):
+            if signal.getsignal(number) is not signal.SIG_IGN:  # nohup and background jobs of a shell
+                signals[number] = signal.signal(number, signalled)
+    sys.unraisablehook = lambda told: stop() if issubclass(told.exc_type, KeyboardInterrupt) else lost(told)
+    try:
+        yield
+    finally:
+        sys.unraisablehook = lost
+        for kept, handler in signals.items():
+            signal.signal(kept, cast("signal.Handlers", handler))
+
+
+def _end(code: int) -> None:
+    """End at once, without waiting for threads and processes that still compute."""
+    import multiprocessing
+
+    for process in multiprocessing.active_children():
+        process.terminate()
+    for stream in (sys.stdout, sys.stderr):
+        with contextlib.suppress(AttributeError, OSError, ValueError):
+            # a progress bar that is cut off has hidden the cursor
+            stream.write("\x1b[?25h" if stream.isatty() else "")
+            stream.flush()
+    os._exit(code)

@@ -1,0 +1,1 @@
+"""The spring: its modes, its calibration, its shape."""

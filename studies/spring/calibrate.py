@@ -1,0 +1,50 @@
+"""Calibration: four keys of the scene fitted to the four numbers that the letter prints about its spring.
+
+Thickness from the free period (40.80 ms), tape from the decay rate of mode 1 (3.56 1/s), gap from the base
+amplitude at grazing (2 mm at 22.2 Hz), and the mass of ball and mount from a collision that stops mode 1
+(kick 1 at excess 0.013), where the restitution is smallest (``studies.physics.calibration`` has the
+equations).
+
+Run:     python -m studies calibrate
+Writes:  keys.csv (before and after), calibrated.toml, a scene that every study takes with --scene
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from studies.physics.calibration import Targets, calibrate_all, collision_at
+from studies.shell.scene import Scene, beam_at, harmonic
+from studies.shell.study import Run, study
+
+KEYS = ("spring.thickness_m", "spring.tape_loss_factor", "stop.gap_m", "tip.mass_kg")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fitted:
+    """One key of the scene, in its unit."""
+
+    key: str
+    before: float
+    after: float
+
+
+@study(needs={"frequency 1": 1e-5, "kick": 0.002})
+def calibrate(scene: Scene, run: Run) -> Mapping[str, object]:
+    """Fit, report and write the scene."""
+    targets = Targets.of(harmonic(scene))
+    fitted = calibrate_all(scene, targets)
+    rows = [Fitted(key=key, before=scene.number(key), after=fitted.number(key)) for key in KEYS]
+    run.table("keys", rows, "Keys before and after the fit.")
+    run.text("calibrated.toml", fitted.dump())
+    collision = collision_at(fitted, targets.frequency_hz, targets.excess)
+    amplitude = beam_at(fitted, targets.frequency_hz).grazing_amplitude()
+    run.verdict("drive_amplitude", "fitted", found=f"{1e3 * amplitude:.3f} mm at grazing, 22.2 Hz")
+    return {
+        "keys": {row.key: row.after for row in rows},
+        "kick": collision.kick,
+        "restitution": collision.restitution,
+        "delay_s": collision.delay,
+        "contact_s": collision.contact_time,
+    }
