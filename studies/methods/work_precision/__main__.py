@@ -15,10 +15,10 @@ and outside solvers, and every setting:
     cost      time per drive period along the settled orbit
     against   a Taylor series in extended precision, whose own error is stated
 
-Then the cheapest setting of each method for two errors, and the errors of gradients through impacts. A method that fails at a setting is a row that says
-why; a setting at which a drive period would take longer than half a second is a row that says so. Timings are
-taken one at a time, so that --workers makes no difference. What the modes left out of the beam weigh beside
-all this is told by `studies.methods.adequacy`.
+Then the cheapest setting of each method for two errors, and the errors of gradients through impacts. A method
+that fails at a setting is a row that says why; a setting at which a drive period would take longer than half
+a second is a row that says so. Timings are taken one at a time, so that --workers makes no difference. What
+the modes left out of the beam weigh beside all this is told by `studies.methods.adequacy`.
 
 Run:     python -m studies work_precision
 Writes:  rows.csv, cheapest.csv, gradients.csv; work_precision, gradients (png, pdf)
