@@ -36,7 +36,7 @@ import numpy as np
 
 from beam.parameters import InvalidValue, require, require_kind, require_whole
 from contact.flight.modal_flow import flow_over, propagate, steady_motion, tip_rounding
-from contact.flight.motion import SLOWNESS, Motion, single_mode
+from contact.flight.motion import INVERSE_OMEGA, Motion, with_only_mode
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.trajectory import ImpactKind, Impacts, State, Trajectory
@@ -112,7 +112,7 @@ def _higher_energy(motion: Motion, k: int, u: np.ndarray, v: np.ndarray) -> floa
 
 def _ringing(motion: Motion, k: int, u: np.ndarray, v: np.ndarray) -> float:
     """Amplitude at the tip of the same motion [m]."""
-    sizes = np.hypot(u, v * motion.row(SLOWNESS))  # of zero frequency, the displacement alone
+    sizes = np.hypot(u, v * motion.row(INVERSE_OMEGA))  # of zero frequency, the displacement alone
     sizes[k] = 0.0
     return motion.most_at_tip(sizes)
 
@@ -186,7 +186,7 @@ def _outgoing(motion: Motion, k: int, impacts: Impacts, last: int) -> tuple[Virt
     that is not known."""
     end = impacts.end_clock[last]
     after = deviations(motion, end, impacts.displacement_end[last], impacts.velocity_end[last])
-    virtual = VirtualMotion(single_mode(motion, k), math.fmod(end, motion.period), *after[:, k])
+    virtual = VirtualMotion(with_only_mode(motion, k), math.fmod(end, motion.period), *after[:, k])
     minima = virtual.extrema(0.0, 2.0 * motion.period, -1.0) if math.isfinite(end) else []
     return virtual, minima[0] if minima else math.inf
 

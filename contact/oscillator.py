@@ -32,7 +32,6 @@ from beam.parameters import (
 )
 from contact.drive import HarmonicDrive
 from contact.flight.motion import Motion, motion_of, with_drive
-from contact.laws import DELAYED
 from contact.stop import Stop
 
 GREATEST_AMPLITUDE = 0.1
@@ -76,9 +75,10 @@ class ImpactOscillator:
         require_kind("stop", self.stop, Stop, "a Stop")
         require_kind("drive", self.drive, (HarmonicDrive, type(None)), "a HarmonicDrive or None")
         omega, decay = self.model.omega, self.model.decay_rate
-        if self.stop.law.code == DELAYED and omega.size > 1:
+        law = self.stop.law
+        if law.one_mode_only and omega.size > 1:
             raise InvalidType(
-                "law of the stop is DelayedRestitution, which holds for one mode; "
+                f"law of the stop is {type(law).__name__}, which holds for one mode; "
                 f"the model has {omega.size}, so give a force law or NewtonRestitution, or truncate the model"
             )
         if self.load is not None:

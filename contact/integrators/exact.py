@@ -17,17 +17,11 @@ from typing import ClassVar
 
 from contact.engine.start import exact_trajectory
 from contact.integrators.method import Integrator
-from contact.laws import DELAYED, HERTZ, LINEAR, NEWTON
 from contact.oscillator import ImpactOscillator
 from contact.touch import TOUCHES
 from contact.trajectory import Run, Trajectory
 
-EXACT_NAMES = {
-    NEWTON: "event-driven",
-    DELAYED: "event-driven",
-    LINEAR: "piecewise-linear",
-    HERTZ: "contact-series",
-}
+EXACT_NAMES = {code: file.METHOD for code, file in TOUCHES.items()}
 """What the method is called with each law."""
 
 

@@ -97,7 +97,7 @@ def write_percussion(grid, corner, span, _depth, push):
         _d, after = tip_of(grid.motion, grid.q_at, grid.v)
         if opens:
             open_touch(recorder, grid.first, start + corner * h, before, IMPACT, grid.q_at, grid.v_at)
-        add_loss(recorder, 0.5 * (before - after) * (before + after) / grid.motion.compliance)
+        add_loss(recorder, 0.5 * (before - after) * (before + after) / grid.motion.inverse_mass)
         close_touch(recorder, grid.first, start + corner * h, after, grid.q_at, grid.v)
         marks.touching = 1
 

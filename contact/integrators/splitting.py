@@ -96,7 +96,7 @@ def step_matrix(
 
     `stiffness` may be an array, of the shape (...) [N/m].
     """
-    n, phi, rate = motion.size, motion.phi, damping * motion.compliance
+    n, phi, rate = motion.size, motion.phi, damping * motion.inverse_mass
     stiff = np.asarray(stiffness, dtype=float)[..., None]
     upper = np.broadcast_to(np.eye(n, 2 * n), (*stiff.shape[:-1], n, 2 * n))
     lower = np.broadcast_to(np.eye(n, 2 * n, n), upper.shape)
@@ -138,7 +138,7 @@ def _passage(motion: Motion, composition: Composition, step: float, damping: flo
 
     lowest = math.inf
     for sign in (1.0, -1.0):
-        for coarse in roots(sign, 4.0 * degree**2 / (step**2 * motion.compliance)):
+        for coarse in roots(sign, 4.0 * degree**2 / (step**2 * motion.inverse_mass)):
             near = roots(sign, 2.0 * coarse)
             root = float(near[np.argmin(np.abs(near - coarse))]) if near.size else float(coarse)
             beyond = spectral_radius(motion, composition, step, (1.0 + JUST_BEYOND) * root, damping)
@@ -160,7 +160,7 @@ def first_instability(motion: Motion, composition: Composition, step: float, dam
     if not (beyond_pi or damping > 0.0 or np.any(motion.decay > 0.0)):
         return high
     if not math.isfinite(high):
-        high = 40.0 * composition.flows.size**2 / (step**2 * motion.compliance)
+        high = 40.0 * composition.flows.size**2 / (step**2 * motion.inverse_mass)
     decades = SEARCH_BEYOND_PI if beyond_pi else SEARCH
     values = high * 10.0 ** np.linspace(-decades, 0.0, decades * EACH + 1)
     for chunk in np.split(np.arange(decades * EACH), decades):

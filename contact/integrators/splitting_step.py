@@ -100,11 +100,11 @@ def kick(motion, tip, v, length):
     if force == 0.0:
         return 0.0
     _stiffness, damping = contact_tangent(motion, depth, rate)
-    x = damping * motion.compliance * length
+    x = damping * motion.inverse_mass * length
     impulse = force * length * (-math.expm1(-x) / x if x != 0.0 else 1.0)
     for k in range(v.size):
         v[k] += push_on(motion, k, impulse)
-    return impulse * (rate - 0.5 * motion.compliance * impulse)
+    return impulse * (rate - 0.5 * motion.inverse_mass * impulse)
 
 
 @kernel

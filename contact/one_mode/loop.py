@@ -111,7 +111,7 @@ def one_mode_periods(table, system, factors, u, v, runs, points, counts):
     left, run, factor = 0, runs[0], 1.0
     first = run.period
     un, vn = weight * u[0], weight * v[0]
-    outside = run.regime == OUTSIDE and run.order == 0
+    outside = run.regime == OUTSIDE and run.contact_order == 0
     for i in range(counts.size):
         if factors.size > 0 and factors[i] != factor:
             change, factor = factors[i] - factor, factors[i]
@@ -141,7 +141,7 @@ def one_mode_periods(table, system, factors, u, v, runs, points, counts):
                 if status != DONE:
                     return status, left
                 impacts, ui, vi = counts[i], weight * u[0], weight * v[0]
-                outside = run.regime == OUTSIDE and run.order == 0
+                outside = run.regime == OUTSIDE and run.contact_order == 0
             un, vn = ui, vi
         points[i, 0] = un + mean_u
         points[i, 1] = (vn + mean_v) * slowness

@@ -27,7 +27,7 @@ import numpy as np
 from contact.flight.bounds import HIGHEST, LEAST_SLACK
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import flow_matrix
-from contact.flight.motion import DAMPED, DECAY, LOW, OMEGA, Motion
+from contact.flight.motion import DAMPED, DAMPED_LOW, DECAY, OMEGA, Motion
 from contact.laws import NEWTON
 from contact.machine.compiled import inlined, kernel
 
@@ -94,7 +94,7 @@ class PeriodTable(NamedTuple):
 def mode_flow(motion, t):
     """The flow of the deviation over a time `t` [s]."""
     modes = motion.modes
-    return flow_matrix(modes[OMEGA, 0], modes[DECAY, 0], modes[DAMPED, 0], modes[LOW, 0], t)
+    return flow_matrix(modes[OMEGA, 0], modes[DECAY, 0], modes[DAMPED, 0], modes[DAMPED_LOW, 0], t)
 
 
 @kernel
@@ -107,7 +107,7 @@ def constants_of(motion, stretches):
         drive=w,
         decay=decay,
         stiffness=omega * omega,
-        determinant=math.copysign(high * (high + 2.0 * modes[LOW, 0]), omega - 0.5 * decay),
+        determinant=math.copysign(high * (high + 2.0 * modes[DAMPED_LOW, 0]), omega - 0.5 * decay),
         gap=-motion.level,
         above=0.0,
         crest=0.0,
@@ -190,7 +190,7 @@ def period_table(motion: Motion) -> PeriodTable | None:
     None for any other: one with another law or several modes, no stiffness or no drive, its node at the tip,
     or so fast that too many nodes would be needed.
     """
-    if motion.law != NEWTON or motion.size != 1 or motion.compliance == 0.0:
+    if motion.law != NEWTON or motion.size != 1 or motion.inverse_mass == 0.0:
         return None
     if not (motion.omega[0] > 0 and motion.drive > 0):
         return None

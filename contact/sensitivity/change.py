@@ -22,7 +22,6 @@ from numpy.typing import NDArray
 from beam import ModalChange
 from beam.parameters import final, require, require_array, require_each, require_kind, require_within, shown
 from contact.flight.variation import Variation, variation
-from contact.laws import DELAYED
 from contact.oscillator import ImpactOscillator
 
 Array = NDArray[np.float64]
@@ -88,7 +87,7 @@ class Changes:
         changes = require_each("changes", self.changes, Change, "Change objects")
         object.__setattr__(self, "changes", changes)
         law, n = self.oscillator.stop.law, self.oscillator.n_modes
-        known = 2 if law.code == DELAYED else len(law.units)
+        known = len(law.adjustable)
         require(
             self.oscillator.load is None or not self.changes,
             "load is given; it must be None for derivatives with respect to numbers of the oscillator",
@@ -203,6 +202,6 @@ def change_along(path: Path, p: float, low: float, high: float) -> Change:
 def _numbers(oscillator: ImpactOscillator) -> Array:
     """The four rows of its model, gap, numbers of the law, drive frequency and amplitude."""
     law, drive = oscillator.stop.law, oscillator.driven
-    numbers = law.table[[1, 3], 0] if law.code == DELAYED else law.numbers
+    numbers = (*law.adjustable, 0.0, 0.0)[:2]
     rows = [getattr(oscillator.model, name) for name in ARRAYS]
     return np.concatenate([*rows, [oscillator.stop.gap, *numbers, drive.frequency, drive.amplitude]])

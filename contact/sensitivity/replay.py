@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 from contact.errors import NoDerivative
 from contact.flight.modal_flow import propagate, steady_motion
 from contact.flight.variation import all_tip_changes, tangent_flight
-from contact.laws import DELAYED
 from contact.machine.compiled import kernel
 from contact.oscillator import ImpactOscillator
 from contact.sensitivity.change import Changes
 from contact.sensitivity.touch_flow import FLOWN, TOUCHING, flow_from_touch, lost
-from contact.touch import force
+from contact.touch import force, waits
+from contact.touch.delayed import waiting_acceleration, waiting_tangents
 from contact.trajectory import ImpactKind, State, Trajectory
 
 Array = NDArray[np.float64]
@@ -73,7 +73,7 @@ class Retraced:
         self.approach = met.approach
         q, q_rate = steady_motion(motion, self.start % motion.period)
         self._touch = met.displacement_start - q, met.velocity_start - q_rate
-        self.tangent = np.zeros((2 * n + 2, len(self.vary.rest)))
+        self.tangent = np.zeros((2 * n + 2, len(self.vary.scalars)))
         self.late = dict[int, Array]()
         self._i, self.clock, self.u, self.v = 0, 0.0, np.zeros(n), np.zeros(n)
         if start is not None:
@@ -102,7 +102,9 @@ class Retraced:
             tangent, record = self.tangent.copy(), np.empty((1, 4 + 2 * n))
             outcome = flow_from_touch(self.vary, phase, u, v, until - at, tangent, record)
             if outcome == TOUCHING and self.end[i] > time:
-                return self._waiting(tangent, u, v, at, time) if self.vary.motion.law == DELAYED else tangent
+                if waits(self.vary.motion):
+                    waiting_tangents(self.vary, tangent, (phase, u, v), time - at)
+                return tangent
             if outcome != FLOWN:
                 words = "a touch of the motion was lost on its way with derivatives"
                 raise lost(outcome, at, float(self.approach[i]), words)
@@ -125,17 +127,6 @@ class Retraced:
             i = last
         return found
 
-    def _waiting(self, tangent: Array, u: Array, v: Array, at: float, time: float) -> Array:
-        """The tangents at `time` [s], when the tip waits on the stop since `at`, as the drive leaves them to
-        the one mode."""
-        motion = self.vary.motion
-        phase = at % motion.period
-        tangent_flight(self.vary, tangent, u, v, phase, time - at)
-        tangent[:2] = 0.0
-        reach, rate = all_tip_changes(self.vary, tangent, u, v, phase + time - at)
-        tangent[:2] = -np.array([reach, rate]) / motion.phi[0]
-        return tangent
-
     def _fly(self, time: float) -> None:
         """On to a time before the next touch."""
         length = time - self.clock
@@ -153,8 +144,8 @@ def pace_of_deviations(oscillator: ImpactOscillator, q: Array, touching: bool, c
     steady, steady_rate = steady_motion(motion, clock)
     u, v = q[..., :n] - steady, q[..., n:] - steady_rate
     slowing = -motion.decay * v - motion.omega**2 * u
-    if touching and motion.law == DELAYED:  # the tip rests, and the mode follows the drive
-        slowing = motion.drive**2 * steady
+    if touching and waits(motion):
+        slowing = waiting_acceleration(motion, steady)
     elif touching and (reach := oscillator.tip(q[:n]) - motion.gap) > 0.0:
         slowing = slowing - motion.phi * force(motion, reach, oscillator.tip(q[n:]))
     return np.concatenate([v, slowing], axis=-1)

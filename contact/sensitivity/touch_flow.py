@@ -20,11 +20,11 @@ from contact.engine.event_loop import STATE
 from contact.errors import ContactError, ContactTooStiff, NotPeriodic
 from contact.flight.crossing import CROSSES, first_crossing
 from contact.flight.modal_flow import propagate, tip_state
-from contact.flight.variation import Variation, onset, tangent_flight, variation
+from contact.flight.variation import Variation, force_jump, tangent_flight, variation
 from contact.machine.compiled import borrowed, held, kernel, part
 from contact.oscillator import ImpactOscillator
 from contact.touch.series import new_series
-from contact.touch.tangent_series import new_room, tangent_step
+from contact.touch.tangent_series import new_tangent_workspace, tangent_step
 from contact.trajectory import CONTACT, OUTSIDE, SUSTAINED
 
 Array = NDArray[np.float64]
@@ -44,9 +44,9 @@ def through_touch(vary, run, u, v, end, tangent, record):
     `record` gets approach and rebound velocity.
     """
     motion, with_tangent = vary.motion, tangent.shape[1] > 0
-    order, columns = touch.room(motion)
+    order, columns = touch.series_size(motion)
     series = new_series(order, columns)
-    room = new_room(order if with_tangent else 0, tangent.shape[0], tangent.shape[1])
+    space = new_tangent_workspace(order if with_tangent else 0, tangent.shape[0], tangent.shape[1])
     approach = tip_state(motion, run.clock, u, v)[1]
     record[2] = approach
     if not approach > 0.0:
@@ -54,9 +54,9 @@ def through_touch(vary, run, u, v, end, tangent, record):
     before = (run.clock, u.copy(), v.copy())
     run.regime, rebound, _loss = touch.strike(motion, run, u, v, approach)
     if run.regime == SUSTAINED:  # accumulating impacts are followed one by one
-        run.regime, run.order = OUTSIDE, 1 if rebound < 0.0 else 2
+        run.regime, run.contact_order = OUTSIDE, 1 if rebound < 0.0 else 2
     if with_tangent and run.regime == CONTACT:
-        onset(vary, touch.force(motion, 0.0, approach), approach, tangent, before)
+        force_jump(vary, touch.force(motion, 0.0, approach), approach, tangent, before)
     steps = 0
     while run.regime != OUTSIDE:
         if not run.clock < end:
@@ -66,9 +66,9 @@ def through_touch(vary, run, u, v, end, tangent, record):
         if steps > MOST_STEPS or not (0.0 <= h < math.inf):
             return TOO_STIFF
         if with_tangent:
-            terms = touch.slopes(motion, run, series, room.weights)
+            terms = touch.slopes(motion, run, series, space.weights)
             if terms > 0:
-                tangent_step(vary, room, terms, s, tangent, (run.clock, u, v))
+                tangent_step(vary, space, terms, s, tangent, (run.clock, u, v))
         touch.state(motion, run, s, series, u, v)
         run.regime, run.clock = following, run.clock + h
         if following == OUTSIDE:
@@ -122,7 +122,7 @@ def flow_from_touch(vary, base, u, v, duration, tangent, record):
     run.clock = base
     for i in range(record.shape[0]):
         if i > 0:
-            crossing, s = first_crossing(vary.motion, run.clock, u, v, end - run.clock, run.order)
+            crossing, s = first_crossing(vary.motion, run.clock, u, v, end - run.clock, run.contact_order)
             if crossing != CROSSES:
                 outcome = FEWER_TOUCHES
                 break
@@ -175,7 +175,7 @@ def flown(
     """
     (u, v), size, duration = deviations.reshape(2, -1).copy(), deviations.size, period * oscillator.period
     vary = variation(oscillator.motion(), oscillator.tip_response()) if vary is None else vary
-    tangent, record = np.eye(size + 2, size + 2 + len(vary.rest)), np.empty((touches, 4 + size))
+    tangent, record = np.eye(size + 2, size + 2 + len(vary.scalars)), np.empty((touches, 4 + size))
     outcome = flow_from_touch(vary, phase, u, v, duration, tangent, record)
     if outcome != FLOWN:
         words = f"an orbit of period {period} with {touches} touches was lost"

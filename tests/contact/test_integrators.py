@@ -30,6 +30,7 @@ from contact.laws import (
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
+from contact.touch import TOUCHES
 from contact.trajectory import State, Trajectory
 
 LAWS: dict[int, tuple[ContactLaw, ...]] = {
@@ -85,7 +86,7 @@ CASES = [
     pytest.param(name, law, id=f"{name}-{type(law).__name__}-{getattr(law, 'damping', 0):g}")
     for name, method in ALL.items()
     for code in method.laws
-    for law in LAWS[code]
+    for law in LAWS.get(code, ())
 ]
 """Each method with each law that it accepts."""
 
@@ -110,7 +111,7 @@ def test_a_method_says_what_it_is(name: str) -> None:
     method = ALL[name]
     assert method.name == name or (method is Exact and name in EXACT_NAMES.values())
     assert issubclass(method, Integrator)
-    assert set(method.laws) <= set(LAWS) and len(set(method.laws)) == len(method.laws) > 0
+    assert set(method.laws) <= set(TOUCHES) and len(set(method.laws)) == len(method.laws) > 0
     assert made(name).order > 0 or math.isnan(made(name).order)
     assert method.__doc__
     assert made(name).critical_stiffness(oscillator_with(LAWS[LINEAR][0]).motion()) > 0

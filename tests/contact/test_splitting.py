@@ -149,7 +149,7 @@ def closed_form_limit(motion: Motion, step: float, damping: float = 0.0) -> floa
     weight = motion.phi**2 / np.array([1 + np.trace(flow) + np.linalg.det(flow) for flow in flows])
     x = sum(w * flow[0, 1] for w, flow in zip(weight, flows, strict=True))
     y = sum(w * (flow[1, 1] + np.linalg.det(flow)) for w, flow in zip(weight, flows, strict=True))
-    rate = damping * motion.compliance
+    rate = damping * motion.inverse_mass
     acts = -math.expm1(-rate * step) / rate if rate > 0 else step
     return float((1 / acts - damping * y) / x)
 

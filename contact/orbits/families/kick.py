@@ -27,13 +27,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam.parameters import require, require_array, require_within, shown
-from contact.errors import NotPeriodic
 from contact.flight.modal_flow import free_flow
 from contact.flight.variation import variation
-from contact.laws import DELAYED
-from contact.orbits.families.single_impact import SINGULAR, Kick, SingleImpactFamily, SingleImpactOrbit
+from contact.orbits.families.single_impact import Kick, SingleImpactFamily, SingleImpactOrbit
 from contact.sensitivity.touch_flow import FEWER_TOUCHES, flow_from_touch, lost
-from contact.touch.delayed import numbers_at
+from contact.touch import waits
+from contact.touch.delayed import repeated_touch
 
 Array = NDArray[np.float64]
 
@@ -84,8 +83,9 @@ class KickFamily(SingleImpactFamily):
             return self._simulated(speed, deviations)
         if self.collision is not None:
             return self.collision(speed)
-        if self.oscillator.motion().law == DELAYED:
-            return self._waiting(speed)
+        if waits(motion := self.oscillator.motion()):
+            jump, delay, leaves = repeated_touch(motion, speed, self.period)
+            return Kick(speed=speed, jump=jump, duration=delay, leaves=leaves)
         return self._simulated(speed, np.zeros((self.oscillator.n_modes, 2)))
 
     def _simulated(self, speed: float, w: Array) -> Kick:
@@ -105,30 +105,6 @@ class KickFamily(SingleImpactFamily):
         # the flow turned back to the touch, less what was there
         jump = np.einsum("kij,kj->ki", free_flow(motion, -end), left) - w
         return Kick(speed=speed, jump=jump, touches=touches, duration=end, leaves=rebound < 0.0)
-
-    def _waiting(self, speed: float) -> Kick:
-        """The touch of `DelayedRestitution` that repeats once in m drive periods."""
-        motion, gap = self.oscillator.motion(), self.oscillator.stop.gap
-        restitution, _slope, delay, _slope = numbers_at(motion.table, speed)
-        left = self.period * self.oscillator.period - delay
-        w, angle = motion.drive, motion.drive * delay
-        turn = np.array([[np.cos(angle), np.sin(angle) / w], [-w * np.sin(angle), np.cos(angle)]])
-        before, after = np.array([gap, speed]), np.array([gap, -restitution * speed])
-        flow = free_flow(motion, max(left, 0.0))[0]
-        back = np.eye(2) - flow @ turn
-        if left <= 0.0 or abs(np.linalg.det(back)) <= SINGULAR:
-            raise NotPeriodic(
-                time=delay,
-                gap=0.0,
-                velocity=speed,
-                detail=f"no orbit of period {self.period} has a touch that waits for {delay:g} s",
-            )
-        steady = np.linalg.solve(back, before - flow @ after)
-        met, left_with = before - steady, after - turn @ steady
-        jump = free_flow(motion, -delay)[0] @ left_with - met
-        return Kick(
-            speed=speed, jump=motion.least_change(jump), duration=float(delay), leaves=restitution > 0.0
-        )
 
     def error(self, orbit: SingleImpactOrbit) -> float:
         """Estimated error of the excess of an orbit: the change when its collision starts from its own

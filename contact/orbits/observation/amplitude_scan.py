@@ -96,7 +96,7 @@ def settled_column(system, amplitudes, state, most_cycles, tolerance, found, u, 
         local.mean[:] = 0.0  # the points are those of the deviations
         u[:], v[:] = state[:n] - mean[:n], state[n : 2 * n] - mean[n:]
         run.regime, run.wait, run.rebound = int(state[2 * n]), state[2 * n + 1], state[2 * n + 2]
-        run.order, run.period, run.steps, run.clock, run.root, run.speed = 0, 0, 0, 0.0, -1.0, -1.0
+        run.contact_order, run.period, run.steps, run.clock, run.root, run.speed = 0, 0, 0, 0.0, -1.0, -1.0
         rows, cycles, period, status = 0, 0, 0, DONE
         if run.regime == OUTSIDE and tip_state(here, 0.0, u, v)[0] > tip_rounding(here, u, v):
             status = BEHIND
