@@ -15,12 +15,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contact.engine.event_loop import DONE
+from contact.engine.event_loop import DONE, advance
+from contact.engine.recorder import strobes_only
 from contact.flight.modal_flow import steady_motion
 from contact.flight.motion import COSINE, OFFSET, SINE, Motion, with_drive
 from contact.machine.compiled import inlined, kernel
-from contact.one_mode.loop import any_periods, one_mode_periods
-from contact.one_mode.period_table import PeriodTable, mode_at, period_table
+from contact.one_mode.loop import one_mode_periods
+from contact.one_mode.period_table import PeriodTable, period_table, table_at
 from contact.oscillator import ImpactOscillator
 
 
@@ -61,7 +62,7 @@ def _table_at(table, motion, factor):
     if table is None:
         return table
     else:
-        return PeriodTable(mode_at(table.mode, motion, factor), table.rows)
+        return table_at(table, motion, factor)
 
 
 @kernel
@@ -118,7 +119,8 @@ def _any_periods(system, factors, u, v, runs, points, counts):
             add_steady(system.motion, factor - factors[at], u, v)
             factor, run.root, run.speed = factors[at], -1.0, -1.0
             local = at_amplitude(system, factor)
-        status = any_periods(local.motion, u, v, runs, points[at:end], counts[at:end])
+        recorder = strobes_only(points[at:end], counts[at:end])
+        status = advance(local.motion, u, v, runs, run.period + end - at, 0.0, recorder)
         for i in range(at, end):
             for k in range(points.shape[1]):
                 points[i, k] = (points[i, k] + local.mean[k]) * system.weight[k]
