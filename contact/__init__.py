@@ -33,7 +33,7 @@ From problem to answer
     `StroboscopicMap`   the same from strobe to strobe; `strobed_orbits` many of them on all cores
     `collisions`        what each collision does to mode 1; `first_collision` the first above grazing
     `NonlinearMode`     one mode at finite amplitude
-    `NordmarkMap`       the letter's map, its orbits (`maximal_orbits`), folds and bands in closed form
+    `NordmarkMap`       the letter's map; its orbits (`MapFamily`), folds and `bands` in closed form
     `MaximalFamily`     the same orbits of Eq. (1) in closed form, under Newton's law
     ``contact.orbits``  orbits of any law: `settle`, `born` and `orbit_diagram` by following the motion,
                         `Shooting` and `follow` as orbits, to folds, period doublings and grazings;

@@ -26,7 +26,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -84,6 +84,11 @@ class NordmarkMap:
     whole_turns: int = 1
     control: float = 0.0
 
+    scale: ClassVar[float] = 1e-3
+    """Size of the states of an orbit with impacts, from the slope of the root at |rho| = 1e-3 [1]."""
+    period: ClassVar[float] = 1.0
+    """The time of one step: the map has no clock."""
+
     def __post_init__(self) -> None:
         alpha, line = self.alpha, self.y_line
         require_within("gamma", self.gamma, "[1]", low=0, high=1)
@@ -112,14 +117,9 @@ class NordmarkMap:
         Raises ValueError where M12 <= 0: a kick away from the wall would then raise the next peak, and the
         square root of Eq. (3) would have the other sign.
         """
-        alpha, gamma, delay_term, turns = coefficients(omega, decay_rate, drive_frequency, restitution, delay)
+        alpha, gamma, d, turns = coefficients(omega, decay_rate, drive_frequency, restitution, delay)
         return cls(
-            alpha=alpha,
-            gamma=gamma,
-            restitution=restitution,
-            y_line=y_line,
-            delay_term=delay_term,
-            whole_turns=turns,
+            alpha=alpha, gamma=gamma, restitution=restitution, y_line=y_line, delay_term=d, whole_turns=turns
         )
 
     @classmethod
@@ -240,16 +240,6 @@ class NordmarkMap:
         if x > 0.0:
             return np.array([[-0.5 / math.sqrt(x), 1.0], [-self.gamma_impact, 0.0]])
         return np.array([[self.alpha, 1.0], [-self.gamma, 0.0]])
-
-    @property
-    def scale(self) -> float:
-        """Size of the states of an orbit with impacts, from the slope of the root at |rho| = 1e-3 [1]."""
-        return 1e-3
-
-    @property
-    def period(self) -> float:
-        """The time of one step, 1: the map has no clock."""
-        return 1.0
 
     def at(self, excess: float) -> NordmarkMap:
         """The same map at F/F_g - 1 = `excess` [1]."""

@@ -35,7 +35,7 @@ from contact.oscillator import ImpactOscillator
 def coefficients(
     omega: float, decay_rate: float, drive_frequency: float, restitution: float, delay: float
 ) -> tuple[float, float, float, int]:
-    """alpha, gamma, d and the integer part of 1/(f T); arguments and errors of `NordmarkMap.from_mode`."""
+    """alpha, gamma, d and the integer part of 1/(f T), for the arguments of ``NordmarkMap.from_mode``."""
     require_within("omega", omega, "rad/s", above=0)
     require_within("decay_rate", decay_rate, "1/s", low=0)
     require_within("drive_frequency", drive_frequency, "Hz", above=0)

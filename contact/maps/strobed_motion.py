@@ -1,12 +1,11 @@
-"""The motion from strobe to strobe as compiled code: one door for any oscillator.
+"""The motion from strobe to strobe as compiled code, for any oscillator.
 
 One mode under Newton's law has a loop of its own (``contact.one_mode.loop``), which proves most periods
 free without a sine; everything else goes through ``event_loop.advance``.  The strobes of both agree within
 rounding.
 
-What a point is: phi_k q_k and phi_k q_k'/omega_k of all modes, contributions to the tip motion of one unit
-[m].  A mode of zero frequency counts with phi_k q_k'/(2 pi f), one with its node at the tip with the largest
-phi.
+A point holds phi_k q_k and phi_k q_k'/omega_k of all modes, contributions to the tip motion [m].  A mode of
+zero frequency has phi_k q_k'/(2 pi f) instead, and a mode with its node at the tip has the largest phi.
 """
 
 from __future__ import annotations
@@ -26,15 +25,15 @@ from contact.oscillator import ImpactOscillator
 
 
 class StrobedSystem(NamedTuple):
-    """An oscillator as the loops over its drive periods take it.
+    """The numbers of an oscillator for the loops over its drive periods.
 
     motion : Motion
     table : PeriodTable or None
-        For one mode under Newton's law.
+        The table of one mode under Newton's law; None for any other oscillator.
     mean : ndarray, shape (2 n_modes,)
-        Steady displacements and velocities at a strobe, to which the deviations are added.
+        Steady displacements and velocities at a strobe.
     weight : ndarray, shape (2 n_modes,)
-        By which their sums are multiplied in the points.
+        Factors by which the points multiply displacements and velocities.
     """
 
     motion: Motion
@@ -78,37 +77,38 @@ def at_amplitude(system, factor):
 
 @kernel
 def strobed_motion(table, system, factors, u, v, runs, points, counts):
-    """Carry the deviation (u, v) from a strobe over as many drive periods as `counts` has places.
+    """Advance the deviation (u, v) from a strobe by as many drive periods as `counts` has places.
 
     Parameters
     ----------
     table : PeriodTable or None
-        That of the system: told apart by its type, the loop that does not fit is not compiled.
+        The table of the system.  Its type selects the loop; the other loop is not compiled.
     system : StrobedSystem
     factors : ndarray, shape (periods,) or (0,)
-        By which each period multiplies the amplitude of the system [1]; none leave it as it is.  The physical
-        state goes on where the amplitude changes, at the strobe: (u, v) jumps as the steady motion does.
+        The amplitude of each period over that of the system [1]; an empty array leaves it as it is.  The
+        physical state is continuous at the strobe where the amplitude changes, so that (u, v) jumps.
     u, v : ndarray, shape (n_modes,)
-        From the steady motion of the system, before and after; overwritten.
+        Deviation from the steady motion of the system, before and after; overwritten.
     runs : record array of ``contact.engine.event_loop.STATE``, shape (1,)
-        Where the run stands; overwritten.
+        State of the run; overwritten.
     points, counts : ndarray, shapes (periods, 2 n_modes) and (periods,)
-        Filled with the points of the module's docstring and the impacts since the strobe before.
+        Filled with the points and with the impacts of each period.
 
     Returns
     -------
     status : int
-        As that of ``event_loop.advance``; after a failure (u, v) is from the steady motion of that period.
+        As ``event_loop.advance`` returns it.  After a failure (u, v) counts from the steady motion of that
+        period.
     """
     if table is None:
-        return _any_periods(system, factors, u, v, runs, points, counts)
+        return any_periods(system, factors, u, v, runs, points, counts)
     else:
         return one_mode_periods(table, system, factors, u, v, runs, points, counts)[0]
 
 
 @kernel
-def _any_periods(system, factors, u, v, runs, points, counts):
-    """`strobed_motion` of any oscillator."""
+def any_periods(system, factors, u, v, runs, points, counts):
+    """`strobed_motion` of an oscillator without a table."""
     local, run, status, factor, at = system, runs[0], DONE, 1.0, 0
     while at < counts.size and status == DONE:
         end = counts.size

@@ -4,11 +4,11 @@ Eq. (1) of the letter (1996) in the notation of ``contact.flight``: relative to 
 
     y(t) = -G + A cos(w (t - t_p)) + u(t),
 
-G the distance of the stop from the tip's mean place, A and t_p height and time of the steady peak, u the
-free deviation.  From strobe to strobe (u, u') is multiplied by the constant flow of a period.  What has to be
-proved is that y stays below zero meanwhile.  That is the comparison of ``contact.flight.bounds`` without
-other modes: with rho = sqrt(u^2 + (u'/omega)^2) at the strobe, d = (|w^2 - omega^2| + c omega) rho/w^2, the
-margin m for rounding and z = y + G - d, for |t - t_1| <= pi/w
+with G the distance of the stop from the tip's mean place, A and t_p height and time of the steady peak and u
+the free deviation.  From strobe to strobe (u, u') is multiplied by the constant flow of a period, if y stays
+below zero meanwhile.  The proof is the comparison of ``contact.flight.bounds`` without other modes: with
+rho = sqrt(u^2 + (u'/omega)^2) at the strobe, d = (|w^2 - omega^2| + c omega) rho/w^2, the margin m for
+rounding and z = y + G - d, for |t - t_1| <= pi/w
 
     z(t) <= z_1 cos(w (t - t_1)) + (z_1'/w) sin(w (t - t_1)) <= sqrt(z_1^2 + (z_1'/w)^2),                (1)
 
@@ -20,17 +20,16 @@ of the period (below resonance it does, unless the mode's sign puts it at the st
       z_1^2 + (z_1'/w)^2 < (G - d - m)^2.                                                              (*)
 
   At t_1 = t_p these are z_1 = A + p - d and z_1' = q, (p, q) = (u, u') there, each two products with
-  constants: a period that is settled so needs no sine.  If that fails, t_1 near the peak may settle it.
+  constants: this proof needs no sine.  If it fails, (*) may hold for a t_1 near the peak.
 * A zero of y lies within a quarter of a period of t_p.  If y' > 0 there, (1) with t_1 at the zero shows y < 0
   all the time before it: it is the first crossing, whichever way it was found.  It is one beyond rounding if
-  the peak that its slope must reach, y'^2/(2 max|y''|), exceeds m.  ``one_impact`` finds nearly all of
-  them in one evaluation and tells whether it did; an iteration finds the others.
+  the peak that its slope must reach, y'^2/(2 max|y''|), exceeds m.  ``one_impact`` finds nearly all crossings
+  in one evaluation and checks them; an iteration finds the others.
 * After an impact (1) with z_1 = G - d > 0 and z_1' <= 0 shows y < 0 for the rest of the period, with the rho
   and d from then on; and y'' <= -w^2 z_1 < 0, so that impacts do not accumulate.
 
-A period that none of this settles beyond rounding, larger deviations (from about twice the grazing amplitude
-on), every period with a stay on the wall or with several impacts, and every graze is left as it was and given
-to ``event_loop.advance``.
+``event_loop.advance`` takes every period that remains undecided: within rounding of a graze, with a stay on
+the wall or several impacts, and with large deviations (from about twice the grazing amplitude on).
 """
 
 from __future__ import annotations

@@ -3,30 +3,29 @@
 In the notation of ``contact.one_mode.loop``, the period P starts from the deviation (u, v) at its strobe,
 and F_t is the flow of a free deviation over t.
 
-**Where the crossing is.**  At the peak of the steady motion the motion and its first four derivatives follow
-from (p, q) = F_tp (u, v).  The lower zero of the parabola of the first three, improved by one step of
-Halley's iteration on the quartic, gives a time t, usually within 1e-4/w of the crossing.
+**Guess.**  At the peak of the steady motion y and four derivatives follow from (p, q) = F_tp (u, v).  The
+lower zero of the parabola of the first three, improved by one step of Halley's iteration on the quartic,
+gives a time t, usually within 1e-4/w of the crossing.
 
-**The crossing.**  At t the motion is found anew, from the next node t_k of ``period_table``, with its
-derivatives.  With D = -y/y', B = y''/(2 y'), C = y'''/(6 y') the zero of their cubic lies at t + d,
+**Crossing.**  The motion at t, with its derivatives, follows from the next node t_k of ``period_table``.
+With D = -y/y', B = y''/(2 y'), C = y'''/(6 y') the zero of their cubic lies at t + d,
 
     d = D - B D^2 + (2 B^2 - C) D^3 + ...
 
-What remains there, of the cubic and of the order that it lacks, has to be as small as one rounding of y:
+The error of this zero, of the cubic and of the order that it lacks, must not exceed one rounding of y:
 
     |y + y' d + y'' d^2/2 + y''' d^3/6| <= m/1000   and   |d| <= (24 m/(1000 Y))^(1/4),   |y''''| <= Y,
 
 Y = A w^4 + omega (omega + c)^3 rho by repeated use of u'' = -c u' - omega^2 u.
 
-**What the impact does.**  It adds j = -(1 + e) y' to u', so that the deviation at the end is
+**Impact.**  It adds j = -(1 + e) y' to u', so that the deviation at the end is
 
     F_P (u, v) + j F_(P - t - d) (0, 1),     F_(P - t - d) = F_(P - t_k) F_(t_k - t) F_(-d).
 
-The series of F_(t - t_k) give F_(t_k - t) as well; d is bridged by the Taylor polynomial of third order, the
-rest of which is as small as that of the cubic.
+The series of F_(t - t_k) give F_(t_k - t) as well.  F_(-d) is its Taylor polynomial of third order, with an
+error as small as that of the cubic.
 
-An iteration instead (`rising_zero`) makes a period with an impact 1.3 to 1.8 times as long; it finds the
-others.
+An iteration (`rising_zero`) finds the other crossings; it makes a period 1.3 to 1.8 times as long.
 """
 
 from __future__ import annotations
@@ -45,7 +44,7 @@ from contact.one_mode.period_table import (
 )
 
 NEWTON_STEPS = 60
-"""Bound of Newton steps; next to a graze each but halves the distance to the double root, from 1 to 1e-8."""
+"""Bound of Newton steps; next to a graze each only halves the distance to the double root, from 1 to 1e-8."""
 
 
 @inlined
@@ -59,7 +58,7 @@ def peak_derivatives(n, s, p, q):
 
 @inlined
 def crossing_guess(n, s, p, q):
-    """About when the tip meets the stop, since the strobe [s]; NaN if the parabola does not.
+    """Approximate time of the crossing since the strobe [s]; NaN if the parabola has no zero.
 
     (p, q): the deviation at the steady peak.
     """
@@ -137,8 +136,7 @@ def rising_zero(table, u, v, t):
 
     Returns
     -------
-    time [s], deviation and its rate there, approach velocity [m/s]: NaN if the slope is not positive on the
-    way.
+    time [s], deviation and its rate there, approach velocity [m/s], which is NaN without a positive slope.
     """
     low, high = 0.0, table.mode.period
     for _ in range(NEWTON_STEPS):

@@ -92,39 +92,26 @@ class Steady(NamedTuple):
 
 
 class PeriodTable(NamedTuple):
-    """A drive period of one mode: its constants, and X_k, R_k [m] and the four numbers of F_k of all nodes,
-    shape (K + 1, 6)."""
+    """A drive period of one mode: its constants, and X_k, R_k [m], F_k at each node, shape (K + 1, 6)."""
 
     mode: OneMode
     steady: Steady
     rows: np.ndarray
 
 
-@kernel
-def mode_flow(motion, t):
-    """The flow of the deviation over a time `t` [s]."""
-    modes = motion.modes
-    return flow_matrix(modes[OMEGA, 0], modes[DECAY, 0], modes[DAMPED, 0], modes[LOW, 0], t)
-
-
 @inlined
 def table_at(table, motion, factor):
     """The `table` of `motion` at `factor` times its amplitude; X_k and R_k are in proportion to it."""
-    mode, w, amplitude, omega = (
-        table.mode,
-        table.mode.drive,
-        factor * motion.amplitude,
-        motion.modes[OMEGA, 0],
-    )
+    mode, amplitude, omega = table.mode, factor * motion.amplitude, motion.modes[OMEGA, 0]
     steady = abs(motion.level) + factor * (abs(motion.tip_sine) + abs(motion.tip_cosine)) + motion.gap
     margin = SAFETY * 4.0 * EPS * (steady + 2.0 * max(1.0, 0.5 * mode.decay / omega) * abs(mode.gap))
     rho = (1.0 - LEAST_SLACK) * mode.gap / max(1.0, mode.detuning)
     # (*) needs the peak in the middle half of the period
     inner = abs(mode.peak / mode.period - 0.5) <= 0.25 + 1e-12 and amplitude <= HIGHEST * abs(mode.gap)
-    fourth = amplitude * w**4 + omega * (omega + mode.decay) ** 3 * abs(rho)
+    fourth = amplitude * mode.drive**4 + omega * (omega + mode.decay) ** 3 * abs(rho)
     here = Steady(
         overshoot=amplitude + motion.level,
-        peak_acceleration=amplitude * w * w,
+        peak_acceleration=amplitude * mode.drive * mode.drive,
         largest_deviation=rho if inner else -1.0,
         margin=margin,
         longest_step=math.sqrt(math.sqrt(24.0 * SMALL * margin / fourth)),
@@ -137,20 +124,20 @@ def table_at(table, motion, factor):
 def full_table(motion, parts):
     """The table of a motion of one mode with its period in `parts` parts."""
     modes, w, period = motion.modes, motion.drive, motion.period
-    decay, omega, high = modes[DECAY, 0], modes[OMEGA, 0], modes[DAMPED, 0]
+    decay, omega, high, low = modes[DECAY, 0], modes[OMEGA, 0], modes[DAMPED, 0], modes[LOW, 0]
     peak = min((math.atan2(motion.tip_sine, motion.tip_cosine) % (2.0 * math.pi)) / w, period)
     mode = OneMode(
         drive=w,
         decay=decay,
         stiffness=omega * omega,
-        determinant=math.copysign(high * (high + 2.0 * modes[LOW, 0]), omega - 0.5 * decay),
+        determinant=math.copysign(high * (high + 2.0 * low), omega - 0.5 * decay),
         gap=-motion.level,
         period=period,
         spacing=period / parts,
         nodes_per_second=parts / period,
         peak=peak,
-        period_flow=mode_flow(motion, period),
-        peak_flow=mode_flow(motion, peak),
+        period_flow=flow_matrix(omega, decay, high, low, period),
+        peak_flow=flow_matrix(omega, decay, high, low, peak),
         kick=-(1.0 + motion.number0),
         detuning=(abs(w * w - omega * omega) + decay * omega) / (w * w),
         free_bound=omega * (omega + decay),
@@ -163,7 +150,7 @@ def full_table(motion, parts):
         s, c = math.sin(w * t), math.cos(w * t)
         rows[k, 0] = motion.tip_sine * s + motion.tip_cosine * c
         rows[k, 1] = motion.tip_sine * c - motion.tip_cosine * s
-        rows[k, 2], rows[k, 3], rows[k, 4], rows[k, 5] = mode_flow(motion, t)
+        rows[k, 2], rows[k, 3], rows[k, 4], rows[k, 5] = flow_matrix(omega, decay, high, low, t)
     return table_at(PeriodTable(mode, Steady(0.0, 0.0, 0.0, 0.0, 0.0, 1.0), rows), motion, 1.0)
 
 
