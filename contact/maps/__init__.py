@@ -1,6 +1,6 @@
 """Drive periods as maps, State -> State, all behind one protocol.
 
-`protocol`                what every strobed or iterated system offers
+`protocol`                the methods of every strobed or iterated system
 `strobed_motion`          compiled motion from strobe to strobe, of any oscillator
 `stroboscope`             `StroboscopicMap`: an impact oscillator from strobe to strobe
 `nordmark`                `NordmarkMap`: the letter's Eqs. (2), (3)

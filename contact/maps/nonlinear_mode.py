@@ -98,7 +98,7 @@ class NonlinearMode:
         return 1.0 / self.frequency
 
     def at(self, excess: float) -> NonlinearMode:
-        """The same oscillator at another excess."""
+        """This oscillator at another excess F/F_g - 1 = `excess` [1]."""
         changed = replace(self, excess=excess)
         changed.__dict__["grazing"] = self.grazing  # it does not depend on the excess
         return changed
@@ -184,12 +184,8 @@ class NonlinearMode:
 
         With `factors`, one for each period, the force is that of the oscillator times the factor.
 
-        Raises
-        ------
-        Chatter
-            For more impacts in a period than ``nonlinear_taylor.MOST_IMPACTS``.
-        Diverged
-            Where the tip goes so far out that its restoring force would fall.
+        Raises Chatter for more impacts in a period than ``nonlinear_taylor.MOST_IMPACTS``, and Diverged where
+        the tip goes so far out that its restoring force would fall.
         """
         count = require_whole("count", count, "drive periods", low=0)
         changing = amplitude_factors(factors, count)

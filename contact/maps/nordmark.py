@@ -242,7 +242,7 @@ class NordmarkMap:
         return np.array([[self.alpha, 1.0], [-self.gamma, 0.0]])
 
     def at(self, excess: float) -> NordmarkMap:
-        """The same map at F/F_g - 1 = `excess` [1]."""
+        """This map at F/F_g - 1 = `excess` [1]."""
         return replace(self, control=self.rho(excess))
 
     def steady(self) -> Array:
@@ -255,7 +255,7 @@ class NordmarkMap:
 
         With `factors`, one for each step, the amplitude is that of the map times the factor of the step.
         """
-        changing = amplitude_factors(factors, count)
+        changing = amplitude_factors(factors, require_whole("count", count, "periods", low=0))
         rho = self.control + self.rho_per_factor * (changing - 1.0) if changing.size else self.control
         points = np.vstack([pair_of(state), self.iterate(state, rho, count)])
         impacts = (points[:-1, 0] > 0).astype(np.int64)

@@ -1,4 +1,4 @@
-"""Drive periods as a map: what every strobed or iterated system offers.
+"""Drive periods as a map: the methods of every strobed or iterated system.
 
 Sampling a driven oscillator at the strobe times t_n = n/f turns its motion into the iteration of a map.  Its
 periodic orbits are the p_m orbits of the letter (1996, Fig. 2).  ``StroboscopicMap`` is the map of any impact
@@ -53,7 +53,7 @@ class StrobedMap(Protocol[S]):
         """The size of a coordinate at grazing, in the unit of `points`."""
 
     def at(self, excess: float) -> StrobedMap[S]:
-        """The same system at another excess over grazing [1]."""
+        """This system at another excess over grazing [1]."""
 
     def steady(self) -> S:
         """The state of the steady motion at a strobe, as it would be without the stop."""

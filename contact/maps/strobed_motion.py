@@ -94,11 +94,8 @@ def strobed_motion(table, system, factors, u, v, runs, points, counts):
     points, counts : ndarray, shapes (periods, 2 n_modes) and (periods,)
         Filled with the points and with the impacts of each period.
 
-    Returns
-    -------
-    status : int
-        As ``event_loop.advance`` returns it.  After a failure (u, v) counts from the steady motion of that
-        period.
+    Returns the status of ``event_loop.advance``. After a failure (u, v) counts from the steady motion of that
+    period.
     """
     if table is None:
         return any_periods(system, factors, u, v, runs, points, counts)

@@ -26,7 +26,7 @@ from contact.simulation import require_state, simulate
 from contact.trajectory import Regime, State
 
 LONGER = (0, 1, 3, 7, 15, 31, 63)
-"""Drive periods by which a stretch that ends in contact is prolonged."""
+"""Drive periods by which a stretch that ends in contact is prolonged; a contact lasts less than a period."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -95,19 +95,11 @@ class StroboscopicMap:
         With `factors`, one for each period, each period has the amplitude of the oscillator times its factor.
         The amplitude changes at strobes, where the physical state is continuous.
 
-        Returns
-        -------
-        StrobedOrbit
-            Its points, shape (count, 2 n_modes) [m], are the contributions phi_k q_k and phi_k q_k' / omega_k
-            of all modes to the tip motion (``contact.maps.strobed_motion``).  `tip` and `readout` give
-            displacements.
+        The points, shape (count, 2 n_modes) [m], are the contributions phi_k q_k and phi_k q_k' / omega_k of
+        all modes to the tip motion (``contact.maps.strobed_motion``); `tip` and `readout` give displacements.
 
-        Raises
-        ------
-        ValueError
-            If the state is not at a strobe, or factors are not above zero.
-        ContactError
-            If the motion could not be followed.
+        Raises ValueError for a state that is not at a strobe and for factors that are not above zero, and
+        ContactError for a motion that could not be followed.
         """
         require_state(self.oscillator, state)
         count = require_whole("count", count, "drive periods", low=0)
@@ -134,12 +126,8 @@ class StroboscopicMap:
         A strobe that falls into a contact is passed over: the next derivative then spans several periods.  If
         the last strobe does, the orbit goes on to the next one off the wall, or ends before it.
 
-        Raises
-        ------
-        ValueError
-            If the state is in contact.
-        UnresolvedCrossing
-            If the motion comes to rest on the stop, or is in contact at every strobe.
+        Raises ValueError for a state in contact, and UnresolvedCrossing if the motion ends at rest on the
+        stop or is in contact at every strobe.
         """
         count = require_whole("count", count, "drive periods")
         free = require_state(self.oscillator, state).regime == Regime.OUTSIDE

@@ -84,14 +84,9 @@ def decided_period(table, rho, p, q, u, v):
 
 @kernel
 def one_mode_periods(table, system, factors, u, v, runs, points, counts):
-    """``strobed_motion`` for the one mode of `table`, a field of `system` that numba cannot tell from None.
+    """``strobed_motion`` for the one mode of `table`, a field of `system` whose type numba must know.
 
-    Returns
-    -------
-    status : int
-        As ``advance`` returns it.
-    left : int
-        Periods left to ``advance``.
+    Returns the status of ``advance``, and the number of periods left to it.
     """
     table, u, v, points = borrowed(table), borrowed(u), borrowed(v), borrowed(points)
     counts, local, n, weight = borrowed(counts), table, table.mode, system.weight[0]

@@ -107,12 +107,7 @@ def is_proved(n, s, rho, u, v, slope, d, rest, approach):
 def one_impact(table, t, rho, u, v):
     """The period from (u, v), of size `rho`, whose crossing is next to the time `t` in [0, P].
 
-    Returns
-    -------
-    proved : bool
-        Whether it is proved; if not, the rest is not to be used.
-    u, v : float
-        Deviation at the next strobe.
+    Returns whether it is proved, and the deviation at the next strobe, which is right only then.
     """
     n, rows = table.mode, table.rows
     k = int(t * n.nodes_per_second + 0.5)
@@ -134,9 +129,7 @@ def one_impact(table, t, rho, u, v):
 def rising_zero(table, u, v, t):
     """Newton's iteration from the time `t` for a zero of the tip displacement where it rises.
 
-    Returns
-    -------
-    time [s], deviation and its rate there, approach velocity [m/s], which is NaN without a positive slope.
+    Returns its time [s], deviation and rate, and the approach velocity [m/s], NaN without a positive slope.
     """
     low, high = 0.0, table.mode.period
     for _ in range(NEWTON_STEPS):

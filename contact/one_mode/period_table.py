@@ -13,8 +13,8 @@ and with |x| <= P/(2K) the cosine, the sine and the flow F(x) follow from the se
 at z = (w x)^2, z = D x^2 (below zero for an over-damped mode) and y = -c x/2.  K is chosen such that w x,
 omega x and c x stay below 0.05: the first terms left out, z^5/10! and y^9/9!, are then below 1e-17.
 
-The steady motion peaks at the time t_p of the period, at the height A = sqrt(S^2 + C^2).  Deviations (u, v)
-[m, m/s] are those of the tip and obey the equation of the mode.
+The steady motion peaks at the time t_p of the period, at the height A = sqrt(S^2 + C^2).  The deviation
+(u, v) [m, m/s] of the tip obeys the equation of the mode.
 """
 
 from __future__ import annotations
@@ -259,9 +259,7 @@ def tip_derivatives(table, k, x, u, v):
 def tip_near(table, u, v, t):
     """The motion at the time `t` since the strobe, where the deviation was (u, v).
 
-    Returns
-    -------
-    Deviation and its rate; tip displacement relative to the stop [m] and two derivatives.
+    Returns deviation and rate, and the tip displacement relative to the stop [m] with two derivatives.
     """
     k = int(t * table.mode.nodes_per_second + 0.5)
     x = t - k * table.mode.spacing
