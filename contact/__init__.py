@@ -33,7 +33,7 @@ From problem to answer
     `StroboscopicMap`   the same from strobe to strobe; `strobed_orbits` many of them on all cores
     `collisions`        what each collision does to mode 1; `first_collision` the first above grazing
     `NonlinearMode`     one mode at finite amplitude
-    `NordmarkMap`       the letter's map, its orbits (`maximal_orbits`), folds and bands in closed form
+    `NordmarkMap`       the letter's map; its orbits (`MapFamily`), folds and `bands` in closed form
     `MaximalFamily`     the same orbits of Eq. (1) in closed form, under Newton's law
     ``contact.orbits``  orbits of any law: `settle`, `born` and `orbit_diagram` by following the motion,
                         `Shooting` and `follow` as orbits, to folds, period doublings and grazings;
@@ -48,6 +48,8 @@ throughout; modes are mass-normalised (q in m kg^0.5).  Every module opens with 
 in ``contact.oscillator``, flights and their bounds in ``contact.flight``, the certified search for a touch in
 ``contact.flight.crossing``, motion in contact in ``contact.touch.linear`` and ``contact.touch.hertz``.
 """
+
+from dataclasses import replace
 
 from contact.collision import Collision, before_collision, collisions, first_collision
 from contact.drive import HarmonicDrive
@@ -70,7 +72,7 @@ from contact.laws import (
     LinearContact,
     NewtonRestitution,
 )
-from contact.machine.renamed import forward_modules
+from contact.machine.renamed import forward_modules, forwarded_call
 from contact.maps.nonlinear_mode import NonlinearMode
 from contact.maps.nordmark import NordmarkMap
 from contact.maps.nordmark_bands import Band, band, bands
@@ -83,7 +85,6 @@ from contact.maps.nordmark_orbits import (
     maximal_periods,
     stable_range,
 )
-from contact.maps.strobed_nordmark import StrobedNordmarkMap
 from contact.maps.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap, strobed_orbits
 from contact.orbits.families.single_impact import MaximalFamily, SingleImpactOrbit
 from contact.oscillator import ImpactOscillator
@@ -101,6 +102,11 @@ forward_modules(
         "contact.orbits.kick": "contact.orbits.families.kick",
         "contact.orbits.continuation": "contact.orbits.branches.continuation",
     }
+)
+StrobedNordmarkMap = forwarded_call(
+    "StrobedNordmarkMap(map=nordmark, rho=rho)",
+    "replace(nordmark, control=rho)",
+    lambda *, map, rho=0.0: replace(map, control=rho),
 )
 
 __all__ = [
@@ -134,7 +140,6 @@ __all__ = [
     "StepTooLarge",
     "Stop",
     "StrobedMap",
-    "StrobedNordmarkMap",
     "StrobedOrbit",
     "StroboscopicMap",
     "Trajectory",

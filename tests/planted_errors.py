@@ -34,8 +34,8 @@ FILES = {
     "event_loop recorder": "sampling|simulation|bouncing|digits|modes",
     "collision virtual_motion": "collision",
     "orbits/*": "shooting|families|derivatives|delayed|settling|clouds|path",
-    "nordmark maximal_orbits strobed_* stroboscope": "nordmark|sampling|lyapunov|clouds|derivatives",
-    "single_mode/*": "single_mode|sampling|nonlinear|clouds",
+    "maps/*": "nordmark|nonlinear|sampling|lyapunov|clouds|derivatives",
+    "one_mode/*": "single_mode|sampling|clouds",
 }
 """Where the places are, and words in the names of the tests that run first there."""
 NOT_RUN = "bounded_calls|benchmarks|all_studies|every_study|explore|film|page|peers|tour"
@@ -47,8 +47,8 @@ STRIDE = "a stride in search of a bracket: the tip stays below the gap far longe
 EQUIVALENT = {
     "contact/flight/bounds.py: under = rate * rate - 2 * (2.0 * curvature * (height + goal))": CHECKED,
     "contact/flight/bounds.py: a = -c * v - 2 * (o2 * u)": CHECKED,
-    "contact/one_mode/loop.py: twist = n.decay * drop + n.stiffness * q": CHECKED,
-    "contact/one_mode/one_impact.py: se = 1.0 / (rate + x * x * (0.5 * twist - x * bend / 6.0))": CHECKED,
+    "contact/one_mode/one_impact.py: jerk = n.decay * free + n.stiffness * q": CHECKED,
+    "contact/one_mode/one_impact.py: rse = 1.0 / (rate + x * x * (0.5 * jerk - x * snap / 6.0))": CHECKED,
     "contact/one_mode/one_impact.py: d += d * (y2 * ratio)": CHECKED,
     "contact/virtual_motion.py: near, far = (far, far + 2 * (direction * step))": STRIDE,
     "contact/virtual_motion.py: step = 2 * (self.motion.period / SAMPLES)": STRIDE,

@@ -7,6 +7,9 @@ import warnings
 from collections.abc import Callable
 from importlib import import_module
 from types import ModuleType
+from typing import TypeVar
+
+T = TypeVar("T")
 
 
 def forwarded(owner: str, table: dict[str, str]) -> Callable[[str], object]:
@@ -20,6 +23,16 @@ def forwarded(owner: str, table: dict[str, str]) -> Callable[[str], object]:
         return getattr(import_module(module), new)
 
     return value_of
+
+
+def forwarded_call(old: str, new: str, function: Callable[..., T]) -> Callable[..., T]:
+    """The callable `function` for an `old` name: a call warns that it is now written as `new`."""
+
+    def called(*args: object, **named: object) -> T:
+        warnings.warn(f"{old} is now {new}", DeprecationWarning, stacklevel=2)
+        return function(*args, **named)
+
+    return called
 
 
 def forward_modules(table: dict[str, str]) -> None:

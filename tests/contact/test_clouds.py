@@ -11,15 +11,7 @@ from scipy.signal import lfilter
 from simulated_orbit import HERTZ, beam
 
 from beam import ModalModel
-from contact import (
-    NewtonRestitution,
-    NordmarkMap,
-    NotPeriodic,
-    State,
-    StrobedNordmarkMap,
-    StroboscopicMap,
-    UnresolvedCrossing,
-)
+from contact import NewtonRestitution, NordmarkMap, NotPeriodic, State, StroboscopicMap, UnresolvedCrossing
 from contact.maps.nordmark_orbits import MapFamily
 from contact.orbits import PeriodicOrbit, Shooting, cloud, orbit_exponents
 
@@ -40,7 +32,7 @@ def settled(name: str) -> tuple[object, object, float]:
         family = MapFamily(NordmarkMap.from_oscillator(equation_1(20.9, NEWTON)), PERIOD)
         excess = 0.5 * family.fold().excess
         orbit = next(each for each in family.orbits(excess) if each.stable)
-        return StrobedNordmarkMap(map=family.map).at(excess), orbit.states[0], excess
+        return family.map.at(excess), orbit.states[0], excess
     orbit, _ = node(equation_1(20.9, NEWTON) if name == "Eq. (1)" else beam(20.9, HERTZ, modes=4))
     return StroboscopicMap(oscillator=orbit.oscillator), replace(orbit.strobe_state(), time=0.0), orbit.excess
 

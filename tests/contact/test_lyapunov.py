@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from contact import NordmarkMap, State, StrobedNordmarkMap, StrobedOrbit, StroboscopicMap
+from contact import NordmarkMap, State, StrobedOrbit, StroboscopicMap
 from contact.orbits import Shooting, map_exponents, orbit_exponents, settle
 from studies.scene import beam_at, read_scene, single_mode_at
 
@@ -101,7 +101,7 @@ def test_the_logistic_map_has_ln_2_at_4_by_both_routes():
 
 
 def test_the_jacobians_are_the_differences_of_the_period_map(single, beam):
-    letters = StrobedNordmarkMap(map=NordmarkMap.from_oscillator(single.oscillator))
+    letters = NordmarkMap.from_oscillator(single.oscillator)
     for strobed, excess in ((letters, 0.02), (single, 0.02), (beam, 1e-3), (beam, 0.02)):
         here = strobed.at(excess)
         state = settle(here, strobed.steady(), most_cycles=2000).end

@@ -81,7 +81,7 @@ def unless_refused(derivatives: Any) -> Any:
 
 @cache
 def system() -> Any:
-    return contact.StrobedNordmarkMap(map=nordmark(), rho=0.01)
+    return dataclasses.replace(nordmark(), control=0.01)
 
 
 def at(displacement: float, regime: Regime = Regime.OUTSIDE) -> contact.State:
@@ -208,10 +208,11 @@ CONTACT = (
     of(lambda state, count: bent().orbit(state, count), dict(state=[0.0, 0.0], count=0),
        name="NonlinearMode.orbit", kind=dict(state="rest"),
        value=dict(state=each([0.0, 0.0, 0.0], 0.0, [NAN, 0.0]), count=-1)),
-    of(contact.NordmarkMap, dict(alpha=0.5, gamma=0.8, restitution=0.1, delay_term=0.0, whole_turns=1),
+    of(contact.NordmarkMap,
+       dict(alpha=0.5, gamma=0.8, restitution=0.1, delay_term=0.0, whole_turns=1, control=0.01),
        kind=dict(restitution="0.1"),
        value=dict(alpha=1.9, gamma=each(1.5, -0.1, NAN), restitution=1.5, delay_term=-1.0,
-                  y_line="wrong", whole_turns=0.5)),
+                  y_line="wrong", whole_turns=0.5, control=NAN)),
     of(contact.NordmarkMap.from_frequencies, FROM_F,
        kind=dict(decay_rate="3.56"), value=dict(drive_frequency=25.0, free_period=0.0)),
     of(contact.NordmarkMap.from_mode,
@@ -223,8 +224,9 @@ CONTACT = (
     of(lambda state, rho, count: nordmark().iterate(state, rho, count),
        dict(state=[0.0, 0.0], rho=0.01, count=3), name="NordmarkMap.iterate",
        kind=dict(rho="0.01"), value=dict(state=each([0.0], [NAN, 0.0]), count=-1)),
-    of(contact.StrobedNordmarkMap, lambda: dict(map=nordmark(), rho=0.01),
-       kind=dict(map=each(None, "Nordmark")), value=dict(rho=NAN)),
+    of(lambda state, count, factors: system().orbit(state, count, factors=factors),
+       dict(state=[0.0, 0.0], count=3, factors=[1.0, 1.1, 1.2]), name="NordmarkMap.orbit",
+       value=dict(state=each([0.0], [NAN, 0.0]), count=-1, factors=each([1.1], [1.0, 1.0, 0.0]))),
     of(contact.band, BAND | dict(period=4),
        kind=dict(period="p4"), value=dict(period=1, free_period=-1.0, whole_turns=-1, y_line=3)),
     of(contact.bands, BAND | dict(periods=(3, 4)),
@@ -351,7 +353,7 @@ ORBITS = (
        lambda: dict(strobed=strobed().at(-0.1), state=strobed().at(-0.1).steady(), period=1, deviation=1e-4),
        kind=dict(strobed=3.0), value=dict(deviation=each(-1e-4, NAN), memory=each(1.0, -0.1, NAN), period=0)),
     of(lyapunov.map_exponents, lambda: dict(strobed=system(), state=np.array([0.0, 0.0]), count=10, align=0),
-       kind=dict(strobed=each(nordmark(), eq_1())), value=dict(count=1, align=-1)),
+       kind=dict(strobed=each(None, eq_1())), value=dict(count=1, align=-1)),
     of(lyapunov.orbit_exponents,
        lambda: dict(strobed=strobed().at(-0.1), state=strobed().at(-0.1).steady(), period=1),
        kind=dict(strobed=None), value=dict(period=each(0, 1.5))),

@@ -44,7 +44,7 @@ from numpy.typing import NDArray
 from beam.parameters import InvalidValue, require, require_kind, require_whole, require_within
 from contact.flight.modal_flow import free_flow
 from contact.laws import NewtonRestitution
-from contact.maps.nordmark import restitution_of
+from contact.maps.nordmark_coefficients import restitution_of
 from contact.maps.nordmark_orbits import positive_roots
 from contact.orbits.families.family import CLOSING, Release, TouchOrbit
 from contact.oscillator import ImpactOscillator

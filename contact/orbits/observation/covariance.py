@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from beam.parameters import require, require_kind, require_whole, require_within
 from contact.errors import NotPeriodic
-from contact.maps.strobed_nordmark import StrobedNordmarkMap
+from contact.maps.nordmark import NordmarkMap
 from contact.maps.stroboscope import StroboscopicMap
 from contact.orbits.observation.repetition import require_orbit
 from contact.sensitivity.change import Change
@@ -31,7 +31,7 @@ from contact.sensitivity.motion import motion_derivatives
 from contact.trajectory import State
 
 Array = NDArray[np.float64]
-Strobed = StroboscopicMap | StrobedNordmarkMap
+Strobed = StroboscopicMap | NordmarkMap
 
 
 def strobe_derivatives(strobed: Strobed, state: State | Array, period: int) -> list[tuple[Array, Array]]:
@@ -39,7 +39,7 @@ def strobe_derivatives(strobed: Strobed, state: State | Array, period: int) -> l
 
     Parameters
     ----------
-    strobed : StroboscopicMap or StrobedNordmarkMap
+    strobed : StroboscopicMap or NordmarkMap
         At the excess of the orbit.
     state : State or ndarray
         A strobe, off the stop.
@@ -58,12 +58,11 @@ def strobe_derivatives(strobed: Strobed, state: State | Array, period: int) -> l
     NoDerivative
         If the motion grazes the stop, or rests on it.
     """
-    require_kind("strobed", strobed, (StroboscopicMap, StrobedNordmarkMap), "a strobed oscillator or map")
+    require_kind("strobed", strobed, (StroboscopicMap, NordmarkMap), "a strobed oscillator or map")
     require_whole("period", period, "drive periods")
-    if isinstance(strobed, StrobedNordmarkMap):
+    if isinstance(strobed, NordmarkMap):
         jacobians, _end = strobed.jacobians(state, period)  # type: ignore[arg-type]
-        pull = strobed.map.rho_per_excess + strobed.rho
-        return [(jacobian, np.array([pull, 0.0])) for jacobian, _span in jacobians]
+        return [(jacobian, np.array([strobed.rho_per_factor, 0.0])) for jacobian, _span in jacobians]
     oscillator = strobed.oscillator
     here, found = require_kind("state", state, State, "a State"), list[tuple[Array, Array]]()
     change, ones = Change(amplitude=oscillator.driven.amplitude), np.ones(oscillator.n_modes)

@@ -25,9 +25,9 @@ from typing import Any, Generic, TypeVar
 from beam.parameters import require_kind, require_whole, require_within
 from contact.errors import ContactError
 from contact.laws import NEWTON
+from contact.maps.nordmark import NordmarkMap
 from contact.maps.nordmark_orbits import MapFamily
 from contact.maps.protocol import require_map
-from contact.maps.strobed_nordmark import StrobedNordmarkMap
 from contact.maps.stroboscope import StrobedMap, StroboscopicMap
 from contact.orbits.branches.continuation import first_event
 from contact.orbits.families.family import Family
@@ -166,8 +166,8 @@ def _exact_end(
 ) -> tuple[End | None, Any]:
     """The end in the bracket; or None and the state at `lost`, if the orbit is still there."""
     unknown = (BRACKET, 0.5 * (held + lost), None), None
-    if isinstance(strobed, StrobedNordmarkMap) and start.impacts == 1:
-        return _map_end(MapFamily(strobed.map, start.period), held, lost) or unknown
+    if isinstance(strobed, NordmarkMap) and start.impacts == 1:
+        return _map_end(MapFamily(strobed, start.period), held, lost) or unknown
     if not isinstance(strobed, StroboscopicMap):
         return unknown
     orbit = orbit_near(strobed.at(held), state, start.period, start.impacts)
@@ -210,7 +210,7 @@ def fold_excess(strobed: StrobedMap[Any], period: int) -> float | None:
     Parameters
     ----------
     strobed : StrobedMap
-        A StrobedNordmarkMap or a StroboscopicMap; its own amplitude does not matter.
+        A NordmarkMap or a StroboscopicMap; its own amplitude does not matter.
     period : int
         m, in drive periods; 0 is the period of a motion that did not settle.
 
@@ -222,10 +222,10 @@ def fold_excess(strobed: StrobedMap[Any], period: int) -> float | None:
     if require_whole("period", period, "drive periods", low=0) < 2:
         return None
     family: Family
-    if isinstance(strobed, StrobedNordmarkMap):
-        family = MapFamily(strobed.map, period)
+    if isinstance(strobed, NordmarkMap):
+        family = MapFamily(strobed, period)
     else:
-        words = "a StroboscopicMap or a StrobedNordmarkMap"
+        words = "a StroboscopicMap or a NordmarkMap"
         oscillator = require_kind("strobed", strobed, StroboscopicMap, words).oscillator
         if oscillator.stop.law.code == NEWTON:
             family = MaximalFamily.from_oscillator(oscillator, period=period)
