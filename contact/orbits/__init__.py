@@ -4,7 +4,7 @@
 `branches`      branches of orbits over the amplitude or along any path p -> oscillator, their folds, period
                 doublings, tori and grazings, and derivatives of all these with respect to parameters
 `observation`   motions followed in time: settling, orbit diagrams, the loss of an orbit when the drive is
-                lowered, a compiled column of a chart, Lyapunov exponents, covariances under noise of the drive
+                lowered, a compiled column of a chart, Lyapunov exponents, covariances under noise
 
 A parameter is a `Change`, a direction in which the numbers of the oscillator change.
 """
