@@ -43,6 +43,12 @@ SLOWEST_DRIVE = 0.01
 than 1e-4 of the base's motion, and nobody grazes a stop that way."""
 
 
+def dynamic_stiffness(omega: np.ndarray, decay_rate: np.ndarray, w: float) -> np.ndarray:
+    """E_k = omega_k^2 - w^2 + i c_k w of modes driven at frequency `w` [rad/s], complex [1/s^2]."""
+    # (omega - w)(omega + w) keeps its digits close to resonance, where omega^2 - w^2 would lose them
+    return np.asarray((omega - w) * (omega + w) + 1j * decay_rate * w)
+
+
 @final
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ImpactOscillator:
@@ -163,11 +169,8 @@ class ImpactOscillator:
         """H_k, complex, shape (n_modes,) [kg^0.5]: without contact q_k(t) = Z Im(H_k exp(i 2 pi f t))."""
         if self.drive is None:
             return np.zeros(self.n_modes, dtype=complex)
-        w = self.drive.angular_frequency
-        model = self.model
-        # (omega - w)(omega + w) keeps its digits close to resonance, where omega^2 - w^2 would lose them
-        detuning = (model.omega - w) * (model.omega + w)
-        return model.participation * w**2 / (detuning + 1j * model.decay_rate * w)
+        w, model = self.drive.angular_frequency, self.model
+        return model.participation * w**2 / dynamic_stiffness(model.omega, model.decay_rate, w)
 
     def tip_response(self) -> complex:
         """Tip displacement per base amplitude without contact, complex [1]."""

@@ -20,8 +20,8 @@ from contact.maps.protocol import Jacobians, StrobedOrbit, amplitude_factors
 from contact.maps.protocol import StrobedMap as StrobedMap
 from contact.maps.strobed_motion import StrobedSystem, strobed_motion, strobed_system
 from contact.oscillator import ImpactOscillator
-from contact.sensitivity.change import Changes
-from contact.sensitivity.replay import Retraced
+from contact.sensitivity.change import Sensitivities
+from contact.sensitivity.replay import Replay
 from contact.simulation import require_state, simulate
 from contact.trajectory import Regime, State
 
@@ -135,8 +135,8 @@ class StroboscopicMap:
         period, n, weight = self._system.motion.period, self.oscillator.n_modes, self._system.weight
         for more in LONGER:
             run = simulate(self.oscillator, replace(state, time=0.0), periods=count + more)
-            retraced = Retraced(Changes(oscillator=self.oscillator), run)
-            strobes = [j for j in range(1, count + more + 1) if not retraced.touching(j * period)]
+            replay = Replay(Sensitivities(oscillator=self.oscillator), run)
+            strobes = [j for j in range(1, count + more + 1) if not replay.touching(j * period)]
             if strobes:
                 strobes = strobes[: len(strobes) if more == 0 else 1]
                 break
@@ -144,8 +144,8 @@ class StroboscopicMap:
             raise UnresolvedCrossing(time=state.time, gap=0.0, velocity=0.0)
         found, first = [], 0
         for last in strobes:
-            retraced.tangent = np.eye(2 * n + 2)
-            tangent = retraced.to(last * period)[: 2 * n, : 2 * n]
+            replay.tangent = np.eye(2 * n + 2)
+            tangent = replay.to(last * period)[: 2 * n, : 2 * n]
             found.append((weight[:, None] * tangent / weight, last - first))
             first = last
         q, v = run.strobe_displacement[first - 1], run.strobe_velocity[first - 1]

@@ -160,7 +160,7 @@ def period_table(motion: Motion) -> PeriodTable | None:
     Returns None for another law or several modes, without stiffness or drive, for a mode with its node at the
     tip, and for one so fast that too many nodes would be needed.
     """
-    if motion.law != NEWTON or motion.size != 1 or motion.compliance == 0.0:
+    if motion.law != NEWTON or motion.size != 1 or motion.inverse_mass == 0.0:
         return None
     if not (motion.omega[0] > 0 and motion.drive > 0):
         return None
