@@ -40,7 +40,7 @@ from contact.flight.motion import SLOWNESS, Motion, single_mode
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.trajectory import ImpactKind, Impacts, State, Trajectory
-from contact.virtual_motion import VirtualMotion, deviations
+from contact.virtual_motion import VirtualMotion
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -147,6 +147,7 @@ def collisions(
     given = oscillator if trajectory is None else trajectory
     run = require_kind("trajectory", given, Trajectory, "a Trajectory, from simulate")
     motion, impacts, k = run.oscillator.motion(), run.impacts, run.oscillator.model.leading_mode
+    single = single_mode(motion, k)
     if trajectory is not None:
         other = require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
         pairs: Any = zip(motion, other.motion(), strict=True)
@@ -158,10 +159,10 @@ def collisions(
     found: list[Collision] = []
     while rows:
         first = last = rows.pop(0)
-        outgoing, minimum = _outgoing(motion, k, impacts, last)
+        outgoing, minimum = _outgoing(single, k, impacts, last)
         while rows and -_length(motion, impacts, rows[0], last) < minimum:
             last = rows.pop(0)
-            outgoing, minimum = _outgoing(motion, k, impacts, last)
+            outgoing, minimum = _outgoing(single, k, impacts, last)
         under_way = math.isnan(impacts.approach[first])  # when the run began
         if not impacts.end[last] + minimum <= run.end.time:
             if unfinished == "drop" or under_way:
@@ -181,24 +182,23 @@ def _length(motion: Motion, impacts: Impacts, first: Any, last: Any) -> Any:
     return turns * motion.period + (impacts.end_clock[last] - impacts.clock[first])
 
 
-def _outgoing(motion: Motion, k: int, impacts: Impacts, last: int) -> tuple[VirtualMotion, float]:
-    """The virtual motion after an impact, and how long after it comes its next minimum [s]; infinity where
-    that is not known."""
-    end = impacts.end_clock[last]
-    after = deviations(motion, end, impacts.displacement_end[last], impacts.velocity_end[last])
-    virtual = VirtualMotion(single_mode(motion, k), math.fmod(end, motion.period), *after[:, k])
-    minima = virtual.extrema(0.0, 2.0 * motion.period, -1.0) if math.isfinite(end) else []
+def _outgoing(single: Motion, k: int, impacts: Impacts, last: int) -> tuple[VirtualMotion, float]:
+    """The virtual motion after an impact, and the time from there to its next minimum [s].
+
+    The time is infinite if the contact has not ended or no minimum comes within two drive periods.
+    """
+    clock = math.fmod(impacts.end_clock[last], single.period)
+    virtual = VirtualMotion(single, clock, *impacts.deviations_end[last, :, k])
+    minima = virtual.extrema(0.0, 2.0 * single.period, -1.0) if math.isfinite(clock) else []
     return virtual, minima[0] if minima else math.inf
 
 
 def _measure(motion: Motion, k: int, impacts: Impacts, rows: slice, outgoing: VirtualMotion) -> Collision:
     """The numbers of the collision of these impacts."""
     first, last, single = rows.start, rows.stop - 1, outgoing.motion
-    touch, start, end = float(impacts.start[first]), impacts.clock[first], impacts.end_clock[last]
-    length = float(_length(motion, impacts, first, last))
-    u_in, v_in = deviations(motion, start, impacts.displacement_start[first], impacts.velocity_start[first])
-    u_out, v_out = deviations(motion, end, impacts.displacement_end[last], impacts.velocity_end[last])
-    incoming = VirtualMotion(single, math.fmod(start, motion.period), u_in[k], v_in[k])
+    touch, length = float(impacts.start[first]), float(_length(motion, impacts, first, last))
+    (u_in, v_in), (u_out, v_out) = impacts.deviations_start[first], impacts.deviations_end[last]
+    incoming = VirtualMotion(single, float(impacts.clock[first]), u_in[k], v_in[k])
 
     # the hump of the incoming virtual motion that belongs to the touch
     peak, (height, rate, _) = incoming.peak_near(0.0), incoming.at(0.0)

@@ -11,7 +11,6 @@ import math
 
 import numpy as np
 
-from contact.flight.modal_flow import steady_motion
 from contact.flight.motion import WEIGHT, Motion
 from contact.flight.tip_search import peaks_of_flight, tip_at
 
@@ -61,8 +60,3 @@ class VirtualMotion:
                 return float(brentq(lambda s: self.at(s)[0], near, low, **tight))
             near = low
         return math.nan
-
-
-def deviations(motion: Motion, time: float, q: np.ndarray, q_rate: np.ndarray) -> np.ndarray:
-    """Deviations (u, v) of the modal state (q, q') from the steady motion at a time, shape (2, n_modes)."""
-    return np.array([q, q_rate]) - steady_motion(motion, math.fmod(time, motion.period))

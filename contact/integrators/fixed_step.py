@@ -191,5 +191,5 @@ class FixedStep(Integrator):
             end,
             oscillator,
             evaluations=grid.steps,
-            motion=motion if self.deviations else None,
+            deviations=self.deviations,
         )

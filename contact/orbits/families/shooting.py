@@ -34,7 +34,6 @@ from contact.oscillator import ImpactOscillator
 from contact.sensitivity.touch_flow import flown
 from contact.simulation import simulate
 from contact.trajectory import ImpactKind, Regime, State
-from contact.virtual_motion import deviations
 
 Array = NDArray[np.float64]
 
@@ -190,10 +189,9 @@ class Shooting:
             raise NotPeriodic(
                 time=state.time, gap=0.0, velocity=0.0, detail="the motion has no impact to start from"
             )
-        i = int(np.flatnonzero(hits)[0])
-        motion, met = self.oscillator.motion(), run.impacts
-        start = deviations(motion, met.clock[i], met.displacement_start[i], met.velocity_start[i])
-        return self._solve(self.unknowns(start.ravel(), met.approach[i]), excess=self.oscillator.excess)
+        i, met = int(np.flatnonzero(hits)[0]), run.impacts
+        start = self.unknowns(met.deviations_start[i].ravel(), met.approach[i])
+        return self._solve(start, excess=self.oscillator.excess)
 
     def orbit(self, speed: float) -> PeriodicOrbit:
         """`at_speed`, from the kick description."""
