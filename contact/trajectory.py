@@ -190,19 +190,12 @@ class Impacts:
 
     @staticmethod
     def of_states(
-        oscillator: ImpactOscillator,
-        *,
-        times: np.ndarray,
-        states: np.ndarray,
-        approach: np.ndarray,
-        rebound: np.ndarray,
-        loss: np.ndarray,
-        kind: np.ndarray,
+        oscillator: ImpactOscillator, *, times: np.ndarray, states: np.ndarray, **numbers: np.ndarray
     ) -> Impacts:
-        """Touches that another program has found.
+        """Touches that another program has found, with approach, rebound, loss and kind as `numbers`.
 
-        `times` [s] has the shape (2, n_impacts) and the modal states (q, q') have (2, n_impacts, 2, n_modes),
-        first those of the touches and then those of the releases; the rest is as above.
+        `times` [s] has the shape (2, n_impacts), and the modal states (q, q') have (2, n_impacts, 2,
+        n_modes): first the touches, then the releases.
         """
         period, clock = split_time(times[0], oscillator.period)
         end_clock, motion = times[1] - period * oscillator.period, oscillator.motion()
@@ -212,12 +205,9 @@ class Impacts:
             period=period,
             clock=clock,
             end_clock=end_clock,
-            approach=approach,
-            rebound=rebound,
-            loss=loss,
-            kind=kind,
             deviations_start=before,
             deviations_end=after,
+            **numbers,
         )
 
     @cached_property

@@ -64,6 +64,7 @@ from contact.integrators.grid import (
     contact_tangent,
     end_contact_step,
     force_in_flight,
+    sine_ahead,
     tip_of,
 )
 from contact.laws import HERTZ, LINEAR
@@ -152,45 +153,54 @@ def force_at_end(motion, depth, rate, b, g):
     return force, ITERATIONS
 
 
-def carried_by(numbers: AlphaNumbers, grid: Grid) -> tuple[AlphaNumbers, tuple[np.ndarray, ...]]:
-    """What the march carries from step to step: its numbers, and a, f (at the start a too) and D."""
+class AlphaState(NamedTuple):
+    """The numbers of the method, and per mode a, f and D, each of shape (n_modes,)."""
+
+    numbers: AlphaNumbers
+    a: np.ndarray
+    f: np.ndarray
+    inertia: np.ndarray
+
+
+def alpha_state(numbers: AlphaNumbers, grid: Grid) -> AlphaState:
+    """The state of the method before its first step, where a = f."""
     (alpha_m, alpha_f, beta, gamma), h, start = numbers, grid.step, accelerations(grid)
     implicit = gamma * (h * grid.motion.decay) + beta * (h * grid.motion.omega) ** 2
-    return numbers, (start, start.copy(), 1.0 - alpha_m + (1.0 - alpha_f) * implicit)
+    return AlphaState(numbers, start, start.copy(), 1.0 - alpha_m + (1.0 - alpha_f) * implicit)
 
 
 @inlined
-def predict(grid, carried, eta, swing):
-    """The step without a contact force at its end; `eta` is the 1/2 of the positions, `swing` sin(w t)."""
-    numbers, (a, f, inertia) = carried
+def predict(grid, alpha, eta, sine):
+    """The step without a contact force at its end; `eta` is the 1/2 of the positions, `sine` is sin(w t)."""
+    numbers, a, f, inertia = alpha
     h, q, v, new = grid.step, grid.q, grid.v, 1.0 - numbers.alpha_f
     for k in range(q.size):
         q[k] += h * v[k] + h * h * (eta - numbers.beta) * a[k]
         v[k] += h * (1.0 - numbers.gamma) * a[k]
         rest = numbers.alpha_f * f[k] - numbers.alpha_m * a[k]
-        a[k] = (rest + new * force_in_flight(grid, k, swing, q, v)) / inertia[k]
+        a[k] = (rest + new * force_in_flight(grid, k, sine, q, v)) / inertia[k]
         q[k] += numbers.beta * h * h * a[k]
         v[k] += numbers.gamma * h * a[k]
 
 
 @kernel
 def generalised_alpha(grid, prepared):
-    """March from the grid point reached; see `carried_by`, and sum phi^2/D."""
-    carried, moves = prepared
-    numbers, (a, f, inertia) = carried
-    place, h, q, v, motion = grid.places[0], grid.step, grid.q, grid.v, grid.motion
+    """Steps from the grid point reached; prepared: the `AlphaState`, and sum phi^2/D [1/kg]."""
+    alpha, mobility = prepared
+    numbers, a, f, inertia = alpha
+    h, q, v, motion = grid.step, grid.q, grid.v, grid.motion
     new, b, g = 1.0 - numbers.alpha_f, numbers.beta * h * h, numbers.gamma * h
-    while place.step < grid.steps:
-        swing = math.sin(motion.drive * (grid.clock + (place.step + 1) * h))
-        predict(grid, carried, 0.5, swing)
+    while grid.progress[0].step < grid.steps:
+        sine = sine_ahead(grid)
+        predict(grid, alpha, 0.5, sine)
         depth, rate = tip_of(motion, q, v)
-        push, _used = force_at_end(motion, depth, rate, b * new * moves, g * new * moves)
+        push, _used = force_at_end(motion, depth, rate, b * new * mobility, g * new * mobility)
         for k in range(q.size):
             jump = new * push_on(motion, k, push) / inertia[k]
             a[k] += jump
             q[k] += b * jump
             v[k] += g * jump
-            f[k] = force_in_flight(grid, k, swing, q, v) + push_on(motion, k, push)
+            f[k] = force_in_flight(grid, k, sine, q, v) + push_on(motion, k, push)
         status = end_contact_step(grid, tip_of(motion, q, v)[0])
         if status != DONE:
             return status
@@ -227,7 +237,7 @@ class GeneralisedAlpha(FixedStep):
     name: ClassVar[str] = "generalised-alpha"
     order: ClassVar[float] = 2.0
     laws: ClassVar[tuple[int, ...]] = (LINEAR, HERTZ)
-    march: ClassVar[Callable[..., int]] = staticmethod(generalised_alpha)
+    time_loop: ClassVar[Callable[..., int]] = staticmethod(generalised_alpha)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -274,7 +284,7 @@ class GeneralisedAlpha(FixedStep):
         largest = limit(self.numbers)
         return math.inf if largest == math.inf else stiffness_at(motion, (largest / self.step) ** 2)
 
-    def carried(self, grid: Grid) -> object:
-        """See `carried_by`; and sum phi^2/D."""
-        carried = carried_by(self.numbers, grid)
-        return carried, grid.motion.mobility(carried[1][2])
+    def prepare(self, grid: Grid) -> tuple[AlphaState, float]:
+        """The state before the first step, and sum phi^2/D [1/kg]."""
+        alpha = alpha_state(self.numbers, grid)
+        return alpha, grid.motion.mobility(alpha.inertia)

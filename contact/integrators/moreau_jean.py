@@ -44,7 +44,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -53,8 +53,16 @@ from contact.engine.recorder import add_loss, close_touch, open_touch
 from contact.flight.modal_flow import push_on
 from contact.flight.motion import DECAY, SQUARE, Motion
 from contact.integrators.fixed_step import FixedStep
-from contact.integrators.generalised_alpha import AlphaNumbers, carried_by, predict
-from contact.integrators.grid import DONE, Grid, cubic_between, ending, force_in_flight, tip_of
+from contact.integrators.generalised_alpha import AlphaNumbers, AlphaState, alpha_state, predict
+from contact.integrators.grid import (
+    DONE,
+    Grid,
+    cubic_interpolation,
+    force_in_flight,
+    make_end_of_step,
+    sine_ahead,
+    tip_of,
+)
 from contact.laws import NEWTON
 from contact.machine.compiled import inlined, kernel
 from contact.trajectory import IMPACT
@@ -73,11 +81,14 @@ def percussion_of(motion, h, depth, before, after, mobility):
 
 
 @inlined
-def path_between(grid, corner, x, h, acting):
-    """The state at the fraction `x` of a step; where the stop has struck, the path has a corner at the
-    fraction `corner`: the old velocity before it, the new one after it."""
+def path_with_corner(grid, corner, x, h, with_force):
+    """The state at the fraction `x` of a step.
+
+    Where the stop has struck, the path has a corner at the fraction `corner`: the old velocity before it, the
+    new one after it.
+    """
     if grid.recorder.marks[0].touching == 0:
-        return cubic_between(grid, corner, x, h, acting)
+        return cubic_interpolation(grid, corner, x, h, with_force)
     for k in range(grid.q.size):
         if x <= corner:
             grid.q_at[k], grid.v_at[k] = grid.q0[k] + x * h * grid.v0[k], grid.v0[k]
@@ -93,7 +104,7 @@ def write_percussion(grid, corner, span, _depth, push):
     marks, opens = recorder.marks[0], recorder.marks[0].touching == 0
     marks.touching = 1 if push > 0.0 else 0
     if push > 0.0:
-        _d, before = path_between(grid, corner, corner, h, True)
+        _d, before = path_with_corner(grid, corner, corner, h, True)
         _d, after = tip_of(grid.motion, grid.q_at, grid.v)
         if opens:
             open_touch(recorder, grid.first, start + corner * h, before, IMPACT, grid.q_at, grid.v_at)
@@ -102,20 +113,39 @@ def write_percussion(grid, corner, span, _depth, push):
         marks.touching = 1
 
 
-end_step = ending(path_between, write_percussion)
+end_step = make_end_of_step(path_with_corner, write_percussion)
+
+
+class PercussionStep(NamedTuple):
+    """The state of the generalised-alpha method, eta [1], and sum E phi^2 [1/kg].
+
+    v_{n+1} = v* - E phi p; E = 1/D for Moreau and Jean, in general see ``nonsmooth_generalised_alpha``.
+    """
+
+    alpha: AlphaState
+    eta: float
+    mobility: float
+
+
+def percussion_step(numbers: AlphaNumbers, eta: float, grid: Grid) -> PercussionStep:
+    """The numbers and the state before the first step."""
+    alpha, y = alpha_state(numbers, grid), grid.step**2 * grid.motion.row(SQUARE)
+    alpha_m, alpha_f, beta, gamma = numbers
+    share = 1.0 - alpha_m + (1.0 - alpha_f) * (beta - gamma * eta) * y
+    return PercussionStep(alpha, float(eta), grid.motion.mobility(alpha.inertia / share))
 
 
 @kernel
 def through_percussions(grid, prepared):
-    """March from the grid point reached; see `prepared_for`."""
-    carried, eta, mobility = prepared
-    numbers, (a, f, inertia) = carried
-    place, h, q, v, motion = grid.places[0], grid.step, grid.q, grid.v, grid.motion
+    """Steps from the grid point reached, with `prepared` by `percussion_step`."""
+    alpha, eta, mobility = prepared
+    numbers, a, f, inertia = alpha
+    h, q, v, motion = grid.step, grid.q, grid.v, grid.motion
     modes, new = motion.modes, 1.0 - numbers.alpha_f
-    while place.step < grid.steps:
-        swing = math.sin(motion.drive * (grid.clock + (place.step + 1) * h))
+    while grid.progress[0].step < grid.steps:
+        sine = sine_ahead(grid)
         depth, before = tip_of(motion, q, v)
-        predict(grid, carried, eta, swing)
+        predict(grid, alpha, eta, sine)
         _d, after = tip_of(motion, q, v)
         push = percussion_of(motion, h, depth, before, after, mobility)
         for k in range(q.size if push > 0.0 else 0):
@@ -125,20 +155,12 @@ def through_percussions(grid, prepared):
             q[k] += numbers.beta * h * h * change + eta * h * jump
             v[k] += numbers.gamma * h * change + jump
         for k in range(q.size if numbers.alpha_f != 0.0 else 0):
-            f[k] = force_in_flight(grid, k, swing, q, v)
+            f[k] = force_in_flight(grid, k, sine, q, v)
         depth, _rate = tip_of(motion, q, v)
         status = end_step(grid, 1.0 - eta, 1, depth, push == 0.0, push)
         if status != DONE:
             return status
     return DONE
-
-
-def prepared_for(numbers: AlphaNumbers, eta: float, grid: Grid) -> object:
-    """What the march takes: `carried_by`, eta and sum E phi^2."""
-    carried = carried_by(numbers, grid)
-    (alpha_m, alpha_f, beta, gamma), y = numbers, grid.step**2 * grid.motion.row(SQUARE)
-    share = 1.0 - alpha_m + (1.0 - alpha_f) * (beta - gamma * eta) * y
-    return carried, float(eta), grid.motion.mobility(carried[1][2] / share)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -155,7 +177,7 @@ class MoreauJean(FixedStep):
     name: ClassVar[str] = "moreau-jean"
     order: ClassVar[float] = 1.0
     laws: ClassVar[tuple[int, ...]] = (NEWTON,)
-    march: ClassVar[Callable[..., int]] = staticmethod(through_percussions)
+    time_loop: ClassVar[Callable[..., int]] = staticmethod(through_percussions)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -171,7 +193,7 @@ class MoreauJean(FixedStep):
         gained = self.step * size**2 * (1.0 - 2.0 * self.theta)
         return -1.0 if np.any(gained > lost + MARGIN * np.abs(gained)) else math.inf
 
-    def carried(self, grid: Grid) -> object:
-        """See `prepared_for`."""
+    def prepare(self, grid: Grid) -> PercussionStep:
+        """alpha_m = alpha_f = 0, beta = theta^2, gamma = eta = theta."""
         theta = float(self.theta)
-        return prepared_for(AlphaNumbers(0.0, 0.0, theta**2, theta), theta, grid)
+        return percussion_step(AlphaNumbers(0.0, 0.0, theta**2, theta), theta, grid)

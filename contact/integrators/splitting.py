@@ -64,7 +64,7 @@ from contact.flight.modal_flow import flow_over
 from contact.flight.motion import DAMPED, Motion, motion_of
 from contact.integrators.fixed_step import FixedStep
 from contact.integrators.grid import Grid
-from contact.integrators.splitting_step import Composition, Split, march, sub_flows
+from contact.integrators.splitting_step import Composition, Split, split_steps, sub_flows
 from contact.laws import HERTZ, LINEAR, LinearContact
 
 SEARCH, SEARCH_BEYOND_PI, EACH = 1, 6, 100
@@ -195,7 +195,7 @@ class Splitting(FixedStep):
     order: int = 2  # type: ignore[misc]
     name: ClassVar[str] = "splitting"
     laws: ClassVar[tuple[int, ...]] = (LINEAR, HERTZ)
-    march: ClassVar[Callable[..., int]] = staticmethod(march)
+    time_loop: ClassVar[Callable[..., int]] = staticmethod(split_steps)
     deviations: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
@@ -213,7 +213,7 @@ class Splitting(FixedStep):
         damping = motion.number1 if motion.law == LINEAR else 0.0
         return _limit(numbers.tobytes(), motion.size, self.order, self.step, damping)
 
-    def carried(self, grid: Grid) -> Split:
+    def prepare(self, grid: Grid) -> Split:
         """The composition, and its sub-flows over a step."""
         composition = COMPOSITIONS[self.order]
         return Split(composition, sub_flows(grid.motion, composition, self.step))
