@@ -62,7 +62,7 @@ class Collision:
     kick : float
         Kick of the mode-1 tip velocity over v_in [1]; NaN if `forced_by_ringing`.
     kick_velocity : float
-        The same as a velocity, positive away from the stop [m/s].
+        Kick of the mode-1 tip velocity, positive away from the stop [m/s].
     shift : float
         Jump of the mode-1 tip displacement at t_in [m].
     deceleration : float
@@ -111,8 +111,8 @@ def _higher_energy(motion: Motion, k: int, u: np.ndarray, v: np.ndarray) -> floa
 
 
 def _ringing(motion: Motion, k: int, u: np.ndarray, v: np.ndarray) -> float:
-    """Amplitude at the tip of the same motion [m]."""
-    sizes = np.hypot(u, v * motion.row(SLOWNESS))  # of zero frequency, the displacement alone
+    """Amplitude at the tip of the free motion of all modes but number `k` [m]."""
+    sizes = np.hypot(u, v * motion.row(SLOWNESS))  # a mode of zero frequency counts with its displacement
     sizes[k] = 0.0
     return motion.most_at_tip(sizes)
 
@@ -130,7 +130,7 @@ def collisions(
     Parameters
     ----------
     oscillator : ImpactOscillator, optional
-        The one that made the trajectory, which knows it: ``collisions(oscillator, trajectory)`` checks it.
+        ``collisions(oscillator, trajectory)`` checks that this oscillator has made the trajectory.
     trajectory : Trajectory
     unfinished : {"refuse", "drop"}
         What to do with a last collision that is not final when the trajectory ends.
@@ -178,8 +178,8 @@ def collisions(
 
 def _length(motion: Motion, impacts: Impacts, first: Any, last: Any) -> Any:
     """Time from the start of one touch to the release of another, to rounding in a run of any length [s]."""
-    turns = impacts.period[last] - impacts.period[first]
-    return turns * motion.period + (impacts.end_clock[last] - impacts.clock[first])
+    periods = impacts.period[last] - impacts.period[first]
+    return periods * motion.period + (impacts.end_clock[last] - impacts.clock[first])
 
 
 def _outgoing(single: Motion, k: int, impacts: Impacts, last: int) -> tuple[VirtualMotion, float]:
@@ -216,11 +216,11 @@ def _measure(motion: Motion, k: int, impacts: Impacts, rows: slice, outgoing: Vi
 
     # the outgoing hump around t_in, and its fall through the gap
     peak = outgoing.peak_near(back)
-    reach = -tip_rounding(single, outgoing.u, outgoing.v)
-    returns = not math.isnan(peak) and outgoing.at(peak)[0] >= reach
+    rounding = tip_rounding(single, outgoing.u, outgoing.v)
+    returns = not math.isnan(peak) and outgoing.at(peak)[0] >= -rounding
     restitution = delay = math.nan
     if returns and not forced:
-        s_out = peak if outgoing.at(peak)[0] <= -reach else outgoing.crossing(peak, 1.0)
+        s_out = peak if outgoing.at(peak)[0] <= rounding else outgoing.crossing(peak, 1.0)
         restitution, delay = -outgoing.at(s_out)[1] / speed, s_out - back
 
     gained = _higher_energy(motion, k, u_out, v_out) - _higher_energy(motion, k, u_free, v_free)

@@ -14,6 +14,7 @@ w), so that the tip just touches the stop at the grazing amplitude Z_g = gap / |
 from __future__ import annotations
 
 import copy
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -41,7 +42,7 @@ GREATEST_AMPLITUDE = 0.1
 
 SLOWEST_DRIVE = 0.01
 """Drive frequency over that of the lowest mode below which a warning is given: the tip then moves by less
-than 1e-4 of the base's motion, and nobody grazes a stop that way."""
+than 1e-4 of the base's motion, too little to reach a stop."""
 
 
 @final
@@ -98,7 +99,7 @@ class ImpactOscillator:
         self._suspect(self.drive)
 
     def _suspect(self, drive: HarmonicDrive) -> None:
-        """Warn of a drive that moves or turns like no exciter of this spring."""
+        """Warn of an amplitude or a frequency that no exciter of this spring has."""
         if drive.amplitude > max(GREATEST_AMPLITUDE, 10.0 * self.stop.gap) and drive.amplitude != 1.0:
             suspect(
                 f"amplitude of the drive is {drive.amplitude:g} m with a gap of {self.stop.gap:g} m; "
@@ -149,25 +150,33 @@ class ImpactOscillator:
         changed.__dict__.pop("_motion", None)
         return changed
 
+    def with_components(self, sine: float, cosine: float) -> tuple[ImpactOscillator, float]:
+        """The oscillator and the drive time [s] at which its drive has the components (S, C) [m]."""
+        angle = math.atan2(sine, cosine) % (2.0 * math.pi)
+        changed = self.with_amplitude(math.hypot(sine, cosine))
+        return changed, angle / self.driven.angular_frequency
+
     def with_excess(self, excess: float) -> ImpactOscillator:
         """The same oscillator driven at F/F_g - 1 = `excess` [1]."""
         number = require_within("excess", excess, "[1]", above=-1)
         return self.with_amplitude((1.0 + number) * self.grazing_amplitude())
 
     def tip(self, values: np.ndarray) -> np.ndarray:
-        """What modal displacements or velocities (..., n_modes) come to at the tip, shape (...): the tip's
-        displacement relative to the base [m], or its velocity [m/s]."""
+        """Tip displacement relative to the base [m], or tip velocity [m/s], shape (...), of modal
+        displacements or velocities `values`, shape (..., n_modes)."""
         return np.asarray(values) @ self.model.phi
 
     def steady_response(self) -> np.ndarray:
         """H_k, complex, shape (n_modes,) [kg^0.5]: without contact q_k(t) = Z Im(H_k exp(i 2 pi f t))."""
         if self.drive is None:
             return np.zeros(self.n_modes, dtype=complex)
-        w = self.drive.angular_frequency
-        model = self.model
+        return self.model.participation * self.drive.angular_frequency**2 / self.dynamic_stiffness()
+
+    def dynamic_stiffness(self) -> np.ndarray:
+        """omega_k^2 - w^2 + i c_k w at the drive frequency, complex, shape (n_modes,) [1/s^2]."""
+        model, w = self.model, self.driven.angular_frequency
         # (omega - w)(omega + w) keeps its digits close to resonance, where omega^2 - w^2 would lose them
-        detuning = (model.omega - w) * (model.omega + w)
-        return model.participation * w**2 / (detuning + 1j * model.decay_rate * w)
+        return (model.omega - w) * (model.omega + w) + 1j * model.decay_rate * w
 
     def tip_response(self) -> complex:
         """Tip displacement per base amplitude without contact, complex [1]."""
@@ -181,9 +190,9 @@ class ImpactOscillator:
         """Base amplitude [m] and drive time [s] at which the steady tip motion has displacement `reach` [m]
         and velocity `rate` [m/s]."""
         w = self.driven.angular_frequency
-        # x = Z Im(H e^{i w t}), x' = Z w Re(H e^{i w t})
-        turned = (rate / w + 1j * reach) / self.tip_response()
-        return abs(turned), float(np.angle(turned) % (2.0 * np.pi)) / w
+        # x = Z Im(H e^{i w t}), x' = Z w Re(H e^{i w t}), so Z e^{i w t} = C + i S with
+        phasor = (rate / w + 1j * reach) / self.tip_response()
+        return abs(phasor), float(np.angle(phasor) % (2.0 * np.pi)) / w
 
     def grazing_amplitude(self) -> float:
         """Base amplitude Z_g at which the steady tip motion just touches the stop [m]."""
@@ -207,7 +216,7 @@ class ImpactOscillator:
         return 0.5 * np.sum(v**2 + (self.model.omega * q) ** 2, axis=-1)
 
     def motion(self) -> Motion:
-        """The numbers of this oscillator, as the kernels take them; nobody may write into them."""
+        """The numbers of this oscillator, as the kernels take them; not to be written into."""
         return self._motion
 
     @cached_property
@@ -217,7 +226,7 @@ class ImpactOscillator:
 
     @cached_property
     def _at_one_metre(self) -> Motion:
-        """The numbers at an amplitude of 1 m: the same of all with another amplitude."""
+        """The numbers at an amplitude of 1 m; oscillators that `with_amplitude` has made share them."""
         return motion_of(
             self.model.omega,
             self.model.decay_rate,

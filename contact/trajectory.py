@@ -37,12 +37,12 @@ class Regime(IntEnum):
 
 
 class ImpactKind(IntEnum):
-    """What a touch of the tip is."""
+    """Kind of a touch of the tip."""
 
     IMPACT = 0
-    """One that acts on the motion."""
+    """A touch that acts on the motion."""
     GRAZE = 1
-    """One without effect, within rounding."""
+    """A touch without effect, within rounding."""
     STAY = 2
     """A stay on the wall after accumulated impacts."""
     UNDER_WAY = 3
@@ -152,11 +152,12 @@ class Impacts:
     Parameters
     ----------
     oscillator : ImpactOscillator
-        The one that moves.
+        The oscillator that moves.
     period : ndarray of int, shape (n_impacts,)
         Number of the drive period in which a touch begins.
     clock, end_clock : ndarray, shape (n_impacts,)
-        First touch and release, counted from the strobe that begins this period [s].
+        First touch and release, counted from the strobe that begins this period [s]; equal for an impact
+        law, the second NaN for a contact that had not ended.
     approach, rebound : ndarray, shape (n_impacts,)
         Tip velocity at both, positive towards the wall [m/s]; an approach before the run is NaN.
     loss : ndarray, shape (n_impacts,)
@@ -165,13 +166,6 @@ class Impacts:
         Values of `ImpactKind`.
     deviations_start, deviations_end : ndarray, shape (n_impacts, 2, n_modes)
         Deviations (u, v) just before the touch and just after the release.
-
-    Attributes
-    ----------
-    start, end : ndarray, shape (n_impacts,)
-        First touch and release [s]; equal for an impact law, NaN for a contact that had not ended.
-    displacement_start, velocity_start, displacement_end, velocity_end : ndarray, shape (n_impacts, n_modes)
-        Modal states just before the touch and just after the release.
     """
 
     oscillator: ImpactOscillator = field(repr=False)
@@ -212,44 +206,39 @@ class Impacts:
 
     @cached_property
     def start(self) -> np.ndarray:
-        """Times of the first touch [s]."""
+        """Times of the first touch [s], shape (n_impacts,)."""
         return self.period * self.oscillator.period + self.clock
 
     @cached_property
     def end(self) -> np.ndarray:
-        """Times of the release [s]."""
+        """Times of the release [s], shape (n_impacts,)."""
         return self.period * self.oscillator.period + self.end_clock
 
     @cached_property
-    def _before(self) -> tuple[np.ndarray, np.ndarray]:
-        q, q_rate = steady_motion(self.oscillator.motion(), self.clock)
-        return q + self.deviations_start[:, 0], q_rate + self.deviations_start[:, 1]
+    def _steady(self) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
+        """Steady displacements and velocities at `start`, and at `end`."""
+        motion = self.oscillator.motion()
+        return tuple(steady_motion(motion, np.fmod(at, motion.period)) for at in (self.clock, self.end_clock))
 
     @cached_property
-    def _after(self) -> tuple[np.ndarray, np.ndarray]:
-        motion = self.oscillator.motion()
-        q, q_rate = steady_motion(motion, np.fmod(self.end_clock, motion.period))
-        return q + self.deviations_end[:, 0], q_rate + self.deviations_end[:, 1]
-
-    @property
     def displacement_start(self) -> np.ndarray:
-        """Modal displacements just before the touch [m kg^0.5]."""
-        return self._before[0]
+        """Modal displacements just before the touch [m kg^0.5], shape (n_impacts, n_modes)."""
+        return self._steady[0][0] + self.deviations_start[:, 0]
 
-    @property
+    @cached_property
     def velocity_start(self) -> np.ndarray:
-        """Modal velocities just before the touch [m kg^0.5 / s]."""
-        return self._before[1]
+        """Modal velocities just before the touch [m kg^0.5 / s], shape (n_impacts, n_modes)."""
+        return self._steady[0][1] + self.deviations_start[:, 1]
 
-    @property
+    @cached_property
     def displacement_end(self) -> np.ndarray:
-        """Modal displacements just after the release [m kg^0.5]."""
-        return self._after[0]
+        """Modal displacements just after the release [m kg^0.5], shape (n_impacts, n_modes)."""
+        return self._steady[1][0] + self.deviations_end[:, 0]
 
-    @property
+    @cached_property
     def velocity_end(self) -> np.ndarray:
-        """Modal velocities just after the release [m kg^0.5 / s]."""
-        return self._after[1]
+        """Modal velocities just after the release [m kg^0.5 / s], shape (n_impacts, n_modes)."""
+        return self._steady[1][1] + self.deviations_end[:, 1]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -259,7 +248,7 @@ class Trajectory:
     Parameters
     ----------
     oscillator : ImpactOscillator
-        The one that moves.
+        The oscillator that moves.
     end : State
         The state at the end of the run.
     strobe_time : ndarray, shape (n_strobes,)

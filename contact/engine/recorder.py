@@ -20,8 +20,7 @@ from contact.oscillator import ImpactOscillator
 from contact.trajectory import IMPACT, Impacts, Run, State, Trajectory, steady_states
 
 MARKS = np.dtype([(name, "i8") for name in ("logged", "sampled", "strobed", "impacts", "touching")])
-"""Rows in use of the log, the samples and the strobes; impacts since the last strobe; whether the tip
-touches."""
+"""Rows in use of log, samples and strobes; impacts since the last strobe; whether the tip touches."""
 
 LOG = np.dtype(
     [
@@ -89,7 +88,7 @@ def put_state(row, at, u, v):
 
 @part
 def is_full(recorder):
-    """Whether a touch and the stay that may follow it do not fit into the log any more."""
+    """Whether the log has no rows left for a touch and the stay that may follow it."""
     return recorder.log.size > 0 and recorder.marks[0].logged >= recorder.log.size - 1
 
 
@@ -193,17 +192,8 @@ def trajectory_of(
 ) -> Trajectory:
     """The record as named arrays.
 
-    Parameters
-    ----------
-    recorder : Recorder
-    run : Run
-    end : State
-        The state at the end of the run, which the samples at this time get that were not written.
-    oscillator : ImpactOscillator
-    evaluations : int
-        See ``Trajectory``.
-    deviations : bool
-        Whether the record holds deviations from the steady motion, or else modal states.
+    Samples at the end of the run that were not written get the state `end`.  `deviations` tells whether the
+    record holds deviations from the steady motion, or else modal states.
     """
     n, marks, period, motion = oscillator.n_modes, recorder.marks[0], oscillator.period, oscillator.motion()
     left = slice(int(marks["sampled"]), None)
@@ -221,12 +211,12 @@ def trajectory_of(
     else:
         touches -= steady_states(motion, np.fmod(np.column_stack((log["start"], log["end"])), period))
     q[passed:][left], v[passed:][left] = end.displacement, end.velocity
-    whole, clock = np.divmod(log["start"], period)  # a method with a step counts from one strobe throughout
-    number = log["period"] + whole.astype(np.int64)
+    # a method with a step counts from one strobe throughout
+    number = log["period"] + np.floor(log["start"] / period).astype(np.int64)
     impacts = Impacts(
         oscillator=oscillator,
         period=number,
-        clock=clock,
+        clock=(log["period"] - number) * period + log["start"],
         end_clock=(log["end_period"] - number) * period + log["end"],
         approach=log["approach"].copy(),
         rebound=log["rebound"].copy(),

@@ -8,10 +8,10 @@ The motion starts with v_{1/2} = v_0 + (h/2) a_0; the velocity at a grid point i
 
 Order 2.  Stable in flight for h <= 2/omega with centred and h <= (2/omega)(sqrt(1 + zeta^2) - zeta), zeta =
 c/(2 omega), with lagged damping (T. Belytschko, in Belytschko and Hughes, Computational Methods for Transient
-Analysis, 1983, ch. 1).  In a lasting contact of stiffness k, stable if and only if h^2 (K + k phi phi^T) <=
-4, with lagged damping h^2 (K + k phi phi^T) + 2 h C <= 4, as matrices: the quadratic of a step, (z - 1)^2 +
-h c (z - 1) + h^2 kappa z = 0 with c = x*Cx and kappa = x*Kx for lagged damping, has its roots in the unit
-disc then, and one at z = -1 at the limit,
+Analysis, 1983, ch. 1).  A lasting contact of stiffness k is stable if and only if h^2 (K + k phi phi^T) <= 4,
+with lagged damping h^2 (K + k phi phi^T) + 2 h C <= 4, as matrices.  The quadratic of a step, for lagged
+damping (z - 1)^2 + h c (z - 1) + h^2 kappa z = 0 with c = x*Cx and kappa = x*Kx, then has its roots in the
+unit disc, and at the limit one at z = -1,
 
     1/k = sum_k phi_k^2 / (4/h^2 - 2 c_k/h - omega_k^2)    (without the term in c_k for centred damping).
 """
@@ -82,8 +82,8 @@ class CentralDifference(FixedStep):
     time_loop: ClassVar[Callable[..., int]] = staticmethod(central_difference)
 
     def critical_stiffness(self, motion: Motion) -> float:
-        """Contact stiffness at which the highest frequency reaches the limit, below zero if a mode is beyond
-        it [N/m]."""
+        """Contact stiffness at which the highest frequency reaches the limit [N/m]; below zero if a mode is
+        beyond the limit."""
         lag = 2.0 * motion.decay / self.step if self.lagged else 0.0
         return stiffness_at(motion, 4.0 / self.step**2 - lag)
 

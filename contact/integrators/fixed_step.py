@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from beam.parameters import InvalidValue, brief, is_number, require
 from contact.engine.recorder import Recorder, grown, open_touch, recorder_for, trajectory_of
-from contact.errors import ContactError, Diverged, StepTooLarge
+from contact.errors import Diverged, StepTooLarge
 from contact.flight.modal_flow import steady_motion
 from contact.flight.motion import Motion
 from contact.integrators.grid import DIVERGED, DONE, FULL, PROGRESS, Grid
@@ -33,7 +33,7 @@ def stiffness_at(motion: Motion, square: float | np.ndarray) -> float:
     return 1.0 / motion.mobility(slack) if np.all(slack > 0.0) else -1.0
 
 
-def _refuse(motion: Motion, run: Run, step: float, critical: float, where: dict[str, float]) -> None:
+def _refuse(motion: Motion, run: Run, step: float, critical: float, where: dict[str, Any]) -> None:
     """ValueError for a start behind the stop, StepTooLarge for a step that cannot be stable."""
     within = step * motion.most_at_tip(run.start.velocity) + 1e-12 * max(motion.gap, 1e-6)
     if CONTACT not in TOUCHES[motion.law].REGIMES and -where["gap"] > within:
@@ -45,7 +45,7 @@ def _refuse(motion: Motion, run: Run, step: float, critical: float, where: dict[
     if critical <= 0.0 or stiff > critical:
         bears = "it is unstable even in flight" if critical <= 0.0 else f"it bears {critical:.4g} N/m"
         detail = f"step {step:.4g} s, contact stiffness {stiff:.4g} N/m: {bears}"
-        raise StepTooLarge(**where, detail=detail)  # type: ignore[arg-type]
+        raise StepTooLarge(**where, detail=detail)
 
 
 def _merged(recorder: Recorder, run: Run, period: float) -> tuple[Recorder, np.ndarray]:
@@ -74,22 +74,6 @@ def _separated(recorder: Recorder, run: Run, order: np.ndarray, period: float, b
     edges = np.concatenate([[-math.inf], period * np.arange(1, passed + 1)])
     counts = np.diff(np.searchsorted(began, edges, side="right"))
     return recorder._replace(strobes=rows[:passed], counts=counts, samples=rows[passed:-1])
-
-
-def _loads(oscillator: ImpactOscillator) -> tuple[np.ndarray, np.ndarray]:
-    """Amplitudes of the inertia forces of the drive and the constant loads of all modes [N kg^-0.5]."""
-    drive = oscillator.drive
-    base = 0.0 if drive is None else drive.amplitude * drive.angular_frequency**2
-    constant = np.zeros(oscillator.n_modes) if oscillator.load is None else np.array(oscillator.load)
-    return oscillator.model.participation * base, constant
-
-
-def _failure(status: int, step: float, where: dict[str, float]) -> ContactError:
-    """The error of a run that left its time loop with `status`."""
-    if status == DIVERGED:
-        return Diverged(**where)  # type: ignore[arg-type]
-    detail = f"step {step:.4g} s: the contact has become too stiff for it"
-    return StepTooLarge(**where, detail=detail)  # type: ignore[arg-type]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -141,7 +125,7 @@ class FixedStep(Integrator):
             """The part of (q, v) that the method does not carry, shape (2, n_modes)."""
             return np.array(steady_motion(motion, clock)) if self.deviations else np.zeros((2, n))
 
-        def where(time: float, q: np.ndarray, v: np.ndarray) -> dict[str, float]:
+        def where(time: float, q: np.ndarray, v: np.ndarray) -> dict[str, Any]:
             return {"time": time, "gap": motion.gap - float(motion.tip(q)), "velocity": float(motion.tip(v))}
 
         here = where(start.time, start.displacement, start.velocity)
@@ -154,12 +138,12 @@ class FixedStep(Integrator):
             open_touch(recorder, run.first, run.clock, math.nan, UNDER_WAY, q, v)
         progress = np.zeros(1, dtype=PROGRESS)
         progress["due"] = -math.inf  # the first step has to look for samples
-        push, constant = _loads(oscillator)
+        base = 0.0 if oscillator.drive is None else oscillator.drive.amplitude * motion.drive**2
         grid = Grid(
             progress=progress,
             motion=motion,
-            push=push,
-            constant=constant,
+            push=oscillator.model.participation * base,
+            constant=np.zeros(n) if oscillator.load is None else np.array(oscillator.load),
             step=step,
             clock=run.clock,
             first=run.first,
@@ -179,7 +163,8 @@ class FixedStep(Integrator):
         if status != DONE:
             reached = run.clock + progress[0]["step"] * step
             here = where(start.time - run.clock + reached, *(np.array([grid.q, grid.v]) + steady(reached)))
-            raise _failure(status, step, here)
+            detail = f"step {step:.4g} s: the contact has become too stiff for it"
+            raise Diverged(**here) if status == DIVERGED else StepTooLarge(**here, detail=detail)
         recorder = grid.recorder
         q, v = recorder.samples[-1].reshape(2, n) + steady(run.clock + run.length)
         touching = forced and recorder.marks[0]["touching"] == 1 and motion.tip(q) > motion.gap

@@ -1,4 +1,4 @@
-"""Newmark's method, that of Hilber, Hughes and Taylor, and the generalised-alpha method: one formula.
+"""The generalised-alpha method, with Newmark's and Hilber, Hughes and Taylor's methods as members.
 
 With f = g + P sin(w t) - c v - omega^2 q - phi N the force per modal mass, N as in ``contact.laws``,
 
@@ -7,18 +7,18 @@ With f = g + P sin(w t) - c v - omega^2 q - phi N the force per modal mass, N as
     v_{n+1} = v_n + h ((1 - gamma) a_n + gamma a_{n+1})
 
 (J. Chung, G. M. Hulbert, J. Appl. Mech. 60 (1993) 371, with the forces of both ends weighted).
-alpha_m = alpha_f = 0 is N. M. Newmark's method (J. Eng. Mech. Div. ASCE 85 (1959) 67), alpha_m = 0 that of
-H. M. Hilber, T. J. R. Hughes and R. L. Taylor (Earthq. Eng. Struct. Dyn. 5 (1977) 283).  The acceleration a
-is carried from step to step; it starts as f_0.
+alpha_m = alpha_f = 0 gives N. M. Newmark's method (J. Eng. Mech. Div. ASCE 85 (1959) 67), alpha_m = 0 the
+method of H. M. Hilber, T. J. R. Hughes and R. L. Taylor (Earthq. Eng. Struct. Dyn. 5 (1977) 283).  The
+acceleration a is carried from step to step and starts as f_0.
 
 The step.  The modes are coupled by N alone.  With D = 1 - alpha_m + (1 - alpha_f)(c gamma h + omega^2 beta
-h^2) per mode and q*, v* what the step gives without the contact force at its end, the tip has
+h^2) per mode, and d*, d'* the end of the step without the contact force there, the tip has
 
     d = d* - B N,   d' = d'* - G N,   (B, G) = (beta h^2, gamma h) (1 - alpha_f) sum phi^2 / D,
 
 so that one number is unknown: N = N(d* - B N, d'* - G N).  The right side falls as N grows, hence there is
-one root; at the edge d = 0, where a dashpot makes the force jump, N takes the value in between that puts the
-tip there.
+one root.  A dashpot makes the force jump at d = 0; there N takes the value between that leaves the tip at
+d = 0.
 
 Order 2 if gamma = 1/2 - alpha_m + alpha_f, else 1.
 
@@ -37,10 +37,10 @@ linear in y,
 
     4 A + F b y,   4 + (b + F g) y,   (g + F) y,   4 (g + F - A) + g (b + F g + F^2) y   >= 0,
 
-hence the limit: for Newmark's method (A = F = 1) y <= 1/(gamma/2 - beta), none if 2 beta >= gamma >= 1/2; for
-the others of order 2 none if alpha_m <= alpha_f <= 1/2 and beta >= 1/4 + (alpha_f - alpha_m)/2.  This is
-linear theory: a contact that opens and closes can feed energy to an unconditionally stable method, a finding
-of ``studies.stability`` and no ground to refuse a step.
+hence the limit.  For Newmark's method (A = F = 1) it is y <= 1/(gamma/2 - beta), and none if 2 beta >= gamma
+>= 1/2.  Other methods of order 2 have none if alpha_m <= alpha_f <= 1/2 and beta >= 1/4 + (alpha_f -
+alpha_m)/2.  This is linear theory: a contact that opens and closes can feed energy even to an unconditionally
+stable method (``studies.stability``).  No step is refused for that.
 """
 
 from __future__ import annotations
@@ -71,8 +71,7 @@ from contact.laws import HERTZ, LINEAR
 from contact.machine.compiled import inlined, kernel
 
 MARGIN = 1e-12
-"""Slack of the conditions of stability, in units of their terms: on the limit itself they cancel up to
-rounding."""
+"""Slack of the conditions of stability, relative to their terms, which cancel up to rounding on the limit."""
 
 ROUNDING = 16 * 2.220446049250313e-16
 """Relative change of the contact force at which the iteration ends: d* carries a rounding error of its own,
@@ -100,7 +99,7 @@ class AlphaNumbers(NamedTuple):
 
 
 def limit(numbers: AlphaNumbers) -> float:
-    """Largest h omega without damping; infinite if there is none, 0 if any is too large [1]."""
+    """Largest stable h omega without damping [1]; infinite if all are stable, 0 if none is."""
     a, f, g, b = numbers.letters()
     largest = math.inf
     for constant, slope in (
@@ -208,8 +207,8 @@ def generalised_alpha(grid, prepared):
 
 
 def chung_hulbert(rho: float) -> AlphaNumbers:
-    """The numbers of order 2 that damp infinite frequencies by the factor `rho` a step and low ones least
-    (Chung and Hulbert 1993)."""
+    """The numbers of order 2 that damp infinite frequencies by the factor `rho` a step, and low frequencies
+    least (Chung and Hulbert 1993)."""
     require_within("rho", rho, "[1]", low=0, high=1)
     alpha_m, alpha_f = (2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0)
     gamma = 0.5 + (1.0 - rho) / (1.0 + rho)
@@ -267,8 +266,7 @@ class GeneralisedAlpha(FixedStep):
 
     @staticmethod
     def with_dissipation(*, step: float, rho: float, beyond_limit: bool = False) -> GeneralisedAlpha:
-        """Chung and Hulbert's choice; `rho`, from 0 to 1, is the factor by which a step damps infinite
-        frequencies."""
+        """Chung and Hulbert's choice; a step damps infinite frequencies by the factor `rho`, from 0 to 1."""
         return GeneralisedAlpha(step=step, beyond_limit=beyond_limit, **chung_hulbert(rho)._asdict())
 
     @property
@@ -277,8 +275,8 @@ class GeneralisedAlpha(FixedStep):
         return AlphaNumbers(self.alpha_m, self.alpha_f, self.beta, self.gamma)
 
     def critical_stiffness(self, motion: Motion) -> float:
-        """Contact stiffness at which the highest frequency reaches the limit, formed without damping; below
-        zero if a mode is beyond it [N/m]."""
+        """Contact stiffness at which the highest frequency reaches the limit without damping; below zero if a
+        mode is beyond the limit [N/m]."""
         if not np.all(stable(self.numbers, self.step * motion.omega, self.step * motion.decay)):
             return -1.0
         largest = limit(self.numbers)

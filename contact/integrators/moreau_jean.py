@@ -13,7 +13,7 @@ Dynamical Systems, Springer 2008).  With D = 1 + theta h c + theta^2 h^2 omega^2
 without percussion, v_{n+1} = v* - phi p/D, and p = max(0, (U* + e U_n) / sum phi^2/D) in closed form.
 
 With a = f this is the ``nonsmooth_generalised_alpha`` method of alpha_m = alpha_f = 0, gamma = theta, beta =
-theta^2, but for a weight eta = theta in place of the 1/2 in its positions, so that both march in one loop:
+theta^2, but for a weight eta = theta in place of the 1/2 in its positions.  Both have one time loop:
 
     q_{n+1} = q_n + h v_n + h^2 ((eta - beta) a_n + beta a_{n+1}) + h eta w,     w = -phi p.
 
@@ -30,10 +30,9 @@ so theta = 1/2 keeps the energy to rounding when e = 1 and loses p (1 - e) U_n/2
 any if theta <= 1/(1 + e), no flight if theta >= 1/2.
 
 Penetration: the stop acts at velocity level, so a tip that is behind it stays behind.  The test sees a
-touch up to half a step early or late: at a grid point the tip can be h U/2 behind the stop after an impact,
-h U after one with e = 0; it does not grow while the contact lasts.  A tip that hovers behind the stop may
-be touched once more while it leaves, with less than a step's change of velocity: such a touch is written
-down with an approach below zero.
+touch up to half a step early or late.  At a grid point the tip can be h U/2 behind the stop after an impact,
+h U if e = 0; this does not grow while the contact lasts.  A tip that leaves from behind the stop may be
+struck once more, by less than a step's change of velocity: such a touch has an approach below zero.
 
 The path of the step has its corner at t_n + (1 - theta) h, where q = q_n + (1 - theta) h v_n: there the
 impact is dated, from v_n to v_{n+1}, so that Newton's law holds for what is written down.
@@ -73,8 +72,10 @@ MARGIN = 1e-12
 
 @kernel
 def percussion_of(motion, h, depth, before, after, mobility):
-    """Percussion p of the stop [N s] in a step from penetration `depth` and tip velocity `before` that would
-    end, untouched, with tip velocity `after`; `mobility` is the velocity that a unit of it takes away."""
+    """Percussion p of the stop [N s] in a step from penetration `depth` and tip velocity `before`.
+
+    Without it the step would end with tip velocity `after`; a unit of it takes the velocity `mobility` away.
+    """
     if depth + 0.5 * h * before < 0.0:
         return 0.0
     return max(0.0, (after + motion.number0 * before) / mobility)
@@ -99,7 +100,7 @@ def path_with_corner(grid, corner, x, h, with_force):
 
 @inlined
 def write_percussion(grid, corner, span, _depth, push):
-    """A touch at the corner, if there was a percussion; it lasts as long as the stop acts in every step."""
+    """Write a touch at the corner if there was a percussion; it lasts while the stop acts in each step."""
     recorder, (start, h) = grid.recorder, span
     marks, opens = recorder.marks[0], recorder.marks[0].touching == 0
     marks.touching = 1 if push > 0.0 else 0
@@ -184,7 +185,7 @@ class MoreauJean(FixedStep):
         require_within("theta", self.theta, "[1]", low=0, high=1)
 
     def critical_stiffness(self, motion: Motion) -> float:
-        """Infinite, or below zero if a mode grows in flight: the method knows no contact stiffness [N/m]."""
+        """Infinite, or below zero if a mode grows in flight [N/m]; the method has no contact stiffness."""
         half = 0.5 * motion.decay
         over = np.sqrt(np.maximum(half**2 - motion.omega**2, 0.0))
         # eigenvalues -c/2 +- i d of modulus omega, or the larger of two real ones, -c/2 - k

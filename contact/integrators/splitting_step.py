@@ -16,13 +16,11 @@ N = N_0 + B (r - r_0) at fixed d, with B = c (dashpot) or k d^(3/2) chi (Hunt, C
 (J = N_0 t for B = 0).  N keeps its sign, so that max(0, k d + c d') stays where it is within a kick.  The
 energy given to the stop is J (r + r - Phi J) / 2.
 
-Within a step the motion is what the same step would give if it were shorter: it meets the grid points, and
-keeps the order of the method.  The times of touch and release are the roots of its penetration.  Far from the
-stop no kick acts, and flows compose: m steps with
+Within a step the state at the fraction x is that of a step of length x h.  This interpolation meets the grid
+points and keeps the order of the method; the roots of its penetration are the times of touch and release.
+Far from the stop no kick acts, and flows compose: m steps are one flow of length m h if
 
-    y + m h (|x_s'| + sum |phi_k| sqrt(v_k^2 + omega_k^2 u_k^2)) < 0,   y the distance behind the stop,
-
-are one flow of length m h.
+    y + m h (|x_s'| + sum |phi_k| sqrt(v_k^2 + omega_k^2 u_k^2)) < 0,   y the distance behind the stop.
 """
 
 from __future__ import annotations
@@ -91,7 +89,7 @@ def tip_at(motion, u, clock):
 
 @kernel
 def tip_rate(motion, v, sine, cosine):
-    """Rate of the penetration [m/s]; `sine`, `cosine` belong to the phase of the drive."""
+    """Rate of the penetration [m/s], with `sine` and `cosine` of the drive's phase."""
     return tip_sum(motion, motion.drive * (motion.tip_sine * cosine - motion.tip_cosine * sine), v)
 
 

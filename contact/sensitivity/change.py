@@ -136,11 +136,10 @@ class Changes:
         """Those of H_k, shape (changes, n_modes) [kg^0.5]."""
         model, change, steady = self.oscillator.model, self.model, self.oscillator.steady_response()
         w, turn = self.oscillator.driven.angular_frequency, self.pace[:, None]
-        distance = (model.omega - w) * (model.omega + w) + 1j * model.decay_rate * w
         fading = 1j * (change["decay_rate"] * w + model.decay_rate * turn)
         turned = 2.0 * (model.omega * change["omega"] - w * turn) + fading
         pushed = change["participation"] * w**2 + 2.0 * model.participation * w * turn
-        found: NDArray[np.complex128] = (pushed - steady * turned) / distance
+        found: NDArray[np.complex128] = (pushed - steady * turned) / self.oscillator.dynamic_stiffness()
         return found
 
     @cached_property

@@ -119,8 +119,7 @@ class OrbitDerivatives:
 
 def drive_of(orbit: PeriodicOrbit) -> Array:
     """(S, C) at the first touch [m]."""
-    angle = orbit.oscillator.driven.angular_frequency * orbit.phase
-    return orbit.amplitude * np.array([np.sin(angle), np.cos(angle)])
+    return orbit.oscillator.driven.components(orbit.phase)
 
 
 def at_touch(orbit: PeriodicOrbit, changes: Changes) -> tuple[Array, Array]:

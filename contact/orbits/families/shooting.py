@@ -93,13 +93,8 @@ class Shooting:
 
     def flow(self, start: Array) -> tuple[Array, Array, Array]:
         """End, tangent and record of the flow from a touch with (u, v, S, C) = `start`; see `flown`."""
-        driven, phase = self._driven(start[-2:])
+        driven, phase = self.oscillator.with_components(*start[-2:])
         return flown(driven, self.period, phase, start[:-2], self.impacts)
-
-    def _driven(self, drive: Array) -> tuple[ImpactOscillator, float]:
-        """The oscillator with the amplitude of `drive` = (S, C), and the drive time of the touch."""
-        angle, w = math.atan2(*drive), self.oscillator.driven.angular_frequency
-        return self.oscillator.with_amplitude(math.hypot(*drive)), angle % (2.0 * math.pi) / w
 
     def unknowns(self, start: Array, speed: float) -> Array:
         """(u, v) in units of their sizes, and log v over 2 pi f gap, shape (2 n_modes + 1,)."""
@@ -111,7 +106,7 @@ class Shooting:
         speed, start = self.oscillator.unit_speed * math.exp(x[-1]), x[:-1] * self._scale
         drive, grazing = rows @ np.append(start, speed) + offset, self.oscillator.grazing_amplitude()
         end, matrix, record = self.flow(np.concatenate([start, drive]))
-        driven, phase = self._driven(drive)
+        driven, phase = self.oscillator.with_components(*drive)
         stretch, reached = np.append(self._scale, speed), driven.driven.amplitude
         closing = matrix[:size] @ np.vstack([np.eye(size, size + 1), rows]) - np.eye(size, size + 1)
         orbit = PeriodicOrbit(
