@@ -40,7 +40,7 @@ GREATEST_AMPLITUDE = 0.1
 
 SLOWEST_DRIVE = 0.01
 """Drive frequency over that of the lowest mode below which a warning is given: the tip then moves by less
-than 1e-4 of the base's motion, and nobody grazes a stop that way."""
+than 1e-4 of the base's motion, too little to reach a stop."""
 
 
 def dynamic_stiffness(omega: np.ndarray, decay_rate: np.ndarray, w: float) -> np.ndarray:
@@ -104,7 +104,7 @@ class ImpactOscillator:
         self._suspect(self.drive)
 
     def _suspect(self, drive: HarmonicDrive) -> None:
-        """Warn of a drive that moves or turns like no exciter of this spring."""
+        """Warn of an amplitude or a frequency that no exciter of this spring has."""
         if drive.amplitude > max(GREATEST_AMPLITUDE, 10.0 * self.stop.gap) and drive.amplitude != 1.0:
             suspect(
                 f"amplitude of the drive is {drive.amplitude:g} m with a gap of {self.stop.gap:g} m; "
@@ -161,8 +161,8 @@ class ImpactOscillator:
         return self.with_amplitude((1.0 + number) * self.grazing_amplitude())
 
     def tip(self, values: np.ndarray) -> np.ndarray:
-        """What modal displacements or velocities (..., n_modes) come to at the tip, shape (...): the tip's
-        displacement relative to the base [m], or its velocity [m/s]."""
+        """Tip displacement relative to the base [m], or tip velocity [m/s], shape (...), of modal
+        displacements or velocities `values`, shape (..., n_modes)."""
         return np.asarray(values) @ self.model.phi
 
     def steady_response(self) -> np.ndarray:
@@ -184,9 +184,9 @@ class ImpactOscillator:
         """Base amplitude [m] and drive time [s] at which the steady tip motion has displacement `reach` [m]
         and velocity `rate` [m/s]."""
         w = self.driven.angular_frequency
-        # x = Z Im(H e^{i w t}), x' = Z w Re(H e^{i w t})
-        turned = (rate / w + 1j * reach) / self.tip_response()
-        return abs(turned), float(np.angle(turned) % (2.0 * np.pi)) / w
+        # x = Z Im(H e^{i w t}), x' = Z w Re(H e^{i w t}), so Z e^{i w t} = C + i S with
+        phasor = (rate / w + 1j * reach) / self.tip_response()
+        return abs(phasor), float(np.angle(phasor) % (2.0 * np.pi)) / w
 
     def grazing_amplitude(self) -> float:
         """Base amplitude Z_g at which the steady tip motion just touches the stop [m]."""
@@ -210,7 +210,7 @@ class ImpactOscillator:
         return 0.5 * np.sum(v**2 + (self.model.omega * q) ** 2, axis=-1)
 
     def motion(self) -> Motion:
-        """The numbers of this oscillator, as the kernels take them; nobody may write into them."""
+        """The numbers of this oscillator, as the kernels take them; not to be written into."""
         return self._motion
 
     @cached_property
@@ -220,7 +220,7 @@ class ImpactOscillator:
 
     @cached_property
     def _at_one_metre(self) -> Motion:
-        """The numbers at an amplitude of 1 m: the same of all with another amplitude."""
+        """The numbers at an amplitude of 1 m; oscillators that `with_amplitude` has made share them."""
         return motion_of(
             self.model.omega,
             self.model.decay_rate,

@@ -70,9 +70,7 @@ class Replay:
             at, detail = float(met.start[i]), f"it {words[met.kind[i]]} there"
             raise NoDerivative(time=at, gap=0.0, velocity=float(met.approach[i]), detail=detail)
         self.start, self.end = met.start, np.nan_to_num(met.end, nan=np.inf)
-        self.approach = met.approach
-        q, q_rate = steady_motion(motion, self.start % motion.period)
-        self._touch = met.displacement_start - q, met.velocity_start - q_rate
+        self.approach, self._phase, self._touch = met.approach, met.clock, met.deviations_start
         self.tangent = np.zeros((2 * n + 2, len(self.vary.scalars)))
         self.impact_time = dict[int, Array]()
         self._i, self.clock, self.u, self.v = 0, 0.0, np.zeros(n), np.zeros(n)
@@ -93,9 +91,8 @@ class Replay:
         """
         while self._i < self.start.size and self.start[self._i] <= time:
             i, n = self._i, self.u.size
-            at, (u, v) = float(self.start[i]), (part[i].copy() for part in self._touch)
+            at, phase, (u, v) = float(self.start[i]), float(self._phase[i]), self._touch[i].copy()
             self._fly(at)
-            phase = at % self.vary.motion.period
             self.impact_time[i] = -all_tip_changes(self.vary, self.tangent, u, v, phase)[0] / self.approach[i]
             until = min(time, self._next_touch(i + 1))
             tangent, record = self.tangent.copy(), np.empty((1, 4 + 2 * n))

@@ -21,7 +21,6 @@ from contact.orbits.branches.event_derivatives import peaks
 from contact.orbits.families.equations import Equations, Iterate, Point, newton
 from contact.orbits.families.periodic_orbit import PeriodicOrbit
 from contact.simulation import simulate
-from contact.virtual_motion import deviations
 
 Array = NDArray[np.float64]
 
@@ -117,9 +116,8 @@ class Curve(ABC):
             return here
         orbit = here.orbit
         hit = simulate(orbit.oscillator, orbit.state(), periods=orbit.period).impacts
-        clock, q, rate = (part[touch] for part in (hit.clock, hit.displacement_start, hit.velocity_start))
-        start = deviations(orbit.oscillator.motion(), clock, q, rate).ravel()
-        x = self.unknowns(start, float(clock), float(hit.approach[touch]), here.x)
+        start, clock = hit.deviations_start[touch].ravel(), float(hit.clock[touch])
+        x = self.unknowns(start, clock, float(hit.approach[touch]), here.x)
         return self.at(x, orbit.impacts)
 
 

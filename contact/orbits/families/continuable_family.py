@@ -27,7 +27,6 @@ from contact.oscillator import ImpactOscillator
 from contact.sensitivity.touch_flow import flow_over_periods
 from contact.simulation import simulate
 from contact.trajectory import ImpactKind, Regime, State
-from contact.virtual_motion import deviations
 
 Array = NDArray[np.float64]
 
@@ -157,9 +156,8 @@ class ContinuableFamily(ABC):
             words = "the motion has no impact to start from"
             raise NotPeriodic(time=state.time, gap=0.0, velocity=0.0, detail=words)
         i = int(np.flatnonzero(hits)[0])
-        motion, met = self.oscillator.motion(), run.impacts
-        start = deviations(motion, met.clock[i], met.displacement_start[i], met.velocity_start[i])
-        return self._solve(self.unknowns(start.ravel(), met.approach[i]), excess=self.oscillator.excess)
+        start = self.unknowns(run.impacts.deviations_start[i].ravel(), run.impacts.approach[i])
+        return self._solve(start, excess=self.oscillator.excess)
 
     def orbit(self, speed: float) -> PeriodicOrbit:
         """The orbit with approach velocity `speed` [m/s], found from the kick description."""

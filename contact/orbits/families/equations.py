@@ -59,8 +59,7 @@ def sizes_of(oscillator: ImpactOscillator) -> Array:
 
 def drive_of(orbit: PeriodicOrbit) -> Array:
     """The drive (S, C) at the first touch of an orbit [m]."""
-    angle = orbit.oscillator.driven.angular_frequency * orbit.phase
-    return orbit.amplitude * np.array([np.sin(angle), np.cos(angle)])
+    return orbit.oscillator.driven.components(orbit.phase)
 
 
 def amplitude_and_time(drive: Array, w: float) -> tuple[float, float]:

@@ -32,8 +32,7 @@ from contact.maps.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap
 from contact.orbits.families.periodic_orbit import PeriodicOrbit
 from contact.orbits.families.shooting import Shooting
 from contact.orbits.observation.repetition import free_for_good, period_of
-from contact.trajectory import State
-from contact.virtual_motion import deviations
+from contact.trajectory import State, deviations
 
 S = TypeVar("S")
 
