@@ -7,9 +7,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from letters_spring import HERTZ
 from oscillators import apart, equation_1
 from random_families import ALL, QUICK, judged_family
-from simulated_orbit import DELAYED, EQUATION_1, HERTZ, beam, settled, touches
+from simulated_orbit import DELAYED, EQUATION_1, beam, settled, touches
 
 from beam import (
     STEEL,
@@ -52,7 +53,6 @@ from contact.orbits import (
     orbit_end,
 )
 from contact.orbits.branches.events import passes
-from studies.scene import hertz_of, read_scene
 
 HARD = equation_1(20.90, NewtonRestitution(local_restitution=0.7))
 
@@ -63,7 +63,7 @@ HARD = equation_1(20.90, NewtonRestitution(local_restitution=0.7))
 @pytest.mark.parametrize("ratio", [None, 1e-3], ids=["the letter's strips", "ringing"])
 @pytest.mark.parametrize(("frequency", "period"), [(20.90, 3), (21.50, 4), (22.20, 5)])
 def test_kicks_foretell_their_own_error(ratio: float | None, frequency: float, period: int) -> None:
-    oscillator = beam(frequency, hertz_of(read_scene("tight_fold")), ratio=ratio)
+    oscillator = beam(frequency, HERTZ, ratio=ratio)
     family = Shooting(oscillator=oscillator, period=period)
     kicks, unit = family.kicks, oscillator.unit_speed
     errors = []

@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from letters_spring import HERTZ
 from oscillators import GAP, PHI, equation_1, spring
 from scipy.signal import lfilter
-from simulated_orbit import HERTZ, beam
+from simulated_orbit import beam
 
 from beam import ModalModel
 from contact import (

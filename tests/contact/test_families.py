@@ -10,8 +10,9 @@ from functools import partial
 
 import numpy as np
 import pytest
+from letters_spring import HERTZ
 from oscillators import MODES, apart, equation_1, many_modes
-from simulated_orbit import DELAYED, HERTZ, LAWS, beam, differences, settled, sizes, touches
+from simulated_orbit import DELAYED, LAWS, beam, differences, settled, sizes, touches
 
 from contact import (
     DelayedRestitution,

@@ -8,8 +8,9 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from oscillators import apart, equation_1
-from simulated_orbit import DELAYED, HERTZ, beam
+from letters_spring import HERTZ
+from oscillators import apart, equation_1, two_masses
+from simulated_orbit import DELAYED, beam
 
 from beam import ModalModel
 from contact import (
@@ -25,7 +26,6 @@ from contact import (
 from contact.orbits import Branch, Shooting, follow, follow_path
 from contact.orbits.branches.events import is_torus, torus
 from contact.sensitivity.change import change_along
-from studies.two_masses import two_masses
 
 PATH = partial(two_masses, force=1.0)
 
