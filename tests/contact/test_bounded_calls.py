@@ -64,10 +64,11 @@ def left_to_the_long_form(name: str, modes: int, entry: Entry) -> bool:
     """Whether another call or another number of modes covers this one."""
     call = entry.public_name
     if modes == 12:
-        return call != "fold_of"
+        return entry.name != "fold_of"
     if name in EXTREME:
+        again = call in THE_SAME_SEARCH or entry.name == "fold_of, near an orbit"
         alone = isinstance(EXTREME[name], DelayedRestitution)
-        return not alone and (call in THE_SAME_SEARCH or (entry.over in ("family", "speeds") and modes == 1))
+        return not alone and (again or (entry.over in ("family", "speeds") and modes == 1))
     alone = isinstance(LAWS[name], DelayedRestitution)
     return not alone and modes == 1 and call in THE_SAME_SEARCH | {"follow_path"}
 
