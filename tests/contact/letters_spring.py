@@ -31,6 +31,9 @@ from contact import HertzContact
 GAP = 0.011883925614219
 """Distance of the stop from the ball at rest [m]."""
 
+FOLDED_GAP = 0.0106993324
+"""The same for the folded strip and the straight leaf [m]."""
+
 FOLD_MODES, KICK_MODES = 10, 12
 """Numbers of modes that folds and kicks need."""
 

@@ -60,10 +60,12 @@ def beam(
     return on_stop(model, frequency, law)
 
 
-def on_stop(model: ModalModel, frequency: float, law: ContactLaw = HERTZ) -> ImpactOscillator:
-    """A spring at the letter's gap, driven at `frequency` [Hz]."""
+def on_stop(
+    model: ModalModel, frequency: float, law: ContactLaw = HERTZ, gap: float = GAP
+) -> ImpactOscillator:
+    """A spring before its stop, driven at `frequency` [Hz]."""
     return ImpactOscillator(
-        model=model, stop=Stop(gap=GAP, law=law), drive=HarmonicDrive(frequency=frequency)
+        model=model, stop=Stop(gap=gap, law=law), drive=HarmonicDrive(frequency=frequency)
     )
 
 

@@ -256,7 +256,7 @@ def test_other_units_change_nothing_but_units(name: str) -> None:
     # under a linear spring rounding of the release is the largest error: 4e-8 of the smallest mode
     assert np.max(np.abs(found.strobes_changed - q[:, :, None] * powers) / sizes) < 1e-7
     sensitive = np.abs(multiplier_derivatives(orbit_derivatives(orbit, [Change(gap=GAP)]))).max()
-    assert np.max(np.abs(multiplier_derivatives(found))) < 1e-8 * max(sensitive, 1.0)
+    assert np.max(np.abs(multiplier_derivatives(found))) < 3e-8 * max(sensitive, 1.0)
 
 
 def slopes(observed: Callable[[float], list[np.ndarray]], step: float) -> list[np.ndarray]:
@@ -269,7 +269,8 @@ def slopes(observed: Callable[[float], list[np.ndarray]], step: float) -> list[n
 def test_a_simulated_motion_against_differences(name: str) -> None:
     """Impact times, strobes and states, some of them within a touch, along a direction in all numbers and the
     start; the differences are of order four."""
-    at_rest = equation_1(22.2, DELAYED[name], gap=GAP) if name in DELAYED else beam(22.20, LAWS[name])
+    alone = name in DELAYED
+    at_rest = equation_1(22.2, DELAYED[name], gap=GAP) if alone else beam(22.20, LAWS[name], modes=6)
     oscillator, rng, n = at_rest.with_excess(0.02), np.random.default_rng(7), at_rest.n_modes
     change, kicked = random_change(oscillator, rng), 1e-5 * rng.normal(size=(2, n))
     start = State(displacement=np.full(n, 1e-5), velocity=np.zeros(n))

@@ -193,15 +193,21 @@ def test_no_orbit_next_to_the_start() -> None:
         )
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
-def test_any_event_is_a_start(curve: Branch) -> None:
-    """From a fold, where p does not tell an orbit from its neighbours, and from the ends of the range."""
-    fold = next(e for e in curve.events if e.kind == "fold")
-    found = follow_path(PATH, fold.orbit, fold.parameter, low=0.24, high=0.29, step=0.3)
+@pytest.mark.parametrize("kind", ["fold", "period doubling"])
+def test_any_event_is_a_start(curve: Branch, kind: str) -> None:
+    """At a fold p does not tell an orbit from its neighbours."""
+    start = next(e for e in curve.events if e.kind == kind and e.orbit.approach.min() > 0.01)
+    found = follow_path(PATH, start.orbit, start.parameter, low=0.24, high=0.29, step=0.3)
     inside = [e.parameter for e in curve.events if e.parameter < 0.29]
-    others = [p for p in inside if abs(p - fold.parameter) > 1e-7]
-    met = [e.parameter for e in found.events if abs(e.parameter - fold.parameter) > 1e-7]
+    others = [p for p in inside if abs(p - start.parameter) > 1e-7]
+    met = [e.parameter for e in found.events if abs(e.parameter - start.parameter) > 1e-7]
     assert sorted(met) == pytest.approx(sorted(others), abs=1e-8)
+
+
+@pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
+def test_an_end_of_the_range_is_a_start(curve: Branch) -> None:
     at_end = follow_path(PATH, curve.orbits[0], 0.24, low=0.24, high=0.26, step=0.3)
     assert at_end.parameters[0] == 0.24 < at_end.parameters[1] and at_end.ended_low == "range"
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 
 import numpy as np
 import pytest
-from letters_spring import HERTZ, folded_strip, straight_leaf
+from letters_spring import FOLDED_GAP, HERTZ, folded_strip, straight_leaf
 from oscillators import equation_1
 from simulated_orbit import EQUATION_1, LAWS, beam, on_stop, sizes, touches
 
@@ -41,7 +40,7 @@ def test_fold_and_second_impact_of_equation_1(
 def test_where_contact_is_soft_a_branch_has_several_folds() -> None:
     """A folded spring with 12 modes at 23.05 Hz: a pair of folds close together, found from no kick fold
     and from any orbit; below them the branch goes on to the graze of a second touch."""
-    oscillator = replace(on_stop(folded_strip(12), 23.05), stop=Stop(gap=0.0106993324, law=HERTZ))
+    oscillator = on_stop(folded_strip(12), 23.05, gap=FOLDED_GAP)
     family = Shooting(oscillator=oscillator, period=8)
     upper, lower = folds_of(family)
     assert (upper.excess, lower.excess) == pytest.approx((8.944e-6, 8.913e-6), rel=1e-3)
@@ -69,7 +68,7 @@ def test_where_contact_is_soft_a_branch_has_several_folds() -> None:
 def test_below_its_lowest_fold_a_branch_can_go_on_to_a_graze() -> None:
     """A straight leaf with a ball of 2 g, 20 modes, 23.05 Hz: p8 folds at 1.17e-6, turns at 2.99e-6 and lives
     on, stable, to 4.6e-7; there settled motions say so, too."""
-    oscillator = replace(on_stop(straight_leaf(20), 23.05), stop=Stop(gap=0.0106993324, law=HERTZ))
+    oscillator = on_stop(straight_leaf(20), 23.05, gap=FOLDED_GAP)
     family = Shooting(oscillator=oscillator, period=8)
     upper, lower = folds_of(family)
     assert upper.speed < lower.speed and lower.excess < upper.excess
