@@ -30,10 +30,10 @@ from typing import Any
 ROOT = Path(__file__).resolve().parent.parent
 FILES = {
     "flight/*": "flight|crossing|elementary|polynomial|derivatives",
-    "touch/* touch_flow": "contact_laws|delayed|derivatives|shooting|time_stepping",
-    "event_loop recorder": "sampling|simulation|bouncing|digits|modes",
+    "touch/* sensitivity/*": "contact_laws|delayed|derivatives|shooting|time_stepping",
+    "engine/*": "sampling|simulation|bouncing|digits|modes",
     "collision virtual_motion": "collision",
-    "orbits/*": "shooting|families|derivatives|delayed|settling|clouds|path",
+    "orbits/*/*": "shooting|families|derivatives|delayed|settling|clouds|path",
     "maps/*": "nordmark|nonlinear|sampling|lyapunov|clouds|derivatives",
     "one_mode/*": "single_mode|sampling|clouds",
 }
@@ -134,7 +134,9 @@ def chosen(seed: int, count: int, only: str) -> list[tuple[str, int, str]]:
     """(file, number, first tests) of the places: in turn from each kind and each part of `FILES`."""
     cells: dict[tuple[str, str], list[tuple[str, int, str]]] = {}
     for part, first in FILES.items():
-        for path in sorted({path for each in part.split() for path in ROOT.glob(f"contact/{each}.py")}):
+        files = {each: set(ROOT.glob(f"contact/{each}.py")) for each in part.split()}
+        assert all(files.values()), f"no file of {part}"
+        for path in sorted(set().union(*files.values())):
             file = path.relative_to(ROOT).as_posix()
             for number, (kind, *_) in enumerate(places(ast.parse(path.read_text(encoding="utf-8")))):
                 if only in f"{kind}/{file}":

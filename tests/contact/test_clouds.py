@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from letters_spring import HERTZ
 from oscillators import GAP, PHI, equation_1, spring
 from scipy.signal import lfilter
-from simulated_orbit import HERTZ, beam
+from simulated_orbit import beam
 
 from beam import ModalModel
 from contact import NewtonRestitution, NordmarkMap, NotPeriodic, State, StroboscopicMap, UnresolvedCrossing
@@ -96,12 +97,12 @@ def test_clouds_grow_as_the_inverse_root_of_the_distance_to_the_fold() -> None:
     slopes = np.diff(np.log(sizes)) / np.diff(np.log(distances))
     assert slopes == pytest.approx([-0.5, -0.5], abs=0.01)
     saddle = family.at_speed(0.9 * fold.speed, fold)
-    with pytest.raises(NotPeriodic, match="unstable orbit"):
+    with pytest.raises(NotPeriodic, match="unstable"):
         state = replace(saddle.strobe_state(), time=0.0)
         cloud(StroboscopicMap(oscillator=saddle.oscillator), state, PERIOD, deviation=1.0)
     off = strobed, state, PERIOD  # a state of another amplitude
     for refused in (lambda: cloud(*off, deviation=1.0), lambda: orbit_exponents(*off)):
-        with pytest.raises(NotPeriodic, match="from the state, of a scale of"):
+        with pytest.raises(NotPeriodic, match="scale"):
             refused()
 
 

@@ -7,19 +7,19 @@ import math
 
 import numpy as np
 import pytest
+from letters_spring import HERTZ, KICK_MODES
 from light_spring import equation_1, flow, newton, real_differs, spring, steady
 from oscillators import GAP, OMEGA
 from scipy.optimize import brentq
+from simulated_orbit import beam
 
 from beam import ModalModel
 from contact.collision import before_collision, collisions, first_collision
-from contact.drive import HarmonicDrive
 from contact.laws import ContactLaw, DelayedRestitution, HertzContact, HuntCrossley, LinearContact
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
 from contact.trajectory import Impacts, State
-from studies.scene import beam_at, read_scene
 
 # ------------------------------------------------------------------------------ each number by its definition
 
@@ -176,17 +176,10 @@ def test_minimum_of_the_outgoing_motion_ends_a_collision(before_minimum: float) 
 # --------------------------------------------------------------------------- relations between the numbers
 
 
-@pytest.fixture(scope="module")
-def letter_with_hertz() -> ImpactOscillator:
-    return beam_at(read_scene("letter", ['contact.law="hertz"']), 22.2)
-
-
 @pytest.mark.parametrize("frequency", [20.90, 22.20, 23.40])
-def test_two_relations_of_a_single_contact_of_the_letters_spring(
-    frequency: float, letter_with_hertz: ImpactOscillator
-) -> None:
+def test_two_relations_of_a_single_contact_of_the_letters_spring(frequency: float) -> None:
     """restitution^2 = (1 - kick)^2 + 2 a shift/v^2, delay = (v/a)(1 + restitution - kick), within 3e-3."""
-    oscillator = dataclasses.replace(letter_with_hertz, drive=HarmonicDrive(frequency=frequency))
+    oscillator = beam(frequency, HERTZ, modes=KICK_MODES)
     kicks, restitutions = [], []
     for excess in (1e-5, 1e-4, 1e-3, 5e-3, 1.3e-2, 3e-2, 5e-2):
         c = first_collision(oscillator.with_excess(excess))

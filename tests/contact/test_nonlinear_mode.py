@@ -198,7 +198,7 @@ def test_a_motion_beyond_its_cubic_terms_is_no_number(start: tuple[float, float]
     for cubic in (U, LEAF):
         one = mode(cubic)
         if cubic == U or abs(start[0]) + abs(start[1]) > 1.0:
-            with pytest.raises(Diverged, match=r"without bound at t = .* m from the stop"):
+            with pytest.raises(Diverged, match="without bound"):
                 one.orbit(np.array(start), 5)
     with pytest.raises(Diverged):
         mode(U).at(30.0).orbit(mode(U).steady(), 50)

@@ -205,7 +205,7 @@ def energy_steps(law: ContactLaw, order: int, step: float, periods: int) -> np.n
 
 
 @pytest.mark.parametrize(("law", "power"), [(SOFT, 2.0), (HARD, 2.5)], ids=["linear", "Hertz"])
-@pytest.mark.parametrize("order", [2, 4])
+@pytest.mark.parametrize("order", [2, pytest.param(4, marks=pytest.mark.slow)])
 def test_over_1e4_contacts_the_energy_wanders_without_drift(law, order, power):
     """Kinks of the force at touch and release give energy steps of order h^(p + 1), of either sign.
 
