@@ -41,7 +41,7 @@ def require_rule(name: str, rule: object) -> None:
 
 @dataclass(frozen=True, kw_only=True)
 class StripDamping:
-    """Internal friction of the strip and its glued layers: c = eta_k omega_k, eta_k from strain energies."""
+    """Internal friction of strip and glued layers: c = eta_k omega_k [1/s], eta_k from strain energies."""
 
     def decay_rates(self, modes: Modes) -> Array:
         """Return eta_k omega_k [1/s], shape (n_modes,)."""
