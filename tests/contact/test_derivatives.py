@@ -11,10 +11,11 @@ from dataclasses import replace
 import mpmath as mp
 import numpy as np
 import pytest
+from letters_spring import FOLDED_GAP, folded_strip
 from oscillators import MODES, equation_1, many_modes
 from random_families import ARRAYS, along, random_change, random_family, wrong_multiplier
 from scipy.optimize import brentq, linear_sum_assignment, newton
-from simulated_orbit import DELAYED, EQUATION_1, LAWS, beam
+from simulated_orbit import DELAYED, EQUATION_1, LAWS, beam, on_stop
 
 from beam import ModalChange, single_mode
 from contact import (
@@ -270,7 +271,8 @@ def test_a_simulated_motion_against_differences(name: str) -> None:
     """Impact times, strobes and states, some of them within a touch, along a direction in all numbers and the
     start; the differences are of order four."""
     alone = name in DELAYED
-    at_rest = equation_1(22.2, DELAYED[name], gap=GAP) if alone else beam(22.20, LAWS[name], modes=6)
+    strip = None if alone else on_stop(folded_strip(6), 22.20, LAWS[name], gap=FOLDED_GAP)
+    at_rest = strip or equation_1(22.2, DELAYED[name], gap=GAP)
     oscillator, rng, n = at_rest.with_excess(0.02), np.random.default_rng(7), at_rest.n_modes
     change, kicked = random_change(oscillator, rng), 1e-5 * rng.normal(size=(2, n))
     start = State(displacement=np.full(n, 1e-5), velocity=np.zeros(n))

@@ -21,9 +21,9 @@ def single(letter_scene):
 
 @pytest.fixture(scope="module")
 def rows(single):
-    """By (description, excess, pairs), on a quarter of the grid, with ends bisected to 1e-8 s."""
+    """By (description, excess, pairs), on half a grid, whose ends are bisected to 1e-8 s all the same."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(pairs, "GRID", 31)
+        patch.setattr(pairs, "GRID", 61)
         return {
             ("settles" if excess else "map", excess, row.pairs): row
             for excess in (0.0, 1e-3, 4e-3)
