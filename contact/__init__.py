@@ -13,12 +13,11 @@
 
 The subject
     The base of a spring is shaken beside a stop.  Below the grazing amplitude F_g the tip does not reach the
-    stop; the *excess* is F/F_g - 1.  A barely touching impact changes the state by the square root of the
-    overshoot under any contact law.  The derivative of the period map is infinite there, and just above
-    grazing the motion jumps to chaos or to a p_m orbit, which has one impact in m drive periods.  When the
-    drive is lowered again, this orbit persists down to a fold below grazing: *hysteresis*.  The letter
-    "Generic behavior of grazing impact oscillators" (1996) measured this and compared it with a
-    two-dimensional map.
+    stop; the *excess* is F/F_g - 1.  A slow impact changes the state by the square root of the overshoot,
+    under any contact law, so that the period map has an infinite derivative.  Just above grazing the motion
+    jumps to chaos or to a p_m orbit, with one impact in m drive periods.  When the drive is lowered again,
+    this orbit persists down to a fold below grazing: *hysteresis*.  The letter "Generic behavior of grazing
+    impact oscillators" (1996) measured this and compared it with a two-dimensional map.
 
 Words
     An *impact* is one touch.  A *collision* is all the impacts of one approach, as mode 1 feels them: mode 1

@@ -5,24 +5,24 @@ virtual motion is the steady forced tip motion plus the free deviation of mode 1
 
     y(t) = x_s(t) + phi_1 u_1(t) - gap
 
-Mode 1 is the one that carries most of a static force on the tip (``ModalModel.leading_mode``).
-Before a collision this is the incoming virtual motion, after it the outgoing one; each is continued both ways
-by the free flow of mode 1.  A collision holds all impacts from a first touch until the next minimum of the
-outgoing virtual motion, and is final when that minimum has passed.  With
+Mode 1 is the mode that carries most of a static force on the tip (``ModalModel.leading_mode``).  The incoming
+virtual motion is that before a collision, the outgoing one that after it; the free flow of mode 1 continues
+each both ways.  A collision holds all impacts from a first touch until the next minimum of the outgoing
+virtual motion, and is final when that minimum has passed.  With
 
     t_in, v_in   upward crossing of the gap by the incoming virtual motion, next to the first impact
-    t_out        first downward crossing of the gap by the outgoing one, behind its peak
+    t_out        first downward crossing of the gap by the outgoing virtual motion, after its peak
 
     restitution = -(velocity at t_out) / v_in,   delay = t_out - t_in,
     kick = -(jump of the mode-1 tip velocity) / v_in,   shift = jump of the mode-1 tip displacement,
 
-both jumps referred to t_in by mode 1's free flow.  To leading order in v_in, with a the deceleration of the
-tip,
+both jumps referred to t_in by the free flow of mode 1.  To leading order in v_in, with a the deceleration of
+the tip,
 
     restitution^2 = (1 - kick)^2 + 2 a shift / v_in^2,   delay = (v_in / a)(1 + restitution - kick).
 
-If the incoming peak stays below the gap, the ringing of higher modes made the touch (`forced_by_ringing`):
-then there is no restitution and no delay, and the kick is given as a velocity.  If the outgoing motion never
+If the incoming peak stays below the gap, the ringing of higher modes made the touch (`forced_by_ringing`).
+Restitution and delay do not exist then, and the kick is given as a velocity.  If the outgoing motion never
 reaches the gap, restitution and delay do not exist either, but the kick does.
 """
 

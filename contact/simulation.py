@@ -33,20 +33,16 @@ MOST_STORED = 2.0**28
 
 def _method(method: Integrator | str | None, law: int) -> Integrator:
     """The chosen method, or the exact one; refused if it does not know the law."""
-    if isinstance(method, str):
-        if method not in INTEGRATORS:
-            raise InvalidValue(f"method is {method!r}; it must be one of {', '.join(INTEGRATORS)}")
+    chosen: object = Exact() if method is None else method
+    if isinstance(chosen, str):
+        require(chosen in INTEGRATORS, f"method is {method!r}; it must be one of {', '.join(INTEGRATORS)}")
+        kind = INTEGRATORS[chosen]
         try:
-            chosen = INTEGRATORS[method]()
+            chosen = kind()
         except TypeError:
-            raise InvalidType(
-                f"method is {method!r}, which needs a step; give {INTEGRATORS[method].__name__}(step=...)"
-            ) from None
-    elif method is None:
-        chosen = Exact()
-    elif isinstance(method, Integrator):
-        chosen = method
-    else:
+            words = f"method is {method!r}, which needs a step; give {kind.__name__}(step=...)"
+            raise InvalidType(words) from None
+    if not isinstance(chosen, Integrator):
         raise InvalidType(f"method is {method!r}; it must be an Integrator or the name of one")
     if not chosen.accepts(law):
         known = ", ".join(LAW_NAMES[code] for code in chosen.laws)

@@ -18,6 +18,7 @@ unit disc, and at the limit one at z = -1,
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
@@ -34,7 +35,6 @@ from contact.integrators.grid import (
     contact_force,
     end_contact_step,
     force_in_flight,
-    sine_ahead,
     tip_of,
 )
 from contact.laws import HERTZ, LINEAR
@@ -45,11 +45,11 @@ from contact.machine.compiled import kernel
 def central_difference(grid, numbers):
     """Steps from the grid point reached; numbers: v_{n+1/2}, shape (n_modes,), and whether damping lags."""
     half, lagged = numbers
-    h, q, v, motion = grid.step, grid.q, grid.v, grid.motion
-    while grid.progress[0].step < grid.steps:
+    progress, h, q, v, motion = grid.progress[0], grid.step, grid.q, grid.v, grid.motion
+    while progress.step < grid.steps:
         for k in range(q.size):
             q[k] += h * half[k]
-        sine = sine_ahead(grid)
+        sine = math.sin(motion.drive * (grid.clock + (progress.step + 1) * h))
         depth, rate = tip_of(motion, q, half)
         push = contact_force(motion, depth, rate)
         for k in range(q.size):

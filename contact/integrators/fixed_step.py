@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -33,7 +33,7 @@ def stiffness_at(motion: Motion, square: float | np.ndarray) -> float:
     return 1.0 / motion.mobility(slack) if np.all(slack > 0.0) else -1.0
 
 
-def _refuse(motion: Motion, run: Run, step: float, critical: float, where: dict[str, Any]) -> None:
+def _refuse(motion: Motion, run: Run, step: float, critical: float, where: dict[str, float]) -> None:
     """ValueError for a start behind the stop, StepTooLarge for a step that cannot be stable."""
     within = step * motion.most_at_tip(run.start.velocity) + 1e-12 * max(motion.gap, 1e-6)
     if CONTACT not in TOUCHES[motion.law].REGIMES and -where["gap"] > within:
@@ -45,7 +45,7 @@ def _refuse(motion: Motion, run: Run, step: float, critical: float, where: dict[
     if critical <= 0.0 or stiff > critical:
         bears = "it is unstable even in flight" if critical <= 0.0 else f"it bears {critical:.4g} N/m"
         detail = f"step {step:.4g} s, contact stiffness {stiff:.4g} N/m: {bears}"
-        raise StepTooLarge(**where, detail=detail)
+        raise StepTooLarge(**where, detail=detail)  # type: ignore[arg-type]
 
 
 def _merged(recorder: Recorder, run: Run, period: float) -> tuple[Recorder, np.ndarray]:
@@ -125,7 +125,7 @@ class FixedStep(Integrator):
             """The part of (q, v) that the method does not carry, shape (2, n_modes)."""
             return np.array(steady_motion(motion, clock)) if self.deviations else np.zeros((2, n))
 
-        def where(time: float, q: np.ndarray, v: np.ndarray) -> dict[str, Any]:
+        def where(time: float, q: np.ndarray, v: np.ndarray) -> dict[str, float]:
             return {"time": time, "gap": motion.gap - float(motion.tip(q)), "velocity": float(motion.tip(v))}
 
         here = where(start.time, start.displacement, start.velocity)
@@ -163,10 +163,9 @@ class FixedStep(Integrator):
         if status != DONE:
             reached = run.clock + progress[0]["step"] * step
             here = where(start.time - run.clock + reached, *(np.array([grid.q, grid.v]) + steady(reached)))
-            detail = f"step {step:.4g} s: the contact has become too stiff for it"
-            raise Diverged(**here) if status == DIVERGED else StepTooLarge(**here, detail=detail)
-        recorder = grid.recorder
-        q, v = recorder.samples[-1].reshape(2, n) + steady(run.clock + run.length)
+            why = "" if status == DIVERGED else f"step {step:.4g} s: the contact has become too stiff for it"
+            raise (Diverged if status == DIVERGED else StepTooLarge)(**here, detail=why)  # type: ignore[arg-type]
+        q, v = (recorder := grid.recorder).samples[-1].reshape(2, n) + steady(run.clock + run.length)
         touching = forced and recorder.marks[0]["touching"] == 1 and motion.tip(q) > motion.gap
         regime, time = CONTACT if touching else OUTSIDE, run.last * period + run.clock_end
         end = State(displacement=q, velocity=v, time=time, regime=regime)

@@ -64,7 +64,6 @@ from contact.integrators.grid import (
     contact_tangent,
     end_contact_step,
     force_in_flight,
-    sine_ahead,
     tip_of,
 )
 from contact.laws import HERTZ, LINEAR
@@ -187,10 +186,10 @@ def generalised_alpha(grid, prepared):
     """Steps from the grid point reached; prepared: the `AlphaState`, and sum phi^2/D [1/kg]."""
     alpha, mobility = prepared
     numbers, a, f, inertia = alpha
-    h, q, v, motion = grid.step, grid.q, grid.v, grid.motion
+    progress, h, q, v, motion = grid.progress[0], grid.step, grid.q, grid.v, grid.motion
     new, b, g = 1.0 - numbers.alpha_f, numbers.beta * h * h, numbers.gamma * h
-    while grid.progress[0].step < grid.steps:
-        sine = sine_ahead(grid)
+    while progress.step < grid.steps:
+        sine = math.sin(motion.drive * (grid.clock + (progress.step + 1) * h))
         predict(grid, alpha, 0.5, sine)
         depth, rate = tip_of(motion, q, v)
         push, _used = force_at_end(motion, depth, rate, b * new * mobility, g * new * mobility)

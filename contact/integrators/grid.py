@@ -96,12 +96,6 @@ def tip_of(motion, q, v):
 
 
 @inlined
-def sine_ahead(grid):
-    """sin(w t) at the end of the next step."""
-    return math.sin(grid.motion.drive * (grid.clock + (grid.progress[0].step + 1) * grid.step))
-
-
-@inlined
 def force_in_flight(grid, k, sine, q, v):
     """f of mode `k`; `sine` is sin(w t)."""
     modes = grid.motion.modes

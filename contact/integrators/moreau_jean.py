@@ -43,7 +43,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
 import numpy as np
 
@@ -59,7 +59,6 @@ from contact.integrators.grid import (
     cubic_interpolation,
     force_in_flight,
     make_end_of_step,
-    sine_ahead,
     tip_of,
 )
 from contact.laws import NEWTON
@@ -117,34 +116,23 @@ def write_percussion(grid, corner, span, _depth, push):
 end_step = make_end_of_step(path_with_corner, write_percussion)
 
 
-class PercussionStep(NamedTuple):
-    """The state of the generalised-alpha method, eta [1], and sum E phi^2 [1/kg].
-
-    v_{n+1} = v* - E phi p; E = 1/D for Moreau and Jean, in general see ``nonsmooth_generalised_alpha``.
-    """
-
-    alpha: AlphaState
-    eta: float
-    mobility: float
-
-
-def percussion_step(numbers: AlphaNumbers, eta: float, grid: Grid) -> PercussionStep:
-    """The numbers and the state before the first step."""
+def before_percussions(numbers: AlphaNumbers, eta: float, grid: Grid) -> tuple[AlphaState, float, float]:
+    """The state before the first step, eta [1], and sum E phi^2 [1/kg] (``nonsmooth_generalised_alpha``)."""
     alpha, y = alpha_state(numbers, grid), grid.step**2 * grid.motion.row(SQUARE)
     alpha_m, alpha_f, beta, gamma = numbers
     share = 1.0 - alpha_m + (1.0 - alpha_f) * (beta - gamma * eta) * y
-    return PercussionStep(alpha, float(eta), grid.motion.mobility(alpha.inertia / share))
+    return alpha, float(eta), grid.motion.mobility(alpha.inertia / share)
 
 
 @kernel
 def through_percussions(grid, prepared):
-    """Steps from the grid point reached, with `prepared` by `percussion_step`."""
+    """Steps from the grid point reached, with `prepared` by `before_percussions`."""
     alpha, eta, mobility = prepared
     numbers, a, f, inertia = alpha
-    h, q, v, motion = grid.step, grid.q, grid.v, grid.motion
+    progress, h, q, v, motion = grid.progress[0], grid.step, grid.q, grid.v, grid.motion
     modes, new = motion.modes, 1.0 - numbers.alpha_f
-    while grid.progress[0].step < grid.steps:
-        sine = sine_ahead(grid)
+    while progress.step < grid.steps:
+        sine = math.sin(motion.drive * (grid.clock + (progress.step + 1) * h))
         depth, before = tip_of(motion, q, v)
         predict(grid, alpha, eta, sine)
         _d, after = tip_of(motion, q, v)
@@ -194,7 +182,7 @@ class MoreauJean(FixedStep):
         gained = self.step * size**2 * (1.0 - 2.0 * self.theta)
         return -1.0 if np.any(gained > lost + MARGIN * np.abs(gained)) else math.inf
 
-    def prepare(self, grid: Grid) -> PercussionStep:
+    def prepare(self, grid: Grid) -> object:
         """alpha_m = alpha_f = 0, beta = theta^2, gamma = eta = theta."""
         theta = float(self.theta)
-        return percussion_step(AlphaNumbers(0.0, 0.0, theta**2, theta), theta, grid)
+        return before_percussions(AlphaNumbers(0.0, 0.0, theta**2, theta), theta, grid)

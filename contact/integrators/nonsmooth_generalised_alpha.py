@@ -35,7 +35,7 @@ from typing import ClassVar
 from contact.integrators.fixed_step import FixedStep
 from contact.integrators.generalised_alpha import chung_hulbert
 from contact.integrators.grid import Grid
-from contact.integrators.moreau_jean import PercussionStep, percussion_step, through_percussions
+from contact.integrators.moreau_jean import before_percussions, through_percussions
 from contact.laws import NEWTON
 
 
@@ -59,6 +59,6 @@ class NonsmoothGeneralisedAlpha(FixedStep):
         super().__post_init__()
         chung_hulbert(self.rho)
 
-    def prepare(self, grid: Grid) -> PercussionStep:
+    def prepare(self, grid: Grid) -> object:
         """The numbers of Chung and Hulbert for rho, and eta = 1/2."""
-        return percussion_step(chung_hulbert(self.rho), 0.5, grid)
+        return before_percussions(chung_hulbert(self.rho), 0.5, grid)

@@ -7,10 +7,9 @@ F is the flow of the driven spring without the stop, K the contact acting on vel
 (``contact.integrators.splitting_step``), so that the error is that of the composition and vanishes off the
 stop.  Sources: G. Strang, SIAM J. Numer. Anal. 5 (1968) 506; S. Blanes, P. C. Moan, J. Comput. Appl. Math.
 142 (2002) 313, the six-stage method of order 4 for second-order equations that begins with a kick.
-
-The choice at order 4.  At equal numbers of kicks its error in a contact that stays closed (a free body on a
-spring) is 1/140 of that of M. Suzuki's five steps of order 2 (Phys. Lett. A 146 (1990) 319) and 1/420 of that
-of H. Yoshida's three (Phys. Lett. A 150 (1990) 262).  The limits of stability of the three are alike.
+At equal numbers of kicks its error in a contact that stays closed (a free body on a spring) is 1/140 of that
+of M. Suzuki's five steps of order 2 (Phys. Lett. A 146 (1990) 319) and 1/420 of that of H. Yoshida's three
+(Phys. Lett. A 150 (1990) 262), at alike limits of stability.
 
 Order in a collision.  The expansions of the error need derivatives of the force that do not exist at d = 0.
 A step over a touch at which the force grows as d^p adds an error of order h^(p + 1), whatever the method.
