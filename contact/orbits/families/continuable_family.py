@@ -105,7 +105,8 @@ class ContinuableFamily(ABC):
         speed, start = self.oscillator.unit_speed * math.exp(x[-1]), x[:-1] * self._sizes
         drive, grazing = rows @ np.append(start, speed) + offset, self.oscillator.grazing_amplitude()
         driven, phase = driven_at(self.oscillator, drive)
-        shot = shot_of(driven, phase, start, self.period, self.flow(np.append(start, drive)), speed)
+        flown = self.flow(np.append(start, drive))
+        shot = shot_of(driven, phase, start, self.period, flown, grazing, speed)
         stretch = np.append(self._sizes, speed)
         closing = shot.flow @ np.vstack([np.eye(n, size), rows]) - np.eye(n, size)
         return Iterate(

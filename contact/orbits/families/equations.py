@@ -92,18 +92,19 @@ def shot_of(
     start: Array,
     period: int,
     flown: tuple[Array, Array, Array],
+    grazing: float,
     speed: float | None = None,
 ) -> Shot:
     """The motion from a touch with deviations `start`, shape (2 n_modes,), at drive time `phase` [s].
 
-    `flown` holds its end, tangent and record (``touch_flow.flow_over_periods``).  `speed` is the approach
-    speed [m/s], if it is known more exactly than from the record.
+    `flown` holds its end, tangent and record (``touch_flow.flow_over_periods``); `grazing` is the grazing
+    amplitude [m].  `speed` is the approach speed [m/s], if it is known more exactly than from the record.
     """
     (u, v), (end, flow, record), n = start.reshape(2, -1), flown, start.size
     orbit = PeriodicOrbit(
         oscillator=oscillator,
         period=period,
-        excess=oscillator.excess,
+        excess=oscillator.driven.amplitude / grazing - 1.0,
         speed=float(record[0, 2]) if speed is None else speed,
         phase=phase,
         displacement=u,
@@ -129,7 +130,7 @@ def shoot(
     Raises the errors of ``touch_flow.flow_over_periods``.
     """
     flown = flow_over_periods(oscillator, period, phase, start, impacts, sensitivities.variation)
-    shot = shot_of(oscillator, phase, start, period, flown)
+    shot = shot_of(oscillator, phase, start, period, flown, oscillator.grazing_amplitude())
     rates = deviation_rates(oscillator.motion(), shot.orbit.displacement, shot.orbit.velocity)
     shot.flow[:, start.size + 2 :] += np.multiply.outer(rates, period * sensitivities.period)
     return shot
