@@ -108,9 +108,7 @@ def _solved(orbit: PeriodicOrbit, changes: Sensitivities, *, at_speed: bool) -> 
     """Derivatives of z with respect to the parameters, and last to the speed or the amplitude itself, shape
     (2 n_modes + 2, P + 1)."""
     n, sizes = orbit.deviations.size, sizes_of(orbit.oscillator)
-    shot = shoot(
-        orbit.oscillator, orbit.phase, orbit.deviations, orbit.period, orbit.impacts, sensitivities=changes
-    )
+    shot = shoot(orbit.oscillator, orbit.phase, orbit.deviations, orbit.period, orbit.impacts, changes)
     equations = np.delete(slopes_of(shot, changes), n + 1 if at_speed else n + 2, axis=0)
     unit = orbit.oscillator.unit_speed if at_speed else orbit.amplitude
     scale = np.concatenate([sizes, np.full(2, orbit.amplitude)])

@@ -91,7 +91,7 @@ class PathCurve(Curve):
         here = self.path(self.value(x))
         driven, phase = driven_at(here, z[-3:-1])
         several = Sensitivities(oscillator=driven, changes=(change,))
-        shot = shoot(driven, phase, z[:n], self.like.period, touches, sensitivities=several)
+        shot = shoot(driven, phase, z[:n], self.like.period, touches, several)
         orbit, weight = shot.orbit, np.concatenate([self.scale[:n], [here.stop.gap, self.scale[-2]]])
         q = steady_motion(driven.motion(), phase)[0]
         height = float(here.tip(orbit.displacement + q)) - driven.motion().gap

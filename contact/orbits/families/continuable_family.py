@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from beam.parameters import is_whole, require, require_kind, require_within, shown
 from contact.errors import NotPeriodic
-from contact.orbits.families.equations import Iterate, driven_at, newton, shoot, sizes_of
+from contact.orbits.families.equations import Iterate, driven_at, newton, shot_of, sizes_of
 from contact.orbits.families.kick import KickFamily
 from contact.orbits.families.periodic_orbit import PeriodicOrbit
 from contact.oscillator import ImpactOscillator
@@ -104,7 +104,8 @@ class ContinuableFamily(ABC):
         speed, start = self.oscillator.unit_speed * math.exp(x[-1]), x[:-1] * self._sizes
         drive, grazing = rows @ np.append(start, speed) + offset, self.oscillator.grazing_amplitude()
         driven, phase = driven_at(self.oscillator, drive)
-        shot = shoot(driven, phase, start, self.period, self.impacts, speed=speed)
+        flown = self.flow(np.append(start, drive))
+        shot = shot_of(driven, phase, start, self.period, flown, grazing, speed)
         stretch = np.append(self._sizes, speed)
         closing = shot.flow @ np.vstack([np.eye(n, size), rows]) - np.eye(n, size)
         return Iterate(

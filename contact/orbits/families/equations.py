@@ -85,31 +85,25 @@ class Shot(NamedTuple):
     flow: Array
 
 
-def shoot(
+def shot_of(
     oscillator: ImpactOscillator,
     phase: float,
     start: Array,
     period: int,
-    impacts: int,
-    *,
+    flown: tuple[Array, Array, Array],
+    grazing: float,
     speed: float | None = None,
-    sensitivities: Sensitivities | None = None,
 ) -> Shot:
     """The motion from a touch with deviations `start`, shape (2 n_modes,), at drive time `phase` [s].
 
-    `speed` is the approach speed if it is known already [m/s].  The P parameters are given by
-    `sensitivities`.  Raises the errors of ``touch_flow.flow_over_periods``.
+    `flown` holds its end, tangent and record (``touch_flow.flow_over_periods``); `grazing` is the grazing
+    amplitude [m].  `speed` is the approach speed [m/s], if it is known more exactly than from the record.
     """
-    n, vary = start.size, None if sensitivities is None else sensitivities.variation
-    end, flow, record = flow_over_periods(oscillator, period, phase, start, impacts, vary)
-    u, v = start.reshape(2, -1)
-    if sensitivities is not None:
-        rates = deviation_rates(oscillator.motion(), u, v)
-        flow[:n, n + 2 :] += np.multiply.outer(rates, period * sensitivities.period)
+    (u, v), (end, flow, record), n = start.reshape(2, -1), flown, start.size
     orbit = PeriodicOrbit(
         oscillator=oscillator,
         period=period,
-        excess=oscillator.excess,
+        excess=oscillator.driven.amplitude / grazing - 1.0,
         speed=float(record[0, 2]) if speed is None else speed,
         phase=phase,
         displacement=u,
@@ -120,6 +114,25 @@ def shoot(
         residual=math.nan,
     )
     return Shot(orbit, end - start, flow[:n])
+
+
+def shoot(
+    oscillator: ImpactOscillator,
+    phase: float,
+    start: Array,
+    period: int,
+    impacts: int,
+    sensitivities: Sensitivities,
+) -> Shot:
+    """The motion from a touch with its derivatives with respect to the P parameters of `sensitivities`.
+
+    Raises the errors of ``touch_flow.flow_over_periods``.
+    """
+    flown = flow_over_periods(oscillator, period, phase, start, impacts, sensitivities.variation)
+    shot = shot_of(oscillator, phase, start, period, flown, oscillator.grazing_amplitude())
+    rates = deviation_rates(oscillator.motion(), shot.orbit.displacement, shot.orbit.velocity)
+    shot.flow[:, start.size + 2 :] += np.multiply.outer(rates, period * sensitivities.period)
+    return shot
 
 
 def tip_slopes(orbit: PeriodicOrbit, sensitivities: Sensitivities) -> tuple[Array, Array]:
