@@ -1,6 +1,6 @@
 # make study   the main study on the letter's scene
 # make site    the documentation, with the page of what is stored: results/site/index.html
-# make test    the tests, but for the long forms of some
+# make test    the tests, but for the long forms of some; each names at its end what it skipped and why
 # make test-slow  these long forms
 # make test-generic  what computes numbers, on the instructions that every processor has
 # make lint    style and types
@@ -21,10 +21,10 @@ site: $(READY)
 
 # `python -m pytest` puts this folder first on the path, so that what is tested is what lies here.
 test: $(READY)
-	$(ONE_THREAD) $(BIN)/python -m pytest -n 2 -m "not slow"
+	$(ONE_THREAD) $(BIN)/python -m pytest -n 2 -rs -m "not slow"
 
 test-slow: $(READY)
-	$(ONE_THREAD) $(BIN)/python -m pytest -n 2 -m slow
+	$(ONE_THREAD) $(BIN)/python -m pytest -n 2 -rs -m slow
 
 # LAPACK and NumPy's loops round otherwise there; kernels compiled in this way are not kept.
 NOT_NUMBERS := all_studies benchmarks docstrings every_study film generic_processor imports own_scenes page readme run \
@@ -37,7 +37,7 @@ test-generic: $(READY)
 	export NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c '$(SIMD)')" && \
 	export NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES= OPENBLAS_CORETYPE=Prescott $(ONE_THREAD) && \
 	$(BIN)/python -m contact.machine.warm_up && \
-	$(BIN)/python -m pytest -n 2 -m "not slow" $(NUMBERS)
+	$(BIN)/python -m pytest -n 2 -rs -m "not slow" $(NUMBERS)
 
 lint: $(READY)
 	$(BIN)/python -m ruff check beam contact studies tests

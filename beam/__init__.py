@@ -1,7 +1,7 @@
-"""Linear vibration of thin leaf springs, down to the few numbers that an impact needs.
+"""Linear vibration of thin leaf springs, from the drawing to a modal model.
 
-A strip of sheet metal follows a plane centreline, held at its ends by a moving base, and carries a ball that
-can touch a stop. This package takes it from drawing to modal model:
+A strip of sheet metal follows a plane centreline. A moving base holds its ends, and it carries a ball that
+can touch a stop:
 
 >>> from beam import BRASS, MeasuredDecay, StripSection, Tip, assemble, folded_u, natural_modes, reduce
 >>> strip = StripSection(material=BRASS, width=12e-3, thickness=0.65e-3)
@@ -14,20 +14,20 @@ can touch a stop. This package takes it from drawing to modal model:
 [24.5, 148.9, 378.4, 718.4, 1169.7]
 
 The steps are types: `Material`, `StripSection`, `Centreline`, `LeafSpring`, `Discretization` (finite elements
-in the arc length), `Modes` (mass-normalised), `ModalModel`. Any of them may be made by hand: `single_mode` is
-the classical oscillator with one degree of freedom, and a `ModalModel` of measured numbers is as good as a
-computed one. `exact_modes` solves the frequency equation of the straight beam, to check the elements by; and
-`backbone_coefficient` says how the frequency depends on the amplitude, `periodic_motion` how a spring swings
-at finite rotations.
+in the arc length), `Modes` (mass-normalised), `ModalModel`. Each of them may be made by hand, for instance a
+`ModalModel` of measured numbers; `single_mode` is the oscillator with one degree of freedom. `exact_modes`
+solves the frequency equation of the straight beam, as a check of the elements. At finite rotations,
+`backbone_coefficient` gives the frequency over the amplitude and `periodic_motion` the motion itself.
 
-SI units throughout; parameters are keyword-only and frozen, and `dataclasses.replace` varies them. Wrong
-values raise `ValueError` or `TypeError` with a sentence that names the field, the value, the unit and what is
-valid; valid ones that can hardly be meant bring a warning, `SuspiciousValue`. Every module opens with the
-equations it solves. A name is imported where it is first used: one who brings a `ModalModel` of measured
-modes loads no finite elements.
+All units are SI. Parameters are keyword-only and frozen, and `dataclasses.replace` varies them. Wrong values
+raise `ValueError` or `TypeError` with one sentence (see `parameters`); values that can hardly be meant bring
+a warning, `SuspiciousValue`. A name is imported at its first use, so that a `ModalModel` of measured modes
+loads no finite elements.
 """
 
+import ast
 from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -59,39 +59,22 @@ if TYPE_CHECKING:
 else:
 
     def __getattr__(name):
-        """The public name, from the module that defines it."""
-        for module, names in _NAMES.items():
-            if name in names:
-                globals()[name] = getattr(import_module(f"{__name__}.{module}"), name)
-                return globals()[name]
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        """Return the public name from the module that defines it."""
+        if name not in _MODULES:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        globals()[name] = getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
+        return globals()[name]
 
 
-_RULES = ("ConstantLossFactor", "ConstantRatio", "Damping", "MeasuredDecay", "Rayleigh", "StripDamping")
-_CHANGES = ("damping_ratio_change", "decay_rate_change", "free_period_change", "frequency_change")
-_NAMES = {
-    "assembly": ("Discretization", "assemble", "default_elements"),
-    "backbone": ("Backbone", "backbone_coefficient"),
-    "centreline": ("Arc", "Centreline", "Straight"),
-    "damping": _RULES,
-    "export": ("write_frames", "write_mode_motion", "write_modes"),
-    "finite_rotation": ("FiniteRotation",),
-    "frequency_equation": ("ExactModes", "UniformBeam", "exact_modes", "frequency_function"),
-    "harmonic_balance": ("PeriodicMotion", "periodic_motion"),
-    "material": ("ALUMINA", "BRASS", "DAMPING_TAPE", "Material", "STEEL"),
-    "modal_change": (*_CHANGES, "mode_changes", "tip_mass_change"),
-    "modal_model": ("ModalChange", "ModalModel", "single_mode"),
-    "modes": ("Modes", "ShapesAlong", "natural_modes"),
-    "parameters": ("InvalidType", "InvalidValue", "Refusal", "SuspiciousValue"),
-    "reduction": ("reduce",),
-    "section": ("Layer", "StripSection"),
-    "spring": ("LeafSpring", "Readout", "Support", "Tip"),
-    "spring_mesh": ("BALL", "LAYER", "STRIP", "SpringMesh", "solid_spring"),
-    "spring_shapes": ("cantilever", "flat_u", "folded_u", "straight_strip"),
+_MODULES = {
+    alias.name: node.module
+    for node in ast.walk(ast.parse(Path(__file__).read_text(encoding="utf-8")))
+    if isinstance(node, ast.ImportFrom) and node.level == 1
+    for alias in node.names
 }
-"""Module -> its public names."""
+"""Module of each public name, read from the imports above, so that each name stands once."""
 
-__all__ = sorted(name for names in _NAMES.values() for name in names)
+__all__ = sorted(_MODULES)
 
 
 def __dir__() -> list[str]:

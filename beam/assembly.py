@@ -1,14 +1,13 @@
-"""The finite-element model of a leaf spring: pieces of strip, tied together, with supports and tip.
+"""Finite-element model of a leaf spring: pieces of strip, tied together, with supports and tip.
 
 Each piece of the centreline has elements of its own (`strip_element`), tied together by T (`pieces`):
 
-    K = T^T K_pieces T,     M = T^T M_pieces T + the tip,     b = T^T b_pieces + the tip,
+    K = T^T K_pieces T,     M = T^T M_pieces T + the tip,     b = T^T b_pieces + the tip.
 
-and the tip, of mass M_t [kg] and rotary inertia J [kg m^2], adds for test functions (v, z)
+At its place the tip, of mass M_t [kg] and rotary inertia J [kg m^2], adds for test functions (v, z) and the
+drive direction e
 
-    M_t (u.. v + w.. z) + J (w' + k u)..(z' + k v)  =  -z_base.. M_t (e_t v + e_n z)     where it sits,
-
-e the drive direction.
+    M_t (u.. v + w.. z) + J (w' + k u)..(z' + k v)  =  -z_base.. M_t (e_t v + e_n z).
 """
 
 from __future__ import annotations
@@ -17,45 +16,45 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.linalg import splu
 
-from .parameters import require, require_array, require_kind
-from .pieces import meshes, place, shared_elements, tied, ties
+from .parameters import Array, require, require_array, require_kind
+from .pieces import meshed_pieces, motion_at, shared_elements, tie_matrix, tied_matrices
 from .spring import HELD, LeafSpring, Tip
 from .strip_element import PieceMesh
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Discretization:
-    """A leaf spring in n_dofs degrees of freedom, supports built in: M x'' + K x = -b z'' + tip * force.
+    """A leaf spring in n_dofs degrees of freedom with its supports: M x'' + K x = -b z'' + tip * force.
 
     Parameters
     ----------
     spring : LeafSpring
     stiffness, mass : sparse array, shape (n_dofs, n_dofs)
-        K and M, the tip's mass and rotary inertia included.
+        K [N/m] and M [kg, for displacements], with the tip's mass and rotary inertia.
     loss_stiffness : sparse array, shape (n_dofs, n_dofs)
         K with each stiffness times its loss factor.
     base_load : ndarray, shape (n_dofs,)
-        b.
+        b [kg].
     tip : ndarray, shape (n_dofs,)
         The displacement of the tip in the drive direction is ``tip @ x`` [m].
     readouts : dict of str to ndarray, shape (n_dofs,)
-        Likewise for the read-outs [m or rad].
+        The value of a read-out is its row times x [m or rad].
     pieces : tuple of PieceMesh
+        Meshed pieces of the centreline.
     ties : sparse array, shape (unknowns of all pieces, n_dofs)
-        T: the unknowns of the pieces, end to end, are ``ties @ x``.
+        T: the unknowns of all pieces, end to end, are ``ties @ x``.
     """
 
     spring: LeafSpring
     stiffness: csr_array
     mass: csr_array
     loss_stiffness: csr_array
-    base_load: NDArray[np.float64]
-    tip: NDArray[np.float64]
-    readouts: dict[str, NDArray[np.float64]]
+    base_load: Array
+    tip: Array
+    readouts: dict[str, Array]
     pieces: tuple[PieceMesh, ...]
     ties: csr_array
 
@@ -79,8 +78,8 @@ class Discretization:
             return None
         return float(self.tip @ splu(self.stiffness.tocsc()).solve(self.tip))
 
-    def strain_energies(self, shapes: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Strain energies of shapes, from their strains rather than from K.
+    def strain_energies(self, shapes: Array) -> Array:
+        """Return the strain energies of `shapes`, computed from their strains rather than from K.
 
         Parameters
         ----------
@@ -89,8 +88,8 @@ class Discretization:
         Returns
         -------
         ndarray, shape (2, n_pieces, n)
-            In stretching and in bending of each piece [J, for shapes in m]. Their sum is x^T K x / 2 with
-            some four digits more: K loses them to the stiffness of single elements.
+            Energies of stretching and of bending of each piece [J, for shapes in m]. Their sum is x^T K x / 2
+            with some four more digits, which K loses to the stiffness of single elements.
         """
         energies, first, unknowns = [], 0, self.ties @ shapes
         for piece in self.pieces:
@@ -102,9 +101,9 @@ class Discretization:
 def default_elements(spring: LeafSpring) -> tuple[int, ...]:
     """Return the number of elements on each piece of `spring` that `assemble` takes by default.
 
-    The straight pieces share 120 by length: four for each half wave of mode 30. An arc has 48 for each half
-    turn, whatever its size: a cubic w follows the rigid motion of an arc element of angle a only to order
-    a^4, and the bending so feigned competes with the small true bending of a tight bend.
+    The straight pieces share 120 by length: four for each half wave of mode 30. An arc of any size has 48 for
+    each half turn: a cubic w follows the rigid motion of an arc element of angle a only to order a^4. The
+    spurious bending of this error must stay small beside the small true bending of a tight bend.
     """
     require_kind("spring", spring, LeafSpring, "a LeafSpring")
     return shared_elements(spring.centreline, 120, 48)
@@ -119,40 +118,40 @@ def assemble(
     ----------
     spring : LeafSpring
     elements : int or sequence of int, optional
-        Elements on every piece, or on each; `default_elements` by default. Inside a piece the node nearest to
-        the tip is moved there. Rounding grows as the fourth power of the number of elements on the strip:
-        2e-7 of the first frequency at 300, 5e-5 at 1200.
+        Elements on every piece, or one number for each; `default_elements` by default. Inside a piece the
+        node nearest to the tip is moved there. Rounding errors grow as the fourth power of the number of
+        elements on the strip: 2e-7 of the first frequency at 300, 5e-5 at 1200.
     shortening : bool
-        Keep the motion along a straight strip too: it comes with finite rotations only.
+        Keep the motion along a straight strip too, which only finite rotations excite.
     """
     require_kind("spring", spring, LeafSpring, "a LeafSpring")
     line, drive = spring.centreline, np.array([*spring.drive, 0.0])
-    pieces = meshes(PieceMesh, spring, default_elements(spring) if elements is None else elements)
+    pieces = meshed_pieces(PieceMesh, spring, default_elements(spring) if elements is None else elements)
     held = np.array([HELD[support][:3] for support in spring.supports])
-    t = ties(pieces, held, line.is_straight and not shortening)
-    stiffness, mass, loss = tied(pieces, t)
-    moved = place(line, pieces, t, spring.tip_at)
-    mass = mass + carried(spring.tip, moved)
-    tip = drive @ moved[:3]
+    ties = tie_matrix(pieces, held, line.is_straight and not shortening)
+    stiffness, mass, loss = tied_matrices(pieces, ties)
+    motion = motion_at(line, pieces, ties, spring.tip_at)
+    tip, matrices = drive @ motion[:3], (stiffness, mass + tip_inertia(spring.tip, motion), loss)
+    stiffness, mass, loss = (csr_array(0.5 * (matrix + matrix.T)) for matrix in matrices)
     readouts = {}
     for name, readout in spring.readouts.items():
-        seen = place(line, pieces, t, readout.at)
-        readouts[name] = seen[5] if readout.quantity == "rotation" else drive @ seen[:3]
+        motion = motion_at(line, pieces, ties, readout.at)
+        readouts[name] = motion[5] if readout.quantity == "rotation" else drive @ motion[:3]
     loads = np.concatenate([piece.base_load(line, drive) for piece in pieces])
     return Discretization(
         spring=spring,
-        stiffness=csr_array(0.5 * (stiffness + stiffness.T)),
-        mass=csr_array(0.5 * (mass + mass.T)),
-        loss_stiffness=csr_array(0.5 * (loss + loss.T)),
-        base_load=t.T @ loads + spring.tip.mass * tip,
+        stiffness=stiffness,
+        mass=mass,
+        loss_stiffness=loss,
+        base_load=ties.T @ loads + spring.tip.mass * tip,
         tip=tip,
         readouts=readouts,
         pieces=pieces,
-        ties=t,
+        ties=ties,
     )
 
 
-def carried(tip: Tip, moved: NDArray[np.float64]) -> csr_array:
-    """Return the mass matrix of a tip that moves and turns by these rows, (6, n_dofs)."""
-    moves, turns = csr_array(moved[:3]), csr_array(moved[3:])
-    return tip.mass * (moves.T @ moves) + tip.rotary_inertia * (turns.T @ turns)
+def tip_inertia(tip: Tip, motion: Array) -> csr_array:
+    """Return the mass matrix of a tip that moves with a cross-section, as `motion_at` gives it."""
+    displacement, rotation = csr_array(motion[:3]), csr_array(motion[3:])
+    return tip.mass * (displacement.T @ displacement) + tip.rotary_inertia * (rotation.T @ rotation)

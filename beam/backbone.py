@@ -1,13 +1,13 @@
-"""How the frequency of a leaf spring depends on its amplitude: the coefficient of its backbone.
+"""Backbone coefficient of a leaf spring: the dependence of its frequency on the amplitude.
 
 Free vibration of mode 1, the first that moves the tip, at the tip amplitude A [m] has the frequency
 
     f = f_0 (1 + kappa (A/L)^2 + ...),                                                            [Hz]
 
-L [m] the first straight run from s = 0 (all of a straight strip; the whole length where none is straight).
-kappa comes from the least model that gives it: mode 1, A y_1 cos(q) with y_1 of unit tip displacement, and
-the response A^2 (y_0 + y_2 cos(2 q)) of the whole strip to it, at rest and at twice the frequency. With V of
-``beam.finite_rotation`` to the fourth order, V_4 at y_1 and the second-order force g = dV_3/dy there,
+L [m] the length of the first straight run from s = 0, or of the whole centreline if none is straight. The
+motion is mode 1, A y_1 cos(q) with y_1 of unit tip displacement, and the response A^2 (y_0 + y_2 cos(2 q)) of
+the whole strip at rest and at twice the frequency. V is that of ``beam.finite_rotation`` to the fourth order,
+with V_4 and the second-order force g = dV_3/dy at y_1:
 
     K y_0 = -g/2,     (K - 4 W^2 M) y_2 = -g/2,     m = y_1^T M y_1,     W = 2 pi f_0,
 
@@ -19,17 +19,15 @@ G. B. Whitham's averaged Lagrangian (Linear and Nonlinear Waves (1974), section 
 
     kappa/L^2 = 4 V/(m W^2)  [elastic]  - 4 T/(m W^2)  [inertial].
 
-A mode with (1 + a x^2) x'' + a x x'^2 + W^2 (x + b x^3) = 0 has these two parts with b = (8/3) elastic/L^2
-and a = -4 inertial/L^2; (3/8) b - a/4 is its kappa/L^2.
-
-A single leaf stiffens a little, whatever its supports and tip: +0.019 ... +0.026. A folded U softens: its
-sway presses one leg and pulls the other, which bow.
+One mode with (1 + a x^2) x'' + a x x'^2 + W^2 (x + b x^3) = 0 has kappa/L^2 = (3/8) b - a/4: its two parts
+are equal for b = (8/3) elastic/L^2 and a = -4 inertial/L^2.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import dropwhile, takewhile
 
 from scipy.sparse.linalg import splu
 
@@ -40,14 +38,14 @@ from .spring import LeafSpring
 
 @dataclass(frozen=True, kw_only=True)
 class Backbone:
-    """Amplitude dependence of mode 1.
+    """Dependence of the frequency of mode 1 on the amplitude.
 
     Parameters
     ----------
     elastic, inertial : float
-        The parts of kappa from strain energy and kinetic energy [1].
+        Parts of kappa from strain energy and from kinetic energy [1].
     length : float
-        L [m].
+        Length L of the first straight run [m].
     """
 
     elastic: float
@@ -56,17 +54,17 @@ class Backbone:
 
     @property
     def kappa(self) -> float:
-        """(f/f_0 - 1) (L/A)^2 for small A [1], the sum of both parts."""
+        """(f/f_0 - 1) (L/A)^2 for small A [1]: the sum of both parts."""
         return self.elastic + self.inertial
 
     @property
     def stiffness(self) -> float:
-        """b [1/m^2]."""
+        """Coefficient b of the equivalent single mode [1/m^2]."""
         return 8.0 / 3.0 * self.elastic / self.length**2
 
     @property
     def inertia(self) -> float:
-        """a [1/m^2]."""
+        """Coefficient a of the equivalent single mode [1/m^2]."""
         return -4.0 * self.inertial / self.length**2
 
 
@@ -77,7 +75,7 @@ def backbone_coefficient(spring: LeafSpring, elements: int | Sequence[int] | Non
     ----------
     spring : LeafSpring
     elements : int or sequence of int, optional
-        On every piece, or on each, as for ``beam.assemble``.
+        Elements on every piece, or one number for each, as for ``beam.assemble``.
 
     Raises
     ------
@@ -104,10 +102,6 @@ def backbone_coefficient(spring: LeafSpring, elements: int | Sequence[int] | Non
 
 
 def first_straight(line: Centreline) -> float:
-    """Length of the first straight run, of one or more pieces [m]; all of the curve if none is straight."""
-    bent = [piece.curvature != 0.0 for piece in line.pieces]
-    if all(bent):
-        return line.length
-    begin = bent.index(False)
-    end = [*bent, True].index(True, begin)
-    return sum(piece.length for piece in line.pieces[begin:end])
+    """Return the length of the first straight run, of one or more pieces, or else of the whole curve [m]."""
+    onwards = dropwhile(lambda piece: piece.curvature, line.pieces)
+    return sum(piece.length for piece in takewhile(lambda piece: not piece.curvature, onwards)) or line.length

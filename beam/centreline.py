@@ -1,13 +1,13 @@
 """Plane curves made of straight pieces and circular arcs.
 
-A centreline lies in the x-y plane and is walked by arc length s [m]. With theta(s) the angle of its tangent
-to the x axis and k(s) = theta'(s) its curvature [1/m], positive where it turns left,
+A centreline lies in the x-y plane, with arc length s [m]. theta(s) is the angle of its tangent to the x axis
+[rad], k(s) = theta'(s) its curvature [1/m], positive where it turns left:
 
     t = (cos theta, sin theta, 0),   n = (-sin theta, cos theta, 0),   t x n = (0, 0, 1),
     r' = t,   t' = k n,   n' = -k t.
 
-Each piece has constant curvature; pieces join with a common tangent, so k may jump but t may not. The strip's
-width lies along z, and all motion is in the plane.
+Each piece has constant curvature. Pieces join with a common tangent: k may jump, t may not. The width of the
+strip lies along z.
 """
 
 from __future__ import annotations
@@ -18,19 +18,17 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .parameters import InvalidValue, require, require_array, require_each, require_within
+from .parameters import Array, InvalidValue, require, require_array, require_each, require_within
 
 
 @dataclass(frozen=True, kw_only=True)
 class Straight:
-    """A straight piece.
+    """A straight piece, of `curvature` 0.
 
     Parameters
     ----------
     length : float
-        [m], positive.
-
-    Its curvature is 0 and not given.
+        Length [m], positive.
     """
 
     length: float
@@ -47,9 +45,9 @@ class Arc:
     Parameters
     ----------
     radius : float
-        [m], positive.
+        Radius [m], positive.
     angle : float
-        Turn of the tangent [rad], positive to the left, negative to the right, not zero.
+        Rotation of the tangent [rad], positive to the left, negative to the right, not zero.
     """
 
     radius: float
@@ -78,9 +76,9 @@ class Centreline:
     Parameters
     ----------
     pieces : sequence of Straight and Arc
-        At least one.
+        At least one piece.
     start : tuple of two floats
-        Where s = 0 lies, (x, y) [m].
+        Point (x, y) at s = 0 [m].
     heading : float
         Angle of the tangent to the x axis at s = 0 [rad].
     """
@@ -97,7 +95,7 @@ class Centreline:
         require_within("heading", self.heading, "rad")
 
     @property
-    def joints(self) -> NDArray[np.float64]:
+    def joints(self) -> Array:
         """Arc lengths of the ends of the pieces [m], shape (n_pieces + 1,), from 0 to `length`."""
         return np.concatenate(([0.0], np.cumsum([piece.length for piece in self.pieces])))
 
@@ -107,7 +105,7 @@ class Centreline:
         return float(self.joints[-1])
 
     @property
-    def curvatures(self) -> NDArray[np.float64]:
+    def curvatures(self) -> Array:
         """Signed curvature of each piece [1/m], shape (n_pieces,)."""
         return np.array([piece.curvature for piece in self.pieces])
 
@@ -117,12 +115,9 @@ class Centreline:
         return not np.any(self.curvatures)
 
     def piece_at(self, s: ArrayLike) -> NDArray[np.intp]:
-        """Index of the piece that holds each arc length; at a joint, the piece that starts there.
+        """Return the index of the piece at each arc length s [m]; at a joint, of the piece that starts there.
 
-        Raises
-        ------
-        ValueError
-            For an arc length off the curve (by more than rounding).
+        An arc length off the curve, by more than rounding, raises ValueError.
         """
         s = require_array("s", s, "m", words="arc lengths")
         outside = (s < -1e-12 * self.length) | (s > (1.0 + 1e-12) * self.length)
@@ -131,27 +126,27 @@ class Centreline:
         inside = np.searchsorted(self.joints, s, side="right") - 1
         return np.clip(inside, 0, len(self.pieces) - 1)
 
-    def angle(self, s: ArrayLike) -> NDArray[np.float64]:
-        """Angle of the tangent to the x axis [rad], same shape as s."""
+    def angle(self, s: ArrayLike) -> Array:
+        """Return the angle of the tangent to the x axis [rad], same shape as s."""
         at, s = self.piece_at(s), np.asarray(s, dtype=np.float64)
         turns = self.heading + np.concatenate(([0.0], np.cumsum(self.curvatures * np.diff(self.joints))))
         return turns[at] + self.curvatures[at] * (s - self.joints[at])
 
-    def frame(self, s: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Tangents and normals, each of shape (..., 3)."""
+    def frame(self, s: ArrayLike) -> tuple[Array, Array]:
+        """Return tangents and normals [1], each of shape (..., 3)."""
         theta = self.angle(s)
         cos, sin, zero = np.cos(theta), np.sin(theta), np.zeros_like(theta)
         return np.stack([cos, sin, zero], axis=-1), np.stack([-sin, cos, zero], axis=-1)
 
-    def axes(self, s: ArrayLike) -> NDArray[np.float64]:
-        """Rows t, n and e_z of the frame, shape (..., 3, 3)."""
+    def axes(self, s: ArrayLike) -> Array:
+        """Return the rows t, n and e_z of the frame [1], shape (..., 3, 3)."""
         t, n = self.frame(s)
         return np.stack([t, n, np.broadcast_to([0.0, 0.0, 1.0], t.shape)], axis=-2)
 
-    def points(self, s: ArrayLike) -> NDArray[np.float64]:
-        """Points in space [m], shape (..., 3).
+    def points(self, s: ArrayLike) -> Array:
+        """Return the points r(s) in space [m], shape (..., 3).
 
-        The chord over d = s - s_i of a piece of curvature k has the direction of the tangent at its middle:
+        The chord over d = s - s_i of a piece is parallel to the tangent at its middle:
         r = r_i + d sinc(k d / 2) t(s_i + d / 2).
         """
         at, ends, s = self.piece_at(s), self.joints, np.asarray(s, dtype=np.float64)
@@ -160,12 +155,9 @@ class Centreline:
         return corners[at] + _chord(s - ends[at], self.curvatures[at], self.angle(ends[:-1])[at])
 
 
-def _chord(
-    d: NDArray[np.float64], curvature: NDArray[np.float64], heading: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Vector across an arc of length d that starts at angle `heading` [m], shape (..., 3)."""
+def _chord(d: Array, curvature: Array, heading: Array) -> Array:
+    """Return the chord [m], shape (..., 3), of an arc of length d that starts at the angle `heading`."""
     half = 0.5 * curvature * d
-    along = heading + half
-    return (d * np.sinc(half / np.pi))[..., None] * np.stack(
-        [np.cos(along), np.sin(along), 0.0 * along], axis=-1
-    )
+    angle = heading + half
+    direction = np.stack([np.cos(angle), np.sin(angle), 0.0 * angle], axis=-1)
+    return (d * np.sinc(half / np.pi))[..., None] * direction

@@ -1,13 +1,11 @@
 """Mode shapes and motions as files for ParaView: .vtu meshes, and .pvd lists of them in time.
 
-The mesh is the solid of `spring_mesh`; its cell array `part` is 0 in the strip, 1 in glued layers and 2 on
-the ball. Displacements are real vectors of three components [m], and as small as they are in the theory:
-drawn large, points move along straight lines.
+The mesh is the solid of `spring_mesh`. Its cell array `part` is 0 in the strip, 1 in glued layers and 2 on
+the ball. Displacements are real vectors of three components [m], linear in the amplitude: drawn large, points
+still move along straight lines.
 
-Every file is written under another name in the same folder and then takes its own: it is complete or absent.
-A .pvd lists only frames that are there, also where writing was interrupted.
-
-pyvista is imported only when something is written: writing opens no window and needs no graphics library.
+Every file is written under a temporary name and then renamed, so that it is complete or absent. A .pvd lists
+only existing frames, also if writing was interrupted. Writing needs pyvista but no graphics library.
 """
 
 from __future__ import annotations
@@ -53,22 +51,22 @@ def write_modes(
     Parameters
     ----------
     path : Path
-        Ending in .vtu.
+        Name of the file, ending in .vtu.
     modes : Modes
     decay_rates : array_like, shape (n_modes,), optional
-        [1/s].
+        Decay rates to store with the modes [1/s].
     largest : float
         Largest displacement of each shape [m].
     ball_radius : float, optional
-        [m]; no ball without it.
+        Radius of the ball [m]; no ball without it.
 
     Returns
     -------
     Path
         The file. Point arrays: one for each mode, named by `mode_name`. Field arrays: frequencies_hz,
-        decay_rates_per_s if they are given, coupled (0 or 1), largest_displacement_m.
+        decay_rates_per_s if given, coupled (0 or 1), largest_displacement_m.
     """
-    _require_suffix(path, ".vtu")
+    require(path.suffix == ".vtu", f"path is {path}; its name must end in .vtu")
     mesh = solid_spring(modes, ball_radius=ball_radius)
     grid = mesh.grid()
     for mode, shape in enumerate(mesh.normalised(largest)):
@@ -91,24 +89,22 @@ def write_mode_motion(
     largest: float = 0.01,
     ball_radius: float | None = None,
 ) -> tuple[Path, ...]:
-    """Write one period of one mode, undamped, that repeats without a seam.
-
-    The frame after the last would be the first again, and is not written.
+    """Write one undamped period of one mode, which repeats without a seam.
 
     Parameters
     ----------
     path : Path
-        Ending in .pvd.
+        Name of the list, ending in .pvd.
     modes : Modes
     mode : int
-        From 0.
+        Index of the mode, from 0.
     frames : int
-        An even number, at least 2: with an odd one two frames in the middle would show the same shape.
+        An even number, at least 2; an odd one would show one shape twice in the middle.
     moved : bool
-        Whether the points themselves move, which is seen without any filter. If not, they stay, and the array
-        `displacement` [m] is there for ParaView's filter Warp By Vector.
+        Whether the points themselves move. In any case the array `displacement` [m] is written, for
+        ParaView's filter Warp By Vector.
     largest, ball_radius
-        As for `write_modes`.
+        As for `write_modes` [m].
 
     Returns
     -------
@@ -121,15 +117,14 @@ def write_mode_motion(
     mesh = solid_spring(modes, ball_radius=ball_radius)
     period = 2.0 * math.pi / float(modes.omega[mode]) if modes.omega[mode] > 0.0 else 1.0
     shape = mesh.normalised(largest)[mode]
-    fields = {"frequency_hz": [modes.frequencies_hz[mode]], "largest_displacement_m": [largest]}
 
     def grids() -> Iterator[tuple[float, Any]]:
         for number in range(frames):
             displacement = math.cos(2.0 * math.pi * number / frames) * shape
             grid = mesh.grid(mesh.points + displacement if moved else None)
             grid.point_data["displacement"] = displacement
-            for name, values in fields.items():
-                grid.field_data[name] = np.asarray(values)
+            grid.field_data["frequency_hz"] = modes.frequencies_hz[mode : mode + 1]
+            grid.field_data["largest_displacement_m"] = np.array([largest])
             yield period * number / frames, grid
 
     return write_frames(path, grids())
@@ -141,16 +136,16 @@ def write_frames(path: Path, frames: Iterable[tuple[float, Any]]) -> tuple[Path,
     Parameters
     ----------
     path : Path
-        Ending in .pvd.
+        Name of the list, ending in .pvd.
     frames : iterable of (time [s], pyvista.UnstructuredGrid)
-        Written as they come; each gets its time as the field array TimeValue.
+        Grids to write; each gets its time as the field array TimeValue.
 
     Returns
     -------
     tuple of Path
         The .pvd file, then its frames. Frames of an earlier and longer motion of the same name are removed.
     """
-    _require_suffix(path, ".pvd")
+    require(path.suffix == ".pvd", f"path is {path}; its name must end in .pvd")
     folder = path.with_name(f"{path.stem}_frames")
     folder.mkdir(parents=True, exist_ok=True)
     files, lines = [], []
@@ -180,14 +175,10 @@ def _write_grid(path: Path, grid: Any, fields: Mapping[str, ArrayLike]) -> Path:
 
 @contextmanager
 def _in_one_step(path: Path) -> Iterator[Path]:
-    """Yield a hidden name with the same ending; what was written there becomes `path`, or nothing does."""
+    """Yield a hidden name with the same ending; a file written there becomes `path` if all goes well."""
     temporary = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
     try:
         yield temporary
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
-
-
-def _require_suffix(path: Path, suffix: str) -> None:
-    require(path.suffix == suffix, f"path is {path}; its name must end in {suffix}")

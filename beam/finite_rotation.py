@@ -4,18 +4,18 @@ With u, w [m] along tangent and normal of the centreline at rest, k its curvatur
 
     r' = (1 + a) t + b n,     a = u' - k w,     b = w' + k u,                                     [1]
 
-the strip is stretched by e = |r'| - 1 and its tangent has turned by the angle p with sin p = b/(1 + e).
-Euler-Bernoulli's strip stores
+the stretch of the strip is e = |r'| - 1 and the rotation of its tangent the angle p, sin p = b/(1 + e). The
+strain energy of Euler-Bernoulli's strip, which has no shear, is
 
-    V = int EA e^2/2 + EI p'^2/2 ds,     p' = b'/sqrt(1 - b^2),                                   [J]
+    V = int EA e^2/2 + EI p'^2/2 ds,     p' = b'/sqrt(1 - b^2).                                   [J]
 
-without shear. Of e, a few parts in 1e5, the bending takes no notice: whether a moment goes with the turn per
-length at rest or per length now is a question of that order as well, which the theory of thin strips leaves
-open. Rotations stay below a quarter turn. Everything else is linear in u and w, as it is for small motions:
-supports, masses, the tip and its displacement, so that mesh, ties and M are those of `assembly`, but for u,
-which a straight strip has here too: its end comes nearer as it bends.
+p' neglects e, a few parts in 1e5. The theory of thin strips leaves terms of this order open: whether a moment
+belongs to the curvature per length at rest or per stretched length. Rotations stay below a quarter turn.
 
-Under rigid rotations of any angle e and p' vanish to the last digit, on arcs as well (b is the sine of it).
+Supports, masses, the tip and its displacement are linear in u and w, as in small motions. Mesh, ties and M
+are therefore those of `assembly`. A straight strip keeps u here, since its end comes nearer as it bends.
+
+Under a rigid rotation of any angle, e and p' vanish to rounding, also on arcs (b is the sine of the angle).
 """
 
 from __future__ import annotations
@@ -31,21 +31,19 @@ from scipy.sparse import block_diag, bsr_array, csr_array, vstack
 
 from .assembly import Discretization, assemble
 from .modes import natural_modes
-from .parameters import require
+from .parameters import Array, require
 from .pieces import Field
 from .spring import LeafSpring
 from .strip_element import bend, stretch
 
-Array = NDArray[np.float64]
-
 
 def _strains(u: Field, w: Field, k: float) -> tuple[Field, ...]:
-    """a, b and b' of an element's functions."""
+    """Return a, b [1] and b' [1/m] of an element's functions."""
     return stretch(u, w, k), w.grad[0] + k * u, bend(u, w, k)
 
 
 def _stretched(a: Array, b: Array) -> Array:
-    """e [1], with all digits where a and b are small."""
+    """Return e [1] without loss of digits for small a and b."""
     return (a * (2.0 + a) + b**2) / (1.0 + np.hypot(1.0 + a, b))
 
 
@@ -56,11 +54,11 @@ class FiniteRotation:
     Parameters
     ----------
     linear : Discretization
-        The model of small motions: K = df/dx at rest, M, b and the row of the tip.
+        Model of small motions: K = df/dx at rest, M, b and the row of the tip.
     strains : tuple of three sparse arrays, shape (n_points, n_dofs)
-        a, b, b' at Gauss's points of all elements.
+        Matrices of a, b, b' at Gauss's points of all elements.
     axial, bending : ndarray, shape (n_points,)
-        EA and EI there, times the length that a point stands for [N m, N m^3].
+        EA and EI there, times the weight of the point in the integral [N m, N m^3].
     """
 
     linear: Discretization
@@ -70,7 +68,7 @@ class FiniteRotation:
 
     @classmethod
     def of(cls, spring: LeafSpring, elements: int | Sequence[int] | None = None) -> FiniteRotation:
-        """The model of a spring, with so many `elements` on every piece or on each, as for `assemble`."""
+        """Return the model of a `spring`, with `elements` as for `assemble`."""
         linear = assemble(spring, elements, shortening=True)
         kinds, stiff = [], []
         for piece in linear.pieces:
@@ -83,7 +81,7 @@ class FiniteRotation:
 
     @cached_property
     def first_mode(self) -> tuple[float, Array]:
-        """omega_1 [rad/s] and shape, with unit tip displacement, of the first mode that moves the tip.
+        """omega_1 [rad/s] and shape, of unit tip displacement, of the first mode that moves the tip.
 
         ValueError if the supports leave a rigid motion, or none of the first ten modes moves the tip.
         """
@@ -95,17 +93,17 @@ class FiniteRotation:
         return float(modes.omega[moving[0]]), modes.shapes[:, moving[0]] / modes.phi[moving[0]]
 
     def _moduli(self, x: Array) -> tuple[Array, Array]:
-        """`axial` and `bending`, to multiply strains of displacements of the shape of x."""
+        """Return `axial` and `bending` in a shape that multiplies strains of x."""
         return self.axial.reshape(tail := (-1,) + (1,) * (x.ndim - 1)), self.bending.reshape(tail)
 
     def energy(self, x: Array) -> Array:
-        """V [J] of displacements x [m], shape (n_dofs, ...)."""
+        """Return V [J] of displacements x [m], shape (n_dofs, ...)."""
         a, b, change = (strain @ x for strain in self.strains)
         stretched = _stretched(a, b)
         return 0.5 * (self.axial @ stretched**2 + self.bending @ (change**2 / (1.0 - b**2)))
 
     def force(self, x: Array) -> Array:
-        """f = dV/dx [N], of the shape of x."""
+        """Return f = dV/dx [N], of the shape of x [m], (n_dofs, ...)."""
         a, b, change = (strain @ x for strain in self.strains)
         axial, bending = self._moduli(x)
         e, left = _stretched(a, b), 1.0 / (1.0 - b**2)
@@ -114,7 +112,7 @@ class FiniteRotation:
         return sum(strain.T @ stress for strain, stress in zip(self.strains, stresses, strict=True))
 
     def densities(self, x: Array) -> Array:
-        """Second derivatives of the energy of each point in (a, b, b') [N m]; shape (3, 3, n_points, ...)."""
+        """Return second derivatives of each point's energy in (a, b, b') [N m], (3, 3, n_points, ...)."""
         a, b, change = (strain @ x for strain in self.strains)
         axial, bending = self._moduli(x)
         long, left = np.hypot(1.0 + a, b), 1.0 / (1.0 - b**2)
@@ -128,13 +126,13 @@ class FiniteRotation:
         return found
 
     def stiffness(self, densities: NDArray[Any]) -> csr_array:
-        """The matrix of `densities` at one x, or of a sum of them over several, (3, 3, n_points)."""
+        """Return d^2V/dx^2 [N/m] from `densities` at one x, (3, 3, n_points), or from a sum of such."""
         points = np.arange(self.axial.size + 1)
         blocks = bsr_array((np.moveaxis(densities, 2, 0), points[:-1], points))
         return csr_array(self._by_point.T @ (blocks @ self._by_point))
 
     @cached_property
     def _by_point(self) -> csr_array:
-        """a, b and b' point by point, (3 n_points, n_dofs)."""
+        """Matrix of a, b and b' point by point, (3 n_points, n_dofs)."""
         order = np.arange(3 * self.axial.size).reshape(3, -1).T.ravel()
         return csr_array(vstack(self.strains, format="csr")[order])

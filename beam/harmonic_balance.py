@@ -1,17 +1,17 @@
-"""Periodic motion of a leaf spring at finite rotations, free or driven, and how deviations from it decay.
+"""Periodic motion of a leaf spring at finite rotations, free or driven, and the decay of deviations from it.
 
-With f of `finite_rotation`, motions
+With f of `finite_rotation`, the motion is
 
-    M x'' + mu M x' + f(x) = -b z'',     x(t) = sum_k c_k e^(i k w t),     z'' = Z e^(i w t) + conjugate,
+    M x'' + mu M x' + f(x) = -b z'',     x(t) = sum_k c_k e^(i k w t),     z'' = Z e^(i w t) + conjugate.
 
-in which the tip turns back at t = 0 at a given displacement, are found by harmonic balance: Newton's method
-for the c_k of |k| <= H and for two numbers more, which the two conditions on the tip decide. Forces and
-their derivatives are sampled at 4 (H + 1) times (T. M. Cameron and J. H. Griffin, J. Appl. Mech. 56 (1989)
-149). Free motion: w and mu are the two numbers, and mu comes out as zero. Driven motion: both parts of Z are.
+Harmonic balance solves for the c_k, |k| <= H, by Newton's method. At t = 0 the tip has a given displacement
+and is at rest. These two conditions determine two more unknowns: w and mu of a free motion (mu turns out
+zero), or both parts of Z of a driven one. Forces and their derivatives are sampled at 4 (H + 1) times (T. M.
+Cameron and J. H. Griffin, J. Appl. Mech. 56 (1989) 149).
 
-Deviations e^(lambda t) sum_k d_k e^(i k w t) are those lambda at which the matrix of the same equations, with
-i k w + lambda in place of i k w, is singular (G. W. Hill's method). The effective period is that of the one
-linear mode under the same drive whose deviations turn as fast as those of mode 1.
+Deviations are e^(lambda t) sum_k d_k e^(i k w t). Their lambda make the matrix of the equations singular if
+i k w + lambda replaces i k w (G. W. Hill's method). The effective period is that of the single linear mode
+under the same drive whose deviations have the same frequency as those of mode 1.
 """
 
 from __future__ import annotations
@@ -25,11 +25,10 @@ from scipy.sparse import block_array, csc_array, csr_array
 from scipy.sparse.linalg import splu
 
 from .finite_rotation import FiniteRotation
-from .parameters import require, require_kind, require_whole, require_within
+from .parameters import Array, require, require_kind, require_whole, require_within
 
 MOST_STEPS = 30
-"""Of Newton's method; it takes four or five."""
-
+"""Largest number of steps of Newton's method; it takes four or five."""
 CLOSE = 1e-11
 """Relative change at which Newton's method ends."""
 
@@ -44,11 +43,11 @@ class PeriodicMotion:
     omega : float
         Angular frequency w [rad/s].
     decay_rate : float
-        mu of the motion, on every mode alike [1/s].
+        Decay rate mu of every mode [1/s].
     coefficients : ndarray of complex, shape (2 H + 1, n_dofs)
-        c_k, k = -H ... H [m].
+        Fourier coefficients c_k, k = -H ... H [m].
     drive : complex
-        Z [m/s^2]: the base moves with the acceleration amplitude 2 |Z|.
+        Z [m/s^2]; the acceleration amplitude of the base is 2 |Z|.
     """
 
     model: FiniteRotation
@@ -59,26 +58,26 @@ class PeriodicMotion:
 
     @property
     def harmonics(self) -> NDArray[np.intp]:
-        """-H ... H."""
+        """Numbers of the harmonics, -H ... H."""
         most = len(self.coefficients) // 2
         return np.arange(-most, most + 1)
 
-    def tip(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Displacement of the tip at `time` [s], [m]."""
-        turning = np.exp(1j * self.omega * np.multiply.outer(np.asarray(time), self.harmonics))
-        return (turning @ (self.coefficients @ self.model.linear.tip)).real
+    def tip(self, time: Array) -> Array:
+        """Return the displacement of the tip [m] at `time` [s], of the same shape."""
+        waves = np.exp(1j * self.omega * np.multiply.outer(np.asarray(time), self.harmonics))
+        return (waves @ (self.coefficients @ self.model.linear.tip)).real
 
-    def _sampled(self) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
-        """e^(i k w t) at the samples, (times, harmonics), and x there, (n_dofs, times)."""
+    def _sampled(self) -> tuple[NDArray[np.complex128], Array]:
+        """Return e^(i k w t) at the sampled times, (times, harmonics), and x [m] there, (n_dofs, times)."""
         times = 4 * (len(self.coefficients) // 2 + 1)
-        turning = np.exp(2j * np.pi * np.multiply.outer(np.arange(times) / times, self.harmonics))
-        return turning, (turning @ self.coefficients).real.T
+        waves = np.exp(2j * np.pi * np.multiply.outer(np.arange(times) / times, self.harmonics))
+        return waves, (waves @ self.coefficients).real.T
 
     def residual(self) -> NDArray[np.complex128]:
-        """What is left of the equations, (2 H + 1, n_dofs) [N]."""
-        turning, x = self._sampled()
+        """Return the residual of the equations [N], shape (2 H + 1, n_dofs)."""
+        waves, x = self._sampled()
         model, rate = self.model, 1j * self.harmonics * self.omega
-        forces = turning.conj().T @ model.force(x).T / len(turning)
+        forces = waves.conj().T @ model.force(x).T / len(waves)
         forces += (rate * (rate + self.decay_rate))[:, None] * (self.coefficients @ model.linear.mass)
         for k, part in ((1, self.drive), (-1, np.conj(self.drive))):
             forces[self.harmonics == k] += part * model.linear.base_load
@@ -86,17 +85,17 @@ class PeriodicMotion:
 
     @cached_property
     def _stiffness(self) -> list[csr_array]:
-        """Fourier coefficients of df/dx along the motion, those of order k at [k], -2 H ... 2 H."""
-        turning, x = self._sampled()
-        densities, times = self.model.densities(x), np.arange(len(turning)) / len(turning)
+        """Fourier coefficients of df/dx along the motion [N/m], order k at index k, -2 H ... 2 H."""
+        waves, x = self._sampled()
+        densities, times = self.model.densities(x), np.arange(len(waves)) / len(waves)
         found = [
-            self.model.stiffness(densities @ np.exp(-2j * np.pi * k * times) / len(turning))
+            self.model.stiffness(densities @ np.exp(-2j * np.pi * k * times) / len(waves))
             for k in range(len(self.coefficients))
         ]
         return found + [part.conj() for part in found[:0:-1]]  # the densities are real
 
     def derivative(self, growth: complex = 0.0) -> csc_array:
-        """The matrix of small deviations that grow as e^(growth t), all harmonics end to end."""
+        """Return the matrix of small deviations that grow as e^(growth t), all harmonics end to end."""
         rate = 1j * self.harmonics * self.omega + growth
         inertia = [factor * self.model.linear.mass for factor in rate * (rate + self.decay_rate)]
         rows = [
@@ -106,12 +105,9 @@ class PeriodicMotion:
         return csc_array(block_array(rows))
 
     def exponent(self) -> complex:
-        """The exponent lambda of mode 1, near i (omega_1 - w) - mu/2.
+        """Return the exponent lambda of mode 1 [1/s], near i (omega_1 - w) - mu/2.
 
-        Raises
-        ------
-        ArithmeticError
-            If the iteration, which starts from the linear mode, does not end.
+        ArithmeticError if the iteration, which starts from the linear mode, does not converge.
         """
         growth = 1j * (self.model.first_mode[0] - self.omega) - 0.5 * self.decay_rate
         vector = np.zeros(self.coefficients.shape, dtype=complex)
@@ -140,24 +136,24 @@ def periodic_motion(
     decay_rate: float = 0.0,
     harmonics: int = 5,
 ) -> PeriodicMotion:
-    """Return the motion whose tip turns back at `amplitude`.
+    """Return the periodic motion whose tip has a turning point at a displacement of `amplitude`.
 
     Parameters
     ----------
     model : FiniteRotation
     amplitude : float
-        Displacement of the tip at its turning point [m].
+        Displacement of the tip at its turning point [m], not zero.
     frequency : float, optional
-        Of the drive [Hz]; without it the motion is free, at a frequency that is found.
+        Frequency of the drive [Hz]; by default the motion is free, and its frequency is computed.
     decay_rate : float
-        mu of a driven motion [1/s].
+        Decay rate mu of a driven motion [1/s].
     harmonics : int
-        H.
+        Highest harmonic H.
 
     Raises
     ------
     ArithmeticError
-        If Newton's method, from the linear motion, does not end.
+        If Newton's method, which starts from the linear motion, does not converge.
     """
     require_kind("model", model, FiniteRotation, "a FiniteRotation")
     size = require_within("amplitude", amplitude, "m")
@@ -179,31 +175,27 @@ def periodic_motion(
 
 
 def _newton(motion: PeriodicMotion, amplitude: float, driven: bool) -> tuple[PeriodicMotion, float]:
-    """A step of Newton's method, and its relative size."""
+    """Return the motion after a step of Newton's method, and the relative size of the step."""
     model, k, c = motion.model, motion.harmonics, motion.coefficients
-    moved, size = c @ model.linear.mass, c.size
+    momentum, size = c @ model.linear.mass, c.size
     if driven:
         columns = [np.where(k[:, None] == sign, model.linear.base_load, 0.0) for sign in (1, -1)]
     else:
-        columns = [-2.0 * motion.omega * k[:, None] ** 2 * moved, 1j * motion.omega * k[:, None] * moved]
-    turning = [np.kron(weights, model.linear.tip) for weights in (np.ones(k.size), 1j * k)]
-    bordered = block_array(
-        [
-            [motion.derivative(), csr_array(np.array([column.ravel() for column in columns]).T)],
-            [csr_array(np.array(turning)), None],
-        ]
-    )
-    left = [row @ c.ravel() for row in turning]
-    wrong = np.concatenate((motion.residual().ravel(), [left[0] - amplitude, left[1]]))
-    step = -splu(csc_array(bordered)).solve(wrong)
+        factors = -2.0 * motion.omega * k**2, 1j * motion.omega * k
+        columns = [factor[:, None] * momentum for factor in factors]
+    border = csr_array(np.array([column.ravel() for column in columns]).T)
+    conditions = np.array([np.kron(weights, model.linear.tip) for weights in (np.ones(k.size), 1j * k)])
+    bordered = block_array([[motion.derivative(), border], [csr_array(conditions), None]])
+    displacement, velocity = (row @ c.ravel() for row in conditions)
+    residual = np.concatenate((motion.residual().ravel(), [displacement - amplitude, velocity]))
+    step = -splu(csc_array(bordered)).solve(residual)
     c = c + step[:size].reshape(c.shape)
     c = 0.5 * (c + c[::-1].conj())  # the displacement is real
     first, second = step[size:]
-    changed = replace(motion, coefficients=c)
+    drive, omega, rate = motion.drive, motion.omega, motion.decay_rate
     if driven:
-        changed = replace(changed, drive=complex(motion.drive + 0.5 * (first + np.conj(second))))
+        drive = complex(drive + 0.5 * (first + np.conj(second)))
     else:
-        changed = replace(
-            changed, omega=motion.omega + first.real, decay_rate=motion.decay_rate + second.real
-        )
-    return changed, float(np.linalg.norm(step[:size]) / np.linalg.norm(c))
+        omega, rate = omega + first.real, rate + second.real
+    change = float(np.linalg.norm(step[:size]) / np.linalg.norm(c))
+    return replace(motion, coefficients=c, drive=drive, omega=omega, decay_rate=rate), change

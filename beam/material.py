@@ -7,10 +7,9 @@
     eta   `loss_factor` [1]: energy lost per radian over the largest stored energy; in harmonic motion the
           modulus is E (1 + i eta), and a mode that stores all its energy here has c = eta omega
 
-The named solids carry handbook values. Alloys, ceramics and above all damping layers scatter: E of brass
-between 97 and 110 GPa with composition and rolling, its loss factor between 1e-4 and 2e-3; a damping layer's
-E and eta by factors of ten with temperature and frequency. They are starting points to replace by measured
-numbers.
+The named solids have handbook values, to be replaced by measured ones. E of brass lies between 97 and 110 GPa
+with composition and rolling, its loss factor between 1e-4 and 2e-3. A damping layer's E and eta vary by
+factors of ten with temperature and frequency.
 """
 
 from __future__ import annotations
@@ -21,12 +20,10 @@ from dataclasses import dataclass
 from .parameters import require_within, suspect
 
 SLOWEST_WAVE, FASTEST_WAVE = 400.0, 20_000.0
-"""Speeds of sound sqrt(E/rho) [m/s] between which solids lie: 450 in soft polyethylene, 1200 in lead, 3500 in
-brass, 18 000 in diamond. E or rho wrong by 1000 changes the speed by 32, out of this range for metals,
-ceramics, glass and hard polymers."""
-
+"""Range of the speed of sound sqrt(E/rho) [m/s]: 450 in soft polyethylene, 3500 in brass, 18 000 in diamond.
+E or rho wrong by a factor of 1000 brings metals, ceramics, glass and hard polymers out of this range."""
 GREATEST_LOSS = 3.0
-"""Loss factor beyond which a warning is given: the best damping polymers have 1 to 2."""
+"""Largest loss factor without a warning; the best damping polymers have 1 to 2."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,7 +44,7 @@ class Material:
     Warns
     -----
     SuspiciousValue
-        For E and rho whose speed of sound is that of no solid, and a loss factor above `GREATEST_LOSS`.
+        For a speed of sound that no solid has, and a loss factor above `GREATEST_LOSS`.
     """
 
     youngs_modulus: float
@@ -62,11 +59,9 @@ class Material:
         require_within("poissons_ratio", self.poissons_ratio, "[1]", above=-1.0, below=0.5)
         speed = self.wave_speed
         if not SLOWEST_WAVE <= speed <= FASTEST_WAVE:
-            suspect(
-                f"youngs_modulus {self.youngs_modulus:g} Pa and density {self.density:g} kg/m^3 give a speed "
-                f"of sound of {speed:.3g} m/s; solids lie between {SLOWEST_WAVE:g} and {FASTEST_WAVE:g} m/s"
-            )
-
+            given = f"youngs_modulus {self.youngs_modulus:g} Pa and density {self.density:g} kg/m^3"
+            words = f"solids lie between {SLOWEST_WAVE:g} and {FASTEST_WAVE:g} m/s"
+            suspect(f"{given} give a speed of sound of {speed:.3g} m/s; {words}")
         if self.loss_factor > GREATEST_LOSS:
             suspect(f"loss_factor is {self.loss_factor:g} [1]; materials stay below {GREATEST_LOSS:g}")
 

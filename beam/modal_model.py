@@ -1,7 +1,7 @@
-"""The spring as an impact sees it: a handful of uncoupled oscillators behind one tip.
+"""Modal model of a spring: uncoupled oscillators that share one tip.
 
 A linear structure on a moving base, with natural frequencies omega_k [rad/s] and mass-normalised mode shapes,
-obeys, mode by mode,
+obeys for each mode
 
     q_k'' + c_k q_k' + omega_k^2 q_k = -Gamma_k z'' + phi_k F,          x = sum_k phi_k q_k,
 
@@ -13,32 +13,27 @@ of the tip relative to the base [m], and
     phi_k    tip value of shape k in the drive direction               [kg^(-1/2)]
     Gamma_k  `participation` of shape k in a motion of the base         [kg^(1/2)]
 
-These four arrays, each of shape (n_modes,), are all that an impact ever sees of the structure; they may come
-from `natural_modes`, from a formula, or from a file of measured modes.
+An impact depends on these four arrays only, each of shape (n_modes,). They may come from `natural_modes`, a
+formula, or a file of measured modes.
 
-Damping is taken to be modal: it does not couple the modes, which holds for light damping and separated
-frequencies (T. K. Caughey and M. E. J. O'Kelly, J. Appl. Mech. 32 (1965) 583).
+Damping is modal: it does not couple the modes, which holds for light damping and separated frequencies (T. K.
+Caughey and M. E. J. O'Kelly, J. Appl. Mech. 32 (1965) 583).
 
 One mode is Eq. (1) of the letter: with unit mass, phi = Gamma = 1 and the damped period
 T = 2 pi / sqrt(omega^2 - (mu/2)^2) the equation above is  xi'' + mu xi' + omega^2 xi = -z''.
 
-What a truncation leaves out is compliance: every omitted mode follows a slow force F by phi_k^2/omega_k^2 F,
-so the tip is too stiff by the residual compliance
+The modes are complete. A static tip force, an impulse on the tip and a translation of the base therefore give
 
-    C - sum_{k <= n} phi_k^2/omega_k^2,      C the `static_compliance` [m/N].
+    sum phi_k^2/omega_k^2 = C,   sum phi_k^2 = 1/M,   sum Gamma_k phi_k = 1
 
-It also leaves out what an instant impact meets.  Over all modes
-
-    sum phi_k^2/omega_k^2 = C,   sum phi_k^2 = 1/M,   sum Gamma_k phi_k = 1,
-
-with M the lumped mass at the tip (completeness of the modes, applied to a static tip force, to an impulse on
-the tip, and to a translation of the base).
+over all modes, C the `static_compliance` [m/N] and M the lumped mass at the tip [kg]. A truncation to n modes
+makes the tip too stiff by the residual compliance C - sum_{k <= n} phi_k^2/omega_k^2, and too heavy likewise.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -46,20 +41,19 @@ from scipy.linalg import eigh
 
 from .parameters import final, require, require_array, require_kind, require_whole, require_within, suspect
 
+UNITS = {"omega": "rad/s", "decay_rate": "1/s", "phi": "kg^(-1/2)", "participation": "kg^(1/2)"}
+"""Units of the arrays of a modal model."""
 LEAST_RESIDUAL = 1e-5
-"""Residual compliance over the static one below which there is no residual mode: finite elements give statics
-to 1e-7, of which the residual is a small difference, so that 1 % of it is then left uncertain."""
-
+"""Smallest ratio of residual to static compliance of a residual mode. Finite elements give statics to 1e-7,
+so that the residual is then uncertain by 1 %."""
 GREATEST_RATIO = 0.5
-"""Damping ratio of the lowest mode beyond which a warning is given: it hardly swings, and no measured spring
-is like that; damping alloys reach 0.1."""
-
+"""Largest damping ratio of the lowest mode without a warning; damping alloys reach 0.1."""
 STILL = 1e-9
-"""Frequency taken for zero where modes are compared [rad/s]; rounding of phi over it is a small part yet."""
+"""Frequency that replaces zero where modes are compared [rad/s]; rounding of phi over it is still small."""
 
 
 class _OfPoint(float):
-    """A number of the tip and the `phi` that it was given with: `replace` hands on both."""
+    """A number of the tip, with the `phi` that it was given with; `replace` hands on both."""
 
     phi: NDArray[np.float64]
 
@@ -67,7 +61,7 @@ class _OfPoint(float):
 @final
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ModalModel:
-    """The structure as the contact problem sees it: n_modes uncoupled oscillators behind one tip.
+    """A structure as n_modes uncoupled oscillators that share one tip.
 
     Any sequence of numbers may be given; it is stored as a read-only float64 copy.
 
@@ -84,9 +78,9 @@ class ModalModel:
     static_compliance : float, optional
         Tip displacement per unit static tip force of the whole structure, all modes included [m/N].
     tip_mass : float, optional
-        Lumped mass at the tip [kg]; the limit of 1 / sum phi_k^2.  With another `phi` both are given anew.
+        Lumped mass at the tip [kg], the limit of 1 / sum phi_k^2. With another `phi` give both anew.
     readouts : mapping of str to array_like, shape (n_modes,), optional
-        Values of the mode shapes at named places, in the units of phi for displacements: the motion seen
+        Values of the mode shapes at named points, in the units of phi for displacements. The motion measured
         there, relative to the base, is ``readouts[name] @ q``.
 
     Warns
@@ -104,16 +98,14 @@ class ModalModel:
     readouts: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        units = {"omega": "rad/s", "decay_rate": "1/s", "phi": "kg^(-1/2)", "participation": "kg^(1/2)"}
-        rows = {name: _row(name, getattr(self, name), unit) for name, unit in units.items()}
+        rows = {name: _row(name, getattr(self, name), unit) for name, unit in UNITS.items()}
         omega = rows["omega"]
         for name in ("omega", "decay_rate"):
             least = rows[name].min()
-            require(least >= 0.0, f"{name} holds {least} {units[name]}; no entry may be negative")
+            require(least >= 0.0, f"{name} holds {least} {UNITS[name]}; no entry may be negative")
         require_kind("readouts", self.readouts, Mapping, "a mapping of names to rows of numbers")
-        readouts = {
-            name: _row(f"readouts[{name!r}]", row, "kg^(-1/2)") for name, row in self.readouts.items()
-        }
+        given = self.readouts.items()
+        readouts = {name: _row(f"readouts[{name!r}]", row, "kg^(-1/2)") for name, row in given}
         for name, row in (rows | readouts).items():
             words = f"it must have the shape {omega.shape} of omega"
             require(row.shape == omega.shape, f"{name} has shape {row.shape}; {words}")
@@ -125,7 +117,7 @@ class ModalModel:
             if value is not None:
                 number = _OfPoint(require_within(name, value, unit, low=0))
                 pairs = zip(getattr(value, "phi", self.phi), self.phi, strict=False)
-                words = "which belongs to another phi; it must be that of this point, or None"
+                words = "which belongs to another phi; it must be given for this phi, or None"
                 require(all(abs(a) == abs(b) for a, b in pairs), f"{name} is {value} {unit}, {words}")
                 number.phi = self.phi
                 object.__setattr__(self, name, number)
@@ -147,37 +139,35 @@ class ModalModel:
 
     @property
     def leading_mode(self) -> int:
-        """Index of "mode 1" of a single-mode description: the mode of largest phi^2/omega^2, its part in the
-        static compliance of the tip.  It need not be the lowest: an exciter brings its suspension."""
+        """Index of "mode 1" of a single-mode description: the mode with the largest part phi^2/omega^2 of the
+        static compliance. On an exciter the lowest mode may belong to the suspension."""
         return int(np.argmax(np.abs(self.phi) / np.maximum(self.omega, STILL)))
 
     @property
     def free_period(self) -> float:
-        """Period of the free damped oscillation of mode 1 [s]; ValueError if it does not swing."""
+        """Period of the free damped oscillation of mode 1 [s]; ValueError if it is overdamped."""
         omega, rate = self.omega[self.leading_mode], self.decay_rate[self.leading_mode]
         square = omega**2 - (0.5 * rate) ** 2
-        told = f"omega is {omega} rad/s and decay_rate {rate} 1/s in mode 1"
-        require(square > 0.0, f"{told}; it does not swing, so there is no free period")
+        given = f"omega is {omega} rad/s and decay_rate {rate} 1/s in mode 1"
+        require(square > 0.0, f"{given}; it does not swing, so there is no free period")
         return float(2.0 * np.pi / np.sqrt(square))
 
     def truncated(self, count: int) -> ModalModel:
         """Return the same structure with its first `count` modes only, 1 <= count <= n_modes."""
-        count = require_whole("count", count, "modes", high=self.n_modes, why=", those of the model")
-        rows = {name: getattr(self, name)[:count] for name in ("omega", "decay_rate", "phi", "participation")}
-        return replace(self, **rows, readouts={name: row[:count] for name, row in self.readouts.items()})
+        count = require_whole("count", count, "modes", high=self.n_modes, why=", the modes of the model")
+        readouts = {name: row[:count] for name, row in self.readouts.items()}
+        return replace(self, **{name: getattr(self, name)[:count] for name in UNITS}, readouts=readouts)
 
     def with_residual_mode(self) -> ModalModel:
-        """Return the same modes and one more that stands for all the modes left out.
+        """Return the model with one more mode, which replaces all modes left out.
 
-        It has what the sum rules of mass-normalised modes (see the module) find missing,
+        The mode supplies the terms missing in the sums over all modes (see the module),
 
-            phi^2 = 1/M - sum phi_k^2,   phi^2/omega^2 = static compliance - sum phi_k^2/omega_k^2,
-            Gamma phi = 1 - sum Gamma_k phi_k,
+            phi^2 = 1/M - sum phi_k^2,   phi^2/omega^2 = C - sum phi_k^2/omega_k^2,
+            Gamma phi = 1 - sum Gamma_k phi_k.
 
-        so that statics and the tip mass M that an instant impact meets are those of the whole spring: the
-        residual flexibility of the truncation, in series with the contact, with the inertia that goes with
-        it.
-        It takes the damping ratio of the highest mode, and no part in the read-outs.
+        The static compliance C and the tip mass M, which an instant impact meets, are then exact. The mode
+        takes the damping ratio of the highest mode and does not enter the read-outs.
 
         Raises
         ------
@@ -190,14 +180,13 @@ class ModalModel:
         assert self.static_compliance is not None and self.tip_mass is not None
         oscillating = self.omega > 0.0
         squares = np.where(oscillating, self.omega, 1.0) ** 2
-        mobility = 1.0 / self.tip_mass - float(self.phi @ self.phi)
-        carried = np.where(oscillating, self.phi**2 / squares, 0.0)
-        compliance = self.static_compliance - float(carried.sum())
+        square = 1.0 / self.tip_mass - float(self.phi @ self.phi)
+        compliance = self.static_compliance - float(np.where(oscillating, self.phi**2 / squares, 0.0).sum())
         given = f"tip_mass is {self.tip_mass} kg and static_compliance {self.static_compliance} m/N"
-        left = f"the modes leave {mobility:.3g} 1/kg of the one and {compliance:.3g} m/N of the other"
+        left = f"the modes lack {square:.3g} 1/kg of 1/tip_mass and {compliance:.3g} m/N of the compliance"
         words = f"{given}; {left}, which must be above zero and above {LEAST_RESIDUAL:g} of the whole"
-        require(mobility > 0.0 and compliance > LEAST_RESIDUAL * self.static_compliance, words)
-        phi, omega = np.sqrt(mobility), np.sqrt(mobility / compliance)
+        require(square > 0.0 and compliance > LEAST_RESIDUAL * self.static_compliance, words)
+        phi, omega = np.sqrt(square), np.sqrt(square / compliance)
         ratio = self.decay_rate[-1] / self.omega[-1] if self.omega[-1] > 0.0 else 0.0
         participation = (1.0 - float(self.phi @ self.participation)) / phi
         return replace(
@@ -212,19 +201,19 @@ class ModalModel:
     def on_exciter(
         self, *, mass: float, suspension_hz: float, damping_ratio: float = 0.0, measured_on_it: bool = False
     ) -> ModalModel:
-        """Return the modes of this spring and of an exciter z that its forces move.
+        """Return the coupled modes of this spring and of an exciter, whose table its forces move by z.
 
-        `mass` m [kg] is that of all that moves with the base, spring included, `suspension_hz` f_s [Hz] and
-        `damping_ratio` [1] are those of its suspension:
+        `mass` m [kg] is the whole moving mass, spring included. `suspension_hz` f_s [Hz] and `damping_ratio`
+        [1] belong to the suspension of the table:
 
             M = [[1, Gamma], [Gamma^T, m]],     K = diag(omega^2, (2 pi f_s)^2 m).
 
-        Contact pushes tip and stop apart and the stop rides on the base, so that it works on q alone.
-        `participation` becomes that in a force on the base that would move a free mass m as the drive moves
-        the base. Damping stays modal; statics, tip mass and read-outs go.
+        The stop rides on the base, so that the contact force acts on q alone. `participation` then refers to
+        a force on the base that would move a free mass m as the drive moves the base. Damping stays modal;
+        static compliance, tip mass and read-outs are dropped.
 
-        The modes are those on a base held still; where mode 1 was `measured_on_it`, the one that moves the
-        tip most keeps the frequency and the decay rate of mode 1.
+        This model's modes must belong to a fixed base. If mode 1 was `measured_on_it`, the mode that moves
+        the tip most keeps the frequency and the decay rate of mode 1.
         """
         require_within("suspension_hz", suspension_hz, "Hz", low=0)
         require_within("damping_ratio", damping_ratio, "[1]", low=0)
@@ -253,7 +242,7 @@ class ModalChange:
     Parameters
     ----------
     omega, decay_rate, phi, participation : array_like, shape (n_modes,)
-        In the unit of the array per unit of the parameter; stored as read-only float64 copies.
+        Derivatives [unit of the array per unit of the parameter]; stored as read-only float64 copies.
     """
 
     omega: NDArray[np.float64]
@@ -262,11 +251,11 @@ class ModalChange:
     participation: NDArray[np.float64]
 
     def __post_init__(self) -> None:
-        shape = np.shape(self.omega)
-        for each, unit in zip(fields(self), ("rad/s", "1/s", "kg^(-1/2)", "kg^(1/2)"), strict=True):
-            given, unit = getattr(self, each.name), f"{unit} per unit of the parameter"
-            row = require_array(each.name, given, unit, dimensions=1, shape=shape, words="a row of numbers")
-            object.__setattr__(self, each.name, row)
+        shape, words = np.shape(self.omega), "a row of numbers"
+        for name, unit in UNITS.items():
+            given, unit = getattr(self, name), f"{unit} per unit of the parameter"
+            row = require_array(name, given, unit, dimensions=1, shape=shape, words=words)
+            object.__setattr__(self, name, row)
 
     @property
     def n_modes(self) -> int:

@@ -1,15 +1,12 @@
-"""What a parameter must be, and what is said when it is not.
+"""Checks of parameters, and the sentences that refuse a wrong one.
 
-A parameter that makes no sense is refused where it is given, in one sentence with its name, its value, its
-unit and what would be valid:
+A wrong parameter is refused where it is given, in one sentence with its name, value, unit and what is valid:
 
     InvalidType     a TypeError: a text, a truth value, a complex number, an array for a number
     InvalidValue    a ValueError: a value out of range, not finite, or of the wrong shape
 
-Both are a `Refusal`. Any other ValueError or TypeError is a fault of the program.
-
-One that makes sense but can hardly be meant, such as a gap longer than the spring or a slip of a factor of
-1000 in a unit, is taken as it stands, with a warning of the category `SuspiciousValue` that says why.
+Both are a `Refusal`. Any other ValueError or TypeError is a fault of the program. A valid parameter that can
+hardly be meant, such as one wrong by a factor of 1000, brings a warning `SuspiciousValue` that says why.
 """
 
 from __future__ import annotations
@@ -26,18 +23,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 LONGEST_SHOWN = 60
-"""Characters of a value that a sentence quotes."""
+"""Largest number of characters of a value that a sentence quotes."""
 
-
+Array = NDArray[np.float64]
 Class = TypeVar("Class", bound=type)
 
 
 class Refusal(Exception):
-    """Wrong use; the message is one sentence that says what would be valid."""
+    """Wrong use; the message is one sentence that says what is valid."""
 
 
 class InvalidValue(Refusal, ValueError):
-    """A value out of range, not finite, of the wrong shape, or one that does not fit the others."""
+    """A value out of range, not finite, of the wrong shape, or in contradiction to another argument."""
 
 
 class InvalidType(Refusal, TypeError):
@@ -45,47 +42,39 @@ class InvalidType(Refusal, TypeError):
 
 
 class SuspiciousValue(UserWarning):
-    """A parameter that is valid and can hardly be meant; the message says why."""
+    """A parameter that is valid but can hardly be meant; the message says why."""
 
 
 def suspect(sentence: str) -> None:
-    """Warn of a suspicious value, at the line outside of `beam` and `contact` that gave it."""
+    """Warn of a suspicious value, at the line outside `beam` and `contact` that gave it."""
     level, frame = 2, sys._getframe(1)
-    while frame.f_back is not None and _package(frame.f_globals) in ("beam", "contact"):
+    while frame.f_back and str(frame.f_globals.get("__name__")).partition(".")[0] in ("beam", "contact"):
         level, frame = level + 1, frame.f_back
     warnings.warn(sentence, SuspiciousValue, stacklevel=level)
 
 
-def _package(names: dict[str, Any]) -> str:
-    return str(names.get("__name__", "")).partition(".")[0]
-
-
 def shown(value: object) -> str:
-    """The value as part of a sentence: one line, of at most `LONGEST_SHOWN` characters, texts in quotes."""
-    return brief(value) if isinstance(value, Real) else _cut(repr(value))
+    """Return the value for a sentence: one line of at most `LONGEST_SHOWN` characters, texts in quotes."""
+    return brief(value if isinstance(value, Real) else repr(value))
 
 
 def brief(value: object) -> str:
-    """The same without quotes."""
+    """Return the value for a sentence like `shown`, but texts without quotes."""
     try:
-        return _cut(str(value))
+        line = "".join(c if c.isprintable() else " " for c in str(value))
     except ValueError:  # an integer with more digits than the interpreter is willing to print
         return "a very large number"
-
-
-def _cut(text: str) -> str:
-    line = "".join(c if c.isprintable() else " " for c in text)
     return line if len(line) <= LONGEST_SHOWN else line[: LONGEST_SHOWN - 3] + "..."
 
 
 def require(condition: bool, sentence: str) -> None:
-    """InvalidValue with this sentence, put on one line, unless the condition holds."""
+    """Raise InvalidValue with this sentence, put on one line, unless the condition holds."""
     if not condition:
         raise InvalidValue(" ".join(sentence.split()))
 
 
 def is_number(value: object) -> bool:
-    """Whether the value is a finite real number; a text, a truth value or a list is none."""
+    """Return whether the value is a finite real number; a text, a truth value or a list is none."""
     if isinstance(value, bool) or not isinstance(value, Real):
         return False
     try:
@@ -95,7 +84,7 @@ def is_number(value: object) -> bool:
 
 
 def is_whole(value: object, low: int) -> bool:
-    """Whether the value is a whole number, `low` or more; 2.0 is one, True is not."""
+    """Return whether the value is a whole number, `low` or more; 2.0 is one, True is not."""
     return is_number(value) and value % 1 == 0 and value >= low  # type: ignore[operator]
 
 
@@ -109,7 +98,7 @@ def require_within(
     above: float | None = None,
     below: float | None = None,
 ) -> float:
-    """The value as a float, if it is a finite number with low <= value <= high, above < value < below."""
+    """Return the value as a float, or refuse it unless low <= value <= high and above < value < below."""
     lower = (low, "{} or more", ge), (above, "above {}", gt)
     upper = (high, "at most {}", le), (below, "below {}", lt)
     limits = [(bound, words, holds) for bound, words, holds in lower + upper if bound is not None]
@@ -128,7 +117,7 @@ def require_within(
 def require_whole(
     name: str, value: object, unit: str, *, low: int = 1, high: int | None = None, why: str = ""
 ) -> int:
-    """The value as an int, if it is a whole number from `low` to `high`; `why` ends the sentence."""
+    """Return the value as an int, if whole and from `low` to `high`; `why` ends the sentence otherwise."""
     least = {0: "zero or more", 1: "one or more"}.get(low, f"{low} or more")
     valid = f"a whole number, {least}" if high is None else f"a whole number between {low} and {high}"
     if isinstance(value, bool) or not isinstance(value, Real):
@@ -139,27 +128,25 @@ def require_whole(
 
 
 def final(kind: Class) -> Class:
-    """The class, which from now on refuses subclasses: a motion takes its numbers and calls no method."""
+    """Make the class refuse subclasses: compiled code takes its numbers and would ignore their methods."""
 
     def refuse(cls: type) -> None:
-        why = "a motion takes the numbers of one and would ignore the methods of a subclass"
-        raise InvalidType(
-            f"{cls.__name__} is a subclass of {kind.__name__}; it must be an instance, as {why}"
-        )
+        why = "compiled code reads the numbers of that class and would ignore new methods"
+        raise InvalidType(f"{cls.__name__} is a subclass of {kind.__name__}; there must be none, as {why}")
 
     kind.__init_subclass__ = classmethod(refuse)  # type: ignore[assignment]
     return kind
 
 
 def require_kind(name: str, value: Any, kind: type | tuple[type, ...], words: str) -> Any:
-    """The value, or TypeError unless it is of this kind, `words` in a sentence."""
+    """Return the value, or raise InvalidType unless it is of this kind, described by `words`."""
     if not isinstance(value, kind):
         raise InvalidType(f"{name} is {shown(value)}; it must be {words}")
     return value
 
 
 def require_each(name: str, values: Any, kind: type | tuple[type, ...], words: str) -> tuple[Any, ...]:
-    """The values as a tuple, or TypeError unless they are a sequence of this kind."""
+    """Return the values as a tuple, or raise InvalidType unless each is of this kind."""
     require_kind(name, values, Iterable, words)
     return tuple(require_kind(name, value, kind, words) for value in values)
 
@@ -172,8 +159,8 @@ def require_array(
     dimensions: int | None = None,
     shape: tuple[int, ...] | None = None,
     words: str = "an array of numbers",
-) -> NDArray[np.float64]:
-    """The values as a read-only float copy, if they are finite numbers of these dimensions or this shape."""
+) -> Array:
+    """Return a read-only float copy, or refuse the values unless finite, of these dimensions or shape."""
     try:
         given = np.asarray(values)
     except (TypeError, ValueError):

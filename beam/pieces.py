@@ -1,15 +1,13 @@
-"""Pieces of a strip, and how they are tied together: what motion in the plane and out of it have in common.
+"""Meshed pieces of a strip and the matrix that ties them together.
 
-A piece of the centreline, straight or an arc, is meshed by itself. Its unknowns are `nodal` values at each
-node, then `inner` values inside each element. `strip_element` says which they are in the plane and
-`space.element` out of it. Where pieces meet, displacements and rotations are continuous, which are sums such
-as w' + k u: where the curvature k jumps by [k], the unknown w' jumps by -[k] u. A sparse matrix T,
-x_pieces = T x, ties the pieces so and holds the supports too:
+Both `strip_element` (motion in the plane) and `space.element` (motion out of it) use this module. Each piece
+of the centreline, straight or an arc, is meshed by itself. Its unknowns are `nodal` values at each node, then
+`inner` values inside each element. Where pieces meet, displacements and rotations are continuous. A rotation
+is a sum such as w' + k u: where the curvature k jumps by [k], the unknown w' jumps by -[k] u. A sparse matrix
+T, x_pieces = T x, holds these ties and the supports.
 
-    K = T^T K_pieces T,     M = T^T M_pieces T + the tip,     b = T^T b_pieces + the tip.
-
-Coordinates on a piece run from its middle, which keeps the Hermite basis, built from powers of the
-coordinate, accurate.
+Coordinates on a piece run from its middle. This keeps the Hermite basis accurate, which is built from powers
+of the coordinate.
 """
 
 from __future__ import annotations
@@ -26,49 +24,48 @@ from numpy.typing import NDArray
 from scipy.sparse import block_diag, csr_array
 
 from .centreline import Centreline
-from .parameters import require, require_whole, shown
+from .parameters import Array, require, require_whole, shown
 
 MOST_ELEMENTS = 100_000
-"""On a piece: rounding has long since eaten the digits by then, and a slip does not fill the memory."""
-
+"""Largest number of elements on a piece; beyond it rounding leaves no digits, and a slip fills the memory."""
 TANGENTIAL_DEGREE = 4
-"""Of the displacement u along a strip."""
+"""Polynomial degree of the displacement u along a strip."""
 QUADRATURE_ORDER = 2 * TANGENTIAL_DEGREE
-"""Exact for the product of two quartics."""
+"""Order of the quadrature, exact for the product of two quartics."""
 
 Field = Any  # values of a scikit-fem function at the quadrature points, with .grad and .hess
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Piece(ABC):
-    """One piece: from arc length `start` [m] on, `nodes` counted from there [m], its curvature and section.
+    """One meshed piece: arc length `start` [m], `nodes` counted from there [m], curvature [1/m] and section.
 
-    `moves` says which of u, w, v [m] and of the rotations about t, n, z [rad] are `motion`. The unknown i of
-    a node jumps by -[k] times the unknown j, (i, j) = `kink`.
+    `components` are the rows that `motion` fills, of u, w, v [m] and the rotations about t, n, z [rad] (0 to
+    5). The unknown i of a node jumps by -[k] times the unknown j, (i, j) = `curvature_jump`.
     """
 
     nodal: ClassVar[int]
     inner: ClassVar[int]
-    moves: ClassVar[tuple[int, ...]]
-    kink: ClassVar[tuple[int, int]]
+    components: ClassVar[tuple[int, ...]]
+    curvature_jump: ClassVar[tuple[int, int]]
 
     start: float
-    nodes: NDArray[np.float64]
+    nodes: Array
     curvature: float
     section: Any
 
     @staticmethod
     @abstractmethod
     def element() -> sk.Element:
-        """The finite element."""
+        """Return the finite element."""
 
     @abstractmethod
     def motion(self, *functions: Field) -> tuple[Field, ...]:
-        """What `moves`, from the functions of an element."""
+        """Return displacements [m] and rotations [rad], one for each of `components`."""
 
     @abstractmethod
     def matrices(self) -> tuple[csr_array, ...]:
-        """K and M of the piece alone, shape (size, size); what follows is assembled likewise."""
+        """Return K, M and possibly further matrices of the piece alone, each of shape (size, size)."""
 
     @property
     def size(self) -> int:
@@ -76,11 +73,11 @@ class Piece(ABC):
         return self.nodal * self.nodes.size + self.inner * (self.nodes.size - 1)
 
     def basis(
-        self, local: NDArray[np.float64] | None = None, elements: NDArray[np.intp] | None = None
-    ) -> tuple[sk.Basis, NDArray[np.float64]]:
+        self, local: Array | None = None, elements: NDArray[np.intp] | None = None
+    ) -> tuple[sk.Basis, Array]:
         """Return the basis and the arc lengths of its points [m], shape (n_elements, n_points).
 
-        At Gauss's points, or at `local` ones (0 to 1), in all elements or in these.
+        The points are Gauss's, or `local` ones (0 to 1), in all elements or in the given ones.
         """
         points = (None if array is None else tuple(array.tolist()) for array in (local, elements))
         basis = _basis(type(self), tuple(self.nodes.tolist()), *points)
@@ -88,11 +85,11 @@ class Piece(ABC):
 
     def sampling(
         self,
-        local: NDArray[np.float64] | None = None,
+        local: Array | None = None,
         elements: NDArray[np.intp] | None = None,
         of: Callable[..., tuple[Field, ...]] | None = None,
-    ) -> tuple[NDArray[np.float64], list[csr_array]]:
-        """Arc lengths [m] and matrices of what `moves`, or of other functions, at the points of `basis`."""
+    ) -> tuple[Array, list[csr_array]]:
+        """Return arc lengths [m] of the points of `basis`, and matrices of `motion` or `of` there."""
         basis, s = self.basis(local, elements)
         rows = np.tile(np.arange(s.size), basis.Nbfun)
         columns = np.repeat(basis.element_dofs, s.shape[1], axis=1).ravel()
@@ -102,26 +99,25 @@ class Piece(ABC):
             found.append(csr_array((entries, (rows, columns)), shape=(s.size, basis.N)))
         return s.ravel(), found
 
-    def base_load(self, line: Centreline, drive: NDArray[np.float64]) -> NDArray[np.float64]:
-        """int m e . (motion) ds [kg], shape (size,), for a base motion along e = `drive`, (3,)."""
+    def base_load(self, line: Centreline, drive: Array) -> Array:
+        """Return int m e . (motion) ds [kg], shape (size,), for a base motion along e = `drive`, (3,)."""
         basis, s = self.basis()
         pull, load = line.axes(s) @ drive * self.section.mass_per_length, np.zeros(self.size)
-        for functions, places in zip(basis.basis, basis.element_dofs, strict=True):
-            motion = zip(self.moves, self.motion(*functions), strict=True)
-            work = sum(pull[..., move] * field for move, field in motion if move < 3)
-            np.add.at(load, places, np.sum(work * basis.dx, axis=1))
+        for functions, unknowns in zip(basis.basis, basis.element_dofs, strict=True):
+            motion = zip(self.components, self.motion(*functions), strict=True)
+            work = sum(pull[..., component] * field for component, field in motion if component < 3)
+            np.add.at(load, unknowns, np.sum(work * basis.dx, axis=1))
         return load
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=32)  # many springs share one mesh, and both legs of a U do
 def _basis(
     kind: type[Piece],
     nodes: tuple[float, ...],
     local: tuple[float, ...] | None,
     elements: tuple[int, ...] | None,
 ) -> sk.Basis:
-    """The basis about the middle of a piece. Kept: springs differ in their sections more often than in their
-    meshes, and a leg comes twice."""
+    """Return the basis of a piece, its coordinate counted from the middle of the piece."""
     points: dict[str, Any] = {"intorder": QUADRATURE_ORDER}
     if local is not None:
         points = {"quadrature": (np.array([local]), np.ones(len(local)))}
@@ -140,13 +136,23 @@ def element_counts(elements: int | Sequence[int], pieces: int) -> list[int]:
         require_whole("elements", count, "[1]", low=1, high=MOST_ELEMENTS, why=", or one for each piece")
         for count in (elements if several else [elements] * pieces)  # type: ignore[union-attr,list-item]
     ]
-    told = f"elements is {shown(elements)} [1]"
-    require(len(counts) == pieces, f"{told}; it must be a whole number, or one for each of {pieces} pieces")
+    words = f"it must be a whole number, or one for each of {pieces} pieces"
+    require(len(counts) == pieces, f"elements is {shown(elements)} [1]; {words}")
     return counts
 
 
-def meshes(kind: Callable[..., P], spring: Any, elements: int | Sequence[int]) -> tuple[P, ...]:
-    """Return the pieces of a spring, uniform meshes but for the node that is moved to the tip."""
+def shared_elements(line: Centreline, straight: int, half_turn: int) -> tuple[int, ...]:
+    """Return the number of elements on each piece: all straight pieces share `straight` by length, and an arc
+    has `half_turn` on each half turn."""
+    whole, counts = sum(piece.length for piece in line.pieces if piece.curvature == 0.0), []
+    for piece in line.pieces:
+        arc = abs(piece.curvature) * piece.length / np.pi * half_turn
+        counts.append(max(2, int(np.ceil((arc or piece.length / whole * straight) - 1e-9))))
+    return tuple(counts)
+
+
+def meshed_pieces(kind: Callable[..., P], spring: Any, elements: int | Sequence[int]) -> tuple[P, ...]:
+    """Return the pieces of a spring, meshed uniformly but for the node that is moved to the tip."""
     line, found = spring.centreline, []
     counts = element_counts(elements, len(line.pieces))
     for i, (piece, start) in enumerate(zip(line.pieces, line.joints[:-1].tolist(), strict=True)):
@@ -160,7 +166,7 @@ def meshes(kind: Callable[..., P], spring: Any, elements: int | Sequence[int]) -
     return tuple(found)
 
 
-def ties(pieces: Sequence[Piece], held: NDArray[np.bool_], straight: bool = False) -> csr_array:
+def tie_matrix(pieces: Sequence[Piece], held: NDArray[np.bool_], straight: bool = False) -> csr_array:
     """Return T, which joins the pieces and builds in the supports.
 
     Parameters
@@ -169,7 +175,7 @@ def ties(pieces: Sequence[Piece], held: NDArray[np.bool_], straight: bool = Fals
     held : ndarray of bool, shape (2, nodal)
         Whether the support at each end holds each unknown of a node.
     straight : bool
-        Whether the first unknown of the nodes and the inner ones are left out: u along a straight strip.
+        Whether to leave out u, the first unknown of each node and the inner ones, along a straight strip.
     """
     begins = np.concatenate(([0], np.cumsum([piece.size for piece in pieces])))
     first, unknown = begins[:-1], np.arange(pieces[0].nodal)
@@ -183,21 +189,22 @@ def ties(pieces: Sequence[Piece], held: NDArray[np.bool_], straight: bool = Fals
         for start, inner, end in zip(first, first + nodal, begins[1:], strict=True):
             free[start : inner : unknown.size] = free[inner:end] = False
     follows, leads = (first[1:, None] + unknown).ravel(), (last[:-1, None] + unknown).ravel()
-    jumping, by = pieces[0].kink
+    jumping, by = pieces[0].curvature_jump
     weights = np.concatenate((free * 1.0, np.ones(follows.size), k[:-1] - k[1:]))
     rows = np.concatenate((np.arange(free.size), follows, first[1:] + jumping))
     columns = np.concatenate((np.arange(free.size), leads, last[:-1] + by))
     return csr_array((weights, (rows, columns)), shape=2 * free.shape)[:, np.flatnonzero(free)]
 
 
-def tied(pieces: Sequence[Piece], ties: csr_array) -> list[csr_array]:
-    """Return the matrices of the pieces, tied."""
+def tied_matrices(pieces: Sequence[Piece], ties: csr_array) -> list[csr_array]:
+    """Return T^T A T for each of the `matrices` A of the pieces, T = `ties`."""
     parts = zip(*(piece.matrices() for piece in pieces), strict=True)
     return [ties.T @ block_diag(blocks, format="csr") @ ties for blocks in parts]
 
 
-def place(line: Centreline, pieces: Sequence[Piece], ties: csr_array, s: float) -> NDArray[np.float64]:
-    """Return rows of displacement along x, y, z [m], then rotation about them [rad], at s; (6, n_dofs)."""
+def motion_at(line: Centreline, pieces: Sequence[Piece], ties: csr_array, s: float) -> Array:
+    """Return the motion of the cross-section at arc length `s` [m] as rows over the unknowns, (6, n_dofs):
+    displacements along x, y, z [m] and rotations about them [rad]."""
     which = int(line.piece_at(s))
     piece, before = pieces[which], sum(piece.size for piece in pieces[:which])
     x, nodes = s - piece.start, piece.nodes
@@ -205,37 +212,27 @@ def place(line: Centreline, pieces: Sequence[Piece], ties: csr_array, s: float) 
     local = np.clip((x - nodes[element]) / (nodes[element + 1] - nodes[element]), 0.0, 1.0)
     _, matrices = piece.sampling(np.array([local]), np.array([element]))
     rows = np.zeros((6, ties.shape[1]))
-    for move, matrix in zip(piece.moves, matrices, strict=True):
-        rows[move] = (matrix @ ties[before : before + piece.size]).toarray()[0]
+    for component, matrix in zip(piece.components, matrices, strict=True):
+        rows[component] = (matrix @ ties[before : before + piece.size]).toarray()[0]
     turn = line.axes(s).T
     return np.concatenate((turn @ rows[:3], turn @ rows[3:]))
 
 
-def along(
-    line: Centreline, pieces: Sequence[Piece], unknowns: NDArray[np.float64], points_per_element: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return arc lengths (n_points,), and displacements and rotations in x, y, z, (2, n_modes, n_points, 3).
+def motion_along(
+    line: Centreline, pieces: Sequence[Piece], unknowns: Array, points_per_element: int
+) -> tuple[Array, Array]:
+    """Return arc lengths [m] (n_points,), and displacements and rotations in x, y, z, (2, n, n_points, 3).
 
-    Of `unknowns`, those of the loose pieces end to end, (unknowns of all pieces, n_modes), at
-    `points_per_element` equal steps to an element.
+    `unknowns`, of shape (unknowns of all pieces, n), holds n motions of the pieces before they are tied. Each
+    element is sampled in `points_per_element` equal steps.
     """
     local = np.linspace(0.0, 1.0, points_per_element + 1)
-    places, matrices = zip(*(piece.sampling(local) for piece in pieces), strict=True)
-    s = np.concatenate(places)
+    lengths, matrices = zip(*(piece.sampling(local) for piece in pieces), strict=True)
+    s = np.concatenate(lengths)
     kept = np.arange(s.size) % local.size < points_per_element  # an element's end is the next one's start
     kept[-1] = True
     s = np.clip(s[kept], 0.0, line.length)
     fields = np.zeros((6, unknowns.shape[1], s.size))
-    for move, part in zip(pieces[0].moves, zip(*matrices, strict=True), strict=True):
-        fields[move] = (block_diag(part, format="csr") @ unknowns)[kept].T
+    for component, part in zip(pieces[0].components, zip(*matrices, strict=True), strict=True):
+        fields[component] = (block_diag(part, format="csr") @ unknowns)[kept].T
     return s, np.einsum("gikp,pic->gkpc", fields.reshape(2, 3, -1, s.size), line.axes(s))
-
-
-def shared_elements(line: Centreline, straight: int, half_turn: int) -> tuple[int, ...]:
-    """Return the number of elements on each piece: so many on all straight pieces, and on each half turn."""
-    whole = sum(piece.length for piece in line.pieces if piece.curvature == 0.0)
-    shares = [
-        abs(piece.curvature) * piece.length / np.pi * half_turn or piece.length / whole * straight
-        for piece in line.pieces
-    ]
-    return tuple(max(2, int(np.ceil(share - 1e-9))) for share in shares)

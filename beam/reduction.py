@@ -1,9 +1,4 @@
-"""From modes and a rule for their damping to the modal model: the last step of the drawing board.
-
-Of n_dofs degrees of freedom the lowest modes are kept, of these only the ones that an impact or the drive can
-excite; their decay rates come from a rule of `damping`, and the static compliance of the whole spring from a
-static solution, so that what the truncation leaves out (see `modal_model`) stays known.
-"""
+"""Reduction of the modes of a leaf spring, with a rule for their damping, to a modal model."""
 
 from __future__ import annotations
 
@@ -12,31 +7,25 @@ import numpy as np
 from .damping import Damping, require_rule
 from .modal_model import ModalModel
 from .modes import Modes
-from .parameters import InvalidValue, require_kind, require_whole
+from .parameters import require, require_kind, require_whole
 
 
 def reduce(
     modes: Modes, damping: Damping, count: int | None = None, *, coupled_only: bool = True
 ) -> ModalModel:
-    """Return the modal model of a discretized spring.
+    """Return the modal model of a discretized spring, with the static compliance of the whole spring [m/N].
 
     Parameters
     ----------
     modes : Modes
-        From `natural_modes`.
+        Modes from `natural_modes`.
     damping : Damping
-        Gives the decay rate of each mode.
+        Rule for the decay rate of each mode [1/s].
     count : int, optional
-        How many modes to keep, lowest first; all of `modes` by default.
+        Number of modes to keep, lowest first; all of `modes` by default.
     coupled_only : bool
-        Drop the modes that neither the drive nor a force on the tip can excite (phi = participation = 0);
-        `count` then counts the modes that stay.
-
-    Returns
-    -------
-    ModalModel
-        With the static compliance from a static solve, so that the residual compliance of the truncation is
-        known.
+        Drop the modes that neither the drive nor a force on the tip can excite (phi = participation = 0)
+        before counting.
 
     Raises
     ------
@@ -48,12 +37,9 @@ def reduce(
     require_kind("coupled_only", coupled_only, bool, "True or False")
     keep = np.flatnonzero(modes.coupled) if coupled_only else np.arange(modes.omega.size)
     wanted = keep.size if count is None else require_whole("count", count, "modes", low=0)
-    if not 1 <= wanted <= keep.size:
-        kind = "coupled modes" if coupled_only else "modes"
-        raise InvalidValue(
-            f"count is {wanted} modes; it must lie between 1 and the {keep.size} {kind} found among the "
-            f"{modes.omega.size} computed (ask natural_modes for more)"
-        )
+    kind = "coupled modes" if coupled_only else "modes"
+    words = f"it must lie between 1 and the {keep.size} {kind} among the {modes.omega.size} computed"
+    require(1 <= wanted <= keep.size, f"count is {wanted} modes; {words} (natural_modes computes more)")
     keep = keep[:wanted]
     return ModalModel(
         omega=modes.omega[keep],

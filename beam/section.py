@@ -1,7 +1,7 @@
 """Cross-section of a sheet strip, bare or with glued layers.
 
 Plies i of width b, thickness t_i, moduli E_i and G_i, density rho_i and loss factor eta_i are stacked along
-the normal coordinate y [m] and bonded, so that plane sections stay plane. With y_i the middle of a ply and
+the normal coordinate y [m]. They are bonded: plane sections stay plane. With y_i the middle of a ply and
 
     ybar = sum E_i t_i y_i / sum E_i t_i                          (neutral axis [m])
 
@@ -16,14 +16,14 @@ GJ is that of a thin laminate; kappa = 1 - (192 t / pi^5 b) sum_{n odd} tanh(n p
 Saint-Venant's factor for the two edges, exact for one ply (S. P. Timoshenko and J. N. Goodier, Theory of
 Elasticity, art. 109).
 
-The loss factor of the section is the mean of the plies', weighted by the energy that each stores (modal
-strain energy; in bending this is the free-layer formula of H. Oberst, Akust. Beihefte 4 (1952) 181):
+The loss factor of the section is the mean of eta_i, weighted by the strain energy of each ply. In bending
+this is the free-layer formula of H. Oberst, Akust. Beihefte 4 (1952) 181:
 
     eta_bending = b sum eta_i E_i (t_i^3/12 + t_i (y_i - ybar)^2) / EI,
     eta_axial   = b sum eta_i E_i t_i / EA.
 
-E, not E/(1 - nu^2): the strip is free to curl across its width, which holds while its radius of curvature
-exceeds about b^2/t.
+The modulus is E, not E/(1 - nu^2): the strip is free to curl across its width. This holds while its radius of
+curvature exceeds about b^2/t.
 """
 
 from __future__ import annotations
@@ -31,10 +31,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .material import Material
-from .parameters import require, require_kind, require_within
+from .parameters import Array, require, require_kind, require_within
 
 #: Terms of Saint-Venant's series; the remainder is below 1/(4 * 59^4) = 2e-8 of kappa.
 TORSION_TERMS = 30
@@ -48,9 +47,9 @@ class Layer:
     ----------
     material : Material
     thickness : float
-        Of one layer [m], positive.
+        Thickness of one layer [m], positive.
     both_sides : bool
-        One such layer on each face if true (the neutral axis then stays in the middle), on one face if false.
+        Whether each face has such a layer, or only the upper one.
     """
 
     material: Material
@@ -73,12 +72,12 @@ class StripSection:
     width : float
         b [m], positive.
     thickness : float
-        Of the bare strip [m], positive and at most the width.
+        Thickness of the bare strip [m], positive and at most the width.
     layer : Layer, optional
         A glued damping layer.
     slot : float
-        Free space along the middle of the width [m], which b does not count: two legs of b/2 side by side,
-        which bend as one and twist each by itself.
+        Free space in the middle of the width [m], not counted in b. It leaves two legs of width b/2, which
+        bend as one strip and twist each by itself.
     """
 
     material: Material
@@ -98,13 +97,13 @@ class StripSection:
 
     @property
     def bands(self) -> tuple[tuple[float, float], ...]:
-        """Where across the width the strip is [m]: one interval, or two beside a slot."""
+        """Intervals across the width that the strip fills [m]: one, or two beside a slot."""
         half, free = 0.5 * (self.width + self.slot), 0.5 * self.slot
         return ((-half, -free), (free, half)) if free else ((-half, half),)
 
     @property
     def total_thickness(self) -> float:
-        """Strip and layers [m]."""
+        """Thickness of strip and layers [m]."""
         return float(self._plies()[1].sum())
 
     @property
@@ -143,8 +142,8 @@ class StripSection:
         """Loss factor of bending [1]."""
         return self._loss(self._energies()[1])
 
-    def _plies(self) -> tuple[tuple[Material, ...], NDArray[np.float64], NDArray[np.float64]]:
-        """Materials, thicknesses [m] and mid-heights [m] of the plies, from the lower face up."""
+    def _plies(self) -> tuple[tuple[Material, ...], Array, Array]:
+        """Return materials, thicknesses [m] and mid-heights [m] of the plies, from the lower face up."""
         stack = [(self.material, self.thickness)]
         if self.layer is not None:
             glued = (self.layer.material, self.layer.thickness)
@@ -152,20 +151,18 @@ class StripSection:
         t = np.array([thickness for _, thickness in stack])
         return tuple(material for material, _ in stack), t, np.cumsum(t) - 0.5 * t
 
-    def _energies(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """What each ply adds to EA [N] and to EI [N m^2]."""
+    def _energies(self) -> tuple[Array, Array]:
+        """Return the terms of each ply in EA [N] and in EI [N m^2]."""
         plies, t, y = self._plies()
         modulus = np.array([ply.youngs_modulus for ply in plies])
         return self.width * modulus * t, self.width * _second_moments(modulus, t, y)
 
-    def _loss(self, energies: NDArray[np.float64]) -> float:
+    def _loss(self, energies: Array) -> float:
         eta = np.array([ply.loss_factor for ply in self._plies()[0]])
         return float(eta @ energies / energies.sum())
 
 
-def _second_moments(
-    modulus: NDArray[np.float64], t: NDArray[np.float64], y: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Modulus-weighted second moment per width of each ply about the weighted mean height [N m]."""
+def _second_moments(modulus: Array, t: Array, y: Array) -> Array:
+    """Return the second moment of each ply per width [N m], about the mean height weighted by `modulus`."""
     neutral = (modulus * t) @ y / (modulus @ t)
     return modulus * (t**3 / 12.0 + t * (y - neutral) ** 2)

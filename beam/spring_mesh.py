@@ -1,16 +1,15 @@
 """The spring as a solid that moves: its strip with width and thickness, and the ball.
 
-A point of a strip that lies at (r, y, z), r the point of the centreline, y along the normal n and z across
-the width, moves with the cross-section at r, which stays plane and turns by theta about z:
+A point at y along the normal n and z across the width moves with its cross-section, which stays plane. With
+the displacement d [m], the rotation theta [rad] and the tangent t of the centreline there,
 
     v = d + theta e_z x (y n + z e_z) = d - theta y t.
 
-d and theta are the displacement [m] and the rotation [rad] of the centreline, t its tangent. The ball moves
-likewise as one body with the strip at the tip.
+The ball moves as one body with the strip at the tip.
 
-Every ply of the strip, on either side of a slot, is a row of hexahedra, the bare strip with its middle on the
-centreline. The ball is a sphere that touches the strip from the side towards which the drive pushes it, or,
-where the drive runs along the strip, from outside the bend.
+Every ply of the strip, on either side of a slot, is a row of hexahedra. The middle of the bare strip lies on
+the centreline. The ball is a sphere that touches the strip from the side towards which the drive pushes it.
+Where the drive runs along the strip, the ball lies outside the bend.
 """
 
 from __future__ import annotations
@@ -25,14 +24,13 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
 from .modes import Modes, ShapesAlong
-from .parameters import require_within
+from .parameters import Array, require_within
 from .section import StripSection
 
 STRIP, LAYER, BALL = 0, 1, 2
 """Values of the cell array `part`."""
-
 BALL_POINTS = 300
-"""On the sphere: a few degrees apart."""
+"""Number of points on the sphere, a few degrees apart."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -42,33 +40,34 @@ class SpringMesh:
     Parameters
     ----------
     points : ndarray, shape (n_points, 3)
-        At rest [m].
+        Points at rest [m].
     shapes : ndarray, shape (n_modes, n_points, 3)
         Displacements relative to the base [kg^(-1/2)]: times a modal coordinate they are in metres.
     hexahedra : ndarray of int, shape (n_hexahedra, 8)
+        Corners of the cells of strip and layers.
     triangles : ndarray of int, shape (n_triangles, 3)
-        Of the ball; none without one.
+        Corners of the surface of the ball; none without a ball.
     part : ndarray of int, shape (n_hexahedra + n_triangles,)
         STRIP, LAYER or BALL.
     """
 
-    points: NDArray[np.float64]
-    shapes: NDArray[np.float64]
+    points: Array
+    shapes: Array
     hexahedra: NDArray[np.intp]
     triangles: NDArray[np.intp]
     part: NDArray[np.intp]
 
-    def normalised(self, largest: float) -> NDArray[np.float64]:
-        """Shapes whose largest displacement is `largest` [m], shape (n_modes, n_points, 3)."""
+    def normalised(self, largest: float) -> Array:
+        """Return the shapes scaled to a largest displacement of `largest` [m], (n_modes, n_points, 3)."""
         require_within("largest", largest, "m", above=0)
         size = np.linalg.norm(self.shapes, axis=2).max(axis=1)
         return self.shapes * (largest / size)[:, None, None]
 
     def surface(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-        """Faces of the strip and its layers that can be seen, shape (n_faces, 4), and the part of each.
+        """Return the outer faces of strip and layers, shape (n_faces, 4), and the part of each, (n_faces,).
 
-        These are the four long sides of every hexahedron and both ends of every row; corners run round a face
-        so that it faces outwards.
+        These are the four long sides of every hexahedron and both ends of every row. The order of the corners
+        makes each face point outwards.
         """
         first, last = self.hexahedra[:, :4], self.hexahedra[:, 4:]
         after = np.roll(np.arange(4), -1)
@@ -79,8 +78,8 @@ class SpringMesh:
         part = self.part[: len(self.hexahedra)]
         return np.concatenate(faces), np.concatenate([np.repeat(part, 4), part[opens], part[closes]])
 
-    def grid(self, points: NDArray[np.float64] | None = None) -> Any:
-        """Return the mesh as a `pyvista.UnstructuredGrid`, with other points [m] if they are given."""
+    def grid(self, points: Array | None = None) -> Any:
+        """Return the mesh as a `pyvista.UnstructuredGrid`, at `points` (n_points, 3) [m] or at rest."""
         import pyvista
 
         cells = {pyvista.CellType.HEXAHEDRON: self.hexahedra, pyvista.CellType.TRIANGLE: self.triangles}
@@ -93,22 +92,21 @@ class SpringMesh:
 def solid_spring(
     modes: Modes, *, ball_radius: float | None = None, points_per_element: int = 1
 ) -> SpringMesh:
-    """Return the solid that a leaf spring is, moving in its modes.
+    """Return a leaf spring as a solid that moves in its modes.
 
     Parameters
     ----------
     modes : Modes
     ball_radius : float, optional
-        [m]; no ball without it.
+        Radius of the ball [m]; no ball without it.
     points_per_element : int
         Rows of hexahedra along each element.
     """
     along = modes.displacement_along(points_per_element)
     line = modes.discretization.spring.centreline
     points, shapes, hexahedra, part = [], [], [], []
-    count = 0
+    count, edge = 0, 1e-9 * line.length
     for piece, section in enumerate(modes.discretization.spring.sections):
-        edge = 1e-9 * line.length
         inside = (along.s > line.joints[piece] - edge) & (along.s < line.joints[piece + 1] + edge)
         where = np.flatnonzero(inside)
         for (kind, low, high), sides in product(_plies(section), section.bands):
@@ -116,7 +114,7 @@ def solid_spring(
             corners = heights[:, None] * along.normal[where, None]
             corners = corners + across[:, None] * np.array([0.0, 0.0, 1.0])
             points.append((along.points[where, None] + corners).reshape(-1, 3))
-            shapes.append(_turned(along, where[:, None], corners).reshape(along.rotation.shape[0], -1, 3))
+            shapes.append(_shapes_at(along, where[:, None], corners).reshape(modes.omega.size, -1, 3))
             first = count + 4 * np.arange(where.size - 1)
             hexahedra.append(first[:, None] + np.arange(8))
             part.append(np.full(where.size - 1, kind))
@@ -126,7 +124,7 @@ def solid_spring(
         offsets, triangles = _ball(modes, ball_radius)
         at = np.array([np.argmin(np.abs(along.s - modes.discretization.spring.tip_at))])
         points.append(along.points[at] + offsets)
-        shapes.append(_turned(along, at, offsets))
+        shapes.append(_shapes_at(along, at, offsets))
         part.append(np.full(len(triangles), BALL))
     return SpringMesh(
         points=np.concatenate(points),
@@ -138,7 +136,7 @@ def solid_spring(
 
 
 def _plies(section: StripSection) -> list[tuple[int, float, float]]:
-    """Kind, lower and upper height [m] of strip and layers; a layer on one face lies on the upper one."""
+    """Return kind, lower and upper height [m] of strip and layers; a single layer lies on the upper face."""
     half, layer = 0.5 * section.thickness, section.layer
     plies = [(STRIP, -half, half)]
     if layer is not None:
@@ -148,14 +146,14 @@ def _plies(section: StripSection) -> list[tuple[int, float, float]]:
     return plies
 
 
-def _turned(along: ShapesAlong, where: NDArray[np.intp], offsets: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Shapes (n_modes, ..., 3) of points off the centreline by `offsets` (..., 3) [m]."""
+def _shapes_at(along: ShapesAlong, where: NDArray[np.intp], offsets: Array) -> Array:
+    """Return shapes (n_modes, ..., 3) at `offsets` (..., 3) [m] from the points `where` of the centreline."""
     across = np.cross(np.array([0.0, 0.0, 1.0]), offsets)
     return along.displacement[:, where] + along.rotation[:, where, None] * across
 
 
-def _ball(modes: Modes, radius: float) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
-    """Points of the sphere as seen from the tip on the centreline [m], and its triangles, facing outwards."""
+def _ball(modes: Modes, radius: float) -> tuple[Array, NDArray[np.intp]]:
+    """Return points of the sphere relative to the tip on the centreline [m], and its outward triangles."""
     require_within("ball_radius", radius, "m", above=0)
     spring = modes.discretization.spring
     piece = int(spring.centreline.piece_at(spring.tip_at))

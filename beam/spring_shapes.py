@@ -1,17 +1,17 @@
-"""Leaf springs of the usual shapes, each glued with a damping layer or bare.
+"""Leaf springs of the usual shapes, bare or with a glued damping layer.
 
-The folded U: two legs, parallel to x and 2 r apart, clamped at x = 0; a semicircle of radius r [m] joins
-them, with the ball in its middle; driven along y (sway), across the legs and in the plane of the U.
+The folded U has two legs, parallel to x and 2 r apart, clamped at x = 0. A semicircle of radius r [m] joins
+them, with the ball in its middle. The drive is along y, in the plane of the U (sway).
 
-The flat U: cut out of the sheet, its legs side by side, clamped at x = 0 and driven along y, across the
-sheet. They bend as one strip with a slot. The bend, a half ring of radius r and width b, is taken as a plate
-of its area as wide as the U, 2 r + b; the ball sits where the apex is, at r from the legs. Against the U as a
-strip in space (``beam.space``), with b = 12 mm, r = 9 mm and legs of 130 mm, the first four frequencies are
-then within 1 % (0.02, 0.1, 0.4, 1), displacements of the tip within 3 % (0.01, 0.03, 0.7, 2.6); with r = 1.25
-b these are 1 to 4 and 1 to 6 %.
+The flat U is cut out of a sheet, clamped at x = 0 and driven along y, across the sheet. Its legs lie side by
+side and bend as one strip with a slot. The bend, a half ring of radius r and width b, is replaced by a plate
+of its area as wide as the U, 2 r + b. The ball sits at the apex, at r from the legs. A strip in space
+(``beam.space``) checks this, for b = 12 mm, r = 9 mm and legs of 130 mm. The first four frequencies differ by
+1 % at most (0.02, 0.1, 0.4, 1), the displacements of the tip by 3 % (0.01, 0.03, 0.7, 2.6). For r = 1.25 b
+the differences are 1-4 % and 1-6 %.
 
-The straight strip runs along x from x = 0 and is driven along y. A cantilever is one that is clamped there,
-free at the other end, and carries the tip at that end.
+The straight strip runs along x from x = 0 and is driven along y. A cantilever is clamped there, free at the
+other end, and carries the tip at its free end.
 """
 
 from __future__ import annotations
@@ -44,23 +44,21 @@ def folded_u(
     Parameters
     ----------
     leg_length, bend_radius : float
-        Straight length of each leg, radius of the centreline of the bend [m].
-    section : StripSection
-        Of the bare strip.
+        Straight length of each leg and radius of the centreline of the bend [m].
+    section, damped_section : StripSection
+        Section of the bare strip, and if given of the strip with the glued layer.
     tip : Tip
-    damped_section : StripSection, optional
-        With the glued layer.
     damped_span : tuple of two floats, optional
-        Where on each leg the layer lies, measured from the supports [m]; the whole leg by default.
+        Start and end of the layer on each leg, measured from the supports [m]; the whole leg by default.
     supports : tuple of two supports
     drive : tuple of two floats
-        (0, 1) is sway; (1, 0) is along the legs.
+        Direction (x, y) [1]: (0, 1) is sway, (1, 0) is along the legs.
     readouts : mapping of str to Readout, optional
     """
     leg, sections = _leg(leg_length, section, damped_section, damped_span)
     bend = Arc(radius=bend_radius, angle=math.pi)
     if bend_radius > leg_length:
-        suspect(f"bend_radius is {bend_radius:g} m, above the leg_length {leg_length:g} m; no folded strip")
+        suspect(f"bend_radius is {bend_radius:g} m, above leg_length, {leg_length:g} m; this is hardly a U")
     return LeafSpring(
         centreline=Centreline(pieces=(*leg, bend, *reversed(leg)), start=(0.0, -bend_radius)),
         sections=(*sections, section, *reversed(sections)),
@@ -87,19 +85,19 @@ def flat_u(
     Parameters
     ----------
     leg_length, bend_radius : float
-        Straight length of each leg, radius of the middle line of the bend [m]: the legs are 2 `bend_radius`
-        apart, which must be more than their width and should be at most twice of it.
+        Straight length of each leg and radius of the middle line of the bend [m]. The legs are 2
+        `bend_radius` apart, which must be more than their width and should be at most twice their width.
     section : StripSection
-        Of one leg, bare.
+        Section of one leg without layer.
     tip, damped_section, damped_span, readouts
         As for `folded_u`.
     """
     width = require_kind("section", section, StripSection, "a StripSection").width
     radius = require_within("bend_radius", bend_radius, "m")
-    told = f"bend_radius is {radius} m"
-    require(radius > 0.5 * width, f"{told}; for legs of {width} m side by side it must be above half of that")
+    given = f"bend_radius is {radius} m"
+    require(radius > 0.5 * width, f"{given}; it must be above half the width of a leg, {width} m")
     if radius > width:
-        suspect(f"{told}, above the width of a leg, {width} m; such a bend twists, and is no plate")
+        suspect(f"{given}, above the width of a leg, {width} m; such a bend also twists, unlike a plate")
 
     def both(leg: StripSection) -> StripSection:
         return replace(leg, width=2.0 * width, slot=2.0 * radius - width)
@@ -135,7 +133,7 @@ def straight_strip(
     Parameters
     ----------
     length : float
-        [m].
+        Length of the strip [m].
     section, damped_section, damped_span
         As for `folded_u`, the span measured from x = 0.
     supports : tuple of two supports
@@ -159,10 +157,7 @@ def straight_strip(
 def cantilever(*, length: float, section: StripSection, tip: Tip | None = None, **others: Any) -> LeafSpring:
     """Return a `straight_strip` clamped at x = 0 and free at x = length [m], where the tip sits.
 
-    Parameters
-    ----------
-    length, section, tip, **others
-        As for `straight_strip`.
+    `length`, `section`, `tip` and `others` are as for `straight_strip`.
     """
     supports: tuple[Support, Support] = ("clamped", "free")
     return straight_strip(length=length, section=section, supports=supports, tip_at=length, tip=tip, **others)
@@ -171,16 +166,16 @@ def cantilever(*, length: float, section: StripSection, tip: Tip | None = None, 
 def _leg(
     length: float, bare: StripSection, damped: StripSection | None, span: tuple[float, float] | None
 ) -> tuple[tuple[Straight, ...], tuple[StripSection, ...]]:
-    """Pieces and sections of a straight run, from the support outwards."""
+    """Return pieces and sections of a straight run, from the support outwards."""
     require_within("length of the straight strip or leg", length, "m", above=0)
     require_kind("damped_section", damped, (StripSection, type(None)), "a StripSection or None")
     if damped is None:
         require(span is None, f"damped_span is {span} m without a damped_section; give both or neither")
         return (Straight(length=length),), (bare,)
-    places = (0.0, length) if span is None else span
-    start, end = require_array("damped_span", places, "m", shape=(2,), words="its start and its end").tolist()
+    ends = (0.0, length) if span is None else span
+    start, end = require_array("damped_span", ends, "m", shape=(2,), words="its start and its end").tolist()
     rising = 0.0 <= start < end <= length
     require(rising, f"damped_span is {span} m; it must increase and lie between 0 and {length} m")
-    cuts = [(start, bare), (end - start, damped), (length - end, bare)]
-    kept = [(piece, section) for piece, section in cuts if piece > 0.0]
-    return tuple(Straight(length=piece) for piece, _ in kept), tuple(section for _, section in kept)
+    runs = [(start, bare), (end - start, damped), (length - end, bare)]
+    kept = [(Straight(length=run), section) for run, section in runs if run > 0.0]
+    return tuple(piece for piece, _ in kept), tuple(section for _, section in kept)

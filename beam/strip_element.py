@@ -15,12 +15,12 @@ and virtual work for test functions (v, z) reads
 EA [N], EI [N m^2] and m [kg/m] belong to the section. Shear and the rotary inertia of the strip itself are
 left out.
 
-w is cubic Hermite and u continuous of degree four, rich enough to cancel any cubic k w: thin arcs do not
+w is cubic Hermite. u is continuous of degree four, so that u' can cancel any cubic k w: thin arcs do not
 lock.
 
-Rounding: an entry of the stiffness matrix is of the order EI/h^3 and carries the error eps EI/h^3, h the
-length of an element, while the whole strip resists with EI/L^3; x^T K x of a slow shape is good to some
-(L/h)^4 eps. The strains of the shape are good to (L/h)^2 eps, and so is the energy summed from them
+Rounding: an entry of K is of the order EI/h^3, h the length of an element, and has an error of eps EI/h^3.
+The stiffness of the whole strip is only EI/L^3, so that x^T K x of a slow shape is accurate to (L/h)^4 eps.
+The strains of the shape are accurate to (L/h)^2 eps, and so is the energy summed from them
 (`PieceMesh.strain_energies`): 1e-12 where the matrix gives 1e-8.
 """
 
@@ -31,9 +31,9 @@ from typing import Any
 
 import numpy as np
 import skfem as sk
-from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from .parameters import Array
 from .pieces import TANGENTIAL_DEGREE, Field, Piece
 from .section import StripSection
 
@@ -68,27 +68,27 @@ def inertia(u: Field, w: Field, v: Field, z: Field, p: Any) -> Field:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PieceMesh(Piece):
-    """A piece in the plane; unknowns: u, w, w' at the nodes, then u inside the elements."""
+    """A piece that moves in the plane; its unknowns are u, w, w' at the nodes, then u inside the elements."""
 
     nodal = 3
     inner = TANGENTIAL_DEGREE - 1
-    moves = (0, 1, 5)
-    kink = (2, 0)
+    components = (0, 1, 5)
+    curvature_jump = (2, 0)
 
     section: StripSection
 
     @staticmethod
     def element() -> sk.Element:
-        """Of (u, w)."""
+        """Return the element of (u, w), quartic and cubic Hermite."""
         return sk.ElementComposite(sk.ElementLinePp(TANGENTIAL_DEGREE), sk.ElementLineHermite())
 
     def motion(self, *functions: Field) -> tuple[Field, ...]:
-        """u, w [m] and w' + k u [rad]."""
+        """Return u, w [m] and w' + k u [rad]."""
         u, w = functions
         return u + 0.0, w + 0.0, w.grad[0] + self.curvature * u
 
     def matrices(self) -> tuple[csr_array, ...]:
-        """K, M and K with each stiffness times its loss factor."""
+        """Return K, M, and K with each stiffness times its loss factor."""
         basis, _ = self.basis()
         section, k = self.section, self.curvature
         membrane = stretching.assemble(basis, EA=section.axial_stiffness, k=k)
@@ -96,8 +96,8 @@ class PieceMesh(Piece):
         loss = section.axial_loss_factor * membrane + section.bending_loss_factor * flexure
         return membrane + flexure, inertia.assemble(basis, m=section.mass_per_length), loss
 
-    def strain_energies(self, unknowns: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Strain energies in stretching and in bending [J] of `unknowns` [m], (size, n); shape (2, n)."""
+    def strain_energies(self, unknowns: Array) -> Array:
+        """Return the energies of stretching and bending [J], (2, n), of `unknowns` [m], (size, n)."""
         basis, _ = self.basis()
         local = unknowns[basis.element_dofs]  # (functions of an element, elements, n)
         moduli = self.section.axial_stiffness, self.section.bending_stiffness

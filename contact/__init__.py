@@ -12,42 +12,51 @@
     trajectory.strobe_impacts[-10:]          # one impact in every fifth period
 
 The subject
-    A spring is shaken by its base beside a stop.  Below the grazing amplitude F_g its tip stays short of the
-    stop; the *excess* F/F_g - 1 counts from there.  A touch that is barely one changes the state by the
-    square root of the overshoot, whatever happens between touches: the derivative of the period map is
-    infinite, and just above grazing the motion jumps to a p_m orbit, one impact in m drive periods, or to
-    chaos.  Lowered again, the drive finds that orbit alive down to a fold below grazing: *hysteresis*.  The
-    letter "Generic behavior of grazing impact oscillators" (1996) measured this and set a two-dimensional map
-    beside it.
+    The base of a spring is shaken beside a stop.  Below the grazing amplitude F_g the tip does not reach the
+    stop; the *excess* is F/F_g - 1.  A slow impact changes the state by the square root of the overshoot,
+    under any contact law, so that the period map has an infinite derivative.  Just above grazing the motion
+    jumps to chaos or to a p_m orbit, with one impact in m drive periods.  When the drive is lowered again,
+    this orbit persists down to a fold below grazing: *hysteresis*.  The letter "Generic behavior of grazing
+    impact oscillators" (1996) measured this and compared it with a two-dimensional map.
 
 Words
-    An *impact* is one touch.  A *collision* is all the impacts of one approach, as mode 1 alone feels them:
-    it leaves with -`restitution` times the speed with which it came, `delay` later; its `kick` is the jump of
+    An *impact* is one touch.  A *collision* is all the impacts of one approach, as mode 1 feels them: mode 1
+    leaves with -`restitution` times its approach speed after the time `delay`, and its `kick` is the jump of
     its velocity over the approach speed.  A *graze* is a touch without effect within rounding.  *Strobes* are
-    the instants n/f of the drive; what happens from one to the next is a map.
+    the instants n/f of the drive; a stroboscopic map takes the state from one strobe to the next.
 
-From problem to answer
-    `ImpactOscillator`  a ``beam.ModalModel``, a `Stop` with its law, a `HarmonicDrive`; carries no numerics
-    `simulate`          its motion, every impact; the exact method of the law, or another one of
-                        ``contact.integrators`` for comparison
-    `StroboscopicMap`   the same from strobe to strobe; `strobed_orbits` many of them on all cores
-    `collisions`        what each collision does to mode 1; `first_collision` the first above grazing
-    `NonlinearMode`     one mode at finite amplitude
-    `NordmarkMap`       the letter's map, its orbits (`maximal_orbits`), folds and bands in closed form
-    `MaximalFamily`     the same orbits of Eq. (1) in closed form, under Newton's law
-    ``contact.orbits``  orbits of any law: `settle`, `born` and `orbit_diagram` by following the motion,
-                        `Shooting` and `follow` as orbits, to folds, period doublings and grazings;
-                        `orbit_end` does both; ``lyapunov`` tells chaos
+The files: the problem and its answer
+    ``drive``           base motion, `HarmonicDrive`
+    ``laws``            contact laws: `NewtonRestitution` (at once), `DelayedRestitution` (after a delay; one
+                        mode), `LinearContact`, `HertzContact`, `HuntCrossley` (forces)
+    ``stop``            `Stop`: a gap and a law
+    ``oscillator``      `ImpactOscillator`: a ``beam.ModalModel``, a stop and a drive; the equation of motion
+    ``trajectory``      `State`, `Impacts`, `Trajectory`
+    ``simulation``      `simulate`: a motion with every impact, exact or by a method with a time step
+    ``virtual_motion``  the motion of mode 1 as if there were no stop
+    ``collision``       `collisions`: the effect of each collision on mode 1; `first_collision`
+    ``errors``          the `ContactError` family, for motions that cannot be followed
 
-Laws of contact: `NewtonRestitution` (at once), `DelayedRestitution` (once, after a delay; one mode),
-`LinearContact`, `HertzContact`, `HuntCrossley` (forces; followed through the contact by power series).
+The folders, from the machine to the orbits
+    ``machine``         compiled kernels and where their machine code is kept
+    ``flight``          motion between touches in closed form, and the certified search for the next touch
+    ``touch``           motion in contact, one file a law
+    ``engine``          the loop over flights and touches, and the record of a run
+    ``integrators``     the exact method and the methods with a time step
+    ``one_mode``        Eq. (1) of the letter, one mode under Newton's law, fast
+    ``sensitivity``     derivatives of a motion with respect to its start and its parameters
+    ``maps``            `StroboscopicMap`; `NonlinearMode`, one mode at finite amplitude; `NordmarkMap`, the
+                        letter's map, with its orbits (`MapFamily`), folds and `bands` in closed form
+    ``orbits``          periodic orbits: `MaximalFamily` in closed form under Newton's law, `Shooting` under
+                        any law; `settle` and `orbit_diagram` by following the motion; `follow` to folds,
+                        period doublings and grazings; `orbit_end`; ``lyapunov``
 
-What cannot be followed raises one of the `ContactError` family (`UnresolvedCrossing`, `Chatter`,
-`ContactTooStiff`, `NotPeriodic`, ...) with time, gap and velocity; no number comes out.  Units are SI
-throughout; modes are mass-normalised (q in m kg^0.5).  Every module opens with its equations: that of motion
-in ``contact.oscillator``, flights and their bounds in ``contact.flight``, the certified search for a touch in
-``contact.flight.crossing``, motion in contact in ``contact.touch.linear`` and ``contact.touch.hertz``.
+A motion that cannot be followed raises a `ContactError` (`UnresolvedCrossing`, `Chatter`, `ContactTooStiff`,
+`NotPeriodic`, ...) with time, gap and velocity, and returns no number.  Units are SI throughout; modes are
+mass-normalised (q in m kg^0.5).  Every module opens with its equations.
 """
+
+from dataclasses import replace
 
 from contact.collision import Collision, before_collision, collisions, first_collision
 from contact.drive import HarmonicDrive
@@ -70,7 +79,7 @@ from contact.laws import (
     LinearContact,
     NewtonRestitution,
 )
-from contact.machine.renamed import forward_modules
+from contact.machine.renamed import forward_modules, forwarded_call
 from contact.maps.nonlinear_mode import NonlinearMode
 from contact.maps.nordmark import NordmarkMap
 from contact.maps.nordmark_bands import Band, band, bands
@@ -83,7 +92,6 @@ from contact.maps.nordmark_orbits import (
     maximal_periods,
     stable_range,
 )
-from contact.maps.strobed_nordmark import StrobedNordmarkMap
 from contact.maps.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap, strobed_orbits
 from contact.orbits.families.single_impact import MaximalFamily, SingleImpactOrbit
 from contact.oscillator import ImpactOscillator
@@ -101,6 +109,11 @@ forward_modules(
         "contact.orbits.kick": "contact.orbits.families.kick",
         "contact.orbits.continuation": "contact.orbits.branches.continuation",
     }
+)
+StrobedNordmarkMap = forwarded_call(
+    "StrobedNordmarkMap(map=nordmark, rho=rho)",
+    "replace(nordmark, control=rho)",
+    lambda *, map, rho=0.0: replace(map, control=rho),
 )
 
 __all__ = [
@@ -134,7 +147,6 @@ __all__ = [
     "StepTooLarge",
     "Stop",
     "StrobedMap",
-    "StrobedNordmarkMap",
     "StrobedOrbit",
     "StroboscopicMap",
     "Trajectory",

@@ -5,24 +5,24 @@ virtual motion is the steady forced tip motion plus the free deviation of mode 1
 
     y(t) = x_s(t) + phi_1 u_1(t) - gap
 
-Mode 1 is the one that carries most of a static force on the tip (``ModalModel.leading_mode``).
-Before a collision this is the incoming virtual motion, after it the outgoing one; each is continued both ways
-by the free flow of mode 1.  A collision holds all impacts from a first touch until the next minimum of the
-outgoing virtual motion, and is final when that minimum has passed.  With
+Mode 1 is the mode that carries most of a static force on the tip (``ModalModel.leading_mode``).  The incoming
+virtual motion is that before a collision, the outgoing one that after it; the free flow of mode 1 continues
+each both ways.  A collision holds all impacts from a first touch until the next minimum of the outgoing
+virtual motion, and is final when that minimum has passed.  With
 
     t_in, v_in   upward crossing of the gap by the incoming virtual motion, next to the first impact
-    t_out        first downward crossing of the gap by the outgoing one, behind its peak
+    t_out        first downward crossing of the gap by the outgoing virtual motion, after its peak
 
     restitution = -(velocity at t_out) / v_in,   delay = t_out - t_in,
     kick = -(jump of the mode-1 tip velocity) / v_in,   shift = jump of the mode-1 tip displacement,
 
-both jumps referred to t_in by mode 1's free flow.  To leading order in v_in, with a the deceleration of the
-tip,
+both jumps referred to t_in by the free flow of mode 1.  To leading order in v_in, with a the deceleration of
+the tip,
 
     restitution^2 = (1 - kick)^2 + 2 a shift / v_in^2,   delay = (v_in / a)(1 + restitution - kick).
 
-If the incoming peak stays below the gap, the ringing of higher modes made the touch (`forced_by_ringing`):
-then there is no restitution and no delay, and the kick is given as a velocity.  If the outgoing motion never
+If the incoming peak stays below the gap, the ringing of higher modes made the touch (`forced_by_ringing`).
+Restitution and delay do not exist then, and the kick is given as a velocity.  If the outgoing motion never
 reaches the gap, restitution and delay do not exist either, but the kick does.
 """
 
@@ -36,11 +36,11 @@ import numpy as np
 
 from beam.parameters import InvalidValue, require, require_kind, require_whole
 from contact.flight.modal_flow import flow_over, propagate, steady_motion, tip_rounding
-from contact.flight.motion import SLOWNESS, Motion, single_mode
+from contact.flight.motion import INVERSE_OMEGA, Motion, with_only_mode
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.trajectory import ImpactKind, Impacts, State, Trajectory
-from contact.virtual_motion import VirtualMotion, deviations
+from contact.virtual_motion import VirtualMotion
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,7 +62,7 @@ class Collision:
     kick : float
         Kick of the mode-1 tip velocity over v_in [1]; NaN if `forced_by_ringing`.
     kick_velocity : float
-        The same as a velocity, positive away from the stop [m/s].
+        Kick of the mode-1 tip velocity, positive away from the stop [m/s].
     shift : float
         Jump of the mode-1 tip displacement at t_in [m].
     deceleration : float
@@ -111,8 +111,8 @@ def _higher_energy(motion: Motion, k: int, u: np.ndarray, v: np.ndarray) -> floa
 
 
 def _ringing(motion: Motion, k: int, u: np.ndarray, v: np.ndarray) -> float:
-    """Amplitude at the tip of the same motion [m]."""
-    sizes = np.hypot(u, v * motion.row(SLOWNESS))  # of zero frequency, the displacement alone
+    """Amplitude at the tip of the free motion of all modes but number `k` [m]."""
+    sizes = np.hypot(u, v * motion.row(INVERSE_OMEGA))  # of zero frequency, the displacement
     sizes[k] = 0.0
     return motion.most_at_tip(sizes)
 
@@ -130,7 +130,7 @@ def collisions(
     Parameters
     ----------
     oscillator : ImpactOscillator, optional
-        The one that made the trajectory, which knows it: ``collisions(oscillator, trajectory)`` checks it.
+        ``collisions(oscillator, trajectory)`` checks that this oscillator has made the trajectory.
     trajectory : Trajectory
     unfinished : {"refuse", "drop"}
         What to do with a last collision that is not final when the trajectory ends.
@@ -147,6 +147,7 @@ def collisions(
     given = oscillator if trajectory is None else trajectory
     run = require_kind("trajectory", given, Trajectory, "a Trajectory, from simulate")
     motion, impacts, k = run.oscillator.motion(), run.impacts, run.oscillator.model.leading_mode
+    single = with_only_mode(motion, k)
     if trajectory is not None:
         other = require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
         pairs: Any = zip(motion, other.motion(), strict=True)
@@ -158,10 +159,10 @@ def collisions(
     found: list[Collision] = []
     while rows:
         first = last = rows.pop(0)
-        outgoing, minimum = _outgoing(motion, k, impacts, last)
+        outgoing, minimum = _outgoing(single, k, impacts, last)
         while rows and -_length(motion, impacts, rows[0], last) < minimum:
             last = rows.pop(0)
-            outgoing, minimum = _outgoing(motion, k, impacts, last)
+            outgoing, minimum = _outgoing(single, k, impacts, last)
         under_way = math.isnan(impacts.approach[first])  # when the run began
         if not impacts.end[last] + minimum <= run.end.time:
             if unfinished == "drop" or under_way:
@@ -177,28 +178,27 @@ def collisions(
 
 def _length(motion: Motion, impacts: Impacts, first: Any, last: Any) -> Any:
     """Time from the start of one touch to the release of another, to rounding in a run of any length [s]."""
-    turns = impacts.period[last] - impacts.period[first]
-    return turns * motion.period + (impacts.end_clock[last] - impacts.clock[first])
+    periods = impacts.period[last] - impacts.period[first]
+    return periods * motion.period + (impacts.end_clock[last] - impacts.clock[first])
 
 
-def _outgoing(motion: Motion, k: int, impacts: Impacts, last: int) -> tuple[VirtualMotion, float]:
-    """The virtual motion after an impact, and how long after it comes its next minimum [s]; infinity where
-    that is not known."""
-    end = impacts.end_clock[last]
-    after = deviations(motion, end, impacts.displacement_end[last], impacts.velocity_end[last])
-    virtual = VirtualMotion(single_mode(motion, k), math.fmod(end, motion.period), *after[:, k])
-    minima = virtual.extrema(0.0, 2.0 * motion.period, -1.0) if math.isfinite(end) else []
+def _outgoing(single: Motion, k: int, impacts: Impacts, last: int) -> tuple[VirtualMotion, float]:
+    """The virtual motion after an impact, and the time from there to its next minimum [s].
+
+    The time is infinite if the contact has not ended or no minimum comes within two drive periods.
+    """
+    clock = math.fmod(impacts.end_clock[last], single.period)
+    virtual = VirtualMotion(single, clock, *impacts.deviations_end[last, :, k])
+    minima = virtual.extrema(0.0, 2.0 * single.period, -1.0) if math.isfinite(clock) else []
     return virtual, minima[0] if minima else math.inf
 
 
 def _measure(motion: Motion, k: int, impacts: Impacts, rows: slice, outgoing: VirtualMotion) -> Collision:
     """The numbers of the collision of these impacts."""
     first, last, single = rows.start, rows.stop - 1, outgoing.motion
-    touch, start, end = float(impacts.start[first]), impacts.clock[first], impacts.end_clock[last]
-    length = float(_length(motion, impacts, first, last))
-    u_in, v_in = deviations(motion, start, impacts.displacement_start[first], impacts.velocity_start[first])
-    u_out, v_out = deviations(motion, end, impacts.displacement_end[last], impacts.velocity_end[last])
-    incoming = VirtualMotion(single, math.fmod(start, motion.period), u_in[k], v_in[k])
+    touch, length = float(impacts.start[first]), float(_length(motion, impacts, first, last))
+    (u_in, v_in), (u_out, v_out) = impacts.deviations_start[first], impacts.deviations_end[last]
+    incoming = VirtualMotion(single, float(impacts.clock[first]), u_in[k], v_in[k])
 
     # the hump of the incoming virtual motion that belongs to the touch
     peak, (height, rate, _) = incoming.peak_near(0.0), incoming.at(0.0)
@@ -216,11 +216,11 @@ def _measure(motion: Motion, k: int, impacts: Impacts, rows: slice, outgoing: Vi
 
     # the outgoing hump around t_in, and its fall through the gap
     peak = outgoing.peak_near(back)
-    reach = -tip_rounding(single, outgoing.u, outgoing.v)
-    returns = not math.isnan(peak) and outgoing.at(peak)[0] >= reach
+    rounding = tip_rounding(single, outgoing.u, outgoing.v)
+    returns = not math.isnan(peak) and outgoing.at(peak)[0] >= -rounding
     restitution = delay = math.nan
     if returns and not forced:
-        s_out = peak if outgoing.at(peak)[0] <= -reach else outgoing.crossing(peak, 1.0)
+        s_out = peak if outgoing.at(peak)[0] <= rounding else outgoing.crossing(peak, 1.0)
         restitution, delay = -outgoing.at(s_out)[1] / speed, s_out - back
 
     gained = _higher_energy(motion, k, u_out, v_out) - _higher_energy(motion, k, u_free, v_free)

@@ -47,6 +47,11 @@ class HarmonicDrive:
         """1/f [s]."""
         return 1.0 / self.frequency
 
+    def components(self, time: float) -> np.ndarray:
+        """(S, C) = amplitude (sin, cos)(2 pi f time), the sine and cosine part of the drive at a time [m]."""
+        angle = self.angular_frequency * time
+        return self.amplitude * np.array([math.sin(angle), math.cos(angle)])
+
     def displacement(self, time: float | np.ndarray) -> np.ndarray:
         """Base displacement at `time` [s], same shape [m]."""
         times = require_array("time", time, "s", words="a time or an array of times")

@@ -2,7 +2,7 @@
 
 Wrong use (a negative stiffness, a law that a method cannot handle) is a ``beam.Refusal``, a ValueError or
 TypeError, where the object is made.  The classes here are for valid computations that could not be finished.
-They carry the place where it happened, and never a number that might be taken for a result.
+They carry time and place of the failure, and never a number that might be taken for a result.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ class StepTooLarge(ContactError):
 
 
 class Diverged(ContactError):
-    """A discretised motion has grown without bound, or one mode beyond the reach of its cubic terms."""
+    """A discretised motion has grown without bound, or one mode beyond the range of its cubic terms."""
 
     reason = "the motion grew without bound"
 
@@ -70,9 +70,9 @@ class NotPeriodic(ContactError):
 
 
 class BranchEnded(ContactError):
-    """A branch of periodic orbits that ends before what is looked for on it.
+    """A branch of periodic orbits ends before the event that is looked for.
 
-    Its `orbit` is the last one; None if there is no orbit to start from.
+    `orbit` is the last orbit of the branch, or None if there is no orbit to start from.
     """
 
     reason = "the branch of periodic orbits ends"

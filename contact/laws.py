@@ -11,8 +11,8 @@ With the penetration d = x - gap [m] and its rate d' [m/s], the stop pushes the 
   d^(3/2) (H. Hertz, J. reine angew. Math. 92 (1882) 156), and ``HuntCrossley``, N = k d^(3/2) (1 + chi d')
   (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440), which vanishes only at d = 0.
 
-Each law names the kernel that handles it by a small integer, two numbers and a table (`code`, `numbers`,
-`table`), so that compiled code sees no objects.
+Compiled code sees no objects: a law gives it a small integer, two numbers and a table (`code`, `numbers`,
+`table`).  ``contact.touch`` has the compiled part of each law, and tells how to add one.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ import numpy as np
 from beam.parameters import brief, final, require, require_array, require_kind, require_within, suspect
 
 NEWTON, LINEAR, HERTZ, DELAYED = 0, 1, 2, 3
+"""Codes of the laws in this file; another law has its code beside its compiled part in ``contact.touch``."""
 
 HERTZ_TIME = 0.8 * math.sqrt(math.pi) * 2.0757065006382507
 """Contact time of a free mass under Hertz's law over (greatest approach / approach velocity): 0.8 sqrt(pi)
@@ -43,12 +44,20 @@ GPa or MPa a modulus is far below."""
 class ContactLaw:
     """What all laws offer to the compiled motion.
 
-    `units` names the plain numbers of a law, two at most, and their units. In a force law the first, its
-    stiffness, is above zero and the other zero or more.
+    Attributes
+    ----------
+    code : int
+        The number by which ``contact.touch.TOUCHES`` finds the compiled part of the law.
+    units : dict of str to str
+        Names and units of the plain numbers of the law, two at most.  In a force law the first, its
+        stiffness, is above zero and the other zero or more.
+    one_mode_only : bool
+        Whether the law holds for one mode only.
     """
 
     code: ClassVar[int] = -1
     units: ClassVar[dict[str, str]] = {}
+    one_mode_only: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         for name, unit in self.units.items():
@@ -60,6 +69,11 @@ class ContactLaw:
         """The law's plain numbers for the kernels, filled up with zero."""
         first, second = (*(getattr(self, name) for name in self.units), 0.0, 0.0)[:2]
         return first, second
+
+    @property
+    def adjustable(self) -> tuple[float, ...]:
+        """The numbers that ``contact.sensitivity.change.Change`` can move, two at most."""
+        return self.numbers[: len(self.units)]
 
     @property
     def table(self) -> np.ndarray:
@@ -117,6 +131,7 @@ class DelayedRestitution(ContactLaw):
     delay: float | Callable[[float], float]
     speeds: tuple[float, float] = (1e-5, 10.0)
     code: ClassVar[int] = DELAYED
+    one_mode_only: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         words = "two rising numbers above zero"
@@ -130,6 +145,11 @@ class DelayedRestitution(ContactLaw):
         require(bool(np.all((tau >= 0) & (tau <= 1))), words)
         words = f"delay runs from {delay.min()} to {delay.max()} s; it must be finite and zero or more"
         require(bool(np.all(np.isfinite(delay) & (delay >= 0))), words)
+
+    @property
+    def adjustable(self) -> tuple[float, float]:
+        """Restitution [1] and delay [s]; of functions of the speed, their values at the lowest speed."""
+        return float(self.table[1, 0]), float(self.table[3, 0])
 
     @cached_property
     def table(self) -> np.ndarray:

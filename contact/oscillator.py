@@ -32,7 +32,6 @@ from beam.parameters import (
 )
 from contact.drive import HarmonicDrive
 from contact.flight.motion import Motion, motion_of, with_drive
-from contact.laws import DELAYED
 from contact.stop import Stop
 
 GREATEST_AMPLITUDE = 0.1
@@ -41,7 +40,13 @@ GREATEST_AMPLITUDE = 0.1
 
 SLOWEST_DRIVE = 0.01
 """Drive frequency over that of the lowest mode below which a warning is given: the tip then moves by less
-than 1e-4 of the base's motion, and nobody grazes a stop that way."""
+than 1e-4 of the base's motion, too little to reach a stop."""
+
+
+def dynamic_stiffness(omega: np.ndarray, decay_rate: np.ndarray, w: float) -> np.ndarray:
+    """E_k = omega_k^2 - w^2 + i c_k w of modes driven at frequency `w` [rad/s], complex [1/s^2]."""
+    # (omega - w)(omega + w) keeps its digits close to resonance, where omega^2 - w^2 would lose them
+    return np.asarray((omega - w) * (omega + w) + 1j * decay_rate * w)
 
 
 @final
@@ -76,9 +81,10 @@ class ImpactOscillator:
         require_kind("stop", self.stop, Stop, "a Stop")
         require_kind("drive", self.drive, (HarmonicDrive, type(None)), "a HarmonicDrive or None")
         omega, decay = self.model.omega, self.model.decay_rate
-        if self.stop.law.code == DELAYED and omega.size > 1:
+        law = self.stop.law
+        if law.one_mode_only and omega.size > 1:
             raise InvalidType(
-                "law of the stop is DelayedRestitution, which holds for one mode; "
+                f"law of the stop is {type(law).__name__}, which holds for one mode; "
                 f"the model has {omega.size}, so give a force law or NewtonRestitution, or truncate the model"
             )
         if self.load is not None:
@@ -98,7 +104,7 @@ class ImpactOscillator:
         self._suspect(self.drive)
 
     def _suspect(self, drive: HarmonicDrive) -> None:
-        """Warn of a drive that moves or turns like no exciter of this spring."""
+        """Warn of an amplitude or a frequency that no exciter of this spring has."""
         if drive.amplitude > max(GREATEST_AMPLITUDE, 10.0 * self.stop.gap) and drive.amplitude != 1.0:
             suspect(
                 f"amplitude of the drive is {drive.amplitude:g} m with a gap of {self.stop.gap:g} m; "
@@ -155,19 +161,16 @@ class ImpactOscillator:
         return self.with_amplitude((1.0 + number) * self.grazing_amplitude())
 
     def tip(self, values: np.ndarray) -> np.ndarray:
-        """What modal displacements or velocities (..., n_modes) come to at the tip, shape (...): the tip's
-        displacement relative to the base [m], or its velocity [m/s]."""
+        """Tip displacement relative to the base [m], or tip velocity [m/s], shape (...), of modal
+        displacements or velocities `values`, shape (..., n_modes)."""
         return np.asarray(values) @ self.model.phi
 
     def steady_response(self) -> np.ndarray:
         """H_k, complex, shape (n_modes,) [kg^0.5]: without contact q_k(t) = Z Im(H_k exp(i 2 pi f t))."""
         if self.drive is None:
             return np.zeros(self.n_modes, dtype=complex)
-        w = self.drive.angular_frequency
-        model = self.model
-        # (omega - w)(omega + w) keeps its digits close to resonance, where omega^2 - w^2 would lose them
-        detuning = (model.omega - w) * (model.omega + w)
-        return model.participation * w**2 / (detuning + 1j * model.decay_rate * w)
+        w, model = self.drive.angular_frequency, self.model
+        return model.participation * w**2 / dynamic_stiffness(model.omega, model.decay_rate, w)
 
     def tip_response(self) -> complex:
         """Tip displacement per base amplitude without contact, complex [1]."""
@@ -181,9 +184,9 @@ class ImpactOscillator:
         """Base amplitude [m] and drive time [s] at which the steady tip motion has displacement `reach` [m]
         and velocity `rate` [m/s]."""
         w = self.driven.angular_frequency
-        # x = Z Im(H e^{i w t}), x' = Z w Re(H e^{i w t})
-        turned = (rate / w + 1j * reach) / self.tip_response()
-        return abs(turned), float(np.angle(turned) % (2.0 * np.pi)) / w
+        # x = Z Im(H e^{i w t}), x' = Z w Re(H e^{i w t}), so Z e^{i w t} = C + i S with
+        phasor = (rate / w + 1j * reach) / self.tip_response()
+        return abs(phasor), float(np.angle(phasor) % (2.0 * np.pi)) / w
 
     def grazing_amplitude(self) -> float:
         """Base amplitude Z_g at which the steady tip motion just touches the stop [m]."""
@@ -207,7 +210,7 @@ class ImpactOscillator:
         return 0.5 * np.sum(v**2 + (self.model.omega * q) ** 2, axis=-1)
 
     def motion(self) -> Motion:
-        """The numbers of this oscillator, as the kernels take them; nobody may write into them."""
+        """The numbers of this oscillator, as the kernels take them; not to be written into."""
         return self._motion
 
     @cached_property
@@ -217,7 +220,7 @@ class ImpactOscillator:
 
     @cached_property
     def _at_one_metre(self) -> Motion:
-        """The numbers at an amplitude of 1 m: the same of all with another amplitude."""
+        """The numbers at an amplitude of 1 m; oscillators that `with_amplitude` has made share them."""
         return motion_of(
             self.model.omega,
             self.model.decay_rate,

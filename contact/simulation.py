@@ -1,9 +1,8 @@
 """``simulate``: a motion as a trajectory of named arrays, by a method that fits the contact law.
 
-Without a chosen method the exact one of the law is taken: event-driven for an impact law, piecewise-linear
-for a linear contact, the contact series for Hertz's and Hunt and Crossley's.  Their error is that of
-rounding, and ``studies.methods.work_precision`` shows that nothing which proves its touches, and no outside
-solver, is both cheaper and as accurate.
+Without a chosen method the exact one is taken: event-driven for an impact law, piecewise-linear for a linear
+contact, the contact series for Hertz's and Hunt and Crossley's laws.  Its error is that of rounding;
+``studies.methods.work_precision`` compares its cost with that of the other methods and of outside solvers.
 """
 
 from __future__ import annotations
@@ -29,25 +28,21 @@ from contact.oscillator import ImpactOscillator
 from contact.trajectory import State, Trajectory
 
 MOST_STORED = 2.0**28
-"""Numbers in the strobes of one run: 2 GB."""
+"""Largest number of values in the strobes of one run: 2 GB."""
 
 
 def _method(method: Integrator | str | None, law: int) -> Integrator:
-    """The method asked for, if it knows the law."""
-    if isinstance(method, str):
-        if method not in INTEGRATORS:
-            raise InvalidValue(f"method is {method!r}; it must be one of {', '.join(INTEGRATORS)}")
+    """The chosen method, or the exact one; refused if it does not know the law."""
+    chosen: object = Exact() if method is None else method
+    if isinstance(chosen, str):
+        require(chosen in INTEGRATORS, f"method is {method!r}; it must be one of {', '.join(INTEGRATORS)}")
+        kind = INTEGRATORS[chosen]
         try:
-            chosen = INTEGRATORS[method]()
+            chosen = kind()
         except TypeError:
-            raise InvalidType(
-                f"method is {method!r}, which needs a step; give {INTEGRATORS[method].__name__}(step=...)"
-            ) from None
-    elif method is None:
-        chosen = Exact()
-    elif isinstance(method, Integrator):
-        chosen = method
-    else:
+            words = f"method is {method!r}, which needs a step; give {kind.__name__}(step=...)"
+            raise InvalidType(words) from None
+    if not isinstance(chosen, Integrator):
         raise InvalidType(f"method is {method!r}; it must be an Integrator or the name of one")
     if not chosen.accepts(law):
         known = ", ".join(LAW_NAMES[code] for code in chosen.laws)
@@ -58,7 +53,7 @@ def _method(method: Integrator | str | None, law: int) -> Integrator:
 
 
 def require_state(oscillator: ImpactOscillator, state: object) -> State:
-    """The state, if it is one of as many modes as the oscillator."""
+    """`state`, refused unless it is a State with as many modes as the oscillator."""
     given: State = require_kind("state", state, State, "a State")
     modes, known = given.displacement.size, oscillator.n_modes
     require(modes == known, f"displacement of the state has {modes} modes; the model has {known}")
@@ -66,7 +61,7 @@ def require_state(oscillator: ImpactOscillator, state: object) -> State:
 
 
 def _suspect_rest(oscillator: ImpactOscillator, start: State) -> None:
-    """Warn of a driven spring that never moves; ValueError for one that rests just on the stop."""
+    """Warn of a driven spring that never moves; ValueError if it also rests just on the stop."""
     motion, still = oscillator.motion(), not np.any(start.velocity)
     if still and motion.amplitude == 0.0 and np.all(start.displacement == steady_motion(motion, 0.0)[0]):
         words = "the spring just touches the stop at rest and never moves, so give a velocity or another gap"
@@ -83,7 +78,7 @@ def _run(
     periods: int | None,
     times: np.ndarray | None,
 ) -> Run:
-    """What is asked for, checked."""
+    """The run from `start` over one of `duration` and `periods`, checked."""
     words = "duration and periods are both given or both missing; give exactly one of them"
     require((duration is None) != (periods is None), words)
     period = oscillator.period
@@ -148,8 +143,8 @@ def simulate(
     times : array_like, optional
         Rising times within the run at which the state is wanted [s].
     method : Integrator or str, optional
-        Another method than the exact one of the law, e.g. ``CentralDifference(step=1e-6)``;
-        ``contact.integrators.INTEGRATORS`` lists them.
+        Another method than the exact one, e.g. ``CentralDifference(step=1e-6)``;
+        ``contact.integrators.INTEGRATORS`` lists them by name.
 
     Returns
     -------
@@ -167,11 +162,13 @@ def simulate(
     UnresolvedCrossing, Chatter, ContactTooStiff
         Where the motion could not be followed; see ``contact.errors``.
 
-    Warns of a driven spring at rest whose drive has no amplitude.
+    Warns
+    -----
+    SuspiciousValue
+        For a driven spring at rest whose drive has no amplitude.
     """
     require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
-    law = oscillator.stop.law.code
-    chosen = _method(method, law)
+    chosen = _method(method, oscillator.stop.law.code)
     start = State.rest(oscillator.n_modes) if state is None else require_state(oscillator, state)
     run = _run(oscillator, start, duration, periods, times)
     _suspect_rest(oscillator, start)

@@ -1,7 +1,8 @@
 """States and motions as named arrays.
 
-All arrays are in physical modal coordinates (not deviations): displacement q_k [m kg^0.5], velocity q_k'
-[m kg^0.5 / s]; the tip displacement relative to the base is ``ImpactOscillator.tip`` of it.
+A modal state is a displacement q_k [m kg^0.5] and a velocity q_k' [m kg^0.5 / s] of each mode.
+``ImpactOscillator.tip`` gives the displacement of the tip relative to the base.  Impacts keep the deviations
+u = q - q_s and v = q' - q_s' from the steady motion q_s, and give the states on demand.
 """
 
 from __future__ import annotations
@@ -9,10 +10,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from enum import IntEnum
+from functools import cached_property
 
 import numpy as np
 
 from beam.parameters import InvalidValue, final, is_number, require_whole, require_within, shown
+from contact.drive import split_time
+from contact.flight.modal_flow import steady_motion
+from contact.flight.motion import Motion
 from contact.oscillator import ImpactOscillator
 
 
@@ -32,12 +37,12 @@ class Regime(IntEnum):
 
 
 class ImpactKind(IntEnum):
-    """What a touch of the tip is."""
+    """Kind of a touch of the tip."""
 
     IMPACT = 0
-    """One that acts on the motion."""
+    """A touch that acts on the motion."""
     GRAZE = 1
-    """One without effect, within rounding."""
+    """A touch without effect, within rounding."""
     STAY = 2
     """A stay on the wall after accumulated impacts."""
     UNDER_WAY = 3
@@ -46,13 +51,13 @@ class ImpactKind(IntEnum):
 
 OUTSIDE, CONTACT, INSIDE, SUSTAINED, WAITING = map(int, Regime)
 IMPACT, GRAZE, STAY, UNDER_WAY = map(int, ImpactKind)
-"""The same as plain integers, for the kernels."""
+"""The regimes and the kinds as plain integers, for the kernels."""
 
 
 @final
 @dataclass(frozen=True, kw_only=True, eq=False)
 class State:
-    """Where a spring is: modal displacement and velocity at a time.
+    """Modal displacement and velocity of a spring at a time, and its contact with the stop.
 
     Parameters
     ----------
@@ -109,7 +114,7 @@ class State:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Run:
-    """From where to where, and what is wanted on the way.
+    """Start and end of a simulation, and the times at which its states are wanted.
 
     Parameters
     ----------
@@ -123,7 +128,7 @@ class Run:
     times : ndarray, shape (n_times,)
         Times at which the state is wanted [s].
     sample_period, sample_clock : ndarray, shape (n_times,)
-        The same as number of the drive period and time since its strobe [s].
+        These times as number of the drive period and time since its strobe [s].
     """
 
     start: State
@@ -141,27 +146,29 @@ class Run:
 class Impacts:
     """The touches of the tip, in the order in which they began.
 
-    Arrays have shape (n_impacts,) or (n_impacts, n_modes).
+    Times are kept as drive periods and the rest, and states as deviations from the steady motion.  Both are
+    right to rounding however long the run.  Times in seconds and modal states are made of them on demand.
 
     Parameters
     ----------
-    start, end : ndarray
-        First touch and release [s]; equal for an impact law, NaN for a contact that had not ended.
-    period, clock, end_clock : ndarray
-        Number of the drive period in which a touch begins, and both times since its strobe, to rounding
-        however long the run [s].
-    approach, rebound : ndarray
+    oscillator : ImpactOscillator
+        The oscillator that moves.
+    period : ndarray of int, shape (n_impacts,)
+        Number of the drive period in which a touch begins.
+    clock, end_clock : ndarray, shape (n_impacts,)
+        First touch and release, counted from the strobe that begins this period [s]; equal for an impact
+        law, the second NaN for a contact that had not ended.
+    approach, rebound : ndarray, shape (n_impacts,)
         Tip velocity at both, positive towards the wall [m/s]; an approach before the run is NaN.
-    loss : ndarray
+    loss : ndarray, shape (n_impacts,)
         Energy lost in the contact itself [J].
-    kind : ndarray of int
+    kind : ndarray of int, shape (n_impacts,)
         Values of `ImpactKind`.
-    displacement_start, velocity_start, displacement_end, velocity_end : ndarray, shape (n_impacts, n_modes)
-        Modal states just before the touch and just after the release.
+    deviations_start, deviations_end : ndarray, shape (n_impacts, 2, n_modes)
+        Deviations (u, v) just before the touch and just after the release.
     """
 
-    start: np.ndarray
-    end: np.ndarray
+    oscillator: ImpactOscillator = field(repr=False)
     period: np.ndarray
     clock: np.ndarray
     end_clock: np.ndarray
@@ -169,13 +176,69 @@ class Impacts:
     rebound: np.ndarray
     loss: np.ndarray
     kind: np.ndarray
-    displacement_start: np.ndarray
-    velocity_start: np.ndarray
-    displacement_end: np.ndarray
-    velocity_end: np.ndarray
+    deviations_start: np.ndarray
+    deviations_end: np.ndarray
 
     def __len__(self) -> int:
-        return int(self.start.size)
+        return int(self.clock.size)
+
+    @staticmethod
+    def of_states(
+        oscillator: ImpactOscillator, *, times: np.ndarray, states: np.ndarray, **numbers: np.ndarray
+    ) -> Impacts:
+        """Touches that another program has found, with approach, rebound, loss and kind as `numbers`.
+
+        `times` [s] has the shape (2, n_impacts), and the modal states (q, q') have (2, n_impacts, 2,
+        n_modes): first the touches, then the releases.
+        """
+        period, clock = split_time(times[0], oscillator.period)
+        end_clock, motion = times[1] - period * oscillator.period, oscillator.motion()
+        before, after = states - steady_states(motion, np.array([clock, end_clock]) % motion.period)
+        return Impacts(
+            oscillator=oscillator,
+            period=period,
+            clock=clock,
+            end_clock=end_clock,
+            deviations_start=before,
+            deviations_end=after,
+            **numbers,
+        )
+
+    @cached_property
+    def start(self) -> np.ndarray:
+        """Times of the first touch [s], shape (n_impacts,)."""
+        return self.period * self.oscillator.period + self.clock
+
+    @cached_property
+    def end(self) -> np.ndarray:
+        """Times of the release [s], shape (n_impacts,)."""
+        return self.period * self.oscillator.period + self.end_clock
+
+    @cached_property
+    def _steady(self) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
+        """Steady displacements and velocities at `start`, and at `end`."""
+        motion = self.oscillator.motion()
+        return tuple(steady_motion(motion, np.fmod(at, motion.period)) for at in (self.clock, self.end_clock))
+
+    @cached_property
+    def displacement_start(self) -> np.ndarray:
+        """Modal displacements just before the touch [m kg^0.5], shape (n_impacts, n_modes)."""
+        return self._steady[0][0] + self.deviations_start[:, 0]
+
+    @cached_property
+    def velocity_start(self) -> np.ndarray:
+        """Modal velocities just before the touch [m kg^0.5 / s], shape (n_impacts, n_modes)."""
+        return self._steady[0][1] + self.deviations_start[:, 1]
+
+    @cached_property
+    def displacement_end(self) -> np.ndarray:
+        """Modal displacements just after the release [m kg^0.5], shape (n_impacts, n_modes)."""
+        return self._steady[1][0] + self.deviations_end[:, 0]
+
+    @cached_property
+    def velocity_end(self) -> np.ndarray:
+        """Modal velocities just after the release [m kg^0.5 / s], shape (n_impacts, n_modes)."""
+        return self._steady[1][1] + self.deviations_end[:, 1]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -185,17 +248,17 @@ class Trajectory:
     Parameters
     ----------
     oscillator : ImpactOscillator
-        The one that moves.
+        The oscillator that moves.
     end : State
         The state at the end of the run.
     strobe_time : ndarray, shape (n_strobes,)
         Times of the strobes passed, the start excluded [s].
     strobe_displacement, strobe_velocity : ndarray, shape (n_strobes, n_modes)
-        Modal states there.
+        Modal states at the strobes.
     strobe_impacts : ndarray of int, shape (n_strobes,)
         Impacts that began since the strobe before (or the start).
     time, displacement, velocity : ndarray, shapes (n_times,) and (n_times, n_modes)
-        The states at the times that were asked for.
+        The times that were asked for [s], and the states at them.
     impacts : Impacts
         Every touch.
     evaluations : int
@@ -213,3 +276,13 @@ class Trajectory:
     velocity: np.ndarray
     impacts: Impacts = field(repr=False)
     evaluations: int = 0
+
+
+def steady_states(motion: Motion, clock: float | np.ndarray) -> np.ndarray:
+    """States (q_s, q_s') of the steady motion at times `clock` since a strobe, shape (..., 2, n_modes)."""
+    return np.stack(steady_motion(motion, clock), axis=-2)
+
+
+def deviations(motion: Motion, time: float, q: np.ndarray, q_rate: np.ndarray) -> np.ndarray:
+    """Deviations (u, v) of the modal state (q, q') from the steady motion at a time, shape (2, n_modes)."""
+    return np.array([q, q_rate]) - steady_states(motion, math.fmod(time, motion.period))

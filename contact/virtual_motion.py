@@ -1,8 +1,8 @@
-"""The motion as the single-mode description continues it: the wall ignored, only mode 1 free.
+"""The virtual motion of the single-mode description: the wall ignored, only mode 1 free.
 
     y(t) = x_s(t) + phi_1 u_1(t) - gap,
 
-the steady forced tip motion x_s and the free deviation u_1 of mode 1 (``contact.collision``).
+with the steady forced tip motion x_s and the free deviation u_1 of mode 1 (``contact.collision``).
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ import math
 
 import numpy as np
 
-from contact.flight.modal_flow import steady_motion
 from contact.flight.motion import WEIGHT, Motion
 from contact.flight.tip_search import peaks_of_flight, tip_at
 
@@ -20,9 +19,9 @@ NEAR = 0.6
 
 
 class VirtualMotion:
-    """The one through the mode-1 deviation (u, v) at `clock` after a strobe; times s count from there.
+    """The virtual motion through the mode-1 deviation (u, v) at `clock` after a strobe.
 
-    `motion` has the first mode only.
+    Times s count from there; `motion` has mode 1 only.
     """
 
     def __init__(self, motion: Motion, clock: float, u: float, v: float) -> None:
@@ -37,19 +36,21 @@ class VirtualMotion:
     def extrema(self, low: float, high: float, sign: float) -> list[float]:
         """Times in [low, high] where the velocity goes through zero from `sign` to -`sign`."""
         motion, modes = self.motion, self.motion.modes.copy()
-        modes[WEIGHT] *= sign  # and so upside down
+        modes[WEIGHT] *= sign  # the valleys of a motion are the peaks of the motion upside down
         sine, cosine = sign * motion.tip_sine, sign * motion.tip_cosine
-        turned = motion._replace(modes=modes, tip_sine=sine, tip_cosine=cosine)
-        return list(map(float, peaks_of_flight(turned, self.clock, self.u, self.v, (low, high), True)))
+        signed = motion._replace(modes=modes, tip_sine=sine, tip_cosine=cosine)
+        return peaks_of_flight(signed, self.clock, self.u, self.v, (low, high), True).tolist()
 
     def peak_near(self, s: float) -> float:
-        """The peak next to `s`, NaN if there is none within most of a period."""
+        """Time of the peak next to `s`; NaN if there is none within `NEAR` periods."""
         peaks = self.extrema(s - NEAR * self.motion.period, s + NEAR * self.motion.period, 1.0)
         return min(peaks, key=lambda peak: abs(peak - s), default=math.nan)
 
     def crossing(self, peak: float, direction: float) -> float:
-        """The crossing of the gap next to `peak` on its rising (-1) or falling (+1) side, to rounding; NaN if
-        none comes within a drive period [s]."""
+        """Time of the crossing of the gap next to `peak`, to rounding [s].
+
+        `direction` is -1 for its rising and +1 for its falling side.  NaN if none lies within a drive period.
+        """
         from scipy.optimize import brentq  # slow to import
 
         near, far = peak, peak + direction * self.motion.period
@@ -61,8 +62,3 @@ class VirtualMotion:
                 return float(brentq(lambda s: self.at(s)[0], near, low, **tight))
             near = low
         return math.nan
-
-
-def deviations(motion: Motion, time: float, q: np.ndarray, q_rate: np.ndarray) -> np.ndarray:
-    """Deviations (u, v) of the modal state (q, q') from the steady motion at a time, shape (2, n_modes)."""
-    return np.array([q, q_rate]) - steady_motion(motion, math.fmod(time, motion.period))

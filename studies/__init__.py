@@ -78,12 +78,12 @@ def start_as_program() -> None:
 
 
 def run_old_name() -> None:
-    """Run ``python -m studies.NAME``, as programs were called once, and say how it is called now."""
+    """Run ``python -m studies NAME``, as programs were called once, and say how it is called now."""
     from studies.shell.programs import old_name
 
     name = old_name(sys.orig_argv[1:])
     if name is not None:
-        print(f"python -m studies.{name} is now python -m studies {name}", file=sys.stderr)
+        print(f"python -m studies {name} is now python -m studies {name}", file=sys.stderr)
         from studies.__main__ import main
 
         raise SystemExit(main([name, *sys.argv[1:]]))

@@ -25,7 +25,7 @@ from matplotlib.figure import Figure
 from matplotlib.widgets import RadioButtons, Slider
 
 from beam import InvalidValue, Refusal
-from contact import ContactError, ImpactKind, StrobedMap, StrobedNordmarkMap, StroboscopicMap, simulate
+from contact import ContactError, ImpactKind, StrobedMap, StroboscopicMap, simulate
 from contact.orbits import orbit_diagram, settle
 from studies.physics.least_model import least_modes, middle_of
 from studies.physics.two_parameters import two_parameters_at
@@ -47,7 +47,7 @@ def described(scene: Scene, kind: str, frequency: float, restitution: float) -> 
     """The description at a drive frequency [Hz]."""
     at = scene.replace({f"{key}restitution": restitution for key in ("single_mode.", "contact.local_")})
     if kind == "map":
-        return StrobedNordmarkMap(map=nordmark_at(at, frequency))
+        return nordmark_at(at, frequency)
     make = {"beam": beam_at, "two parameters": two_parameters_at}.get(kind)
     oscillator = make(at, frequency, modes_of_beam(scene)) if make else single_mode_at(at, frequency)
     return StroboscopicMap(oscillator=oscillator)

@@ -30,12 +30,12 @@ from typing import Any
 ROOT = Path(__file__).resolve().parent.parent
 FILES = {
     "flight/*": "flight|crossing|elementary|polynomial|derivatives",
-    "touch/* touch_flow": "contact_laws|delayed|derivatives|shooting|time_stepping",
-    "event_loop recorder": "sampling|simulation|bouncing|digits|modes",
+    "touch/* sensitivity/*": "contact_laws|delayed|derivatives|shooting|time_stepping",
+    "engine/*": "sampling|simulation|bouncing|digits|modes",
     "collision virtual_motion": "collision",
-    "orbits/*": "shooting|families|derivatives|delayed|settling|clouds|path",
-    "nordmark maximal_orbits strobed_* stroboscope": "nordmark|sampling|lyapunov|clouds|derivatives",
-    "single_mode/*": "single_mode|sampling|nonlinear|clouds",
+    "orbits/*/*": "shooting|families|derivatives|delayed|settling|clouds|path",
+    "maps/*": "nordmark|nonlinear|sampling|lyapunov|clouds|derivatives",
+    "one_mode/*": "single_mode|sampling|clouds",
 }
 """Where the places are, and words in the names of the tests that run first there."""
 NOT_RUN = "bounded_calls|benchmarks|all_studies|every_study|explore|film|page|peers|tour"
@@ -45,10 +45,10 @@ LIMIT = 1200.0
 CHECKED = "a first guess: what is proved from it does not depend on it, and else the general search goes on"
 STRIDE = "a stride in search of a bracket: the tip stays below the gap far longer, and the root is the same"
 EQUIVALENT = {
-    "contact/flight/bounds.py: under = rate * rate - 2 * (2.0 * bend * (height + goal))": CHECKED,
+    "contact/flight/bounds.py: under = rate * rate - 2 * (2.0 * curvature * (height + goal))": CHECKED,
     "contact/flight/bounds.py: a = -c * v - 2 * (o2 * u)": CHECKED,
-    "contact/one_mode/loop.py: twist = n.decay * drop + n.stiffness * q": CHECKED,
-    "contact/one_mode/one_impact.py: se = 1.0 / (rate + x * x * (0.5 * twist - x * bend / 6.0))": CHECKED,
+    "contact/one_mode/one_impact.py: jerk = n.decay * free + n.stiffness * q": CHECKED,
+    "contact/one_mode/one_impact.py: rse = 1.0 / (rate + x * x * (0.5 * jerk - x * snap / 6.0))": CHECKED,
     "contact/one_mode/one_impact.py: d += d * (y2 * ratio)": CHECKED,
     "contact/virtual_motion.py: near, far = (far, far + 2 * (direction * step))": STRIDE,
     "contact/virtual_motion.py: step = 2 * (self.motion.period / SAMPLES)": STRIDE,
@@ -134,7 +134,9 @@ def chosen(seed: int, count: int, only: str) -> list[tuple[str, int, str]]:
     """(file, number, first tests) of the places: in turn from each kind and each part of `FILES`."""
     cells: dict[tuple[str, str], list[tuple[str, int, str]]] = {}
     for part, first in FILES.items():
-        for path in sorted({path for each in part.split() for path in ROOT.glob(f"contact/{each}.py")}):
+        files = {each: set(ROOT.glob(f"contact/{each}.py")) for each in part.split()}
+        assert all(files.values()), f"no file of {part}"
+        for path in sorted(set().union(*files.values())):
             file = path.relative_to(ROOT).as_posix()
             for number, (kind, *_) in enumerate(places(ast.parse(path.read_text(encoding="utf-8")))):
                 if only in f"{kind}/{file}":

@@ -123,6 +123,15 @@ def test_the_beam_knows_nothing_of_the_others_and_contact_little_of_the_beam():
     assert seen <= {("beam", "ModalChange"), ("beam", "ModalModel"), ("beam", "single_mode")}
 
 
+@pytest.mark.parametrize("package", ["beam", "contact"])
+def test_tests_of_a_library_import_nothing_of_studies(package):
+    """Nor do the helpers of these tests, so that a change of a scene changes none of them."""
+    files = modules(f"tests/{package}")
+    assert files
+    used = {(name, module) for name, path in files.items() for module, _ in imports_of(name, path)}
+    assert [entry for entry in used if entry[1].partition(".")[0] == "studies"] == []
+
+
 def test_studies_import_public_names_only():
     public = {(door, name) for door in DOORS for name in importlib.import_module(door).__all__}
     public |= {(door.rpartition(".")[0], door.rpartition(".")[2]) for door in DOORS}

@@ -1,13 +1,13 @@
 """One piece of a thin strip in space, straight or an arc, by finite elements in the arc length.
 
 The centreline is a plane curve of curvature k with frame t, n and z = t x n; t' = k n, n' = -k t. A section
-moves by u t + w n + v z and turns by phi about t, without shear:
+moves by u t + w n + v z and rotates by phi about t, without shear:
 
     rotation   theta = phi t - v' n + (w' + k u) z                                     [rad]
     strains    theta' = (phi' + k v') t + (k phi - v'') n + (w'' + k u') z             [1/m]
 
-so that motion in the plane (u, w: `beam.strip_element`) and out of it (v, phi) do not couple. Out of the
-plane, with test functions (y, psi), v measured at the shear centre and the centroid at a n from there,
+Motions in the plane (u, w: `beam.strip_element`) and out of it (v, phi) therefore do not couple. Out of the
+plane, with test functions (y, psi), v at the shear centre and the centroid at a n from there,
 
     twist      tau = phi' + k v'       [1/m]      warping  tau' = phi'' + k v''        [1/m^2]
     bending    chi = v'' - k phi       [1/m]
@@ -19,8 +19,8 @@ plane, with test functions (y, psi), v measured at the shear centre and the cent
 Mathematical Theory of Elasticity, art. 293, for the strains of the arc with EG = 0). Left out: shear, and the
 rotary inertia about n and z. An arc has no shear offset here.
 
-v and phi are cubic Hermite. Under chi = 0 a cubic v asks for a linear phi, which is among them, so that
-strips that are stiff edgewise and tight arcs do not lock. Coordinates run from the middle of the piece.
+v and phi are cubic Hermite. Under chi = 0 a cubic v needs a linear phi, which a cubic contains. Strips that
+are stiff edgewise and tight arcs therefore do not lock.
 """
 
 from __future__ import annotations
@@ -68,27 +68,27 @@ def inertia_out_of_plane(v: Field, phi: Field, y: Field, psi: Field, p: Any) -> 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SidePiece(Piece):
-    """A piece as it moves out of the plane; unknowns: v, v', phi, phi' at the nodes."""
+    """A piece that moves out of the plane; its unknowns are v, v', phi, phi' at the nodes."""
 
     nodal = 4
     inner = 0
-    moves = (2, 3, 4)
-    kink = (3, 1)
+    components = (2, 3, 4)
+    curvature_jump = (3, 1)
 
     section: SpatialSection
 
     @staticmethod
     def element() -> sk.Element:
-        """Of (v, phi)."""
+        """Return the element of (v, phi), both cubic Hermite."""
         return sk.ElementComposite(sk.ElementLineHermite(), sk.ElementLineHermite())
 
     def motion(self, *functions: Field) -> tuple[Field, ...]:
-        """v of the centroid [m], and the rotations about t and n [rad]."""
+        """Return v of the centroid [m], and the rotations about t and n [rad]."""
         v, phi = functions
         return v + self.section.shear_offset * phi, phi + 0.0, -v.grad[0]
 
     def matrices(self) -> tuple[csr_array, ...]:
-        """K and M."""
+        """Return K and M of the piece."""
         section, m, a = self.section, self.section.mass_per_length, self.section.shear_offset
         basis, _ = self.basis()
         stiffness = bending_and_twist.assemble(

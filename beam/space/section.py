@@ -17,19 +17,19 @@ Strip of width b, thickness t: with EA, EI, GJ, m of `beam.StripSection`,
     bending about its width EI,  edgewise EA b^2/12,  EG = EI b^2/12  (a warping displacement y z),
     I = m (b^2 + t^2)/12.
 
-`upright` puts the width along z, as in a strip that is folded out of its own plane; `flat` puts it along n,
+`upright` puts the width along z, as in a strip that is folded out of its own plane. `flat` puts it along n,
 as in a shape cut out of a sheet.
 
-Channel of outer width b (web, along z), sheet thickness t and flanges that stand h out of the web along +n,
-h = H - t with H the outer flange height: areas, centroid and second moments are those of the three
-rectangles. For the midlines, of lengths c = b - t and p = H - t/2,
+Channel of outer width b (web, along z) and sheet thickness t: its flanges stand h out of the web along +n,
+h = H - t with H the outer flange height. Area, centroid and second moments follow from its three rectangles.
+For the midlines, of lengths c = b - t and p = H - t/2,
 
     J = (c + 2 p) t^3/3,     shear centre 3 p^2/(6 p + c) behind the midline of the web,
     warping constant = t c^2 p^3/12 (3 p + 2 c)/(6 p + c) + b^3 t^3/144
 
-(S. P. Timoshenko and J. M. Gere, Theory of Elastic Stability, table A-3; the last term is that of the web as
-a strip of its own). For h = 0 the section is the strip, `channel` and `upright` then differ in J by the two
-edges of the strip: 0.63 t/b.
+(S. P. Timoshenko and J. M. Gere, Theory of Elastic Stability, table A-3; the last term is the web's own
+warping as a strip). For h = 0 the section is the strip. J of `channel` is then larger than J of `upright` by
+the part 0.63 t/b, since it neglects the two edges of the strip.
 """
 
 from __future__ import annotations
@@ -38,13 +38,13 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ..material import Material
-from ..parameters import InvalidValue, require, require_kind, require_within
+from ..parameters import require, require_kind, require_within
 from ..section import StripSection
 
 
 @dataclass(frozen=True, kw_only=True)
 class SpatialSection:
-    """Stiffness and inertia of a section in space; see the module for the axes.
+    """Stiffness and inertia of a section in space; the docstring of the module defines the axes.
 
     Parameters
     ----------
@@ -85,20 +85,18 @@ class SpatialSection:
 
     @property
     def bending_stiffness(self) -> float:
-        """EI_z, by the name that it has in the plane [N m^2]."""
+        """EI_z [N m^2], under its name in `beam.StripSection`."""
         return self.in_plane_stiffness
 
 
 def upright(section: StripSection) -> SpatialSection:
     """Return the strip with its width out of the plane of the centreline."""
-    section = _unslotted(section)
-    return _strip(section, section.bending_stiffness, _edgewise(section))
+    return _of_strip(section, upright=True)
 
 
 def flat(section: StripSection) -> SpatialSection:
     """Return the strip with its width in the plane of the centreline."""
-    section = _unslotted(section)
-    return _strip(section, _edgewise(section), section.bending_stiffness)
+    return _of_strip(section, upright=False)
 
 
 def channel(*, material: Material, width: float, flange: float, thickness: float) -> SpatialSection:
@@ -118,8 +116,8 @@ def channel(*, material: Material, width: float, flange: float, thickness: float
     require_within("width", width, "m", above=0)
     require_within("flange", flange, "m", low=0)
     require_within("thickness", thickness, "m", above=0)
-    if 2.0 * thickness > width:
-        raise InvalidValue(f"thickness is {thickness} m; it must not exceed half of the width {width} m")
+    words = f"thickness is {thickness} m; it must not exceed half of the width {width} m"
+    require(2.0 * thickness <= width, words)
     b, h, t = width, flange, thickness
     web, both = b * t, 2.0 * h * t
     area, arm = web + both, 0.5 * (h + t)  # arm: from the middle of the web to the middle of a flange
@@ -142,23 +140,20 @@ def channel(*, material: Material, width: float, flange: float, thickness: float
 
 
 def channel_centroid(*, width: float, flange: float, thickness: float) -> float:
-    """Distance of the centroid of a channel from the middle of its web [m], towards the flanges."""
+    """Return the distance of the centroid of a channel from the middle of its web [m], towards the flanges.
+
+    `width`, `flange` and `thickness` [m] are as for `channel`.
+    """
     return flange * (flange + thickness) / (width + 2.0 * flange)
 
 
-def _edgewise(section: StripSection) -> float:
-    return section.axial_stiffness * section.width**2 / 12.0
-
-
-def _unslotted(section: StripSection) -> StripSection:
-    """The section, refused if it stands for two legs."""
+def _of_strip(section: StripSection, *, upright: bool) -> SpatialSection:
+    """Return the section of a strip with its width out of the plane (`upright`) or in it."""
     require_kind("section", section, StripSection, "a StripSection")
     require(section.slot == 0.0, f"slot is {section.slot} m; legs side by side need a strip each here")
-    return section
-
-
-def _strip(section: StripSection, in_plane: float, out_of_plane: float) -> SpatialSection:
     b, t, m = section.width, section.total_thickness, section.mass_per_length
+    stiffnesses = section.bending_stiffness, section.axial_stiffness * b**2 / 12.0
+    in_plane, out_of_plane = stiffnesses if upright else stiffnesses[::-1]
     return SpatialSection(
         axial_stiffness=section.axial_stiffness,
         in_plane_stiffness=in_plane,

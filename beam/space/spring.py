@@ -1,11 +1,9 @@
 """A leaf spring in space: plane centreline, sections, supports, and a tip off the centroid of its section.
 
 The centreline lies in the x-y plane with frame t, n, z; u, w, v [m] are displacements along these and phi
-[rad] is the turn about t. Supports are those of `beam.spring`; without warping stiffness a clamp leaves phi'
-alone.
-
-The tip is a body of mass M [kg] and rotary inertia J [kg m^2], the same about every axis, fixed to one
-section at the point c [m] from its centroid.
+[rad] is the rotation about t. Supports are as in `beam.spring`; without warping stiffness a clamp does not
+hold phi'. The tip is a body of mass M [kg] with the rotary inertia J [kg m^2] about every axis. It is fixed
+to one section at the point c [m] from its centroid.
 """
 
 from __future__ import annotations
@@ -30,6 +28,7 @@ class SpatialSpring:
     sections : tuple of SpatialSection
         One for each piece of the centreline.
     supports : tuple of two supports
+        At s = 0 and at the far end: "clamped", "pinned", "guided" or "free".
     tip : Tip
         Its rotary inertia counts about every axis.
     tip_at : float
@@ -37,7 +36,7 @@ class SpatialSpring:
     tip_offset : tuple of three floats
         c, from the centroid of the section there to the tip, along x, y and z [m].
     drive : tuple of three floats
-        e; stored as a unit vector.
+        Direction e of the base motion [1]; stored as a unit vector.
     """
 
     centreline: Centreline

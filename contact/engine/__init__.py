@@ -1,6 +1,6 @@
 """The exact motion: flight, touch, flight, ... from one drive period to the next.
 
-`event_loop`   one flight or contact after the other, strobes and samples between them
-`start`        where a run begins, and what is raised if it fails
-`recorder`     what a run writes down, and the `Trajectory` made of it
+`event_loop`   flights and contacts one after the other, with strobes and samples between them
+`start`        the start of a run, and the errors of one that fails
+`recorder`     the records of a run, and the `Trajectory` made from them
 """

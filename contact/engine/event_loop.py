@@ -1,11 +1,10 @@
-"""The loop over flights and touches: flights in closed form, touches as their law has them.
+"""The loop over flights and touches: flights in closed form, touches by the contact law.
 
-A run goes from strobe to strobe, with time counted from the last strobe, so that a million periods bring no
-loss of phase.  In each period a certified search (``contact.flight.crossing``) finds the first touch, or, if
-that is asked for, the letter's sampled one (``contact.flight.sampled_crossing``); an impact law acts at once,
-a force law is followed through the contact until the tip is off the wall again (``contact.touch``).  Periods
-without a touch cost one multiplication by the flow of a period and a proof, most often by the lowest mode
-alone.
+A run goes from strobe to strobe.  Time counts from the last strobe, so that a million periods lose no phase.
+In each period a certified search (``contact.flight.crossing``) or, as an option, the letter's sampled search
+(``contact.flight.sampled_crossing``) finds the first touch.  An impact law acts at once.  A force law is
+followed through the contact until the tip leaves the wall (``contact.touch``).  A period without a touch
+costs one multiplication by the flow of a period and a proof, most often from the lowest mode alone.
 """
 
 from __future__ import annotations
@@ -21,7 +20,14 @@ from contact import touch
 from contact.engine.recorder import add_loss, close_touch, is_full, open_touch, put_sample, sample_due, strobe
 from contact.flight.crossing import CROSSES, FREE, UNRESOLVED, searched_flight
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import apply_flow, carry, flow_over, load_state, new_flight, tip_state
+from contact.flight.modal_flow import (
+    apply_flow,
+    flow_over,
+    load_state,
+    new_flight,
+    propagate_flight,
+    tip_state,
+)
 from contact.flight.sampled_crossing import first_sampled_crossing
 from contact.machine.compiled import borrowed, held, kernel, part
 from contact.touch.newton import hold
@@ -30,55 +36,45 @@ from contact.trajectory import GRAZE, IMPACT, OUTSIDE, STAY, SUSTAINED
 
 DONE, FAILED_CROSSING, FAILED_CHATTER, FAILED_STEPS, FAILED_SERIES, LOG_FULL = range(6)
 GOING, CROSSED, GRAZED, RELEASED = range(-4, 0)
-"""How a stretch of flights, or of steps in touch, ends besides: not yet; at a touch; at a graze; off the
-wall."""
+"""Further statuses within the loop: not at an end; at a touch; at a graze; off the wall."""
 
 MOST_IMPACTS = 100_000
-"""Bound of impacts in one drive period: accumulating impacts with e = 0.999 take about 2e4 before the hops
-drown in rounding, so a longer sequence is not on its way to rest."""
+"""Bound of impacts in one drive period.  Accumulating impacts with e = 0.999 take about 2e4 before the hops
+are lost in rounding, so that a longer sequence does not come to rest."""
 
 MOST_STEPS = 200_000
-"""Bound of flights and series steps in one drive period: 2e5 steps of two radians reach modes of 6e4 drive
-frequencies, and with twelve modes they take half a second."""
+"""Bound of flights and contact steps in one drive period.  2e5 steps of two radians reach modes of 6e4 drive
+frequencies; with twelve modes they take half a second."""
 
+INTEGERS = ("regime", "contact_order", "period", "evaluations", "search", "steps")
 STATE = np.dtype(
-    [
-        ("regime", "i8"),
-        ("order", "i8"),
-        ("period", "i8"),
-        ("evaluations", "i8"),
-        ("search", "i8"),
-        ("steps", "i8"),
-        ("clock", "f8"),
-        ("wait", "f8"),
-        ("rebound", "f8"),
-        ("root", "f8"),
-        ("speed", "f8"),
-    ]
+    [(name, "i8") for name in INTEGERS]
+    + [(name, "f8") for name in ("clock", "wait", "rebound", "root", "speed")]
 )
-"""Where a run stands.
+"""The state of a run.
 
-regime: ``contact.trajectory.Regime``; order: how many derivatives of the tip displacement vanish at the start
-of the flight; period, clock: number of the drive period and time since its strobe [s]; evaluations: flights,
-contact steps and sampled positions so far; search: 0 for certified crossings, else samples per period; steps:
-flights and contact steps since the strobe.
+regime: ``contact.trajectory.Regime``; contact_order: number of derivatives of the tip displacement that
+vanish at the start of the flight; period, clock: number of the drive period and time since its strobe [s];
+evaluations: flights, contact steps and sampled positions so far; search: 0 for certified crossings, otherwise
+samples per period; steps: flights and contact steps since the strobe.
 
-Of the touch under way: wait, rebound: time until it ends by itself [s] and velocity with which the tip then
-leaves [m/s]; root: sqrt of the penetration [m^0.5]; speed: the modal speeds at its start; both below zero
-when they are to be computed anew.
+Of the touch under way: wait, rebound: time until it ends by itself [s] and tip velocity after that [m/s];
+root: sqrt of the penetration [m^0.5]; speed: the modal speeds at its start; both are negative when they are
+to be computed anew.
 """
 
 
-class Work(NamedTuple):
-    """Room to work.
+class Workspace(NamedTuple):
+    """Workspace of a run.
 
     flight : ndarray
-        Of ``contact.flight.modal_flow``.
+        Workspace of ``contact.flight.modal_flow``.
     whole, spaced : ndarray, shape (n_modes, 6)
         Flow over a drive period, and over the `spacing` of a sampled search [s].
     series : Series
-        Of a step in touch.
+        Workspace of a contact step.
     u, v : ndarray, shape (n_modes,)
+        Deviations at a sample.
     """
 
     flight: np.ndarray
@@ -91,11 +87,11 @@ class Work(NamedTuple):
 
 
 @part
-def new_work(motion, search):
-    """Room to work for an oscillator."""
+def new_workspace(motion, search):
+    """Workspace for a run of an oscillator."""
     spacing = motion.period / max(1, search)
-    order, columns = touch.room(motion)
-    return Work(
+    order, columns = touch.series_size(motion)
+    return Workspace(
         new_flight(motion),
         flow_over(motion, motion.period),
         flow_over(motion, spacing),
@@ -107,30 +103,30 @@ def new_work(motion, search):
 
 
 @kernel
-def sample_flight(motion, run, until, held_down, work, recorder):
-    """States at the sample times of a flight, or of hops `held_down` on the wall, up to the clock `until`."""
+def sample_flight(motion, run, until, held_down, space, recorder):
+    """Write states at the sample times of a flight up to `until` [s]; hops `held_down` stay on the wall."""
     while sample_due(recorder, run.period, until):
         time = recorder.sample_clock[recorder.marks[0].sampled] - run.clock
-        carry(motion, work.flight, time, work.u, work.v)
+        propagate_flight(motion, space.flight, time, space.u, space.v)
         if held_down:
-            hold(motion, run.clock + time, work.u, work.v)
-        put_sample(recorder, work.u, work.v)
+            hold(motion, run.clock + time, space.u, space.v)
+        put_sample(recorder, space.u, space.v)
 
 
 @kernel
-def sample_touch(motion, run, s, until, work, recorder):
-    """States at the sample times of a step in touch that ends at `s`, at the clock `until`."""
+def sample_touch(motion, run, s, until, space, recorder):
+    """Write states at the sample times of a contact step up to `s`, at the clock `until` [s]."""
     while sample_due(recorder, run.period, until):
         time = recorder.sample_clock[recorder.marks[0].sampled] - run.clock
-        at = touch.place(motion, time, s, work.series)
-        touch.state(motion, run, at, work.series, work.u, work.v)
-        put_sample(recorder, work.u, work.v)
+        at = touch.series_variable(motion, time, s, space.series)
+        touch.state(motion, run, at, space.series, space.u, space.v)
+        put_sample(recorder, space.u, space.v)
 
 
 @part
-def fly(motion, u, v, run, last, clock_end, work, recorder):
-    """Flights from strobe to strobe, up to the next touch or the end of the run; how it ended."""
-    flight, whole, marks = work.flight, work.whole, recorder.marks[0]
+def follow_flights(motion, u, v, run, last, clock_end, space, recorder):
+    """Follow flights from strobe to strobe, to the next touch or the end of the run; returns the status."""
+    flight, whole, marks = space.flight, space.whole, recorder.marks[0]
     strobes, counts, samples = recorder.strobes, recorder.counts, recorder.sample_clock.size
     status = GOING
     while status == GOING:
@@ -139,27 +135,27 @@ def fly(motion, u, v, run, last, clock_end, work, recorder):
         if base < end:
             load_state(flight, u, v)
             if run.search == 0:
-                outcome, s = searched_flight(motion, flight, base, end - base, run.order)
+                outcome, s = searched_flight(motion, flight, base, end - base, run.contact_order)
             else:
                 outcome, s, count = first_sampled_crossing(
-                    motion, flight, base, end - base, run.order, work.spacing, work.spaced
+                    motion, flight, base, end - base, run.contact_order, space.spacing, space.spaced
                 )
                 run.evaluations += count
             run.evaluations += 1
             run.steps += 1
             until = end if outcome == FREE else base + s
             if marks.sampled < samples and outcome != UNRESOLVED:
-                sample_flight(motion, run, until, False, work, recorder)
+                sample_flight(motion, run, until, False, space, recorder)
             if outcome == FREE and base == 0.0 and not at_last:
                 apply_flow(whole, u, v)
             else:
-                carry(motion, flight, s, u, v)
+                propagate_flight(motion, flight, s, u, v)
             run.clock = until
             if outcome == UNRESOLVED:
                 status = FAILED_CROSSING
             elif outcome != FREE:
                 status = CROSSED if outcome == CROSSES else GRAZED
-            run.order = 0
+            run.contact_order = 0
         if status == GOING:
             if at_last:
                 status = DONE
@@ -171,8 +167,8 @@ def fly(motion, u, v, run, last, clock_end, work, recorder):
 
 
 @part
-def land(motion, u, v, run, crosses, end, work, recorder):
-    """What happens where a flight meets the stop."""
+def handle_crossing(motion, u, v, run, crosses, end, space, recorder):
+    """Let the law act where a flight meets the stop; without `crosses` the touch is a graze."""
     approach = tip_state(motion, run.clock, u, v)[1]
     if crosses:
         open_touch(recorder, run.period, run.clock, approach, IMPACT, u, v)
@@ -181,29 +177,29 @@ def land(motion, u, v, run, crosses, end, work, recorder):
         if run.regime == OUTSIDE or run.regime == SUSTAINED:
             close_touch(recorder, run.period, run.clock, rebound, u, v)
         if run.regime == SUSTAINED:
-            # the remaining hops take a time run.wait, of which what lies after the strobe is below rounding
+            # the remaining hops take a time run.wait; a part of them after the strobe is below rounding
             open_touch(recorder, run.period, run.clock, rebound, STAY, u, v)
             rest = min(run.wait, end - run.clock)
             run.wait = 0.0
             if rest > 0.0:
-                load_state(work.flight, u, v)
-                sample_flight(motion, run, run.clock + rest, True, work, recorder)
-                carry(motion, work.flight, rest, u, v)
+                load_state(space.flight, u, v)
+                sample_flight(motion, run, run.clock + rest, True, space, recorder)
+                propagate_flight(motion, space.flight, rest, u, v)
                 run.clock += rest
             hold(motion, run.clock, u, v)
     else:
         open_touch(recorder, run.period, run.clock, 0.0, GRAZE, u, v)
         close_touch(recorder, run.period, run.clock, 0.0, u, v)
-        run.order = 2
+        run.contact_order = 2
 
 
-def press_of(file: ModuleType) -> Callable[..., object]:
-    """The steps in touch under one law: a law is told apart once a touch, not once a step."""
-    step, state, work_done = file.step, file.state, file.work
+def contact_follower(file: ModuleType) -> Callable[..., object]:
+    """`follow_contact` for one law, so that the law is looked up once a touch and not once a step."""
+    step, state, work = file.step, file.state, file.work
 
-    def press(motion, u, v, run, last, clock_end, work, recorder):
-        """Steps in touch with the stop, up to the release or the end of the run; how it ended."""
-        series, marks, logged = work.series, recorder.marks[0], recorder.log.size > 0
+    def follow_contact(motion, u, v, run, last, clock_end, space, recorder):
+        """Follow a contact to its release or the end of the run; returns the status."""
+        series, marks, logged = space.series, recorder.marks[0], recorder.log.size > 0
         strobes, counts, samples = recorder.strobes, recorder.counts, recorder.sample_clock.size
         status, loss = GOING, 0.0
         while status == GOING:
@@ -221,15 +217,15 @@ def press_of(file: ModuleType) -> Callable[..., object]:
                 else:
                     until = base + h if h < end - base else end
                     if marks.sampled < samples:
-                        sample_touch(motion, run, s, until, work, recorder)
+                        sample_touch(motion, run, s, until, space, recorder)
                     if logged:
-                        loss += work_done(motion, run, s, series)
+                        loss += work(motion, run, s, series)
                     state(motion, run, s, series, u, v)
                     run.regime, run.clock = following, until
                     if following == OUTSIDE:
                         status = RELEASED
             if status == GOING and until >= end:
-                while sample_due(recorder, run.period, end):  # nearer to the end than a step can be
+                while sample_due(recorder, run.period, end):  # samples closer to the end than any step
                     put_sample(recorder, u, v)
                 if at_last:
                     run.clock, status = end, DONE
@@ -240,10 +236,10 @@ def press_of(file: ModuleType) -> Callable[..., object]:
         add_loss(recorder, loss)
         return status
 
-    return part(press)
+    return part(follow_contact)
 
 
-press = touch.by_law({code: press_of(file) for code, file in touch.TOUCHES.items()})
+follow_contact = touch.by_law({code: contact_follower(file) for code, file in touch.TOUCHES.items()})
 
 
 @kernel
@@ -256,7 +252,7 @@ def advance(motion, u, v, runs, last, clock_end, recorder):
     u, v : ndarray, shape (n_modes,)
         Deviations from the steady motion; overwritten.
     runs : record array of `STATE`, shape (1,)
-        Where the run stands; overwritten.
+        State of the run; overwritten.
     last : int
         Number of the last strobe.
     clock_end : float
@@ -268,14 +264,9 @@ def advance(motion, u, v, runs, last, clock_end, recorder):
     status : int
         DONE, LOG_FULL (call again with a longer log), or one of the failures.
     """
-    run, room = runs[0], new_work(motion, runs[0].search)
-    motion, u, v, recorder, work = (
-        borrowed(motion),
-        borrowed(u),
-        borrowed(v),
-        borrowed(recorder),
-        borrowed(room),
-    )
+    run, workspace = runs[0], new_workspace(motion, runs[0].search)
+    motion, u, v, recorder = borrowed(motion), borrowed(u), borrowed(v), borrowed(recorder)
+    space = borrowed(workspace)
     status = GOING
     while status < DONE:
         if is_full(recorder):
@@ -285,15 +276,15 @@ def advance(motion, u, v, runs, last, clock_end, recorder):
         elif run.steps > MOST_STEPS:
             status = FAILED_STEPS
         elif run.regime == OUTSIDE:
-            status = fly(motion, u, v, run, last, clock_end, work, recorder)
+            status = follow_flights(motion, u, v, run, last, clock_end, space, recorder)
         else:
-            status = press(motion, u, v, run, last, clock_end, work, recorder)
+            status = follow_contact(motion, u, v, run, last, clock_end, space, recorder)
         if status == CROSSED or status == GRAZED:
             end = clock_end if run.period == last else motion.period
-            land(motion, u, v, run, status == CROSSED, end, work, recorder)
+            handle_crossing(motion, u, v, run, status == CROSSED, end, space, recorder)
         elif status == RELEASED:
             touch.leave(motion, run, u, v)
             velocity = tip_state(motion, run.clock, u, v)[1]
             close_touch(recorder, run.period, run.clock, velocity, u, v)
-    held(room)
+    held(workspace)
     return status

@@ -1,30 +1,26 @@
-"""What a run writes down: impacts, strobes and samples, for exact and fixed-step methods alike.
+"""The record of a run: impacts, strobes and samples, for exact and fixed-step methods alike.
 
 Times are kept as the number of a drive period and the time since its strobe, so that a million periods bring
 no loss of phase.  A method with a time step counts from one strobe throughout, and has its strobes among the
-samples (``contact.integrators.fixed_step``).
-(u, v) is the modal state as the method has it: deviations from the steady motion, or displacements and
-velocities themselves.
+samples (``contact.integrators.fixed_step``).  The record keeps the modal state (u, v) that the method
+carries: deviations from the steady motion, or displacements and velocities themselves.
 """
 
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from contact.errors import ContactError
 from contact.flight.modal_flow import steady_motion
-from contact.flight.motion import Motion
 from contact.machine.compiled import inlined, kernel, part
 from contact.oscillator import ImpactOscillator
-from contact.trajectory import IMPACT, Impacts, Run, State, Trajectory
+from contact.trajectory import IMPACT, Impacts, Run, State, Trajectory, steady_states
 
 MARKS = np.dtype([(name, "i8") for name in ("logged", "sampled", "strobed", "impacts", "touching")])
-"""Rows in use of the log, the samples and the strobes; impacts since the last strobe; whether the tip
-touches."""
+"""Rows in use of log, samples and strobes; impacts since the last strobe; whether the tip touches."""
 
 LOG = np.dtype(
     [
@@ -39,18 +35,18 @@ LOG = np.dtype(
     ]
 )
 """A touch: period and clock of its start and of its end [s], tip velocity at both [m/s], energy lost [J] and
-``contact.trajectory.Kind``."""
+``contact.trajectory.ImpactKind``."""
 
 
 class Recorder(NamedTuple):
-    """Where a run writes.
+    """The arrays into which a run writes.
 
     marks : record array of `MARKS`, shape (1,)
     log : record array of `LOG`, shape (capacity,); empty if no impacts are wanted
     log_state : ndarray, shape (capacity, 4 n_modes)
         (u, v) just before the touch and just after the release.
     strobes, counts : ndarray, shapes (n_strobes, 2 n_modes) and (n_strobes,), or (0, ...)
-        (u, v) at the strobes, and the impacts since the one before.
+        (u, v) at the strobes, and the impacts since the strobe before.
     sample_period, sample_clock, samples : ndarray, shapes (n,), (n,), (n, 2 n_modes)
         Times wanted, and (u, v) there.
     """
@@ -83,7 +79,7 @@ def strobes_only(strobes, counts):
 
 @part
 def put_state(row, at, u, v):
-    """(u, v) into a row from column `at` on."""
+    """Write (u, v) into a row from column `at` on."""
     n = u.size
     for k in range(n):
         row[at + k] = u[k]
@@ -92,7 +88,7 @@ def put_state(row, at, u, v):
 
 @part
 def is_full(recorder):
-    """Whether a touch and the stay that may follow it do not fit into the log any more."""
+    """Whether the log has no rows left for a touch and the stay that may follow it."""
     return recorder.log.size > 0 and recorder.marks[0].logged >= recorder.log.size - 1
 
 
@@ -115,7 +111,7 @@ def open_touch(recorder, period, clock, approach, kind, u, v):
 
 @part
 def add_loss(recorder, energy):
-    """Energy that the touch under way has taken [J]."""
+    """Add energy that the touch under way has taken [J]."""
     if recorder.log.size > 0:
         recorder.log[recorder.marks[0].logged - 1].loss += energy
 
@@ -142,7 +138,7 @@ def sample_due(recorder, period, until):
 
 @part
 def put_sample(recorder, u, v):
-    """The state at the next sample time."""
+    """Write the state at the next sample time."""
     marks = recorder.marks[0]
     put_state(recorder.samples[marks.sampled], 0, u, v)
     marks.sampled += 1
@@ -150,8 +146,10 @@ def put_sample(recorder, u, v):
 
 @inlined
 def strobe(marks, strobes, counts, u, v):
-    """The state at the next strobe, and the impacts since the one before; not in terms of a recorder, since
-    each array in a tuple costs some nanoseconds a call."""
+    """Write the state at the next strobe, and the impacts since the strobe before.
+
+    It takes no recorder, since each array in a tuple costs some nanoseconds a call.
+    """
     if counts.size > 0:
         counts[marks.strobed] = marks.impacts
     if strobes.shape[0] > 0:
@@ -161,7 +159,7 @@ def strobe(marks, strobes, counts, u, v):
 
 
 def recorder_for(run: Run, n_modes: int) -> Recorder:
-    """Room for what `run` asks for."""
+    """An empty recorder for the strobes and times of `run`."""
     strobes, times, capacity = run.last - run.first, run.times.size, 64
     return Recorder(
         marks=np.zeros(1, dtype=MARKS),
@@ -176,7 +174,7 @@ def recorder_for(run: Run, n_modes: int) -> Recorder:
 
 
 def grown(recorder: Recorder) -> Recorder:
-    """The same with a log twice as long."""
+    """The recorder with a log twice as long."""
     log, state = recorder.log, recorder.log_state
     return recorder._replace(
         log=np.concatenate([log, np.zeros_like(log)]), log_state=np.concatenate([state, np.empty_like(state)])
@@ -190,65 +188,53 @@ def trajectory_of(
     oscillator: ImpactOscillator,
     *,
     evaluations: int,
-    motion: Motion | None = None,
+    deviations: bool,
 ) -> Trajectory:
-    """What was written down, as named arrays.
+    """The record as named arrays.
 
-    Parameters
-    ----------
-    recorder : Recorder
-    run : Run
-    end : State
-        Where the run ended; samples at this time that were not written get this state.
-    oscillator : ImpactOscillator
-    evaluations : int
-        See ``Trajectory``.
-    motion : Motion, optional
-        If given, the rows are deviations from its steady motion.
+    Samples at the end of the run that were not written get the state `end`.  `deviations` tells whether the
+    record holds deviations from the steady motion, or else modal states.
     """
-    n, marks, period = end.displacement.size, recorder.marks[0], oscillator.period
+    n, marks, period, motion = oscillator.n_modes, recorder.marks[0], oscillator.period, oscillator.motion()
     left = slice(int(marks["sampled"]), None)
     if np.any((recorder.sample_period[left] < run.last) | (recorder.sample_clock[left] < run.clock_end)):
         tip = oscillator.tip(np.array([end.displacement, end.velocity]))
         place = {"time": end.time, "gap": oscillator.stop.gap - float(tip[0]), "velocity": float(tip[1])}
         raise ContactError(**place, detail="the state at one of the times was not written down")
-    logged, passed = marks["logged"], run.last - run.first
-    log, log_state = recorder.log[:logged], recorder.log_state[:logged]
-    rows = np.concatenate((log_state[:, : 2 * n], log_state[:, 2 * n :], recorder.strobes, recorder.samples))
-    clock = np.concatenate((log["start"], log["end"], np.zeros(passed), run.sample_clock))
-    # of all rows at once: a call costs more than a few rows
-    steady = (0.0, 0.0) if motion is None else steady_motion(motion, clock)
-    q, v = rows[:, :n] + steady[0], rows[:, n:] + steady[1]
-    parts = pairwise((0, logged, 2 * logged, 2 * logged + passed, len(rows)))
-    (q_in, v_in), (q_out, v_out), (q_strobe, v_strobe), (q_sample, v_sample) = (
-        (q[first:last], v[first:last]) for first, last in parts
-    )
-    q_sample[left], v_sample[left] = end.displacement, end.velocity
+    logged, passed = int(marks["logged"]), run.last - run.first
+    log, touches = recorder.log[:logged], recorder.log_state[:logged].reshape(logged, 2, 2, n).copy()
+    rows = np.concatenate((recorder.strobes, recorder.samples))
+    q, v = rows[:, :n].copy(), rows[:, n:].copy()
+    if deviations:
+        steady, rate = steady_motion(motion, np.concatenate((np.zeros(passed), run.sample_clock)))
+        q, v = q + steady, v + rate
+    else:
+        touches -= steady_states(motion, np.fmod(np.column_stack((log["start"], log["end"])), period))
+    q[passed:][left], v[passed:][left] = end.displacement, end.velocity
+    # a method with a step counts from one strobe throughout
+    number = log["period"] + np.floor(log["start"] / period).astype(np.int64)
     impacts = Impacts(
-        start=log["period"] * period + log["start"],
-        end=log["end_period"] * period + log["end"],
-        period=log["period"].copy(),
-        clock=log["start"].copy(),
-        end_clock=(log["end_period"] - log["period"]) * period + log["end"],
+        oscillator=oscillator,
+        period=number,
+        clock=(log["period"] - number) * period + log["start"],
+        end_clock=(log["end_period"] - number) * period + log["end"],
         approach=log["approach"].copy(),
         rebound=log["rebound"].copy(),
         loss=np.where(np.isnan(log["end"]), np.nan, log["loss"]),
         kind=log["kind"].copy(),
-        displacement_start=q_in,
-        velocity_start=v_in,
-        displacement_end=q_out,
-        velocity_end=v_out,
+        deviations_start=touches[:, 0],
+        deviations_end=touches[:, 1],
     )
     return Trajectory(
         oscillator=oscillator,
         end=end,
         strobe_time=np.arange(run.first + 1, run.last + 1) * period,
-        strobe_displacement=q_strobe,
-        strobe_velocity=v_strobe,
+        strobe_displacement=q[:passed],
+        strobe_velocity=v[:passed],
         strobe_impacts=recorder.counts,
         time=run.times,
-        displacement=q_sample,
-        velocity=v_sample,
+        displacement=q[passed:],
+        velocity=v[passed:],
         impacts=impacts,
         evaluations=int(evaluations),
     )

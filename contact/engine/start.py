@@ -1,22 +1,11 @@
-"""A run of the exact motion: where it may start, the event loop called, and how it fails."""
+"""A run of the exact motion: its start, the call of the event loop, and its errors."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from beam.parameters import InvalidValue
-from contact.engine.event_loop import (
-    DONE,
-    FAILED_CHATTER,
-    FAILED_CROSSING,
-    FAILED_SERIES,
-    FAILED_STEPS,
-    LOG_FULL,
-    MOST_IMPACTS,
-    MOST_STEPS,
-    STATE,
-    advance,
-)
+from contact.engine import event_loop as loop
 from contact.engine.recorder import grown, open_touch, recorder_for, trajectory_of
 from contact.errors import Chatter, ContactError, ContactTooStiff, UnresolvedCrossing
 from contact.flight.modal_flow import steady_motion, tip_rounding, tip_state
@@ -26,15 +15,15 @@ from contact.touch import TOUCHES, force
 from contact.trajectory import OUTSIDE, SUSTAINED, WAITING, ImpactKind, Regime, Run, State, Trajectory
 
 HELD_WITHIN = 1e3
-"""How far from the gap a tip that is said to rest on the wall may be, in rounding bounds."""
+"""Largest distance from the gap of a tip that rests on the wall, in rounding bounds."""
 
 FAILURES: dict[int, tuple[type[ContactError], str]] = {
-    FAILED_CROSSING: (UnresolvedCrossing, ""),
-    FAILED_CHATTER: (Chatter, f"more than {MOST_IMPACTS} in one drive period"),
-    FAILED_STEPS: (ContactTooStiff, f"more than {MOST_STEPS} steps in one drive period"),
-    FAILED_SERIES: (ContactTooStiff, "its power series gives no step of finite length above zero"),
+    loop.FAILED_CROSSING: (UnresolvedCrossing, ""),
+    loop.FAILED_CHATTER: (Chatter, f"more than {loop.MOST_IMPACTS} in one drive period"),
+    loop.FAILED_STEPS: (ContactTooStiff, f"more than {loop.MOST_STEPS} steps in one drive period"),
+    loop.FAILED_SERIES: (ContactTooStiff, "its power series gives no step of finite length above zero"),
 }
-"""The error that belongs to a status of `advance`, and its detail."""
+"""The error for each failure status of `advance`, and its detail."""
 
 
 def start_of(
@@ -48,29 +37,27 @@ def start_of(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Deviations (u, v) of `state` from the steady motion, and a run (`STATE`) that starts there.
 
-    `steady` is the steady displacement and velocity at the start, if they are known, each (n_modes,).
+    `steady` is the steady displacement and velocity at the start, if known, each of shape (n_modes,).
 
     Raises
     ------
     ValueError
-        If the state has another number of modes, a regime that the law does not know or that does not fit
-        where the tip is, or lies behind the stop of an impact law.
+        If the state has another number of modes, or lies behind the stop of an impact law, or if its regime
+        is unknown to the law or does not fit the position of the tip.
     """
-    if state.displacement.size != motion.size:
-        raise InvalidValue(
-            f"displacement of the state has {state.displacement.size} modes; the model has {motion.size}"
-        )
+    modes, known = state.displacement.size, TOUCHES[motion.law].REGIMES
+    if modes != motion.size:
+        raise InvalidValue(f"displacement of the state has {modes} modes; the model has {motion.size}")
     q, q_rate = steady_motion(motion, clock) if steady is None else steady
     u, v = state.displacement - q, state.velocity - q_rate
-    runs = np.zeros(1, dtype=STATE)
+    runs = np.zeros(1, dtype=loop.STATE)
     regime = int(state.regime)
     height, velocity, _acceleration = tip_state(motion, clock, u, v)
-    rounding, known = tip_rounding(motion, u, v), TOUCHES[motion.law].REGIMES
+    rounding = tip_rounding(motion, u, v)
     near = HELD_WITHIN * rounding
     if regime not in known:
-        raise InvalidValue(
-            f"regime of the state is {regime}; with this contact law it must be one of {known}"
-        )
+        words = f"with this contact law it must be one of {known}"
+        raise InvalidValue(f"regime of the state is {regime}; {words}")
     if regime != OUTSIDE and (height < -near or (height > near and regime in (SUSTAINED, WAITING))):
         raise InvalidValue(
             f"regime of the state is {regime}, but the tip is {height:.3g} m past the stop; it must be at "
@@ -89,7 +76,7 @@ def start_of(
 
 
 def state_of(motion: Motion, runs: np.ndarray, displacement: np.ndarray, velocity: np.ndarray) -> State:
-    """The state where a run stands."""
+    """The state of a run as a `State`, given its modal displacement and velocity."""
     run = runs[0]
     return State(
         displacement=displacement,
@@ -102,7 +89,7 @@ def state_of(motion: Motion, runs: np.ndarray, displacement: np.ndarray, velocit
 
 
 def failure(status: int, motion: Motion, runs: np.ndarray, u: np.ndarray, v: np.ndarray) -> ContactError:
-    """The error that belongs to a status of `advance`."""
+    """The error for a failure status of `advance`."""
     clock = float(runs[0]["clock"])
     height, velocity, _acceleration = tip_state(motion, clock, u, v)
     error, detail = FAILURES[status]
@@ -111,16 +98,16 @@ def failure(status: int, motion: Motion, runs: np.ndarray, u: np.ndarray, v: np.
 
 
 def exact_trajectory(oscillator: ImpactOscillator, run: Run, *, search: int = 0) -> Trajectory:
-    """The motion of `run`, followed event by event.
+    """The motion of `run`, event by event.
 
-    Crossings of the stop are proved (`search` 0) or looked for at `search` instants of each drive period.
+    Crossings of the stop are proved (`search` 0) or detected at `search` instants of each drive period.
 
     Raises
     ------
     ValueError
         If the start does not fit the model or lies behind the stop of an impact law.
     UnresolvedCrossing, Chatter, ContactTooStiff
-        Where the motion could not be followed; see ``contact.errors``.
+        If the motion cannot be followed; see ``contact.errors``.
     """
     motion, n = oscillator.motion(), oscillator.n_modes
     u, v, runs = start_of(motion, run.start, run.first, run.clock, search=search)
@@ -130,13 +117,13 @@ def exact_trajectory(oscillator: ImpactOscillator, run: Run, *, search: int = 0)
         open_touch(recorder, run.first, run.clock, np.nan, int(kind), u, v)
         recorder.marks["impacts"] = 0  # it did not begin in this period
     while True:
-        status = advance(motion, u, v, runs, run.last, run.clock_end, recorder)
-        if status != LOG_FULL:
+        status = loop.advance(motion, u, v, runs, run.last, run.clock_end, recorder)
+        if status != loop.LOG_FULL:
             break
         recorder = grown(recorder)
-    if status != DONE:
+    if status != loop.DONE:
         raise failure(status, motion, runs, u, v)
     q, q_rate = steady_motion(motion, run.clock_end)
     end = state_of(motion, runs, u + q, v + q_rate)
     evaluations = int(runs[0]["evaluations"])
-    return trajectory_of(recorder, run, end, oscillator, evaluations=evaluations, motion=motion)
+    return trajectory_of(recorder, run, end, oscillator, evaluations=evaluations, deviations=True)

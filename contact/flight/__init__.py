@@ -1,9 +1,13 @@
 """Between contacts: flights in closed form, and the certified search for the first crossing of the stop.
 
-`elementary`           sine, cosine and exponential to the last place, products without rounding error
-`modal_flow`           `Motion`, the numbers of an oscillator, and the flow of its modes
-`bounds`               stretches of a flight proved free of a crossing
-`crossing`             the first crossing, certified
-`sampled_crossing`     the same as the letter looks for it, at a few instants of each drive period
-`polynomial_root`      the first crossing of a polynomial
+`elementary`          sine, cosine, exponential and root to the last place, products without rounding error
+`motion`              `Motion`, the numbers of an oscillator for compiled code
+`modal_flow`          the closed-form flow of its modes, and the tip as their sum
+`flow_derivative`     derivatives of that flow with respect to the numbers of a mode
+`variation`           tangents: derivatives of a motion with respect to its start and its numbers
+`bounds`              stretches of a flight that are proved free of a crossing
+`tip_search`          the tip during a flight: roots and peaks in a bracket, and all peaks
+`crossing`            the first crossing, certified
+`sampled_crossing`    the first crossing that the letter's samples detect
+`polynomial_root`     the first crossing of a polynomial
 """

@@ -7,35 +7,35 @@ is settled by one of
     y' > 0 throughout, and y changes sign                                    one root,
     y'' < 0 throughout, and y' changes sign                                  one peak.
 
-R bounds what is not sampled.
+R bounds the modes that are not sampled.
 
 The lowest mode alone, by Sturm's comparison theorem.  Relative to the stop the tip is at
 
     y(t) = -G + A cos(w (t - t_p)) + phi u(t) + R(t),      |R| <= r,
 
-G the distance of the stop from the tip's mean place, A and t_p height and time of the steady peak, u the free
-deviation of the lowest mode and R that of all others, which is bounded by the sum r of their amplitudes
-(``contact.flight.modal_flow``).  Let rho = |phi| sqrt(u^2 + (v/omega)^2) at the start of the flight.  From
-then on
+where G is the distance of the stop from the tip's mean position, and A and t_p are height and time of the
+steady peak.  u is the free deviation of the lowest mode and R that of all others; the sum r of their
+amplitudes bounds R (``contact.flight.modal_flow``).  Let rho = |phi| sqrt(u^2 + (v/omega)^2) at the start of
+the flight.  From then on
 
     y'' - R'' + w^2 (y - R + G) = phi (u'' + w^2 u) <= w^2 d,     d = (|w^2 - omega^2| + c omega) rho/w^2,
 
-because of u'' = -c u' - omega^2 u, |phi u| <= rho and |phi u'| <= omega rho.  Hence z = y - R + G - d obeys
-z'' + w^2 z <= 0, and lies below the harmonic motion that shares its height z_1 and slope z_1' at any t_1 of
-the flight (the difference is an integral over sin(w (t - s)) >= 0 of something not above zero):
+because u'' = -c u' - omega^2 u, |phi u| <= rho and |phi u'| <= omega rho.  Hence z = y - R + G - d obeys
+z'' + w^2 z <= 0.  It lies below the harmonic motion that has its height z_1 and slope z_1' at any t_1 of the
+flight, since the difference is an integral of sin(w (t - s)) >= 0 times a function that is never positive:
 
     z(t) <= z_1 cos(w (t - t_1)) + (z_1'/w) sin(w (t - t_1)),      |t - t_1| <= pi/w.                  (1)
 
 With m the margin for rounding, the tip stays off the stop wherever z < K = G - d - r - m, and also where
-cos(w (t - t_p)) <= 0 if rho + r + m < G.  Let t_p lie in the middle half of the drive period to which the
-flight is confined, |t_1 - t_p| be at most a quarter of it, and |z_1| < K > 0.  What (1) leaves out, more than
-half a period from t_1, then has cos(w (t - t_p)) <= 0, and the bound in (1) stays below |z_1| on one side:
+cos(w (t - t_p)) <= 0 if rho + r + m < G.  Let the flight lie within one drive period P with t_p in its middle
+half, |t_1 - t_p| be at most P/4, and |z_1| < K > 0.  Times more than P/2 from t_1, where (1) does not hold,
+then have cos(w (t - t_p)) <= 0, and the bound in (1) stays below |z_1| on one side:
 
     z_1' <= 0: no touch after t_1;      z_1' >= 0: none before;      z_1^2 + (z_1'/w)^2 < K^2: none at all.
 
-The first two hold with t_1 farther off as well, after t_p - P/4 and before t_p + P/4.  A flight that is free
-all the time is so settled by the motion at t_p or at the peak next to it, one that is not up to just before
-y - R first comes within r of the stop.
+The first also holds for any later t_1, the second for any earlier one.  The motion at t_p, or at the peak
+next to it, so settles a flight without a touch; a flight with one is settled up to just before y - R first
+comes within r of the stop.
 """
 
 from __future__ import annotations
@@ -55,8 +55,8 @@ SKIP, ROOT, PEAK, NEAR, STALL = 0, 1, 2, 3, 4
 def certify(y0, y1, y2, m3, rest, margin, h, h_min):
     """The longest stretch of h, h/2, h/4, ... that one of the three proofs settles: (proof, stretch).
 
-    As long as some modes are only bounded (`rest` > 0), a stretch on which the others alone have a root or a
-    peak that matters is reported as near: there all modes must be sampled.
+    While some modes are only bounded (`rest` > 0), a stretch with a root or a peak of the others is reported
+    as NEAR: there all modes must be sampled.
     """
     while h > h_min:
         top = max(y0, y0 + h * (y1 + 0.5 * h * y2))
@@ -77,23 +77,23 @@ def certify(y0, y1, y2, m3, rest, margin, h, h_min):
 
 
 LEAST_SLACK = 1.0 / 16.0
-"""K over G below which nothing is used, so that squares are rounded by less than the margin allows."""
+"""Smallest K/G for which the bound is used, so that the margin covers the rounding of squares."""
 
 HIGHEST = 1e6
-"""Steady amplitude in gaps up to which the place of its peak is good enough to tell a period's middle."""
+"""Largest steady amplitude over G for which the time of its peak is exact enough."""
 
 UNCERTAIN = 1e-11
-"""Rounding of the peak's place, as part of the amplitude that cos(w (t - t_p)) <= 0 may fail to take away."""
+"""Bound of the rounding of w t_p: the part of the amplitude by which cos(w (t - t_p)) may be above zero."""
 
 TRIES = 4
-"""Looks for a t_1; two do unless the lowest mode has moved far from its steady motion."""
+"""Largest number of trials t_1; two suffice unless the lowest mode is far from its steady motion."""
 
 CLOSE = 1e-4
-"""Distance from r, over G, within which a t_1 before the touch is good enough."""
+"""Accepted distance of y - R from -r at a t_1 before the touch, over G."""
 
 
 class LowestMode(NamedTuple):
-    """What the comparison bounds of one flight need.
+    """The numbers of the comparison for one flight.
 
     peak, quarter : float
         t_p and a quarter of the drive period [s].
@@ -119,7 +119,7 @@ def lowest_mode(motion, flight, base, duration, rest, margin):
     Parameters
     ----------
     motion, flight
-        As in ``contact.flight.modal_flow``, with the start of the flight.
+        As in ``contact.flight.modal_flow``; `flight` holds the start of the flight.
     base, duration : float
         Time since the strobe at which the flight starts, and its length [s].
     rest : float
@@ -148,8 +148,8 @@ def lowest_mode(motion, flight, base, duration, rest, margin):
 
 @part
 def free_from(lowest, t, height, rate):
-    """Whether no touch can come after the drive time `t` at which the tip, without the other modes, is at
-    `height` and moves at `rate`."""
+    """Whether no touch can come after the drive time `t`, given `height` and `rate` of the tip without the
+    other modes at that time."""
     return rate <= 0.0 and abs(height + lowest.mean) < lowest.slack and t >= lowest.peak - lowest.quarter
 
 
@@ -173,7 +173,7 @@ def without_others(motion, flight, base, s):
 
 @part
 def free_until(motion, flight, lowest, base, duration):
-    """Time from the start of the flight up to which no touch can come, `duration` if none comes [s]."""
+    """Time since the start of the flight up to which no touch can come [s]; `duration` if none can."""
     if not lowest.slack > 0.0:
         return 0.0
     w, least, end = motion.drive, lowest.slack, base + duration
@@ -182,7 +182,7 @@ def free_until(motion, flight, lowest, base, duration):
     for _ in range(TRIES):
         if t - lowest.peak > lowest.quarter:
             return duration if t == base else free
-        height, rate, bend, twist = without_others(motion, flight, base, t - base)
+        height, rate, curvature, third = without_others(motion, flight, base, t - base)
         z = height + lowest.mean
         if z * z + (rate / w) ** 2 < least * least and t >= lowest.peak - lowest.quarter:
             return duration
@@ -192,18 +192,18 @@ def free_until(motion, flight, lowest, base, duration):
             free = t - base
             if t == end or -height < 2.0 * goal:
                 return free
-        # on to where `height` rises through -goal, or to its peak if it stays below
-        under = rate * rate - 2.0 * bend * (height + goal)
-        if bend >= 0.0:
+        # next t_1: where `height` rises through -goal, or its peak if it stays below
+        under = rate * rate - 2.0 * curvature * (height + goal)
+        if curvature >= 0.0:
             return free
         if under > 0.0:
-            x = (math.sqrt(under) - rate) / bend
-            speed = rate + x * (bend + 0.5 * x * twist)
+            x = (math.sqrt(under) - rate) / curvature
+            speed = rate + x * (curvature + 0.5 * x * third)
             if speed > 0.0:
-                x -= (height + goal + x * (rate + x * (0.5 * bend + x * twist / 6.0))) / speed
+                x -= (height + goal + x * (rate + x * (0.5 * curvature + x * third / 6.0))) / speed
         else:
-            x = -rate / bend
-            x -= 0.5 * twist * x * x / (bend + twist * x)
+            x = -rate / curvature
+            x -= 0.5 * third * x * x / (curvature + third * x)
         if not abs(x) < lowest.quarter or t + x <= base:
             return free
         t = min(t + x, end)

@@ -1,11 +1,10 @@
 """Sine, cosine and exponential to one unit in the last place, and products without rounding error.
 
-Nothing here branches or calls the system's library, so that a loop over many modes into which these are
-compiled becomes one of vector instructions.  A phase is an unevaluated sum of two doubles, whose rounding
-error stays that of the result even after 1e5 rad.  Sine and cosine of it come from one reduction by multiples
-of pi/2, whose leading 33 bits make the product exact (W. J. Cody and W. Waite, Software Manual for the
-Elementary Functions, Prentice-Hall 1980), and their Taylor sums on |x| <= pi/4; the exponential likewise on
-|x| <= ln 2/2.
+The inlined functions neither branch nor call the system's library, so that a loop over many modes compiles to
+vector instructions.  A phase is an unevaluated sum of two doubles; its rounding error stays below that of the
+result even after 1e5 rad.  Sine and cosine are Taylor sums on |x| <= pi/4 after one reduction by multiples of
+pi/2, whose leading 33 bits make the product exact (W. J. Cody and W. Waite, Software Manual for the
+Elementary Functions, Prentice-Hall 1980).  The exponential is computed in the same way on |x| <= ln 2/2.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ EPS = 2.220446049250313e-16
 """Distance from 1 to the next double."""
 
 FARTHEST = 5e5
-"""Phase up to which the number of quarter turns leaves the product with pi/2 exact [rad]."""
+"""Largest phase for which the product of the number of quarter turns and pi/2 is exact [rad]."""
 
 _SPLIT = 134217729.0  # 2^27 + 1, Veltkamp's splitting of a double into two halves
 _QUARTER, _QUARTER_LOW = 1.5707963267341256, 6.077100506506192e-11  # pi/2, its first 33 bits and the rest
@@ -48,7 +47,7 @@ def two_product(a, b):
 
 
 @inlined
-def turned(phase, rest):
+def reduced_sine_cosine(phase, rest):
     """sin and cos of `phase` + `rest`, |phase| below `FARTHEST` and |rest| far below one."""
     n = np.floor(phase * (2.0 / math.pi) + 0.5)
     lead, part = phase - n * _QUARTER, n * _QUARTER_LOW
@@ -80,7 +79,7 @@ def sine_cosine(phase, rest):
     if not abs(phase) < FARTHEST:
         s, c = math.sin(phase), math.cos(phase)
         return s + rest * c, c - rest * s
-    return turned(phase, rest)
+    return reduced_sine_cosine(phase, rest)
 
 
 @inlined

@@ -1,11 +1,11 @@
-"""How the free flow of a mode changes with its numbers.
+"""Derivatives of the free flow of a mode with respect to its numbers.
 
 With half = c/2, D = omega^2 - half^2 and cn, sn as in ``contact.flight.modal_flow`` (damping included), the
 flow is (cn + half sn, sn; -omega^2 sn, cn - half sn), and
 
     d cn/dD = -t sn/2,      d sn/dD = (t cn - sn)/(2 D),      dD/d(omega^2) = 1,      dD/dc = -half,
 
-while the damping factor exp(-half t) falls by t/2 with c.  Where D t^2 is small the second is the series
+while d exp(-half t)/dc = -t/2 exp(-half t).  Where D t^2 is small, d sn/dD is the series
 
     e^(-half t) t^3 sum_k (-1)^k (D t^2)^(k-1) k/(2k + 1)!,      k = 1, 2, ...
 """
@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 
 from contact.flight.modal_flow import flow_matrix
-from contact.flight.motion import DAMPED, DECAY, LOW, OMEGA
+from contact.flight.motion import DAMPED, DAMPED_LOW, DECAY, OMEGA
 from contact.machine.compiled import kernel
 
 TERMS = 10
@@ -24,10 +24,12 @@ TERMS = 10
 
 @kernel
 def flow_derivative(modes, k, square, decay, t):
-    """Change of the flow of mode `k` over a time `t` [s], as four numbers, when omega^2 changes by `square`
-    and c by `decay`."""
+    """Derivative of the flow of mode `k` over a time `t` [s], as four numbers, in a direction of the numbers.
+
+    `square` and `decay` are the changes of omega^2 and c in that direction.
+    """
     omega, half = modes[OMEGA, k], 0.5 * modes[DECAY, k]
-    m11, sn, m21, m22 = flow_matrix(omega, modes[DECAY, k], modes[DAMPED, k], modes[LOW, k], t)
+    m11, sn, m21, m22 = flow_matrix(omega, modes[DECAY, k], modes[DAMPED, k], modes[DAMPED_LOW, k], t)
     distance = math.copysign(modes[DAMPED, k] ** 2, omega - half)
     x = distance * t * t
     if abs(x) < 1.0:

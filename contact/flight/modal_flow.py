@@ -30,38 +30,45 @@ import math
 
 import numpy as np
 
-from contact.flight.elementary import EPS, FARTHEST, exponential, sine_cosine, turned, two_product
+from contact.flight.elementary import (
+    EPS,
+    FARTHEST,
+    exponential,
+    reduced_sine_cosine,
+    sine_cosine,
+    two_product,
+)
 from contact.flight.motion import (
     DAMPED,
+    DAMPED_LOW,
     DECAY,
     LOAD,
-    LOW,
     OFFSET,
     OMEGA,
-    SHORTNESS,
     SINE,
     SQUARE,
+    TIME_SCALE,
     WEIGHT,
     Motion,
 )
 from contact.machine.compiled import inlined, kernel
 from contact.machine.vector_loops import aligned
 
-START_U, START_V, U, V, HEIGHT, RATE, BEND, THIRD, ABOVE = range(9)
-"""Rows of the work space of a flight: deviation and velocity at its start, and now; what they add to the tip
-displacement and two derivatives, and to the bound of the third; the sum of the amplitudes of all higher
-modes."""
+START_U, START_V, U, V, HEIGHT, RATE, ACCELERATION, JERK_BOUND, ABOVE = range(9)
+"""Rows of the workspace of a flight: deviation and velocity at its start, and now; their parts of the tip
+displacement, of two derivatives and of the bound of the third; the sum of the amplitudes of all higher modes.
+"""
 
 
 @kernel
 def new_flight(motion):
-    """Work space of flights, shape (9, m)."""
+    """Workspace of flights, shape (9, m)."""
     return aligned(9, motion.modes.shape[1])
 
 
 @kernel
 def load_state(flight, u, v):
-    """Take (u, v), shape (n_modes,) each, as the start of a flight."""
+    """Set (u, v), shape (n_modes,) each, as the start of a flight."""
     for k in range(u.size):
         flight[START_U, k] = u[k]
         flight[START_V, k] = v[k]
@@ -107,7 +114,7 @@ def loaded_drift(decay, load, t):
 @kernel
 def mode_flow(modes, k, u, v, t):
     """Deviation (u, v) of mode `k` of a table after a time `t` [s]."""
-    a, b, c, d = flow_matrix(modes[OMEGA, k], modes[DECAY, k], modes[DAMPED, k], modes[LOW, k], t)
+    a, b, c, d = flow_matrix(modes[OMEGA, k], modes[DECAY, k], modes[DAMPED, k], modes[DAMPED_LOW, k], t)
     un, vn = a * u + b * v, c * u + d * v
     if modes[LOAD, k] != 0.0:
         du, dv = loaded_drift(modes[DECAY, k], modes[LOAD, k], t)
@@ -118,15 +125,15 @@ def mode_flow(modes, k, u, v, t):
 
 @kernel
 def ringing_flow(modes, flight, start, stop, t):
-    """`flow` for modes that are under-damped and without load: a loop of vector instructions.
+    """`flow` for under-damped modes without load: a loop of vector instructions.
 
-    It has vector loads as well because its index has no sign to look at.
+    The unsigned index gives it vector loads as well.
     """
-    decay, damped, low, square = modes[DECAY], modes[DAMPED], modes[LOW], modes[SQUARE]
+    decay, damped, low, square = modes[DECAY], modes[DAMPED], modes[DAMPED_LOW], modes[SQUARE]
     u, v, u_out, v_out = flight[START_U], flight[START_V], flight[U], flight[V]
     for k in range(np.uintp(start), np.uintp(stop)):
         p, e = two_product(damped[k], t)
-        s, c = turned(p, e + low[k] * t)
+        s, c = reduced_sine_cosine(p, e + low[k] * t)
         half = 0.5 * decay[k]
         fade = exponential(-half * t)
         cn, sn = fade * c, fade * s / damped[k]
@@ -138,7 +145,7 @@ def ringing_flow(modes, flight, start, stop, t):
 @inlined
 def flow(motion, flight, start, stop, t):
     """Deviations of modes `start` to `stop` a time `t` [s] into the flight, in its rows U and V."""
-    if motion.plain and motion.phase_rate * abs(t) < FARTHEST:
+    if motion.all_underdamped and motion.phase_rate * abs(t) < FARTHEST:
         ringing_flow(motion.modes, flight, start, stop, t)
     else:
         for k in range(start, stop):
@@ -151,7 +158,7 @@ def flow_over(motion, time):
     modes, flows = motion.modes, np.zeros((motion.size, 6))
     for k in range(motion.size):
         flows[k, 0], flows[k, 1], flows[k, 2], flows[k, 3] = flow_matrix(
-            modes[OMEGA, k], modes[DECAY, k], modes[DAMPED, k], modes[LOW, k], time
+            modes[OMEGA, k], modes[DECAY, k], modes[DAMPED, k], modes[DAMPED_LOW, k], time
         )
         if modes[LOAD, k] != 0.0:
             flows[k, 4], flows[k, 5] = loaded_drift(modes[DECAY, k], modes[LOAD, k], time)
@@ -160,7 +167,7 @@ def flow_over(motion, time):
 
 @kernel
 def apply_flow(flows, u, v):
-    """Move all deviations on by `flows`, in place."""
+    """Advance all deviations by `flows`, in place."""
     for k in range(u.size):
         uk = u[k]
         u[k] = flows[k, 0] * uk + flows[k, 1] * v[k] + flows[k, 4]
@@ -168,7 +175,7 @@ def apply_flow(flows, u, v):
 
 
 @kernel
-def carry(motion, flight, t, u, v):
+def propagate_flight(motion, flight, t, u, v):
     """Deviations (u, v) of all modes a time `t` [s] into the flight."""
     flow(motion, flight, 0, flight.shape[1], t)
     for k in range(u.size):
@@ -181,7 +188,7 @@ def propagate(motion, u, v, t, u_out, v_out):
     """Deviations of all modes after a time `t` [s]; `u_out`, `v_out` may be `u`, `v` themselves."""
     flight = new_flight(motion)
     load_state(flight, u, v)
-    carry(motion, flight, t, u_out, v_out)
+    propagate_flight(motion, flight, t, u_out, v_out)
 
 
 @kernel
@@ -216,28 +223,30 @@ def tip_state(motion, t, u, v):
 
 @inlined
 def at_tip(motion, k, value):
-    """What a displacement or velocity `value` of mode `k` is at the tip: phi_k times it."""
+    """The tip part phi_k `value` of a displacement or velocity of mode `k`."""
     return motion.modes[WEIGHT, k] * value
 
 
 @inlined
 def tip_sum(motion, rest, values):
-    """What modal `values` come to at the tip, and a `rest`."""
+    """The tip sum of modal `values`, added to `rest`."""
     for k in range(values.size):
         rest += at_tip(motion, k, values[k])
     return rest
 
 
 @inlined
-def tip_bound(motion, k, value, turned):
-    """Bound of what a `value` of mode `k` comes to at the tip as long as it is free; `turned` is the value a
-    quarter turn off, such as v/omega for u or omega u for v (see the bounds above)."""
-    return abs(motion.modes[WEIGHT, k]) * math.sqrt(value * value + turned * turned)
+def tip_bound(motion, k, value, quadrature):
+    """Bound of the tip part of a `value` of mode `k` while the mode is free.
+
+    `quadrature` is the value a quarter period off: v/omega for u, omega u for v (see the bounds above).
+    """
+    return abs(motion.modes[WEIGHT, k]) * math.sqrt(value * value + quadrature * quadrature)
 
 
 @inlined
 def push_on(motion, k, push):
-    """What a force or impulse `push` of the stop on the tip is for mode `k`: -phi_k times it."""
+    """The modal force or impulse -phi_k `push` of a force or impulse of the stop on the tip."""
     return -motion.modes[WEIGHT, k] * push
 
 
@@ -245,9 +254,9 @@ def push_on(motion, k, push):
 def tip_rounding(motion, u, v):
     """Bound of the rounding error of the tip displacement in a flight that starts at (u, v) [m]."""
     total = abs(motion.level) + abs(motion.tip_sine) + abs(motion.tip_cosine) + motion.gap
-    phi, shortness = motion.modes[WEIGHT], motion.modes[SHORTNESS]
+    phi, time_scale = motion.modes[WEIGHT], motion.modes[TIME_SCALE]
     for k in range(u.size):
-        total += abs(phi[k]) * (abs(u[k]) + abs(v[k]) * shortness[k])
+        total += abs(phi[k]) * (abs(u[k]) + abs(v[k]) * time_scale[k])
     return 4.0 * EPS * total
 
 

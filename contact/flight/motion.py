@@ -1,9 +1,9 @@
 """`Motion`: the numbers of one impact oscillator, as kernels see them.
 
-All that flights, touches and orbits need stands in one container: scalars, and one table with the modes as
-columns, filled up to a multiple of eight with modes that stay zero, so that a processor carries several in
-one instruction.  (A table instead of a dozen arrays: to hand those on to a kernel takes several times as long
-as to carry eight modes.)  Its equations are those of ``contact.flight.modal_flow``.
+One container holds all that flights, touches and orbits need: scalars, and one table with the modes as
+columns.  The table is filled up to a multiple of eight with modes that stay zero, so that a processor handles
+several in one instruction.  (Passing a dozen arrays to a kernel would take several times as long as
+propagating eight modes.)  The equations are those of ``contact.flight.modal_flow``.
 """
 
 from __future__ import annotations
@@ -17,10 +17,11 @@ from contact.flight.elementary import square_root, two_product
 from contact.machine.compiled import kernel
 from contact.machine.vector_loops import LANES
 
-DECAY, SQUARE, WEIGHT, LOAD, DAMPED, LOW, OMEGA, SLOWNESS, SHORTNESS, SINE, COSINE, OFFSET = range(12)
-"""Rows of the table of modes: c, omega^2, phi, g of the modes of zero frequency, d = sqrt|D| as a sum of two,
-omega, 1/omega (or zero), 1/max(omega, c/2) (or the period), S, C, g/omega^2.  The first four are those that
-``contact.machine.vector_loops`` counts on."""
+DECAY, SQUARE, WEIGHT, LOAD = range(4)
+DAMPED, DAMPED_LOW, OMEGA, INVERSE_OMEGA, TIME_SCALE, SINE, COSINE, OFFSET = range(4, 12)
+"""Rows of the table of modes: c, omega^2, phi, g of the modes of zero frequency, d = sqrt|D| as a sum of two
+doubles, omega, 1/omega (or zero), 1/max(omega, c/2) (or the period), S, C, g/omega^2.  The loops of
+``contact.machine.vector_loops`` use the first four."""
 
 
 class Motion(NamedTuple):
@@ -28,19 +29,19 @@ class Motion(NamedTuple):
 
     modes : ndarray, shape (12, m)
         The table; m is the number of modes, filled up to a multiple of eight.
+    tip_sine, tip_cosine, amplitude : float
+        Sums of phi S and phi C, and the amplitude of the steady tip motion [m].
+    steady_energy : float
+        Sum of (w S)^2 + (w C)^2: twice the scale of the energy of the steady motion [J].
     size : int
         Number of modes.
     level : float
         Static tip displacement minus gap [m].
-    tip_sine, tip_cosine, amplitude : float
-        Sums of phi S and phi C, and the amplitude of the steady tip motion [m].
-    drive, period, gap, compliance : float
+    drive, period, gap, inverse_mass : float
         w [rad/s], drive period [s], gap [m], sum of phi^2 [1/kg].
-    steady_energy : float
-        Sum of (w S)^2 + (w C)^2: twice the scale of the energy of the steady motion [J].
     law, number0, number1 : int, float, float
         Code of the contact law and its numbers.
-    plain : bool
+    all_underdamped : bool
         Whether all modes are under-damped and without load.
     phase_rate, fastest : float
         Largest d, and largest of w, omega and c [rad/s].
@@ -49,20 +50,20 @@ class Motion(NamedTuple):
     """
 
     modes: np.ndarray
-    size: int
-    level: float
     tip_sine: float
     tip_cosine: float
     amplitude: float
+    steady_energy: float
+    size: int
+    level: float
     drive: float
     period: float
     gap: float
-    compliance: float
-    steady_energy: float
+    inverse_mass: float
     law: int
     number0: float
     number1: float
-    plain: bool
+    all_underdamped: bool
     phase_rate: float
     fastest: float
     table: np.ndarray
@@ -87,21 +88,21 @@ class Motion(NamedTuple):
         return self.row(WEIGHT)
 
     def tip(self, values: np.ndarray) -> np.ndarray:
-        """What modal values (n_modes,) or (n_modes, n) come to at the tip, the sum of phi_k times them."""
+        """The sum of phi_k times modal values, of shape (n_modes,) or (n_modes, n)."""
         return self.phi @ values
 
     def most_at_tip(self, sizes: np.ndarray) -> float:
-        """The most that modal values of these `sizes` can come to at the tip: as `tip`, signs left out."""
+        """The largest tip sum of modal values of these `sizes`, whatever their signs."""
         return float(np.abs(self.phi) @ np.abs(sizes))
 
     def mobility(self, inertia: np.ndarray) -> float:
         """Velocity of the tip per impulse on it, sum phi^2/`inertia`, (n_modes,) [1/kg]."""
         return float(np.sum(self.phi**2 / inertia))
 
-    def least_change(self, reach: float | np.ndarray) -> np.ndarray:
-        """The least change of the modes that moves the tip by `reach`, phi reach/sum phi^2, (n_modes, ...): a
-        push of the stop makes no other."""
-        return np.multiply.outer(self.phi, np.asarray(reach) / self.compliance)
+    def least_change(self, displacement: float | np.ndarray) -> np.ndarray:
+        """The least change of the modes that moves the tip by `displacement` d, phi d/sum phi^2, shape
+        (n_modes, ...); an impulse of the stop changes the modes in this way."""
+        return np.multiply.outer(self.phi, np.asarray(displacement) / self.inverse_mass)
 
 
 def motion_of(
@@ -141,12 +142,12 @@ def motion_of(
     modes[DAMPED] = 1.0
     modes[DECAY, :n], modes[SQUARE, :n], modes[WEIGHT, :n] = decay, omega * omega, phi
     modes[LOAD, :n], modes[OFFSET, :n] = np.where(stiff, 0.0, load), offset
-    modes[DAMPED, :n], modes[LOW, :n], modes[OMEGA, :n] = pairs[:, 0], pairs[:, 1], omega
+    modes[DAMPED, :n], modes[DAMPED_LOW, :n], modes[OMEGA, :n] = pairs[:, 0], pairs[:, 1], omega
     modes[SINE, :n], modes[COSINE, :n] = response.real, response.imag
     top = np.maximum(omega, 0.5 * decay)
-    modes[SLOWNESS, :n] = np.where(stiff, 1.0 / np.where(stiff, omega, 1.0), 0.0)
-    modes[SHORTNESS, :n] = np.where(top > 0, 1.0 / np.where(top > 0, top, 1.0), period)
-    plain = bool(np.all((pairs[:, 0] > 0) & (omega > 0.5 * decay) & (modes[LOAD, :n] == 0)))
+    modes[INVERSE_OMEGA, :n] = np.where(stiff, 1.0 / np.where(stiff, omega, 1.0), 0.0)
+    modes[TIME_SCALE, :n] = np.where(top > 0, 1.0 / np.where(top > 0, top, 1.0), period)
+    all_underdamped = bool(np.all((pairs[:, 0] > 0) & (omega > 0.5 * decay) & (modes[LOAD, :n] == 0)))
     tip = complex(phi @ response)
     numbers = law.numbers
     return Motion(
@@ -159,12 +160,12 @@ def motion_of(
         drive=float(drive),
         period=float(period),
         gap=float(gap),
-        compliance=float(phi @ phi),
+        inverse_mass=float(phi @ phi),
         steady_energy=float(drive**2 * np.sum(np.abs(response) ** 2)),
         law=int(law.code),
         number0=float(numbers[0]),
         number1=float(numbers[1]),
-        plain=plain,
+        all_underdamped=all_underdamped,
         phase_rate=float(pairs[:, 0].max()),
         fastest=float(max(drive, omega.max(), decay.max())),
         table=np.asarray(law.table),
@@ -178,27 +179,8 @@ def with_drive(motion, factor):
     for k in range(motion.size):
         modes[SINE, k] *= factor
         modes[COSINE, k] *= factor
-    m = motion
-    return Motion(
-        modes,
-        m.size,
-        m.level,
-        m.tip_sine * factor,
-        m.tip_cosine * factor,
-        m.amplitude * abs(factor),
-        m.drive,
-        m.period,
-        m.gap,
-        m.compliance,
-        m.steady_energy * factor * factor,
-        m.law,
-        m.number0,
-        m.number1,
-        m.plain,
-        m.phase_rate,
-        m.fastest,
-        m.table,
-    )
+    sine, cosine, size = motion.tip_sine * factor, motion.tip_cosine * factor, motion.amplitude * abs(factor)
+    return Motion(modes, sine, cosine, size, motion.steady_energy * factor * factor, *motion[5:])
 
 
 @kernel
@@ -212,11 +194,11 @@ def damped_frequency(omega, decay):
     return square_root(d, ((p - (d - back)) + (-r - back)) + (ep - er))  # with the rounding error (Knuth)
 
 
-def single_mode(motion: Motion, k: int) -> Motion:
-    """The same steady tip motion with only mode `k` free."""
+def with_only_mode(motion: Motion, k: int) -> Motion:
+    """The oscillator with the same steady tip motion and only mode `k` free."""
     modes = np.zeros((len(motion.modes), LANES))
     modes[DAMPED] = 1.0
     modes[:, 0] = motion.modes[:, k]
     damped, omega, load = modes[DAMPED, 0], modes[OMEGA, 0], modes[LOAD, 0]
-    plain = bool(damped > 0.0 and omega > 0.5 * modes[DECAY, 0] and load == 0.0)
-    return motion._replace(modes=modes, size=1, plain=plain, phase_rate=float(damped))
+    all_underdamped = bool(damped > 0.0 and omega > 0.5 * modes[DECAY, 0] and load == 0.0)
+    return motion._replace(modes=modes, size=1, all_underdamped=all_underdamped, phase_rate=float(damped))

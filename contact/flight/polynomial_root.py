@@ -1,7 +1,7 @@
-"""The first crossing of a polynomial: of a contact force, of the root of a penetration.
+"""The first crossing of zero by a polynomial, such as a contact force or the root of a penetration.
 
-The three proofs of ``contact.flight.bounds`` settle stretch after stretch; the bound of the third derivative
-is the sum of the absolute terms at the far end.
+The three proofs of ``contact.flight.bounds`` settle one stretch after the other.  The bound of the third
+derivative is the sum of the absolute terms at the far end.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ def horner(coefficients, sign, height, s):
 def first_polynomial_root(coefficients, sign, end, margin):
     """First s in (0, end] at which `sign` (1 or -1) times a polynomial rises through zero, or -1.
 
-    It is negative at zero, or zero there and falling.  Heights within `margin` count as none: meant for
-    forces of continuous laws, where a touch of zero has no consequence.  A step that no proof gives is at
-    least twice the one before, so that a polynomial that is zero, or no number, ends as well.
+    It must be negative at zero, or zero there and falling.  Heights within `margin` are ignored, since a
+    continuous contact force that only touches zero has no consequence.  A step without a proof is at least
+    twice the one before, so that the search also ends for a polynomial that is zero or NaN.
     """
     m3 = 0.0
     power = 1.0
@@ -42,7 +42,7 @@ def first_polynomial_root(coefficients, sign, end, margin):
     while s < end:
         y0, y1, y2 = horner(coefficients, sign, 0.0, s)
         if y0 >= -margin:
-            # at the start, or a touch: leave the band of rounding by the slope
+            # at the start, or at a touch of zero: the slope leads out of the band of rounding
             if s > 0.0 and y1 > 0.0:
                 return s
             out = 2.0 * max(margin, y0) / max(abs(y1), 1e-300)
@@ -77,7 +77,7 @@ def first_polynomial_root(coefficients, sign, end, margin):
 
 @kernel
 def polynomial_root(coefficients, sign, height, low, high):
-    """Where in [low, high] `sign` times a polynomial rises through `height`."""
+    """The s in [low, high] at which `sign` times a polynomial rises through `height`."""
     s = 0.5 * (low + high)
     for _ in range(100):
         y0, y1, _unused = horner(coefficients, sign, height, s)

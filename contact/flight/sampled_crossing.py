@@ -1,17 +1,15 @@
-"""The first crossing of the stop as the letter looks for it: at a few instants of each drive period.
+"""The first crossing of the stop by the letter's search: at a few instants of each drive period.
 
-The letter (1996, note [11]) computes the exact position at t_1, ..., t_k in each drive period and detects
+The letter (1996, note [11]) computes the exact position at t_1, ..., t_k in each drive period.  It detects
 crossings "both directly", where a sampled position is beyond the stop, and at the turning points of the
 motion, where the sampled velocities change from rising to falling.  Here t_j = j / (k f), and a flight that
-begins in between starts with a shorter interval.  Once detected, a crossing is located to rounding on the
-exact flow, by Newton's method within the bracket (``contact.flight.tip_search``).
+begins in between starts with a shorter interval.  A detected crossing is located to rounding on the exact
+flow, by Newton's method within the bracket (``contact.flight.tip_search``).
 
-A crossing is seen if the tip is behind the stop at the end of the interval, or if the velocity changes from
-rising to falling and the peak found is behind the stop.  Missed is one that the tip undoes within the
-interval if it turns an even number of times there: for the ringing of a mode of frequency omega that is to be
-expected as soon as the spacing exceeds half its period, k < omega / (pi f), and since turning points of a sum
-of modes may lie as close together as they like, no k excludes it.  Where several crossings lie in one
-interval, the one located need not be the first.
+The search misses a crossing if the tip returns within the interval and turns an even number of times there.
+For the ringing of a mode of frequency omega this is likely once the spacing exceeds half its period, k <
+omega / (pi f).  Turning points of a sum of modes can lie arbitrarily close together, so that no k excludes
+it.  If several crossings lie in one interval, the located one need not be the first.
 """
 
 from __future__ import annotations
@@ -19,13 +17,13 @@ from __future__ import annotations
 import math
 
 from contact.flight.crossing import CROSSES, FREE
-from contact.flight.modal_flow import START_U, START_V, apply_flow, carry, tip_rounding, tip_state
+from contact.flight.modal_flow import START_U, START_V, apply_flow, propagate_flight, tip_rounding, tip_state
 from contact.flight.tip_search import find_peak, find_root, tip_now
 from contact.machine.compiled import kernel
 
 ALIGNED = 1e-9
-"""Part of the spacing by which an interval may differ from it and still be stepped over by its flow: the
-samples serve to detect, not to locate."""
+"""Largest difference of an interval from the spacing, over the spacing, for which the flow over the spacing
+is used: the samples serve to detect, not to locate."""
 
 
 @kernel
@@ -37,24 +35,17 @@ def root_between(motion, flight, base, low, high, margin):
 
 
 @kernel
-def first_sampled_crossing(motion, flight, base, duration, order, spacing, flows):
+def first_sampled_crossing(motion, flight, base, duration, contact_order, spacing, flows):
     """First crossing that is detected in (0, duration] of a free flight.
 
     Parameters
     ----------
-    motion : Motion
-    flight : ndarray
-        Work space of ``contact.flight.modal_flow``, with the start of the flight.
-    base : float
-        Time since the strobe at which the flight starts [s].
-    duration : float
-        Length of the flight [s].
-    order : int
-        How many derivatives of the tip displacement vanish at the start: 0 for a tip off the wall.
+    motion, flight, base, duration, contact_order
+        As in ``contact.flight.crossing.searched_flight``.
     spacing : float
         Time between two samples [s].
     flows : ndarray, shape (n_modes, 6)
-        The flow over it, from `flow_over`.
+        The flow over the spacing, from `flow_over`.
 
     Returns
     -------
@@ -69,7 +60,7 @@ def first_sampled_crossing(motion, flight, base, duration, order, spacing, flows
     u, v = flight[START_U, :n], flight[START_V, :n]
     margin = tip_rounding(motion, u, v)
     height, rate, _acceleration = tip_state(motion, base, u, v)
-    if order == 0 and height >= -margin and rate > 0.0:
+    if contact_order == 0 and height >= -margin and rate > 0.0:
         return CROSSES, 0.0, count
     su, sv = u.copy(), v.copy()
     j = int(base / spacing)
@@ -83,7 +74,7 @@ def first_sampled_crossing(motion, flight, base, duration, order, spacing, flows
         if abs(until - s - spacing) <= ALIGNED * spacing:
             apply_flow(flows, su, sv)
         else:
-            carry(motion, flight, until, su, sv)
+            propagate_flight(motion, flight, until, su, sv)
         height, new_rate, _acceleration = tip_state(motion, base + until, su, sv)
         if height > margin:
             return CROSSES, root_between(motion, flight, base, s, until, margin), count

@@ -1,8 +1,8 @@
-"""The tip during a flight, where in a bracket it crosses the stop or turns back, and all its peaks.
+"""The tip during a flight, its root and its peak in a bracket, and all its peaks.
 
-Both places are found on the exact flow by Newton's method within the bracket, the root of the parabola
-through a point in place of that of the tangent.  With a bound M of the third derivative the last step needs
-no check: one of length x ends within M x^3/6 of the height sought, or with y' within M x^2/2 of zero.
+Root and peak are found on the exact flow by Newton's method within the bracket; for a root the parabola
+through a point replaces the tangent.  With a bound M of the third derivative the last step needs no check: a
+step of length x ends within M x^3/6 of the height sought, or with y' within M x^2/2 of zero.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from contact.flight.motion import DECAY, LOAD, SQUARE
 from contact.machine.compiled import kernel
 
 SHORTEST = 1e-9
-"""Part of a flight below which no stretch is divided, which bounds their number: peak and valley that lie as
-close differ by less than rounding."""
+"""Shortest stretch over the length of a flight, which bounds the number of stretches.  A peak and a valley
+that lie closer differ in height by less than rounding."""
 
 
 @kernel
@@ -40,8 +40,8 @@ def tip_at(motion, base, u, v, s):
 def find_root(motion, flight, base, point, bracket, m3, margin):
     """The root of the tip displacement in the `bracket`, where it rises from below to above zero [s].
 
-    `point` is a time with the displacement and two derivatives there, where the search begins, and `m3`
-    bounds the third from the bracket's start on (or is infinite).
+    The search begins at `point`, a time with the displacement and two derivatives there.  `m3` bounds the
+    third derivative from the start of the bracket on, or is infinite.
     """
     s, y0, y1, y2 = point
     low, high = bracket
@@ -70,7 +70,7 @@ def find_root(motion, flight, base, point, bracket, m3, margin):
 
 @kernel
 def find_peak(motion, flight, base, point, bracket, m3, margin):
-    """The peak of the tip displacement in the `bracket`, where it is concave [s]; as `find_root`."""
+    """The peak of the tip displacement in a `bracket` where it is concave [s]; arguments of `find_root`."""
     s, _y0, y1, y2 = point
     low, high = bracket
     for _ in range(200):
@@ -84,8 +84,8 @@ def find_peak(motion, flight, base, point, bracket, m3, margin):
         if not (low < new < high):
             new = 0.5 * (low + high)
         else:
-            # the height is settled long before the place: its error is y''/2 times the square of
-            # what is left, at most m3 (new - s)^2 / (2 y'')
+            # the height is exact long before the time: its error is y''/2 times the square of the
+            # error of the time, which is at most m3 (new - s)^2 / (2 y'')
             off = min(m3 * (new - s) ** 2, -2.0 * y2 * abs(new - s))
             if off * off <= -4e-3 * margin * y2:
                 return new
@@ -100,13 +100,13 @@ def find_peak(motion, flight, base, point, bracket, m3, margin):
 def peaks_of_flight(motion, base, u, v, span, rising):
     """All peaks of the tip in a `span` of times of the flight from (u, v) [s], shape (n,).
 
-    With |y'''| <= M, y' keeps its sign for (r - |y''|)/M, r = sqrt(y''^2 + 2 M |y'|), or for (r + |y''|)/M
-    where y'' leads away from zero, and y'' its own for |y''|/M: neither time holds two peaks.  `rising` says
-    whether the tip may rise at the start, unlike one that leaves the stop.
+    With |y'''| <= M and r = sqrt(y''^2 + 2 M |y'|), y' keeps its sign for a time (r - |y''|)/M, or
+    (r + |y''|)/M where y'' leads away from zero, and y'' keeps its sign for |y''|/M.  None of these stretches
+    holds two peaks.  Set `rising` if the tip may rise at the start; a tip that leaves the stop does not.
     """
     flight, modes, steady = new_flight(motion), motion.modes, motion.amplitude * motion.drive**3
     load_state(flight, u, v)
-    margin = EPS * tip_rounding(motion, u, v)  # the place as exactly as the height
+    margin = EPS * tip_rounding(motion, u, v)  # so that the time is as exact as the height
     (s, end), found, before, m3 = span, [0.0], 0.0, 0.0
     point, least = (s, 0.0, 0.0, 0.0), SHORTEST * (end - s)
     while True:

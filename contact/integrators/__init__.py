@@ -1,18 +1,27 @@
 """Methods for the motion with contacts, one a file; ``INTEGRATORS`` lists them by name.
 
-``Exact`` takes no step; by name it is "event-driven", "piecewise-linear" or "contact-series" as well, as it
-is known with an impact law, a linear contact and Hertz's law.  ``SampledFlight`` is exact but for the touches
-that it misses (letter 1996, note [11]).  The others are made with a step, ``CentralDifference(step=1e-6)``,
-and refuse one beyond their limit of stability.
+``Exact`` takes no step.  It has also the names under which it is known with an impact law ("event-driven"), a
+linear contact ("piecewise-linear") and Hertz's law ("contact-series").  ``SampledFlight`` is exact but for
+the touches that it misses (letter 1996, note [11]).  The others are made with a step, as in
+``CentralDifference(step=1e-6)``, and refuse a step beyond their limit of stability.
+
+How to add a method with a time step
+    1. Its file here: a child of ``fixed_step.FixedStep`` with its equations, its limit of stability
+       (`critical_stiffness`) and its loop over the steps (`time_loop`).  The loop ends each step with
+       ``grid.end_contact_step``, which finds touches and releases on a cubic and writes them down.
+       ``central_difference`` is the shortest example.  A method with an interpolation of its own, or with
+       percussions, gets another end of the step from ``grid.make_end_of_step``.
+    2. Its class in `STEPPED` below.
+    3. A test of its order.  ``tests/contact/test_integrators.py`` holds every method of the table to the
+       common contract.
 """
 
 from contact.integrators.central_difference import CentralDifference
-from contact.integrators.exact import EXACT_NAMES, Exact
+from contact.integrators.exact import EXACT_NAMES, Exact, SampledFlight
 from contact.integrators.generalised_alpha import GeneralisedAlpha
 from contact.integrators.method import Integrator
 from contact.integrators.moreau_jean import MoreauJean
 from contact.integrators.nonsmooth_generalised_alpha import NonsmoothGeneralisedAlpha
-from contact.integrators.sampled_flight import SampledFlight
 from contact.integrators.splitting import Splitting
 from contact.trajectory import Run
 

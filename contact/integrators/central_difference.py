@@ -8,10 +8,10 @@ The motion starts with v_{1/2} = v_0 + (h/2) a_0; the velocity at a grid point i
 
 Order 2.  Stable in flight for h <= 2/omega with centred and h <= (2/omega)(sqrt(1 + zeta^2) - zeta), zeta =
 c/(2 omega), with lagged damping (T. Belytschko, in Belytschko and Hughes, Computational Methods for Transient
-Analysis, 1983, ch. 1).  In a lasting contact of stiffness k, stable if and only if h^2 (K + k phi phi^T) <=
-4, with lagged damping h^2 (K + k phi phi^T) + 2 h C <= 4, as matrices: the quadratic of a step, (z - 1)^2 +
-h c (z - 1) + h^2 kappa z = 0 with c = x*Cx and kappa = x*Kx for lagged damping, has its roots in the unit
-disc then, and one at z = -1 at the limit,
+Analysis, 1983, ch. 1).  A lasting contact of stiffness k is stable if and only if h^2 (K + k phi phi^T) <= 4,
+with lagged damping h^2 (K + k phi phi^T) + 2 h C <= 4, as matrices.  The quadratic of a step, for lagged
+damping (z - 1)^2 + h c (z - 1) + h^2 kappa z = 0 with c = x*Cx and kappa = x*Kx, then has its roots in the
+unit disc, and at the limit one at z = -1,
 
     1/k = sum_k phi_k^2 / (4/h^2 - 2 c_k/h - omega_k^2)    (without the term in c_k for centred damping).
 """
@@ -43,18 +43,18 @@ from contact.machine.compiled import kernel
 
 @kernel
 def central_difference(grid, numbers):
-    """March from the grid point reached; numbers: v_{n+1/2}, shape (n_modes,), and whether damping lags."""
+    """Steps from the grid point reached; numbers: v_{n+1/2}, shape (n_modes,), and whether damping lags."""
     half, lagged = numbers
-    place, h, q, v, motion = grid.places[0], grid.step, grid.q, grid.v, grid.motion
-    while place.step < grid.steps:
+    progress, h, q, v, motion = grid.progress[0], grid.step, grid.q, grid.v, grid.motion
+    while progress.step < grid.steps:
         for k in range(q.size):
             q[k] += h * half[k]
-        swing = math.sin(motion.drive * (grid.clock + (place.step + 1) * h))
+        sine = math.sin(motion.drive * (grid.clock + (progress.step + 1) * h))
         depth, rate = tip_of(motion, q, half)
         push = contact_force(motion, depth, rate)
         for k in range(q.size):
             old = half[k]
-            new = old + h * (force_in_flight(grid, k, swing, q, half) + push_on(motion, k, push))
+            new = old + h * (force_in_flight(grid, k, sine, q, half) + push_on(motion, k, push))
             if not lagged:
                 c = 0.5 * h * motion.modes[DECAY, k]
                 new = (new + c * old) / (1.0 + c)
@@ -79,14 +79,14 @@ class CentralDifference(FixedStep):
     name: ClassVar[str] = "central-difference"
     order: ClassVar[float] = 2.0
     laws: ClassVar[tuple[int, ...]] = (LINEAR, HERTZ)
-    march: ClassVar[Callable[..., int]] = staticmethod(central_difference)
+    time_loop: ClassVar[Callable[..., int]] = staticmethod(central_difference)
 
     def critical_stiffness(self, motion: Motion) -> float:
-        """Contact stiffness at which the highest frequency reaches the limit, below zero if a mode is beyond
-        it [N/m]."""
+        """Contact stiffness at which the highest frequency reaches the limit [N/m]; below zero if a mode is
+        beyond the limit."""
         lag = 2.0 * motion.decay / self.step if self.lagged else 0.0
         return stiffness_at(motion, 4.0 / self.step**2 - lag)
 
-    def carried(self, grid: Grid) -> tuple[np.ndarray, bool]:
+    def prepare(self, grid: Grid) -> tuple[np.ndarray, bool]:
         """v_{1/2}, and whether damping lags."""
         return grid.v + 0.5 * self.step * accelerations(grid), self.lagged

@@ -1,4 +1,4 @@
-"""Newmark's method, that of Hilber, Hughes and Taylor, and the generalised-alpha method: one formula.
+"""The generalised-alpha method, with Newmark's and Hilber, Hughes and Taylor's methods as members.
 
 With f = g + P sin(w t) - c v - omega^2 q - phi N the force per modal mass, N as in ``contact.laws``,
 
@@ -7,18 +7,18 @@ With f = g + P sin(w t) - c v - omega^2 q - phi N the force per modal mass, N as
     v_{n+1} = v_n + h ((1 - gamma) a_n + gamma a_{n+1})
 
 (J. Chung, G. M. Hulbert, J. Appl. Mech. 60 (1993) 371, with the forces of both ends weighted).
-alpha_m = alpha_f = 0 is N. M. Newmark's method (J. Eng. Mech. Div. ASCE 85 (1959) 67), alpha_m = 0 that of
-H. M. Hilber, T. J. R. Hughes and R. L. Taylor (Earthq. Eng. Struct. Dyn. 5 (1977) 283).  The acceleration a
-is carried from step to step; it starts as f_0.
+alpha_m = alpha_f = 0 gives N. M. Newmark's method (J. Eng. Mech. Div. ASCE 85 (1959) 67), alpha_m = 0 the
+method of H. M. Hilber, T. J. R. Hughes and R. L. Taylor (Earthq. Eng. Struct. Dyn. 5 (1977) 283).  The
+acceleration a is carried from step to step and starts as f_0.
 
 The step.  The modes are coupled by N alone.  With D = 1 - alpha_m + (1 - alpha_f)(c gamma h + omega^2 beta
-h^2) per mode and q*, v* what the step gives without the contact force at its end, the tip has
+h^2) per mode, and d*, d'* the end of the step without the contact force there, the tip has
 
     d = d* - B N,   d' = d'* - G N,   (B, G) = (beta h^2, gamma h) (1 - alpha_f) sum phi^2 / D,
 
 so that one number is unknown: N = N(d* - B N, d'* - G N).  The right side falls as N grows, hence there is
-one root; at the edge d = 0, where a dashpot makes the force jump, N takes the value in between that puts the
-tip there.
+one root.  A dashpot makes the force jump at d = 0; there N takes the value between that leaves the tip at
+d = 0.
 
 Order 2 if gamma = 1/2 - alpha_m + alpha_f, else 1.
 
@@ -37,10 +37,10 @@ linear in y,
 
     4 A + F b y,   4 + (b + F g) y,   (g + F) y,   4 (g + F - A) + g (b + F g + F^2) y   >= 0,
 
-hence the limit: for Newmark's method (A = F = 1) y <= 1/(gamma/2 - beta), none if 2 beta >= gamma >= 1/2; for
-the others of order 2 none if alpha_m <= alpha_f <= 1/2 and beta >= 1/4 + (alpha_f - alpha_m)/2.  This is
-linear theory: a contact that opens and closes can feed energy to an unconditionally stable method, a finding
-of ``studies.methods.stability`` and no ground to refuse a step.
+hence the limit.  For Newmark's method (A = F = 1) it is y <= 1/(gamma/2 - beta), and none if 2 beta >= gamma
+>= 1/2.  Other methods of order 2 have none if alpha_m <= alpha_f <= 1/2 and beta >= 1/4 + (alpha_f -
+alpha_m)/2.  This is linear theory: a contact that opens and closes can feed energy even to an unconditionally
+stable method (``studies.methods.stability``).  No step is refused for that.
 """
 
 from __future__ import annotations
@@ -70,8 +70,7 @@ from contact.laws import HERTZ, LINEAR
 from contact.machine.compiled import inlined, kernel
 
 MARGIN = 1e-12
-"""Slack of the conditions of stability, in units of their terms: on the limit itself they cancel up to
-rounding."""
+"""Slack of the conditions of stability, relative to their terms, which cancel up to rounding on the limit."""
 
 ROUNDING = 16 * 2.220446049250313e-16
 """Relative change of the contact force at which the iteration ends: d* carries a rounding error of its own,
@@ -99,7 +98,7 @@ class AlphaNumbers(NamedTuple):
 
 
 def limit(numbers: AlphaNumbers) -> float:
-    """Largest h omega without damping; infinite if there is none, 0 if any is too large [1]."""
+    """Largest stable h omega without damping [1]; infinite if all are stable, 0 if none is."""
     a, f, g, b = numbers.letters()
     largest = math.inf
     for constant, slope in (
@@ -152,45 +151,54 @@ def force_at_end(motion, depth, rate, b, g):
     return force, ITERATIONS
 
 
-def carried_by(numbers: AlphaNumbers, grid: Grid) -> tuple[AlphaNumbers, tuple[np.ndarray, ...]]:
-    """What the march carries from step to step: its numbers, and a, f (at the start a too) and D."""
+class AlphaState(NamedTuple):
+    """The numbers of the method, and per mode a, f and D, each of shape (n_modes,)."""
+
+    numbers: AlphaNumbers
+    a: np.ndarray
+    f: np.ndarray
+    inertia: np.ndarray
+
+
+def alpha_state(numbers: AlphaNumbers, grid: Grid) -> AlphaState:
+    """The state of the method before its first step, where a = f."""
     (alpha_m, alpha_f, beta, gamma), h, start = numbers, grid.step, accelerations(grid)
     implicit = gamma * (h * grid.motion.decay) + beta * (h * grid.motion.omega) ** 2
-    return numbers, (start, start.copy(), 1.0 - alpha_m + (1.0 - alpha_f) * implicit)
+    return AlphaState(numbers, start, start.copy(), 1.0 - alpha_m + (1.0 - alpha_f) * implicit)
 
 
 @inlined
-def predict(grid, carried, eta, swing):
-    """The step without a contact force at its end; `eta` is the 1/2 of the positions, `swing` sin(w t)."""
-    numbers, (a, f, inertia) = carried
+def predict(grid, alpha, eta, sine):
+    """The step without a contact force at its end; `eta` is the 1/2 of the positions, `sine` is sin(w t)."""
+    numbers, a, f, inertia = alpha
     h, q, v, new = grid.step, grid.q, grid.v, 1.0 - numbers.alpha_f
     for k in range(q.size):
         q[k] += h * v[k] + h * h * (eta - numbers.beta) * a[k]
         v[k] += h * (1.0 - numbers.gamma) * a[k]
         rest = numbers.alpha_f * f[k] - numbers.alpha_m * a[k]
-        a[k] = (rest + new * force_in_flight(grid, k, swing, q, v)) / inertia[k]
+        a[k] = (rest + new * force_in_flight(grid, k, sine, q, v)) / inertia[k]
         q[k] += numbers.beta * h * h * a[k]
         v[k] += numbers.gamma * h * a[k]
 
 
 @kernel
 def generalised_alpha(grid, prepared):
-    """March from the grid point reached; see `carried_by`, and sum phi^2/D."""
-    carried, moves = prepared
-    numbers, (a, f, inertia) = carried
-    place, h, q, v, motion = grid.places[0], grid.step, grid.q, grid.v, grid.motion
+    """Steps from the grid point reached; prepared: the `AlphaState`, and sum phi^2/D [1/kg]."""
+    alpha, mobility = prepared
+    numbers, a, f, inertia = alpha
+    progress, h, q, v, motion = grid.progress[0], grid.step, grid.q, grid.v, grid.motion
     new, b, g = 1.0 - numbers.alpha_f, numbers.beta * h * h, numbers.gamma * h
-    while place.step < grid.steps:
-        swing = math.sin(motion.drive * (grid.clock + (place.step + 1) * h))
-        predict(grid, carried, 0.5, swing)
+    while progress.step < grid.steps:
+        sine = math.sin(motion.drive * (grid.clock + (progress.step + 1) * h))
+        predict(grid, alpha, 0.5, sine)
         depth, rate = tip_of(motion, q, v)
-        push, _used = force_at_end(motion, depth, rate, b * new * moves, g * new * moves)
+        push, _used = force_at_end(motion, depth, rate, b * new * mobility, g * new * mobility)
         for k in range(q.size):
             jump = new * push_on(motion, k, push) / inertia[k]
             a[k] += jump
             q[k] += b * jump
             v[k] += g * jump
-            f[k] = force_in_flight(grid, k, swing, q, v) + push_on(motion, k, push)
+            f[k] = force_in_flight(grid, k, sine, q, v) + push_on(motion, k, push)
         status = end_contact_step(grid, tip_of(motion, q, v)[0])
         if status != DONE:
             return status
@@ -198,8 +206,8 @@ def generalised_alpha(grid, prepared):
 
 
 def chung_hulbert(rho: float) -> AlphaNumbers:
-    """The numbers of order 2 that damp infinite frequencies by the factor `rho` a step and low ones least
-    (Chung and Hulbert 1993)."""
+    """The numbers of order 2 that damp infinite frequencies by the factor `rho` a step, and low frequencies
+    least (Chung and Hulbert 1993)."""
     require_within("rho", rho, "[1]", low=0, high=1)
     alpha_m, alpha_f = (2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0)
     gamma = 0.5 + (1.0 - rho) / (1.0 + rho)
@@ -227,7 +235,7 @@ class GeneralisedAlpha(FixedStep):
     name: ClassVar[str] = "generalised-alpha"
     order: ClassVar[float] = 2.0
     laws: ClassVar[tuple[int, ...]] = (LINEAR, HERTZ)
-    march: ClassVar[Callable[..., int]] = staticmethod(generalised_alpha)
+    time_loop: ClassVar[Callable[..., int]] = staticmethod(generalised_alpha)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -257,8 +265,7 @@ class GeneralisedAlpha(FixedStep):
 
     @staticmethod
     def with_dissipation(*, step: float, rho: float, beyond_limit: bool = False) -> GeneralisedAlpha:
-        """Chung and Hulbert's choice; `rho`, from 0 to 1, is the factor by which a step damps infinite
-        frequencies."""
+        """Chung and Hulbert's choice; a step damps infinite frequencies by the factor `rho`, from 0 to 1."""
         return GeneralisedAlpha(step=step, beyond_limit=beyond_limit, **chung_hulbert(rho)._asdict())
 
     @property
@@ -267,14 +274,14 @@ class GeneralisedAlpha(FixedStep):
         return AlphaNumbers(self.alpha_m, self.alpha_f, self.beta, self.gamma)
 
     def critical_stiffness(self, motion: Motion) -> float:
-        """Contact stiffness at which the highest frequency reaches the limit, formed without damping; below
-        zero if a mode is beyond it [N/m]."""
+        """Contact stiffness at which the highest frequency reaches the limit without damping; below zero if a
+        mode is beyond the limit [N/m]."""
         if not np.all(stable(self.numbers, self.step * motion.omega, self.step * motion.decay)):
             return -1.0
         largest = limit(self.numbers)
         return math.inf if largest == math.inf else stiffness_at(motion, (largest / self.step) ** 2)
 
-    def carried(self, grid: Grid) -> object:
-        """See `carried_by`; and sum phi^2/D."""
-        carried = carried_by(self.numbers, grid)
-        return carried, grid.motion.mobility(carried[1][2])
+    def prepare(self, grid: Grid) -> tuple[AlphaState, float]:
+        """The state before the first step, and sum phi^2/D [1/kg]."""
+        alpha = alpha_state(self.numbers, grid)
+        return alpha, grid.motion.mobility(alpha.inertia)

@@ -1,16 +1,16 @@
-"""The grid of a run with a time step: its state, the forces, and what is written down between its points.
+"""The grid of a run with a time step: its state, the forces, and the record of touches between its points.
 
     q_k'' = f_k - phi_k N(d, d'),   f_k = g_k + P_k sin(w t) - c_k q_k' - omega_k^2 q_k,   P_k = Gamma_k Z w^2
     d = sum_k phi_k q_k - gap,      N as in ``contact.touch``
 
-A touch is seen if the penetration d is positive at a grid point: whatever lies between two of them is missed,
-as the method misses it.  What lies between two grid points is told by the method; most take a mode there for
-the cubic through its displacements and velocities at both ends of the step,
+A touch is seen if the penetration d is positive at a grid point; a touch between two of them is missed.
+Between grid points each method supplies its own interpolation.  Most use the cubic Hermite polynomial through
+the displacements and velocities of a mode at both ends of the step,
 
     q(s) = H00 q0 + H10 h v0 + H01 q1 + H11 h v1,
 
-whose error, h^4/384 q'''', is below their own.  Touch and release are roots of the penetration on it.  Times
-count from the strobe before the run's start.
+whose error, h^4/384 q'''', is below their own.  Touch and release are roots of the interpolated penetration.
+Times count from the strobe before the run's start.
 """
 
 from __future__ import annotations
@@ -40,8 +40,8 @@ DONE, FULL, TOO_LARGE, DIVERGED = 0, 1, 2, 3
 """How a step or a run ends: well; with a full log; at a contact too stiff for the step; with a motion that is
 no longer finite."""
 
-PLACE = np.dtype([("step", "i8"), ("due", "f8")])
-"""Grid point reached; when the next sample is due, since the strobe `first` [s]."""
+PROGRESS = np.dtype([("step", "i8"), ("due", "f8")])
+"""Number of the grid point reached; time of the next sample since the strobe `first` [s]."""
 
 UNBOUNDED = 1e12
 """Penetration [m] beyond which a motion counts as diverged."""
@@ -54,9 +54,9 @@ WELL_WITHIN = 1e-12
 
 
 class Grid(NamedTuple):
-    """A run on its way.
+    """A run under way on its grid.
 
-    places : record array of `PLACE`, shape (1,)
+    progress : record array of `PROGRESS`, shape (1,)
     motion : Motion
     push, constant : ndarray, shape (n_modes,)
         P and g [N kg^-0.5].
@@ -67,11 +67,11 @@ class Grid(NamedTuple):
     critical : float
         Contact stiffness beyond which the run ends [N/m].
     q, v, q0, v0, q_at, v_at : ndarray, shape (n_modes,)
-        The modal state that the method carries, now, at the last grid point, and somewhere between.
+        The modal state that the method carries: now, at the last grid point, and interpolated.
     recorder : Recorder
     """
 
-    places: np.ndarray
+    progress: np.ndarray
     motion: Motion
     push: np.ndarray
     constant: np.ndarray
@@ -96,10 +96,10 @@ def tip_of(motion, q, v):
 
 
 @inlined
-def force_in_flight(grid, k, swing, q, v):
-    """f of mode `k`; `swing` is sin(w t)."""
+def force_in_flight(grid, k, sine, q, v):
+    """f of mode `k`; `sine` is sin(w t)."""
     modes = grid.motion.modes
-    return grid.constant[k] + grid.push[k] * swing - modes[DECAY, k] * v[k] - modes[SQUARE, k] * q[k]
+    return grid.constant[k] + grid.push[k] * sine - modes[DECAY, k] * v[k] - modes[SQUARE, k] * q[k]
 
 
 @inlined
@@ -110,7 +110,7 @@ def contact_force(motion, depth, rate):
 
 @inlined
 def contact_tangent(motion, depth, rate):
-    """dN/dd [N/m] and dN/dd' [N s/m] where the contact pushes."""
+    """dN/dd [N/m] and dN/dd' [N s/m], zero off the stop."""
     if depth <= 0.0:
         return 0.0, 0.0
     return touch.stiffness(motion, depth, rate)
@@ -120,40 +120,43 @@ def contact_tangent(motion, depth, rate):
 def accelerations(grid):
     """The modal accelerations at the first grid point, shape (n_modes,)."""
     q, v, motion = grid.q, grid.v, grid.motion
-    swing = math.sin(motion.drive * grid.clock)
+    sine = math.sin(motion.drive * grid.clock)
     depth, rate = tip_of(motion, q, v)
     push, found = contact_force(motion, depth, rate), np.empty(q.size)
     for k in range(q.size):
-        found[k] = force_in_flight(grid, k, swing, q, v) + push_on(motion, k, push)
+        found[k] = force_in_flight(grid, k, sine, q, v) + push_on(motion, k, push)
     return found
 
 
-Between = Callable[..., tuple[float, float]]
-"""between(grid, method, x, h, acting) puts the state at the fraction x of the step just made, of length h,
-into q_at and v_at, and returns penetration and its rate; at a touch the force is not `acting` yet."""
+Interpolate = Callable[..., tuple[float, float]]
+"""interpolate(grid, method, x, h, with_force) puts the state at the fraction x of the step just made, of
+length h, into q_at and v_at, and returns penetration and its rate.  Without `with_force` the last force of
+the stop has not acted yet, as at the instant of a touch."""
 
-Write = Callable[..., None]
-"""write(grid, method, span, depth, done) writes touches and releases down; span = (start, h), `depth` the
-penetration at the end, `done` what the method tells of the stop."""
+WriteContact = Callable[..., None]
+"""write(grid, method, span, depth, report) writes touches and releases down.  span is (start, h), `depth` the
+penetration at the end of the step, and `report` the method's own account of the contact in it."""
 
 
-def ending(between: Between, write: Write) -> Callable[..., int]:
-    """The end of a step, for what a method says of its inside: end_step(grid, method, count, depth, apart,
-    done) -> status."""
+def make_end_of_step(interpolate: Interpolate, write: WriteContact) -> Callable[..., int]:
+    """The compiled end of a step, for a method's interpolation and its way to write contacts down.
+
+    It is end_step(grid, method, count, depth, no_contact, report) -> status.
+    """
 
     @inlined
-    def write_down(grid, method, count, depth, done):
-        """What happened in `count` steps; DONE, or why the run has to leave its loop there."""
-        recorder, place, h = grid.recorder, grid.places[0], count * grid.step
-        start, marks, clock = grid.clock + place.step * grid.step, recorder.marks[0], recorder.sample_clock
-        write(grid, method, (start, h), depth, done)
+    def write_down(grid, method, count, depth, report):
+        """Write down contacts and samples of `count` steps; DONE, or why the run has to leave its loop."""
+        recorder, progress, h = grid.recorder, grid.progress[0], count * grid.step
+        start, marks, clock = grid.clock + progress.step * grid.step, recorder.marks[0], recorder.sample_clock
+        write(grid, method, (start, h), depth, report)
         # rounding may put the end of a long run behind the last grid point by more than that
-        until = start + h + ON_THE_GRID * h if place.step + count < grid.steps else math.inf
+        until = start + h + ON_THE_GRID * h if progress.step + count < grid.steps else math.inf
         while sample_due(recorder, grid.first, until):
             x = max(0.0, (clock[marks.sampled] - start) / h)
-            between(grid, method, 1.0 if x > 1.0 - ON_THE_GRID else x, h, True)
+            interpolate(grid, method, 1.0 if x > 1.0 - ON_THE_GRID else x, h, True)
             put_sample(recorder, grid.q_at, grid.v_at)
-        place.due = clock[marks.sampled] if marks.sampled < clock.size else math.inf
+        progress.due = clock[marks.sampled] if marks.sampled < clock.size else math.inf
         if not abs(depth) < UNBOUNDED:
             return DIVERGED
         stiffness, _damping = contact_tangent(grid.motion, depth, 0.0)
@@ -162,15 +165,15 @@ def ending(between: Between, write: Write) -> Callable[..., int]:
         return FULL if is_full(recorder) else DONE
 
     @part
-    def end_step(grid, method, count, depth, apart, done):
-        """Go on to the grid point `count` further; `apart` tells that the stop has not acted on the way."""
-        place, status = grid.places[0], DONE
-        end = grid.clock + (place.step + count) * grid.step
-        quiet = apart and grid.recorder.marks[0].touching == 0 and abs(depth) < UNBOUNDED
-        quiet = quiet and place.step + count < grid.steps
-        if not (quiet and end + ON_THE_GRID * grid.step < place.due):
-            status = write_down(grid, method, count, depth, done)
-        place.step += count
+    def end_step(grid, method, count, depth, no_contact, report):
+        """Go on to the grid point `count` further; with `no_contact` the stop has not acted on the way."""
+        progress, status = grid.progress[0], DONE
+        end = grid.clock + (progress.step + count) * grid.step
+        quiet = no_contact and grid.recorder.marks[0].touching == 0 and abs(depth) < UNBOUNDED
+        quiet = quiet and progress.step + count < grid.steps
+        if not (quiet and end + ON_THE_GRID * grid.step < progress.due):
+            status = write_down(grid, method, count, depth, report)
+        progress.step += count
         for k in range(grid.q.size):
             grid.q0[k], grid.v0[k] = grid.q[k], grid.v[k]
         return status
@@ -178,16 +181,18 @@ def ending(between: Between, write: Write) -> Callable[..., int]:
     return end_step
 
 
-def touches(between: Between) -> Write:
-    """What a step under a force law writes down."""
+def make_contact_writer(interpolate: Interpolate) -> WriteContact:
+    """The compiled record of a step under a force law, for a method's interpolation."""
 
     @inlined
     def crossing(grid, method, h, depth):
-        """Where in the step the penetration, `depth` at its end, changes sign, and its rate there: Newton's
-        steps, and halves of the bracket where they leave it."""
+        """Fraction of the step at which the penetration changes sign, and its rate there; `depth` is its end.
+
+        Newton's steps, and halves of the bracket where they leave it.
+        """
         low, high, x, rate = 0.0, 1.0, 0.5, 0.0
         for _ in range(100):
-            height, rate = between(grid, method, x, h, False)
+            height, rate = interpolate(grid, method, x, h, False)
             if (height > 0.0) == (depth > 0.0):
                 high = x
             else:
@@ -201,13 +206,13 @@ def touches(between: Between) -> Write:
         return x, rate
 
     @inlined
-    def write(grid, method, span, depth, done):
-        """`done`: penetration at the start of the step, the energy that the stop has taken [J], and whether
-        the tip has met it within."""
-        before, taken, met = done
+    def write(grid, method, span, depth, report):
+        """`report`: penetration at the start of the step, the energy that the stop has taken [J], and whether
+        the tip has touched it within the step."""
+        before, loss, touched = report
         recorder, (start, h) = grid.recorder, span
         touching = recorder.marks[0].touching == 1
-        opens = not touching and (depth > 0.0 or met)
+        opens = not touching and (depth > 0.0 or touched)
         closes = depth <= 0.0 and (touching or opens)
         x = rate = 0.0
         if opens or closes:
@@ -215,22 +220,22 @@ def touches(between: Between) -> Write:
             if (before > 0.0) != (depth > 0.0):
                 x, rate = crossing(grid, method, h, depth)
             else:
-                _depth, rate = between(grid, method, 0.0, h, False)
+                _depth, rate = interpolate(grid, method, 0.0, h, False)
         if opens:
             open_touch(recorder, grid.first, start + x * h, rate, IMPACT, grid.q_at, grid.v_at)
         if touching or opens:
-            add_loss(recorder, taken)
+            add_loss(recorder, loss)
         if closes:
             if opens:
                 x = 1.0
-                _depth, rate = between(grid, method, x, h, True)
+                _depth, rate = interpolate(grid, method, x, h, True)
             close_touch(recorder, grid.first, start + x * h, rate, grid.q_at, grid.v_at)
 
     return write
 
 
 @inlined
-def cubic_between(grid, _method, x, h, _acting):
+def cubic_interpolation(grid, _method, x, h, _with_force):
     """The state at the fraction `x` of a step of length h on the cubic."""
     z = 1.0 - x
     for k in range(grid.q.size):
@@ -241,22 +246,22 @@ def cubic_between(grid, _method, x, h, _acting):
     return tip_of(grid.motion, grid.q_at, grid.v_at)
 
 
-_write_touches = touches(cubic_between)
+_write_on_cubic = make_contact_writer(cubic_interpolation)
 
 
 @inlined
-def _write_contact(grid, method, span, depth, _done):
-    """The energy that the stop takes is that of the trapezoidal rule."""
+def _write_contact(grid, method, span, depth, _report):
+    """The trapezoidal rule gives the energy that the stop takes."""
     d0, r0 = tip_of(grid.motion, grid.q0, grid.v0)
     d1, r1 = tip_of(grid.motion, grid.q, grid.v)
     power = r0 * contact_force(grid.motion, d0, r0) + r1 * contact_force(grid.motion, d1, r1)
-    _write_touches(grid, method, span, depth, (d0, 0.5 * span[1] * power, False))
+    _write_on_cubic(grid, method, span, depth, (d0, 0.5 * span[1] * power, False))
 
 
-_end_contact_step = ending(cubic_between, _write_contact)
+_end_contact_step = make_end_of_step(cubic_interpolation, _write_contact)
 
 
 @part
 def end_contact_step(grid, depth):
-    """The end of a step under a force law, the state between its ends on the cubic."""
+    """The end of a step under a force law with the cubic interpolation."""
     return _end_contact_step(grid, None, 1, depth, depth < 0.0, None)

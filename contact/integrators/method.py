@@ -1,9 +1,9 @@
-"""What every method for the motion with contacts offers, and what a run asks of it.
+"""The contract of every method for the motion with contacts.
 
 A method turns the equation of motion of ``contact.oscillator`` into a ``Trajectory``.  It states its order,
-the laws that it accepts, and the largest contact stiffness that its step can bear; its file opens with its
-equations, its limit of stability, and where it is published.  A law that it does not know is refused before
-time starts (``TypeError``), and so is a step beyond the limit (``StepTooLarge``).
+the laws that it accepts, and the largest contact stiffness that its step can bear.  Its file opens with its
+equations, its limit of stability and its source.  A law that it does not accept is refused before time starts
+(``TypeError``), and so is a step beyond the limit (``StepTooLarge``).
 """
 
 from __future__ import annotations
@@ -26,18 +26,17 @@ class Integrator:
     Attributes
     ----------
     name : str
-        Under which ``INTEGRATORS`` lists it.
+        Its name in ``INTEGRATORS``.
     order : float
-        Power of the step with which the error of a smooth motion falls; infinite for an exact method, NaN for
-        one whose error is set by a tolerance.
+        Power of the step with which the error of a smooth motion falls; infinite for an exact method, NaN if
+        a tolerance sets the error.
     laws : tuple of int
         Codes of the contact laws that it accepts.
     certified : bool
         Whether it proves that no touch is missed.
     accuracy : float
-        Error of the state after a collision, relative to its size, that an exact method keeps for contacts up
-        to 1e7 times as stiff as the spring (it grows as the root of that); NaN for one whose step or
-        tolerance decides.
+        Bound of the relative error of the state after a collision, for an exact method and contacts up to 1e7
+        times as stiff as the spring; it grows as the root of that.  NaN if a step or tolerance decides.
     """
 
     name: ClassVar[str]
@@ -58,5 +57,5 @@ class Integrator:
         return math.inf
 
     def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
-        """The motion of `run`; ``contact.simulation.simulate`` has checked law and step before."""
+        """The motion of `run`; ``contact.simulation.simulate`` has checked the law before."""
         raise NotImplementedError

@@ -13,7 +13,7 @@ Dynamical Systems, Springer 2008).  With D = 1 + theta h c + theta^2 h^2 omega^2
 without percussion, v_{n+1} = v* - phi p/D, and p = max(0, (U* + e U_n) / sum phi^2/D) in closed form.
 
 With a = f this is the ``nonsmooth_generalised_alpha`` method of alpha_m = alpha_f = 0, gamma = theta, beta =
-theta^2, but for a weight eta = theta in place of the 1/2 in its positions, so that both march in one loop:
+theta^2, but for a weight eta = theta in place of the 1/2 in its positions.  Both have one time loop:
 
     q_{n+1} = q_n + h v_n + h^2 ((eta - beta) a_n + beta a_{n+1}) + h eta w,     w = -phi p.
 
@@ -30,10 +30,9 @@ so theta = 1/2 keeps the energy to rounding when e = 1 and loses p (1 - e) U_n/2
 any if theta <= 1/(1 + e), no flight if theta >= 1/2.
 
 Penetration: the stop acts at velocity level, so a tip that is behind it stays behind.  The test sees a
-touch up to half a step early or late: at a grid point the tip can be h U/2 behind the stop after an impact,
-h U after one with e = 0; it does not grow while the contact lasts.  A tip that hovers behind the stop may
-be touched once more while it leaves, with less than a step's change of velocity: such a touch is written
-down with an approach below zero.
+touch up to half a step early or late.  At a grid point the tip can be h U/2 behind the stop after an impact,
+h U if e = 0; this does not grow while the contact lasts.  A tip that leaves from behind the stop may be
+struck once more, by less than a step's change of velocity: such a touch has an approach below zero.
 
 The path of the step has its corner at t_n + (1 - theta) h, where q = q_n + (1 - theta) h v_n: there the
 impact is dated, from v_n to v_{n+1}, so that Newton's law holds for what is written down.
@@ -53,8 +52,15 @@ from contact.engine.recorder import add_loss, close_touch, open_touch
 from contact.flight.modal_flow import push_on
 from contact.flight.motion import DECAY, SQUARE, Motion
 from contact.integrators.fixed_step import FixedStep
-from contact.integrators.generalised_alpha import AlphaNumbers, carried_by, predict
-from contact.integrators.grid import DONE, Grid, cubic_between, ending, force_in_flight, tip_of
+from contact.integrators.generalised_alpha import AlphaNumbers, AlphaState, alpha_state, predict
+from contact.integrators.grid import (
+    DONE,
+    Grid,
+    cubic_interpolation,
+    force_in_flight,
+    make_end_of_step,
+    tip_of,
+)
 from contact.laws import NEWTON
 from contact.machine.compiled import inlined, kernel
 from contact.trajectory import IMPACT
@@ -65,19 +71,24 @@ MARGIN = 1e-12
 
 @kernel
 def percussion_of(motion, h, depth, before, after, mobility):
-    """Percussion p of the stop [N s] in a step from penetration `depth` and tip velocity `before` that would
-    end, untouched, with tip velocity `after`; `mobility` is the velocity that a unit of it takes away."""
+    """Percussion p of the stop [N s] in a step from penetration `depth` and tip velocity `before`.
+
+    Without it the step would end with tip velocity `after`; a unit of it takes the velocity `mobility` away.
+    """
     if depth + 0.5 * h * before < 0.0:
         return 0.0
     return max(0.0, (after + motion.number0 * before) / mobility)
 
 
 @inlined
-def path_between(grid, corner, x, h, acting):
-    """The state at the fraction `x` of a step; where the stop has struck, the path has a corner at the
-    fraction `corner`: the old velocity before it, the new one after it."""
+def path_with_corner(grid, corner, x, h, with_force):
+    """The state at the fraction `x` of a step.
+
+    Where the stop has struck, the path has a corner at the fraction `corner`: the old velocity before it, the
+    new one after it.
+    """
     if grid.recorder.marks[0].touching == 0:
-        return cubic_between(grid, corner, x, h, acting)
+        return cubic_interpolation(grid, corner, x, h, with_force)
     for k in range(grid.q.size):
         if x <= corner:
             grid.q_at[k], grid.v_at[k] = grid.q0[k] + x * h * grid.v0[k], grid.v0[k]
@@ -88,34 +99,42 @@ def path_between(grid, corner, x, h, acting):
 
 @inlined
 def write_percussion(grid, corner, span, _depth, push):
-    """A touch at the corner, if there was a percussion; it lasts as long as the stop acts in every step."""
+    """Write a touch at the corner if there was a percussion; it lasts while the stop acts in each step."""
     recorder, (start, h) = grid.recorder, span
     marks, opens = recorder.marks[0], recorder.marks[0].touching == 0
     marks.touching = 1 if push > 0.0 else 0
     if push > 0.0:
-        _d, before = path_between(grid, corner, corner, h, True)
+        _d, before = path_with_corner(grid, corner, corner, h, True)
         _d, after = tip_of(grid.motion, grid.q_at, grid.v)
         if opens:
             open_touch(recorder, grid.first, start + corner * h, before, IMPACT, grid.q_at, grid.v_at)
-        add_loss(recorder, 0.5 * (before - after) * (before + after) / grid.motion.compliance)
+        add_loss(recorder, 0.5 * (before - after) * (before + after) / grid.motion.inverse_mass)
         close_touch(recorder, grid.first, start + corner * h, after, grid.q_at, grid.v)
         marks.touching = 1
 
 
-end_step = ending(path_between, write_percussion)
+end_step = make_end_of_step(path_with_corner, write_percussion)
+
+
+def before_percussions(numbers: AlphaNumbers, eta: float, grid: Grid) -> tuple[AlphaState, float, float]:
+    """The state before the first step, eta [1], and sum E phi^2 [1/kg] (``nonsmooth_generalised_alpha``)."""
+    alpha, y = alpha_state(numbers, grid), grid.step**2 * grid.motion.row(SQUARE)
+    alpha_m, alpha_f, beta, gamma = numbers
+    share = 1.0 - alpha_m + (1.0 - alpha_f) * (beta - gamma * eta) * y
+    return alpha, float(eta), grid.motion.mobility(alpha.inertia / share)
 
 
 @kernel
 def through_percussions(grid, prepared):
-    """March from the grid point reached; see `prepared_for`."""
-    carried, eta, mobility = prepared
-    numbers, (a, f, inertia) = carried
-    place, h, q, v, motion = grid.places[0], grid.step, grid.q, grid.v, grid.motion
+    """Steps from the grid point reached, with `prepared` by `before_percussions`."""
+    alpha, eta, mobility = prepared
+    numbers, a, f, inertia = alpha
+    progress, h, q, v, motion = grid.progress[0], grid.step, grid.q, grid.v, grid.motion
     modes, new = motion.modes, 1.0 - numbers.alpha_f
-    while place.step < grid.steps:
-        swing = math.sin(motion.drive * (grid.clock + (place.step + 1) * h))
+    while progress.step < grid.steps:
+        sine = math.sin(motion.drive * (grid.clock + (progress.step + 1) * h))
         depth, before = tip_of(motion, q, v)
-        predict(grid, carried, eta, swing)
+        predict(grid, alpha, eta, sine)
         _d, after = tip_of(motion, q, v)
         push = percussion_of(motion, h, depth, before, after, mobility)
         for k in range(q.size if push > 0.0 else 0):
@@ -125,20 +144,12 @@ def through_percussions(grid, prepared):
             q[k] += numbers.beta * h * h * change + eta * h * jump
             v[k] += numbers.gamma * h * change + jump
         for k in range(q.size if numbers.alpha_f != 0.0 else 0):
-            f[k] = force_in_flight(grid, k, swing, q, v)
+            f[k] = force_in_flight(grid, k, sine, q, v)
         depth, _rate = tip_of(motion, q, v)
         status = end_step(grid, 1.0 - eta, 1, depth, push == 0.0, push)
         if status != DONE:
             return status
     return DONE
-
-
-def prepared_for(numbers: AlphaNumbers, eta: float, grid: Grid) -> object:
-    """What the march takes: `carried_by`, eta and sum E phi^2."""
-    carried = carried_by(numbers, grid)
-    (alpha_m, alpha_f, beta, gamma), y = numbers, grid.step**2 * grid.motion.row(SQUARE)
-    share = 1.0 - alpha_m + (1.0 - alpha_f) * (beta - gamma * eta) * y
-    return carried, float(eta), grid.motion.mobility(carried[1][2] / share)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -155,14 +166,14 @@ class MoreauJean(FixedStep):
     name: ClassVar[str] = "moreau-jean"
     order: ClassVar[float] = 1.0
     laws: ClassVar[tuple[int, ...]] = (NEWTON,)
-    march: ClassVar[Callable[..., int]] = staticmethod(through_percussions)
+    time_loop: ClassVar[Callable[..., int]] = staticmethod(through_percussions)
 
     def __post_init__(self) -> None:
         super().__post_init__()
         require_within("theta", self.theta, "[1]", low=0, high=1)
 
     def critical_stiffness(self, motion: Motion) -> float:
-        """Infinite, or below zero if a mode grows in flight: the method knows no contact stiffness [N/m]."""
+        """Infinite, or below zero if a mode grows in flight [N/m]; the method has no contact stiffness."""
         half = 0.5 * motion.decay
         over = np.sqrt(np.maximum(half**2 - motion.omega**2, 0.0))
         # eigenvalues -c/2 +- i d of modulus omega, or the larger of two real ones, -c/2 - k
@@ -171,7 +182,7 @@ class MoreauJean(FixedStep):
         gained = self.step * size**2 * (1.0 - 2.0 * self.theta)
         return -1.0 if np.any(gained > lost + MARGIN * np.abs(gained)) else math.inf
 
-    def carried(self, grid: Grid) -> object:
-        """See `prepared_for`."""
+    def prepare(self, grid: Grid) -> object:
+        """alpha_m = alpha_f = 0, beta = theta^2, gamma = eta = theta."""
         theta = float(self.theta)
-        return prepared_for(AlphaNumbers(0.0, 0.0, theta**2, theta), theta, grid)
+        return before_percussions(AlphaNumbers(0.0, 0.0, theta**2, theta), theta, grid)

@@ -35,7 +35,7 @@ from typing import ClassVar
 from contact.integrators.fixed_step import FixedStep
 from contact.integrators.generalised_alpha import chung_hulbert
 from contact.integrators.grid import Grid
-from contact.integrators.moreau_jean import prepared_for, through_percussions
+from contact.integrators.moreau_jean import before_percussions, through_percussions
 from contact.laws import NEWTON
 
 
@@ -53,12 +53,12 @@ class NonsmoothGeneralisedAlpha(FixedStep):
     name: ClassVar[str] = "nonsmooth-generalised-alpha"
     order: ClassVar[float] = 2.0
     laws: ClassVar[tuple[int, ...]] = (NEWTON,)
-    march: ClassVar[Callable[..., int]] = staticmethod(through_percussions)
+    time_loop: ClassVar[Callable[..., int]] = staticmethod(through_percussions)
 
     def __post_init__(self) -> None:
         super().__post_init__()
         chung_hulbert(self.rho)
 
-    def carried(self, grid: Grid) -> object:
-        """See ``moreau_jean.prepared_for``."""
-        return prepared_for(chung_hulbert(self.rho), 0.5, grid)
+    def prepare(self, grid: Grid) -> object:
+        """The numbers of Chung and Hulbert for rho, and eta = 1/2."""
+        return before_percussions(chung_hulbert(self.rho), 0.5, grid)

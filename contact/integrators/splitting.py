@@ -7,26 +7,22 @@ F is the flow of the driven spring without the stop, K the contact acting on vel
 (``contact.integrators.splitting_step``), so that the error is that of the composition and vanishes off the
 stop.  Sources: G. Strang, SIAM J. Numer. Anal. 5 (1968) 506; S. Blanes, P. C. Moan, J. Comput. Appl. Math.
 142 (2002) 313, the six-stage method of order 4 for second-order equations that begins with a kick.
-
-Why that one: symmetric compositions of order 4 share their two order conditions, and differ in what is left.
-At equal numbers of kicks the error in a contact that stays closed (a free body on a spring) is 1/140 of that
+At equal numbers of kicks its error in a contact that stays closed (a free body on a spring) is 1/140 of that
 of M. Suzuki's five steps of order 2 (Phys. Lett. A 146 (1990) 319) and 1/420 of that of H. Yoshida's three
-(Phys. Lett. A 150 (1990) 262).  The limits of the three are alike, 0.0695, 0.0740 and 0.0688 of what order 2
-bears, and the one chosen exceeds its own by a growth of 0.24 % a step, and that only as far as 0.0697; it
-fails for good at 0.175.
+(Phys. Lett. A 150 (1990) 262), at alike limits of stability.
 
-Order in a collision.  The expansions of the error need derivatives of the force that are not there at d = 0:
-a step over a touch at which the force grows as d^p adds an error of order h^(p + 1), whatever the method.
+Order in a collision.  The expansions of the error need derivatives of the force that do not exist at d = 0.
+A step over a touch at which the force grows as d^p adds an error of order h^(p + 1), whatever the method.
 
     law                                       order 2     order 4
     Hertz (p = 3/2)                           2           2.5
     linear (p = 1)                            2           2
     linear with a dashpot (a jump, p = 0)     1           1
 
-So order 4 gains where contacts are long against the step, little in short collisions.  For the same reason
-the energy of a lossless motion, which symplecticity keeps from drifting in a contact that stays closed or in
-flight, takes at every touch and release a step of that order h^(p + 1), of either sign: over many contacts
-it wanders as a random walk does, with the square root of their number, and without drift.
+So order 4 gains where contacts are long against the step, little in short collisions.  The energy of a
+lossless motion does not drift in flight or in a contact that stays closed, since the method is symplectic.
+At every touch and release it makes a jump of order h^(p + 1), of either sign: over many contacts it performs
+a random walk, whose width grows with the square root of their number.
 
 Limit of stability of a contact that stays closed, N = k d + c d'.  A step is then a linear map M of (u, v),
 stable as long as no eigenvalue lies outside the unit circle.  Each kick adds a matrix of rank one times k,
@@ -34,18 +30,17 @@ and the first and the last are one kick, so that
 
     det(M(k) + I)  and  det(M(k) - I)  are polynomials in k of degree s, the number of sub-flows,
 
-known from s + 1 values; their lowest positive root is where an eigenvalue passes -1 or 1.  At order 2 it is
-1/k = h sum phi^2 tan(omega h/2)/(2 omega) without damping, for h -> 0 that of central difference on a free
-body of mass 1/Phi: the frequencies of the spring itself set no limit.  For omega h < pi and no damping
-nothing fails before: at k = 0 all eigenvalues in the upper half plane have the same signature (M. G. Krein),
-and such eigenvalues may meet, but not leave the circle, until they meet their conjugates.  Order 4 fails
-there by little: at h sqrt(k Phi) = 3.163 to 3.169 for a free body, by 1.0024 a step, and by much only from
-5.03 on.  The lower value is the limit.
+known from s + 1 values.  At their lowest positive root an eigenvalue passes -1 or 1.  At order 2 without
+damping it is 1/k = h sum phi^2 tan(omega h/2)/(2 omega), for h -> 0 the limit of central difference on a free
+body of mass 1/Phi: the frequencies of the spring itself set no limit.  For omega h < pi and no damping the
+step is stable below this root.  At k = 0 all eigenvalues in the upper half plane have the same signature
+(M. G. Krein), and such eigenvalues cannot leave the circle until they meet their conjugates.  Order 4 first
+fails in a narrow band, h sqrt(k Phi) = 3.163 to 3.169 for a free body, by a growth of 1.0024 a step, and then
+from 5.03 on.  The lower value is the limit.
 
 With damping, and beyond omega h = pi, pairs may leave the circle elsewhere: beyond pi near the resonances of
-step and contact, theta_j + theta_k = 2 pi m.  There the first k below that root at which the spectral radius
-exceeds one is searched for; resonances narrower than the search may be passed over.  In flight there is no
-limit.
+step and contact, theta_j + theta_k = 2 pi m.  There a search finds the first k below the root at which the
+spectral radius exceeds one; it may miss narrower resonances.  In flight there is no limit.
 """
 
 from __future__ import annotations
@@ -64,7 +59,7 @@ from contact.flight.modal_flow import flow_over
 from contact.flight.motion import DAMPED, Motion, motion_of
 from contact.integrators.fixed_step import FixedStep
 from contact.integrators.grid import Grid
-from contact.integrators.splitting_step import Composition, Split, march, sub_flows
+from contact.integrators.splitting_step import Composition, Split, split_steps, sub_flows
 from contact.laws import HERTZ, LINEAR, LinearContact
 
 SEARCH, SEARCH_BEYOND_PI, EACH = 1, 6, 100
@@ -96,7 +91,7 @@ def step_matrix(
 
     `stiffness` may be an array, of the shape (...) [N/m].
     """
-    n, phi, rate = motion.size, motion.phi, damping * motion.compliance
+    n, phi, rate = motion.size, motion.phi, damping * motion.inverse_mass
     stiff = np.asarray(stiffness, dtype=float)[..., None]
     upper = np.broadcast_to(np.eye(n, 2 * n), (*stiff.shape[:-1], n, 2 * n))
     lower = np.broadcast_to(np.eye(n, 2 * n, n), upper.shape)
@@ -123,8 +118,8 @@ def spectral_radius(
 def _passage(motion: Motion, composition: Composition, step: float, damping: float) -> float:
     """The lowest contact stiffness at which an eigenvalue passes -1 or 1, infinite if there is none [N/m].
 
-    A root counts if the step is unstable just beyond it: rounding may add one to det(M - I), which is small
-    where the frequencies are.  It is found anew from values closer to it.
+    A root counts if the step is unstable just beyond it, since rounding may add a root to det(M - I).  Each
+    is found anew from values closer to it.
     """
     degree = composition.flows.size
     nodes = 0.5 - 0.5 * np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1))
@@ -138,7 +133,7 @@ def _passage(motion: Motion, composition: Composition, step: float, damping: flo
 
     lowest = math.inf
     for sign in (1.0, -1.0):
-        for coarse in roots(sign, 4.0 * degree**2 / (step**2 * motion.compliance)):
+        for coarse in roots(sign, 4.0 * degree**2 / (step**2 * motion.inverse_mass)):
             near = roots(sign, 2.0 * coarse)
             root = float(near[np.argmin(np.abs(near - coarse))]) if near.size else float(coarse)
             beyond = spectral_radius(motion, composition, step, (1.0 + JUST_BEYOND) * root, damping)
@@ -160,7 +155,7 @@ def first_instability(motion: Motion, composition: Composition, step: float, dam
     if not (beyond_pi or damping > 0.0 or np.any(motion.decay > 0.0)):
         return high
     if not math.isfinite(high):
-        high = 40.0 * composition.flows.size**2 / (step**2 * motion.compliance)
+        high = 40.0 * composition.flows.size**2 / (step**2 * motion.inverse_mass)
     decades = SEARCH_BEYOND_PI if beyond_pi else SEARCH
     values = high * 10.0 ** np.linspace(-decades, 0.0, decades * EACH + 1)
     for chunk in np.split(np.arange(decades * EACH), decades):
@@ -176,7 +171,7 @@ def first_instability(motion: Motion, composition: Composition, step: float, dam
 
 @lru_cache(maxsize=256)
 def _limit(numbers: bytes, n: int, order: int, step: float, damping: float) -> float:
-    """`first_instability`, kept: the search takes some hundredths of a second."""
+    """`first_instability`, cached since the search takes some hundredths of a second."""
     omega, decay, phi = np.frombuffer(numbers).reshape(3, n)
     motion = motion_of(omega, decay, phi, law=LinearContact(stiffness=1.0, damping=damping), gap=0.0)
     return first_instability(motion, COMPOSITIONS[order], step, damping)
@@ -195,7 +190,7 @@ class Splitting(FixedStep):
     order: int = 2  # type: ignore[misc]
     name: ClassVar[str] = "splitting"
     laws: ClassVar[tuple[int, ...]] = (LINEAR, HERTZ)
-    march: ClassVar[Callable[..., int]] = staticmethod(march)
+    time_loop: ClassVar[Callable[..., int]] = staticmethod(split_steps)
     deviations: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
@@ -206,14 +201,14 @@ class Splitting(FixedStep):
     def critical_stiffness(self, motion: Motion) -> float:
         """Lowest stiffness of a lasting contact at which a step is unstable [N/m].
 
-        With the dashpot of a linear law; for Hertz's and Hunt and Crossley's laws it is the tangent stiffness
-        that counts, and their damping, which raises the limit as a dashpot does, is left out.
+        It includes the dashpot of a linear law.  For Hertz's and Hunt and Crossley's laws it is a tangent
+        stiffness; their damping raises the limit and is left out.
         """
         numbers = np.array([motion.omega, motion.decay, motion.phi])
         damping = motion.number1 if motion.law == LINEAR else 0.0
         return _limit(numbers.tobytes(), motion.size, self.order, self.step, damping)
 
-    def carried(self, grid: Grid) -> Split:
+    def prepare(self, grid: Grid) -> Split:
         """The composition, and its sub-flows over a step."""
         composition = COMPOSITIONS[self.order]
         return Split(composition, sub_flows(grid.motion, composition, self.step))

@@ -1,4 +1,4 @@
-"""One step of a splitting method, and the march over many: exact flow, contact force in kicks.
+"""One step of a splitting method, and the loop over many: exact flow, contact force in kicks.
 
 The motion is split into the flight, which is known in closed form (``contact.flight``), and the contact,
 during which displacements and drive stand still:
@@ -16,13 +16,11 @@ N = N_0 + B (r - r_0) at fixed d, with B = c (dashpot) or k d^(3/2) chi (Hunt, C
 (J = N_0 t for B = 0).  N keeps its sign, so that max(0, k d + c d') stays where it is within a kick.  The
 energy given to the stop is J (r + r - Phi J) / 2.
 
-Within a step the motion is what the same step would give if it were shorter: it meets the grid points, and
-keeps the order of the method.  The times of touch and release are the roots of its penetration.  Far from the
-stop no kick acts, and flows compose: m steps with
+Within a step the state at the fraction x is that of a step of length x h.  This interpolation meets the grid
+points and keeps the order of the method; the roots of its penetration are the times of touch and release.
+Far from the stop no kick acts, and flows compose: m steps are one flow of length m h if
 
-    y + m h (|x_s'| + sum |phi_k| sqrt(v_k^2 + omega_k^2 u_k^2)) < 0,   y the distance behind the stop,
-
-are one flow of length m h.
+    y + m h (|x_s'| + sum |phi_k| sqrt(v_k^2 + omega_k^2 u_k^2)) < 0,   y the distance behind the stop.
 """
 
 from __future__ import annotations
@@ -34,15 +32,21 @@ import numpy as np
 
 from contact.flight.modal_flow import at_tip, flow_over, propagate, push_on, tip_bound, tip_sum
 from contact.flight.motion import LOAD, OMEGA
-from contact.integrators.grid import DONE, contact_force, contact_tangent, ending, touches
+from contact.integrators.grid import (
+    DONE,
+    contact_force,
+    contact_tangent,
+    make_contact_writer,
+    make_end_of_step,
+)
 from contact.machine.compiled import inlined, kernel
 
 RENEW = 32
-"""Steps after which sin and cos of the drive's phase are computed anew instead of turned on: their rounding
-error then stays below 1e-14."""
+"""Steps after which sine and cosine of the drive's phase are computed anew, so that the rounding error of
+their recurrence stays below 1e-14."""
 
 WORTHWHILE = 8
-"""Steps that a flight has to clear to be taken at once: that costs as much as some eight steps."""
+"""Least number of steps that are taken as one flight, which costs as much as some eight steps."""
 
 
 class Composition(NamedTuple):
@@ -63,7 +67,8 @@ class Split(NamedTuple):
 def sub_flows(motion, composition, length):
     """The sub-flows of a step of `length` [s], shape (stages, n_modes + 1, 6).
 
-    Each mode's matrix by rows and the drift under a constant load; last the cosine and sine of the drive.
+    A row holds the matrix of a mode by rows and its drift under a constant load.  The last row holds the
+    cosine and sine of the drive's phase over the sub-flow.
     """
     n = motion.size
     flows = np.zeros((composition.flows.size, n + 1, 6))
@@ -84,7 +89,7 @@ def tip_at(motion, u, clock):
 
 @kernel
 def tip_rate(motion, v, sine, cosine):
-    """Rate of the penetration [m/s]; `sine`, `cosine` belong to the phase of the drive."""
+    """Rate of the penetration [m/s], with `sine` and `cosine` of the drive's phase."""
     return tip_sum(motion, motion.drive * (motion.tip_sine * cosine - motion.tip_cosine * sine), v)
 
 
@@ -100,27 +105,27 @@ def kick(motion, tip, v, length):
     if force == 0.0:
         return 0.0
     _stiffness, damping = contact_tangent(motion, depth, rate)
-    x = damping * motion.compliance * length
+    x = damping * motion.inverse_mass * length
     impulse = force * length * (-math.expm1(-x) / x if x != 0.0 else 1.0)
     for k in range(v.size):
         v[k] += push_on(motion, k, impulse)
-    return impulse * (rate - 0.5 * motion.compliance * impulse)
+    return impulse * (rate - 0.5 * motion.inverse_mass * impulse)
 
 
 @kernel
-def take_step(motion, split, length, tip, u, v, acting):
+def take_step(motion, split, length, tip, u, v, with_force):
     """One step of `length` [s] from `tip` (see `kick`), with the sub-flows made for it.
 
-    Returns the tip at the end, the energy taken by the contact, and whether a kick found the tip in it; where
-    the force is not `acting` at the end, the state is that just before the last kick.
+    Returns the tip at the end, the energy taken by the contact, and whether a kick found the tip in it.
+    Without `with_force` the last kick is left out.
     """
     composition, flows = split
-    n, stages, taken, met = u.size, composition.flows.size, 0.0, False
+    n, stages, loss, touched = u.size, composition.flows.size, 0.0, False
     depth, sine, cosine = tip
     for j in range(stages + 1):
-        if depth > 0.0 and (acting or j < stages):
-            taken += kick(motion, (depth, sine, cosine), v, composition.kicks[j] * length)
-            met = True
+        if depth > 0.0 and (with_force or j < stages):
+            loss += kick(motion, (depth, sine, cosine), v, composition.kicks[j] * length)
+            touched = True
         if j == stages:
             break
         flow = flows[j]
@@ -132,28 +137,27 @@ def take_step(motion, split, length, tip, u, v, acting):
             u[k] = flow[k, 0] * uk + flow[k, 1] * vk + flow[k, 4]
             v[k] = flow[k, 2] * uk + flow[k, 3] * vk + flow[k, 5]
             depth += at_tip(motion, k, u[k])
-    return (depth, sine, cosine), taken, met
+    return (depth, sine, cosine), loss, touched
 
 
 @inlined
-def part_of_step(grid, split, x, h, acting):
-    """The state after the fraction `x` of a step is that of a shorter one, without its last kick if the force
-    is not `acting`; see ``contact.integrators.grid``."""
+def shorter_step(grid, split, x, h, with_force):
+    """The state after the fraction `x` of a step: that of a shorter step (``grid.Interpolate``)."""
     motion, u, v = grid.motion, grid.q_at, grid.v_at
     for k in range(u.size):
         u[k], v[k] = grid.q0[k], grid.v0[k]
-    tip = tip_at(motion, u, grid.clock + grid.places[0].step * grid.step)
+    tip = tip_at(motion, u, grid.clock + grid.progress[0].step * grid.step)
     shorter = Split(split.composition, sub_flows(motion, split.composition, x * h))
-    (depth, sine, cosine), _taken, _met = take_step(motion, shorter, x * h, tip, u, v, acting)
+    (depth, sine, cosine), _loss, _touched = take_step(motion, shorter, x * h, tip, u, v, with_force)
     return depth, tip_rate(motion, v, sine, cosine)
 
 
-end_split_step = ending(part_of_step, touches(part_of_step))
+end_split_step = make_end_of_step(shorter_step, make_contact_writer(shorter_step))
 
 
 @kernel
 def clear_steps(motion, depth, u, v, h):
-    """How many steps of length h the tip is sure not to reach the stop."""
+    """Number of steps of length h for which the tip surely stays off the stop."""
     speed = motion.drive * motion.amplitude
     for k in range(u.size):
         if motion.modes[LOAD, k] != 0.0:
@@ -163,24 +167,24 @@ def clear_steps(motion, depth, u, v, h):
 
 
 @kernel
-def march(grid, split):
-    """March from the grid point reached; the grid carries deviations from the steady motion."""
-    motion, place, h, u, v = grid.motion, grid.places[0], grid.step, grid.q, grid.v
-    tip, look = tip_at(motion, u, grid.clock + place.step * h), place.step
-    while place.step < grid.steps:
-        count, before, taken, met = 1, tip[0], 0.0, False
-        if place.step >= look and before < 0.0 and grid.recorder.marks[0].touching == 0:
-            count = int(min(clear_steps(motion, before, u, v, h), grid.steps - place.step))
+def split_steps(grid, split):
+    """Steps from the grid point reached; the grid carries deviations from the steady motion."""
+    motion, progress, h, u, v = grid.motion, grid.progress[0], grid.step, grid.q, grid.v
+    tip, look = tip_at(motion, u, grid.clock + progress.step * h), progress.step
+    while progress.step < grid.steps:
+        count, before, loss, touched = 1, tip[0], 0.0, False
+        if progress.step >= look and before < 0.0 and grid.recorder.marks[0].touching == 0:
+            count = int(min(clear_steps(motion, before, u, v, h), grid.steps - progress.step))
             if count < WORTHWHILE:
-                count, look = 1, place.step + WORTHWHILE // 2
+                count, look = 1, progress.step + WORTHWHILE // 2
         if count == 1:
-            tip, taken, met = take_step(motion, split, h, tip, u, v, True)
+            tip, loss, touched = take_step(motion, split, h, tip, u, v, True)
         else:
             propagate(motion, u, v, count * h, u, v)
-        if count > 1 or (place.step + 1) % RENEW == 0:
-            tip = tip_at(motion, u, grid.clock + (place.step + count) * h)
-        apart = tip[0] <= 0.0 and not met
-        status = end_split_step(grid, split, count, tip[0], apart, (before, taken, met))
+        if count > 1 or (progress.step + 1) % RENEW == 0:
+            tip = tip_at(motion, u, grid.clock + (progress.step + count) * h)
+        no_contact = tip[0] <= 0.0 and not touched
+        status = end_split_step(grid, split, count, tip[0], no_contact, (before, loss, touched))
         if status != DONE:
             return status
     return DONE

@@ -1,15 +1,14 @@
 """Compiled kernels and where their machine code is kept.
 
-Every numerical kernel of the package is a pure function of numbers and arrays, compiled by numba without
-fast-math (so that results are the same bit for bit on one type of machine) and without the interpreter lock
-(so that threads share the cores).
+Every numerical kernel of the package is a pure function of numbers and arrays.  Numba compiles it without
+fast-math, so that results agree bit for bit on one type of machine, and without the interpreter lock, so that
+threads share the cores.
 
-The compiled code is cached between runs.  Numba's own cache looks at the one file in which a kernel stands;
-a kernel that calls kernels of other files would then be reused although its callee has changed.  The folder
-of a kernel's machine code is therefore named after a hash of its file and of all files that this one imports,
-directly or through others: change a source, and what rests on it is compiled anew.  (A source counts if the
-word kernel occurs in it, which includes the constants that kernels take from it.)  Folders of other sources
-are removed after an hour without use.
+The machine code is cached between runs.  Numba's own cache checks only the file of a kernel, and would reuse
+a kernel whose callee in another file has changed.  Here the cache folder of a kernel is named after a hash of
+its file and of all files of ``contact`` that this one imports, directly or through others.  A change of a
+source thus recompiles all kernels that rest on it.  Only files that contain the word kernel are hashed; this
+includes the files with constants of kernels.  Folders without use for an hour are removed.
 
 The first kernel that a process has to compile is announced on standard error.
 """
@@ -48,7 +47,7 @@ Function = TypeVar("Function", bound=Callable[..., object])
 
 
 def _writable(folder: Path) -> bool:
-    """Whether files can be made in `folder` (made here if need be)."""
+    """Whether files can be written in `folder`, which is made if it does not exist."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
@@ -57,15 +56,15 @@ def _writable(folder: Path) -> bool:
         return False
 
 
-def _place(package: Path) -> Path | None:
-    """The first writable of: beside the sources, the user's cache; None if there is none."""
+def _writable_parent(package: Path) -> Path | None:
+    """The folder for cache folders: beside the sources, or the user's cache; None if neither is writable."""
     user_cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "grazing-spring"
     return next((folder for folder in (package / "__pycache__", user_cache) if _writable(folder)), None)
 
 
 @cache
 def _imports(path: Path) -> tuple[bytes, frozenset[Path]]:
-    """The text of a file of ``contact`` and the files of it that it imports."""
+    """The text of a file of ``contact``, and the files of ``contact`` that it imports."""
     text, found = path.read_bytes(), set[Path]()
     for module, names in IMPORT.findall(text.decode()):
         start = PACKAGE.joinpath(*module.split(".")[1:])
@@ -85,7 +84,7 @@ def sources_of(path: Path) -> set[Path]:
 
 
 def folder_of(digest: str, parent: Path) -> str:
-    """The folder of machine code for this digest, marked as used now; a new one removes what nobody uses."""
+    """The cache folder for this digest, marked as used now; making a new one removes unused ones."""
     folder = parent / f"kernels-{digest[:16]}"
     if not folder.exists():
         for old in parent.glob("kernels-*"):
@@ -99,27 +98,27 @@ def folder_of(digest: str, parent: Path) -> str:
 
 @cache
 def _cache_folder(path: Path) -> str:
-    """The folder of the machine code of the file at `path`; an empty string if there can be none."""
+    """The cache folder for the file at `path`; an empty string if no folder is writable."""
     if own := os.environ.get("NUMBA_CACHE_DIR"):
         return own
-    if PLACE is None:
+    if CACHE_PARENT is None:
         return ""
     digest = hashlib.sha256(numba.__version__.encode())
     for source in sorted(sources_of(path)):
         if b"kernel" in (text := _imports(source)[0]):
             digest.update(text)
-    return folder_of(digest.hexdigest(), PLACE)
+    return folder_of(digest.hexdigest(), CACHE_PARENT)
 
 
-PLACE = _place(PACKAGE)
+CACHE_PARENT = _writable_parent(PACKAGE)
 
 
 class _Announcement(event.Listener):  # type: ignore[misc]
-    """Prints once in a process that kernels are compiled; numba's event comes only without cached code."""
+    """Announces once per process that a kernel is compiled; cached code brings no event of numba."""
 
     def on_start(self, event: Any) -> None:
         """A kernel is being compiled."""
-        module = event.data["dispatcher"].py_func.__module__ or ""  # None: made from text, as tables of laws
+        module = event.data["dispatcher"].py_func.__module__ or ""  # None for `touch.by_law`, made from text
         ours = module.startswith("contact.")
         worker = multiprocessing.parent_process() is not None
         if ours and not worker and not self.said:
@@ -136,7 +135,7 @@ event.register("numba:compile", _Announcement())
 
 
 def kernel(function: Function) -> Function:
-    """Compile `function` on first call; keep the machine code for the next run where a folder allows it."""
+    """Compile `function` on its first call, and keep the machine code for the next run if possible."""
     before, folder = config.CACHE_DIR, _cache_folder(Path(inspect.getfile(function)))
     config.CACHE_DIR = folder
     try:
@@ -147,20 +146,20 @@ def kernel(function: Function) -> Function:
 
 
 def inlined(function: Function) -> Function:
-    """Compile a small `function` into the machine code of its callers, whose loops can then use vectors."""
+    """Let LLVM inline a small `function` into its callers, whose loops can then use vector instructions."""
     return cast(Function, numba.njit(forceinline=True, nogil=True, error_model="numpy")(function))
 
 
 def part(function: Function) -> Function:
-    """A part of its caller, told apart for the reader: put into it before either is compiled.
+    """Let numba insert `function` into its caller before compilation; it is separate only for the reader.
 
-    A kernel is compiled with all that it calls, however deep; parts are not compiled once more for that.
+    A kernel is compiled with everything that it calls; a part is not compiled a second time for that.
     """
     return cast(Function, numba.njit(inline="always", nogil=True, error_model="numpy")(function))
 
 
 def _uncounted(context, builder, kind, value):
-    """A value whose arrays have no owner."""
+    """The value with arrays that have no owner."""
     if isinstance(kind, types.Array):
         array = context.make_array(kind)(context, builder, value)
         array.meminfo = cgutils.get_null_value(array.meminfo.type)
@@ -175,10 +174,10 @@ def _uncounted(context, builder, kind, value):
 
 @intrinsic
 def borrowed(_context, value):
-    """The same arrays, or tuple of arrays, without counting who holds them.
+    """The same arrays, or tuple of arrays, without reference counting.
 
-    Each array handed on to a kernel costs some ten nanoseconds for that count, as much as two modes.  The
-    lender must hold the arrays meanwhile: it does if they are its arguments, or if it says `held` at its end.
+    Reference counting costs some ten nanoseconds for each array passed to a kernel, as much as two modes.
+    The caller must keep the arrays alive: its arguments are, and other arrays are if it ends with `held`.
     """
 
     def build(context, builder, signature, args):
@@ -189,5 +188,5 @@ def borrowed(_context, value):
 
 @intrinsic
 def held(_context, value):
-    """Nothing, but that `value` has been held up to here."""
+    """Keep `value` alive up to here."""
     return types.void(value), lambda context, builder, signature, args: context.get_dummy_value()

@@ -1,4 +1,4 @@
-"""Old names that go on working: each forwards to the new one with a DeprecationWarning."""
+"""Old names of functions and modules: each forwards to the new one with a DeprecationWarning."""
 
 from __future__ import annotations
 
@@ -7,23 +7,36 @@ import warnings
 from collections.abc import Callable
 from importlib import import_module
 from types import ModuleType
+from typing import TypeVar
+
+T = TypeVar("T")
 
 
 def forwarded(owner: str, table: dict[str, str]) -> Callable[[str], object]:
-    """The ``__getattr__`` of the module `owner`, with a `table` old name -> "module:new name"."""
+    """The ``__getattr__`` of the module `owner` for a `table` of old name -> "module:new name"."""
 
-    def taken(name: str) -> object:
+    def value_of(name: str) -> object:
         module, _, new = table.get(name, "").partition(":")
         if not module:
             raise AttributeError(f"module {owner!r} has no attribute {name!r}")
         warnings.warn(f"{owner}.{name} is now {module}.{new}", DeprecationWarning, stacklevel=2)
         return getattr(import_module(module), new)
 
-    return taken
+    return value_of
+
+
+def forwarded_call(old: str, new: str, function: Callable[..., T]) -> Callable[..., T]:
+    """The callable `function` for an `old` name: a call warns that it is now written as `new`."""
+
+    def called(*args: object, **named: object) -> T:
+        warnings.warn(f"{old} is now {new}", DeprecationWarning, stacklevel=2)
+        return function(*args, **named)
+
+    return called
 
 
 def forward_modules(table: dict[str, str]) -> None:
-    """Let the modules of `table` be imported by their old names; each name taken from one warns."""
+    """Make modules importable by the old names of `table`, old -> new; each name read from one warns."""
     for old, new in table.items():
         module = ModuleType(old, f"This module is now ``{new}``.")
         module.__getattr__ = _names_of(old, new)  # type: ignore[method-assign]
@@ -34,11 +47,11 @@ def forward_modules(table: dict[str, str]) -> None:
 
 
 def _names_of(old: str, new: str) -> Callable[[str], object]:
-    def taken(name: str) -> object:
+    def value_of(name: str) -> object:
         if name.startswith("__"):
             raise AttributeError(f"module {old!r} has no attribute {name!r}")
         value = getattr(import_module(new), name)
         warnings.warn(f"{old} is now {new}", DeprecationWarning, stacklevel=2)
         return value
 
-    return taken
+    return value_of

@@ -1,10 +1,9 @@
 """Three loops of series arithmetic with eight numbers side by side in vector registers.
 
-A power series of many unknowns needs sums over its earlier orders, sum_j w_(top - j) x_j, for each of them.
-The compiler puts the inner one of two loops into vector registers, which here is the wrong one: the sums
-would go through memory, once per term.  These loops are therefore spelled out for it, eight columns at a
-time, the sums in registers from the first term to the last.  Even and odd terms are added apart, then their
-sums, whatever the registers of the processor hold.
+A power series of many unknowns needs the sum over earlier orders, sum_j w_(top - j) x_j, of each unknown.
+The compiler would vectorise the inner one of the two loops, and the sums would pass through memory once per
+term.  These loops are therefore written in LLVM's language: eight columns at a time, the sums in registers
+from the first term to the last.  On every processor even and odd terms are added separately, then their sums.
 """
 
 from __future__ import annotations
@@ -17,10 +16,10 @@ from numba.extending import intrinsic
 from contact.machine.compiled import kernel
 
 LANES = 8
-"""Numbers side by side: what the widest vector registers in use hold."""
+"""Numbers side by side in the widest vector registers in use."""
 
 _LINE = 64
-"""Bytes that the processor fetches at once; rows that begin at multiples of it are read faster."""
+"""Bytes that the processor fetches at once; rows that begin at multiples of this are read faster."""
 
 _GROUP = 4
 """Blocks of eight columns that share a pass over the terms."""
@@ -33,30 +32,30 @@ _EIGHT = ir.VectorType(_REAL, LANES)
 def aligned(rows, columns):
     """An array of zeros whose first element lies at a multiple of 64 bytes."""
     words = _LINE // 8
-    room = np.zeros(rows * columns + words)
-    first = (-(room.ctypes.data // 8)) % words
-    return room[first : first + rows * columns].reshape(rows, columns)
+    buffer = np.zeros(rows * columns + words)
+    first = (-(buffer.ctypes.data // 8)) % words
+    return buffer[first : first + rows * columns].reshape(rows, columns)
 
 
 class _Rows:
-    """Eight numbers at a time of a C-contiguous array of doubles."""
+    """Access to a C-contiguous array of doubles, eight numbers at a time."""
 
     def __init__(self, context, builder: ir.IRBuilder, kind: types.Array, value: ir.Value) -> None:
         array = context.make_array(kind)(context, builder, value)
         self.builder, self.data = builder, array.data
         self.length = cgutils.unpack_tuple(builder, array.shape)[-1]
 
-    def place(self, row: ir.Value | None, column: ir.Value) -> ir.Value:
+    def pointer(self, row: ir.Value | None, column: ir.Value) -> ir.Value:
         """Pointer to an element; `row` None for an array of one dimension."""
         index = column if row is None else self.builder.add(self.builder.mul(row, self.length), column)
         return self.builder.gep(self.data, [index])
 
     def eight(self, row: ir.Value | None, column: ir.Value) -> ir.Value:
-        where = self.builder.bitcast(self.place(row, column), _EIGHT.as_pointer())
+        where = self.builder.bitcast(self.pointer(row, column), _EIGHT.as_pointer())
         return self.builder.load(where, align=8)
 
     def put(self, row: ir.Value | None, column: ir.Value, value: ir.Value) -> None:
-        where = self.builder.bitcast(self.place(row, column), _EIGHT.as_pointer())
+        where = self.builder.bitcast(self.pointer(row, column), _EIGHT.as_pointer())
         self.builder.store(value, where, align=8)
 
 
@@ -68,14 +67,14 @@ def _fused(builder: ir.IRBuilder, a: ir.Value, b: ir.Value, c: ir.Value) -> ir.V
 
 
 def _spread(builder: ir.IRBuilder, value: ir.Value) -> ir.Value:
-    """`value` eight times."""
+    """A vector of eight times `value`."""
     one = builder.insert_element(ir.Constant(_EIGHT, ir.Undefined), value, ir.Constant(ir.IntType(32), 0))
     zeros = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
     return builder.shuffle_vector(one, ir.Constant(_EIGHT, ir.Undefined), zeros)
 
 
 def _total(builder: ir.IRBuilder, value: ir.Value) -> ir.Value:
-    """Sum of the eight, by halves."""
+    """The sum of eight numbers, by halves."""
     for half in (4, 2, 1):
         turn = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [(i + half) % LANES for i in range(LANES)])
         value = builder.fadd(value, builder.shuffle_vector(value, ir.Constant(_EIGHT, ir.Undefined), turn))
@@ -106,8 +105,8 @@ def weighted_rows(_context, weights, top, step, rows, count, out):
                 builder.store(zero, total)
 
             def add(parity: int, j: ir.Value) -> None:
-                place = weight.place(None, builder.add(top, builder.mul(step, j)))
-                factor = _spread(builder, builder.load(place))
+                where = weight.pointer(None, builder.add(top, builder.mul(step, j)))
+                factor = _spread(builder, builder.load(where))
                 for total, at in zip(totals[parity], columns, strict=True):
                     builder.store(_fused(builder, factor, row.eight(j, at), builder.load(total)), total)
 
@@ -136,10 +135,10 @@ def weighted_rows(_context, weights, top, step, rows, count, out):
 
 @intrinsic
 def next_modes(_context, numbers, earlier, r0, inverse, r_now, r_force, n, series):
-    """Coefficients of order n + 1 of all modes in a contact, and sum_k phi_k v_k of that order.
+    """Compute order n + 1 of all modes in a contact, and return sum_k phi_k v_k of that order.
 
-    `series` holds u in columns 8 to 8 + m and v behind, `earlier` what the terms before the last give to the
-    sums of r u and r v, `numbers` the rows c, omega^2, phi and g.  See ``contact.touch.hertz``.
+    `series` holds u in columns 8 to 8 + m, then v.  `earlier` holds the sums of r u and r v without their
+    last terms, and `numbers` the rows c, omega^2, phi and g.  See ``contact.touch.hertz``.
     """
     real = types.float64
     signature = real(numbers, earlier, real, real, real, real, types.intp, series)
@@ -173,10 +172,10 @@ def next_modes(_context, numbers, earlier, r0, inverse, r_now, r_force, n, serie
 
 @intrinsic
 def next_order(_context, numbers, factor, scale, push, lift, n, series):
-    """Coefficients of order n + 2 of all modes under a force, and the sum of phi times them.
+    """Compute order n + 2 of all modes under a force, and return the sum of phi times the coefficients.
 
     Row n + 2 of `series` becomes `scale` (`lift` g - c `factor` row_(n+1) - omega^2 row_n - phi `push`), with
-    the rows c, omega^2, phi and g of `numbers`.  See ``contact.touch.linear``.
+    the rows c, omega^2, phi and g of `numbers`.  See ``contact.touch.time_series``.
     """
     real = types.float64
     signature = real(numbers, real, real, real, real, types.intp, series)

@@ -1,8 +1,7 @@
-"""`python -m contact.machine.warm_up`: compile the kernels once, so that the first study starts at once.
+"""`python -m contact.machine.warm_up`: compile all kernels once, so that the first study starts at once.
 
-The machine code is kept (``contact.machine.compiled``); without this the first run of a study takes half a
-minute longer than the next.  Two processes share the work: one what a motion needs, the other what an orbit
-needs.
+The machine code is kept (``contact.machine.compiled``).  Otherwise the first run of a study takes half a
+minute longer than the next.  Two processes share the work: kernels of a motion, and kernels of an orbit.
 """
 
 from __future__ import annotations

@@ -2,12 +2,12 @@
 
     (1 + a x^2) x'' + a x x'^2 + mu x' + W^2 (x + b x^3) = G cos(2 pi f t),     x <= gap,
 
-x [m] the displacement of the tip, a and b [1/m^2] from the spring's backbone
-(``beam.backbone_coefficient``); impacts turn the velocity by Newton's law. Free motion of small amplitude A
-has the frequency f_0 (1 + (3 b/8 - a/4) A^2). How it is solved: ``contact.maps.nonlinear_taylor``.
+x [m] is the displacement of the tip; a and b [1/m^2] follow from the spring's backbone
+(``beam.backbone_coefficient``). Impacts obey Newton's law. Free motion of small amplitude A has the frequency
+f_0 (1 + (3 b/8 - a/4) A^2). ``contact.maps.nonlinear_taylor`` solves the equation.
 
-Excess counts from the drive at which the *nonlinear* motion grazes: from a touch of the stop at rest the
-motion returns to it after a drive period, two equations for the force's amplitude and phase.
+Excess counts from the drive at which the *nonlinear* motion grazes. That motion touches the stop at rest and
+does so again a drive period later: two equations for the force's amplitude and phase.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ from numpy.typing import ArrayLike, NDArray
 from beam.parameters import require_array, require_whole, require_within
 from contact.errors import Chatter, Diverged, NotPeriodic
 from contact.maps.nonlinear_taylor import CHATTERED, FLOWN, ORDER, free_flow, periods
-from contact.maps.protocol import StrobedOrbit
+from contact.maps.protocol import StrobedOrbit, amplitude_factors
 
 Array = NDArray[np.float64]
 
 MOST_STEPS = 50
-"""Of Newton's method for the motion without impacts."""
+"""Bound of the steps of Newton's method for the motion without impacts."""
 
 CLOSE = 1e-12
-"""Relative change at which it ends."""
+"""Relative change at which Newton's method ends."""
 
 TINY = 1e-30
 """Imaginary step of a derivative."""
@@ -39,30 +39,24 @@ TINY = 1e-30
 
 @dataclass(frozen=True, kw_only=True)
 class NonlinearMode:
-    """The oscillator at one drive amplitude, a ``contact.maps.protocol.StrobedMap``; states are (x, x'/W)
-    [m].
+    """The oscillator at one drive amplitude, a ``contact.maps.protocol.StrobedMap``.
+
+    States are (x, x'/W) [m].  The excess is F/F_g - 1, with F_g the drive at which the motion without impacts
+    touches the stop at rest.
 
     Parameters
     ----------
-    free_period : float
-        Of small free motion with its damping [s].
-    decay_rate : float
-        mu [1/s].
+    free_period, decay_rate : float
+        Damped period of small free motion [s], and mu [1/s].
     stiffness, inertia : float
         b and a [1/m^2].
-    gap : float
-        [m].
-    restitution : float
-        From 0 to 1.
-    frequency : float
-        f [Hz].
-    excess : float
-        F/F_g - 1, F_g the drive at which the motion without impacts touches the stop at rest [1].
+    gap, restitution, frequency, excess : float
+        Gap [m], restitution from 0 to 1 [1], f [Hz] and excess [1].
 
     Raises
     ------
     ValueError
-        For a wrong number; for a stiffness that has turned negative or an inertia that has at the gap.
+        For a wrong number, and if the stiffness or the mass turns negative on the way to the gap.
     NotPeriodic
         Where the motion that grazes, or the one without impacts, is not found.
     """
@@ -82,7 +76,7 @@ class NonlinearMode:
         require_within("decay_rate", self.decay_rate, "1/s", low=0)
         require_within("restitution", self.restitution, "[1]", low=0, high=1)
         require_within("excess", self.excess, "[1]", above=-1)
-        # less, and the force would fall, or the mass vanish, on the way to the stop
+        # with less, the force would fall or the mass vanish on the way to the stop
         for name, least in (("stiffness", -1.0 / 3.0), ("inertia", -1.0)):
             require_within(name, getattr(self, name), "1/m^2", above=least / self.gap**2)
 
@@ -100,28 +94,28 @@ class NonlinearMode:
 
     @property
     def period(self) -> float:
-        """Of the drive [s]."""
+        """The drive period [s]."""
         return 1.0 / self.frequency
 
     def at(self, excess: float) -> NonlinearMode:
-        """The same oscillator at another excess."""
+        """This oscillator at another excess F/F_g - 1 = `excess` [1]."""
         changed = replace(self, excess=excess)
         changed.__dict__["grazing"] = self.grazing  # it does not depend on the excess
         return changed
 
     def _flow(self, start: float, time: float, given: Sequence[complex]) -> NDArray[np.complex128]:
-        """x and x' at `time` after `start` [s], without a stop, from both parts of the force, x and x'."""
-        room, (cosine, sine, x, v) = np.zeros((4, ORDER + 1), complex), map(complex, given)
-        return np.array(free_flow(self.numbers, cosine, sine, x, v, start, time, float(self.gap), room))
+        """x and x' a `time` after `start` [s] without a stop; `given`: both parts of the force, x and x'."""
+        work, (cosine, sine, x, v) = np.zeros((4, ORDER + 1), complex), map(complex, given)
+        return np.array(free_flow(self.numbers, cosine, sine, x, v, start, time, float(self.gap), work))
 
     def _slopes(self, start: float, given: Sequence[float], which: Sequence[int]) -> tuple[Array, Array]:
-        """(x, x') a drive period after `start`, and its derivatives by two of these four, shape (2, 2)."""
-        moved = [[part + 1j * TINY * (i == k) for k, part in enumerate(given)] for i in which]
-        ends = np.array([self._flow(start, self.period, row) for row in moved])
+        """(x, x') a drive period after `start`; its derivatives by two numbers of `given`, shape (2, 2)."""
+        shifted = [[part + 1j * TINY * (i == k) for k, part in enumerate(given)] for i in which]
+        ends = np.array([self._flow(start, self.period, row) for row in shifted])
         return ends[0].real, ends.imag.T / TINY
 
     def _solved(self, start: float, given: Sequence[float], which: Sequence[int]) -> list[float]:
-        """`given` with two of these four changed so that the motion returns."""
+        """`given` with two of its numbers changed so that the motion returns after a drive period."""
         found = list(given)
         for _ in range(MOST_STEPS):
             end, slopes = self._slopes(start, found, which)
@@ -139,7 +133,7 @@ class NonlinearMode:
     def grazing(self) -> tuple[float, float]:
         """Force amplitude of the motion that touches the stop at rest [m/s^2]; the drive's time then [s]."""
         square, decay, b, a, w = self.numbers
-        # the linear motion, as stiff as at this amplitude
+        # guess: the linear motion with the stiffness of this amplitude
         stiff = square * (1.0 + 0.75 * b * self.gap**2) - w**2 * (1.0 + 0.5 * a * self.gap**2)
         given = [stiff * self.gap, -decay * w * self.gap, self.gap, 0.0]
         cosine, sine, _, _ = self._solved(0.0, given, (0, 1))
@@ -147,18 +141,18 @@ class NonlinearMode:
 
     @cached_property
     def monodromy(self) -> Array:
-        """Derivatives of (x, x') by those a drive period before, from the touch of the motion that grazes."""
+        """Derivative of (x, x') over a drive period from the touch of the grazing motion, shape (2, 2)."""
         force, touch = self.grazing
         return self._slopes(touch, (force, 0.0, self.gap, 0.0), (2, 3))[1]
 
     @property
     def effective_period(self) -> float:
-        """Free period [s] of the linear mode whose deviations turn as fast under this drive.
+        """Free period [s] of the linear mode whose deviations oscillate as fast under this drive.
 
-        1/(f (1 + theta/2 pi)) with the trace of the monodromy 2 sqrt(det) cos(theta), theta between 0 and pi
-        where the tip moves with the force, between -pi and 0 where it moves against it: for free frequencies
-        between half and one and a half times the drive's. NotPeriodic where deviations do not turn, next to
-        a turning point of the response.
+        It is 1/(f (1 + theta/2 pi)), where the trace of the monodromy is 2 sqrt(det) cos(theta). theta lies
+        between 0 and pi where the tip moves with the force, between -pi and 0 where it moves against it: for
+        free frequencies between half and one and a half times the drive's. Raises NotPeriodic where
+        deviations do not oscillate, next to a turning point of the response.
         """
         half = 0.5 * np.trace(self.monodromy) / math.sqrt(np.linalg.det(self.monodromy))
         if not abs(half) < 1.0:
@@ -169,7 +163,7 @@ class NonlinearMode:
 
     @property
     def effective_decay_rate(self) -> float:
-        """mu of that linear mode [1/s]."""
+        """Decay rate of the linear mode whose deviations fade as fast under this drive [1/s]."""
         return float(-math.log(np.linalg.det(self.monodromy)) * self.frequency)
 
     @cached_property
@@ -181,27 +175,28 @@ class NonlinearMode:
         return found[2], found[3]
 
     def steady(self) -> Array:
-        """The state of the motion without impacts at a strobe; above grazing, without the stop."""
+        """The state of the motion without impacts at a strobe, as it would be without the stop."""
         x, v = self._steady
         return np.array([x, v / math.sqrt(self.numbers[0])])
 
-    def orbit(self, state: ArrayLike, count: int) -> StrobedOrbit[Array]:
+    def orbit(self, state: ArrayLike, count: int, *, factors: ArrayLike | None = None) -> StrobedOrbit[Array]:
         """`count` drive periods from `state`; the points are states, shape (count, 2).
 
-        Raises
-        ------
-        Chatter
-            For more impacts in a period than `taylor.MOST_IMPACTS`.
-        Diverged
-            Where the tip goes so far out that its restoring force would fall.
+        With `factors`, one for each period, the force is that of the oscillator times the factor.
+
+        Raises Chatter for more impacts in a period than ``nonlinear_taylor.MOST_IMPACTS``, and Diverged where
+        the tip goes so far out that its restoring force would fall.
         """
         count = require_whole("count", count, "drive periods", low=0)
+        changing = amplitude_factors(factors, count)
         points, impacts = np.empty((count, 2)), np.zeros(count, dtype=np.int64)
         end = require_array("state", state, "m", shape=(2,), words="two numbers")
         x, v = float(end[0]), float(end[1]) * math.sqrt(self.numbers[0])
-        force = (1.0 + self.excess) * self.grazing[0]
+        forces = np.full(count, (1.0 + self.excess) * self.grazing[0])
+        if changing.size:
+            forces *= changing
         stop = float(self.gap), float(self.restitution)
-        outcome, time = periods(self.numbers, force, *stop, x, v, points, impacts)
+        outcome, time = periods(self.numbers, forces, *stop, x, v, points, impacts)
         if outcome != FLOWN:
             gap, velocity = self.gap - points[0, 0], points[0, 1] * math.sqrt(self.numbers[0])
             raise (Chatter if outcome == CHATTERED else Diverged)(time=time, gap=gap, velocity=velocity)

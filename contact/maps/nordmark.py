@@ -6,54 +6,38 @@ r"""Nordmark's map: the strobed motion of an impact oscillator close to grazing.
 One step is one drive period 1/f. All quantities of the map are pure numbers:
 
     x       height h of the virtual peak above the wall, h = scale * x; an impact occurs when x > 0
-    y       what the previous peak leaves to the next one
-    rho     distance of the drive from grazing
+    y       contribution of the previous peak to the next one
+    rho     distance of the drive from grazing, the control parameter
     alpha, gamma    trace and determinant of the free flow M over one drive period
     tau     restitution: speed after the impact / speed before it
     d       constant delay at the wall, zero in the letter
 
-**Coefficients.** The deviation u from the steady motion obeys u'' + c u' + omega_1^2 u = 0, with flow M over
-1/f. With the peak phase as strobe phase, an overshoot h meets the wall at speed v = sqrt(2 a h), where
-a = (2 pi f)^2 gap, and Newton's law changes the velocity at that phase by -(1 + tau) v to leading order. The
-height of the next peak changes by -M12 (1 + tau) v, so the scale at which the root has coefficient one is
-2 a M12^2 (1 + tau)^2, and eliminating the velocity from two successive steps gives
+``contact.maps.nordmark_coefficients`` derives them from a mode, its drive and its restitution.
 
-    alpha = tr M = exp(-c/2f) 2 cos(omega_d/f),    omega_d^2 = omega_1^2 - c^2/4 > 0  (2 cosh(kappa/f) if < 0)
-    gamma = det M = exp(-c/f)
-    rho   = (F/F_g - 1) (1 - alpha + gamma) / (2 (2 pi f M12)^2 (1 + tau)^2)
+The letter's Eqs. (2), (3) print y' = -gamma x once, for both branches. The determinant of the impacting
+branch must be that of one period with an impact, gamma tau^2 (two factors -tau from the saltation at the
+wall): hence gamma_impact = gamma tau^2, `y_line="corrected"`. `y_line="printed"` keeps gamma_impact = gamma.
 
-For an underdamped mode of free period T = 2 pi/omega_d, (2 pi f M12)^2 = gamma (f T)^2 sin^2(2 pi/(f T)).
-A kick that comes `delay` seconds late is (1 + tau) v - a delay, hence d = delay / (2 M12 (1 + tau)^2).
-The sign of the root is that of M12: Eq. (3) is the case M12 > 0, for an underdamped mode a fractional part of
-1/(f T) below one half (2/3 < f T < 1 in the letter).
-
-**The letter's text departs from this in two places.**
-1. Eqs. (2), (3) print y' = -gamma x once, for both branches. The determinant of the impacting branch must be
-   that of one period with an impact, gamma tau^2 (two factors -tau from the saltation at the wall): hence
-   gamma_impact = gamma tau^2, `y_line="corrected"`. `y_line="printed"` keeps gamma_impact = gamma.
-2. The bracket in rho is broken, "(1 + tau^2 sin^2(2 pi/fT)"; it reads (1 + tau)^2 sin^2(2 pi/(f T)).
-Apart from these, "rho = F/F_g - 1" under its Fig. 4 is not this rho: it is called `excess` here.
-
-Sources: letter of 1996, Eqs. (1) to (3); A. B. Nordmark, J. Sound Vib. 145 (1991) 279; W. Chin, E. Ott,
+Sources: letter of 1996, Eqs. (2), (3); A. B. Nordmark, J. Sound Vib. 145 (1991) 279; W. Chin, E. Ott,
 H. E. Nusse, C. Grebogi, Phys. Rev. E 50 (1994) 4427.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, replace
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from beam.parameters import InvalidType, require, require_array, require_kind, require_whole, require_within
-from contact.flight.modal_flow import flow_matrix
-from contact.flight.motion import damped_frequency
-from contact.laws import NewtonRestitution
+from beam.parameters import require, require_array, require_whole, require_within
 from contact.machine.compiled import kernel
+from contact.maps.nordmark_coefficients import coefficients, restitution_of
+from contact.maps.protocol import Jacobians, StrobedOrbit, amplitude_factors
 from contact.oscillator import ImpactOscillator
 
+Array = NDArray[np.float64]
 YLine = Literal["corrected", "printed"]
 
 
@@ -69,18 +53,11 @@ def iterate_map(x, y, alpha, gamma, gamma_impact, rho, delay_term, out):  # type
         out[n, 1] = y
 
 
-def restitution_of(oscillator: ImpactOscillator) -> float:
-    """The `local_restitution` of an oscillator's contact law; TypeError if it has none."""
-    law = require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator").stop.law
-    if not isinstance(law, NewtonRestitution):
-        raise InvalidType(f"law of the stop is a {type(law).__name__}; it has no restitution, so give one")
-    return law.local_restitution
-
-
 @dataclass(frozen=True, kw_only=True)
 class NordmarkMap:
-    """Eqs. (2), (3) of the letter: one step is one drive period, its state the array (x, y).
+    """Eqs. (2), (3) of the letter, a ``contact.maps.protocol.StrobedMap``: one step is one drive period.
 
+    A state is the array (x, y), which is also its point.  An impact occurs in a step that starts from x > 0.
     Raises ValueError for a field outside its range.
 
     Parameters
@@ -95,6 +72,8 @@ class NordmarkMap:
         d, zero or more [1].
     whole_turns : int
         Integer part of 1/(f T), 1 in the letter; only rho <-> excess of an oscillating mode uses it [1].
+    control : float
+        The rho at which `steady`, `orbit` and `jacobians` work [1]; `at` sets it from the excess.
     """
 
     alpha: float
@@ -103,16 +82,23 @@ class NordmarkMap:
     y_line: YLine = "corrected"
     delay_term: float = 0.0
     whole_turns: int = 1
+    control: float = 0.0
+
+    scale: ClassVar[float] = 1e-3
+    """Size of the states of an orbit with impacts, from the slope of the root at |rho| = 1e-3 [1]."""
+    period: ClassVar[float] = 1.0
+    """The time of one step: the map has no clock."""
 
     def __post_init__(self) -> None:
-        gamma, tau, line, turns = self.gamma, self.restitution, self.y_line, self.whole_turns
-        require_within("gamma", gamma, "[1]", low=0, high=1)
-        require_within("restitution", tau, "[1]", low=0, high=1)
+        alpha, line = self.alpha, self.y_line
+        require_within("gamma", self.gamma, "[1]", low=0, high=1)
+        require_within("restitution", self.restitution, "[1]", low=0, high=1)
         require_within("delay_term", self.delay_term, "(a pure number)", low=0)
-        require_within("alpha", self.alpha, "[1]")
-        require(abs(self.alpha) < 1.0 + gamma, f"alpha is {self.alpha}; its size must be below 1 + gamma")
+        require_within("alpha", alpha, "[1]")
+        require_within("control", self.control, "[1]")
+        require(abs(alpha) < 1.0 + self.gamma, f"alpha is {alpha}; its size must be below 1 + gamma")
         require(line in ("corrected", "printed"), f'y_line is {line!r}; it must be "corrected" or "printed"')
-        require_whole("whole_turns", turns, "turns", low=0)
+        require_whole("whole_turns", self.whole_turns, "turns", low=0)
 
     @classmethod
     def from_mode(
@@ -127,30 +113,13 @@ class NordmarkMap:
     ) -> NordmarkMap:
         """The map of x'' + decay_rate x' + omega^2 x = F sin(2 pi drive_frequency t), at any damping.
 
-        `omega` [rad/s], `decay_rate` [1/s], `drive_frequency` [Hz], `restitution`, `delay` at the wall [s].
+        Units: `omega` [rad/s], `decay_rate` [1/s], `drive_frequency` [Hz], `delay` at the wall [s].
         Raises ValueError where M12 <= 0: a kick away from the wall would then raise the next peak, and the
         square root of Eq. (3) would have the other sign.
         """
-        require_within("omega", omega, "rad/s", above=0)
-        require_within("decay_rate", decay_rate, "1/s", low=0)
-        require_within("drive_frequency", drive_frequency, "Hz", above=0)
-        require_within("delay", delay, "s", low=0)
-        require_within("restitution", restitution, "[1]", low=0, high=1)
-        damped, damped_low = damped_frequency(omega, decay_rate)
-        n11, n12, _, n22 = flow_matrix(omega, decay_rate, damped, damped_low, 1.0 / drive_frequency)
-        turns = damped / (2.0 * math.pi * drive_frequency) if omega > 0.5 * decay_rate else 0.0
-        require(
-            n12 > 0.0,
-            f"drive_frequency is {drive_frequency} Hz, where 1/(f T) is {turns:.6g}; the fractional part of "
-            "1/(f T) must lie between 0 and 1/2, as it does for 2/3 < f T < 1",
-        )
+        alpha, gamma, d, turns = coefficients(omega, decay_rate, drive_frequency, restitution, delay)
         return cls(
-            alpha=n11 + n22,
-            gamma=math.exp(-decay_rate / drive_frequency),
-            restitution=restitution,
-            y_line=y_line,
-            delay_term=delay / (2.0 * n12 * (1.0 + restitution) ** 2),
-            whole_turns=math.floor(turns),
+            alpha=alpha, gamma=gamma, restitution=restitution, y_line=y_line, delay_term=d, whole_turns=turns
         )
 
     @classmethod
@@ -166,7 +135,7 @@ class NordmarkMap:
     ) -> NordmarkMap:
         """The map of an underdamped mode from the letter's f [Hz], T [s], mu [1/s] and tau [1].
 
-        `free_period` is that of the damped free motion, `delay` [s] as in `from_mode`, as are the errors.
+        `free_period` belongs to the damped free motion.  `delay` [s] and errors are as in `from_mode`.
         """
         require_within("free_period", free_period, "s", above=0)
         require_within("decay_rate", decay_rate, "1/s", low=0)
@@ -211,14 +180,14 @@ class NordmarkMap:
 
     @property
     def angle(self) -> float:
-        """theta = 2 pi/(f T) less its whole turns, in (0, pi) [rad]; 0 for a mode that does not oscillate."""
+        """The angle theta = 2 pi/(f T) less its whole turns, in (0, pi) [rad]; 0 without oscillation."""
         return math.atan2(math.sqrt(max(4.0 * self.gamma - self.alpha**2, 0.0)), self.alpha)
 
     @property
     def rho_per_excess(self) -> float:
         """(1 - alpha + gamma) / (2 (2 pi f M12)^2 (1 + tau)^2): rho at unit excess.
 
-        All of it follows from the fields. ValueError if gamma = 0 or alpha <= -2 sqrt(gamma).
+        It follows from the fields alone. Raises ValueError if gamma = 0 or alpha <= -2 sqrt(gamma).
         """
         root = math.sqrt(self.gamma)
         require(
@@ -233,6 +202,11 @@ class NordmarkMap:
         response = 2.0 * math.pi * root * ratio
         return (1.0 - self.alpha + self.gamma) / (2.0 * (response * (1.0 + self.restitution)) ** 2)
 
+    @property
+    def rho_per_factor(self) -> float:
+        """Derivative of rho with respect to a factor of the amplitude, at `control` [1]."""
+        return self.rho_per_excess + self.control
+
     def rho(self, excess: float) -> float:
         """rho at the excess F/F_g - 1 [1]."""
         return self.rho_per_excess * require_within("excess", excess, "[1]")
@@ -241,33 +215,60 @@ class NordmarkMap:
         """The excess F/F_g - 1 [1] at `rho`."""
         return require_within("rho", rho, "[1]") / self.rho_per_excess
 
-    def step(self, state: ArrayLike, rho: float) -> NDArray[np.float64]:
+    def step(self, state: ArrayLike, rho: float) -> Array:
         """The state (x, y), shape (2,), one drive period later."""
         return self.iterate(state, rho, 1)[0]
 
-    def iterate(self, state: ArrayLike, rho: ArrayLike, count: int) -> NDArray[np.float64]:
+    def iterate(self, state: ArrayLike, rho: ArrayLike, count: int) -> Array:
         """The `count` states that follow `state`, shape (count, 2); row 0 is one period later.
 
         `rho` is one number, or one for each step, shape (count,).
         """
         out = np.empty((require_whole("count", count, "periods", low=0), 2))
-        single = not isinstance(rho, list | tuple | np.ndarray)
-        words = "a number, or one for each step"
-        each = np.full(
-            count,
-            require_within("rho", rho, "[1]")
-            if single
-            else require_array("rho", rho, "[1]", shape=(count,), words=words),
-        )
+        if isinstance(rho, list | tuple | np.ndarray):
+            words = "a number, or one for each step"
+            rho = require_array("rho", rho, "[1]", shape=(count,), words=words)
+        else:
+            rho = require_within("rho", rho, "[1]")
+        each = np.full(count, rho)
         iterate_map(*pair_of(state), self.alpha, self.gamma, self.gamma_impact, each, self.delay_term, out)
         return out
 
-    def jacobian(self, state: ArrayLike) -> NDArray[np.float64]:
+    def jacobian(self, state: ArrayLike) -> Array:
         """Derivative of one step with respect to (x, y), shape (2, 2); unbounded as x -> 0+."""
         x, _ = pair_of(state)
         if x > 0.0:
             return np.array([[-0.5 / math.sqrt(x), 1.0], [-self.gamma_impact, 0.0]])
         return np.array([[self.alpha, 1.0], [-self.gamma, 0.0]])
+
+    def at(self, excess: float) -> NordmarkMap:
+        """This map at F/F_g - 1 = `excess` [1]."""
+        return replace(self, control=self.rho(excess))
+
+    def steady(self) -> Array:
+        """The fixed point of the branch without impact: x = rho / (1 - alpha + gamma), y = -gamma x."""
+        x = self.control / (1.0 - self.alpha + self.gamma)
+        return np.array([x, -self.gamma * x])
+
+    def orbit(self, state: ArrayLike, count: int, *, factors: ArrayLike | None = None) -> StrobedOrbit[Array]:
+        """`count` steps from `state` at rho = `control`; the points are (x, y), shape (count, 2).
+
+        With `factors`, one for each step, the amplitude is that of the map times the factor of the step.
+        """
+        changing = amplitude_factors(factors, require_whole("count", count, "periods", low=0))
+        rho = self.control + self.rho_per_factor * (changing - 1.0) if changing.size else self.control
+        points = np.vstack([pair_of(state), self.iterate(state, rho, count)])
+        impacts = (points[:-1, 0] > 0).astype(np.int64)
+        return StrobedOrbit(end=points[-1].copy(), points=points[1:], impacts=impacts)
+
+    def jacobians(self, state: ArrayLike, count: int) -> Jacobians[Array]:
+        """Derivatives of the `count` steps from `state`, and the state at their end."""
+        points = np.vstack([pair_of(state), self.iterate(state, self.control, count)])
+        return [(self.jacobian(row), 1) for row in points[:-1]], points[-1].copy()
+
+    def coordinates(self, state: Array) -> Array:
+        """The state itself."""
+        return state
 
 
 def pair_of(state: ArrayLike) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""Frequency bands of Nordmark's map: where p_m is born at grazing.
+"""Frequency bands of Nordmark's map, in which p_m appears at grazing.
 
 As rho -> 0- without delay, the orbit p_m of one impact (``contact.maps.nordmark_orbits``) is admissible for
 theta between
@@ -7,8 +7,8 @@ theta between
     lower frequency   sin((m-1) theta)/sin(theta) = -(gamma_impact/gamma) gamma^(m/2): x_{m-1} = 0
 
 with theta = 2 pi/(f T) - 2 pi j and j = 1 in the letter (`whole_turns`); for m = 2 the lower end is at pi.
-Neighbouring bands overlap slightly, which is the coexistence noted under Fig. 3 of the letter. All of this is
-for an oscillating mode; an overdamped one has b > 0, and its orbits with one impact exist for rho > 0 only.
+Neighbouring bands overlap slightly, which is the coexistence noted under Fig. 3 of the letter. These bands
+belong to an oscillating mode. An overdamped one has b > 0; its orbits with one impact exist for rho > 0 only.
 
 Source: letter of 1996, Fig. 3 and text.
 """
@@ -26,7 +26,7 @@ from contact.maps.nordmark_orbits import MOST_PERIODS
 
 @dataclass(frozen=True, kw_only=True)
 class Band:
-    """Drive frequencies `lower` to `upper` [Hz] at which p_m, m = `period`, is born at grazing."""
+    """Drive frequencies `lower` to `upper` [Hz] at which p_m, m = `period`, appears at grazing."""
 
     period: int
     lower: float
@@ -44,21 +44,16 @@ def band(
 ) -> Band:
     """The band of p_m of one mode, m = `period` >= 2.
 
+    Raises ValueError for m < 2 and for parameters that `NordmarkMap.from_frequencies` refuses.
+
     Parameters
     ----------
     period : int
         m, in drive periods.
     free_period, decay_rate, restitution : float
         Damped period T [s], mu [1/s] and tau of the mode.
-    y_line : {"corrected", "printed"}
-        Which second line the map has; see `NordmarkMap.from_frequencies`.
-    whole_turns : int
-        Free swings in a drive period, rounded down.
-
-    Raises
-    ------
-    ValueError
-        For m < 2 and for parameters that `NordmarkMap.from_frequencies` refuses.
+    y_line, whole_turns
+        As for `NordmarkMap`.
     """
     m = require_whole("period", period, "drive periods", low=2, high=MOST_PERIODS)
     require_within("free_period", free_period, "s", above=0)
@@ -99,20 +94,11 @@ def bands(
     y_line: YLine = "corrected",
     whole_turns: int = 1,
 ) -> tuple[Band, ...]:
-    """`band` for each of `periods`, sorted by frequency.
+    """Bands of all `periods`, sorted by frequency.
 
-    `free_period`, `decay_rate`, `restitution`, `y_line` and `whole_turns` are as there.
+    `free_period`, `decay_rate`, `restitution`, `y_line` and `whole_turns` are as for `band`.
     """
     require_kind("periods", periods, Iterable, "a sequence of periods")
-    found = [
-        band(
-            m,
-            free_period=free_period,
-            decay_rate=decay_rate,
-            restitution=restitution,
-            y_line=y_line,
-            whole_turns=whole_turns,
-        )
-        for m in periods
-    ]
+    mode = {"free_period": free_period, "decay_rate": decay_rate, "restitution": restitution}
+    found = [band(m, **mode, y_line=y_line, whole_turns=whole_turns) for m in periods]
     return tuple(sorted(found, key=lambda entry: entry.upper))

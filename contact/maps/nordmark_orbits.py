@@ -1,10 +1,10 @@
 r"""Maximal orbits of Nordmark's map: one impact every m drive periods, in closed form.
 
-Without impacts the height obeys x_{n+1} = alpha x_n - gamma x_{n-1} + rho. Its answer to a unit impulse is
+Without impacts the height obeys x_{n+1} = alpha x_n - gamma x_{n-1} + rho. Its response to a unit impulse is
 
     p_0 = 1,  p_k = alpha p_{k-1} - gamma p_{k-2}    (= gamma^(k/2) sin((k+1) theta)/sin(theta), underdamped)
 
-and its answer to an impulse repeated every m steps
+and its response to an impulse repeated every m steps
 
     G_k = (p_k + gamma^(k+1) p_{m-k-2}) / D,   k = 0 ... m-1 (mod m),   p_{-1} = 0,
     D = 1 - (p_m - gamma p_{m-2}) + gamma^m    (= 1 - 2 g cos(m theta) + g^2,  g = gamma^(m/2)).
@@ -84,7 +84,7 @@ class MaximalOrbit:
 
 
 class MapFamily:
-    """The orbits p_m of a map, m = `period`: p, G and what follows from them in the module's docstring."""
+    """The orbits p_m of a map, m = `period`, by the formulae of the module's docstring."""
 
     def __init__(self, nordmark: NordmarkMap, period: int) -> None:
         require_kind("nordmark", nordmark, NordmarkMap, "a NordmarkMap")
@@ -104,7 +104,7 @@ class MapFamily:
         self.determinant = gamma ** (m - 1) * nordmark.gamma_impact
 
     def _height(self, k: int) -> tuple[float, float, float]:
-        """Coefficients of X^2, X and 1 in x_k."""
+        """Coefficients of X^2, X and 1 in x_k, by Eq. (a)."""
         m, first = self.period, float(self.periodic[(k - 1) % self.period]) - self.b
         second = float(self.periodic[(k - 2) % m] - self.periodic[(m - 2) % m])
         return 1.0 - self.map.alpha * first + self.loss * second, -first, self.map.delay_term * first
@@ -117,7 +117,7 @@ class MapFamily:
     def _orbit(self, root: float, rho: float) -> MaximalOrbit:
         m, square = self.period, root * root
         later = [self._height(k) for k in range(1, m)]
-        x = np.array([square] + [two * square + one * root + none for two, one, none in later])
+        x = np.array([square] + [a * square + b * root + c for a, b, c in later])
         y = -self.map.gamma * np.roll(x, 1)
         y[1 % m] = -self.map.gamma_impact * square
         return MaximalOrbit(
@@ -137,18 +137,18 @@ class MapFamily:
         return tuple(self._orbit(root, rho) for root in roots)
 
     def orbits(self, excess: float) -> tuple[MaximalOrbit, ...]:
-        """The same at F/F_g - 1 = `excess` [1]."""
+        """The orbits at F/F_g - 1 = `excess` [1], 0 to 2, in the order of `at_rho`."""
         return self.at_rho(self.map.rho(excess))
 
     def fold(self) -> MaximalOrbit | None:
-        """The orbit at which node and saddle meet, its `rho` being rho_m; None for b >= 0 or a <= 0."""
+        """The orbit at which node and saddle meet, with rho = rho_m; None for b >= 0 or a <= 0."""
         return self.orbit(-self.b / (2.0 * self.a)) if self.b < 0.0 < self.a else None
 
     def stable_range(self) -> tuple[float, float] | None:
         """The first interval of rho, from the fold upwards, in which the node is stable and admissible.
 
-        Its lower end is rho_m, or the rho of a second impact; its upper end that of a second impact or of a
-        multiplier -1, or infinity. None where there is no fold or no such interval.
+        It begins at rho_m or at a second impact, and ends at a second impact, at a multiplier -1, or never.
+        Returns None where there is no fold or no such interval.
         """
         at_fold = self.fold()
         if at_fold is None:
@@ -164,32 +164,31 @@ class MapFamily:
         return None
 
 
-def positive_roots(two: float, one: float, none: float) -> list[float]:
-    """The positive solutions of two X^2 + one X + none = 0, ascending."""
-    if two == 0.0:
-        found = [-none / one] if one != 0.0 else []
+def positive_roots(a: float, b: float, c: float) -> list[float]:
+    """The positive solutions of a X^2 + b X + c = 0, ascending."""
+    if a == 0.0:
+        found = [-c / b] if b != 0.0 else []
     else:
-        square = one * one - 4.0 * two * none
+        square = b * b - 4.0 * a * c
         if square < 0.0:
             return []
-        half = -0.5 * (one + math.copysign(math.sqrt(square), one))
-        found = [half / two] + ([none / half] if half != 0.0 else [])
+        half = -0.5 * (b + math.copysign(math.sqrt(square), b))
+        found = [half / a] + ([c / half] if half != 0.0 else [])
     return sorted(root for root in found if root > 0.0)
 
 
 def maximal_orbits(nordmark: NordmarkMap, period: int, rho: float) -> tuple[MaximalOrbit, ...]:
-    """The orbits of a map `nordmark` with this `period` at `rho`: `MapFamily.at_rho`; ask each for
-    `admissible` and `stable`."""
+    """The orbits of the map `nordmark` with this `period` at `rho`, by `MapFamily.at_rho`."""
     return MapFamily(nordmark, period).at_rho(rho)
 
 
 def fold(nordmark: NordmarkMap, period: int) -> MaximalOrbit | None:
-    """The orbit of a map `nordmark` at which node and saddle of this `period` meet: `MapFamily.fold`."""
+    """The orbit of the map `nordmark` at which node and saddle of this `period` meet, by `MapFamily.fold`."""
     return MapFamily(nordmark, period).fold()
 
 
 def stable_range(nordmark: NordmarkMap, period: int) -> tuple[float, float] | None:
-    """The rho in which a map `nordmark` has a stable orbit of this `period`: `MapFamily.stable_range`."""
+    """The interval of rho with a stable p_m, m = `period`, of the map `nordmark`; see `MapFamily`."""
     return MapFamily(nordmark, period).stable_range()
 
 

@@ -1,9 +1,9 @@
-"""Drive periods as a map: what every strobed or iterated system offers.
+"""Drive periods as a map: the methods of every strobed or iterated system.
 
-Sampling a driven oscillator at the strobe times t_n = n/f turns its motion into the iteration of a map; its
-periodic orbits are the p_m orbits of the letter (1996, Fig. 2).  ``StroboscopicMap`` is that map for any
-impact oscillator, ``StrobedNordmarkMap`` the letter's Eqs. (2), (3): whatever scans, settles or classifies
-orbits takes either, and any other class with these methods.
+Sampling a driven oscillator at the strobe times t_n = n/f turns its motion into the iteration of a map.  Its
+periodic orbits are the p_m orbits of the letter (1996, Fig. 2).  ``StroboscopicMap`` is the map of any impact
+oscillator, ``NordmarkMap`` is the letter's Eqs. (2), (3), ``NonlinearMode`` one mode at finite amplitude.
+Scans and searches for orbits take these, and any other class with the methods of `StrobedMap`.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from typing import Generic, Protocol, TypeVar, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from beam.parameters import InvalidValue, require_array, require_kind
+from beam.parameters import require, require_array, require_kind
 
 S = TypeVar("S")
 
 Jacobians = tuple[list[tuple[np.ndarray, int]], S]
-"""Derivatives along an orbit, each with the number of steps that it spans, and where the orbit ended."""
+"""Derivatives along an orbit, each with the number of steps that it spans, and the state at its end."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -29,11 +29,11 @@ class StrobedOrbit(Generic[S]):
     Parameters
     ----------
     end : State
-        Where it ended.
+        The state at its end.
     points : ndarray, shape (n_strobes, n_coordinates)
         Coordinates at the strobes, all in the same unit, the start excluded.
     impacts : ndarray of int, shape (n_strobes,)
-        Impacts since the strobe before.
+        Impacts in the period before each strobe.
     """
 
     end: S
@@ -43,17 +43,20 @@ class StrobedOrbit(Generic[S]):
 
 @runtime_checkable
 class StrobedMap(Protocol[S]):
-    """A strobed or iterated system; its coordinates have one unit and a common `scale`."""
+    """A strobed or iterated system.  Its coordinates have one unit and a common `scale`.
+
+    The maps of this package also take `factors` of the drive amplitude, one for each period of an `orbit`.
+    """
 
     @property
     def scale(self) -> float:
         """The size of a coordinate at grazing, in the unit of `points`."""
 
     def at(self, excess: float) -> StrobedMap[S]:
-        """The same system at another excess over grazing [1]."""
+        """This system at another excess over grazing [1]."""
 
     def steady(self) -> S:
-        """The orbit without impacts at a strobe; above grazing, what it would be without the stop."""
+        """The state of the steady motion at a strobe, as it would be without the stop."""
 
     def orbit(self, state: S, count: int) -> StrobedOrbit[S]:
         """`count` periods from `state`."""
@@ -66,27 +69,24 @@ def require_map(strobed: object, kind: type = StrobedMap) -> None:
 
 
 def amplitude_factors(factors: ArrayLike | None, count: int) -> np.ndarray:
-    """Factors of the drive amplitude, one for each of `count` periods; none, shape (0,), for None.
+    """Factors of the drive amplitude for `count` periods; an empty array, shape (0,), for None.
 
-    Raises
-    ------
-    TypeError, ValueError
-        If they are not `count` numbers above zero.
+    Raises TypeError or ValueError if they are not `count` numbers above zero.
     """
     if factors is None:
         return np.empty(0)
     found = require_array("factors", factors, "[1]", shape=(count,), words="one number for each period")
-    if found.size and not found.min() > 0.0:
-        raise InvalidValue(f"factors holds {found.min()} [1]; every factor of the amplitude must be above 0")
-    return found.copy()  # one that may be written to, as kernels are compiled for
+    least = found.min(initial=1.0)
+    require(least > 0.0, f"factors holds {least} [1]; every factor of the amplitude must be above 0")
+    return found.copy()  # kernels are compiled for arrays that may be written to
 
 
 @runtime_checkable
 class DifferentiableMap(StrobedMap[S], Protocol[S]):
-    """One whose derivatives are known: what exponents are found of."""
+    """A strobed map with derivatives, as Lyapunov exponents need them."""
 
     def jacobians(self, state: S, count: int) -> Jacobians[S]:
-        """Derivatives of the points with respect to those before, along at least one of `count` periods."""
+        """Derivatives of each point with respect to the one before, along at least one of `count` periods."""
 
     def coordinates(self, state: S) -> np.ndarray:
-        """Coordinates of a state, those of `points`, shape (n_coordinates,)."""
+        """Coordinates of a state, shape (n_coordinates,), as in the `points` of an orbit."""

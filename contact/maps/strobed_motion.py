@@ -1,12 +1,11 @@
-"""The motion from strobe to strobe as compiled code: one door for any oscillator.
+"""The motion from strobe to strobe as compiled code, for any oscillator.
 
 One mode under Newton's law has a loop of its own (``contact.one_mode.loop``), which proves most periods
 free without a sine; everything else goes through ``event_loop.advance``.  The strobes of both agree within
 rounding.
 
-What a point is: phi_k q_k and phi_k q_k'/omega_k of all modes, contributions to the tip motion of one unit
-[m].  A mode of zero frequency counts with phi_k q_k'/(2 pi f), one with its node at the tip with the largest
-phi.
+A point holds phi_k q_k and phi_k q_k'/omega_k of all modes, contributions to the tip motion [m].  A mode of
+zero frequency has phi_k q_k'/(2 pi f) instead, and a mode with its node at the tip has the largest phi.
 """
 
 from __future__ import annotations
@@ -15,25 +14,26 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contact.engine.event_loop import DONE
+from contact.engine.event_loop import DONE, advance
+from contact.engine.recorder import strobes_only
 from contact.flight.modal_flow import steady_motion
 from contact.flight.motion import COSINE, OFFSET, SINE, Motion, with_drive
 from contact.machine.compiled import inlined, kernel
-from contact.one_mode.loop import any_periods, one_mode_periods
-from contact.one_mode.period_table import PeriodTable, mode_at, period_table
+from contact.one_mode.loop import one_mode_periods
+from contact.one_mode.period_table import PeriodTable, period_table, table_at
 from contact.oscillator import ImpactOscillator
 
 
 class StrobedSystem(NamedTuple):
-    """An oscillator as the loops over its drive periods take it.
+    """The numbers of an oscillator for the loops over its drive periods.
 
     motion : Motion
     table : PeriodTable or None
-        For one mode under Newton's law.
+        The table of one mode under Newton's law; None for any other oscillator.
     mean : ndarray, shape (2 n_modes,)
-        Steady displacements and velocities at a strobe, to which the deviations are added.
+        Steady displacements and velocities at a strobe.
     weight : ndarray, shape (2 n_modes,)
-        By which their sums are multiplied in the points.
+        Factors by which the points multiply displacements and velocities.
     """
 
     motion: Motion
@@ -61,7 +61,7 @@ def _table_at(table, motion, factor):
     if table is None:
         return table
     else:
-        return PeriodTable(mode_at(table.mode, motion, factor), table.rows)
+        return table_at(table, motion, factor)
 
 
 @kernel
@@ -77,37 +77,35 @@ def at_amplitude(system, factor):
 
 @kernel
 def strobed_motion(table, system, factors, u, v, runs, points, counts):
-    """Carry the deviation (u, v) from a strobe over as many drive periods as `counts` has places.
+    """Advance the deviation (u, v) from a strobe by as many drive periods as `counts` has places.
 
     Parameters
     ----------
     table : PeriodTable or None
-        That of the system: told apart by its type, the loop that does not fit is not compiled.
+        The table of the system.  Its type selects the loop; the other loop is not compiled.
     system : StrobedSystem
     factors : ndarray, shape (periods,) or (0,)
-        By which each period multiplies the amplitude of the system [1]; none leave it as it is.  The physical
-        state goes on where the amplitude changes, at the strobe: (u, v) jumps as the steady motion does.
+        The amplitude of each period over that of the system [1]; an empty array leaves it as it is.  The
+        physical state is continuous at the strobe where the amplitude changes, so that (u, v) jumps.
     u, v : ndarray, shape (n_modes,)
-        From the steady motion of the system, before and after; overwritten.
+        Deviation from the steady motion of the system, before and after; overwritten.
     runs : record array of ``contact.engine.event_loop.STATE``, shape (1,)
-        Where the run stands; overwritten.
+        State of the run; overwritten.
     points, counts : ndarray, shapes (periods, 2 n_modes) and (periods,)
-        Filled with the points of the module's docstring and the impacts since the strobe before.
+        Filled with the points and with the impacts of each period.
 
-    Returns
-    -------
-    status : int
-        As that of ``event_loop.advance``; after a failure (u, v) is from the steady motion of that period.
+    Returns the status of ``event_loop.advance``. After a failure (u, v) counts from the steady motion of that
+    period.
     """
     if table is None:
-        return _any_periods(system, factors, u, v, runs, points, counts)
+        return any_periods(system, factors, u, v, runs, points, counts)
     else:
         return one_mode_periods(table, system, factors, u, v, runs, points, counts)[0]
 
 
 @kernel
-def _any_periods(system, factors, u, v, runs, points, counts):
-    """`strobed_motion` of any oscillator."""
+def any_periods(system, factors, u, v, runs, points, counts):
+    """`strobed_motion` of an oscillator without a table."""
     local, run, status, factor, at = system, runs[0], DONE, 1.0, 0
     while at < counts.size and status == DONE:
         end = counts.size
@@ -118,7 +116,8 @@ def _any_periods(system, factors, u, v, runs, points, counts):
             add_steady(system.motion, factor - factors[at], u, v)
             factor, run.root, run.speed = factors[at], -1.0, -1.0
             local = at_amplitude(system, factor)
-        status = any_periods(local.motion, u, v, runs, points[at:end], counts[at:end])
+        recorder = strobes_only(points[at:end], counts[at:end])
+        status = advance(local.motion, u, v, runs, run.period + end - at, 0.0, recorder)
         for i in range(at, end):
             for k in range(points.shape[1]):
                 points[i, k] = (points[i, k] + local.mean[k]) * system.weight[k]

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from beam.parameters import InvalidValue, require, require_array, require_kind, require_whole
+from beam.parameters import require, require_array, require_kind, require_whole
 from contact.drive import split_time
 from contact.engine.event_loop import DONE
 from contact.engine.start import failure, start_of, state_of
@@ -20,8 +20,8 @@ from contact.maps.protocol import Jacobians, StrobedOrbit, amplitude_factors
 from contact.maps.protocol import StrobedMap as StrobedMap
 from contact.maps.strobed_motion import StrobedSystem, strobed_motion, strobed_system
 from contact.oscillator import ImpactOscillator
-from contact.sensitivity.change import Changes
-from contact.sensitivity.replay import Retraced
+from contact.sensitivity.change import Sensitivities
+from contact.sensitivity.replay import Replay
 from contact.simulation import require_state, simulate
 from contact.trajectory import Regime, State
 
@@ -55,11 +55,11 @@ class StroboscopicMap:
         return self.oscillator.driven.period
 
     def at(self, excess: float) -> StroboscopicMap:
-        """The period map of the same oscillator driven at F/F_g - 1 = `excess`."""
+        """The period map of the same oscillator, driven at F/F_g - 1 = `excess` [1]."""
         return StroboscopicMap(oscillator=self.oscillator.with_excess(excess))
 
     def steady(self) -> State:
-        """The steady motion at a strobe, which below grazing is the p1 orbit without impacts."""
+        """The state of the steady motion at a strobe; below grazing it is the p1 orbit without impacts."""
         mean, n = self._system.mean, self.oscillator.n_modes
         return State(displacement=mean[:n], velocity=mean[n:])
 
@@ -92,22 +92,14 @@ class StroboscopicMap:
     def orbit(self, state: State, count: int, *, factors: ArrayLike | None = None) -> StrobedOrbit[State]:
         """`count` drive periods from `state`, which must lie at a strobe.
 
-        With `factors`, one for each period, the amplitude is that of the oscillator times the factor of the
-        period: it changes at strobes, where the physical state goes on.
+        With `factors`, one for each period, each period has the amplitude of the oscillator times its factor.
+        The amplitude changes at strobes, where the physical state is continuous.
 
-        Returns
-        -------
-        StrobedOrbit
-            Its points, shape (count, 2 n_modes) [m], are the contributions phi_k q_k and phi_k q_k' / omega_k
-            of all modes to the tip motion (see ``contact.maps.strobed_motion``); `tip` and `readout` turn
-            them into displacements.
+        The points, shape (count, 2 n_modes) [m], are the contributions phi_k q_k and phi_k q_k' / omega_k of
+        all modes to the tip motion (``contact.maps.strobed_motion``); `tip` and `readout` give displacements.
 
-        Raises
-        ------
-        ValueError
-            If the state is not at a strobe, or factors are not above zero.
-        ContactError
-            If the motion could not be followed.
+        Raises ValueError for a state that is not at a strobe and for factors that are not above zero, and
+        ContactError for a motion that could not be followed.
         """
         require_state(self.oscillator, state)
         count = require_whole("count", count, "drive periods", low=0)
@@ -116,8 +108,7 @@ class StroboscopicMap:
         index = round(state.time / motion.period)
         if index * motion.period != state.time:  # within rounding it may be a strobe nevertheless
             index, clock = (x.item() for x in split_time(state.time, motion.period))
-            if clock != 0.0:
-                raise InvalidValue(f"time of the state is {state.time} s; it must be a strobe time n/f")
+            require(clock == 0.0, f"time of the state is {state.time} s; it must be a strobe time n/f")
         u, v, runs = start_of(motion, state, index, 0.0, steady=(system.mean[:n], system.mean[n:]))
         points, impacts = np.empty((count, 2 * n)), np.empty(count, dtype=np.int64)
         status = strobed_motion(system.table, system, changing, u, v, runs, points, impacts)
@@ -132,15 +123,11 @@ class StroboscopicMap:
     def jacobians(self, state: State, count: int) -> Jacobians[State]:
         """Derivatives of the points along `count` drive periods from `state`, and the state at the end.
 
-        A strobe that falls into a contact is passed over: its derivative spans more than one period, and if
-        the last does, the orbit goes on to the next that does not, or ends before it.
+        A strobe that falls into a contact is passed over: the next derivative then spans several periods.  If
+        the last strobe does, the orbit goes on to the next one off the wall, or ends before it.
 
-        Raises
-        ------
-        ValueError
-            If the state is in contact.
-        UnresolvedCrossing
-            If the motion comes to rest on the stop, or is in contact at every strobe.
+        Raises ValueError for a state in contact, and UnresolvedCrossing if the motion ends at rest on the
+        stop or is in contact at every strobe.
         """
         count = require_whole("count", count, "drive periods")
         free = require_state(self.oscillator, state).regime == Regime.OUTSIDE
@@ -148,8 +135,8 @@ class StroboscopicMap:
         period, n, weight = self._system.motion.period, self.oscillator.n_modes, self._system.weight
         for more in LONGER:
             run = simulate(self.oscillator, replace(state, time=0.0), periods=count + more)
-            retraced = Retraced(Changes(oscillator=self.oscillator), run)
-            strobes = [j for j in range(1, count + more + 1) if not retraced.touching(j * period)]
+            replay = Replay(Sensitivities(oscillator=self.oscillator), run)
+            strobes = [j for j in range(1, count + more + 1) if not replay.touching(j * period)]
             if strobes:
                 strobes = strobes[: len(strobes) if more == 0 else 1]
                 break
@@ -157,8 +144,8 @@ class StroboscopicMap:
             raise UnresolvedCrossing(time=state.time, gap=0.0, velocity=0.0)
         found, first = [], 0
         for last in strobes:
-            retraced.tangent = np.eye(2 * n + 2)
-            tangent = retraced.to(last * period)[: 2 * n, : 2 * n]
+            replay.tangent = np.eye(2 * n + 2)
+            tangent = replay.to(last * period)[: 2 * n, : 2 * n]
             found.append((weight[:, None] * tangent / weight, last - first))
             first = last
         q, v = run.strobe_displacement[first - 1], run.strobe_velocity[first - 1]
@@ -168,17 +155,11 @@ class StroboscopicMap:
 def strobed_orbits(
     maps: Sequence[StroboscopicMap], states: Sequence[State], count: int, *, workers: int | None = None
 ) -> list[StrobedOrbit[State]]:
-    """`count` drive periods of many orbits, one in each map from its state, on `workers` threads.
+    """``StroboscopicMap.orbit(state, count)`` of many `maps`, each from its own of the `states`, on threads.
 
-    Every orbit is the one that `orbit` makes; the kernels release the interpreter lock, so that threads share
-    the cores.  `workers` is the number of cores unless given.
-
-    Raises
-    ------
-    ValueError
-        If there are not as many states as maps, or as `StroboscopicMap.orbit` does.
-    ContactError
-        Of the first orbit, in their order, that could not be followed.
+    Threads share the cores, since kernels release the interpreter lock.  By default `workers`, the number of
+    threads, is the number of cores.  Raises ValueError unless there is one state for each map, and the first
+    error of the orbits in their order.
     """
     if workers is not None:
         require_whole("workers", workers, "threads")

@@ -4,11 +4,11 @@ Eq. (1) of the letter (1996) in the notation of ``contact.flight``: relative to 
 
     y(t) = -G + A cos(w (t - t_p)) + u(t),
 
-G the distance of the stop from the tip's mean place, A and t_p height and time of the steady peak, u the
-free deviation.  From strobe to strobe (u, u') is multiplied by the constant flow of a period.  What has to be
-proved is that y stays below zero meanwhile.  That is the comparison of ``contact.flight.bounds`` without
-other modes: with rho = sqrt(u^2 + (u'/omega)^2) at the strobe, d = (|w^2 - omega^2| + c omega) rho/w^2, the
-margin m for rounding and z = y + G - d, for |t - t_1| <= pi/w
+with G the distance of the stop from the tip's mean place, A and t_p height and time of the steady peak and u
+the free deviation.  From strobe to strobe (u, u') is multiplied by the constant flow of a period, if y stays
+below zero meanwhile.  The proof is the comparison of ``contact.flight.bounds`` without other modes: with
+rho = sqrt(u^2 + (u'/omega)^2) at the strobe, d = (|w^2 - omega^2| + c omega) rho/w^2, the margin m for
+rounding and z = y + G - d, for |t - t_1| <= pi/w
 
     z(t) <= z_1 cos(w (t - t_1)) + (z_1'/w) sin(w (t - t_1)) <= sqrt(z_1^2 + (z_1'/w)^2),                (1)
 
@@ -20,17 +20,16 @@ of the period (below resonance it does, unless the mode's sign puts it at the st
       z_1^2 + (z_1'/w)^2 < (G - d - m)^2.                                                              (*)
 
   At t_1 = t_p these are z_1 = A + p - d and z_1' = q, (p, q) = (u, u') there, each two products with
-  constants: a period that is settled so needs no sine.  If that fails, t_1 near the peak may settle it.
+  constants: this proof needs no sine.  If it fails, (*) may hold for a t_1 near the peak.
 * A zero of y lies within a quarter of a period of t_p.  If y' > 0 there, (1) with t_1 at the zero shows y < 0
   all the time before it: it is the first crossing, whichever way it was found.  It is one beyond rounding if
-  the peak that its slope must reach, y'^2/(2 max|y''|), exceeds m.  ``one_impact`` finds nearly all of
-  them in one evaluation and tells whether it did; an iteration finds the others.
+  the peak that its slope must reach, y'^2/(2 max|y''|), exceeds m.  ``one_impact`` finds nearly all crossings
+  in one evaluation and checks them; an iteration finds the others.
 * After an impact (1) with z_1 = G - d > 0 and z_1' <= 0 shows y < 0 for the rest of the period, with the rho
   and d from then on; and y'' <= -w^2 z_1 < 0, so that impacts do not accumulate.
 
-A period that none of this settles beyond rounding, larger deviations (from about twice the grazing amplitude
-on), every period with a stay on the wall or with several impacts, and every graze is left as it was and given
-to ``event_loop.advance``.
+``event_loop.advance`` takes every period that remains undecided: within rounding of a graze, with a stay on
+the wall or several impacts, and with large deviations (from about twice the grazing amplitude on).
 """
 
 from __future__ import annotations
@@ -40,52 +39,44 @@ import math
 from contact.engine.event_loop import DONE, advance
 from contact.engine.recorder import strobes_only
 from contact.flight.motion import COSINE, SINE, with_drive
-from contact.machine.compiled import borrowed, inlined, kernel, part
-from contact.one_mode.one_impact import guessed, is_settled, one_impact, rising_zero
-from contact.one_mode.period_table import flow_over, mode_at, through, tip_near
+from contact.machine.compiled import borrowed, inlined, kernel
+from contact.one_mode.one_impact import crossing_guess, is_proved, one_impact, peak_derivatives, rising_zero
+from contact.one_mode.period_table import flow_over, table_at, through, tip_near
 from contact.trajectory import OUTSIDE
 
 
-@part
-def any_periods(motion, u, v, runs, points, counts):
-    """Drive periods from a strobe by ``event_loop.advance``, as many as `counts` has places.
-
-    `points`, shape (periods, 2 n_modes), gets the deviations at the strobes.
-    """
-    return advance(motion, u, v, runs, runs[0].period + counts.size, 0.0, strobes_only(points, counts))
-
-
 @inlined
-def is_free(n, z, rate, height):
+def is_free(n, s, z, rate, height):
     """(*): whether a height z and its rate [m, m/s] prove the period free; `height` = G - d [m]."""
-    room = height - n.margin
-    return z * z + n.slow * rate * rate < room * room
+    slack = height - s.margin
+    return z * z + n.drive_time_squared * rate * rate < slack * slack
 
 
 @inlined
-def settled_period(n, rows, rho, p, q, u, v):
-    """A period from (u, v), of size `rho` and (p, q) at the steady peak, that (*) does not settle there:
-    impacts, at most one, and the deviation at its end; or -1 impacts, which leaves it open."""
-    t = guessed(n, p, q)
+def decided_period(table, rho, p, q, u, v):
+    """One period that (*) at the steady peak does not cover, from (u, v) of size `rho`; (p, q) at the peak.
+
+    Returns the number of impacts, 0 or 1, and the deviation at its end; or -1 impacts if it is undecided.
+    """
+    n, s = table.mode, table.steady
+    t = crossing_guess(n, s, p, q)
     if 0.0 <= t <= n.period:
-        settled, _time, _approach, un, vn = one_impact(n, rows, t, rho, u, v)
-        if settled:
+        proved, un, vn = one_impact(table, t, rho, u, v)
+        if proved:
             return 1, un, vn
-        t, un, vn, approach = rising_zero(n, rows, u, v, t)
+        t, un, vn, approach = rising_zero(table, u, v, t)
         vn += n.kick * approach
-        if is_settled(n, rho, un, vn, approach, 0.0, 0.0, approach):
-            u, v = flow_over(n, rows, n.period - t, un, vn)
+        if is_proved(n, s, rho, un, vn, approach, 0.0, 0.0, approach):
+            u, v = flow_over(n, table.rows, n.period - t, un, vn)
             return 1, u, v
     # no crossing in sight: perhaps (*) holds at the peak
-    drop = n.decay * q + n.stiffness * p
-    dip = n.crest + drop
-    twist = n.decay * drop - n.stiffness * q
-    x = q / dip
-    x += 0.5 * twist * x * x / (dip - twist * x)
-    if dip > 0.0 and abs(x) * n.drive < 1.5:
-        _u, _v, y0, y1, _y2 = tip_near(n, rows, u, v, n.peak + x)
+    deceleration, jerk, _snap = peak_derivatives(n, s, p, q)
+    x = q / deceleration
+    x += 0.5 * jerk * x * x / (deceleration - jerk * x)
+    if deceleration > 0.0 and abs(x) * n.drive < 1.5:
+        _u, _v, y0, y1, _y2 = tip_near(table, u, v, n.peak + x)
         height = n.gap - n.detuning * rho
-        if is_free(n, y0 + height, y1, height):
+        if is_free(n, s, y0 + height, y1, height):
             u, v = through(n.period_flow, u, v)
             return 0, u, v
     return -1, u, v
@@ -93,29 +84,24 @@ def settled_period(n, rows, rho, p, q, u, v):
 
 @kernel
 def one_mode_periods(table, system, factors, u, v, runs, points, counts):
-    """``strobed_motion`` for the one mode of `table`, a field of `system` which numba cannot tell from None.
+    """``strobed_motion`` for the one mode of `table`, a field of `system` whose type numba must know.
 
-    Returns
-    -------
-    status : int
-        As that of ``advance``.
-    left : int
-        Periods left to it.
+    Returns the status of ``advance``, and the number of periods left to it.
     """
     table, u, v, points = borrowed(table), borrowed(u), borrowed(v), borrowed(points)
-    counts, n, rows, weight = borrowed(counts), table.mode, table.rows, system.weight[0]
+    counts, local, n, weight = borrowed(counts), table, table.mode, system.weight[0]
     mean_u, mean_v = system.mean[0] * weight, system.mean[1] * weight
     driven_u = weight * system.motion.modes[COSINE, 0]
     driven_v = weight * system.motion.drive * system.motion.modes[SINE, 0]
-    slowness = system.weight[1] / weight
+    per_omega = system.weight[1] / weight
     left, run, factor = 0, runs[0], 1.0
     first = run.period
     un, vn = weight * u[0], weight * v[0]
-    outside = run.regime == OUTSIDE and run.order == 0
+    outside = run.regime == OUTSIDE and run.contact_order == 0
     for i in range(counts.size):
         if factors.size > 0 and factors[i] != factor:
             change, factor = factors[i] - factor, factors[i]
-            n = mode_at(table.mode, system.motion, factor)
+            local = table_at(table, system.motion, factor)
             un, vn, mean_u, mean_v = (
                 un - change * driven_u,
                 vn - change * driven_v,
@@ -123,28 +109,30 @@ def one_mode_periods(table, system, factors, u, v, runs, points, counts):
                 mean_v + change * driven_v,
             )
         impacts = 0
-        rho = math.sqrt(un * un + n.inverse * vn * vn)
+        s = local.steady
+        rho = math.sqrt(un * un + n.mode_time_squared * vn * vn)
         height = n.gap - n.detuning * rho
         p, q = through(n.peak_flow, un, vn)
-        compared = outside and rho < n.most
-        if compared and is_free(n, n.above + p + height, q, height):
+        compared = outside and rho < s.largest_deviation
+        if compared and is_free(n, s, s.overshoot + p + height, q, height):
             un, vn = through(n.period_flow, un, vn)
         else:
             impacts = -1
             if compared:
-                impacts, ui, vi = settled_period(n, rows, rho, p, q, un, vn)
+                impacts, ui, vi = decided_period(local, rho, p, q, un, vn)
             if impacts < 0:
                 left += 1
                 u[0], v[0], run.period = un / weight, vn / weight, first + i
                 motion = system.motion if factor == 1.0 else with_drive(system.motion, factor)
-                status = any_periods(motion, u, v, runs, points[i : i + 1], counts[i : i + 1])
+                here = strobes_only(points[i : i + 1], counts[i : i + 1])
+                status = advance(motion, u, v, runs, first + i + 1, 0.0, here)
                 if status != DONE:
                     return status, left
                 impacts, ui, vi = counts[i], weight * u[0], weight * v[0]
-                outside = run.regime == OUTSIDE and run.order == 0
+                outside = run.regime == OUTSIDE and run.contact_order == 0
             un, vn = ui, vi
         points[i, 0] = un + mean_u
-        points[i, 1] = (vn + mean_v) * slowness
+        points[i, 1] = (vn + mean_v) * per_omega
         counts[i] = impacts
     change = 1.0 - factor
     un, vn = un - change * driven_u, vn - change * driven_v

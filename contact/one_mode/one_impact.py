@@ -3,30 +3,29 @@
 In the notation of ``contact.one_mode.loop``, the period P starts from the deviation (u, v) at its strobe,
 and F_t is the flow of a free deviation over t.
 
-**Where the crossing is.**  At the peak of the steady motion the motion and its first four derivatives follow
-from (p, q) = F_tp (u, v).  The lower zero of the parabola of the first three, improved by one step of
-Halley's iteration on the quartic, gives a time t, usually within 1e-4/w of the crossing.
+**Guess.**  At the peak of the steady motion y and four derivatives follow from (p, q) = F_tp (u, v).  The
+lower zero of the parabola of the first three, improved by one step of Halley's iteration on the quartic,
+gives a time t, usually within 1e-4/w of the crossing.
 
-**The crossing.**  At t the motion is found anew, from the next node t_k of ``period_table``, with its
-derivatives.  With D = -y/y', B = y''/(2 y'), C = y'''/(6 y') the zero of their cubic lies at t + d,
+**Crossing.**  The motion at t, with its derivatives, follows from the next node t_k of ``period_table``.
+With D = -y/y', B = y''/(2 y'), C = y'''/(6 y') the zero of their cubic lies at t + d,
 
     d = D - B D^2 + (2 B^2 - C) D^3 + ...
 
-What remains there, of the cubic and of the order that it lacks, has to be as small as one rounding of y:
+The error of this zero, of the cubic and of the order that it lacks, must not exceed one rounding of y:
 
     |y + y' d + y'' d^2/2 + y''' d^3/6| <= m/1000   and   |d| <= (24 m/(1000 Y))^(1/4),   |y''''| <= Y,
 
 Y = A w^4 + omega (omega + c)^3 rho by repeated use of u'' = -c u' - omega^2 u.
 
-**What the impact does.**  It adds j = -(1 + e) y' to u', so that the deviation at the end is
+**Impact.**  It adds j = -(1 + e) y' to u', so that the deviation at the end is
 
     F_P (u, v) + j F_(P - t - d) (0, 1),     F_(P - t - d) = F_(P - t_k) F_(t_k - t) F_(-d).
 
-The series of F_(t - t_k) give F_(t_k - t) as well; d is bridged by the Taylor polynomial of third order, the
-rest of which is as small as that of the cubic.
+The series of F_(t - t_k) give F_(t_k - t) as well.  F_(-d) is its Taylor polynomial of third order, with an
+error as small as that of the cubic.
 
-An iteration instead (`rising_zero`) makes a period with an impact 1.3 to 1.8 times as long; it finds the
-others.
+An iteration (`rising_zero`) finds the other crossings; it makes a period 1.3 to 1.8 times as long.
 """
 
 from __future__ import annotations
@@ -34,57 +33,54 @@ from __future__ import annotations
 import math
 
 from contact.machine.compiled import inlined, kernel
-from contact.one_mode.period_table import SMALL, flow_to, short_flow, steady_near, through, tip_near
+from contact.one_mode.period_table import (
+    SMALL,
+    flow_to,
+    free_derivatives,
+    short_flow,
+    through,
+    tip_derivatives,
+    tip_near,
+)
 
 NEWTON_STEPS = 60
-"""Bound of Newton steps; next to a graze each but halves the distance to the double root, from 1 to 1e-8."""
+"""Bound of Newton steps; next to a graze each only halves the distance to the double root, from 1 to 1e-8."""
 
 
 @inlined
-def guessed(n, p, q):
-    """About when the tip meets the stop, since the strobe [s]; NaN if the parabola does not.
+def peak_derivatives(n, s, p, q):
+    """-y'', y''' and y'''' of the tip displacement at the steady peak, where the deviation is (p, q)."""
+    free = n.decay * q + n.stiffness * p
+    jerk = n.decay * free - n.stiffness * q
+    snap = s.peak_acceleration * n.drive * n.drive + n.stiffness * free - n.decay * jerk
+    return s.peak_acceleration + free, jerk, snap
 
-    p, q: free part of the tip displacement and its rate at the steady peak.
+
+@inlined
+def crossing_guess(n, s, p, q):
+    """Approximate time of the crossing since the strobe [s]; NaN if the parabola has no zero.
+
+    (p, q): the deviation at the steady peak.
     """
-    drop = n.decay * q + n.stiffness * p
-    dip = n.crest + drop
-    twist = n.decay * drop - n.stiffness * q
-    bend = n.crest * n.drive * n.drive + n.stiffness * drop - n.decay * twist
-    rate = math.sqrt(q * q + 2.0 * dip * (n.above + p))
-    x = (q - rate) / dip
-    inverse = 1.0 / (rate + x * x * (0.5 * twist + x * bend / 6.0))
-    change = x * x * x * (twist / 6.0 + x * bend / 24.0) * inverse
-    x -= change * (1.0 + 0.5 * change * inverse * (x * (twist + 0.5 * x * bend) - dip))
+    deceleration, jerk, snap = peak_derivatives(n, s, p, q)
+    rate = math.sqrt(q * q + 2.0 * deceleration * (s.overshoot + p))
+    x = (q - rate) / deceleration
+    inverse = 1.0 / (rate + x * x * (0.5 * jerk + x * snap / 6.0))
+    change = x * x * x * (jerk / 6.0 + x * snap / 24.0) * inverse
+    x -= change * (1.0 + 0.5 * change * inverse * (x * (jerk + 0.5 * x * snap) - deceleration))
     return n.peak + x
 
 
 @inlined
-def free_derivatives(n, u, v):
-    """u'', u''' and u'''' of a free deviation."""
-    u2 = -(n.decay * v + n.stiffness * u)
-    u3 = -(n.decay * u2 + n.stiffness * v)
-    return u2, u3, -(n.decay * u3 + n.stiffness * u2)
-
-
-@inlined
-def carried(n, u, v, x):
+def taylor_flow(n, u, v, x):
     """The deviation (u, v) a tiny time `x` later, by its Taylor polynomial of third order."""
     u2, u3, u4 = free_derivatives(n, u, v)
     return u + x * (v + x * (0.5 * u2 + x * u3 / 6.0)), v + x * (u2 + x * (0.5 * u3 + x * u4 / 6.0))
 
 
 @inlined
-def tip_derivatives(n, u, v, swing, glide):
-    """Tip displacement relative to the stop [m] and its first four derivatives."""
-    w = n.drive
-    u2, u3, u4 = free_derivatives(n, u, v)
-    pull = w * w * swing
-    return (swing - n.gap + u, w * glide + v, u2 - pull, u3 - w * w * w * glide, u4 + w * w * pull)
-
-
-@inlined
 def zero_of(y0, y1, y2, y3, y4):
-    """d [s], what the cubic is there [m], and the velocity of the tip [m/s]."""
+    """d [s], the value of the cubic there [m], and the velocity of the tip [m/s]."""
     inverse = -1.0 / y1
     d = y0 * inverse
     y2, y3 = 0.5 * y2, y3 / 6.0
@@ -95,64 +91,57 @@ def zero_of(y0, y1, y2, y3, y4):
 
 
 @inlined
-def is_settled(n, rho, u, v, slope, d, rest, approach):
+def is_proved(n, s, rho, u, v, slope, d, rest, approach):
     """Whether the crossing is proved, and the rest of the period from (u, v) after the impact on free."""
     return (
         (slope > 0.0)
         & (approach > 0.0)
-        & (abs(d) <= n.reach)
-        & (abs(rest) <= SMALL * n.margin)
-        & (approach * approach > 4.0 * (n.crest + n.second * rho) * n.margin)
-        & (u * u + n.inverse * v * v < n.most * n.most)
+        & (abs(d) <= s.longest_step)
+        & (abs(rest) <= SMALL * s.margin)
+        & (approach * approach > 4.0 * (s.peak_acceleration + n.free_bound * rho) * s.margin)
+        & (u * u + n.mode_time_squared * v * v < s.largest_deviation * s.largest_deviation)
     )
 
 
 @inlined
-def one_impact(n, rows, t, rho, u, v):
+def one_impact(table, t, rho, u, v):
     """The period from (u, v), of size `rho`, whose crossing is next to the time `t` in [0, P].
 
-    Returns
-    -------
-    settled : bool
-        Whether this is proved; if not, what follows is not to be used.
-    time [s], approach velocity [m/s], deviation at the next strobe.
+    Returns whether it is proved, and the deviation at the next strobe, which is right only then.
     """
-    k = int(t * n.per_second + 0.5)
-    x = t - k * n.stretch
+    n, rows = table.mode, table.rows
+    k = int(t * n.nodes_per_second + 0.5)
+    x = t - k * n.spacing
     u0, v0 = flow_to(rows, k, u, v)
     u0, v0, back_u, back_v = short_flow(n, x, u0, v0)
-    swing, glide = steady_near(n, rows, k, x)
-    y0, y1, y2, y3, y4 = tip_derivatives(n, u0, v0, swing, glide)
+    y0, y1, y2, y3, y4 = tip_derivatives(table, k, x, u0, v0)
     d, rest, approach = zero_of(y0, y1, y2, y3, y4)
-    u0, v0 = carried(n, u0, v0, d)
-    back_u, back_v = carried(n, back_u, back_v, -d)
+    u0, v0 = taylor_flow(n, u0, v0, d)
+    back_u, back_v = taylor_flow(n, back_u, back_v, -d)
     jump = n.kick * approach
-    settled = is_settled(n, rho, u0, v0 + jump, y1, d, rest, approach)
+    proved = is_proved(n, table.steady, rho, u0, v0 + jump, y1, d, rest, approach)
     u, v = through(n.period_flow, u, v)
     back_u, back_v = flow_to(rows, rows.shape[0] - 1 - k, back_u, back_v)
-    return settled, t + d, approach, u + jump * back_u, v + jump * back_v
+    return proved, u + jump * back_u, v + jump * back_v
 
 
 @kernel
-def rising_zero(n, rows, u, v, t):
+def rising_zero(table, u, v, t):
     """Newton's iteration from the time `t` for a zero of the tip displacement where it rises.
 
-    Returns
-    -------
-    time [s], deviation and its rate there, approach velocity [m/s]: NaN if the slope is not positive on the
-    way.
+    Returns its time [s], deviation and rate, and the approach velocity [m/s], NaN without a positive slope.
     """
-    low, high = 0.0, n.period
+    low, high = 0.0, table.mode.period
     for _ in range(NEWTON_STEPS):
         if not low < t < high:
             t = 0.5 * (low + high)
-        un, vn, y0, y1, y2 = tip_near(n, rows, u, v, t)
+        un, vn, y0, y1, y2 = tip_near(table, u, v, t)
         if not y1 > 0.0:
             break
         x = -y0 / y1
-        if abs(y2) * x * x < SMALL * n.margin and low < t + x < high:
-            # what is left after this step is below rounding
-            un, vn = carried(n, un, vn, x)
+        if abs(y2) * x * x < SMALL * table.steady.margin and low < t + x < high:
+            # the error after this step is below rounding
+            un, vn = taylor_flow(table.mode, un, vn, x)
             return t + x, un, vn, y1 + x * y2
         if y0 < 0.0:
             low = t

@@ -1,8 +1,8 @@
 """One mode in a drive period: its motion anywhere in the period without sines, and its constants.
 
-The period P is cut into K equal stretches by the nodes t_k = k P/K.  Kept are, for every node, the swing of
-the steady tip motion, X_k = S sin(w t_k) + C cos(w t_k) and R_k = X'_k/w, and the flow F_k of the free
-deviation over k stretches (``contact.flight``).  For a time t next to node k, x = t - t_k,
+The period P is cut into K equal parts by the nodes t_k = k P/K.  The table keeps for every node the steady
+tip displacement X_k = S sin(w t_k) + C cos(w t_k), its quadrature R_k = X'_k/w, and the flow F_k of the free
+deviation over k parts (``contact.flight``).  For a time t next to node k, x = t - t_k,
 
     steady motion = X_k cos(w x) + R_k sin(w x),      flow over t = F(x) F_k,
 
@@ -13,8 +13,8 @@ and with |x| <= P/(2K) the cosine, the sine and the flow F(x) follow from the se
 at z = (w x)^2, z = D x^2 (below zero for an over-damped mode) and y = -c x/2.  K is chosen such that w x,
 omega x and c x stay below 0.05: the first terms left out, z^5/10! and y^9/9!, are then below 1e-17.
 
-The peak of the steady motion lies at the time t_p of the period, at the height A = sqrt(S^2 + C^2).
-Deviations are those of the tip, (u, v) [m, m/s], which obey the equation of the mode.
+The steady motion peaks at the time t_p of the period, at the height A = sqrt(S^2 + C^2).  The deviation
+(u, v) [m, m/s] of the tip obeys the equation of the mode.
 """
 
 from __future__ import annotations
@@ -27,17 +27,17 @@ import numpy as np
 from contact.flight.bounds import HIGHEST, LEAST_SLACK
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import flow_matrix
-from contact.flight.motion import DAMPED, DECAY, LOW, OMEGA, Motion
+from contact.flight.motion import DAMPED, DAMPED_LOW, DECAY, OMEGA, Motion
 from contact.laws import NEWTON
 from contact.machine.compiled import inlined, kernel
 
 FEWEST, MOST = 64, 4096
-"""Stretches of a period: 64 where the drive is fastest (w x <= pi/64), more for a faster mode; beyond 4096,
-for a mode some sixty times faster than the drive, the table would outgrow the nearest cache."""
+"""Parts of a period: 64 where the drive is fastest (w x <= pi/64), more for a faster mode.  Beyond 4096, for
+a mode some sixty times faster than the drive, the table would outgrow the nearest cache."""
 
 SAFETY = 32.0
-"""Margin m over the rounding bound of the tip displacement (4 roundings of all its terms): room for the
-roundings of the proofs themselves.  It is some 1e-13 of the gap; what lies within goes to the event loop."""
+"""Factor of the margin m over the rounding bound of the tip displacement (4 roundings of all its terms).  It
+covers the roundings of the proofs.  m is some 1e-13 of the gap; closer cases go to the event loop."""
 
 SMALL = 1e-3
 """Part of the margin m up to which a tip displacement is zero: one rounding of the gap."""
@@ -51,11 +51,10 @@ class OneMode(NamedTuple):
     """The constants of one driven mode before a stop, in the letters of ``contact.one_mode.loop``.
 
     drive = w, decay = c [1/s]; stiffness = omega^2, determinant = D [1/s^2]; gap = G, distance of the stop
-    from the tip's mean place, above = A - G [m]; crest = A w^2 [m/s^2]; period = P, stretch = P/K,
-    per_second = K/P, peak = t_p [s]; period_flow = F_P; peak_flow = F_tp; kick = j/y' = -(1 + e), j the jump
-    of v in an impact at tip velocity y'; detuning = d/rho; inverse = 1/omega^2, slow = 1/w^2 [s^2]; most =
-    rho below which (*) is used, not above zero if never [m]; second: |y''| <= crest + second rho; margin = m
-    [m]; reach = greatest |d| of a step to a zero [s]; factor: of the amplitude over that of the rows.
+    from the tip's mean place [m]; period = P, spacing = P/K, nodes_per_second = K/P, peak = t_p [s];
+    period_flow = F_P; peak_flow = F_tp; kick = j/y' = -(1 + e), j the jump of v in an impact at tip velocity
+    y'; detuning = d/rho; free_bound = |u''|/rho at most; mode_time_squared = 1/omega^2, drive_time_squared =
+    1/w^2 [s^2].
     """
 
     drive: float
@@ -63,134 +62,105 @@ class OneMode(NamedTuple):
     stiffness: float
     determinant: float
     gap: float
-    above: float
-    crest: float
     period: float
-    stretch: float
-    per_second: float
+    spacing: float
+    nodes_per_second: float
     peak: float
     period_flow: Flow
     peak_flow: Flow
     kick: float
     detuning: float
-    inverse: float
-    most: float
-    slow: float
-    second: float
+    free_bound: float
+    mode_time_squared: float
+    drive_time_squared: float
+
+
+class Steady(NamedTuple):
+    """The constants that depend on the amplitude of the drive.
+
+    overshoot = A - G [m]; peak_acceleration = A w^2 [m/s^2]; largest_deviation = rho below which (*) is used,
+    not above zero if never [m]; margin = m [m]; longest_step = greatest |d| of a step to a zero [s]; factor:
+    of the amplitude over that of the rows.
+    """
+
+    overshoot: float
+    peak_acceleration: float
+    largest_deviation: float
     margin: float
-    reach: float
+    longest_step: float
     factor: float
 
 
 class PeriodTable(NamedTuple):
-    """A drive period of one mode: its constants, and X_k, R_k [m] and the four numbers of F_k of all nodes,
-    shape (K + 1, 6)."""
+    """A drive period of one mode: its constants, and X_k, R_k [m], F_k at each node, shape (K + 1, 6)."""
 
     mode: OneMode
+    steady: Steady
     rows: np.ndarray
 
 
-@kernel
-def mode_flow(motion, t):
-    """The flow of the deviation over a time `t` [s]."""
-    modes = motion.modes
-    return flow_matrix(modes[OMEGA, 0], modes[DECAY, 0], modes[DAMPED, 0], modes[LOW, 0], t)
+@inlined
+def table_at(table, motion, factor):
+    """The `table` of `motion` at `factor` times its amplitude; X_k and R_k are in proportion to it."""
+    mode, amplitude, omega = table.mode, factor * motion.amplitude, motion.modes[OMEGA, 0]
+    steady = abs(motion.level) + factor * (abs(motion.tip_sine) + abs(motion.tip_cosine)) + motion.gap
+    margin = SAFETY * 4.0 * EPS * (steady + 2.0 * max(1.0, 0.5 * mode.decay / omega) * abs(mode.gap))
+    rho = (1.0 - LEAST_SLACK) * mode.gap / max(1.0, mode.detuning)
+    # (*) needs the peak in the middle half of the period
+    inner = abs(mode.peak / mode.period - 0.5) <= 0.25 + 1e-12 and amplitude <= HIGHEST * abs(mode.gap)
+    fourth = amplitude * mode.drive**4 + omega * (omega + mode.decay) ** 3 * abs(rho)
+    here = Steady(
+        overshoot=amplitude + motion.level,
+        peak_acceleration=amplitude * mode.drive * mode.drive,
+        largest_deviation=rho if inner else -1.0,
+        margin=margin,
+        longest_step=math.sqrt(math.sqrt(24.0 * SMALL * margin / fourth)),
+        factor=factor * table.steady.factor,
+    )
+    return PeriodTable(mode, here, table.rows)
 
 
 @kernel
-def constants_of(motion, stretches):
-    """The `OneMode` of a motion whose period is cut into `stretches`."""
-    modes, w = motion.modes, motion.drive
-    peak = min((math.atan2(motion.tip_sine, motion.tip_cosine) % (2.0 * math.pi)) / w, motion.period)
-    decay, omega, high = modes[DECAY, 0], modes[OMEGA, 0], modes[DAMPED, 0]
-    at_rest = OneMode(
+def full_table(motion, parts):
+    """The table of a motion of one mode with its period in `parts` parts."""
+    modes, w, period = motion.modes, motion.drive, motion.period
+    decay, omega, high, low = modes[DECAY, 0], modes[OMEGA, 0], modes[DAMPED, 0], modes[DAMPED_LOW, 0]
+    peak = min((math.atan2(motion.tip_sine, motion.tip_cosine) % (2.0 * math.pi)) / w, period)
+    mode = OneMode(
         drive=w,
         decay=decay,
         stiffness=omega * omega,
-        determinant=math.copysign(high * (high + 2.0 * modes[LOW, 0]), omega - 0.5 * decay),
+        determinant=math.copysign(high * (high + 2.0 * low), omega - 0.5 * decay),
         gap=-motion.level,
-        above=0.0,
-        crest=0.0,
-        period=motion.period,
-        stretch=motion.period / stretches,
-        per_second=stretches / motion.period,
+        period=period,
+        spacing=period / parts,
+        nodes_per_second=parts / period,
         peak=peak,
-        period_flow=mode_flow(motion, motion.period),
-        peak_flow=mode_flow(motion, peak),
+        period_flow=flow_matrix(omega, decay, high, low, period),
+        peak_flow=flow_matrix(omega, decay, high, low, peak),
         kick=-(1.0 + motion.number0),
         detuning=(abs(w * w - omega * omega) + decay * omega) / (w * w),
-        inverse=1.0 / (omega * omega),
-        most=0.0,
-        slow=1.0 / (w * w),
-        second=omega * (omega + decay),
-        margin=0.0,
-        reach=0.0,
-        factor=1.0,
+        free_bound=omega * (omega + decay),
+        mode_time_squared=1.0 / (omega * omega),
+        drive_time_squared=1.0 / (w * w),
     )
-    return mode_at(at_rest, motion, 1.0)
-
-
-@inlined
-def mode_at(mode, motion, factor):
-    """The constants of `motion`, `mode`, at `factor` times its drive amplitude.
-
-    The steady motion alone depends on the amplitude, and in proportion: the rows are shared.
-    """
-    m, w, amplitude = mode, mode.drive, factor * motion.amplitude
-    omega = motion.modes[OMEGA, 0]
-    steady = abs(motion.level) + factor * (abs(motion.tip_sine) + abs(motion.tip_cosine)) + motion.gap
-    margin = SAFETY * 4.0 * EPS * (steady + 2.0 * max(1.0, 0.5 * m.decay / omega) * abs(m.gap))
-    rho = (1.0 - LEAST_SLACK) * m.gap / max(1.0, m.detuning)
-    # (*) needs the peak in the middle half of the period
-    inner = abs(m.peak / m.period - 0.5) <= 0.25 + 1e-12 and amplitude <= HIGHEST * abs(m.gap)
-    fourth = amplitude * w**4 + omega * (omega + m.decay) ** 3 * abs(rho)
-    return OneMode(
-        w,
-        m.decay,
-        m.stiffness,
-        m.determinant,
-        m.gap,
-        amplitude + motion.level,
-        amplitude * w * w,
-        m.period,
-        m.stretch,
-        m.per_second,
-        m.peak,
-        m.period_flow,
-        m.peak_flow,
-        m.kick,
-        m.detuning,
-        m.inverse,
-        rho if inner else -1.0,
-        m.slow,
-        m.second,
-        margin,
-        math.sqrt(math.sqrt(24.0 * SMALL * margin / fourth)),
-        factor * m.factor,
-    )
-
-
-@kernel
-def full_table(motion, stretches):
-    """The table of a motion of one mode with `stretches` stretches."""
-    w, period = motion.drive, motion.period
-    rows = np.empty((stretches + 1, 6))
-    for k in range(stretches + 1):
-        t = k * (period / stretches)
+    rows = np.empty((parts + 1, 6))
+    for k in range(parts + 1):
+        t = k * (period / parts)
         s, c = math.sin(w * t), math.cos(w * t)
         rows[k, 0] = motion.tip_sine * s + motion.tip_cosine * c
         rows[k, 1] = motion.tip_sine * c - motion.tip_cosine * s
-        rows[k, 2], rows[k, 3], rows[k, 4], rows[k, 5] = mode_flow(motion, t)
-    return PeriodTable(constants_of(motion, stretches), rows)
+        rows[k, 2], rows[k, 3], rows[k, 4], rows[k, 5] = flow_matrix(omega, decay, high, low, t)
+    return table_at(PeriodTable(mode, Steady(0.0, 0.0, 0.0, 0.0, 0.0, 1.0), rows), motion, 1.0)
 
 
 def period_table(motion: Motion) -> PeriodTable | None:
     """The table of a driven oscillator of one mode under Newton's law.
 
-    None for any other: one with another law or several modes, no stiffness or no drive, its node at the tip,
-    or so fast that too many nodes would be needed.
+    Returns None for another law or several modes, without stiffness or drive, for a mode with its node at the
+    tip, and for one so fast that too many nodes would be needed.
     """
-    if motion.law != NEWTON or motion.size != 1 or motion.compliance == 0.0:
+    if motion.law != NEWTON or motion.size != 1 or motion.inverse_mass == 0.0:
         return None
     if not (motion.omega[0] > 0 and motion.drive > 0):
         return None
@@ -209,12 +179,12 @@ def through(flow, u, v):
 
 @inlined
 def flow_to(rows, k, u, v):
-    """The deviation (u, v) of a node after `k` stretches."""
+    """The deviation (u, v) of a node after `k` parts of the period."""
     return rows[k, 2] * u + rows[k, 3] * v, rows[k, 4] * u + rows[k, 5] * v
 
 
 @inlined
-def short_turn(z):
+def short_circular(z):
     """cos sqrt(z) and sin sqrt(z)/sqrt(z) for |z| up to 0.0025."""
     even = 1.0 + z * (-1.0 / 2.0 + z * (1.0 / 24.0 + z * (-1.0 / 720.0 + z * (1.0 / 40320.0))))
     odd = 1.0 + z * (-1.0 / 6.0 + z * (1.0 / 120.0 + z * (-1.0 / 5040.0 + z * (1.0 / 362880.0))))
@@ -222,7 +192,7 @@ def short_turn(z):
 
 
 @inlined
-def short_fades(y):
+def short_hyperbolic(y):
     """cosh y and sinh y for |y| up to 0.05: e^y is their sum, e^-y their difference."""
     z = y * y
     even = 1.0 + z * (1.0 / 2.0 + z * (1.0 / 24.0 + z * (1.0 / 720.0 + z * (1.0 / 40320.0))))
@@ -232,56 +202,68 @@ def short_fades(y):
 
 @inlined
 def short_flow(mode, x, u, v):
-    """Deviation (u, v) after a time |x| <= P/(2K) [s], and what is (0, 1) after it was at its beginning."""
+    """Deviation (u, v) after a time |x| <= P/(2K) [s], and the deviation that a time x later is (0, 1)."""
     half = 0.5 * mode.decay
-    even, odd = short_turn(mode.determinant * x * x)
-    fade, less = short_fades(-half * x)
-    odd *= x
-    cn, sn = (fade + less) * even, (fade + less) * odd
-    back = -(fade - less) * odd
+    cosine, sine = short_circular(mode.determinant * x * x)
+    cosh, sinh = short_hyperbolic(-half * x)
+    sine *= x
+    cn, sn = (cosh + sinh) * cosine, (cosh + sinh) * sine
+    back = -(cosh - sinh) * sine
     return (
         cn * u + sn * (v + half * u),
         cn * v - sn * (mode.stiffness * u + half * v),
         back,
-        (fade - less) * even - half * back,
+        (cosh - sinh) * cosine - half * back,
     )
 
 
 @inlined
 def flow_over(mode, rows, t, u, v):
     """Deviation (u, v) after a time `t` of at most a period [s]."""
-    k = int(t * mode.per_second + 0.5)
-    u, v, _back_u, _back_v = short_flow(mode, t - k * mode.stretch, u, v)
+    k = int(t * mode.nodes_per_second + 0.5)
+    u, v, _back_u, _back_v = short_flow(mode, t - k * mode.spacing, u, v)
     return flow_to(rows, k, u, v)
 
 
 @inlined
-def steady_near(mode, rows, k, x):
-    """The steady motion X, R a time `x` after node `k`."""
-    even, odd = short_turn(mode.drive * mode.drive * x * x)
-    odd *= mode.drive * x
-    swing, glide = mode.factor * rows[k, 0], mode.factor * rows[k, 1]
-    return swing * even + glide * odd, glide * even - swing * odd
+def free_derivatives(mode, u, v):
+    """u'', u''' and u'''' of a free deviation."""
+    u2 = -(mode.decay * v + mode.stiffness * u)
+    u3 = -(mode.decay * u2 + mode.stiffness * v)
+    return u2, u3, -(mode.decay * u3 + mode.stiffness * u2)
 
 
 @inlined
-def tip_near(mode, rows, u, v, t):
+def tip_derivatives(table, k, x, u, v):
+    """Tip displacement relative to the stop [m] and its first four derivatives, a time `x` after node `k`.
+
+    (u, v): the deviation then.
+    """
+    mode, w = table.mode, table.mode.drive
+    cosine, sine = short_circular(w * w * x * x)
+    sine *= w * x
+    here, ahead = table.steady.factor * table.rows[k, 0], table.steady.factor * table.rows[k, 1]
+    in_phase, quadrature = here * cosine + ahead * sine, ahead * cosine - here * sine
+    u2, u3, u4 = free_derivatives(mode, u, v)
+    pull = w * w * in_phase
+    return (
+        in_phase - mode.gap + u,
+        w * quadrature + v,
+        u2 - pull,
+        u3 - w * w * w * quadrature,
+        u4 + w * w * pull,
+    )
+
+
+@inlined
+def tip_near(table, u, v, t):
     """The motion at the time `t` since the strobe, where the deviation was (u, v).
 
-    Returns
-    -------
-    Deviation and its rate; tip displacement relative to the stop [m] and two derivatives.
+    Returns deviation and rate, and the tip displacement relative to the stop [m] with two derivatives.
     """
-    w = mode.drive
-    k = int(t * mode.per_second + 0.5)
-    x = t - k * mode.stretch
-    un, vn = flow_to(rows, k, u, v)
-    un, vn, _back_u, _back_v = short_flow(mode, x, un, vn)
-    swing, glide = steady_near(mode, rows, k, x)
-    return (
-        un,
-        vn,
-        swing - mode.gap + un,
-        w * glide + vn,
-        -w * w * swing - (mode.decay * vn + mode.stiffness * un),
-    )
+    k = int(t * table.mode.nodes_per_second + 0.5)
+    x = t - k * table.mode.spacing
+    un, vn = flow_to(table.rows, k, u, v)
+    un, vn, _back_u, _back_v = short_flow(table.mode, x, un, vn)
+    y0, y1, y2, _y3, _y4 = tip_derivatives(table, k, x, un, vn)
+    return un, vn, y0, y1, y2

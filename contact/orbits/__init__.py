@@ -1,15 +1,12 @@
-"""Periodic orbits of a strobed motion, one idea a file.
+"""Periodic orbits of a strobed motion.
 
-`family`: what all families of orbits offer; `single_impact`: one collision every m drive periods, under
-Newton's law in closed form; `kick`: one collision of any law, by linear algebra; `shooting`: any law and any
-number of touches, with exact tangents; `curve`: a curve of orbits, point beside point; `events` on it;
-`branch`: a curve followed both ways; `continuation`: branches over the amplitude; `path`: branches along any
-path p -> oscillator; `settling`: on what a motion settles; `scan`: orbit
-diagrams, the state carried along; `ends`: where an orbit ends when the drive is lowered, by a scan and by its
-fold; `amplitude_scan`: the compiled column of a chart; `lyapunov`: exponents; `derivatives`,
-`event_derivatives`, `motion_derivatives`: how orbits, their folds, doublings and grazings, and simulated
-motions change with the numbers of the oscillator, a `Change` each; `clouds`: strobe points under noise of the
-drive.
+`families`      orbits of one period in one description: closed forms, kicks, and shooting with exact tangents
+`branches`      branches of orbits over the amplitude or along any path p -> oscillator, their folds, period
+                doublings, tori and grazings, and derivatives of all these with respect to parameters
+`observation`   motions followed in time: settling, orbit diagrams, the loss of an orbit when the drive is
+                lowered, a compiled column of a chart, Lyapunov exponents, covariances under noise
+
+A parameter is a `Change`, a direction in which the numbers of the oscillator change.
 """
 
 from contact.orbits.branches.continuation import (

@@ -1,8 +1,9 @@
-"""Directions in which the numbers of an impact oscillator change: what derivatives are taken in.
+"""Parameters of an impact oscillator, each a direction in which its numbers change.
 
-A `Change` holds the derivatives of those numbers with respect to one parameter p, written with a dot.  What a
-motion sees of them are the changes of omega_k^2, c_k, phi_k, of the level -gap, of the drive w, of the law's
-numbers, and, by the chain rule, of the steady motion (``contact.oscillator``)
+A `Change` holds the derivatives of the oscillator's numbers with respect to one parameter p, written with a
+dot.  A motion depends on p through omega_k^2, c_k, phi_k, the level -gap, the drive frequency w and the
+numbers of the law.  By the chain rule it also depends on p through the steady motion
+(``contact.oscillator``)
 
     H_k = Gamma_k w^2/E_k,      E_k = omega_k^2 - w^2 + i c_k w,
     H_k. = (Gamma_k. w^2 + 2 Gamma_k w w. - H_k (2 omega_k omega_k. - 2 w w. + i (c_k. w + c_k w.)))/E_k,
@@ -22,8 +23,7 @@ from numpy.typing import NDArray
 from beam import ModalChange
 from beam.parameters import final, require, require_array, require_each, require_kind, require_within, shown
 from contact.flight.variation import Variation, variation
-from contact.laws import DELAYED
-from contact.oscillator import ImpactOscillator
+from contact.oscillator import ImpactOscillator, dynamic_stiffness
 
 Array = NDArray[np.float64]
 ARRAYS = ("omega", "decay_rate", "phi", "participation")
@@ -41,14 +41,14 @@ class Change:
     Parameters
     ----------
     model : ModalChange, optional
-        Those of omega, decay_rate, phi and participation, each (n_modes,).
+        Derivatives of omega, decay_rate, phi and participation, each (n_modes,).
     gap : float
-        Of the gap [m].
+        Derivative of the gap [m].
     law : (float, float)
-        Of the numbers of the law, in the order of its `units`; of restitution and delay for
-        ``DelayedRestitution``, whose functions of the speed are then moved as they are.
+        Derivatives of the numbers of the law, in the order of its `units`.  For ``DelayedRestitution`` they
+        are added to restitution and delay at every speed.
     frequency, amplitude : float
-        Of drive frequency [Hz] and base amplitude [m].
+        Derivatives of drive frequency [Hz] and base amplitude [m].
     """
 
     model: ModalChange | None = None
@@ -65,19 +65,19 @@ class Change:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Changes:
-    """Several changes of one oscillator, side by side; arrays have one row for each.
+class Sensitivities:
+    """Derivatives of an oscillator's numbers and of its steady motion with respect to P parameters.
+
+    The attributes are arrays with one row for each parameter.
 
     Parameters
     ----------
     oscillator : ImpactOscillator
     changes : sequence of Change
+        The P parameters.
 
-    Raises
-    ------
-    ValueError
-        For a change of another number of modes, or of a number that the law does not have; or if the
-        oscillator carries a constant load.
+    ValueError is raised for a change of another number of modes, or of a number that the law does not have,
+    and if the oscillator carries a constant load.
     """
 
     oscillator: ImpactOscillator
@@ -88,7 +88,7 @@ class Changes:
         changes = require_each("changes", self.changes, Change, "Change objects")
         object.__setattr__(self, "changes", changes)
         law, n = self.oscillator.stop.law, self.oscillator.n_modes
-        known = 2 if law.code == DELAYED else len(law.units)
+        known = len(law.adjustable)
         require(
             self.oscillator.load is None or not self.changes,
             "load is given; it must be None for derivatives with respect to numbers of the oscillator",
@@ -104,60 +104,61 @@ class Changes:
 
     @cached_property
     def model(self) -> dict[str, Array]:
-        """Those of omega, decay_rate, phi and participation by name, each (changes, n_modes)."""
+        """Derivatives of omega, decay_rate, phi and participation by name, each (P, n_modes)."""
         still = ModalChange(**{name: np.zeros(self.oscillator.n_modes) for name in ARRAYS})
         models = [each.model or still for each in self.changes]
         shape = len(models), self.oscillator.n_modes
         return {name: np.array([getattr(each, name) for each in models]).reshape(shape) for name in ARRAYS}
 
     @cached_property
-    def pace(self) -> Array:
-        """Those of w, shape (changes,) [rad/s]."""
+    def frequency(self) -> Array:
+        """Derivatives of the angular drive frequency w, shape (P,) [rad/s]."""
         return 2.0 * math.pi * self._row("frequency")
 
     @cached_property
     def amplitude(self) -> Array:
-        """Those of the base amplitude, shape (changes,) [m]."""
+        """Derivatives of the base amplitude, shape (P,) [m]."""
         return self._row("amplitude")
 
     @cached_property
     def level(self) -> Array:
-        """Those of the static tip displacement less the gap, shape (changes,) [m]."""
+        """Derivatives of the static tip displacement less the gap, shape (P,) [m]."""
         return -self._row("gap")
 
     @property
-    def of_period(self) -> Array:
-        """Those of the drive period, shape (changes,) [s]."""
+    def period(self) -> Array:
+        """Derivatives of the drive period, shape (P,) [s]."""
         drive = self.oscillator.driven
-        return np.asarray(-self.pace / drive.angular_frequency * drive.period)
+        return np.asarray(-self.frequency / drive.angular_frequency * drive.period)
 
     @cached_property
     def response(self) -> NDArray[np.complex128]:
-        """Those of H_k, shape (changes, n_modes) [kg^0.5]."""
+        """Derivatives of H_k, shape (P, n_modes) [kg^0.5]."""
         model, change, steady = self.oscillator.model, self.model, self.oscillator.steady_response()
-        w, turn = self.oscillator.driven.angular_frequency, self.pace[:, None]
-        distance = (model.omega - w) * (model.omega + w) + 1j * model.decay_rate * w
-        fading = 1j * (change["decay_rate"] * w + model.decay_rate * turn)
-        turned = 2.0 * (model.omega * change["omega"] - w * turn) + fading
-        pushed = change["participation"] * w**2 + 2.0 * model.participation * w * turn
-        found: NDArray[np.complex128] = (pushed - steady * turned) / distance
+        w, w_dot = self.oscillator.driven.angular_frequency, self.frequency[:, None]
+        damping = 1j * (change["decay_rate"] * w + model.decay_rate * w_dot)
+        stiffness = 2.0 * (model.omega * change["omega"] - w * w_dot) + damping
+        push = change["participation"] * w**2 + 2.0 * model.participation * w * w_dot
+        found: NDArray[np.complex128] = (push - steady * stiffness) / dynamic_stiffness(
+            model.omega, model.decay_rate, w
+        )
         return found
 
     @cached_property
     def tip_response(self) -> NDArray[np.complex128]:
-        """Those of a + i b, shape (changes,) [1]."""
+        """Derivatives of a + i b, shape (P,) [1]."""
         steady = self.model["phi"] @ self.oscillator.steady_response()
         return np.asarray(steady + self.response @ self.oscillator.model.phi)
 
     @cached_property
     def grazing_amplitude(self) -> Array:
-        """Those of Z_g = gap/|a + i b|, the base amplitude at grazing, shape (changes,) [m]."""
+        """Derivatives of Z_g = gap/|a + i b|, the base amplitude at grazing, shape (P,) [m]."""
         response, graze = self.oscillator.tip_response(), self.oscillator.grazing_amplitude()
         return np.asarray(-self.level / abs(response) - graze * (self.tip_response / response).real)
 
     @cached_property
     def variation(self) -> Variation:
-        """The same for the kernels."""
+        """All derivatives in the form that compiled functions take."""
         if not self.changes:
             return variation(self.oscillator.motion(), self.oscillator.tip_response())
         tip, law = self.tip_response, self._row("law")
@@ -167,24 +168,26 @@ class Changes:
             2.0 * self.oscillator.model.omega * self.model["omega"],
             self.model["decay_rate"],
             self.model["phi"],
-            np.column_stack([self.level, tip.real, tip.imag, self.pace, law]),
+            np.column_stack([self.level, tip.real, tip.imag, self.frequency, law]),
         )
 
     def steady(self, clock: float | Array) -> Array:
-        """The changes of the steady motion (q, q') at fixed times `clock` [s] after a strobe, shape
-        (..., 2 n_modes, changes)."""
+        """Derivatives of the steady motion (q, q') at fixed times `clock` [s] after a strobe, shape
+        (..., 2 n_modes, P)."""
         times, drive = np.asarray(clock, dtype=float)[..., None, None], self.oscillator.driven
         steady, w = self.oscillator.steady_response(), drive.angular_frequency
-        turn, pace = np.exp(1j * w * times), self.pace[:, None]
+        phasor, w_dot = np.exp(1j * w * times), self.frequency[:, None]
         size = drive.amplitude * self.response + np.multiply.outer(self.amplitude, steady)
-        moved = (size + 1j * times * drive.amplitude * pace * steady) * turn
-        rate = w * moved + pace * drive.amplitude * steady * turn
+        moved = (size + 1j * times * drive.amplitude * w_dot * steady) * phasor
+        rate = w * moved + w_dot * drive.amplitude * steady * phasor
         return np.concatenate([np.swapaxes(part, -1, -2) for part in (moved.imag, rate.real)], axis=-2)
 
 
 def change_along(path: Path, p: float, low: float, high: float) -> Change:
-    """How the numbers of ``path(p)`` change with p, per unit of p: of numbers, so that differences of order
-    four within [low, high] are good to 1e-12 of them per range."""
+    """The derivatives of the numbers of ``path(p)`` with respect to p, per unit of p.
+
+    Central differences of order four within [low, high] have them to 1e-12 of the numbers per range.
+    """
     stride = STRIDE * (high - low)
     middle = min(max(p, low + 2.0 * stride), high - 2.0 * stride)
     rows = np.array([_numbers(path(q)) for q in middle + STENCIL * stride])
@@ -201,8 +204,9 @@ def change_along(path: Path, p: float, low: float, high: float) -> Change:
 
 
 def _numbers(oscillator: ImpactOscillator) -> Array:
-    """The four rows of its model, gap, numbers of the law, drive frequency and amplitude."""
+    """The rows of the model, the gap, the numbers of the law, drive frequency and amplitude, one after the
+    other."""
     law, drive = oscillator.stop.law, oscillator.driven
-    numbers = law.table[[1, 3], 0] if law.code == DELAYED else law.numbers
+    numbers = (*law.adjustable, 0.0, 0.0)[:2]
     rows = [getattr(oscillator.model, name) for name in ARRAYS]
     return np.concatenate([*rows, [oscillator.stop.gap, *numbers, drive.frequency, drive.amplitude]])

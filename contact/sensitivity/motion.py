@@ -1,8 +1,8 @@
-"""How a simulated motion depends on its start and on the numbers of its oscillator.
+"""Derivatives of a simulated motion with respect to its start and the numbers of its oscillator.
 
-The tangents of (u, v, S, C) are carried from touch to touch (``contact.sensitivity.replay``).  They start
-from those of the deviations, u = q - q_s(t, p), and of the drive, S = Z sin(w t), C = Z cos(w t); where the
-state is asked for, the steady motion's own change is added again.  Strobes move with the drive: t = n/f.
+The variational replay (``contact.sensitivity.replay``) takes tangents of (u, v, S, C): the deviations
+u = q - q_s(t, p), and the drive S = Z sin(w t), C = Z cos(w t).  The derivative of the steady motion q_s is
+added again for states (q, q').  Strobes move with the drive: t = n/f.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from beam.parameters import InvalidValue, require_array, require_kind
 from contact.oscillator import ImpactOscillator
-from contact.sensitivity.change import Change, Changes
-from contact.sensitivity.replay import Retraced, pace_of_deviations
+from contact.sensitivity.change import Change, Sensitivities
+from contact.sensitivity.replay import Replay, deviation_rates_at_strobe
 from contact.simulation import simulate
 from contact.trajectory import Regime, State, Trajectory
 
@@ -32,11 +32,11 @@ class MotionDerivatives:
     run : Trajectory
         The motion.
     impact_time : ndarray, shape (n_impacts, 2 n_modes + P)
-        Those of the times at which its touches begin [s].
+        Derivatives of the times at which touches begin [s].
     strobes : ndarray, shape (n_strobes, 2 n_modes, 2 n_modes + P)
-        Those of the states (q, q') at the strobes.
+        Derivatives of the states (q, q') at the strobes.
     states : ndarray, shape (n_times, 2 n_modes, 2 n_modes + P)
-        Those of the states at the times that were asked for, which stay as they are.
+        Derivatives of the states at the requested times, which stay fixed.
     """
 
     run: Trajectory
@@ -53,7 +53,7 @@ def motion_derivatives(
     periods: int,
     times: Array | None = None,
 ) -> MotionDerivatives:
-    """How a motion from `state` depends on that state and on the numbers of the oscillator.
+    """Derivatives of a motion from `state` with respect to that state and to P parameters.
 
     Parameters
     ----------
@@ -62,47 +62,47 @@ def motion_derivatives(
     state : State
         Off the stop.
     changes : sequence of Change
+        The P parameters.
     periods : int
         Length of the run in drive periods.
     times : array_like, optional
         Rising times within the run at which states are wanted [s].
 
-    Raises
-    ------
-    ValueError
-        If the state is in touch with the stop, and as ``contact.simulate`` does.
-    NoDerivative
-        If the motion grazes the stop, or comes to rest on it.
+    ValueError is raised if the state is in contact with the stop, and as by ``contact.simulate``.
+    NoDerivative is raised if the motion grazes the stop, or comes to rest on it.
     """
     require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
     require_kind("state", state, State, "a State")
     if state.regime != Regime.OUTSIDE:
         raise InvalidValue(f"regime of the state is {int(state.regime)}; it must be 0, off the stop")
     wanted = require_array("times", () if times is None else times, "s", dimensions=1, words="a rising array")
-    several = Changes(oscillator=oscillator, changes=changes)
+    several = Sensitivities(oscillator=oscillator, changes=changes)
     run, n = simulate(oscillator, state, periods=periods, times=wanted), oscillator.n_modes
-    count = len(several.changes)
-    amplitude, w = oscillator.driven.amplitude, oscillator.driven.angular_frequency
-    sine, cosine = np.sin(w * state.time), np.cos(w * state.time)
-    tangent = np.zeros((2 * n + 2, 2 * n + count))
-    tangent[: 2 * n, : 2 * n], tangent[: 2 * n, 2 * n :] = np.eye(2 * n), -several.steady(state.time)
-    turned = amplitude * state.time * several.pace
-    tangent[2 * n, 2 * n :] = several.amplitude * sine + turned * cosine
-    tangent[2 * n + 1, 2 * n :] = several.amplitude * cosine - turned * sine
-
-    traced = Retraced(several, run, state)
-    traced.tangent = tangent
-
+    replay = Replay(several, run, state)
+    replay.tangent = _tangent_of_state(several, state.time)
     times, place = np.unique([*run.strobe_time, *wanted, run.end.time], return_inverse=True)
     ends = [run.strobe_time.size, run.strobe_time.size + wanted.size]
-    strobes, states, _end = np.split(traced.along(times)[place], ends)
+    strobes, states, _end = np.split(replay.along(times)[place], ends)
     states[:, :, 2 * n :] += several.steady(wanted)
     strobes[:, :, 2 * n :] += several.steady(0.0)
-    q = np.hstack([run.strobe_displacement, run.strobe_velocity])
-    pace = pace_of_deviations(oscillator, q, False)
-    for i in np.flatnonzero(traced.touching(run.strobe_time)):
-        pace[i] = pace_of_deviations(oscillator, q[i], True)
     number = np.round(run.strobe_time / oscillator.period)
-    strobes[:, :, 2 * n :] += np.multiply.outer(number[:, None] * pace, several.of_period)
-    late = np.array([traced.late[i] for i in range(len(run.impacts))]).reshape(-1, 2 * n + count)
-    return MotionDerivatives(run=run, impact_time=late, strobes=strobes, states=states)
+    q = np.hstack([run.strobe_displacement, run.strobe_velocity])
+    rates = deviation_rates_at_strobe(oscillator, q, False)
+    for i in np.flatnonzero(replay.touching(run.strobe_time)):
+        rates[i] = deviation_rates_at_strobe(oscillator, q[i], True)
+    strobes[:, :, 2 * n :] += np.multiply.outer(number[:, None] * rates, several.period)
+    found = np.array([replay.impact_time[i] for i in range(len(run.impacts))])
+    impact_time = found.reshape(-1, 2 * n + len(several.changes))
+    return MotionDerivatives(run=run, impact_time=impact_time, strobes=strobes, states=states)
+
+
+def _tangent_of_state(several: Sensitivities, time: float) -> Array:
+    """Derivatives of (u, v, S, C) at the start with respect to (q, q') there and the parameters."""
+    n, count, drive = several.oscillator.n_modes, len(several.changes), several.oscillator.driven
+    sine, cosine = np.sin(drive.angular_frequency * time), np.cos(drive.angular_frequency * time)
+    tangent = np.zeros((2 * n + 2, 2 * n + count))
+    tangent[: 2 * n, : 2 * n], tangent[: 2 * n, 2 * n :] = np.eye(2 * n), -several.steady(time)
+    quadrature = drive.amplitude * time * several.frequency
+    tangent[2 * n, 2 * n :] = several.amplitude * sine + quadrature * cosine
+    tangent[2 * n + 1, 2 * n :] = several.amplitude * cosine - quadrature * sine
+    return tangent

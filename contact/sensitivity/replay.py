@@ -1,8 +1,8 @@
-"""A simulated motion retraced from touch to touch, with tangents carried along.
+"""The variational replay: a simulated motion once more, with its tangents from touch to touch.
 
-The touches are those that the simulation has found; between them flights, and through them the law's own
-tangents (``contact.flight.variation``).  The time t of a touch moves along a tangent d by -y(d)/v, v its
-approach velocity: where v is zero, at a graze, the motion has no derivative.
+The touches are taken from the simulation.  The tangents go through flights with the flows of the modes, and
+through touches with the tangents of the law (``contact.flight.variation``).  The time of a touch changes by
+-y(d)/v along a tangent d, v its approach velocity.  At a graze v is zero, and the motion has no derivative.
 """
 
 from __future__ import annotations
@@ -14,13 +14,14 @@ from numpy.typing import NDArray
 
 from contact.errors import NoDerivative
 from contact.flight.modal_flow import propagate, steady_motion
+from contact.flight.motion import Motion
 from contact.flight.variation import all_tip_changes, tangent_flight
-from contact.laws import DELAYED
 from contact.machine.compiled import kernel
 from contact.oscillator import ImpactOscillator
-from contact.sensitivity.change import Changes
-from contact.sensitivity.touch_flow import FLOWN, TOUCHING, flow_from_touch, lost
-from contact.touch import force
+from contact.sensitivity.change import Sensitivities
+from contact.sensitivity.touch_flow import FLOWN, TOUCHING, flow_error, flow_from_touch
+from contact.touch import force, waits
+from contact.touch.delayed import waiting_acceleration, waiting_tangents
 from contact.trajectory import ImpactKind, State, Trajectory
 
 Array = NDArray[np.float64]
@@ -28,7 +29,7 @@ Array = NDArray[np.float64]
 
 @kernel
 def fly_through(vary, tangent, u, v, clock, times, table):  # type: ignore[no-untyped-def]
-    """A flight with tangents from the time `clock` over rising `times` [s]; see ``Retraced.along``."""
+    """A flight with tangents from the time `clock` over rising `times` [s]; see ``Replay.along``."""
     motion = vary.motion
     for i in range(times.size):
         if times[i] > clock:
@@ -38,43 +39,40 @@ def fly_through(vary, tangent, u, v, clock, times, table):  # type: ignore[no-un
         table[i] = tangent[:-2]
 
 
-class Retraced:
-    """The motion of `run`, which starts off the stop at `start`, or at strobe zero where nobody asks for the
-    derivatives of a flight.
+class Replay:
+    """Replays `run` with its variational equation.
+
+    The run must start off the stop.  Without `start` only tangents from the first touch on have a meaning.
 
     Parameters
     ----------
-    changes : Changes
+    sensitivities : Sensitivities
         The oscillator, and the parameters to which the last columns of `tangent` belong.
     run : Trajectory
     start : State, optional
+        The state from which the run starts; needed for the derivatives of the flight to the first touch.
 
     Attributes
     ----------
     tangent : ndarray, shape (2 n_modes + 2, columns)
-        Those of (u, v, S, C) where the motion has been retraced to; to be set before the first step.
-    late : dict of int to ndarray, shape (columns,)
-        By how much later touch number i comes along each of them [s].
+        Tangents of (u, v, S, C) at the time reached; to be set before the first step.
+    impact_time : dict of int to ndarray, shape (columns,)
+        Derivatives of the start of touch number i along each tangent [s].
 
-    Raises
-    ------
-    NoDerivative
-        If the motion grazes the stop, or comes to rest on it.
+    NoDerivative is raised if the motion grazes the stop, or comes to rest on it.
     """
 
-    def __init__(self, changes: Changes, run: Trajectory, start: State | None = None) -> None:
-        self.vary, self.oscillator, met = changes.variation, changes.oscillator, run.impacts
-        motion, n = self.vary.motion, self.oscillator.n_modes
+    def __init__(self, sensitivities: Sensitivities, run: Trajectory, start: State | None = None) -> None:
+        self.vary, n, met = sensitivities.variation, sensitivities.oscillator.n_modes, run.impacts
+        motion = self.vary.motion
         words = "touches the stop", "grazes the stop", "comes to rest on the stop", "starts in the stop"
         for i in np.flatnonzero(met.kind != ImpactKind.IMPACT):
             at, detail = float(met.start[i]), f"it {words[met.kind[i]]} there"
             raise NoDerivative(time=at, gap=0.0, velocity=float(met.approach[i]), detail=detail)
         self.start, self.end = met.start, np.nan_to_num(met.end, nan=np.inf)
-        self.approach = met.approach
-        q, q_rate = steady_motion(motion, self.start % motion.period)
-        self._touch = met.displacement_start - q, met.velocity_start - q_rate
-        self.tangent = np.zeros((2 * n + 2, len(self.vary.rest)))
-        self.late = dict[int, Array]()
+        self.approach, self._phase, self._touch = met.approach, met.clock, met.deviations_start
+        self.tangent = np.zeros((2 * n + 2, len(self.vary.scalars)))
+        self.impact_time = dict[int, Array]()
         self._i, self.clock, self.u, self.v = 0, 0.0, np.zeros(n), np.zeros(n)
         if start is not None:
             self.clock = start.time
@@ -82,30 +80,30 @@ class Retraced:
             self.u, self.v = start.displacement - q, start.velocity - q_rate
 
     def touching(self, times: float | Array) -> NDArray[np.bool_]:
-        """Whether the tip is in touch with the stop at `times` [s]."""
+        """Whether the tip is in contact with the stop at `times` [s]."""
         at = np.asarray(times)[..., None]
         return np.asarray(np.any((self.start < at) & (self.end > at), axis=-1))
 
     def to(self, time: float) -> Array:
-        """The tangents at `time` [s], later than where they are; shape (2 n_modes + 2, columns).
+        """The tangents at `time` [s], shape (2 n_modes + 2, columns); the time must not run back.
 
-        In a touch they are those there, and those kept remain before it.
+        If the time lies in a touch, `tangent` and `clock` stay before that touch.
         """
         while self._i < self.start.size and self.start[self._i] <= time:
-            i, n = self._i, self.oscillator.n_modes
-            at, (u, v) = float(self.start[i]), (part[i].copy() for part in self._touch)
+            i, n = self._i, self.u.size
+            at, phase, (u, v) = float(self.start[i]), float(self._phase[i]), self._touch[i].copy()
             self._fly(at)
-            phase = at % self.vary.motion.period
-            self.late[i] = -all_tip_changes(self.vary, self.tangent, u, v, phase)[0] / self.approach[i]
-            following = self.start[i + 1] if i + 1 < self.start.size else math.inf
-            until = min(time, float(following))
+            self.impact_time[i] = -all_tip_changes(self.vary, self.tangent, u, v, phase)[0] / self.approach[i]
+            until = min(time, self._next_touch(i + 1))
             tangent, record = self.tangent.copy(), np.empty((1, 4 + 2 * n))
             outcome = flow_from_touch(self.vary, phase, u, v, until - at, tangent, record)
             if outcome == TOUCHING and self.end[i] > time:
-                return self._waiting(tangent, u, v, at, time) if self.vary.motion.law == DELAYED else tangent
+                if waits(self.vary.motion):
+                    waiting_tangents(self.vary, tangent, (phase, u, v), time - at)
+                return tangent
             if outcome != FLOWN:
                 words = "a touch of the motion was lost on its way with derivatives"
-                raise lost(outcome, at, float(self.approach[i]), words)
+                raise flow_error(outcome, at, float(self.approach[i]), words)
             self.tangent, self.clock, self.u, self.v = tangent, until, u, v
             self._i += 1
         self._fly(time)
@@ -116,28 +114,20 @@ class Retraced:
         found, i = np.empty((len(times), len(self.tangent) - 2, self.tangent.shape[1])), 0
         while i < len(times):
             found[i], last = self.to(float(times[i]))[:-2], i + 1
-            if self.clock == times[i]:  # not in touch
-                following = self.start[self._i] if self._i < self.start.size else math.inf
-                last = max(last, int(np.searchsorted(times, following)))
+            if self.clock == times[i]:  # in flight
+                last = max(last, int(np.searchsorted(times, self._next_touch(self._i))))
                 ahead = times[i + 1 : last], found[i + 1 : last]
                 fly_through(self.vary, self.tangent, self.u, self.v, self.clock, *ahead)
                 self.clock = float(times[last - 1])
             i = last
         return found
 
-    def _waiting(self, tangent: Array, u: Array, v: Array, at: float, time: float) -> Array:
-        """The tangents at `time` [s], when the tip waits on the stop since `at`, as the drive leaves them to
-        the one mode."""
-        motion = self.vary.motion
-        phase = at % motion.period
-        tangent_flight(self.vary, tangent, u, v, phase, time - at)
-        tangent[:2] = 0.0
-        reach, rate = all_tip_changes(self.vary, tangent, u, v, phase + time - at)
-        tangent[:2] = -np.array([reach, rate]) / motion.phi[0]
-        return tangent
+    def _next_touch(self, i: int) -> float:
+        """Start of touch number `i` [s]; infinity behind the last one."""
+        return float(self.start[i]) if i < self.start.size else math.inf
 
     def _fly(self, time: float) -> None:
-        """On to a time before the next touch."""
+        """Move on to a time before the next touch."""
         length = time - self.clock
         if length > 0.0:
             motion = self.vary.motion
@@ -146,15 +136,21 @@ class Retraced:
             self.clock = time
 
 
-def pace_of_deviations(oscillator: ImpactOscillator, q: Array, touching: bool, clock: float = 0.0) -> Array:
-    """d(u, v)/dt of the deviations in the state `q`, (2 n_modes,), or (..., 2 n_modes) off the stop, at
-    `clock` [s] after a strobe."""
+def deviation_rates(motion: Motion, u: Array, v: Array) -> Array:
+    """Time derivatives d(u, v)/dt of the deviations off the stop, (..., n_modes) -> (..., 2 n_modes)."""
+    return np.concatenate([v, -motion.decay * v - motion.omega**2 * u], axis=-1)
+
+
+def deviation_rates_at_strobe(oscillator: ImpactOscillator, q: Array, touching: bool) -> Array:
+    """Time derivatives d(u, v)/dt of the deviations in the state `q` = (q, q') at a strobe.
+
+    Off the stop `q` may have shape (..., 2 n_modes); if the tip is `touching` it has shape (2 n_modes,).
+    """
     motion, n = oscillator.motion(), oscillator.n_modes
-    steady, steady_rate = steady_motion(motion, clock)
-    u, v = q[..., :n] - steady, q[..., n:] - steady_rate
-    slowing = -motion.decay * v - motion.omega**2 * u
-    if touching and motion.law == DELAYED:  # the tip rests, and the mode follows the drive
-        slowing = motion.drive**2 * steady
-    elif touching and (reach := oscillator.tip(q[:n]) - motion.gap) > 0.0:
-        slowing = slowing - motion.phi * force(motion, reach, oscillator.tip(q[n:]))
-    return np.concatenate([v, slowing], axis=-1)
+    steady, steady_rate = steady_motion(motion, 0.0)
+    rates = deviation_rates(motion, q[..., :n] - steady, q[..., n:] - steady_rate)
+    if touching and waits(motion):
+        rates[n:] = waiting_acceleration(motion, steady)
+    elif touching and (depth := oscillator.tip(q[:n]) - motion.gap) > 0.0:
+        rates[n:] -= motion.phi * force(motion, depth, oscillator.tip(q[n:]))
+    return rates

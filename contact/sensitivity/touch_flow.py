@@ -1,11 +1,11 @@
-"""From touch to touch with derivatives: the flow that periodic orbits are made of.
+"""The flow from touch to touch with its derivatives, of which periodic orbits are made.
 
-Starting at a touch, y = 0, the flow runs through a given number of contacts and then freely to the end of m
-drive periods, the wall ignored after the last of them: it is therefore smooth in the start right through
-grazing, where the strobe map has its square root.  Amplitude and phase of the drive are ordinary initial
-values (``contact.flight.variation``).  Flights and touches are those of the simulation (``contact.flight``,
-``contact.touch``); the tangents go through flights with the flows of the modes, through contacts with their
-series, and through what happens at once by saltation matrices.
+The flow starts at a touch, y = 0, and runs through a given number of contacts.  After the last one it goes on
+freely to the end of m drive periods, the wall ignored.  It is therefore smooth in the start through grazing,
+where the strobe map has its square root.  Amplitude and phase of the drive are ordinary initial values
+(``contact.flight.variation``).  Flights and touches are computed as in the simulation (``contact.flight``,
+``contact.touch``).  Tangents go through flights with the flows of the modes, through contacts with their
+series, and through instantaneous impacts by saltation matrices.
 """
 
 from __future__ import annotations
@@ -20,33 +20,33 @@ from contact.engine.event_loop import STATE
 from contact.errors import ContactError, ContactTooStiff, NotPeriodic
 from contact.flight.crossing import CROSSES, first_crossing
 from contact.flight.modal_flow import propagate, tip_state
-from contact.flight.variation import Variation, onset, tangent_flight, variation
+from contact.flight.variation import Variation, force_jump, tangent_flight, variation
 from contact.machine.compiled import borrowed, held, kernel, part
 from contact.oscillator import ImpactOscillator
 from contact.touch.series import new_series
-from contact.touch.tangent_series import new_room, tangent_step
+from contact.touch.tangent_series import new_tangent_workspace, tangent_step
 from contact.trajectory import CONTACT, OUTSIDE, SUSTAINED
 
 Array = NDArray[np.float64]
 FLOWN, FEWER_TOUCHES, FAILED, TOUCHING, TOO_STIFF = range(5)
-"""Outcomes: at the end, the wall ignored after the last touch; too few touches; lost; at the end, which falls
-into the last touch of a force law; a touch with more than `MOST_STEPS`."""
+"""Outcomes of a flow: it reached its end; it has too few touches; it was lost; its end falls into the last
+touch of a force law; a touch needs more than `MOST_STEPS`."""
 
 MOST_STEPS = 800
-"""Bound of contact steps in one touch: they cover 1600 radians of the fastest mode, fifty times the longest
+"""Bound of contact steps in one touch.  They cover 1600 radians of the fastest mode, fifty times the longest
 contact of the letter's beam."""
 
 
 @part
 def through_touch(vary, run, u, v, end, tangent, record):
-    """From a touch to its release, at most to the drive time `end` [s]; FEWER_TOUCHES is no outcome.
+    """Follow a touch to its release, at most to the drive time `end` [s]; never FEWER_TOUCHES.
 
-    `record` gets approach and rebound velocity.
+    Approach and rebound velocity are written to `record`.
     """
     motion, with_tangent = vary.motion, tangent.shape[1] > 0
-    order, columns = touch.room(motion)
+    order, columns = touch.series_size(motion)
     series = new_series(order, columns)
-    room = new_room(order if with_tangent else 0, tangent.shape[0], tangent.shape[1])
+    space = new_tangent_workspace(order if with_tangent else 0, tangent.shape[0], tangent.shape[1])
     approach = tip_state(motion, run.clock, u, v)[1]
     record[2] = approach
     if not approach > 0.0:
@@ -54,9 +54,9 @@ def through_touch(vary, run, u, v, end, tangent, record):
     before = (run.clock, u.copy(), v.copy())
     run.regime, rebound, _loss = touch.strike(motion, run, u, v, approach)
     if run.regime == SUSTAINED:  # accumulating impacts are followed one by one
-        run.regime, run.order = OUTSIDE, 1 if rebound < 0.0 else 2
+        run.regime, run.contact_order = OUTSIDE, 1 if rebound < 0.0 else 2
     if with_tangent and run.regime == CONTACT:
-        onset(vary, touch.force(motion, 0.0, approach), approach, tangent, before)
+        force_jump(vary, touch.force(motion, 0.0, approach), approach, tangent, before)
     steps = 0
     while run.regime != OUTSIDE:
         if not run.clock < end:
@@ -66,9 +66,9 @@ def through_touch(vary, run, u, v, end, tangent, record):
         if steps > MOST_STEPS or not (0.0 <= h < math.inf):
             return TOO_STIFF
         if with_tangent:
-            terms = touch.slopes(motion, run, series, room.weights)
+            terms = touch.slopes(motion, run, series, space.weights)
             if terms > 0:
-                tangent_step(vary, room, terms, s, tangent, (run.clock, u, v))
+                tangent_step(vary, space, terms, s, tangent, (run.clock, u, v))
         touch.state(motion, run, s, series, u, v)
         run.regime, run.clock = following, run.clock + h
         if following == OUTSIDE:
@@ -102,12 +102,13 @@ def flow_from_touch(vary, base, u, v, duration, tangent, record):
     duration : float
         m/f [s].
     tangent : ndarray, shape (2 n_modes + 2, columns)
-        Tangents of (u, v, S, C), the last ones those of the parameters of `vary`; overwritten by those at the
-        end.  From the unit matrix come the derivatives with respect to the start; without columns nothing.
+        Tangents of (u, v, S, C), overwritten by their values at the end; the last columns belong to the
+        parameters of `vary`.  The unit matrix turns into the derivatives with respect to the start.  Without
+        columns no tangents are computed.
     record : ndarray, shape (touches, 4 + 2 n_modes)
-        Its length tells how many contacts to go through; in the last flight the wall is ignored.  Results:
-        start and end of each contact since the first touch [s], approach and rebound velocity [m/s],
-        deviations (u, v) at its end.  The rebound velocity is zero only after an impact that gives none.
+        One row for each contact to go through; in the last flight the wall is ignored.  Results: start and
+        end of each contact since the first touch [s], approach and rebound velocity [m/s], deviations (u, v)
+        at its end.  The rebound velocity is zero only after an impact that gives none.
 
     Returns
     -------
@@ -122,7 +123,7 @@ def flow_from_touch(vary, base, u, v, duration, tangent, record):
     run.clock = base
     for i in range(record.shape[0]):
         if i > 0:
-            crossing, s = first_crossing(vary.motion, run.clock, u, v, end - run.clock, run.order)
+            crossing, s = first_crossing(vary.motion, run.clock, u, v, end - run.clock, run.contact_order)
             if crossing != CROSSES:
                 outcome = FEWER_TOUCHES
                 break
@@ -145,15 +146,15 @@ def flow_from_touch(vary, base, u, v, duration, tangent, record):
     return outcome
 
 
-def lost(outcome: int, time: float, velocity: float, detail: str) -> ContactError:
-    """The error of a flow from a touch at `time` [s] with `velocity` [m/s] that has not reached its end."""
+def flow_error(outcome: int, time: float, velocity: float, detail: str) -> ContactError:
+    """The error of a flow that did not reach its end, from a touch at `time` [s] with `velocity` [m/s]."""
     if outcome == TOO_STIFF:
         detail = f"more than {MOST_STEPS} steps in one touch, or a step of no length"
         return ContactTooStiff(time=time, gap=0.0, velocity=velocity, detail=detail)
     return NotPeriodic(time=time, gap=0.0, velocity=velocity, detail=detail)
 
 
-def flown(
+def flow_over_periods(
     oscillator: ImpactOscillator,
     period: int,
     phase: float,
@@ -161,23 +162,19 @@ def flown(
     touches: int,
     vary: Variation | None = None,
 ) -> tuple[Array, Array, Array]:
-    """The flow over m = `period` drive periods from a touch: its end, tangent and record, as
-    `flow_from_touch` gives them, from the `deviations` (u, v), shape (2 n_modes,), at drive time `phase` [s].
+    """The flow over m = `period` drive periods from a touch at drive time `phase` [s].
 
-    The tangents are those of (u, v, S, C), and of the parameters of `vary`.
+    It starts from the `deviations` (u, v), shape (2 n_modes,).  Returned are (u, v) at the end, the tangents
+    with respect to (u, v, S, C) and the parameters of `vary`, and the record of `flow_from_touch`.
 
-    Raises
-    ------
-    NotPeriodic
-        If the motion has fewer touches, or a contact does not end.
-    ContactTooStiff
-        If a contact needs more steps than the bound allows.
+    NotPeriodic is raised if the motion has fewer touches or a contact does not end, and ContactTooStiff if a
+    contact needs more than `MOST_STEPS`.
     """
     (u, v), size, duration = deviations.reshape(2, -1).copy(), deviations.size, period * oscillator.period
     vary = variation(oscillator.motion(), oscillator.tip_response()) if vary is None else vary
-    tangent, record = np.eye(size + 2, size + 2 + len(vary.rest)), np.empty((touches, 4 + size))
+    tangent, record = np.eye(size + 2, size + 2 + len(vary.scalars)), np.empty((touches, 4 + size))
     outcome = flow_from_touch(vary, phase, u, v, duration, tangent, record)
     if outcome != FLOWN:
         words = f"an orbit of period {period} with {touches} touches was lost"
-        raise lost(outcome, phase, float(record[0, 2]), words)
+        raise flow_error(outcome, phase, float(record[0, 2]), words)
     return np.concatenate([u, v]), tangent, record

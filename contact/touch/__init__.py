@@ -1,43 +1,47 @@
-"""In touch with the stop: one file a law, chosen by the table at the end of this one.
+"""In touch with the stop: one file a law, chosen by the table `TOUCHES`.
 
 How to add a law, say N = k d^3
-    1. Its parameters: a frozen dataclass that is a ``contact.laws.ContactLaw``, with a `code` that no other
-       has and its `numbers`.
-    2. Its file here, with the names below.  A force that has a power series in time takes most of them from
-       ``contact.touch.time_series``: it fills N[n] from d[0] ... d[n] (for the cube by two products of
-       series), calls `extend` for the next order, and asks `longest_step` how far the series holds.  One
+    1. Its file here, ``cubic.py``, with two parts.  The first is a frozen dataclass of its parameters, a
+       ``contact.laws.ContactLaw``: the fields, their `units`, and a `code` that no other law has.  The second
+       is the names listed below.  For a force that is a polynomial in d and d' follow
+       ``contact.touch.linear``: only `force`, `stiffness`, `step` and `slopes` are new.  `step` computes N[n]
+       from d[0] ... d[n] (the cube by two products of series) and calls `extend` for the next order.  A force
        with a root at d = 0 needs a variable in which it has none: ``contact.touch.hertz``.
-    3. Its line in `TOUCHES`.
+    2. Its place in `TOUCHES`.
+    3. Its export in ``contact/__init__.py``.
     4. A test: the contact of a free mass conserves energy, and agrees with an outside solver.
+To read for this: `ContactLaw`, ``linear``, ``time_series``, and `Series` in ``contact.touch.series``.
 
-What a file offers.  `motion` is the oscillator, `run` where it stands (``contact.engine.event_loop.STATE``),
-(u, v) its deviations, `series` the room of one step.
-    LAW                                       its name in words
+What a file offers.  `motion` is the oscillator, `run` the state of the run
+(``contact.engine.event_loop.STATE``), (u, v) are the deviations, and `series` is the workspace of one step.
+    LAW, METHOD                               the law in words; the name of its exact method
     REGIMES                                   where the tip can be: ``contact.trajectory.Regime``
-    room(motion) -> order, columns            size of the room of a step
+    series_size(motion) -> order, columns     size of the workspace of one step
     strike(motion, run, u, v, approach) -> regime, rebound, loss
-                                              what the touch does at once: the regime that follows, the tip
-                                              velocity after it (NaN if not known yet) [m/s], energy lost [J]
+                                              the immediate effect of a touch: the regime that follows, the
+                                              tip velocity after it (NaN if not known yet) [m/s], and the
+                                              energy lost [J]
     step(motion, run, u, v, limit, series) -> s, h, regime
-                                              the series from (u, v), and a step of at most `limit` [s]: its
-                                              length in the law's own variable and in time, and the regime
-                                              that follows; NaN if the series gives no step
-    place(motion, t, s, series) -> s          where in a step up to s a time t [s] lies
-    state(motion, run, s, series, u, v)       puts the deviations there into (u, v)
-    work(motion, run, s, series) -> energy    what the stop has taken up to there [J]
-    leave(motion, run, u, v)                  the release: run.order, how many derivatives of d vanish
-    force(numbers, d, d') -> N                for the methods with a time step, at d >= 0
-    stiffness(numbers, d, d') -> dN/dd, dN/dd'
+                                              computes the series from (u, v) and a step of at most `limit`
+                                              [s]: its length s in the law's own variable, its length h [s],
+                                              and the regime that follows; NaN if the series gives no step
+    series_variable(motion, t, s, series)     the variable of the series a time t [s] into a step up to s
+    state(motion, run, s, series, u, v)       writes the deviations there into (u, v)
+    work(motion, run, s, series)              work done on the stop up to there [J]
+    leave(motion, run, u, v)                  sets run.contact_order for the flight after the release
+    force(motion, d, d') -> N                 for the methods with a time step, at d >= 0
+    stiffness(motion, d, d') -> dN/dd, dN/dd'
     slopes(motion, run, series, weights) -> terms
-                                              for the tangents: the series of dt/ds, dN/dd dt/ds and dN/dd'
-                                              dt/ds in three rows, and how many terms they have; behind them
-                                              those of N dt/ds and its derivatives with respect to the numbers
+                                              fills the series that the tangents need
+                                              (``contact.touch.tangent_series.Weights``); returns the number
+                                              of terms of the first three
     saltation(motion, vary, before, after, tangent)
-                                              for the tangents: what the touch does besides; (drive time, u,
-                                              v) before and after it
+                                              the immediate effect of a touch on the tangents; `before` and
+                                              `after` are (drive time, u, v)
+A law with the regime WAITING has three more functions: see ``contact.touch.delayed``.
 
-A code that no file has is an error wherever a law is asked for.  Compiled code takes no functions as
-arguments: `by_law` links the files of the table into one kernel for each function.
+An unknown code is an error wherever a law is needed.  A kernel takes no functions as arguments; `by_law`
+therefore links the files of the table into one compiled function for each name.
 """
 
 from __future__ import annotations
@@ -46,14 +50,24 @@ import inspect
 from collections.abc import Callable
 from typing import TypeVar
 
+from contact.flight.motion import Motion
 from contact.laws import DELAYED, HERTZ, LINEAR, NEWTON
 from contact.machine.compiled import part
 from contact.touch import delayed, hertz, linear, newton
+from contact.trajectory import WAITING
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
 TOUCHES = {NEWTON: newton, DELAYED: delayed, LINEAR: linear, HERTZ: hertz}
 """The file of each law by its code."""
+
+COMPILED = "series_size strike step series_variable state work leave force stiffness slopes saltation"
+"""The compiled functions of a law's file."""
+
+
+def waits(motion: Motion) -> bool:
+    """Whether the law holds the tip on the wall for a time of its own, whatever pulls at it."""
+    return WAITING in TOUCHES[motion.law].REGIMES
 
 
 def by_law(functions: dict[int, Function]) -> Function:
@@ -68,19 +82,6 @@ def by_law(functions: dict[int, Function]) -> Function:
     return part(names["chosen"])
 
 
-room, strike, step, place, state, work, leave, force, stiffness, slopes, saltation = (
-    by_law({code: getattr(file, name) for code, file in TOUCHES.items()})
-    for name in (
-        "room",
-        "strike",
-        "step",
-        "place",
-        "state",
-        "work",
-        "leave",
-        "force",
-        "stiffness",
-        "slopes",
-        "saltation",
-    )
+series_size, strike, step, series_variable, state, work, leave, force, stiffness, slopes, saltation = (
+    by_law({code: getattr(file, name) for code, file in TOUCHES.items()}) for name in COMPILED.split()
 )

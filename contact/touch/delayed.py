@@ -1,52 +1,61 @@
-"""A rebound that waits: the tip stays on the wall for a time, then leaves (``DelayedRestitution``).
+"""A rebound that waits: the tip stays on the wall for a time, then leaves (``DelayedRestitution``, one mode).
 
-One mode, met at time t with approach velocity v = y'(t) > 0, tau and delta the law's two numbers at this
-speed, sampled in a table with their slopes.  At t + delta the tip, y = phi u + a S + b C + level, has
+The touch is at time t with approach velocity v = y'(t) > 0; tau and delta are the law's restitution and delay
+at this speed, sampled in a table with their slopes.  At t + delta the tip, y = phi u + a S + b C + level, has
 
     y = 0,      y' = -tau(v) v,
 
-while the drive (S, C) has turned by w delta: the deviations (u, u') on the wall (regime WAITING) and after it
-are linear in the drive, and hold nothing of those before the touch but v.
+while the drive (S, C) has turned by w delta.  The deviations (u, u') on the wall (regime WAITING) and after
+it are linear in the drive; of the motion before the touch only v matters.
 
-A neighbour whose tip stands `reach` higher at t, and moves faster by `rate`, comes to the stop later by
-dt = -reach/v, hits it faster by dv = rate + y''(t) dt, and leaves it later by d = dt + delta' dv.  Seen at
-t + delta, its tip there differs by
+**Tangents.** Let a neighbour stand `height` higher at t and move faster by `rate`.  It touches later by
+dt = -height/v, hits the stop faster by dv = rate + y''(t) dt, and leaves it later by d = dt + delta' dv.  At
+t + delta its tip therefore differs by
 
-    reach -> tau v d,      rate -> -(tau + tau' v) dv - y''(t + delta) d,
+    height -> tau v d,      rate -> -(tau + tau' v) dv - y''(t + delta) d,
 
-the saltation matrix of this law, of determinant tau (tau + tau' v); without delay and slopes that of
-Newton's.
+the saltation matrix of this law, of determinant tau (tau + tau' v).  Without delay and slopes it is that of
+Newton's law.
+
+**Orbits.** One touch in m drive periods has a closed form.  With (p, r) the steady tip displacement and
+velocity at the touch, R their turn by the angle w delta and N the free flow over m/f - delta, the tip leaves
+with the deviation (gap, -tau v) - R (p, r) and comes back with (gap, v) - (p, r):
+
+    (I - N R) (p, r) = (gap, v) - N (gap, -tau v),      A(v)^2 = p^2 + (r/(2 pi f))^2.
+
+A law with the regime WAITING has these three functions besides those of ``contact.touch``:
+    waiting_tangents(vary, tangent, start, length)   the tangents at a time within the wait
+    waiting_acceleration(motion, steady)             d^2 u/dt^2 during the wait
+    repeated_touch(motion, speed, period)            the touch of the orbit above
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from contact.flight.modal_flow import push_on, tip_state
-from contact.flight.variation import FIRST, all_tip_changes, tangent_flight
+from contact.errors import NotPeriodic
+from contact.flight.modal_flow import free_flow, push_on, tip_state
+from contact.flight.variation import NUMBER0, NUMBER1, all_tip_changes, tangent_flight
 from contact.machine.compiled import kernel, part
 from contact.touch import newton
 from contact.trajectory import OUTSIDE, WAITING
 
-LAW = "DelayedRestitution"
+LAW, METHOD = "DelayedRestitution", "event-driven"
 REGIMES = (OUTSIDE, WAITING)
 
-force, stiffness, slopes, room, place, work = (
-    newton.force,
-    newton.stiffness,
-    newton.slopes,
-    newton.room,
-    newton.place,
-    newton.work,
-)
+force, stiffness, slopes = newton.force, newton.stiffness, newton.slopes
+series_size, series_variable, work = newton.series_size, newton.series_variable, newton.work
 
 RESTITUTION, DELAY = 1, 3
-"""Rows of the table, each with its slope behind; the first holds the approach speeds."""
+"""Rows of the table, each followed by its slope; row 0 holds the approach speeds."""
+
+SINGULAR = 1e-13
+"""A determinant of I - N R below this is rounding of terms of size 1: the mode is back after m/f."""
 
 
 @kernel
 def hermite(table, row, low, high, h, s):
-    """Value and slope of row `row` at the part `s` of the way `h` [m/s] between two columns."""
+    """Value and slope of row `row` at the part `s` of the interval `h` [m/s] between two columns."""
     a, b = table[row, low], table[row, high]
     da, db = h * table[row + 1, low], h * table[row + 1, high]
     square, cube = 3.0 * (b - a) - 2.0 * da - db, 2.0 * (a - b) + da + db
@@ -57,7 +66,7 @@ def hermite(table, row, low, high, h, s):
 def numbers_at(table, speed):
     """Restitution [1], its slope [s/m], delay [s] and its slope [s^2/m] at an approach speed [m/s].
 
-    They are those of the cubics through values and slopes of a law's table; beyond it the end values hold.
+    They are interpolated by cubics through values and slopes of the law's table; beyond it they are constant.
     """
     n = table.shape[1]
     if speed <= table[0, 0]:
@@ -78,7 +87,7 @@ def strike(motion, run, u, v, approach):
     """The touch: how long the tip will wait, and with which velocity it will leave."""
     restitution, _slope, run.wait, _slope = numbers_at(motion.table, approach)
     run.rebound = -restitution * approach
-    return WAITING, run.rebound, 0.5 * (approach * approach - run.rebound**2) / motion.compliance
+    return WAITING, run.rebound, 0.5 * (approach * approach - run.rebound**2) / motion.inverse_mass
 
 
 @part
@@ -100,31 +109,79 @@ def state(motion, run, h, series, u, v):
 def leave(motion, run, u, v):
     """The rebound."""
     newton.newton_impact(motion, v, -run.rebound, 0.0)
-    run.order = 1 if run.rebound < 0.0 else 2
+    run.contact_order = 1 if run.rebound < 0.0 else 2
 
 
 @kernel
 def saltation(motion, vary, before, after, tangent):
-    """The tangents over the touch, with the wait; see ``contact.touch``."""
-    share = push_on(motion, 0, -1.0 / motion.compliance)  # of the one mode in a change at the tip: 1/phi
+    """The effect of touch and wait on the tangents."""
+    share = push_on(motion, 0, -1.0 / motion.inverse_mass)  # 1/phi: change of the mode per change of the tip
     clock, u, v = before
     _height, approach, pull_in = tip_state(motion, clock, u, v)
     restitution, restitution_slope, delay, delay_slope = numbers_at(motion.table, approach)
     _height, _velocity, pull_out = tip_state(motion, after[0], after[1], after[2])
-    reach, rate = all_tip_changes(vary, tangent, u, v, clock)
-    first = reach.size - len(vary.rest)
-    for j in range(reach.size):
-        late = -reach[j] / approach
+    height, rate = all_tip_changes(vary, tangent, u, v, clock)
+    first = height.size - len(vary.scalars)
+    for j in range(height.size):
+        late = -height[j] / approach
         faster = rate[j] + pull_in * late
         late += delay_slope * faster
         slower = -(restitution + restitution_slope * approach) * faster
         if j >= first:
-            late += vary.rest[j - first, FIRST + 1]
-            slower -= vary.rest[j - first, FIRST] * approach
-        reach[j], rate[j] = restitution * approach * late, slower - pull_out * late
-    # (u, v) after the wait are what is left to the mode; the drive turns as in a flight
+            late += vary.scalars[j - first, NUMBER1]
+            slower -= vary.scalars[j - first, NUMBER0] * approach
+        height[j], rate[j] = restitution * approach * late, slower - pull_out * late
+    # only the drive keeps its tangents over the wait; the mode follows from height and rate of the tip
     tangent_flight(vary, tangent, np.zeros(1), np.zeros(1), clock, delay)
     tangent[:2] = 0.0
     own = all_tip_changes(vary, tangent, after[1], after[2], after[0])
-    for j in range(reach.size):
-        tangent[0, j], tangent[1, j] = share * (reach[j] - own[0][j]), share * (rate[j] - own[1][j])
+    for j in range(height.size):
+        tangent[0, j], tangent[1, j] = share * (height[j] - own[0][j]), share * (rate[j] - own[1][j])
+
+
+def waiting_tangents(vary, tangent, start, length):
+    """Carry the tangents of a touch at `start`, (drive time, u, v), over a `length` [s] of its wait."""
+    clock, u, v = start
+    tangent_flight(vary, tangent, u, v, clock, length)
+    tangent[:2] = 0.0
+    height, rate = all_tip_changes(vary, tangent, u, v, clock + length)
+    tangent[:2] = -np.array([height, rate]) / vary.motion.phi[0]
+
+
+def waiting_acceleration(motion, steady):
+    """d^2 u/dt^2 during the wait, from the `steady` displacement of the mode, which follows the drive."""
+    return motion.drive**2 * steady
+
+
+def repeated_touch(motion, speed, period):
+    """The touch with approach `speed` [m/s] that repeats after m = `period` drive periods.
+
+    Returns
+    -------
+    jump : ndarray, shape (1, 2)
+        Jumps of the mode and its velocity, referred to the touch by the free flow.
+    delay : float
+        Length of the wait [s].
+    leaves : bool
+        Whether the tip leaves with a velocity.
+
+    Raises
+    ------
+    NotPeriodic
+        If the delay takes up the m periods, or the mode is back after them.
+    """
+    gap = motion.gap
+    restitution, _slope, delay, _slope = numbers_at(motion.table, speed)
+    left = period * motion.period - delay
+    w, angle = motion.drive, motion.drive * delay
+    turn = np.array([[np.cos(angle), np.sin(angle) / w], [-w * np.sin(angle), np.cos(angle)]])
+    before, after = np.array([gap, speed]), np.array([gap, -restitution * speed])
+    flow = free_flow(motion, max(left, 0.0))[0]
+    back = np.eye(2) - flow @ turn
+    if left <= 0.0 or abs(np.linalg.det(back)) <= SINGULAR:
+        detail = f"no orbit of period {period} has a touch that waits for {delay:g} s"
+        raise NotPeriodic(time=delay, gap=0.0, velocity=speed, detail=detail)
+    steady = np.linalg.solve(back, before - flow @ after)
+    met, left_with = before - steady, after - turn @ steady
+    jump = free_flow(motion, -delay)[0] @ left_with - met
+    return motion.least_change(jump), float(delay), restitution > 0.0

@@ -1,24 +1,24 @@
 """A ball on a plate: N = k d^(3/2) (1 + chi d') for d > 0 (``HertzContact``; ``HuntCrossley`` for chi > 0).
 
-The force has no Taylor series at the touch d = 0, where every contact begins and ends.  With r = sqrt(d) as
-an unknown of its own and a variable sigma that runs slowly while the contact is shallow,
+The force has no Taylor series at d = 0, where every contact begins and ends.  Take r = sqrt(d) as an unknown
+of its own, and a variable sigma that runs slowly while the contact is shallow:
 
     dt/dsigma = r,  dr/dsigma = d'/2,  du/dsigma = r v,  dv/dsigma = r (g - c v - omega^2 u) - phi_k r N,
     dd/dsigma = r d',  r N = k (r^4 + chi r^4 d'),  d' = sum phi_k v + x_s'(t),
 
-all right-hand sides are polynomials: the motion is analytic right through touch and release (r changes sign
-there; the substitution is Sundman's, Acta Math. 36 (1913) 105).  Each is r times something, so that the
-coefficients of one order follow from one set of sums over the orders before,
+All right-hand sides are polynomials, so that the motion is analytic through touch and release, where r
+changes sign (the substitution is Sundman's, Acta Math. 36 (1913) 105).  Each contains the factor r.  The
+coefficients of one order therefore follow from one set of sums over the orders before,
 
     sum_j r_(n-j) x_j    for x = d', d, r d, sin(w t), cos(w t), all u and all v,
 
-which fill the columns of one array and are taken eight at a time (``contact.machine.vector_loops``).  The
-term with the newest x_n is added apart: nothing waits for it.  Cost per step: modes times the square of the
-order.
+which fill the columns of one array and are computed eight at a time (``contact.machine.vector_loops``).  The
+term with the newest x_n is added separately, so that no sum waits for it.  The cost of a step is the number
+of modes times the square of the order.
 
-A step holds up to the sigma at which the last terms, in every mode and in r, reach `TOLERANCE` of the modal
-speeds, so that the energy of a lossless contact is conserved to that order.  It ends earlier where r falls to
-zero: the release.
+A step ends at the sigma at which the last terms, in every mode and in r, reach `TOLERANCE` of the modal
+speeds.  The energy of a lossless contact is conserved to that order.  A step ends earlier at the release,
+where r falls to zero.
 """
 
 from __future__ import annotations
@@ -31,43 +31,41 @@ from contact.flight.elementary import EPS, sine_cosine
 from contact.flight.modal_flow import speed_scale, tip_state, tip_sum
 from contact.flight.motion import SQUARE
 from contact.flight.polynomial_root import first_polynomial_root, horner, polynomial_root
-from contact.flight.variation import FORCES
 from contact.machine.compiled import kernel, part
 from contact.machine.vector_loops import LANES, next_modes, weighted_rows
-from contact.touch.series import enter, powers_of, reach, within_force, work_of
-from contact.touch.series import leave as leave
-from contact.touch.series import saltation as saltation
+from contact.touch import series as shared
+from contact.touch.series import limited_by_force, log_longest, powers_of, work_of
 from contact.trajectory import CONTACT, OUTSIDE
 
-LAW = "HertzContact or HuntCrossley"
+LAW, METHOD = "HertzContact or HuntCrossley", "contact-series"
 REGIMES = (OUTSIDE, CONTACT)
 
 ORDER = 20
 """Order of the series in sigma, even: the cost per unit of time is flat to ten per cent from 16 to 24."""
 
 TOLERANCE = 1e-15
-"""Size of the last terms of a step, relative to the modal speeds: at the rounding of the sum of all terms."""
+"""Size of the last terms of a step relative to the modal speeds, at the rounding of the sum of all terms."""
 
 FAR = math.log(1.5)
-"""Logarithm of the factor by which the last term but one of r must fall short of the others' bound to count:
-where the modes take part, both ends of the series agree within it."""
+"""Logarithm of a factor.  The last term but one of r limits a step only if its bound is shorter than the
+others by this factor: where the modes take part, the last two terms agree within it."""
 
 SPEED, DEPTH, CUBE, SINE, COSINE = range(5)
-"""Columns of the series before the modes: d', d, r d, sin and cos of the drive."""
+"""Columns of the series in front of the modes: d', d, r d, sine and cosine of the drive."""
 
 ROOT, CLOCK, PUSH, POWERS, QUARTIC = range(5)
-"""Rows of the scalar series: r, time since the step's start, r N, powers of the sigma of a state, k r^4."""
+"""Rows of the scalar series: r, time since the start of the step, r N, powers of sigma, k r^4."""
 
 RELAXED = 3.0
-"""Longest step times the rate phi^2 dN/dd' at which the dissipation damps a disturbance: of exp(-3) a series
-of order 20 keeps ten digits, and beyond 8 its tangents grow instead, on a motion that does not show it."""
+"""Longest step times the rate phi^2 dN/dd' at which the dissipation damps a disturbance.  A series of order
+20 keeps ten digits of exp(-3).  Beyond 8 the tangents grow, although the motion does not show it."""
 
 _EDGE = TOLERANCE ** (1.0 / ORDER)
 
 INVERSE = 1.0 / np.maximum(1.0, np.arange(64.0))
 """1/n."""
 
-strike = enter
+strike, leave, saltation = shared.strike, shared.leave, shared.saltation
 
 
 @kernel
@@ -87,8 +85,8 @@ def stiffness(numbers, depth, rate):
 
 
 @part
-def room(motion):
-    """Order and columns of the series: five scalars, u from column 8 on, v behind."""
+def series_size(motion):
+    """Order and columns of the series: five scalars, then u from column 8 on, then v."""
     return ORDER, LANES + 2 * motion.modes.shape[1]
 
 
@@ -96,8 +94,8 @@ def room(motion):
 def fill(motion, base, u, v, series):
     """The Taylor coefficients in sigma of a contact that is at (u, v) at drive time `base` [s].
 
-    On entry scalars[ROOT, 0] holds r, which the caller carries along: computed anew from the tip displacement
-    it would lose its digits at shallow depth.
+    On entry scalars[ROOT, 0] holds r.  Computed anew from the tip displacement, r would lose its digits at
+    shallow depth.
     """
     rows, sums, modes, w = series.rows, series.sums, motion.modes, motion.drive
     a, b, stiffness, chi = motion.tip_sine, motion.tip_cosine, motion.number0, motion.number1
@@ -142,24 +140,21 @@ def fill(motion, base, u, v, series):
 
 @kernel
 def slopes(motion, run, series, weights):
-    """The series of r, r dN/dd = (3/2) k d (1 + chi d') and r dN/dd' = k chi d^2, from those of a step; of
-    r N, r N/k and r dN/dchi = k d^2 d'."""
-    rows, k, chi = series.rows, motion.number0, motion.number1
+    """The series for the tangents: r, r dN/dd = (3/2) k d (1 + chi d'), r dN/dd' = k chi d^2, r N, r N/k and
+    r dN/dchi = k d^2 d'."""
+    rows, k, chi, quartic = series.rows, motion.number0, motion.number1, series.scalars[QUARTIC]
     for n in range(ORDER + 1):
-        weights[0, n] = series.scalars[ROOT, n]
-        weights[1, n], weights[2, n] = 1.5 * k * rows[n, DEPTH], 0.0
-        weights[FORCES, n] = series.scalars[PUSH, n]
-        weights[FORCES + 1, n] = series.scalars[PUSH, n] / k
+        weights.time[n], weights.force[n] = series.scalars[ROOT, n], series.scalars[PUSH, n]
+        weights.depth[n], weights.rate[n] = 1.5 * k * rows[n, DEPTH], 0.0
+        weights.first[n], weights.second[n], quartic[n] = weights.force[n] / k, 0.0, 0.0
         if chi != 0.0:
             for i in range(n + 1):
-                weights[1, n] += 1.5 * k * chi * rows[i, DEPTH] * rows[n - i, SPEED]
-                weights[2, n] += k * chi * rows[i, DEPTH] * rows[n - i, DEPTH]
-    quartic = series.scalars[QUARTIC]
-    for n in range(ORDER + 1):
-        quartic[n], weights[FORCES + 2, n] = 0.0, 0.0
+                weights.depth[n] += 1.5 * k * chi * rows[i, DEPTH] * rows[n - i, SPEED]
+                weights.rate[n] += k * chi * rows[i, DEPTH] * rows[n - i, DEPTH]
         for i in range(n + 1):
             quartic[n] += k * rows[i, DEPTH] * rows[n - i, DEPTH]
-            weights[FORCES + 2, n] += quartic[i] * rows[n - i, SPEED]
+        for i in range(n + 1):
+            weights.second[n] += quartic[i] * rows[n - i, SPEED]
     return ORDER + 1
 
 
@@ -179,24 +174,26 @@ def longest_step(motion, speed, series):
     p, r = ORDER, series.scalars[ROOT]
     allowed = TOLERANCE * speed
     power = min(
-        reach(greatest_speed(motion.modes, series.rows, p), p, allowed),
-        reach(greatest_speed(motion.modes, series.rows, p - 1), p - 1, allowed),
+        log_longest(greatest_speed(motion.modes, series.rows, p), p, allowed),
+        log_longest(greatest_speed(motion.modes, series.rows, p - 1), p - 1, allowed),
     )
-    # r must be resolved as well as the modes, relative to the larger of its first two terms; under a contact
-    # so soft that the modes give no bound, r is odd in sigma and its last term alone gives none either
+    # r must be resolved as well as the modes, relative to the larger of its first two terms.  Under a contact
+    # so soft that the modes give no bound, r is odd in sigma, and its last term alone gives no bound either.
     for n in (p, p - 1):
         if r[n] != 0.0 and (r[0] != 0.0 or r[1] != 0.0):
-            whole = reach(abs(r[n]), n, TOLERANCE * abs(r[0])) if r[0] != 0.0 else -math.inf
-            linear = reach(abs(r[n]), n - 1, TOLERANCE * abs(r[1])) if r[1] != 0.0 else -math.inf
+            whole = log_longest(abs(r[n]), n, TOLERANCE * abs(r[0])) if r[0] != 0.0 else -math.inf
+            linear = log_longest(abs(r[n]), n - 1, TOLERANCE * abs(r[1])) if r[1] != 0.0 else -math.inf
             if n == p or max(whole, linear) < power - FAR:
                 power = min(power, max(whole, linear))
-    s = within_force(math.exp(power), series.scalars[PUSH], p - 1, math.sqrt(motion.compliance), speed, _EDGE)
+    s = limited_by_force(
+        math.exp(power), series.scalars[PUSH], p - 1, math.sqrt(motion.inverse_mass), speed, _EDGE
+    )
     if r[1] < 0.0 < r[0]:
-        # no further than well behind the release: with no force left the terms give no bound
+        # stop well behind the release: without a force the terms give no bound
         s = min(s, -4.0 * r[0] / r[1])
-    # the dissipation at the deeper end of the step
+    # the dissipation is largest at the deeper end of the step
     deep = max(r[0], horner(r, 1.0, 0.0, s)[0]) if s < math.inf else r[0]
-    return min(s, RELAXED / (motion.compliance * motion.number0 * motion.number1 * deep**4))
+    return min(s, RELAXED / (motion.inverse_mass * motion.number0 * motion.number1 * deep**4))
 
 
 @part
@@ -209,15 +206,15 @@ def release_in(r, s):
     start, drift = abs(r[0]), r[1] * s
     size = start + abs(drift) + rest
     margin = 2.0 * EPS * size
-    # r >= r_0 + (r_1 - rest/s) sigma if that grows, and r >= r_0 - |drift| - rest at any rate
+    # r >= r_0 + (r_1 - rest/s) sigma if this bound grows, and always r >= r_0 - |drift| - rest
     if drift - rest > margin or start - abs(drift) - rest > margin:
         return -1.0
     return first_polynomial_root(r, -1.0, s, EPS * size)
 
 
 @kernel
-def place(motion, t, end, series):
-    """The sigma, in a step up to `end`, at which a time `t` [s] has passed."""
+def series_variable(motion, t, end, series):
+    """The sigma at which a time `t` [s] has passed, in a step up to `end`."""
     return polynomial_root(series.scalars[CLOCK], 1.0, t, 0.0, end) if t > 0.0 else 0.0
 
 
@@ -239,7 +236,7 @@ def step(motion, run, u, v, limit, series):
         s, following = end, OUTSIDE
     length = horner(clock, 1.0, 0.0, s)[0]
     if length > limit:
-        s, length, following = place(motion, limit, s, series), limit, CONTACT
+        s, length, following = series_variable(motion, limit, s, series), limit, CONTACT
     run.root = horner(r, 1.0, 0.0, s)[0]
     return s, length, following
 

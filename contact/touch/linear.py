@@ -1,13 +1,12 @@
 """A linear stop: N = max(0, k d + c d') for d > 0 (``LinearContact``).
 
-With a dashpot the force vanishes before the tip has left the wall: the contact lets go inside (regime
-INSIDE), where the tip moves freely until it pushes again or leaves.  The series is that of
-``contact.touch.time_series`` with
+With a dashpot the force vanishes while the tip is still behind the wall (regime INSIDE): there it moves
+freely until it pushes again or leaves.  The series is that of ``contact.touch.time_series`` with
 
     N[n] = k d[n] + c (n+1) d[n+1].
 
-Motion in contact is linear, so that the propagation is the exponential of a matrix, summed to rounding
-(S. W. Shaw, P. J. Holmes, J. Sound Vib. 90 (1983) 129, for one mode).
+Motion in contact is linear: the series is that of a matrix exponential, summed to rounding (S. W. Shaw, P. J.
+Holmes, J. Sound Vib. 90 (1983) 129, for one mode).
 """
 
 from __future__ import annotations
@@ -17,20 +16,18 @@ import math
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import tip_rounding
 from contact.flight.polynomial_root import first_polynomial_root
-from contact.flight.variation import FORCES
 from contact.machine.compiled import kernel, part
+from contact.touch import series as shared
 from contact.touch import time_series
-from contact.touch.series import enter
-from contact.touch.series import leave as leave
-from contact.touch.series import saltation as saltation
 from contact.touch.time_series import DEPTH, FORCE, begin, extend, longest_step
 from contact.trajectory import CONTACT, INSIDE, OUTSIDE
 
-LAW = "LinearContact"
+LAW, METHOD = "LinearContact", "piecewise-linear"
 REGIMES = (OUTSIDE, CONTACT, INSIDE)
 
-strike = enter
-room, place, state, work = time_series.room, time_series.place, time_series.state, time_series.work
+strike, leave, saltation = shared.strike, shared.leave, shared.saltation
+series_size, series_variable = time_series.series_size, time_series.series_variable
+state, work = time_series.state, time_series.work
 
 
 @part
@@ -49,14 +46,14 @@ def stiffness(numbers, depth, rate):
 
 @part
 def slopes(motion, run, series, weights):
-    """The series of dN/dd and dN/dd', constants; of N, d and d'; none where the tip is behind the wall
-    without force."""
+    """The series for the tangents: dN/dd and dN/dd' are constants, and zero behind the wall without force."""
     pushes = 0.0 if run.regime == INSIDE else 1.0
-    weights[0, 0], weights[1, 0], weights[2, 0] = 1.0, pushes * motion.number0, pushes * motion.number1
+    weights.time[0] = 1.0
+    weights.depth[0], weights.rate[0] = pushes * motion.number0, pushes * motion.number1
     for n in range(time_series.ORDER):
         depth, rate = series.scalars[DEPTH, n], (n + 1.0) * series.scalars[DEPTH, n + 1]
-        weights[FORCES, n] = pushes * (motion.number0 * depth + motion.number1 * rate)
-        weights[FORCES + 1, n], weights[FORCES + 2, n] = pushes * depth, pushes * rate
+        weights.force[n] = pushes * (motion.number0 * depth + motion.number1 * rate)
+        weights.first[n], weights.second[n] = pushes * depth, pushes * rate
     return 1
 
 

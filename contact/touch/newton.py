@@ -4,11 +4,11 @@ The impulse of the stop acts on the tip alone, so that the modal velocities jump
 
     v_k -> v_k - phi_k (1 + e) x' / sum_j phi_j^2,
 
-which sends the tip velocity x' to -e x' (``NewtonRestitution``).  After an impact that leaves the tip with
-velocity -w while it is accelerated towards the wall with a > 0, the next flights last 2w/a, 2ew/a, ...: their
-sum 2w/(a(1 - e)) is finite, and when a hop has become so low that its height drowns in rounding the rest of
-the sequence is taken in one step.  Then the tip stays on the wall (regime SUSTAINED), held by the force that
-makes d'' = 0, until that force would pull; the series is that of ``contact.touch.time_series``.
+which sends the tip velocity x' to -e x' (``NewtonRestitution``).  Let an impact leave the tip with velocity
+-w while it is accelerated towards the wall with a > 0.  The next flights last 2w/a, 2ew/a, ..., and their sum
+2w/(a(1 - e)) is finite.  Once the height of a hop is lost in rounding, the rest of the sequence is taken in
+one step.  Then the tip stays on the wall (regime SUSTAINED), held by the force that makes d'' = 0, until that
+force would pull; the series is that of ``contact.touch.time_series``.
 """
 
 from __future__ import annotations
@@ -25,22 +25,22 @@ from contact.flight.modal_flow import (
     tip_sum,
 )
 from contact.flight.polynomial_root import first_polynomial_root
-from contact.flight.variation import FIRST, all_tip_changes
+from contact.flight.variation import NUMBER0, all_tip_changes
 from contact.machine.compiled import kernel, part
 from contact.touch import time_series
 from contact.touch.time_series import FORCE, begin, extend, free_pull, longest_step
 from contact.trajectory import OUTSIDE, SUSTAINED
 
-LAW = "NewtonRestitution"
+LAW, METHOD = "NewtonRestitution", "event-driven"
 REGIMES = (OUTSIDE, SUSTAINED)
 
 LOWEST_HOP = 200.0
-"""Height of a hop, in rounding bounds of the tip displacement, below which hops are summed, not computed: two
-digits of the height are then still good.  A hop loses 2(1 - e) of its height, and rounding may move its end
-by as much as its bound: with e so close to one that this is not the smaller of the two, hops need not get
-lower, and may repeat for good."""
+"""Height of a hop, in rounding bounds of the tip displacement, below which hops are summed instead of
+computed: two digits of the height are then still good.  A hop loses 2(1 - e) of its height, and rounding may
+move its end by as much as its bound.  Where e is so close to one that the loss is smaller than the bound,
+hops need not get lower and may repeat for good."""
 
-room, place = time_series.room, time_series.place
+series_size, series_variable = time_series.series_size, time_series.series_variable
 
 
 @part
@@ -51,20 +51,20 @@ def force(numbers, depth, rate):
 
 @part
 def stiffness(numbers, depth, rate):
-    """None [N/m, N s/m]."""
+    """No stiffness and no damping [N/m, N s/m]."""
     return 0.0, 0.0
 
 
 @part
 def slopes(motion, run, series, weights):
-    """None: the tip is on the wall for no time, or for good."""
+    """No series: the tangents change at the impact only (`saltation`)."""
     return 0
 
 
 @kernel
 def newton_impact(motion, v, approach, restitution):
     """Apply the impulse that turns the tip velocity `approach` into -`restitution` times itself."""
-    impulse = (1.0 + restitution) * approach / motion.compliance
+    impulse = (1.0 + restitution) * approach / motion.inverse_mass
     for k in range(v.size):
         v[k] += push_on(motion, k, impulse)
 
@@ -86,40 +86,40 @@ def accumulation_time(rebound, acceleration, restitution, rounding):
 
 @kernel
 def strike(motion, run, u, v, approach):
-    """The impact; the regime SUSTAINED says that the tip comes to rest after a time run.wait."""
+    """The impact; in the regime SUSTAINED the tip comes to rest after a time run.wait."""
     e, rounding = motion.number0, tip_rounding(motion, u, v)
     newton_impact(motion, v, approach, e)
-    loss = 0.5 * (1.0 - e * e) * approach * approach / motion.compliance
+    loss = 0.5 * (1.0 - e * e) * approach * approach / motion.inverse_mass
     acceleration = tip_state(motion, run.clock, u, v)[2]
     rest = accumulation_time(e * approach, acceleration, e, rounding)
     if rest >= 0.0:
         run.wait = rest
         return SUSTAINED, -e * approach, loss
-    run.order = 1 if e * approach > 0.0 else 2
+    run.contact_order = 1 if e * approach > 0.0 else 2
     return OUTSIDE, -e * approach, loss
 
 
 @kernel
 def hold(motion, clock, u, v):
-    """Put the tip on the wall, at rest: rounding would let it drift off over many steps."""
+    """Put the tip on the wall at rest; otherwise rounding would let it drift off over many steps."""
     height, velocity, _acceleration = tip_state(motion, clock, u, v)
     for k in range(u.size):
-        u[k] += push_on(motion, k, height) / motion.compliance
-        v[k] += push_on(motion, k, velocity) / motion.compliance
+        u[k] += push_on(motion, k, height) / motion.inverse_mass
+        v[k] += push_on(motion, k, velocity) / motion.inverse_mass
 
 
 @kernel
 def step(motion, run, u, v, limit, series):
-    """One step of the rest on the wall, at most `limit` [s]; see ``contact.touch``."""
+    """One step of the stay on the wall, at most `limit` [s]; see ``contact.touch``."""
     begin(motion, run.clock, u, v, series)
     for n in range(time_series.ORDER - 1):
-        held = free_pull(motion, n, series) / motion.compliance
+        held = free_pull(motion, n, series) / motion.inverse_mass
         series.scalars[FORCE, n] = held
         extend(motion, n, held, series)
     h = min(longest_step(motion, 0.0, u, v, series), limit)
     if not h > EPS * run.clock:
         return math.nan, math.nan, SUSTAINED
-    margin = acceleration_rounding(motion, u, v) / motion.compliance
+    margin = acceleration_rounding(motion, u, v) / motion.inverse_mass
     end = first_polynomial_root(series.scalars[FORCE], -1.0, h, margin)
     if end >= 0.0:
         return end, end, OUTSIDE
@@ -142,22 +142,25 @@ def work(motion, run, h, series):
 @part
 def leave(motion, run, u, v):
     """The end of the rest, where d, d' and d'' vanish."""
-    run.order = 3
+    run.contact_order = 3
 
 
 @kernel
 def saltation(motion, vary, before, after, tangent):
-    """The tangents over the impact: d -> R d + (R f - f') (-y(d)/v), R the reflection of the tip velocity, f
-    and f' the velocity of the flow before and after (M. A. Aizerman, F. R. Gantmacher, Quart. J. Mech. Appl.
-    Math. 11 (1958) 243; A. B. Nordmark, J. Sound Vib. 145 (1991) 279); parameters change R as well."""
-    n, count = motion.size, len(vary.rest)
+    """The effect of the impact on the tangents: d -> R d + (R f - f') (-y(d)/v).
+
+    R is the reflection of the tip velocity, f and f' are the velocities of the flow before and after (M. A.
+    Aizerman, F. R. Gantmacher, Quart. J. Mech. Appl. Math. 11 (1958) 243; A. B. Nordmark, J. Sound Vib. 145
+    (1991) 279).  Parameters change R as well.
+    """
+    n, count = motion.size, len(vary.scalars)
     clock, u, v = before
     rebound = after[2]
     _height, approach, pull = tip_state(motion, clock, u, v)
-    flip = (1.0 + motion.number0) / motion.compliance
-    reach, rate = all_tip_changes(vary, tangent, u, v, clock)
-    for j in range(reach.size):
-        late = -reach[j] / approach  # by how much later this neighbour touches
+    flip = (1.0 + motion.number0) / motion.inverse_mass
+    height, rate = all_tip_changes(vary, tangent, u, v, clock)
+    for j in range(height.size):
+        late = -height[j] / approach  # by how much later this neighbour touches
         for k in range(n):
             push = push_on(motion, k, flip)
             slow = mode_acceleration(motion, k, u[k], v[k]) + push * pull
@@ -166,7 +169,7 @@ def saltation(motion, vary, before, after, tangent):
             tangent[n + k, j] += push * rate[j] + (slow - after_it) * late
     for p in range(count):
         mobility = 2.0 * tip_sum(motion, 0.0, vary.weight[p])
-        flipped = (vary.rest[p, FIRST] - flip * mobility) / motion.compliance
+        flipped = (vary.scalars[p, NUMBER0] - flip * mobility) / motion.inverse_mass
         for k in range(n):
             change = push_on(motion, k, flipped) - vary.weight[p, k] * flip
-            tangent[n + k, reach.size - count + p] += change * approach
+            tangent[n + k, height.size - count + p] += change * approach

@@ -1,17 +1,17 @@
-"""What the power series of all contact laws share: their room, and how far they reach.
+"""What the power series of all force laws share: their workspace, and the length of a step.
 
 While the tip is in contact all modes are coupled through one number, the contact force N:
 
     u_k'' = -c_k u_k' - omega_k^2 u_k + g_k - phi_k N(d, d'),   d(t) = sum_k phi_k u_k + x_s(t) - gap.
 
-The coefficients of a series follow from each other at a cost proportional to the number of modes, without
-eigenvectors and so without their ill-conditioning for repeated or critically damped ones.  A step is as long
-as the last terms stay below rounding, so that only rounding error remains.
+The coefficients of a series follow from each other at a cost proportional to the number of modes.  No
+eigenvectors are needed, which are ill-conditioned for repeated or critically damped modes.  A step ends where
+the last terms reach rounding, so that only rounding error remains.
 
-A law may leave out orders: under N = k d^3 a free mass has but every fourth.  Modes of their own fill every
-second order at least, and the force moves all of them by the one series N, so that the last orders of N tell
-when the last two orders of the modes say too little: each order n estimates the radius of convergence by the
-root test, R_n = (A/|x_n|)^(1/n), and a step of R tol^(1/p) leaves terms of tol A at the order p.
+Some orders of a series can vanish: under N = k d^3 and a free mass only every fourth is present.  The last
+two orders of the modes may then say too little, and the last orders of N limit the step as well.  Each order
+n estimates the radius of convergence by the root test, R_n = (A/|x_n|)^(1/n), and a step of R tol^(1/p)
+leaves terms of tol A at the order p.
 """
 
 from __future__ import annotations
@@ -26,28 +26,27 @@ from contact.machine.vector_loops import aligned, weighted_rows
 from contact.trajectory import CONTACT
 
 WINDOW = 8
-"""Orders of the force that are looked at."""
+"""Number of last orders of the force that limit a step."""
 
 LOOSE = 1.15
-"""How much longer than by an earlier order of the force a step may be: no two orders agree better."""
-
+"""Largest ratio of a step to the bound by an earlier order of the force: no two orders agree better."""
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 NODE_POWERS = (0.5 * (1.0 + _NODES)) ** np.arange(31.0)[:, None]
 WEIGHTS = 0.5 * _WEIGHTS
 """Gauss's rule on [0, 1], and powers of its nodes up to the highest order of a series.  For a product that
-turns by some six radians in a step its error is below 1e-20; under series that converge up to R and a step s
+turns by some six radians in a step its error is below 1e-20.  For series that converge up to R and a step s
 it falls as rho^-32, rho = q + sqrt(q^2 - 1), q = 2 R/s - 1: faster than the (s/R)^p of the series."""
 
 
 class Series(NamedTuple):
-    """Room for one step of a contact.
+    """Workspace of one step in contact.
 
     rows : ndarray, shape (order + 1, columns)
-        Coefficients of the modes, row n holding order n.
+        Coefficients of the modes; row n holds order n.
     sums : ndarray, shape (columns,)
     scalars : ndarray, shape (8, order + 1)
-        Series of single numbers, named where they are filled.
+        Series of single numbers; each law names its rows.
     """
 
     rows: np.ndarray
@@ -57,26 +56,26 @@ class Series(NamedTuple):
 
 @kernel
 def new_series(order, columns):
-    """Room for a series, of zeros."""
+    """A workspace of zeros."""
     return Series(aligned(order + 1, columns), aligned(1, columns)[0], np.zeros((8, order + 1)))
 
 
 @part
-def enter(motion, run, u, v, approach):
-    """A touch under a force law: the contact begins at d = 0.  Returns as ``contact.touch`` says."""
+def strike(motion, run, u, v, approach):
+    """A touch under a force law: the contact begins at d = 0; see ``contact.touch``."""
     run.root, run.speed = 0.0, -1.0
     return CONTACT, math.nan, 0.0
 
 
 @part
 def leave(motion, run, u, v):
-    """The end of a contact that pushed: the next flight starts on the wall."""
-    run.order = 1
+    """The release of a force law: the next flight starts on the wall with a velocity."""
+    run.contact_order = 1
 
 
 @part
 def saltation(motion, vary, before, after, tangent):
-    """Nothing: the tangents have gone through the contact with its series."""
+    """No immediate effect: the tangents have gone through the contact with its series."""
 
 
 @part
@@ -90,7 +89,7 @@ def powers_of(s, out):
 
 @kernel
 def work_of(series, force, rate, s):
-    """The integral of a force times a rate, series both, over a step up to `s`; uses the last two rows."""
+    """The integral of a force times a rate, both series, over a step up to `s`; uses the last two rows."""
     terms, nodes, power, done = force.size, WEIGHTS.size, 1.0, 0.0
     pushes, rates, push, speed = series.scalars[6], series.scalars[7], np.empty(nodes), np.empty(nodes)
     for n in range(terms):
@@ -104,25 +103,25 @@ def work_of(series, force, rate, s):
 
 
 @kernel
-def reach(last, order, allowed):
-    """Logarithm of the s at which `last` s^`order` reaches `allowed`; of infinity if it never does."""
+def log_longest(last, order, allowed):
+    """Logarithm of the s at which `last` s^`order` is `allowed`; infinity if `last` is zero."""
     return (math.log(allowed) - math.log(last)) / order if last > 0.0 else math.inf
 
 
 @inlined
-def within_force(s, push, last, mobility, speed, edge):
-    """The step `s`, or a shorter one if the force says that the last two orders of the modes miss something.
+def limited_by_force(s, push, last, mobility, speed, edge):
+    """The step `s`, or a shorter one where the orders of the force allow less than those of the modes.
 
     Parameters
     ----------
     s : float
-        By the last two orders of the modes; infinite if these are zero.
+        The step by the last two orders of the modes; infinite if these are zero.
     push : ndarray
-        Series of the force on the modes; phi_k push_n, over n + 1, enters the order n + 1 of the speeds.
+        Series of the force on the modes: phi_k push_n/(n + 1) enters order n + 1 of the speeds.
     last : int
-        Order up to which it is filled.
+        Last order of `push` that is filled.
     mobility, speed : float
-        sqrt of the compliance, the size of all phi_k, and that of the speeds.
+        sqrt of sum phi^2 [kg^-0.5], the size of all phi_k; and the size of the speeds.
     edge : float
         Tolerance to the power of one over the order of the series.
     """

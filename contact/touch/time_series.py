@@ -2,10 +2,10 @@
 
     u[n+2] = ( g - c (n+1) u[n+1] - omega^2 u[n] - phi_k N[n] ) / ((n+1)(n+2))      (g for n = 0 only)
 
-A law fills N[n] from d[n] and d[n+1] and lets `extend` find the next order of all modes, eight at a time
-(``contact.machine.vector_loops``): cost per step, modes times the order.  With order 30 a step takes some
-three radians of the fastest mode.  Terms then reach e^3 times the sum, which costs a digit in a mode that
-fast and nothing in the others; a higher order would take longer steps for less work and lose more.
+A law computes N[n] from d[0] ... d[n + 1], then `extend` the next order of all modes, eight at a time
+(``contact.machine.vector_loops``).  The cost of a step is the number of modes times the order.  With order 30
+a step covers some three radians of the fastest mode.  Terms then grow to e^3 times the sum, which costs one
+digit in a mode that fast and nothing in the others.  A higher order would save work and lose more digits.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from contact.flight.elementary import EPS
 from contact.flight.modal_flow import speed_scale, tip_steady, tip_sum
 from contact.machine.compiled import kernel, part
 from contact.machine.vector_loops import next_order, weighted_rows
-from contact.touch.series import powers_of, reach, within_force, work_of
+from contact.touch.series import limited_by_force, log_longest, powers_of, work_of
 from contact.trajectory import INSIDE
 
 ORDER = 30
 """Order of the series in time."""
 
 DEPTH, RATE, FORCE, STEADY, POWERS, SLOPES = range(6)
-"""Rows of the scalar series: d, d' (filled by `work`), N, the steady tip motion, powers of the time of a
-state and their slopes."""
+"""Rows of the scalar series: d, d' (filled by `work`), N, the steady tip motion, powers of time and their
+derivatives."""
 
 TOLERANCE = 0.1 * EPS
 """Size of the last terms of a step, relative to the modal speeds."""
@@ -32,12 +32,12 @@ TOLERANCE = 0.1 * EPS
 _EDGE = TOLERANCE ** (1.0 / (ORDER - 1))
 
 OVERFLOW = 1e300
-"""A coefficient beyond this is about to leave the range of doubles: some 1e18 times the stiffness of the
+"""Coefficients beyond this are about to leave the range of doubles, at some 1e18 times the stiffness of the
 spring."""
 
 
 @part
-def room(motion):
+def series_size(motion):
     """Order and columns of the series."""
     return ORDER, motion.modes.shape[1]
 
@@ -59,7 +59,7 @@ def begin(motion, base, u, v, series):
 
 @part
 def extend(motion, n, push, series):
-    """Order n + 2 of all modes and of d, under the force coefficient `push` of order n."""
+    """Compute order n + 2 of all modes and of d from the force coefficient `push` of order n."""
     scale, lift = 1.0 / ((n + 1.0) * (n + 2.0)), 1.0 if n == 0 else 0.0
     tip = next_order(motion.modes, n + 1.0, scale, push, lift, n, series.rows)
     series.scalars[DEPTH, n + 2] = series.scalars[STEADY, n + 2] + tip
@@ -67,7 +67,7 @@ def extend(motion, n, push, series):
 
 @part
 def free_pull(motion, n, series):
-    """Order n of the tip acceleration if no force acted."""
+    """Order n of the tip acceleration without a force."""
     divisor, lift = (n + 1.0) * (n + 2.0), 1.0 if n == 0 else 0.0
     tip = next_order(motion.modes, n + 1.0, 1.0 / divisor, 0.0, lift, n, series.rows)
     return divisor * (series.scalars[STEADY, n + 2] + tip)
@@ -84,9 +84,9 @@ def largest(row):
 
 @kernel
 def longest_step(motion, stored, u, v, series):
-    """Longest time over which the neglected terms stay below rounding [s]; NaN where the series overflows.
+    """Longest time over which the neglected terms stay below rounding [s]; NaN if the series overflows.
 
-    `stored` is twice what the stop holds at the start of the step [J].
+    `stored` is twice the energy in the stop at the start of the step [J].
     """
     depth, force = series.scalars[DEPTH], series.scalars[FORCE]
     if not (abs(depth[ORDER]) < OVERFLOW and abs(force[ORDER - 2]) < OVERFLOW):
@@ -95,14 +95,16 @@ def longest_step(motion, stored, u, v, series):
     speed = math.sqrt(scale * scale + stored)
     top, below = largest(series.rows[ORDER]), largest(series.rows[ORDER - 1])
     allowed = TOLERANCE * speed
-    power = min(reach(ORDER * top, ORDER - 1, allowed), reach((ORDER - 1.0) * below, ORDER - 2, allowed))
+    power = min(
+        log_longest(ORDER * top, ORDER - 1, allowed), log_longest((ORDER - 1.0) * below, ORDER - 2, allowed)
+    )
     h = min(math.exp(power), motion.period)
-    return within_force(h, force, ORDER - 2, math.sqrt(motion.compliance), speed, _EDGE)
+    return limited_by_force(h, force, ORDER - 2, math.sqrt(motion.inverse_mass), speed, _EDGE)
 
 
 @part
-def place(motion, t, end, series):
-    """Where in a step of length `end` a time `t` [s] lies."""
+def series_variable(motion, t, end, series):
+    """The variable of the series a time `t` [s] into a step: this time itself."""
     return t
 
 

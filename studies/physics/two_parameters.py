@@ -27,14 +27,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from beam import ModalModel, Refusal
-from contact import (
-    ContactError,
-    DelayedRestitution,
-    ImpactOscillator,
-    State,
-    StrobedNordmarkMap,
-    first_collision,
-)
+from contact import ContactError, DelayedRestitution, ImpactOscillator, State, first_collision
 from contact.orbits import Kick, KickFamily, Shooting, born_period, fold_excess
 from studies.shell.scene import Scene, SceneError, beam_at, nordmark_at, single_mode_at
 
@@ -133,7 +126,7 @@ def extracted(
         return None
     assert isinstance(law, DelayedRestitution) and callable(law.restitution) and callable(law.delay)
     restitution = law.restitution(speed)
-    strobed = StrobedNordmarkMap(map=replace(nordmark_at(scene, frequency), restitution=restitution))
+    strobed = replace(nordmark_at(scene, frequency), restitution=restitution)
     born = born_period(strobed, excess, most_cycles=max(scene.scan.settle_cycles, 1))
     return Extracted(
         frequency_hz=frequency,

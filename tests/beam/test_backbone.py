@@ -219,7 +219,7 @@ def test_mode_1_is_the_first_that_moves_the_tip() -> None:
 
 
 def test_what_has_no_backbone() -> None:
-    with pytest.raises(ValueError, match="supports leave 2 motions"):
+    with pytest.raises(ValueError, match="supports"):
         backbone_coefficient(replace(leaf(mass=1e-3), supports=("free", "free")))
-    with pytest.raises(TypeError, match="spring is 3; it must be a LeafSpring"):
+    with pytest.raises(TypeError, match="spring"):
         backbone_coefficient(3)  # type: ignore[arg-type]

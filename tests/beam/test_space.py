@@ -300,7 +300,7 @@ def test_a_flat_u_bends_as_its_legs_do_in_space(width: float, mass: float) -> No
 def test_two_legs_are_a_strip_each_in_space() -> None:
     slotted = replace(STRIP, slot=3e-3)
     for section in (flat, upright):
-        with pytest.raises(ValueError, match=r"slot is 0.003 m; legs side by side need a strip each"):
+        with pytest.raises(ValueError, match="slot"):
             section(slotted)
     assert slotted.torsional_stiffness == pytest.approx(
         2.0 * replace(STRIP, width=0.5 * STRIP.width).torsional_stiffness, rel=1e-12

@@ -107,7 +107,9 @@ class Period:
             if status != DONE:
                 break
             assert mine_count == count
-            assert all(ours[2][0][name] == runs[0][name] for name in ("regime", "order", "period", "clock"))
+            assert all(
+                ours[2][0][name] == runs[0][name] for name in ("regime", "contact_order", "period", "clock")
+            )
             scale = max(abs(m.level) + math.hypot(m.tip_sine, m.tip_cosine), start, self.size(u, v))
             fastest = max(m.drive, m.omega[0], m.decay[0])
             growth = np.sum(np.log1p((1.0 + m.number0) * fastest * scale / speeds))

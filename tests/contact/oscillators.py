@@ -83,6 +83,21 @@ def equation_1(
     return oscillator if excess is None else oscillator.with_excess(excess)
 
 
+def two_masses(w: float, force: float) -> ImpactOscillator:
+    """Example 03 of NLvib (M. Krack and J. Gross, Harmonic Balance for Nonlinear Vibration Problems, 2019).
+
+    Masses 1 and 1, springs 0, 1, 1 with dampers 0.03 times these, a one-sided spring of 100 at gap 1 on mass
+    1, a force `force` cos(W t) on mass 2, W = `w` [rad/s].  A force on coordinate j is participation_k =
+    phi_k(j) with the base amplitude Z = `force`/W^2.
+    """
+    squares, shapes = np.linalg.eigh(np.array([[1.0, -1.0], [-1.0, 2.0]]))
+    model = ModalModel(
+        omega=np.sqrt(squares), decay_rate=0.03 * squares, phi=shapes[0], participation=shapes[1]
+    )
+    drive = HarmonicDrive(frequency=w / (2.0 * np.pi), amplitude=force / w**2)
+    return ImpactOscillator(model=model, stop=Stop(gap=1.0, law=LinearContact(stiffness=100.0)), drive=drive)
+
+
 def at_rest_on(model: ModalModel, law: LinearContact, load: float) -> tuple[ImpactOscillator, np.ndarray]:
     """The tip pressed on a stop without gap by `load` [N], and its displacements at rest."""
     oscillator = ImpactOscillator(model=model, stop=Stop(gap=0.0, law=law), load=load * model.phi)

@@ -27,7 +27,7 @@ import contact
 from beam import ModalChange, ModalModel
 from contact import ContactError, DelayedRestitution, HarmonicDrive, ImpactOscillator, Stop, orbits
 from contact.orbits import Change, Event, PeriodicOrbit, Shooting
-from contact.orbits.branches.orbit_derivatives import sizes_of
+from contact.orbits.families.equations import sizes_of
 
 ARRAYS = ("omega", "decay_rate", "phi", "participation")
 GAP, PLACE, ROUNDING = 0.01, 1e-6, 1e-11

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from functools import cache
+from dataclasses import replace
 
 import numpy as np
+from letters_spring import FOLD_MODES, GAP, HERTZ, letters_spring
 
 from beam import ModalModel
 from contact import (
     ContactLaw,
     DelayedRestitution,
     HarmonicDrive,
-    HertzContact,
     HuntCrossley,
     ImpactOscillator,
     LinearContact,
@@ -23,12 +23,10 @@ from contact import (
     simulate,
 )
 from contact.orbits import PeriodicOrbit, Settled, settle
-from studies.shell.scene import model_of, read_scene
 
-HERTZ = HertzContact(stiffness=9.6154e9)
 LAWS = {
     "hertz": HERTZ,
-    "hunt-crossley": HuntCrossley(stiffness=9.6154e9, dissipation=0.3),
+    "hunt-crossley": HuntCrossley(stiffness=HERTZ.stiffness, dissipation=0.3),
     "linear": LinearContact(stiffness=1.887e7),
     "dashpot": LinearContact(stiffness=1.887e7, damping=68.0),
     "newton": NewtonRestitution(local_restitution=0.3),
@@ -51,26 +49,23 @@ EQUATION_1 = [
 ]
 
 
-@cache
-def letters_spring() -> ModalModel:
-    """The letter's spring with all modes of its scene."""
-    return model_of(read_scene("tight_fold"))
-
-
-def beam(frequency: float, law: ContactLaw, modes: int = 6, ratio: float | None = None) -> ImpactOscillator:
-    """The spring cut to `modes` modes; with `ratio`, that damping ratio in all modes but the first."""
-    spring = letters_spring()
-    decay = spring.decay_rate[:modes].copy()
+def beam(
+    frequency: float, law: ContactLaw, modes: int = FOLD_MODES, ratio: float | None = None
+) -> ImpactOscillator:
+    """The letter's spring with `modes` modes; with `ratio`, that damping ratio in all modes but the first."""
+    model = letters_spring(modes)
     if ratio is not None:
-        decay[1:] = 2.0 * ratio * spring.omega[1:modes]
-    model = ModalModel(
-        omega=spring.omega[:modes],
-        decay_rate=decay,
-        phi=spring.phi[:modes],
-        participation=spring.participation[:modes],
-    )
+        decay = np.append(model.decay_rate[0], 2.0 * ratio * model.omega[1:])
+        model = replace(model, decay_rate=decay)
+    return on_stop(model, frequency, law)
+
+
+def on_stop(
+    model: ModalModel, frequency: float, law: ContactLaw = HERTZ, gap: float = GAP
+) -> ImpactOscillator:
+    """A spring before its stop, driven at `frequency` [Hz]."""
     return ImpactOscillator(
-        model=model, stop=Stop(gap=0.0107, law=law), drive=HarmonicDrive(frequency=frequency)
+        model=model, stop=Stop(gap=gap, law=law), drive=HarmonicDrive(frequency=frequency)
     )
 
 

@@ -7,9 +7,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from letters_spring import HERTZ
 from oscillators import apart, equation_1
 from random_families import ALL, QUICK, judged_family
-from simulated_orbit import DELAYED, EQUATION_1, HERTZ, beam, settled, touches
+from simulated_orbit import DELAYED, EQUATION_1, beam, settled, touches
 
 from beam import (
     STEEL,
@@ -32,7 +33,6 @@ from contact import (
     NewtonRestitution,
     NordmarkMap,
     Stop,
-    StrobedNordmarkMap,
     StrobedOrbit,
     StroboscopicMap,
     fold,
@@ -52,7 +52,6 @@ from contact.orbits import (
     orbit_end,
 )
 from contact.orbits.branches.events import passes
-from studies.shell.scene import hertz_of, read_scene
 
 HARD = equation_1(20.90, NewtonRestitution(local_restitution=0.7))
 
@@ -63,7 +62,7 @@ HARD = equation_1(20.90, NewtonRestitution(local_restitution=0.7))
 @pytest.mark.parametrize("ratio", [None, 1e-3], ids=["the letter's strips", "ringing"])
 @pytest.mark.parametrize(("frequency", "period"), [(20.90, 3), (21.50, 4), (22.20, 5)])
 def test_kicks_foretell_their_own_error(ratio: float | None, frequency: float, period: int) -> None:
-    oscillator = beam(frequency, hertz_of(read_scene("tight_fold")), ratio=ratio)
+    oscillator = beam(frequency, HERTZ, ratio=ratio)
     family = Shooting(oscillator=oscillator, period=period)
     kicks, unit = family.kicks, oscillator.unit_speed
     errors = []
@@ -132,8 +131,7 @@ def test_an_orbit_doubles_its_period_before_a_hard_touch_is_lost() -> None:
     assert 0.0 < end.excess / graze.excess - 1.0 < 0.02
 
 
-@pytest.mark.parametrize("first_step", [1e-6, 2e-4, 5e-2])
-@pytest.mark.parametrize("relative", [0.03, 1e-3])
+@pytest.mark.parametrize(("first_step", "relative"), [(1e-6, 0.03), (2e-4, 1e-3), (5e-2, 0.03)])
 def test_no_bracket_closes_because_a_long_step_fell_off(first_step: float, relative: float) -> None:
     """The exact end lies in the bracket, which one last step has made, however the scan came there."""
     for frequency, period, excess, _second, _digit in EQUATION_1:
@@ -141,7 +139,7 @@ def test_no_bracket_closes_because_a_long_step_fell_off(first_step: float, relat
         nordmark = NordmarkMap.from_oscillator(oscillator)
         for strobed, exact in (
             (StroboscopicMap(oscillator=oscillator), excess),
-            (StrobedNordmarkMap(map=nordmark), nordmark.excess(fold(nordmark, period).rho)),
+            (nordmark, nordmark.excess(fold(nordmark, period).rho)),
         ):
             start = born(strobed)
             end = orbit_end(
@@ -278,7 +276,7 @@ def test_folds_along_frequency_are_those_of_each_frequency() -> None:
         assert orbit.oscillator.drive.frequency == frequency
     other = Shooting(oscillator=oscillator, period=1)
     assert fold_along_frequency(other, np.array([20.90])) == [None]
-    with pytest.raises(BranchEnded, match="no fold, and its stable orbits end by a period d") as caught:
+    with pytest.raises(BranchEnded, match="period doubling") as caught:
         fold_of(other)
     assert np.min(np.abs(caught.value.orbit.multipliers + 1.0)) < 1e-6
 
@@ -295,7 +293,7 @@ def test_an_orbit_that_ends_by_a_torus_has_no_fold_and_says_so() -> None:
     strobed = StroboscopicMap(oscillator=oscillator)
     orbit = born(strobed, 1e-3)
     assert (orbit.period, orbit.impacts) == (3, 1)
-    with pytest.raises(BranchEnded, match="no fold, and its stable orbits end by a torus") as caught:
+    with pytest.raises(BranchEnded, match="torus") as caught:
         fold_of(Shooting(oscillator=oscillator, period=3))
     end = orbit_end(strobed, orbit.end, 1e-3, most_cycles=2000)
     assert end.kind == "torus" and end.lost < end.excess < end.held
@@ -311,7 +309,7 @@ def test_a_bound_that_is_used_up_is_said(monkeypatch: pytest.MonkeyPatch) -> Non
     assert all("bound of 3 steps is used up" in ended for ended in (cut.ended_low, cut.ended_high))
     fast = family.at_speed(300.0)
     for search in (lambda: folds_of(family, start), lambda: first_event(family, fast, -0.9)):
-        with pytest.raises(BranchEnded, match="bound of 3 steps is used up") as caught:
+        with pytest.raises(BranchEnded, match="3 steps") as caught:
             search()
         assert isinstance(caught.value.orbit, PeriodicOrbit)
 
@@ -353,11 +351,12 @@ def test_a_sign_that_changes_at_an_orbit_changes_once(slopes: tuple[float, ...])
     assert [passes(a, b) for a, b in pairwise(slopes)].count(True) == 1
 
 
-QUICKLY = [(n, QUICK) for n in (3, 5, 6, 7, 9, 12, 15, 62, 80, 101)]
+QUICKLY = [(n, QUICK) for n in (3, 5, 9, 15, 101)]
+SLOWLY = [(n, QUICK) for n in (6, 7, 12, 62, 80)] + [(n, ALL) for n in range(0, 60, 3)]
 
 
 @pytest.mark.parametrize(
-    ("number", "names"), QUICKLY + [pytest.param(n, ALL, marks=pytest.mark.slow) for n in range(0, 60, 3)]
+    ("number", "names"), QUICKLY + [pytest.param(*each, marks=pytest.mark.slow) for each in SLOWLY]
 )
 def test_random_orbits_with_several_touches(number: int, names: tuple[str, ...]) -> None:
     """No event that is none, no step to another curve, no orbit that touches the stop more often than it

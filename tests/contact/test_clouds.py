@@ -6,20 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from letters_spring import HERTZ
 from oscillators import GAP, PHI, equation_1, spring
 from scipy.signal import lfilter
-from simulated_orbit import HERTZ, beam
+from simulated_orbit import beam
 
 from beam import ModalModel
-from contact import (
-    NewtonRestitution,
-    NordmarkMap,
-    NotPeriodic,
-    State,
-    StrobedNordmarkMap,
-    StroboscopicMap,
-    UnresolvedCrossing,
-)
+from contact import NewtonRestitution, NordmarkMap, NotPeriodic, State, StroboscopicMap, UnresolvedCrossing
 from contact.maps.nordmark_orbits import MapFamily
 from contact.orbits import PeriodicOrbit, Shooting, cloud, orbit_exponents
 
@@ -40,7 +33,7 @@ def settled(name: str) -> tuple[object, object, float]:
         family = MapFamily(NordmarkMap.from_oscillator(equation_1(20.9, NEWTON)), PERIOD)
         excess = 0.5 * family.fold().excess
         orbit = next(each for each in family.orbits(excess) if each.stable)
-        return StrobedNordmarkMap(map=family.map).at(excess), orbit.states[0], excess
+        return family.map.at(excess), orbit.states[0], excess
     orbit, _ = node(equation_1(20.9, NEWTON) if name == "Eq. (1)" else beam(20.9, HERTZ, modes=4))
     return StroboscopicMap(oscillator=orbit.oscillator), replace(orbit.strobe_state(), time=0.0), orbit.excess
 
@@ -104,12 +97,12 @@ def test_clouds_grow_as_the_inverse_root_of_the_distance_to_the_fold() -> None:
     slopes = np.diff(np.log(sizes)) / np.diff(np.log(distances))
     assert slopes == pytest.approx([-0.5, -0.5], abs=0.01)
     saddle = family.at_speed(0.9 * fold.speed, fold)
-    with pytest.raises(NotPeriodic, match="unstable orbit"):
+    with pytest.raises(NotPeriodic, match="unstable"):
         state = replace(saddle.strobe_state(), time=0.0)
         cloud(StroboscopicMap(oscillator=saddle.oscillator), state, PERIOD, deviation=1.0)
     off = strobed, state, PERIOD  # a state of another amplitude
     for refused in (lambda: cloud(*off, deviation=1.0), lambda: orbit_exponents(*off)):
-        with pytest.raises(NotPeriodic, match="from the state, of a scale of"):
+        with pytest.raises(NotPeriodic, match="scale"):
             refused()
 
 

@@ -129,7 +129,7 @@ def test_collision_that_is_not_final_is_refused_in_a_sentence() -> None:
         assert found[0] == collisions(oscillator, whole, unfinished="drop")[0]
     # the next minimum of a motion at about the drive frequency comes half a period later
     assert final == pytest.approx(0.6 / 22.2)
-    with pytest.raises(ValueError, match=r'unfinished is .*must be "refuse" or "drop"'):
+    with pytest.raises(ValueError, match="unfinished"):
         collisions(oscillator, whole, unfinished="keep")
 
 
@@ -185,7 +185,7 @@ def test_collisions_are_those_of_the_oscillator_that_moves() -> None:
     for same in (oscillator, still.with_excess(oscillator.excess), spring(3, newton(0.3))):
         assert collisions(same, run, unfinished="drop") == found
     for other in (still, spring(2, newton(0.3)), spring(3, newton(0.31))):
-        with pytest.raises(ValueError, match="oscillator differs from the one"):
+        with pytest.raises(ValueError, match="oscillator"):
             collisions(other, run, unfinished="drop")
 
 

@@ -7,19 +7,19 @@ import math
 
 import numpy as np
 import pytest
+from letters_spring import HERTZ, KICK_MODES
 from light_spring import equation_1, flow, newton, real_differs, spring, steady
 from oscillators import GAP, OMEGA
 from scipy.optimize import brentq
+from simulated_orbit import beam
 
 from beam import ModalModel
 from contact.collision import before_collision, collisions, first_collision
-from contact.drive import HarmonicDrive
 from contact.laws import ContactLaw, DelayedRestitution, HertzContact, HuntCrossley, LinearContact
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
 from contact.trajectory import Impacts, State
-from studies.shell.scene import beam_at, read_scene
 
 # ------------------------------------------------------------------------------ each number by its definition
 
@@ -154,16 +154,20 @@ def test_minimum_of_the_outgoing_motion_ends_a_collision(before_minimum: float) 
     assert real.impacts.start[0] == pytest.approx(1.0, abs=1e-15)
     second = 1.25 - before_minimum
     angle = 2 * math.pi * (second - 1.0)
-    state = np.array([[-math.sin(angle) / (4 * math.pi)]]), np.array([[-0.5 * math.cos(angle)]])
-    rows = {name: getattr(real.impacts, name)[:1] for name in real.impacts.__dataclass_fields__}
-    made_up = {name: second for name in ("start", "end", "clock", "end_clock")}
-    made_up |= dict(period=0, approach=0.0, rebound=0.0, loss=0.0, kind=0)
-    for name, value in made_up.items():
-        rows[name] = np.append(rows[name], value).astype(rows[name].dtype)
-    for i, name in enumerate(("displacement", "velocity")):
-        for end in ("start", "end"):
-            rows[f"{name}_{end}"] = np.vstack([rows[f"{name}_{end}"], state[i]])
-    found = collisions(oscillator, dataclasses.replace(real, impacts=Impacts(**rows)), unfinished="drop")
+    state = [[-math.sin(angle) / (4 * math.pi)], [-0.5 * math.cos(angle)]]
+    hit, none = real.impacts, np.zeros(2)
+    before = hit.displacement_start[0], hit.velocity_start[0]
+    after = hit.displacement_end[0], hit.velocity_end[0]
+    touches = Impacts.of_states(
+        oscillator,
+        times=np.array([[hit.start[0], second], [hit.end[0], second]]),
+        states=np.array([[before, state], [after, state]]),
+        approach=none,
+        rebound=none,
+        loss=none,
+        kind=none.astype(int),
+    )
+    found = collisions(oscillator, dataclasses.replace(real, impacts=touches), unfinished="drop")
     assert [c.impacts for c in found] == ([2] if before_minimum > 0 else [1, 1])
     assert found[0].kick == pytest.approx(1.5, rel=1e-12)
     assert found[0].restitution == pytest.approx(0.5, rel=1e-12)
@@ -172,17 +176,10 @@ def test_minimum_of_the_outgoing_motion_ends_a_collision(before_minimum: float) 
 # --------------------------------------------------------------------------- relations between the numbers
 
 
-@pytest.fixture(scope="module")
-def letter_with_hertz() -> ImpactOscillator:
-    return beam_at(read_scene("letter", ['contact.law="hertz"']), 22.2)
-
-
 @pytest.mark.parametrize("frequency", [20.90, 22.20, 23.40])
-def test_two_relations_of_a_single_contact_of_the_letters_spring(
-    frequency: float, letter_with_hertz: ImpactOscillator
-) -> None:
+def test_two_relations_of_a_single_contact_of_the_letters_spring(frequency: float) -> None:
     """restitution^2 = (1 - kick)^2 + 2 a shift/v^2, delay = (v/a)(1 + restitution - kick), within 3e-3."""
-    oscillator = dataclasses.replace(letter_with_hertz, drive=HarmonicDrive(frequency=frequency))
+    oscillator = beam(frequency, HERTZ, modes=KICK_MODES)
     kicks, restitutions = [], []
     for excess in (1e-5, 1e-4, 1e-3, 5e-3, 1.3e-2, 3e-2, 5e-2):
         c = first_collision(oscillator.with_excess(excess))

@@ -13,11 +13,12 @@ from whole_motions import DASHPOT, FREE, HERTZ, LOSSY, SOFTER, SPRING, name_of
 
 from beam import ModalModel
 from contact.drive import HarmonicDrive
-from contact.laws import HertzContact, HuntCrossley, LinearContact, NewtonRestitution
+from contact.laws import ContactLaw, HertzContact, HuntCrossley, LinearContact, NewtonRestitution
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
-from contact.touch.series import LOOSE, WINDOW, within_force
+from contact.touch import TOUCHES
+from contact.touch.series import LOOSE, WINDOW, limited_by_force
 from contact.trajectory import State
 
 # ------------------------------------------------------------------------------------------ Hertz's constant
@@ -46,6 +47,17 @@ def test_hertz_stiffness_is_that_of_the_contact_circle(radius, ball, plate):
         pressure = 1.5 * force / (math.pi * circle**2)
         assert math.pi * circle * pressure / (2 * plane_strain) == pytest.approx(depth, rel=1e-14)
     assert law.stiffness == pytest.approx(9.65e9, rel=1e-3) or ball[0] != 370e9 or radius != 2.5e-3
+
+
+# ------------------------------------------------------------------------------------ the table of the laws
+
+
+def test_the_code_of_a_law_finds_the_file_that_names_it():
+    """No two files of ``contact.touch`` share a code."""
+    laws = [law for law in ContactLaw.__subclasses__() if law.__module__.startswith("contact.")]
+    assert len(laws) >= 5
+    for law in laws:
+        assert law.__name__ in TOUCHES[law.code].LAW.split(" or "), law
 
 
 # --------------------------------------------------------------------------------- one contact at a time
@@ -245,4 +257,4 @@ def test_a_step_is_as_long_as_each_late_order_of_the_force_allows():
         allowed, push = 1e-3 * random.uniform(1.0, 2.0, WINDOW), np.zeros(last + 1)
         push[-WINDOW:] = speed * orders * (edge / allowed) ** orders / mobility
         wanted = asked if asked <= LOOSE * allowed.min() else allowed.min()
-        assert within_force(asked, push, last, mobility, speed, edge) == pytest.approx(wanted, rel=1e-12)
+        assert limited_by_force(asked, push, last, mobility, speed, edge) == pytest.approx(wanted, rel=1e-12)

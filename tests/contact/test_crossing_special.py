@@ -71,7 +71,7 @@ def on_the_wall(generator: np.random.Generator, n_modes: int, order: int) -> tup
     )
 
 
-@pytest.mark.parametrize("n_modes", [3, 4, 6])
+@pytest.mark.parametrize("n_modes", [3, 4, pytest.param(6, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("order", [1, 2, 3])
 def test_flights_from_the_wall(order, n_modes):
     """After an impact (1), a plastic one or a graze (2), a release (3): the start is no touch.

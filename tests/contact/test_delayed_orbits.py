@@ -127,9 +127,9 @@ def test_a_wait_longer_than_the_free_return_holds_the_tip_and_feeds_the_motion()
 def test_a_wait_of_all_periods_is_refused() -> None:
     law = DelayedRestitution(restitution=0.1, delay=3.0 / 20.9)
     kicks = KickFamily(oscillator=equation_1(20.90, law), period=3)
-    with pytest.raises(NotPeriodic, match=r"no orbit of period 3 has a touch that waits for 0\.14354"):
+    with pytest.raises(NotPeriodic, match="period 3"):
         kicks.orbit(0.1)
-    with pytest.raises(NotPeriodic, match="does not end within half a drive period"):
+    with pytest.raises(NotPeriodic, match="half a drive period"):
         kicks.kick(0.1, np.zeros((1, 2)))
     assert KickFamily(oscillator=equation_1(20.90, law), period=4).orbit(0.1).kick.duration == law.delay
     with pytest.raises(ValueError, match="speed is nan"):

@@ -88,7 +88,7 @@ def test_too_elastic_a_law_is_refused_as_chatter_and_a_lesser_one_comes_to_rest(
         ball = one_mode(NewtonRestitution(local_restitution=1.0 - left), 1e-3, omega=0.0, load=GRAVITY)
         start = State(displacement=np.array([1e-3]), velocity=np.array([-0.25 * GRAVITY * left]))
         if refused:
-            with pytest.raises(Chatter, match="impacts accumulate at t = ") as caught:
+            with pytest.raises(Chatter, match="accumulate") as caught:
                 simulate(ball, start, duration=0.9)
             assert 0 < caught.value.time < 0.9 and abs(caught.value.gap) <= 1e-8
             assert abs(caught.value.velocity) <= 5e-4

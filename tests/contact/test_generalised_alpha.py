@@ -212,7 +212,7 @@ def test_a_contact_beyond_the_limit_is_refused_and_grows() -> None:
         sizes.append(float(np.abs(end.displacement - rest).max()))
         refusing = dataclasses.replace(method, beyond_limit=False)
         if factor > 1:
-            with pytest.raises(StepTooLarge, match="beyond the limit of stability"):
+            with pytest.raises(StepTooLarge, match="stability"):
                 simulate(beam, begun, duration=60 * step, method=refusing)
         else:
             simulate(beam, begun, duration=60 * step, method=refusing)

@@ -100,6 +100,20 @@ def test_a_motion_with_impacts_against_events_of_another_integrator(cubic: tuple
     np.testing.assert_allclose(found.end, y / [1.0, root], atol=1e-9 * GAP)
 
 
+def test_factors_are_those_of_the_force() -> None:
+    one = mode(LINEAR).at(0.02)
+    levels = np.array([1.0, 1.01, 0.9, 1.2])
+    run = one.orbit(one.steady(), 4, factors=levels)
+    here, points = one.steady(), []
+    for level in levels:
+        part = one.at(1.02 * level - 1.0).orbit(here, 1)
+        here = part.end
+        points.append(here)
+    np.testing.assert_allclose(run.points, points, rtol=1e-12, atol=1e-12 * GAP)
+    with pytest.raises(ValueError, match="factors"):
+        one.orbit(one.steady(), 4, factors=levels[:3])
+
+
 def test_grazing_motion_touches_at_rest_and_nowhere_else() -> None:
     one = mode()
     force, touch = one.grazing
@@ -184,7 +198,7 @@ def test_a_motion_beyond_its_cubic_terms_is_no_number(start: tuple[float, float]
     for cubic in (U, LEAF):
         one = mode(cubic)
         if cubic == U or abs(start[0]) + abs(start[1]) > 1.0:
-            with pytest.raises(Diverged, match=r"without bound at t = .* m from the stop"):
+            with pytest.raises(Diverged, match="without bound"):
                 one.orbit(np.array(start), 5)
     with pytest.raises(Diverged):
         mode(U).at(30.0).orbit(mode(U).steady(), 50)

@@ -10,7 +10,7 @@ from oscillators import equation_1, spring
 from whole_motions import falling_body
 
 from beam import ModalModel
-from contact.integrators.sampled_flight import SampledFlight
+from contact.integrators import SampledFlight
 from contact.laws import DelayedRestitution, HertzContact, HuntCrossley, LinearContact, NewtonRestitution
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate

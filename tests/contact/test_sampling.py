@@ -228,7 +228,7 @@ def test_graze_lost_in_rounding_is_reported_and_not_passed():
         stop = Stop(gap=gap, law=NewtonRestitution(local_restitution=1.0))
         oscillator = ImpactOscillator(model=model, stop=stop)
         if outcome is None:
-            with pytest.raises(UnresolvedCrossing, match="neither excluded nor located") as caught:
+            with pytest.raises(UnresolvedCrossing, match="neither") as caught:
                 simulate(oscillator, state, duration=0.05)
             assert caught.value.time == pytest.approx(0.01 * math.pi, abs=1e-3)
         else:

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from letters_spring import GAP, HERTZ
+from oscillators import equation_1
+from simulated_orbit import beam
 
-from contact.maps.stroboscope import StroboscopicMap
-from contact.orbits import fold_of, period_of, settle
-from contact.orbits.families.shooting import Shooting
-from studies.letter import SETTLE_CYCLES
-from studies.shell.scene import beam_at, model_of, read_scene, single_mode_at
+from contact import ImpactOscillator, StroboscopicMap
+from contact.orbits import Shooting, fold_of, period_of, settle
 
-SCENE = read_scene("letter", [])
-MODEL = model_of(SCENE)
+SETTLE_CYCLES = 10_000
+"""Drive periods that the letter waits for."""
 CASES = [
     ("single_mode", 22.20, 1e-3),
     ("beam", 22.20, 1e-3),
@@ -23,8 +23,13 @@ CASES = [
 ]
 
 
+def single_mode(frequency: float) -> ImpactOscillator:
+    """Eq. (1) at the gap of the letter's spring."""
+    return equation_1(frequency, gap=GAP)
+
+
 def strobed_at(name: str, frequency: float, excess: float) -> StroboscopicMap:
-    oscillator = beam_at(SCENE, frequency, MODEL) if name == "beam" else single_mode_at(SCENE, frequency)
+    oscillator = beam(frequency, HERTZ) if name == "beam" else single_mode(frequency)
     return StroboscopicMap(oscillator=oscillator).at(excess)
 
 
@@ -49,7 +54,7 @@ def test_same_period_and_points_as_after_ten_thousand_cycles(name, frequency, ex
 def test_close_to_a_fold_the_proof_comes_long_before_the_repetition():
     """At 2e-7 above the fold of p4 the largest multiplier is within 1 % of one."""
     name, frequency = "single_mode", 21.50
-    family = Shooting(oscillator=single_mode_at(SCENE, frequency), period=4)
+    family = Shooting(oscillator=single_mode(frequency), period=4)
     fold = fold_of(family)
     near = family.at_speed(1.2 * fold.speed, fold)
     start = near.strobe_state()
@@ -68,7 +73,7 @@ def test_below_the_fold_nothing_is_proved_to_be_p4():
     What comes after the passage is a chaotic transient, whose end the last bit decides: nothing is said of
     it.  As far above the fold, from the same start, p4 is what is proved.
     """
-    fold = fold_of(Shooting(oscillator=single_mode_at(SCENE, 21.50), period=4))
+    fold = fold_of(Shooting(oscillator=single_mode(21.50), period=4))
     start = fold.strobe_state()
     for distance in np.geomspace(1e-8, 1e-4, 17):
         below, above = (

@@ -34,9 +34,9 @@ def test_equation_1_is_the_motion_of_an_independent_integration(frequency, exces
     "n_modes, law",
     [
         (2, LinearContact(stiffness=2e4)),
-        (6, LinearContact(stiffness=3e5)),
+        pytest.param(6, LinearContact(stiffness=3e5), marks=pytest.mark.slow),
         (2, LinearContact(stiffness=2e4, damping=4.0)),
-        (6, LinearContact(stiffness=3e5, damping=10.0)),
+        pytest.param(6, LinearContact(stiffness=3e5, damping=10.0), marks=pytest.mark.slow),
         (4, LinearContact(stiffness=1e4, damping=60.0)),
         (3, NewtonRestitution(local_restitution=0.6)),
     ],

@@ -97,7 +97,9 @@ def test_the_steady_motion_touches_at_every_overshoot(frequency, power):
         assert orbit.impacts[0] == (1 if side > 0 else 0)
 
 
-@pytest.mark.parametrize("size", [0.05, 0.25, 0.6, 1.5])
+@pytest.mark.parametrize(
+    "size", [0.05, 1.5, *(pytest.param(size, marks=pytest.mark.slow) for size in (0.25, 0.6))]
+)
 @pytest.mark.parametrize("damping", DAMPINGS)
 def test_planted_overshoots_are_found_and_none_is_invented(damping, size):
     """A period from a random deviation, the stop put next to its peak."""

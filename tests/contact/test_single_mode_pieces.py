@@ -15,7 +15,7 @@ from contact.errors import ContactError
 from contact.laws import DelayedRestitution, HertzContact
 from contact.maps import stroboscope
 from contact.maps.stroboscope import StroboscopicMap, strobed_orbits
-from contact.one_mode.period_table import mode_at, period_table
+from contact.one_mode.period_table import period_table, table_at
 from contact.oscillator import ImpactOscillator
 from contact.stop import Stop
 from contact.trajectory import State
@@ -33,13 +33,15 @@ def test_the_table_of_another_amplitude_is_a_scaled_one(factor):
     other = single.with_amplitude(factor * single.drive.amplitude).motion()
     table, wanted = period_table(single.motion()), period_table(other)
     assert table is not None and wanted is not None
-    found = mode_at(table.mode, single.motion(), factor)
-    swing = found.factor * table.rows[:, :2]
-    assert swing == pytest.approx(wanted.rows[:, :2], rel=1e-14, abs=1e-16 * GAP)
-    for name, value in wanted.mode._replace(factor=factor)._asdict().items():
-        assert getattr(found, name) == pytest.approx(value, rel=1e-13), name
+    found = table_at(table, single.motion(), factor)
+    steady = found.steady.factor * found.rows[:, :2]
+    assert steady == pytest.approx(wanted.rows[:, :2], rel=1e-14, abs=1e-16 * GAP)
+    for ours, theirs in ((found.mode, wanted.mode), (found.steady, wanted.steady._replace(factor=factor))):
+        for name, value in theirs._asdict().items():
+            assert getattr(ours, name) == pytest.approx(value, rel=1e-13), name
     # far beyond any amplitude the place of the peak is not good enough
-    assert wanted.mode.most > 0 > mode_at(table.mode, single.motion(), 1e7).most
+    assert wanted.steady.largest_deviation > 0
+    assert table_at(table, single.motion(), 1e7).steady.largest_deviation < 0
 
 
 # --- when it is used ---------------------------------------------------------------------------------------

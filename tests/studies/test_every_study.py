@@ -108,8 +108,8 @@ ON_A_SPRING = (
     "spring_shape",
 )
 
-#: A fit takes hundreds of meshes.
-SLOW = ("calibrate",)
+#: A fit takes hundreds of meshes; what the others compute is tested beside their whole forms.
+SLOW = ("calibrate", "claims", "finite_amplitude", "next_measurement", "spring_shape")
 
 
 @pytest.mark.parametrize(

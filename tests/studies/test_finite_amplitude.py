@@ -61,6 +61,7 @@ def test_a_wide_bend_keeps_them_and_a_small_gap_nearly(found):
     assert found["tight"][0][0].survive == 4
 
 
+@pytest.mark.slow
 def test_mode_and_frame_agree_where_both_are_nearly_linear(found, scene):
     """To 0.005 ms of the legs and the wide bend; 0.035 ms of 0.5 ms for the tight one."""
     frames = found["tight"][1]

@@ -65,25 +65,25 @@ def test_errors_stated_wrong_are_seen(stated, agrees, trials, run, letter_scene,
 
 def test_a_record_depends_on_its_trial_and_its_number_alone(trials, monkeypatch):
     """The same in another process."""
-    monkeypatch.setattr(truth, "CHUNK", 3)
+    monkeypatch.setattr(truth, "CHUNK", 2)
     trial = trials["Eq. (1), transitions"]
     again = pickle.loads(pickle.dumps(trial.column))(2, 1)
     first, other, later = (trial.column(*at) for at in ((2, 1), (3, 1), (2, 2)))
     assert all(np.array_equal(first[name], again[name]) for name in first)
-    assert np.unique(np.concatenate([one["estimate"][:, 0] for one in (first, other, later)])).size == 9
+    assert np.unique(np.concatenate([one["estimate"][:, 0] for one in (first, other, later)])).size == 6
 
 
 def test_errors_are_those_of_the_scatter_over_many_records(trials, monkeypatch):
-    """64 records: the variance of each estimate over its reported one is chi^2/64, 1 +- 0.18."""
-    monkeypatch.setattr(truth, "CHUNK", 64)
+    """32 records: the variance of each estimate over its reported one is chi^2/32, 1 +- 0.25."""
+    monkeypatch.setattr(truth, "CHUNK", 32)
     trial = trials["Eq. (1), strobe"]
     found = trial.column(0, 0)
     pulls = (found["estimate"] - np.array(list(trial.truth.values()))) / found["error"]
-    assert np.all(np.abs(np.mean(pulls**2, axis=0) - 1.0) < 0.4)
-    assert np.all(np.abs(pulls.mean(axis=0)) < 4.0 / 8.0) and not found["small"].any()
+    assert np.all(np.abs(np.mean(pulls**2, axis=0) - 1.0) < 0.55)
+    assert np.all(np.abs(pulls.mean(axis=0)) < 4.0 / np.sqrt(32.0)) and not found["small"].any()
 
 
-@pytest.mark.parametrize("kind", ["strobe", "displacement"])
+@pytest.mark.parametrize("kind", [pytest.param("strobe", marks=pytest.mark.slow), "displacement"])
 def test_one_mode_is_too_small_for_the_beam_and_its_own_modes_are_not(trials, monkeypatch, kind):
     monkeypatch.setattr(truth, "CHUNK", 3)
     for name, small in {f"beam, {kind}, by Eq. (1)": 3, f"beam, {kind}": 0}.items():

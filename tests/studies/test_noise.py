@@ -212,7 +212,9 @@ def test_a_cloud_is_what_an_independent_program_found(place):
 
 
 @pytest.mark.parametrize("protocol", [WHITE, DRIFT], ids=["white", "drift"])
-@pytest.mark.parametrize("m, frequency", [(4, 21.5), (5, 22.2), (6, 22.6)])
+@pytest.mark.parametrize(
+    "m, frequency", [(4, 21.5), pytest.param(5, 22.2, marks=pytest.mark.slow), (6, 22.6)]
+)
 def test_formulas_are_what_scans_find(place, protocol, m, frequency):
     """Even where the noise is as large as the hysteresis, at 22.60 Hz."""
     here = place(m, frequency)
@@ -228,7 +230,7 @@ def test_formulas_are_what_scans_find(place, protocol, m, frequency):
 # --- clouds ------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("description", ["map", "Eq. (1)", "beam"])
+@pytest.mark.parametrize("description", ["map", "Eq. (1)", pytest.param("beam", marks=pytest.mark.slow)])
 def test_covariances_are_those_of_simulated_clouds(place, description):
     for correlation in (0.0, 1.0):
         row = covariance_of(60_000, 1996, (place(3, 20.9, description), correlation))
@@ -286,7 +288,7 @@ def test_strobe_points_run_together_as_m_grows(letter_scene):
 def test_small_form(run_study, monkeypatch):
     for name, less in (("CLOUD_PERIODS", (0, 20_000)), ("TOLD", ((), range(9, 11)))):
         monkeypatch.setattr(f"studies.measurement.noise.__main__.{name}", less)
-    options = ("--set", "modes.count=2", "--set", "drive.frequencies_hz=[21.5, 22.6]", "--waiting", "3000")
+    options = ("--set", "modes.count=2", "--set", "drive.frequencies_hz=[21.5, 22.6]", "--waiting", "1000")
     ran = run_study("noise", "--quick", *options)
     assert ran.code == 0 and ran.summary["first_merged"]["white"] == 10
     assert ran.verdicts["last_period"] == "agrees"

@@ -9,13 +9,14 @@ import warnings
 from dataclasses import FrozenInstanceError
 from pathlib import Path
 
+import letters_spring
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import beam
 from beam import SuspiciousValue
-from studies.shell.scene import SCENES, Scene, SceneError, check, read_scene
+from studies.shell.scene import SCENES, Scene, SceneError, beam_at, check, hertz_of, model_of, read_scene
 from studies.shell.scene.keys import MODE_LISTS
 from studies.shell.scene.values import KEYS, parse_override, scene_from_text
 
@@ -35,6 +36,17 @@ def refusal(*overrides: str, scene: str = "letter") -> str:
 
 def test_the_letters_scene_is_the_default():
     assert read_scene() == read_scene("letter") == read_scene(SCENES / "letter.toml") == Scene()
+
+
+@pytest.mark.parametrize("modes", [letters_spring.FOLD_MODES, letters_spring.KICK_MODES])
+def test_the_spring_of_the_tests_of_contact_is_the_letters(modes):
+    """Its solver leaves up to 1e-8 of rounding in the first frequency, which the scene takes out."""
+    scene = read_scene("letter", [f"modes.count={modes}"])
+    plain, expected = letters_spring.letters_spring(modes), model_of(scene)
+    for name in ("omega", "decay_rate", "phi", "participation", "static_compliance", "tip_mass"):
+        assert getattr(plain, name) == pytest.approx(getattr(expected, name), rel=1e-7)
+    assert letters_spring.HERTZ == hertz_of(scene) == beam_at(scene, 22.2).stop.law
+    assert letters_spring.GAP == scene.stop.gap_m
 
 
 def test_provenance_says_what_is_the_letters_and_what_was_fitted():

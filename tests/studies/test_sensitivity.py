@@ -85,9 +85,9 @@ def test_the_fold_of_eq_1_and_map_know_nothing_of_the_higher_modes(letter_scene,
 
 def test_small_form(run_study, monkeypatch):
     monkeypatch.setattr(
-        "studies.experiment.sensitivity.__main__.causes_of", lambda *given: causes_of(*given)[:5]
+        "studies.experiment.sensitivity.__main__.causes_of", lambda *given: causes_of(*given)[:2]
     )
-    ran = run_study("sensitivity", "--quick", "--set", "drive.frequencies_hz=[22.6, 23.4]")
-    assert ran.code == 0 and len(ran.summary["rows"]) == 2 * (1 + 8)
-    assert len(ran.rows("p10")) == 5 and ran.summary["p10"][1]["born"] == [11, 11, 10, 10]
+    ran = run_study("sensitivity", "--quick", "--set", "drive.frequencies_hz=[23.4]")
+    assert ran.code == 0 and len(ran.summary["rows"]) == 1 + 8
+    assert len(ran.rows("p10")) == 2 and ran.summary["p10"][1]["born"] == [11, 11, 10, 10]
     assert "Eq. (1), 4." in ran.summary["answers"]["last_period"]

@@ -93,6 +93,7 @@ def test_kinds_of_the_folded_strip(shapes):
     assert kinds == ["bending", "breathing", "bending", "sideways", "breathing", "bending", "twist"]
 
 
+@pytest.mark.slow
 def test_a_channel_twists_as_high_as_the_folded_strip_only_with_low_flanges(folded_scene, rows):
     thin, thick = (reading_row(shapes_of(folded_scene, sheet)["channel"], 5e-4) for sheet in (0.5, 0.75))
     assert thin.ratio_twist < rows["folded"].ratio_twist < thick.ratio_twist

@@ -55,23 +55,25 @@ def test_the_bifurcations_of_two_masses_by_a_boundary_problem_in_40_digits():
 FAST = ("ghosh_simpson", "coco", "sdnd122", "nlvib", "bouncing_bar", "two_bars")
 
 
-def test_every_source_has_its_table_and_its_tally(run_study, monkeypatch):
-    sections = {name: program.SECTIONS[name] for name in FAST}
+@pytest.mark.parametrize("count", [3, pytest.param(len(FAST), marks=pytest.mark.slow)])
+def test_every_source_has_its_table_and_its_tally(run_study, monkeypatch, count):
+    sections = {name: program.SECTIONS[name] for name in FAST[:count]}
     sections["nothing"] = lambda run: Section(rows=[compared("none", "a number", 1.0, 3.0, 0.5, "wrong")])
     monkeypatch.setattr(program, "SECTIONS", sections)
     ran = run_study("validation", "--quick")
     differ = {each["source"]: each["differs"] for each in ran.summary["sources"]}
-    assert differ == {
+    expected = {
         "Ghosh and Simpson": 0,
         "COCO 15.2": 0,
         "SDND122": 1,
         "NLvib 03": 0,
         "bouncing bar": 0,
         "SDNL111": 0,
-        "none": 1,
     }
-    assert sum(each["agrees"] for each in ran.summary["sources"]) >= 30
-    assert sum(each["holds"] for each in ran.summary["sources"]) >= 15
+    assert differ == dict([*expected.items()][:count]) | {"none": 1}
+    if count == len(FAST):
+        assert sum(each["agrees"] for each in ran.summary["sources"]) >= 30
+        assert sum(each["holds"] for each in ran.summary["sources"]) >= 15
     assert not any(each["fails"] for each in ran.summary["sources"])
     with (ran.folder / "rows.csv").open(newline="") as stream:
         told = [row["verdict"] for row in csv.DictReader(stream)]

@@ -98,7 +98,7 @@ def test_stability_changes_at_events_only():
         assert abs(orbit.multipliers[0]) == pytest.approx(1.0, abs=1e-9) and orbit.multipliers[0].imag != 0.0
 
 
-@pytest.mark.parametrize("wall", [0.4, 4.0])
+@pytest.mark.parametrize("wall", [0.4, pytest.param(4.0, marks=pytest.mark.slow)])
 def test_a_raised_frequency_falls_off_where_the_response_turns(wall):
     """Simulated, the state carried along, in steps of 50 rad/s: to the turning frequency."""
     modes = bars.elements(20, True)

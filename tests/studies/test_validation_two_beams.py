@@ -112,6 +112,7 @@ def test_the_detached_curve_is_closed_and_time_steps_stay_on_it():
         assert np.max(np.abs(end.displacement - start.displacement)) < 2e-3 * unit
 
 
+@pytest.mark.slow
 def test_more_damping_joins_the_curves():
     damped = Rig(others=0.003)
     assert max(damped.response(LEVELS[2]).parameters) > 1.018

@@ -127,7 +127,11 @@ def second_route(
 
 @pytest.mark.parametrize(
     "law",
-    [NewtonRestitution(local_restitution=0.1), LinearContact(stiffness=2e5), HertzContact(stiffness=1e8)],
+    [
+        NewtonRestitution(local_restitution=0.1),
+        LinearContact(stiffness=2e5),
+        pytest.param(HertzContact(stiffness=1e8), marks=pytest.mark.slow),
+    ],
     ids=["newton", "linear", "hertz"],
 )
 def test_a_second_route_and_the_exact_method_agree_with_the_reference(law: ContactLaw) -> None:

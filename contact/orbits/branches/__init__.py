@@ -1,6 +1,6 @@
 """Branches of periodic orbits, followed by arc length, and the events on them.
 
-`curve`               a curve of orbits: one point beside the other
+`curve`               a curve of orbits: its points, one next to another
 `branch`              a curve followed both ways
 `events`              folds, period doublings, tori, branch points and grazes, each verified
 `family_curve`        the curve of a family over the drive amplitude

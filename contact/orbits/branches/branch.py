@@ -1,9 +1,9 @@
 """A branch of periodic orbits: a curve followed in its arc length both ways from one orbit.
 
 A step that fails is halved; between neighbours events are located (``contact.orbits.branches.events``).  The
-branch ends at the end of the range, where it closes on itself, or where there is no neighbour: with a
-sentence that says why.  Where the tip gains or loses a touch, a curve of `whole` points goes on with another
-number of touches if there is such an orbit beside it, as under a law whose force is continuous.
+branch ends at the end of the range, where it closes on itself, or where there is no neighbour: then a
+sentence says why.  Where the tip gains or loses a touch, a curve with `admissible_only` goes on with another
+number of touches.  Such a neighbour exists under a law whose force is continuous.
 """
 
 from __future__ import annotations
@@ -16,37 +16,38 @@ from typing import NamedTuple
 import numpy as np
 
 from contact.errors import ContactError
-from contact.orbits.branches.curve import BEND, CROSSING, Curve, Point, grazes
+from contact.orbits.branches.curve import BEND, CROSSING, Curve, grazes
 from contact.orbits.branches.events import (
     CLOSE,
     NEARLY,
     Event,
-    Met,
+    EventPoint,
     event_of,
     events_between,
-    probed,
-    told_apart,
+    refined,
+    with_undecided,
 )
+from contact.orbits.families.equations import Point
 from contact.orbits.families.periodic_orbit import PeriodicOrbit
 
 SMALLEST, MOST_STEPS = 1e-9, 5000
-"""Step of arc length at which a branch is given up, to which a graze is located; and bound of steps."""
+"""Step of arc length at which a branch is given up and to which a graze is located; and bound of steps."""
 
 ACROSS = tuple(10.0**-k for k in range(9, 2, -1))
 """Steps tried from a grazing orbit to the first one with another number of touches."""
-
 
 SHORTER = "the orbit becomes one of a shorter period, which runs through it several times"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Branch:
-    """A branch of periodic orbits in the order in which it is met.
+    """A branch of periodic orbits.
 
     Parameters
     ----------
     orbits : tuple of PeriodicOrbit
     events : tuple of Event
+        Both in their order along the branch.
     ended_low, ended_high : str
         Why the branch ends there: "range", "closed", or a sentence.
     parameters : tuple of float
@@ -65,11 +66,13 @@ class Branch:
 
 
 class Leg(NamedTuple):
-    """The way to the next point of a branch: the points after the last one, the events on the way, and on the
-    last leg why the branch ends."""
+    """The way to the next point of a branch: the points after the last one, and the events on the way.
+
+    `ended` says on the last leg why the branch ends.
+    """
 
     points: list[Point]
-    met: list[Met]
+    events: list[EventPoint]
     ended: str
 
 
@@ -84,19 +87,19 @@ def walk(curve: Curve, first: Point, longest: float, stride: float) -> Iterator[
         yield Leg([], [], "range")
         return
     for count in range(MOST_STEPS):
-        there = curve.near(here, step, here.orbit.impacts)
+        there = curve.next_point(here, step, here.orbit.impacts)
         if isinstance(there, str) and step > SMALLEST:
             step *= 0.5
             continue
         if isinstance(there, str):
-            leg = _lost(curve, looked, here, there)
+            leg = _leg_to_edge(curve, looked, here, there)
             yield leg
             if leg.ended:
                 return
             here = looked = leg.points[-1]
             edges, step = [here], SMALLEST
             continue
-        firsts = firsts or [curve.restarted(first, touch) for touch in range(first.orbit.impacts)]
+        firsts = firsts or [curve.with_first_touch(first, touch) for touch in range(first.orbit.impacts)]
         closing = _closing(firsts, here, there) if count > 3 else None
         if closing is not None and closing.direction @ there.direction < 0.0:
             yield Leg([], [], "the branch comes back the other way: a step was too long")
@@ -104,7 +107,7 @@ def walk(curve: Curve, first: Point, longest: float, stride: float) -> Iterator[
         there = closing or there
         ended = "closed" if closing else "range" if there.last else ""
         if ended or np.linalg.norm(there.x - looked.x) > CLOSE:
-            leg = _looked_at(curve, looked, there, [*edges, there] if there.last else edges)
+            leg = _leg_between(curve, looked, there, [*edges, there] if there.last else edges)
             edges, looked, ended = [], there, leg.ended or ended
             yield leg._replace(ended=ended)
         if ended:
@@ -113,85 +116,86 @@ def walk(curve: Curve, first: Point, longest: float, stride: float) -> Iterator[
     yield Leg([], [], f"the bound of {MOST_STEPS} steps is used up")
 
 
-def _looked_at(curve: Curve, a: Point, b: Point, edges: list[Point]) -> Leg:
-    """The leg from `a` to its neighbour `b`; it ends at a branch point behind which the orbits of the branch
-    come back, a number of drive periods later."""
+def _leg_between(curve: Curve, a: Point, b: Point, edges: list[Point]) -> Leg:
+    """The leg from `a` to its neighbour `b`.
+
+    It ends at a branch point if the orbits behind it are those before it, some drive periods later.
+    """
     try:
-        points = [*probed(curve, a, b), b]
+        points = [*refined(curve, a, b), b]
     except ContactError:
         points = [a, b]
-    met = told_apart([event for c, d in pairwise(points) for event in events_between(curve, c, d)], edges)
-    for i, event in enumerate(met):
+    found = [event for c, d in pairwise(points) for event in events_between(curve, c, d)]
+    events = with_undecided(found, edges)
+    for i, event in enumerate(events):
         if event.kind == "branch point" and event.point.orbit.repeats(NEARLY) > a.orbit.repeats():
-            return Leg([], met[: i + 1], SHORTER)
-    return Leg(points[1:], met, "")
+            return Leg([], events[: i + 1], SHORTER)
+    return Leg(points[1:], events, "")
 
 
-def _lost(curve: Curve, looked: Point, here: Point, why: str) -> Leg:
+def _leg_to_edge(curve: Curve, looked: Point, here: Point, why: str) -> Leg:
     """The leg from `looked` to `here`, the last point before a graze, or before the branch is lost."""
-    met = events_between(curve, looked, here) if here is not looked else []
-    beyond = _with_other_touches(curve, here) if why != CROSSING else None
     points = [here] if here is not looked else []
     if why == CROSSING:
-        return Leg(points, [Met(kind="branch point", point=here)], SHORTER)
+        return Leg(points, [EventPoint(kind="branch point", point=here)], SHORTER)
+    events = with_undecided(events_between(curve, looked, here) if points else [], [here])
+    beyond = _with_other_touches(curve, here)
     if beyond is None and not grazes(here.orbit):
-        return Leg(points, told_apart(met, [here]), why)
-    met = [*told_apart(met, [here]), Met(kind="grazing", point=here)]
+        return Leg(points, events, why)
+    events.append(EventPoint(kind="grazing", point=here))
     if beyond is None:
-        return Leg(points, met, f"one of {here.orbit.impacts} touches is a graze")
-    return Leg([*points, beyond], met, "")
+        return Leg(points, events, f"one of {here.orbit.impacts} touches is a graze")
+    return Leg([*points, beyond], events, "")
 
 
 def branch_of(curve: Curve, first: Point, longest: float, stride: float) -> tuple[Branch, list[Point]]:
-    """The branch through `first`, its direction last, and its points."""
-    arms = list[tuple[list[Point], list[Met], str]]()
-    for start in (first.along(-first.direction), first):
-        if arms and arms[0][2] == "closed":
-            arms.append(([], [], "closed"))
+    """The branch through `first` and its points; the side along the direction of `first` comes last."""
+    sides = list[Leg]()
+    for start in (first.oriented(-first.direction), first):
+        if sides and sides[0].ended == "closed":
+            sides.append(Leg([], [], "closed"))
             break
         legs = list(walk(curve, start, longest, stride))
-        arms.append(
-            (
-                [point for leg in legs for point in leg.points],
-                [event for leg in legs for event in leg.met],
-                legs[-1].ended,
-            )
-        )
-    arms = [(points, told_apart(met, []), ended) for points, met, ended in arms]
-    (before, met_before, low), (after, met_after, high) = arms
-    points = [*before[::-1], first, *after]
+        events = with_undecided([event for leg in legs for event in leg.events], [])
+        sides.append(Leg([point for leg in legs for point in leg.points], events, legs[-1].ended))
+    before, after = sides
+    points = [*before.points[::-1], first, *after.points]
     twice = {
         id(b)
-        for a in met_before[:1]
-        for b in met_after[:1]
+        for a in before.events[:1]
+        for b in after.events[:1]
         if a.kind == b.kind and np.linalg.norm(a.point.x - b.point.x) < CLOSE
     }
-    met = [*met_before[::-1], *(event for event in met_after if id(event) not in twice)]
+    events = [*before.events[::-1], *(event for event in after.events if id(event) not in twice)]
     return Branch(
         orbits=tuple(point.orbit for point in points),
-        events=tuple(event_of(curve, each) for each in met),
-        ended_low=low,
-        ended_high=high,
+        events=tuple(event_of(curve, each) for each in events),
+        ended_low=before.ended,
+        ended_high=after.ended,
     ), points
 
 
 def _with_other_touches(curve: Curve, here: Point) -> Point | None:
-    """The first point beyond a grazing orbit, with a touch more or less, started from its fastest touch: not
-    from one that is about to be lost."""
-    if not curve.whole:
+    """The first point beyond a grazing orbit, with a touch more or less; None if there is none.
+
+    It starts from the fastest touch, since the slowest one is about to be lost.
+    """
+    if not curve.admissible_only:
         return None
-    here = curve.restarted(here, int(np.argmax(here.orbit.approach)))
+    here = curve.with_first_touch(here, int(np.argmax(here.orbit.approach)))
     for touches in (here.orbit.impacts + 1, here.orbit.impacts - 1):
         for length in ACROSS if touches else ():
-            there = curve.near(here, length, touches)
+            there = curve.next_point(here, length, touches)
             if isinstance(there, Point):
                 return there
     return None
 
 
 def _closing(firsts: Sequence[Point], a: Point, b: Point) -> Point | None:
-    """The first point of the curve, started from one of its touches, if the curve comes by it between
-    neighbours a and b, either way."""
+    """The first point of the curve, if the curve passes it between neighbours a and b in either direction.
+
+    `firsts` holds that point, started from each of its touches.
+    """
     chord = b.x - a.x
     for first in firsts:
         way = first.x - a.x

@@ -1,8 +1,8 @@
-"""Families of periodic orbits followed over the drive amplitude, and the points on them that matter.
+"""Families of periodic orbits followed over the drive amplitude, with their folds and other events.
 
 A family is followed in the arc length of its unknowns, of which the last is log v, v the approach velocity of
-the first touch (``contact.orbits.families.shooting``): down to grazing a step changes v by a factor, and
-where v turns round, as with several touches it can, so does the curve (``contact.orbits.branches.branch``).
+the first touch (``contact.orbits.families.continuable_family``).  Down to grazing a step changes v by a
+factor.  With several touches v can turn round along the curve (``contact.orbits.branches.branch``).
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ from numpy.typing import NDArray
 from beam.parameters import InvalidValue, require_array, require_kind, require_within
 from contact.errors import ContactError
 from contact.orbits.branches.branch import SMALLEST, Branch, branch_of
-from contact.orbits.branches.events import Between, Event, event_of
+from contact.orbits.branches.events import Arc, Event, event_of
 from contact.orbits.branches.family_curve import (
     GREATEST_SPEED,
     FamilyCurve,
     at_graze,
+    branch_ended,
     downhill,
-    lost_at,
-    require_followed,
     whole_branch,
 )
+from contact.orbits.families.continuable_family import ContinuableFamily
 from contact.orbits.families.kick import SPEEDS
-from contact.orbits.families.periodic_orbit import Followed, PeriodicOrbit
+from contact.orbits.families.periodic_orbit import PeriodicOrbit
 
 Array = NDArray[np.float64]
 
@@ -35,27 +35,35 @@ GREATEST_STEP = 10.0
 """Longest step of log v: over four decades at once."""
 
 FASTEST = 100.0
-"""Approach velocity, over 2 pi f gap, up to which an event is looked for, or twice the one of the start."""
+"""Approach velocity, over 2 pi f gap, up to which an event is looked for; at least twice the start's."""
 
 LOSSES = ("torus", "period doubling", "branch point", "undecided")
 """Events other than folds and grazings at which orbits can lose their stability."""
 
 
-def follow(family: Followed, start: PeriodicOrbit, *, low: float, high: float, step: float = 0.1) -> Branch:
-    """The branch through `start`, as long as the approach velocity of its first touch is between `low` and
-    `high` [m/s].
+def _require(family: object, near: object = None) -> None:
+    """TypeError unless this is a family to follow and `near` one of its orbits or None."""
+    require_kind("family", family, ContinuableFamily, "a Shooting family")
+    require_kind("near", near, (PeriodicOrbit, type(None)), "a PeriodicOrbit or None")
 
-    Its orbits come in the order in which the curve meets them: with one touch that of the approach velocity.
+
+def follow(
+    family: ContinuableFamily, start: PeriodicOrbit, *, low: float, high: float, step: float = 0.1
+) -> Branch:
+    """The branch through `start` between two approach velocities of the first touch.
+
+    Its orbits come in their order along the curve; with one touch the approach velocity rises.
 
     Parameters
     ----------
     family : Shooting
     start : PeriodicOrbit
     low, high : float
+        Range of the approach velocity [m/s].
     step : float
         Longest step of arc length; near grazing, of log v.
     """
-    require_followed(family)
+    _require(family)
     require_kind("start", start, PeriodicOrbit, "a PeriodicOrbit")
     for name, value in (("low", low), ("high", high)):
         require_within(name, value, "m/s")
@@ -73,76 +81,72 @@ def follow(family: Followed, start: PeriodicOrbit, *, low: float, high: float, s
 
 
 def _placed(ended: str, last: PeriodicOrbit) -> str:
-    """Why a branch ends, and where."""
+    """Why a branch ends, in words, with the place of its last orbit."""
     if ended in ("range", "closed"):
         return ended
     return f"{ended}; last orbit at {last.speed:.6g} m/s, excess {last.excess:.6g}"
 
 
-def first_event(family: Followed, start: PeriodicOrbit, lowest: float) -> Event | None:
+def first_event(family: ContinuableFamily, start: PeriodicOrbit, lowest: float) -> Event | None:
     """The event that ends the orbit `start` when the amplitude is lowered.
 
-    The branch is followed towards lower amplitudes until an event is met, or until the excess is below
-    `lowest` [1]: then the answer is None.  An orbit ends by "grazing" where one of its touches becomes a
-    graze, and where its first touch falls below `LEAST_SPEED`, as under a soft contact without a fold.
-
-    Raises
-    ------
-    BranchEnded
-        If the branch ends for another reason, which it names; its `orbit` is the last one.
+    None is returned if no event is met down to the excess `lowest` [1].  An orbit ends by "grazing" where one
+    of its touches becomes a graze.  Under a soft contact without a fold it does so where its first touch is
+    slower than `LEAST_SPEED`.  If the branch ends for another reason, BranchEnded names it and has the last
+    `orbit`.
     """
-    require_followed(family)
+    _require(family)
     require_kind("start", start, PeriodicOrbit, "a PeriodicOrbit")
     require_within("lowest", lowest, "[1]", above=-1)
     last = start
     for leg, curve in downhill(family, start, FASTEST):
-        if leg.met:
-            return event_of(curve, leg.met[0])
+        if leg.events:
+            return event_of(curve, leg.events[0])
         last = leg.points[-1].orbit if leg.points else last
         if last.excess < lowest:
             return None
         if leg.ended and not at_graze(leg.ended, last):
-            raise lost_at(last, f"the branch ends before an event: {leg.ended}")
+            raise branch_ended(last, f"the branch ends before an event: {leg.ended}")
     return Event(kind="grazing", orbit=last)
 
 
-def fold_of(family: Followed, near: PeriodicOrbit | None = None) -> PeriodicOrbit | None:
+def fold_of(family: ContinuableFamily, near: PeriodicOrbit | None = None) -> PeriodicOrbit | None:
     """The fold of smallest amplitude, where the family's downward scan ends.
 
     None is returned for one reason only: the branch was followed to its graze and has no fold.
 
-    Where contact is soft, at an excess of some 1e-5 and less, a branch can have several folds, and go on
+    Where contact is soft, at an excess of some 1e-5 and less, a branch can have several folds.  It can go on
     below the lowest of them until another touch grazes.  A fold below grazing is the orbit of smallest
-    amplitude: the soft stretch of the branch, which begins at excess 0 upwards, lies above it.  Any other is
-    looked for among `folds_of` the branch; `lowest_of` gives the orbit of smallest amplitude, fold or graze.
+    amplitude, since the soft stretch of the branch begins at excess 0 upwards.  Any other fold is looked for
+    on the whole branch (`folds_of`); `lowest_of` gives the orbit of smallest amplitude, fold or graze.
 
     Parameters
     ----------
     family : Shooting
         If its fold is not `admissible`, the family with as many touches as the collision of the kick
-        description is tried too.  The orbit that is returned says whether it is admissible, and in `touches`
-        how often its motion touches the stop.
+        description is tried too.  The returned orbit has the properties `admissible`, and `touches`: how
+        often its motion touches the stop.
     near : PeriodicOrbit, optional
-        An orbit close to the fold, such as that of a neighbouring frequency: the first fold downhill from it
-        is taken for the lowest.  Otherwise the kick description, searched over all speeds, leads there.
+        An orbit close to the fold, such as the fold at a neighbouring frequency.  The first fold downhill
+        from it is taken for the lowest.  Otherwise the kick description is searched over all speeds.
 
     Raises
     ------
     BranchEnded
-        If there is no orbit to start from, if the branch is lost, or if it has no fold and its stable orbits
-        end by a torus or a period doubling.  The error says which, and its `orbit` is the last one.
+        If there is no orbit to start from; if the branch is lost; or if it has no fold and its stable orbits
+        end by a torus or a period doubling.  The `orbit` of the error is the last one.
     """
     fold, losses = lowest_fold(family, near)
     if losses:
         words = ", ".join(f"a {event.kind} at excess {event.orbit.excess:.6g}" for event in losses)
-        raise lost_at(losses[0].orbit, f"it has no fold, and its stable orbits end by {words}")
+        raise branch_ended(losses[0].orbit, f"it has no fold, and its stable orbits end by {words}")
     return fold
 
 
 def lowest_fold(
-    family: Followed, near: PeriodicOrbit | None = None
+    family: ContinuableFamily, near: PeriodicOrbit | None = None
 ) -> tuple[PeriodicOrbit | None, list[Event]]:
-    """The fold of `fold_of`; without one, the events by which stable orbits end, by falling excess."""
+    """The fold of `fold_of`, or None and the events by which stable orbits end, by falling excess."""
     fold, losses = _fold_of_these_touches(family, near)
     kick = None if fold is None or fold.admissible else family.kicks.fold()
     if fold is None or kick is None or kick.kick.touches == fold.impacts:
@@ -155,9 +159,9 @@ def lowest_fold(
 
 
 def _fold_of_these_touches(
-    family: Followed, near: PeriodicOrbit | None
+    family: ContinuableFamily, near: PeriodicOrbit | None
 ) -> tuple[PeriodicOrbit | None, list[Event]]:
-    """`lowest_fold` with as many touches as the family has."""
+    """The result of `lowest_fold` with as many touches as the family has."""
     fold = _fold_near(family, near)
     if fold is not None and fold.excess < 0.0:
         return fold, []
@@ -171,20 +175,22 @@ def _fold_of_these_touches(
     return None, []
 
 
-def folds_of(family: Followed, near: PeriodicOrbit | None = None) -> tuple[PeriodicOrbit, ...]:
+def folds_of(family: ContinuableFamily, near: PeriodicOrbit | None = None) -> tuple[PeriodicOrbit, ...]:
     """All folds of the branch, by rising approach velocity from 1e-6 to 2 times 2 pi f gap.
 
-    The branch is followed through `near`, or else through the first orbit that the kick description leads to;
-    BranchEnded if it leads to none.  Between two steps a pair of folds is seen when the rate comes near zero.
+    The branch is followed through `near`, or else through the first orbit found from the kick description;
+    BranchEnded is raised if there is none.  Between two steps a pair of folds is seen when the rate comes
+    near zero.
     """
+    _require(family, near)
     return tuple(sorted(whole_branch(family, near)[2].of_kind("fold"), key=lambda orbit: orbit.speed))
 
 
-def lowest_of(family: Followed, near: PeriodicOrbit | None = None) -> Event | None:
+def lowest_of(family: ContinuableFamily, near: PeriodicOrbit | None = None) -> Event | None:
     """The admissible orbit of smallest amplitude: a "fold", or the "grazing" that ends the branch below it.
 
-    Parameters and errors are those of `fold_of`.  None if the branch has no such orbit, as where amplitude
-    rises all along it from grazing on.
+    Parameters and errors are the same as in `fold_of`.  None is returned if the branch has no such orbit, as
+    where the amplitude rises all along it from grazing on.
     """
     fold = _fold_near(family, near)
     if fold is not None and fold.excess < 0.0 and fold.admissible:
@@ -194,39 +200,40 @@ def lowest_of(family: Followed, near: PeriodicOrbit | None = None) -> Event | No
     return min(ends, key=lambda event: event.orbit.excess, default=None)
 
 
-def orbits_at(family: Followed, excess: float) -> tuple[PeriodicOrbit, ...]:
-    """The orbits of the branch of `folds_of` at F/F_g - 1 = `excess`, by rising approach velocity."""
+def orbits_at(family: ContinuableFamily, excess: float) -> tuple[PeriodicOrbit, ...]:
+    """The orbits at F/F_g - 1 = `excess` on the branch of `folds_of`, by rising approach velocity."""
     require_within("excess", excess, "[1]", above=-1)
+    _require(family)
     curve, points, _ = whole_branch(family, None)
     found = []
     for start, end in pairwise(points):
-        a, b = (point.along(end.x - start.x) for point in (start, end))
-        turns = [Between(curve, a, b).root(lambda point: point.rate)] if a.rate * b.rate < 0.0 else []
+        a, b = (point.oriented(end.x - start.x) for point in (start, end))
+        turns = [Arc(curve, a, b).root(lambda point: point.rate)] if a.rate * b.rate < 0.0 else []
         for c, d in pairwise([a, *turns, b]):  # both sides of a fold may have an orbit
             if (c.orbit.excess - excess) * (d.orbit.excess - excess) < 0.0:
-                found.append(Between(curve, c, d).root(lambda point: point.orbit.excess - excess).orbit)
+                found.append(Arc(curve, c, d).root(lambda point: point.orbit.excess - excess).orbit)
     return tuple(sorted(found, key=lambda orbit: orbit.speed))
 
 
-def _fold_near(family: Followed, near: PeriodicOrbit | None) -> PeriodicOrbit | None:
+def _fold_near(family: ContinuableFamily, near: PeriodicOrbit | None) -> PeriodicOrbit | None:
     """The first fold downhill from `near`, or from the fold of the kick description."""
-    require_followed(family, near)
+    _require(family, near)
     guess = near or family.kicks.fold() or family.kicks.fold((SPEEDS[0], GREATEST_SPEED))
     if guess is None:
         return None
     start = family.at_speed(guess.speed, near)
     for leg, _ in downhill(family, start, GREATEST_SPEED):
-        for met in leg.met:
-            if met.kind == "fold":
-                return met.point.orbit
+        for event in leg.events:
+            if event.kind == "fold":
+                return event.point.orbit
     return None
 
 
 def fold_along_frequency(
-    family: Followed, frequencies: np.ndarray, near: PeriodicOrbit | None = None
+    family: ContinuableFamily, frequencies: np.ndarray, near: PeriodicOrbit | None = None
 ) -> list[PeriodicOrbit | None]:
     """The folds at `frequencies` [Hz], each started from the one before; None where there is none."""
-    require_followed(family, near)
+    _require(family, near)
     found: list[PeriodicOrbit | None] = []
     for frequency in require_array("frequencies", frequencies, "Hz", dimensions=1, words="drive frequencies"):
         drive = replace(family.oscillator.driven, frequency=float(frequency))

@@ -1,19 +1,18 @@
-"""Events on a curve of periodic orbits: what happens between two of its points.
+"""Events on a curve of periodic orbits, between two of its points.
 
-Along the curve a number changes sign at each kind of event; its zero is located by Brent's method, which
-bisects where the number is a mere sign:
+A number changes sign at each kind of event.  Its zero is located by Brent's method, which bisects where the
+number is only a sign:
 
     fold              derivative of the parameter with the arc length: two orbits, one stable, meet
     period doubling   det(M + I): a multiplier passes -1
     torus             sign of prod (1 - m_i m_j), i < j: a complex pair of multipliers passes the unit circle
                       (Neimark-Sacker); two real ones with m_i m_j = 1 are no event
-    branch point      determinant of the equations with the direction (``contact.orbits.branches.curve``): two
-    curves
-                      cross, as where an orbit of 2m periods runs through one of m
+    branch point      determinant of the equations with the direction (``contact.orbits.branches.curve``):
+                      two curves cross, as where an orbit of 2m periods runs through one of m
     grazing           +1 or -1: the tip gains or loses a touch of the stop (certified flights)
 
-An event is returned if a multiplier is where it must be, if the located orbit lies on the curve of its
-neighbours, and if nothing else happens next to it.  Otherwise it is called "undecided".
+An event is certain if a multiplier is where it must be, if the located orbit lies on the curve of its
+neighbours, and if no other event lies next to it.  Otherwise it is called "undecided".
 """
 
 from __future__ import annotations
@@ -24,28 +23,29 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from contact.errors import ContactError
-from contact.orbits.branches.curve import Curve, Point, why_not_beside
+from contact.orbits.branches.curve import Curve, why_no_neighbours
+from contact.orbits.families.equations import Point
 from contact.orbits.families.periodic_orbit import PeriodicOrbit
 
 PLACE = 1e-12
-"""Part of a step to which an event is located; the parameter at a fold is good to the square of it."""
+"""Part of a step to which an event is located.  The parameter at a fold is exact to the square of it."""
 
 CLOSE = 1e-6
-"""Arc length over which two events, an event and a graze, or an event and the end of the range are not told
-apart; and distance of a multiplier from where it must be at an event."""
+"""Arc length below which two events, an event and a graze, or an event and the end of the range are not
+distinguished; and largest error of the multiplier that identifies an event."""
 
 ASIDE = 10.0 * CLOSE
 """Arc length on both sides of a branch point that is left out: there the equations are singular."""
 
 PROBE, MOST_PROBES = 0.25, 4
-"""A point is computed where the rate is expected below this part of that of both neighbours: a first probe
-and three halvings tell apart folds closer than a hundredth of a step."""
+"""A point is computed where the rate is expected below this part of the rates of both neighbours.  A first
+probe and three halvings distinguish folds closer than a hundredth of a step."""
 
 MOST_HALVINGS, MIDDLES = 12, (0.5, 0.4, 0.6)
-"""How often a step is halved where an event on it is not sound, and parts of it that are tried for that."""
+"""Bound of halvings of a step with an uncertain event; and parts of a step that are tried as its middle."""
 
 NEARLY = 1e-3
-"""Difference between the touches of an orbit at a branch point that the accuracy of its place leaves."""
+"""Difference between the touches of an orbit at a branch point, which is located to finite accuracy."""
 
 LEAST_TORUS = 1e-12
 """Size of the test of a torus below which its sign is rounding: without damping, some m_i m_j is 1."""
@@ -58,8 +58,8 @@ class Event:
     Parameters
     ----------
     kind : str
-        "fold", "period doubling", "torus", "branch point" or "grazing"; or "undecided", where two of these,
-        or one and the end of the range, lie closer than 1e-6 of arc length.
+        "fold", "period doubling", "torus", "branch point" or "grazing"; or "undecided", where two events, or
+        one and the end of the range, lie closer than 1e-6 of arc length.
     orbit : PeriodicOrbit
     parameter : float, optional
         Where it lies on a path (``contact.orbits.branches.path``).
@@ -71,21 +71,23 @@ class Event:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Met:
+class EventPoint:
     """An event as a point of a curve."""
 
     kind: str
     point: Point
 
 
-def event_of(curve: Curve, met: Met) -> Event:
-    """The same for those who do not see the curve."""
-    return Event(kind=met.kind, orbit=met.point.orbit, parameter=curve.parameter(met.point))
+def event_of(curve: Curve, found: EventPoint) -> Event:
+    """The event of a point on a curve, without the curve."""
+    return Event(kind=found.kind, orbit=found.point.orbit, parameter=curve.parameter(found.point))
 
 
 def torus(orbit: PeriodicOrbit) -> float:
-    """The least |1 - m_i m_j| with the sign of the product over all pairs of multipliers: the product itself
-    of many modes is as small as rounding."""
+    """The least |1 - m_i m_j| with the sign of the product over all pairs of multipliers.
+
+    The product itself is as small as rounding if there are many modes.
+    """
     i, j = np.triu_indices(orbit.multipliers.size, 1)
     factors = 1.0 - orbit.multipliers[i] * orbit.multipliers[j]
     sizes = np.abs(factors)
@@ -102,13 +104,13 @@ def is_torus(orbit: PeriodicOrbit) -> bool:
 
 
 TESTS: dict[str, Callable[[Point], float]] = {
-    "branch point": lambda point: point.turn,
+    "branch point": lambda point: point.determinant,
     "fold": lambda point: point.rate,
     "period doubling": lambda point: float(np.prod(point.orbit.multipliers + 1.0).real),
     "torus": lambda point: torus(point.orbit),
     "grazing": lambda point: 1.0 if point.orbit.admissible else -1.0,
 }
-"""What changes sign at each kind of event."""
+"""The number that changes sign at each kind of event."""
 
 OFF: dict[str, Callable[[np.ndarray], float]] = {
     "branch point": lambda m: float(np.min(np.abs(m - 1.0))),
@@ -117,17 +119,16 @@ OFF: dict[str, Callable[[np.ndarray], float]] = {
     "torus": lambda m: float(np.min(np.abs(np.abs(m[m.imag != 0.0]) ** 2 - 1.0), initial=np.inf)),
     "grazing": lambda m: 0.0,
 }
-"""How far the nearest multiplier is from where it must be."""
+"""Distance of the nearest multiplier from its place at each kind of event."""
 
 
 def passes(here: float, there: float) -> bool:
-    """Whether a number is zero here, as the rate at a fold that a branch starts from, or between here and
-    there."""
+    """Whether a number is zero here or between here and there; at a fold the rate can be zero here."""
     return (here == 0.0 and there != 0.0) or here * there < 0.0
 
 
-class Between:
-    """The points of a curve between two neighbours, by their part of the way."""
+class Arc:
+    """The points of a curve between two neighbours, each given by its part of the chord."""
 
     def __init__(self, curve: Curve, a: Point, b: Point) -> None:
         self.curve, self.a, self.chord = curve, a, b.x - a.x
@@ -135,16 +136,19 @@ class Between:
         self.seen = {0.0: a, 1.0: b}
 
     def __call__(self, part: float) -> Point:
-        """The point in the plane across the chord at this part of it."""
+        """The point of the curve in the plane across the chord at this part of it."""
         if part not in self.seen:
             normal = self.chord / self.length
             near = min(self.seen, key=lambda other: abs(other - part))
             guess = self.seen[near].x + (part - near) * self.chord
-            self.seen[part] = self.curve.solve(guess, normal, self.a.orbit.impacts).along(normal)
+            self.seen[part] = self.curve.solve(guess, normal, self.a.orbit.impacts).oriented(normal)
         return self.seen[part]
 
     def root(self, test: Callable[[Point], float], place: float = PLACE) -> Point:
-        """Where `test` changes sign; of a mere sign, the last point at which it is +1."""
+        """The point where `test` changes sign.
+
+        For a test that is only a sign, return the last point on the +1 side.
+        """
         from scipy.optimize import brentq  # slow to import
 
         root = float(brentq(lambda part: test(self(part)), 0.0, 1.0, xtol=place))
@@ -164,16 +168,16 @@ class Between:
 
     def on_curve(self, point: Point) -> bool:
         """Whether both ends and a point between them are neighbours on one curve."""
-        return not why_not_beside(self.a, point) and not why_not_beside(point, self.seen[1.0])
+        return not why_no_neighbours(self.a, point) and not why_no_neighbours(point, self.seen[1.0])
 
 
-def probed(curve: Curve, a: Point, b: Point, depth: int = 0) -> list[Point]:
-    """`a`, and the points between it and its neighbour `b` that tell apart two folds in between.
+def refined(curve: Curve, a: Point, b: Point, depth: int = 0) -> list[Point]:
+    """The point `a`, and points between it and its neighbour `b` that separate two folds in between.
 
-    The cubic with the parameters and rates of both says where the rate is least; if it comes near zero there,
-    that point is computed.
+    A cubic through the parameters and rates of both shows where the rate is least.  If it comes near zero
+    there, that point is computed.
     """
-    between = Between(curve, a, b)
+    between = Arc(curve, a, b)
     first, last = a.rate * between.length, b.rate * between.length
     rise = curve.parameter(b) - curve.parameter(a)
     bend = first + last - 2.0 * rise
@@ -187,19 +191,19 @@ def probed(curve: Curve, a: Point, b: Point, depth: int = 0) -> list[Point]:
     middle = between(t)
     if not between.on_curve(middle):
         return [a]
-    return [*probed(curve, a, middle, depth + 1), *probed(curve, middle, b, depth + 1)]
+    return [*refined(curve, a, middle, depth + 1), *refined(curve, middle, b, depth + 1)]
 
 
-def events_between(curve: Curve, a: Point, b: Point, depth: int = 0) -> list[Met]:
-    """What happens from `a`, itself included, to its neighbour `b`, in the order in which it is met.
+def events_between(curve: Curve, a: Point, b: Point, depth: int = 0) -> list[EventPoint]:
+    """The events from `a`, itself included, to its neighbour `b`, in their order along the curve.
 
-    An event that is not sound is looked for again in both halves of the way.  A curve whose points are all
-    `whole` has its grazes where it ends.
+    An event that is not sound is looked for again in both halves of the way.  A curve with `admissible_only`
+    has its grazes where it ends.
     """
-    between, found = Between(curve, a, b), list[Met]()
+    between, found = Arc(curve, a, b), list[EventPoint]()
     for tested, test in TESTS.items():
         kind = tested
-        if (kind == "grazing" and curve.whole) or not passes(test(a), test(b)):
+        if (kind == "grazing" and curve.admissible_only) or not passes(test(a), test(b)):
             continue
         try:
             point = between.root(test, PLACE if kind != "branch point" else 0.1 * CLOSE / between.length)
@@ -208,7 +212,7 @@ def events_between(curve: Curve, a: Point, b: Point, depth: int = 0) -> list[Met
             if kind == "fold" and point.orbit.repeats(NEARLY) > a.orbit.repeats():
                 kind = "branch point"
             if kind == "branch point" and OFF[kind](point.orbit.multipliers) < CLOSE:
-                return _beside_branch_point(between, point)
+                return _around_branch_point(between, point)
             sound = between.on_curve(point) and OFF[kind](point.orbit.multipliers) < CLOSE
         except ContactError:
             point, sound = a, False
@@ -216,34 +220,34 @@ def events_between(curve: Curve, a: Point, b: Point, depth: int = 0) -> list[Met
             middle = between.middle()
             if middle is not None:
                 halves = ((a, middle), (middle, b))
-                return [met for c, d in halves for met in events_between(curve, c, d, depth + 1)]
-        found.append(Met(kind=kind if sound else "undecided", point=point))
-    return sorted(found, key=lambda met: float(np.linalg.norm(met.point.x - a.x)))
+                return [event for c, d in halves for event in events_between(curve, c, d, depth + 1)]
+        found.append(EventPoint(kind=kind if sound else "undecided", point=point))
+    return sorted(found, key=lambda event: float(np.linalg.norm(event.point.x - a.x)))
 
 
-def _beside_branch_point(between: Between, point: Point) -> list[Met]:
-    """The branch point, and what happens before and behind it."""
+def _around_branch_point(between: Arc, point: Point) -> list[EventPoint]:
+    """A branch point, and the events before and behind it."""
     at = float((point.x - between.a.x) @ between.chord) / between.length**2
     aside, b = ASIDE / between.length, between.seen[1.0]
     before = events_between(between.curve, between.a, between(at - aside)) if at > aside else []
     behind = events_between(between.curve, between(at + aside), b) if at + aside < 1.0 else []
-    return [*before, Met(kind="branch point", point=point), *behind]
+    return [*before, EventPoint(kind="branch point", point=point), *behind]
 
 
-def told_apart(met: list[Met], edges: list[Point]) -> list[Met]:
-    """The same events, "undecided" where one lies next to another one or to an edge; a graze stays one.
+def with_undecided(found: list[EventPoint], edges: list[Point]) -> list[EventPoint]:
+    """The events, "undecided" where one lies next to another one or to an edge; a graze stays a graze.
 
-    What seems to happen where the equations are singular, next to a branch point, is left out.
+    Events next to a branch point, where the equations are singular, are left out.
     """
 
-    def beside(event: Met, others: list[Point], distance: float) -> bool:
+    def near(event: EventPoint, others: list[Point], distance: float) -> bool:
         return any(np.linalg.norm(other.x - event.point.x) < distance for other in others)
 
-    crossings = [event.point for event in met if event.kind == "branch point"]
-    kept = [event for event in met if event.point in crossings or not beside(event, crossings, 2.0 * ASIDE)]
-    found = list[Met]()
+    crossings = [event.point for event in found if event.kind == "branch point"]
+    kept = [event for event in found if event.point in crossings or not near(event, crossings, 2.0 * ASIDE)]
+    marked = list[EventPoint]()
     for event in kept:
         others = [*edges, *(other.point for other in kept if other is not event)]
-        alone = event.kind == "grazing" or not beside(event, others, CLOSE)
-        found.append(event if alone else replace(event, kind="undecided"))
-    return found
+        alone = event.kind == "grazing" or not near(event, others, CLOSE)
+        marked.append(event if alone else replace(event, kind="undecided"))
+    return marked

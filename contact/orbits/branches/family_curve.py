@@ -1,7 +1,7 @@
 """The curve of a family of periodic orbits over the drive amplitude, and how it is entered and left.
 
-Its unknowns are (u, v) and log v, v the approach velocity of the first touch
-(``contact.orbits.families.shooting``).
+Its unknowns are the deviations and the logarithm of the approach velocity of the first touch
+(``contact.orbits.families.continuable_family``).
 """
 
 from __future__ import annotations
@@ -13,11 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from beam.parameters import require_kind
 from contact.errors import BranchEnded, ContactError
 from contact.orbits.branches.branch import SHORTER, Branch, Leg, branch_of, walk
-from contact.orbits.branches.curve import Curve, Equations, Point, grazes
-from contact.orbits.families.periodic_orbit import Followed, PeriodicOrbit
+from contact.orbits.branches.curve import Curve, grazes
+from contact.orbits.families.continuable_family import ContinuableFamily
+from contact.orbits.families.equations import Equations, Point
+from contact.orbits.families.periodic_orbit import PeriodicOrbit
 
 Array = NDArray[np.float64]
 
@@ -28,21 +29,21 @@ STARTS = (0.1, 0.03, 0.3, 0.01)
 """Approach velocities, over 2 pi f gap, at which a branch is entered where kicks show no fold."""
 
 LEAST_SPEED, GREATEST_SPEED = 1e-6, 2.0
-"""Approach velocities, over 2 pi f gap, between which a fold is looked for: slower touches are grazes, faster
-ones than 2 pi f gap belong to amplitudes far beyond the letter's."""
+"""Approach velocities, over 2 pi f gap, between which a fold is looked for.  Slower touches are grazes.
+Touches faster than 2 pi f gap belong to amplitudes far beyond the letter's."""
 
 WHOLE = ("range", "closed", SHORTER)
-"""Ends of a branch that was followed as far as it goes; so is one that ends by a graze."""
+"""Ends of a branch that was followed as far as it goes; a branch that ends by a graze was, too."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FamilyCurve(Curve):
     """The curve of a family between two approach velocities [m/s]; its parameter is the excess."""
 
-    family: Followed
+    family: ContinuableFamily
     slowest: float
     fastest: float
-    whole = False
+    admissible_only = False
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -51,11 +52,11 @@ class FamilyCurve(Curve):
         return math.log(self.slowest / unit), math.log(self.fastest / unit)
 
     def equations(self, x: Array, touches: int) -> Equations:
-        """See `Curve`; the number of touches is that of the family."""
+        """The equations of the family, which has its own number of touches."""
         return self.family.equations
 
     def unknowns(self, start: Array, time: float, speed: float, here: Array) -> Array:
-        """See `Curve`; the time follows from the others."""
+        """The unknowns of an orbit from one of its touches; the time follows from the others."""
         return self.family.unknowns(start, speed)
 
     def parameter(self, point: Point) -> float:
@@ -68,27 +69,21 @@ class FamilyCurve(Curve):
         return self.at(x, self.like.impacts)
 
 
-def require_followed(family: object, near: object = None) -> None:
-    """TypeError unless this is a family to follow and `near` one of its orbits or None."""
-    require_kind("family", family, Followed, "a Shooting family")
-    require_kind("near", near, (PeriodicOrbit, type(None)), "a PeriodicOrbit or None")
-
-
-def lost_at(orbit: PeriodicOrbit, words: str) -> BranchEnded:
+def branch_ended(orbit: PeriodicOrbit, words: str) -> BranchEnded:
     """The error of a search that ended at `orbit`, which it carries."""
-    detail = f"{words}; the last orbit has excess {orbit.excess:.6g}"
-    error = BranchEnded(time=orbit.phase, gap=0.0, velocity=orbit.speed, detail=detail)
+    error = orbit.failure(BranchEnded, f"{words}; the last orbit has excess {orbit.excess:.6g}")
     error.orbit = orbit
     return error
 
 
-def downhill(family: Followed, start: PeriodicOrbit, fastest: float) -> Iterator[tuple[Leg, FamilyCurve]]:
+def downhill(
+    family: ContinuableFamily, start: PeriodicOrbit, fastest: float
+) -> Iterator[tuple[Leg, FamilyCurve]]:
     """The legs of the branch from `start` towards lower amplitudes."""
     unit = family.oscillator.unit_speed
-    slow, fast = min(LEAST_SPEED * unit, 0.5 * start.speed), max(fastest * unit, 2.0 * start.speed)
-    curve = FamilyCurve(like=start, family=family, slowest=slow, fastest=fast)
+    curve = _curve_through(start, family, LEAST_SPEED * unit, fastest * unit)
     first = curve.start()
-    first = first if first.rate <= 0.0 else first.along(-first.direction)
+    first = first if first.rate <= 0.0 else first.oriented(-first.direction)
     for leg in walk(curve, first, LONGEST_STRIDE, FIRST_STRIDE):
         yield leg, curve
 
@@ -99,25 +94,30 @@ def at_graze(ended: str, last: PeriodicOrbit) -> bool:
     return slow or (ended not in ("range", "closed") and grazes(last))
 
 
-def whole_branch(family: Followed, near: PeriodicOrbit | None) -> tuple[FamilyCurve, list[Point], Branch]:
+def _curve_through(orbit: PeriodicOrbit, family: ContinuableFamily, low: float, high: float) -> FamilyCurve:
+    """The curve of a family through `orbit`, over approach velocities [m/s] from below to above its own."""
+    low, high = min(low, 0.5 * orbit.speed), max(high, 2.0 * orbit.speed)
+    return FamilyCurve(like=orbit, family=family, slowest=low, fastest=high)
+
+
+def whole_branch(
+    family: ContinuableFamily, near: PeriodicOrbit | None
+) -> tuple[FamilyCurve, list[Point], Branch]:
     """The whole branch with its curve and points.
 
     Raises BranchEnded if there is no orbit to start from, or if the branch is lost on the way.
     """
-    require_followed(family, near)
     unit = family.oscillator.unit_speed
     for speed in [near.speed] if near is not None else [part * unit for part in STARTS]:
         try:
             here = family.at_speed(speed, near)
         except ContactError:
             continue
-        low = min(LEAST_SPEED * unit, 0.5 * here.speed)
-        high = max(GREATEST_SPEED * unit, 2.0 * here.speed)
-        curve = FamilyCurve(like=here, family=family, slowest=low, fastest=high)
+        curve = _curve_through(here, family, LEAST_SPEED * unit, GREATEST_SPEED * unit)
         branch, points = branch_of(curve, curve.start(), LONGEST_STRIDE, LONGEST_STRIDE)
         for ended, last in ((branch.ended_low, branch.orbits[0]), (branch.ended_high, branch.orbits[-1])):
             if ended not in WHOLE and not grazes(last):
-                raise lost_at(last, f"it is lost: {ended}")
+                raise branch_ended(last, f"it is lost: {ended}")
         return curve, points, branch
-    words = f"no orbit of period {family.kicks.period} was found to start from"
+    words = f"no orbit of period {family.period} was found to start from"
     raise BranchEnded(time=0.0, gap=0.0, velocity=0.0, detail=words)

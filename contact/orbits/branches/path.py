@@ -1,12 +1,12 @@
 """Branches of periodic orbits along a path p -> oscillator, such as a response curve in the drive frequency.
 
-An orbit starts at its first touch from z = (u, v, S, C), with the tip y over the stop, and obeys
+An orbit starts at its first touch from z = (u, v, S, C), with the tip displacement y over the stop, and obeys
 
     F_(u,v)(z, p) - (u, v) = 0,      y(z, p) = 0,      |(S, C)| = Z(p)
 
-(``contact.orbits.branches.orbit_derivatives``, with exact tangents in z and p): 2 N + 2 equations for the 2 N
-+ 3 unknowns (z, p).  Their curve is followed in its own arc length (``contact.orbits.branches.branch``), and
-turns round where p does.
+with exact tangents in z and p (``contact.orbits.families.equations``).  These are 2 N + 2 equations for the
+2 N + 3 unknowns (z, p).  Their curve is followed in its own arc length (``contact.orbits.branches.branch``),
+and turns round where p does.
 """
 
 from __future__ import annotations
@@ -22,23 +22,32 @@ from beam.parameters import require, require_kind, require_within
 from contact.errors import NotPeriodic
 from contact.flight.modal_flow import steady_motion
 from contact.orbits.branches.branch import Branch, branch_of
-from contact.orbits.branches.curve import Curve, Equations, Iterate, Point
-from contact.orbits.branches.orbit_derivatives import drive_of, equations_of, sizes_of
+from contact.orbits.branches.curve import Curve
+from contact.orbits.families.equations import (
+    Equations,
+    Iterate,
+    Point,
+    drive_of,
+    driven_at,
+    shoot,
+    sizes_of,
+    slopes_of,
+)
 from contact.orbits.families.periodic_orbit import PeriodicOrbit
 from contact.oscillator import ImpactOscillator
-from contact.sensitivity.change import Change, Changes, Path, change_along
+from contact.sensitivity.change import Change, Path, Sensitivities, change_along
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PathCurve(Curve):
-    """The curve over a path; the unknowns are scaled by the sizes of the orbit `like`."""
+    """The curve of orbits over a `path` p -> ImpactOscillator with p in [low, high]."""
 
     path: Path
     low: float
     high: float
-    whole = True
+    admissible_only = True
 
     @cached_property
     def scale(self) -> Array:
@@ -68,42 +77,28 @@ class PathCurve(Curve):
         return self.at(x, self.like.impacts)
 
     def unknowns(self, start: Array, time: float, speed: float, here: Array) -> Array:
-        """See `Curve`; the approach velocity is not one of them."""
+        """The unknowns of an orbit from one of its touches; the approach velocity is not one of them."""
         z, w = here * self.scale, self.path(self.value(here)).driven.angular_frequency
-        turn = math.hypot(z[-3], z[-2]) * np.exp(1j * w * time)
-        return np.concatenate([start, [turn.imag, turn.real, z[-1]]]) / self.scale
+        phasor = math.hypot(z[-3], z[-2]) * np.exp(1j * w * time)
+        return np.concatenate([start, [phasor.imag, phasor.real, z[-1]]]) / self.scale
 
     def equations(self, x: Array, touches: int) -> Equations:
-        """See `Curve`.  How the numbers change with p is computed once for the neighbourhood."""
+        """The equations near `x`; the derivatives of the oscillator's numbers are computed once, at `x`."""
         return partial(self._iterate, touches, change_along(self.path, self.value(x), self.low, self.high))
 
     def _iterate(self, touches: int, change: Change, x: Array) -> Iterate:
-        z, n, p = x * self.scale, x.size - 3, self.value(x)
-        here, (u, v) = self.path(p), z[:n].reshape(2, -1).copy()
-        reached, w = math.hypot(z[-3], z[-2]), here.driven.angular_frequency
-        driven, phase = here.with_amplitude(reached), math.atan2(z[-3], z[-2]) % (2.0 * math.pi) / w
-        q, q_rate = steady_motion(driven.motion(), phase)
-        orbit = PeriodicOrbit(
-            oscillator=driven,
-            period=self.like.period,
-            phase=phase,
-            displacement=u,
-            velocity=v,
-            excess=reached / here.grazing_amplitude() - 1.0,
-            speed=float(here.tip(v + q_rate)),
-            record=np.empty((touches, 4 + n)),
-            tangent=np.eye(n),
-            slope=math.nan,
-            residual=math.nan,
-        )
-        changes = Changes(oscillator=driven, changes=(change,))
-        end, record, tangent, rows = equations_of(orbit, changes)
-        weight = np.concatenate([self.scale[:n], [here.stop.gap, self.scale[-2]]])
-        reach = float(here.tip(u + q)) - driven.motion().gap
-        residual = np.concatenate([end - z[:n], [reach, reached - here.driven.amplitude]]) / weight
-        orbit, rows = replace(orbit, record=record, tangent=tangent), rows * self.scale
-        rise = self.scale * np.eye(x.size)[-1]
-        return Iterate(orbit, residual, rows[:-1] / weight[:, None], rise, rows[-1])
+        z, n = x * self.scale, x.size - 3
+        here = self.path(self.value(x))
+        driven, phase = driven_at(here, z[-3:-1])
+        several = Sensitivities(oscillator=driven, changes=(change,))
+        shot = shoot(driven, phase, z[:n], self.like.period, touches, several)
+        orbit, weight = shot.orbit, np.concatenate([self.scale[:n], [here.stop.gap, self.scale[-2]]])
+        q = steady_motion(driven.motion(), phase)[0]
+        height = float(here.tip(orbit.displacement + q)) - driven.motion().gap
+        residual = np.concatenate([shot.miss, [height, orbit.amplitude - here.driven.amplitude]]) / weight
+        rows = slopes_of(shot, several) * self.scale
+        p_slope = self.scale * np.eye(x.size)[-1]
+        return Iterate(orbit, residual, rows[:-1] / weight[:, None], p_slope, rows[-1])
 
 
 def follow_path(
@@ -114,26 +109,24 @@ def follow_path(
     Parameters
     ----------
     path : callable
-        p -> ImpactOscillator for p from `low` to `high`, smooth, of one law and number of modes.  A constant
-        force f is Z = f/w^2 at frequency w [rad/s], a constant base acceleration a is Z = a/w^2.
+        p -> ImpactOscillator for p from `low` to `high`, smooth, of one law and number of modes.  For a force
+        of constant amplitude f, Z = f/w^2 at frequency w [rad/s]; for a base acceleration a, Z = a/w^2.
     start : PeriodicOrbit
     at, low, high : float
-        In the unit of the parameter.
+        Parameter of the start, and range of the parameter.
     step : float
         Longest step in units of the sizes: the gap, 2 pi f gap, the grazing amplitude, a tenth of the range.
 
     Returns
     -------
     Branch
-        Orbits and their `parameters` from one end to the other, and events with theirs: "fold" (the parameter
-        turns round), "period doubling", "torus", "branch point" (two branches cross), "grazing" (a touch is
-        gained or lost), or "undecided" (``contact.orbits.Event``).  A closed curve ends where it began,
-        "closed"; one that becomes an orbit of a shorter period, run several times, ends there.
+        Orbits and their `parameters` from one end to the other, and events: "fold" (the parameter turns
+        round), "period doubling", "torus", "branch point" (two branches cross), "grazing" (a touch is gained
+        or lost), or "undecided" (``contact.orbits.Event``).  A closed curve ends where it began, "closed".  A
+        curve whose orbit becomes one of a shorter period, run several times, ends there.
 
-    Raises
-    ------
-    NotPeriodic
-        If there is no orbit next to `start`, or its tip meets the stop at other times than its touches.
+    NotPeriodic is raised if there is no orbit next to `start`, or its tip meets the stop at other times than
+    in its touches.
     """
     require(callable(path), f"path is {path!r}; it must be a function of one number")
     require_kind("start", start, PeriodicOrbit, "a PeriodicOrbit")
@@ -147,7 +140,6 @@ def follow_path(
     curve = PathCurve(path=path, low=low, high=high, like=start)
     first = curve.start(at)
     if not first.orbit.admissible:
-        words = "the start meets the stop at another time than its touches"
-        raise NotPeriodic(time=first.orbit.phase, gap=0.0, velocity=first.orbit.speed, detail=words)
+        raise first.orbit.failure(NotPeriodic, "the start meets the stop at another time than its touches")
     branch, points = branch_of(curve, first, step, 0.3 * step)
     return replace(branch, parameters=tuple(curve.parameter(point) for point in points))

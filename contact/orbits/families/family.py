@@ -1,14 +1,14 @@
-"""What all families of periodic orbits share, whatever describes the motion.
+"""The common properties of all families of periodic orbits, whatever describes the motion.
 
-A family holds the orbits of period m with one collision, or a given number of touches, in m drive periods. It
-is a curve, told by the approach speed v of the first touch; over the excess F/F_g - 1 it turns round at its
-fold, where a node and a saddle meet. Four descriptions offer it:
+A family holds the orbits of period m with one collision, or a given number of touches, in m drive periods.
+It is a curve over the approach speed v of the first touch.  Over the excess F/F_g - 1 it turns round at its
+fold, where a node and a saddle meet.  Four descriptions offer it:
 
     ``single_impact.MaximalFamily``      Newton's law, several modes, closed form
     ``kick.KickFamily``                  any law, the collision as a kick of all modes
     ``shooting.Shooting``                any law, any number of touches, Newton's method on exact tangents
-    ``contact.maps.nordmark_orbits.MapFamily`` the Nordmark map, closed form; its "speed" is sqrt(x) at the
-    impact
+    ``nordmark_orbits.MapFamily``        the Nordmark map (``contact.maps``), closed form; its "speed" is
+                                         sqrt(x) at the impact
 """
 
 from __future__ import annotations
@@ -16,11 +16,12 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from contact.errors import ContactError
 from contact.flight.crossing import CROSSES, FREE, first_crossing
 from contact.flight.modal_flow import steady_motion, tip_state
 from contact.oscillator import ImpactOscillator
@@ -28,6 +29,7 @@ from contact.simulation import simulate
 from contact.trajectory import State
 
 Array = NDArray[np.float64]
+Failure = TypeVar("Failure", bound=ContactError)
 CLOSING = 1e-9  # part of a flight by which it is prolonged, so that the touch at its end is met
 
 
@@ -77,10 +79,10 @@ class Family(Protocol):
 
 
 class Release(NamedTuple):
-    """The end of the last touch of an orbit.
+    """The end of the last touch of an orbit: its `time` since the first touch [s] and deviations (u, u').
 
-    `time` since the first touch [s]; deviations (u, u') of all modes; whether the tip has a velocity away
-    from the wall, or is at rest on it; time by which the touch that closes the orbit may miss it [s].
+    `leaves` says whether the tip has a velocity away from the wall, or is at rest on it.  The touch that
+    closes the orbit may miss it by the time `slack` [s].
     """
 
     time: float
@@ -120,11 +122,11 @@ class TouchOrbit(ABC):
 
     @abstractmethod
     def monodromy(self) -> Array:
-        """Derivative of (u, u') over m/f from touch to touch, at fixed drive; (2 n_modes, 2 n_modes)."""
+        """Derivative of (u, u') over m/f from touch to touch at fixed drive, (2 n_modes, 2 n_modes)."""
 
     @abstractmethod
     def release(self) -> Release:
-        """Where the flight begins that ends with the first touch."""
+        """The end of the last touch, where the flight to the first touch begins."""
 
     @property
     def deviations(self) -> Array:
@@ -161,6 +163,10 @@ class TouchOrbit(ABC):
             motion, self.phase + time, u.copy(), v.copy(), length * (1.0 + CLOSING), 1 if leaves else 2
         )
         return bool(outcome == FREE or (outcome == CROSSES and abs(met - length) <= slack))
+
+    def failure(self, kind: type[Failure], detail: str) -> Failure:
+        """The error of this kind at the first touch, with its time and velocity."""
+        return kind(time=self.phase, gap=0.0, velocity=self.speed, detail=detail)
 
     def state(self) -> State:
         """The physical state just before the first touch, on the near side of the stop to the last digit."""

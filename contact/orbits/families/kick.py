@@ -1,19 +1,20 @@
 """A collision as a kick, and the p_m orbits that follow by linear algebra.
 
-One simulated collision, entered with approach velocity v from the steady motion with all modes at rest above
-it, changes the deviations of all modes by B(v), referred to the touch by their free flow.  The orbit on which
-it happens once in m drive periods follows from B (``contact.orbits.families.single_impact``); the p_m orbit
+One collision is simulated, entered with approach velocity v from the steady motion without ringing.  It
+changes the deviations of all modes by B(v), referred to the touch by their free flow.  The orbit on which it
+happens once in m drive periods follows from B (``contact.orbits.families.single_impact``).  The p_m orbit
 ends (fold) where its amplitude is smallest.  With Newton's law B is proportional to v and the result exact.
 
-``DelayedRestitution`` (one mode, ``contact.touch.delayed``) has its orbits in closed form.  With (p, r) the
-steady tip displacement and velocity at the touch, R their turn by the angle w delta and N the free flow over
-m/f - delta, the tip leaves with the deviation (gap, -tau v) - R (p, r) and comes back with (gap, v) - (p, r):
+``DelayedRestitution`` (one mode, ``contact.touch.delayed``) has its orbits in closed form.  Let (p, r) be the
+steady tip displacement and velocity at the touch, R their rotation by the angle w delta, and N the free flow
+over m/f - delta.  The tip leaves with the deviation (gap, -tau v) - R (p, r) and comes back with
+(gap, v) - (p, r):
 
     (I - N R) (p, r) = (gap, v) - N (gap, -tau v),      A(v)^2 = p^2 + (r/(2 pi f))^2.
 
-What this neglects is that the real collision starts with the ringing w left over from the last one and at
-another acceleration of the tip.  Both are there to be used: a second collision, simulated from w itself,
-gives another A at the same v, and the difference is the estimate of the error.
+The real collision starts with the ringing w left over from the last one and at another acceleration of the
+tip, which this neglects.  A second collision, simulated from w itself, gives another A at the same v.  The
+difference is the estimate of the error.
 """
 
 from __future__ import annotations
@@ -27,13 +28,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam.parameters import require, require_array, require_within, shown
-from contact.errors import NotPeriodic
 from contact.flight.modal_flow import free_flow
 from contact.flight.variation import variation
-from contact.laws import DELAYED
-from contact.orbits.families.single_impact import SINGULAR, Kick, SingleImpactFamily, SingleImpactOrbit
-from contact.sensitivity.touch_flow import FEWER_TOUCHES, flow_from_touch, lost
-from contact.touch.delayed import numbers_at
+from contact.orbits.families.single_impact import Kick, SingleImpactFamily, SingleImpactOrbit
+from contact.sensitivity.touch_flow import FEWER_TOUCHES, flow_error, flow_from_touch
+from contact.touch import waits
+from contact.touch.delayed import repeated_touch
 
 Array = NDArray[np.float64]
 
@@ -44,8 +44,8 @@ WINDOW = 0.5
 """Part of a drive period after the first touch in which further touches belong to the collision."""
 
 SPEEDS = (1e-4, 1.0)
-"""Approach velocities, over 2 pi f gap, among which orbits are looked for; one beyond the upper belongs to an
-amplitude far above the letter's."""
+"""Approach velocities, over 2 pi f gap, among which orbits are looked for.  Faster ones belong to amplitudes
+far above the letter's."""
 
 GRID = 33
 """Velocities of a search, on a logarithmic grid: eight a decade."""
@@ -60,32 +60,27 @@ class KickFamily(SingleImpactFamily):
     oscillator, period
         As in `SingleImpactFamily`.
     collision : callable, optional
-        Approach velocity [m/s] to Kick, in place of the simulated collision: a model of it, such as the
-        letter's with its restitution and delay.  `monodromy` and `multipliers` of the orbits remain those of
+        Approach velocity [m/s] to Kick: a model of the collision in place of the simulated one, such as the
+        letter's with its restitution and delay.  `monodromy` and `multipliers` of the orbits still belong to
         the oscillator's own collision.
     """
 
     collision: Callable[[float], Kick] | None = None
 
     def kick(self, speed: float, deviations: Array | None = None) -> Kick:
-        """One collision with approach velocity `speed` [m/s], from rest or from given deviations.
+        """One collision with approach velocity `speed` [m/s], from rest or from given `deviations`.
 
-        From rest, that of `DelayedRestitution` is the one that repeats once in m drive periods.
-
-        Raises
-        ------
-        ValueError
-            If `speed` is not finite and above zero.
-        NotPeriodic
-            If the collision does not end within half a drive period, or a delay takes up the m periods.
+        From rest, a collision under `DelayedRestitution` is the one that repeats once in m drive periods.
+        NotPeriodic is raised if it does not end within half a drive period, or its delay takes m periods.
         """
         require_within("speed", speed, "m/s", above=0)
         if deviations is not None:
             return self._simulated(speed, deviations)
         if self.collision is not None:
             return self.collision(speed)
-        if self.oscillator.motion().law == DELAYED:
-            return self._waiting(speed)
+        if waits(motion := self.oscillator.motion()):
+            jump, delay, leaves = repeated_touch(motion, speed, self.period)
+            return Kick(speed=speed, jump=jump, duration=delay, leaves=leaves)
         return self._simulated(speed, np.zeros((self.oscillator.n_modes, 2)))
 
     def _simulated(self, speed: float, w: Array) -> Kick:
@@ -98,7 +93,7 @@ class KickFamily(SingleImpactFamily):
         (u, v), record = w.T.copy(), np.full((MOST_TOUCHES + 1, 4 + 2 * n), np.nan)
         outcome = flow_from_touch(vary, phase, u, v, window, np.empty((0, 0)), record)
         if outcome != FEWER_TOUCHES:
-            raise lost(outcome, phase, speed, "the collision does not end within half a drive period")
+            raise flow_error(outcome, phase, speed, "the collision does not end within half a drive period")
         touches = int(np.count_nonzero(np.isfinite(record[:, 0])))
         _start, end, _approach, rebound = record[touches - 1, :4].tolist()
         left = record[touches - 1, 4:].reshape(2, n).T
@@ -106,38 +101,13 @@ class KickFamily(SingleImpactFamily):
         jump = np.einsum("kij,kj->ki", free_flow(motion, -end), left) - w
         return Kick(speed=speed, jump=jump, touches=touches, duration=end, leaves=rebound < 0.0)
 
-    def _waiting(self, speed: float) -> Kick:
-        """The touch of `DelayedRestitution` that repeats once in m drive periods."""
-        motion, gap = self.oscillator.motion(), self.oscillator.stop.gap
-        restitution, _slope, delay, _slope = numbers_at(motion.table, speed)
-        left = self.period * self.oscillator.period - delay
-        w, angle = motion.drive, motion.drive * delay
-        turn = np.array([[np.cos(angle), np.sin(angle) / w], [-w * np.sin(angle), np.cos(angle)]])
-        before, after = np.array([gap, speed]), np.array([gap, -restitution * speed])
-        flow = free_flow(motion, max(left, 0.0))[0]
-        back = np.eye(2) - flow @ turn
-        if left <= 0.0 or abs(np.linalg.det(back)) <= SINGULAR:
-            raise NotPeriodic(
-                time=delay,
-                gap=0.0,
-                velocity=speed,
-                detail=f"no orbit of period {self.period} has a touch that waits for {delay:g} s",
-            )
-        steady = np.linalg.solve(back, before - flow @ after)
-        met, left_with = before - steady, after - turn @ steady
-        jump = free_flow(motion, -delay)[0] @ left_with - met
-        return Kick(
-            speed=speed, jump=motion.least_change(jump), duration=float(delay), leaves=restitution > 0.0
-        )
-
     def error(self, orbit: SingleImpactOrbit) -> float:
-        """Estimated error of the excess of an orbit: the change when its collision starts from its own
-        ringing."""
+        """Estimated error of the excess of an orbit: its change if the collision starts from the ringing."""
         ringing = orbit.deviations.reshape(2, -1).T
         return self.orbit_of(self.kick(orbit.speed, ringing)).excess - orbit.excess
 
     def _search(self, speeds: tuple[float, float]) -> tuple[list[float], float | None]:
-        """Logarithms of velocities in a range over 2 pi f gap, rising, with that of least excess inside."""
+        """Rising logarithms of velocities in a range over 2 pi f gap, and the one of least excess inside."""
         from scipy.optimize import minimize_scalar  # slow to import
 
         low, high = require_array("speeds", speeds, "[1]", shape=(2,), words="two rising numbers above zero")

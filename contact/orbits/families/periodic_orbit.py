@@ -1,32 +1,29 @@
-"""Periodic orbits with any number of touches, and what finds the neighbours of one."""
+"""Periodic orbits with any number of touches, found by shooting."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contact.orbits.families.family import Release, TouchOrbit
-from contact.orbits.families.kick import KickFamily
-from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.trajectory import ImpactKind
 
 Array = NDArray[np.float64]
 ALIKE = 1e-5
-"""Difference between touches that is taken for none: behind a branch point they part in proportion to the
+"""Difference between touches that is taken for none.  Behind a branch point touches part in proportion to the
 distance, and the equations are singular up to about this distance."""
 
 SLACK = 1e-6
-"""Part of a drive period by which the touch that closes an orbit may miss it, beside the residual."""
+"""Part of a drive period by which the touch that closes an orbit may miss it, in addition to the residual."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PeriodicOrbit(TouchOrbit):
-    """An orbit from shooting; beside the fields of `TouchOrbit`:
+    """An orbit from shooting.  Its fields are those of `TouchOrbit` and the following.
 
     Parameters
     ----------
@@ -57,20 +54,18 @@ class PeriodicOrbit(TouchOrbit):
 
     @cached_property
     def touches(self) -> int:
-        """Touches in one period of the motion simulated from the first touch on: `impacts`, if the orbit is
-        `admissible`."""
-        run = simulate(self.oscillator, self.state(), periods=self.period)
+        """Touches in one period of the motion simulated from the first touch on.
+
+        This is the number `impacts` if the orbit is `admissible`.
+        """
+        hits = simulate(self.oscillator, self.state(), periods=self.period).impacts
         closing = (1.0 - SLACK) * self.duration
-        return int(
-            np.count_nonzero(
-                (run.impacts.kind == ImpactKind.IMPACT) & (run.impacts.start - self.phase < closing)
-            )
-        )
+        return int(np.count_nonzero((hits.kind == ImpactKind.IMPACT) & (hits.start - self.phase < closing)))
 
     def repeats(self, within: float = ALIKE) -> int:
         """How often the orbit runs through one of a shorter period: 1 for most.
 
-        Times and speeds of its touches must be the same `within` this part of the largest.
+        Times and speeds of its touches must agree `within` this part of the largest.
         """
         k, rows, shift = self.impacts, self.record[:, :4], np.zeros(4)
         for times in (times for times in range(k, 1, -1) if k % times == self.period % times == 0):
@@ -81,40 +76,12 @@ class PeriodicOrbit(TouchOrbit):
         return 1
 
     def monodromy(self) -> Array:
-        """The field `tangent`."""
+        """The monodromy matrix, shape (2 n_modes, 2 n_modes)."""
         return self.tangent
 
     def release(self) -> Release:
-        """That of the last touch; the residual moves the touch that closes the orbit."""
+        """The end of the last touch; its slack grows with the residual."""
         n, last = self.oscillator.n_modes, self.record[-1]
         off = 4.0 * self.residual * self.oscillator.stop.gap / self.record[0, 2]
         slack = SLACK * self.oscillator.period + off
         return Release(float(last[1]), last[4 : 4 + n], last[4 + n :], bool(last[3] < 0.0), slack)
-
-
-@runtime_checkable
-class Followed(Protocol):
-    """A family of which each orbit leads to its neighbours: ``contact.orbits.families.shooting.Shooting``."""
-
-    @property
-    def oscillator(self) -> ImpactOscillator:
-        """The oscillator; its drive amplitude does not matter."""
-
-    @property
-    def kicks(self) -> KickFamily:
-        """The description by kicks, from which a search starts."""
-
-    def equations(self, x: Array) -> Any:
-        """The equations at the unknowns, a ``contact.orbits.branches.curve.Iterate``."""
-
-    def unknowns(self, start: Array, speed: float) -> Array:
-        """The unknowns of an orbit with deviations (u, v) and approach velocity [m/s] at its first touch."""
-
-    def at_speed(self, speed: float, near: PeriodicOrbit | None = None) -> PeriodicOrbit:
-        """The orbit whose first touch has approach velocity `speed` [m/s]; NotPeriodic if it is not found."""
-
-    def of(self, oscillator: ImpactOscillator) -> Followed:
-        """The same family of another oscillator."""
-
-    def with_impacts(self, impacts: int) -> Followed:
-        """The family with another number of touches."""

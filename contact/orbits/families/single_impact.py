@@ -25,14 +25,15 @@ p = s v and (v - r)/w = b v: (a) is a quadratic. If s > 0, A has a least value, 
 
 For one mode k = -w N12 (1 + e)/(1 - N11 + e N22 - e G), which is the F_m of Eq. (1) at any amplitude.
 
-All this is exact as long as the tip does not reach the wall at another time: `SingleImpactOrbit.admissible`
-says whether it does. Units: SI with mass-normalised modes (q in m kg^0.5).
+The formulae are exact if the tip does not reach the wall at another time (`SingleImpactOrbit.admissible`).
+Units: SI with mass-normalised modes (q in m kg^0.5).
 Sources: letter of 1996, Eq. (1) and Fig. 3; A. B. Nordmark, J. Sound Vib. 145 (1991) 279.
 """
 
 from __future__ import annotations
 
 import math
+import warnings
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -44,22 +45,22 @@ from numpy.typing import NDArray
 from beam.parameters import InvalidValue, require, require_kind, require_whole, require_within
 from contact.flight.modal_flow import free_flow
 from contact.laws import NewtonRestitution
-from contact.maps.nordmark import restitution_of
+from contact.maps.nordmark_coefficients import restitution_of
 from contact.maps.nordmark_orbits import positive_roots
 from contact.orbits.families.family import CLOSING, Release, TouchOrbit
 from contact.oscillator import ImpactOscillator
-from contact.sensitivity.touch_flow import flown
+from contact.sensitivity.touch_flow import flow_over_periods
 from contact.stop import Stop
 from contact.touch.newton import newton_impact
 
 Array = NDArray[np.float64]
 SINGULAR = 1e-13  # a D below this is rounding of 1 - tr N + G, terms of size 1: the mode is back after m/f
-HEIGHT = 1e-13  # the same in units of the gap: rounding of the height at which the flight ends
+HEIGHT = 1e-13  # rounding of the height at which the flight ends, in units of the gap
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Kick:
-    """What one collision does to all modes.
+    """The effect of one collision on all modes.
 
     Parameters
     ----------
@@ -101,15 +102,13 @@ class SingleImpactOrbit(TouchOrbit):
         return Release(wait, u, v, self.kick.leaves, slack)
 
     def monodromy(self) -> Array:
-        """That of the oscillator's own collision (``contact.sensitivity.touch_flow``), met as this orbit
-        meets it.
+        """The monodromy matrix of the oscillator's own collision, entered as on this orbit.
 
-        Raises
-        ------
-        NotPeriodic
-            If that collision has fewer touches than the kick, or does not end.
+        NotPeriodic is raised if that collision has fewer touches than the kick, or does not end.
         """
-        tangent = flown(self.oscillator, self.period, self.phase, self.deviations, self.kick.touches)[1]
+        tangent = flow_over_periods(
+            self.oscillator, self.period, self.phase, self.deviations, self.kick.touches
+        )[1]
         return tangent[:-2, :-2]
 
 
@@ -145,7 +144,7 @@ class SingleImpactFamily(ABC):
 
     @cached_property
     def _closing(self) -> tuple[Array, NDArray[np.bool_]]:
-        """(N - G I)/D mode by mode, and which modes return to themselves after m/f (D = 0)."""
+        """(N - G I)/D of each mode, and whether the mode returns to itself after m/f (D = 0)."""
         shrink = np.exp(-self.oscillator.motion().decay * self.period * self.oscillator.period)
         distance = np.abs(1.0 - self.flow[:, 0, 0] - self.flow[:, 1, 1] + shrink)
         trapped = distance <= SINGULAR
@@ -155,7 +154,7 @@ class SingleImpactFamily(ABC):
     def closed(self, jump: Array) -> Array:
         """(N - G I) B/D: deviations before a collision that repeats, from its jump B; both (n_modes, 2).
 
-        ValueError if a mode that is kicked returns to itself after m/f: then nothing is periodic.
+        ValueError is raised if a kicked mode returns to itself after m/f: then no orbit is periodic.
         """
         matrices, trapped = self._closing
         back = np.flatnonzero(trapped & np.any(jump != 0.0, axis=1))  # one that is not kicked stays at rest
@@ -168,7 +167,7 @@ class SingleImpactFamily(ABC):
         return closed
 
     def excess(self, speed: float) -> float:
-        """F/F_g - 1 of the orbit that meets the wall at `speed`, above zero [m/s]; errors as of `orbit`."""
+        """F/F_g - 1 of the orbit that meets the wall at `speed`, above zero [m/s]; raises as `orbit` does."""
         kick, gap = self.kick(require_within("speed", speed, "m/s", above=0)), self.oscillator.stop.gap
         p, r = self.oscillator.motion().tip(self.closed(kick.jump))
         return excess_of(p / gap, (kick.speed - r) / self.oscillator.unit_speed)
@@ -193,12 +192,7 @@ class SingleImpactFamily(ABC):
     def orbit(self, speed: float) -> SingleImpactOrbit:
         """The orbit that meets the wall at `speed`, above zero [m/s].
 
-        Raises
-        ------
-        ValueError
-            If `speed` is not finite and above zero.
-        NotPeriodic
-            If the collision does not end, or has no orbit.
+        NotPeriodic is raised if the collision does not end, or has no orbit.
         """
         return self.orbit_of(self.kick(require_within("speed", speed, "m/s", above=0)))
 
@@ -216,7 +210,7 @@ class MaximalFamily(SingleImpactFamily):
     def __post_init__(self) -> None:
         super().__post_init__()
         restitution_of(self.oscillator)
-        _ = self.arms  # every mode that is kicked comes to rest
+        _ = self.coefficients  # every mode that is kicked comes to rest
 
     @classmethod
     def from_oscillator(
@@ -230,14 +224,20 @@ class MaximalFamily(SingleImpactFamily):
         return cls(oscillator=oscillator, period=period)
 
     def kick(self, speed: float) -> Kick:
-        """B of Newton's law."""
+        """The collision under Newton's law: a jump of the velocities."""
         motion, velocity = self.oscillator.motion(), np.zeros(self.oscillator.n_modes)
         newton_impact(motion, velocity, speed, motion.number0)
         jump = np.column_stack([np.zeros(velocity.size), velocity])
         return Kick(speed=speed, jump=jump, leaves=motion.number0 > 0.0)
 
-    @cached_property
+    @property
     def arms(self) -> tuple[float, float]:
+        """The old name of `coefficients`."""
+        warnings.warn("MaximalFamily.arms is now coefficients", DeprecationWarning, stacklevel=2)
+        return self.coefficients
+
+    @cached_property
+    def coefficients(self) -> tuple[float, float]:
         """(s, b): p and (v - r)/w of Eq. (a) per unit approach speed [s]."""
         s, r = self.oscillator.motion().tip(self.closed(self.kick(1.0).jump))
         return float(s), float((1.0 - r) / self.oscillator.driven.angular_frequency)
@@ -245,11 +245,11 @@ class MaximalFamily(SingleImpactFamily):
     def orbits(self, excess: float) -> tuple[SingleImpactOrbit, ...]:
         """The orbits at F/F_g - 1 = `excess` > -1, 0 to 2, by rising speed (of two, saddle, then node)."""
         require_within("excess", excess, "[1]", above=-1)
-        s, b = self.arms
+        s, b = self.coefficients
         roots = positive_roots(s * s + b * b, -2.0 * s, -excess * (2.0 + excess))
         return tuple(self.orbit(self.oscillator.stop.gap * root) for root in roots)
 
     def fold(self) -> SingleImpactOrbit | None:
         """The orbit of least amplitude, at which node and saddle meet; None if s <= 0 (no fold)."""
-        s, b = self.arms
+        s, b = self.coefficients
         return self.orbit(s * self.oscillator.stop.gap / (s * s + b * b)) if s > 0.0 else None

@@ -3,19 +3,17 @@ r"""One column of a chart: the amplitude raised and lowered again at one drive f
     column = AmplitudeScan(oscillator=oscillator, most_cycles=1024)(frequency=22.2, excesses=excesses)
     column.period[0], column.period[1]        # upward and downward scan, over the excesses in rising order
 
-At each amplitude the motion starts from the physical state (q, q') in which the amplitude before has left it,
-and is followed in blocks of `BLOCK` drive periods until it is known
+At each amplitude the motion starts from the last physical state (q, q') at the amplitude before.  It is
+followed in blocks of `BLOCK` drive periods until it has settled
 (``contact.orbits.observation.repetition``), at most for `most_cycles`:
 
 - **No impact any more**: period 1 without impacts, and the state is set on the steady motion.
-- **A periodic orbit** of period p <= L, for L = 16, 32, 64 as soon as 2 L strobes are there, to `TOLERANCE`
-  of the gap.  The next state follows from the last one alone, so that one whole period that repeats is all
-  that can be asked, and short periods need not wait for the longest.
-- **Nearly periodic at the bound.**  Next to a fold the motion comes to rest on its orbit as slowly as one
-  likes.  After `most_cycles` a repetition to `ROUGH` of that is taken for the period too; such cells have
-  cycles >= most_cycles.
+- **A periodic orbit** of period p <= L, to `TOLERANCE` of the gap, for L = 16, 32, 64 as soon as there are
+  2 L strobes.  The next state follows from the last one alone, so that one repeated period is enough.
+- **Nearly periodic at the bound.**  Next to a fold a motion approaches its orbit arbitrarily slowly.  After
+  `most_cycles` a repetition `ROUGH` times as rough is accepted too; such cells have cycles >= most_cycles.
 - Otherwise **period 0**: chaos, a period above 64, or a transient longer than `most_cycles`.  Its impacts are
-  those of the last 128 strobes.
+  counted over the last 128 strobes.
 
 The end of the upward scan starts the downward one.  An amplitude that fails is marked with its reason, and
 the next one goes on from the last state that was reached.  The amplitude enters the motion linearly, so that
@@ -43,49 +41,44 @@ from contact.oscillator import ImpactOscillator
 from contact.trajectory import OUTSIDE
 
 LARGEST_PERIOD = 64
-"""Longest period told, as in the other studies."""
+"""Longest period that is recognised."""
 
 SHORTEST = 16
 """Strobes that have to repeat at least: a quarter of LARGEST_PERIOD, twice the letter's common periods."""
 
 ROUGH = 1e4
-"""Tolerance at the bound over the usual one, i.e. 1e-5 of the gap: after 512 drive periods an orbit of period
-3 whose multiplier is 0.97 still changes by 1e-6 per period."""
+"""Tolerance at the bound over the usual one, i.e. 1e-5 of the gap.  After 512 drive periods an orbit of
+period 3 whose multiplier is 0.97 still changes by 1e-6 per period."""
 
 BLOCK = 32
-"""Drive periods between two looks: the least that tells a period, 2 SHORTEST."""
+"""Drive periods between two comparisons: the fewest that show a period, 2 SHORTEST."""
 
 BEHIND = -1
-"""Status of a state that the amplitude before has left behind the stop, where no flight can start."""
+"""Status of a state behind the stop, from the amplitude before, where no flight can start."""
 
 EXTRA = 3
-"""Numbers of a state beside (q, q'): regime, wait, rebound."""
+"""Numbers of a state in addition to (q, q'): regime, wait, rebound."""
 
 
 @kernel
 def settled_column(system, amplitudes, state, most_cycles, tolerance, found, u, v, runs):
-    """Settle at each of `amplitudes` in turn, or until one fails.
+    """Settle at each of `amplitudes` in turn, or until one fails; return how many are done, and the status.
 
     Parameters
     ----------
     system : StrobedSystem
         At grazing.
     amplitudes : ndarray, shape (n,)
-        Base amplitudes over that at grazing [1].
+        Base amplitudes over the grazing amplitude [1].
     state : ndarray, shape (2 n_modes + 3,)
         Start; overwritten by the last state that was reached.
     most_cycles : int
     tolerance : float
-        Of a repetition, in the unit of the coordinates [m].
+        Tolerance of a repetition, in the unit of the coordinates [m].
     found : ndarray of int, shape (n, 3)
         Period, impacts and drive periods spent; overwritten.
     u, v, runs : ndarray, shapes (n_modes,), (n_modes,) and (1,)
-        Deviations and run (`STATE`), at the end where a failure happened; overwritten.
-
-    Returns
-    -------
-    done, status : int
-        Amplitudes done; DONE, or why the next one failed.
+        Deviations and run (`STATE`) at a failure; overwritten.
     """
     n, run, capacity = system.motion.size, runs[0], 2 * LARGEST_PERIOD
     points, impacts = np.empty((capacity, 2 * n)), np.zeros(capacity, dtype=np.int64)
@@ -96,7 +89,7 @@ def settled_column(system, amplitudes, state, most_cycles, tolerance, found, u, 
         local.mean[:] = 0.0  # the points are those of the deviations
         u[:], v[:] = state[:n] - mean[:n], state[n : 2 * n] - mean[n:]
         run.regime, run.wait, run.rebound = int(state[2 * n]), state[2 * n + 1], state[2 * n + 2]
-        run.order, run.period, run.steps, run.clock, run.root, run.speed = 0, 0, 0, 0.0, -1.0, -1.0
+        run.contact_order, run.period, run.steps, run.clock, run.root, run.speed = 0, 0, 0, 0.0, -1.0, -1.0
         rows, cycles, period, status = 0, 0, 0, DONE
         if run.regime == OUTSIDE and tip_state(here, 0.0, u, v)[0] > tip_rounding(here, u, v):
             status = BEHIND
@@ -128,7 +121,7 @@ def settled_column(system, amplitudes, state, most_cycles, tolerance, found, u, 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ScannedColumn:
-    """What was found, all of shape (2, n_excesses): upward scan first, excesses rising in both.
+    """The results of a scan, all of shape (2, n_excesses): upward scan first, excesses rising in both.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-r"""The cloud of strobe points around an orbit under noise of the drive, to first order.
+r"""The covariance of the strobe points around an orbit under noise of the drive, to first order.
 
 In drive period n the amplitude is (1 + e_n) times that of the orbit, e_n Gaussian of standard deviation sigma
 and memory r: e_(n+1) = r e_n + sqrt(1 - r^2) sigma xi_n, white for r = 0; r = exp(-1/(f t_c)) for a drift of
@@ -8,9 +8,9 @@ obey x_(n+1) = M_n x_n + b_n e_n, and the covariance C_n of (x_n, e_n)
     C_(n+1) = A_n C_n A_n^T + Q,   A_n = [[M_n, b_n], [0, r]],   Q = diag(0, (1 - r^2) sigma^2),
 
 repeats after the m periods of the orbit (as in Simpson, Hogan and Kuske, arXiv:1207.2703, for Nordmark's map
-and white noise).  White noise of the read-out adds its own covariance.  It holds as long as no touch comes or
-goes within the cloud, and ends at grazing, where b_n or M_n has a square root's slope, and at a fold, where a
-multiplier becomes 1.
+and white noise).  White noise of the read-out adds its own covariance.  The theory requires that no touch
+comes or goes within the cloud.  It ends at grazing, where b_n or M_n has a square root's slope, and at a
+fold, where a multiplier becomes 1.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from beam.parameters import require, require_kind, require_whole, require_within
 from contact.errors import NotPeriodic
-from contact.maps.strobed_nordmark import StrobedNordmarkMap
+from contact.maps.nordmark import NordmarkMap
 from contact.maps.stroboscope import StroboscopicMap
 from contact.orbits.observation.repetition import require_orbit
 from contact.sensitivity.change import Change
@@ -31,7 +31,7 @@ from contact.sensitivity.motion import motion_derivatives
 from contact.trajectory import State
 
 Array = NDArray[np.float64]
-Strobed = StroboscopicMap | StrobedNordmarkMap
+Strobed = StroboscopicMap | NordmarkMap
 
 
 def strobe_derivatives(strobed: Strobed, state: State | Array, period: int) -> list[tuple[Array, Array]]:
@@ -39,7 +39,7 @@ def strobe_derivatives(strobed: Strobed, state: State | Array, period: int) -> l
 
     Parameters
     ----------
-    strobed : StroboscopicMap or StrobedNordmarkMap
+    strobed : StroboscopicMap or NordmarkMap
         At the excess of the orbit.
     state : State or ndarray
         A strobe, off the stop.
@@ -51,19 +51,14 @@ def strobe_derivatives(strobed: Strobed, state: State | Array, period: int) -> l
     list of ndarray, shapes (n_coordinates, n_coordinates) and (n_coordinates,), in their unit
         A pair for each period; an amplitude counts relative to that of the orbit.
 
-    Raises
-    ------
-    ValueError
-        If a strobe falls into a contact.
-    NoDerivative
-        If the motion grazes the stop, or rests on it.
+    ValueError is raised if a strobe falls into a contact, NoDerivative if the motion grazes the stop or rests
+    on it.
     """
-    require_kind("strobed", strobed, (StroboscopicMap, StrobedNordmarkMap), "a strobed oscillator or map")
+    require_kind("strobed", strobed, (StroboscopicMap, NordmarkMap), "a strobed oscillator or map")
     require_whole("period", period, "drive periods")
-    if isinstance(strobed, StrobedNordmarkMap):
+    if isinstance(strobed, NordmarkMap):
         jacobians, _end = strobed.jacobians(state, period)  # type: ignore[arg-type]
-        pull = strobed.map.rho_per_excess + strobed.rho
-        return [(jacobian, np.array([pull, 0.0])) for jacobian, _span in jacobians]
+        return [(jacobian, np.array([strobed.rho_per_factor, 0.0])) for jacobian, _span in jacobians]
     oscillator = strobed.oscillator
     here, found = require_kind("state", state, State, "a State"), list[tuple[Array, Array]]()
     change, ones = Change(amplitude=oscillator.driven.amplitude), np.ones(oscillator.n_modes)
@@ -79,12 +74,12 @@ def strobe_derivatives(strobed: Strobed, state: State | Array, period: int) -> l
 def cloud(
     strobed: Strobed, state: State | Array, period: int, *, deviation: float, memory: float = 0.0
 ) -> Array:
-    """Covariance of the points of a stable orbit at its strobes, those of ``strobed.orbit(state, period)``.
+    """Covariance of the points ``strobed.orbit(state, period)`` of a stable orbit.
 
     Parameters
     ----------
     strobed, state, period
-        Those of `strobe_derivatives`: a periodic orbit.
+        A periodic orbit, given as in `strobe_derivatives`.
     deviation : float
         sigma, relative to the amplitude [1].
     memory : float
@@ -95,12 +90,8 @@ def cloud(
     ndarray, shape (period, n_coordinates, n_coordinates)
         In the unit of the points squared.
 
-    Raises
-    ------
-    NotPeriodic
-        If the state lies on no orbit of this period, or the orbit is not stable.
-    ValueError, NoDerivative
-        As `strobe_derivatives`.
+    NotPeriodic is raised if the state lies on no stable orbit of this period; other errors as in
+    `strobe_derivatives`.
     """
     require_within("deviation", deviation, "[1]", low=0)
     require_within("memory", memory, "[1]", low=0)

@@ -1,19 +1,17 @@
-"""Where a periodic orbit ends when the drive amplitude is lowered.
+"""The loss of a periodic orbit when the drive amplitude is lowered.
 
 **Scan.** The amplitude is lowered in steps that carry the physical state along.  A step succeeds if the
-motion settles on an orbit of the same period with the same impacts; the step is then enlarged, otherwise
-halved and tried again from the last orbit that held.  (Impacts alone would not do: below the end of a p_m
-orbit they can go on for thousands of periods.)  A long step can fall off an orbit that is still there, as its
-basin is narrow near a fold; an end is therefore only where the orbit was lost by one final step of the wanted
-width, made from an orbit that held.  That step brackets the end.
+motion settles on an orbit of the same period with the same impacts.  (Impacts alone can go on for thousands
+of periods below the end of a p_m orbit.)  The step is then enlarged; otherwise it is halved and made again
+from the last orbit that held.  Near a fold the basin is narrow, and a long step can lose an orbit that
+still exists.  The last step therefore has the required width, and brackets the end.
 
-**Exact end.** The orbit that held is then followed, as an orbit and not as a motion, through the bracket: by
-shooting for an impact oscillator (``contact.orbits.branches.continuation``), in closed form for the Nordmark
-map (``contact.maps.nordmark_orbits``).  What is met first is the end, a "fold", "period doubling", "torus",
-"branch point" or "grazing" (``contact.orbits.branches.events``), with the excess of that very point.  If the
-orbit leaves the bracket at its lower end, stable, the motion had been lost too early, and the scan goes on
-from the orbit there.  Where nothing of this is found (a map without these tools, several impacts in the map,
-two events closer than 1e-6) the end is known to its "bracket" only.
+**Exact end.** The orbit that held is then followed through the bracket: by continuation for an impact
+oscillator (``contact.orbits.branches.continuation``), in closed form for the Nordmark map
+(``contact.maps.nordmark_orbits``).  The first event on its branch is the end, a "fold", "period doubling",
+"torus", "branch point" or "grazing" (``contact.orbits.branches.events``).  If the orbit is stable at the
+lower end of the bracket, the motion lost it too early, and the scan goes on from the orbit there.  Otherwise
+only the "bracket" is known: for other maps, several impacts in the map, or two events closer than 1e-6.
 """
 
 from __future__ import annotations
@@ -25,9 +23,9 @@ from typing import Any, Generic, TypeVar
 from beam.parameters import require_kind, require_whole, require_within
 from contact.errors import ContactError
 from contact.laws import NEWTON
+from contact.maps.nordmark import NordmarkMap
 from contact.maps.nordmark_orbits import MapFamily
 from contact.maps.protocol import require_map
-from contact.maps.strobed_nordmark import StrobedNordmarkMap
 from contact.maps.stroboscope import StrobedMap, StroboscopicMap
 from contact.orbits.branches.continuation import first_event
 from contact.orbits.families.family import Family
@@ -40,10 +38,10 @@ from contact.orbits.observation.settling import Settled, orbit_near, settle
 S = TypeVar("S")
 
 MOST_STEPS = 400
-"""Bound of amplitude steps: 40 doublings reach any excess, 40 halvings any tolerance, with room to spare."""
+"""Bound of amplitude steps: 40 doublings reach any excess, and 40 halvings any tolerance."""
 
 BRACKET = "bracket"
-"""Kind of an end that is known to its bracket only."""
+"""Kind of an end of which only the bracket is known."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -53,19 +51,18 @@ class OrbitEnd(Generic[S]):
     Parameters
     ----------
     period, impacts : int
-        Of the orbit that was followed.
+        Period and impacts of the orbit.
     excess : float
-        F/F_g - 1 at which it ends [1]; the middle of the bracket if that is all that is known.
+        F/F_g - 1 at which it ends [1]; the middle of the bracket if only that is known.
     kind : str
-        "fold", "period doubling", "torus", "branch point" or "grazing"; "bracket" if none of these was found
-        in it.
+        "fold", "period doubling", "torus", "branch point", "grazing", or "bracket" if none was found.
     held, lost : float
-        Excess at which the motion held the orbit last, and that one step below at which it lost it [1].
+        Last excess at which the motion held the orbit, and the excess one step below, where it lost it [1].
     state : State
-        On the orbit at `held`.
+        A state on the orbit at `held`.
     orbit : PeriodicOrbit, optional
-        The orbit at its end; None for the Nordmark map, and where only a bracket is known.  If several orbits
-        have this period, the approach velocity and the touches of `orbit` identify the one that ends.
+        The orbit at its end; None for the Nordmark map, and where only a bracket is known.  Its approach
+        velocity and touches identify it among several orbits of this period.
     """
 
     period: int
@@ -100,7 +97,7 @@ def orbit_end(
     most_cycles : int
         Bound of the transient at each amplitude.
     relative, absolute : float
-        The last step is `relative` of the excess itself or `absolute`, whichever is larger.
+        Width of the last step: `relative` times the excess or `absolute`, whichever is larger.
     first_step : float
         First step of the excess.
     lowest : float
@@ -158,16 +155,16 @@ def orbit_end(
 
 
 End = tuple[str, float, PeriodicOrbit | None]
-"""Kind of an end, its excess, and the orbit there if it is known."""
+"""Kind of an end, its excess, and its orbit if that is known."""
 
 
 def _exact_end(
     strobed: Any, state: Any, start: Settled[Any], held: float, lost: float
 ) -> tuple[End | None, Any]:
-    """The end in the bracket; or None and the state at `lost`, if the orbit is still there."""
+    """The end in the bracket; or None and the state at `lost`, if the orbit still exists there."""
     unknown = (BRACKET, 0.5 * (held + lost), None), None
-    if isinstance(strobed, StrobedNordmarkMap) and start.impacts == 1:
-        return _map_end(MapFamily(strobed.map, start.period), held, lost) or unknown
+    if isinstance(strobed, NordmarkMap) and start.impacts == 1:
+        return _map_end(MapFamily(strobed, start.period), held, lost) or unknown
     if not isinstance(strobed, StroboscopicMap):
         return unknown
     orbit = orbit_near(strobed.at(held), state, start.period, start.impacts)
@@ -187,7 +184,7 @@ def _exact_end(
 
 
 def _map_end(family: MapFamily, held: float, lost: float) -> tuple[End | None, Any] | None:
-    """The same for the orbit of the Nordmark map with one impact in a period; None if it is not known."""
+    """The end for an orbit of the Nordmark map with one impact in a period; None if it is not known."""
     at_fold, stable = family.fold(), family.stable_range()
     if at_fold is None or stable is None or not stable[0] <= family.map.rho(held) <= stable[1]:
         return None
@@ -201,31 +198,27 @@ def _map_end(family: MapFamily, held: float, lost: float) -> tuple[End | None, A
 
 
 def fold_excess(strobed: StrobedMap[Any], period: int) -> float | None:
-    """F_m/F_g - 1 at the fold of the p_m orbit with one collision, whatever the description.
+    """F_m/F_g - 1 at the fold of the p_m orbit with one collision; None without a fold, or for m < 2.
 
-    The Nordmark map and Newton's law have it in closed form; under any other law it is found by shooting,
-    with the touches of the collision at the fold of the kick description.  None without a fold, or for
-    m < 2.
+    The Nordmark map and Newton's law have it in closed form.  Under any other law it is found by shooting,
+    with as many touches as the collision at the fold of the kick description.
 
     Parameters
     ----------
     strobed : StrobedMap
-        A StrobedNordmarkMap or a StroboscopicMap; its own amplitude does not matter.
+        A NordmarkMap or a StroboscopicMap; its own amplitude does not matter.
     period : int
-        m, in drive periods; 0 is the period of a motion that did not settle.
+        m, in drive periods; 0 for a motion that did not settle.
 
-    Raises
-    ------
-    NotPeriodic
-        If the orbits around the place where the fold should be are not found.
+    NotPeriodic is raised if the orbits around the expected place of the fold are not found.
     """
     if require_whole("period", period, "drive periods", low=0) < 2:
         return None
     family: Family
-    if isinstance(strobed, StrobedNordmarkMap):
-        family = MapFamily(strobed.map, period)
+    if isinstance(strobed, NordmarkMap):
+        family = MapFamily(strobed, period)
     else:
-        words = "a StroboscopicMap or a StrobedNordmarkMap"
+        words = "a StroboscopicMap or a NordmarkMap"
         oscillator = require_kind("strobed", strobed, StroboscopicMap, words).oscillator
         if oscillator.stop.law.code == NEWTON:
             family = MaximalFamily.from_oscillator(oscillator, period=period)

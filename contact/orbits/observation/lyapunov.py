@@ -1,25 +1,21 @@
 r"""Lyapunov exponents from the Jacobians of the period map.
 
-With J_n the derivative of the period map at the n-th strobe and Q R = J_n Q' (Q' of the step
-before),
+J_n is the derivative of the period map at the n-th strobe.  With Q R = J_n Q', Q' from the step before,
 
     lambda_i = < log |R_ii| >        [per drive period],  largest first.
 
-For an impact oscillator J_n is composed in physical time, from the strobe to its first touch by the free flow
-of the modes, then from touch to touch and to the next strobe by the tangents of
-``contact.sensitivity.touch_flow`` (contact forces by their variational equation, Newton's law by its
-saltation matrix).  A strobe that falls into a contact is passed over: that J_n spans more than one period.
+For an impact oscillator J_n comes from the variational replay of the motion
+(``contact.sensitivity.replay``).  A strobe that falls into a contact is passed over: that J_n spans more than
+one period.
 On an orbit of period m the exponents are log|mu_i|/m, with mu_i the eigenvalues of J_m ... J_1.  For Eq. (1)
 of the letter (1996) the determinants give
 
     sum of lambda_i = -mu/f + 2 log(tau) x impacts per period.
 
-Averages are weighted by w(t) = exp(-1/(t (1 - t))), t the fraction of the run: on periodic and quasi-periodic
-motions they converge faster than any power of its length (S. Das, Y. Saiki, E. Sander, J. A. Yorke,
-Nonlinearity 30 (2017) 4111), on chaos like a plain average.  The standard error comes from the scatter of
-blocks.
-
-Any ``contact.maps.protocol.DifferentiableMap`` can be asked.
+Averages are weighted by w(t) = exp(-1/(t (1 - t))), t the fraction of the run.  On periodic and
+quasi-periodic motions they converge faster than any power of its length (S. Das, Y. Saiki, E. Sander,
+J. A. Yorke, Nonlinearity 30 (2017) 4111), on chaos like a plain average.  The standard error comes from the
+scatter of blocks.  Every ``contact.maps.protocol.DifferentiableMap`` has these exponents.
 """
 
 from __future__ import annotations
@@ -39,14 +35,14 @@ from contact.orbits.observation.repetition import require_orbit
 Array = NDArray[np.float64]
 S = TypeVar("S")
 
-BLOCK = 64
+AT_ONCE = 64
 """Periods simulated at a time, which bounds the memory; no result depends on it."""
 
 BLOCKS = 20
 """Blocks whose scatter gives the standard error: enough for an estimate within a sixth of itself."""
 
 MOST_STRETCHES = 64
-"""Bound on how often an orbit's period is gone through until its strobe is off the wall."""
+"""Bound of repetitions of an orbit's period until its strobe is off the wall."""
 
 SMALLEST = 1e-300
 """In place of a zero on the diagonal of R, where an impact without rebound has erased a direction."""
@@ -61,7 +57,7 @@ class Exponents:
     values : ndarray, shape (n_exponents,)
         Largest first [per drive period].
     error : float
-        Standard error of the largest, 0 if it is that of a periodic orbit.
+        Standard error of the largest; 0 on a periodic orbit.
     """
 
     values: Array
@@ -69,7 +65,7 @@ class Exponents:
 
     @property
     def largest(self) -> float:
-        """The first of them: above zero in chaos."""
+        """The largest exponent, above zero in chaos [per drive period]."""
         return float(self.values[0])
 
 
@@ -81,8 +77,7 @@ def _finite(matrix: Array) -> Array:
 
 
 def _weighted(rates: Array, spans: Array) -> tuple[Array, float]:
-    """Weighted mean of `rates`, shape (n, k), over steps of length `spans`, and standard error of column
-    0."""
+    """Weighted mean of `rates`, (n, k), over steps of length `spans`, and standard error of column 0."""
     ends = np.cumsum(spans)
     middle = (ends - 0.5 * spans) / ends[-1]
     weight = np.exp(-1.0 / (middle * (1.0 - middle))) * spans
@@ -109,17 +104,14 @@ def map_exponents(
     align : int
         Steps before it, in which the frame finds its directions.
 
-    Raises
-    ------
-    ContactError
-        If the motion could not be followed, or the tip came to rest on the wall.
+    ContactError is raised if the motion could not be followed, or the tip came to rest on the wall.
     """
     require_map(strobed, DifferentiableMap)
     count = require_whole("count", count, "steps", low=2, why=": an average needs them")
     align = require_whole("align", align, "steps", low=0)
     frame, rates, spans, done = np.eye(strobed.coordinates(state).size), [], [], 0
     while done < align + count:
-        found, state = strobed.jacobians(state, min(BLOCK, align + count - done))
+        found, state = strobed.jacobians(state, min(AT_ONCE, align + count - done))
         for matrix, span in found:
             frame, triangle = np.linalg.qr(_finite(matrix @ frame))
             done += span

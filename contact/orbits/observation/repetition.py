@@ -1,13 +1,12 @@
-"""When a strobed motion is known: its points repeat, or its free motion can never reach the stop again.
+"""Two criteria for a settled motion: its points repeat, or its free motion can never reach the stop again.
 
 **Repetition.** The orbit has period p if all coordinates of the last L points repeat those p strobes before
 to a tolerance and the impacts of each strobe repeat exactly, p <= L.
 
-**No impact any more.** The free motion left over can only shrink (``contact.flight``), so that with
+**No impact any more.** The remaining free motion can only shrink (``contact.flight``).  The tip never meets
+the stop again if
 
-    |x_steady| + sum_k |phi_k| sqrt(u_k^2 + (u_k'/omega_k)^2)  <  gap
-
-the tip never meets the stop again.
+    |x_steady| + sum_k |phi_k| sqrt(u_k^2 + (u_k'/omega_k)^2)  <  gap.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ from contact.machine.compiled import kernel
 from contact.maps.protocol import DifferentiableMap
 
 RETURNS = 1e-6
-"""Distance, over the scale, at which a state has returned: a settled one is back to 1e-9, chaos to 1e-2."""
+"""Distance, over the scale, at which a state has returned: settled motions reach 1e-9, chaos 1e-2."""
 
 
 @kernel
@@ -80,7 +79,7 @@ def require_orbit(strobed: DifferentiableMap, state, period: int) -> None:
 
 @kernel
 def free_for_good(motion, u, v):
-    """Whether the free motion left over in the deviations (u, v) can never bring the tip to the stop."""
+    """Whether the free motion of the deviations (u, v) can never bring the tip to the stop."""
     left = motion.amplitude
     for k in range(motion.size):
         if not motion.modes[OMEGA, k] > 0.0:

@@ -1,8 +1,8 @@
 """Orbit diagrams: strobed points against drive amplitude, the physical state carried along.
 
 The letter (1996) scans the excitation amplitude upwards and downwards in small steps, lets the spring settle
-at each and records 40 strobe points.  Carrying the state along is what shows hysteresis: the spring stays on
-the orbit that it is on until that orbit ends.
+at each and records 40 strobe points.  Because the state is carried along, the scan shows hysteresis: the
+spring stays on its orbit until that orbit ends.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class OrbitDiagram(Generic[S]):
         The observed quantity at the strobes; NaN where the computation failed.
     period, impacts, cycles : ndarray of int, shape (n_amplitudes,)
         Period of the settled orbit (0: none), impacts in one such period, drive periods spent settling.
-        Where there is no period the impacts and the points are a moment of a motion that goes on changing.
+        Without a period, the impacts and the points are a sample of a motion that goes on changing.
     failures : tuple of str
         One sentence for each amplitude that failed.
     end : State
@@ -50,7 +50,7 @@ class OrbitDiagram(Generic[S]):
 
     @property
     def kind(self) -> list[str]:
-        """What each amplitude shows: "periodic", "not settled" (chaos, or a transient not over), "failed"."""
+        """The state of each amplitude: "periodic", "not settled" (chaos or a long transient), "failed"."""
         words = np.where(self.period > 0, "periodic", "not settled")
         found: list[str] = np.where(np.isnan(self.points[:, 0]), "failed", words).tolist()
         return found

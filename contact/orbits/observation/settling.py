@@ -1,23 +1,21 @@
-"""Settling on a periodic orbit and telling its period.
+"""Settling on a periodic orbit, and its period.
 
-**Repetition.** The motion is followed in blocks.  After each block the last points are compared with those
-before them (``contact.orbits.observation.repetition``), to `TOLERANCE` of the scale.  (A transient that
-alternates about p_m while it dies out, next to a period doubling, repeats after 2m first: a period is told
-when a repetition `ALIKE` times as rough has the same one.)  A motion that has not settled after `most_cycles`
-periods gets period 0: chaos, a longer period, or a transient that is not over.  Any strobed map settles this
-way.
+**Repetition.** The motion is followed in blocks.  After each block the last points are compared with the
+points before them (``contact.orbits.observation.repetition``), to `TOLERANCE` of the scale.  Next to a period
+doubling a transient alternates about p_m, and repeats after 2m first.  A period is therefore accepted when a
+repetition `ALIKE` times as rough has the same one.  A motion that has not settled after `most_cycles` periods
+gets period 0: chaos, a longer period, or a transient that is not over.  Any strobed map settles this way.
 
-**Proof.** A transient of an impact oscillator ends as soon as its orbit is known, not when it has been
-reached.  A motion that seems to repeat to a part in a thousand is compared with a periodic orbit in its
-neighbourhood, found by shooting (``contact.orbits.families.shooting``) from the motion itself.  If that orbit
-is stable, touches the stop only where it should (certified), and the motion has come closer to it over a
-whole block of drive periods by what its largest multiplier says,
+**Proof.** A transient of an impact oscillator ends as soon as its orbit is known.  A motion that seems to
+repeat to a part in a thousand is compared with a periodic orbit, found from it by shooting
+(``contact.orbits.families.shooting``).  That orbit must be stable, and touch the stop only where it should
+(certified).  If the motion then comes closer to it over a whole block as its largest multiplier predicts,
 
     distance(n + block) <= SLACK |mu|^(block/m) distance(n) + rounding,
 
-the motion is in the linear neighbourhood of the orbit and ends on it: the rest of the transient need not be
-computed.  The motion without impacts is settled when the free motion that is left cannot reach the stop any
-more.  Near a fold, where |mu| comes close to 1, this saves thousands of periods.
+the motion is in the linear neighbourhood of the orbit and ends on it.  The motion without impacts is settled
+when the free motion that is left cannot reach the stop.  Near a fold, where |mu| comes close to 1, this saves
+thousands of periods.
 """
 
 from __future__ import annotations
@@ -34,8 +32,7 @@ from contact.maps.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap
 from contact.orbits.families.periodic_orbit import PeriodicOrbit
 from contact.orbits.families.shooting import Shooting
 from contact.orbits.observation.repetition import free_for_good, period_of
-from contact.trajectory import State
-from contact.virtual_motion import deviations
+from contact.trajectory import State, deviations
 
 S = TypeVar("S")
 
@@ -44,22 +41,22 @@ TOLERANCE = 1e-9
 at 1e-14; the slow drift past a vanished fold at relative distance 1e-7 moves by more than this per period."""
 
 ALIKE = 1000.0
-"""Repetitions of this ratio tell the same period, or the shorter one is waited for: next to a doubling with a
-multiplier of -0.999 points m apart differ by 1000 times as much as those 2m apart."""
+"""Two repetitions with this ratio of tolerances must have the same period.  Next to a doubling with a
+multiplier of -0.999, points m apart differ by 1000 times as much as points 2m apart."""
 
 BELOW = -1e-3
-"""Excess of the motion without impacts from which the drive is raised: four times the letter's amplitude
+"""Excess of the motion without impacts from which the drive is raised, four times the letter's amplitude
 stability below grazing."""
 
 FIRST_LOOK = 1e-3
 """Repetition, relative to the gap, at which an orbit is looked for: a search costs some ten drive periods."""
 
 CLOSER = 0.5
-"""A search in vain is made again when the motion repeats better by this factor, or much worse: in the slow
-passage of a vanished fold, and in chaos next to an unstable orbit, every block would be searched."""
+"""A search without result is repeated when the motion repeats better by this factor, or much worse.
+Otherwise every block would be searched next to a vanished fold, or in chaos next to an unstable orbit."""
 
 SLACK = 1.5
-"""Factor on the decay that the multiplier promises: the other multipliers and curvature need some room."""
+"""Factor on the decay that the multiplier predicts, for the other multipliers and the curvature."""
 
 NEAR = 1e-3
 """Distance from the orbit, relative to the gap, within which the linear neighbourhood is looked for."""
@@ -67,7 +64,7 @@ NEAR = 1e-3
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Settled(Generic[S]):
-    """What a motion settled on.
+    """The orbit on which a motion settled.
 
     Parameters
     ----------
@@ -78,7 +75,7 @@ class Settled(Generic[S]):
     end : State
         The state reached; where the orbit was proved, a state on it.
     cycles : int
-        Periods of the drive that it took.
+        Drive periods spent.
     points : ndarray, shape (block, n_coordinates)
         The last strobed points.
     """
@@ -113,8 +110,7 @@ def settle(
     tolerance : float
         Relative to the scale of the strobed map.
     prove : bool
-        End the transient of a StroboscopicMap where its orbit is proved; otherwise, and for any other map,
-        where it repeats.
+        Whether the transient of a StroboscopicMap ends where its orbit is proved, not where it repeats.
     """
     require_map(strobed)
     require_whole("most_cycles", most_cycles, "drive periods", low=0)
@@ -143,7 +139,9 @@ def settle(
 def born(
     strobed: StrobedMap[S], excess: float = 1e-3, *, below: float = BELOW, most_cycles: int = 4000
 ) -> Settled[S]:
-    """What the motion without impacts at `below` turns into when the drive is raised to `excess` in one step.
+    """The orbit on which the motion settles when the drive is raised to `excess` in one step.
+
+    The motion starts without impacts at the excess `below`.
 
     Parameters
     ----------
@@ -161,7 +159,7 @@ def born(
 def born_period(
     strobed: StrobedMap[Any], excess: float = 1e-3, *, below: float = BELOW, most_cycles: int = 4000
 ) -> int:
-    """Period in drive periods of what is `born` at `excess`; 0 for none up to 64."""
+    """Period of the orbit `born` at `excess`, in drive periods; 0 for none up to 64."""
     return born(strobed, excess, below=below, most_cycles=most_cycles).period
 
 
@@ -180,16 +178,16 @@ Cycle = tuple[PeriodicOrbit, StrobedOrbit[State]]
 
 
 class _Proof:
-    """Watches the blocks of a transient until it is certain on which orbit it ends; see the module."""
+    """The proof of the module's docstring, block after block of a transient."""
 
     def __init__(self, strobed: StroboscopicMap, largest_period: int, rounding: float) -> None:
         self.strobed, self.largest_period, self.rounding = strobed, largest_period, rounding
         self.known: Cycle | None = None
         self.before = np.inf
-        self.failed = np.inf  # how well the motion repeated when an orbit was looked for in vain
+        self.failed = np.inf  # change over a period when an orbit was looked for in vain
 
     def look(self, state: State, period: int, impacts: int) -> Cycle | None:
-        """The orbit next to `state`; None also for one of a shorter period, run through more than once."""
+        """The orbit next to `state`; None if it has a shorter period or is not found."""
         orbit = orbit_near(self.strobed, state, period, impacts)
         if orbit is None:
             return None
@@ -199,8 +197,7 @@ class _Proof:
         return (orbit, cycle) if shortest == period else None
 
     def after(self, run: StrobedOrbit[State]) -> tuple[int, StrobedOrbit[State]]:
-        """The period, and a block on the orbit in the phase of the motion; 0 and `run` while nothing is
-        certain."""
+        """The period, and a block on the orbit in the phase of the motion; 0 and `run` without a proof."""
         strobed, points, end = self.strobed, run.points, run.end
         rough = period_of(
             points, run.impacts, largest_period=self.largest_period, tolerance=FIRST_LOOK * strobed.scale
@@ -221,8 +218,8 @@ class _Proof:
             orbit, cycle = self.known
             gaps = [np.max(np.abs(points[-rough:] - np.roll(cycle.points, -k, axis=0))) for k in range(rough)]
             distance, phase = float(min(gaps)), int(np.argmin(gaps))
-            promised = SLACK * abs(orbit.multipliers[0]) ** (len(points) / rough) * self.before
-            if self.before < NEAR * strobed.scale and distance <= promised + self.rounding:
+            predicted = SLACK * abs(orbit.multipliers[0]) ** (len(points) / rough) * self.before
+            if self.before < NEAR * strobed.scale and distance <= predicted + self.rounding:
                 found = rough, strobed.orbit(cycle.end, phase or rough).end
             self.before = distance
         if found is None:

@@ -15,7 +15,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from contact import NordmarkMap, StrobedNordmarkMap, StroboscopicMap, band, maximal_period
+from contact import NordmarkMap, StroboscopicMap, band, maximal_period
 from contact.orbits import fold_excess
 from studies import letter
 from studies.experiment.claims.energy_loss import falls
@@ -49,7 +49,7 @@ def inside_band(scene: Scene, period: int, count: int) -> list[Inside]:
     places = np.linspace(edges.lower, edges.upper, count)
     places[-1] = edges.upper - EDGE * (edges.upper - edges.lower)
     for frequency in places.tolist():
-        of_map = fold_excess(StrobedNordmarkMap(map=nordmark_at(scene, frequency)), period)
+        of_map = fold_excess(nordmark_at(scene, frequency), period)
         of_eq1 = fold_excess(StroboscopicMap(oscillator=single_mode_at(scene, frequency)), period)
         rows.append(
             Inside(

@@ -21,7 +21,7 @@ from itertools import pairwise
 import numpy as np
 
 from beam import ModalModel
-from contact import NordmarkMap, StrobedNordmarkMap, StroboscopicMap
+from contact import NordmarkMap, StroboscopicMap
 from contact.orbits import KickFamily, PeriodicOrbit, Shooting, fold_along_frequency, fold_excess
 from studies.physics.two_parameters import fold_of_kicks, one_mode_fold
 from studies.shell.scene import (
@@ -94,7 +94,7 @@ class Row:
 
 def map_fold(nordmark: NordmarkMap, m: int, kick: float | None = None) -> float | None:
     """The fold of the map where it lies below grazing; `kick` stands for 1 + tau in the scale of rho."""
-    found = fold_excess(StrobedNordmarkMap(map=nordmark), m)
+    found = fold_excess(nordmark, m)
     scale = 1.0 if kick is None else (kick / (1.0 + nordmark.restitution)) ** 2
     return None if found is None or found >= 0.0 else scale * found
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 from beam import ModalModel
-from contact import ContactError, StrobedNordmarkMap, StroboscopicMap
+from contact import ContactError, StroboscopicMap
 from contact.orbits import born_period, fold_excess
 from studies.letter import BREAKDOWN, FREE_PERIOD_ERROR_S
 from studies.physics.calibration import calibrate_damping, calibrate_thickness, free_period
@@ -139,7 +139,7 @@ def known(compute: Callable[..., T], *arguments: object) -> T | None:
 def row_at(scene: Scene, model: ModalModel, frequency: float, base: Row | None = None) -> Row:
     """Born period and fold of the map, of Eq. (1) and of the beam; `base` is the row without the change."""
     strobed = {
-        "map": StrobedNordmarkMap(map=nordmark_at(scene, frequency)),
+        "map": nordmark_at(scene, frequency),
         "single_mode": StroboscopicMap(oscillator=single_mode_at(scene, frequency)),
         "beam": StroboscopicMap(oscillator=beam_at(scene, frequency, model)),
     }

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from beam import Backbone, FiniteRotation, ModalModel, backbone_coefficient
-from contact import ImpactOscillator, NonlinearMode, State, StrobedNordmarkMap, StroboscopicMap
+from contact import ImpactOscillator, NonlinearMode, State, StroboscopicMap
 from contact.orbits import settle
 from studies.experiment.sensitivity.changes import known
 from studies.letter import AMPLITUDE_STABILITY, FREE_PERIOD_ERROR_S
@@ -122,7 +122,7 @@ def causes_of(scene: Scene, modes: ModalModel) -> list[Cause]:
         moving = mode.on_exciter(**shake, measured_on_it=not held)
         return lambda f: replace(of(f), model=moving)
 
-    add("map", lambda f: StrobedNordmarkMap(map=nordmark_at(scene, f)))
+    add("map", lambda f: nordmark_at(scene, f))
     add("Eq. (1)", eq_1())
     add("beam", beam)
     for sign in (-1, 1):

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam import ModalModel, Refusal
-from contact import ContactError, State, StrobedMap, StrobedNordmarkMap, StroboscopicMap
+from contact import ContactError, State, StrobedMap, StroboscopicMap
 from contact.orbits import OrbitDiagram, born, born_period, fold_excess, orbit_diagram, orbit_end
 from studies import letter
 from studies.physics.two_parameters import Extracted, extracted, two_parameters_at
@@ -97,7 +97,7 @@ def describe(
 ) -> dict[str, Strobed]:
     """The four descriptions at `frequency` [Hz]; without two parameters, and why, where there are none."""
     found: dict[str, Strobed] = {
-        "map": StrobedNordmarkMap(map=nordmark_at(scene, frequency)),
+        "map": nordmark_at(scene, frequency),
         "single_mode": StroboscopicMap(oscillator=single_mode_at(scene, frequency)),
         "beam": StroboscopicMap(oscillator=beam_at(scene, frequency, model)),
     }

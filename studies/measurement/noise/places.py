@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from beam import ModalModel
-from contact import MapFamily, MaximalFamily, StrobedNordmarkMap, StroboscopicMap
+from contact import MapFamily, MaximalFamily, StroboscopicMap
 from contact.orbits import Shooting, strobe_derivatives
 from studies.shell.scene import Scene, beam_at, nordmark_at, single_mode_at
 
@@ -37,7 +37,7 @@ class Place:
     def strobed(self) -> Any:
         """Its period map, at grazing."""
         if self.description == "map":
-            return StrobedNordmarkMap(map=nordmark_at(self.scene, self.frequency_hz))
+            return nordmark_at(self.scene, self.frequency_hz)
         if self.description == "Eq. (1)":
             oscillator = single_mode_at(self.scene, self.frequency_hz)
         else:
@@ -48,7 +48,7 @@ class Place:
     def family(self) -> Any:
         """The orbits p_m."""
         if self.description == "map":
-            return MapFamily(self.strobed.map, self.m)
+            return MapFamily(self.strobed, self.m)
         if self.description == "Eq. (1)":
             return MaximalFamily.from_oscillator(self.strobed.oscillator, period=self.m)
         kicks = Shooting(oscillator=self.strobed.oscillator, period=self.m).kicks.fold()

@@ -100,7 +100,8 @@ class Equations:
             raise InvalidType(
                 f"law of the stop is {law}; outside solvers follow elastic contacts without load"
             )
-        self.n, self.phi, self.start, self.tolerance = oscillator.n_modes, model.phi, run.start, tolerance
+        self.oscillator, self.start, self.tolerance = oscillator, run.start, tolerance
+        self.n, self.phi = oscillator.n_modes, model.phi
         self.compliance, self.number = float(model.phi @ model.phi), law.numbers[0]
         amplitude, w = (0.0, 0.0) if drive is None else (drive.amplitude, drive.angular_frequency)
         push = model.participation * amplitude * w**2
@@ -166,21 +167,14 @@ class Equations:
         begin, end = (np.array([s for s, _y in log]).reshape(-1) for log in (touches, closed))
         before, after = (np.array([y for _s, y in log]).reshape(-1, 2 * n) for log in (touches, closed))
         approach, rebound = before[:, n:] @ self.phi, after[:, n:] @ self.phi
-        none, begin, end = np.zeros(begin.size, np.int64), self.start.time + begin, self.start.time + end
-        return Impacts(
-            start=begin,
-            end=end,
-            period=none,
-            clock=begin,
-            end_clock=end,
+        return Impacts.of_states(
+            self.oscillator,
+            times=self.start.time + np.array([begin, end]),
+            states=np.array([before, after]).reshape(2, -1, 2, n),
             approach=approach,
             rebound=rebound,
             loss=0.5 * (approach**2 - rebound**2) / self.compliance if self.hard else 0.0 * rebound,
-            kind=none,
-            displacement_start=before[:, :n],
-            velocity_start=before[:, n:],
-            displacement_end=after[:, :n],
-            velocity_end=after[:, n:],
+            kind=np.zeros(begin.size, np.int64),
         )
 
 

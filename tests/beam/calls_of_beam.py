@@ -1,10 +1,11 @@
-"""Right calls of `beam` and wrong values for their arguments, and how such a table is written.
+"""Public calls of `beam`: right arguments and wrong values of each, and how such a table is written.
 
     of(call, right arguments, kind=dict(field=value), value=dict(field=each(value, value)))
 
-`kind` are values of a wrong kind (TypeError), `value` such as are out of range, not finite or of a wrong
-shape (ValueError).  The sentence names the field and the value; where it names others, `told` has the words.
-`test_wrong_input.py` makes the calls.
+`kind` holds values of a wrong kind (TypeError), `value` holds values out of range, not finite or of a wrong
+shape (ValueError).  The message names the field and the value; where it names others, `told` has the words.
+`test_wrong_input.py` makes the calls.  With `over`, the right arguments are a function of a case, and
+`contact/test_bounded_calls.py` makes the call for every law of contact too.
 """
 
 from __future__ import annotations
@@ -39,27 +40,42 @@ class told:
 
 @dataclasses.dataclass(frozen=True)
 class Entry:
-    """A callable, the arguments of a right call, and (field, wrong value, type of the error)."""
+    """A public call: its right arguments, and (field, wrong value, type of the error)."""
 
     name: str
     call: Callable[..., Any]
-    right: Callable[[], dict[str, Any]]
+    arguments: Callable[..., dict[str, Any]]
+    """A function of a case, or of nothing where `over` is empty."""
     wrong: tuple[tuple[str, Any, type[Exception]], ...]
+    over: str
+    """Over which cases of an oscillator the call is made, see `contact/cases_of_calls.py`."""
+
+    def right(self, usual: Any) -> dict[str, Any]:
+        """The arguments of a right call, in the case `usual` if it has cases."""
+        return self.arguments(usual) if self.over else self.arguments()
 
     @property
-    def numbers(self) -> list[str]:
-        """Fields that hold a plain number."""
-        return [field for field, value in self.right().items() if type(value) in (float, int)]
+    def public_name(self) -> str:
+        """The name of the function, class or method that is called."""
+        return self.name.partition(",")[0]
 
 
-def of(call: Callable[..., Any], right: Any, name: str = "", *, kind: Any = None, value: Any = None) -> Entry:
-    """An entry of a table; a function of no arguments gives the right ones where they take time to make."""
+def of(
+    call: Callable[..., Any],
+    right: Any,
+    name: str = "",
+    *,
+    over: str = "",
+    kind: Any = None,
+    value: Any = None,
+) -> Entry:
+    """An entry of a table; a function gives the right arguments where they take time to make."""
     wrong = []
     for error, fields in ((TypeError, kind or {}), (ValueError, value or {})):
         for field, values in fields.items():
             wrong += [(field, one, error) for one in (values if isinstance(values, each) else [values])]
     arguments = right if callable(right) else lambda: dict(right)
-    return Entry(name or call.__qualname__, call, arguments, tuple(wrong))
+    return Entry(name or call.__qualname__, call, arguments, tuple(wrong), over)
 
 
 def fields_of(instance: Any) -> dict[str, Any]:

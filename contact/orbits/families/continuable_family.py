@@ -1,0 +1,165 @@
+"""Families of which each orbit leads to its neighbours: Newton's method on the equations of an orbit.
+
+The unknowns are the deviations (u, v) at the first touch, and its approach speed s through log s.  They give
+the drive (S, C) by two linear equations: the tip is at the stop, y = 0, with velocity y' = s.  An orbit with
+k touches in m drive periods then obeys 2 N equations for 2 N + 1 unknowns
+(``contact.orbits.families.equations``).  With the approach speed the curve is single-valued through its fold
+and down to grazing.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beam.parameters import is_whole, require, require_kind, require_within, shown
+from contact.errors import NotPeriodic
+from contact.orbits.families.equations import Iterate, driven_at, newton, shot_of, sizes_of
+from contact.orbits.families.kick import KickFamily
+from contact.orbits.families.periodic_orbit import PeriodicOrbit
+from contact.oscillator import ImpactOscillator
+from contact.sensitivity.touch_flow import flow_over_periods
+from contact.simulation import simulate
+from contact.trajectory import ImpactKind, Regime, State
+
+Array = NDArray[np.float64]
+
+STEEPEST = 1e10
+"""Change of an unknown along the branch, over that of the approach speed, both in units of their size.
+Beyond this value it is rounding: the approach speed does not tell an orbit from its neighbours."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ContinuableFamily(ABC):
+    """The family of orbits with `impacts` touches in `period` drive periods.
+
+    Parameters
+    ----------
+    oscillator : ImpactOscillator
+        Its drive amplitude does not matter.
+    period, impacts : int
+    """
+
+    oscillator: ImpactOscillator
+    period: int
+    impacts: int = 1
+
+    def __post_init__(self) -> None:
+        words = f"impacts is {shown(self.impacts)}; it must be a whole number, one or more"
+        require(is_whole(self.impacts, 1), words)
+        _ = self.kicks
+
+    @abstractmethod
+    def orbits(self, excess: float) -> tuple[PeriodicOrbit, ...]:
+        """The orbits at F/F_g - 1 = `excess` > -1, by rising approach speed."""
+
+    @abstractmethod
+    def fold(self) -> PeriodicOrbit | None:
+        """The orbit of least amplitude at which two orbits meet; None if the branch has none."""
+
+    def of(self, oscillator: ImpactOscillator) -> Self:
+        """The same family of another oscillator."""
+        return replace(self, oscillator=oscillator)
+
+    def with_impacts(self, impacts: int) -> Self:
+        """The family with another number of touches."""
+        return replace(self, impacts=impacts)
+
+    @cached_property
+    def kicks(self) -> KickFamily:
+        """The description by kicks, from which a search starts."""
+        return KickFamily(oscillator=self.oscillator, period=self.period)
+
+    @cached_property
+    def _sizes(self) -> Array:
+        return sizes_of(self.oscillator)
+
+    @cached_property
+    def _drive(self) -> tuple[Array, Array]:
+        """K, shape (2, 2 N + 1), and k: (S, C) = K (u, v, s) + k puts the tip on the stop with velocity s."""
+        phi, response = self.oscillator.model.phi, self.oscillator.tip_response()
+        still, w = np.zeros(phi.size), self.oscillator.driven.angular_frequency
+        steady = np.array([[response.real, response.imag], [-w * response.imag, w * response.real]])
+        rows = np.array([[*-phi, *still, 0.0], [*still, *-phi, 1.0]])
+        return np.linalg.solve(steady, rows), np.linalg.solve(steady, [self.oscillator.stop.gap, 0.0])
+
+    def flow(self, start: Array) -> tuple[Array, Array, Array]:
+        """End, tangent and record (``flow_over_periods``) of the flow from a touch with (u, v, S, C)."""
+        driven, phase = driven_at(self.oscillator, start[-2:])
+        return flow_over_periods(driven, self.period, phase, start[:-2], self.impacts)
+
+    def unknowns(self, start: Array, speed: float) -> Array:
+        """(u, v) in units of their sizes, and log v over 2 pi f gap, shape (2 n_modes + 1,)."""
+        return np.append(start / self._sizes, math.log(speed / self.oscillator.unit_speed))
+
+    def equations(self, x: Array) -> Iterate:
+        """The equations of a closed orbit at these unknowns; the parameter of the curve is the excess."""
+        (rows, offset), size, n = self._drive, x.size, x.size - 1
+        speed, start = self.oscillator.unit_speed * math.exp(x[-1]), x[:-1] * self._sizes
+        drive, grazing = rows @ np.append(start, speed) + offset, self.oscillator.grazing_amplitude()
+        driven, phase = driven_at(self.oscillator, drive)
+        flown = self.flow(np.append(start, drive))
+        shot = shot_of(driven, phase, start, self.period, flown, grazing, speed)
+        stretch = np.append(self._sizes, speed)
+        closing = shot.flow @ np.vstack([np.eye(n, size), rows]) - np.eye(n, size)
+        return Iterate(
+            shot.orbit,
+            shot.miss / self._sizes,
+            closing * stretch / self._sizes[:, None],
+            drive @ rows * stretch / (shot.orbit.amplitude * grazing),
+            speed * np.eye(size)[-1],
+        )
+
+    def _solve(self, x: Array, *, speed: float | None = None, excess: float = 0.0) -> PeriodicOrbit:
+        """The orbit next to `x` with its approach speed, or with this excess [1]."""
+
+        def pick(_there: Array, here: Iterate) -> tuple[float, Array]:
+            if speed is not None:
+                return 0.0, np.eye(x.size)[-1]
+            return here.orbit.excess - excess, here.parameter_slope
+
+        point = newton(self.equations, x, pick, self.period)
+        if not abs(point.direction[-1]) * STEEPEST > 1.0:
+            words = f"the orbits of period {self.period} do not follow from their approach velocity here"
+            raise point.orbit.failure(NotPeriodic, words)
+        return point.orbit if speed is None else replace(point.orbit, speed=speed)
+
+    def at_speed(self, speed: float, near: PeriodicOrbit | None = None) -> PeriodicOrbit:
+        """The orbit whose first touch has approach velocity `speed` [m/s].
+
+        The search starts from the neighbour `near`, or else from the kick description.  NotPeriodic is raised
+        if Newton's method finds no orbit.
+        """
+        require_within("speed", speed, "m/s", above=0)
+        require_kind("near", near, (PeriodicOrbit, type(None)), "a PeriodicOrbit or None")
+        start = (near or self.kicks.orbit(speed)).deviations
+        return self._solve(self.unknowns(start, speed), speed=speed)
+
+    def at_excess(self, excess: float, near: PeriodicOrbit) -> PeriodicOrbit:
+        """The orbit at F/F_g - 1 = `excess` that is next to `near`."""
+        require_within("excess", excess, "[1]", above=-1)
+        require_kind("near", near, PeriodicOrbit, "a PeriodicOrbit")
+        return self._solve(self.unknowns(near.deviations, near.speed), excess=excess)
+
+    def from_state(self, state: State) -> PeriodicOrbit:
+        """The orbit on which a simulated motion has settled, next to its first touch from `state`."""
+        require_kind("state", state, State, "a State")
+        run = simulate(self.oscillator, state, periods=self.period + 1)
+        hits = run.impacts.kind == ImpactKind.IMPACT
+        hits[:1] &= state.regime == Regime.OUTSIDE  # a contact under way began with a touch that is not known
+        if not np.any(hits):
+            words = "the motion has no impact to start from"
+            raise NotPeriodic(time=state.time, gap=0.0, velocity=0.0, detail=words)
+        i = int(np.flatnonzero(hits)[0])
+        start = self.unknowns(run.impacts.deviations_start[i].ravel(), run.impacts.approach[i])
+        return self._solve(start, excess=self.oscillator.excess)
+
+    def orbit(self, speed: float) -> PeriodicOrbit:
+        """The orbit with approach velocity `speed` [m/s], found from the kick description."""
+        return self.at_speed(speed)

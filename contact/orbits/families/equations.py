@@ -1,0 +1,241 @@
+r"""The equations of a periodic orbit, and Newton's method for them.
+
+An orbit of m drive periods starts at its first touch from z = (u, v, S, C).  Here u and v are the deviations
+of all N modes from the steady motion, and S = Z sin(w t), C = Z cos(w t) give the amplitude and the phase of
+the drive.  F is the flow over m/f from touch to touch (``contact.sensitivity.touch_flow``).  With y the tip
+displacement relative to the stop, y' its velocity, and p the numbers of the oscillator, the orbit obeys
+
+    F_(u,v)(z, p) - (u, v) = 0,      y(z, p) = 0.                                                         (1)
+
+One more equation picks an orbit of the family,
+
+    y'(z, p) = s  (given approach speed)      or      S^2 + C^2 = Z^2  (given amplitude).
+
+All functions are smooth in z and p, through a fold and down to grazing.  The strobe map has a square root
+there: see also arXiv:2510.16218.  The derivatives are the exact tangents of the flow, so that Newton's method
+converges quadratically.  The Floquet multipliers are the eigenvalues of dF_(u,v)/d(u, v) at fixed drive.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact.errors import NotPeriodic
+from contact.flight.variation import all_tip_changes
+from contact.orbits.families.periodic_orbit import PeriodicOrbit
+from contact.oscillator import ImpactOscillator
+from contact.sensitivity.change import Sensitivities
+from contact.sensitivity.replay import deviation_rates
+from contact.sensitivity.touch_flow import flow_over_periods
+
+Array = NDArray[np.float64]
+
+CONVERGED = 1e-12
+"""Largest residual in units of the sizes; rounding of the flow over m periods is about 1e-14."""
+
+ROUNDED = 1e-9
+"""Residual below which iterates that no longer improve count as an orbit.  The rest is rounding, 1e-16, times
+the largest multiplier, which grows as 1/v towards grazing."""
+
+MOST_ITERATIONS = 25
+"""Bound of Newton's method: from the orbit of a kick it takes three to six iterations."""
+
+LONGEST_STEP = 0.3
+"""Longest change of an unknown in one iteration, in units of its size: larger ones are shortened."""
+
+
+def sizes_of(oscillator: ImpactOscillator) -> Array:
+    """Sizes of the deviations (u, v) of all modes, by which unknowns and residuals are scaled."""
+    model, size = oscillator.model, oscillator.stop.gap / np.abs(oscillator.model.phi).max()
+    speed = np.maximum(model.omega, oscillator.driven.angular_frequency)
+    return np.concatenate([np.full(oscillator.n_modes, size), size * speed])
+
+
+def drive_of(orbit: PeriodicOrbit) -> Array:
+    """The drive (S, C) at the first touch of an orbit [m]."""
+    return orbit.oscillator.driven.components(orbit.phase)
+
+
+def amplitude_and_time(drive: Array, w: float) -> tuple[float, float]:
+    """Base amplitude [m] and drive time [s] at which the drive of frequency `w` [rad/s] has (S, C)."""
+    return math.hypot(*drive), math.atan2(*drive) % (2.0 * math.pi) / w
+
+
+def driven_at(oscillator: ImpactOscillator, drive: Array) -> tuple[ImpactOscillator, float]:
+    """The oscillator with the amplitude of `drive` = (S, C), and the drive time of the touch [s]."""
+    amplitude, time = amplitude_and_time(drive, oscillator.driven.angular_frequency)
+    return oscillator.with_amplitude(amplitude), time
+
+
+class Shot(NamedTuple):
+    """The motion over m drive periods from a touch, as an `orbit` that need not close.
+
+    `miss` is (u, v) at the end less (u, v) at the start, shape (2 n_modes,).  `flow` holds the derivatives of
+    (u, v) at the end with respect to z and P parameters, shape (2 n_modes, 2 n_modes + 2 + P).
+    """
+
+    orbit: PeriodicOrbit
+    miss: Array
+    flow: Array
+
+
+def shot_of(
+    oscillator: ImpactOscillator,
+    phase: float,
+    start: Array,
+    period: int,
+    flown: tuple[Array, Array, Array],
+    grazing: float,
+    speed: float | None = None,
+) -> Shot:
+    """The motion from a touch with deviations `start`, shape (2 n_modes,), at drive time `phase` [s].
+
+    `flown` holds its end, tangent and record (``touch_flow.flow_over_periods``); `grazing` is the grazing
+    amplitude [m].  `speed` is the approach speed [m/s], if it is known more exactly than from the record.
+    """
+    (u, v), (end, flow, record), n = start.reshape(2, -1), flown, start.size
+    orbit = PeriodicOrbit(
+        oscillator=oscillator,
+        period=period,
+        excess=oscillator.driven.amplitude / grazing - 1.0,
+        speed=float(record[0, 2]) if speed is None else speed,
+        phase=phase,
+        displacement=u,
+        velocity=v,
+        record=record,
+        tangent=flow[:n, :n],
+        slope=math.nan,
+        residual=math.nan,
+    )
+    return Shot(orbit, end - start, flow[:n])
+
+
+def shoot(
+    oscillator: ImpactOscillator,
+    phase: float,
+    start: Array,
+    period: int,
+    impacts: int,
+    sensitivities: Sensitivities,
+) -> Shot:
+    """The motion from a touch with its derivatives with respect to the P parameters of `sensitivities`.
+
+    Raises the errors of ``touch_flow.flow_over_periods``.
+    """
+    flown = flow_over_periods(oscillator, period, phase, start, impacts, sensitivities.variation)
+    shot = shot_of(oscillator, phase, start, period, flown, oscillator.grazing_amplitude())
+    rates = deviation_rates(oscillator.motion(), shot.orbit.displacement, shot.orbit.velocity)
+    shot.flow[:, start.size + 2 :] += np.multiply.outer(rates, period * sensitivities.period)
+    return shot
+
+
+def tip_slopes(orbit: PeriodicOrbit, sensitivities: Sensitivities) -> tuple[Array, Array]:
+    """Derivatives of y and y' at the first touch with respect to z and the parameters."""
+    size = orbit.deviations.size + 2
+    unit = np.eye(size, size + len(sensitivities.changes))
+    found: tuple[Array, Array] = all_tip_changes(
+        sensitivities.variation, unit, orbit.displacement, orbit.velocity, orbit.phase
+    )
+    return found
+
+
+def slopes_of(shot: Shot, sensitivities: Sensitivities) -> Array:
+    """Derivatives of the equations with respect to z and the parameters, shape (2 n_modes + 3, .).
+
+    The rows belong to (u, v), y, the amplitude and the approach speed.
+    """
+    n = len(shot.flow)
+    height, rate = tip_slopes(shot.orbit, sensitivities)
+    drive = drive_of(shot.orbit) / shot.orbit.amplitude
+    amplitude = np.concatenate([np.zeros(n), drive, -sensitivities.amplitude])
+    return np.vstack([shot.flow - np.eye(n, shot.flow.shape[1]), height, amplitude, rate])
+
+
+class Iterate(NamedTuple):
+    """The equations of a curve of orbits at n + 1 unknowns x; the `orbit` from there need not close.
+
+    `residual` is scaled, shape (n,), and `rows` are its derivatives with respect to x, (n, n + 1).
+    `parameter_slope` and `speed_slope`, (n + 1,), are the derivatives of parameter and approach speed.
+    """
+
+    orbit: PeriodicOrbit
+    residual: Array
+    rows: Array
+    parameter_slope: Array
+    speed_slope: Array
+
+
+Equations = Callable[[Array], Iterate]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Point:
+    """A point of a curve of orbits: unknowns `x` and unit vector `direction` along the curve, both (n + 1,).
+
+    `rate` is the derivative of the parameter with respect to the arc length, and `determinant` belongs to the
+    rows of derivatives with the direction below them.  `last` marks the end of the range.
+    """
+
+    x: Array
+    direction: Array
+    orbit: PeriodicOrbit
+    rate: float
+    determinant: float
+    last: bool = False
+
+    def oriented(self, other: Array) -> Point:
+        """The same point, its direction turned to the side of the vector `other`."""
+        if self.direction @ other >= 0.0:
+            return self
+        return replace(self, direction=-self.direction, rate=-self.rate, determinant=-self.determinant)
+
+
+def newton(
+    equations: Equations, x: Array, pick: Callable[[Array, Iterate], tuple[float, Array]], period: int
+) -> Point:
+    """The solution next to `x` of the equations and of one more, ``pick(x, iterate)``: value and gradient.
+
+    One step is made in any case, since near grazing another orbit can lie within the tolerance.  Raises
+    NotPeriodic if the method does not converge.
+    """
+    found, best, error = None, math.inf, math.inf
+    for iteration in range(MOST_ITERATIONS):
+        here = equations(x)
+        value, gradient = pick(x, here)
+        error = max(float(np.max(np.abs(here.residual))), abs(value))
+        matrix = np.vstack([here.rows, gradient])
+        try:
+            inverse = np.asarray(np.linalg.inv(matrix), dtype=float)
+        except np.linalg.LinAlgError:
+            break
+        if iteration > 0:
+            if error < best:
+                found, best = (x, here, matrix, inverse[:, -1]), error
+            if found is not None and (best < CONVERGED or (best < ROUNDED and not error <= best)):
+                return _point(found, best)
+        change = inverse @ np.append(here.residual, value)
+        x = x - change * min(1.0, LONGEST_STEP / max(float(np.max(np.abs(change))), 1e-300))
+        if not np.all(np.isfinite(x)):
+            break
+    if found is not None and best < ROUNDED:
+        return _point(found, best)
+    words = f"Newton's method found no orbit of period {period} (residual {error:.1e})"
+    raise NotPeriodic(time=0.0, gap=0.0, velocity=0.0, detail=words)
+
+
+def _point(solution: tuple[Array, Iterate, Array, Array], error: float) -> Point:
+    """The point at a solution (x, iterate, matrix of all equations, last column of its inverse)."""
+    x, here, matrix, across = solution
+    length = float(np.linalg.norm(across))
+    direction = across / length
+    rate, speed_rate = float(here.parameter_slope @ direction), float(here.speed_slope @ direction)
+    orbit = replace(here.orbit, residual=error, slope=rate / speed_rate if speed_rate else math.inf)
+    # with the direction in place of the last row of the matrix, its determinant grows by the factor `length`
+    determinant = float(np.linalg.det(matrix)) * length
+    return Point(x=x, direction=direction, orbit=orbit, rate=rate, determinant=determinant)

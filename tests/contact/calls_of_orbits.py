@@ -1,0 +1,162 @@
+"""Public calls of `contact.orbits`: right arguments and wrong values; how it is written: calls_of_beam."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+from collections.abc import Callable
+
+import numpy as np
+from calls_of_beam import INF, NAN, each, of, told
+from calls_of_contact import EQ_1, LOADED, THREE_MODES, UNDRIVEN, at, nordmark
+from cases_of_calls import GAP, HERTZ, NEWTON
+
+import contact
+from contact import Regime, orbits
+
+
+def at_event(derivatives: Callable[..., object]) -> Callable[..., None]:
+    """The derivatives of an event, of an orbit that need not be one."""
+
+    def called(**arguments: object) -> None:
+        with contextlib.suppress(contact.NoDerivative):
+            derivatives(**arguments)
+
+    return called
+
+
+CHANGE = orbits.Change(gap=1.0, frequency=1e3)
+IDLE = told(
+    dataclasses.replace(EQ_1, model=dataclasses.replace(EQ_1.model, participation=[0.0])),
+    "the drive does not move the tip",
+)
+NO_MAP = each(None, NEWTON.oscillator)
+NO_FAMILY = each(None, EQ_1)
+KICK_CALLS = {
+    "orbit": lambda c: dict(speed=c.speed),
+    "orbit_of": lambda c: dict(kick=c.kicks.kick(c.speed)),
+    "error": lambda c: dict(orbit=c.kicked),
+    "excess": lambda c: dict(speed=c.speed),
+    "closed": lambda c: dict(jump=c.kicks.kick(c.speed).jump),
+}
+SHOOTING_CALLS = {
+    "of": lambda c: dict(oscillator=c.oscillator),
+    "with_impacts": lambda c: dict(impacts=2),
+    "unknowns": lambda c: dict(start=c.family.orbit(c.speed).deviations, speed=c.speed),
+    "equations": lambda c: dict(x=c.family.unknowns(c.family.orbit(c.speed).deviations, c.speed)),
+    "fold": lambda c: {},
+    "orbits": lambda c: dict(excess=0.01),
+}
+DERIVATIVES = {
+    "orbit_derivatives": orbits.orbit_derivatives,
+    "excess_derivatives": orbits.excess_derivatives,
+    "doubling_derivatives": at_event(orbits.doubling_derivatives),
+    "graze_derivatives": at_event(orbits.graze_derivatives),
+}
+
+# fmt: off
+ORBITS = (
+    of(orbits.KickFamily, lambda: dict(oscillator=EQ_1, period=5),
+       kind=dict(oscillator=None), value=dict(period=each(0, 2.5), oscillator=each(LOADED, IDLE))),
+    of(orbits.KickFamily.fold, lambda c: dict(self=c.kicks), over="family",
+       kind=dict(speeds="all"), value=dict(speeds=each((0.5, 0.01), (0.0, 1.0)))),
+    of(orbits.KickFamily.orbits, lambda c: dict(self=c.kicks, excess=0.01), over="family"),
+    of(orbits.KickFamily.kick, lambda c: dict(self=c.kicks, speed=c.speed), over="speeds",
+       kind=dict(speed="fast"), value=dict(speed=each(0.0, -1.0, INF))),
+    *(of(getattr(orbits.KickFamily, name), lambda c, given=given: dict(self=c.kicks) | given(c),
+         name=f"KickFamily.{name}", over="speeds") for name, given in KICK_CALLS.items()),
+    of(orbits.Shooting, lambda: dict(oscillator=HERTZ.oscillator, period=5),
+       kind=dict(oscillator="eq_1"),
+       value=dict(period=each(0, 1.5), impacts=0, oscillator=each(UNDRIVEN, IDLE))),
+    of(orbits.Shooting.flow, lambda c: dict(self=c.family, start=c.unknown), over="speeds"),
+    of(orbits.Shooting.orbit, lambda c: dict(self=c.family, speed=c.speed), over="speeds"),
+    of(orbits.Shooting.at_speed, lambda c: dict(self=c.family, speed=c.speed), over="speeds",
+       kind=dict(speed=None, near=3), value=dict(speed=each(0.0, -0.1))),
+    of(orbits.Shooting.at_speed, lambda c: dict(
+           self=orbits.Shooting(oscillator=c.oscillator, period=2, impacts=3), speed=2 * c.speed),
+       name="Shooting.at_speed, three touches", over="family"),
+    of(orbits.Shooting.at_excess, lambda c: dict(self=c.family, excess=1.01 * c.orbit.excess, near=c.orbit),
+       over="speeds", kind=dict(near=None), value=dict(excess=each(-1.5, NAN))),
+    of(orbits.Shooting.at_excess, lambda c: dict(self=c.family, excess=0.01, near=c.orbit),
+       name="Shooting.at_excess, far away", over="speeds"),
+    of(orbits.Shooting.from_state, lambda c: dict(
+           self=orbits.Shooting(oscillator=c.driven, period=5), state=c.state), over="family"),
+    *(of(getattr(orbits.Shooting, name), lambda c, given=given: dict(self=c.family) | given(c),
+         name=f"Shooting.{name}", over="family") for name, given in SHOOTING_CALLS.items()),
+    *(of(getattr(orbits.PeriodicOrbit, name), lambda c: dict(self=c.orbit), name=f"PeriodicOrbit.{name}",
+         over="speeds") for name in ("state", "monodromy", "release", "repeats", "strobe_state")),
+    of(orbits.follow, lambda c: dict(family=c.family, start=c.orbit, low=0.5 * c.speed, high=2.0 * c.speed,
+                                     step=0.3), over="speeds",
+       kind=dict(family=None, start=0.1),
+       value=dict(low=each(told(0.2, "low and high are 0.2 and"), told(0.0, "low and high are 0.0 and")),
+                  high=told(0.06, "low and high are"), step=told(0.0, "step is 0.0 [1]"))),
+    of(orbits.first_event, lambda c: dict(family=c.family, start=c.orbit, lowest=-0.5), over="family",
+       kind=dict(family=None, start=0.1), value=dict(lowest=-1.5)),
+    *(of(call, lambda c: dict(family=c.family), over="family", kind=dict(family=NO_FAMILY, near=0.1))
+      for call in (orbits.fold_of, orbits.folds_of, orbits.lowest_of)),
+    of(orbits.fold_of, lambda c: dict(family=c.family, near=c.orbit), name="fold_of, near an orbit",
+       over="family"),
+    of(orbits.fold_along_frequency, lambda c: dict(family=c.family, frequencies=np.array([22.2])),
+       over="family", kind=dict(family=5, frequencies=["22.2"]), value=dict(frequencies=each(22.2, [NAN]))),
+    of(orbits.follow_path, lambda c: dict(
+           path=c.oscillator.with_excess, start=c.orbit, at=c.orbit.excess, low=c.orbit.excess,
+           high=c.orbit.excess + 0.05, step=1.0), over="family",
+       kind=dict(start=0.1), value=dict(
+           path=told(None, "path is None; it must be a function"), at=told(0.3, "at is 0.3 [of p]"),
+           low=NAN, high=told(-0.2, "high is -0.2 [of p]"), step=told(0.0, "step is 0.0 [1]"))),
+    of(orbits.Change, dict(gap=1.0, frequency=0.0, amplitude=0.0, law=(0.0, 0.0)),
+       kind=dict(model=EQ_1.model, law=each("soft", ("1", 0.0))), value=dict(law=each((1.0,), (NAN, 0.0)))),
+    *(of(call, lambda c: dict(orbit=c.orbit, changes=[CHANGE]), name=name, over="family",
+         kind=dict(orbit=each(None, 0.1), changes=each(CHANGE, 3.0, ["gap"])))
+      for name, call in DERIVATIVES.items()),
+    of(orbits.multiplier_derivatives,
+       lambda c: dict(found=orbits.orbit_derivatives(c.orbit, [CHANGE])), over="family",
+       kind=dict(found=each(None, 3.0, [CHANGE]))),
+    of(orbits.motion_derivatives, lambda c: dict(
+           oscillator=c.driven, state=c.state, changes=[CHANGE], periods=3, times=np.linspace(0.01, 0.1, 5)),
+       over="starts", kind=dict(oscillator=None, state=[0.0], changes=each(CHANGE, [3.0])),
+       value=dict(oscillator=UNDRIVEN, state=told(at(GAP, Regime.CONTACT), "regime"))),
+    *(of(orbits.settle, lambda c, prove=prove: dict(
+             strobed=c.strobed, state=c.state, most_cycles=256, largest_period=64, tolerance=1e-9,
+             prove=prove),
+         name=name, over="starts", kind=dict(strobed=NO_MAP),
+         value=dict(largest_period=0, most_cycles=-1, tolerance=-1.0))
+      for name, prove in {"settle": True, "settle, unproved": False}.items()),
+    *(of(call, lambda c: dict(strobed=c.strobed, excess=1e-3, most_cycles=256), over="motion",
+         kind=dict(strobed=NO_MAP), value=dict(excess=-2.0, most_cycles=-1))
+      for call in (orbits.born, orbits.born_period)),
+    of(orbits.fold_excess, lambda c: dict(strobed=c.strobed, period=5), over="motion",
+       kind=dict(strobed=each(*NO_MAP, 5)), value=dict(period=2.5)),
+    of(orbits.orbit_end, lambda c: dict(
+           strobed=c.strobed, state=c.fast, excess=0.02, most_cycles=128, first_step=2e-4, relative=0.01,
+           absolute=1e-7, lowest=-0.5), over="motion",
+       kind=dict(strobed=EQ_1), value=dict(first_step=0.0, absolute=0.0, relative=-1.0, lowest=-1.0)),
+    of(orbits.orbit_diagram, lambda c: dict(
+           strobed=c.strobed, excesses=[1e-3, -1e-3], state=c.state, observe=c.strobed.tip, settle_cycles=128,
+           record_cycles=40, largest_period=64), over="starts",
+       kind=dict(strobed=EQ_1, excesses="1", observe=each(3, told(lambda p: "tip", "observe(points) is"))),
+       value=dict(observe=told(lambda p: p, "observe(points) has shape"), settle_cycles=-1,
+                  excesses=each(told([], "excesses is empty"), [[1e-3]]))),
+    of(orbits.period_of, lambda c: dict(
+           points=c.strobed.orbit(c.state, 20).points, impacts=c.strobed.orbit(c.state, 20).impacts,
+           largest_period=8, tolerance=1e-9), over="motion",
+       kind=dict(points="p"), value=dict(impacts=[0], points=each(
+           [0.0], np.zeros((20, 0)), told([[0.0]] * 3, "points has 3 strobes")))),
+    of(orbits.AmplitudeScan, lambda: dict(oscillator=EQ_1, most_cycles=128),
+       kind=dict(oscillator=each(None, nordmark())), value=dict(oscillator=UNDRIVEN, most_cycles=127)),
+    of(lambda **given: orbits.AmplitudeScan(oscillator=EQ_1, most_cycles=128)(**given),
+       dict(frequency=22.2, excesses=[-1e-3]), name="AmplitudeScan, a column", kind=dict(excesses="all"),
+       value=dict(frequency=0.0, excesses=told([1e-3, 0.0], "excesses must be"))),
+    of(orbits.strobe_derivatives, lambda c: dict(strobed=c.below, state=c.below.steady(), period=2),
+       over="motion", kind=dict(strobed=None, state=[0.0, 0.0]), value=dict(period=each(0, 1.5))),
+    of(orbits.cloud, lambda c: dict(
+           strobed=c.below, state=c.below.steady(), period=2, deviation=1e-3, memory=0.5), over="motion",
+       kind=dict(strobed=3.0), value=dict(deviation=each(-1e-4, NAN), memory=each(1.0, -0.1, NAN), period=0)),
+    of(orbits.map_exponents, lambda c: dict(strobed=c.strobed, state=c.state, count=5, align=0),
+       over="starts", kind=dict(strobed=each(None, EQ_1)), value=dict(count=1, align=-1)),
+    of(orbits.orbit_exponents, lambda c: dict(strobed=c.below, state=c.below.steady(), period=2),
+       over="motion", kind=dict(strobed=None), value=dict(period=each(0, 1.5), state=THREE_MODES)),
+    of(orbits.orbit_exponents, lambda c: dict(strobed=c.strobed, state=c.state, period=5),
+       name="orbit_exponents, of no orbit", over="starts"),
+)
+# fmt: on
