@@ -20,6 +20,7 @@ from contact import (
     NewtonRestitution,
     State,
     Stop,
+    StroboscopicMap,
     before_collision,
     first_collision,
     simulate,
@@ -271,7 +272,7 @@ def test_runs_are_timed_in_turns() -> None:
 
 
 @pytest.mark.skipif("heyoka" in missing_solvers(), reason="heyoka is not installed")
-def test_bare_heyoka_is_on_the_same_orbit(letter_scene: Scene) -> None:
+def test_bare_heyoka_is_on_the_same_orbit(letter_scene) -> None:
     """It reaches the p5 of the package: it is a peer, not a straw man."""
     oscillator = single_mode_at(letter_scene, 22.2).with_excess(0.02)
     strobed = StroboscopicMap(oscillator=oscillator)
