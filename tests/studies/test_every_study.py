@@ -83,7 +83,6 @@ FEWER = {
 #: Studies of driven motions, and those that change the dimensions of a spring.
 DRIVEN = (
     "adequacy",
-    "attractors",
     "breakdown",
     "chart",
     "claims",
@@ -130,11 +129,11 @@ def test_the_small_form_runs_and_leaves_a_table_a_figure_and_a_summary(run_study
 REFUSED = [
     *((name, "--set drive.kind=none", "drive.kind") for name in DRIVEN),
     *((name, "--set spring.kind=modal_data", "modal_data") for name in ON_A_SPRING),
-    ("attractors", "--lowest 0.1 --highest 0.0", "lowest"),
-    ("attractors", "--basin-excess 0.01", "basin-excess"),
+    ("chart", "--cut-range 0.1 0.0", "cut-range"),
+    ("chart", "--basin-excess 0.01", "basin-excess"),
     ("breakdown", "--set single_mode.free_period_s=0.06", "free_period_s"),
     ("chart", "--points 1 9", "points"),
-    ("attractors", "--side 1", "side is 1 and points 39; each must be 2 or more"),
+    ("chart", "--side 1", "side is 1 and cut-points 39; each must be 2 or more"),
     ("breakdown", "--points 1", "points is 1; it must be 2 or more"),
     ("breakdown", "--points 900000", "points is 900000, which makes 4.5e+06 cells"),
     ("modes", "--frames 1000000", "--frames must be an even number, at most 10000"),
@@ -144,8 +143,8 @@ REFUSED = [
     ("time_trace", "--set stop.gap_m=1e-300", "stop.gap_m must be at least 1e-12"),
     ("time_trace", "--set single_mode.free_period_s=1e-300", "single_mode.free_period_s"),
     ("time_trace", "--set spring.young_modulus_pa=1e300", "at most 1e+15 (unit Pa)"),
-    ("attractors", "--side 5000", "side is 5000, which makes 2.5e+07 cells"),
-    ("attractors", "--points 99999999", "a whole number from 1 to 1000000"),
+    ("chart", "--side 5000", "side is 5000, which makes 2.5e+07 cells"),
+    ("chart", "--cut-points 99999999", "a whole number from 1 to 1000000"),
     ("chart", "--points 90000 90000", "points is 90000 90000, which makes 8.1e+09 cells"),
     ("hysteresis", "--step 1e-9", "step is 1e-09 Hz, which makes"),
     ("hysteresis", "--step 0", "step"),
