@@ -62,7 +62,7 @@ _BEFORE, _AFTER = (
     """\
 period_adding | claims | introduction | no number
     The overdamped oscillator has an infinite series of period addings.
-torsion | spring_shape | Fig. 1 and text | no number
+torsion | shape | Fig. 1 and text | no number
     The spring is U shaped to suppress torsional modes.
 drive_amplitude | calibrate | text after Fig. 1 | typically 2 mm
     Amplitude of the excitation.
@@ -143,7 +143,7 @@ QUESTIONS: Mapping[str, tuple[str, tuple[str, ...]]] = MappingProxyType(
     {
         "hysteresis": (
             "Why does the measured hysteresis differ from the map's?",
-            ("hysteresis", "noise", "spring_shape"),
+            ("hysteresis", "noise", "shape"),
         ),
         "higher_modes": (
             "What do higher modes do to restitution, delay and the square root?",

@@ -33,21 +33,15 @@ LOOKED_AT = {
 #: Options that keep a small form small.
 SMALLER = {
     "stability": ["--families", "false_restitution,accumulation"],
-    "finite_amplitude": [
-        "--set",
-        "drive.frequencies_hz=[22.2]",
-        "--set",
-        "scan.settle_cycles=400",
-        "--set",
-        "spring.bend_radius_m=0.0075",
-    ],
-    "spring_shape": [
-        "--set",
-        "modes.count=4",
-        "--set",
-        "spring.elements_per_leg=12",
-        "--set",
-        "spring.elements_on_arc=8",
+    "shape": [
+        f"--set={key}"
+        for key in (
+            "drive.frequencies_hz=[22.2]",
+            "scan.settle_cycles=400",
+            "modes.count=4",
+            "spring.elements_per_leg=12",
+            "spring.elements_on_arc=8",
+        )
     ],
     "claims": [
         "--positions",
@@ -77,7 +71,7 @@ FEWER = {
         "measures.PATIENCE": 0.02,
     },
     "next_measurement": {"pairs.GRID": 31},
-    "spring_shape": {"__main__.COARSE": (1, 1)},
+    "shape": {"__main__.COARSE": (1, 1)},
 }
 
 #: Studies of driven motions, and those that change the dimensions of a spring.
@@ -87,7 +81,6 @@ DRIVEN = (
     "chart",
     "claims",
     "effective_impact",
-    "finite_amplitude",
     "hysteresis",
     "noise",
     "sensitivity",
@@ -96,14 +89,7 @@ DRIVEN = (
     "transitions",
     "work_precision",
 )
-ON_A_SPRING = (
-    "breakdown",
-    "calibrate",
-    "effective_impact",
-    "finite_amplitude",
-    "sensitivity",
-    "spring_shape",
-)
+ON_A_SPRING = ("breakdown", "calibrate", "effective_impact", "sensitivity", "shape")
 
 #: A fit takes hundreds of meshes.
 SLOW = ("calibrate",)
@@ -156,8 +142,8 @@ REFUSED = [
     ("noise", "--scans 3", "scans is 3; quantiles need at least 10"),
     ("noise", "--readout -1", "readout is -1 m; it must be 0 or more"),
     ("soft_wall", "--decades 5 3", "decades"),
-    ("spring_shape", "--off-line 0", "--off-line"),
-    ("spring_shape", "--channel-sheet 0", "--channel-sheet"),
+    ("shape", "--off-line 0", "--off-line"),
+    ("shape", "--channel-sheet 0", "--channel-sheet"),
     ("stability", "--families none", "families"),
     ("time_trace", "--excess=-1", "excess"),
     ("time_trace", "--frequency 0", "frequencies_hz"),
@@ -175,7 +161,7 @@ def test_what_a_study_cannot_use_is_refused_in_one_sentence(run_study, name, arg
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["claims", "spring_shape", "stability", "work_precision"])
+@pytest.mark.parametrize("name", ["claims", "shape", "stability", "work_precision"])
 def test_the_small_form_runs_whole(run_study, name):
     assert run_study(name, "--quick").code == 0
 
