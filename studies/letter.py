@@ -62,7 +62,7 @@ _BEFORE, _AFTER = (
     """\
 period_adding | claims | introduction | no number
     The overdamped oscillator has an infinite series of period addings.
-torsion | spring_shape | Fig. 1 and text | no number
+torsion | shape | Fig. 1 and text | no number
     The spring is U shaped to suppress torsional modes.
 drive_amplitude | calibrate | text after Fig. 1 | typically 2 mm
     Amplitude of the excitation.
@@ -70,7 +70,7 @@ free_period | modes | Fig. 2 | 40.80 +- 0.02 ms
     Period T of the freely swinging beam.
 """,
     """\
-coexistence | attractors | text on Fig. 2 | hysteretic
+coexistence | chart | text on Fig. 2 | hysteretic
     Below grazing the motion without impacts and p_m coexist.
 last_period | noise | text on Fig. 2 | p10
     The highest observed period is at the limit of resolution and stability.
@@ -92,7 +92,7 @@ loss | claims | text after Fig. 4 | no number
     The hysteresis falls with rising energy loss per collision.
 secondary | claims | text after Fig. 4 | no number
     Secondary bifurcations lie above grazing in the map, and may lie below it in Eq. (1).
-chaos | attractors | text after Fig. 4 | no number
+chaos | chart | text after Fig. 4 | no number
     Other transitions occur; these may even be to chaotic states.
 breakdown | breakdown | Fig. 5 | p6
     At grazing the motion without impacts gives way to period 6, where the map has p3.
@@ -143,7 +143,7 @@ QUESTIONS: Mapping[str, tuple[str, tuple[str, ...]]] = MappingProxyType(
     {
         "hysteresis": (
             "Why does the measured hysteresis differ from the map's?",
-            ("hysteresis", "noise", "spring_shape"),
+            ("hysteresis", "noise", "shape"),
         ),
         "higher_modes": (
             "What do higher modes do to restitution, delay and the square root?",

@@ -33,21 +33,15 @@ LOOKED_AT = {
 #: Options that keep a small form small.
 SMALLER = {
     "stability": ["--families", "false_restitution,accumulation"],
-    "finite_amplitude": [
-        "--set",
-        "drive.frequencies_hz=[22.2]",
-        "--set",
-        "scan.settle_cycles=400",
-        "--set",
-        "spring.bend_radius_m=0.0075",
-    ],
-    "spring_shape": [
-        "--set",
-        "modes.count=4",
-        "--set",
-        "spring.elements_per_leg=12",
-        "--set",
-        "spring.elements_on_arc=8",
+    "shape": [
+        f"--set={key}"
+        for key in (
+            "drive.frequencies_hz=[22.2]",
+            "scan.settle_cycles=400",
+            "modes.count=4",
+            "spring.elements_per_leg=12",
+            "spring.elements_on_arc=8",
+        )
     ],
     "claims": [
         "--positions",
@@ -77,20 +71,17 @@ FEWER = {
         "measures.PATIENCE": 0.02,
     },
     "next_measurement": {"pairs.GRID": 31},
-    "spring_shape": {"__main__.COARSE": (1, 1)},
+    "shape": {"__main__.COARSE": (1, 1)},
 }
 
 #: Studies of driven motions, and those that change the dimensions of a spring.
 DRIVEN = (
     "adequacy",
-    "attractors",
     "breakdown",
     "chart",
     "claims",
     "effective_impact",
-    "finite_amplitude",
     "hysteresis",
-    "motion",
     "noise",
     "sensitivity",
     "soft_wall",
@@ -98,15 +89,7 @@ DRIVEN = (
     "transitions",
     "work_precision",
 )
-ON_A_SPRING = (
-    "breakdown",
-    "calibrate",
-    "effective_impact",
-    "finite_amplitude",
-    "motion",
-    "sensitivity",
-    "spring_shape",
-)
+ON_A_SPRING = ("breakdown", "calibrate", "effective_impact", "sensitivity", "shape")
 
 #: A fit takes hundreds of meshes; what the others compute is tested beside their whole forms.
 SLOW = ("calibrate", "claims", "finite_amplitude", "next_measurement", "spring_shape")
@@ -132,22 +115,22 @@ def test_the_small_form_runs_and_leaves_a_table_a_figure_and_a_summary(run_study
 REFUSED = [
     *((name, "--set drive.kind=none", "drive.kind") for name in DRIVEN),
     *((name, "--set spring.kind=modal_data", "modal_data") for name in ON_A_SPRING),
-    ("attractors", "--lowest 0.1 --highest 0.0", "lowest"),
-    ("attractors", "--basin-excess 0.01", "basin-excess"),
+    ("chart", "--cut-range 0.1 0.0", "cut-range"),
+    ("chart", "--basin-excess 0.01", "basin-excess"),
     ("breakdown", "--set single_mode.free_period_s=0.06", "free_period_s"),
     ("chart", "--points 1 9", "points"),
-    ("attractors", "--side 1", "side is 1 and points 39; each must be 2 or more"),
+    ("chart", "--side 1", "side is 1 and cut-points 39; each must be 2 or more"),
     ("breakdown", "--points 1", "points is 1; it must be 2 or more"),
     ("breakdown", "--points 900000", "points is 900000, which makes 4.5e+06 cells"),
     ("modes", "--frames 1000000", "--frames must be an even number, at most 10000"),
-    ("motion", "--frames 1000000", "frames is 1000000; a film has at most 10000"),
+    ("time_trace", "--frames 1000000", "frames is 1000000; a film has at most 10000"),
     ("identify", "--drive 22.2 2", "drive is 22.2 Hz, 2 mm; it needs a record"),
     ("modes", "--executor moon", "executor is 'moon'; it must be threads"),
     ("time_trace", "--set stop.gap_m=1e-300", "stop.gap_m must be at least 1e-12"),
     ("time_trace", "--set single_mode.free_period_s=1e-300", "single_mode.free_period_s"),
     ("time_trace", "--set spring.young_modulus_pa=1e300", "at most 1e+15 (unit Pa)"),
-    ("attractors", "--side 5000", "side is 5000, which makes 2.5e+07 cells"),
-    ("attractors", "--points 99999999", "a whole number from 1 to 1000000"),
+    ("chart", "--side 5000", "side is 5000, which makes 2.5e+07 cells"),
+    ("chart", "--cut-points 99999999", "a whole number from 1 to 1000000"),
     ("chart", "--points 90000 90000", "points is 90000 90000, which makes 8.1e+09 cells"),
     ("hysteresis", "--step 1e-9", "step is 1e-09 Hz, which makes"),
     ("hysteresis", "--step 0", "step"),
@@ -159,8 +142,8 @@ REFUSED = [
     ("noise", "--scans 3", "scans is 3; quantiles need at least 10"),
     ("noise", "--readout -1", "readout is -1 m; it must be 0 or more"),
     ("soft_wall", "--decades 5 3", "decades"),
-    ("spring_shape", "--off-line 0", "--off-line"),
-    ("spring_shape", "--channel-sheet 0", "--channel-sheet"),
+    ("shape", "--off-line 0", "--off-line"),
+    ("shape", "--channel-sheet 0", "--channel-sheet"),
     ("stability", "--families none", "families"),
     ("time_trace", "--excess=-1", "excess"),
     ("time_trace", "--frequency 0", "frequencies_hz"),
@@ -178,7 +161,7 @@ def test_what_a_study_cannot_use_is_refused_in_one_sentence(run_study, name, arg
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["claims", "spring_shape", "stability", "work_precision"])
+@pytest.mark.parametrize("name", ["claims", "shape", "stability", "work_precision"])
 def test_the_small_form_runs_whole(run_study, name):
     assert run_study(name, "--quick").code == 0
 

@@ -11,7 +11,7 @@ from PIL import Image
 
 from contact import StroboscopicMap
 from contact.orbits import born
-from studies.experiment.motion.filmed_orbit import drawn_shapes, film_orbit
+from studies.experiment.time_trace.filmed_orbit import drawn_shapes, film_orbit
 from studies.shell import film
 from studies.shell.film import Moment, Scenery, can_encode, stage_of, write_gif, written_as_mp4
 from studies.shell.scene import beam_at, modes_of
@@ -122,7 +122,7 @@ def test_gif_and_mp4_hold_every_frame(tmp_path):
 
 def test_the_small_form_of_the_motion_writes_a_film_and_meshes(run_study):
     argv = [f"--set={key}={value}" for key, value in COARSE.items()]
-    ran = run_study("motion", "--quick", "--frames", "24", *argv)
+    ran = run_study("time_trace", "--quick", "--film", "--frames", "24", *argv)
     assert ran.code == 0 and ran.summary["period"] == 4 and ran.summary["impacts"] >= 1
     assert len(list((ran.folder / "motion_frames").glob("*.vtu"))) == 24
     with Image.open(ran.folder / "motion.gif") as found:

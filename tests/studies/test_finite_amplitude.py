@@ -16,7 +16,7 @@ from studies.shell.scene import (
     shift_at_gap,
     spring_of,
 )
-from studies.spring.finite_amplitude import Spring, frame_period, matched, reading_of
+from studies.spring.shape.finite_amplitude import Spring, frame_period, matched, reading_of
 
 SPRINGS = {"tight": ("folded", 7.5e-3), "wide": ("folded", 0.03), "legs": ("side_by_side", 9e-3)}
 OTHER_BALL = 6e-3

@@ -13,11 +13,11 @@ import skfem as sk
 from beam import BRASS, StripSection, Tip
 from beam.space import spatial_modes
 from studies.shell.scene import model_of, read_scene
-from studies.spring.spring_shape.__main__ import COARSE, compare_plate
-from studies.spring.spring_shape.model_error import mode_rows, plates_of, springs_of
-from studies.spring.spring_shape.plate import per_area, plate_modes
-from studies.spring.spring_shape.plate_mesh import half_u
-from studies.spring.spring_shape.shapes import Shape
+from studies.spring.shape.__main__ import COARSE, compare_plate
+from studies.spring.shape.model_error import mode_rows, plates_of, springs_of
+from studies.spring.shape.plate import per_area, plate_modes
+from studies.spring.shape.plate_mesh import half_u
+from studies.spring.shape.shapes import Shape
 
 SHEET = StripSection(material=BRASS, width=12e-3, thickness=1e-3)
 NU = BRASS.poissons_ratio

@@ -10,9 +10,9 @@ import pytest
 from beam import StripSection, Tip, UniformBeam, assemble, exact_modes, flat_u, folded_u, natural_modes
 from beam.space import spatial_modes
 from studies.shell.scene import SceneError, read_scene, single_mode_of
-from studies.spring.spring_shape.__main__ import shapes_of
-from studies.spring.spring_shape.rows import reading_row
-from studies.spring.spring_shape.shapes import brought_to, kinds_of, shape_of
+from studies.spring.shape.__main__ import shapes_of
+from studies.spring.shape.rows import reading_row
+from studies.spring.shape.shapes import brought_to, kinds_of, shape_of
 
 
 @pytest.fixture(scope="module")

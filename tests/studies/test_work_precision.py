@@ -20,12 +20,15 @@ from contact import (
     NewtonRestitution,
     State,
     Stop,
+    StroboscopicMap,
     before_collision,
     first_collision,
     simulate,
 )
 from contact.integrators import CentralDifference, Exact
+from studies.methods.peers import missing_solvers
 from studies.methods.work_precision import gradients
+from studies.methods.work_precision.costs import heyoka_orbit, in_turns
 from studies.methods.work_precision.measures import (
     Reference,
     Row,
@@ -264,3 +267,21 @@ def test_errors_of_gradients_fall_as_the_order_of_the_differences_says(letter_sc
     assert exact < 1e-12
     others = [row.error for row in rows if row.method == "heyoka"]
     assert not others or (np.all(np.diff(others) < 0.0) and others[-1] < 1e-11)
+
+
+def test_runs_are_timed_in_turns() -> None:
+    order: list[str] = []
+    spent = in_turns({name: (lambda _periods, name=name: order.append(name), 5) for name in "ab"}, 3)
+    assert order == ["a", "b"] * 4 and set(spent) == {"a", "b"} and min(spent.values()) >= 0.0
+
+
+@pytest.mark.skipif("heyoka" in missing_solvers(), reason="heyoka is not installed")
+def test_bare_heyoka_is_on_the_same_orbit(letter_scene) -> None:
+    """It reaches the p5 of the package: it is a peer, not a straw man."""
+    oscillator = single_mode_at(letter_scene, 22.2).with_excess(0.02)
+    strobed = StroboscopicMap(oscillator=oscillator)
+    settled = strobed.orbit(strobed.steady(), 2000).end
+    cycle = strobed.tip(strobed.orbit(settled, 5).points)
+    orbit, taylor = heyoka_orbit(oscillator)
+    orbit(2000)
+    assert np.min(np.abs(cycle - taylor.state[0] * oscillator.model.phi[0])) < 1e-8 * oscillator.stop.gap

@@ -7,6 +7,11 @@ raised and lowered again with the state carried along, and each cell gets the pe
 impacts of the orbit on which the motion settles, within --cycles drive periods
 (contact.orbits.AmplitudeScan). Drawn over it: the band edges of the map and the exact folds.
 
+At one drive frequency, --cut-hz, two more questions are asked of Eq. (1) and of the beam with its N modes:
+
+    cut      period, impacts and largest Lyapunov exponent of the settled motions: periodic or chaotic
+    basins   for Eq. (1) at --basin-excess: the orbit to which each start on the strobe plane leads
+
     python -m studies chart                          Eq. (1), 400 x 400, both directions
     python -m studies chart --model beam             the beam of the scene, 120 x 120
     python -m studies chart --executor processes     or dask://host:port, for a cluster
@@ -15,7 +20,8 @@ Every finished column is a file in MODEL-NxM (``studies.shell.sweep``); the same
 last one was stopped, in whatever way; --fresh begins anew.
 
 Run:     python -m studies chart [--model beam] [--quick]
-Writes:  chart_MODEL.npz (cells), folds_MODEL.csv, chart_MODEL.png
+Writes:  chart_MODEL.npz (cells), folds_MODEL.csv, chart_MODEL.png; cut.csv, cut.npz,
+         cut.png; basins.npz, basins.png
 """
 
 from __future__ import annotations
@@ -26,8 +32,10 @@ from typing import Annotated, Literal
 
 import numpy as np
 
+from beam import InvalidValue
 from contact import ImpactOscillator
 from contact.orbits import AmplitudeScan
+from studies.experiment.chart.basins import basins
 from studies.experiment.chart.cells import (
     EXCESSES,
     FREQUENCIES_HZ,
@@ -37,7 +45,9 @@ from studies.experiment.chart.cells import (
     counts,
     side_by_side,
 )
+from studies.experiment.chart.cut import FREQUENCY, cut
 from studies.experiment.chart.overlays import bands_in, folds_of_beam, folds_of_single_mode
+from studies.shell.options import require_cells
 from studies.shell.scene import Scene, beam_at, corresponding, harmonic, single_mode_at
 from studies.shell.study import Run, study
 from studies.shell.sweep import Column, sweep
@@ -56,11 +66,14 @@ LARGEST_PERIOD = 64
 NEEDS = {"born_period": 0.0, "fold_middle": 0.07}
 """What the chart of the beam rests on; Eq. (1) needs nothing."""
 
+CUT_NEEDS = {"fold": 0.05}
+"""Accuracy requirement of the cut."""
+
 MOST_REASONS = 20
-"""Failures that are told; all are in the columns."""
+"""Failures with a sentence of their own; all are in the columns."""
 
 
-@study()
+@study(quick={"cut_points": 11, "average": 100, "side": 32})
 def chart(
     scene: Scene,
     run: Run,
@@ -72,9 +85,25 @@ def chart(
     ] = None,
     excesses: Annotated[tuple[float, float], "range of F/F_g - 1"] = EXCESSES,
     cycles: Annotated[int | None, "bound of drive periods at one amplitude (8192, beam 1024)"] = None,
+    cut_hz: Annotated[float | None, "drive frequency of the cut [Hz] (21.5; another spring: its f T)"] = None,
+    cut_range: Annotated[tuple[float, float], "range of F/F_g - 1 of the cut"] = (-0.016, 0.06),
+    cut_points: Annotated[int, "amplitudes of the cut"] = 39,
+    average: Annotated[int, "drive periods in the averages of the exponents"] = 600,
+    basin_excess: Annotated[float, "excess of the basins"] = -0.006,
+    side: Annotated[int, "starts along each side of the basins"] = 200,
     fresh: Annotated[bool, "forget what is stored and begin anew"] = False,
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
+    lowest, highest = cut_range
+    if not -1.0 < lowest < highest:
+        raise InvalidValue(f"cut-range is {lowest} to {highest}; -1 < lowest < highest must hold")
+    if not -1.0 < basin_excess < 0.0:
+        raise InvalidValue(f"basin-excess is {basin_excess}; it must lie above -1 and below grazing, 0")
+    require_cells("side", side, side**2)
+    if min(side, cut_points) < 2:
+        raise InvalidValue(f"side is {side} and cut-points {cut_points}; each must be 2 or more")
+    f = corresponding(harmonic(scene), FREQUENCY) if cut_hz is None else cut_hz
+    with_modes = run.choose_modes(scene, CUT_NEEDS)
     columns, rows = points or (QUICK_POINTS if run.quick else POINTS)[model]
     low, high = frequencies or (corresponding(harmonic(scene), f) for f in FREQUENCIES_HZ)
     plane = Plane(columns=columns, rows=rows, frequencies_hz=(low, high), excesses=excesses)
@@ -93,7 +122,12 @@ def chart(
         "points": [columns, rows],
         "most_cycles": bound,
     }
-    return result | drawn(scene, run, plane, oscillator, found, model)
+    return {
+        **result,
+        **drawn(scene, run, plane, oscillator, found, model),
+        **cut(with_modes, run, f, np.linspace(lowest, highest, cut_points), average),
+        **basins(with_modes, run, f, basin_excess, side),
+    }
 
 
 def tell_failures(run: Run, columns: list[Column]) -> None:

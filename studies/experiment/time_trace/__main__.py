@@ -13,22 +13,28 @@ Computed, at 21.50 Hz, where the letter's p1 goes over into p4:
 
 A motion without a period up to 64 drive periods is drawn and told as such; its spectrum then has leakage.
 
-Run:     python -m studies time_trace [--excess E] [--frequency HZ]
+With --film the orbit is filmed, slow at the collision, seen in space (`film`).
+
+Run:     python -m studies time_trace [--excess E] [--frequency HZ] [--film] [--magnify M] [--seen-from base]
 Writes:  time_trace.npz (time, tip, read-out), collisions.csv (contact.Collision: SI units), spectrum.npz,
-         peaks.csv, time_trace.png, spectrum.png
+         peaks.csv, time_trace.png, spectrum.png; with --film motion.gif, motion.mp4 (extra `video`),
+         motion.png, frames.csv and motion.pvd for ParaView
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Annotated
+from typing import Annotated, Literal
 
+from beam import InvalidValue
 from contact import Collision, StroboscopicMap
 from contact.orbits import born
 from studies import letter
+from studies.experiment.time_trace import film as filming
 from studies.experiment.time_trace.spectrum import Peak, lines_of, peaks_of
 from studies.experiment.time_trace.trace import close_up, trace_of
+from studies.shell.film import MOST_FRAMES
 from studies.shell.run import Verdict
 from studies.shell.scene import (
     Scene,
@@ -54,7 +60,7 @@ TOLD = ("first_touch", "approach", "restitution", "delay", "kick", "impacts", "c
 """Columns of a collision that are shown to a person."""
 
 
-@study(needs={"tip_trace": 2e-3})
+@study(needs={"tip_trace": 2e-3}, quick={"frames": 60})
 def time_trace(
     scene: Scene,
     run: Run,
@@ -63,8 +69,14 @@ def time_trace(
     frequency: Annotated[
         float | None, "drive frequency (Hz); 21.5, other springs at the same f T, by default"
     ] = None,
+    film: Annotated[bool, "film one period of the orbit"] = False,
+    frames: Annotated[int, "frames of the film"] = 240,
+    magnify: Annotated[float | None, "how many times the higher modes are drawn; so that they show"] = None,
+    seen_from: Annotated[Literal["laboratory", "base"], "where the viewer stands"] = "laboratory",
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
+    if frames > MOST_FRAMES:
+        raise InvalidValue(f"frames is {frames}; a film has at most {MOST_FRAMES}")
     drive_hz = corresponding(harmonic(scene), FREQUENCY) if frequency is None else frequency
     model = model_of(scene)
     require_drive_below(scene, model, drive_hz)
@@ -99,6 +111,12 @@ def time_trace(
         "Amplitudes of the read-out over one period of the orbit; dotted: the modes, dashed: the drive.",
     )
     run.say(f"{drive_hz:g} Hz, excess {excess:g}: {name}")
+    filmed = dict[str, object]()
+    if film:
+        words = f"{name}, {drive_hz:g} Hz, excess {excess:g}"
+        filmed["film"] = filming.film(
+            scene, run, oscillator, settled, words, frames=frames, magnify=magnify, seen_from=seen_from
+        )
     seen = periods_of(scene).get(drive_hz) if excess == letter.TIME_TRACE_EXCESS else None
     if seen == letter.PERIODS[FREQUENCY]:
         judge(run, name, seen, trace.collisions, peaks)
@@ -113,6 +131,7 @@ def time_trace(
         "modes_hz": model.frequencies_hz,
         "peaks": peaks,
         "peak_unit": unit,
+        **filmed,
     }
 
 

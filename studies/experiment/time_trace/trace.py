@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact import Collision, ImpactKind, ImpactOscillator, State, collisions, simulate
-from studies.experiment.force import contact_force
+from studies.experiment.time_trace.force import contact_force
 from studies.shell.scene import READOUT
 
 PER_PERIOD = 16_384

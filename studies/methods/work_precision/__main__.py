@@ -15,13 +15,14 @@ and outside solvers, and every setting:
     cost      time per drive period along the settled orbit
     against   a Taylor series in extended precision, whose own error is stated
 
-Then the cheapest setting of each method for two errors, and the errors of gradients through impacts. A method
+Then the cheapest setting of each method for two errors, the cost of a drive period
+against the number of modes and beside heyoka, and the errors of gradients through impacts. A method
 that fails at a setting is a row that says why; a setting at which a drive period would take longer than half
 a second is a row that says so. Timings are taken one at a time, so that --workers makes no difference. What
 the modes left out of the beam weigh beside all this is told by `studies.methods.adequacy`.
 
 Run:     python -m studies work_precision
-Writes:  rows.csv, cheapest.csv, gradients.csv; work_precision, gradients (png, pdf)
+Writes:  rows.csv, cheapest.csv, costs.csv, gradients.csv; work_precision, costs, gradients (png, pdf)
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from studies.methods.peers import missing_solvers
-from studies.methods.work_precision import gradients
+from studies.methods.work_precision import costs, gradients
 from studies.methods.work_precision.measures import (
     REPEATS,
     SLOWEST,
@@ -83,6 +84,13 @@ def work_precision(scene: Scene, run: Run) -> Mapping[str, object]:
     run.table(
         "cheapest", cheapest_of(rows), "Time per drive period [us] for an error of mode 1, crossings missed."
     )
+    spent = costs.costs(scene.replace({"contact.law": "hertz"}), run)
+    ratios = costs.ratios_of(spent)
+    run.table("costs", spent, "Time per drive period and per collision.")
+    run.say(", ".join(f"{name} {ratio:.3g}" for name, ratio in ratios.items()))
+    run.figure(
+        "costs", costs.draw_costs(spent), "Time per drive period of the beam against the number of modes."
+    )
     paths = [] if run.quick else gradients.gradients(single_mode_at(scene, GRADIENT_HZ).with_excess(1e-3))
     if paths:
         run.table("gradients", paths, gradients.CHART, show=())
@@ -105,6 +113,8 @@ def work_precision(scene: Scene, run: Run) -> Mapping[str, object]:
     return {
         "rows": rows,
         "gradients": paths,
+        "costs": spent,
+        "ratios": ratios,
         "missing_solvers": missing_solvers(),
         "reference_errors": {one.problem.name: one.own_error for one in references},
     }

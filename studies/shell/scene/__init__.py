@@ -240,7 +240,7 @@ def beyond_linear(scene: Scene) -> str | None:
     return (
         f"at the gap, stop.gap_m = {scene.stop.gap_m:g} m, the free frequency is {shift_at_gap(scene):+.2%} "
         f"off that of small swings and {feels}, which can change the periods born at {', '.join(moved)} Hz; "
-        "the model is linear, and `python -m studies finite_amplitude` says what is left of them"
+        "the model is linear, and `python -m studies shape` says what is left of them"
     )
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from contact import ContactError, State, StroboscopicMap
 from contact.orbits import born, settle
 from studies.shell.scene import Scene, single_mode_at
+from studies.shell.study import Run
 
 FAR = 1.5
 """Half the side of the plane of starts, in x/gap and x'/(2 pi f gap)."""
@@ -29,7 +30,7 @@ together."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Plane:
+class Starts:
     """Starts on the strobe plane, `x` [m] and `velocity` [m/s], and what they may lead to.
 
     `orbits`: strobe points (x, x'/omega) [m] of p1 without impacts and of p_m by their periods, shape (m, 2).
@@ -78,16 +79,35 @@ def parts(leads: np.ndarray, period: int) -> dict[str, float]:
     return {name: float(np.mean(before == code)) for code, name in names.items()}
 
 
-def plane_of(scene: Scene, frequency: float, excess: float, side: int) -> Plane:
+def plane_of(scene: Scene, frequency: float, excess: float, side: int) -> Starts:
     """`side` by `side` starts on the strobe plane at drive `frequency` [Hz]."""
     strobed = StroboscopicMap(oscillator=single_mode_at(scene, frequency))
     here = strobed.at(excess)
     end = settle(here, born(strobed, most_cycles=MOST_PERIODS).end, most_cycles=MOST_PERIODS)
     rest, gap, speed = here.coordinates(here.steady()), here.scale, here.oscillator.unit_speed
-    return Plane(
+    return Starts(
         strobed=here,
         orbits={max(end.period, 1): end.points[-max(end.period, 1) :], 1: rest[None]},
         near=gap * min(NEAR, -OF_EXCESS * excess),
         x=np.linspace(-FAR, 1.0, side) * gap,
         velocity=FAR * speed * np.linspace(-1.0, 1.0, side),
     )
+
+
+def basins(scene: Scene, run: Run, f: float, excess: float, side: int) -> Mapping[str, object]:
+    """The basins of Eq. (1) at the drive frequency `f` [Hz], stored and drawn."""
+    from studies.experiment.chart import cut_figure  # matplotlib is slow to import
+
+    plane = plane_of(scene, f, excess, side)
+    leads = np.array(run.map(plane.line, plane.velocity.tolist(), "basins"))  # shape (velocities, x)
+    run.arrays("basins", x=plane.x, velocity=plane.velocity, leads=leads, orbit=plane.strobes(plane.period))
+    run.figure("basins", cut_figure.draw_basins(plane, leads, f), cut_figure.BASINS)
+    period, shares = plane.period, parts(leads, plane.period)
+    both = period > 1 and shares[f"p{period}"] > 0.0  # p1 without impacts is stable below grazing
+    run.verdict(
+        "coexistence",
+        "agrees" if both else "differs",
+        found=f"Eq. (1): p1 and p{period}" if both else "Eq. (1): one of them alone",
+        note=f"at excess {excess:g} the start decides which of them is reached",
+    )
+    return {"basins": {"excess": excess, "period": period, "parts": shares}}

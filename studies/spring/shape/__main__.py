@@ -4,7 +4,8 @@ Claim (letter 1996, Fig. 1 and text): the spring is U shaped to suppress torsion
 three shapes: legs side by side in the plane of the sheet, a channel, and a strip folded into a U. A plain
 strip of the same width and period is their measure. In every shape the ball moves in a twist mode only as far
 as it sits off the plane of symmetry. Torsion leaves the reading open. What decides is how far each spring is
-from linear at its gap (`studies.spring.finite_amplitude`).
+from linear at its gap (`finite_amplitude`): a folded U with a tight bend softens so much that it loses the
+letter's periods; a single leaf, legs side by side or a wide bend keep them.
 
 Strip theory, of centreline r(s), displacements u t + w n + v z and twist phi about t, tied to the ball, has
 
@@ -21,9 +22,10 @@ The beam of the scene simplifies the flat U, which is a sheet. As a Kirchhoff pl
 (symbols in `plate`), and in some of its modes the legs twist. Question: does the plate change the born
 periods and the ends of the orbits? This part needs spring.kind = "flat_u" and a harmonic drive.
 
-Run:     python -m studies spring_shape [--off-line 0.0005] [--channel-sheet 0.25] [--quick]
+Run:     python -m studies shape [--off-line 0.0005] [--channel-sheet 0.25] [--quick]
 Writes:  readings.csv (a row a shape), shapes.npz; of a flat U plate_modes.csv, plate_collisions.csv (a row a
-         spring), plate_ends.csv (a row a frequency); figures shapes and plate
+         spring), plate_ends.csv (a row a frequency); springs.csv (a row a reading, bend radius, gap and
+         ball), frame.csv (effective periods); figures shapes, plate and finite_amplitude
 """
 
 from __future__ import annotations
@@ -38,7 +40,8 @@ from beam import InvalidValue
 from beam.space import spatial_modes
 from studies.shell.scene import Scene, model_of, single_mode_of
 from studies.shell.study import Run, study
-from studies.spring.spring_shape.model_error import (
+from studies.spring.shape.finite_amplitude import finite_amplitude
+from studies.spring.shape.model_error import (
     OrbitEnds,
     collision_row,
     mode_rows,
@@ -46,16 +49,8 @@ from studies.spring.spring_shape.model_error import (
     plates_of,
     springs_of,
 )
-from studies.spring.spring_shape.rows import MODES, ReadingRow, reading_row
-from studies.spring.spring_shape.shapes import (
-    READINGS,
-    TITLES,
-    Reading,
-    Shape,
-    brought_to,
-    kinds_of,
-    shape_of,
-)
+from studies.spring.shape.rows import MODES, ReadingRow, reading_row
+from studies.spring.shape.shapes import READINGS, TITLES, Reading, Shape, brought_to, kinds_of, shape_of
 
 FINE, COARSE = (2, 3), (1, 2)
 """Cells over the radius of the seat and over the rim beside it, in the coarsest of three meshes."""
@@ -65,7 +60,7 @@ LARGEST = 0.06
 
 
 @study()
-def spring_shape(
+def shape(
     scene: Scene,
     run: Run,
     *,
@@ -97,7 +92,7 @@ def spring_shape(
         ),
     )
     draw(run, shapes, readings)
-    orbits = compare_plate(scene, run)
+    orbits, survivals = compare_plate(scene, run), finite_amplitude(scene, run)
     ranks = {name: row.ratio_twist for name, row in readings.items() if name != "plain"}
     highest, plain = max(ranks, key=lambda name: ranks[name]), readings["plain"].ratio_twist
     turns = {name: row.turn_of_twist / readings["plain"].turn_of_twist for name, row in readings.items()}
@@ -114,13 +109,15 @@ def spring_shape(
         "highest_twist": highest,
         "least_turn": least,
         "plain_strip_is_higher": plain > ranks[highest],
-        "rows": orbits,
+        "rows": list(readings.values()),
+        "plate_ends": orbits,
+        "springs": survivals,
     }
 
 
 def compare_plate(scene: Scene, run: Run) -> list[OrbitEnds]:
     """Tables and figure of the flat U as a plate; none for another spring or drive."""
-    from studies.spring.spring_shape.figures import draw_plate
+    from studies.spring.shape.figures import draw_plate
 
     if (scene.spring.kind, scene.drive.kind) != ("flat_u", "harmonic"):
         run.say("The part on the plate is left out: it needs a flat U with a harmonic drive.")
@@ -162,7 +159,7 @@ def shapes_of(scene: Scene, sheet: float = 0.25) -> dict[Reading, Shape]:
 
 def draw(run: Run, shapes: Mapping[Reading, Shape], readings: Mapping[Reading, ReadingRow]) -> None:
     """Store the nets of the twist modes and draw them."""
-    from studies.spring.spring_shape.figures import draw_shapes, net_of
+    from studies.spring.shape.figures import draw_shapes, net_of
 
     nets: dict[str, np.ndarray] = {}
     for name, shape in shapes.items():

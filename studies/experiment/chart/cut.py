@@ -1,4 +1,6 @@
-"""A scan of the drive amplitude that carries the state along, and what its motions settle on.
+"""A cut through the plane at one drive frequency: period, impacts and Lyapunov exponent over the amplitude.
+
+The amplitude is raised and lowered again, and the state is carried along.
 
 lyapunov_map     largest Lyapunov exponent per drive period, from the Jacobians of the period map
 kind             periodic, chaotic (exponent above zero by three standard errors), not settled (below zero
@@ -7,13 +9,20 @@ kind             periodic, chaotic (exponent above zero by three standard errors
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from contact import ContactError, State, StroboscopicMap
 from contact.orbits import Exponents, Settled, map_exponents, orbit_exponents, settle
-from studies.shell.scene import READOUT, Scene
+from studies.shell.scene import READOUT, Scene, beam_at, model_of, require_drive_below, single_mode_at
+from studies.shell.study import Run
+
+FREQUENCY = 21.50
+"""Drive frequency of the letter's period 4 [Hz]."""
 
 TITLES = {"single_mode": "Eq. (1)", "beam": "beam"}
 
@@ -33,8 +42,8 @@ KINDS = WITHOUT, PERIODIC, CHAOTIC, NOT_SETTLED, UNDECIDED = (
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row:
-    """What a motion at one amplitude settled on: `period` in drive periods, 0 for none; `impacts` in one such
+class Settlement:
+    """The settled motion at one amplitude: `period` in drive periods, 0 for none; `impacts` in one such
     period; `lyapunov_map` per drive period with its standard error."""
 
     model: str
@@ -61,7 +70,7 @@ def kind_of(strobed: StroboscopicMap, settled: Settled[State], cycles: int) -> t
 
 def carried(
     named: tuple[str, StroboscopicMap], scene: Scene, values: np.ndarray, cycles: int
-) -> tuple[list[Row], list[np.ndarray], list[str]]:
+) -> tuple[list[Settlement], list[np.ndarray], list[str]]:
     """Upward and downward scan of one model, the settled state the start at the next amplitude; with the rows
     their strobed read-out, shape (record_cycles,) each, and third what failed.
 
@@ -83,7 +92,7 @@ def carried(
                 continue
             points.append(here.readout(orbit.points, READOUT))
             rows.append(
-                Row(
+                Settlement(
                     model=name,
                     direction=direction,
                     excess=excess,
@@ -95,3 +104,33 @@ def carried(
                 )
             )
     return rows, points, failures
+
+
+def cut(scene: Scene, run: Run, f: float, excesses: np.ndarray, cycles: int) -> Mapping[str, object]:
+    """The settled motions of Eq. (1) and of the beam at the drive frequency `f` [Hz], stored and drawn."""
+    from studies.experiment.chart import cut_figure  # matplotlib is slow to import
+
+    modes = model_of(scene)
+    require_drive_below(scene, modes, f)
+    oscillators = {"single_mode": single_mode_at(scene, f), "beam": beam_at(scene, f, modes)}
+    maps = {name: StroboscopicMap(oscillator=oscillator) for name, oscillator in oscillators.items()}
+    rows, strobes = list[Settlement](), list[np.ndarray]()
+    jobs = partial(carried, scene=scene, values=excesses, cycles=cycles)
+    for scan, recorded, failures in run.map(jobs, maps.items(), "scans"):
+        rows, strobes = rows + scan, strobes + recorded
+        for reason in failures:
+            run.failed("scan", reason)
+    run.table("cut", rows, "Settled motions; kind by the largest Lyapunov exponent.")
+    run.arrays("cut", points=np.array(strobes), excess=[row.excess for row in rows])
+    run.figure("cut", cut_figure.draw_scan(rows, strobes, f, scene.readout.quantity), cut_figure.SCAN)
+    counts = Counter((row.model, row.kind) for row in rows)
+    kinds = {name: {kind: counts[name, kind] for kind in KINDS} for name in maps}
+    chaotic = {name: [r.excess for r in rows if (r.model, r.kind) == (name, CHAOTIC)] for name in maps}
+    spans = [f"{TITLES[name]}: {min(at):.3g} to {max(at):.3g}" for name, at in chaotic.items() if at]
+    run.verdict(
+        "chaos",
+        "agrees" if spans else "differs",
+        found="; ".join(spans) or "none",
+        note=f"excess with a positive Lyapunov exponent at {f:.2f} Hz",
+    )
+    return {"cut_hz": f, "rows": rows, "kinds": kinds, "chaotic": chaotic}

@@ -1,19 +1,11 @@
-"""What a drive period costs: against the number of modes, and beside heyoka.
-
-Claim: with one mode and the hard wall a drive period takes some tens of nanoseconds, two orders of magnitude
-less than the fastest outside solver; with N modes and Hertz contact some microseconds, and no more than in
-proportion to the modes.
+"""Cost of a drive period: against the number of modes, and beside heyoka.
 
 Cases: Eq. (1) at the letter's six frequencies and excess 0.02; the beam's p4 at 21.50 Hz and excess 0.013
-against the number of modes, with Hertz contact, and the same without a touch. What the periods of an orbit
-take beyond those without a touch is the cost of its collisions. With --peers heyoka runs in turns with it,
-for Eq. (1) in its own loop as one who knows it would write it, for the beam through the interface of all
-methods at the tolerance 1e-7, with which mode 1 errs by less than 1e-8 past a collision
-(`studies.methods.work_precision`). What is compared is timed in turns, A B A B ..., so that a machine that
-slows down slows both; medians are taken, and nothing else of the study runs meanwhile.
-
-Run:     python -m studies benchmarks [--peers]
-Writes:  costs.csv, costs.png
+against the number of modes, with Hertz contact, and the same without a touch.  The time of an orbit beyond
+that of its flights is the cost of its collisions.  heyoka, if it is installed, integrates Eq. (1) in its own
+loop as its documentation recommends, and the beam through the interface of all methods at the tolerance 1e-7,
+with which mode 1 errs by less than 1e-8 past a collision.  Compared programs are timed in turns, A B A B ...,
+so that a machine that slows down slows both; medians are taken.
 """
 
 from __future__ import annotations
@@ -25,7 +17,7 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
 from statistics import median
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -34,7 +26,7 @@ from contact import ImpactOscillator, StroboscopicMap, simulate
 from studies import letter
 from studies.methods.peers import OutsideSolver, missing_solvers
 from studies.shell.scene import Scene, beam_at, harmonic, model_of, single_mode_at
-from studies.shell.study import Run, study
+from studies.shell.study import Run
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -64,7 +56,7 @@ Orbit = Callable[[int], object]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row:
+class Cost:
     """What a drive period costs with one tool."""
 
     case: str
@@ -76,33 +68,17 @@ class Row:
     us_per_collision: float | None = None
 
 
-@study()
-def benchmarks(
-    scene: Scene, run: Run, *, peers: Annotated[bool, "run heyoka in turns with the package"] = False
-) -> Mapping[str, object]:
-    """Time, store and draw."""
-    if peers and "heyoka" in missing_solvers():
-        raise InvalidValue(
-            'heyoka is not installed; it comes with the extra peers: pip install -e ".[peers]"'
-        )
+def costs(scene: Scene, run: Run) -> list[Cost]:
+    """Time Eq. (1) and the beam, one after the other; nothing else runs meanwhile."""
     frequencies = sorted(letter.PERIODS)[: 2 if run.quick else None]
     counts = COUNTS_QUICK if run.quick else COUNTS
     model = model_of(harmonic(scene).replace({"modes.count": max(counts)}))
-    rows: list[Row] = []
-    for frequency in run.track(frequencies, "Eq. (1)"):
-        rows += single_rows(scene, frequency, quick=run.quick, peers=peers)
-    for n in run.track(counts, "beam"):
-        beam = beam_at(scene.replace({"contact.law": "hertz"}), FREQUENCY, model.truncated(n))
-        rows += beam_rows(beam, quick=run.quick, peers=peers)
-    ratios = ratios_of(rows)
-    run.table("costs", rows, "Time per drive period and per collision.")
-    run.say(", ".join(f"{name} {ratio:.3g}" for name, ratio in ratios.items()))
-    run.figure(
-        "costs",
-        draw_costs(rows),
-        "Time per drive period of the beam against the number of modes, with and without a touch.",
-    )
-    return {"rows": rows, "ratios": ratios}
+    rows: list[Cost] = []
+    for frequency in run.track(frequencies, "cost of Eq. (1)"):
+        rows += single_rows(scene, frequency, quick=run.quick)
+    for n in run.track(counts, "cost of the beam"):
+        rows += beam_rows(beam_at(scene, FREQUENCY, model.truncated(n)), quick=run.quick)
+    return rows
 
 
 def in_turns(runs: Mapping[str, tuple[Orbit, int]], repeats: int) -> dict[str, float]:
@@ -147,27 +123,27 @@ def heyoka_orbit(oscillator: ImpactOscillator) -> tuple[Orbit, Any]:
     return orbit, taylor
 
 
-def single_rows(scene: Scene, frequency: float, *, quick: bool, peers: bool) -> list[Row]:
-    """One orbit of Eq. (1): the package and, if asked for, heyoka."""
+def single_rows(scene: Scene, frequency: float, *, quick: bool) -> list[Cost]:
+    """One orbit of Eq. (1): the package and, if installed, heyoka."""
     strobed = StroboscopicMap(oscillator=single_mode_at(scene, frequency).with_excess(SINGLE_EXCESS))
     state = strobed.orbit(strobed.steady(), SETTLING).end
     runs: dict[str, tuple[Orbit, int]] = {
         OURS: (lambda periods: strobed.orbit(state, periods), 2000 if quick else 20000)
     }
-    if peers:
+    if HEYOKA not in missing_solvers():
         orbit, _taylor = heyoka_orbit(strobed.oscillator)
         orbit(SETTLING)
         runs[HEYOKA] = (orbit, 200 if quick else 2000)
     return [
-        Row(
+        Cost(
             case=SINGLE, tool=tool, modes=1, frequency_hz=frequency, excess=SINGLE_EXCESS, us_per_period=spent
         )
         for tool, spent in in_turns(runs, 3 if quick else 7).items()
     ]
 
 
-def beam_rows(oscillator: ImpactOscillator, *, quick: bool, peers: bool) -> list[Row]:
-    """The beam's settled orbit, the same without a touch and, if asked for, heyoka."""
+def beam_rows(oscillator: ImpactOscillator, *, quick: bool) -> list[Cost]:
+    """The beam's settled orbit, the same without a touch and, if installed, heyoka."""
     count, driven = 200 if quick else 2000, oscillator.with_excess(EXCESS)
     strobed = StroboscopicMap(oscillator=driven)
     free = strobed.at(BELOW)
@@ -177,14 +153,14 @@ def beam_rows(oscillator: ImpactOscillator, *, quick: bool, peers: bool) -> list
         OURS: (lambda periods: strobed.orbit(state, periods), count),
         FREE: (lambda periods: free.orbit(still, periods), count),
     }
-    if peers:
+    if HEYOKA not in missing_solvers():
         peer = OutsideSolver(solver="heyoka Taylor", tolerance=TOLERANCE)
         runs[HEYOKA] = (
             lambda periods: simulate(driven, state, periods=periods, method=peer),
             8 if quick else 40,
         )
     spent = in_turns(runs, 3 if quick else 7)
-    row = partial(Row, modes=oscillator.n_modes, frequency_hz=1.0 / oscillator.period)
+    row = partial(Cost, modes=oscillator.n_modes, frequency_hz=1.0 / oscillator.period)
     rows = [
         row(
             case=BEAM,
@@ -195,17 +171,17 @@ def beam_rows(oscillator: ImpactOscillator, *, quick: bool, peers: bool) -> list
         ),
         row(case=FREE, tool=OURS, excess=BELOW, us_per_period=spent[FREE]),
     ]
-    if peers:
+    if HEYOKA not in missing_solvers():
         rows.append(row(case=BEAM, tool=HEYOKA, excess=EXCESS, us_per_period=spent[HEYOKA]))
     return rows
 
 
-def costs_of(rows: Sequence[Row], case: str, tool: str) -> list[tuple[int, float]]:
+def costs_of(rows: Sequence[Cost], case: str, tool: str) -> list[tuple[int, float]]:
     """Numbers of modes and times of a case and tool, the fewest modes first."""
     return sorted((row.modes, row.us_per_period) for row in rows if (row.case, row.tool) == (case, tool))
 
 
-def ratios_of(rows: Sequence[Row]) -> dict[str, float]:
+def ratios_of(rows: Sequence[Cost]) -> dict[str, float]:
     """heyoka's time over ours for Eq. (1) over the frequencies, and the exponent of the beam's growth between
     the two largest numbers of modes."""
     costs = {(row.tool, row.frequency_hz): row.us_per_period for row in rows if row.case == SINGLE}
@@ -217,7 +193,7 @@ def ratios_of(rows: Sequence[Row]) -> dict[str, float]:
     return ratios
 
 
-def draw_costs(rows: Sequence[Row]) -> Figure:
+def draw_costs(rows: Sequence[Cost]) -> Figure:
     """Time per drive period against the number of modes."""
     from studies.shell import plotting  # matplotlib is slow to import
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beam.space import spatial_modes
-from studies.spring.spring_shape.shapes import Shape, kinds_of
+from studies.spring.shape.shapes import Shape, kinds_of
 
 MODES = 14
 """Modes looked through for the first of each kind."""

@@ -1,30 +1,24 @@
 """The spring in motion: one period of a settled orbit as a film, slow at the collision.
 
-The orbit settles at F/F_g - 1 = 0.013 and 21.50 Hz (the letter's Fig. 4) or where --excess and --frequency
-say. Higher modes are drawn enlarged, so that they show, the ball where the tip is: it meets the plate when
-the computed tip does; the plate turns orange while they touch. Below, the tip against time.
-
-Run:     python -m studies motion [--excess E] [--frequency HZ] [--magnify M] [--seen-from base]
-Writes:  motion.gif, motion.mp4 with the extra `video`, motion.png (the tip), frames.csv; for ParaView
-         motion.pvd with motion_frames (arrays `displacement`, true, and the points as they are drawn)
+Higher modes are drawn enlarged, so that they show.  The ball is where the tip is: it meets the plate when the
+computed tip does, and the plate turns orange while they touch.  Below, the tip against time.  For ParaView
+motion.pvd with motion_frames has the arrays `displacement`, true, and the points as they are drawn.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from beam import InvalidValue, write_frames
-from contact import StroboscopicMap
-from contact.orbits import born
-from studies import letter
-from studies.experiment.motion.filmed_orbit import FilmedOrbit, FrameRow, drawn_shapes, film_orbit
+from beam import write_frames
+from contact import ImpactOscillator
+from contact.orbits import Settled
+from studies.experiment.time_trace.filmed_orbit import FilmedOrbit, FrameRow, drawn_shapes, film_orbit
 from studies.shell.film import (
     DRIVE,
-    MOST_FRAMES,
     WIDTH,
     Moment,
     Picture,
@@ -34,25 +28,13 @@ from studies.shell.film import (
     write_gif,
     written_as_mp4,
 )
-from studies.shell.scene import (
-    Scene,
-    beam_at,
-    corresponding,
-    harmonic,
-    model_of,
-    modes_of,
-    require_drive_below,
-    shift_at_gap,
-)
-from studies.shell.study import Run, study
+from studies.shell.scene import Scene, modes_of, shift_at_gap
+from studies.shell.study import Run
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
-
-FREQUENCY = 21.50
-"""Where the letter has the period 4 of its Fig. 4 [Hz]."""
 
 LARGEST_SHIFT = 0.01
 """Relative change of the free frequency with amplitude [1]; a linear film above this bound is misleading."""
@@ -61,28 +43,19 @@ RATE = 20.0
 """Frames a second: gif keeps time in hundredths of a second."""
 
 
-@study(needs={"tip_trace": 2e-3}, quick={"frames": 60})
-def motion(
+def film(
     scene: Scene,
     run: Run,
+    oscillator: ImpactOscillator,
+    settled: Settled,
+    words: str,
     *,
-    excess: Annotated[float, "F/F_g - 1 of the orbit, above -1"] = letter.TIME_TRACE_EXCESS,
-    frequency: Annotated[
-        float | None, "drive frequency (Hz); 21.5, other springs at the same f T, by default"
-    ] = None,
-    frames: Annotated[int, "frames of the film"] = 240,
-    magnify: Annotated[float | None, "how many times the higher modes are drawn; so that they show"] = None,
-    seen_from: Annotated[Literal["laboratory", "base"], "where the viewer stands"] = "laboratory",
+    frames: int,
+    magnify: float | None,
+    seen_from: str,
 ) -> Mapping[str, object]:
-    """Compute, store, draw."""
-    if frames > MOST_FRAMES:
-        raise InvalidValue(f"frames is {frames}; a film has at most {MOST_FRAMES}")
-    drive_hz = corresponding(harmonic(scene), FREQUENCY) if frequency is None else frequency
-    modes, model = modes_of(scene), model_of(scene)
-    require_drive_below(scene, model, drive_hz)
-    oscillator = beam_at(scene, drive_hz, model).with_excess(excess)
-    strobed, most = StroboscopicMap(oscillator=oscillator), max(scene.scan.settle_cycles, 1)
-    settled = born(strobed, excess, most_cycles=most)
+    """Film one period of a settled orbit; returns what the summary keeps of it."""
+    modes = modes_of(scene)
     orbit = film_orbit(oscillator, settled.end, settled.period, frames=frames, rate=RATE)
     swing, radius = max(abs(row.tip_m) for row in orbit.rows), scene.tip.ball_radius_m
     if (shift := abs(shift_at_gap(scene)) * (swing / scene.stop.gap_m) ** 2) > LARGEST_SHIFT:
@@ -99,15 +72,10 @@ def motion(
     true, _ = drawn_shapes(scenery.mesh, modes, orbit.coordinates, 1.0)
     write_frames(run.path("motion.pvd"), grids(scenery, moments, true, orbit.rows))
     run.path("motion_frames")
-    name = f"p{settled.period}" if settled.period else "no period up to 64"
-    words = f"{name}, {drive_hz:g} Hz, excess {excess:g}"
     slowed = [row.slowed for row in orbit.rows]
     slow = f"{min(slowed):.0f} to {max(slowed):.0f} times slower than life"
     run.say(f"{words}: {len(orbit.contacts)} contacts, {slow}")
     found = {
-        "frequency_hz": drive_hz,
-        "excess": excess,
-        "period": settled.period,
         "duration_s": orbit.duration,
         "impacts": len(orbit.contacts),
         "contacts_s": orbit.contacts,
@@ -116,16 +84,16 @@ def motion(
     }
     caption = f"The tip along the film, {words}; dashed: the plate."
     run.figure("motion", draw_tip(orbit, scene.stop.gap_m)[0], caption)
-    told, most = f"higher modes x {magnification:g}", len(moments)
+    enlarged, most = f"higher modes x {magnification:g}", len(moments)
     with stage_of(scenery, simple=run.quick) as stage:
         # one picture after the other, so that memory does not grow with the film
 
-        def film(chosen: Iterable[int]) -> Iterator[Picture]:
+        def pictured(chosen: Iterable[int]) -> Iterator[Picture]:
             shown = ((orbit.rows[i], stage(moments[i])) for i in chosen)
-            return composed(orbit, shown, scene.stop.gap_m, words, told)
+            return composed(orbit, shown, scene.stop.gap_m, words, enlarged)
 
-        samples = list(film([0, most // 2, most - 1]))
-        pictures = film(run.track(range(most), "frames"))
+        samples = list(pictured([0, most // 2, most - 1]))
+        pictures = pictured(run.track(range(most), "frames"))
         if can_encode():
             pictures = written_as_mp4(run.path("motion.mp4"), pictures, RATE)
         else:
@@ -161,7 +129,7 @@ def draw_tip(orbit: FilmedOrbit, gap: float) -> tuple[Figure, Any]:
 
 
 def composed(
-    orbit: FilmedOrbit, shown: Iterable[tuple[FrameRow, Picture]], gap: float, words: str, told: str
+    orbit: FilmedOrbit, shown: Iterable[tuple[FrameRow, Picture]], gap: float, words: str, enlarged: str
 ) -> Iterator[Picture]:
     """The frames: what is seen, the time and how it is slowed, and the tip against time with a mark."""
     from PIL import Image, ImageDraw, ImageFont
@@ -178,6 +146,6 @@ def composed(
         at = place[0], image.height - place[1]
         pen.circle(at, 5, fill="#FF7A1A" if row.contact else "black")
         pen.text((12, 8), words, fill="black", font=font)
-        slowed = f"{1e3 * row.time_s:.2f} ms, {row.slowed:.0f} times slower; {told}"
+        slowed = f"{1e3 * row.time_s:.2f} ms, {row.slowed:.0f} times slower; {enlarged}"
         pen.text((12, 32), slowed, fill="#5A5A5A", font=font)
         yield np.asarray(image, dtype=np.uint8)

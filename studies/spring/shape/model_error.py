@@ -23,8 +23,8 @@ from contact.orbits import born, orbit_end
 from studies.physics.calibration import Targets
 from studies.shell.scene import READOUT, Scene, beam_at, sections_of
 from studies.shell.study import Run
-from studies.spring.spring_shape.plate import PlateModes, plate_modes
-from studies.spring.spring_shape.plate_mesh import half_u
+from studies.spring.shape.plate import PlateModes, plate_modes
+from studies.spring.shape.plate_mesh import half_u
 
 MODES, LISTED = 30, 10
 """Symmetric modes computed for a plate, with which the kick has converged; modes listed in the table."""

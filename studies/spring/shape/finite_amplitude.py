@@ -16,16 +16,12 @@ the one that gives the frame's.
 
 A touch of the nonlinear mode is located to 1e-14 of the gap within a step of a Taylor series; what the cubic
 terms leave out is the difference to the frame.
-
-Run:     python -m studies finite_amplitude [--quick]
-Writes:  springs.csv (a row a reading, bend radius, gap and ball), frame.csv (effective periods of the frame
-         beside the mode's), finite_amplitude.png (the map of surviving periods)
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import product
@@ -39,7 +35,7 @@ from contact import NonlinearMode
 from contact.orbits import born_period
 from studies.physics.calibration import calibrate_thickness
 from studies.shell.scene import Scene, harmonic, nonlinear_mode_at, periods_of, spring_of
-from studies.shell.study import Run, study
+from studies.shell.study import Run
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -64,7 +60,7 @@ STRAIGHT_ELEMENTS, ARC_ELEMENTS = 12, 24
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row:
+class Survival:
     """One spring; lists go with the scene's drive frequencies. Born period 0: not settled; nothing: no motion
     that grazes, or one whose deviations do not turn, as next to a turning point of the response.
 
@@ -92,7 +88,7 @@ class Row:
 
 
 @dataclass(frozen=True, kw_only=True)
-class FrameRow:
+class EffectivePeriod:
     """The effective period of small deviations by the mode with cubic terms and by the frame."""
 
     reading: str
@@ -156,11 +152,11 @@ class Spring:
     radius: float
     ball: float
 
-    def __call__(self, gaps: Sequence[float]) -> tuple[list[Row], list[FrameRow]]:
+    def __call__(self, gaps: Sequence[float]) -> tuple[list[Survival], list[EffectivePeriod]]:
         """Its rows at each gap [m]."""
         drawn = reading_of(self.scene, self.reading, self.radius, self.ball)
         backbone = backbone_coefficient(spring_of(drawn))
-        rows, frames = list[Row](), list[FrameRow]()
+        rows, frames = list[Survival](), list[EffectivePeriod]()
         for gap in gaps:
             scene = drawn.replace({"stop.gap_m": gap})
             modes = [nonlinear_mode_at(scene, f, backbone) for f in scene.drive.frequencies_hz]
@@ -174,7 +170,7 @@ class Spring:
                 exact = [tried(partial(frame_period, scene, model, f)) for f in scene.drive.frequencies_hz]
                 pairs = list(zip(modes, effective, exact, strict=True))
                 frames += [
-                    FrameRow(
+                    EffectivePeriod(
                         reading=self.reading,
                         bend_radius_m=self.radius,
                         gap_m=gap,
@@ -198,7 +194,7 @@ class Spring:
         modes: Sequence[NonlinearMode],
         effective: Sequence[float | None],
         frame: bool,
-    ) -> Row:
+    ) -> Survival:
         cycles = scene.scan.settle_cycles
         low, middle, high = (
             tuple(tried(partial(born_period, mode, excess, most_cycles=cycles)) for mode in modes)
@@ -206,7 +202,7 @@ class Spring:
         )
         letter = periods_of(scene)
         wanted = [letter.get(mode.frequency) for mode in modes]
-        return Row(
+        return Survival(
             reading=self.reading,
             bend_radius_m=self.radius,
             gap_m=scene.stop.gap_m,
@@ -225,9 +221,8 @@ class Spring:
         )
 
 
-@study()
-def finite_amplitude(scene: Scene, run: Run) -> Mapping[str, object]:
-    """Compute, store and draw."""
+def finite_amplitude(scene: Scene, run: Run) -> list[Survival]:
+    """The springs of the map, stored and drawn."""
     keys = harmonic(scene).spring
     spring_of(scene)  # refuses measured modes, which no reading gives a shape
     radii = sorted({*(RADII[2::5] if run.quick else RADII), keys.bend_radius_m})
@@ -258,10 +253,10 @@ def finite_amplitude(scene: Scene, run: Run) -> Mapping[str, object]:
         "and at 1e-3: of the folded strip with the scene's ball over bend radius and gap; of all "
         "springs against the shift of the frequency at the gap.",
     )
-    return {"rows": rows, "frame": frames}
+    return rows
 
 
-def draw(scene: Scene, rows: Sequence[Row]) -> Figure:
+def draw(scene: Scene, rows: Sequence[Survival]) -> Figure:
     """Periods that survive: of the folded strip over bend radius and gap, of all against the shift."""
     from studies.shell import plotting
 

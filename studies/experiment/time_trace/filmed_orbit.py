@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from beam import Modes, SpringMesh
 from contact import ImpactKind, ImpactOscillator, State, simulate
-from studies.experiment.force import contact_force, touching
+from studies.experiment.time_trace.force import contact_force, touching
 
 Array = NDArray[np.float64]
 

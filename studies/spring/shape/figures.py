@@ -28,9 +28,9 @@ from studies.shell.plotting import (
     panel,
     series,
 )
-from studies.spring.spring_shape.model_error import PLATES, OrbitEnds, PlateMode
-from studies.spring.spring_shape.rows import ReadingRow
-from studies.spring.spring_shape.shapes import TITLES, Shape
+from studies.spring.shape.model_error import PLATES, OrbitEnds, PlateMode
+from studies.spring.shape.rows import ReadingRow
+from studies.spring.shape.shapes import TITLES, Shape
 
 Points = NDArray[np.float64]
 

@@ -9,8 +9,8 @@ import pytest
 
 from contact import State, StroboscopicMap
 from contact.orbits import settle
-from studies.experiment.attractors.basins import parts, plane_of
-from studies.experiment.attractors.scan import CHAOTIC, NOT_SETTLED, PERIODIC, WITHOUT, kind_of
+from studies.experiment.chart.basins import parts, plane_of
+from studies.experiment.chart.cut import CHAOTIC, NOT_SETTLED, PERIODIC, WITHOUT, kind_of
 from studies.shell.scene import beam_at, single_mode_at
 
 FREQUENCY = 21.50
@@ -69,14 +69,18 @@ def test_both_orbits_have_a_basin_between_fold_and_grazing_and_one_below(letter_
 
 
 def test_small_form(run_study):
-    ran = run_study("attractors", "--quick", "--model", "single_mode", "--side", "8", "--cycles", "60")
+    ran = run_study("chart", "--quick", "--points", "4", "8", "--side", "8", "--average", "60")
     assert ran.code == 0
-    rows = ran.rows("rows")
+    rows = ran.rows("cut")
     for row in rows:
         assert (row["kind"] in (PERIODIC, WITHOUT)) == (int(row["period"]) > 0)
         assert float(row["lyapunov_map"]) < 0.0 or not int(row["period"])
     up, down = (
-        max(float(row["excess"]) for row in rows if row["direction"] == way and row["kind"] == WITHOUT)
+        max(
+            float(row["excess"])
+            for row in rows
+            if (row["model"], row["direction"], row["kind"]) == ("single_mode", way, WITHOUT)
+        )
         for way in ("up", "down")
     )
     assert up > down  # hysteresis

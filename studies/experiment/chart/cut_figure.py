@@ -8,8 +8,16 @@ import numpy as np
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
-from studies.experiment.attractors.basins import Plane, parts
-from studies.experiment.attractors.scan import CHAOTIC, NOT_SETTLED, PERIODIC, TITLES, UNDECIDED, WITHOUT, Row
+from studies.experiment.chart.basins import Starts, parts
+from studies.experiment.chart.cut import (
+    CHAOTIC,
+    NOT_SETTLED,
+    PERIODIC,
+    TITLES,
+    UNDECIDED,
+    WITHOUT,
+    Settlement,
+)
 from studies.shell import plotting
 from studies.shell.plotting import BLUE, COLUMN, DOWN, EXCESS, GUIDE, ORANGE, PAGE, SKY, UP, VERMILION, tint
 
@@ -32,7 +40,9 @@ LOOKS = {
 
 
 @plotting.in_house_style
-def draw_scan(rows: Sequence[Row], strobes: Sequence[np.ndarray], frequency: float, quantity: str) -> Figure:
+def draw_scan(
+    rows: Sequence[Settlement], strobes: Sequence[np.ndarray], frequency: float, quantity: str
+) -> Figure:
     """Strobe points and exponents against the excess, a column for each model."""
     names = {key: name for key, name in TITLES.items() if any(row.model == key for row in rows)}
     figure, axes = plotting.new_figure(
@@ -75,7 +85,7 @@ def draw_scan(rows: Sequence[Row], strobes: Sequence[np.ndarray], frequency: flo
 
 
 @plotting.in_house_style
-def draw_basins(plane: Plane, leads: np.ndarray, frequency: float) -> Figure:
+def draw_basins(plane: Starts, leads: np.ndarray, frequency: float) -> Figure:
     """The strobe plane, coloured by where its points lead."""
     figure, axis = plotting.new_figure(height=0.088)
     oscillator, m = plane.strobed.oscillator, plane.period

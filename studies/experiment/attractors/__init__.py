@@ -1,1 +1,0 @@
-"""What the spring settles on, and which starts lead where."""

@@ -1,1 +1,0 @@
-"""One period of a settled orbit as a film, slow at the collision."""
