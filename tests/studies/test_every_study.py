@@ -12,7 +12,7 @@ import pytest
 
 from contact import BranchEnded
 from studies.experiment.hysteresis.__main__ import Causes, judge
-from studies.experiment.hysteresis.descriptions import CAUSES
+from studies.experiment.hysteresis.model import CAUSES
 from studies.experiment.soft_wall.rows import loss_of_stability
 from studies.measurement.next_measurement import information
 from studies.methods.validation.two_beams import Rig
@@ -49,20 +49,7 @@ SMALLER = {
         "--set",
         "spring.elements_on_arc=8",
     ],
-    "claims": [
-        "--positions",
-        "3",
-        "--across",
-        "12",
-        "--restitutions",
-        "3",
-        "--inside",
-        "6",
-        "--alphas",
-        "3",
-        "--set",
-        "modes.count=4",
-    ],
+    "claims": ["--positions", "3", "--across", "12", "--restitutions", "3", "--set", "modes.count=4"],
     "next_measurement": ["--thin", "12"],
     "calibrate": ["--set", "modes.count=4", "--set", "spring.elements_per_leg=12"],
 }

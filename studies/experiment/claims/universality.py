@@ -17,12 +17,13 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from beam import ModalModel
-from contact import StroboscopicMap, maximal_period, maximal_periods
+from contact import maximal_period, maximal_periods
 from contact.orbits import born_period
 from studies import letter
 from studies.physics.calibration import bare_cantilever, with_mass_ratio
+from studies.physics.descriptions import strobed_at
 from studies.shell import plotting
-from studies.shell.scene import Scene, band_of, beam_at, model_of, nordmark_at, single_mode_of
+from studies.shell.scene import Scene, band_of, model_of, nordmark_at, single_mode_of
 from studies.shell.study import Run
 
 SPAN = (0.802, 0.956)
@@ -33,6 +34,7 @@ TOP = 0.75
 
 CLOSER = 1.0 / 16.0
 """Part of the born excess at which a disagreement is looked at again."""
+
 
 MOST_CYCLES = 3000
 """Bound of a transient [drive periods]."""
@@ -94,8 +96,8 @@ def springs(scene: Scene) -> list[tuple[str, Scene, ModalModel]]:
 
 def born_at(job: Job) -> int:
     """Period that is born; 0 for none."""
-    strobed = StroboscopicMap(oscillator=beam_at(job.scene, job.f_times_t / job.model.free_period, job.model))
-    return born_period(strobed, job.excess, below=-job.excess, most_cycles=MOST_CYCLES)
+    strobed = strobed_at("beam", job.scene, job.f_times_t / job.model.free_period, job.model)
+    return born_period(strobed, job.excess, most_cycles=MOST_CYCLES)
 
 
 def universality(scene: Scene, run: Run, *, positions: int) -> Mapping[str, object]:
