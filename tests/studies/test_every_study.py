@@ -13,7 +13,7 @@ import pytest
 from contact import BranchEnded
 from studies.experiment.hysteresis.__main__ import Causes, judge
 from studies.experiment.hysteresis.model import CAUSES
-from studies.experiment.soft_wall.rows import loss_of_stability
+from studies.experiment.soft_wall.model import loss_of_stability
 from studies.measurement.next_measurement import information
 from studies.methods.validation.two_beams import Rig
 from studies.methods.work_precision.problems import problems_of
@@ -211,6 +211,6 @@ def test_a_p1_unstable_down_to_faint_touches_loses_its_stability_there(monkeypat
             size = 1.0 + (speed - 0.003)
             return SimpleNamespace(speed=speed, excess=speed**2, multipliers=np.array([1j, -1j]) * size)
 
-    monkeypatch.setattr("studies.experiment.soft_wall.rows.Shooting", Orbits)
+    monkeypatch.setattr("studies.experiment.soft_wall.model.Shooting", Orbits)
     excess, turns = loss_of_stability(None, SimpleNamespace(speed=1.0, excess=1.0))
     assert turns and excess == pytest.approx(0.003**2, rel=1e-5)

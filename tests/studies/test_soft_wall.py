@@ -12,7 +12,7 @@ from contact import StroboscopicMap, first_collision
 from contact.orbits import Shooting, born_period, settle
 from studies import letter
 from studies.experiment.soft_wall.closed_forms import SoftWall, hertz_doubling, hertz_kick
-from studies.experiment.soft_wall.rows import doubling_near, doubling_of, loss_of_stability
+from studies.experiment.soft_wall.model import doubling_near, doubling_of, loss_of_stability
 from studies.shell.scene import beam_at, read_scene, single_mode_at
 
 SCENE = read_scene("letter")
