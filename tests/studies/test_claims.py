@@ -1,4 +1,4 @@
-"""The letter's other claims: closed forms against simulation and shooting, windows against exponents."""
+"""The letter's other claims: closed forms against simulation and shooting."""
 
 from __future__ import annotations
 
@@ -7,16 +7,18 @@ import pytest
 
 from contact import StroboscopicMap, maximal_period
 from contact.orbits import Shooting, settle
-from studies.experiment.claims.energy_loss import (
+from studies.experiment.claims.model import (
     RESTITUTIONS,
+    Job,
+    born_at,
     end_speed,
     family_at,
     line_of,
-    lives,
+    has_one_impact,
     node_at,
+    springs,
     trends,
 )
-from studies.experiment.claims.universality import Job, born_at, springs
 from studies.shell.scene import nordmark_at, single_mode_at
 
 
@@ -53,7 +55,7 @@ def test_the_second_impact_is_where_shooting_finds_it(letter_scene, frequency, t
     family = family_at(with_tau(letter_scene, tau), frequency, m)
     speed, shooting = end_speed(family, family.fold()), Shooting(oscillator=family.oscillator, period=m)
     inside, outside = (shooting.at_speed(part * speed) for part in (0.999, 1.001))
-    assert lives(inside) and outside.stable and not outside.admissible
+    assert has_one_impact(inside) and outside.stable and not outside.admissible
 
 
 def test_a_secondary_bifurcation_below_grazing_lets_another_state_be_born(letter_scene):

@@ -134,7 +134,7 @@ def test_beam_with_hertz_contact(frequency, turns):
 def test_small_form(run_study):
     ran = run_study("soft_wall", "--quick", "--decades", "4", "4", "--set", "drive.frequencies_hz=[22.2]")
     assert ran.code == 0
-    (lossless,) = ran.summary["doublings"]
+    (lossless,) = ran.summary["rows"]
     assert lossless["excess"] == pytest.approx(lossless["closed_form"], rel=1e-5)
     assert ran.summary["beam"]["half_excess"] < letter.AMPLITUDE_STABILITY
     assert ran.verdicts == {"soft_wall": "agrees", "smoothing": "in part"}

@@ -110,7 +110,7 @@ def breakdown(
         "excess_of_letters_chaos_as_rho": nordmark.excess(CHAOS_AT),
         "map_period": maximal_period(nordmark),
         "islands": known,
-        "outcomes": outcomes,
+        "rows": outcomes,
         "found": found,
         "cells": len(cells),
         "cells_with_period_6": [cell for cell in cells if cell.period == BORN_PERIOD],

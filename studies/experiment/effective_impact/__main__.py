@@ -86,6 +86,7 @@ def effective_impact(scene: Scene, run: Run) -> Mapping[str, object]:
     if quoted is not None and any(floor.local_restitution == 1.0 for floor in floors):
         judge(run, quoted, on_orbits(rows), floors)
     return {
+        "rows": rows,
         "frequency_hz": frequency,
         "reference": quoted,
         "on_settled_orbits": on_orbits(rows),

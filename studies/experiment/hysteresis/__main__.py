@@ -166,19 +166,16 @@ def judge(run: Run, rows: Sequence[Folds], off: Mapping[str, Accuracy], median: 
         return
     up, down = max(factors, key=factors.__getitem__), min(factors, key=factors.__getitem__)
 
-    def told(name: str, digits: int = 2) -> str:
+    def in_words(name: str, digits: int = 2) -> str:
         return f"{off[name].median:.{digits}f} (median; worst {off[name].worst:.{max(digits - 1, 1)}f})"
 
     run.answer(
         "hysteresis",
         "The map has the periods and the bands, not the size of the hysteresis. The difference is a product "
-        f"of causes: in the median the {up.replace('_', ' ')} multiplies the hysteresis by "
-        f"{factors[up]:.2f}, the {down.replace('_', ' ')} by {factors[down]:.2f}. Over {off['map'].folds} "
-        f"folds the map is off by {told('map')}, with the beam's kick for 1 + tau by "
-        f"{told('map_measured_kick')}, Eq. (1) by {told('single_mode')}, one mode with the measured loss and "
-        f"delay by {told('two_parameters')}, the kick of all modes by {told('all_mode_kick', 4)}. The "
-        "letter's two parameters carry the higher modes as far as these have died out when the tip comes "
-        "back; the map does not carry the two parameters.",
+        f"of causes: in the median the {up.replace('_', ' ')} multiplies the hysteresis by {factors[up]:.2f}, "
+        f"the {down.replace('_', ' ')} by {factors[down]:.2f}. The letter's two parameters represent the "
+        f"higher modes up to a factor of {in_words('two_parameters')}, which is the ringing that has not "
+        "decayed when the tip comes back.",
     )
     own = factors["truncation_of_the_map"]
     run.verdict(
@@ -188,8 +185,10 @@ def judge(run: Run, rows: Sequence[Folds], off: Mapping[str, Accuracy], median: 
         note="the letter prints curves, no values; the beam differs from the map as the experiment did, but "
         f"a factor of {own:.2f} (median) is the map's own truncation, with no higher mode in it",
     )
-    alive = {(row.frequency_hz, row.m) for row in rows if row.beam_admissible and (row.beam or 0.0) < 0.0}
-    beside = [f"p{m} at {f:.2f} Hz" for f, m in sorted(alive, key=lambda at: at[::-1]) if (f, m - 1) in alive]
+    present = {(row.frequency_hz, row.m) for row in rows if row.beam_admissible and (row.beam or 0.0) < 0.0}
+    beside = [
+        f"p{m} at {f:.2f} Hz" for f, m in sorted(present, key=lambda at: at[::-1]) if (f, m - 1) in present
+    ]
     if beside or not run.quick:  # few frequencies can miss them all
         run.verdict(
             "neighbour_band",
@@ -202,7 +201,7 @@ def judge(run: Run, rows: Sequence[Folds], off: Mapping[str, Accuracy], median: 
     run.verdict(
         "two_parameters",
         "agrees" if two.worst <= NEARLY else verdict,
-        found=f"off by {told('two_parameters')}; kick of all modes {told('all_mode_kick', 4)}",
+        found=f"off by {in_words('two_parameters')}; kick of all modes {in_words('all_mode_kick', 4)}",
         note="what is missing is the ringing of the higher modes that the next collision meets",
     )
 

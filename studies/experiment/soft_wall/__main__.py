@@ -95,7 +95,7 @@ def soft_wall(
     judge_wall(run, doublings)
     if beam:
         judge_beam(run, beam)
-    return {"doublings": doublings, "beam": beam}
+    return {"rows": doublings, "beam": beam}
 
 
 def judge_wall(run: Run, doublings: Sequence[Doubling]) -> None:
