@@ -172,8 +172,8 @@ def judge(run: Run, rows: Sequence[Folds], off: Mapping[str, Accuracy], median: 
     run.answer(
         "hysteresis",
         "The map has the periods and the bands, not the size of the hysteresis. The difference is a product "
-        f"of causes: in the median the {up.replace('_', ' ')} multiplies the hysteresis by {factors[up]:.2f}, "
-        f"the {down.replace('_', ' ')} by {factors[down]:.2f}. The letter's two parameters represent the "
+        f"of causes: in the median the {up.replace('_', ' ')} multiplies the hysteresis by "
+        f"{factors[up]:.2f}, the {down.replace('_', ' ')} by {factors[down]:.2f}. The letter's two parameters represent the "
         f"higher modes up to a factor of {in_words('two_parameters')}, which is the ringing that has not "
         "decayed when the tip comes back.",
     )
