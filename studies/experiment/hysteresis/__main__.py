@@ -173,9 +173,9 @@ def judge(run: Run, rows: Sequence[Folds], off: Mapping[str, Accuracy], median: 
         "hysteresis",
         "The map has the periods and the bands, not the size of the hysteresis. The difference is a product "
         f"of causes: in the median the {up.replace('_', ' ')} multiplies the hysteresis by "
-        f"{factors[up]:.2f}, the {down.replace('_', ' ')} by {factors[down]:.2f}. The letter's two parameters represent the "
-        f"higher modes up to a factor of {in_words('two_parameters')}, which is the ringing that has not "
-        "decayed when the tip comes back.",
+        f"{factors[up]:.2f}, the {down.replace('_', ' ')} by {factors[down]:.2f}. The letter's two "
+        f"parameters represent the higher modes up to a factor of {in_words('two_parameters')}, which is the "
+        "ringing that has not decayed when the tip comes back.",
     )
     own = factors["truncation_of_the_map"]
     run.verdict(
