@@ -26,18 +26,20 @@ from matplotlib.widgets import RadioButtons, Slider
 
 from beam import InvalidValue, Refusal
 from contact import ContactError, ImpactKind, StrobedMap, StroboscopicMap, simulate
-from contact.orbits import orbit_diagram, settle
+from contact.orbits import settle
+from studies.physics.descriptions import BELOW, TITLES, strobed_at, up_and_down
 from studies.physics.least_model import least_modes, middle_of
-from studies.physics.two_parameters import two_parameters_at
 from studies.shell.options import Parser, add_scene, tool
 from studies.shell.plotting import DOWN, EXCESS, GUIDE, INCH, PAGE, UP, house_style, points, strobe_points
-from studies.shell.scene import Scene, beam_at, harmonic, model_of, nordmark_at, read_scene, single_mode_at
+from studies.shell.scene import Scene, harmonic, model_of, read_scene
 
 KINDS = {"map": (61, 600), "Eq. (1)": (41, 600), "two parameters": (41, 600), "beam": (21, 200)}
 """Amplitudes of the diagram, drive periods at each: the letter's spring loses e^-16 of a motion in 200."""
 
-REACH, SPAN, BELOW, TRACE, SAMPLES, STROBES, SETTLE = 0.03, 0.01, -1e-3, 12, 2401, 64, 600
-"""Excess of slider, diagram and before grazing; periods, samples of a trace; strobes; periods to settle."""
+NAMES = dict(zip(KINDS, TITLES, strict=True))
+
+REACH, SPAN, TRACE, SAMPLES, STROBES, SETTLE = 0.03, 0.01, 12, 2401, 64, 600
+"""Excess of slider and diagram; periods, samples of a trace; strobes; periods to settle."""
 
 modes_of_beam = lru_cache(maxsize=4)(lambda scene: model_of(least_modes(scene, {"fold": 0.07})[0]))
 
@@ -46,11 +48,8 @@ modes_of_beam = lru_cache(maxsize=4)(lambda scene: model_of(least_modes(scene, {
 def described(scene: Scene, kind: str, frequency: float, restitution: float) -> StrobedMap[Any]:
     """The description at a drive frequency [Hz]."""
     at = scene.replace({f"{key}restitution": restitution for key in ("single_mode.", "contact.local_")})
-    if kind == "map":
-        return nordmark_at(at, frequency)
-    make = {"beam": beam_at, "two parameters": two_parameters_at}.get(kind)
-    oscillator = make(at, frequency, modes_of_beam(scene)) if make else single_mode_at(at, frequency)
-    return StroboscopicMap(oscillator=oscillator)
+    model = modes_of_beam(scene) if kind in ("two parameters", "beam") else None
+    return strobed_at(NAMES[kind], at, frequency, model)
 
 
 def motion_of(here: StrobedMap[Any], end: Any) -> tuple[Any, float, tuple[np.ndarray, ...]]:
@@ -101,10 +100,8 @@ class Window:
             self.state = end if found.impacts else None
             count, cycles = KINDS[kind]
             observe = strobed.tip if isinstance(strobed, StroboscopicMap) else lambda points: points[:, 0]
-            scan = partial(orbit_diagram, strobed, observe=observe, settle_cycles=cycles, early=False)
             values = excess + np.linspace(-SPAN, SPAN, count)
-            scans = [scan(values, strobed.at(min(BELOW, excess - SPAN)).steady())]
-            scans.append(scan(values[::-1], scans[0].end))
+            scans = up_and_down(strobed, values, observe=observe, settle_cycles=cycles, early=False)
             words = f"period {found.period}" if found.period else "no period up to 64"
         except (ContactError, Refusal) as error:
             self.state, words = None, str(error)
@@ -118,7 +115,8 @@ class Window:
             trace.plot(hits, np.full(hits.size, stop), **points(2))
             trace.axhline(stop, **GUIDE)
             plane.plot(x, y, **points(0))
-            for one, look in zip(scans, (UP, DOWN), strict=True):
+            for way, look in (("up", UP), ("down", DOWN)):
+                one = scans[way]
                 strobe_points(diagram, one.excess, scale * one.points, one.period > 0, look, "")
             diagram.axvline(excess, **GUIDE)
         trace.set_title(words, loc="left", wrap=True)

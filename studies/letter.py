@@ -74,7 +74,7 @@ coexistence | chart | text on Fig. 2 | hysteretic
     Below grazing the motion without impacts and p_m coexist.
 last_period | noise | text on Fig. 2 | p10
     The highest observed period is at the limit of resolution and stability.
-bands | claims | text on Fig. 3 | no number
+bands | hysteresis | text on Fig. 3 | no number
     The transitions occur in bands; the hysteresis is zero at the upper edge and grows towards the lower.
 hysteresis | hysteresis | Fig. 3 | curves only
     The measured hysteresis differs from the map's, because of higher modes.

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from studies.experiment.transitions.__main__ import transitions
-from studies.experiment.transitions.descriptions import row_at
+from studies.experiment.transitions.model import rows_at
 from studies.physics.least_model import least_modes
 from studies.shell.programs import MAIN, in_words, run_times
 from studies.shell.programs import names as programs
@@ -52,9 +52,8 @@ def test_the_rows_of_the_first_table_are_computed_values(frequency):
     (line,) = re.findall(rf"^\| {frequency:.2f} \|(.*)\|$", TEXT, flags=re.MULTILINE)
     cells = [cell.strip() for cell in line.split("|")]
     scene, _ = least_modes(read_scene("letter"), transitions.needs)
-    row, _ = row_at(scene, frequency, model_of(scene))
-    names = ("map", "single_mode", "two_parameters", "beam")
-    for cell, name in zip(cells[:5], ("letter", *names), strict=True):
-        assert cell == f"p{getattr(row, name)}"
-    for cell, name in zip(cells[5:], names, strict=True):
-        assert float(cell) == pytest.approx(getattr(row, f"excess_down_{name}"), rel=1e-4)
+    rows = rows_at(scene, frequency, model_of(scene)).rows
+    assert cells[0] == f"p{rows[0].letter}"
+    for row, period, end in zip(rows, cells[1:5], cells[5:], strict=True):
+        assert period == f"p{row.period}"
+        assert float(end) == pytest.approx(row.excess_down, rel=1e-4)

@@ -35,10 +35,11 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from beam import InvalidValue, ModalModel, Refusal
-from contact import ContactError, ImpactOscillator, StroboscopicMap, first_collision, simulate
-from contact.orbits import KickFamily, born, born_period
+from beam import InvalidValue, ModalModel
+from contact import ImpactOscillator, StroboscopicMap, first_collision, simulate
+from contact.orbits import born, born_period
 from studies import letter
+from studies.physics.descriptions import kick_fold, or_none
 from studies.shell.scene import Scene, SceneError, beam_at, model_of
 
 REFERENCE = 40
@@ -60,6 +61,7 @@ At = Callable[[float], ImpactOscillator]
 """The oscillator of a model at a drive frequency [Hz]."""
 Distance = Callable[[Values, Values], float]
 Ask = Callable[[At, float], Answer]
+Fold = Callable[[StroboscopicMap, int], float | None]
 Off = Callable[[int], float]
 Choice = TypeVar("Choice", bound=Hashable)
 
@@ -73,10 +75,7 @@ def distances(ask: Callable[[Choice], Answer], distance: Distance) -> Callable[[
 
     @cache
     def answer(choice: Choice) -> Answer:
-        try:
-            return ask(choice)
-        except (ContactError, Refusal):  # such as a drive above all modes
-            return None
+        return or_none(ask, choice)  # None for a drive above all modes, too
 
     def off(reference: Choice, choice: Choice) -> float:
         sharp, found = answer(reference), answer(choice)
@@ -122,12 +121,12 @@ def tip_trace(oscillator: ImpactOscillator) -> Answer:
     return driven.tip(run.displacement) / driven.stop.gap
 
 
-def _fold(at: At, frequency: float) -> Answer:
-    """Excess of the fold, and m."""
-    oscillator = at(frequency)
-    period = born_period(StroboscopicMap(oscillator=oscillator))
-    end = KickFamily(oscillator=oscillator, period=period).fold() if period > 1 else None
-    return None if end is None else np.array([end.excess, float(period)])
+def fold_of_born(fold: Fold, at: At, frequency: float) -> Answer:
+    """Excess at which the orbit that is born has its fold, by `fold`, and its m."""
+    strobed = StroboscopicMap(oscillator=at(frequency))
+    period = born_period(strobed)
+    end = fold(strobed, period)
+    return None if end is None else np.array([end, float(period)])
 
 
 def error_of_trace(answer: Values, reference: Values) -> float:
@@ -154,8 +153,8 @@ def largest_error(answer: Values, reference: Values) -> float:
 QUANTITIES: Mapping[str, tuple[Ask, Distance, bool]] = {
     "kick": (lambda at, f: collisions(at(f), "kick"), largest_error, False),
     "restitution": (lambda at, f: collisions(at(f), "restitution"), largest_error, False),
-    "fold": (_fold, error_of_fold, True),
-    "fold_middle": (_fold, error_of_fold, False),
+    "fold": (partial(fold_of_born, kick_fold), error_of_fold, True),
+    "fold_middle": (partial(fold_of_born, kick_fold), error_of_fold, False),
     "tip_trace": (lambda at, f: tip_trace(at(f)), error_of_trace, False),
     "born_period": (
         lambda at, f: np.array([float(born_period(StroboscopicMap(oscillator=at(f))))]),

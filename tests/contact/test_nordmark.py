@@ -205,6 +205,34 @@ def test_overdamped_map_adds_periods_and_has_no_fold() -> None:
     assert seen == sorted(seen, reverse=True)  # one period fewer, cascade by cascade, as rho grows
 
 
+def window(nordmark: NordmarkMap, period: int) -> tuple[float, float] | None:
+    """The rho between which p_m is stable and without a second impact; None if there are none."""
+    size, ends = nordmark.alpha ** (2 * period - 2), []
+    for unstable in (True, False):  # along rho p_m becomes stable once, and meets its second impact once
+        low, high = math.log(1e-4), math.log(1e6)
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            orbits = maximal_orbits(nordmark, period, size * math.exp(middle))
+            before = not any(o.stable for o in orbits) if unstable else any(o.admissible for o in orbits)
+            low, high = (middle, high) if before else (low, middle)
+        ends.append(size * math.exp(middle))
+    return (ends[0], ends[1]) if ends[0] < ends[1] else None
+
+
+@pytest.mark.parametrize("alpha", [0.2, 0.45, 0.6, 0.7])
+def test_windows_of_the_overdamped_map_have_their_limits(alpha: float) -> None:
+    """rho = l^(2m-2) (1 - l) z (z + 1), 1/2 < z < (1 - l)/l, none for l > 2/3 (Chin, Ott, Nusse, Grebogi)."""
+    m, made = 14, NordmarkMap(alpha=alpha, gamma=0.0, restitution=0.0, whole_turns=0)
+    found, size = window(made, m), alpha ** (2 * m - 2)
+    if alpha > 2 / 3:
+        assert found is None
+        return
+    # what is neglected is of the order alpha^m
+    assert found is not None
+    assert found[0] / size == pytest.approx(0.75 * (1.0 - alpha), rel=20 * alpha**m + 1e-12)
+    assert found[1] / size == pytest.approx(((1.0 - alpha) / alpha) ** 2, rel=20 * alpha**m + 1e-12)
+
+
 def test_map_of_an_oscillator() -> None:
     omega = math.hypot(2 * math.pi / T, MU / 2)
     oscillator = ImpactOscillator(

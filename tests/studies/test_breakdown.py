@@ -6,18 +6,19 @@ import numpy as np
 import pytest
 
 from contact import maximal_period, stable_range
-from contact.orbits import Shooting
+from contact.orbits import Shooting, fold_excess
 from studies import letter
-from studies.experiment.breakdown.beam import (
+from studies.experiment.breakdown.model import (
     FREQUENCY_HZ,
     Spring,
     cell_of,
     fig_5,
-    fold_of_p3,
+    island,
+    periods,
+    scanned,
     single_mode,
     tuned,
 )
-from studies.experiment.breakdown.scans import island, periods, scanned
 from studies.physics.calibration import ACCURACY, calibrate_thickness, strip_decay_rate
 from studies.shell.scene import free_period, model_of, nordmark_at
 
@@ -79,7 +80,7 @@ def test_the_fold_of_p3_of_eq_1_from_shooting_is_that_of_the_closed_form_for_eit
     folds = []
     for tau in (0.05, 0.1):
         strobed = single_mode(scene, tau).strobed()
-        folds.append(fold_of_p3(strobed))
+        folds.append(fold_excess(strobed, 3))
         shot = Shooting(oscillator=strobed.oscillator, period=3).fold()
         assert shot.excess == pytest.approx(folds[-1], rel=1e-8)
     assert folds[1] / folds[0] == pytest.approx(1.141, abs=2e-3)

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from contact import LinearContact, NewtonRestitution, first_collision
-from studies.experiment.effective_impact.cases import Spring
-from studies.experiment.effective_impact.collision_rows import Row, floor_of, on_orbits
+from studies.experiment.effective_impact.model import Approach, Spring, floor_of, on_orbits
 from studies.letter import TIME_TRACE_EXCESS
 from studies.physics.calibration import bare_cantilever, free_period, leaf_mass, with_mass_ratio
 from studies.shell.scene import beam_at, hertz_of, read_scene
@@ -37,7 +36,7 @@ def bare() -> Spring:
     return Spring.of(bare_cantilever(fine, FREQUENCY), FREQUENCY, 25)
 
 
-def met(spring: Spring, law, excess: float = TIME_TRACE_EXCESS) -> Row:
+def met(spring: Spring, law, excess: float = TIME_TRACE_EXCESS) -> Approach:
     """The row of one approach."""
     return spring.case("speed", "a", law, excess=excess).measured()
 
@@ -110,7 +109,7 @@ def test_a_settled_orbit_has_its_collision_in_every_period():
 
 
 def test_the_smallest_restitution_lies_between_the_cases():
-    row = Row(
+    row = Approach(
         curve="search",
         series="1",
         value=0.0,

@@ -12,8 +12,8 @@ import pytest
 
 from contact import BranchEnded
 from studies.experiment.hysteresis.__main__ import Causes, judge
-from studies.experiment.hysteresis.descriptions import CAUSES
-from studies.experiment.soft_wall.rows import loss_of_stability
+from studies.experiment.hysteresis.model import CAUSES
+from studies.experiment.soft_wall.model import loss_of_stability
 from studies.measurement.next_measurement import information
 from studies.methods.validation.two_beams import Rig
 from studies.methods.work_precision.problems import problems_of
@@ -43,20 +43,7 @@ SMALLER = {
             "spring.elements_on_arc=8",
         )
     ],
-    "claims": [
-        "--positions",
-        "3",
-        "--across",
-        "12",
-        "--restitutions",
-        "3",
-        "--inside",
-        "6",
-        "--alphas",
-        "3",
-        "--set",
-        "modes.count=4",
-    ],
+    "claims": ["--positions", "3", "--across", "12", "--restitutions", "3", "--set", "modes.count=4"],
     "next_measurement": ["--thin", "12"],
     "calibrate": ["--set", "modes.count=4", "--set", "spring.elements_per_leg=12"],
 }
@@ -92,7 +79,7 @@ DRIVEN = (
 ON_A_SPRING = ("breakdown", "calibrate", "effective_impact", "sensitivity", "shape")
 
 #: A fit takes hundreds of meshes; what the others compute is tested beside their whole forms.
-SLOW = ("calibrate", "claims", "finite_amplitude", "next_measurement", "spring_shape")
+SLOW = ("calibrate", "claims", "next_measurement", "shape")
 
 
 @pytest.mark.parametrize(
@@ -207,6 +194,6 @@ def test_a_p1_unstable_down_to_faint_touches_loses_its_stability_there(monkeypat
             size = 1.0 + (speed - 0.003)
             return SimpleNamespace(speed=speed, excess=speed**2, multipliers=np.array([1j, -1j]) * size)
 
-    monkeypatch.setattr("studies.experiment.soft_wall.rows.Shooting", Orbits)
+    monkeypatch.setattr("studies.experiment.soft_wall.model.Shooting", Orbits)
     excess, turns = loss_of_stability(None, SimpleNamespace(speed=1.0, excess=1.0))
     assert turns and excess == pytest.approx(0.003**2, rel=1e-5)

@@ -12,7 +12,7 @@ from contact import StroboscopicMap, first_collision
 from contact.orbits import Shooting, born_period, settle
 from studies import letter
 from studies.experiment.soft_wall.closed_forms import SoftWall, hertz_doubling, hertz_kick
-from studies.experiment.soft_wall.rows import doubling_near, doubling_of, loss_of_stability
+from studies.experiment.soft_wall.model import doubling_near, doubling_of, loss_of_stability
 from studies.shell.scene import beam_at, read_scene, single_mode_at
 
 SCENE = read_scene("letter")
@@ -134,7 +134,7 @@ def test_beam_with_hertz_contact(frequency, turns):
 def test_small_form(run_study):
     ran = run_study("soft_wall", "--quick", "--decades", "4", "4", "--set", "drive.frequencies_hz=[22.2]")
     assert ran.code == 0
-    (lossless,) = ran.summary["doublings"]
+    (lossless,) = ran.summary["rows"]
     assert lossless["excess"] == pytest.approx(lossless["closed_form"], rel=1e-5)
     assert ran.summary["beam"]["half_excess"] < letter.AMPLITUDE_STABILITY
     assert ran.verdicts == {"soft_wall": "agrees", "smoothing": "in part"}

@@ -1,4 +1,4 @@
-"""The main job: the letter's six transitions in three descriptions."""
+"""The main job: the letter's six transitions in four descriptions."""
 
 from __future__ import annotations
 
@@ -18,33 +18,38 @@ from contact.orbits import (
     orbit_end,
     settle,
 )
-from studies.experiment.transitions.descriptions import describe, row_at
+from studies.experiment.transitions.model import rows_at
 from studies.letter import PERIODS
+from studies.physics.descriptions import TITLES, strobed_at
 from studies.shell.scene import beam_at, model_of, read_scene
 
 EXPECTED = {20.90: 3, 21.50: 4, 22.20: 5, 22.60: 6, 23.05: 8, 23.40: 11}
 """m of the map, of Eq. (1) and of the beam; the letter saw 10 at the last."""
 
 
+def row_of(name, scene, frequency, model):
+    """The row of one description."""
+    return next(row for row in rows_at(scene, frequency, model).rows if row.description == name)
+
+
 @pytest.mark.parametrize("frequency", sorted(PERIODS))
-def test_all_three_descriptions_give_the_expected_period(letter_scene, letter_model, frequency):
-    for name, strobed in describe(letter_scene, frequency, letter_model).items():
+def test_all_descriptions_give_the_expected_period(letter_scene, letter_model, frequency):
+    for name in TITLES:
+        strobed = strobed_at(name, letter_scene, frequency, letter_model)
         assert born_period(strobed, 1e-3) == EXPECTED[frequency], name
 
 
 def test_eq_1_and_the_beam_show_p10_above_grazing_where_the_letter_did(letter_scene, letter_model):
-    descriptions = describe(letter_scene, 23.40, letter_model)
     for name in ("single_mode", "beam"):
-        assert born_period(descriptions[name], 1e-2) == PERIODS[23.40]
+        assert born_period(strobed_at(name, letter_scene, 23.40, letter_model), 1e-2) == PERIODS[23.40]
 
 
 @pytest.mark.parametrize(
     "frequency", [20.90, *(pytest.param(f, marks=pytest.mark.slow) for f in sorted(PERIODS) if f != 20.90)]
 )
 def test_the_orbits_end_where_the_closed_forms_say(letter_scene, letter_model, frequency):
-    descriptions = describe(letter_scene, frequency, letter_model)
     for name in ("map", "single_mode"):
-        strobed = descriptions[name]
+        strobed = strobed_at(name, letter_scene, frequency)
         exact = fold_excess(strobed, EXPECTED[frequency])
         assert fold_excess(strobed, 0) is fold_excess(strobed, 1) is None  # 0: the motion did not settle
         end = orbit_end(strobed, born(strobed).end, 1e-3, most_cycles=1000)
@@ -58,7 +63,7 @@ def test_the_beams_p8_ends_where_another_touch_grazes(letter_scene, letter_model
     Below it the tip touches softly once in every period; its orbit is settled on when it repeats to a part in
     a thousand of the excess, as the peak over the wall is.
     """
-    strobed = describe(letter_scene, 23.05, letter_model)["beam"]
+    strobed = strobed_at("beam", letter_scene, 23.05, letter_model)
     state = born(strobed).end
     end = orbit_end(strobed, state, 1e-3, most_cycles=1000)
     assert end.kind == "grazing" and end.lost < end.excess < end.held
@@ -80,9 +85,9 @@ def test_the_downward_scan_keeps_the_orbit_that_the_upward_scan_does_not_show(le
     The steps are small against the distance to grazing: a sudden change of the drive by that much would make
     the tip overshoot into the stop and put the motion on p4 before its time.
     """
-    strobed = describe(letter_scene, 21.50, letter_model)["beam"]
-    row, _ = row_at(letter_scene, 21.50, letter_model)
-    values = np.linspace(1.5, -0.5, 21) * row.excess_down_beam
+    strobed = strobed_at("beam", letter_scene, 21.50, letter_model)
+    row = row_of("beam", letter_scene, 21.50, letter_model)
+    values = np.linspace(1.5, -0.5, 21) * row.excess_down
     common = {"observe": strobed.tip, "settle_cycles": 3000, "record_cycles": 40}
     up = orbit_diagram(strobed, values, strobed.at(values[0]).steady(), **common)
     down = orbit_diagram(strobed, values[::-1], up.end, **common)
@@ -90,39 +95,22 @@ def test_the_downward_scan_keeps_the_orbit_that_the_upward_scan_does_not_show(le
     assert up.impacts[values < -1e-9].tolist() == [0] * 15
     assert set(up.period[values > 1e-9]) == {4}
     falling = values[::-1]
-    assert set(down.period[falling > 0.95 * row.excess_down_beam]) == {4}
-    assert set(down.period[falling < 1.05 * row.excess_down_beam]) == {1}
+    assert set(down.period[falling > 0.95 * row.excess_down]) == {4}
+    assert set(down.period[falling < 1.05 * row.excess_down]) == {1}
 
 
 def test_rows_have_the_promised_keys_and_every_amplitude_says_whether_it_settled(run_study):
     ran = run_study("transitions", "--quick", "--json", "--set", "drive.frequencies_hz=[22.2]")
     assert ran.code == 0 and json.loads(ran.out)["rows"] == ran.summary["rows"]
-    (row,) = ran.summary["rows"]
-    models = ("map", "single_mode", "two_parameters", "beam")
-    wanted = {f"{key}_{name}" for key in ("excess_down", "ends_by", "bracket", "born") for name in models}
-    assert (
-        wanted
-        | {
-            "frequency_hz",
-            "letter",
-            *models,
-            "exact_map",
-            "exact_single_mode",
-            "exact_two_parameters",
-            "extracted",
-            "not_settled",
-            "beam_linear",
-            "excess_down_beam_linear",
-            "end_speed_beam",
-            "grazing_amplitude_m",
-        }
-        == row.keys()
-    )
+    rows = {row["description"]: row for row in ran.summary["rows"]}
+    assert list(rows) == list(TITLES) == [row["description"] for row in ran.rows("transitions")]
     scene = read_scene("letter", ["modes.count=10"])
     fold = fold_of(Shooting(oscillator=beam_at(scene, 22.2, model_of(scene)), period=5))
-    assert row["end_speed_beam"] == pytest.approx(abs(fold.speed), rel=1e-4)
-    assert (row["letter"], row["map"], row["single_mode"], row["beam"]) == (5, 5, 5, 5)
-    assert row["exact_map"] == pytest.approx(row["excess_down_map"], rel=1e-9)
+    assert rows["beam"]["end_speed"] == pytest.approx(abs(fold.speed), rel=1e-4)
+    assert {(row["letter"], row["period"]) for row in rows.values()} == {(5, 5)}
+    assert rows["map"]["exact"] == pytest.approx(rows["map"]["excess_down"], rel=1e-9)
+    (line,) = ran.rows("periods")
+    assert line["letter"] == "p5" and line["beam"] == f"p5 {rows['beam']['excess_down']:+.4e}"
     assert ran.summary["modes"] == 10 and ran.verdicts["p5"] == "agrees"
     cells = ran.rows("orbit_diagram")
     assert len(cells) == 4 * 2 * 21
@@ -146,7 +134,7 @@ def test_own_modes_from_a_scene_go_through_everything(letter_scene, letter_model
         f"modal_data.tip_mass_kg={letter_scene.tip.mass_kg}",
     ]
     ran = run_study("transitions", "--quick", *(word for key in argv for word in ("--set", key)))
-    (row,) = ran.summary["rows"]
-    assert ran.code == 0 and row["beam"] == 5
-    same, _ = row_at(letter_scene, 22.2, letter_model)
-    assert row["excess_down_beam"] == pytest.approx(same.excess_down_beam, rel=1e-9)
+    *_, row = ran.summary["rows"]
+    assert ran.code == 0 and (row["description"], row["period"]) == ("beam", 5)
+    same = row_of("beam", letter_scene, 22.2, letter_model)
+    assert row["excess_down"] == pytest.approx(same.excess_down, rel=1e-9)

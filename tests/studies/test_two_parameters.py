@@ -13,7 +13,7 @@ import pytest
 from contact import StroboscopicMap, first_collision, simulate
 from contact.orbits import KickFamily, born, born_period, orbit_end
 from studies import letter
-from studies.experiment.transitions.descriptions import row_at
+from studies.experiment.transitions.model import rows_at
 from studies.physics import two_parameters
 from studies.physics.two_parameters import extracted, fold_of_kicks, law_of, two_parameters_at
 from studies.shell.scene import SceneError, approach_speed, beam_at, single_mode_at
@@ -76,9 +76,10 @@ def test_they_have_the_beams_periods_and_its_p8_ends_by_the_same_graze(letter_sc
     for frequency, m in list(letter.PERIODS.items())[:5]:
         strobed = StroboscopicMap(oscillator=two_parameters_at(letter_scene, frequency, letter_model))
         assert [born_period(strobed, excess, most_cycles=2000) for excess in (2.5e-4, 1e-3)] == [m, m]
-    row, failures = row_at(letter_scene, 23.05, letter_model)
-    assert not failures and row.ends_by_two_parameters == row.ends_by_beam == "grazing"
-    assert row.excess_down_two_parameters == pytest.approx(row.excess_down_beam, rel=0.03)
+    at = rows_at(letter_scene, 23.05, letter_model)
+    two, beam = (row for row in at.rows if row.description in ("two_parameters", "beam"))
+    assert not at.failures and two.ends_by == beam.ends_by == "grazing"
+    assert two.excess_down == pytest.approx(beam.excess_down, rel=0.03)
 
 
 def test_collisions_without_restitution_are_left_out(letter_scene, letter_model, monkeypatch):
@@ -96,9 +97,9 @@ def test_collisions_without_restitution_are_left_out(letter_scene, letter_model,
     monkeypatch.setattr(two_parameters, "first_collision", partial(gone, every=1))
     with pytest.raises(SceneError, match=r"contact.law leaves mode 1 a restitution in 0 of 45"):
         law_of(beam)
-    row, failures = row_at(letter_scene, 22.2, letter_model)
-    assert (row.beam, row.two_parameters, row.extracted) == (5, None, None)
-    assert [where for where, _ in failures] == ["22.2 Hz, two_parameters"]
+    at = rows_at(letter_scene, 22.2, letter_model)
+    assert [row.period for row in at.rows] == [5, 5, None, 5] and at.extracted is None
+    assert [where for where, _ in at.failures] == ["22.2 Hz, two_parameters"]
 
 
 def test_one_mode_under_newtons_law_rebounds_at_once(letter_scene):

@@ -31,18 +31,24 @@ import numpy as np
 from beam import InvalidValue
 from contact import maximal_period
 from studies import letter
-from studies.experiment.breakdown.beam import (
+from studies.experiment.breakdown.model import (
     BORN_PERIOD,
+    CHAOS_AT,
     FREQUENCY_HZ,
     Cell,
+    Island,
+    Outcome,
     Spring,
     cell_of,
     fig_5,
+    island,
     nearest_first,
+    periods,
+    scanned,
     single_mode,
     tuned,
 )
-from studies.experiment.breakdown.scans import CHAOS_AT, Diagram, Island, Outcome, island, periods, scanned
+from studies.physics.descriptions import Diagram, word
 from studies.shell.options import require_cells
 from studies.shell.scene import Scene, model_of, nordmark_at
 from studies.shell.study import Run, study
@@ -104,7 +110,7 @@ def breakdown(
         "excess_of_letters_chaos_as_rho": nordmark.excess(CHAOS_AT),
         "map_period": maximal_period(nordmark),
         "islands": known,
-        "outcomes": outcomes,
+        "rows": outcomes,
         "found": found,
         "cells": len(cells),
         "cells_with_period_6": [cell for cell in cells if cell.period == BORN_PERIOD],
@@ -143,11 +149,6 @@ def store(run: Run, scans: Sequence[tuple[Outcome, Mapping[str, Diagram]]]) -> N
             for reason in diagram.failures:
                 run.failed(f"{name}, {way}", reason)
     run.arrays("breakdown", **arrays)
-
-
-def word(period: int) -> str:
-    """How verdicts name a period."""
-    return f"p{period}" if period else "no period"
 
 
 def judge(

@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from studies.experiment.breakdown.beam import Cell
-from studies.experiment.breakdown.scans import CHAOS_AT, HIGHEST, Diagram, Outcome, periods
+from studies.experiment.breakdown.model import CHAOS_AT, HIGHEST, Cell, Outcome, periods
+from studies.physics.descriptions import Diagram
 from studies.shell import plotting
 from studies.shell.plotting import DOWN, EXCESS, GREEN, GUIDE, NOTE, ORANGE, PAGE, SKY, UP, tint
 

@@ -5,38 +5,63 @@ Claims (letter 1996), for the Nordmark map (Eqs. (2), (3)), for Eq. (1) and for 
     loss           "the magnitude of the hysteresis |rho_m| decreases with increasing energy loss"
     secondary      "in the mapping these secondary bifurcations always occur at rho > 0. In Eq. (1) [they]
                    may occur at values rho < 0 that become smaller if collisions become more elastic"
-    bands          "bands in the (alpha, gamma) parameter plane ... crossed approximately transversely. At the
-                   upper boundary ... there is no hysteresis", which grows "towards ... the lower-lying m - 1"
     universality   "independent of the details of the dynamics in between collisions ... universal": at equal
                    f T each spring has just above grazing the period that the map has as rho -> 0+
-    overdamped     "an infinite series of period addings for the overdamped oscillator"
+    period_adding  "an infinite series of period addings for the overdamped oscillator"
 
 Equations: fold of p_m and its first bifurcation in closed form, of the map and of Eq. (1)
 (contact.maps.nordmark_orbits, MaximalFamily; x'' + mu x' + omega^2 x = ..., x' -> -tau x' at the wall); the
-born period of the beams by following their motion; Lyapunov exponents of the overdamped map.
+born period of the beams by following their motion; p_m of the overdamped map, in the windows of rho of
+W. Chin, E. Ott, H. E. Nusse, C. Grebogi, Phys. Rev. E 50 (1994) 4427.
 
 Run:     python -m studies claims [--positions N]
-Writes:  loss, bands, universality, overdamped (.csv); loss, secondary, bands, universality, overdamped (.png,
-         .pdf)
+Writes:  loss.csv, universality.csv, and the figures loss, secondary, universality
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
+from dataclasses import replace
+from functools import partial
 from typing import Annotated
 
-from studies.experiment.claims.bands import bands
-from studies.experiment.claims.energy_loss import energy_loss
-from studies.experiment.claims.overdamped import overdamped
-from studies.experiment.claims.universality import universality
-from studies.shell.scene import Scene, harmonic
+import numpy as np
+
+from contact import NordmarkMap, maximal_orbits, maximal_period, maximal_periods
+from studies import letter
+from studies.experiment.claims.model import (
+    RESTITUTIONS,
+    SPAN,
+    Born,
+    Job,
+    below_grazing,
+    born_at,
+    falls,
+    line_of,
+    springs,
+    trends,
+)
+from studies.shell.scene import Scene, band_of, corresponding, harmonic, nordmark_at
 from studies.shell.study import Run, study
 
+SCANNED_HZ = (19.62, 23.75)
+"""Across the bands of p3 to p16, for the letter's spring."""
 
-@study(
-    needs={"fold": 0.05},
-    quick={"positions": 13, "across": 60, "restitutions": 10, "inside": 26, "alphas": 19},
-)
+SLACK = 0.02
+"""Change of a share of the scanned frequencies that is that of one cell or two."""
+
+TOP = 0.75
+"""Part of a band above which a frequency is next to its upper edge."""
+
+CLOSER = 1.0 / 16.0
+"""Part of the born excess at which a disagreement is looked at again."""
+
+EIGENVALUE, ADDED = 0.45, range(4, 21)
+"""Of the overdamped map: its eigenvalue, between 1/4 and 2/3 where windows are parted by chaos; periods."""
+
+
+@study(needs={"fold": 0.05}, quick={"positions": 13, "across": 60, "restitutions": 10})
 def claims(
     scene: Scene,
     run: Run,
@@ -44,14 +69,173 @@ def claims(
     positions: Annotated[int, "values of f T at which a period is born (universality)"] = 55,
     across: Annotated[int, "frequencies over which secondary bifurcations are counted"] = 240,
     restitutions: Annotated[int, "restitutions at which they are counted"] = 46,
-    inside: Annotated[int, "frequencies inside each band"] = 101,
-    alphas: Annotated[int, "values of alpha of the overdamped map"] = 46,
 ) -> Mapping[str, object]:
     """Compute, store and draw, one claim after the other."""
     harmonic(scene)
     return {
         **energy_loss(scene, run, across=across, restitutions=restitutions),
-        "bands": bands(scene, run, inside=inside),
         "universality": universality(scene, run, positions=positions),
-        "overdamped": overdamped(run, alphas=alphas),
+        "period_adding": period_adding(run),
     }
+
+
+def energy_loss(scene: Scene, run: Run, *, across: int, restitutions: int) -> Mapping[str, object]:
+    """Hysteresis and secondary bifurcations against the energy lost: compute, store, draw and judge."""
+    from studies.experiment.claims import figure  # matplotlib is slow to import
+
+    drives = sorted(scene.drive.frequencies_hz)
+    lines = run.map(partial(line_of, scene, drives), RESTITUTIONS, "p_m against loss")
+    rows = [node for f in zip(*lines, strict=True) for node in f]
+    low, high = (corresponding(scene, f) for f in SCANNED_HZ)
+    frequencies = np.linspace(low, high, across)
+    tau = np.linspace(0.0, 0.9, restitutions)
+    plane = run.map(partial(below_grazing, scene, frequencies.tolist()), tau.tolist(), "plane of f and tau")
+    below = np.array([part for part, _ in plane])
+    run.table("loss", rows, "Fold and first bifurcation of p_m, F/F_g - 1.", show=())
+    run.figure(
+        "loss",
+        figure.draw_loss(rows),
+        "Hysteresis against restitution at each frequency: a smaller "
+        "restitution, more energy lost, less hysteresis, in the map and in Eq. (1).",
+    )
+    run.figure(
+        "secondary",
+        figure.draw_secondary(rows, tau, below),
+        "Excess of the secondary bifurcation in Eq. (1) against the restitution, and at which part of "
+        "the frequencies it lies below grazing.",
+    )
+    found = trends(rows)
+    both = found["map"] and found["eq1"]
+    parts = ", ".join(f"{name} {'yes' if good else 'no'}" for name, good in found.items())
+    note = "" if found["rho"] else "the hysteresis in F falls; |rho_m| rises, for rho per F falls faster"
+    run.verdict(
+        "loss",
+        "differs" if not both else "agrees" if found["rho"] else "in part",
+        found=f"falls with the loss: {parts}",
+        note=note,
+    )
+    lowest = float(np.nanmin([end for _, end in plane]))
+    simple = [row for row in rows if row.admissible]
+    falling = [f for f in drives if falls([row.secondary for row in simple if row.frequency_hz == f])]
+    holds = bool(lowest > 0.0 and below[0] < below[-1] and np.all(np.diff(below) >= -SLACK))
+    at = {t: float(np.interp(t, tau, below)) for t in (0.0, letter.RESTITUTION, 0.9)}
+    shares = ", ".join(f"{100 * part:.0f} % at tau = {t:g}" for t, part in at.items())
+    run.verdict(
+        "secondary",
+        "agrees" if holds else "differs",
+        found=f"map: never below excess {lowest:.2g}; Eq. (1): below grazing in {shares}",
+        note=f"at one frequency its excess falls throughout as tau grows at {len(falling)} of {len(drives)}",
+    )
+    return {
+        "rows": rows,
+        "loss": {"falls": found, "holds": both},
+        "secondary": {
+            "holds": holds,
+            "lowest_of_map": lowest,
+            "restitution": tau,
+            "part_below_grazing": below,
+            "falls_with_restitution_hz": falling,
+        },
+    }
+
+
+def universality(scene: Scene, run: Run, *, positions: int) -> Mapping[str, object]:
+    """Born periods of several springs beside the bands of the map: compute, store, draw and judge.
+
+    The claim is about the limit rho -> 0+. Over whole bands secondary bifurcations come before the born
+    excess. It is therefore judged in the quarter of each band next to its upper edge, where the hysteresis is
+    small. Where a spring disagrees there, it is judged again at a sixteenth of the excess. A cell without a
+    period counts as disagreement.
+    """
+    from studies.experiment.claims import figure
+
+    rows, excess = born_everywhere(scene, run, positions), scene.scan.born_excess
+    run.table(
+        "universality", rows, "Period born just above grazing, and that of the map as rho -> 0+.", show=()
+    )
+    run.figure(
+        "universality",
+        figure.draw_born(scene, rows),
+        "Period born at grazing for seven springs and contact laws"
+        "; grey, the bands of the map. Near the upper edge of a band all agree with it.",
+    )
+    failed = any(row.period is None for row in rows)
+    agree = {
+        name: float(np.mean([row.agrees for row in rows if row.spring == name]))
+        for name in dict.fromkeys(row.spring for row in rows)
+    }
+    top = [row for row in rows if row.next_to_edge]
+    odd = [row for row in top if not row.agrees]
+    holds = all(row.closer in row.map for row in odd)
+    if top and not failed:
+        note = "over whole bands, where secondary bifurcations come first, "
+        note += f"{100 * min(agree.values()):.0f} % or more"
+        if odd:
+            who = ", ".join(dict.fromkeys(row.spring for row in odd))
+            note += f"; exceptions: {who}; at a sixteenth of the excess {'none' if holds else 'still some'}"
+        run.verdict(
+            "universality",
+            "agrees" if holds else "in part",
+            found=f"next to the upper edges {len(top) - len(odd)} of {len(top)} pairs of frequency and"
+            f" spring have the period of the map at excess {excess:g}",
+            note=note,
+        )
+    return {
+        "holds": None if failed else holds,
+        "agree": agree,
+        "exceptions_in_top_quarter": odd,
+        "closer_excess": CLOSER * excess,
+        "not_settled": sum(not row.settled for row in rows),
+    }
+
+
+def born_everywhere(scene: Scene, run: Run, count: int) -> list[Born]:
+    """Every spring at every f T; the disagreements next to an upper edge once more, closer to grazing."""
+    excess = scene.scan.born_excess
+    places = np.linspace(*SPAN, count).tolist()
+    jobs = [Job(*spring, place, excess) for spring in springs(scene) for place in places]
+    rows = []
+    for job, period in zip(jobs, run.attempt(born_at, jobs, "born periods"), strict=True):
+        frequency = job.f_times_t / scene.single_mode.free_period_s
+        nordmark = nordmark_at(scene, frequency)
+        edges = band_of(scene, maximal_period(nordmark))
+        part = (frequency - edges.lower) / (edges.upper - edges.lower)
+        rows.append(
+            Born(
+                spring=job.spring,
+                f_times_t=job.f_times_t,
+                period=period,
+                map=maximal_periods(nordmark),
+                next_to_edge=part >= TOP,
+                settled=bool(period),
+            )
+        )
+    again = [i for i, row in enumerate(rows) if row.next_to_edge and not row.agrees]
+    nearer = [jobs[i]._replace(excess=CLOSER * excess) for i in again]
+    for i, period in zip(again, run.attempt(born_at, nearer, "closer to grazing"), strict=True):
+        rows[i] = replace(rows[i], closer=period)
+    return rows
+
+
+def period_adding(run: Run) -> Mapping[str, object]:
+    """Whether the overdamped map has each p_m, stable with one impact, in the middle of its window of rho.
+
+    The eigenvalues are l = `EIGENVALUE` and 0, tau = 0. As rho -> 0+ the window of p_m is
+    rho = l^(2m-2) (1 - l) z (z + 1), 1/2 < z < (1 - l)/l.
+    """
+    nordmark = NordmarkMap(alpha=EIGENVALUE, gamma=0.0, restitution=0.0, whole_turns=0)
+    z = math.sqrt(0.5 * (1.0 - EIGENVALUE) / EIGENVALUE)
+    places = {m: EIGENVALUE ** (2 * m - 2) * (1.0 - EIGENVALUE) * z * (z + 1.0) for m in ADDED}
+    there = [
+        m
+        for m, rho in places.items()
+        if any(orbit.stable and orbit.admissible for orbit in maximal_orbits(nordmark, m, rho))
+    ]
+    run.verdict(
+        "period_adding",
+        "agrees" if there == list(ADDED) else "differs",
+        found=f"overdamped map with eigenvalue {EIGENVALUE:g}: {len(there)} of {len(ADDED)} periods, from "
+        f"{ADDED[0]} to {ADDED[-1]}, each in its own window of rho",
+        note=f"the period rises by one where rho falls by the factor {EIGENVALUE:g}^2, without end",
+    )
+    return {"periods": there, "rho": list(places.values())}

@@ -29,10 +29,14 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 
 from studies import letter
-from studies.experiment.effective_impact.cases import HERTZ, MASS_RATIOS, Case, Spring, cases_of
-from studies.experiment.effective_impact.collision_rows import (
+from studies.experiment.effective_impact.model import (
+    HERTZ,
+    MASS_RATIOS,
+    Approach,
+    Case,
     Floor,
-    Row,
+    Spring,
+    cases_of,
     crossing,
     floor_of,
     on_orbits,
@@ -82,6 +86,7 @@ def effective_impact(scene: Scene, run: Run) -> Mapping[str, object]:
     if quoted is not None and any(floor.local_restitution == 1.0 for floor in floors):
         judge(run, quoted, on_orbits(rows), floors)
     return {
+        "rows": rows,
         "frequency_hz": frequency,
         "reference": quoted,
         "on_settled_orbits": on_orbits(rows),
@@ -90,7 +95,7 @@ def effective_impact(scene: Scene, run: Run) -> Mapping[str, object]:
     }
 
 
-def ways(rows: Sequence[Row]) -> Mapping[str, float]:
+def ways(rows: Sequence[Approach]) -> Mapping[str, float]:
     """What would give the letter's restitution in a first collision at the excess of Fig. 4."""
     tau = letter.RESTITUTION
     speed = [row for row in select(rows, "speed", HERTZ) if math.isfinite(row.restitution)]
@@ -100,7 +105,7 @@ def ways(rows: Sequence[Row]) -> Mapping[str, float]:
     }
 
 
-def judge(run: Run, at: Row, orbits: Sequence[Row], floors: Sequence[Floor]) -> None:
+def judge(run: Run, at: Approach, orbits: Sequence[Approach], floors: Sequence[Floor]) -> None:
     """Verdicts on restitution and delay, and this study's part of the answer on higher modes."""
     loss = {floor.local_restitution: floor.restitution for floor in floors}
     least, lossy = loss[1.0], min(loss.values())
@@ -127,7 +132,7 @@ def judge(run: Run, at: Row, orbits: Sequence[Row], floors: Sequence[Floor]) -> 
         "higher_modes",
         f"In a first collision at excess {at.excess:g} the higher modes leave mode 1 a restitution of "
         f"{at.restitution:.3f}, and of {least:.3f} at least over the mass of the ball ({lossy:.3f} with any "
-        f"loss in the contact): a floor that the contact time of {1e6 * at.contact_s:.0f} us sets. On "
+        f"loss in the contact): a floor that the contact time of {1e6 * at.contact_s:.0f} µs sets. On "
         f"settled orbits, where the collision before still rings, it is {span}, or does not exist. The "
         f"delay is {delay}, {share} in which the tip would turn by itself.",
     )

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from studies import letter
-from studies.experiment.effective_impact.collision_rows import Row, on_orbits, select, series_of
+from studies.experiment.effective_impact.model import Approach, on_orbits, select, series_of
 from studies.shell import plotting
 from studies.shell.plotting import PAGE, PALETTE
 
@@ -27,7 +27,7 @@ SEARCHED = ("1", "0.7", "0.6", "0.4", "0.2", "0.1")
 """Local restitutions drawn."""
 
 
-def line(axis: Any, rows: Sequence[Row], column: str, number: int, name: str) -> None:
+def line(axis: Any, rows: Sequence[Approach], column: str, number: int, name: str) -> None:
     """One series."""
     axis.plot(
         [row.value for row in rows],
@@ -41,7 +41,9 @@ def line(axis: Any, rows: Sequence[Row], column: str, number: int, name: str) ->
     )
 
 
-def panels(rows: Sequence[Row], curve: str, quantity: str, *, log: bool = True) -> tuple[Figure, list[Any]]:
+def panels(
+    rows: Sequence[Approach], curve: str, quantity: str, *, log: bool = True
+) -> tuple[Figure, list[Any]]:
     """The series of a curve, a panel for each quantity."""
     figure, axes = plotting.new_figure(1, len(AXES), width=PAGE, height=0.066)
     for place, (axis, (column, (words, unit, _))) in enumerate(zip(axes, AXES.items(), strict=True)):
@@ -56,7 +58,9 @@ def panels(rows: Sequence[Row], curve: str, quantity: str, *, log: bool = True) 
     return figure, list(axes)
 
 
-def guide(axis: Any, rows: Sequence[Row], y: Callable[[Row], float], name: str, style: str = "--") -> None:
+def guide(
+    axis: Any, rows: Sequence[Approach], y: Callable[[Approach], float], name: str, style: str = "--"
+) -> None:
     """A line that theory gives."""
     axis.plot(
         [row.value for row in rows],
@@ -69,7 +73,7 @@ def guide(axis: Any, rows: Sequence[Row], y: Callable[[Row], float], name: str, 
     )
 
 
-def arc_ms(row: Row) -> float:
+def arc_ms(row: Approach) -> float:
     """v/a [ms]."""
     return 1e3 * row.arc_s
 
@@ -82,7 +86,7 @@ def closed(figure: Figure, axes: Sequence[Any], columns: int = 4, along: float =
 
 
 @plotting.in_house_style
-def speed(rows: Sequence[Row]) -> Figure:
+def speed(rows: Sequence[Approach]) -> Figure:
     """Restitution, delay and kick against the excess above grazing. Kick and loss fade towards grazing, where
     the contact takes longer than the arc beyond the plate; shaded: below the letter's amplitude stability."""
     figure, axes = panels(rows, "speed", plotting.EXCESS)
@@ -100,7 +104,7 @@ def speed(rows: Sequence[Row]) -> Figure:
 
 
 @plotting.in_house_style
-def mass(rows: Sequence[Row]) -> Figure:
+def mass(rows: Sequence[Approach]) -> Figure:
     """The same against the mass of ball and mount. The restitution is smallest where the kick is near one;
     crosses: collisions on settled orbits, bars on the axis: mode 1 does not come back to the gap."""
     figure, axes = panels(rows, "mass", MASS, log=False)
@@ -127,7 +131,7 @@ def mass(rows: Sequence[Row]) -> Figure:
 
 
 @plotting.in_house_style
-def search(rows: Sequence[Row]) -> Figure:
+def search(rows: Sequence[Approach]) -> Figure:
     """In search of the letter's restitution: loss in the contact (Hunt-Crossley) moves the minimum over the
     tip mass, not its depth."""
     figure, axis = plotting.new_figure(height=0.075)
@@ -145,5 +149,5 @@ def search(rows: Sequence[Row]) -> Figure:
     return figure
 
 
-DRAWN: tuple[Callable[[Sequence[Row]], Figure], ...] = (speed, mass, search)
+DRAWN: tuple[Callable[[Sequence[Approach]], Figure], ...] = (speed, mass, search)
 """The figures; each is named by its function and has its docstring as caption."""

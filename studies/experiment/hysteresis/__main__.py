@@ -2,10 +2,12 @@
 
 Claim (letter 1996): "All experimental resonances are found in place, but the measured hysteresis differs from
 the prediction", which the letter puts down to higher modes; and: "The energy loss and time delay at impact
-are two parameters to effectively represent higher-order modes in a single-mode description."
+are two parameters to effectively represent higher-order modes in a single-mode description." The transitions
+occur in "bands in the (alpha, gamma) parameter plane ... crossed approximately transversely. At the upper
+boundary ... there is no hysteresis", which grows "towards ... the lower-lying m - 1".
 
 Computed for m = 3 ... 10 from 19.6 to 23.8 Hz: F_m/F_g - 1, where the p_m orbit ends in a downward scan, in
-nine descriptions (studies.experiment.hysteresis.descriptions)
+nine descriptions (studies.experiment.hysteresis.model)
 
     map, Eq. (1), one mode with the kick of the beam, with its change with velocity, with loss and delay,
     kick of all modes, beam; and the map as printed, and with the beam's kick for 1 + tau
@@ -19,10 +21,12 @@ that chain differ in one thing, so that the beam's hysteresis over the map's is 
 Statistics are of folds below the letter's amplitude stability, 2.5e-4: next to a band edge hysteresis
 vanishes, and its ratios say nothing.
 
-Run:     python -m studies hysteresis [--step HZ]
+The bands are those of the map; across each of them the hysteresis of map and Eq. (1) has a closed form.
+
+Run:     python -m studies hysteresis [--step HZ] [--inside N]
 Writes:  hysteresis.csv (a row a frequency and period), causes.csv (factors at the letter's frequencies and
-         over all folds), accuracy.csv (how far each description is off), and the figure hysteresis (as
-         Fig. 3)
+         over all folds), accuracy.csv (how far each description is off), bands.csv (a row a frequency of each
+         band), and the figures hysteresis (as Fig. 3) and bands
 """
 
 from __future__ import annotations
@@ -36,14 +40,27 @@ from typing import Annotated
 import numpy as np
 
 from beam import InvalidValue
-from studies.experiment.hysteresis.descriptions import CAUSES, DESCRIPTIONS, FREQUENCIES_HZ, Row, column
+from contact import maximal_period
+from studies.experiment.hysteresis.model import (
+    CAUSES,
+    DESCRIPTIONS,
+    FREQUENCIES_HZ,
+    Folds,
+    Inside,
+    column,
+    falls,
+    inside_band,
+    path_of,
+)
 from studies.letter import AMPLITUDE_STABILITY
 from studies.shell.options import require_cells
 from studies.shell.run import Verdict
-from studies.shell.scene import Scene, harmonic, model_of, periods_of, require_drive_below
+from studies.shell.scene import Scene, band_of, harmonic, model_of, periods_of, require_drive_below
 from studies.shell.study import Run, study
 
-PERIODS = range(3, 11)
+PERIODS, BANDS = range(3, 11), range(3, 12)
+"""Periods whose folds are followed, and whose bands are looked through."""
+
 NEARLY = 1.1
 """A factor up to this counts as none, and a description that is off by no more as enough."""
 
@@ -72,9 +89,13 @@ class Accuracy:
     worst: float
 
 
-@study(needs={"fold": 0.05}, quick={"step": 0.3})
+@study(needs={"fold": 0.05}, quick={"step": 0.3, "inside": 26})
 def hysteresis(
-    scene: Scene, run: Run, *, step: Annotated[float, "of the drive frequency (Hz)"] = 0.05
+    scene: Scene,
+    run: Run,
+    *,
+    step: Annotated[float, "of the drive frequency (Hz)"] = 0.05,
+    inside: Annotated[int, "frequencies inside each band"] = 101,
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
     if step <= 0.0:
@@ -101,22 +122,31 @@ def hysteresis(
 
     run.figure("hysteresis", figure.draw_curves(scene, rows), figure.CURVES)
     judge(run, rows, {found.description: found for found in off}, causes[-1])
-    return {"rows": rows, "causes": causes, "accuracy": off, "modes": model.n_modes}
+    within = [row for found in run.map(partial(inside_band, scene, inside), BANDS, "bands") for row in found]
+    run.table("bands", within, "Hysteresis 1 - F_m/F_g across the bands of p_m.", show=())
+    run.figure("bands", figure.draw_bands(scene, path_of(scene)), figure.BANDS)
+    return {
+        "rows": rows,
+        "causes": causes,
+        "accuracy": off,
+        "bands": judge_bands(run, scene, within),
+        "modes": model.n_modes,
+    }
 
 
-def resolved(rows: Sequence[Row]) -> list[Row]:
+def resolved(rows: Sequence[Folds]) -> list[Folds]:
     """The rows that enter the statistics: the beam's hysteresis above the amplitude stability, and a fold in
     the map."""
     return [row for row in rows if (row.beam or 0.0) < -AMPLITUDE_STABILITY and row.map is not None]
 
 
-def causes_over(rows: Sequence[Row], at: str) -> Causes:
+def causes_over(rows: Sequence[Folds], at: str) -> Causes:
     """Median factor of each cause."""
     logs = {name: [math.log(f) for row in rows if (f := row.factor(name)) is not None] for name in CAUSES}
     return Causes(at=at, **{n: math.exp(float(np.median(of))) if of else None for n, of in logs.items()})
 
 
-def accuracy(description: str, rows: Sequence[Row]) -> Accuracy:
+def accuracy(description: str, rows: Sequence[Folds]) -> Accuracy:
     """How far a description is off the beam; nothing where it has no fold."""
     ratios = (row.ratio(description) for row in rows)
     logs = [abs(math.log(ratio)) for ratio in ratios if ratio is not None]
@@ -128,7 +158,7 @@ def accuracy(description: str, rows: Sequence[Row]) -> Accuracy:
     )
 
 
-def judge(run: Run, rows: Sequence[Row], off: Mapping[str, Accuracy], median: Causes) -> None:
+def judge(run: Run, rows: Sequence[Folds], off: Mapping[str, Accuracy], median: Causes) -> None:
     """The answer, and the verdicts on Fig. 3 and the two parameters."""
     factors = {name: value for name in CAUSES if (value := getattr(median, name)) is not None}
     if "truncation_of_the_map" not in factors:
@@ -136,19 +166,16 @@ def judge(run: Run, rows: Sequence[Row], off: Mapping[str, Accuracy], median: Ca
         return
     up, down = max(factors, key=factors.__getitem__), min(factors, key=factors.__getitem__)
 
-    def told(name: str, digits: int = 2) -> str:
+    def in_words(name: str, digits: int = 2) -> str:
         return f"{off[name].median:.{digits}f} (median; worst {off[name].worst:.{max(digits - 1, 1)}f})"
 
     run.answer(
         "hysteresis",
         "The map has the periods and the bands, not the size of the hysteresis. The difference is a product "
         f"of causes: in the median the {up.replace('_', ' ')} multiplies the hysteresis by "
-        f"{factors[up]:.2f}, the {down.replace('_', ' ')} by {factors[down]:.2f}. Over {off['map'].folds} "
-        f"folds the map is off by {told('map')}, with the beam's kick for 1 + tau by "
-        f"{told('map_measured_kick')}, Eq. (1) by {told('single_mode')}, one mode with the measured loss and "
-        f"delay by {told('two_parameters')}, the kick of all modes by {told('all_mode_kick', 4)}. The "
-        "letter's two parameters carry the higher modes as far as these have died out when the tip comes "
-        "back; the map does not carry the two parameters.",
+        f"{factors[up]:.2f}, the {down.replace('_', ' ')} by {factors[down]:.2f}. The letter's two "
+        f"parameters represent the higher modes up to a factor of {in_words('two_parameters')}, which is the "
+        "ringing that has not decayed when the tip comes back.",
     )
     own = factors["truncation_of_the_map"]
     run.verdict(
@@ -158,8 +185,10 @@ def judge(run: Run, rows: Sequence[Row], off: Mapping[str, Accuracy], median: Ca
         note="the letter prints curves, no values; the beam differs from the map as the experiment did, but "
         f"a factor of {own:.2f} (median) is the map's own truncation, with no higher mode in it",
     )
-    alive = {(row.frequency_hz, row.m) for row in rows if row.beam_admissible and (row.beam or 0.0) < 0.0}
-    beside = [f"p{m} at {f:.2f} Hz" for f, m in sorted(alive, key=lambda at: at[::-1]) if (f, m - 1) in alive]
+    present = {(row.frequency_hz, row.m) for row in rows if row.beam_admissible and (row.beam or 0.0) < 0.0}
+    beside = [
+        f"p{m} at {f:.2f} Hz" for f, m in sorted(present, key=lambda at: at[::-1]) if (f, m - 1) in present
+    ]
     if beside or not run.quick:  # few frequencies can miss them all
         run.verdict(
             "neighbour_band",
@@ -172,6 +201,29 @@ def judge(run: Run, rows: Sequence[Row], off: Mapping[str, Accuracy], median: Ca
     run.verdict(
         "two_parameters",
         "agrees" if two.worst <= NEARLY else verdict,
-        found=f"off by {told('two_parameters')}; kick of all modes {told('all_mode_kick', 4)}",
+        found=f"off by {in_words('two_parameters')}; kick of all modes {in_words('all_mode_kick', 4)}",
         note="what is missing is the ringing of the higher modes that the next collision meets",
     )
+
+
+def judge_bands(run: Run, scene: Scene, rows: Sequence[Inside]) -> Mapping[str, object]:
+    """The verdict on the bands: no hysteresis at their upper edges, and growth towards the lower."""
+    of_band = [[row for row in rows if row.period == m] for m in BANDS]
+    grows = all(falls([row.map for row in own]) and falls([row.eq1 for row in own]) for own in of_band)
+    zero = max(max(own[-1].map, own[-1].eq1) for own in of_band)
+    path = path_of(scene)
+    crossed = sorted({maximal_period(place) for place in path})
+    run.verdict(
+        "bands",
+        "agrees" if zero < 1e-9 and grows else "differs",
+        found=f"m = {crossed[0]} to {crossed[-1]} in the range of Figs. 3 and 5; hysteresis at the upper "
+        f"edges at most {zero:.1g}, growing towards the lower: {'yes' if grows else 'no'}",
+        note=f"alpha from {path[0].alpha:.2f} to {path[-1].alpha:.2f}, gamma from {path[0].gamma:.3f} to"
+        f" {path[-1].gamma:.3f}: the bands are crossed at almost constant gamma",
+    )
+    return {
+        "edges": [band_of(scene, m) for m in BANDS],
+        "at_lower_edge": [own[0] for own in of_band],
+        "largest_at_upper_edge": zero,
+        "crossed": crossed,
+    }

@@ -1,4 +1,4 @@
-"""The letter's Fig. 3 with four of the descriptions, all of them over the beam."""
+"""The letter's Fig. 3 with four of the descriptions, and the bands that the experiment crosses."""
 
 from __future__ import annotations
 
@@ -9,18 +9,23 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from contact import Band
+from contact import Band, NordmarkMap, band
 from studies import letter
-from studies.experiment.hysteresis.descriptions import FREQUENCIES_HZ, Row
+from studies.experiment.hysteresis.model import FREQUENCIES_HZ, Folds
 from studies.shell import plotting
 from studies.shell.plotting import BLACK, BLUE, GREEN, GUIDE, LETTER, NOTE, PAGE, VERMILION
-from studies.shell.scene import Scene, band_of, corresponding, periods_of
+from studies.shell.scene import Scene, band_of, corresponding, nordmark_at, periods_of
 
 CURVES = (
     "The letter's Fig. 3, computed: where the p_m orbits end when the amplitude is lowered, against the "
     "drive frequency, for m = 3 to 10; below the same on a logarithmic scale. The beam follows the bands of "
     "the map, at another size and bent by the ringing of its second mode; crosses: folds of the equations "
     "alone, whose orbit would touch the plate elsewhere too."
+)
+
+BANDS = (
+    "Bands of p_m in the plane of alpha and gamma as rho goes to 0; line: the path of the experiment, "
+    "points: its six transitions."
 )
 
 STYLES: dict[str, dict[str, Any]] = {
@@ -33,7 +38,7 @@ STYLES: dict[str, dict[str, Any]] = {
 
 
 @plotting.in_house_style
-def draw_curves(scene: Scene, rows: Sequence[Row]) -> Figure:
+def draw_curves(scene: Scene, rows: Sequence[Folds]) -> Figure:
     """Folds against frequency, linear and logarithmic."""
     figure, axes = plotting.new_figure(2, 1, width=PAGE, height=0.128, sharex=True)
     edges = [band_of(scene, m) for m in sorted({row.m for row in rows})]
@@ -67,7 +72,7 @@ def draw_curves(scene: Scene, rows: Sequence[Row]) -> Figure:
     return figure
 
 
-def curves(axis: Axes, rows: Sequence[Row], sign: float) -> None:
+def curves(axis: Axes, rows: Sequence[Folds], sign: float) -> None:
     """The descriptions, a line for each period, the beam last; crosses on its folds not admissible."""
     for name, style in STYLES.items():
         ends = [(row, sign * (getattr(row, name) or 0.0)) for row in rows]
@@ -111,3 +116,32 @@ def names_of_bands(axes: Sequence[Axes], scene: Scene, edges: Sequence[Band]) ->
                 va="bottom",
                 fontsize=NOTE,
             )
+
+
+@plotting.in_house_style
+def draw_bands(scene: Scene, path: Sequence[NordmarkMap]) -> Figure:
+    """The bands as rho -> 0 and the path of the experiment."""
+    figure, axis = plotting.new_figure(height=0.075)
+    mode, rates = scene.single_mode, np.geomspace(100.0, 1e-3, 80)
+    for m in range(3, 9):
+        edges = [
+            band(m, free_period=mode.free_period_s, decay_rate=mu, restitution=mode.restitution)
+            for mu in rates.tolist()
+        ]
+        f = np.array([*(one.upper for one in edges), *(one.lower for one in edges[::-1])])
+        gamma = np.exp(-np.concatenate([rates, rates[::-1]]) / f)
+        alpha = 2.0 * np.sqrt(gamma) * np.cos(2.0 * np.pi / (f * mode.free_period_s))
+        axis.fill(alpha, gamma, color=plotting.PALETTE[m % 6 + 1], alpha=0.35, linewidth=0.4)
+        axis.text(0.5 * (alpha[79] + alpha[80]), 1.015, f"{m}", fontsize=NOTE, ha="center")
+    axis.plot([p.alpha for p in path], [p.gamma for p in path], color="black", linewidth=1.4)
+    low, high = (corresponding(scene, f) for f in FREQUENCIES_HZ)
+    line = {"arrowstyle": "-", "linewidth": 0.6}
+    place = path[60].alpha, path[60].gamma
+    axis.annotate(f"{low:g} to {high:g} Hz", place, xytext=(0.05, 0.62), fontsize=NOTE, arrowprops=line)
+    own = [nordmark_at(scene, f) for f in sorted(scene.drive.frequencies_hz)]
+    axis.plot([p.alpha for p in own], [p.gamma for p in own], **plotting.LETTER_POINTS, label="letter")
+    axis.set_ylim(bottom=0.02)
+    plotting.label(axis.xaxis, "α")
+    plotting.label(axis.yaxis, "γ")
+    axis.legend(loc="lower right")
+    return figure

@@ -31,7 +31,7 @@ import numpy as np
 
 from studies import letter
 from studies.experiment.soft_wall.closed_forms import SoftWall
-from studies.experiment.soft_wall.rows import Beam, Doubling, beam_of, doubling_of, kicks_of
+from studies.experiment.soft_wall.model import Beam, Doubling, beam_of, doubling_of, kicks_of
 from studies.shell.scene import Scene, SceneError, harmonic, single_mode_at
 from studies.shell.study import Run, study
 
@@ -76,7 +76,7 @@ def soft_wall(
     beam, more = found or (None, [])
     run.table("kicks", [*kicks, *more], "Kick velocity of one collision [m/s].", show=())
     run.table("doublings", doublings, "Excess F/F_g - 1 at which p1 doubles its period.")
-    from studies.experiment.soft_wall.figures import draw_kicks, draw_orbits
+    from studies.experiment.soft_wall.figure import draw_kicks, draw_orbits
 
     run.figure(
         "kick",
@@ -95,7 +95,7 @@ def soft_wall(
     judge_wall(run, doublings)
     if beam:
         judge_beam(run, beam)
-    return {"doublings": doublings, "beam": beam}
+    return {"rows": doublings, "beam": beam}
 
 
 def judge_wall(run: Run, doublings: Sequence[Doubling]) -> None:

@@ -1,1 +1,1 @@
-"""The main job: the letter's transitions in four descriptions, their scans, and the figures."""
+"""The main job: the letter's transitions in four descriptions, their orbit diagrams and figures."""

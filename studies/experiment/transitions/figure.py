@@ -9,14 +9,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from studies import letter
-from studies.experiment.transitions.descriptions import Diagram, Row, Scans
+from studies.experiment.transitions.model import Scans, Transition
+from studies.physics.descriptions import Diagram
 from studies.shell import plotting
 from studies.shell.plotting import GUIDE
-from studies.shell.scene import Scene, single_mode_at
 
 
-def draw(scene: Scene, rows: Sequence[Row], diagrams: Sequence[Scans], name: str) -> Figure:
-    """The panels of the letter's Fig. 2 for one description."""
+def draw(read: str, rows: Sequence[Transition], diagrams: Sequence[Scans], name: str) -> Figure:
+    """The panels of the letter's Fig. 2 for one description; `read`: the quantity at the read-out point."""
+    rows = [row for row in rows if row.description == name]
     columns = min(3, len(rows))
     lines = math.ceil(len(rows) / columns)
     with plotting.house_style():
@@ -25,17 +26,12 @@ def draw(scene: Scene, rows: Sequence[Row], diagrams: Sequence[Scans], name: str
         for axis in axes.flat[len(rows) :]:
             axis.set_visible(False)
         for number, (axis, row, found) in enumerate(zip(axes.flat, rows, diagrams, strict=False)):
-            grazing = row.grazing_amplitude_m
-            if name in ("single_mode", "two_parameters"):
-                grazing = single_mode_at(scene, row.frequency_hz).grazing_amplitude()
             if name in found:
-                panel(axis, found[name], None if name == "map" else grazing)
+                panel(axis, found[name], None if name == "map" else row.grazing_amplitude)
             seen = "" if row.letter is None else f" (letter: p$_{{{row.letter}}}$)"
-            period = row.periods()[name]
-            words = f"p$_{{{period}}}$" if period else "no period"
+            words = f"p$_{{{row.period}}}$" if row.period else "no period"
             plotting.panel(axis, number, f"{row.frequency_hz:.2f} Hz: {words}{seen}")
         sideways = (plotting.EXCESS, "10$^{-3}$") if name == "map" else ("excitation amplitude", "mm")
-        read = scene.readout.quantity
         upwards = {
             "map": ("$x$ of the map", "1"),
             "single_mode": ("tip displacement $ξ$", "mm"),

@@ -20,6 +20,7 @@ import math
 from bisect import bisect
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -37,6 +38,7 @@ from studies.physics.least_model import (
     collisions,
     distances,
     error_of_fold,
+    fold_of_born,
     largest_error,
 )
 from studies.shell.scene import approach_speed
@@ -58,14 +60,6 @@ def _born_periods(at: At, frequency: float) -> Answer:
     return np.array([float(born_period(StroboscopicMap(oscillator=at(drive)))) for drive in drives])
 
 
-def _fold(at: At, frequency: float) -> Answer:
-    """Excess of the fold, and m."""
-    strobed = StroboscopicMap(oscillator=at(frequency))
-    period = born_period(strobed)
-    end = fold_excess(strobed, period)
-    return None if end is None else np.array([end, float(period)])
-
-
 _SHARED = {name: found[:2] for name, found in least_model.QUANTITIES.items()}
 QUANTITIES: Mapping[str, tuple[Ask, Distance, str, float]] = {
     "frequency": (
@@ -78,7 +72,7 @@ QUANTITIES: Mapping[str, tuple[Ask, Distance, str, float]] = {
     "delay": (_delays, largest_error, "v/a", 2e-2),
     "kick": (*_SHARED["kick"], "1", 1e-2),
     "born_period": (_born_periods, lambda a, b: float(np.count_nonzero(a != b)), "differing periods", 0.0),
-    "fold": (_fold, error_of_fold, "relative", 2e-2),
+    "fold": (partial(fold_of_born, fold_excess), error_of_fold, "relative", 2e-2),
     "tip_trace": (*_SHARED["tip_trace"], "gap", 1e-2),
 }
 """Name -> answer, distance of two answers, its unit, usual tolerance."""

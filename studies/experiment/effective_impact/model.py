@@ -1,18 +1,30 @@
-"""The approaches to the plate: one quantity varied at a time, each curve a list of cases.
+"""The approaches to the plate, one quantity varied at a time; the row of each, and what is read off a curve.
 
-speed        excess, hence approach speed v = 2 pi f gap sqrt((1 + excess)^2 - 1)
-reference    the spring as it is on a finer mesh, at the excess of Fig. 4
-mass         tip mass over leaf, free period and drive amplitude at grazing kept, at several excesses
-orbit        the same, but the collision of the orbit that settles at the letter's Fig. 4
-search       tip mass and restitution of the contact itself together
+    speed        excess, hence approach speed v = 2 pi f gap sqrt((1 + excess)^2 - 1)
+    reference    the spring as it is on a finer mesh, at the excess of Fig. 4
+    mass         tip mass over leaf, free period and drive amplitude at grazing kept, at several excesses
+    orbit        the same, but the collision of the orbit that settles at the letter's Fig. 4
+    search       tip mass and restitution of the contact itself together
+
+Beside what `contact.collisions` measures a row holds
+
+    arc_s          v/a, the time in which the arc of the single mode beyond the gap reaches its top [s]
+    ball_limit     2 M phi_1^2, the kick of the ball by itself on a hard stop [1]
+    energy_share   energy given to the higher modes over that of the approach, v^2/(2 phi_1^2) [1]
+
+Between the cases of a curve restitution has a corner where the kick is 1, its square has none. Smallest
+values over the tip mass are therefore read off monotone splines through the kick and through
+restitution^2 - (1 - kick)^2 = 2 a shift/v^2.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from beam import ModalModel
 from contact import (
@@ -27,7 +39,6 @@ from contact import (
     simulate,
 )
 from contact.orbits import born
-from studies.experiment.effective_impact.collision_rows import Row
 from studies.letter import TIME_TRACE_EXCESS
 from studies.physics.calibration import leaf_mass, with_mass_ratio
 from studies.shell.scene import (
@@ -49,42 +60,55 @@ ORBIT_HZ = 21.50
 EXCESSES = (*np.geomspace(1e-5, 5e-2, 38).tolist(), *np.geomspace(5e-2, 0.4, 9)[1:].tolist())
 MASS_EXCESSES = (1e-4, 1e-3, TIME_TRACE_EXCESS, 5e-2)
 MASS_RATIOS = (
-    0.0,
-    0.02,
-    0.05,
-    0.1,
-    0.125,
-    0.15,
-    0.175,
-    0.2,
-    0.225,
-    0.25,
-    0.275,
-    0.3,
-    0.325,
-    0.35,
-    0.4,
-    0.5,
-    0.7,
-    1.0,
-    1.4,
-    2.0,
-    3.0,
+    *(0.0, 0.02, 0.05, 0.1, *np.round(0.025 * np.arange(5, 15), 3).tolist()),
+    *(0.4, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0),
 )
 RESTITUTIONS = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1)
+
+FINE = 2001
+"""Points at which a spline is looked through: the smallest value is good to 1e-6 of itself."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Approach:
+    """One approach; what does not exist is not a number.
+
+    `orbit_period` is None for a first collision and 0 where the motion did not settle: then there are no
+    numbers.
+    """
+
+    curve: str
+    series: str
+    value: float
+    excess: float
+    modes: int
+    mass_ratio: float
+    orbit_period: int | None = None
+    approach_m_s: float = math.nan
+    restitution: float = math.nan
+    delay_s: float = math.nan
+    kick: float = math.nan
+    shift_m: float = math.nan
+    contact_s: float = math.nan
+    arc_s: float = math.nan
+    ball_limit: float
+    energy_share: float = math.nan
+    impacts: int = 0
+    forced_by_ringing: bool = False
+    returns: bool = False
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Case:
     """One approach: its row, still without numbers, and the oscillator at its amplitude."""
 
-    row: Row
+    row: Approach
     oscillator: ImpactOscillator
 
     def __str__(self) -> str:
         return f"{self.row.curve}, {self.row.series}, {self.row.value:g}"
 
-    def measured(self) -> Row:
+    def measured(self) -> Approach:
         """The row with its numbers; ContactError or Refusal if there is no collision."""
         found, row = None, self.row
         if row.curve == "orbit":
@@ -174,7 +198,7 @@ class Spring:
         """The spring under this law; `value` on the axis of the curve is the ratio of masses by default."""
         oscillator = beam_at(self.scene, frequency or self.frequency, self.model)
         stop, ratio = Stop(gap=self.scene.stop.gap_m, law=law), self.mass_ratio
-        row = Row(
+        row = Approach(
             curve=curve,
             series=series,
             value=ratio if value is None else value,
@@ -208,3 +232,60 @@ def cases_of(spring: Spring, masses: Sequence[Spring], fine: Spring, every: int 
         yield one.case("orbit", f"{orbit_hz:.2f} Hz", hertz, frequency=orbit_hz)
         for local in RESTITUTIONS[::every]:
             yield one.case("search", f"{local:g}", one.lossy(local))
+
+
+def select(rows: Sequence[Approach], curve: str, series: str | None = None) -> list[Approach]:
+    """The rows of a curve, or of one of its series, by rising value."""
+    chosen = [row for row in rows if row.curve == curve and series in (None, row.series)]
+    return sorted(chosen, key=lambda row: row.value)
+
+
+def series_of(rows: Sequence[Approach], curve: str) -> list[str]:
+    """The series of a curve, in their order."""
+    return list(dict.fromkeys(row.series for row in rows if row.curve == curve))
+
+
+def on_orbits(rows: Sequence[Approach]) -> list[Approach]:
+    """The collisions on settled orbits that belong to a peak of mode 1."""
+    return [row for row in select(rows, "orbit") if row.impacts and not row.forced_by_ringing]
+
+
+def crossing(x: Sequence[float], y: Sequence[float], level: float) -> float:
+    """The first x at which y(x) goes through `level`, by a monotone spline in log x; NaN if it never does."""
+    if len(x) < 2:
+        return math.nan
+    roots = PchipInterpolator(np.log(x), np.array(y) - level).roots(extrapolate=False)
+    return math.exp(roots[0]) if roots.size else math.nan
+
+
+@dataclass(frozen=True, kw_only=True)
+class Floor:
+    """The smallest restitution over the tip mass, for one local restitution."""
+
+    local_restitution: float
+    restitution: float
+    mass_ratio: float
+    kick: float
+
+
+def floor_of(rows: Sequence[Approach]) -> Floor | None:
+    """The floor of one series over tip mass; None with fewer than three collisions of one impact, and if
+    restitution falls up to the end of the range."""
+    kept = [row for row in rows if row.impacts == 1 and row.mass_ratio > 0.0]
+    kept = [row for row in kept if math.isfinite(row.restitution)]
+    if len(kept) < 3:
+        return None
+    where = np.log([row.mass_ratio for row in kept])
+    kick = PchipInterpolator(where, [row.kick for row in kept])
+    rest = PchipInterpolator(where, [row.restitution**2 - (1.0 - row.kick) ** 2 for row in kept])
+    fine = np.linspace(where[0], where[-1], FINE)
+    square = np.maximum((1.0 - kick(fine)) ** 2 + rest(fine), 0.0)
+    least = int(np.argmin(square))
+    if least in (0, FINE - 1):
+        return None
+    return Floor(
+        local_restitution=float(kept[0].series),
+        restitution=math.sqrt(square[least]),
+        mass_ratio=math.exp(fine[least]),
+        kick=float(kick(fine[least])),
+    )

@@ -1,4 +1,4 @@
-"""What is computed of a wall or of the beam: kick of a collision, period doubling of p1."""
+"""A wall or the beam near grazing: kick of a collision, period doubling of p1, loss of its stability."""
 
 from __future__ import annotations
 

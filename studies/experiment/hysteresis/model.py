@@ -1,6 +1,6 @@
-"""One p_m orbit at one frequency in nine descriptions, from the map to the beam.
+"""One p_m orbit at one frequency in nine descriptions, from the map to the beam; and the bands of p_m.
 
-Each differs from the one before in one thing:
+Each description differs from the one before in one thing:
 
     map                     Eqs. (2), (3), corrected, tau of the letter
     single_mode             Eq. (1): the map's own truncation removed
@@ -11,28 +11,25 @@ Each differs from the one before in one thing:
     beam                    all modes, the collision entered with the ringing that the last one left
 
 Beside them: map_printed (the letter's y-line as stored) and map_measured_kick (the beam's kick for 1 + tau).
+
+With alpha = 2 sqrt(gamma) cos(theta) and gamma = exp(-mu/f) the edges in frequency of ``contact.band`` are
+curves in the plane of alpha and gamma, with mu as parameter. The experiment crosses them along its own mu.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
 from beam import ModalModel
-from contact import NordmarkMap, StroboscopicMap
+from contact import NordmarkMap
 from contact.orbits import KickFamily, PeriodicOrbit, Shooting, fold_along_frequency, fold_excess
+from studies.physics.descriptions import fold_at
 from studies.physics.two_parameters import fold_of_kicks, one_mode_fold
-from studies.shell.scene import (
-    Scene,
-    band_of,
-    beam_at,
-    corresponding,
-    nordmark_at,
-    periods_of,
-    single_mode_at,
-)
+from studies.shell.scene import Scene, band_of, beam_at, corresponding, nordmark_at, periods_of
 
 CHAIN = ("map", "single_mode", "measured_kick", "kick_of_velocity", "two_parameters", "all_mode_kick", "beam")
 DESCRIPTIONS = ("map_printed", "map_measured_kick", *CHAIN)
@@ -56,12 +53,18 @@ CAUSES = dict(
 FREQUENCIES_HZ = (19.6, 23.8)
 """Of the letter's spring; others at the same f T."""
 
+EDGE = 1e-7
+"""Distance of the last frequency in a band from its upper edge, relative to the band."""
+
+ROUNDING = 1e-12
+"""Change of an excess that is rounding."""
+
 BELOW_BAND = 0.5
 """How far below its band in the map a period is looked for, in widths of the band: there it coexists."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row:
+class Folds:
     """F_m/F_g - 1 at the fold of p_m in all descriptions; None where there is none.
 
     A fold of the beam that is not admissible is one of the equations alone: its orbit would touch the stop
@@ -101,18 +104,18 @@ def map_fold(nordmark: NordmarkMap, m: int, kick: float | None = None) -> float 
 
 def folds_at(
     scene: Scene, frequency: float, m: int, model: ModalModel, near: PeriodicOrbit | None = None
-) -> tuple[Row, PeriodicOrbit | None]:
+) -> tuple[Folds, PeriodicOrbit | None]:
     """All descriptions of the end of p_m at `frequency` [Hz], and the beam's orbit at its fold.
 
     `near` is that at a neighbouring frequency, if known.
     """
     nordmark, oscillator = nordmark_at(scene, frequency), beam_at(scene, frequency, model)
-    row = Row(
+    row = Folds(
         frequency_hz=frequency,
         m=m,
         map=map_fold(nordmark, m),
         map_printed=map_fold(replace(nordmark, y_line="printed"), m),
-        single_mode=fold_excess(StroboscopicMap(oscillator=single_mode_at(scene, frequency)), m),
+        single_mode=fold_at("single_mode", scene, frequency, m),
     )
     kicks = KickFamily(oscillator=oscillator, period=m)
     whole = kicks.fold()
@@ -135,7 +138,7 @@ def folds_at(
     return row, orbit
 
 
-def column(scene: Scene, model: ModalModel, step: float, m: int) -> list[Row]:
+def column(scene: Scene, model: ModalModel, step: float, m: int) -> list[Folds]:
     """The folds of p_m over the frequencies where it can exist, each started from its neighbour."""
     edges = band_of(scene, m)
     below = edges.lower - BELOW_BAND * (edges.upper - edges.lower)
@@ -143,8 +146,45 @@ def column(scene: Scene, model: ModalModel, step: float, m: int) -> list[Row]:
     grid = np.arange(FREQUENCIES_HZ[0], FREQUENCIES_HZ[1] + 1e-9, step)
     values = {round(corresponding(scene, float(f)), 6) for f in grid}
     values |= {f for f, seen in periods_of(scene).items() if seen == m}
-    rows, near = list[Row](), None
+    rows, near = list[Folds](), None
     for frequency in sorted((f for f in values if low <= f < edges.upper), reverse=True):
         row, near = folds_at(scene, frequency, m, model, near)
         rows.append(row)
     return rows[::-1]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Inside:
+    """Hysteresis 1 - F_m/F_g at a frequency of the band of p_m, map and Eq. (1); 0 without a fold."""
+
+    period: int
+    frequency_hz: float
+    map: float
+    eq1: float
+
+
+def inside_band(scene: Scene, count: int, period: int) -> list[Inside]:
+    """The hysteresis from the lower edge of a band to just below its upper one."""
+    edges = band_of(scene, period)
+    places = np.linspace(edges.lower, edges.upper, count)
+    places[-1] = edges.upper - EDGE * (edges.upper - edges.lower)
+    return [
+        Inside(
+            period=period,
+            frequency_hz=frequency,
+            map=0.0 - (fold_at("map", scene, frequency, period) or 0.0),
+            eq1=0.0 - (fold_at("single_mode", scene, frequency, period) or 0.0),
+        )
+        for frequency in places.tolist()
+    ]
+
+
+def path_of(scene: Scene) -> list[NordmarkMap]:
+    """The maps along the frequencies of the experiment."""
+    low, high = (corresponding(scene, f) for f in FREQUENCIES_HZ)
+    return [nordmark_at(scene, f) for f in np.linspace(low, high, 200).tolist()]
+
+
+def falls(values: Sequence[float]) -> bool:
+    """Whether no value exceeds the one before it by more than rounding."""
+    return bool(np.all(np.diff(values) <= ROUNDING))

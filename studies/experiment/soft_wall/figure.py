@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from studies import letter
 from studies.experiment.soft_wall.closed_forms import SoftWall
-from studies.experiment.soft_wall.rows import Beam, Doubling, Kick
+from studies.experiment.soft_wall.model import Beam, Doubling, Kick
 from studies.shell import plotting
 from studies.shell.plotting import EXCESS, PAGE, PALETTE, in_house_style
 from studies.shell.scene import Scene, single_mode_at

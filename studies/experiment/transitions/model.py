@@ -1,0 +1,134 @@
+"""One transition p1 <-> p_m in each description: born period, end on the way down, orbit diagram."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from beam import ModalModel, Refusal
+from contact import ContactError, State
+from contact.orbits import born, born_period, fold_excess, orbit_end
+from studies import letter
+from studies.physics.descriptions import TITLES, Diagram, Strobed, or_none, strobed_at, up_and_down
+from studies.physics.two_parameters import Extracted, extracted
+from studies.shell.scene import Scene, beam_at, single_mode_at
+
+OTHER_EXCESSES = (2.5e-4, 1e-2)
+"""Where the born period is given as well: the letter's amplitude stability, and well above grazing."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Transition:
+    """What one description gives at one drive frequency; None where it could not be computed.
+
+    Parameters
+    ----------
+    letter : the period in the letter.
+    period : the born period; 0: the motion did not settle.
+    excess_down : F/F_g - 1 at which the orbit ends when the amplitude is lowered [1].
+    ends_by : the kind of that end.
+    end_speed : approach velocity of the orbit there [m/s], which identifies it among orbits of this period.
+    bracket : excess at which the downward scan had lost the orbit, and at which it still held it [1].
+    exact : excess of the fold of p_m without simulation [1]: in closed form for map and Eq. (1), from the
+        kicks of the beam's collisions for the two parameters.
+    born : excess -> period that is born there.
+    grazing_amplitude : of the base [m].
+    """
+
+    frequency_hz: float
+    description: str
+    letter: int | None
+    period: int | None = None
+    excess_down: float | None = None
+    ends_by: str | None = None
+    end_speed: float | None = None
+    bracket: tuple[float, float] | None = None
+    exact: float | None = None
+    born: Mapping[str, int]
+    grazing_amplitude: float
+
+    @property
+    def not_settled(self) -> list[str]:
+        """The excesses at which no period is born."""
+        return [excess for excess, period in self.born.items() if period == 0]
+
+
+@dataclass(frozen=True, kw_only=True)
+class AtFrequency:
+    """The rows of one frequency, what the beam's collisions gave there, and what failed: where and why."""
+
+    rows: list[Transition]
+    extracted: Extracted | None
+    failures: list[tuple[str, str]]
+
+
+def lowered(row: Transition, strobed: Strobed, excess: float, cycles: int) -> tuple[Transition, State]:
+    """The row with what is born at `excess` and how that ends, and the state on the born orbit."""
+    orbit = born(strobed, excess, most_cycles=cycles)
+    periods = {f"{excess:g}": orbit.period}
+    periods |= {f"{other:g}": born_period(strobed, other, most_cycles=cycles) for other in OTHER_EXCESSES}
+    row = replace(row, period=orbit.period, born=periods)
+    end = orbit_end(strobed, orbit.end, excess, most_cycles=cycles) if orbit.period > 1 else None
+    if end is not None:
+        speed = None if end.orbit is None else abs(end.orbit.speed)
+        bracket = end.lost, end.held
+        row = replace(row, excess_down=end.excess, ends_by=end.kind, end_speed=speed, bracket=bracket)
+    return row, orbit.end
+
+
+def rows_at(scene: Scene, frequency: float, model: ModalModel) -> AtFrequency:
+    """The rows of all descriptions at drive `frequency` [Hz]; those that fail keep None."""
+    single, cycles = single_mode_at(scene, frequency).grazing_amplitude(), max(scene.scan.settle_cycles, 1)
+    grazing = dict.fromkeys(TITLES, single) | {"beam": beam_at(scene, frequency, model).grazing_amplitude()}
+    found, failures, parameters = list[Transition](), list[tuple[str, str]](), None
+    for name in TITLES:
+        row = Transition(
+            frequency_hz=frequency,
+            description=name,
+            letter=letter.PERIODS.get(frequency),
+            grazing_amplitude=grazing[name],
+            born={},
+        )
+        try:
+            strobed = strobed_at(name, scene, frequency, model)
+            row, state = lowered(row, strobed, scene.scan.born_excess, cycles)
+            if name == "two_parameters" and row.period:
+                parameters = extracted(scene, frequency, model, end=state, period=row.period)
+                row = replace(row, exact=None if parameters is None else parameters.fold)
+            elif name in ("map", "single_mode"):
+                row = replace(row, exact=fold_excess(strobed, row.period or 0))
+        except (ContactError, Refusal) as error:
+            failures.append((f"{frequency:g} Hz, {name}", str(error)))
+        found.append(row)
+    return AtFrequency(rows=found, extracted=parameters, failures=failures)
+
+
+Scans = Mapping[str, Mapping[str, Diagram]]
+"""Description -> "up" or "down" -> orbit diagram, at one frequency."""
+
+
+def scans(scene: Scene, model: ModalModel, full: bool, rows: Sequence[Transition]) -> Scans:
+    """Upward and downward scan of each description, in proportion to the largest hysteresis in `rows`.
+
+    That is rounded to two digits, so that the last bit of an end moves no amplitude, and none lies on a fold.
+    """
+    scan = scene.scan
+    reach = float(f"{max([scan.narrowest, *(abs(row.excess_down or 0.0) for row in rows)]):.2g}")
+    values = np.linspace(-scan.reach_below * reach, scan.reach_above * reach, scan.points)
+    maps = {
+        row.description: or_none(strobed_at, row.description, scene, row.frequency_hz, model) for row in rows
+    }
+    return {
+        name: up_and_down(
+            strobed,
+            values,
+            early=not full,
+            settle_cycles=letter.SETTLE_CYCLES if full else max(scan.settle_cycles, 1),
+            record_cycles=scan.record_cycles,
+            largest_period=scan.largest_period,
+        )
+        for name, strobed in maps.items()
+        if strobed is not None
+    }

@@ -1,0 +1,106 @@
+"""The descriptions of the experiment by name, and what each of them gives: strobed map, fold of p_m, scans.
+
+    map              Eqs. (2), (3) of the letter, corrected
+    single_mode      Eq. (1) of the letter
+    two_parameters   Eq. (1) with the restitution and the delay of the beam's collisions
+    kicks            all modes; each collision is entered without the ringing of the one before
+    beam             all modes
+
+Each has at a drive frequency a family of orbits p_m with one impact in m drive periods, which ends at a
+fold (`fold_at`). All but the kicks, which describe orbits and no motion, have a strobed map (`strobed_at`).
+`contact.orbits.born` gives the orbit of that map that is born at grazing.
+
+The folds come by closed form (map, Eq. (1)), from what each collision of the beam does to mode 1 (two
+parameters) or to all modes (kicks), and by shooting (beam).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any, ParamSpec, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beam import InvalidValue, ModalModel, Refusal
+from contact import ContactError, StrobedMap, StroboscopicMap
+from contact.orbits import KickFamily, OrbitDiagram, fold_excess, orbit_diagram
+from studies.physics.two_parameters import fold_of_kicks, two_parameters_at
+from studies.shell.scene import READOUT, Scene, beam_at, nordmark_at, single_mode_at
+
+TITLES = {"map": "Nordmark map", "single_mode": "Eq. (1)", "two_parameters": "two parameters", "beam": "beam"}
+"""The descriptions with a strobed map, from the shortest to the fullest, and how figures name them."""
+
+BELOW = -1e-3
+"""Excess of the motion without impacts from which a motion above grazing starts [1]."""
+
+Strobed = StrobedMap[Any]
+Diagram = OrbitDiagram[Any]
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+def strobed_at(name: str, scene: Scene, frequency: float, model: ModalModel | None = None) -> Strobed:
+    """The strobed map of a description at drive `frequency` [Hz]; `model` saves computing the modes again."""
+    if name == "map":
+        return nordmark_at(scene, frequency)
+    if name == "single_mode":
+        return StroboscopicMap(oscillator=single_mode_at(scene, frequency))
+    make = {"two_parameters": two_parameters_at, "beam": beam_at}.get(name)
+    if make is None:
+        raise InvalidValue(f"name is {name!r}; descriptions with a strobed map are {', '.join(TITLES)}")
+    return StroboscopicMap(oscillator=make(scene, frequency, model))
+
+
+def fold_at(
+    name: str, scene: Scene, frequency: float, period: int, model: ModalModel | None = None
+) -> float | None:
+    """F_m/F_g - 1 at the fold of p_m with one impact, m = `period`; None without one, and for m < 2."""
+    if name not in ("two_parameters", "kicks"):
+        return fold_excess(strobed_at(name, scene, frequency, model), period)
+    beam = beam_at(scene, frequency, model)
+    if name == "kicks":
+        return kick_fold(StroboscopicMap(oscillator=beam), period)
+    return fold_of_kicks(KickFamily(oscillator=beam, period=period)) if period > 1 else None
+
+
+def kick_fold(strobed: StroboscopicMap, period: int) -> float | None:
+    """The fold of p_m by the kick that a collision gives all modes, without simulation of the orbit."""
+    found = KickFamily(oscillator=strobed.oscillator, period=period).fold() if period > 1 else None
+    return None if found is None else found.excess
+
+
+def observe(strobed: Strobed, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """What is drawn of strobed points: x of the map, the read-out of Eq. (1) or of the beam [m or rad]."""
+    return strobed.readout(points, READOUT) if isinstance(strobed, StroboscopicMap) else points[:, 0]
+
+
+def up_and_down(strobed: Strobed, excesses: NDArray[np.float64], **settings: Any) -> dict[str, Diagram]:
+    """The upward scan from the motion without impacts, and the downward scan from where that ends.
+
+    `settings` are options of `contact.orbits.orbit_diagram`; by default it observes as `observe` does.
+    """
+    settings = {"observe": partial(observe, strobed), **settings}
+    quiet = strobed.at(float(excesses[0]) if excesses[0] < 0.0 else BELOW).steady()
+    up = orbit_diagram(strobed, excesses, quiet, **settings)
+    return {"up": up, "down": orbit_diagram(strobed, excesses[::-1], up.end, **settings)}
+
+
+def or_none(function: Callable[P, T], *arguments: P.args, **options: P.kwargs) -> T | None:
+    """The value of the function, or None where it cannot be computed (a ContactError or a Refusal)."""
+    try:
+        return function(*arguments, **options)
+    except (ContactError, Refusal):
+        return None
+
+
+def word(period: int | None) -> str:
+    """A period in words: "p4"; "no period up to 64" for 0, a motion that did not settle; "-" for None."""
+    return "-" if period is None else f"p{period}" if period else "no period up to 64"
+
+
+def words(periods: Mapping[str, int | None]) -> str:
+    """The periods of several descriptions in words."""
+    return ", ".join(f"{TITLES[name]} {word(period)}" for name, period in periods.items())
