@@ -191,7 +191,29 @@ def test_the_command_line_takes_a_record_and_leaves_a_scene(run_study, tmp_path,
     assert ran.code == 2 and "before --fit" in ran.err
 
 
-def test_the_example_makes_a_record_of_each_kind_and_finds_what_it_put_in(run_study):
+def test_the_next_measurement_is_that_of_the_fitted_oscillator(run_study, tmp_path, made, monkeypatch):
+    monkeypatch.setattr("studies.measurement.identify.next_measurement.THIN", (12, 12))
+    record, argv = tmp_path / "mine.csv", ("--fit", "gap", "--next")
+    record.write_text(synthetic("strobe", made["one_mode"], seed=2).text())
+    ran = run_study("identify", "--quick", str(record), *argv, "gap", "restitution")
+    assert ran.code == 0, ran.err
+    assert len(ran.summary["next"]) > 2 and len(ran.rows("measurements")) > 10
+    for names, said in (("amplitude", "measured with each orbit"), ("gapp", "nearest is gap")):
+        ran = run_study("identify", str(record), *argv, names)
+        assert ran.code == 2 and said in ran.err.splitlines()[-1]
+
+
+def test_with_loud_noise_no_place_of_the_next_measurement_is_kept(run_study, tmp_path, monkeypatch):
+    """No orbit outlives its errors, and no two orbits of the letter are there: tables, and no traceback."""
+    monkeypatch.setattr("studies.measurement.identify.next_measurement.THIN", (30, 30))
+    monkeypatch.setattr("studies.measurement.identify.next_measurement.letters_orbits", lambda of: [])
+    ran = run_study("identify", "--quick", "--noise-um", "1000")
+    assert ran.code == 0 and ran.summary["next"] == [] and ran.rows("measurements")
+    assert "no orbit exists" in ran.summary["answers"]["period"]
+
+
+def test_the_example_makes_a_record_of_each_kind_and_finds_what_it_put_in(run_study, monkeypatch):
+    monkeypatch.setattr("studies.measurement.identify.next_measurement.THIN", (12, 12))
     ran = run_study("identify", "--quick")
     assert ran.code == 0, ran.err
     for kind in ("strobe", "displacement", "transitions"):
@@ -199,6 +221,11 @@ def test_the_example_makes_a_record_of_each_kind_and_finds_what_it_put_in(run_st
     for row in ran.rows("parameters"):
         assert abs(float(row["estimate"]) - float(row["scene"])) < 4.0 * float(row["standard_error"])
     assert {row["parameter"] for row in ran.rows("profile")} & {"delay", "restitution"}
+    assert len(ran.summary["next"]) > 2 and {row["orbits"] for row in ran.rows("letter_orbits")} > {
+        "p3",
+        "p11",
+    }
+    assert ran.summary["answers"].keys() == {"period"}
 
 
 def test_a_fitted_beam_is_a_scene(made):

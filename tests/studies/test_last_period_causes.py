@@ -1,4 +1,4 @@
-"""What moves p10 at 23.40 Hz, cause by cause."""
+"""The causes that can move p10 at 23.40 Hz, one by one."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 from beam import single_mode
 from contact import StroboscopicMap
-from studies.experiment.sensitivity.p10 import causes_of, cubic, distorted, period_of, row_of
+from studies.experiment.last_period.causes import causes_of, cubic, distorted, effect_of, period_of
 from studies.letter import PERIODS
 from studies.shell.scene import single_mode_at
 
@@ -78,9 +78,9 @@ def test_a_leaf_that_curves_across_stiffens_as_its_curvature_says(letter_scene):
 
 def test_p10_is_born_from_where_it_should_be(letter_scene, letter_model):
     """4e-3 at 40.80 ms, 2.5e-3 at 40.78 ms; recoil of a base on which T was measured moves nothing."""
-    causes = {cause[0]: cause for cause in causes_of(letter_scene, letter_model)}
+    causes = {cause.words: cause for cause in causes_of(letter_scene, letter_model)}
     names = ("map", "Eq. (1)", "T -0.02 ms", "recoil of 2 kg on 15 Hz, T on it")
-    nordmark, plain, shorter, recoil = (row_of(letter_scene, 1.05, causes[name]) for name in names)
+    nordmark, plain, shorter, recoil = (effect_of(letter_scene, 1.05, causes[name]) for name in names)
     assert nordmark.p10_from is None and plain.born == (11, 11, 10, 10)
     assert plain.p10_from == plain.six_from == pytest.approx(4e-3, rel=0.05)
     assert [shorter.p10_from, recoil.p10_from] == pytest.approx([2.5e-3, 4e-3], rel=0.05)
