@@ -197,7 +197,7 @@ def test_the_next_measurement_is_that_of_the_fitted_oscillator(run_study, tmp_pa
     record.write_text(synthetic("strobe", made["one_mode"], seed=2).text())
     ran = run_study("identify", "--quick", str(record), *argv, "gap", "restitution")
     assert ran.code == 0, ran.err
-    assert len(ran.summary["next"]) > 2 and len(ran.rows("measurements")) > 10
+    assert len(ran.summary["next"]) > 2 and len(ran.rows("measurements")) > len(ran.summary["next"])
     for names, said in (("amplitude", "measured with each orbit"), ("gapp", "nearest is gap")):
         ran = run_study("identify", str(record), *argv, names)
         assert ran.code == 2 and said in ran.err.splitlines()[-1]
