@@ -139,13 +139,15 @@ def draw_plane(found: Sequence[Measurement], plan: Plan) -> Figure:
     cells = edges(np.array(across)), STABLE * np.sinh(edges(np.arcsinh(np.array(up) / STABLE)))
     shown = dict(sorted(zip(places, found, strict=True), key=lambda pair: (pair[1].kept, -pair[1].together)))
     for k, (axis, name) in enumerate(zip(axes.flat, plan.names, strict=True)):
+        words, scale = ERRORS.get(name, (f"error of {name} (SI units)", 1.0))
         seen, lost = np.full((2, len(up), len(across)), np.nan)
         for (f, excess), one in shown.items():
-            (seen if one.kept else lost)[up.index(excess), across.index(f)] = one.errors[k] * ERRORS[name][1]
+            (seen if one.kept else lost)[up.index(excess), across.index(f)] = one.errors[k] * scale
         axis.pcolormesh(*cells, 0.0 * lost, cmap="Greys", vmin=-1.0, vmax=3.0)
-        mesh = axis.pcolormesh(*cells, seen, cmap="viridis_r", norm=LogNorm())
-        bar = figure.colorbar(mesh, ax=axis, location="top", label=ERRORS[name][0])
-        bar.ax.xaxis.set_minor_formatter("")
+        if np.isfinite(seen).any():
+            mesh = axis.pcolormesh(*cells, seen, cmap="viridis_r", norm=LogNorm())
+            bar = figure.colorbar(mesh, ax=axis, location="top", label=words)
+            bar.ax.xaxis.set_minor_formatter("")
         axis.plot(list(letter.PERIODS), [1e-3] * 6, **plotting.LETTER_POINTS)
         for number, one in enumerate(best(found), 1):
             axis.annotate(

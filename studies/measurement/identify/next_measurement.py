@@ -283,7 +283,8 @@ def where_to_measure(
     run.table("next", chosen, "The five best.", show=("frequency_hz", "excess", "period", "together"))
     from studies.measurement.identify import figure  # imports this file
 
-    run.figure("next", figure.draw_plane(found, plan), figure.PLANE)
+    if found:
+        run.figure("next", figure.draw_plane(found, plan), figure.PLANE)
     if corresponding(scene, FREQUENCY_HZ) == FREQUENCY_HZ:
         letters = letter_rows(of, plan)
         run.table("letter_orbits", letters, "The same by the letter's orbits at an excess of 1e-3.")
