@@ -72,7 +72,7 @@ free_period | modes | Fig. 2 | 40.80 +- 0.02 ms
     """\
 coexistence | chart | text on Fig. 2 | hysteretic
     Below grazing the motion without impacts and p_m coexist.
-last_period | noise | text on Fig. 2 | p10
+last_period | last_period | text on Fig. 2 | p10
     The highest observed period is at the limit of resolution and stability.
 bands | hysteresis | text on Fig. 3 | no number
     The transitions occur in bands; the hysteresis is zero at the upper edge and grows towards the lower.
@@ -150,10 +150,10 @@ QUESTIONS: Mapping[str, tuple[str, tuple[str, ...]]] = MappingProxyType(
             ("effective_impact", "soft_wall"),
         ),
         "two_parameters": ("Do energy loss and delay stand for the higher modes?", ("transitions",)),
-        "last_period": ("Why p10 at 23.40 Hz, where the map has p11?", ("sensitivity", "noise")),
+        "last_period": ("Why p10 at 23.40 Hz, where the map has p11?", ("last_period",)),
         "period": (
             "What do the six periods say of the free period in motion, and what would have told more?",
-            ("next_measurement",),
+            ("last_period", "identify"),
         ),
     }
 )

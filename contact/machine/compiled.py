@@ -7,8 +7,8 @@ threads share the cores.
 The machine code is cached between runs.  Numba's own cache checks only the file of a kernel, and would reuse
 a kernel whose callee in another file has changed.  Here the cache folder of a kernel is named after a hash of
 its file and of all files of ``contact`` that this one imports, directly or through others.  A change of a
-source thus recompiles all kernels that rest on it.  Only files that contain the word kernel are hashed; this
-includes the files with constants of kernels.  Folders without use for an hour are removed.
+source thus recompiles all kernels that rest on it, and no others.  Folders without use for an hour are
+removed.
 
 The first kernel that a process has to compile is announced on standard error.
 """
@@ -105,8 +105,7 @@ def _cache_folder(path: Path) -> str:
         return ""
     digest = hashlib.sha256(numba.__version__.encode())
     for source in sorted(sources_of(path)):
-        if b"kernel" in (text := _imports(source)[0]):
-            digest.update(text)
+        digest.update(_imports(source)[0])
     return folder_of(digest.hexdigest(), CACHE_PARENT)
 
 

@@ -45,6 +45,9 @@ MAIN = "transitions"
 ALL = "python -m studies --all"
 """What runs every study."""
 
+MOST_MENTIONS = 2
+"""Studies that may mention an unknown name: a word of more studies is too common to name them."""
+
 
 def chapter(name: str) -> dict[str, Path]:
     """The studies of a chapter: name -> the file that runs."""
@@ -121,9 +124,12 @@ def module_of(name: str) -> str:
 
 
 def unknown(name: str) -> str:
-    """The sentence on a study that does not exist."""
-    nearest = get_close_matches(name[:100], names(), n=1, cutoff=0.6)
-    return f"there is no study {name[:100]}" + (f"; did you mean {nearest[0]}?" if nearest else "")
+    """The sentence on a study that does not exist: who mentions the word, or else the nearest name."""
+    word = re.compile(rf"\b{re.escape(name[:100])}\b".replace("_", "[_ ]"))
+    found = [one for one in names() if word.search(account_of(one))]
+    if not 0 < len(found) <= MOST_MENTIONS:
+        found = get_close_matches(name[:100], names(), n=1, cutoff=0.6)
+    return f"there is no study {name[:100]}" + (f"; did you mean {' or '.join(found)}?" if found else "")
 
 
 def old_name(arguments: Sequence[str]) -> str | None:

@@ -12,9 +12,17 @@ from scipy.signal import lfilter
 from simulated_orbit import beam
 
 from beam import ModalModel
-from contact import NewtonRestitution, NordmarkMap, NotPeriodic, State, StroboscopicMap, UnresolvedCrossing
+from contact import (
+    NewtonRestitution,
+    NordmarkMap,
+    NotPeriodic,
+    State,
+    StroboscopicMap,
+    UnresolvedCrossing,
+    band,
+)
 from contact.maps.nordmark_orbits import MapFamily
-from contact.orbits import PeriodicOrbit, Shooting, cloud, orbit_exponents
+from contact.orbits import MaximalFamily, PeriodicOrbit, Shooting, cloud, orbit_exponents
 
 NEWTON = NewtonRestitution(local_restitution=0.1)
 PERIOD, SIGMA = 3, 1e-7
@@ -84,6 +92,24 @@ def test_the_loop_of_one_mode_is_the_general_one_at_any_amplitudes() -> None:
     assert found[0].points == pytest.approx(both, rel=0.0, abs=1e-10 * strobed.scale)
 
 
+@pytest.mark.parametrize("memory", [0.0, 0.95])
+@pytest.mark.parametrize("name", ["map", "Eq. (1)", "beam"])
+def test_covariances_are_those_of_simulated_clouds(name: str, memory: float) -> None:
+    """Means over 100 blocks, each far longer than the noise remembers, have a standard error of their own."""
+    strobed, state, _ = settled(name)
+    sigma, cycles, blocks = 1e-10 if name == "map" else SIGMA, 20_000, 100
+    predicted = cloud(strobed, state, PERIOD, deviation=sigma, memory=memory)
+    factors = noise(PERIOD * cycles, sigma, memory)
+    points = strobed.orbit(state, factors.size, factors=factors).points.reshape(cycles, PERIOD, -1)
+    away = (points - strobed.orbit(state, PERIOD).points)[cycles // 20 :, :, :4]
+    parts = away.reshape(blocks, -1, *away.shape[1:])
+    products = np.einsum("bnji,bnjk->bjik", parts, parts) / parts.shape[1]
+    expected, error = predicted[:, :4, :4], products.std(axis=0, ddof=1) / np.sqrt(blocks)
+    assert np.max(np.abs(products.mean(axis=0) - expected) / error) < 4.0
+    traces = np.einsum("bjii->b", products) / np.einsum("jii->", expected)
+    assert abs(traces.mean() - 1.0) < 4.0 * traces.std(ddof=1) / np.sqrt(blocks) < 0.25
+
+
 def test_clouds_grow_as_the_inverse_root_of_the_distance_to_the_fold() -> None:
     family = Shooting(oscillator=equation_1(20.9, NEWTON), period=PERIOD)
     fold, sizes = family.fold(), []
@@ -104,6 +130,30 @@ def test_clouds_grow_as_the_inverse_root_of_the_distance_to_the_fold() -> None:
     for refused in (lambda: cloud(*off, deviation=1.0), lambda: orbit_exponents(*off)):
         with pytest.raises(NotPeriodic, match="scale"):
             refused()
+
+
+@pytest.mark.parametrize("name", ["map", "Eq. (1)"])
+def test_clouds_grow_towards_grazing_as_the_inverse_root_of_the_excess(name: str) -> None:
+    """At the upper edge of a band, where the orbit shrinks with the excess; in noise of a thirtieth of the
+    excess as the root of the noise (Simpson, Hogan and Kuske, arXiv:1207.2703)."""
+    edge = band(PERIOD, free_period=40.80e-3, decay_rate=3.56, restitution=0.1).upper
+    excesses, weak, clear = np.array([1e-3, 1e-4, 1e-5]), [], []
+    for excess in excesses:
+        oscillator = equation_1(edge, NEWTON, excess=excess)
+        if name == "map":
+            family = MapFamily(NordmarkMap.from_oscillator(oscillator), PERIOD)
+            strobed = family.map.at(excess)
+            state = next(each for each in family.orbits(excess) if each.stable).states[0]
+        else:
+            strobed = StroboscopicMap(oscillator=oscillator)
+            orbits = MaximalFamily(oscillator=oscillator, period=PERIOD).orbits(excess)
+            state = next(each for each in orbits if each.stable and each.admissible).strobe_state()
+        for sigma, found in ((1e-3 * excess, weak), (excess / 30.0, clear)):
+            run = strobed.orbit(state, 99_999, factors=noise(99_999, sigma, 0.0))
+            spread = np.sqrt(run.points[9999::PERIOD].var(axis=0).sum())
+            found.append(spread / (sigma if found is weak else 1.0))
+    slopes = [np.polyfit(np.log(excesses), np.log(found), 1)[0] for found in (weak, clear)]
+    assert slopes == pytest.approx([-0.5, 0.5], abs=0.03)
 
 
 def test_slow_drift_is_a_slow_change_of_amplitude() -> None:

@@ -14,7 +14,7 @@ from contact import BranchEnded
 from studies.experiment.hysteresis.__main__ import Causes, judge
 from studies.experiment.hysteresis.model import CAUSES
 from studies.experiment.soft_wall.model import loss_of_stability
-from studies.measurement.next_measurement import information
+from studies.measurement.identify import next_measurement
 from studies.methods.validation.two_beams import Rig
 from studies.methods.work_precision.problems import problems_of
 from studies.shell import plotting
@@ -44,7 +44,6 @@ SMALLER = {
         )
     ],
     "claims": ["--positions", "3", "--across", "12", "--restitutions", "3", "--set", "modes.count=4"],
-    "next_measurement": ["--thin", "12"],
     "calibrate": ["--set", "modes.count=4", "--set", "spring.elements_per_leg=12"],
 }
 
@@ -57,7 +56,6 @@ FEWER = {
         "measures.LONG_ENOUGH": 1e-3,
         "measures.PATIENCE": 0.02,
     },
-    "next_measurement": {"pairs.GRID": 31},
     "shape": {"__main__.COARSE": (1, 1)},
 }
 
@@ -69,17 +67,17 @@ DRIVEN = (
     "claims",
     "effective_impact",
     "hysteresis",
+    "last_period",
     "noise",
-    "sensitivity",
     "soft_wall",
     "time_trace",
     "transitions",
     "work_precision",
 )
-ON_A_SPRING = ("breakdown", "calibrate", "effective_impact", "sensitivity", "shape")
+ON_A_SPRING = ("breakdown", "calibrate", "effective_impact", "last_period", "shape")
 
 #: A fit takes hundreds of meshes; what the others compute is tested beside their whole forms.
-SLOW = ("calibrate", "claims", "next_measurement", "shape")
+SLOW = ("calibrate", "claims", "shape")
 
 
 @pytest.mark.parametrize(
@@ -111,6 +109,10 @@ REFUSED = [
     ("breakdown", "--points 900000", "points is 900000, which makes 4.5e+06 cells"),
     ("modes", "--frames 1000000", "--frames must be an even number, at most 10000"),
     ("time_trace", "--frames 1000000", "frames is 1000000; a film has at most 10000"),
+    ("last_period", "--readout -1", "readout is -1 m; it must be 0 or more"),
+    ("last_period", "--stability 0", "stability is 0 [1]; it must be above 0"),
+    ("last_period", "--correlation-times -1", "correlation_times holds -1 s; it must be 0 or more"),
+    ("identify", "--noise-um 0", "noise_um is 0.0 um; it must be finite and above zero"),
     ("identify", "--drive 22.2 2", "drive is 22.2 Hz, 2 mm; it needs a record"),
     ("modes", "--executor moon", "executor is 'moon'; it must be threads"),
     ("time_trace", "--set stop.gap_m=1e-300", "stop.gap_m must be at least 1e-12"),
@@ -127,7 +129,6 @@ REFUSED = [
     ("noise", "--waiting 10", "waiting is 10 drive periods; it must be at least 1000"),
     ("noise", "--correlation-times -1", "correlation_times holds -1 s; it must be 0 or more"),
     ("noise", "--scans 3", "scans is 3; quantiles need at least 10"),
-    ("noise", "--readout -1", "readout is -1 m; it must be 0 or more"),
     ("soft_wall", "--decades 5 3", "decades"),
     ("shape", "--off-line 0", "--off-line"),
     ("shape", "--channel-sheet 0", "--channel-sheet"),
@@ -170,10 +171,9 @@ def test_a_docstring_says_command_and_outputs_and_the_table_the_run_time(name):
         assert all(1.0 <= seconds <= 600.0 for seconds in run_times()[name])
 
 
-def test_where_nothing_is_found_a_study_says_so(monkeypatch, tmp_path, letter_scene, capsys):
+def test_where_nothing_is_found_a_study_says_so(tmp_path, letter_scene, capsys):
     """No orbit within its errors, no fold in the map, and a response that does not reach its frequency."""
-    monkeypatch.setattr(information, "letters_orbits", lambda of: [])
-    assert "no orbit exists at one standard error" in information.answer(None, [], information.Plan())
+    assert "no orbit exists at one standard error" in next_measurement.answer([], [], next_measurement.Plan())
     run = Run(study="hysteresis", folder=tmp_path, scene=letter_scene, command="")
     judge(run, [], {}, Causes(at="", **{name: None if "map" in name else 1.0 for name in CAUSES}))
     assert "nothing to compare" in capsys.readouterr().err and not run.close("done", {})["verdicts"]

@@ -11,11 +11,13 @@ import pytest
 
 from contact import DelayedRestitution, simulate
 from contact.orbits import MaximalFamily
+from studies.measurement.identify import next_measurement
 from studies.measurement.identify.fit import fit
 from studies.measurement.identify.profiles import profile
 from studies.measurement.identify.records import read_record, synthetic
 from studies.measurement.identify.starts import prediction_of, repetition
 from studies.physics.parameters import fitted_scene, parameters_of, with_values
+from studies.shell.run import Run
 from studies.shell.scene import beam_at, read_scene, single_mode_at
 
 NAMES = ("free_period", "decay_rate", "gap", "restitution")
@@ -191,7 +193,30 @@ def test_the_command_line_takes_a_record_and_leaves_a_scene(run_study, tmp_path,
     assert ran.code == 2 and "before --fit" in ran.err
 
 
-def test_the_example_makes_a_record_of_each_kind_and_finds_what_it_put_in(run_study):
+def test_the_next_measurement_is_that_of_the_fitted_oscillator(run_study, tmp_path, made, monkeypatch):
+    monkeypatch.setattr("studies.measurement.identify.next_measurement.THIN", (12, 12))
+    record, argv = tmp_path / "mine.csv", ("--fit", "gap", "--next")
+    record.write_text(synthetic("strobe", made["one_mode"], seed=2).text())
+    ran = run_study("identify", "--quick", str(record), *argv, "gap", "restitution")
+    assert ran.code == 0, ran.err
+    assert len(ran.summary["next"]) > 2 and len(ran.rows("measurements")) > len(ran.summary["next"])
+    for names, said in (("amplitude", "measured with each orbit"), ("gapp", "nearest is gap")):
+        ran = run_study("identify", str(record), *argv, names)
+        assert ran.code == 2 and said in ran.err.splitlines()[-1]
+
+
+def test_with_loud_noise_no_place_of_the_next_measurement_is_kept(tmp_path, letter_scene, monkeypatch):
+    """No orbit outlives its errors, and the letter has no orbits to compare: tables, and no traceback."""
+    monkeypatch.setattr(next_measurement, "THIN", (30, 30))
+    monkeypatch.setattr(next_measurement, "letters_orbits", lambda of: [])
+    run = Run(study="identify", folder=tmp_path, scene=letter_scene, command="")
+    places = next_measurement.where_to_measure(letter_scene, run, next_measurement.Plan().names, None, 1e-3)
+    assert places == [] and "measurements.csv" in run.files
+    assert "no orbit exists" in run.close("done", {})["answers"]["period"]
+
+
+def test_the_example_makes_a_record_of_each_kind_and_finds_what_it_put_in(run_study, monkeypatch):
+    monkeypatch.setattr("studies.measurement.identify.next_measurement.THIN", (12, 12))
     ran = run_study("identify", "--quick")
     assert ran.code == 0, ran.err
     for kind in ("strobe", "displacement", "transitions"):
@@ -199,6 +224,11 @@ def test_the_example_makes_a_record_of_each_kind_and_finds_what_it_put_in(run_st
     for row in ran.rows("parameters"):
         assert abs(float(row["estimate"]) - float(row["scene"])) < 4.0 * float(row["standard_error"])
     assert {row["parameter"] for row in ran.rows("profile")} & {"delay", "restitution"}
+    assert len(ran.summary["next"]) > 2 and {row["orbits"] for row in ran.rows("letter_orbits")} > {
+        "p3",
+        "p11",
+    }
+    assert ran.summary["answers"].keys() == {"period"}
 
 
 def test_a_fitted_beam_is_a_scene(made):

@@ -1,4 +1,4 @@
-"""What to measure next: information, its limits and what it says, each by a second route."""
+"""The next measurement: information, its limits and its answer, each by a second route."""
 
 from __future__ import annotations
 
@@ -12,8 +12,9 @@ from scipy.optimize import least_squares
 from beam import single_mode
 from contact import DelayedRestitution, HarmonicDrive, ImpactOscillator, Stop, simulate
 from contact.orbits import Shooting
-from studies.measurement.next_measurement import information as design
-from studies.measurement.next_measurement.information import Nodes, Plan, covariance, errors_of, measurement
+from studies.measurement.identify import figure
+from studies.measurement.identify import next_measurement as design
+from studies.measurement.identify.next_measurement import Nodes, Plan, covariance, errors_of, measurement
 from studies.physics.parameters import with_values
 
 PLAN = Plan()
@@ -126,14 +127,16 @@ def test_the_best_places_outlive_their_errors_and_lie_apart(plane):
                 assert there.stable and there.admissible
 
 
-def test_what_the_letters_points_tell(plane):
-    """T to 0.02 ms and far better by any from p4 on; tau and delay by p4, or two orbits of the same speed."""
+def test_the_errors_by_the_letters_orbits(plane):
+    """T to 0.02 ms, and far better from p4 on; tau and delay by p4, or by two orbits of the same speed."""
     six = design.letters_orbits(of)
     assert [orbit.period for orbit in six] == [3, 4, 5, 6, 8, 11]
     alone = np.array([errors_of([orbit], PLAN) for orbit in six])
     assert alone[0, 0] > 0.02e-3 > 1.5e-6 > alone[1:, 0].max()
     assert alone[1, 1] == pytest.approx(0.0066, rel=0.05) and np.delete(alone[:, 1], 1).min() > 0.1
     assert errors_of([six[0], six[2]], PLAN)[1:] == pytest.approx((0.003, 3.9e-6), rel=0.05)
-    assert "p3 and p5, which meet the stop" in design.answer(of, plane, PLAN)
-    drawn = design.draw(plane, PLAN)
+    rows = design.letter_rows(of, PLAN)
+    best = min((row for row in rows if len(row.speeds) == 2), key=lambda row: row.errors[1])
+    assert best.orbits == "p3 and p5" in design.answer(plane, rows, PLAN)
+    drawn = figure.draw_plane(plane, PLAN)
     assert isinstance(drawn, Figure) and len(drawn.axes) == 6

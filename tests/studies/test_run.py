@@ -22,7 +22,7 @@ from beam import InvalidValue
 from contact import NotPeriodic
 from studies import ROOT
 from studies.shell.files import write_atomically
-from studies.shell.programs import names, old_name
+from studies.shell.programs import names, old_name, unknown
 from studies.shell.scene import Scene
 from studies.shell.study import Run, study
 
@@ -251,6 +251,13 @@ def test_an_unknown_study_is_answered_with_the_nearest_and_the_chapters():
         done = subprocess.run([sys.executable, "-m", *command], cwd=ROOT, capture_output=True, text=True)
         assert done.returncode == 2 and "did you mean transitions?" in done.stderr and not done.stdout
         assert all(f"    {name} " in done.stderr for name in names())
+
+
+@pytest.mark.parametrize(
+    ("word", "study"), [("sensitivity", "last_period"), ("next_measurement", "identify")]
+)
+def test_a_study_that_became_part_of_another_is_answered_with_that_one(word, study):
+    assert f"did you mean {study}?" in unknown(word)
 
 
 def test_an_old_command_runs_and_names_the_new_one():

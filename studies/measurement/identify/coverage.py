@@ -1,4 +1,4 @@
-"""Does a fit tell the truth? Synthetic records of known oscillators, and how often 90 % intervals hold them.
+"""Are the stated errors true? The share of 90 % intervals that hold the values of known oscillators.
 
 Record i of trial k has the noise of the read-out (of a table: of the amplitude) from the seed (SEED, k, i),
 whoever computes it. Fits start at the true values, which what they find does not depend on. A share p of n

@@ -32,26 +32,26 @@ from studies.physics.parameters import parameters_of, require_names, with_values
 Array = NDArray[np.float64]
 
 LEVEL = 0.90
-"""Of the intervals."""
+"""Probability of the intervals."""
 
 SINGULAR = 1e-8
-"""Ratio of singular values below which a direction of the parameters is not seen at all."""
+"""Ratio of singular values below which the record does not depend on a direction of the parameters."""
 
 TOO_SMALL = 1e-3
 """Probability of such residuals from noise alone, below which the model is called too small."""
 
 LAGS = 10
-"""Of the autocorrelation of residuals."""
+"""Number of lags in the autocorrelation of residuals."""
 
 MOST = 200
 """Steps of a fit: a dozen are usual, a hundred along a valley of two parameters that trade off."""
 
 LEASH = 1.0
-"""Of the parameters while the beginning of a record is fitted, which need not tell all of them."""
+"""Prior of the parameters while the beginning of a record is fitted, which need not determine all of them."""
 
 REGION, PART = 2.0, 0.3
 """Half axes of the confidence region in standard errors; part of the largest from which a parameter takes
-part in a direction that is not seen."""
+part in a direction that is not determined."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -90,7 +90,7 @@ class Fit:
 
     @property
     def too_small(self) -> bool:
-        """Whether the residuals are no noise, so that the model is too small for the record."""
+        """Whether the residuals are unlike noise: the model is too small for the record."""
         return self.chance < TOO_SMALL
 
     @property
@@ -139,8 +139,8 @@ class Problem:
         return self.last[1], self.last[2]
 
     def residuals(self, unknowns: Array) -> Array:
-        """Shape (rows + unknowns,), the last those of what is held; not a number where there is no orbit, so
-        that the step is rejected."""
+        """Residuals of rows and priors, shape (rows + unknowns,); not a number where there is no orbit, which
+        rejects the step."""
         try:
             oscillator, extra = self.at(unknowns)
             predicted = self.prediction.values(oscillator, extra).ravel()
@@ -179,7 +179,7 @@ def fit(
     """Fit the named parameters; the others keep the values of `oscillator`, driven as the record was.
 
     `noise` is the standard deviation of the read-out where it is known [m], or of the excesses of a table.
-    ValueError is raised, in one sentence, for a record that cannot tell what is asked.
+    ValueError is raised, in one sentence, for a record that cannot determine them.
     """
     require_names(names, oscillator)
     names = tuple(names)
@@ -222,7 +222,7 @@ def fit(
         problem=problem,
         unknowns=found.x,
     )
-    if not result.too_small:  # else errors mean little, and that is told
+    if not result.too_small:  # else errors mean little, and `report` says so
         lost = result.errors > sizes[:n] * np.maximum(np.abs(found.x[:n]), 1.0)
         if np.any(lost):
             worst = names[int(np.argmax(lost))]
@@ -234,10 +234,10 @@ def fit(
 
 
 def _blind(axes: Array, names: Sequence[str]) -> str:
-    """What a record cannot do with the parameters of its last axis."""
+    """The parameters of the last axis, which a record cannot separate or determine."""
     share = np.abs(axes[-1][: len(names)])
     blind = [name for name, part in zip(names, share, strict=True) if part > PART * share.max()]
-    return f"tell {' from '.join(blind)}" if len(blind) > 1 else f"see {blind[0]}"
+    return f"tell {' from '.join(blind)}" if len(blind) > 1 else f"determine {blind[0]}"
 
 
 def _require_same_impacts(problem: Problem, unknowns: Array, axes: Array) -> None:

@@ -1,8 +1,9 @@
-"""What an oscillator with given parameters would have put into a record, and how that changes with them.
+"""Predicted rows of a record for an oscillator with given parameters, and their derivatives.
 
 Strobe points: the periodic orbit p_m next to the last one (``contact.orbits.Shooting``), its m strobes in the
-cyclic order that fits best. Displacement: the motion from a start that is fitted too; modes that the record
-hardly sees are held by a prior, one per cent of the gap at the tip. Transitions: the fold of each p_m.
+cyclic order that fits best. Displacement: the motion from a start that is fitted too; modes that hardly
+appear in the record are held by a prior, one per cent of the gap at the tip. Transitions: the fold of each
+p_m.
 """
 
 from __future__ import annotations
@@ -184,7 +185,7 @@ class Displacement(Prediction):
         return [*(self._upto(count) for count in counts), self]
 
     def misfit(self, oscillator: ImpactOscillator, hits: int) -> tuple[bool, float]:
-        """Whether the first rows do not have so many `hits`, and residuals there over their size."""
+        """Whether the first rows have another number of `hits`; residuals there over their size."""
         part = self._upto(self.first)
         off = part._off(oscillator)
         return part.hits != hits or off == math.inf, off

@@ -1,4 +1,4 @@
-"""Measured records: three kinds, told by their heading, and synthetic ones.
+"""Measured records: three kinds, distinguished by their heading, and synthetic ones.
 
     x_m[,v_m_per_s]                        strobe points of a settled motion, a row a drive period
     time_s,x_m                             the tip at a constant rate
@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 Kind = Literal["strobe", "displacement", "transitions"]
 
 READ_OUT = 0.5e-6
-"""Noise of the read-out of synthetic records, and what residuals are counted in if nobody says [m]."""
+"""Noise of the read-out of synthetic records, and the default unit of residuals [m]."""
 
 HEADINGS: dict[tuple[str, ...], Kind] = {
     ("x_m",): "strobe",
@@ -51,7 +51,7 @@ UNEQUAL = 0.02
 class Record:
     """A record: its `columns`, `rows` of shape (n_rows, n_columns), and the drive where it is known.
 
-    `frequency` [Hz] and `amplitude` [m] are None where the record does not say them.
+    `frequency` [Hz] and `amplitude` [m] are None where the record has no such line.
     """
 
     columns: tuple[str, ...]

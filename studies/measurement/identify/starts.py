@@ -1,4 +1,4 @@
-"""Where a fit starts: found in the record.
+"""Start values of a fit, from the record.
 
 Strobe points: of the orbits p_m of the given oscillator, m the repetition of the record, the one at the
 record's drive; where there is none, or none like the record, parameters and approach speed are fitted
@@ -61,21 +61,21 @@ CORNER, LEVEL, FINE = 0.01, 2e-4, 81
 height within which the tip rests on the stop; instants at which the curves of both sides are compared."""
 
 WINDOW, DENSEST, ENOUGH = 0.08, 40, 100
-"""Part of a drive period on either side that tells the velocity at an impact; rows a period at least, and as
-many as are looked at."""
+"""Part of a drive period on either side that gives the velocity at an impact; least number of rows a period;
+most rows that are used."""
 
 SHARES, OF_CORNERS = np.linspace(1.0, 0.0, 5), ("gap", "restitution", "delay")
 """Places of the top between where the curves on both sides meet and the highest row, and what they give."""
 
 STRETCHES, ROWS, SHORTEST = 8, 60, 0.1
-"""Stretches between impacts, and rows of each, that tell free period and decay rate; drive periods of the
+"""Stretches between impacts, and rows of each, that give free period and decay rate; drive periods of the
 shortest."""
 
 
 def prediction_of(
     record: Record, oscillator: ImpactOscillator, names: Sequence[str]
 ) -> tuple[Prediction, ImpactOscillator]:
-    """What predicts the rows, and the oscillator that the fit starts from; ValueError for a poor record."""
+    """The prediction of the rows, and the start of the fit; ValueError for a poor record."""
     if record.kind == "transitions":
         return Transitions(record), oscillator
     if record.kind == "strobe":
@@ -96,7 +96,7 @@ def repetition(record: Record) -> int:
             f"the record is too short, or its strobe points do not repeat: no period up to {most} rows"
         )
     if period == 1:
-        raise InvalidValue("the strobe points repeat after one drive period: nothing tells an impact in it")
+        raise InvalidValue("the strobe points repeat after one drive period: no sign of an impact")
     return period
 
 
@@ -167,11 +167,11 @@ def _searched(
 
 class Corner(NamedTuple):
     """An impact in a displacement: the last row before it, the first after it, and what the cubics through
-    the rows on both sides say of height [m], restitution [1] and delay [s], shape (n_shares, 3)."""
+    the rows on both sides give for height [m], restitution [1] and delay [s], shape (n_shares, 3)."""
 
     before: int
     after: int
-    told: Array
+    values: Array
 
 
 def _corners(times: Array, x: Array, oscillator: ImpactOscillator, waits: bool) -> list[Corner]:
@@ -196,11 +196,11 @@ def _corners(times: Array, x: Array, oscillator: ImpactOscillator, waits: bool) 
             continue
         # the top lies between the highest row and where the curves meet, or is seen where the tip rests on it
         over = left[meet] - x[i] if there - here == 2 else 0.0
-        told = []
+        values = []
         for top in x[i] + over * SHARES:
             met, gone = int(np.argmax(left >= top)), FINE - 1 - int(np.argmax(right[::-1] >= top))
-            told.append((top, np.clip(-v_out[gone] / v_in[met], 0.0, 1.0), max(s[gone] - s[met], 0.0)))
-        found.append(Corner(here, there, np.array(told)))
+            values.append((top, np.clip(-v_out[gone] / v_in[met], 0.0, 1.0), max(s[gone] - s[met], 0.0)))
+        found.append(Corner(here, there, np.array(values)))
     return found
 
 
@@ -229,16 +229,16 @@ def _displacement(
     expected = sum(row < first for row in near)
 
     def tried(values: dict[str, float]) -> tuple[tuple[bool, float], Displacement, ImpactOscillator]:
-        """Whether the first impacts are missed, and by how much their surroundings."""
+        """Whether the first impacts are missed, and the misfit around them."""
         begun = with_values(oscillator, {name: values[name] for name in names if name in values})
         found = Displacement(record, begun, _start(times, x, stretches[0], begun), first)
         return found.misfit(begun, expected), found, begun
 
     law: dict[str, float] = {name: known[name].value for name in ("restitution", "delay") if name in known}
-    medians = np.median([one.told for one in corners], axis=0)
-    told = [dict(zip(OF_CORNERS, row, strict=True)) for row in medians.tolist()]
-    highest = {"gap": max(told[0]["gap"], float(x.max()))}
-    choices: list[dict[str, float]] = [rung | one | other for one in told for other in (highest, law, {})]
+    medians = np.median([one.values for one in corners], axis=0)
+    rows = [dict(zip(OF_CORNERS, row, strict=True)) for row in medians.tolist()]
+    highest = {"gap": max(rows[0]["gap"], float(x.max()))}
+    choices: list[dict[str, float]] = [rung | one | other for one in rows for other in (highest, law, {})]
     return min(map(tried, choices), key=lambda one: one[0])[1:]
 
 
@@ -259,7 +259,7 @@ def _rung(
     matrix[:, :2] = np.column_stack([np.sin(w * t), np.cos(w * t)])
 
     def split(unknowns: Array) -> tuple[Array, Array]:
-        """Residuals and coefficients, the first two those of the steady motion."""
+        """Residuals and coefficients; the first two coefficients belong to the steady motion."""
         given = dict(zip(free, unknowns.tolist(), strict=True))
         period, rate = (given.get(name, known[name].value) for name in ("free_period", "decay_rate"))
         free_motion = np.exp((2j * math.pi / period - 0.5 * rate) * age)
@@ -276,7 +276,7 @@ def _rung(
 
 
 def _start(times: Array, x: Array, stretch: tuple[int, int], oscillator: ImpactOscillator) -> State:
-    """The state at the first row of a stretch without impact, whose rows tell it; other modes near rest."""
+    """The state at the first row of a stretch without impact, from its rows; other modes near rest."""
     model, (a, b) = oscillator.model, stretch
     rows = np.unique(np.linspace(a, b - 1, 4 * ROWS).astype(int))
     w, age = oscillator.driven.angular_frequency, times[rows] - times[a]

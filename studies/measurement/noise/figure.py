@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from studies import letter
-from studies.measurement.noise.ends import End, Observed
+from studies.measurement.noise.model import End, Observed
 from studies.shell import plotting
 from studies.shell.plotting import BLACK, BLUE, GUIDE, LETTER, PAGE, VERMILION, tint
 from studies.shell.scene import Scene, corresponding
@@ -24,7 +24,7 @@ OBSERVED = (
 ESCAPE = (
     "Where orbits end in scans, from their end without noise (grazing for p1, the fold for the others): "
     "simulated (5 to 95 %, median with its error) and by formula (black ticks at 5, 50 and 95 %). Filled: "
-    "the first slip or touch, which the formulas are for; open: where an observer no longer sees the orbit."
+    "the first slip or touch, which the formulas describe; open: where an observer no longer sees the orbit."
 )
 LOOKS = {
     "touched": (BLUE, "o", BLUE),

@@ -1,4 +1,4 @@
-"""A p_m orbit at a drive frequency in one description: its fold, what noise makes of it there, its strobes.
+"""A p_m orbit at a drive frequency in one description: its fold, the effect of noise there, its strobes.
 
 Next to a fold the m-th iterate is the normal form eta' = eta + (K/4)(x - x_fold) - eta^2 of one coordinate,
 in which K is the one number of the orbit: its multiplier there obeys (1 - lambda)^2 = K (x - x_fold), x the
@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from beam import ModalModel
-from contact import MapFamily, MaximalFamily, StroboscopicMap
-from contact.orbits import Shooting, strobe_derivatives
+from contact import MaximalFamily, StroboscopicMap
+from contact.orbits import Shooting, fold_excess, strobe_derivatives
 from studies.shell.scene import Scene, beam_at, nordmark_at, single_mode_at
 
 BESIDE = 1e-3
@@ -25,20 +25,22 @@ BESIDE = 1e-3
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Place:
-    """p_m at a drive frequency; `description` is "map", "Eq. (1)" or "beam", `model` that of a beam."""
+    """p_m at a drive frequency, of Eq. (1) or of the beam with this `model`."""
 
     scene: Scene
-    description: str
     m: int
     frequency_hz: float
     model: ModalModel | None = None
 
+    @property
+    def description(self) -> str:
+        """The name of the description."""
+        return "Eq. (1)" if self.model is None else "beam"
+
     @cached_property
-    def strobed(self) -> Any:
+    def strobed(self) -> StroboscopicMap:
         """Its period map, at grazing."""
-        if self.description == "map":
-            return nordmark_at(self.scene, self.frequency_hz)
-        if self.description == "Eq. (1)":
+        if self.model is None:
             oscillator = single_mode_at(self.scene, self.frequency_hz)
         else:
             oscillator = beam_at(self.scene, self.frequency_hz, self.model)
@@ -47,14 +49,17 @@ class Place:
     @cached_property
     def family(self) -> Any:
         """The orbits p_m."""
-        if self.description == "map":
-            return MapFamily(self.strobed, self.m)
-        if self.description == "Eq. (1)":
-            return MaximalFamily.from_oscillator(self.strobed.oscillator, period=self.m)
-        kicks = Shooting(oscillator=self.strobed.oscillator, period=self.m).kicks.fold()
-        return Shooting(
-            oscillator=self.strobed.oscillator, period=self.m, impacts=kicks.kick.touches if kicks else 1
-        )
+        oscillator = self.strobed.oscillator
+        if self.model is None:
+            return MaximalFamily.from_oscillator(oscillator, period=self.m)
+        kicks = Shooting(oscillator=oscillator, period=self.m).kicks.fold()
+        return Shooting(oscillator=oscillator, period=self.m, impacts=kicks.kick.touches if kicks else 1)
+
+    @cached_property
+    def map_fold(self) -> float | None:
+        """The excess of the fold in Nordmark's map [1]."""
+        strobed = nordmark_at(self.scene, self.frequency_hz)
+        return fold_excess(strobed, self.m)
 
     @cached_property
     def fold(self) -> Any:
@@ -66,18 +71,8 @@ class Place:
         """A strobe of the stable p_m at `excess`, or None."""
         for orbit in self.family.orbits(excess):
             if orbit.stable and orbit.admissible:
-                return self.strobe(orbit)
+                return orbit.strobe_state()
         return None
-
-    def strobe(self, orbit: Any) -> Any:
-        """The state of an orbit at a strobe."""
-        return orbit.states[0] if self.description == "map" else orbit.strobe_state()
-
-    def across(self, size: int) -> np.ndarray:
-        """What coordinates, `size` of them, add up to the displacement of the tip (x of the map)."""
-        row = np.zeros(size)
-        row[: 1 if self.description == "map" else size // 2] = 1.0
-        return row
 
     @cached_property
     def steepness(self) -> float:
@@ -88,7 +83,7 @@ class Place:
     @cached_property
     def unevenness(self) -> float:
         """Standard deviation of the weighted mean of the e_j over their own: 1/sqrt(m) or more."""
-        steps = strobe_derivatives(self.strobed.at(self.fold.excess), self.strobe(self.fold), self.m)
+        steps = strobe_derivatives(self.strobed.at(self.fold.excess), self.fold.strobe_state(), self.m)
         whole = np.eye(len(steps[0][1]))
         for step, _pull in steps:
             whole = step @ whole

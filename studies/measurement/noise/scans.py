@@ -1,17 +1,17 @@
 """Scans of the amplitude as an observer makes them, with noise of the drive.
 
-He raises or lowers the amplitude by a step, smoothly over `RAMP` of the time that he then waits, and notes
-what he saw: p_m if more than half of the periods lay between impacts m periods apart, p_1 if more than half
-of them lay in stretches without impact longer than `QUIET` periods.  p_m is *lost*, and p_1 *left*, at the
-first amplitude at which he did not see it.  Before that p_m *slips* where for the first time two impacts are
-not m periods apart, and p_1 is *touched* by the first impact (in the first half of the waiting, or they count
-for the next step): below its fold the motion can be thrown back to p_m many times before it dies out.
-The scan begins at a random part of a step, so that results do not lie on a grid; downwards it begins on p_m
-next to its fold, where that has room for the noise.  Whether a scan from above grazing comes to p_m at all is
-asked apart (`meets`): low in a band Eq. (1) is chaotic there, and can end in p_1 first.
+The observer raises or lowers the amplitude by a step, smoothly over `RAMP` of the waiting that follows, and
+notes p_m if more than half of the periods lie between impacts m periods apart.  p_1 is noted if more than
+half of them lie in stretches without impact longer than `QUIET` periods.
 
-In period n the amplitude is (1 + x)(1 + e_n) times that at grazing, x the excess that he set; e_n is
-Gaussian, white or with the memory exp(-1/(f t_c)) of a drift of correlation time t_c, and stationary.
+    lost, left         the first amplitude at which p_m, or p_1, is not noted
+    slipped, touched   before that: for the first time two impacts are not m periods apart; the first impact
+                       (in the first half of the waiting, or it counts for the next step)
+
+Below its fold the motion can be thrown back to p_m many times before it is lost.  A scan begins at a random
+part of a step, so that results do not lie on a grid; downwards it begins on p_m next to its fold, where this
+leaves room for the noise.  Whether a scan from above grazing reaches p_m at all is a question of its own
+(`meets`): low in a band Eq. (1) is chaotic there, and can end in p_1 first.
 """
 
 from __future__ import annotations
@@ -29,9 +29,7 @@ from beam import InvalidValue
 from contact import ContactError
 from contact.orbits import born
 from studies.measurement.noise.places import Place
-
-QUIET = 64
-"""Drive periods without impact beyond which the motion counts as p_1: longer than any period that is told."""
+from studies.physics.drive_noise import Drift, DriveNoise, require_small, watched
 
 FAR = 6.0
 """Standard deviations of the noise, beside two steps, from the start of a scan to the end of the orbit."""
@@ -43,26 +41,26 @@ RAMP = 0.02
 """Part of the waiting in which the amplitude goes to its new value: a sudden step would swing over."""
 
 MEETINGS = 10
-"""Scans from the scene's `born_excess` that are asked whether they meet p_m."""
+"""Scans from the scene's `born_excess` for the share of those that meet p_m."""
 
 ROOM = 3.0
 """Standard deviations of the noise above the start of a scan at which p_m must still be: in the low half of a
 band Eq. (1) has it in a window above its fold only, up to the graze of another touch, at the end of the band
 too narrow to hold it in noise."""
 
-LARGEST, RATIO, FEWEST = 0.02, 20.0, 1000
-"""Of noise and step [1], and of their ratio; drive periods waited: long against `QUIET`."""
+RATIO, FEWEST = 20.0, 1000
+"""Largest ratio of noise and step; least number of drive periods waited: long against `QUIET`."""
 
 EPS = 1e-9
 
 Array = NDArray[np.float64]
 ENDS = ("slipped", "lost", "touched", "left")
-"""What is noted of each scan: downwards of p_m, upwards of p_1."""
+"""Ends that are noted: of p_m downwards, of p_1 upwards."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Protocol:
-    """How the scan is made and what noise it has.
+class Protocol(DriveNoise):
+    """How a scan is made, in which noise.
 
     Parameters
     ----------
@@ -70,16 +68,10 @@ class Protocol:
         Of the excess [1].
     waiting : int
         At each amplitude, in drive periods.
-    stability : float
-        Standard deviation of the amplitude over itself [1].
-    correlation_s : float
-        Correlation time of the drift [s]; 0 for white noise.
     """
 
     step: float
     waiting: int
-    stability: float
-    correlation_s: float = 0.0
 
     @property
     def reach(self) -> float:
@@ -92,9 +84,8 @@ class Protocol:
         return math.ceil(2.0 * self.reach / self.step) + BEYOND
 
     def __post_init__(self) -> None:
-        for name, value in (("stability", self.stability), ("amplitude_step", self.step)):
-            if not 0.0 < value <= LARGEST:
-                raise InvalidValue(f"{name} is {value:g} [1]; it must be above 0, and at most {LARGEST:g}")
+        super().__post_init__()
+        require_small("amplitude_step", self.step)
         low, high = self.stability / RATIO, self.stability * RATIO
         if not low * (1.0 - EPS) <= self.step <= high * (1.0 + EPS):
             raise InvalidValue(
@@ -103,51 +94,6 @@ class Protocol:
             )
         if self.waiting < FEWEST:
             raise InvalidValue(f"waiting is {self.waiting} drive periods; it must be at least {FEWEST}")
-        if self.correlation_s < 0.0:
-            raise InvalidValue(f"correlation_times holds {self.correlation_s:g} s; it must be 0 or more")
-
-
-def memory_of(correlation_s: float, frequency_hz: float) -> float:
-    """Correlation of the noise in neighbouring periods."""
-    return math.exp(-1.0 / (frequency_hz * correlation_s)) if correlation_s else 0.0
-
-
-def named(correlation_s: float) -> str:
-    """A name for noise of this correlation time."""
-    return f"drift of {correlation_s:g} s" if correlation_s else "white"
-
-
-class Drift:
-    """e_n of one scan, piece by piece, of standard deviation `deviation`."""
-
-    def __init__(self, deviation: float, memory: float, dice: np.random.Generator) -> None:
-        self.deviation, self.memory, self.dice = deviation, memory, dice
-        self.last = float(dice.standard_normal())
-
-    def next(self, count: int) -> Array:
-        """The next `count` of them."""
-        fresh = self.dice.standard_normal(count)
-        if self.memory == 0.0:
-            return self.deviation * fresh
-        from scipy.signal import lfilter  # slow to import
-
-        source, memory = math.sqrt(1.0 - self.memory**2), self.memory
-        found, _ = lfilter([source], [1.0, -memory], fresh, zi=[memory * self.last])
-        self.last = float(found[-1])
-        return np.asarray(self.deviation * found)
-
-
-def watched(impacts: NDArray[np.int64], m: int) -> tuple[float, float]:
-    """Share of the periods in which p_m was seen, p_1 for m = 0, and what part of them had passed before it
-    was broken for the first time; 1 if it was not."""
-    size, hits = impacts.size, np.flatnonzero(impacts)
-    if m == 0:
-        gaps = np.diff(hits, prepend=0, append=size)
-        return float(gaps[gaps > QUIET].sum() / size), float(hits[0] / size) if hits.size else 1.0
-    regular = np.diff(hits) == m
-    kept = hits if regular.all() else hits[: int(np.argmin(regular)) + 1]
-    last = int(kept[-1]) + m if kept.size else 0
-    return float(m * np.count_nonzero(regular) / size), min(last / size, 1.0)
 
 
 def waitings(
@@ -200,11 +146,10 @@ def scans(place: Place, protocol: Protocol, count: int, seed: int) -> dict[str, 
     NaN where the orbit was not seen at the first amplitude, or not lost in `Protocol.steps`.
     """
     key = [seed, round(1e3 * place.frequency_hz), place.m, round(1e3 * protocol.correlation_s)]
-    memory = memory_of(protocol.correlation_s, place.frequency_hz)
 
     def dice_of(i: int, way: int) -> tuple[Drift, float]:
         dice = np.random.default_rng([*key, i, way])
-        return Drift(protocol.stability, memory, dice), dice.random()
+        return protocol.drift(place.frequency_hz, dice), dice.random()
 
     below = place.strobed.at(-protocol.reach).steady()
     ways = (

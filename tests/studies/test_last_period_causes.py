@@ -1,4 +1,4 @@
-"""What moves p10 at 23.40 Hz, cause by cause."""
+"""The causes that can move p10 at 23.40 Hz, one by one."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 from beam import single_mode
 from contact import StroboscopicMap
-from studies.experiment.sensitivity.p10 import causes_of, cubic, distorted, period_of, row_of
+from studies.experiment.last_period.causes import causes_of, cubic, distorted, effect_of, period_of
 from studies.letter import PERIODS
 from studies.shell.scene import single_mode_at
 
@@ -79,11 +79,11 @@ def test_a_leaf_that_curves_across_stiffens_as_its_curvature_says(letter_scene):
 @pytest.fixture(scope="module")
 def causes(letter_scene, letter_model):
     """By name."""
-    return {cause[0]: cause for cause in causes_of(letter_scene, letter_model)}
+    return {cause.words: cause for cause in causes_of(letter_scene, letter_model)}
 
 
 def test_p10_is_born_from_where_it_should_be(letter_scene, causes):
-    nordmark, plain = (row_of(letter_scene, 1.05, causes[name]) for name in ("map", "Eq. (1)"))
+    nordmark, plain = (effect_of(letter_scene, 1.05, causes[name]) for name in ("map", "Eq. (1)"))
     assert nordmark.p10_from is None and plain.born == (11, 11, 10, 10)
     assert plain.p10_from == plain.six_from == pytest.approx(4e-3, rel=0.05)
 
@@ -93,7 +93,7 @@ def test_p10_is_born_from_where_it_should_be(letter_scene, causes):
     ("name", "excess"), [("T -0.02 ms", 2.5e-3), ("recoil of 2 kg on 15 Hz, T on it", 4e-3)]
 )
 def test_recoil_of_a_base_on_which_t_was_measured_moves_nothing(letter_scene, causes, name, excess):
-    assert row_of(letter_scene, 1.05, causes[name]).p10_from == pytest.approx(excess, rel=0.05)
+    assert effect_of(letter_scene, 1.05, causes[name]).p10_from == pytest.approx(excess, rel=0.05)
 
 
 @pytest.mark.parametrize(("period", "six"), [(40.70e-3, 0), (40.72e-3, 1), (40.74e-3, 1), (40.76e-3, 0)])

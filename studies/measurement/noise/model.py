@@ -1,16 +1,19 @@
-"""What the scans say: where orbits end, and the hysteresis that an observer gets."""
+"""Where orbits end in scans, and the hysteresis that an observer measures.
+
+The observed hysteresis is the excess at which p_1 is left less that at which p_m is lost.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from studies.measurement.noise.places import Place
 from studies.measurement.noise.rates import law_of, quantiles
-from studies.measurement.noise.scans import ENDS, Protocol, named
+from studies.measurement.noise.scans import ENDS, Protocol
 
 PARTS = (0.05, 0.5, 0.95)
 
@@ -20,11 +23,10 @@ Made = tuple[Place, Protocol, Scans]
 
 @dataclass(frozen=True, kw_only=True)
 class End:
-    """Excess at which an orbit ended in scans: `median` with its standard `error`, 5 % (`low`) and 95 %.
+    """Excess at which an orbit ends in scans: `median` with its standard `error`, 5 % (`low`) and 95 %.
 
-    `end`: p_m "slipped", was "lost", p_1 was "touched", was "left" (studies.measurement.noise.scans);
-    `formula` and its 5 and 95 %: of the slips and touches of Eq. (1); `off`: formula less median in standard
-    errors.
+    The `end` is one of `ENDS`.  Slips and touches of Eq. (1) have a `formula`, with its 5 and 95 %; `off` is
+    formula less median in standard errors.
     """
 
     description: str
@@ -46,11 +48,11 @@ class End:
 
 @dataclass(frozen=True, kw_only=True)
 class Observed:
-    """Hysteresis as observed, excess at which p_1 was left less that at which p_m was lost.
+    """The observed hysteresis: `median`, 5 and 95 % (`low`, `high`) of pairs of `scans`.
 
-    `median`, 5 and 95 % (`low`, `high`) of pairs of `scans`, beside that of the folds without noise; `met`:
-    part of the scans from above grazing that come to p_m, and not to p_1 before; NaN where most do not, or
-    noise throws p_m out at once; `seen`: more than a step in 95 % of the pairs.
+    `map` and `fold` are the hysteresis without noise; `met` is the part of the scans from above grazing that
+    reach p_m, and not p_1 before.  NaN where most do not, or where noise throws p_m out at once.  It is
+    `seen` if it exceeds a step in 95 % of the pairs.
     """
 
     description: str
@@ -68,7 +70,7 @@ class Observed:
 
 
 def ends_of(made: Made) -> list[End]:
-    """What ended where at one place in one noise."""
+    """The ends at one place in one noise."""
     place, protocol, found = made
     rows = []
     for name in ENDS:
@@ -87,7 +89,7 @@ def ends_of(made: Made) -> list[End]:
                 description=place.description,
                 frequency_hz=place.frequency_hz,
                 m=place.m,
-                noise=named(protocol.correlation_s),
+                noise=protocol.name,
                 fold=None if place.fold is None else place.fold.excess,
                 end=name,
                 scans=values.size,
@@ -113,13 +115,12 @@ def observed_of(made: Made) -> Observed | None:
     count, met = int(np.count_nonzero(np.isfinite(widths))), float(found["met"].mean())
     often = count > 0.5 * widths.size and met > 0.5
     low, median, high = np.nanquantile(widths, PARTS) if often else (math.nan,) * 3
-    in_map = replace(place, description="map", model=None).fold
     return Observed(
         description=place.description,
         frequency_hz=place.frequency_hz,
         m=place.m,
-        noise=named(protocol.correlation_s),
-        map=None if in_map is None else -in_map.excess,
+        noise=protocol.name,
+        map=None if place.map_fold is None else -place.map_fold,
         fold=-place.fold.excess,
         scans=count,
         low=low,

@@ -1,15 +1,15 @@
-"""One parameter of the scene changed at a time, and what it does to born period and fold at one frequency.
+"""One parameter of the scene is changed at a time: born period and fold at each frequency.
 
-T, mu within the letter's errors, tau between 0.05 and 0.15, and the free assumptions of the spring. A change
-of the spring goes with the thickness of the sheet that keeps T; the rate of mode 1, gap and mass stay. A
-hysteresis is compared with that of the same p_m before the change, whatever is born after it.
+T and mu change within the letter's errors, tau between 0.05 and 0.15, and then the assumptions on the spring.
+A change of the spring adapts the thickness of the sheet, which keeps T; decay rate of mode 1, gap and mass
+stay.  The fold after a change is that of the p_m that is born without it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from beam import ModalModel
 from contact import ContactError, StroboscopicMap
@@ -18,18 +18,15 @@ from studies.letter import BREAKDOWN, FREE_PERIOD_ERROR_S
 from studies.physics.calibration import calibrate_damping, calibrate_thickness, free_period
 from studies.shell.scene import Scene, beam_at, model_of, nordmark_at, single_mode_at
 
-NAMES = ("map", "single_mode", "beam")
-
 T = TypeVar("T")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Change:
-    """A parameter lowered (`sign` -1) or raised (1): `by` is added to its key, in `unit`, or a factor on it
-    where there is no unit.
+    """A parameter lowered (`sign` -1) or raised (1).
 
-    Without a key the factor is on the decay rates above the first. `tune`: the sheet is fitted to the free
-    period again.
+    ``by`` is added to its key, in ``unit``; without a unit it is a factor.  Without a key the factor acts on
+    the decay rates above the first.  With ``tune`` the thickness of the sheet is fitted to T again.
     """
 
     parameter: str
@@ -48,7 +45,7 @@ class Change:
         return f"{self.parameter} {self.text}"
 
     def value(self, scene: Scene) -> float:
-        """What the key becomes."""
+        """The new value of the key."""
         before = scene.number(self.key)
         value = before * self.by if self.unit is None else before + self.by
         return max(1, round(value)) if self.key == "modes.count" else value
@@ -57,7 +54,7 @@ class Change:
 def _both(
     parameter: str, key: str, lower: float, higher: float, unit: str | None = None, *, tune: bool = False
 ) -> list[Change]:
-    """Lowered and raised."""
+    """The change down and the change up."""
     return [
         Change(parameter=parameter, key=key, sign=sign, by=by, unit=unit, tune=tune)
         for sign, by in ((-1, lower), (1, higher))
@@ -81,11 +78,11 @@ PARAMETERS = (
     _both("coverage of the tape", "spring.tape_coverage", 0.75, 1.25, tune=True),
     _both("number of modes", "modes.count", -5, 5, ""),
 )
-"""The letter's errors, then the assumptions; the first four in the small form."""
+"""The letter's errors, then the assumptions; the small form takes the first four."""
 
 
 def changes_of(scene: Scene, quick: bool = False) -> list[Change]:
-    """All lowered, then all raised, but for a coverage above the whole leg."""
+    """All changes down, then all up; a coverage beyond the whole leg is left out."""
     found = [pair[way] for way in (0, 1) for pair in PARAMETERS[: 4 if quick else None]]
     return [c for c in found if c.key != "spring.tape_coverage" or c.value(scene) <= 1.0]
 
@@ -111,55 +108,63 @@ def changed(scene: Scene, change: Change) -> tuple[Scene, ModalModel]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row:
-    """One frequency after one change: born period at excess 1e-3 (0: did not settle, None: failed), and
-    F_m/F_g - 1 at the fold of the p_m that is born without the change; m is that of the beam."""
+class Transition:
+    """The transition at one frequency in one description after one change.
+
+    Attributes
+    ----------
+    m : int
+        The period that is born without the change (0: none).
+    born : int or None
+        The period that is born with it at excess 1e-3; 0 if the motion does not settle, None if it fails.
+    fold : float or None
+        F_m/F_g - 1 at the fold of p_m.
+    """
 
     frequency_hz: float
+    description: str
     parameter: str = "none"
     change: str = ""
     sign: int = 0
     m: int
-    born_map: int | None
-    born_single_mode: int | None
-    born_beam: int | None
-    fold_map: float | None
-    fold_single_mode: float | None
-    fold_beam: float | None
+    born: int | None
+    fold: float | None
 
 
 def known(compute: Callable[..., T], *arguments: object) -> T | None:
-    """What is computed; None where that fails: the orbits next to where a fold should be are not there."""
+    """The value, or None where it fails: next to a missing fold the orbits do not exist."""
     try:
         return compute(*arguments)
     except ContactError:
         return None
 
 
-def row_at(scene: Scene, model: ModalModel, frequency: float, base: Row | None = None) -> Row:
-    """Born period and fold of the map, of Eq. (1) and of the beam; `base` is the row without the change."""
+def transitions_at(
+    scene: Scene, model: ModalModel, frequency: float, periods: Sequence[int] | None = None
+) -> list[Transition]:
+    """The transition in map, Eq. (1) and beam; `periods` are the m of each, by default what is born."""
     strobed = {
         "map": nordmark_at(scene, frequency),
-        "single_mode": StroboscopicMap(oscillator=single_mode_at(scene, frequency)),
+        "Eq. (1)": StroboscopicMap(oscillator=single_mode_at(scene, frequency)),
         "beam": StroboscopicMap(oscillator=beam_at(scene, frequency, model)),
     }
-    columns = dict[str, Any](frequency_hz=frequency)
-    for name, motion in strobed.items():
-        period = known(born_period, motion)
-        columns["m"] = (period if base is None else getattr(base, f"born_{name}")) or 0
-        columns |= {f"born_{name}": period, f"fold_{name}": known(fold_excess, motion, columns["m"])}
-    return Row(**columns)
+    found = list[Transition]()
+    for k, (name, motion) in enumerate(strobed.items()):
+        born = known(born_period, motion)
+        m = (born or 0) if periods is None else periods[k]
+        fold = known(fold_excess, motion, m)
+        found.append(Transition(frequency_hz=frequency, description=name, m=m, born=born, fold=fold))
+    return found
 
 
-def rows_after(scene: Scene, base: Sequence[Row], change: Change) -> list[Row]:
-    """The rows of a change at the frequencies of `base`; SceneError if the scene does not allow it."""
+def transitions_after(scene: Scene, base: Sequence[Transition], change: Change) -> list[Transition]:
+    """The transitions of `base` after a change; SceneError if the scene does not allow it."""
     there, model = changed(scene, change)
-    return [
-        replace(
-            row_at(there, model, row.frequency_hz, row),
-            parameter=change.parameter,
-            change=change.text,
-            sign=change.sign,
-        )
-        for row in base
-    ]
+    found = list[Transition]()
+    for frequency in dict.fromkeys(row.frequency_hz for row in base):
+        periods = [row.m for row in base if row.frequency_hz == frequency]
+        found += [
+            replace(row, parameter=change.parameter, change=change.text, sign=change.sign)
+            for row in transitions_at(there, model, frequency, periods)
+        ]
+    return found

@@ -1,10 +1,10 @@
-"""Which p_m can be told apart in noise and live long enough: why the letter's last period is p10.
+"""Clouds of strobe points in noise of the drive: which p_m can be told apart, and which is still there.
 
 At an excess of 1e-3 the m strobe points of p_m become m clouds, sorted by the strobes since the last impact.
-Over `WAITS` waitings, and by their covariances (``contact.orbits.cloud``), one is told from the next if they
-are further apart than wide (90 % of the points); in one record of the 40 strobes that the letter draws, which
-a slow drift leaves sharp, if no two of them overlap. Noise of the read-out is included. Whether p_m lives is
-asked where it is born, one standard deviation of the amplitude above grazing.
+Over `WAITS` waitings, and by the covariances of ``contact.orbits.cloud``, neighbouring clouds are separate if
+they are further apart than wide (90 % of the points).  In one record of the 40 strobes that the letter draws
+they are separate if no two overlap: a slow drift moves all points of a record together.  Noise of the
+read-out is included.  p_m is held if it is seen one standard deviation of the amplitude above grazing.
 """
 
 from __future__ import annotations
@@ -19,22 +19,21 @@ from numpy.typing import NDArray
 
 from contact import ContactError, StroboscopicMap
 from contact.orbits import born, born_period, cloud, fold_excess
-from studies.letter import STROBE_POINTS
-from studies.measurement.noise.scans import Drift, Protocol, memory_of, watched
+from studies.letter import SETTLE_CYCLES, STROBE_POINTS
+from studies.physics.drive_noise import DriveNoise, watched
 from studies.shell.scene import READOUT, Scene, band_of
 
 BORN_EXCESS = 1e-3
 """Excess of the orbit in noise."""
 
 SHARE_OF_BAND = 0.15
-"""Where in its band p_m of Eq. (1) is asked about noise, from the upper edge: as the letter's frequencies on
-average."""
+"""Distance of the frequency from the upper edge of the band of p_m over its width: the letter's mean."""
 
-WAITS = 10
-"""Waitings that the orbit is followed, one after the other."""
+WAITS, WAITING = 10, SETTLE_CYCLES
+"""Waitings for which the orbit is followed, one after the other, and their drive periods."""
 
 FEWEST = 10
-"""Points that a cloud must have."""
+"""Least number of points of a cloud."""
 
 WIDTH = 3.2897072539029444
 """Standard deviations of a normal distribution between which 90 % lie."""
@@ -44,13 +43,23 @@ Counts = NDArray[np.int64]
 
 
 @dataclass(frozen=True, kw_only=True)
-class LastPeriod:
-    """p_m in noise, a number for each kind of it; `born` without it at excess 1e-3, with its `fold` [1].
+class Clouds:
+    """The clouds of p_m, one number for each kind of noise; None where another period is born.
 
-    None where another period is born.  `told_apart`: least distance of neighbouring clouds over their mean
-    width, in one realisation; `predicted` by covariances, None where the orbit has none; `records`: part of
-    the records of 40 strobes in which no two of the m groups overlap; `held`: part of the waitings in which
-    p_m was seen at an excess of one standard deviation; `seen`: whether both are above one half.
+    Attributes
+    ----------
+    born, fold : int, float or None
+        The period that is born without noise at excess 1e-3, and the excess of the fold of p_m.
+    apart : tuple of float
+        Least distance of neighbouring clouds over their mean width, simulated.
+    predicted : tuple of float or None
+        The same by covariances; None where the orbit has none.
+    records : tuple of float
+        Part of the records of 40 strobes in which no two clouds overlap.
+    held : tuple of float
+        Part of the waitings in which p_m is seen at an excess of one standard deviation.
+    seen : tuple of bool
+        Whether both parts are above one half.
     """
 
     description: str
@@ -58,7 +67,7 @@ class LastPeriod:
     frequency_hz: float
     born: int
     fold: float | None
-    told_apart: tuple[float, ...] | None = None
+    apart: tuple[float, ...] | None = None
     predicted: tuple[float | None, ...] | None = None
     records: tuple[float, ...] | None = None
     held: tuple[float, ...] | None = None
@@ -66,7 +75,7 @@ class LastPeriod:
 
 
 def frequency_of(scene: Scene, m: int) -> float:
-    """Where p_m of Eq. (1) is asked about noise [Hz]."""
+    """The drive frequency at which p_m of Eq. (1) is put into noise [Hz]."""
     edges = band_of(scene, m)
     return edges.upper - SHARE_OF_BAND * (edges.upper - edges.lower)
 
@@ -106,12 +115,12 @@ def least_ratio(centre: Points, width: Points) -> float:
     return float(np.min(np.diff(centre[order]) / np.maximum(between, 1e-300)))
 
 
-def in_noise(
-    readout: float, protocols: Sequence[Protocol], seed: int, described: tuple[str, StroboscopicMap, int]
-) -> LastPeriod:
+def clouds_of(
+    readout: float, noises: Sequence[DriveNoise], seed: int, described: tuple[str, StroboscopicMap, int]
+) -> Clouds:
     """p_m of a named description: the tip of Eq. (1), the read-out point of a beam."""
     description, strobed, m = described
-    row = LastPeriod(
+    row = Clouds(
         description=description,
         m=m,
         frequency_hz=strobed.oscillator.driven.frequency,
@@ -120,23 +129,22 @@ def in_noise(
     )
     if row.born != m:
         return row
-    columns = zip(*(clouds_of(readout, protocol, seed, strobed, m) for protocol in protocols), strict=True)
-    told_apart, predicted, records, held = columns
+    columns = zip(*(_in_noise(readout, noise, seed, strobed, m) for noise in noises), strict=True)
+    between, predicted, records, held = columns
     seen = tuple(min(pair) > 0.5 for pair in zip(records, held, strict=True))
-    return replace(row, told_apart=told_apart, predicted=predicted, records=records, held=held, seen=seen)
+    return replace(row, apart=between, predicted=predicted, records=records, held=held, seen=seen)
 
 
-def clouds_of(
-    readout: float, protocol: Protocol, seed: int, strobed: StroboscopicMap, m: int
+def _in_noise(
+    readout: float, noise: DriveNoise, seed: int, strobed: StroboscopicMap, m: int
 ) -> tuple[float, float | None, float, float]:
-    """`told_apart`, `predicted`, `records` and `held` of p_m in one kind of noise."""
+    """`apart`, `predicted`, `records` and `held` of p_m in one kind of noise."""
     here, frequency = strobed.at(BORN_EXCESS), strobed.oscillator.driven.frequency
-    memory = memory_of(protocol.correlation_s, frequency)
-    dice = np.random.default_rng([seed, m, round(1e3 * frequency), round(1e3 * protocol.correlation_s)])
-    noise = Drift(protocol.stability, memory, dice).next(WAITS * protocol.waiting)
-    orbit, low = born(strobed, BORN_EXCESS), strobed.at(protocol.stability)
-    run = here.orbit(orbit.end, noise.size, factors=1.0 + noise)
-    lower = low.orbit(born(strobed, protocol.stability).end, noise.size, factors=1.0 + noise)
+    dice = np.random.default_rng([seed, m, round(1e3 * frequency), round(1e3 * noise.correlation_s)])
+    factors = 1.0 + noise.drift(frequency, dice).next(WAITS * WAITING)
+    orbit, low = born(strobed, BORN_EXCESS), strobed.at(noise.stability)
+    run = here.orbit(orbit.end, factors.size, factors=factors)
+    lower = low.orbit(born(strobed, noise.stability).end, factors.size, factors=factors)
     held = [watched(part, m)[0] > 0.5 for part in np.split(lower.impacts, WAITS)]
 
     def reading(points: Points) -> Points:
@@ -145,10 +153,10 @@ def clouds_of(
 
     predicted = None
     with suppress(ContactError, ValueError):  # a strobe in a touch, a graze
-        spread = cloud(here, orbit.end, m, deviation=protocol.stability, memory=memory)
+        spread = cloud(here, orbit.end, m, deviation=noise.stability, memory=noise.memory(frequency))
         row = reading(np.eye(spread.shape[1]))
         width = WIDTH * np.sqrt(np.einsum("i,jik,k->j", row, spread, row) + readout**2)
         predicted = round(least_ratio(reading(here.orbit(orbit.end, m).points), width), 3)
-    points = reading(run.points) + readout * dice.standard_normal(noise.size)
-    told_apart = round(apart(points, run.impacts, m), 3)
-    return told_apart, predicted, round(separate(points, run.impacts, m), 3), float(np.mean(held))
+    points = reading(run.points) + readout * dice.standard_normal(factors.size)
+    between, clear = round(apart(points, run.impacts, m), 3), round(separate(points, run.impacts, m), 3)
+    return between, predicted, clear, float(np.mean(held))

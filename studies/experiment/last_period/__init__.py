@@ -1,0 +1,1 @@
+"""Why p10 was the last period of the letter."""

@@ -1,1 +1,0 @@
-"""The six transitions under errors, noise and open assumptions."""

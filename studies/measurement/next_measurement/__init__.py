@@ -1,1 +1,0 @@
-"""Which orbit tells most of the parameters; see `__main__`."""
