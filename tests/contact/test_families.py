@@ -49,7 +49,7 @@ CONTRACT = [
     *((name, f"Newton, {f} Hz") for name in MAKERS for f, _ in PLACES[:3]),
     *(("closed form", name) for name in MODES),
     *((name, f"{law}, 21.5 Hz") for name in ("kicks", "shooting") for law in ("constant", "falling")),
-    ("shooting", "six modes, hertz"),
+    ("shooting", "ten modes, hertz"),
 ]
 
 

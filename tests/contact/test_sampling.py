@@ -25,7 +25,7 @@ from whole_motions import (
 )
 
 from beam import ModalModel
-from contact.engine import start as exact_run
+from contact.engine import event_loop
 from contact.errors import ContactError, UnresolvedCrossing
 from contact.integrators import CentralDifference
 from contact.laws import DelayedRestitution, LinearContact, NewtonRestitution
@@ -140,7 +140,7 @@ def test_every_sample_is_filled_in_whatever_the_length():
 
 
 def test_a_sample_that_was_not_written_is_an_error(monkeypatch):
-    monkeypatch.setattr(exact_run, "advance", lambda *_: exact_run.DONE)
+    monkeypatch.setattr(event_loop, "advance", lambda *_: event_loop.DONE)
     with pytest.raises(ContactError, match="not written down"):
         simulate(spring(1, NewtonRestitution(local_restitution=0.5)), duration=0.1, times=[0.05])
 
