@@ -78,15 +78,16 @@ def start_as_program() -> None:
 
 
 def run_old_name() -> None:
-    """Run ``python -m studies NAME``, as programs were called once, and say how it is called now."""
-    from studies.shell.programs import old_name
+    """Run a program by its old command, ``python -m studies.NAME``, and print the command of today."""
+    from studies.shell.programs import PART_OF, old_name
 
     name = old_name(sys.orig_argv[1:])
     if name is not None:
-        print(f"python -m studies {name} is now python -m studies {name}", file=sys.stderr)
+        words = PART_OF.get(name, name).split()
+        print(f"python -m studies.{name} is now python -m studies {' '.join(words)}", file=sys.stderr)
         from studies.__main__ import main
 
-        raise SystemExit(main([name, *sys.argv[1:]]))
+        raise SystemExit(main([*words, *sys.argv[1:]]))
 
 
 program = False

@@ -39,14 +39,22 @@ TOOLS = ("report", "tour", "explore")
 STUDY = re.compile(r"^@study\(", re.MULTILINE)
 """What a file of a study has."""
 
+PART_OF = {
+    "attractors": "chart",
+    "benchmarks": "work_precision",
+    "finite_amplitude": "shape",
+    "motion": "time_trace --film",
+    "next_measurement": "identify",
+    "sensitivity": "last_period",
+    "spring_shape": "shape",
+}
+"""Studies of version 0.1 -> the study of which each is a part now."""
+
 MAIN = "transitions"
 """What `python -m studies` runs."""
 
 ALL = "python -m studies --all"
 """What runs every study."""
-
-MOST_MENTIONS = 2
-"""Studies that may mention an unknown name: a word of more studies is too common to name them."""
 
 
 def chapter(name: str) -> dict[str, Path]:
@@ -124,19 +132,20 @@ def module_of(name: str) -> str:
 
 
 def unknown(name: str) -> str:
-    """The sentence on a study that does not exist: who mentions the word, or else the nearest name."""
-    word = re.compile(rf"\b{re.escape(name[:100])}\b".replace("_", "[_ ]"))
-    found = [one for one in names() if word.search(account_of(one))]
-    if not 0 < len(found) <= MOST_MENTIONS:
-        found = get_close_matches(name[:100], names(), n=1, cutoff=0.6)
-    return f"there is no study {name[:100]}" + (f"; did you mean {' or '.join(found)}?" if found else "")
+    """The sentence on a study that does not exist, with the study that has its work, or the nearest name."""
+    found = [PART_OF[name]] if name in PART_OF else get_close_matches(name[:100], names(), n=1, cutoff=0.6)
+    return f"there is no study {name[:100]}" + (f"; did you mean {found[0]}?" if found else "")
 
 
 def old_name(arguments: Sequence[str]) -> str | None:
-    """The NAME in `-m studies.NAME` among the arguments of the interpreter; None for a folder."""
-    found = re.search(r"(?:^| )-m ?studies\.(\w+)", " ".join(arguments))
-    parts = (*CHAPTERS, "shell", "physics", "__main__")
-    return None if found is None or found[1] in parts else found[1]
+    """The NAME in `-m studies.NAME` or `-m studies.CHAPTER.NAME` among the arguments of the interpreter.
+
+    Returns None for other modules.
+    """
+    found = re.search(r"(?:^| )-m ?studies\.(\w+)(?:\.(\w+))?", " ".join(arguments))
+    if found is None or found[1] in ("shell", "physics", "__main__"):
+        return None
+    return found[2] if found[1] in CHAPTERS else found[1]
 
 
 def perform(study: str, command: str, arguments: Sequence[str], work: Callable[[TextIO], int]) -> int:

@@ -100,7 +100,7 @@ def test_without_a_window_or_a_drive_it_says_so_in_a_sentence(capsys, argv, told
 def test_without_a_display_it_says_so_in_a_sentence():
     around = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
     ran = subprocess.run(
-        [sys.executable, "-m", "studies.explore"],
+        [sys.executable, "-m", "studies", "explore"],
         cwd=ROOT,
         capture_output=True,
         text=True,

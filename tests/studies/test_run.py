@@ -245,7 +245,8 @@ def test_an_executor_that_is_not_there_is_refused(tmp_path, letter_scene, place,
 
 
 def test_an_unknown_study_is_answered_with_the_nearest_and_the_chapters():
-    assert old_name(["-m", "studies.experiment.hysteresis"]) == "hysteresis"
+    for module in ("hysteresis", "experiment.hysteresis", "experiment.hysteresis.__main__"):
+        assert old_name(["-m", f"studies.{module}"]) == "hysteresis"
     assert old_name(["-m", "studies.shell.programs"]) is old_name(["-m", "studies"]) is None
     for command in (["studies", "transitons"], ["studies.transitons"]):
         done = subprocess.run([sys.executable, "-m", *command], cwd=ROOT, capture_output=True, text=True)
@@ -261,10 +262,10 @@ def test_a_study_that_became_part_of_another_is_answered_with_that_one(word, stu
 
 
 def test_an_old_command_runs_and_names_the_new_one():
-    command = [sys.executable, "-m", "studies.spring.calibrate", "--help"]
+    command = [sys.executable, "-m", "studies.calibrate", "--help"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0 and "usage: python -m studies calibrate" in done.stdout
-    assert done.stderr == "python -m studies calibrate is now python -m studies calibrate\n"
+    assert done.stderr == "python -m studies.calibrate is now python -m studies calibrate\n"
 
 
 def test_a_foreign_package_of_the_same_name_is_refused(tmp_path):
