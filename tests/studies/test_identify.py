@@ -11,6 +11,7 @@ import pytest
 
 from contact import DelayedRestitution, simulate
 from contact.orbits import MaximalFamily
+from studies.measurement.identify import __main__ as program
 from studies.measurement.identify import next_measurement
 from studies.measurement.identify.fit import fit
 from studies.measurement.identify.profiles import profile
@@ -194,7 +195,7 @@ def test_the_command_line_takes_a_record_and_leaves_a_scene(run_study, tmp_path,
 
 
 def test_the_next_measurement_is_that_of_the_fitted_oscillator(run_study, tmp_path, made, monkeypatch):
-    monkeypatch.setattr("studies.measurement.identify.next_measurement.THIN", (12, 12))
+    monkeypatch.setattr("studies.measurement.identify.__main__.THIN", (12, 12))
     record, argv = tmp_path / "mine.csv", ("--fit", "gap", "--next")
     record.write_text(synthetic("strobe", made["one_mode"], seed=2).text())
     ran = run_study("identify", "--quick", str(record), *argv, "gap", "restitution")
@@ -207,16 +208,16 @@ def test_the_next_measurement_is_that_of_the_fitted_oscillator(run_study, tmp_pa
 
 def test_with_loud_noise_no_place_of_the_next_measurement_is_kept(tmp_path, letter_scene, monkeypatch):
     """No orbit outlives its errors, and the letter has no orbits to compare: tables, and no traceback."""
-    monkeypatch.setattr(next_measurement, "THIN", (30, 30))
+    monkeypatch.setattr(program, "THIN", (30, 30))
     monkeypatch.setattr(next_measurement, "letters_orbits", lambda of: [])
     run = Run(study="identify", folder=tmp_path, scene=letter_scene, command="")
-    places = next_measurement.where_to_measure(letter_scene, run, next_measurement.Plan().names, None, 1e-3)
+    places = program.where_to_measure(letter_scene, run, next_measurement.Plan().names, None, 1e-3)
     assert places == [] and "measurements.csv" in run.files
     assert "no orbit exists" in run.close("done", {})["answers"]["period"]
 
 
 def test_the_example_makes_a_record_of_each_kind_and_finds_what_it_put_in(run_study, monkeypatch):
-    monkeypatch.setattr("studies.measurement.identify.next_measurement.THIN", (12, 12))
+    monkeypatch.setattr("studies.measurement.identify.__main__.THIN", (12, 12))
     ran = run_study("identify", "--quick")
     assert ran.code == 0, ran.err
     for kind in ("strobe", "displacement", "transitions"):

@@ -35,7 +35,6 @@ import numpy as np
 from beam import InvalidValue
 from contact import ImpactOscillator
 from contact.orbits import AmplitudeScan
-from studies.experiment.chart.basins import basins
 from studies.experiment.chart.cells import (
     EXCESSES,
     FREQUENCIES_HZ,
@@ -45,8 +44,9 @@ from studies.experiment.chart.cells import (
     counts,
     side_by_side,
 )
-from studies.experiment.chart.cut import FREQUENCY, cut
+from studies.experiment.chart.cut import FREQUENCY
 from studies.experiment.chart.overlays import bands_in, folds_of_beam, folds_of_single_mode
+from studies.experiment.chart.sections import basins, cut
 from studies.shell.options import require_cells
 from studies.shell.scene import Scene, beam_at, corresponding, harmonic, single_mode_at
 from studies.shell.study import Run, study

@@ -15,7 +15,6 @@ import numpy as np
 from contact import ContactError, State, StroboscopicMap
 from contact.orbits import born, settle
 from studies.shell.scene import Scene, single_mode_at
-from studies.shell.study import Run
 
 FAR = 1.5
 """Half the side of the plane of starts, in x/gap and x'/(2 pi f gap)."""
@@ -92,22 +91,3 @@ def plane_of(scene: Scene, frequency: float, excess: float, side: int) -> Starts
         x=np.linspace(-FAR, 1.0, side) * gap,
         velocity=FAR * speed * np.linspace(-1.0, 1.0, side),
     )
-
-
-def basins(scene: Scene, run: Run, f: float, excess: float, side: int) -> Mapping[str, object]:
-    """The basins of Eq. (1) at the drive frequency `f` [Hz], stored and drawn."""
-    from studies.experiment.chart import cut_figure  # matplotlib is slow to import
-
-    plane = plane_of(scene, f, excess, side)
-    leads = np.array(run.map(plane.line, plane.velocity.tolist(), "basins"))  # shape (velocities, x)
-    run.arrays("basins", x=plane.x, velocity=plane.velocity, leads=leads, orbit=plane.strobes(plane.period))
-    run.figure("basins", cut_figure.draw_basins(plane, leads, f), cut_figure.BASINS)
-    period, shares = plane.period, parts(leads, plane.period)
-    both = period > 1 and shares[f"p{period}"] > 0.0  # p1 without impacts is stable below grazing
-    run.verdict(
-        "coexistence",
-        "agrees" if both else "differs",
-        found=f"Eq. (1): p1 and p{period}" if both else "Eq. (1): one of them alone",
-        note=f"at excess {excess:g} the start decides which of them is reached",
-    )
-    return {"basins": {"excess": excess, "period": period, "parts": shares}}

@@ -37,6 +37,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -47,9 +48,19 @@ from studies.measurement.identify import figure
 from studies.measurement.identify.estimates import SHOWN, estimates_of, quality_of, traded
 from studies.measurement.identify.fit import Fit
 from studies.measurement.identify.fit import fit as fitted
-from studies.measurement.identify.next_measurement import Plan, where_to_measure
+from studies.measurement.identify.next_measurement import (
+    EXCESSES,
+    FREQUENCIES_HZ,
+    THIN,
+    Measurement,
+    Plan,
+    answer,
+    best,
+    letter_rows,
+    measurements_at,
+)
 from studies.measurement.identify.records import Kind, Record, read_record, synthetic
-from studies.physics.parameters import Description, described, fitted_scene, parameters_of
+from studies.physics.parameters import Description, described, fitted_scene, parameters_of, require_names
 from studies.shell.options import POSITIONAL
 from studies.shell.scene import Scene, corresponding, harmonic, periods_of
 from studies.shell.study import Run, study
@@ -208,3 +219,32 @@ def as_scene(scene: Scene, found: Fit) -> Scene:
     table = found.record.kind == "transitions"
     frequencies = sorted(set(found.record.rows[:, 0])) if table else [found.oscillator.driven.frequency]
     return fitted_scene(scene, found.oscillator, frequencies)
+
+
+def where_to_measure(
+    scene: Scene, run: Run, wanted: Sequence[str], delay: float | None, noise: float
+) -> list[Measurement]:
+    """Tables, figure and answer of the next measurement of the `wanted` parameters; returns the best places.
+
+    The oscillator is Eq. (1) with a constant restitution and `delay` [s].
+    """
+    of = partial(described, scene, "two_parameters", delay)
+    require_names(wanted, of(corresponding(scene, FREQUENCY_HZ)), "next")
+    if "amplitude" in wanted:
+        raise InvalidValue("next names amplitude, which is measured with each orbit; name another parameter")
+    before = {name: error for name, error in Plan().before.items() if name not in wanted}
+    plan, thin = Plan(names=tuple(wanted), noise=noise, before=before), THIN[run.quick]
+    frequencies = [corresponding(scene, f) for f in FREQUENCIES_HZ[::thin]]
+    columns = run.map(partial(measurements_at, of, plan, EXCESSES[::thin]), frequencies, "orbits")
+    found = [one for column in columns for one in column]
+    chosen = best(found)
+    run.table("measurements", found, f"Standard errors of {', '.join(wanted)} by one orbit.", show=())
+    run.table("next", chosen, "The five best.", show=("frequency_hz", "excess", "period", "together"))
+    if found:
+        run.figure("next", figure.draw_plane(found, plan), figure.PLANE)
+    if corresponding(scene, FREQUENCY_HZ) == FREQUENCY_HZ:
+        letters = letter_rows(of, plan)
+        run.table("letter_orbits", letters, "The same by the letter's orbits at an excess of 1e-3.")
+        if plan.names == Plan().names:
+            run.answer("period", answer(found, letters, plan))
+    return chosen

@@ -25,20 +25,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from beam import InvalidValue
 from contact import ContactError, ImpactOscillator, NewtonRestitution, NordmarkMap, maximal_period
 from contact.orbits import KickFamily, PeriodicOrbit, Shooting, excess_derivatives, orbit_derivatives
 from studies import letter
-from studies.physics.parameters import changes_of, described, parameters_of, require_names
-from studies.shell.scene import Scene, corresponding
-from studies.shell.study import Run
+from studies.physics.parameters import changes_of, parameters_of
 
 Array = NDArray[np.float64]
 Of = Callable[[float], ImpactOscillator]
@@ -260,34 +256,3 @@ def answer(found: Sequence[Measurement], letters: Sequence[LetterOrbits], plan: 
         f"{text}If the gap is known from the amplitude at grazing, the best place is p{place.period} at "
         f"{place.frequency_hz:.2f} Hz."
     )
-
-
-def where_to_measure(
-    scene: Scene, run: Run, wanted: Sequence[str], delay: float | None, noise: float
-) -> list[Measurement]:
-    """Tables, figure and answer of the next measurement of the `wanted` parameters; returns the best places.
-
-    The oscillator is Eq. (1) with a constant restitution and `delay` [s].
-    """
-    of = partial(described, scene, "two_parameters", delay)
-    require_names(wanted, of(corresponding(scene, FREQUENCY_HZ)), "next")
-    if "amplitude" in wanted:
-        raise InvalidValue("next names amplitude, which is measured with each orbit; name another parameter")
-    before = {name: error for name, error in Plan().before.items() if name not in wanted}
-    plan, thin = Plan(names=tuple(wanted), noise=noise, before=before), THIN[run.quick]
-    frequencies = [corresponding(scene, f) for f in FREQUENCIES_HZ[::thin]]
-    columns = run.map(partial(measurements_at, of, plan, EXCESSES[::thin]), frequencies, "orbits")
-    found = [one for column in columns for one in column]
-    chosen = best(found)
-    run.table("measurements", found, f"Standard errors of {', '.join(wanted)} by one orbit.", show=())
-    run.table("next", chosen, "The five best.", show=("frequency_hz", "excess", "period", "together"))
-    from studies.measurement.identify import figure  # imports this file
-
-    if found:
-        run.figure("next", figure.draw_plane(found, plan), figure.PLANE)
-    if corresponding(scene, FREQUENCY_HZ) == FREQUENCY_HZ:
-        letters = letter_rows(of, plan)
-        run.table("letter_orbits", letters, "The same by the letter's orbits at an excess of 1e-3.")
-        if plan.names == Plan().names:
-            run.answer("period", answer(found, letters, plan))
-    return chosen
