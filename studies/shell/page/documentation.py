@@ -17,7 +17,6 @@ from jinja2 import ChoiceLoader, DictLoader
 from beam import InvalidValue
 from studies import ROOT
 from studies.shell.files import told
-from studies.shell.programs import names
 
 INDEX = """{% set root_module_name = false %}{% extends "default/index.html.jinja2" %}
 {% block title %}grazing-spring{% endblock %}{% block logo %}{% endblock %}
@@ -30,7 +29,8 @@ INDEX = """{% set root_module_name = false %}{% extends "default/index.html.jinj
 def module_names() -> list[str]:
     """The modules of beam and contact, and what the studies share; each study is on the page of results."""
     files = [*(ROOT / "beam").rglob("*.py"), *(ROOT / "contact").rglob("*.py")]
-    files += [path for path in (ROOT / "studies").glob("[a-z]*.py") if path.stem not in names()]
+    files += [path for part in ("physics", "shell") for path in (ROOT / "studies" / part).rglob("*.py")]
+    files.append(ROOT / "studies" / "letter.py")
     dotted = (".".join(path.relative_to(ROOT).with_suffix("").parts) for path in files)
     return sorted(name.removesuffix(".__init__") for name in dotted)
 
