@@ -69,7 +69,7 @@ def start_as_program() -> None:
         sys.stderr = open(2, "w", encoding="utf-8", closefd=False)
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
 
-        def interrupted(number, frame):  # type: ignore[no-untyped-def]
+        def interrupted(number: int, frame: object) -> None:
             print("interrupted; nothing was stored: the same command begins again", file=sys.stderr)
             os._exit(130)
 

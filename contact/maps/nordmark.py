@@ -42,7 +42,7 @@ YLine = Literal["corrected", "printed"]
 
 
 @kernel
-def iterate_map(x, y, alpha, gamma, gamma_impact, rho, delay_term, out):  # type: ignore[no-untyped-def]
+def iterate_map(x, y, alpha, gamma, gamma_impact, rho, delay_term, out):
     """Fill `out`, shape (count, 2), with the states that follow (x, y), each by its `rho`, shape (count,)."""
     for n in range(out.shape[0]):
         if x > 0.0:

@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 
 
 @kernel
-def fly_through(vary, tangent, u, v, clock, times, table):  # type: ignore[no-untyped-def]
+def fly_through(vary, tangent, u, v, clock, times, table):
     """A flight with tangents from the time `clock` over rising `times` [s]; see ``Replay.along``."""
     motion = vary.motion
     for i in range(times.size):

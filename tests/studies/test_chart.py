@@ -69,7 +69,7 @@ def test_both_orbits_have_a_basin_between_fold_and_grazing_and_one_below(letter_
 
 
 def test_small_form(run_study):
-    ran = run_study("chart", "--quick", "--points", "4", "8", "--side", "8", "--average", "60")
+    ran = run_study("chart", "--quick", "--points", "4", "8", "--side", "8", "--cut-points", "5")
     assert ran.code == 0
     rows = ran.rows("cut")
     for row in rows:

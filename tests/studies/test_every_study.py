@@ -27,7 +27,7 @@ ON_THE_FRAME = studies()
 LOOKED_AT = {
     name
     for path in Path(__file__).parent.glob("test_*.py")
-    for name in re.findall(r'= run_study\("(\w+)", "--quick"', path.read_text())
+    for name in re.findall(r'= run_study\(\s*"(\w+)", "--quick"', path.read_text())
 }
 
 #: Options that keep a small form small.

@@ -97,7 +97,7 @@ def test_a_scene_beyond_its_linear_model_says_so(scene, letter_scene, run_study)
     assert not run_study(*short).summary["warnings"]
     odd = ["--set", "spring.bend_radius_m=0.0125", "--set", "drive.frequencies_hz=[21.5]"]
     wide = run_study(*short, *odd)  # warnings that nobody catches are errors here
-    assert wide.summary["warnings"][0].startswith("bend_radius") and wide.err.count("no plate") == 1
+    assert wide.summary["warnings"][0].startswith("bend_radius") and wide.err.count("unlike a plate") == 1
     assert beyond_linear(scene.replace({"drive.kind": "none"})) is None
     shorter = [shift for shift, _ in period_shifts(letter_scene).values()]
     assert -1e-3 < shorter[0] < shorter[-1] < -5e-4  # off resonance the leaf's two parts do not cancel

@@ -75,7 +75,7 @@ def per_area(section: StripSection) -> tuple[float, float, float]:
 
 
 @sk.BilinearForm
-def bending(u, v, w):  # type: ignore[no-untyped-def]
+def bending(u, v, w):
     """D ((1 - nu) u_ij v_ij + nu lap u lap v), with `bulk` D (1 + nu) and `shear` D (1 - nu)."""
     return w.shear * ddot(dd(u), dd(v)) + 0.5 * (w.bulk - w.shear) * trace(dd(u)) * trace(dd(v))
 
