@@ -201,7 +201,7 @@ class Curve:
             across = np.append(np.linalg.svd(self.equations(x)[1])[2][-1], 0.0)  # the curve runs along this
         except ContactError as error:
             return f"is no orbit: {error}"
-        for step in (1e-3, 1e-4, 1e-5):
+        for step in (1e-3, 1e-4, 1e-5, 1e-6):
             ends = [self.solve(x + h * across, across) for h in (step, -step)]
             if None not in ends:
                 sides = [end[0][-1] - x[-1] for end in ends]
