@@ -22,8 +22,8 @@ The subject
 Words
     An *impact* is one touch.  A *collision* is all the impacts of one approach, as mode 1 feels them: mode 1
     leaves with -`restitution` times its approach speed after the time `delay`, and its `kick` is the jump of
-    its velocity over the approach speed.  A *graze* is a touch without effect within rounding.  *Strobes* are
-    the instants n/f of the drive; a stroboscopic map takes the state from one strobe to the next.
+    its velocity over the approach speed.  A *graze* is a touch whose effect is below rounding error.
+    *Strobes* are the instants n/f of the drive; a stroboscopic map takes the state from one to the next.
 
 The files: the problem and its answer
     ``drive``           base motion, `HarmonicDrive`
@@ -49,11 +49,11 @@ The folders, from the machine to the orbits
                         letter's map, with its orbits (`MapFamily`), folds and `bands` in closed form
     ``orbits``          periodic orbits: `MaximalFamily` in closed form under Newton's law, `Shooting` under
                         any law; `settle` and `orbit_diagram` by following the motion; `follow` to folds,
-                        period doublings and grazings; `orbit_end`; ``lyapunov``
+                        period doublings and grazings; `orbit_end`, where an orbit is lost; Lyapunov exponents
 
 A motion that cannot be followed raises a `ContactError` (`UnresolvedCrossing`, `Chatter`, `ContactTooStiff`,
 `NotPeriodic`, ...) with time, gap and velocity, and returns no number.  Units are SI throughout; modes are
-mass-normalised (q in m kg^0.5).  Every module opens with its equations.
+mass-normalised (q in m kg^0.5).  A module with physics opens with its equations.
 """
 
 from dataclasses import replace

@@ -8,19 +8,19 @@
 The chapters are `experiment`, `spring`, `methods` and `measurement`.  They share `physics` and `shell`; a
 chapter never imports another one.  `letter` has the numbers and the points of the letter.
 
-A *scene* (studies/scenes/letter.toml, or one's own: --scene FILE, --set section.key=value) holds the
-physics, each value with its unit and whether it is the letter's, calibrated or assumed.  A study takes the
-spring from it, with as many modes as its question needs.  It computes, stores, and draws from what it stored:
-results/NAME/ has tables (csv), arrays (npz), figures (png, pdf), what was found (summary.json) and what it
-rests on (manifest.json).
+A *scene* holds the physical values: studies/scenes/letter.toml, or one's own (--scene FILE, --set
+section.key=value).  Each value has a unit and an origin: the letter, calibrated or assumed.  A study takes the
+spring from the scene, with as many modes as its question needs.  In results/NAME/ it stores tables (csv),
+arrays (npz) and figures (png, pdf) drawn from them.  summary.json has the results in numbers, and
+manifest.json has versions, parameters and the command.
 
-Importing this package changes nothing.  A program first does three things:
+Importing this package from Python changes nothing.  As a program it first prepares its process:
 
 - It sets the thread count of the linear algebra libraries to 1, unless the environment sets it.  Several
   workers with several threads each slow one another down twentyfold.
 - It makes sure that `beam` and `contact` are the packages beside this one.  The public index has other
   packages of both names, with which the studies would fail or compute something else.
-- It ends with one sentence for a study that does not exist, and at Ctrl-C during the imports.
+- It ends with one sentence at Ctrl-C during the imports, and runs commands of old names.
 """
 
 from __future__ import annotations

@@ -1,9 +1,17 @@
-"""Methods for the motion with contacts, one a file; ``INTEGRATORS`` lists them by name.
+"""Methods for the motion with contacts; ``INTEGRATORS`` lists them by name.
 
-``Exact`` takes no step.  It has also the names under which it is known with an impact law ("event-driven"), a
-linear contact ("piecewise-linear") and Hertz's law ("contact-series").  ``SampledFlight`` is exact but for
-the touches that it misses (letter 1996, note [11]).  The others are made with a step, as in
+``Exact`` has no fixed time step.  Its other names are "event-driven" (impact laws), "piecewise-linear"
+(linear contact) and "contact-series" (Hertz's law).  ``SampledFlight`` looks for touches at samples only, as
+the letter did (1996, note [11]); otherwise it is exact.  The others are made with a step, as in
 ``CentralDifference(step=1e-6)``, and refuse a step beyond their limit of stability.
+
+`method`, `fixed_step`, `grid`   what all methods share; the methods with a step; their grid of steps
+`exact`                          ``Exact`` and ``SampledFlight``
+`central_difference`             explicit, for contact forces
+`generalised_alpha`              implicit, with numerical damping at high frequencies
+`moreau_jean`                    for impact laws, by percussions
+`nonsmooth_generalised_alpha`    generalised-alpha with percussions
+`splitting`, `splitting_step`    exact flights and contact forces in turn
 
 How to add a method with a time step
     1. Its file here: a child of ``fixed_step.FixedStep`` with its equations, its limit of stability

@@ -1,16 +1,16 @@
 """Compiled kernels and where their machine code is kept.
 
-Every numerical kernel of the package is a pure function of numbers and arrays.  Numba compiles it without
-fast-math, so that results agree bit for bit on one type of machine, and without the interpreter lock, so that
-threads share the cores.
+Every numerical kernel of the package is a function of numbers and arrays.  Numba compiles it without
+fast-math, so that results agree bit for bit on one type of machine.  It runs without the interpreter lock, so
+that threads share the cores.
 
 The machine code is cached between runs.  Numba's own cache checks only the file of a kernel, and would reuse
-a kernel whose callee in another file has changed.  Here the cache folder of a kernel is named after a hash of
-its file and of all files of ``contact`` that this one imports, directly or through others.  A change of a
-source thus recompiles all kernels that rest on it, and no others.  Folders without use for an hour are
-removed.
+a kernel whose callee in another file has changed.  Here the name of the cache folder is a hash of the
+kernel's file and of all files of ``contact`` on which it rests.  A change of a source thus recompiles all
+kernels that rest on it, and no others.  A new folder removes those without use for an hour.  The environment
+variable NUMBA_CACHE_DIR names another folder, without these rules.
 
-The first kernel that a process has to compile is announced on standard error.
+The first kernel of the package that the main process compiles is announced on standard error.
 """
 
 from __future__ import annotations
@@ -152,7 +152,7 @@ def inlined(function: Function) -> Function:
 def part(function: Function) -> Function:
     """Let numba insert `function` into its caller before compilation; it is separate only for the reader.
 
-    A kernel is compiled with everything that it calls; a part is not compiled a second time for that.
+    A part is compiled only inside its callers, never alone.
     """
     return cast(Function, numba.njit(inline="always", nogil=True, error_model="numpy")(function))
 
@@ -176,7 +176,7 @@ def borrowed(_context, value):
     """The same arrays, or tuple of arrays, without reference counting.
 
     Reference counting costs some ten nanoseconds for each array passed to a kernel, as much as two modes.
-    The caller must keep the arrays alive: its arguments are, and other arrays are if it ends with `held`.
+    Arguments of the caller stay alive.  Any other array stays alive if the caller ends with `held`.
     """
 
     def build(context, builder, signature, args):

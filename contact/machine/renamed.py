@@ -36,7 +36,7 @@ def forwarded_call(old: str, new: str, function: Callable[..., T]) -> Callable[.
 
 
 def forward_modules(table: dict[str, str]) -> None:
-    """Make modules importable by the old names of `table`, old -> new; each name read from one warns."""
+    """Make modules importable by the old names of `table`, old -> new; reading a name from one warns."""
     for old, new in table.items():
         module = ModuleType(old, f"This module is now ``{new}``.")
         module.__getattr__ = _names_of(old, new)  # type: ignore[method-assign]

@@ -1,6 +1,8 @@
-"""Drive periods of one mode under Newton's law, Eq. (1) of the letter (1996), at some ten nanoseconds each.
+"""Fast motion of one mode under Newton's law, Eq. (1) of the letter (1996).
+
+A drive period takes some ten nanoseconds to compute.
 
 `period_table`   the motion within a period without sines, and the constants of the mode
 `one_impact`     a period with one impact, straight through
-`loop`           the proofs that choose between them; any other period goes to the general event loop
+`loop`           the proofs that decide which periods take the fast ways; the others go to the event loop
 """

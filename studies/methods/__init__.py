@@ -1,1 +1,4 @@
-"""The methods: error against cost, where they fail, how large a model must be, published numbers."""
+"""The methods: error against cost, where they fail, how large a model must be, published numbers.
+
+Shared here: `crossings` of known depth, `two_masses`, and the outside solvers in `peers`.
+"""

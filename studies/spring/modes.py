@@ -1,4 +1,4 @@
-"""Natural modes of the spring: what they look like, and what an impact sees of them.
+"""Natural modes of the spring, with films: their shapes, and their share in an impact.
 
 Claim: with legs side by side every bending mode moves the ball towards the stop. A folded strip has two kinds
 of modes: sway modes do, breathing modes move the ball along the legs at most, and take no part in impacts.

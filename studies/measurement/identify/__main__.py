@@ -1,4 +1,4 @@
-"""From a measured record to the parameters of the oscillator, with errors that can be believed.
+"""From a measured record to the parameters of the oscillator, with checked error bars.
 
 Claim: a record of a beam that rattles determines its free period, decay rate, gap, restitution and delay, or
 its contact stiffness, each with an error.  Where it cannot separate two of them, the study says so.

@@ -1,4 +1,4 @@
-"""The package held against published numbers that nobody here wrote.
+"""The package compared with results that other authors published.
 
 Claim: what nine sources print of folds, doublings, exact solutions and measured frequencies is met within the
 error of each; where it is not, a third route says which side is right.
