@@ -9,8 +9,8 @@ The chapters are `experiment`, `spring`, `methods` and `measurement`.  They shar
 chapter never imports another one.  `letter` has the numbers and the points of the letter.
 
 A *scene* holds the physical values: studies/scenes/letter.toml, or one's own (--scene FILE, --set
-section.key=value).  Each value has a unit and an origin: the letter, calibrated or assumed.  A study takes the
-spring from the scene, with as many modes as its question needs.  In results/NAME/ it stores tables (csv),
+section.key=value).  Each value has a unit and an origin: the letter, calibrated or assumed.  A study takes
+the spring from the scene, with as many modes as its question needs.  In results/NAME/ it stores tables (csv),
 arrays (npz) and figures (png, pdf) drawn from them.  summary.json has the results in numbers, and
 manifest.json has versions, parameters and the command.
 
