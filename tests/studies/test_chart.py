@@ -14,6 +14,7 @@ from studies.experiment.chart.cut import CHAOTIC, NOT_SETTLED, PERIODIC, WITHOUT
 from studies.shell.scene import beam_at, single_mode_at
 
 FREQUENCY = 21.50
+CUT = ("--cut-range", "-0.02", "0.012", "--cut-points", "5")
 
 
 def told(strobed, *, most_cycles=1500, cycles=400):
@@ -69,7 +70,7 @@ def test_both_orbits_have_a_basin_between_fold_and_grazing_and_one_below(letter_
 
 
 def test_small_form(run_study):
-    ran = run_study("chart", "--quick", "--points", "4", "8", "--side", "8", "--cut-points", "5")
+    ran = run_study("chart", "--quick", "--points", "4", "8", "--side", "8", *CUT)
     assert ran.code == 0
     rows = ran.rows("cut")
     for row in rows:
