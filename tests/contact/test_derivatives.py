@@ -243,8 +243,12 @@ def in_other_units(oscillator: ImpactOscillator) -> list[Change]:
 @pytest.mark.parametrize("name", [*LAWS, "constant"])
 def test_other_units_change_nothing_but_units(name: str) -> None:
     """Excess and multipliers stay, at given speed in the new units and at given amplitude."""
-    spring = equation_1(22.2, DELAYED[name], gap=GAP) if name in DELAYED else beam(22.20, LAWS[name], 6)
-    oscillator = spring  # six modes: the rounding of a release grows with the frequency of the fastest
+    spring = (
+        equation_1(22.2, DELAYED[name], gap=GAP)
+        if name in DELAYED
+        else beam(22.20, LAWS[name], 6 + 4 * (name != "linear"))
+    )
+    oscillator = spring  # linear with six modes: the rounding of a release grows with the fastest mode
     orbit = Shooting(oscillator=oscillator, period=5).at_speed(0.1 * oscillator.unit_speed)
     changes = in_other_units(orbit.oscillator)
     found = orbit_derivatives(orbit, changes)
