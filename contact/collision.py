@@ -26,8 +26,6 @@ Restitution and delay do not exist then, and the kick is given as a velocity.  I
 reaches the gap, restitution and delay do not exist either, but the kick does.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

@@ -5,8 +5,6 @@
 with amplitude Z [m] and frequency f [Hz]; strobes at t_n = n/f (letter 1996, Fig. 2).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

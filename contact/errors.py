@@ -5,8 +5,6 @@ TypeError, where the object is made.  The classes here are for valid computation
 They carry time and place of the failure, and never a number that might be taken for a result.
 """
 
-from __future__ import annotations
-
 
 class ContactError(RuntimeError):
     """A computation of impacts that could not be finished.

@@ -5,8 +5,6 @@ contact, the contact series for Hertz's and Hunt and Crossley's laws.  Its error
 ``studies.methods.work_precision`` compares its cost with that of the other methods and of outside solvers.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from beam.parameters import (
@@ -27,8 +25,7 @@ from contact.integrators.method import LAW_NAMES
 from contact.oscillator import ImpactOscillator
 from contact.trajectory import State, Trajectory
 
-MOST_STORED = 2.0**28
-"""Largest number of values in the strobes of one run: 2 GB."""
+MOST_STORED = 2.0**28  # largest number of values in the strobes of one run: 2 GB
 
 
 def _method(method: Integrator | str | None, law: int) -> Integrator:

@@ -1,7 +1,5 @@
 """The stop: a wall that rides on the base, at distance `gap` from the resting tip."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from beam.parameters import final, require_kind, require_within, suspect

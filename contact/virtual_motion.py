@@ -5,8 +5,6 @@
 with the steady forced tip motion x_s and the free deviation u_1 of mode 1 (``contact.collision``).
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -14,8 +12,7 @@ import numpy as np
 from contact.flight.motion import WEIGHT, Motion
 from contact.flight.tip_search import peaks_of_flight, tip_at
 
-NEAR = 0.6
-"""Drive periods within which the hump of a virtual motion belongs to a collision."""
+NEAR = 0.6  # drive periods within which the hump of a virtual motion belongs to a collision
 
 
 class VirtualMotion:

@@ -7,8 +7,6 @@ followed through the contact until the tip leaves the wall (``contact.touch``). 
 costs one multiplication by the flow of a period and a proof, most often from the lowest mode alone.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from types import ModuleType

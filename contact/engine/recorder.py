@@ -6,8 +6,6 @@ samples (``contact.integrators.fixed_step``).  The record keeps the modal state 
 carries: deviations from the steady motion, or displacements and velocities themselves.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

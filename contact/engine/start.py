@@ -1,7 +1,5 @@
 """A run of the exact motion: its start, the call of the event loop, and its errors."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from beam.parameters import InvalidValue
@@ -14,8 +12,7 @@ from contact.oscillator import ImpactOscillator
 from contact.touch import TOUCHES, force
 from contact.trajectory import OUTSIDE, SUSTAINED, WAITING, ImpactKind, Regime, Run, State, Trajectory
 
-HELD_WITHIN = 1e3
-"""Largest distance from the gap of a tip that rests on the wall, in rounding bounds."""
+HELD_WITHIN = 1e3  # largest distance from the gap of a tip that rests on the wall, in rounding bounds
 
 FAILURES: dict[int, tuple[type[ContactError], str]] = {
     loop.FAILED_CROSSING: (UnresolvedCrossing, ""),

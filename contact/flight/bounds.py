@@ -38,8 +38,6 @@ next to it, so settles a flight without a touch; a flight with one is settled up
 comes within r of the stop.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 
@@ -79,17 +77,13 @@ def certify(y0, y1, y2, m3, rest, margin, h, h_min):
 LEAST_SLACK = 1.0 / 16.0
 """Smallest K/G for which the bound is used, so that the margin covers the rounding of squares."""
 
-HIGHEST = 1e6
-"""Largest steady amplitude over G for which the time of its peak is exact enough."""
+HIGHEST = 1e6  # largest steady amplitude over G for which the time of its peak is exact enough
 
 UNCERTAIN = 1e-11
 """Bound of the rounding of w t_p: the part of the amplitude by which cos(w (t - t_p)) may be above zero."""
 
-TRIES = 4
-"""Largest number of trials t_1; two suffice unless the lowest mode is far from its steady motion."""
-
-CLOSE = 1e-4
-"""Accepted distance of y - R from -r at a t_1 before the touch, over G."""
+TRIES = 4  # largest number of trials t_1; two suffice unless the lowest mode is far from its steady motion
+CLOSE = 1e-4  # accepted distance of y - R from -r at a t_1 before the touch, over G
 
 
 class LowestMode(NamedTuple):

@@ -15,8 +15,6 @@ A graze, |peak| within the rounding bound of y (at most 1e-13 of the gap), is an
 stretch that no proof settles, with h down to rounding, is reported as unresolved and never passed.
 """
 
-from __future__ import annotations
-
 import math
 
 from contact.flight import modal_flow as rows
@@ -29,11 +27,8 @@ from contact.machine.compiled import kernel, part
 from contact.machine.vector_loops import LANES
 
 FREE, CROSSES, GRAZES, UNRESOLVED = range(4)
-BELOW = -1
-"""Outcome of a stretch with a peak that stays below the stop: the search goes on."""
-
-GRAZE_TOLERANCE = 1e-13
-"""Largest rounding bound, relative to the gap, with which a peak within it is a graze."""
+BELOW = -1  # outcome of a stretch with a peak that stays below the stop: the search goes on
+GRAZE_TOLERANCE = 1e-13  # largest rounding bound, relative to the gap, with which a peak within it is a graze
 
 
 @kernel

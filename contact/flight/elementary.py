@@ -7,20 +7,14 @@ pi/2, whose leading 33 bits make the product exact (W. J. Cody and W. Waite, Sof
 Elementary Functions, Prentice-Hall 1980).  The exponential is computed in the same way on |x| <= ln 2/2.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 
 from contact.machine.compiled import inlined, kernel
 
-EPS = 2.220446049250313e-16
-"""Distance from 1 to the next double."""
-
-FARTHEST = 5e5
-"""Largest phase for which the product of the number of quarter turns and pi/2 is exact [rad]."""
-
+EPS = 2.220446049250313e-16  # distance from 1 to the next double
+FARTHEST = 5e5  # largest phase for which the product of the number of quarter turns and pi/2 is exact [rad]
 _SPLIT = 134217729.0  # 2^27 + 1, Veltkamp's splitting of a double into two halves
 _QUARTER, _QUARTER_LOW = 1.5707963267341256, 6.077100506506192e-11  # pi/2, its first 33 bits and the rest
 _LN2, _LN2_LOW = 0.6931471803691238, 1.9082149292705877e-10  # ln 2, its first 32 bits and the rest

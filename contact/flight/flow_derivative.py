@@ -10,16 +10,13 @@ while d exp(-half t)/dc = -t/2 exp(-half t).  Where D t^2 is small, d sn/dD is t
     e^(-half t) t^3 sum_k (-1)^k (D t^2)^(k-1) k/(2k + 1)!,      k = 1, 2, ...
 """
 
-from __future__ import annotations
-
 import math
 
 from contact.flight.modal_flow import flow_matrix
 from contact.flight.motion import DAMPED, DAMPED_LOW, DECAY, OMEGA
 from contact.machine.compiled import kernel
 
-TERMS = 10
-"""Terms of the series for |D t^2| < 1: the next one is below 1e-19 of the first."""
+TERMS = 10  # terms of the series for |D t^2| < 1: the next one is below 1e-19 of the first
 
 
 @kernel

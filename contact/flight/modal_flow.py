@@ -24,8 +24,6 @@ all later times, whatever the damping,
 Units: SI with mass-normalised modes (u in m kg^0.5).
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -6,8 +6,6 @@ several in one instruction.  (Passing a dozen arrays to a kernel would take seve
 propagating eight modes.)  The equations are those of ``contact.flight.modal_flow``.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

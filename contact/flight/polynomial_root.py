@@ -4,8 +4,6 @@ The three proofs of ``contact.flight.bounds`` settle one stretch after the other
 derivative is the sum of the absolute terms at the far end.
 """
 
-from __future__ import annotations
-
 from contact.flight.bounds import PEAK, ROOT, SKIP, certify
 from contact.flight.elementary import EPS
 from contact.machine.compiled import kernel

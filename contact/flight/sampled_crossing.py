@@ -12,8 +12,6 @@ omega / (pi f).  Turning points of a sum of modes can lie arbitrarily close toge
 it.  If several crossings lie in one interval, the located one need not be the first.
 """
 
-from __future__ import annotations
-
 import math
 
 from contact.flight.crossing import CROSSES, FREE

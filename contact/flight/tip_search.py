@@ -5,8 +5,6 @@ through a point replaces the tangent.  With a bound M of the third derivative th
 step of length x ends within M x^3/6 of the height sought, or with y' within M x^2/2 of zero.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -24,8 +24,6 @@ derivative of a number, and with (u, v, S, C) the motion itself,
 where n_1, n_2 are the two numbers of the law.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 
@@ -39,8 +37,7 @@ from contact.machine.compiled import kernel, part
 LEVEL, TIP_SINE, TIP_COSINE, DRIVE, NUMBER0, NUMBER1 = range(6)
 """Columns of `Variation.scalars`: the derivatives of level, a, b, w, n_1 and n_2."""
 
-TINY = 1e-300
-"""Replaces |a + i b| where the drive does not move the tip."""
+TINY = 1e-300  # replaces |a + i b| where the drive does not move the tip
 
 
 class Variation(NamedTuple):

@@ -18,8 +18,6 @@ off the stop at both.  One mode needs few samples.  With N modes k has to follow
 and nothing shows that it was too small.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import ClassVar
@@ -31,11 +29,8 @@ from contact.oscillator import ImpactOscillator
 from contact.touch import TOUCHES
 from contact.trajectory import Run, Trajectory
 
-EXACT_NAMES = {code: file.METHOD for code, file in TOUCHES.items()}
-"""Names of the exact method with each law."""
-
-MOST_POINTS = 10**9
-"""Largest number of samples per drive period, which take some minutes."""
+EXACT_NAMES = {code: file.METHOD for code, file in TOUCHES.items()}  # names of the exact method with each law
+MOST_POINTS = 10**9  # largest number of samples per drive period, which take some minutes
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,7 +1,5 @@
 """A method with a time step: checks of a run, the loop over its steps, and the trajectory made of it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

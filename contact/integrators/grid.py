@@ -13,8 +13,6 @@ whose error, h^4/384 q'''', is below their own.  Touch and release are roots of 
 Times count from the strobe before the run's start.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import NamedTuple
@@ -43,14 +41,9 @@ no longer finite."""
 PROGRESS = np.dtype([("step", "i8"), ("due", "f8")])
 """Number of the grid point reached; time of the next sample since the strobe `first` [s]."""
 
-UNBOUNDED = 1e12
-"""Penetration [m] beyond which a motion counts as diverged."""
-
-ON_THE_GRID = 1e-9
-"""Part of a step by which a time may miss a grid point and be taken for it."""
-
-WELL_WITHIN = 1e-12
-"""Part of a step to which a touch is dated: rounding moves the root by as much."""
+UNBOUNDED = 1e12  # penetration [m] beyond which a motion counts as diverged
+ON_THE_GRID = 1e-9  # part of a step by which a time may miss a grid point and be taken for it
+WELL_WITHIN = 1e-12  # part of a step to which a touch is dated: rounding moves the root by as much
 
 
 class Grid(NamedTuple):

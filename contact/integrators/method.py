@@ -6,8 +6,6 @@ equations, its limit of stability and its source.  A law that it does not accept
 (``TypeError``), and so is a step beyond the limit (``StepTooLarge``).
 """
 
-from __future__ import annotations
-
 import math
 from typing import ClassVar
 
@@ -16,8 +14,7 @@ from contact.oscillator import ImpactOscillator
 from contact.touch import TOUCHES
 from contact.trajectory import Run, Trajectory
 
-LAW_NAMES = {code: file.LAW for code, file in TOUCHES.items()}
-"""The laws in words, by their codes."""
+LAW_NAMES = {code: file.LAW for code, file in TOUCHES.items()}  # the laws in words, by their codes
 
 
 class Integrator:

@@ -38,8 +38,6 @@ The path of the step has its corner at t_n + (1 - theta) h, where q = q_n + (1 -
 impact is dated, from v_n to v_{n+1}, so that Newton's law holds for what is written down.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

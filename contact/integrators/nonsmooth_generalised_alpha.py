@@ -26,8 +26,6 @@ motion, 1 after an impact, whose instant is known to half a step; stable for any
 the stop stays behind, as with ``moreau_jean``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar

@@ -43,8 +43,6 @@ step and contact, theta_j + theta_k = 2 pi m.  There a search finds the first k 
 spectral radius exceeds one; it may miss narrower resonances.  In flight there is no limit.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -65,8 +63,7 @@ from contact.laws import HERTZ, LINEAR, LinearContact
 SEARCH, SEARCH_BEYOND_PI, EACH = 1, 6, 100
 """Decades of k below the lowest root that are searched, for omega h < pi and beyond, and values in each."""
 
-JUST_BEYOND = 1e-5
-"""How far beyond a root its instability is looked for, relative."""
+JUST_BEYOND = 1e-5  # how far beyond a root its instability is looked for, relative
 
 EXCEEDS = 1e-7
 """By how much the spectral radius must exceed one: at a double eigenvalue rounding alone makes 1e-8."""

@@ -23,8 +23,6 @@ Far from the stop no kick acts, and flows compose: m steps are one flow of lengt
     y + m h (|x_s'| + sum |phi_k| sqrt(v_k^2 + omega_k^2 u_k^2)) < 0,   y the distance behind the stop.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 
@@ -45,8 +43,7 @@ RENEW = 32
 """Steps after which sine and cosine of the drive's phase are computed anew, so that the rounding error of
 their recurrence stays below 1e-14."""
 
-WORTHWHILE = 8
-"""Least number of steps that are taken as one flight, which costs as much as some eight steps."""
+WORTHWHILE = 8  # least number of steps that are taken as one flight, which costs as much as some eight steps
 
 
 class Composition(NamedTuple):

@@ -13,8 +13,6 @@ variable NUMBA_CACHE_DIR names another folder, without these rules.
 The first kernel of the package that the main process compiles is announced on standard error.
 """
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import inspect

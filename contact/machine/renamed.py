@@ -1,7 +1,5 @@
 """Old names of functions and modules: each forwards to the new one with a DeprecationWarning."""
 
-from __future__ import annotations
-
 import sys
 import warnings
 from collections.abc import Callable

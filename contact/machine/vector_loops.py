@@ -6,8 +6,6 @@ term.  These loops are therefore written in LLVM's language: eight columns at a 
 from the first term to the last.  On every processor even and odd terms are added separately, then their sums.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
@@ -15,14 +13,9 @@ from numba.extending import intrinsic
 
 from contact.machine.compiled import kernel
 
-LANES = 8
-"""Numbers side by side in the widest vector registers in use."""
-
-_LINE = 64
-"""Bytes that the processor fetches at once; rows that begin at multiples of this are read faster."""
-
-_GROUP = 4
-"""Blocks of eight columns that share a pass over the terms."""
+LANES = 8  # numbers side by side in the widest vector registers in use
+_LINE = 64  # bytes that the processor fetches at once; rows that begin at multiples of this are read faster
+_GROUP = 4  # blocks of eight columns that share a pass over the terms
 
 _REAL = ir.DoubleType()
 _EIGHT = ir.VectorType(_REAL, LANES)

@@ -4,8 +4,6 @@ The machine code is kept (``contact.machine.compiled``).  Otherwise the first ru
 minute longer than the next.  Two processes share the work: kernels of a motion, and kernels of an orbit.
 """
 
-from __future__ import annotations
-
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 

@@ -20,21 +20,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from beam.parameters import require_array, require_whole, require_within
+from beam.parameters import Array, require_array, require_whole, require_within
 from contact.errors import Chatter, Diverged, NotPeriodic
 from contact.maps.nonlinear_taylor import CHATTERED, FLOWN, ORDER, free_flow, periods
 from contact.maps.protocol import StrobedOrbit, amplitude_factors
 
-Array = NDArray[np.float64]
-
-MOST_STEPS = 50
-"""Bound of the steps of Newton's method for the motion without impacts."""
-
-CLOSE = 1e-12
-"""Relative change at which Newton's method ends."""
-
-TINY = 1e-30
-"""Imaginary step of a derivative."""
+MOST_STEPS = 50  # bound of the steps of Newton's method for the motion without impacts
+CLOSE = 1e-12  # relative change at which Newton's method ends
+TINY = 1e-30  # imaginary step of a derivative
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,8 +13,6 @@ The cubic terms hold for small x.  The run ends without a result beyond `validit
 force would fall or the mass vanish, and in a drive period of more than `MOST_STEPS`.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -25,17 +23,10 @@ from contact.machine.compiled import kernel
 FLOWN, CHATTERED, LOST = range(3)
 """How drive periods end: all followed; more impacts than `MOST_IMPACTS`; a motion beyond the model."""
 
-ORDER = 22
-"""Order of the Taylor series: a drive period takes some eight steps."""
-
-SMALL = 1e-16
-"""Size of the last term of a step, relative to the gap."""
-
-GRAZED = 1e-14
-"""Height above the stop up to which a flight counts as free, relative to the gap."""
-
-MOST_IMPACTS, MOST_STEPS = 1000, 10_000
-"""Bounds of impacts and of steps in a drive period."""
+ORDER = 22  # order of the Taylor series: a drive period takes some eight steps
+SMALL = 1e-16  # size of the last term of a step, relative to the gap
+GRAZED = 1e-14  # height above the stop up to which a flight counts as free, relative to the gap
+MOST_IMPACTS, MOST_STEPS = 1000, 10_000  # bounds of impacts and of steps in a drive period
 
 
 @kernel

@@ -29,15 +29,14 @@ from dataclasses import dataclass, replace
 from typing import ClassVar, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from beam.parameters import require, require_array, require_whole, require_within
+from beam.parameters import Array, require, require_array, require_whole, require_within
 from contact.machine.compiled import kernel
 from contact.maps.nordmark_coefficients import coefficients, restitution_of
 from contact.maps.protocol import Jacobians, StrobedOrbit, amplitude_factors
 from contact.oscillator import ImpactOscillator
 
-Array = NDArray[np.float64]
 YLine = Literal["corrected", "printed"]
 
 

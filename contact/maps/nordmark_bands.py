@@ -13,8 +13,6 @@ belong to an oscillating mode. An overdamped one has b > 0; its orbits with one 
 Source: letter of 1996, Fig. 3 and text.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -21,8 +21,6 @@ In the letter the bracket in rho is broken, "(1 + tau^2 sin^2(2 pi/fT)"; it must
 Sources: letter of 1996, Eqs. (1) to (3); A. B. Nordmark, J. Sound Vib. 145 (1991) 279.
 """
 
-from __future__ import annotations
-
 import math
 
 from beam.parameters import InvalidType, require, require_kind, require_within

@@ -24,8 +24,6 @@ Sources: letter of 1996, Fig. 3 and text; W. Chin, E. Ott, H. E. Nusse, C. Grebo
 4427. The formulae hold for either reading of the y-line; all quantities are pure numbers save f and T.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from itertools import pairwise
@@ -36,8 +34,7 @@ from numpy.typing import NDArray
 from beam.parameters import require_kind, require_whole, require_within
 from contact.maps.nordmark import NordmarkMap
 
-MOST_PERIODS = 100_000
-"""Longest period of an orbit, in drive periods; its states are computed one by one."""
+MOST_PERIODS = 100_000  # longest period of an orbit, in drive periods; its states are computed one by one
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -8,8 +8,6 @@ A point holds phi_k q_k and phi_k q_k'/omega_k of all modes, contributions to th
 zero frequency has phi_k q_k'/(2 pi f) instead, and a mode with its node at the tip has the largest phi.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

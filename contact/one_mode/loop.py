@@ -32,8 +32,6 @@ of the period (below resonance it does, unless the mode's sign puts it at the st
 the wall or several impacts, and with large deviations (from about twice the grazing amplitude on).
 """
 
-from __future__ import annotations
-
 import math
 
 from contact.engine.event_loop import DONE, advance

@@ -28,8 +28,6 @@ error as small as that of the cubic.
 An iteration (`rising_zero`) finds the other crossings; it makes a period 1.3 to 1.8 times as long.
 """
 
-from __future__ import annotations
-
 import math
 
 from contact.machine.compiled import inlined, kernel

@@ -17,8 +17,6 @@ The steady motion peaks at the time t_p of the period, at the height A = sqrt(S^
 (u, v) [m, m/s] of the tip obeys the equation of the mode.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 
@@ -39,12 +37,8 @@ SAFETY = 32.0
 """Factor of the margin m over the rounding bound of the tip displacement (4 roundings of all its terms).  It
 covers the roundings of the proofs.  m is some 1e-13 of the gap; closer cases go to the event loop."""
 
-SMALL = 1e-3
-"""Part of the margin m up to which a tip displacement is zero: one rounding of the gap."""
-
-
-Flow = tuple[float, float, float, float]
-"""A matrix by rows, by which a deviation (u, v) is multiplied."""
+SMALL = 1e-3  # part of the margin m up to which a tip displacement is zero: one rounding of the gap
+Flow = tuple[float, float, float, float]  # a matrix by rows, by which a deviation (u, v) is multiplied
 
 
 class OneMode(NamedTuple):

@@ -10,8 +10,6 @@ numbers of the law.  By the chain rule it also depends on p through the steady m
     a. + i b. = sum phi_k. H_k + phi_k H_k..
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -21,11 +19,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam import ModalChange
-from beam.parameters import final, require, require_array, require_each, require_kind, require_within, shown
+from beam.parameters import (
+    Array,
+    final,
+    require,
+    require_array,
+    require_each,
+    require_kind,
+    require_within,
+    shown,
+)
 from contact.flight.variation import Variation, variation
 from contact.oscillator import ImpactOscillator, dynamic_stiffness
 
-Array = NDArray[np.float64]
 ARRAYS = ("omega", "decay_rate", "phi", "participation")
 Path = Callable[[float], ImpactOscillator]
 

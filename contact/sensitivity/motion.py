@@ -5,22 +5,17 @@ u = q - q_s(t, p), and the drive S = Z sin(w t), C = Z cos(w t).  The derivative
 added again for states (q, q').  Strobes move with the drive: t = n/f.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from beam.parameters import InvalidValue, require_array, require_kind
+from beam.parameters import Array, InvalidValue, require_array, require_kind
 from contact.oscillator import ImpactOscillator
 from contact.sensitivity.change import Change, Sensitivities
 from contact.sensitivity.replay import Replay, deviation_rates_at_strobe
 from contact.simulation import simulate
 from contact.trajectory import Regime, State, Trajectory
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

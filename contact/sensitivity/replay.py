@@ -5,13 +5,12 @@ through touches with the tangents of the law (``contact.flight.variation``).  Th
 -y(d)/v along a tangent d, v its approach velocity.  At a graze v is zero, and the motion has no derivative.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 from numpy.typing import NDArray
 
+from beam.parameters import Array
 from contact.errors import NoDerivative
 from contact.flight.modal_flow import propagate, steady_motion
 from contact.flight.motion import Motion
@@ -23,8 +22,6 @@ from contact.sensitivity.touch_flow import FLOWN, TOUCHING, flow_error, flow_fro
 from contact.touch import force, waits
 from contact.touch.delayed import waiting_acceleration, waiting_tangents
 from contact.trajectory import ImpactKind, State, Trajectory
-
-Array = NDArray[np.float64]
 
 
 @kernel

@@ -8,13 +8,11 @@ where the strobe map has its square root.  Amplitude and phase of the drive are 
 series, and through instantaneous impacts by saltation matrices.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beam.parameters import Array
 from contact import touch
 from contact.engine.event_loop import STATE
 from contact.errors import ContactError, ContactTooStiff, NotPeriodic
@@ -27,7 +25,6 @@ from contact.touch.series import new_series
 from contact.touch.tangent_series import new_tangent_workspace, tangent_step
 from contact.trajectory import CONTACT, OUTSIDE, SUSTAINED
 
-Array = NDArray[np.float64]
 FLOWN, FEWER_TOUCHES, FAILED, TOUCHING, TOO_STIFF = range(5)
 """Outcomes of a flow: it reached its end; it has too few touches; it was lost; its end falls into the last
 touch of a force law; a touch needs more than `MOST_STEPS`."""

@@ -44,8 +44,6 @@ An unknown code is an error wherever a law is needed.  A kernel takes no functio
 therefore links the files of the table into one compiled function for each name.
 """
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable
 from typing import TypeVar

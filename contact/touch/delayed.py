@@ -29,8 +29,6 @@ A law with the regime WAITING has these three functions besides those of ``conta
     repeated_touch(motion, speed, period)            the touch of the orbit above
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from contact.errors import NotPeriodic
@@ -46,8 +44,7 @@ REGIMES = (OUTSIDE, WAITING)
 force, stiffness, slopes = newton.force, newton.stiffness, newton.slopes
 series_size, series_variable, work = newton.series_size, newton.series_variable, newton.work
 
-RESTITUTION, DELAY = 1, 3
-"""Rows of the table, each followed by its slope; row 0 holds the approach speeds."""
+RESTITUTION, DELAY = 1, 3  # rows of the table, each followed by its slope; row 0 holds the approach speeds
 
 SINGULAR = 1e-13
 """A determinant of I - N R below this is rounding of terms of size 1: the mode is back after m/f."""

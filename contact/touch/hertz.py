@@ -21,8 +21,6 @@ speeds.  The energy of a lossless contact is conserved to that order.  A step en
 where r falls to zero.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -62,8 +60,7 @@ RELAXED = 3.0
 
 _EDGE = TOLERANCE ** (1.0 / ORDER)
 
-INVERSE = 1.0 / np.maximum(1.0, np.arange(64.0))
-"""1/n."""
+INVERSE = 1.0 / np.maximum(1.0, np.arange(64.0))  # 1/n
 
 strike, leave, saltation = shared.strike, shared.leave, shared.saltation
 

@@ -9,8 +9,6 @@ Motion in contact is linear: the series is that of a matrix exponential, summed 
 Holmes, J. Sound Vib. 90 (1983) 129, for one mode).
 """
 
-from __future__ import annotations
-
 import math
 
 from contact.flight.elementary import EPS

@@ -11,8 +11,6 @@ one step.  Then the tip stays on the wall (regime SUSTAINED), held by the force 
 force would pull; the series is that of ``contact.touch.time_series``.
 """
 
-from __future__ import annotations
-
 import math
 
 from contact.flight.elementary import EPS

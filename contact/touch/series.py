@@ -14,8 +14,6 @@ n estimates the radius of convergence by the root test, R_n = (A/|x_n|)^(1/n), a
 leaves terms of tol A at the order p.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 
@@ -25,8 +23,7 @@ from contact.machine.compiled import inlined, kernel, part
 from contact.machine.vector_loops import aligned, weighted_rows
 from contact.trajectory import CONTACT
 
-WINDOW = 8
-"""Number of last orders of the force that limit a step."""
+WINDOW = 8  # number of last orders of the force that limit a step
 
 LOOSE = 1.15
 """Largest ratio of a step to the bound by an earlier order of the force: no two orders agree better."""

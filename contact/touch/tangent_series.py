@@ -4,8 +4,6 @@
 the force r N; its sums are the sources of the parameters.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -8,8 +8,6 @@ a step covers some three radians of the fastest mode.  Terms then grow to e^3 ti
 digit in a mode that fast and nothing in the others.  A higher order would save work and lose more digits.
 """
 
-from __future__ import annotations
-
 import math
 
 from contact.flight.elementary import EPS
@@ -19,15 +17,13 @@ from contact.machine.vector_loops import next_order, weighted_rows
 from contact.touch.series import limited_by_force, log_longest, powers_of, work_of
 from contact.trajectory import INSIDE
 
-ORDER = 30
-"""Order of the series in time."""
+ORDER = 30  # order of the series in time
 
 DEPTH, RATE, FORCE, STEADY, POWERS, SLOPES = range(6)
 """Rows of the scalar series: d, d' (filled by `work`), N, the steady tip motion, powers of time and their
 derivatives."""
 
-TOLERANCE = 0.1 * EPS
-"""Size of the last terms of a step, relative to the modal speeds."""
+TOLERANCE = 0.1 * EPS  # size of the last terms of a step, relative to the modal speeds
 
 _EDGE = TOLERANCE ** (1.0 / (ORDER - 1))
 

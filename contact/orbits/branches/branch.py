@@ -6,8 +6,6 @@ sentence says why.  Where the tip gains or loses a touch, a curve with `admissib
 number of touches.  Such a neighbour exists under a law whose force is continuous.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise

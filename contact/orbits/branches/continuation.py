@@ -5,13 +5,10 @@ the first touch (``contact.orbits.families.continuable_family``).  Down to grazi
 factor.  With several touches v can turn round along the curve (``contact.orbits.branches.branch``).
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from beam.parameters import InvalidValue, require_array, require_kind, require_within
 from contact.errors import ContactError
@@ -29,10 +26,7 @@ from contact.orbits.families.continuable_family import ContinuableFamily
 from contact.orbits.families.kick import SPEEDS
 from contact.orbits.families.periodic_orbit import PeriodicOrbit
 
-Array = NDArray[np.float64]
-
-GREATEST_STEP = 10.0
-"""Longest step of log v: over four decades at once."""
+GREATEST_STEP = 10.0  # longest step of log v: over four decades at once
 
 FASTEST = 100.0
 """Approach velocity, over 2 pi f gap, up to which an event is looked for; at least twice the start's."""

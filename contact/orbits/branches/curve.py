@@ -6,31 +6,25 @@ in a plane across the curve.  The determinant of the rows with t below them chan
 cross, and only there.  The last unknown has a range, beyond which the curve is not followed.
 """
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from beam.parameters import Refusal
+from beam.parameters import Array, Refusal
 from contact.errors import ContactError
 from contact.orbits.branches.event_derivatives import peaks
 from contact.orbits.families.equations import Equations, Iterate, Point, newton
 from contact.orbits.families.periodic_orbit import PeriodicOrbit
 from contact.simulation import simulate
 
-Array = NDArray[np.float64]
-
 BEND, TWIST, STRAIGHT = 0.3, 0.25, 5e-3
 """Largest angle between the directions of neighbours [rad], also the part of a step by which it may miss.
 Their chord may differ from the mean of both directions by `TWIST` of that angle and `STRAIGHT`.  On a smooth
 curve the difference is of second order in the step, between two curves it is not."""
 
-SHORT = 1e-9
-"""Length of a chord below which its direction is rounding."""
+SHORT = 1e-9  # length of a chord below which its direction is rounding
 
 DRIFT = 0.1
 """Largest change of the time from the first touch to another one, in drive periods, from neighbour to

@@ -12,15 +12,13 @@ short strides only.  The stride is therefore halved until the derivatives of all
 two results give the next order.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from types import SimpleNamespace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from beam.parameters import require_kind
+from beam.parameters import Array, require_kind
 from contact.errors import NoDerivative
 from contact.flight.motion import Motion, motion_of, with_drive
 from contact.flight.tip_search import peaks_of_flight, tip_at
@@ -34,8 +32,6 @@ from contact.sensitivity.replay import Replay
 from contact.sensitivity.touch_flow import FLOWN, flow_from_touch
 from contact.simulation import simulate
 
-Array = NDArray[np.float64]
-
 STRIDE, MOST_STRIDES = 4e-3, 16
 """Part of itself by which the orbit or a number of the oscillator is moved for the first differences of
 tangents; and bound of halvings, after which rounding takes half of the digits."""
@@ -44,14 +40,9 @@ SETTLED, UNCERTAIN, NOISE = 1e-9, 1e-7, 1e-12
 """Error of the derivatives of multipliers, over the largest, at which no shorter stride is tried; largest
 error of a result; and rounding of each number of a monodromy matrix."""
 
-WEIGHTS = np.array([8.0, -1.0]) / 12.0
-"""Weights of f(h) - f(-h) and f(2h) - f(-2h) in the difference h f'."""
-
-DOUBLES = 1e-5
-"""Distance of a multiplier from -1 at a period doubling: located ones are within 1e-6."""
-
-NEAR = 1e-6
-"""Part of the approach speed by which an orbit may miss its graze: located ones do by 1e-10."""
+WEIGHTS = np.array([8.0, -1.0]) / 12.0  # weights of f(h) - f(-h) and f(2h) - f(-2h) in the difference h f'
+DOUBLES = 1e-5  # distance of a multiplier from -1 at a period doubling: located ones are within 1e-6
+NEAR = 1e-6  # part of the approach speed by which an orbit may miss its graze: located ones do by 1e-10
 
 
 def multiplier_derivatives(found: OrbitDerivatives) -> NDArray[np.complex128]:

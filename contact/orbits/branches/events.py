@@ -15,8 +15,6 @@ An event is certain if a multiplier is where it must be, if the located orbit li
 neighbours, and if no other event lies next to it.  Otherwise it is called "undecided".
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 

@@ -4,23 +4,17 @@ Its unknowns are the deviations and the logarithm of the approach velocity of th
 (``contact.orbits.families.continuable_family``).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from beam.parameters import Array
 from contact.errors import BranchEnded, ContactError
 from contact.orbits.branches.branch import SHORTER, Branch, Leg, branch_of, walk
 from contact.orbits.branches.curve import Curve, grazes
 from contact.orbits.families.continuable_family import ContinuableFamily
 from contact.orbits.families.equations import Equations, Point
 from contact.orbits.families.periodic_orbit import PeriodicOrbit
-
-Array = NDArray[np.float64]
 
 FIRST_STRIDE, LONGEST_STRIDE = 0.02, 0.3
 """Steps on the way to an event: the first, as it may be close, and the longest."""

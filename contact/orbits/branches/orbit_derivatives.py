@@ -7,24 +7,19 @@ observes, and ends at a fold.  At given approach speed s it goes on there.  The 
 does not depend on s: it is the derivative of the fold itself.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from beam.parameters import require_kind
+from beam.parameters import Array, require_kind
 from contact.errors import NoDerivative
 from contact.orbits.families.equations import drive_of, shoot, sizes_of, slopes_of, tip_slopes
 from contact.orbits.families.periodic_orbit import PeriodicOrbit
 from contact.sensitivity.change import Change, Sensitivities
 from contact.sensitivity.replay import Replay, deviation_rates_at_strobe
 from contact.simulation import simulate
-
-Array = NDArray[np.float64]
 
 STEEPEST = 1e10
 """Change of the start, in units of its size, per change of the equations, beyond which it is rounding.  At a

@@ -9,16 +9,13 @@ with exact tangents in z and p (``contact.orbits.families.equations``).  These a
 and turns round where p does.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import numpy as np
-from numpy.typing import NDArray
 
-from beam.parameters import require, require_kind, require_within
+from beam.parameters import Array, require, require_kind, require_within
 from contact.errors import NotPeriodic
 from contact.flight.modal_flow import steady_motion
 from contact.orbits.branches.branch import Branch, branch_of
@@ -36,8 +33,6 @@ from contact.orbits.families.equations import (
 from contact.orbits.families.periodic_orbit import PeriodicOrbit
 from contact.oscillator import ImpactOscillator
 from contact.sensitivity.change import Change, Path, Sensitivities, change_along
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

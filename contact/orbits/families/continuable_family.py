@@ -7,8 +7,6 @@ k touches in m drive periods then obeys 2 N equations for 2 N + 1 unknowns
 and down to grazing.
 """
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
@@ -16,9 +14,8 @@ from functools import cached_property
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from beam.parameters import is_whole, require, require_kind, require_within, shown
+from beam.parameters import Array, is_whole, require, require_kind, require_within, shown
 from contact.errors import NotPeriodic
 from contact.orbits.families.equations import Iterate, driven_at, newton, shot_of, sizes_of
 from contact.orbits.families.kick import KickFamily
@@ -27,8 +24,6 @@ from contact.oscillator import ImpactOscillator
 from contact.sensitivity.touch_flow import flow_over_periods
 from contact.simulation import simulate
 from contact.trajectory import ImpactKind, Regime, State
-
-Array = NDArray[np.float64]
 
 STEEPEST = 1e10
 """Change of an unknown along the branch, over that of the approach speed, both in units of their size.

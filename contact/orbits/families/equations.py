@@ -24,8 +24,8 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beam.parameters import Array
 from contact.errors import NotPeriodic
 from contact.flight.variation import all_tip_changes
 from contact.orbits.families.periodic_orbit import PeriodicOrbit
@@ -34,8 +34,6 @@ from contact.sensitivity.change import Sensitivities
 from contact.sensitivity.replay import deviation_rates
 from contact.sensitivity.touch_flow import flow_over_periods
 
-Array = NDArray[np.float64]
-
 CONVERGED = 1e-12
 """Largest residual in units of the sizes; rounding of the flow over m periods is about 1e-14."""
 
@@ -43,8 +41,7 @@ ROUNDED = 1e-9
 """Residual below which iterates that no longer improve count as an orbit.  The rest is rounding, 1e-16, times
 the largest multiplier, which grows as 1/v towards grazing."""
 
-MOST_ITERATIONS = 25
-"""Bound of Newton's method: from the orbit of a kick it takes three to six iterations."""
+MOST_ITERATIONS = 25  # bound of Newton's method: from the orbit of a kick it takes three to six iterations
 
 LONGEST_STEP = 0.3
 """Longest change of an unknown in one iteration, in units of its size: larger ones are shortened."""

@@ -11,8 +11,6 @@ fold, where a node and a saddle meet.  Four descriptions offer it:
                                          sqrt(x) at the impact
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -21,6 +19,7 @@ from typing import NamedTuple, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from beam.parameters import Array
 from contact.errors import ContactError
 from contact.flight.crossing import CROSSES, FREE, first_crossing
 from contact.flight.modal_flow import steady_motion, tip_state
@@ -28,7 +27,6 @@ from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.trajectory import State
 
-Array = NDArray[np.float64]
 Failure = TypeVar("Failure", bound=ContactError)
 CLOSING = 1e-9  # part of a flight by which it is prolonged, so that the touch at its end is met
 

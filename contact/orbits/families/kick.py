@@ -17,17 +17,14 @@ tip, which this neglects.  A second collision, simulated from w itself, gives an
 difference is the estimate of the error.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-from beam.parameters import require, require_array, require_within, shown
+from beam.parameters import Array, require, require_array, require_within, shown
 from contact.flight.modal_flow import free_flow
 from contact.flight.variation import variation
 from contact.orbits.families.single_impact import Kick, SingleImpactFamily, SingleImpactOrbit
@@ -35,20 +32,14 @@ from contact.sensitivity.touch_flow import FEWER_TOUCHES, flow_error, flow_from_
 from contact.touch import waits
 from contact.touch.delayed import repeated_touch
 
-Array = NDArray[np.float64]
-
-MOST_TOUCHES = 200
-"""Bound of touches in one collision: a bare tip under a stiff spring makes some dozens."""
-
-WINDOW = 0.5
-"""Part of a drive period after the first touch in which further touches belong to the collision."""
+MOST_TOUCHES = 200  # bound of touches in one collision: a bare tip under a stiff spring makes some dozens
+WINDOW = 0.5  # part of a drive period after the first touch in which further touches belong to the collision
 
 SPEEDS = (1e-4, 1.0)
 """Approach velocities, over 2 pi f gap, among which orbits are looked for.  Faster ones belong to amplitudes
 far above the letter's."""
 
-GRID = 33
-"""Velocities of a search, on a logarithmic grid: eight a decade."""
+GRID = 33  # velocities of a search, on a logarithmic grid: eight a decade
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -1,18 +1,15 @@
 """Periodic orbits with any number of touches, found by shooting."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beam.parameters import Array
 from contact.orbits.families.family import Release, TouchOrbit
 from contact.simulation import simulate
 from contact.trajectory import ImpactKind
 
-Array = NDArray[np.float64]
 ALIKE = 1e-5
 """Difference between touches that is taken for none.  Behind a branch point touches part in proportion to the
 distance, and the equations are singular up to about this distance."""

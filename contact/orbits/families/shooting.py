@@ -5,8 +5,6 @@ folds, and all its orbits at one amplitude, are found by following the branch
 (``contact.orbits.branches.continuation``).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from contact.orbits.branches.continuation import lowest_fold, orbits_at

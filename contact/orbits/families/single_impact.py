@@ -30,8 +30,6 @@ Units: SI with mass-normalised modes (q in m kg^0.5).
 Sources: letter of 1996, Eq. (1) and Fig. 3; A. B. Nordmark, J. Sound Vib. 145 (1991) 279.
 """
 
-from __future__ import annotations
-
 import math
 import warnings
 from abc import ABC, abstractmethod
@@ -42,7 +40,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from beam.parameters import InvalidValue, require, require_kind, require_whole, require_within
+from beam.parameters import Array, InvalidValue, require, require_kind, require_whole, require_within
 from contact.flight.modal_flow import free_flow
 from contact.laws import NewtonRestitution
 from contact.maps.nordmark_coefficients import restitution_of
@@ -53,7 +51,6 @@ from contact.sensitivity.touch_flow import flow_over_periods
 from contact.stop import Stop
 from contact.touch.newton import newton_impact
 
-Array = NDArray[np.float64]
 SINGULAR = 1e-13  # a D below this is rounding of 1 - tr N + G, terms of size 1: the mode is back after m/f
 HEIGHT = 1e-13  # rounding of the height at which the flight ends, in units of the gap
 

@@ -20,8 +20,6 @@ the next one goes on from the last state that was reached.  The amplitude enters
 the loop scales the steady motion at grazing.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -40,8 +38,7 @@ from contact.orbits.observation.settling import TOLERANCE
 from contact.oscillator import ImpactOscillator
 from contact.trajectory import OUTSIDE
 
-LARGEST_PERIOD = 64
-"""Longest period that is recognised."""
+LARGEST_PERIOD = 64  # longest period that is recognised
 
 SHORTEST = 16
 """Strobes that have to repeat at least: a quarter of LARGEST_PERIOD, twice the letter's common periods."""
@@ -50,14 +47,9 @@ ROUGH = 1e4
 """Tolerance at the bound over the usual one, i.e. 1e-5 of the gap.  After 512 drive periods an orbit of
 period 3 whose multiplier is 0.97 still changes by 1e-6 per period."""
 
-BLOCK = 32
-"""Drive periods between two comparisons: the fewest that show a period, 2 SHORTEST."""
-
-BEHIND = -1
-"""Status of a state behind the stop, from the amplitude before, where no flight can start."""
-
-EXTRA = 3
-"""Numbers of a state in addition to (q, q'): regime, wait, rebound."""
+BLOCK = 32  # drive periods between two comparisons: the fewest that show a period, 2 SHORTEST
+BEHIND = -1  # status of a state behind the stop, from the amplitude before, where no flight can start
+EXTRA = 3  # numbers of a state in addition to (q, q'): regime, wait, rebound
 
 
 @kernel

@@ -13,15 +13,12 @@ comes or goes within the cloud.  It ends at grazing, where b_n or M_n has a squa
 fold, where a multiplier becomes 1.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import reduce
 
 import numpy as np
-from numpy.typing import NDArray
 
-from beam.parameters import require, require_kind, require_whole, require_within
+from beam.parameters import Array, require, require_kind, require_whole, require_within
 from contact.errors import NotPeriodic
 from contact.maps.nordmark import NordmarkMap
 from contact.maps.stroboscope import StroboscopicMap
@@ -30,7 +27,6 @@ from contact.sensitivity.change import Change
 from contact.sensitivity.motion import motion_derivatives
 from contact.trajectory import State
 
-Array = NDArray[np.float64]
 Strobed = StroboscopicMap | NordmarkMap
 
 

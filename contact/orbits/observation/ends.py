@@ -14,8 +14,6 @@ lower end of the bracket, the motion lost it too early, and the scan goes on fro
 only the "bracket" is known: for other maps, several impacts in the map, or two events closer than 1e-6.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
@@ -37,11 +35,8 @@ from contact.orbits.observation.settling import Settled, orbit_near, settle
 
 S = TypeVar("S")
 
-MOST_STEPS = 400
-"""Bound of amplitude steps: 40 doublings reach any excess, and 40 halvings any tolerance."""
-
-BRACKET = "bracket"
-"""Kind of an end of which only the bracket is known."""
+MOST_STEPS = 400  # bound of amplitude steps: 40 doublings reach any excess, and 40 halvings any tolerance
+BRACKET = "bracket"  # kind of an end of which only the bracket is known
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -154,8 +149,7 @@ def orbit_end(
     return None
 
 
-End = tuple[str, float, PeriodicOrbit | None]
-"""Kind of an end, its excess, and its orbit if that is known."""
+End = tuple[str, float, PeriodicOrbit | None]  # kind of an end, its excess, and its orbit if that is known
 
 
 def _exact_end(

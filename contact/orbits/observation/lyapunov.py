@@ -18,31 +18,22 @@ J. A. Yorke, Nonlinearity 30 (2017) 4111), on chaos like a plain average.  The s
 scatter of blocks.  Every ``contact.maps.protocol.DifferentiableMap`` has these exponents.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from beam.parameters import require_whole
+from beam.parameters import Array, require_whole
 from contact.errors import NoDerivative, NotPeriodic
 from contact.maps.protocol import DifferentiableMap, require_map
 from contact.orbits.observation.repetition import require_orbit
 
-Array = NDArray[np.float64]
 S = TypeVar("S")
 
-AT_ONCE = 64
-"""Periods simulated at a time, which bounds the memory; no result depends on it."""
-
-BLOCKS = 20
-"""Blocks whose scatter gives the standard error: enough for an estimate within a sixth of itself."""
-
-MOST_STRETCHES = 64
-"""Bound of repetitions of an orbit's period until its strobe is off the wall."""
+AT_ONCE = 64  # periods simulated at a time, which bounds the memory; no result depends on it
+BLOCKS = 20  # blocks whose scatter gives the standard error: enough for an estimate within a sixth of itself
+MOST_STRETCHES = 64  # bound of repetitions of an orbit's period until its strobe is off the wall
 
 SMALLEST = 1e-300
 """In place of a zero on the diagonal of R, where an impact without rebound has erased a direction."""

@@ -9,8 +9,6 @@ the stop again if
     |x_steady| + sum_k |phi_k| sqrt(u_k^2 + (u_k'/omega_k)^2)  <  gap.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from beam.parameters import require, require_array, require_whole, require_within

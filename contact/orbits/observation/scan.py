@@ -5,8 +5,6 @@ at each and records 40 strobe points.  Because the state is carried along, the s
 spring stays on its orbit until that orbit ends.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeVar

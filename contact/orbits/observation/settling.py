@@ -18,8 +18,6 @@ when the free motion that is left cannot reach the stop.  Near a fold, where |mu
 thousands of periods.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any, Generic, TypeVar
 
@@ -55,8 +53,7 @@ CLOSER = 0.5
 """A search without result is repeated when the motion repeats better by this factor, or much worse.
 Otherwise every block would be searched next to a vanished fold, or in chaos next to an unstable orbit."""
 
-SLACK = 1.5
-"""Factor on the decay that the multiplier predicts, for the other multipliers and the curvature."""
+SLACK = 1.5  # factor on the decay that the multiplier predicts, for the other multipliers and the curvature
 
 NEAR = 1e-3
 """Distance from the orbit, relative to the gap, within which the linear neighbourhood is looked for."""
@@ -173,8 +170,7 @@ def orbit_near(strobed: StroboscopicMap, state: State, period: int, impacts: int
     return orbit if orbit.stable and orbit.admissible else None
 
 
-Cycle = tuple[PeriodicOrbit, StrobedOrbit[State]]
-"""An orbit, and one period of its strobes."""
+Cycle = tuple[PeriodicOrbit, StrobedOrbit[State]]  # an orbit, and one period of its strobes
 
 
 class _Proof:
