@@ -79,7 +79,7 @@ from contact.laws import (
     LinearContact,
     NewtonRestitution,
 )
-from contact.machine.renamed import forward_modules, forwarded_call
+from contact.machine import renamed
 from contact.maps.nonlinear_mode import NonlinearMode
 from contact.maps.nordmark import NordmarkMap
 from contact.maps.nordmark_bands import Band, band, bands
@@ -99,7 +99,12 @@ from contact.simulation import simulate
 from contact.stop import Stop
 from contact.trajectory import ImpactKind, Impacts, Regime, State, Trajectory
 
-forward_modules(
+__all__ = sorted(
+    name for name, one in globals().items() if getattr(one, "__module__", "").startswith("contact.")
+)
+"""All classes and functions imported above, so that each name stands once."""
+
+renamed.forward_modules(
     {
         "contact.nordmark": "contact.maps.nordmark",
         "contact.stroboscope": "contact.maps.stroboscope",
@@ -110,57 +115,8 @@ forward_modules(
         "contact.orbits.continuation": "contact.orbits.branches.continuation",
     }
 )
-StrobedNordmarkMap = forwarded_call(
+StrobedNordmarkMap = renamed.forwarded_call(
     "StrobedNordmarkMap(map=nordmark, rho=rho)",
     "replace(nordmark, control=rho)",
     lambda *, map, rho=0.0: replace(map, control=rho),
 )
-
-__all__ = [
-    "Band",
-    "BranchEnded",
-    "Chatter",
-    "Collision",
-    "ContactError",
-    "ContactLaw",
-    "ContactTooStiff",
-    "DelayedRestitution",
-    "Diverged",
-    "HarmonicDrive",
-    "HertzContact",
-    "HuntCrossley",
-    "ImpactKind",
-    "ImpactOscillator",
-    "Impacts",
-    "LinearContact",
-    "MapFamily",
-    "MaximalFamily",
-    "MaximalOrbit",
-    "NewtonRestitution",
-    "NonlinearMode",
-    "NordmarkMap",
-    "NoDerivative",
-    "NotPeriodic",
-    "Regime",
-    "SingleImpactOrbit",
-    "State",
-    "StepTooLarge",
-    "Stop",
-    "StrobedMap",
-    "StrobedOrbit",
-    "StroboscopicMap",
-    "Trajectory",
-    "UnresolvedCrossing",
-    "band",
-    "bands",
-    "before_collision",
-    "collisions",
-    "first_collision",
-    "fold",
-    "maximal_orbits",
-    "maximal_period",
-    "maximal_periods",
-    "simulate",
-    "stable_range",
-    "strobed_orbits",
-]

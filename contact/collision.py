@@ -47,40 +47,29 @@ class Collision:
 
     Parameters
     ----------
-    time : float
-        t_in, or the first touch if `forced_by_ringing` [s].
-    end : float
-        Last release of the tip [s].
+    time, end : float
+        t_in, or the first touch if `forced_by_ringing`; last release of the tip [s].
     approach : float
         v_in; NaN if `forced_by_ringing` [m/s].
-    restitution : float
-        The letter's tau; NaN where it does not exist [1].
-    delay : float
-        t_out - t_in; NaN where it does not exist [s].
-    kick : float
-        Kick of the mode-1 tip velocity over v_in [1]; NaN if `forced_by_ringing`.
-    kick_velocity : float
-        Kick of the mode-1 tip velocity, positive away from the stop [m/s].
+    restitution, delay : float
+        The letter's tau [1], and t_out - t_in [s]; NaN where they do not exist.
+    kick, kick_velocity : float
+        Kick of the mode-1 tip velocity over v_in, NaN if `forced_by_ringing` [1]; and this kick itself,
+        positive away from the stop [m/s].
     shift : float
         Jump of the mode-1 tip displacement at t_in [m].
     deceleration : float
         a, minus the second derivative of the incoming virtual motion at t_in [m/s^2].
-    impacts : int
-        Touches in the collision.
-    contact_time : float
-        Total time of touch [s].
+    impacts, contact_time : int, float
+        Touches in the collision, and their total time [s].
     first_touch, real_approach : float
         Time [s] and true tip velocity [m/s] of the first touch.
     ringing : float
         Amplitude of the free motion of the higher modes at the tip before the collision [m].
-    energy_to_higher_modes : float
-        Gain of the free motion of all modes but mode 1 [J].
-    energy_lost : float
-        Energy lost in the contact itself [J].
-    forced_by_ringing : bool
-        The virtual motion alone would not have touched.
-    returns : bool
-        The outgoing virtual motion reaches the gap.
+    energy_to_higher_modes, energy_lost : float
+        Gain of the free motion of all modes but mode 1, and loss in the contact itself [J].
+    forced_by_ringing, returns : bool
+        The virtual motion alone would not have touched; the outgoing virtual motion reaches the gap.
     """
 
     time: float
@@ -121,9 +110,10 @@ def collisions(
     *,
     unfinished: str = "refuse",
 ) -> list[Collision]:
-    """Group the impacts of a trajectory into collisions: ``collisions(trajectory)``.
+    """Group the impacts of a trajectory into collisions, in the order of time: ``collisions(trajectory)``.
 
-    A collision that had begun before the trajectory is left out.
+    A collision that had begun before the trajectory is left out.  ValueError is raised for an unfinished last
+    collision, unless it may be dropped, and for another oscillator.
 
     Parameters
     ----------
@@ -132,15 +122,6 @@ def collisions(
     trajectory : Trajectory
     unfinished : {"refuse", "drop"}
         What to do with a last collision that is not final when the trajectory ends.
-
-    Returns
-    -------
-    list of Collision, in the order of time.
-
-    Raises
-    ------
-    ValueError
-        For an unfinished last collision, unless it may be dropped, and for another oscillator.
     """
     given = oscillator if trajectory is None else trajectory
     run = require_kind("trajectory", given, Trajectory, "a Trajectory, from simulate")
@@ -247,22 +228,13 @@ def _measure(motion: Motion, k: int, impacts: Impacts, rows: slice, outgoing: Vi
 def first_collision(
     oscillator: ImpactOscillator, state: State | None = None, *, periods: int = 64
 ) -> Collision:
-    """The first collision from `state`, or from the steady motion that the wall has not yet disturbed.
+    """The first collision of an `oscillator` from `state`, or from the steady motion (`before_collision`).
 
     Started from the steady motion at an excess above zero, this is the collision that ends the p1 orbit, with
     all higher modes at their steady amplitude: the cleanest measure of restitution, delay and kick.
 
-    Parameters
-    ----------
-    oscillator : ImpactOscillator
-    state : State, optional
-    periods : int
-        Drive periods within which the collision must be final.
-
-    Raises
-    ------
-    ValueError
-        If the tip does not touch the stop, or the collision is not final, within `periods`.
+    ValueError is raised unless the tip touches the stop, and the collision is final, within `periods` drive
+    periods.
     """
     periods = require_whole("periods", periods, "drive periods")
     start = before_collision(oscillator) if state is None else state
@@ -275,13 +247,7 @@ def first_collision(
 
 
 def before_collision(oscillator: ImpactOscillator) -> State:
-    """The steady motion, at the time of its lowest tip displacement in the first drive period.
-
-    Parameters
-    ----------
-    oscillator : ImpactOscillator
-        A driven one; ValueError without a drive.
-    """
+    """The steady motion of a driven `oscillator`, where the tip is lowest in the first drive period."""
     require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
     require(oscillator.drive is not None, "drive is None; there is no steady motion then, so give a state")
     motion = oscillator.motion()

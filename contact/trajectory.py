@@ -114,31 +114,16 @@ class State:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Run:
-    """Start and end of a simulation, and the times at which its states are wanted.
-
-    Parameters
-    ----------
-    start : State
-    length : float
-        Duration [s].
-    first, last : int
-        Numbers of the drive periods in which the run starts and ends.
-    clock, clock_end : float
-        Times since the strobes that begin them [s].
-    times : ndarray, shape (n_times,)
-        Times at which the state is wanted [s].
-    sample_period, sample_clock : ndarray, shape (n_times,)
-        These times as number of the drive period and time since its strobe [s].
-    """
+    """Start and end of a simulation, and the times at which its states are wanted."""
 
     start: State
-    length: float
-    first: int
-    last: int
-    clock: float
+    length: float  # duration [s]
+    first: int  # number of the drive period in which the run starts
+    last: int  # number of the one in which it ends
+    clock: float  # start and end, as times since the strobes of these periods [s]
     clock_end: float
-    times: np.ndarray
-    sample_period: np.ndarray
+    times: np.ndarray  # at which the state is wanted [s], shape (n_times,)
+    sample_period: np.ndarray  # the same as number of the drive period and time since its strobe [s]
     sample_clock: np.ndarray
 
 

@@ -63,24 +63,14 @@ to be computed anew.
 
 
 class Workspace(NamedTuple):
-    """Workspace of a run.
+    """Workspace of a run."""
 
-    flight : ndarray
-        Workspace of ``contact.flight.modal_flow``.
-    whole, spaced : ndarray, shape (n_modes, 6)
-        Flow over a drive period, and over the `spacing` of a sampled search [s].
-    series : Series
-        Workspace of a contact step.
-    u, v : ndarray, shape (n_modes,)
-        Deviations at a sample.
-    """
-
-    flight: np.ndarray
-    whole: np.ndarray
-    spaced: np.ndarray
-    spacing: float
-    series: Series
-    u: np.ndarray
+    flight: np.ndarray  # workspace of ``contact.flight.modal_flow``
+    whole: np.ndarray  # flow over a drive period, shape (n_modes, 6)
+    spaced: np.ndarray  # flow over the `spacing`, shape (n_modes, 6)
+    spacing: float  # time between samples of a sampled search [s]
+    series: Series  # workspace of a contact step
+    u: np.ndarray  # deviations at a sample, shape (n_modes,) each
     v: np.ndarray
 
 
@@ -242,25 +232,10 @@ follow_contact = touch.by_law({code: contact_follower(file) for code, file in to
 
 @kernel
 def advance(motion, u, v, runs, last, clock_end, recorder):
-    """Carry the deviations (u, v) to the time `clock_end` after strobe `last`.
+    """Carry the deviations (u, v), shape (n_modes,) each, to the time `clock_end` [s] after strobe `last`.
 
-    Parameters
-    ----------
-    motion : Motion
-    u, v : ndarray, shape (n_modes,)
-        Deviations from the steady motion; overwritten.
-    runs : record array of `STATE`, shape (1,)
-        State of the run; overwritten.
-    last : int
-        Number of the last strobe.
-    clock_end : float
-        Time after it at which the run ends [s].
-    recorder : Recorder
-
-    Returns
-    -------
-    status : int
-        DONE, LOG_FULL (call again with a longer log), or one of the failures.
+    They and `runs`, a record array of `STATE` of shape (1,), are overwritten.  Returns the status: DONE,
+    LOG_FULL (call again with a longer log), or one of the failures.
     """
     run, workspace = runs[0], new_workspace(motion, runs[0].search)
     motion, u, v, recorder = borrowed(motion), borrowed(u), borrowed(v), borrowed(recorder)

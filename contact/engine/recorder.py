@@ -37,26 +37,16 @@ LOG = np.dtype(
 
 
 class Recorder(NamedTuple):
-    """The arrays into which a run writes.
+    """The arrays into which a run writes."""
 
-    marks : record array of `MARKS`, shape (1,)
-    log : record array of `LOG`, shape (capacity,); empty if no impacts are wanted
-    log_state : ndarray, shape (capacity, 4 n_modes)
-        (u, v) just before the touch and just after the release.
-    strobes, counts : ndarray, shapes (n_strobes, 2 n_modes) and (n_strobes,), or (0, ...)
-        (u, v) at the strobes, and the impacts since the strobe before.
-    sample_period, sample_clock, samples : ndarray, shapes (n,), (n,), (n, 2 n_modes)
-        Times wanted, and (u, v) there.
-    """
-
-    marks: np.ndarray
-    log: np.ndarray
-    log_state: np.ndarray
-    strobes: np.ndarray
-    counts: np.ndarray
-    sample_period: np.ndarray
+    marks: np.ndarray  # `MARKS`, shape (1,)
+    log: np.ndarray  # `LOG`, shape (capacity,); empty if no impacts are wanted
+    log_state: np.ndarray  # (u, v) just before the touch and just after the release, (capacity, 4 n_modes)
+    strobes: np.ndarray  # (u, v) at the strobes, shape (n_strobes, 2 n_modes) or (0, 2 n_modes)
+    counts: np.ndarray  # impacts since the strobe before, shape (n_strobes,) or (0,)
+    sample_period: np.ndarray  # times wanted: drive period and time since its strobe [s], shape (n,)
     sample_clock: np.ndarray
-    samples: np.ndarray
+    samples: np.ndarray  # (u, v) at these times, shape (n, 2 n_modes)
 
 
 @kernel

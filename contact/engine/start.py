@@ -35,12 +35,8 @@ def start_of(
     """Deviations (u, v) of `state` from the steady motion, and a run (`STATE`) that starts there.
 
     `steady` is the steady displacement and velocity at the start, if known, each of shape (n_modes,).
-
-    Raises
-    ------
-    ValueError
-        If the state has another number of modes, or lies behind the stop of an impact law, or if its regime
-        is unknown to the law or does not fit the position of the tip.
+    ValueError is raised if the state has another number of modes, or lies behind the stop of an impact law,
+    or if its regime is unknown to the law or does not fit the position of the tip.
     """
     modes, known = state.displacement.size, TOUCHES[motion.law].REGIMES
     if modes != motion.size:
@@ -98,13 +94,8 @@ def exact_trajectory(oscillator: ImpactOscillator, run: Run, *, search: int = 0)
     """The motion of `run`, event by event.
 
     Crossings of the stop are proved (`search` 0) or detected at `search` instants of each drive period.
-
-    Raises
-    ------
-    ValueError
-        If the start does not fit the model or lies behind the stop of an impact law.
-    UnresolvedCrossing, Chatter, ContactTooStiff
-        If the motion cannot be followed; see ``contact.errors``.
+    Raises ValueError as `start_of` does, and UnresolvedCrossing, Chatter or ContactTooStiff if the motion
+    cannot be followed.
     """
     motion, n = oscillator.motion(), oscillator.n_modes
     u, v, runs = start_of(motion, run.start, run.first, run.clock, search=search)

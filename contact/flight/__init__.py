@@ -3,7 +3,6 @@
 `elementary`          sine, cosine, exponential and root to the last place, products without rounding error
 `motion`              `Motion`, the numbers of an oscillator for compiled code
 `modal_flow`          the closed-form flow of its modes, and the tip as their sum
-`flow_derivative`     derivatives of that flow with respect to the numbers of a mode
 `variation`           tangents: derivatives of a motion with respect to its start and its numbers
 `bounds`              stretches of a flight that are proved free of a crossing
 `tip_search`          the tip during a flight: roots and peaks in a bracket, and all peaks

@@ -87,39 +87,21 @@ CLOSE = 1e-4  # accepted distance of y - R from -r at a t_1 before the touch, ov
 
 
 class LowestMode(NamedTuple):
-    """The numbers of the comparison for one flight.
+    """The numbers of the comparison for one flight."""
 
-    peak, quarter : float
-        t_p and a quarter of the drive period [s].
-    mean : float
-        G - d [m]: z is the tip displacement without the other modes plus this.
-    slack : float
-        K [m]; zero if nothing can be proved.
-    near : float
-        r with its margin [m].
-    """
-
-    peak: float
-    quarter: float
-    mean: float
-    slack: float
-    near: float
+    peak: float  # t_p [s]
+    quarter: float  # a quarter of the drive period [s]
+    mean: float  # G - d [m]: z is the tip displacement without the other modes plus this
+    slack: float  # K [m]; zero if nothing can be proved
+    near: float  # r with its margin [m]
 
 
 @part
 def lowest_mode(motion, flight, base, duration, rest, margin):
-    """The bounds of a flight.
+    """The bounds of a flight that starts a time `base` after a strobe and has the length `duration` [s].
 
-    Parameters
-    ----------
-    motion, flight
-        As in ``contact.flight.modal_flow``; `flight` holds the start of the flight.
-    base, duration : float
-        Time since the strobe at which the flight starts, and its length [s].
-    rest : float
-        r, infinite if a mode of zero frequency takes part [m].
-    margin : float
-        Rounding bound of the tip displacement [m].
+    `flight` holds its start, `rest` is r, infinite if a mode of zero frequency takes part [m], and `margin`
+    the rounding bound of the tip displacement [m].
     """
     w, gap, omega, period = motion.drive, -motion.level, motion.modes[OMEGA, 0], motion.period
     u, v = flight[START_U, 0], flight[START_V, 0]

@@ -71,13 +71,8 @@ def stretch_off_wall(motion, flight, base, contact_order, h, h_min):
 def amplitudes(motion, flight):
     """Fill row ABOVE: the sum of the amplitudes of all modes above each [m].
 
-    Returns
-    -------
-    must : int
-        Number of modes, from the first on, that cannot be bounded and are always sampled: the modes of zero
-        frequency and all below them.
-    whole : float
-        The sum of all amplitudes [m].
+    Returns the number of modes, from the first on, that cannot be bounded and are always sampled (modes of
+    zero frequency and all below them), and the sum of all amplitudes [m].
     """
     u, v, above = flight[rows.START_U], flight[rows.START_V], flight[rows.ABOVE]
     phi, inverse_omega = motion.modes[WEIGHT], motion.modes[INVERSE_OMEGA]
@@ -116,25 +111,16 @@ def first_crossing(motion, base, u, v, duration, contact_order):
 
     Parameters
     ----------
-    motion : Motion
-        The oscillator.
-    base : float
-        Time since the strobe at which the flight starts [s].
+    base, duration : float
+        Time since the strobe at which the flight starts, and its length [s].
     u, v : ndarray, shape (n_modes,)
         Deviation from the steady motion at the start, and its velocity.
-    duration : float
-        Length of the flight [s].
     contact_order : int
         Number of derivatives of the tip displacement, from the zeroth on, that vanish at the start by
         construction: 0 for a tip off the wall, 1 after an impact, 2 after a plastic one or a graze, 3 at the
         release of a tip held on the wall.
 
-    Returns
-    -------
-    outcome : int
-        FREE, CROSSES, GRAZES or UNRESOLVED.
-    s : float
-        Time since the start of the flight [s].
+    Returns the outcome, FREE, CROSSES, GRAZES or UNRESOLVED, and the time since the start of the flight [s].
     """
     flight = new_flight(motion)
     load_state(flight, u, v)
@@ -153,14 +139,8 @@ def needed_modes(above, sampled, least, distance):
 def sample_tip(motion, flight, lowest, base, s, sampled):
     """Sample the lowest modes a time `s` into the flight, more than `sampled` if the gap is small.
 
-    Returns
-    -------
-    sampled : int
-        Number of modes sampled; 0 if the lowest proves that no touch can come any more.
-    y0, y1, y2 : float
-        Tip displacement relative to the stop and two derivatives, without the other modes.
-    m3 : float
-        Bound of the third derivative.
+    Returns the number of modes sampled, 0 if the lowest proves that no touch can come any more; without the
+    other modes, the tip displacement relative to the stop and two derivatives; and a bound of the third.
     """
     w, above = motion.drive, flight[rows.ABOVE]
     height, rate = flight[rows.HEIGHT], flight[rows.RATE]

@@ -23,48 +23,26 @@ doubles, omega, 1/omega (or zero), 1/max(omega, c/2) (or the period), S, C, g/om
 
 
 class Motion(NamedTuple):
-    """The numbers of an oscillator.
+    """The numbers of an oscillator."""
 
-    modes : ndarray, shape (12, m)
-        The table; m is the number of modes, filled up to a multiple of eight.
-    tip_sine, tip_cosine, amplitude : float
-        Sums of phi S and phi C, and the amplitude of the steady tip motion [m].
-    steady_energy : float
-        Sum of (w S)^2 + (w C)^2: twice the scale of the energy of the steady motion [J].
-    size : int
-        Number of modes.
-    level : float
-        Static tip displacement minus gap [m].
-    drive, period, gap, inverse_mass : float
-        w [rad/s], drive period [s], gap [m], sum of phi^2 [1/kg].
-    law, number0, number1 : int, float, float
-        Code of the contact law and its numbers.
-    all_underdamped : bool
-        Whether all modes are under-damped and without load.
-    phase_rate, fastest : float
-        Largest d, and largest of w, omega and c [rad/s].
-    table : ndarray, shape (5, n)
-        The law's functions of the approach speed, sampled.
-    """
-
-    modes: np.ndarray
-    tip_sine: float
-    tip_cosine: float
-    amplitude: float
-    steady_energy: float
-    size: int
-    level: float
-    drive: float
-    period: float
-    gap: float
-    inverse_mass: float
-    law: int
-    number0: float
+    modes: np.ndarray  # the table, shape (12, m): m is the number of modes, filled up to a multiple of eight
+    tip_sine: float  # sum of phi S [m]
+    tip_cosine: float  # sum of phi C [m]
+    amplitude: float  # of the steady tip motion [m]
+    steady_energy: float  # sum of (w S)^2 + (w C)^2: twice the scale of the energy of the steady motion [J]
+    size: int  # number of modes
+    level: float  # static tip displacement minus gap [m]
+    drive: float  # w [rad/s]
+    period: float  # drive period [s]
+    gap: float  # [m]
+    inverse_mass: float  # sum of phi^2 [1/kg]
+    law: int  # code of the contact law
+    number0: float  # the numbers of the law
     number1: float
-    all_underdamped: bool
-    phase_rate: float
-    fastest: float
-    table: np.ndarray
+    all_underdamped: bool  # whether all modes are under-damped and without load
+    phase_rate: float  # largest d [rad/s]
+    fastest: float  # largest of w, omega and c [rad/s]
+    table: np.ndarray  # the law's functions of the approach speed, sampled, shape (5, n)
 
     def row(self, row: int) -> np.ndarray:
         """A row of the table, shape (n_modes,)."""
@@ -115,19 +93,10 @@ def motion_of(
     response: np.ndarray | None = None,
     load: np.ndarray | None = None,
 ) -> Motion:
-    """The numbers of an oscillator.
+    """The numbers of an oscillator with these omega, c, phi, `gap` [m], `drive` w [rad/s] and `period` [s].
 
-    Parameters
-    ----------
-    omega, decay, phi : array_like, shape (n_modes,)
-    law : ContactLaw
-        Its `code`, `numbers` and `table` are read.
-    gap, drive, period : float
-        [m], w [rad/s], [s].
-    response : ndarray of complex, shape (n_modes,), optional
-        S + iC [m kg^0.5].
-    load : ndarray, shape (n_modes,), optional
-        g [N kg^-0.5].
+    `code`, `numbers` and `table` of the `law` are read.  `response` is S + iC [m kg^0.5], complex, and `load`
+    is g [N kg^-0.5], both of shape (n_modes,).
     """
     omega, decay, phi = (np.array(x, dtype=float) for x in (omega, decay, phi))
     n = omega.size

@@ -34,25 +34,10 @@ def root_between(motion, flight, base, low, high, margin):
 
 @kernel
 def first_sampled_crossing(motion, flight, base, duration, contact_order, spacing, flows):
-    """First crossing that is detected in (0, duration] of a free flight.
+    """First crossing of a free flight that samples detect; see ``contact.flight.crossing.first_crossing``.
 
-    Parameters
-    ----------
-    motion, flight, base, duration, contact_order
-        As in ``contact.flight.crossing.searched_flight``.
-    spacing : float
-        Time between two samples [s].
-    flows : ndarray, shape (n_modes, 6)
-        The flow over the spacing, from `flow_over`.
-
-    Returns
-    -------
-    outcome : int
-        FREE or CROSSES.
-    s : float
-        Time since the start of the flight [s].
-    count : int
-        Positions computed.
+    `flows` is the flow over the `spacing` of the samples [s].  Returns FREE or CROSSES, the time since the
+    start of the flight [s], and the number of positions computed.
     """
     n, count = motion.size, 0
     u, v = flight[START_U, :n], flight[START_V, :n]

@@ -22,6 +22,15 @@ derivative of a number, and with (u, v, S, C) the motion itself,
     dS  + r w. C,   dC  - r w. S,
 
 where n_1, n_2 are the two numbers of the law.
+
+The flow of a free mode depends on its numbers.  With half = c/2, D = omega^2 - half^2 and cn, sn as in
+``contact.flight.modal_flow`` (damping included) it is (cn + half sn, sn; -omega^2 sn, cn - half sn), and
+
+    d cn/dD = -t sn/2,      d sn/dD = (t cn - sn)/(2 D),      dD/d(omega^2) = 1,      dD/dc = -half,
+
+while d exp(-half t)/dc = -t/2 exp(-half t).  Where D t^2 is small, d sn/dD is the series
+
+    e^(-half t) t^3 sum_k (-1)^k (D t^2)^(k-1) k/(2k + 1)!,      k = 1, 2, ...
 """
 
 import math
@@ -29,35 +38,26 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contact.flight.flow_derivative import flow_derivative
-from contact.flight.modal_flow import flow_over
-from contact.flight.motion import WEIGHT, Motion
+from contact.flight.modal_flow import flow_matrix, flow_over
+from contact.flight.motion import DAMPED, DAMPED_LOW, DECAY, OMEGA, WEIGHT, Motion
 from contact.machine.compiled import kernel, part
 
 LEVEL, TIP_SINE, TIP_COSINE, DRIVE, NUMBER0, NUMBER1 = range(6)
 """Columns of `Variation.scalars`: the derivatives of level, a, b, w, n_1 and n_2."""
 
+TERMS = 10  # terms of the series for |D t^2| < 1: the next one is below 1e-19 of the first
 TINY = 1e-300  # replaces |a + i b| where the drive does not move the tip
 
 
 class Variation(NamedTuple):
-    """The motion whose tangents are carried along, and the parameters.
-
-    motion : Motion
-    response : complex
-        a + i b.
-    square, decay, weight : ndarray, shape (parameters, n_modes)
-        Derivatives of omega^2, c and phi with respect to the parameters.
-    scalars : ndarray, shape (parameters, 6)
-        Derivatives of single numbers; the columns are named above.
-    """
+    """The motion whose tangents are carried along, and its derivatives with respect to the parameters."""
 
     motion: Motion
-    response: complex
-    square: np.ndarray
-    decay: np.ndarray
-    weight: np.ndarray
-    scalars: np.ndarray
+    response: complex  # a + i b
+    square: np.ndarray  # of omega^2, shape (parameters, n_modes)
+    decay: np.ndarray  # of c, the same
+    weight: np.ndarray  # of phi, the same
+    scalars: np.ndarray  # of single numbers, shape (parameters, 6); the columns are named above
 
 
 def variation(motion, response, square=None, decay=None, weight=None, scalars=None):
@@ -77,6 +77,33 @@ def drive_now(vary, clock):
     motion, angle = vary.motion, vary.motion.drive * clock
     size = motion.amplitude / max(abs(vary.response), TINY)
     return size * math.sin(angle), size * math.cos(angle)
+
+
+@kernel
+def flow_derivative(modes, k, square, decay, t):
+    """Derivative of the flow of mode `k` over a time `t` [s], as four numbers, in a direction of the numbers.
+
+    `square` and `decay` are the changes of omega^2 and c in that direction.
+    """
+    omega, half = modes[OMEGA, k], 0.5 * modes[DECAY, k]
+    m11, sn, m21, m22 = flow_matrix(omega, modes[DECAY, k], modes[DAMPED, k], modes[DAMPED_LOW, k], t)
+    distance = math.copysign(modes[DAMPED, k] ** 2, omega - half)
+    x = distance * t * t
+    if abs(x) < 1.0:
+        term, slope = -t * t * t * math.exp(-half * t) / 6.0, 0.0
+        for n in range(1, TERMS + 1):
+            slope += n * term
+            term *= -x / ((2.0 * n + 2.0) * (2.0 * n + 3.0))
+    else:
+        slope = (0.5 * t * (m11 + m22) - sn) / (2.0 * distance)
+    moved, faded, spread = square - half * decay, -0.5 * t * decay, 0.5 * decay * sn
+    even, odd = -0.5 * t * sn * moved, half * slope * moved
+    return (
+        faded * m11 + even + odd + spread,
+        faded * sn + slope * moved,
+        faded * m21 - sn * square - omega * omega * slope * moved,
+        faded * m22 + even - odd - spread,
+    )
 
 
 @kernel

@@ -47,37 +47,22 @@ WELL_WITHIN = 1e-12  # part of a step to which a touch is dated: rounding moves 
 
 
 class Grid(NamedTuple):
-    """A run under way on its grid.
+    """A run under way on its grid."""
 
-    progress : record array of `PROGRESS`, shape (1,)
-    motion : Motion
-    push, constant : ndarray, shape (n_modes,)
-        P and g [N kg^-0.5].
-    step, clock : float
-        h, and time of the first grid point since the strobe `first` [s].
-    first, steps : int
-        Number of the drive period in which the run starts; steps in all.
-    critical : float
-        Contact stiffness beyond which the run ends [N/m].
-    q, v, q0, v0, q_at, v_at : ndarray, shape (n_modes,)
-        The modal state that the method carries: now, at the last grid point, and interpolated.
-    recorder : Recorder
-    """
-
-    progress: np.ndarray
+    progress: np.ndarray  # `PROGRESS`, shape (1,)
     motion: Motion
-    push: np.ndarray
-    constant: np.ndarray
-    step: float
-    clock: float
-    first: int
-    steps: int
-    critical: float
-    q: np.ndarray
+    push: np.ndarray  # P [N kg^-0.5], shape (n_modes,)
+    constant: np.ndarray  # g [N kg^-0.5], shape (n_modes,)
+    step: float  # h [s]
+    clock: float  # time of the first grid point since the strobe `first` [s]
+    first: int  # number of the drive period in which the run starts
+    steps: int  # in all
+    critical: float  # contact stiffness beyond which the run ends [N/m]
+    q: np.ndarray  # the modal state that the method carries: now, shape (n_modes,) each,
     v: np.ndarray
-    q0: np.ndarray
+    q0: np.ndarray  # at the last grid point,
     v0: np.ndarray
-    q_at: np.ndarray
+    q_at: np.ndarray  # and interpolated
     v_at: np.ndarray
     recorder: Recorder
 

@@ -10,19 +10,6 @@ from typing import TypeVar
 T = TypeVar("T")
 
 
-def forwarded(owner: str, table: dict[str, str]) -> Callable[[str], object]:
-    """The ``__getattr__`` of the module `owner` for a `table` of old name -> "module:new name"."""
-
-    def value_of(name: str) -> object:
-        module, _, new = table.get(name, "").partition(":")
-        if not module:
-            raise AttributeError(f"module {owner!r} has no attribute {name!r}")
-        warnings.warn(f"{owner}.{name} is now {module}.{new}", DeprecationWarning, stacklevel=2)
-        return getattr(import_module(module), new)
-
-    return value_of
-
-
 def forwarded_call(old: str, new: str, function: Callable[..., T]) -> Callable[..., T]:
     """The callable `function` for an `old` name: a call warns that it is now written as `new`."""
 
@@ -36,20 +23,17 @@ def forwarded_call(old: str, new: str, function: Callable[..., T]) -> Callable[.
 def forward_modules(table: dict[str, str]) -> None:
     """Make modules importable by the old names of `table`, old -> new; reading a name from one warns."""
     for old, new in table.items():
+
+        def value_of(name: str, old: str = old, new: str = new) -> object:
+            if name.startswith("__"):
+                raise AttributeError(f"module {old!r} has no attribute {name!r}")
+            value = getattr(import_module(new), name)
+            warnings.warn(f"{old} is now {new}", DeprecationWarning, stacklevel=2)
+            return value
+
         module = ModuleType(old, f"This module is now ``{new}``.")
-        module.__getattr__ = _names_of(old, new)  # type: ignore[method-assign]
+        module.__getattr__ = value_of  # type: ignore[method-assign]
         sys.modules[old] = module
         parent, _, name = old.rpartition(".")
         if not hasattr(sys.modules[parent], name):
             setattr(sys.modules[parent], name, module)
-
-
-def _names_of(old: str, new: str) -> Callable[[str], object]:
-    def value_of(name: str) -> object:
-        if name.startswith("__"):
-            raise AttributeError(f"module {old!r} has no attribute {name!r}")
-        value = getattr(import_module(new), name)
-        warnings.warn(f"{old} is now {new}", DeprecationWarning, stacklevel=2)
-        return value
-
-    return value_of

@@ -23,21 +23,12 @@ from contact.oscillator import ImpactOscillator
 
 
 class StrobedSystem(NamedTuple):
-    """The numbers of an oscillator for the loops over its drive periods.
-
-    motion : Motion
-    table : PeriodTable or None
-        The table of one mode under Newton's law; None for any other oscillator.
-    mean : ndarray, shape (2 n_modes,)
-        Steady displacements and velocities at a strobe.
-    weight : ndarray, shape (2 n_modes,)
-        Factors by which the points multiply displacements and velocities.
-    """
+    """The numbers of an oscillator for the loops over its drive periods."""
 
     motion: Motion
-    table: PeriodTable | None
-    mean: np.ndarray
-    weight: np.ndarray
+    table: PeriodTable | None  # of one mode under Newton's law; None for any other oscillator
+    mean: np.ndarray  # steady displacements and velocities at a strobe, shape (2 n_modes,)
+    weight: np.ndarray  # factors by which the points multiply displacements and velocities, (2 n_modes,)
 
 
 def strobed_system(oscillator: ImpactOscillator) -> StrobedSystem:
@@ -79,9 +70,8 @@ def strobed_motion(table, system, factors, u, v, runs, points, counts):
 
     Parameters
     ----------
-    table : PeriodTable or None
-        The table of the system.  Its type selects the loop; the other loop is not compiled.
-    system : StrobedSystem
+    table, system : PeriodTable or None, StrobedSystem
+        The type of the system's table selects the loop; the other loop is not compiled.
     factors : ndarray, shape (periods,) or (0,)
         The amplitude of each period over that of the system [1]; an empty array leaves it as it is.  The
         physical state is continuous at the strobe where the amplitude changes, so that (u, v) jumps.

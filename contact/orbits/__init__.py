@@ -40,48 +40,7 @@ from contact.orbits.observation.settling import Settled, born, born_period, sett
 from contact.sensitivity.change import Change
 from contact.sensitivity.motion import MotionDerivatives, motion_derivatives
 
-__all__ = [
-    "AmplitudeScan",
-    "Branch",
-    "Change",
-    "Event",
-    "Exponents",
-    "Family",
-    "Kick",
-    "KickFamily",
-    "MaximalFamily",
-    "MotionDerivatives",
-    "Orbit",
-    "OrbitDerivatives",
-    "OrbitDiagram",
-    "OrbitEnd",
-    "PeriodicOrbit",
-    "ScannedColumn",
-    "Settled",
-    "Shooting",
-    "SingleImpactOrbit",
-    "born",
-    "born_period",
-    "cloud",
-    "doubling_derivatives",
-    "excess_derivatives",
-    "first_event",
-    "fold_along_frequency",
-    "fold_excess",
-    "fold_of",
-    "folds_of",
-    "follow",
-    "follow_path",
-    "graze_derivatives",
-    "lowest_of",
-    "map_exponents",
-    "motion_derivatives",
-    "multiplier_derivatives",
-    "orbit_derivatives",
-    "orbit_diagram",
-    "orbit_end",
-    "orbit_exponents",
-    "period_of",
-    "settle",
-    "strobe_derivatives",
-]
+__all__ = sorted(
+    name for name, one in globals().items() if getattr(one, "__module__", "").startswith("contact.")
+)
+"""All classes and functions imported above, so that each name stands once."""

@@ -92,12 +92,10 @@ def flow_from_touch(vary, base, u, v, duration, tangent, record):
     ----------
     vary : Variation
         Of the motion driven at the amplitude of this orbit.
-    base : float
-        Drive time of the touch [s].
+    base, duration : float
+        Drive time of the touch, and m/f [s].
     u, v : ndarray, shape (n_modes,)
         Deviations at the touch; overwritten by those at the end.
-    duration : float
-        m/f [s].
     tangent : ndarray, shape (2 n_modes + 2, columns)
         Tangents of (u, v, S, C), overwritten by their values at the end; the last columns belong to the
         parameters of `vary`.  The unit matrix turns into the derivatives with respect to the start.  Without
@@ -107,10 +105,7 @@ def flow_from_touch(vary, base, u, v, duration, tangent, record):
         end of each contact since the first touch [s], approach and rebound velocity [m/s], deviations (u, v)
         at its end.  The rebound velocity is zero only after an impact that gives none.
 
-    Returns
-    -------
-    outcome : int
-        FLOWN, FEWER_TOUCHES, FAILED, TOUCHING or TOO_STIFF.
+    Returns the outcome: FLOWN, FEWER_TOUCHES, FAILED, TOUCHING or TOO_STIFF.
     """
     runs = np.zeros(1, dtype=STATE)
     run, end, outcome = runs[0], base + duration, FLOWN

@@ -153,19 +153,9 @@ def waiting_acceleration(motion, steady):
 def repeated_touch(motion, speed, period):
     """The touch with approach `speed` [m/s] that repeats after m = `period` drive periods.
 
-    Returns
-    -------
-    jump : ndarray, shape (1, 2)
-        Jumps of the mode and its velocity, referred to the touch by the free flow.
-    delay : float
-        Length of the wait [s].
-    leaves : bool
-        Whether the tip leaves with a velocity.
-
-    Raises
-    ------
-    NotPeriodic
-        If the delay takes up the m periods, or the mode is back after them.
+    Returns the jumps of the mode and its velocity, referred to the touch by the free flow, shape (1, 2), the
+    length of the wait [s], and whether the tip leaves with a velocity.  NotPeriodic is raised if the wait
+    takes up the m periods, or the mode is back after them.
     """
     gap = motion.gap
     restitution, _slope, delay, _slope = numbers_at(motion.table, speed)

@@ -37,18 +37,11 @@ it falls as rho^-32, rho = q + sqrt(q^2 - 1), q = 2 R/s - 1: faster than the (s/
 
 
 class Series(NamedTuple):
-    """Workspace of one step in contact.
+    """Workspace of one step in contact."""
 
-    rows : ndarray, shape (order + 1, columns)
-        Coefficients of the modes; row n holds order n.
-    sums : ndarray, shape (columns,)
-    scalars : ndarray, shape (8, order + 1)
-        Series of single numbers; each law names its rows.
-    """
-
-    rows: np.ndarray
-    sums: np.ndarray
-    scalars: np.ndarray
+    rows: np.ndarray  # coefficients of the modes, row n of order n, shape (order + 1, columns)
+    sums: np.ndarray  # shape (columns,)
+    scalars: np.ndarray  # series of single numbers, rows named by each law, shape (8, order + 1)
 
 
 @kernel
@@ -109,18 +102,10 @@ def log_longest(last, order, allowed):
 def limited_by_force(s, push, last, mobility, speed, edge):
     """The step `s`, or a shorter one where the orders of the force allow less than those of the modes.
 
-    Parameters
-    ----------
-    s : float
-        The step by the last two orders of the modes; infinite if these are zero.
-    push : ndarray
-        Series of the force on the modes: phi_k push_n/(n + 1) enters order n + 1 of the speeds.
-    last : int
-        Last order of `push` that is filled.
-    mobility, speed : float
-        sqrt of sum phi^2 [kg^-0.5], the size of all phi_k; and the size of the speeds.
-    edge : float
-        Tolerance to the power of one over the order of the series.
+    That step is infinite if the last two orders of the modes are zero.  `push` is the series of the force on
+    the modes, filled up to the order `last`: phi_k push_n/(n + 1) enters order n + 1 of the speeds.
+    `mobility` is sqrt(sum phi^2), the size of all phi_k [kg^-0.5], `speed` the size of the speeds, and `edge`
+    the tolerance to the power of one over the order of the series.
     """
     x, first = s / (LOOSE * edge), last - WINDOW + 1
     power, fits = mobility * x**first, True

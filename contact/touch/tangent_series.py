@@ -16,45 +16,31 @@ from contact.touch.series import powers_of
 
 
 class Weights(NamedTuple):
-    """Series that a law computes from those of a step, each an ndarray of shape (order + 1,).
+    """Series that a law computes from those of a step, each of shape (order + 1,)."""
 
-    time, depth, rate
-        r = dt/ds, r dN/dd and r dN/dd'.
-    force, first, second
-        r N, and its derivatives with respect to the first and second number of the law.
-    """
-
-    time: np.ndarray
-    depth: np.ndarray
-    rate: np.ndarray
-    force: np.ndarray
-    first: np.ndarray
-    second: np.ndarray
+    time: np.ndarray  # r = dt/ds
+    depth: np.ndarray  # r dN/dd
+    rate: np.ndarray  # r dN/dd'
+    force: np.ndarray  # r N
+    first: np.ndarray  # derivative of r N with respect to the first number of the law
+    second: np.ndarray  # and to the second
 
 
 class TangentWorkspace(NamedTuple):
     """Workspace for the series of all tangents.
 
-    rows : ndarray, shape (order + 1, (2 n_modes + 2) m)
-        Row n holds the coefficients of order n: the rows of the matrix one after the other, each filled up to
-        a multiple of eight numbers, m.  The motion itself is the column behind the last tangent.
-    sums : ndarray, shape ((2 n_modes + 2) m,)
-    height, rate : ndarray, shape (order + 1, m)
-        Changes of y and y' along all tangents.
-    force, damping : ndarray, shape (m,)
-        Change of the force of this order, and its part from y'.
-    weights : Weights
-    powers : ndarray, shape (order + 1,)
+    Row n of `rows` holds the coefficients of order n: the rows of the matrix one after the other, each filled
+    up to a multiple of eight numbers, m.  The motion itself is the column behind the last tangent.
     """
 
-    rows: np.ndarray
-    sums: np.ndarray
-    height: np.ndarray
-    rate: np.ndarray
-    force: np.ndarray
-    damping: np.ndarray
+    rows: np.ndarray  # shape (order + 1, (2 n_modes + 2) m)
+    sums: np.ndarray  # shape ((2 n_modes + 2) m,)
+    height: np.ndarray  # change of y along all tangents, shape (order + 1, m)
+    rate: np.ndarray  # change of y', the same
+    force: np.ndarray  # change of the force of this order, shape (m,)
+    damping: np.ndarray  # its part from y', shape (m,)
     weights: Weights
-    powers: np.ndarray
+    powers: np.ndarray  # shape (order + 1,)
 
 
 @kernel

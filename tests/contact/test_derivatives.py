@@ -28,8 +28,8 @@ from contact import (
     Stop,
     simulate,
 )
-from contact.flight.flow_derivative import flow_derivative
 from contact.flight.motion import motion_of
+from contact.flight.variation import flow_derivative
 from contact.orbits import (
     Change,
     MaximalFamily,

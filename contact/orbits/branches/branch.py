@@ -26,7 +26,7 @@ from contact.orbits.branches.events import (
     with_undecided,
 )
 from contact.orbits.families.equations import Point
-from contact.orbits.families.periodic_orbit import PeriodicOrbit
+from contact.orbits.families.family import PeriodicOrbit
 
 SMALLEST, MOST_STEPS = 1e-9, 5000
 """Step of arc length at which a branch is given up and to which a graze is located; and bound of steps."""

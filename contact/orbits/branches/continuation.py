@@ -23,8 +23,8 @@ from contact.orbits.branches.family_curve import (
     whole_branch,
 )
 from contact.orbits.families.continuable_family import ContinuableFamily
+from contact.orbits.families.family import PeriodicOrbit
 from contact.orbits.families.kick import SPEEDS
-from contact.orbits.families.periodic_orbit import PeriodicOrbit
 
 GREATEST_STEP = 10.0  # longest step of log v: over four decades at once
 

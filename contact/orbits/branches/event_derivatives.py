@@ -25,7 +25,7 @@ from contact.flight.tip_search import peaks_of_flight, tip_at
 from contact.flight.variation import all_tip_changes, variation
 from contact.orbits.branches.orbit_derivatives import OrbitDerivatives, with_speed
 from contact.orbits.families.equations import amplitude_and_time, drive_of, sizes_of
-from contact.orbits.families.periodic_orbit import PeriodicOrbit
+from contact.orbits.families.family import PeriodicOrbit
 from contact.oscillator import dynamic_stiffness
 from contact.sensitivity.change import Change
 from contact.sensitivity.replay import Replay

@@ -23,7 +23,7 @@ import numpy as np
 from contact.errors import ContactError
 from contact.orbits.branches.curve import Curve, why_no_neighbours
 from contact.orbits.families.equations import Point
-from contact.orbits.families.periodic_orbit import PeriodicOrbit
+from contact.orbits.families.family import PeriodicOrbit
 
 PLACE = 1e-12
 """Part of a step to which an event is located.  The parameter at a fold is exact to the square of it."""

@@ -14,7 +14,7 @@ from contact.orbits.branches.branch import SHORTER, Branch, Leg, branch_of, walk
 from contact.orbits.branches.curve import Curve, grazes
 from contact.orbits.families.continuable_family import ContinuableFamily
 from contact.orbits.families.equations import Equations, Point
-from contact.orbits.families.periodic_orbit import PeriodicOrbit
+from contact.orbits.families.family import PeriodicOrbit
 
 FIRST_STRIDE, LONGEST_STRIDE = 0.02, 0.3
 """Steps on the way to an event: the first, as it may be close, and the longest."""

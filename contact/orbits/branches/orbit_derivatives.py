@@ -16,7 +16,7 @@ import numpy as np
 from beam.parameters import Array, require_kind
 from contact.errors import NoDerivative
 from contact.orbits.families.equations import drive_of, shoot, sizes_of, slopes_of, tip_slopes
-from contact.orbits.families.periodic_orbit import PeriodicOrbit
+from contact.orbits.families.family import PeriodicOrbit
 from contact.sensitivity.change import Change, Sensitivities
 from contact.sensitivity.replay import Replay, deviation_rates_at_strobe
 from contact.simulation import simulate

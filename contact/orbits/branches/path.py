@@ -30,7 +30,7 @@ from contact.orbits.families.equations import (
     sizes_of,
     slopes_of,
 )
-from contact.orbits.families.periodic_orbit import PeriodicOrbit
+from contact.orbits.families.family import PeriodicOrbit
 from contact.oscillator import ImpactOscillator
 from contact.sensitivity.change import Change, Path, Sensitivities, change_along
 

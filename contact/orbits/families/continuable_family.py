@@ -8,7 +8,6 @@ and down to grazing.
 """
 
 import math
-from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Self
@@ -18,8 +17,8 @@ import numpy as np
 from beam.parameters import Array, is_whole, require, require_kind, require_within, shown
 from contact.errors import NotPeriodic
 from contact.orbits.families.equations import Iterate, driven_at, newton, shot_of, sizes_of
+from contact.orbits.families.family import PeriodicOrbit
 from contact.orbits.families.kick import KickFamily
-from contact.orbits.families.periodic_orbit import PeriodicOrbit
 from contact.oscillator import ImpactOscillator
 from contact.sensitivity.touch_flow import flow_over_periods
 from contact.simulation import simulate
@@ -31,7 +30,7 @@ Beyond this value it is rounding: the approach speed does not tell an orbit from
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class ContinuableFamily(ABC):
+class ContinuableFamily:
     """The family of orbits with `impacts` touches in `period` drive periods.
 
     Parameters
@@ -49,14 +48,6 @@ class ContinuableFamily(ABC):
         words = f"impacts is {shown(self.impacts)}; it must be a whole number, one or more"
         require(is_whole(self.impacts, 1), words)
         _ = self.kicks
-
-    @abstractmethod
-    def orbits(self, excess: float) -> tuple[PeriodicOrbit, ...]:
-        """The orbits at F/F_g - 1 = `excess` > -1, by rising approach speed."""
-
-    @abstractmethod
-    def fold(self) -> PeriodicOrbit | None:
-        """The orbit of least amplitude at which two orbits meet; None if the branch has none."""
 
     def of(self, oscillator: ImpactOscillator) -> Self:
         """The same family of another oscillator."""

@@ -28,7 +28,7 @@ import numpy as np
 from beam.parameters import Array
 from contact.errors import NotPeriodic
 from contact.flight.variation import all_tip_changes
-from contact.orbits.families.periodic_orbit import PeriodicOrbit
+from contact.orbits.families.family import PeriodicOrbit
 from contact.oscillator import ImpactOscillator
 from contact.sensitivity.change import Sensitivities
 from contact.sensitivity.replay import deviation_rates

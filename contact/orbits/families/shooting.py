@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from contact.orbits.branches.continuation import lowest_fold, orbits_at
 from contact.orbits.families.continuable_family import ContinuableFamily
-from contact.orbits.families.periodic_orbit import PeriodicOrbit
+from contact.orbits.families.family import PeriodicOrbit
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -56,21 +56,10 @@ EXTRA = 3  # numbers of a state in addition to (q, q'): regime, wait, rebound
 def settled_column(system, amplitudes, state, most_cycles, tolerance, found, u, v, runs):
     """Settle at each of `amplitudes` in turn, or until one fails; return how many are done, and the status.
 
-    Parameters
-    ----------
-    system : StrobedSystem
-        At grazing.
-    amplitudes : ndarray, shape (n,)
-        Base amplitudes over the grazing amplitude [1].
-    state : ndarray, shape (2 n_modes + 3,)
-        Start; overwritten by the last state that was reached.
-    most_cycles : int
-    tolerance : float
-        Tolerance of a repetition, in the unit of the coordinates [m].
-    found : ndarray of int, shape (n, 3)
-        Period, impacts and drive periods spent; overwritten.
-    u, v, runs : ndarray, shapes (n_modes,), (n_modes,) and (1,)
-        Deviations and run (`STATE`) at a failure; overwritten.
+    The amplitudes count relative to that of grazing, to which `system` belongs, and `tolerance` of a
+    repetition is in the unit of the coordinates [m].  Overwritten are `state`, shape (2 n_modes + 3,), by the
+    last state that was reached; `found`, shape (n, 3), by period, impacts and drive periods spent; and `u`,
+    `v` and `runs` (`STATE`) by deviations and run at a failure.
     """
     n, run, capacity = system.motion.size, runs[0], 2 * LARGEST_PERIOD
     points, impacts = np.empty((capacity, 2 * n)), np.zeros(capacity, dtype=np.int64)

@@ -26,9 +26,8 @@ from contact.maps.nordmark_orbits import MapFamily
 from contact.maps.protocol import require_map
 from contact.maps.stroboscope import StrobedMap, StroboscopicMap
 from contact.orbits.branches.continuation import first_event
-from contact.orbits.families.family import Family
+from contact.orbits.families.family import Family, PeriodicOrbit
 from contact.orbits.families.kick import KickFamily
-from contact.orbits.families.periodic_orbit import PeriodicOrbit
 from contact.orbits.families.shooting import Shooting
 from contact.orbits.families.single_impact import MaximalFamily
 from contact.orbits.observation.settling import Settled, orbit_near, settle

@@ -24,14 +24,9 @@ RETURNS = 1e-6
 
 @kernel
 def repetition(points, impacts, rows, stretch, tolerance):
-    """The smallest p <= `stretch` with which the last `stretch` of `rows` strobes repeat, or 0.
+    """The smallest p <= `stretch` with which the last `stretch` strobes repeat, or 0.
 
-    Parameters
-    ----------
-    points : ndarray, shape (capacity, n_coordinates)
-    impacts : ndarray of int, shape (capacity,)
-    rows : int
-        Rows in use, at least 2 `stretch`.
+    `rows` of `points` and `impacts` are in use, at least 2 `stretch`.
     """
     for period in range(1, stretch + 1):
         same, i = True, rows

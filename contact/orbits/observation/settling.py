@@ -27,7 +27,7 @@ from beam.parameters import Refusal, require_whole, require_within
 from contact.errors import ContactError
 from contact.maps.protocol import require_map
 from contact.maps.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap
-from contact.orbits.families.periodic_orbit import PeriodicOrbit
+from contact.orbits.families.family import PeriodicOrbit
 from contact.orbits.families.shooting import Shooting
 from contact.orbits.observation.repetition import free_for_good, period_of
 from contact.trajectory import State, deviations
