@@ -11,12 +11,9 @@ class ContactError(RuntimeError):
 
     Attributes
     ----------
-    time : float
-        Time since the start of the run [s].
-    gap : float
-        Distance of the tip from the stop, positive when the tip is free [m].
-    velocity : float
-        Velocity of the tip towards the stop [m/s].
+    time, gap, velocity : float
+        Time since the start of the run [s], distance of the tip from the stop, positive when the tip is free
+        [m], and velocity of the tip towards the stop [m/s].
     """
 
     reason = "the computation could not be finished"

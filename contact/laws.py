@@ -100,9 +100,7 @@ class NewtonRestitution(ContactLaw):
         require_within("local_restitution", self.local_restitution, "[1]", low=0, high=1)
 
 
-SPEEDS = 1025
-"""Samples of a function of the approach speed: a cubic spline through them over six decades is good to
-1e-9."""
+SPEEDS = 1025  # samples of a function of the approach speed: a cubic spline over six decades is good to 1e-9
 
 
 @final

@@ -65,10 +65,8 @@ class ImpactOscillator:
     load : ndarray, shape (n_modes,), optional
         Constant modal load [N kg^-0.5].
 
-    Warns
-    -----
-    SuspiciousValue
-        For a drive amplitude above `GREATEST_AMPLITUDE` and ten gaps, or a drive slower than `SLOWEST_DRIVE`.
+    A drive amplitude above `GREATEST_AMPLITUDE` and ten gaps, or a drive slower than `SLOWEST_DRIVE`, brings
+    a SuspiciousValue warning.
     """
 
     model: ModalModel

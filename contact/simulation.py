@@ -133,10 +133,8 @@ def simulate(
     oscillator : ImpactOscillator
     state : State, optional
         Where to start; the spring at rest at time zero if left out.
-    duration : float, optional
-        Length of the run [s]; give this or `periods`.
-    periods : int, optional
-        Length of the run in drive periods.
+    duration, periods : float or int, optional
+        Length of the run [s], or in drive periods; give one of them.
     times : array_like, optional
         Rising times within the run at which the state is wanted [s].
     method : Integrator or str, optional
@@ -148,21 +146,10 @@ def simulate(
     Trajectory
         Strobed states, states at `times`, impacts and the final state.
 
-    Raises
-    ------
-    ValueError
-        For a run of no length, times out of order or range, or a start behind the wall or at rest just on it.
-    TypeError
-        For a method that does not know the law of the stop.
-    StepTooLarge
-        For a step beyond the method's limit of stability.
-    UnresolvedCrossing, Chatter, ContactTooStiff
-        Where the motion could not be followed; see ``contact.errors``.
-
-    Warns
-    -----
-    SuspiciousValue
-        For a driven spring at rest whose drive has no amplitude.
+    ValueError is raised for a run of no length, times out of order or range, or a start behind the wall or at
+    rest just on it; TypeError for a method that does not know the law; StepTooLarge for a step beyond its
+    limit of stability; and UnresolvedCrossing, Chatter or ContactTooStiff where the motion could not be
+    followed.  A driven spring at rest whose drive has no amplitude brings a SuspiciousValue warning.
     """
     require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
     chosen = _method(method, oscillator.stop.law.code)

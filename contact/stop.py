@@ -5,8 +5,7 @@ from dataclasses import dataclass
 from beam.parameters import final, require_kind, require_within, suspect
 from contact.laws import ContactLaw
 
-GREATEST_GAP = 1.0
-"""Distance of a stop beyond which a warning is given [m]; lengths in units of the gap give just this."""
+GREATEST_GAP = 1.0  # gap beyond which a warning is given [m]; lengths in units of the gap give just this
 
 
 @final
@@ -21,10 +20,7 @@ class Stop:
     law : ContactLaw
         What happens when the tip reaches it.
 
-    Warns
-    -----
-    SuspiciousValue
-        For a gap above `GREATEST_GAP`.
+    A gap above `GREATEST_GAP` brings a SuspiciousValue warning.
     """
 
     gap: float

@@ -131,13 +131,12 @@ class Run:
 class Impacts:
     """The touches of the tip, in the order in which they began.
 
-    Times are kept as drive periods and the rest, and states as deviations from the steady motion.  Both are
-    right to rounding however long the run.  Times in seconds and modal states are made of them on demand.
+    Times are kept as drive periods and the rest, and states as deviations from the steady motion of the
+    `oscillator`.  Both are right to rounding however long the run.  Times in seconds and modal states are
+    made of them on demand.
 
     Parameters
     ----------
-    oscillator : ImpactOscillator
-        The oscillator that moves.
     period : ndarray of int, shape (n_impacts,)
         Number of the drive period in which a touch begins.
     clock, end_clock : ndarray, shape (n_impacts,)
@@ -145,10 +144,8 @@ class Impacts:
         law, the second NaN for a contact that had not ended.
     approach, rebound : ndarray, shape (n_impacts,)
         Tip velocity at both, positive towards the wall [m/s]; an approach before the run is NaN.
-    loss : ndarray, shape (n_impacts,)
-        Energy lost in the contact itself [J].
-    kind : ndarray of int, shape (n_impacts,)
-        Values of `ImpactKind`.
+    loss, kind : ndarray, shape (n_impacts,)
+        Energy lost in the contact itself [J], and values of `ImpactKind`.
     deviations_start, deviations_end : ndarray, shape (n_impacts, 2, n_modes)
         Deviations (u, v) just before the touch and just after the release.
     """
@@ -228,14 +225,10 @@ class Impacts:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Trajectory:
-    """A motion: strobed states, sampled states, and every impact.
+    """A motion of an `oscillator`: strobed states, sampled states, every impact, and the state at the `end`.
 
     Parameters
     ----------
-    oscillator : ImpactOscillator
-        The oscillator that moves.
-    end : State
-        The state at the end of the run.
     strobe_time : ndarray, shape (n_strobes,)
         Times of the strobes passed, the start excluded [s].
     strobe_displacement, strobe_velocity : ndarray, shape (n_strobes, n_modes)
@@ -244,10 +237,8 @@ class Trajectory:
         Impacts that began since the strobe before (or the start).
     time, displacement, velocity : ndarray, shapes (n_times,) and (n_times, n_modes)
         The times that were asked for [s], and the states at them.
-    impacts : Impacts
-        Every touch.
-    evaluations : int
-        Steps, or flights and sampled positions, that the method has made.
+    impacts, evaluations : Impacts, int
+        Every touch; and steps, or flights and sampled positions, that the method has made.
     """
 
     oscillator: ImpactOscillator

@@ -1,8 +1,6 @@
 """The virtual motion of the single-mode description: the wall ignored, only mode 1 free.
 
-    y(t) = x_s(t) + phi_1 u_1(t) - gap,
-
-with the steady forced tip motion x_s and the free deviation u_1 of mode 1 (``contact.collision``).
+``contact.collision`` has its equation.
 """
 
 import math

@@ -74,9 +74,7 @@ def certify(y0, y1, y2, m3, rest, margin, h, h_min):
     return STALL, h
 
 
-LEAST_SLACK = 1.0 / 16.0
-"""Smallest K/G for which the bound is used, so that the margin covers the rounding of squares."""
-
+LEAST_SLACK = 1.0 / 16.0  # smallest K/G for the bound: the margin then covers the rounding of squares
 HIGHEST = 1e6  # largest steady amplitude over G for which the time of its peak is exact enough
 
 UNCERTAIN = 1e-11

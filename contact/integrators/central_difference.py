@@ -65,13 +65,7 @@ def central_difference(grid, numbers):
 
 @dataclass(frozen=True, kw_only=True)
 class CentralDifference(FixedStep):
-    """Central difference with a fixed step.
-
-    Parameters
-    ----------
-    lagged : bool
-        Take the damping at the half step before instead of centring it.
-    """
+    """Central difference with a fixed step; `lagged` damping is that at the half step before, not centred."""
 
     lagged: bool = False
     name: ClassVar[str] = "central-difference"

@@ -12,10 +12,9 @@ own.  The two methods of this file differ only in the search for the next touch.
 
 `SampledFlight` is the scheme of the letter: "An efficient numerical scheme for solving Eq. (1) in the
 presence of grazing impacts uses the analytical solutions for the motion between impacts" (note [11]).  It
-takes positions at t_1, ..., t_k of each drive period and at the turning points that their velocities betray
-(``contact.flight.sampled_crossing``).  It misses a touch if the tip turns twice between two samples and is
-off the stop at both.  One mode needs few samples.  With N modes k has to follow the ringing of the highest,
-and nothing shows that it was too small.
+takes positions at k instants of each drive period, and at the turning points that their velocities betray.
+``contact.flight.sampled_crossing`` says which touches it misses.  One mode needs few samples.  With N modes k
+has to follow the ringing of the highest, and nothing shows that it was too small.
 """
 
 import math
@@ -52,10 +51,7 @@ class Exact(Integrator):
 class SampledFlight(Integrator):
     """Exact flights, crossings detected by sampling.
 
-    Parameters
-    ----------
-    points : int
-        Samples per drive period [1]; without a drive, per period of the lowest mode.
+    `points` are the samples per drive period [1]; without a drive, per period of the lowest mode.
     """
 
     points: int

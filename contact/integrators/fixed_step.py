@@ -109,12 +109,8 @@ class FixedStep(Integrator):
     def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
         """The motion of `run` on a grid of steps.
 
-        Raises
-        ------
-        ValueError
-            For a start behind the stop under an impact law.
-        StepTooLarge, Diverged
-            See ``contact.errors``.
+        ValueError is raised for a start behind the stop under an impact law; see ``contact.errors`` for
+        StepTooLarge and Diverged.
         """
         n, period, start, motion = oscillator.n_modes, oscillator.period, run.start, oscillator.motion()
         step, forced = float(self.step), CONTACT in TOUCHES[motion.law].REGIMES

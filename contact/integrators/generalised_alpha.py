@@ -69,8 +69,7 @@ from contact.integrators.grid import (
 from contact.laws import HERTZ, LINEAR
 from contact.machine.compiled import inlined, kernel
 
-MARGIN = 1e-12
-"""Slack of the conditions of stability, relative to their terms, which cancel up to rounding on the limit."""
+MARGIN = 1e-12  # slack of the conditions of stability, relative to their terms, which cancel on the limit
 
 ROUNDING = 16 * 2.220446049250313e-16
 """Relative change of the contact force at which the iteration ends: d* carries a rounding error of its own,

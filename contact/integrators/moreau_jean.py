@@ -63,8 +63,7 @@ from contact.laws import NEWTON
 from contact.machine.compiled import inlined, kernel
 from contact.trajectory import IMPACT
 
-MARGIN = 1e-12
-"""Slack of the test for stability, relative: on the limit itself its two terms cancel up to rounding."""
+MARGIN = 1e-12  # slack of the test for stability, relative to its two terms, which cancel on the limit
 
 
 @kernel
@@ -154,10 +153,7 @@ def through_percussions(grid, prepared):
 class MoreauJean(FixedStep):
     """Moreau and Jean's time stepping with a fixed step.
 
-    Parameters
-    ----------
-    theta : float
-        Weight of the end of the step, from 0 to 1 [1]; 1/2 keeps the energy, 1 damps most.
+    `theta` is the weight of the end of the step, from 0 to 1 [1]; 1/2 keeps the energy, 1 damps most.
     """
 
     theta: float = 0.5

@@ -41,10 +41,7 @@ from contact.laws import NEWTON
 class NonsmoothGeneralisedAlpha(FixedStep):
     """The nonsmooth generalised-alpha method with a fixed step.
 
-    Parameters
-    ----------
-    rho : float
-        Factor by which a step damps infinite frequencies, from 0 to 1 [1]; 1 damps nothing.
+    `rho` is the factor by which a step damps infinite frequencies, from 0 to 1 [1]; 1 damps nothing.
     """
 
     rho: float

@@ -64,9 +64,7 @@ SEARCH, SEARCH_BEYOND_PI, EACH = 1, 6, 100
 """Decades of k below the lowest root that are searched, for omega h < pi and beyond, and values in each."""
 
 JUST_BEYOND = 1e-5  # how far beyond a root its instability is looked for, relative
-
-EXCEEDS = 1e-7
-"""By how much the spectral radius must exceed one: at a double eigenvalue rounding alone makes 1e-8."""
+EXCEEDS = 1e-7  # least excess of the spectral radius over one: rounding makes 1e-8 at a double eigenvalue
 
 STRANG = Composition(flows=np.array([1.0]), kicks=np.array([0.5, 0.5]))
 
@@ -176,12 +174,9 @@ def _limit(numbers: bytes, n: int, order: int, step: float, damping: float) -> f
 
 @dataclass(frozen=True, kw_only=True)
 class Splitting(FixedStep):
-    """Symmetric kick-flow-kick splitting; the step may be longer than the periods of high modes.
+    """Symmetric kick-flow-kick splitting of `order` 2 or 4.
 
-    Parameters
-    ----------
-    order : int
-        2 or 4.
+    The step may be longer than the periods of high modes.
     """
 
     order: int = 2  # type: ignore[misc]

@@ -38,8 +38,7 @@ config: Any = numba_config
 PACKAGE = Path(__file__).parent.parent
 IMPORT = re.compile(r"^from (contact[\w.]*) import (\([^)]*\)|[^\n]*)", re.MULTILINE)
 
-UNUSED = 3600.0
-"""Time without use [s] after which a folder of machine code is removed; an older process may need it."""
+UNUSED = 3600.0  # time without use [s] after which machine code is removed; an older process may need it
 
 Function = TypeVar("Function", bound=Callable[..., object])
 

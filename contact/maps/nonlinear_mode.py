@@ -46,12 +46,8 @@ class NonlinearMode:
     gap, restitution, frequency, excess : float
         Gap [m], restitution from 0 to 1 [1], f [Hz] and excess [1].
 
-    Raises
-    ------
-    ValueError
-        For a wrong number, and if the stiffness or the mass turns negative on the way to the gap.
-    NotPeriodic
-        Where the motion that grazes, or the one without impacts, is not found.
+    ValueError is raised for a wrong number, and if the stiffness or the mass turns negative on the way to the
+    gap; NotPeriodic where the motion that grazes, or the one without impacts, is not found.
     """
 
     free_period: float

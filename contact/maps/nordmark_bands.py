@@ -40,18 +40,10 @@ def band(
     y_line: YLine = "corrected",
     whole_turns: int = 1,
 ) -> Band:
-    """The band of p_m of one mode, m = `period` >= 2.
+    """The band of p_m, m = `period` >= 2 drive periods, of a mode with damped `free_period` T [s].
 
-    Raises ValueError for m < 2 and for parameters that `NordmarkMap.from_frequencies` refuses.
-
-    Parameters
-    ----------
-    period : int
-        m, in drive periods.
-    free_period, decay_rate, restitution : float
-        Damped period T [s], mu [1/s] and tau of the mode.
-    y_line, whole_turns
-        As for `NordmarkMap`.
+    `decay_rate` is mu [1/s], `restitution` tau [1], and `y_line` and `whole_turns` are as for `NordmarkMap`.
+    ValueError is raised for m < 2 and for parameters that `NordmarkMap.from_frequencies` refuses.
     """
     m = require_whole("period", period, "drive periods", low=2, high=MOST_PERIODS)
     require_within("free_period", free_period, "s", above=0)

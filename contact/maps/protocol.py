@@ -24,12 +24,10 @@ Jacobians = tuple[list[tuple[np.ndarray, int]], S]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class StrobedOrbit(Generic[S]):
-    """A stretch of a strobed motion.
+    """A stretch of a strobed motion, and the state at its `end`.
 
     Parameters
     ----------
-    end : State
-        The state at its end.
     points : ndarray, shape (n_strobes, n_coordinates)
         Coordinates at the strobes, all in the same unit, the start excluded.
     impacts : ndarray of int, shape (n_strobes,)

@@ -31,13 +31,7 @@ LONGER = (0, 1, 3, 7, 15, 31, 63)
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class StroboscopicMap:
-    """The period map of an impact oscillator.
-
-    Parameters
-    ----------
-    oscillator : ImpactOscillator
-        A driven one.
-    """
+    """The period map of a driven impact `oscillator`."""
 
     oscillator: ImpactOscillator
 

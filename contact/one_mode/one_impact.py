@@ -41,8 +41,7 @@ from contact.one_mode.period_table import (
     tip_near,
 )
 
-NEWTON_STEPS = 60
-"""Bound of Newton steps; next to a graze each only halves the distance to the double root, from 1 to 1e-8."""
+NEWTON_STEPS = 60  # bound of Newton steps; next to a graze each halves the distance to the double root
 
 
 @inlined

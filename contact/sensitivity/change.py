@@ -72,18 +72,10 @@ class Change:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Sensitivities:
-    """Derivatives of an oscillator's numbers and of its steady motion with respect to P parameters.
+    """Derivatives of an oscillator's numbers and steady motion with respect to P parameters, `changes`.
 
-    The attributes are arrays with one row for each parameter.
-
-    Parameters
-    ----------
-    oscillator : ImpactOscillator
-    changes : sequence of Change
-        The P parameters.
-
-    ValueError is raised for a change of another number of modes, or of a number that the law does not have,
-    and if the oscillator carries a constant load.
+    The attributes are arrays with one row for each parameter.  ValueError is raised for a change of another
+    number of modes, or of a number that the law does not have, and for an oscillator with a constant load.
     """
 
     oscillator: ImpactOscillator
@@ -210,8 +202,7 @@ def change_along(path: Path, p: float, low: float, high: float) -> Change:
 
 
 def _numbers(oscillator: ImpactOscillator) -> Array:
-    """The rows of the model, the gap, the numbers of the law, drive frequency and amplitude, one after the
-    other."""
+    """The rows of the model, the gap, the numbers of the law, drive frequency and amplitude in one row."""
     law, drive = oscillator.stop.law, oscillator.driven
     numbers = (*law.adjustable, 0.0, 0.0)[:2]
     rows = [getattr(oscillator.model, name) for name in ARRAYS]

@@ -20,18 +20,14 @@ from contact.trajectory import Regime, State, Trajectory
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MotionDerivatives:
-    """A simulated motion and its derivatives with respect to its start (q, q') and P parameters.
+    """A simulated motion `run` and its derivatives with respect to its start (q, q') and P parameters.
 
     Parameters
     ----------
-    run : Trajectory
-        The motion.
     impact_time : ndarray, shape (n_impacts, 2 n_modes + P)
         Derivatives of the times at which touches begin [s].
-    strobes : ndarray, shape (n_strobes, 2 n_modes, 2 n_modes + P)
-        Derivatives of the states (q, q') at the strobes.
-    states : ndarray, shape (n_times, 2 n_modes, 2 n_modes + P)
-        Derivatives of the states at the requested times, which stay fixed.
+    strobes, states : ndarray, shape (n_strobes or n_times, 2 n_modes, 2 n_modes + P)
+        Derivatives of the states (q, q') at the strobes, and at the requested times, which stay fixed.
     """
 
     run: Trajectory
@@ -48,23 +44,11 @@ def motion_derivatives(
     periods: int,
     times: Array | None = None,
 ) -> MotionDerivatives:
-    """Derivatives of a motion from `state` with respect to that state and to P parameters.
+    """Derivatives of a motion from `state`, off the stop, with respect to that state and to P `changes`.
 
-    Parameters
-    ----------
-    oscillator : ImpactOscillator
-        A driven one.
-    state : State
-        Off the stop.
-    changes : sequence of Change
-        The P parameters.
-    periods : int
-        Length of the run in drive periods.
-    times : array_like, optional
-        Rising times within the run at which states are wanted [s].
-
-    ValueError is raised if the state is in contact with the stop, and as by ``contact.simulate``.
-    NoDerivative is raised if the motion grazes the stop, or comes to rest on it.
+    The driven `oscillator` runs for `periods` drive periods; `times` are rising times within the run at which
+    states are wanted [s].  ValueError is raised if the state is in contact with the stop, and as by
+    ``contact.simulate``; NoDerivative if the motion grazes the stop, or comes to rest on it.
     """
     require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
     require_kind("state", state, State, "a State")

@@ -43,9 +43,8 @@ class Replay:
 
     Parameters
     ----------
-    sensitivities : Sensitivities
-        The oscillator, and the parameters to which the last columns of `tangent` belong.
-    run : Trajectory
+    sensitivities, run : Sensitivities, Trajectory
+        The oscillator, and the parameters to which the last columns of `tangent` belong; and its motion.
     start : State, optional
         The state from which the run starts; needed for the derivatives of the flight to the first touch.
 

@@ -56,8 +56,7 @@ from contact.trajectory import WAITING
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
-TOUCHES = {NEWTON: newton, DELAYED: delayed, LINEAR: linear, HERTZ: hertz}
-"""The file of each law by its code."""
+TOUCHES = {NEWTON: newton, DELAYED: delayed, LINEAR: linear, HERTZ: hertz}  # the file of each law
 
 COMPILED = "series_size strike step series_variable state work leave force stiffness slopes saltation"
 """The compiled functions of a law's file."""

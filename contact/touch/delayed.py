@@ -45,9 +45,7 @@ force, stiffness, slopes = newton.force, newton.stiffness, newton.slopes
 series_size, series_variable, work = newton.series_size, newton.series_variable, newton.work
 
 RESTITUTION, DELAY = 1, 3  # rows of the table, each followed by its slope; row 0 holds the approach speeds
-
-SINGULAR = 1e-13
-"""A determinant of I - N R below this is rounding of terms of size 1: the mode is back after m/f."""
+SINGULAR = 1e-13  # a smaller determinant of I - N R is rounding of terms of size 1: the mode is back
 
 
 @kernel

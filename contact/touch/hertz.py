@@ -38,12 +38,8 @@ from contact.trajectory import CONTACT, OUTSIDE
 LAW, METHOD = "HertzContact or HuntCrossley", "contact-series"
 REGIMES = (OUTSIDE, CONTACT)
 
-ORDER = 20
-"""Order of the series in sigma, even: the cost per unit of time is flat to ten per cent from 16 to 24."""
-
-TOLERANCE = 1e-15
-"""Size of the last terms of a step relative to the modal speeds, at the rounding of the sum of all terms."""
-
+ORDER = 20  # order of the series in sigma, even: the cost per unit of time is flat from 16 to 24
+TOLERANCE = 1e-15  # last terms of a step over the modal speeds, at the rounding of the sum of all terms
 FAR = math.log(1.5)
 """Logarithm of a factor.  The last term but one of r limits a step only if its bound is shorter than the
 others by this factor: where the modes take part, the last two terms agree within it."""

@@ -24,9 +24,7 @@ from contact.machine.vector_loops import aligned, weighted_rows
 from contact.trajectory import CONTACT
 
 WINDOW = 8  # number of last orders of the force that limit a step
-
-LOOSE = 1.15
-"""Largest ratio of a step to the bound by an earlier order of the force: no two orders agree better."""
+LOOSE = 1.15  # largest ratio of a step to the bound by an earlier order: no two agree better
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 NODE_POWERS = (0.5 * (1.0 + _NODES)) ** np.arange(31.0)[:, None]

@@ -39,13 +39,10 @@ SHORTER = "the orbit becomes one of a shorter period, which runs through it seve
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Branch:
-    """A branch of periodic orbits.
+    """A branch: periodic `orbits` and `events`, both in their order along it.
 
     Parameters
     ----------
-    orbits : tuple of PeriodicOrbit
-    events : tuple of Event
-        Both in their order along the branch.
     ended_low, ended_high : str
         Why the branch ends there: "range", "closed", or a sentence.
     parameters : tuple of float

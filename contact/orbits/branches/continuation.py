@@ -27,9 +27,7 @@ from contact.orbits.families.family import PeriodicOrbit
 from contact.orbits.families.kick import SPEEDS
 
 GREATEST_STEP = 10.0  # longest step of log v: over four decades at once
-
-FASTEST = 100.0
-"""Approach velocity, over 2 pi f gap, up to which an event is looked for; at least twice the start's."""
+FASTEST = 100.0  # highest approach velocity, over 2 pi f gap, of an event sought; at least twice the start's
 
 LOSSES = ("torus", "period doubling", "branch point", "undecided")
 """Events other than folds and grazings at which orbits can lose their stability."""
@@ -44,18 +42,10 @@ def _require(family: object, near: object = None) -> None:
 def follow(
     family: ContinuableFamily, start: PeriodicOrbit, *, low: float, high: float, step: float = 0.1
 ) -> Branch:
-    """The branch through `start` between two approach velocities of the first touch.
+    """The branch of a `family` through `start` between the approach velocities `low` and `high` [m/s].
 
-    Its orbits come in their order along the curve; with one touch the approach velocity rises.
-
-    Parameters
-    ----------
-    family : Shooting
-    start : PeriodicOrbit
-    low, high : float
-        Range of the approach velocity [m/s].
-    step : float
-        Longest step of arc length; near grazing, of log v.
+    Its orbits come in their order along the curve; with one touch the approach velocity of the first touch
+    rises.  `step` is the longest step of arc length; near grazing, of log v.
     """
     _require(family)
     require_kind("start", start, PeriodicOrbit, "a PeriodicOrbit")
@@ -124,11 +114,8 @@ def fold_of(family: ContinuableFamily, near: PeriodicOrbit | None = None) -> Per
         An orbit close to the fold, such as the fold at a neighbouring frequency.  The first fold downhill
         from it is taken for the lowest.  Otherwise the kick description is searched over all speeds.
 
-    Raises
-    ------
-    BranchEnded
-        If there is no orbit to start from; if the branch is lost; or if it has no fold and its stable orbits
-        end by a torus or a period doubling.  The `orbit` of the error is the last one.
+    BranchEnded is raised if there is no orbit to start from; if the branch is lost; or if it has no fold and
+    its stable orbits end by a torus or a period doubling.  The `orbit` of the error is the last one.
     """
     fold, losses = lowest_fold(family, near)
     if losses:

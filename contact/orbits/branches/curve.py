@@ -25,10 +25,7 @@ Their chord may differ from the mean of both directions by `TWIST` of that angle
 curve the difference is of second order in the step, between two curves it is not."""
 
 SHORT = 1e-9  # length of a chord below which its direction is rounding
-
-DRIFT = 0.1
-"""Largest change of the time from the first touch to another one, in drive periods, from neighbour to
-neighbour."""
+DRIFT = 0.1  # largest change of the time between first and another touch to a neighbour, in drive periods
 
 CROSSING = "orbits that repeat themselves cross the curve"
 

@@ -25,15 +25,13 @@ from contact.orbits.branches.curve import Curve, why_no_neighbours
 from contact.orbits.families.equations import Point
 from contact.orbits.families.family import PeriodicOrbit
 
-PLACE = 1e-12
-"""Part of a step to which an event is located.  The parameter at a fold is exact to the square of it."""
+PLACE = 1e-12  # part of a step to which an event is located; a fold is exact to the square of it
 
 CLOSE = 1e-6
 """Arc length below which two events, an event and a graze, or an event and the end of the range are not
 distinguished; and largest error of the multiplier that identifies an event."""
 
-ASIDE = 10.0 * CLOSE
-"""Arc length on both sides of a branch point that is left out: there the equations are singular."""
+ASIDE = 10.0 * CLOSE  # arc length left out on both sides of a branch point: there the equations are singular
 
 PROBE, MOST_PROBES = 0.25, 4
 """A point is computed where the rate is expected below this part of the rates of both neighbours.  A first
@@ -42,11 +40,8 @@ probe and three halvings distinguish folds closer than a hundredth of a step."""
 MOST_HALVINGS, MIDDLES = 12, (0.5, 0.4, 0.6)
 """Bound of halvings of a step with an uncertain event; and parts of a step that are tried as its middle."""
 
-NEARLY = 1e-3
-"""Difference between the touches of an orbit at a branch point, which is located to finite accuracy."""
-
-LEAST_TORUS = 1e-12
-"""Size of the test of a torus below which its sign is rounding: without damping, some m_i m_j is 1."""
+NEARLY = 1e-3  # difference between the touches of an orbit at a branch point, which is located only so far
+LEAST_TORUS = 1e-12  # the sign of a smaller test of a torus is rounding: without damping, some m_i m_j is 1
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -58,9 +53,8 @@ class Event:
     kind : str
         "fold", "period doubling", "torus", "branch point" or "grazing"; or "undecided", where two events, or
         one and the end of the range, lie closer than 1e-6 of arc length.
-    orbit : PeriodicOrbit
-    parameter : float, optional
-        Where it lies on a path (``contact.orbits.branches.path``).
+    orbit, parameter : PeriodicOrbit, float or None
+        The orbit there, and its place on a path (``contact.orbits.branches.path``).
     """
 
     kind: str

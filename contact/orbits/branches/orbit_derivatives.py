@@ -32,9 +32,8 @@ class OrbitDerivatives:
 
     Parameters
     ----------
-    orbit : PeriodicOrbit
-    changes : Sensitivities
-        The P parameters.
+    orbit, changes : PeriodicOrbit, Sensitivities
+        The orbit and the P parameters.
     start : ndarray, shape (2 n_modes + 2, P)
         Derivatives of (u, v, S, C) at the first touch.
     """

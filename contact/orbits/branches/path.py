@@ -106,19 +106,15 @@ def follow_path(
     path : callable
         p -> ImpactOscillator for p from `low` to `high`, smooth, of one law and number of modes.  For a force
         of constant amplitude f, Z = f/w^2 at frequency w [rad/s]; for a base acceleration a, Z = a/w^2.
-    start : PeriodicOrbit
     at, low, high : float
         Parameter of the start, and range of the parameter.
     step : float
         Longest step in units of the sizes: the gap, 2 pi f gap, the grazing amplitude, a tenth of the range.
 
-    Returns
-    -------
-    Branch
-        Orbits and their `parameters` from one end to the other, and events: "fold" (the parameter turns
-        round), "period doubling", "torus", "branch point" (two branches cross), "grazing" (a touch is gained
-        or lost), or "undecided" (``contact.orbits.Event``).  A closed curve ends where it began, "closed".  A
-        curve whose orbit becomes one of a shorter period, run several times, ends there.
+    The branch has orbits and their `parameters` from one end to the other, and events: "fold" (the parameter
+    turns round), "period doubling", "torus", "branch point" (two branches cross), "grazing" (a touch is
+    gained or lost), or "undecided" (``contact.orbits.Event``).  A closed curve ends where it began, "closed".
+    A curve whose orbit becomes one of a shorter period, run several times, ends there.
 
     NotPeriodic is raised if there is no orbit next to `start`, or its tip meets the stop at other times than
     in its touches.

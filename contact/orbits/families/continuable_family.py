@@ -31,14 +31,7 @@ Beyond this value it is rounding: the approach speed does not tell an orbit from
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ContinuableFamily:
-    """The family of orbits with `impacts` touches in `period` drive periods.
-
-    Parameters
-    ----------
-    oscillator : ImpactOscillator
-        Its drive amplitude does not matter.
-    period, impacts : int
-    """
+    """The orbits with `impacts` touches in `period` drive periods; the `oscillator` has any amplitude."""
 
     oscillator: ImpactOscillator
     period: int

@@ -34,17 +34,14 @@ from contact.sensitivity.change import Sensitivities
 from contact.sensitivity.replay import deviation_rates
 from contact.sensitivity.touch_flow import flow_over_periods
 
-CONVERGED = 1e-12
-"""Largest residual in units of the sizes; rounding of the flow over m periods is about 1e-14."""
+CONVERGED = 1e-12  # largest residual over the sizes; rounding of the flow over m periods is about 1e-14
 
 ROUNDED = 1e-9
 """Residual below which iterates that no longer improve count as an orbit.  The rest is rounding, 1e-16, times
 the largest multiplier, which grows as 1/v towards grazing."""
 
 MOST_ITERATIONS = 25  # bound of Newton's method: from the orbit of a kick it takes three to six iterations
-
-LONGEST_STEP = 0.3
-"""Longest change of an unknown in one iteration, in units of its size: larger ones are shortened."""
+LONGEST_STEP = 0.3  # longest change of an unknown in one iteration, over its size: larger ones are shortened
 
 
 def sizes_of(oscillator: ImpactOscillator) -> Array:

@@ -34,8 +34,7 @@ ALIKE = 1e-5
 """Difference between touches that is taken for none.  Behind a branch point touches part in proportion to the
 distance, and the equations are singular up to about this distance."""
 
-SLACK = 1e-6
-"""Part of a drive period by which the touch that closes an orbit may miss it, in addition to the residual."""
+SLACK = 1e-6  # part of a drive period by which the closing touch may be missed, in addition to the residual
 
 
 class Orbit(Protocol):
@@ -107,12 +106,8 @@ class TouchOrbit(ABC):
         At the drive amplitude of the orbit.
     period : int
         m, in drive periods.
-    excess : float
-        F/F_g - 1 [1].
-    speed : float
-        Approach velocity of the first touch [m/s].
-    phase : float
-        Drive time of the first touch [s].
+    excess, speed, phase : float
+        F/F_g - 1 [1], and approach velocity [m/s] and drive time [s] of the first touch.
     displacement, velocity : ndarray, shape (n_modes,)
         Deviations from the steady motion just before it.
     """
@@ -199,10 +194,9 @@ class PeriodicOrbit(TouchOrbit):
         Its touches, as in ``contact.sensitivity.touch_flow``.
     tangent : ndarray, shape (2 n_modes, 2 n_modes)
         Its monodromy matrix.
-    slope : float
-        Change of the excess with the approach velocity along the family [s/m].
-    residual : float
-        What is left of the equations, in units of the gap.
+    slope, residual : float
+        Change of the excess with the approach velocity along the family [s/m]; and what is left of the
+        equations, in units of the gap.
     """
 
     record: Array = field(repr=False)

@@ -5,12 +5,7 @@ changes the deviations of all modes by B(v), referred to the touch by their free
 happens once in m drive periods follows from B (``contact.orbits.families.single_impact``).  The p_m orbit
 ends (fold) where its amplitude is smallest.  With Newton's law B is proportional to v and the result exact.
 
-``DelayedRestitution`` (one mode, ``contact.touch.delayed``) has its orbits in closed form.  Let (p, r) be the
-steady tip displacement and velocity at the touch, R their rotation by the angle w delta, and N the free flow
-over m/f - delta.  The tip leaves with the deviation (gap, -tau v) - R (p, r) and comes back with
-(gap, v) - (p, r):
-
-    (I - N R) (p, r) = (gap, v) - N (gap, -tau v),      A(v)^2 = p^2 + (r/(2 pi f))^2.
+``DelayedRestitution`` (one mode) has its orbits in closed form (``contact.touch.delayed``).
 
 The real collision starts with the ringing w left over from the last one and at another acceleration of the
 tip, which this neglects.  A second collision, simulated from w itself, gives another A at the same v.  The
@@ -44,12 +39,10 @@ GRID = 33  # velocities of a search, on a logarithmic grid: eight a decade
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class KickFamily(SingleImpactFamily):
-    """The p_m orbits with one collision, of an oscillator with any contact law, from kicks.
+    """The p_m orbits with one collision, m = `period`, of an `oscillator` with any contact law, from kicks.
 
     Parameters
     ----------
-    oscillator, period
-        As in `SingleImpactFamily`.
     collision : callable, optional
         Approach velocity [m/s] to Kick: a model of the collision in place of the simulated one, such as the
         letter's with its restitution and delay.  `monodromy` and `multipliers` of the orbits still belong to
@@ -135,11 +128,8 @@ class KickFamily(SingleImpactFamily):
     def fold(self, speeds: tuple[float, float] = SPEEDS) -> SingleImpactOrbit | None:
         """The orbit of smallest amplitude, where the p_m orbit ends; None if it is not inside the range.
 
-        Parameters
-        ----------
-        speeds : (float, float)
-            Range of approach velocities over 2 pi f gap, in which the amplitude is searched on a logarithmic
-            grid and then minimised by Brent's method.
+        The amplitude is searched on a logarithmic grid of approach velocities in the range `speeds`, over
+        2 pi f gap, and then minimised by Brent's method.
         """
         lowest = self._search(speeds)[1]
         return None if lowest is None else self.orbit(math.exp(lowest))

@@ -16,7 +16,7 @@ from contact.orbits.families.family import PeriodicOrbit
 class Shooting(ContinuableFamily):
     """The family of orbits with `impacts` touches in `period` drive periods, under any contact law.
 
-    Its fields `oscillator`, `period` and `impacts` are explained in `ContinuableFamily`.
+    The drive amplitude of the `oscillator` does not matter.
     """
 
     def orbits(self, excess: float) -> tuple[PeriodicOrbit, ...]:

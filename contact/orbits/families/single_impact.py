@@ -65,10 +65,8 @@ class Kick:
         Approach speed v of the tip [m/s].
     jump : ndarray, shape (n_modes, 2)
         B: jumps of displacement and velocity of the modes, referred to the first touch.
-    touches : int
-        Contacts in the collision.
-    duration : float
-        From first touch to last release [s].
+    touches, duration : int, float
+        Contacts in the collision, and time from first touch to last release [s].
     leaves : bool
         Whether the tip then has a velocity away from the wall, or is at rest on it.
     """

@@ -39,9 +39,7 @@ from contact.oscillator import ImpactOscillator
 from contact.trajectory import OUTSIDE
 
 LARGEST_PERIOD = 64  # longest period that is recognised
-
-SHORTEST = 16
-"""Strobes that have to repeat at least: a quarter of LARGEST_PERIOD, twice the letter's common periods."""
+SHORTEST = 16  # strobes that have to repeat at least, twice the letter's common periods
 
 ROUGH = 1e4
 """Tolerance at the bound over the usual one, i.e. 1e-5 of the gap.  After 512 drive periods an orbit of
@@ -122,14 +120,9 @@ class ScannedColumn:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class AmplitudeScan:
-    """Scans of one oscillator, at any drive frequency.
+    """Scans of a driven `oscillator`, whose own frequency and amplitude do not matter.
 
-    Parameters
-    ----------
-    oscillator : ImpactOscillator
-        A driven one; its own frequency and amplitude do not matter.
-    most_cycles : int
-        Bound of the drive periods at one amplitude.
+    `most_cycles` bounds the drive periods at one amplitude.
     """
 
     oscillator: ImpactOscillator

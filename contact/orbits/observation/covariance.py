@@ -31,24 +31,12 @@ Strobed = StroboscopicMap | NordmarkMap
 
 
 def strobe_derivatives(strobed: Strobed, state: State | Array, period: int) -> list[tuple[Array, Array]]:
-    """M_n and b_n along `period` drive periods from `state`, in the coordinates of the points.
+    """M_n and b_n along m = `period` drive periods from `state`, a strobe off the stop.
 
-    Parameters
-    ----------
-    strobed : StroboscopicMap or NordmarkMap
-        At the excess of the orbit.
-    state : State or ndarray
-        A strobe, off the stop.
-    period : int
-        m, in drive periods.
-
-    Returns
-    -------
-    list of ndarray, shapes (n_coordinates, n_coordinates) and (n_coordinates,), in their unit
-        A pair for each period; an amplitude counts relative to that of the orbit.
-
-    ValueError is raised if a strobe falls into a contact, NoDerivative if the motion grazes the stop or rests
-    on it.
+    The `strobed` oscillator or map has the excess of the orbit.  There is a pair for each period, of shapes
+    (n_coordinates, n_coordinates) and (n_coordinates,), in the coordinates of the points; an amplitude counts
+    relative to that of the orbit.  ValueError is raised if a strobe falls into a contact, NoDerivative if the
+    motion grazes the stop or rests on it.
     """
     require_kind("strobed", strobed, (StroboscopicMap, NordmarkMap), "a strobed oscillator or map")
     require_whole("period", period, "drive periods")
@@ -70,24 +58,12 @@ def strobe_derivatives(strobed: Strobed, state: State | Array, period: int) -> l
 def cloud(
     strobed: Strobed, state: State | Array, period: int, *, deviation: float, memory: float = 0.0
 ) -> Array:
-    """Covariance of the points ``strobed.orbit(state, period)`` of a stable orbit.
+    """Covariance of the points ``strobed.orbit(state, period)`` of a stable orbit, in their unit squared.
 
-    Parameters
-    ----------
-    strobed, state, period
-        A periodic orbit, given as in `strobe_derivatives`.
-    deviation : float
-        sigma, relative to the amplitude [1].
-    memory : float
-        r, from 0 to below 1 [1].
-
-    Returns
-    -------
-    ndarray, shape (period, n_coordinates, n_coordinates)
-        In the unit of the points squared.
-
-    NotPeriodic is raised if the state lies on no stable orbit of this period; other errors as in
-    `strobe_derivatives`.
+    Its shape is (period, n_coordinates, n_coordinates).  `strobed`, `state` and `period` are given as in
+    `strobe_derivatives`.  `deviation` is sigma, relative to the amplitude [1], and `memory` is r, from 0 to
+    below 1 [1].  NotPeriodic is raised if the state lies on no stable orbit of this period; other errors as
+    in `strobe_derivatives`.
     """
     require_within("deviation", deviation, "[1]", low=0)
     require_within("memory", memory, "[1]", low=0)

@@ -40,20 +40,17 @@ BRACKET = "bracket"  # kind of an end of which only the bracket is known
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class OrbitEnd(Generic[S]):
-    """The end of a p_m orbit in a downward scan.
+    """The end of an orbit with this `period` and these `impacts` in a downward scan.
 
     Parameters
     ----------
-    period, impacts : int
-        Period and impacts of the orbit.
     excess : float
         F/F_g - 1 at which it ends [1]; the middle of the bracket if only that is known.
     kind : str
         "fold", "period doubling", "torus", "branch point", "grazing", or "bracket" if none was found.
-    held, lost : float
-        Last excess at which the motion held the orbit, and the excess one step below, where it lost it [1].
-    state : State
-        A state on the orbit at `held`.
+    held, lost, state : float, float, State
+        Last excess at which the motion held the orbit, and the excess one step below, where it lost it [1];
+        and a state on the orbit at `held`.
     orbit : PeriodicOrbit, optional
         The orbit at its end; None for the Nordmark map, and where only a bracket is known.  Its approach
         velocity and touches identify it among several orbits of this period.
@@ -80,26 +77,18 @@ def orbit_end(
     first_step: float = 2e-4,
     lowest: float = -0.5,
 ) -> OrbitEnd[S] | None:
-    """Follow the orbit on which `state` settles at `excess` downwards until it ends.
+    """Follow the orbit on which `state` settles at `excess` [1] downwards until it ends.
+
+    None is returned if the motion at `excess` is not periodic with impacts, or never ends above `lowest`.
 
     Parameters
     ----------
-    strobed : StrobedMap
-    state : State
-    excess : float
-        Where to start [1].
     most_cycles : int
         Bound of the transient at each amplitude.
     relative, absolute : float
         Width of the last step: `relative` times the excess or `absolute`, whichever is larger.
-    first_step : float
-        First step of the excess.
-    lowest : float
-        Excess below which the search is given up.
-
-    Returns
-    -------
-    OrbitEnd, or None if the motion at `excess` is not periodic with impacts, or never ends above `lowest`.
+    first_step, lowest : float
+        First step of the excess, and excess below which the search is given up.
     """
     require_map(strobed)
     require_within("relative", relative, "[1]", low=0)

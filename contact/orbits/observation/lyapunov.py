@@ -34,21 +34,14 @@ S = TypeVar("S")
 AT_ONCE = 64  # periods simulated at a time, which bounds the memory; no result depends on it
 BLOCKS = 20  # blocks whose scatter gives the standard error: enough for an estimate within a sixth of itself
 MOST_STRETCHES = 64  # bound of repetitions of an orbit's period until its strobe is off the wall
-
-SMALLEST = 1e-300
-"""In place of a zero on the diagonal of R, where an impact without rebound has erased a direction."""
+SMALLEST = 1e-300  # replaces a zero on the diagonal of R, where an impact without rebound erases a direction
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Exponents:
-    """Lyapunov exponents.
+    """Lyapunov exponents: `values`, largest first, shape (n_exponents,) [per drive period].
 
-    Parameters
-    ----------
-    values : ndarray, shape (n_exponents,)
-        Largest first [per drive period].
-    error : float
-        Standard error of the largest; 0 on a periodic orbit.
+    `error` is the standard error of the largest; 0 on a periodic orbit.
     """
 
     values: Array
@@ -83,18 +76,9 @@ def _weighted(rates: Array, spans: Array) -> tuple[Array, float]:
 def map_exponents(
     strobed: DifferentiableMap[S], state: S, count: int, *, align: int = 0
 ) -> tuple[Exponents, S]:
-    """All exponents per step from Jacobians, and the state at the end.
+    """All exponents per step from Jacobians, over `count` steps from `state` on, and the state at the end.
 
-    Parameters
-    ----------
-    strobed : DifferentiableMap
-    state : State
-        On the attractor.
-    count : int
-        Steps in the average.
-    align : int
-        Steps before it, in which the frame finds its directions.
-
+    The state lies on the attractor.  In `align` steps before the average the frame finds its directions.
     ContactError is raised if the motion could not be followed, or the tip came to rest on the wall.
     """
     require_map(strobed, DifferentiableMap)

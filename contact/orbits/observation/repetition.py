@@ -18,8 +18,7 @@ from contact.flight.motion import OMEGA
 from contact.machine.compiled import kernel
 from contact.maps.protocol import DifferentiableMap
 
-RETURNS = 1e-6
-"""Distance, over the scale, at which a state has returned: settled motions reach 1e-9, chaos 1e-2."""
+RETURNS = 1e-6  # distance over the scale at which a state is back: settled motions reach 1e-9, chaos 1e-2
 
 
 @kernel
@@ -43,14 +42,8 @@ def repetition(points, impacts, rows, stretch, tolerance):
 def period_of(points: np.ndarray, impacts: np.ndarray, *, largest_period: int, tolerance: float) -> int:
     """The smallest p <= `largest_period` with which the last `largest_period` points repeat, or 0.
 
-    Parameters
-    ----------
-    points : ndarray, shape (n_strobes, n_coordinates)
-        At least 2 * `largest_period` strobes.
-    impacts : ndarray of int, shape (n_strobes,)
-    largest_period : int
-    tolerance : float
-        In the unit of the points.
+    `points`, shape (n_strobes, n_coordinates), and `impacts`, shape (n_strobes,), must hold at least
+    2 * `largest_period` strobes.  `tolerance` is in the unit of the points.
     """
     stretch = require_whole("largest_period", largest_period, "strobes", low=0)
     given = require_array("points", points, "any unit", dimensions=2, words="rows of coordinates")

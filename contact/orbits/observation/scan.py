@@ -73,14 +73,10 @@ def orbit_diagram(
         Its own amplitude does not matter.
     excesses : sequence of float
         F/F_g - 1 at each step.
-    state : State
     observe : callable
         Strobed points, shape (n, n_coordinates), to the quantity recorded, shape (n,).
-    settle_cycles : int
-        Bound of the transient at each amplitude.
-    record_cycles : int
-        Strobe points recorded.
-    largest_period : int
+    settle_cycles, record_cycles, largest_period : int
+        Bound of the transient at each amplitude, strobe points recorded, and longest period looked for.
     early : bool
         End a transient as soon as the orbit is known (`settle`); otherwise every amplitude gets all
         `settle_cycles`.

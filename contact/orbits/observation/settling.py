@@ -46,17 +46,14 @@ BELOW = -1e-3
 """Excess of the motion without impacts from which the drive is raised, four times the letter's amplitude
 stability below grazing."""
 
-FIRST_LOOK = 1e-3
-"""Repetition, relative to the gap, at which an orbit is looked for: a search costs some ten drive periods."""
+FIRST_LOOK = 1e-3  # repetition over the gap at which an orbit is looked for, at the cost of ten drive periods
 
 CLOSER = 0.5
 """A search without result is repeated when the motion repeats better by this factor, or much worse.
 Otherwise every block would be searched next to a vanished fold, or in chaos next to an unstable orbit."""
 
 SLACK = 1.5  # factor on the decay that the multiplier predicts, for the other multipliers and the curvature
-
-NEAR = 1e-3
-"""Distance from the orbit, relative to the gap, within which the linear neighbourhood is looked for."""
+NEAR = 1e-3  # distance over the gap from the orbit, within which the linear neighbourhood is looked for
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -65,14 +62,11 @@ class Settled(Generic[S]):
 
     Parameters
     ----------
-    period : int
-        Smallest period in strobes, 0 if none was found.
-    impacts : int
-        Impacts in one such period (or in the last block, if there is none).
+    period, impacts, cycles : int
+        Smallest period in strobes, 0 if none was found; impacts in one such period (or in the last block, if
+        there is none); drive periods spent.
     end : State
         The state reached; where the orbit was proved, a state on it.
-    cycles : int
-        Drive periods spent.
     points : ndarray, shape (block, n_coordinates)
         The last strobed points.
     """
@@ -93,17 +87,14 @@ def settle(
     tolerance: float = TOLERANCE,
     prove: bool = True,
 ) -> Settled[S]:
-    """Follow a motion until it is known to be periodic, or for `most_cycles` drive periods.
+    """Follow the motion from `state` until it is known to be periodic, or for `most_cycles` drive periods.
 
     Parameters
     ----------
     strobed : StrobedMap
         The beam, Eq. (1) or the Nordmark map at one drive amplitude.
-    state : State
-        Where to start.
-    most_cycles : int
+    most_cycles, largest_period : int
         The bound on the run; a block of 2 * `largest_period` is run in any case.
-    largest_period : int
     tolerance : float
         Relative to the scale of the strobed map.
     prove : bool
@@ -136,18 +127,10 @@ def settle(
 def born(
     strobed: StrobedMap[S], excess: float = 1e-3, *, below: float = BELOW, most_cycles: int = 4000
 ) -> Settled[S]:
-    """The orbit on which the motion settles when the drive is raised to `excess` in one step.
+    """The orbit on which the motion settles when the drive is raised to `excess` [1] in one step.
 
-    The motion starts without impacts at the excess `below`.
-
-    Parameters
-    ----------
-    strobed : StrobedMap
-        Its own amplitude does not matter.
-    excess, below : float
-        F/F_g - 1 after and before the step [1].
-    most_cycles : int
-        Bound of the transient: orbits born at grazing settle within some hundred drive periods.
+    The motion starts without impacts at the excess `below` [1]; the amplitude of `strobed` itself does not
+    matter.  `most_cycles` bounds the transient: orbits born at grazing settle within some hundred periods.
     """
     require_map(strobed)
     return settle(strobed.at(excess), strobed.at(below).steady(), most_cycles=most_cycles)
