@@ -20,38 +20,36 @@ from pathlib import Path
 from studies.shell.programs import studies
 
 ROOT = Path(__file__).resolve().parent.parent
-RULER = ["--scene", "steel_ruler"]
-MODAL = ["--scene", "measured_modes"]
-TIGHT = ["--scene", "tight_fold"]
-FIVE = [
-    "modal_data.frequencies_hz=[5.5,40.0,120.0]",
-    "modal_data.decay_rates_per_s=[0.8,6.0,18.0]",
-    "modal_data.tip_values=[7.0,4.5,3.0]",
-    "modal_data.participation=[0.17,-0.09,0.05]",
-    "modal_data.static_compliance_m_per_n=0",
+RULER, MODAL, TIGHT = (["--scene", name] for name in ("steel_ruler", "measured_modes", "tight_fold"))
+
+
+def measured(frequencies: str, rates: str, tip: str, participation: str, *more: str) -> list[str]:
+    """Keys of measured modes."""
+    lists = {"frequencies_hz": frequencies, "decay_rates_per_s": rates, "tip_values": tip}
+    lists |= {"participation": participation, "static_compliance_m_per_n": "0"}
+    return [*(f"modal_data.{name}={value}" for name, value in lists.items()), *more]
+
+
+FIVE = measured(
+    "[5.5,40.0,120.0]",
+    "[0.8,6.0,18.0]",
+    "[7.0,4.5,3.0]",
+    "[0.17,-0.09,0.05]",
     "single_mode.free_period_s=0.1818",
     "single_mode.decay_rate_per_s=0.8",
     "drive.frequencies_hz=[4.7,5.0]",
-]
-FAST = [
-    "modal_data.frequencies_hz=[216.0,1500.0]",
-    "modal_data.decay_rates_per_s=[30.0,200.0]",
-    "modal_data.tip_values=[7.0,4.5]",
-    "modal_data.participation=[0.17,-0.09]",
+)
+FAST = measured(
+    "[216.0,1500.0]",
+    "[30.0,200.0]",
+    "[7.0,4.5]",
+    "[0.17,-0.09]",
     "stop.gap_m=2e-4",
-    "modal_data.static_compliance_m_per_n=0",
     "single_mode.free_period_s=0.00463",
     "single_mode.decay_rate_per_s=30",
     "drive.frequencies_hz=[184.0,200.0]",
-]
-ONE_MODE = [
-    "modal_data.frequencies_hz=[24.51]",
-    "modal_data.decay_rates_per_s=[3.56]",
-    "modal_data.tip_values=[7.688]",
-    "modal_data.participation=[0.1707]",
-    "modal_data.static_compliance_m_per_n=0",
-    "modal_data.tip_mass_kg=0",
-]
+)
+ONE_MODE = measured("[24.51]", "[3.56]", "[7.688]", "[0.1707]", "modal_data.tip_mass_kg=0")
 SCENES: dict[str, tuple[list[str], list[str]]] = {
     "letter": ([], []),
     "tight_fold": (TIGHT, []),
@@ -93,7 +91,7 @@ SCENES: dict[str, tuple[list[str], list[str]]] = {
 def run(name: str, scene: str, out: Path) -> list[str]:
     """Study, scene, exit code (or "traceback", or "too long" after 600 s), run time [s], last line."""
     words, keys = SCENES[scene]
-    command = [sys.executable, "-m", f"studies.{name}", "--quick", "--workers=1", f"--out={out / scene}"]
+    command = [sys.executable, "-m", "studies", name, "--quick", "--workers=1", f"--out={out / scene}"]
     command += [*words, *(word for key in keys for word in ("--set", key))]
     begun = time.monotonic()
     try:

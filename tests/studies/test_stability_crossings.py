@@ -70,7 +70,9 @@ def test_a_touch_is_invented_as_far_below_the_stop_as_theory_says(kind):
         assert (share_wrong(trial, -part * invented(trial), 200) > 0.0) == seen
 
 
-@pytest.mark.parametrize(("tolerance", "half"), [(1e-8, 1e-2), (1e-12, 1e-3)])
+@pytest.mark.parametrize(
+    ("tolerance", "half"), [(1e-8, 1e-2), pytest.param(1e-12, 1e-3, marks=pytest.mark.slow)]
+)
 def test_dop853_misses_half_of_all_crossings_of_one_per_cent_of_the_gap(tolerance, half):
     """At 1e-8; at 1e-12 half of those of 0.1 %. Theory from the spacing of its steps."""
     trial = of_scipy(SCENE, "DOP853", tolerance)

@@ -6,7 +6,7 @@ The observed hysteresis is the excess at which p_1 is left less that at which p_
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -76,11 +76,15 @@ def ends_of(made: Made) -> list[End]:
         if values.size < 2:
             continue
         law = law_of(place, protocol, name) if name in ("slipped", "touched") else None
-        formula: Sequence[float | None] = (None,) * len(PARTS) if law is None else quantiles(law, PARTS)
+        formula = dict(
+            zip(
+                ("formula_low", "formula", "formula_high"), quantiles(law, PARTS) if law else (), strict=False
+            )
+        )
         # ranks half a binomial standard deviation, sqrt(n)/2, below and above the median
         ranks = 0.5 * (values.size + np.array([-1.0, 1.0]) * math.sqrt(values.size))
         below, above = np.interp(ranks, np.arange(values.size) + 0.5, values)
-        (low, median, high), error = np.quantile(values, PARTS), 0.5 * float(above - below)
+        (low, median, high), error = np.quantile(values, PARTS).tolist(), 0.5 * float(above - below)
         rows.append(
             End(
                 frequency_hz=place.frequency_hz,
@@ -93,10 +97,8 @@ def ends_of(made: Made) -> list[End]:
                 median=median,
                 high=high,
                 error=error,
-                formula_low=formula[0],
-                formula=formula[1],
-                formula_high=formula[2],
-                off=None if formula[1] is None else (formula[1] - float(median)) / error,
+                off=(formula["formula"] - median) / error if formula else None,
+                **formula,
             )
         )
     return rows

@@ -92,7 +92,7 @@ def sdnd122() -> list[Printed]:
     """Frequency of the free oscillation against a spring, in units of k and gap."""
     free = replace(driven(0.5, 0.0, Stop(gap=1.0, law=LinearContact(stiffness=5.0))), drive=None)
     e = 0.00650108 / 1e-3  # energy over k gap^2
-    start = contact.State(displacement=[-math.sqrt(2 * e)], velocity=[0.0])
+    start = contact.State(displacement=np.array([-math.sqrt(2 * e)]), velocity=np.zeros(1))
     f = math.sqrt(10) / np.diff(contact.simulate(free, start, duration=15.0).impacts.start)[0]
     angle = math.acos(-1 / math.sqrt(2 * e)) + math.acos(math.sqrt(10 / (120 * e - 50))) / math.sqrt(6)
     note = f"the source has a regularised wall; closed form {math.sqrt(10) / (2 * angle):.9f}"

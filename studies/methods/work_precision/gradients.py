@@ -16,7 +16,6 @@ derivative, against differences of the closed form in 60 digits.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -29,6 +28,8 @@ from numpy.typing import NDArray
 from contact import ImpactOscillator, State, simulate
 from contact.orbits import motion_derivatives
 from studies.methods.peers import installed_solvers
+from studies.methods.peers.single_mode import equation_1
+from studies.methods.work_precision.timing import timed
 from studies.physics.parameters import changes_of, parameters_of, with_values
 from studies.shell import plotting
 
@@ -94,14 +95,10 @@ def by_heyoka(values: Array, start: State, hits: Array, tolerance: float) -> Cal
     import heyoka as hy
 
     (period, c, gap, tau, f, amplitude), unit, end = values.tolist(), np.eye(6), PERIODS / values[4]
-    x, v = hy.make_vars("x", "v")
-    given, w = [hy.par[i] for i in range(4)], 2.0 * np.pi * hy.par[2]
-    pull = hy.par[1] * v + ((2.0 * np.pi / hy.par[0]) ** 2.0 + (0.5 * hy.par[1]) ** 2.0) * x
-    system = [(x, v), (v, hy.par[3] * w * w * hy.sin(w * hy.time) - pull)]
-    touch = hy.t_event(x - hy.par[4], direction=hy.event_direction.positive)
-    taylor = hy.taylor_adaptive(
-        hy.var_ode_sys(system, [x, v, *given], order=1), [0.0, 0.0], tol=tolerance, t_events=[touch]
-    )
+    variables, system, surface = equation_1()
+    touch = hy.t_event(surface, direction=hy.event_direction.positive)
+    varied = hy.var_ode_sys(system, [*variables, *(hy.par[i] for i in range(4))], order=1)
+    taylor = hy.taylor_adaptive(varied, [0.0, 0.0], tol=tolerance, t_events=[touch])
     taylor.pars[:] = [period, c, f, amplitude, gap]
     drive, square = 2.0 * np.pi * f, (2.0 * np.pi / period) ** 2 + 0.25 * c * c
 
@@ -149,18 +146,14 @@ def gradients(oscillator: ImpactOscillator) -> list[Gradient]:
         return (np.array(ends[0]) - np.array(ends[1])).T / (2.0 * step)
 
     def measured(method: str, setting: float | None, compute: Callable[[], Array]) -> None:
-        times = []
-        for _ in range(REPEATS + 1):
-            begun = time.process_time()
-            found = compute()
-            times.append(time.process_time() - begun)
+        found = compute()
         error = float(np.linalg.norm((found - truth) / scale) / np.linalg.norm(truth / scale))
         rows.append(
             Gradient(
                 method=method,
                 setting=setting,
                 error=error if np.isfinite(error) else None,
-                milliseconds=1e3 * float(np.median(times[1:])),
+                milliseconds=1e-3 * timed(compute, REPEATS),
             )
         )
 
