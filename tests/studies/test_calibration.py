@@ -18,7 +18,6 @@ from studies.physics.calibration import (
 )
 from studies.shell.scene import (
     READOUT,
-    Scene,
     SceneError,
     damping_of,
     free_period,
@@ -170,10 +169,3 @@ def test_a_mode_number_beyond_the_mesh_is_refused():
     few = {"spring.elements_per_leg": 1, "spring.elements_on_arc": 1, "modes.count": 30}
     with pytest.raises(SceneError, match=r"modes\.count must be at most"):
         modes_of(LETTER.replace(few))
-
-
-def test_scenes_without_tape_have_one_section():
-    scene = FOLDED.replace({"spring.tape_thickness_m": 0.0, "damping.kind": "constant_ratio"})
-    assert len(set(spring_of(scene).sections)) == 1
-    both = spring_of(LETTER.replace({"spring.tape_sides": 2})).sections[0]
-    assert both.total_thickness == pytest.approx(Scene().spring.thickness_m + 2 * 0.00045)

@@ -77,15 +77,6 @@ def test_what_cannot_be_computed_is_said_and_the_next_position_is_drawn(seen):
     assert move(seen, frequency=22.2) == "period 5"
 
 
-@pytest.mark.slow
-def test_p5_of_eq_1_sets_in_at_grazing(seen):
-    move(seen, excess=-0.005)
-    excesses = np.linspace(-0.005, 0.005, 6)
-    titles = [move(seen, excess=excess) for excess in excesses]
-    seen.figure.canvas.draw()
-    assert titles == ["period 5" if excess > 0 else "period 1" for excess in excesses]
-
-
 @pytest.mark.parametrize(("argv", "told"), [([], "display"), (["--set", "drive.kind=none"], "drive.kind")])
 def test_without_a_window_or_a_drive_it_says_so_in_a_sentence(capsys, argv, told):
     plt.switch_backend("agg")

@@ -27,7 +27,7 @@ from contact import (
     before_collision,
     simulate,
 )
-from contact.integrators import Integrator, Run
+from contact.integrators import Integrator
 from studies.methods import peers
 from studies.methods.peers import SOLVERS, OutsideSolver, adapters, installed_solvers, missing_solvers
 from studies.methods.peers.piecewise import Equations
@@ -176,36 +176,6 @@ def test_times_wanted_anywhere(label: str) -> None:
     np.testing.assert_array_equal(found.displacement[-1], found.end.displacement)
     np.testing.assert_array_equal(found.displacement[0], case.start.displacement)
     assert np.count_nonzero(found.displacement @ case.oscillator.model.phi - 0.005 > 1e-9) >= 7
-
-
-@pytest.mark.parametrize("law", [LinearContact(stiffness=3e5), HertzContact(stiffness=1e9)])
-def test_jacobian_is_the_derivative_of_the_rates(law: ContactLaw) -> None:
-    """Against central differences, tip behind the stop."""
-    oscillator, none = spring(3, law), np.empty(0)
-    start = State(displacement=np.zeros(3), velocity=np.zeros(3), time=0.003)
-    run = Run(
-        start=start,
-        length=oscillator.period,
-        first=0,
-        last=1,
-        clock=0.003,
-        clock_end=0.003,
-        times=none,
-        sample_period=none,
-        sample_clock=none,
-    )
-    e, y = Equations(oscillator, run, 1e-9), np.array([6e-4, 1e-5, -2e-5, 0.05, -0.1, 0.2])
-    assert e.tip(y)[0] > 0.0
-    for contact in (False, True):
-        found = e.jacobian(contact, y)
-        for j in range(6):
-            step = np.zeros(6)
-            step[j] = 1e-8 if j < 3 else 1e-6
-            plus, minus = (e.rates(contact, 0.01, y + sign * step, np.empty(6)) for sign in (1.0, -1.0))
-            column = (plus - minus) / (2 * step[j])
-            np.testing.assert_allclose(
-                found[:, j], column, rtol=1e-5, atol=1e-5 * np.abs(column).max() + 1e-9
-            )
 
 
 def test_threads_do_not_share_a_compiled_integrator() -> None:

@@ -16,7 +16,7 @@ from studies import letter
 from studies.experiment.transitions.model import rows_at
 from studies.physics import two_parameters
 from studies.physics.two_parameters import extracted, fold_of_kicks, law_of, two_parameters_at
-from studies.shell.scene import SceneError, approach_speed, beam_at, single_mode_at
+from studies.shell.scene import SceneError, approach_speed, beam_at
 
 
 @pytest.mark.parametrize("excess", [3.3e-6, 0.21])
@@ -100,10 +100,3 @@ def test_collisions_without_restitution_are_left_out(letter_scene, letter_model,
     at = rows_at(letter_scene, 22.2, letter_model)
     assert [row.period for row in at.rows] == [5, 5, None, 5] and at.extracted is None
     assert [where for where, _ in at.failures] == ["22.2 Hz, two_parameters"]
-
-
-def test_one_mode_under_newtons_law_rebounds_at_once(letter_scene):
-    """Rounding of its first collisions is no delay, which no contact could wait for."""
-    law = law_of(single_mode_at(letter_scene, 22.2))
-    assert [law.delay(v) for v in (1e-4, 0.1, 1.0)] == [0.0, 0.0, 0.0]
-    assert law.restitution(0.1) == pytest.approx(0.1, rel=1e-9)

@@ -14,12 +14,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from statistics import median
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from contact import ImpactOscillator, StroboscopicMap, simulate
 from studies import letter
 from studies.methods.peers import OutsideSolver, missing_solvers
-from studies.methods.peers.single_mode import heyoka_orbit
 from studies.methods.work_precision.timing import Orbit, in_turns
 from studies.shell.scene import Scene, beam_at, harmonic, model_of, single_mode_at
 from studies.shell.study import Run
@@ -70,6 +71,26 @@ def costs(scene: Scene, run: Run) -> list[Cost]:
     cases += [(BEAM, beam_at(scene, FREQUENCY, model.truncated(n))) for n in counts]
     tracked = run.track(cases, "cost of a drive period")
     return [row for case, oscillator in tracked for row in rows_of(case, oscillator, quick=run.quick)]
+
+
+def heyoka_orbit(oscillator: ImpactOscillator) -> tuple[Orbit, Any]:
+    """An orbit of Eq. (1) from rest by heyoka alone, the impact in the callback of an event, at its default
+    tolerance (the rounding of a double); and its integrator."""
+    import heyoka as hy
+
+    model, drive = oscillator.model, oscillator.driven
+    w, (x, v) = drive.angular_frequency, hy.make_vars("x", "v")
+    push = model.participation[0] * drive.amplitude * w**2 * hy.sin(w * hy.time)
+    system = [(x, v), (v, push - model.decay_rate[0] * v - model.omega[0] ** 2 * x)]
+
+    def impact(taylor: Any, _sign: int) -> bool:
+        taylor.state[1] *= -oscillator.stop.law.numbers[0]
+        return True
+
+    surface, rising = x - oscillator.stop.gap / model.phi[0], hy.event_direction.positive
+    touch = hy.t_event(surface, direction=rising, callback=impact)
+    taylor = hy.taylor_adaptive(system, np.zeros(2), t_events=[touch])
+    return lambda periods: taylor.propagate_until(taylor.time + periods * oscillator.period), taylor
 
 
 def rows_of(case: str, oscillator: ImpactOscillator, *, quick: bool) -> list[Cost]:
