@@ -137,24 +137,17 @@ def answer_hysteresis(run: Run, protocols: Sequence[Protocol], observed: Sequenc
         return []
     shift = np.array([row.median - row.fold for row in whole])
     part = np.abs(shift) / (np.abs(shift) + np.abs([row.fold - (row.map or 0.0) for row in whole]))
-    below = [row for row in met if not row.seen]
-    given = [row for row in below if row.frequency_hz in run.scene.drive.frequencies_hz]
-    hidden = [f"p{row.m} at {row.frequency_hz:.2f} Hz" for row in given]
-    said = [
-        f"Noise of the amplitude ({chosen.name}, {chosen.stability:.2g}) changes the observed hysteresis by "
-        f"{np.median(shift):+.1e} (median)."
+    given = run.scene.drive.frequencies_hz
+    hidden = [
+        f"p{row.m} at {row.frequency_hz:.2f} Hz" for row in met if not row.seen and row.frequency_hz in given
     ]
-    if below:
-        edge = max(band_of(run.scene, row.m).upper - row.frequency_hz for row in below)
-        names = f", {', '.join(hidden)} among them" if hidden else ""
-        said.append(
-            f"It hides the hysteresis next to the upper edges of bands, up to {edge:.2g} Hz below{names}."
-        )
-    said.append(
-        f"Noise makes {np.median(part):.0%} (median) of the difference between the observed hysteresis and "
-        "that of the map; the truncation of the map makes the rest."
-    )
-    if missed := len(rows) - len(met):
-        said.append(f"At {missed} of {len(rows)} places a scan from above grazing does not reach p_m.")
+    said = [
+        f"Noise of the amplitude ({chosen.name}) changes the observed hysteresis by {np.median(shift):+.1e} "
+        "(median).",
+        f"It makes {np.median(part):.0%} (median) of the difference between the observed hysteresis and that "
+        "of the map; the truncation of the map makes the rest.",
+    ]
+    if hidden:
+        said.append(f"It hides the hysteresis of {', '.join(hidden)}.")
     run.answer("hysteresis", " ".join(said))
     return hidden
