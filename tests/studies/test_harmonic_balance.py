@@ -10,8 +10,8 @@ import pytest
 
 from contact import ImpactOscillator, LinearContact, NewtonRestitution, NotPeriodic, Stop, simulate
 from contact.orbits import Shooting, follow_path
-from studies.methods.two_masses import two_masses
 from studies.methods.work_precision.harmonic_balance import balanced
+from studies.methods.work_precision.problems import two_masses
 
 
 def sprung(damping: float) -> ImpactOscillator:

@@ -128,10 +128,8 @@ def cheapest_of(rows: Sequence[Row]) -> list[Cheapest]:
         numbers = dict[str, float | None]()
         for name, level in {"1e_4": 1e-4, "1e_8": 1e-8}.items():
             best = cheapest(mine, level)
-            numbers |= {
-                f"us_for_{name}": best and best.us_per_period,
-                f"missed_at_{name}": best and best.missed,
-            }
+            numbers[f"us_for_{name}"] = best.us_per_period if best else None
+            numbers[f"missed_at_{name}"] = best.missed if best else None
         found.append(Cheapest(problem=problem, method=method, **numbers))
     return found
 

@@ -30,10 +30,9 @@ from contact import ContactError, State, simulate
 from contact.integrators import Integrator
 from contact.orbits import Shooting
 from studies.methods.crossings import Swing
-from studies.methods.two_masses import two_masses
 from studies.methods.work_precision.harmonic_balance import balanced
 from studies.methods.work_precision.methods import PERIODIC, Sweep
-from studies.methods.work_precision.problems import Problem, driven_problem
+from studies.methods.work_precision.problems import Problem, driven_problem, two_masses
 from studies.methods.work_precision.reference import DIGITS, extended_motion
 from studies.methods.work_precision.timing import timed
 

@@ -3,7 +3,9 @@
     single mode     Eq. (1) of the letter with the hard wall, tau, mu and T of the scene
     linear          the scene's beam with a linear contact that lasts as long as Hertz's
     hertz           the scene's beam with the scene's Hertz contact
-    two masses      NLvib's example 03: a periodic motion, by harmonic balance, shooting and settling
+    two masses      example 03 of NLvib (M. Krack and J. Gross, Harmonic Balance for Nonlinear Vibration
+                    Problems, Springer 2019; maltekrack/NLvib at 69598c5): a periodic motion, by harmonic
+                    balance, shooting and settling
 
 They run at 21.50 Hz and F/F_g - 1 = 0.013 (the letter's Fig. 4, where its trace is p4; Eq. (1)
 settles on a p8 close to it). The error run starts from the steady motion at its lowest point, meets the stop
@@ -17,9 +19,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+import numpy as np
 from scipy.optimize import brentq
 
+from beam import ModalModel
 from contact import (
+    HarmonicDrive,
     ImpactOscillator,
     LinearContact,
     State,
@@ -117,6 +122,20 @@ def hertz_beam(scene: Scene) -> ImpactOscillator:
     """The scene's beam with the scene's Hertz contact, at the excess of Fig. 4."""
     stop = Stop(gap=scene.stop.gap_m, law=hertz_of(scene))
     return replace(beam_at(scene, FREQUENCY), stop=stop).with_excess(EXCESS)
+
+
+def two_masses(w: float, force: float = 0.1) -> ImpactOscillator:
+    """Two unit masses, driven at W = `w` [rad/s] by `force` [N] on mass 2; SI units.
+
+    Springs 0, 1, 1 with dampers 0.03 times these, and a one-sided spring of 100 at gap 1 on mass 1. A
+    constant force on coordinate j is participation_k = phi_k(j) with the base amplitude Z = f/W^2.
+    """
+    squares, shapes = np.linalg.eigh(np.array([[1.0, -1.0], [-1.0, 2.0]]))
+    model = ModalModel(
+        omega=np.sqrt(squares), decay_rate=0.03 * squares, phi=shapes[0], participation=shapes[1]
+    )
+    drive = HarmonicDrive(frequency=w / (2.0 * np.pi), amplitude=force / w**2)
+    return ImpactOscillator(model=model, stop=Stop(gap=1.0, law=LinearContact(stiffness=100.0)), drive=drive)
 
 
 def problems_of(scene: Scene, modes: int = MODES) -> list[Problem]:
