@@ -32,6 +32,7 @@ def simd() -> list[str]:
     return answer("-c", SIMD).stdout.split()
 
 
+@pytest.mark.slow
 def test_with_every_feature_off_it_runs(simd):
     assert collected(**GENERIC, NPY_DISABLE_CPU_FEATURES=" ".join(simd)).returncode == 0
 
@@ -42,7 +43,7 @@ def test_kernels_for_this_processor_are_refused(simd):
     assert "numba compiles for generic with +sse3" in found.stderr
 
 
-@pytest.mark.parametrize("names", ["", "AVX1024 NEON3"])
+@pytest.mark.parametrize("names", [pytest.param("", marks=pytest.mark.slow), "AVX1024 NEON3"])
 def test_features_that_numpy_keeps_are_refused(simd, names):
     """NumPy passes over names that it does not know."""
     if not simd:

@@ -187,6 +187,7 @@ def test_public_names_exist_and_type_checkers_see_them(door):
     assert set(module.__all__) <= told
 
 
+@pytest.mark.slow
 def test_what_is_shipped_has_the_scenes_and_the_types(tmp_path):
     """The content of a wheel: what setuptools' build_py copies."""
     source, built = tmp_path / "source", tmp_path / "built"

@@ -47,7 +47,7 @@ def test_the_run_times_are_those_of_the_table():
     assert whole == in_words(sum(full for full, _ in run_times().values()))
 
 
-@pytest.mark.parametrize("frequency", [21.50, 22.20])
+@pytest.mark.parametrize("frequency", [pytest.param(21.50, marks=pytest.mark.slow), 22.20])
 def test_the_rows_of_the_first_table_are_computed_values(frequency):
     (line,) = re.findall(rf"^\| {frequency:.2f} \|(.*)\|$", TEXT, flags=re.MULTILINE)
     cells = [cell.strip() for cell in line.split("|")]

@@ -28,7 +28,6 @@ import types
 from argparse import Namespace
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
-from itertools import count
 from pathlib import Path
 from typing import TextIO
 
@@ -99,20 +98,14 @@ def run_in_turn(
             if stopped:
                 break
             label, begun = f"python -m studies {name}", time.monotonic()
-            command = [sys.executable, *label.split()[1:], *arguments]
+            command, quiet = [sys.executable, *label.split()[1:], *arguments], subprocess.DEVNULL
             with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as log:
-                running[:] = [
-                    subprocess.Popen(
-                        command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, text=True, process_group=0
-                    )
-                ]
-                for left in count(expected[name], -1):
-                    try:
-                        codes[name] = running[0].wait(1.0)
-                        break
-                    except subprocess.TimeoutExpired:
-                        tick(int(left > 1))
-                tick(max(left, 1))  # as many seconds as expected, however long it took
+                child = subprocess.Popen(
+                    command, stdin=quiet, stdout=log, stderr=log, text=True, process_group=0
+                )
+                running[:] = [child]
+                codes[name] = child.wait()
+                tick(expected[name])  # however long it took
                 if codes[name] == DONE:
                     took[name] = time.monotonic() - begun
                 log.seek(0)

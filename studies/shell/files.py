@@ -15,12 +15,13 @@ import json
 import math
 import os
 import platform
+import re
 import subprocess
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from functools import cache
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
 from uuid import uuid4
 
@@ -30,26 +31,6 @@ from studies import ROOT
 
 SCHEMA = 2
 """Number of the layout of summary.json, manifest.json and the JSON on standard output."""
-
-PACKAGES = (
-    "grazing-spring",
-    "numpy",
-    "scipy",
-    "scikit-fem",
-    "meshio",
-    "pyvista",
-    "numba",
-    "matplotlib",
-    "mpmath",
-    "rich",
-    "jinja2",
-    "heyoka",
-    "scikit-sundae",
-    "distributed",
-    "imageio-ffmpeg",
-    "trame-vtk",
-)
-"""Packages whose versions go into a manifest, if they are installed."""
 
 
 def make_folder(folder: Path) -> Path:
@@ -147,11 +128,12 @@ def fingerprint(scene: object, settings: Mapping[str, object]) -> str:
 
 
 def versions() -> dict[str, str]:
-    """Versions of Python and of the packages that results may depend on."""
-    found = {"python": platform.python_version()}
-    for name in PACKAGES:
-        with suppress(PackageNotFoundError):
-            found[name] = version(name)
+    """Versions of Python and of the packages that this one declares and that are installed."""
+    found, own = {"python": platform.python_version()}, "grazing-spring"
+    with suppress(PackageNotFoundError):
+        for name in [own, *(re.split(r"[^\w.-]", each)[0] for each in requires(own) or ())]:
+            with suppress(PackageNotFoundError):
+                found[name] = version(name)
     return found
 
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from beam import StripDamping, assemble, natural_modes
+from beam import StripDamping
 from studies.physics.calibration import (
     ACCURACY,
     calibrate,
@@ -18,10 +18,8 @@ from studies.physics.calibration import (
 )
 from studies.shell.scene import (
     READOUT,
-    Scene,
     SceneError,
     damping_of,
-    elements_of,
     free_period,
     model_of,
     modes_of,
@@ -35,6 +33,7 @@ PERIOD, RATE = 40.80e-3, 3.56
 COARSE = {"spring.elements_per_leg": 12, "spring.elements_on_arc": 12, "modes.count": 4}
 
 
+@pytest.mark.slow
 def test_the_letters_scene_is_calibrated_to_the_digits_it_is_written_with():
     """Thickness and loss factor have eight digits; the period goes with a power of the thickness near -1."""
     assert free_period(LETTER) == pytest.approx(PERIOD, rel=1e-7)
@@ -85,10 +84,8 @@ def test_other_kinds_of_damping_are_scaled_as_a_whole(changes):
     ("fit", "words"),
     [
         (lambda scene: calibrate_thickness(scene, 1e-5), ["spring.thickness_m", "free period", "1e-05 s"]),
-        (lambda scene: calibrate_thickness(scene, 10.0), ["free period of 10 s", "unit m"]),
         (lambda scene: calibrate_thickness(scene, math.nan), ["free period", "finite"]),
         (lambda scene: calibrate_damping(scene, 1e3), ["spring.tape_loss_factor", "1000 1/s"]),
-        (lambda scene: calibrate_damping(scene, 0.01), ["spring.tape_loss_factor", "0.01 1/s"]),
         (lambda scene: calibrate_damping(scene, -1.0), ["decay rate of mode 1", "not -1.0"]),
         (lambda scene: calibrate_damping(scene.replace({"spring.tape_thickness_m": 0.0}), 3.0), ["tape"]),
         (
@@ -118,16 +115,6 @@ def test_a_jump_is_no_solution():
             unit="m",
             between=(1e-3, 0.1),
         )
-
-
-def test_frequencies_repeat_to_rounding_where_the_solver_leaves_more():
-    """A change of the thickness by 1e-13 moves the first frequency by some 1e-13, and not by 1e-8."""
-    scenes = [LETTER.replace({"spring.thickness_m": 0.00068 * (1.0 + i * 1e-13)}) for i in range(6)]
-    sharp = np.array([modes_of(scene, 1).omega[0] for scene in scenes])
-    assert np.ptp(sharp) < 1e-11 * sharp[0]
-    spring = spring_of(scenes[0])
-    raw = natural_modes(assemble(spring, elements_of(scenes[0], spring)), 1).omega[0]
-    assert raw == pytest.approx(sharp[0], rel=3e-7)
 
 
 def test_the_model_keeps_the_coupled_modes_only():
@@ -182,10 +169,3 @@ def test_a_mode_number_beyond_the_mesh_is_refused():
     few = {"spring.elements_per_leg": 1, "spring.elements_on_arc": 1, "modes.count": 30}
     with pytest.raises(SceneError, match=r"modes\.count must be at most"):
         modes_of(LETTER.replace(few))
-
-
-def test_scenes_without_tape_have_one_section():
-    scene = FOLDED.replace({"spring.tape_thickness_m": 0.0, "damping.kind": "constant_ratio"})
-    assert len(set(spring_of(scene).sections)) == 1
-    both = spring_of(LETTER.replace({"spring.tape_sides": 2})).sections[0]
-    assert both.total_thickness == pytest.approx(Scene().spring.thickness_m + 2 * 0.00045)

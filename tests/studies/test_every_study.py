@@ -10,12 +10,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from contact import BranchEnded
 from studies.experiment.hysteresis.__main__ import Causes, judge
 from studies.experiment.hysteresis.model import CAUSES
 from studies.experiment.soft_wall.model import loss_of_stability
 from studies.measurement.identify import next_measurement
-from studies.methods.validation.two_beams import Rig
 from studies.methods.work_precision.problems import problems_of
 from studies.shell import plotting
 from studies.shell.programs import account_of, module_of, names, run_times, studies
@@ -172,15 +170,11 @@ def test_a_docstring_says_command_and_outputs_and_the_table_the_run_time(name):
 
 
 def test_where_nothing_is_found_a_study_says_so(tmp_path, letter_scene, capsys):
-    """No orbit within its errors, no fold in the map, and a response that does not reach its frequency."""
+    """No orbit within its errors, and no fold in the map."""
     assert "no orbit exists at one standard error" in next_measurement.answer([], [], next_measurement.Plan())
     run = Run(study="hysteresis", folder=tmp_path, scene=letter_scene, command="")
     judge(run, [], {}, Causes(at="", **{name: None if "map" in name else 1.0 for name in CAUSES}))
     assert "nothing to compare" in capsys.readouterr().err and not run.close("done", {})["verdicts"]
-    rig = Rig()
-    vars(rig)["raised"] = SimpleNamespace(parameters=[1.0], orbits=[None])
-    with pytest.raises(BranchEnded, match=r"does not reach W/w1 = 1\.2"):
-        rig.lowered(1.2)
 
 
 def test_a_p1_unstable_down_to_faint_touches_loses_its_stability_there(monkeypatch):

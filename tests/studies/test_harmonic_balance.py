@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from contact import ImpactOscillator, LinearContact, NewtonRestitution, NotPeriodic, Stop, simulate
-from studies.methods.two_masses import two_masses
+from contact.orbits import Shooting, follow_path
 from studies.methods.work_precision.harmonic_balance import balanced
+from studies.methods.work_precision.problems import two_masses
 
 
 def sprung(damping: float) -> ImpactOscillator:
@@ -68,3 +69,24 @@ def test_what_cannot_be_balanced_is_refused_and_what_is_not_found_is_told() -> N
         balanced(replace(two_masses(0.635), stop=hard), 21, 1024)
     with pytest.raises(NotPeriodic, match="order 21"):  # the steady response goes twice as far as the gap
         balanced(two_masses(0.635), 21, 1024)
+
+
+BY_A_BOUNDARY_PROBLEM = {
+    "torus": (0.581900650365, 0.618606874267),
+    "period doubling": (0.738783025373, 0.755586159356),
+    "fold": (0.755627352609, 0.653440134549),
+}
+"""W from a solution in 40 digits by a program of its own: contact and flight as two pieces of unknown
+durations, closed, with a condition on the eigenvalues of their product."""
+
+
+def test_the_bifurcations_of_two_masses_by_a_boundary_problem_in_40_digits():
+    here = two_masses(0.635)
+    settled = replace(simulate(here, periods=400).end, time=0.0)
+    start = Shooting(oscillator=here, period=1, impacts=1).from_state(settled)
+    branch = follow_path(two_masses, start, 0.635, low=0.5, high=0.8, step=0.3)
+    for kind, exact in BY_A_BOUNDARY_PROBLEM.items():
+        found = [event.parameter for event in branch.events if event.kind == kind]
+        assert found == pytest.approx(list(exact), abs=2e-12)
+    here = min(branch.orbits, key=lambda orbit: abs(orbit.oscillator.drive.angular_frequency - 0.635))
+    assert abs(here.multipliers[0]) == pytest.approx(0.885750370466, abs=2e-12)

@@ -11,9 +11,7 @@ from studies.shell.scene import beam_at, read_scene
 
 #: What a search over modes, meshes and laws that followed every orbit found for the letter's scene.
 BY_SEARCH = [
-    ({"born_period": 0.0, "fold": 0.07}, 10),
-    ({"fold": 0.05}, 10),
-    ({"born_period": 0.0, "fold_middle": 0.07}, 10),
+    pytest.param({"born_period": 0.0, "fold": 0.07}, 10, marks=pytest.mark.slow),
     ({"frequency 10": 1e-3}, 10),
     ({"frequency 1": 1e-5, "kick": 0.005}, 12),
 ]
@@ -26,7 +24,7 @@ def test_the_choice_is_that_of_the_long_search(letter_scene, needs, modes):
     assert scene.provenance()["modes.count"] == "least"
 
 
-@pytest.mark.parametrize("frequency", [20.90, 21.50, 22.20])
+@pytest.mark.parametrize("frequency", [21.50, pytest.param(22.20, marks=pytest.mark.slow)])
 def test_errors_of_folds_from_kicks_are_those_of_the_orbits_themselves(letter_scene, frequency):
     """Folds by shooting and continuation, an independent route, with 12 and 40 modes."""
     whole, found = reference_of(letter_scene), {}
@@ -40,6 +38,7 @@ def test_errors_of_folds_from_kicks_are_those_of_the_orbits_themselves(letter_sc
     assert off(12) == pytest.approx(error, rel=0.12)
 
 
+@pytest.mark.slow
 def test_the_reference_is_good_to_the_third_of_a_percent(letter_scene, monkeypatch):
     """40 modes against 60: the folds differ by less than what the loosest and the tightest study asks for."""
     monkeypatch.setattr("studies.physics.least_model.REFERENCE", 60)

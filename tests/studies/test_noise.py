@@ -9,6 +9,7 @@ import pytest
 from scipy.special import gamma
 
 from contact.orbits import cloud
+from studies.measurement.noise import __main__ as program
 from studies.measurement.noise.places import Place
 from studies.measurement.noise.rates import LAG, in_drift, law_of, mean_time, quantiles
 from studies.measurement.noise.scans import Protocol, scans, start_of
@@ -18,6 +19,7 @@ from studies.shell.scene import band_of
 SIGMA = 2.5e-4
 WHITE = Protocol(step=SIGMA, waiting=10_000, stability=SIGMA)
 DRIFT = Protocol(step=SIGMA, waiting=10_000, stability=SIGMA, correlation_s=100.0)
+LONGER = (4, 21.5, WHITE), (5, 22.2, WHITE), (5, 22.2, DRIFT), (6, 22.6, DRIFT)
 
 
 @pytest.fixture(scope="module")
@@ -120,21 +122,7 @@ def test_the_mean_time_of_white_noise_in_its_three_limits(place):
     assert mean_time(1.0, here, SIGMA) == math.inf
 
 
-def test_the_mean_time_of_white_noise_is_that_of_the_simulated_normal_form(place):
-    here, dice, step, count = place(4, 21.5), np.random.default_rng(5), 0.25, 1500
-    deviation = math.sqrt(step) * 0.25 * here.steepness * SIGMA * here.unevenness
-    for distance in (0.0, -1e-4):
-        mu, eta, times, now = 0.25 * here.steepness * distance, np.full(count, 2.0), list[float](), 0.0
-        while eta.size:
-            now += step
-            eta = eta + step * (mu - eta**2) + deviation * dice.standard_normal(eta.size)
-            times += [now] * int(np.count_nonzero(eta < -2.0))
-            eta = eta[eta >= -2.0]
-        # from 2 to -2 instead of from far above to far below: half a period each
-        error = np.std(times) / math.sqrt(count)
-        assert np.mean(times) + 1.0 == pytest.approx(mean_time(distance, here, SIGMA), abs=4.0 * error)
-
-
+@pytest.mark.slow
 def test_the_lag_of_a_fold_that_brownian_motion_carries_away():
     dice, step, count = np.random.default_rng(6), 0.005, 4000
     y, eta, ends = np.full(count, 4.0), np.full(count, 2.0), list[float]()
@@ -150,7 +138,7 @@ def test_the_lag_of_a_fold_that_brownian_motion_carries_away():
     assert -np.mean(ends) == pytest.approx(LAG, abs=4.0 * np.std(ends) / math.sqrt(count))
 
 
-@pytest.mark.parametrize("correlation", [100.0, 3600.0])
+@pytest.mark.parametrize("correlation", [100.0, pytest.param(3600.0, marks=pytest.mark.slow)])
 def test_a_drift_that_crosses_an_end_is_that_of_simulated_drifts(correlation):
     protocol, frequency, found = (
         Protocol(step=SIGMA, waiting=10_000, stability=SIGMA, correlation_s=correlation),
@@ -205,9 +193,13 @@ def test_a_cloud_is_what_an_independent_program_found(place):
     assert min(np.max(np.abs(each / theirs - 1.0)) for each in shifts) < 4 * 0.0013
 
 
-@pytest.mark.parametrize("protocol", [WHITE, DRIFT], ids=["white", "drift"])
 @pytest.mark.parametrize(
-    "m, frequency", [(4, 21.5), pytest.param(5, 22.2, marks=pytest.mark.slow), (6, 22.6)]
+    "m, frequency, protocol",
+    [
+        (4, 21.5, DRIFT),
+        (6, 22.6, WHITE),
+        *(pytest.param(m, f, each, marks=pytest.mark.slow) for m, f, each in LONGER),
+    ],
 )
 def test_formulas_are_what_scans_find(place, protocol, m, frequency):
     """Even where the noise is as large as the hysteresis, at 22.60 Hz."""
@@ -224,16 +216,18 @@ def test_formulas_are_what_scans_find(place, protocol, m, frequency):
 # --- the study ---------------------------------------------------------------------------------------------
 
 
-def test_small_form(run_study):
-    options = ("--set", "modes.count=2", "--set", "drive.frequencies_hz=[21.5, 22.6]", "--waiting", "3000")
+def test_small_form(run_study, monkeypatch):
+    """On one band in three, at every second place."""
+    monkeypatch.setattr(program, "BANDS", (4, 6))
+    monkeypatch.setattr(program, "SPACING", ((1.0, 1), (1.0, 1)))
+    options = ("--set", "drive.frequencies_hz=[21.5, 22.6]", "--waiting", "2000")
     ran = run_study("noise", "--quick", *options)
     assert ran.code == 0 and ran.summary["hidden"] == ["p6 at 22.60 Hz"]
     assert ran.summary["answers"].keys() == {"hysteresis"}
-    rows = ran.rows("observed_at_letter")
-    shown = {(row["description"], row["frequency_hz"], row["noise"]): row for row in rows}
-    deep = shown["Eq. (1)", "21.5", "drift of 100 s"]
+    shown = {(row["frequency_hz"], row["noise"]): row for row in ran.rows("observed_at_letter")}
+    deep = shown["21.5", "drift of 100 s"]
     assert deep["seen"] == "True" and float(deep["median"]) == pytest.approx(float(deep["fold"]), rel=0.1)
-    assert shown["Eq. (1)", "22.6", "drift of 100 s"]["seen"] == "False"
+    assert shown["22.6", "drift of 100 s"]["seen"] == "False"
     by_formula = [row for row in ran.rows("escape") if row["off"]]
-    assert {row["end"] for row in by_formula} == {"slipped", "touched"} and len(by_formula) > 40
+    assert {row["end"] for row in by_formula} == {"slipped", "touched"} and len(by_formula) > 8
     assert np.median([abs(float(row["off"])) for row in by_formula]) < 1.5

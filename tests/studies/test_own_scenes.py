@@ -16,10 +16,6 @@ OWN = sorted(path.stem for path in SCENES.glob("*.toml") if path.stem != "letter
 KEPT = "modes.count=8"
 
 
-def test_there_are_scenes_of_ones_own_to_start_from():
-    assert {"steel_ruler", "measured_modes"} <= set(OWN)
-
-
 @pytest.mark.parametrize("name", OWN)
 def test_eq_1_of_the_scene_is_its_first_mode(name):
     scene = read_scene(name, [KEPT])
@@ -34,7 +30,7 @@ def test_the_same_period_is_born_at_the_same_f_t(name):
     """The letter's universality: what its spring does at f T another spring does too, and the map says so."""
     scene = read_scene(name, [KEPT])
     model = model_of(scene)
-    for frequency, period in list(periods_of(scene).items())[:4]:
+    for frequency, period in list(periods_of(scene).items())[:2]:
         strobed = StroboscopicMap(oscillator=beam_at(scene, frequency, model).with_excess(1e-3))
         settled = settle(strobed, strobed.steady(), most_cycles=4000)
         assert settled.period == period == maximal_period(nordmark_at(scene, frequency))
@@ -53,6 +49,7 @@ def test_the_letters_frequencies_are_its_own():
     assert [corresponding(letter, f) for f in PERIODS] == list(PERIODS)
 
 
+@pytest.mark.slow
 def test_a_study_of_one_frequency_takes_the_corresponding_one(run_study):
     ran = run_study("time_trace", "--scene", "steel_ruler", "--set", KEPT)
     assert ran.code == 0 and ran.summary["period"] == ran.summary["letter"] == 4

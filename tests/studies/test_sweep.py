@@ -13,9 +13,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beam import single_mode
-from contact import HarmonicDrive, ImpactOscillator, LinearContact, NewtonRestitution, Stop, StroboscopicMap
-from contact.orbits import AmplitudeScan, settle
 from studies.shell.run import Run
 from studies.shell.scene import read_scene
 from studies.shell.sweep import sweep
@@ -47,7 +44,7 @@ ARGUMENTS = [0.5 * k for k in range(24)]
 EXPECTED = [[x**0, x, x**2] for x in ARGUMENTS]
 
 
-@pytest.mark.parametrize("executor", ["threads", "processes"])
+@pytest.mark.parametrize("executor", ["threads", pytest.param("processes", marks=pytest.mark.slow)])
 def test_columns_are_the_same_on_every_executor(tmp_path, executor):
     columns = sweep(run_in(tmp_path, executor), "toy", SETTINGS, ARGUMENTS, Powers())
     assert powers_in(columns) == EXPECTED
@@ -107,13 +104,13 @@ def test_a_failure_of_the_program_ends_the_sweep_and_keeps_what_is_there(tmp_pat
     assert powers_in(sweep(run, "toy", SETTINGS, ARGUMENTS[:8], Powers())) == EXPECTED[:8]
 
 
-def test_ten_kills_are_survived(tmp_path):
-    """A child process sweeps and is killed at random, ten times; then it is left to finish.
+def test_kills_are_survived(tmp_path):
+    """A child process sweeps and is killed at random, four times; then it is left to finish.
 
-    Two threads need 0.96 s for all columns, the ten lives end within 0.8 s: none can finish on any machine.
+    Two threads need 0.96 s for all columns, the four lives end within 0.32 s: none can finish on any machine.
     """
     rng = random.Random(5)
-    for kill in range(11):
+    for kill in range(5):
         child = os.fork()
         if child == 0:
             code = 1
@@ -122,36 +119,10 @@ def test_ten_kills_are_survived(tmp_path):
                 code = 0
             finally:
                 os._exit(code)
-        if kill < 10:
+        if kill < 4:
             time.sleep(rng.uniform(0.0, 0.08))
             os.kill(child, signal.SIGKILL)
-        assert os.waitpid(child, 0)[1] == (signal.SIGKILL if kill < 10 else 0)
+        assert os.waitpid(child, 0)[1] == (signal.SIGKILL if kill < 4 else 0)
         for path in (tmp_path / "toy").glob("[0-9]*.npz"):
             assert set(np.load(path)) == {"x", "power", "row"}
     assert powers_in(map(np.load, sorted((tmp_path / "toy").glob("[0-9]*.npz")))) == EXPECTED
-
-
-def driven(law) -> ImpactOscillator:
-    model = single_mode(free_period=40.8e-3, decay_rate=3.56)
-    return ImpactOscillator(model=model, stop=Stop(gap=0.0107, law=law), drive=HarmonicDrive(frequency=22.2))
-
-
-@pytest.mark.parametrize("law", [NewtonRestitution(local_restitution=0.1), LinearContact(stiffness=2e7)])
-def test_a_column_settles_where_the_same_motion_settles_step_by_step(law):
-    """The compiled column against `settle` with the state carried on by hand, up and down."""
-    oscillator, excesses = driven(law), np.linspace(-3e-3, 4e-3, 9)
-    column = AmplitudeScan(oscillator=oscillator, most_cycles=4096)(22.2, excesses)
-    strobed = StroboscopicMap(oscillator=oscillator)
-    state = strobed.at(float(excesses[0])).steady()
-    for way, order in ((0, range(9)), (1, range(8, -1, -1))):
-        for k in order:
-            found = settle(strobed.at(float(excesses[k])), state, most_cycles=4096, prove=False)
-            state = found.end
-            if found.period and column.period[way, k]:
-                cell = (column.period[way, k], column.impacts[way, k])
-                assert cell == (found.period, found.impacts), (way, k)
-    assert column.period[0, 0] == 1 and column.impacts[0, 0] == 0
-    if isinstance(law, NewtonRestitution):  # without loss a cell that differs is one that has not settled
-        settled = np.all(column.period > 0, axis=0)
-        assert np.any((column.period[1] != column.period[0])[settled])  # hysteresis
-    assert np.all(column.reason == "")

@@ -7,14 +7,14 @@ The printed stability speaks of slow drift; white noise is an assumption.  Here 
 of the amplitude, which is constant from strobe to strobe.  Correlation times, steps and waiting are options:
 the letter prints 1e4 cycles with Fig. 5 alone, and no steps.
 
-Computed: many scans of Eq. (1) along Fig. 3, and of the beam at the letter's frequencies
-(studies.measurement.noise.scans); the same by formulas (studies.measurement.noise.rates).  The observed
-hysteresis is the excess at which p_1 is left less that at which p_m is lost.
+Computed: many scans of Eq. (1) along Fig. 3 (studies.measurement.noise.scans), and the same by formulas
+(studies.measurement.noise.rates).  The observed hysteresis is the excess at which p_1 is left less that at
+which p_m is lost.
 
 Run:     python -m studies noise [--stability X] [--correlation-times S ...]
 Writes:  escape.csv (a row an end of an orbit: quantiles of the excess, simulated and by formula),
          observed.csv (a row a frequency, period and noise), both also *_at_letter.csv, the scans and their
-         seed (scans-*, where a run that was stopped goes on), and the figures observed and escape
+         seed (scans-*, where a run that was stopped goes on), and the figure observed
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from typing import Annotated
 
 import numpy as np
 
-from beam import InvalidValue, ModalModel
+from beam import InvalidValue
 from contact import StroboscopicMap
 from contact.orbits import born
 from studies.letter import AMPLITUDE_STABILITY, SETTLE_CYCLES
@@ -34,7 +34,7 @@ from studies.measurement.noise.model import Observed, ends_of, observed_of
 from studies.measurement.noise.places import Place
 from studies.measurement.noise.scans import Protocol, cell
 from studies.shell.files import fingerprint
-from studies.shell.scene import Scene, band_of, corresponding, harmonic, model_of, single_mode_at
+from studies.shell.scene import Scene, band_of, corresponding, harmonic, single_mode_at
 from studies.shell.study import Run, study
 from studies.shell.sweep import sweep
 
@@ -44,11 +44,11 @@ LOWEST_HZ, HIGHEST_HZ, BANDS = 19.6, 23.8, range(3, 11)
 FEWEST = 10
 """Scans at least."""
 
-PLACES = (0.1, 4), (0.5, 2)
+SPACING = (0.1, 4), (0.5, 2)
 """Hz between places in a band, and places at least: the full form, the small one."""
 
 
-@study(needs={"fold": 0.05}, quick={"scans": 10, "correlation_times": (0.0, 100.0)})
+@study(quick={"scans": 10, "correlation_times": (0.0, 100.0)})
 def noise(
     scene: Scene,
     run: Run,
@@ -57,7 +57,7 @@ def noise(
     correlation_times: Annotated[tuple[float, ...], "of its drift (s), 0 for white"] = (0.0, 100.0, 3600.0),
     amplitude_step: Annotated[float, "of a scan, relative"] = AMPLITUDE_STABILITY,
     waiting: Annotated[int, "drive periods at each amplitude"] = SETTLE_CYCLES,
-    scans: Annotated[int, "up and down at each frequency, a fifth of them for the beam"] = 100,
+    scans: Annotated[int, "up and down at each frequency"] = 100,
     seed: Annotated[int, "of all noise"] = 1996,
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
@@ -67,31 +67,28 @@ def noise(
     ]
     if scans < FEWEST:
         raise InvalidValue(f"scans is {scans}; quantiles need at least {FEWEST}")
-    model, letters = model_of(harmonic(scene)), letter_periods(scene)
-
-    along = places(scene, model, letters, *PLACES[run.quick])
-    cells = [(place, each) for place in along for each in protocols]
+    letters = letter_periods(harmonic(scene))
+    places = along_bands(scene, letters, *SPACING[run.quick])
+    cells = [(place, each) for place in places for each in protocols]
     settings = {
         "seed": seed,
         "scans": scans,
         "protocols": [asdict(each) for each in protocols],
-        "places": [[place.description, place.frequency_hz, place.m] for place in along],
+        "places": [[place.frequency_hz, place.m] for place in places],
     }
     own = fingerprint(run.scene.values(), settings)[:12]
     found = sweep(run, f"scans-{own}", settings, cells, partial(cell, scans, seed))
-    made = [(*where, one) for where, one in zip(cells, found, strict=True) if one is not None]
+    made = [(*where, one) for where, one in zip(cells, found, strict=True)]
     ends = [row for rows in run.attempt(ends_of, made, "ends") for row in rows or ()]
     observed = [row for one in made if (row := observed_of(one)) is not None]
+    off = [row.off**2 for row in ends if row.off is not None]
+    rms = (
+        f"formulas are {np.sqrt(np.mean(off or np.nan)):.2f} standard errors off (rms of {len(off)} medians)"
+    )
     at_letter = [row for row in ends if (row.frequency_hz, row.m) in letters]
     shown = [row for row in observed if (row.frequency_hz, row.m) in letters]
-    off = [row.off**2 for row in ends if row.off is not None]
     run.table("escape", ends, "Excess at which p_m and p_1 end, simulated and by formula.", show=())
-    run.table(
-        "escape_at_letter",
-        at_letter,
-        "The same at the letter's frequencies; along Fig. 3 formulas "
-        f"are {np.sqrt(np.mean(off or np.nan)):.2f} standard errors off (rms of {len(off)} medians).",
-    )
+    run.table("escape_at_letter", at_letter, f"The same at the letter's frequencies; along Fig. 3 {rms}.")
     run.table("observed", observed, "Hysteresis along Fig. 3 as an observer would measure it.", show=())
     run.table("observed_at_letter", shown, "The same at the letter's frequencies.")
 
@@ -99,8 +96,6 @@ def noise(
 
     if observed:
         run.figure("observed", figure.draw_observed(scene, observed), figure.OBSERVED)
-    if at_letter:
-        run.figure("escape", figure.draw_escape(at_letter), figure.ESCAPE)
     hidden = answer_hysteresis(run, protocols, observed)
     return {"rows": observed, "ends": ends, "hidden": hidden}
 
@@ -114,20 +109,19 @@ def letter_periods(scene: Scene) -> list[tuple[float, int]]:
     return found
 
 
-def places(
-    scene: Scene, model: ModalModel, letters: Sequence[tuple[float, int]], spacing_hz: float, least: int
+def along_bands(
+    scene: Scene, letters: Sequence[tuple[float, int]], spacing_hz: float, least: int
 ) -> list[Place]:
-    """p_m of Eq. (1) along the bands of Fig. 3, of Eq. (1) and the beam at the letter's frequencies."""
-    found = dict.fromkeys(letters)
+    """p_m of Eq. (1) along the bands of Fig. 3, and at the letter's frequencies."""
+    found = set(letters)
     for m in BANDS:
         edges = band_of(scene, m)
         low = max(edges.lower, corresponding(scene, LOWEST_HZ))
         high = min(edges.upper, corresponding(scene, HIGHEST_HZ))
         count = max(least, int(np.ceil((high - low) / spacing_hz)))
         grid = high - (high - low) * (np.arange(count) + 0.5) / count
-        found |= {(round(float(f), 4), m): None for f in grid if high > low}
-    singles = [Place(scene=scene, m=m, frequency_hz=f) for f, m in sorted(found)]
-    return singles + [Place(scene=scene, m=m, frequency_hz=f, model=model) for f, m in letters]
+        found |= {(round(float(f), 4), m) for f in grid if high > low}
+    return [Place(scene=scene, m=m, frequency_hz=f) for f, m in sorted(found)]
 
 
 def answer_hysteresis(run: Run, protocols: Sequence[Protocol], observed: Sequence[Observed]) -> list[str]:
@@ -136,34 +130,24 @@ def answer_hysteresis(run: Run, protocols: Sequence[Protocol], observed: Sequenc
     Returns the transitions at the frequencies of the scene whose hysteresis it hides.
     """
     chosen = min(protocols, key=lambda each: each.correlation_s or np.inf)
-    rows = [row for row in observed if row.noise == chosen.name and row.description == "Eq. (1)"]
+    rows = [row for row in observed if row.noise == chosen.name]
     met = [row for row in rows if np.isfinite(row.median)]
     whole = [row for row in met if row.map is not None and row.fold > chosen.stability]
     if not whole:
         return []
     shift = np.array([row.median - row.fold for row in whole])
     part = np.abs(shift) / (np.abs(shift) + np.abs([row.fold - (row.map or 0.0) for row in whole]))
-    below = [row for row in met if not row.seen]
-    given = [row for row in below if row.frequency_hz in run.scene.drive.frequencies_hz]
-    hidden = [f"p{row.m} at {row.frequency_hz:.2f} Hz" for row in given]
-    edge = max((band_of(run.scene, row.m).upper - row.frequency_hz for row in below), default=0.0)
-    text = (
-        f"Noise of the amplitude ({chosen.name}, {chosen.stability:.2g}) changes the observed hysteresis by "
-        f"{np.median(shift):+.1e} (median). "
-    )
-    if below:
-        names = f", {', '.join(hidden)} among them" if hidden else ""
-        text += (
-            f"It hides the hysteresis next to the upper edges of bands, up to {edge:.2g} Hz below{names}. "
-        )
-    text += (
-        f"Noise makes {np.median(part):.0%} (median) of the difference between the observed hysteresis and "
-        "that of the map; the truncation of the map makes the rest."
-    )
-    if missed := len(rows) - len(met):
-        text += (
-            f" At {missed} of {len(rows)} places a scan does not reach p_m: from above grazing it ends in p1 "
-            "before, or noise carries the motion over a second touch."
-        )
-    run.answer("hysteresis", text)
+    given = run.scene.drive.frequencies_hz
+    hidden = [
+        f"p{row.m} at {row.frequency_hz:.2f} Hz" for row in met if not row.seen and row.frequency_hz in given
+    ]
+    said = [
+        f"Noise of the amplitude ({chosen.name}) changes the observed hysteresis by {np.median(shift):+.1e} "
+        "(median).",
+        f"It makes {np.median(part):.0%} (median) of the difference between the observed hysteresis and that "
+        "of the map; the truncation of the map makes the rest.",
+    ]
+    if hidden:
+        said.append(f"It hides the hysteresis of {', '.join(hidden)}.")
+    run.answer("hysteresis", " ".join(said))
     return hidden

@@ -6,7 +6,7 @@ The observed hysteresis is the excess at which p_1 is left less that at which p_
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,11 +25,10 @@ Made = tuple[Place, Protocol, Scans]
 class End:
     """Excess at which an orbit ends in scans: `median` with its standard `error`, 5 % (`low`) and 95 %.
 
-    The `end` is one of `ENDS`.  Slips and touches of Eq. (1) have a `formula`, with its 5 and 95 %; `off` is
-    formula less median in standard errors.
+    The `end` is one of `ENDS`.  Slips and touches have a `formula`, with its 5 and 95 %; `off` is formula
+    less median in standard errors.
     """
 
-    description: str
     frequency_hz: float
     m: int
     noise: str
@@ -55,7 +54,6 @@ class Observed:
     `seen` if it exceeds a step in 95 % of the pairs.
     """
 
-    description: str
     frequency_hz: float
     m: int
     noise: str
@@ -77,16 +75,18 @@ def ends_of(made: Made) -> list[End]:
         values = np.sort(found[name][np.isfinite(found[name])])
         if values.size < 2:
             continue
-        by_formula = place.description == "Eq. (1)" and name in ("slipped", "touched")
-        law = law_of(place, protocol, name) if by_formula else None
-        formula: Sequence[float | None] = (None,) * len(PARTS) if law is None else quantiles(law, PARTS)
+        law = law_of(place, protocol, name) if name in ("slipped", "touched") else None
+        formula = dict(
+            zip(
+                ("formula_low", "formula", "formula_high"), quantiles(law, PARTS) if law else (), strict=False
+            )
+        )
         # ranks half a binomial standard deviation, sqrt(n)/2, below and above the median
         ranks = 0.5 * (values.size + np.array([-1.0, 1.0]) * math.sqrt(values.size))
         below, above = np.interp(ranks, np.arange(values.size) + 0.5, values)
-        (low, median, high), error = np.quantile(values, PARTS), 0.5 * float(above - below)
+        (low, median, high), error = np.quantile(values, PARTS).tolist(), 0.5 * float(above - below)
         rows.append(
             End(
-                description=place.description,
                 frequency_hz=place.frequency_hz,
                 m=place.m,
                 noise=protocol.name,
@@ -97,10 +97,8 @@ def ends_of(made: Made) -> list[End]:
                 median=median,
                 high=high,
                 error=error,
-                formula_low=formula[0],
-                formula=formula[1],
-                formula_high=formula[2],
-                off=None if formula[1] is None else (formula[1] - float(median)) / error,
+                off=(formula["formula"] - median) / error if formula else None,
+                **formula,
             )
         )
     return rows
@@ -116,7 +114,6 @@ def observed_of(made: Made) -> Observed | None:
     often = count > 0.5 * widths.size and met > 0.5
     low, median, high = np.nanquantile(widths, PARTS) if often else (math.nan,) * 3
     return Observed(
-        description=place.description,
         frequency_hz=place.frequency_hz,
         m=place.m,
         noise=protocol.name,

@@ -1,4 +1,4 @@
-"""A p_m orbit at a drive frequency in one description: its fold, the effect of noise there, its strobes.
+"""A p_m orbit of Eq. (1) at a drive frequency: its fold, the effect of noise there, its strobes.
 
 Next to a fold the m-th iterate is the normal form eta' = eta + (K/4)(x - x_fold) - eta^2 of one coordinate,
 in which K is the one number of the orbit: its multiplier there obeys (1 - lambda)^2 = K (x - x_fold), x the
@@ -14,10 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from beam import ModalModel
 from contact import MaximalFamily, StroboscopicMap
-from contact.orbits import Shooting, fold_excess, strobe_derivatives
-from studies.shell.scene import Scene, beam_at, nordmark_at, single_mode_at
+from contact.orbits import fold_excess, strobe_derivatives
+from studies.shell.scene import Scene, nordmark_at, single_mode_at
 
 BESIDE = 1e-3
 """How far from the fold, in speed, a multiplier gives K: it is then good to 1e-3."""
@@ -25,41 +24,27 @@ BESIDE = 1e-3
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Place:
-    """p_m at a drive frequency, of Eq. (1) or of the beam with this `model`."""
+    """p_m of Eq. (1) at a drive frequency."""
 
     scene: Scene
     m: int
     frequency_hz: float
-    model: ModalModel | None = None
-
-    @property
-    def description(self) -> str:
-        """The name of the description."""
-        return "Eq. (1)" if self.model is None else "beam"
 
     @cached_property
     def strobed(self) -> StroboscopicMap:
         """Its period map, at grazing."""
-        if self.model is None:
-            oscillator = single_mode_at(self.scene, self.frequency_hz)
-        else:
-            oscillator = beam_at(self.scene, self.frequency_hz, self.model)
+        oscillator = single_mode_at(self.scene, self.frequency_hz)
         return StroboscopicMap(oscillator=oscillator.with_excess(0.0))
 
     @cached_property
-    def family(self) -> Any:
+    def family(self) -> MaximalFamily:
         """The orbits p_m."""
-        oscillator = self.strobed.oscillator
-        if self.model is None:
-            return MaximalFamily.from_oscillator(oscillator, period=self.m)
-        kicks = Shooting(oscillator=oscillator, period=self.m).kicks.fold()
-        return Shooting(oscillator=oscillator, period=self.m, impacts=kicks.kick.touches if kicks else 1)
+        return MaximalFamily.from_oscillator(self.strobed.oscillator, period=self.m)
 
     @cached_property
     def map_fold(self) -> float | None:
         """The excess of the fold in Nordmark's map [1]."""
-        strobed = nordmark_at(self.scene, self.frequency_hz)
-        return fold_excess(strobed, self.m)
+        return fold_excess(nordmark_at(self.scene, self.frequency_hz), self.m)
 
     @cached_property
     def fold(self) -> Any:

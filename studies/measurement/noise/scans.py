@@ -186,6 +186,5 @@ def start_of(place: Place, protocol: Protocol) -> tuple[float, Any] | None:
 
 
 def cell(count: int, seed: int, where: tuple[Place, Protocol]) -> dict[str, Array]:
-    """`scans` at a place in one noise, a fifth of them for a beam."""
-    place, protocol = where
-    return scans(place, protocol, max(count // 5, 1) if place.description == "beam" else count, seed)
+    """`scans` at a place in one noise."""
+    return scans(*where, count, seed)

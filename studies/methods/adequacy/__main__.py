@@ -10,44 +10,23 @@ reference itself is added.
 
 Run:     python -m studies adequacy [--quick]
 Writes:  least.csv (a row a question: the least model, its error, that of the best one a step smaller in one
-         thing), least.png (both errors over the tolerance), amplitude.csv (whether a linear spring is enough
-         for the period that is born: what the amplitude of the gap moves, and the distance of a band's edge)
+         thing), least.png (both errors over the tolerance)
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from studies.methods.adequacy.models import Models
 from studies.methods.adequacy.search import Row, Search
 from studies.physics.least_model import middle_of
-from studies.shell.scene import Scene, harmonic, period_shifts
+from studies.shell.scene import Scene, harmonic
 from studies.shell.study import Run, study
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-
-@dataclass(frozen=True, kw_only=True)
-class AmplitudeRow:
-    """What the amplitude of the gap changes in the period that small deviations feel, and the distance of the
-    edge of a band on that side [1]."""
-
-    frequency_hz: float
-    moved: float
-    tolerance: float
-    linear: bool
-
-
-def amplitude_rows(scene: Scene) -> list[AmplitudeRow]:
-    """One a drive frequency."""
-    return [
-        AmplitudeRow(frequency_hz=f, moved=moved, tolerance=room, linear=abs(moved) <= room)
-        for f, (moved, room) in period_shifts(scene).items()
-    ]
 
 
 @study()
@@ -64,15 +43,13 @@ def adequacy(scene: Scene, run: Run) -> Mapping[str, object]:
             )
     shown = ("quantity", "frequency_hz", "tolerance", "error", "error_one_less", "least")
     run.table("least", rows, "The least model for each question.", show=shown)
-    amplitude = amplitude_rows(scene)
-    run.table("amplitude", amplitude, "Whether a linear spring is enough for the period that is born.")
     run.figure(
         "least",
         draw(rows),
         "Error of the least model for each question over its tolerance, and that "
         "of the best one a step smaller in one thing.",
     )
-    return {"rows": rows, "amplitude": amplitude}
+    return {"rows": rows}
 
 
 def questions(scene: Scene, quick: bool) -> list[tuple[str, float]]:

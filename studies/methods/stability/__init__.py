@@ -1,7 +1,7 @@
 """The families of the study, the one row of all of them, and the search for a limit.
 
-A family is a file with two functions: ``measure(scene, quick) -> Findings`` and ``draw(arrays) -> (figure,
-caption)``.
+A family is a file with the function ``measure(scene, quick) -> Findings``. One that leaves arrays also has
+``draw(arrays) -> (figure, caption)``.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ class Limit:
 
 
 Findings = tuple[Sequence[Limit], Mapping[str, np.ndarray]]
-"""The rows of a family, and the arrays that its figure is drawn from."""
+"""The rows of a family, and the arrays that its figure is drawn from; without arrays it has none."""
 
 
 def family(name: str) -> ModuleType:

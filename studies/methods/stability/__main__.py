@@ -16,7 +16,7 @@ A row: family; method; case; the parameter with its unit; theory (empty where it
 comes out (empty where there is nothing to refuse).
 
 Run:     python -m studies stability [--families explicit,splitting] [--quick]
-Writes:  limits.csv (all rows); for each family NAME.npz (arrays of its figure) and NAME.png
+Writes:  limits.csv (all rows); for four families NAME.npz (arrays of its figure) and NAME.png
 """
 
 from __future__ import annotations
@@ -50,7 +50,8 @@ def stability(
             continue
         limits, arrays = result
         rows += limits
-        run.arrays(name, **arrays)
-        run.figure(name, *family(name).draw(arrays))
+        if arrays:
+            run.arrays(name, **arrays)
+            run.figure(name, *family(name).draw(arrays))
     run.table("limits", rows, "Where methods fail: theory and measurement.")
     return {"rows": rows}

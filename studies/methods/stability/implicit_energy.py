@@ -62,28 +62,25 @@ def stiff_contacts(count: int) -> list[Limit]:
     places, case = (np.arange(count) + 0.5) / count, "trapezoidal, one contact of a free mass"
     stiff = single_contact("trapezoidal rule", np.full(count, STIFF), places)
     resolved = single_contact("trapezoidal rule", *evenly(0.05, count)) - 1.0
+    found = (
+        (STIFF, "mean of ln(energy after/before) [1]", STIFF_GROWTH, np.mean(np.log(stiff))),
+        (STIFF, "largest energy after/before [1]", 9.0, stiff.max()),
+        (
+            0.05,
+            "rms of energy after/before - 1 [1]",
+            0.05**2 / math.sqrt(90.0),
+            np.sqrt(np.mean(resolved**2)),
+        ),
+    )
     return [
         Row(
-            case=f"{case}, h w = {STIFF:g}",
-            parameter="mean of ln(energy after/before) [1]",
-            theory=STIFF_GROWTH,
-            measured=float(np.mean(np.log(stiff))),
+            case=f"{case}, h w = {x:g}",
+            parameter=name,
+            theory=theory,
+            measured=float(measured),
             refused=False,
-        ),
-        Row(
-            case=f"{case}, h w = {STIFF:g}",
-            parameter="largest energy after/before [1]",
-            theory=9.0,
-            measured=float(stiff.max()),
-            refused=False,
-        ),
-        Row(
-            case=f"{case}, h w = 0.05",
-            parameter="rms of energy after/before - 1 [1]",
-            theory=0.05**2 / math.sqrt(90.0),
-            measured=float(np.sqrt(np.mean(resolved**2))),
-            refused=False,
-        ),
+        )
+        for x, name, theory, measured in found
     ]
 
 

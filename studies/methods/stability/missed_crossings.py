@@ -3,9 +3,9 @@ r"""Crossings that a method does not see: change of sign at its steps against ce
 A crossing of known depth (``studies.methods.crossings``) is put at every phase of a method's looks, h apart;
 it sees the crossing with probability (duration)/h:
 
-    share missed = max(0, 1 - 2 sqrt(2 delta gap/a)/h),   one half at   delta = a h^2/(32 gap);            (a)
+    share missed = max(0, 1 - 2 sqrt(2 delta gap/a)/h),   one half at   delta = a h^2/(32 gap).            (a)
 
-where the spacing varies, the mean of that over the spacings around the peak. With delta < 0 the tip stays
+With delta < 0 the tip stays
 away, and any touch is invented. A method by percussions (``contact.integrators.moreau_jean``) strikes in the
 step from a grid point if d + (h/2) U >= 0 and U* + e U > 0 there. On the parabola, s steps before the peak,
 these are delta gap >= (a h^2/2) s (s - 1) and s > 1/(1 + e); so, with x (1 + x) = 2 delta gap/(a h^2),
@@ -23,12 +23,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
 from functools import cache, partial
 
 import numpy as np
 from matplotlib.figure import Figure
-from scipy.integrate import solve_ivp
 
 from contact import LinearContact, NewtonRestitution, Stop
 from contact.integrators import INTEGRATORS, CentralDifference, Integrator, SampledFlight
@@ -44,8 +43,6 @@ FINE = np.geomspace(1e-12, 1e-1, 276)
 PHASES = 64
 """Runs for each overshoot. A share is good to 0.5/sqrt(runs) for a solver whose steps do not keep to a grid,
 and the overshoot at which it is one half to a factor exp(2/sqrt(runs)): 1.3."""
-LOOKED_AT = 12
-"""Flights in which the spacing of a solver's looks around the peak is measured."""
 RESTITUTION = 0.5
 """Of the stops with Newton's law [1]."""
 
@@ -61,8 +58,8 @@ class Trial:
     label: str
     kind: str
     """"exact", "step" (and samples) or "control" of the error."""
-    spacings: np.ndarray = field(default_factory=lambda: np.empty(0))
-    """Of its looks [s]; none for a method that searches between its steps."""
+    step: float | None = None
+    """Between its looks [s]; None for a method that searches between its steps, or chooses them itself."""
 
     @property
     def percussions(self) -> bool:
@@ -71,35 +68,38 @@ class Trial:
 
 
 def share_missed(
-    overshoot: float | np.ndarray, spacings: np.ndarray, pace: float, percussions: bool = False
+    overshoot: float | np.ndarray, step: float, pace: float, percussions: bool = False
 ) -> np.ndarray:
     """Share of crossings missed, (a) or (b), for overshoots over gap [1]."""
     if percussions:
-        x = 0.5 * (np.sqrt(1.0 + 8.0 * overshoot / (pace * spacings[0]) ** 2) - 1.0)
+        x = 0.5 * (np.sqrt(1.0 + 8.0 * overshoot / (pace * step) ** 2) - 1.0)
         return np.maximum(0.0, 1.0 / (1.0 + RESTITUTION) - x)
     duration = 2.0 * np.sqrt(2.0 * overshoot) / pace
-    return np.maximum(0.0, 1.0 - np.multiply.outer(1.0 / spacings, duration)).mean(axis=0)
+    return np.maximum(0.0, 1.0 - duration / step)
 
 
 def invented(trial: Trial) -> float | None:
     """Theory of the undershoot over gap down to which a method invents touches: (c), and what central
     difference swings too high [1]."""
-    if trial.percussions and trial.spacings.size:
+    if trial.step is None:
+        return None
+    if trial.percussions:
         part = 0.5 * RESTITUTION / (1.0 + RESTITUTION) ** 2
     elif isinstance(trial.method, CentralDifference):
         part = 0.125
     else:
         return None
-    return part * float(trial.swing.pace * trial.spacings[0]) ** 2
+    return part * float(trial.swing.pace * trial.step) ** 2
 
 
 def share_wrong(trial: Trial, overshoot: float, runs: int) -> float:
     """Share of the runs that miss the crossing, or invent one if the overshoot is negative [1].
 
-    A first touch is the crossing if the tip is beyond the stop within two looks of it.
+    A first touch is the crossing if the tip is beyond the stop within two looks of it; where a solver chooses
+    its looks, if it lies next to the peak.
     """
     swing, wrong = trial.swing, 0
-    slack = 2.0 * float(trial.spacings.max()) if trial.spacings.size else 1e-6 / swing.pace
+    slack = 2.0 * trial.step if trial.step else (1.0 if trial.kind == "control" else 1e-6) / swing.pace
     for lead in swing.leads(runs).tolist():
         at = swing.touch(trial.method, overshoot, lead)
         near = np.array([at - slack, at + slack, 0.0 if abs(at) <= slack else at])
@@ -126,39 +126,14 @@ def of_package(scene: Scene, kind: type[Integrator], options: Mapping[str, float
         method=method,
         swing=swing_of(scene, method),
         kind="exact" if kind.certified else "step",
-        spacings=np.array([options["step"]] if "step" in known else []),
+        step=options["step"] if "step" in known else None,
     )
 
 
 def of_scipy(scene: Scene, solver: str, tolerance: float) -> Trial:
-    """A solver of SciPy; the spacings are those of its steps around the peak in flights that meet nothing.
-
-    Absolute tolerances are those of one energy, as in ``studies.methods.peers``.
-    """
-    swing, spacings = swing_of(scene), []
-    model = swing.oscillator.model
-    omega, reach = float(model.omega[0]), swing.oscillator.stop.gap / float(model.phi[0])
-    for lead in swing.leads(LOOKED_AT).tolist():
-        start = swing.start(-0.01, lead)
-        x, v = start.displacement[0], start.velocity[0]
-        speed = max(omega * reach, abs(v), abs(omega * x))
-        looks = solve_ivp(
-            lambda _t, y: [y[1], -(omega**2) * y[0]],
-            (0.0, lead + swing.tail),
-            [x, v],
-            method=solver,
-            rtol=tolerance,
-            atol=tolerance * speed * np.array([1.0 / omega, 1.0]),
-        ).t
-        after = int(np.searchsorted(looks, lead))
-        spacings.append(looks[after] - looks[after - 1])
-    return Trial(
-        method=OutsideSolver(solver=f"scipy {solver}", tolerance=tolerance),
-        swing=swing,
-        kind="control",
-        label=f"scipy {solver}, {tolerance:g}",
-        spacings=np.array(spacings),
-    )
+    """A solver of SciPy, which has no theory here: its looks are as far apart as its error control allows."""
+    method = OutsideSolver(solver=f"scipy {solver}", tolerance=tolerance)
+    return Trial(method=method, swing=swing_of(scene), kind="control", label=f"scipy {solver}, {tolerance:g}")
 
 
 def trials(scene: Scene, quick: bool) -> Iterator[Trial]:
@@ -187,10 +162,8 @@ def tried(trial: Trial, runs: int) -> tuple[list[Limit], dict[str, np.ndarray]]:
     for overshoot in ladder:
         shares.append(1.0 if shares[-2:] == [1.0, 1.0] else wrong(overshoot))
     arrays = {f"{trial.kind}|{trial.label}": np.array(shares)}
-    if trial.spacings.size:
-        share = partial(
-            share_missed, spacings=trial.spacings, pace=trial.swing.pace, percussions=trial.percussions
-        )
+    if trial.step:
+        share = partial(share_missed, step=trial.step, pace=trial.swing.pace, percussions=trial.percussions)
         theory = threshold(lambda depth: bool(share(depth) > 0.5), ladder, relative=1e-12)
         arrays[f"theory|{trial.label}"] = share(FINE)
     rows = [
@@ -249,6 +222,6 @@ def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
         axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.25), ncols=2)
     plotting.label(axes[0].yaxis, "crossings missed", "%")
     return figure, (
-        "Share of the crossings missed against their depth; lines: theory, from the spacing of the looks. "
+        "Share of the crossings missed against their depth; lines: theory of fixed steps. "
         "The number beside a solver is its tolerance."
     )

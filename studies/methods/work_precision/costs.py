@@ -4,27 +4,24 @@ Cases: Eq. (1) at the letter's six frequencies and excess 0.02; the beam's p4 at
 against the number of modes, with Hertz contact, and the same without a touch.  The time of an orbit beyond
 that of its flights is the cost of its collisions.  heyoka, if it is installed, integrates Eq. (1) in its own
 loop as its documentation recommends, and the beam through the interface of all methods at the tolerance 1e-7,
-with which mode 1 errs by less than 1e-8 past a collision.  Compared programs are timed in turns, A B A B ...,
-so that a machine that slows down slows both; medians are taken.
+with which mode 1 errs by less than 1e-8 past a collision.
 """
 
 from __future__ import annotations
 
 import math
-import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 from itertools import pairwise
 from statistics import median
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beam import InvalidValue
 from contact import ImpactOscillator, StroboscopicMap, simulate
 from studies import letter
 from studies.methods.peers import OutsideSolver, missing_solvers
+from studies.methods.work_precision.timing import Orbit, in_turns
 from studies.shell.scene import Scene, beam_at, harmonic, model_of, single_mode_at
 from studies.shell.study import Run
 
@@ -51,9 +48,6 @@ SETTLING = 2000
 DRAWN = ((BEAM, OURS, "Hertz contact"), (FREE, OURS, "no touch"), (BEAM, HEYOKA, "heyoka, Hertz contact"))
 """Case, tool and title of the lines of the figure."""
 
-Orbit = Callable[[int], object]
-"""orbit(periods): carries a motion on by that many drive periods."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class Cost:
@@ -73,26 +67,10 @@ def costs(scene: Scene, run: Run) -> list[Cost]:
     frequencies = sorted(letter.PERIODS)[: 2 if run.quick else None]
     counts = COUNTS_QUICK if run.quick else COUNTS
     model = model_of(harmonic(scene).replace({"modes.count": max(counts)}))
-    rows: list[Cost] = []
-    for frequency in run.track(frequencies, "cost of Eq. (1)"):
-        rows += single_rows(scene, frequency, quick=run.quick)
-    for n in run.track(counts, "cost of the beam"):
-        rows += beam_rows(beam_at(scene, FREQUENCY, model.truncated(n)), quick=run.quick)
-    return rows
-
-
-def in_turns(runs: Mapping[str, tuple[Orbit, int]], repeats: int) -> dict[str, float]:
-    """Median microseconds per drive period of each orbit over its periods, after one of each to warm up, in
-    the thread's own time."""
-    spent: dict[str, list[float]] = {name: [] for name in runs}
-    for orbit, periods in runs.values():
-        orbit(periods)
-    for _ in range(repeats):
-        for name, (orbit, periods) in runs.items():
-            began = time.thread_time()
-            orbit(periods)
-            spent[name].append(1e6 * (time.thread_time() - began) / periods)
-    return {name: median(times) for name, times in spent.items()}
+    cases = [(SINGLE, single_mode_at(scene, frequency)) for frequency in frequencies]
+    cases += [(BEAM, beam_at(scene, FREQUENCY, model.truncated(n))) for n in counts]
+    tracked = run.track(cases, "cost of a drive period")
+    return [row for case, oscillator in tracked for row in rows_of(case, oscillator, quick=run.quick)]
 
 
 def heyoka_orbit(oscillator: ImpactOscillator) -> tuple[Orbit, Any]:
@@ -100,11 +78,8 @@ def heyoka_orbit(oscillator: ImpactOscillator) -> tuple[Orbit, Any]:
     tolerance (the rounding of a double); and its integrator."""
     import heyoka as hy
 
-    model, drive = oscillator.model, oscillator.drive
-    if drive is None:
-        raise InvalidValue("oscillator has no drive; the orbit that is timed is driven")
-    w = drive.angular_frequency
-    x, v = hy.make_vars("x", "v")
+    model, drive = oscillator.model, oscillator.driven
+    w, (x, v) = drive.angular_frequency, hy.make_vars("x", "v")
     push = model.participation[0] * drive.amplitude * w**2 * hy.sin(w * hy.time)
     system = [(x, v), (v, push - model.decay_rate[0] * v - model.omega[0] ** 2 * x)]
 
@@ -112,68 +87,46 @@ def heyoka_orbit(oscillator: ImpactOscillator) -> tuple[Orbit, Any]:
         taylor.state[1] *= -oscillator.stop.law.numbers[0]
         return True
 
-    touch = hy.t_event(
-        x - oscillator.stop.gap / model.phi[0], direction=hy.event_direction.positive, callback=impact
-    )
+    surface, rising = x - oscillator.stop.gap / model.phi[0], hy.event_direction.positive
+    touch = hy.t_event(surface, direction=rising, callback=impact)
     taylor = hy.taylor_adaptive(system, np.zeros(2), t_events=[touch])
-
-    def orbit(periods: int) -> None:
-        taylor.propagate_until(taylor.time + periods * oscillator.period)
-
-    return orbit, taylor
+    return lambda periods: taylor.propagate_until(taylor.time + periods * oscillator.period), taylor
 
 
-def single_rows(scene: Scene, frequency: float, *, quick: bool) -> list[Cost]:
-    """One orbit of Eq. (1): the package and, if installed, heyoka."""
-    strobed = StroboscopicMap(oscillator=single_mode_at(scene, frequency).with_excess(SINGLE_EXCESS))
-    state = strobed.orbit(strobed.steady(), SETTLING).end
-    runs: dict[str, tuple[Orbit, int]] = {
-        OURS: (lambda periods: strobed.orbit(state, periods), 2000 if quick else 20000)
-    }
-    if HEYOKA not in missing_solvers():
-        orbit, _taylor = heyoka_orbit(strobed.oscillator)
-        orbit(SETTLING)
-        runs[HEYOKA] = (orbit, 200 if quick else 2000)
-    return [
-        Cost(
-            case=SINGLE, tool=tool, modes=1, frequency_hz=frequency, excess=SINGLE_EXCESS, us_per_period=spent
-        )
-        for tool, spent in in_turns(runs, 3 if quick else 7).items()
-    ]
-
-
-def beam_rows(oscillator: ImpactOscillator, *, quick: bool) -> list[Cost]:
-    """The beam's settled orbit, the same without a touch and, if installed, heyoka."""
-    count, driven = 200 if quick else 2000, oscillator.with_excess(EXCESS)
+def rows_of(case: str, oscillator: ImpactOscillator, *, quick: bool) -> list[Cost]:
+    """The settled orbit, that of the beam without a touch as well, and, if installed, heyoka's."""
+    excesses = {SINGLE: SINGLE_EXCESS, BEAM: EXCESS, FREE: BELOW}
+    driven, count = oscillator.with_excess(excesses[case]), 200 if quick else 2000
     strobed = StroboscopicMap(oscillator=driven)
-    free = strobed.at(BELOW)
-    state, still = strobed.orbit(strobed.steady(), SETTLING).end, free.steady()
-    impacts = strobed.orbit(state, count).impacts.sum() / count
-    runs: dict[str, tuple[Orbit, int]] = {
-        OURS: (lambda periods: strobed.orbit(state, periods), count),
-        FREE: (lambda periods: free.orbit(still, periods), count),
-    }
+    free, state = strobed.at(BELOW), strobed.orbit(strobed.steady(), SETTLING).end
+    still, impacts = free.steady(), strobed.orbit(state, count).impacts.sum() / count
+    here: tuple[Orbit, int] = (lambda periods: strobed.orbit(state, periods), count)
+    runs = {(case, OURS): here}
+    if case == SINGLE:
+        runs[case, OURS] = here[0], 10 * count
+    else:
+        runs[FREE, OURS] = (lambda periods: free.orbit(still, periods), count)
     if HEYOKA not in missing_solvers():
         peer = OutsideSolver(solver="heyoka Taylor", tolerance=TOLERANCE)
-        runs[HEYOKA] = (
-            lambda periods: simulate(driven, state, periods=periods, method=peer),
-            8 if quick else 40,
+        runs[case, HEYOKA] = (
+            (heyoka_orbit(driven)[0], count)
+            if case == SINGLE
+            else (lambda n: simulate(driven, state, periods=n, method=peer), 8 if quick else 40)
         )
     spent = in_turns(runs, 3 if quick else 7)
-    row = partial(Cost, modes=oscillator.n_modes, frequency_hz=1.0 / oscillator.period)
-    rows = [
-        row(
-            case=BEAM,
-            tool=OURS,
-            excess=EXCESS,
-            us_per_period=spent[OURS],
-            us_per_collision=(spent[OURS] - spent[FREE]) / impacts if impacts else None,
-        ),
-        row(case=FREE, tool=OURS, excess=BELOW, us_per_period=spent[FREE]),
+    touching = (case, OURS) if case == BEAM and impacts else None
+    return [
+        Cost(
+            case=name,
+            tool=tool,
+            modes=oscillator.n_modes,
+            frequency_hz=oscillator.driven.frequency,
+            excess=excesses[name],
+            us_per_period=time,
+            us_per_collision=(time - spent[FREE, OURS]) / impacts if (name, tool) == touching else None,
+        )
+        for (name, tool), time in spent.items()
     ]
-    if HEYOKA not in missing_solvers():
-        rows.append(row(case=BEAM, tool=HEYOKA, excess=EXCESS, us_per_period=spent[HEYOKA]))
-    return rows
 
 
 def costs_of(rows: Sequence[Cost], case: str, tool: str) -> list[tuple[int, float]]:

@@ -30,11 +30,11 @@ from contact import ContactError, State, simulate
 from contact.integrators import Integrator
 from contact.orbits import Shooting
 from studies.methods.crossings import Swing
-from studies.methods.two_masses import two_masses
 from studies.methods.work_precision.harmonic_balance import balanced
 from studies.methods.work_precision.methods import PERIODIC, Sweep
-from studies.methods.work_precision.problems import Problem, driven_problem
+from studies.methods.work_precision.problems import Problem, driven_problem, two_masses
 from studies.methods.work_precision.reference import DIGITS, extended_motion
+from studies.methods.work_precision.timing import timed
 
 REPEATS = 9
 """Timed runs of a point."""
@@ -213,13 +213,9 @@ def orbit_rows(*, quick: bool, repeats: int) -> tuple[Reference, list[Row]]:
             certified=label != "harmonic balance",
         )
         try:
-            end, spent = work(), list[float]()
-            for _ in range(repeats):
-                begun = time.thread_time()
-                work()
-                spent.append(1e6 * (time.thread_time() - begun))
+            end = work()
             error = reference.error_of(end.displacement[0], end.velocity[0])
-            rows.append(replace(row, error=error, us_per_period=statistics.median(spent)))
+            rows.append(replace(row, error=error, us_per_period=timed(work, repeats)))
         except ContactError as failure:
             rows.append(replace(row, failed=str(failure)))
     return reference, rows

@@ -92,8 +92,8 @@ class Key:
 def key(
     default: T,
     unit: str,
-    provenance: str,
     meaning: str,
+    provenance: str = ASSUMED,
     *,
     low: float = -math.inf,
     high: float = math.inf,

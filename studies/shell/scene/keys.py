@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from studies.shell.scene.key import ASSUMED, CALIBRATED, LETTER, key
+from studies.shell.scene.key import CALIBRATED, LETTER, key
 
 MODE_LISTS = ("frequencies_hz", "decay_rates_per_s", "tip_values", "participation")
 """The lists of [modal_data], one entry a mode."""
@@ -26,99 +26,63 @@ class SpringKeys:
     kind: str = key(
         "flat_u",
         "",
-        ASSUMED,
         "shape of the spring, or modal_data for modes that were measured",
         choices=("flat_u", "folded_u", "cantilever", "straight_strip", "modal_data"),
     )
-    leg_length_m: float = key(0.13, "m", LETTER, "length of one leg, or of a straight strip", low=0.0)
-    bend_radius_m: float = key(0.009, "m", ASSUMED, "radius of the bend of a U, to its middle line", low=0.0)
-    width_m: float = key(0.012, "m", ASSUMED, "width of the strip, or of one leg of a flat_u")
-    thickness_m: float = key(
-        0.0011760560469233, "m", CALIBRATED, "thickness of the sheet, from the free period", low=1e-9
-    )
-    young_modulus_pa: float = key(105e9, "Pa", ASSUMED, "Young's modulus of the sheet (brass)", low=1.0)
-    poisson_ratio: float = key(0.34, "1", ASSUMED, "Poisson's ratio of the sheet (brass)")
-    density_kg_m3: float = key(8500.0, "kg/m^3", ASSUMED, "density of the sheet (brass)")
-    loss_factor: float = key(1e-3, "1", ASSUMED, "loss factor of the sheet (brass)")
-    tape_thickness_m: float = key(0.00045, "m", ASSUMED, "thickness of the damping tape; 0 for none")
-    tape_sides: int = key(2, "1", ASSUMED, "faces of the strip that carry the tape", low=1, high=2)
+    leg_length_m: float = key(0.13, "m", "length of one leg, or of a straight strip", LETTER, low=0.0)
+    bend_radius_m: float = key(0.009, "m", "radius of the bend of a U, to its middle line", low=0.0)
+    width_m: float = key(0.012, "m", "width of the strip, or of one leg of a flat_u")
+    thickness_m: float = key(0.0011760560469233, "m", "thickness of the sheet", CALIBRATED, low=1e-9)
+    young_modulus_pa: float = key(105e9, "Pa", "Young's modulus of the sheet (brass)", low=1.0)
+    poisson_ratio: float = key(0.34, "1", "Poisson's ratio of the sheet (brass)")
+    density_kg_m3: float = key(8500.0, "kg/m^3", "density of the sheet (brass)")
+    loss_factor: float = key(1e-3, "1", "loss factor of the sheet (brass)")
+    tape_thickness_m: float = key(0.00045, "m", "thickness of the damping tape; 0 for none")
+    tape_sides: int = key(2, "1", "faces of the strip that carry the tape", low=1, high=2)
     tape_coverage: float = key(
-        1.0,
-        "1",
-        ASSUMED,
-        "part of each leg, or of a straight strip, that the tape covers from its start; the bend is bare",
-        low=1e-6,
-        high=1.0,
+        1.0, "1", "part of a leg or straight strip that the tape covers from its start", low=1e-6, high=1.0
     )
-    tape_modulus_pa: float = key(1e9, "Pa", ASSUMED, "Young's modulus of the tape")
-    tape_poisson_ratio: float = key(0.40, "1", ASSUMED, "Poisson's ratio of the tape")
-    tape_density_kg_m3: float = key(1400.0, "kg/m^3", ASSUMED, "density of the tape")
-    tape_loss_factor: float = key(
-        0.53907109242132, "1", CALIBRATED, "loss factor of the tape, from the decay of mode 1"
-    )
+    tape_modulus_pa: float = key(1e9, "Pa", "Young's modulus of the tape")
+    tape_poisson_ratio: float = key(0.40, "1", "Poisson's ratio of the tape")
+    tape_density_kg_m3: float = key(1400.0, "kg/m^3", "density of the tape")
+    tape_loss_factor: float = key(0.53907109242132, "1", "loss factor of the tape", CALIBRATED)
     elements_per_leg: int = key(
         0,
         "1",
-        ASSUMED,
-        "elements on a leg, or on a straight strip; 0 for the default, 60 on each of two folded legs, "
-        "else 120",
+        "elements on a leg or straight strip; 0: 60 on each folded leg, else 120",
         low=0,
         high=MOST_ELEMENTS,
     )
-    elements_on_arc: int = key(
-        0,
-        "1",
-        ASSUMED,
-        "elements on the bend of a folded_u; 0 for the default, 48",
-        low=0,
-        high=MOST_ELEMENTS,
-    )
-    start_support: str = key(
-        "clamped", "", ASSUMED, "support at the start of a straight strip", choices=SUPPORTS
-    )
-    end_support: str = key("free", "", ASSUMED, "support at the end of a straight strip", choices=SUPPORTS)
+    elements_on_arc: int = key(0, "1", "elements on the bend of a folded_u; 0: 48", low=0, high=MOST_ELEMENTS)
+    start_support: str = key("clamped", "", "support at the start of a straight strip", choices=SUPPORTS)
+    end_support: str = key("free", "", "support at the end of a straight strip", choices=SUPPORTS)
 
 
 @dataclass(frozen=True, kw_only=True)
 class TipKeys:
     """The ceramic ball with its mount, and the steel plate that it hits."""
 
-    mass_kg: float = key(
-        0.0068341900547184, "kg", CALIBRATED, "ball and mount, so that mode 1 is stopped (kick 1)"
-    )
-    rotary_inertia_kg_m2: float = key(0.0, "kg m^2", ASSUMED, "rotary inertia of ball and mount")
+    mass_kg: float = key(0.0068341900547184, "kg", "ball and mount", CALIBRATED)
+    rotary_inertia_kg_m2: float = key(0.0, "kg m^2", "rotary inertia of ball and mount")
     arc_fraction: float = key(
-        1.0,
-        "1",
-        ASSUMED,
-        "place of the tip on a straight_strip: 0 first end, 1 last end; the other kinds have theirs",
-        low=0.0,
-        high=1.0,
+        1.0, "1", "place of the tip on a straight_strip: 0 first end, 1 last end", low=0.0, high=1.0
     )
-    ball_radius_m: float = key(0.0025, "m", ASSUMED, "radius of the ball")
-    ball_young_modulus_pa: float = key(370e9, "Pa", ASSUMED, "Young's modulus of the ball (alumina)")
-    ball_poisson_ratio: float = key(0.22, "1", ASSUMED, "Poisson's ratio of the ball (alumina)")
-    plate_young_modulus_pa: float = key(210e9, "Pa", ASSUMED, "Young's modulus of the plate (steel)")
-    plate_poisson_ratio: float = key(0.29, "1", ASSUMED, "Poisson's ratio of the plate (steel)")
+    ball_radius_m: float = key(0.0025, "m", "radius of the ball")
+    ball_young_modulus_pa: float = key(370e9, "Pa", "Young's modulus of the ball (alumina)")
+    ball_poisson_ratio: float = key(0.22, "1", "Poisson's ratio of the ball (alumina)")
+    plate_young_modulus_pa: float = key(210e9, "Pa", "Young's modulus of the plate (steel)")
+    plate_poisson_ratio: float = key(0.29, "1", "Poisson's ratio of the plate (steel)")
 
 
 @dataclass(frozen=True, kw_only=True)
 class ReadoutKeys:
     """Where the laser beam meets the spring."""
 
-    arc_fraction: float = key(
-        0.4,
-        "1",
-        ASSUMED,
-        "place along the strip: 0 first end, 1 last; the ball of a folded_u sits at 0.5, of a flat_u at 1",
-        low=0.0,
-        high=1.0,
-    )
+    arc_fraction: float = key(0.4, "1", "place along the strip: 0 first end, 1 last end", low=0.0, high=1.0)
     quantity: str = key(
         "displacement",
         "",
-        ASSUMED,
-        "what is read there: displacement along the drive (m) or rotation of the strip (rad)",
+        "displacement along the drive (m) or rotation of the strip (rad)",
         choices=("displacement", "rotation"),
     )
 
@@ -130,72 +94,50 @@ class DampingKeys:
     kind: str = key(
         "strips",
         "",
-        ASSUMED,
         "how the modes decay; of no effect with spring.kind modal_data",
         choices=("strips", "constant_ratio", "constant_loss_factor", "rayleigh", "measured"),
     )
     decay_rate_per_s: float = key(
-        3.56,
-        "1/s",
-        LETTER,
-        "strips: c of mode 1 (printed with Fig. 5); that of the others follows in proportion",
+        3.56, "1/s", "strips: c of mode 1 (printed with Fig. 5), others in proportion", LETTER
     )
-    ratio: float = key(0.0116, "1", ASSUMED, "constant_ratio: c/(2 omega) of every mode", low=0.0)
-    loss_factor: float = key(0.0231, "1", ASSUMED, "constant_loss_factor: c/omega of every mode", low=0.0)
-    rayleigh_alpha_per_s: float = key(
-        3.56, "1/s", ASSUMED, "rayleigh: alpha in c = alpha + beta omega^2", low=0.0
-    )
-    rayleigh_beta_s: float = key(0.0, "s", ASSUMED, "rayleigh: beta in c = alpha + beta omega^2", low=0.0)
-    measured_rates_per_s: tuple[float, ...] = key(
-        (), "1/s", ASSUMED, "measured: c of each mode kept", low=0.0
-    )
+    ratio: float = key(0.0116, "1", "constant_ratio: c/(2 omega) of every mode", low=0.0)
+    loss_factor: float = key(0.0231, "1", "constant_loss_factor: c/omega of every mode", low=0.0)
+    rayleigh_alpha_per_s: float = key(3.56, "1/s", "rayleigh: alpha in c = alpha + beta omega^2", low=0.0)
+    rayleigh_beta_s: float = key(0.0, "s", "rayleigh: beta in c = alpha + beta omega^2", low=0.0)
+    measured_rates_per_s: tuple[float, ...] = key((), "1/s", "measured: c of each mode kept", low=0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
 class ModesKeys:
     """Truncation of the modal series."""
 
-    count: int = key(
-        0, "1", ASSUMED, "modes kept (of modal_data: at most); 0: what the study needs", low=0, high=500
-    )
+    count: int = key(0, "1", "modes kept (of modal_data: at most); 0: what the study needs", low=0, high=500)
 
 
 @dataclass(frozen=True, kw_only=True)
 class ModalDataKeys:
     """Mass-normalised modes of a structure of your own, for spring.kind modal_data: lists, or a CSV file."""
 
-    file: str = key(
-        "",
-        "",
-        ASSUMED,
-        "CSV file with the names of the four lists as its heading; a path is relative to the scene",
-    )
-    frequencies_hz: tuple[float, ...] = key((), "Hz", ASSUMED, "undamped natural frequencies")
-    decay_rates_per_s: tuple[float, ...] = key((), "1/s", ASSUMED, "c of each mode")
-    tip_values: tuple[float, ...] = key((), "kg^(-1/2)", ASSUMED, "shape of each mode at the tip")
-    participation: tuple[float, ...] = key(
-        (), "kg^(1/2)", ASSUMED, "participation of each mode in a motion of the base"
-    )
-    tip_mass_kg: float = key(0.0, "kg", ASSUMED, "mass at the tip; 0 if not known", low=0.0)
+    file: str = key("", "", "CSV file headed by the names of the four lists, relative to the scene")
+    frequencies_hz: tuple[float, ...] = key((), "Hz", "undamped natural frequencies")
+    decay_rates_per_s: tuple[float, ...] = key((), "1/s", "c of each mode")
+    tip_values: tuple[float, ...] = key((), "kg^(-1/2)", "shape of each mode at the tip")
+    participation: tuple[float, ...] = key((), "kg^(1/2)", "participation in base motion")
+    tip_mass_kg: float = key(0.0, "kg", "mass at the tip; 0 if not known", low=0.0)
     static_compliance_m_per_n: float = key(
-        0.0, "m/N", ASSUMED, "static compliance at the tip; 0 for that of the modes given", low=0.0
+        0.0, "m/N", "static compliance at the tip; 0: of these modes", low=0.0
     )
-    kappa: float = key(
-        0.0,
-        "1",
-        ASSUMED,
-        "free frequency at amplitude A over that of small ones, less 1, times (kappa_length/A)^2; 0: linear",
-    )
-    kappa_length_m: float = key(1.0, "m", ASSUMED, "the length that kappa counts amplitudes in")
+    kappa: float = key(0.0, "1", "relative rise of the free frequency, times (kappa_length/A)^2; 0: linear")
+    kappa_length_m: float = key(1.0, "m", "the length that kappa counts amplitudes in")
 
 
 @dataclass(frozen=True, kw_only=True)
 class SingleModeKeys:
     """Eq. (1) of the letter."""
 
-    free_period_s: float = key(0.0408, "s", LETTER, "damped period of the free motion", low=1e-6)
-    decay_rate_per_s: float = key(3.56, "1/s", LETTER, "mu (printed with Fig. 5)")
-    restitution: float = key(0.1, "1", LETTER, "tau, about 0.1")
+    free_period_s: float = key(0.0408, "s", "damped period of the free motion", LETTER, low=1e-6)
+    decay_rate_per_s: float = key(3.56, "1/s", "mu (printed with Fig. 5)", LETTER)
+    restitution: float = key(0.1, "1", "tau, about 0.1", LETTER)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -203,10 +145,10 @@ class DriveKeys:
     """Motion of the base."""
 
     kind: str = key(
-        "harmonic", "", LETTER, "harmonic motion of the base, or a base at rest", choices=("harmonic", "none")
+        "harmonic", "", "harmonic motion of the base, or a base at rest", LETTER, choices=("harmonic", "none")
     )
     frequencies_hz: tuple[float, ...] = key(
-        (20.90, 21.50, 22.20, 22.60, 23.05, 23.40), "Hz", LETTER, "drive frequencies, those of Fig. 2"
+        (20.90, 21.50, 22.20, 22.60, 23.05, 23.40), "Hz", "drive frequencies, those of Fig. 2", LETTER
     )
 
 
@@ -214,57 +156,32 @@ class DriveKeys:
 class StopKeys:
     """The plate, fixed to the base."""
 
-    gap_m: float = key(
-        0.011883925614219,
-        "m",
-        CALIBRATED,
-        "from the ball at rest to the plate; 2 mm of drive at grazing",
-        low=0.0,
-    )
+    gap_m: float = key(0.011883925614219, "m", "from the ball at rest to the plate", CALIBRATED, low=0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
 class ContactKeys:
     """Ball on plate."""
 
-    law: str = key("hertz", "", ASSUMED, "what happens at the plate", choices=("linear", "newton", "hertz"))
+    law: str = key("hertz", "", "what happens at the plate", choices=("linear", "newton", "hertz"))
     stiffness_n_per_m: float = key(
-        0.0,
-        "N/m",
-        ASSUMED,
-        "linear: stiffness; 0 for the one that has the contact time of Hertz's law",
-        low=0.0,
+        0.0, "N/m", "linear: stiffness; 0: that with Hertz's contact time", low=0.0
     )
-    damping_ns_per_m: float = key(0.0, "N s/m", ASSUMED, "linear: dashpot beside it", low=0.0)
-    local_restitution: float = key(
-        1.0, "1", ASSUMED, "newton: speed after over speed before one impact", low=0.0, high=1.0
-    )
+    damping_ns_per_m: float = key(0.0, "N s/m", "linear: dashpot beside it", low=0.0)
+    local_restitution: float = key(1.0, "1", "newton: speed after over before an impact", low=0.0, high=1.0)
 
 
 @dataclass(frozen=True, kw_only=True)
 class ScanKeys:
     """Slow scans of the drive amplitude through grazing; excess is amplitude/grazing amplitude - 1."""
 
-    reach_below: float = key(
-        2.0, "1", ASSUMED, "lower end of a scan: this many times the hysteresis below grazing", low=1e-9
-    )
-    reach_above: float = key(
-        3.0, "1", ASSUMED, "upper end of a scan: this many times the hysteresis above grazing", low=1e-9
-    )
-    narrowest: float = key(
-        5e-4, "1", ASSUMED, "hysteresis assumed for the reach of a scan where there is less", low=1e-12
-    )
-    points: int = key(61, "1", ASSUMED, "amplitudes in a scan", low=2, high=1e6)
+    reach_below: float = key(2.0, "1", "lower end of a scan, in hystereses below grazing", low=1e-9)
+    reach_above: float = key(3.0, "1", "upper end of a scan, in hystereses above grazing", low=1e-9)
+    narrowest: float = key(5e-4, "1", "least hysteresis for the ends of a scan", low=1e-12)
+    points: int = key(61, "1", "amplitudes in a scan", low=2, high=1e6)
     settle_cycles: int = key(
-        1000,
-        "1",
-        ASSUMED,
-        "drive periods left out at each amplitude (the letter waits for about 10000)",
-        low=0,
-        high=1e7,
+        1000, "1", "drive periods left out at each amplitude (letter: 10000)", low=0, high=1e7
     )
-    record_cycles: int = key(40, "1", LETTER, "strobe points kept at each amplitude", low=1, high=1e6)
-    born_excess: float = key(1e-3, "1", ASSUMED, "excess at which the born period is read", low=1e-12)
-    largest_period: int = key(
-        64, "1", ASSUMED, "longest period looked for, in drive periods", low=1, high=10_000
-    )
+    record_cycles: int = key(40, "1", "strobe points kept at each amplitude", LETTER, low=1, high=1e6)
+    born_excess: float = key(1e-3, "1", "excess at which the born period is read", low=1e-12)
+    largest_period: int = key(64, "1", "longest period looked for", low=1, high=10_000)

@@ -59,28 +59,18 @@ DAMPING = {
 
 def sections_of(scene: Scene) -> tuple[StripSection, StripSection | None]:
     """The bare sheet, and the sheet with its tape (None without tape)."""
-    sheet = scene.make(
-        beam.Material,
-        {
-            "youngs_modulus": "spring.young_modulus_pa",
-            "poissons_ratio": "spring.poisson_ratio",
-            "density": "spring.density_kg_m3",
-            "loss_factor": "spring.loss_factor",
-        },
-    )
+
+    def material(*keys: str) -> beam.Material:
+        """The material with the values of these keys of the spring."""
+        names = ("youngs_modulus", "poissons_ratio", "density", "loss_factor")
+        return scene.make(beam.Material, dict(zip(names, [f"spring.{key}" for key in keys], strict=True)))
+
+    sheet = material("young_modulus_pa", "poisson_ratio", "density_kg_m3", "loss_factor")
     size = {"width": "spring.width_m", "thickness": "spring.thickness_m"}
     bare = scene.make(StripSection, size, material=sheet)
     if scene.spring.tape_thickness_m == 0.0:
         return bare, None
-    tape = scene.make(
-        beam.Material,
-        {
-            "youngs_modulus": "spring.tape_modulus_pa",
-            "poissons_ratio": "spring.tape_poisson_ratio",
-            "density": "spring.tape_density_kg_m3",
-            "loss_factor": "spring.tape_loss_factor",
-        },
-    )
+    tape = material("tape_modulus_pa", "tape_poisson_ratio", "tape_density_kg_m3", "tape_loss_factor")
     both = scene.spring.tape_sides == 2
     layer = scene.make(beam.Layer, {"thickness": "spring.tape_thickness_m"}, material=tape, both_sides=both)
     return bare, dataclasses.replace(bare, layer=layer)
