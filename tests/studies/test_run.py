@@ -22,7 +22,7 @@ from beam import InvalidValue
 from contact import NotPeriodic
 from studies import ROOT
 from studies.shell.files import write_atomically
-from studies.shell.programs import names
+from studies.shell.programs import names, old_name, unknown
 from studies.shell.scene import Scene
 from studies.shell.study import Run, study
 
@@ -140,6 +140,12 @@ def test_wrong_use_is_one_sentence_and_exit_code_2(tmp_path, capsys, argv, named
     assert code == 2 and len(lines) == 1 and named in lines[0] and out == ""
 
 
+def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_computed(tmp_path, capsys):
+    (tmp_path / "file").write_text("")
+    assert small.main(["--out", str(tmp_path / "file")]) == 2
+    assert "file" in capsys.readouterr().err
+
+
 def test_failed_cells_are_told_kept_and_exit_code_3(tmp_path):
     code, folder = start("--fail", out=tmp_path)
     assert code == 3 and summary_of(folder)["failures"] == ["cell 1: no number"]
@@ -231,10 +237,27 @@ def test_an_executor_that_is_not_there_is_refused(tmp_path, letter_scene, place,
 
 
 def test_an_unknown_study_is_answered_with_the_nearest_and_the_chapters():
-    command = [sys.executable, "-m", "studies", "transitons"]
+    for module in ("hysteresis", "experiment.hysteresis", "experiment.hysteresis.__main__"):
+        assert old_name(["-m", f"studies.{module}"]) == "hysteresis"
+    assert old_name(["-m", "studies.shell.programs"]) is old_name(["-m", "studies"]) is None
+    for command in (["studies", "transitons"], ["studies.transitons"]):
+        done = subprocess.run([sys.executable, "-m", *command], cwd=ROOT, capture_output=True, text=True)
+        assert done.returncode == 2 and "did you mean transitions?" in done.stderr and not done.stdout
+        assert all(f"    {name} " in done.stderr for name in names())
+
+
+@pytest.mark.parametrize(
+    ("word", "study"), [("sensitivity", "last_period"), ("next_measurement", "identify")]
+)
+def test_a_study_that_became_part_of_another_is_answered_with_that_one(word, study):
+    assert f"did you mean {study}?" in unknown(word)
+
+
+def test_an_old_command_runs_and_names_the_new_one():
+    command = [sys.executable, "-m", "studies.calibrate", "--help"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
-    assert done.returncode == 2 and "did you mean transitions?" in done.stderr and not done.stdout
-    assert all(f"    {name} " in done.stderr for name in names())
+    assert done.returncode == 0 and "usage: python -m studies calibrate" in done.stdout
+    assert done.stderr == "python -m studies.calibrate is now python -m studies calibrate\n"
 
 
 def test_a_foreign_package_of_the_same_name_is_refused(tmp_path):
