@@ -25,7 +25,16 @@ from numpy.typing import NDArray
 
 from beam import InvalidValue, ModalModel, Refusal
 from contact import ContactError, StrobedMap, StroboscopicMap
-from contact.orbits import KickFamily, OrbitDiagram, fold_excess, orbit_diagram
+from contact.orbits import (
+    KickFamily,
+    OrbitDiagram,
+    OrbitEnd,
+    Settled,
+    born,
+    fold_excess,
+    orbit_diagram,
+    orbit_end,
+)
 from studies.physics.two_parameters import fold_of_kicks, two_parameters_at
 from studies.shell.scene import READOUT, Scene, beam_at, nordmark_at, single_mode_at
 
@@ -86,6 +95,16 @@ def up_and_down(strobed: Strobed, excesses: NDArray[np.float64], **settings: Any
     quiet = strobed.at(float(excesses[0]) if excesses[0] < 0.0 else BELOW).steady()
     up = orbit_diagram(strobed, excesses, quiet, **settings)
     return {"up": up, "down": orbit_diagram(strobed, excesses[::-1], up.end, **settings)}
+
+
+def born_and_lowered(
+    strobed: Strobed, excess: float, most_cycles: int
+) -> tuple[Settled[Any], OrbitEnd[Any] | None]:
+    """The orbit that is born at `excess`, and its end when the amplitude is lowered; None for p1 and none."""
+    orbit = born(strobed, excess, most_cycles=most_cycles)
+    if orbit.period < 2:
+        return orbit, None
+    return orbit, orbit_end(strobed, orbit.end, excess, most_cycles=most_cycles)
 
 
 def or_none(function: Callable[P, T], *arguments: P.args, **options: P.kwargs) -> T | None:

@@ -130,8 +130,6 @@ REFUSED = [
     ("noise", "--correlation-times -1", "correlation_times holds -1 s; it must be 0 or more"),
     ("noise", "--scans 3", "scans is 3; quantiles need at least 10"),
     ("soft_wall", "--decades 5 3", "decades"),
-    ("shape", "--off-line 0", "--off-line"),
-    ("shape", "--channel-sheet 0", "--channel-sheet"),
     ("stability", "--families none", "families"),
     ("time_trace", "--excess=-1", "excess"),
     ("time_trace", "--frequency 0", "frequencies_hz"),
