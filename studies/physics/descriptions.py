@@ -16,7 +16,7 @@ parameters) or to all modes (kicks), and by shooting (beam).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any, ParamSpec, TypeVar
 
@@ -43,6 +43,9 @@ TITLES = {"map": "Nordmark map", "single_mode": "Eq. (1)", "two_parameters": "tw
 
 BELOW = -1e-3
 """Excess of the motion without impacts from which a motion above grazing starts [1]."""
+
+ROUNDING = 1e-12
+"""Change of an excess that is rounding [1]."""
 
 Strobed = StrobedMap[Any]
 Diagram = OrbitDiagram[Any]
@@ -113,6 +116,11 @@ def or_none(function: Callable[P, T], *arguments: P.args, **options: P.kwargs) -
         return function(*arguments, **options)
     except (ContactError, Refusal):
         return None
+
+
+def falls(excesses: Sequence[float]) -> bool:
+    """Whether no value exceeds the one before it by more than rounding; a NaN does not fall."""
+    return bool(np.all(np.diff(excesses) <= ROUNDING))
 
 
 def word(period: int | None) -> str:

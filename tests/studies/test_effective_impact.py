@@ -13,7 +13,7 @@ from contact import LinearContact, NewtonRestitution, first_collision
 from studies.experiment.effective_impact.model import Approach, Spring, floor_of, on_orbits
 from studies.letter import TIME_TRACE_EXCESS
 from studies.physics.calibration import bare_cantilever, free_period, leaf_mass, with_mass_ratio
-from studies.shell.scene import beam_at, hertz_of, read_scene
+from studies.shell.scene import approach_speed, beam_at, hertz_of, read_scene
 
 pytestmark = pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
 """Calibration tries springs that nobody would build."""
@@ -61,7 +61,14 @@ def test_the_floor_of_restitution_is_the_time_of_the_contact(spring):
     assert row.kick == pytest.approx(1.0, abs=0.02)
     assert row.restitution == pytest.approx(math.sqrt(row.contact_s / row.arc_s), rel=0.03)
     mass = LETTER.tip.mass_kg
-    linear = mass * (math.pi / hertz.contact_time(mass, spring.speed)) ** 2
+    linear = (
+        mass
+        * (
+            math.pi
+            / hertz.contact_time(mass, approach_speed(FREQUENCY, LETTER.stop.gap_m, TIME_TRACE_EXCESS))
+        )
+        ** 2
+    )
     as_hard, harder = (met(spring, LinearContact(stiffness=factor * linear)) for factor in (1.0, 9.0))
     assert as_hard.contact_s == pytest.approx(row.contact_s, rel=0.05)
     assert harder.contact_s == pytest.approx(as_hard.contact_s / 3.0, rel=0.05)
@@ -84,7 +91,7 @@ def test_a_bare_tip_keeps_seven_tenths_and_is_late_by_more_than_the_arc(bare):
     row = met(bare, hertz_of(bare.scene))
     assert row.restitution == pytest.approx(0.7, abs=0.02)
     assert row.delay_s > row.arc_s
-    assert row.impacts > 1 and row.ball_limit == 0.0
+    assert row.impacts > 1
 
 
 def test_the_family_of_tip_masses_keeps_period_and_amplitude_at_grazing():
@@ -114,10 +121,8 @@ def test_the_smallest_restitution_lies_between_the_cases():
         series="1",
         value=0.0,
         excess=0.01,
-        modes=20,
         mass_ratio=0.3,
         orbit_period=None,
-        ball_limit=0.8,
         impacts=1,
         arc_s=1e-3,
     )
@@ -147,6 +152,4 @@ def test_the_answers_agree_with_what_is_known(run_study):
     assert curves == {"speed", "reference", "mass", "orbit", "search"}
     floors = [floor["restitution"] for floor in ran.summary["floors"]]
     assert len(floors) > 1 and all(0.2 < tau < 0.24 for tau in floors)  # whatever the loss in the contact
-    needed = ran.summary["what_gives_the_letters_restitution"]
-    assert 1.1e-5 < needed["contact_s"] < 1.2e-5 and 0.15 < needed["excess"] < 0.25
     assert ran.verdicts["restitution"] == "in part"

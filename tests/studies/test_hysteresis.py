@@ -9,7 +9,8 @@ import pytest
 
 from contact import NewtonRestitution, StroboscopicMap, maximal_period
 from contact.orbits import born, orbit_end
-from studies.experiment.hysteresis.model import CAUSES, CHAIN, falls, folds_at, inside_band, path_of
+from studies.experiment.hysteresis.model import CAUSES, CHAIN, folds_at, inside_band, path_of
+from studies.physics.descriptions import falls
 from studies.shell.scene import band_of, beam_at, model_of, single_mode_of
 
 

@@ -15,6 +15,9 @@ import numpy as np
 from contact import ContactError, State, StroboscopicMap
 from contact.orbits import born, settle
 from studies.shell.scene import Scene, single_mode_at
+from studies.shell.study import Run
+
+EXCESS = -0.006
 
 FAR = 1.5
 """Half the side of the plane of starts, in x/gap and x'/(2 pi f gap)."""
@@ -78,7 +81,7 @@ def parts(leads: np.ndarray, period: int) -> dict[str, float]:
     return {name: float(np.mean(before == code)) for code, name in names.items()}
 
 
-def plane_of(scene: Scene, frequency: float, excess: float, side: int) -> Starts:
+def plane_of(scene: Scene, frequency: float, side: int, excess: float = EXCESS) -> Starts:
     """`side` by `side` starts on the strobe plane at drive `frequency` [Hz]."""
     strobed = StroboscopicMap(oscillator=single_mode_at(scene, frequency))
     here = strobed.at(excess)
@@ -91,3 +94,22 @@ def plane_of(scene: Scene, frequency: float, excess: float, side: int) -> Starts
         x=np.linspace(-FAR, 1.0, side) * gap,
         velocity=FAR * speed * np.linspace(-1.0, 1.0, side),
     )
+
+
+def basins(scene: Scene, run: Run, f: float, side: int) -> Mapping[str, object]:
+    """The basins of Eq. (1) at the drive frequency `f` [Hz], stored and drawn."""
+    from studies.experiment.chart import cut_figure  # matplotlib is slow to import
+
+    plane = plane_of(scene, f, side)
+    leads = np.array(run.map(plane.line, plane.velocity.tolist(), "basins"))  # shape (velocities, x)
+    run.arrays("basins", x=plane.x, velocity=plane.velocity, leads=leads)
+    run.figure("basins", cut_figure.draw_basins(plane, leads, f), cut_figure.BASINS)
+    period, shares = plane.period, parts(leads, plane.period)
+    both = period > 1 and shares[f"p{period}"] > 0.0  # p1 without impacts is stable below grazing
+    run.verdict(
+        "coexistence",
+        "agrees" if both else "differs",
+        found=f"Eq. (1): p1 and p{period}" if both else "Eq. (1): one of them alone",
+        note=f"at excess {EXCESS:g} the start decides which of them is reached",
+    )
+    return {"basins": {"excess": EXCESS, "period": period, "parts": shares}}

@@ -12,7 +12,7 @@ width of the islands near -0.1.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,12 +37,11 @@ def sheared(excess: float | Sequence[float] | NDArray[np.float64]) -> NDArray[np
 
 @dataclass(frozen=True, kw_only=True)
 class Plane:
-    """`columns` frequencies [Hz] by `rows` excesses [1] between given ends."""
+    """`columns` frequencies between given ends [Hz] by `rows` excesses [1]."""
 
     columns: int
     rows: int
     frequencies_hz: tuple[float, float] = FREQUENCIES_HZ
-    excesses: tuple[float, float] = EXCESSES
 
     def __post_init__(self) -> None:
         if self.columns < 2 or self.rows < 2:
@@ -50,12 +49,6 @@ class Plane:
                 f"points of the chart are {self.columns} by {self.rows}; each must be 2 or more"
             )
         require_cells("points", f"{self.columns} {self.rows}", self.columns * self.rows)
-        for name, lowest in (("frequencies_hz", 0.0), ("excesses", -1.0)):
-            low, high = getattr(self, name)
-            if not lowest < low < high:
-                raise InvalidValue(
-                    f"{name} of the chart are {low} to {high}; they must rise from above {lowest:g}"
-                )
 
     def frequencies(self) -> NDArray[np.float64]:
         """All of them, rising [Hz]."""
@@ -63,9 +56,8 @@ class Plane:
 
     def rising_excesses(self) -> NDArray[np.float64]:
         """All of them, rising [1]."""
-        low, high = sheared(self.excesses).tolist()
-        excesses: NDArray[np.float64] = KNEE * np.sinh(np.linspace(low, high, self.rows))
-        excesses[[0, -1]] = self.excesses
+        excesses: NDArray[np.float64] = KNEE * np.sinh(np.linspace(*sheared(EXCESSES), self.rows))
+        excesses[[0, -1]] = EXCESSES
         return excesses
 
 
@@ -100,12 +92,4 @@ def side_by_side(columns: Sequence[Column]) -> dict[str, NDArray[np.int32]]:
     return {
         name: np.stack([column[name] for column in columns], axis=1).astype(np.int32)
         for name in ("period", "impacts", "cycles")
-    }
-
-
-def counts(period: NDArray[np.int32]) -> Mapping[str, Mapping[str, int]]:
-    """Cells of each period, by direction."""
-    return {
-        way: {str(p): int(n) for p, n in zip(*np.unique(period[k], return_counts=True), strict=True)}
-        for k, way in enumerate(DIRECTIONS)
     }

@@ -9,17 +9,10 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
 from studies.experiment.chart.basins import Starts, parts
-from studies.experiment.chart.cut import (
-    CHAOTIC,
-    NOT_SETTLED,
-    PERIODIC,
-    TITLES,
-    UNDECIDED,
-    WITHOUT,
-    Settlement,
-)
+from studies.experiment.chart.cut import CHAOTIC, NOT_SETTLED, PERIODIC, UNDECIDED, WITHOUT, Settlement
+from studies.physics.descriptions import TITLES
 from studies.shell import plotting
-from studies.shell.plotting import BLUE, COLUMN, DOWN, EXCESS, GUIDE, ORANGE, PAGE, SKY, UP, VERMILION, tint
+from studies.shell.plotting import BLUE, DOWN, EXCESS, GUIDE, ORANGE, PAGE, SKY, UP, VERMILION, tint
 
 SCAN = (
     "Strobe points and largest Lyapunov exponent against the excess, for Eq. (1) and the beam. Filled: "
@@ -44,16 +37,8 @@ def draw_scan(
     rows: Sequence[Settlement], strobes: Sequence[np.ndarray], frequency: float, quantity: str
 ) -> Figure:
     """Strobe points and exponents against the excess, a column for each model."""
-    names = {key: name for key, name in TITLES.items() if any(row.model == key for row in rows)}
-    figure, axes = plotting.new_figure(
-        2,
-        max(1, len(names)),
-        width=PAGE if len(names) > 1 else COLUMN,
-        height=0.112,
-        squeeze=False,
-        sharex="col",
-    )
-    for column, (name, title) in enumerate(names.items()):
+    figure, axes = plotting.new_figure(2, 2, width=PAGE, height=0.112, sharex="col")
+    for column, name in enumerate(("single_mode", "beam")):
         upper, lower = axes[:, column]
         for way, look in (("up", UP), ("down", DOWN)):
             mine = [k for k, row in enumerate(rows) if (row.model, row.direction) == (name, way)]
@@ -61,26 +46,18 @@ def draw_scan(
             settled = np.array([rows[k].period > 0 for k in mine])
             plotting.strobe_points(upper, 1e2 * excess, 1e3 * points, settled, look, f"{way}ward scan")
         for kind, (marker, colour) in LOOKS.items():
-            alike = [row for row in rows if (row.model, row.kind) == (name, kind)]
-            if alike:
-                lower.plot(
-                    [1e2 * row.excess for row in alike],
-                    [row.lyapunov_map for row in alike],
-                    marker,
-                    markersize=3.4,
-                    mfc="none",
-                    markeredgecolor=colour,
-                    label=kind,
-                )
+            alike = [(1e2 * r.excess, r.lyapunov_map) for r in rows if (r.model, r.kind) == (name, kind)]
+            look = {"markersize": 3.4, "mfc": "none", "markeredgecolor": colour}
+            lower.plot(*np.array(alike).reshape(-1, 2).T, marker, **look, label=kind)
         lower.axhline(0.0, **GUIDE)
         for axis in (upper, lower):
             axis.axvline(0.0, **GUIDE)
-        plotting.panel(upper, column, f"{title}, {frequency:.2f} Hz")
-        plotting.panel(lower, column + len(names))
+        plotting.panel(upper, column, f"{TITLES[name]}, {frequency:.2f} Hz")
+        plotting.panel(lower, column + 2)
         plotting.label(lower.xaxis, EXCESS, "%")
     plotting.label(axes[0, 0].yaxis, quantity, "mrad" if quantity == "rotation" else "mm")
     plotting.label(axes[1, 0].yaxis, "exponent per drive period")
-    plotting.legend_below(figure, axes.flat, 3 if len(names) > 1 else 2, markerscale=1.5)
+    plotting.legend_below(figure, axes.flat, 3, markerscale=1.5)
     return figure
 
 
@@ -98,30 +75,14 @@ def draw_basins(plane: Starts, leads: np.ndarray, frequency: float) -> Figure:
     x, y, picture = plane.x / gap, plane.velocity / speed, np.full(leads.shape, np.nan)
     for place, code in enumerate(looks):
         picture[leads == code] = place
-    axis.pcolormesh(
-        x,
-        y,
-        picture,
-        shading="nearest",
-        vmin=-0.5,
-        vmax=len(looks) - 0.5,
-        rasterized=True,
-        cmap=ListedColormap([colour for colour, _ in looks.values()]),
-    )
-    axis.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
+    colours = ListedColormap([colour for colour, _ in looks.values()])
+    axis.pcolormesh(x, y, picture, vmin=-0.5, vmax=len(looks) - 0.5, cmap=colours, rasterized=True)
     for code in plane.orbits:
-        marker, face = ("D", VERMILION) if code == 1 else ("o", "white")
-        axis.plot(
-            *(plane.strobes(code) / (gap, speed)).T,
-            marker,
-            markersize=4,
-            color=face,
-            markeredgecolor="black",
-            label=f"p$_{{{code}}}$",
-        )
-    for code, (colour, words) in looks.items():
-        if np.any(leads == code):
-            axis.fill([], [], facecolor=colour, edgecolor="0.4", label=words)
+        look = {"color": VERMILION if code == 1 else "white", "markeredgecolor": "black", "markersize": 4}
+        strobes = (plane.strobes(code) / (gap, speed)).T
+        axis.plot(*strobes, "D" if code == 1 else "o", **look, label=f"p$_{{{code}}}$")
+    for colour, words in looks.values():
+        axis.fill([], [], facecolor=colour, edgecolor="0.4", label=words)
     share = 100 * parts(leads, m)["p1 without impacts"]
     title = f"Eq. (1), {frequency:.2f} Hz, $F/F_g - 1$ = {oscillator.excess:g}"
     axis.set_title(f"{title}\n{share:.1f} % lead to p$_1$")

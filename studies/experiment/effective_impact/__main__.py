@@ -30,14 +30,12 @@ from functools import partial
 
 from studies import letter
 from studies.experiment.effective_impact.model import (
-    HERTZ,
     MASS_RATIOS,
     Approach,
     Case,
     Floor,
     Spring,
     cases_of,
-    crossing,
     floor_of,
     on_orbits,
     select,
@@ -78,9 +76,9 @@ def effective_impact(scene: Scene, run: Run) -> Mapping[str, object]:
     searches = [select(rows, "search", name) for name in series_of(rows, "search")]
     floors = [floor for search in searches if (floor := floor_of(search)) is not None]
     run.table("floors", floors, "Smallest restitution over the tip mass, by local restitution.")
-    from studies.experiment.effective_impact.figure import DRAWN  # matplotlib is slow to import
+    from studies.experiment.effective_impact import figure  # matplotlib is slow to import
 
-    for draw in DRAWN:
+    for draw in (figure.speed, figure.mass, figure.search):
         run.figure(draw.__name__, draw(rows), " ".join((draw.__doc__ or "").split()))
     quoted = next(iter(select(rows, "reference")), None)
     if quoted is not None and any(floor.local_restitution == 1.0 for floor in floors):
@@ -91,17 +89,6 @@ def effective_impact(scene: Scene, run: Run) -> Mapping[str, object]:
         "reference": quoted,
         "on_settled_orbits": on_orbits(rows),
         "floors": floors,
-        "what_gives_the_letters_restitution": ways(rows),
-    }
-
-
-def ways(rows: Sequence[Approach]) -> Mapping[str, float]:
-    """What would give the letter's restitution in a first collision at the excess of Fig. 4."""
-    tau = letter.RESTITUTION
-    speed = [row for row in select(rows, "speed", HERTZ) if math.isfinite(row.restitution)]
-    return {
-        "contact_s": tau**2 * next((row.arc_s for row in rows if row.curve == "search"), math.nan),
-        "excess": crossing([row.excess for row in speed], [row.restitution for row in speed], tau),
     }
 
 

@@ -48,11 +48,11 @@ from studies.experiment.hysteresis.model import (
     Folds,
     Inside,
     column,
-    falls,
     inside_band,
     path_of,
 )
 from studies.letter import AMPLITUDE_STABILITY
+from studies.physics.descriptions import falls
 from studies.shell.options import require_cells
 from studies.shell.run import Verdict
 from studies.shell.scene import Scene, band_of, harmonic, model_of, periods_of, require_drive_below

@@ -17,7 +17,7 @@ stability, and at which a multiplier passes -1. The study compares the loss of s
 amplitude stability. `closed_forms` derives the equations.
 
 Run:     python -m studies soft_wall [--decades 1 6] [--quick]
-Writes:  kicks.csv, doublings.csv; figures kick and orbits
+Writes:  kicks.csv, doublings.csv; figures kick and doublings
 """
 
 from __future__ import annotations
@@ -43,13 +43,12 @@ UNSEEN = 1e-9
 """A loss of stability below this excess counts as one at grazing, as at a hard wall."""
 
 
-@study(needs={"kick": 0.005}, quick={"decades": (3, 5), "points": 13})
+@study(needs={"kick": 0.005}, quick={"decades": (3, 5)})
 def soft_wall(
     scene: Scene,
     run: Run,
     *,
     decades: Annotated[tuple[int, int], "powers of ten between which K runs"] = (1, 6),
-    points: Annotated[int, "excesses of the curve of the beam"] = 37,
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
     if not decades[0] <= decades[1] <= 7:
@@ -71,27 +70,15 @@ def soft_wall(
         for row in rows or ()
     ]
     doublings = [row for row in run.attempt(doubling_of, walls, "period doublings") if row]
-    job = partial(beam_of, scene, excesses=np.geomspace(1e-7, 1e-1, points).tolist())
+    job = partial(beam_of, scene, excesses=np.geomspace(1e-7, 1e-1, 13 if run.quick else 37).tolist())
     (found,) = run.attempt(job, [shown], "beam")
     beam, more = found or (None, [])
     run.table("kicks", [*kicks, *more], "Kick velocity of one collision [m/s].", show=())
     run.table("doublings", doublings, "Excess F/F_g - 1 at which p1 doubles its period.")
-    from studies.experiment.soft_wall.figure import draw_kicks, draw_orbits
+    from studies.experiment.soft_wall import figure  # matplotlib is slow to import
 
-    run.figure(
-        "kick",
-        draw_kicks([*kicks, *more]),
-        "Kick of one collision against the excess: points, "
-        "closed form (line) and, dashed, the law of a soft touch. All go over into the power 1/2 of a "
-        "hard one, the beam below what the letter's drive could resolve.",
-    )
-    run.figure(
-        "orbits",
-        draw_orbits(scene, doublings, beam),
-        "(a) Excess of the period doubling of p1 at an elastic wall; closed form (line). "
-        "(b) The beam: p1 that survives its touch, and what an experiment sees that raises "
-        "the drive in finite steps.",
-    )
+    run.figure("kick", figure.draw_kicks([*kicks, *more]), figure.KICKS)
+    run.figure("doublings", figure.draw_doublings(scene, doublings, beam), figure.DOUBLINGS)
     judge_wall(run, doublings)
     if beam:
         judge_beam(run, beam)

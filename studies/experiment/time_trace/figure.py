@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from studies.experiment.time_trace.trace import CloseUp, Trace
+from studies.experiment.time_trace.model import CloseUp, Trace
 from studies.shell.plotting import (
     BLUE,
     GUIDE,

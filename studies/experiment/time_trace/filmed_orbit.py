@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from beam import Modes, SpringMesh
 from contact import ImpactKind, ImpactOscillator, State, simulate
-from studies.experiment.time_trace.force import contact_force, touching
+from studies.experiment.time_trace.model import touching
 
 Array = NDArray[np.float64]
 
@@ -36,41 +36,27 @@ FLIGHT_STEPS = 120.0
 APERIODIC = 4
 """Drive periods shown of a motion that has no period."""
 
-LINE_POINTS = 400
-"""Points of the drawn line in a drive period."""
-
 ROOM, MOST = 0.07, 100.0
 """Largest enlarged departure over the greatest extent of the strip; enlargement beyond which nothing is
 seen."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class FrameRow:
-    """One frame: time, how many times slower than life it is shown, tip, base, force, whether they touch."""
-
-    frame: int
-    time_s: float
-    slowed: float
-    tip_m: float
-    tip_velocity_m_per_s: float
-    base_m: float
-    force_n: float
-    contact: bool
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FilmedOrbit:
-    """One period of an orbit; times from the strobe at which it begins [s]."""
+    """One period of an orbit, arrays by frame; times from the strobe at which it begins [s].
+
+    `slowed`: how many times slower than life a frame is shown; `coordinates`: modal, (n_frames, n_modes).
+    """
 
     duration: float
     contacts: list[tuple[float, float]]
     """Begin and end of each [s]."""
+    time: Array
+    slowed: Array
+    tip: Array
+    base: Array
+    touched: NDArray[np.bool_]
     coordinates: Array
-    """Modal coordinates at the frames, shape (n_frames, n_modes); `rows` are the numbers behind them."""
-    rows: list[FrameRow]
-    line_time: Array
-    """Even times of the drawn line, and the tip there, `line_tip` [m]."""
-    line_tip: Array
 
 
 def frame_times(duration: float, contacts: list[tuple[float, float]], frames: int) -> Array:
@@ -102,38 +88,16 @@ def film_orbit(
     spans = zip(whole.impacts.start[felt] - begin, whole.impacts.end[felt] - begin, strict=True)
     contacts = [(float(a), float(b) if math.isfinite(b) else duration) for a, b in spans]
     times = frame_times(duration, contacts, frames)
-    line = np.linspace(0.0, duration, length * LINE_POINTS + 1)
-    run, drawn = (simulate(oscillator, state, periods=length + 1, times=begin + at) for at in (times, line))
-    columns = (
-        times,
-        1.0 / (rate * np.diff(times, append=duration)),
-        oscillator.tip(run.displacement),
-        oscillator.tip(run.velocity),
-        oscillator.driven.displacement(times),
-        contact_force(oscillator, run),
-    )
-    rows = [
-        FrameRow(
-            frame=number,
-            time_s=t,
-            slowed=slowed,
-            tip_m=x,
-            tip_velocity_m_per_s=v,
-            base_m=b,
-            force_n=n,
-            contact=bool(touched),
-        )
-        for number, (touched, (t, slowed, x, v, b, n)) in enumerate(
-            zip(touching(run), np.array(columns).T.tolist(), strict=True), start=1
-        )
-    ]
+    run = simulate(oscillator, state, periods=length + 1, times=begin + times)
     return FilmedOrbit(
         duration=duration,
         contacts=contacts,
+        time=times,
+        slowed=1.0 / (rate * np.diff(times, append=duration)),
+        tip=oscillator.tip(run.displacement),
+        base=oscillator.driven.displacement(times),
+        touched=touching(run),
         coordinates=run.displacement,
-        rows=rows,
-        line_time=line,
-        line_tip=oscillator.tip(drawn.displacement),
     )
 
 

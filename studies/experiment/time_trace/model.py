@@ -1,4 +1,9 @@
-"""A stretch of a motion, and one of its collisions close by: tip past the plate, and the contact force."""
+"""A stretch of a motion, and one of its collisions close by: tip past the plate, and the contact force.
+
+    N = k d + c d'  (linear),   N = k d^(3/2)  (Hertz),   at depth d [m] and rate d' [m/s], while they touch
+
+A law of restitution has no force: not a number.
+"""
 
 from __future__ import annotations
 
@@ -7,8 +12,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from contact import Collision, ImpactKind, ImpactOscillator, State, collisions, simulate
-from studies.experiment.time_trace.force import contact_force
+from beam import InvalidType
+from contact import (
+    Collision,
+    HertzContact,
+    ImpactKind,
+    ImpactOscillator,
+    LinearContact,
+    NewtonRestitution,
+    State,
+    Trajectory,
+    collisions,
+    simulate,
+)
 from studies.shell.scene import READOUT
 
 PER_PERIOD = 16_384
@@ -73,3 +89,25 @@ def close_up(oscillator: ImpactOscillator, state: State, collision: Collision) -
         force=contact_force(oscillator, run),
         spans=[(float(a) - collision.first_touch, float(b) - collision.first_touch) for a, b in ends],
     )
+
+
+def touching(run: Trajectory) -> NDArray[np.bool_]:
+    """Whether tip and plate touch at the samples of a trajectory, shape (n_samples,)."""
+    begin, end = run.impacts.start, run.impacts.end
+    inside: NDArray[np.bool_] = np.any((run.time[:, None] >= begin) & (run.time[:, None] <= end), axis=1)
+    return inside
+
+
+def contact_force(oscillator: ImpactOscillator, run: Trajectory) -> Array:
+    """Force [N] at the samples of a trajectory, shape (n_samples,)."""
+    law = oscillator.stop.law
+    depth = np.maximum(oscillator.tip(run.displacement) - oscillator.stop.gap, 0.0)
+    if isinstance(law, NewtonRestitution):
+        return np.full(depth.shape, np.nan)
+    if isinstance(law, LinearContact):
+        force = law.stiffness * depth + law.damping * oscillator.tip(run.velocity)
+    elif isinstance(law, HertzContact):
+        force = law.stiffness * depth**1.5
+    else:
+        raise InvalidType(f"the force of {type(law).__name__} is not known here")
+    return np.where(touching(run), np.maximum(force, 0.0), 0.0)
