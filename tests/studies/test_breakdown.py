@@ -108,7 +108,7 @@ def test_errors_of_the_letter_do_not_give_period_6_to_the_calibrated_beam(scene,
 
 
 def test_small_form(run_study):
-    ran = run_study("breakdown", "--quick", "--points", "13", "--cycles", "250")
+    ran = run_study("breakdown", "--quick", "--cycles", "400")
     assert ran.code == 0
     six = ran.summary["cells_with_period_6"]
     assert (0.004, 1.0) in [(cell["tip_mass_kg"], cell["higher_damping"]) for cell in six]

@@ -62,7 +62,7 @@ def test_the_hysteresis_starts_from_zero_at_the_upper_edge_of_each_band(letter_s
 
 
 def test_small_form(run_study):
-    ran = run_study("hysteresis", "--quick")
+    ran = run_study("hysteresis", "--quick", "--step", "0.6", "--inside", "9")
     assert ran.code == 0 and {row["m"] for row in ran.summary["rows"]} >= {3, 4, 5, 6}
     kept = [row for row in ran.summary["rows"] if (row["beam"] or 0.0) < -2.5e-4 and row["map"] is not None]
     off = {row["description"]: row for row in ran.summary["accuracy"]}

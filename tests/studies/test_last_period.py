@@ -72,15 +72,6 @@ def test_a_changed_spring_keeps_its_period_and_the_rate_of_mode_1(letter_scene, 
     assert modes.decay_rate[0] == pytest.approx(faster.single_mode.decay_rate_per_s, rel=1e-9)
 
 
-def test_the_folds_of_eq_1_and_map_do_not_depend_on_the_higher_modes(letter_scene, letter_model):
-    base = transitions_at(letter_scene, letter_model, 20.90)
-    there = changed(letter_scene, change(letter_scene, "damping of higher modes", 1))
-    before, after = by_name(base), by_name(transitions_at(*there, 20.90, [row.m for row in base]))
-    for name in ("map", "Eq. (1)"):
-        assert after[name].fold == before[name].fold
-    assert abs(after["beam"].fold / before["beam"].fold - 1) > 0.05
-
-
 def test_separate_clouds_are_distinguished_from_merged_ones():
     n = np.arange(3000)
     impacts = (n % 3 == 0).astype(int)
@@ -101,7 +92,8 @@ def test_separate_clouds_are_distinguished_from_merged_ones():
     assert since_impact(np.array([0, 0, 1, 0, 0, 2, 1, 0])).tolist() == [-1, -1, 0, 1, 2, 0, 0, 1]
 
 
-def test_strobe_points_run_together_as_m_grows(letter_scene):
+def test_strobe_points_run_together_as_m_grows(letter_scene, monkeypatch):
+    monkeypatch.setattr("studies.experiment.last_period.clouds.WAITS", 3)
     sigma, rows = AMPLITUDE_STABILITY, []
     noises = [DriveNoise(stability=sigma, correlation_s=time) for time in (0.0, 100.0)]
     for m in (6, 9, 13):

@@ -35,13 +35,8 @@ SIGNIFICANT = 3.0
 ALIGN = 20
 """Periods in which tangents find their direction: the slowest contraction between two of them is e^-0.08."""
 
-WITHOUT, PERIODIC, CHAOTIC, NOT_SETTLED, UNDECIDED = (
-    "without impacts",
-    "periodic",
-    "chaotic",
-    "not settled",
-    "undecided",
-)
+WITHOUT, PERIODIC, CHAOTIC = "without impacts", "periodic", "chaotic"
+NOT_SETTLED, UNDECIDED = "not settled", "undecided"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,18 +89,9 @@ def carried(
             failures.append(f"{TITLES[name]}, excess {excess:.6g}, {direction}: {error}")
             continue
         points.append(here.readout(orbit.points, READOUT))
-        rows.append(
-            Settlement(
-                model=name,
-                direction=direction,
-                excess=excess,
-                kind=kind,
-                period=settled.period,
-                impacts=settled.impacts if settled.period else 0,
-                lyapunov_map=exponents.largest,
-                error_map=exponents.error,
-            )
-        )
+        found = {"period": settled.period, "impacts": settled.impacts if settled.period else 0}
+        found |= {"lyapunov_map": exponents.largest, "error_map": exponents.error}
+        rows.append(Settlement(model=name, direction=direction, excess=excess, kind=kind, **found))
     return rows, points, failures
 
 

@@ -164,21 +164,14 @@ def born_everywhere(scene: Scene, run: Run, count: int) -> list[Born]:
     excess = scene.scan.born_excess
     places = np.linspace(*SPAN, count).tolist()
     jobs = [Job(*spring, place, excess) for spring in springs(scene) for place in places]
-    rows = []
-    for job, period in zip(jobs, run.attempt(born_at, jobs, "born periods"), strict=True):
+    rows, born = [], run.attempt(born_at, jobs, "born periods")
+    for job, period in zip(jobs, born, strict=True):
         frequency = job.f_times_t / scene.single_mode.free_period_s
         nordmark = nordmark_at(scene, frequency)
         edges = band_of(scene, maximal_period(nordmark))
         part = (frequency - edges.lower) / (edges.upper - edges.lower)
-        rows.append(
-            Born(
-                spring=job.spring,
-                f_times_t=job.f_times_t,
-                period=period,
-                map=maximal_periods(nordmark),
-                next_to_edge=part >= TOP,
-            )
-        )
+        known = {"spring": job.spring, "f_times_t": job.f_times_t, "map": maximal_periods(nordmark)}
+        rows.append(Born(**known, period=period, next_to_edge=part >= TOP))
     again = [i for i, row in enumerate(rows) if row.next_to_edge and not row.agrees]
     nearer = [jobs[i]._replace(excess=CLOSER * excess) for i in again]
     for i, period in zip(again, run.attempt(born_at, nearer, "closer to grazing"), strict=True):

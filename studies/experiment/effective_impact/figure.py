@@ -1,4 +1,4 @@
-"""Restitution, delay and kick side by side against one quantity, and restitution over the tip mass."""
+"""Restitution, delay and kick side by side against one quantity."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from typing import Any
 
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullFormatter
 
 from studies import letter
 from studies.experiment.effective_impact.model import Approach, on_orbits, select, series_of
@@ -22,9 +21,6 @@ AXES = {
 """Column of the rows -> quantity, unit, factor to that unit."""
 
 MASS = "tip mass / mass of the leaf"
-
-SEARCHED = ("1", "0.7", "0.6", "0.4", "0.2", "0.1")
-"""Local restitutions drawn."""
 
 
 def line(axis: Any, rows: Sequence[Approach], column: str, number: int, name: str) -> None:
@@ -91,23 +87,4 @@ def mass(rows: Sequence[Approach]) -> Figure:
         axis.set_ylim(top=top)
     plotting.mark_letter(axes[0].yaxis, letter.RESTITUTION, words="letter, τ ≈ 0.1")
     plotting.legend_below(figure, axes, 4, handlelength=3.0)
-    return figure
-
-
-@plotting.in_house_style
-def search(rows: Sequence[Approach]) -> Figure:
-    """In search of the letter's restitution: loss in the contact (Hunt-Crossley) moves the minimum over the
-    tip mass, not its depth."""
-    figure, axis = plotting.new_figure(height=0.075)
-    for number, name in enumerate(name for name in series_of(rows, "search") if name in SEARCHED):
-        found = [row for row in select(rows, "search", name) if row.value > 0.0]
-        line(axis, found, "restitution", number, f"local restitution {name}")
-    plotting.mark_letter(axis.yaxis, letter.RESTITUTION, words="letter, τ ≈ 0.1")
-    axis.set_xscale("log")
-    axis.set_ylim(0.0, 1.12)
-    axis.set_xticks([0.02, 0.05, 0.1, 0.2, 0.5, 1, 2], ["0.02", "0.05", "0.1", "0.2", "0.5", "1", "2"])
-    axis.xaxis.set_minor_formatter(NullFormatter())
-    plotting.label(axis.xaxis, MASS)
-    plotting.label(axis.yaxis, "restitution τ")
-    plotting.legend_below(figure, [axis], 2, handlelength=3.0)
     return figure

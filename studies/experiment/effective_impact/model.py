@@ -79,7 +79,6 @@ class Approach:
     excess: float
     mass_ratio: float
     orbit_period: int | None = None
-    approach_m_s: float = math.nan
     restitution: float = math.nan
     delay_s: float = math.nan
     kick: float = math.nan
@@ -118,7 +117,6 @@ class Case:
         mode_1 = 2.0 * float(self.oscillator.model.phi[0]) ** 2
         return replace(
             row,
-            approach_m_s=found.approach,
             restitution=found.restitution,
             delay_s=found.delay,
             kick=found.kick,

@@ -100,23 +100,16 @@ def cause_of(scene: Scene, words: str, make: Of) -> Cause:
 
 def causes_of(scene: Scene, modes: ModalModel) -> list[Cause]:
     """All causes; the first three change nothing."""
-    keys, gap, last, error = scene.single_mode, scene.stop.gap_m, max(periods_of(scene)), FREE_PERIOD_ERROR_S
-    free, cause, beam = keys.free_period_s, partial(cause_of, scene), partial(beam_at, scene, model=modes)
+    free, gap, error = scene.single_mode.free_period_s, scene.stop.gap_m, FREE_PERIOD_ERROR_S
+    cause, beam = partial(cause_of, scene), partial(beam_at, scene, model=modes)
     shorter, turning = scene.replace({"single_mode.free_period_s": free - error}), cubic(scene)
     found = [
         cause("map", lambda f: nordmark_at(scene, f)),
         cause("Eq. (1)", one_mode(scene)),
         cause("beam", beam),
     ]
-    for sign in (-1, 1):
-        rate, tau = keys.decay_rate_per_s + sign * 0.1, max(0.0, keys.restitution + sign * 0.05)
-        as_period = free * (1.0 + sign * 0.005 / last)
-        found += [
-            cause(f"T {1e3 * sign * error:+.2f} ms", one_mode(scene, free_period_s=free + sign * error)),
-            cause(f"f {sign * 0.005:+g} Hz, as a change of T", one_mode(scene, free_period_s=as_period)),
-            cause(f"decay rate {sign * 0.1:+g} 1/s", one_mode(scene, decay_rate_per_s=rate)),
-            cause(f"restitution {sign * 0.05:+g}", one_mode(scene, restitution=tau)),
-        ]
+    for shift in (-error, error):
+        found.append(cause(f"T {1e3 * shift:+.2f} ms", one_mode(scene, free_period_s=free + shift)))
     for wider in (0.75, 1.0, 1.25, 1.5):
         words = f"finite rotations, gap {1e3 * wider * gap:.1f} mm"
         found.append(cause(words, cubic_mode(scene, turning, wider)))

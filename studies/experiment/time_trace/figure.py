@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -19,14 +18,15 @@ from studies.shell.plotting import (
     VERMILION,
     in_house_style,
     label,
+    legend_below,
     new_figure,
     panel,
 )
 
 Array = NDArray[np.float64]
 
-NUMBER_WIDTH = 13.0
-"""Room that the number of a mode takes, in dots of the screen."""
+APART = 1.05
+"""Least ratio of two frequencies whose modes are both numbered."""
 
 MOST_DRAWN = 4_000
 """Points of a line: more than a page has dots."""
@@ -40,25 +40,18 @@ def draw_trace(trace: Trace, near: CloseUp | None, gap: float, unit: str, title:
     widths = {"width_ratios": [2.3, 1.0]}
     figure, axes = new_figure(2, 2, width=PAGE, height=0.090, sharex="col", gridspec_kw=widths)
     (tip, readout), step = axes[:, 0], max(1, trace.time.size // MOST_DRAWN)
-    for axis, shown in ((tip, trace.tip), (readout, trace.readout)):
+    for number, (axis, shown) in enumerate(((tip, trace.tip), (readout, trace.readout))):
         axis.plot(1e3 * trace.time[::step], 1e3 * shown[::step], color=BLUE, linewidth=0.8)
         axis.margins(x=0.0)
+        for at in 1e3 * trace.impact_times:
+            axis.axvline(at, **MARK)
+        panel(axis, number, (title, "read-out point; dotted: impacts")[number])
     label(tip.yaxis, "tip displacement $ξ$", "mm")
     label(readout.yaxis, f"read-out {'rotation' if unit == 'rad' else 'displacement'}", f"m{unit}")
     label(readout.xaxis, "time", "ms")
-    panel(tip, 0, title)
-    panel(readout, 1, "read-out point")
     tip.axhline(1e3 * gap, **GUIDE)
-    top, impacts = 1e3 * max(gap, float(trace.tip.max())), 1e3 * trace.impact_times
-    tip.set_ylim(1e3 * float(trace.tip.min()) - 1.0, top * 1.25)
-    tip.plot(impacts, np.full(impacts.size, 1.12 * top), "v", color=VERMILION, markersize=4.0)
     across = tip.get_yaxis_transform()
     tip.annotate("plate", (0.005, 1e3 * gap), xycoords=across, fontsize=NOTE, va="bottom", color="0.35")
-    for number, at in enumerate(impacts):
-        readout.axvline(at, **MARK)
-        if number == 0:
-            beside = {"xytext": (5, 0), "textcoords": "offset points", "va": "center"}
-            tip.annotate("impact", (at, 1.12 * top), fontsize=NOTE, color=VERMILION, **beside)
     if near is None:
         for axis in axes[:, 1]:
             axis.set_visible(False)
@@ -97,17 +90,15 @@ def draw_spectrum(frequency: Array, amplitude: Array, modes_hz: Array, drive_hz:
     top = float(lines.max())
     floor = max(float(lines.min()), 1e-8 * top)
     axis.set(xscale="log", yscale="log", ylim=(0.5 * floor, 30.0 * top), xlim=(0.9 * frequency[1], limit))
-    across, last = axis.get_xaxis_transform(), -math.inf
-    box = {"facecolor": "white", "edgecolor": "none", "pad": 0.6}
+    last = 0.0
     for number, at in enumerate(shown.tolist(), start=1):
         axis.axvline(at, **MARK, label="modes, numbered" if number == 1 else None)
-        x = float(axis.transData.transform((at, 1.0))[0])
-        if x - last > NUMBER_WIDTH:
-            style = {"ha": "center", "va": "top", "fontsize": NOTE, "color": VERMILION, "bbox": box}
-            axis.annotate(str(number), (at, 0.98), xycoords=across, **style)
-            last = x
+        if at > APART * last:
+            style = {"ha": "center", "va": "top", "fontsize": NOTE, "color": VERMILION}
+            axis.text(at, 0.98, str(number), transform=axis.get_xaxis_transform(), **style)
+            last = at
     axis.axvline(drive_hz, **GUIDE, label="drive")
     label(axis.xaxis, "frequency", "Hz")
     label(axis.yaxis, "amplitude of the read-out", f"m{unit}")
-    figure.legend(loc="outside lower center", ncols=3, handlelength=2.5)
+    legend_below(figure, [axis], 3)
     return figure

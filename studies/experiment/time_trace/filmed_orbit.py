@@ -108,7 +108,7 @@ def drawn_shapes(
 
     `coordinates` (n_frames, n_modes) are those of the coupled modes.
 
-    M is the largest round number with which the departures stay below `ROOM`, unless it is given.
+    M is the largest whole number with which the departures stay below `ROOM`, unless it is given.
     """
     kept = np.flatnonzero(modes.coupled)[: coordinates.shape[1]]
     phi, strip = modes.phi[kept], np.unique(mesh.hexahedra)
@@ -122,11 +122,5 @@ def drawn_shapes(
     if magnification is None:
         largest = float(np.linalg.norm(departures[:, strip], axis=2).max())
         room = ROOM * float(np.ptp(mesh.points[strip], axis=0).max())
-        magnification = min(MOST, max(1.0, _rounded(room / largest))) if largest > 0.0 else 1.0
+        magnification = min(MOST, max(1.0, math.floor(room / largest))) if largest > 0.0 else 1.0
     return carried + magnification * departures, magnification
-
-
-def _rounded(value: float) -> float:
-    """The largest of 1, 2, 5, 10, ... that is not above the value."""
-    power = 10.0 ** math.floor(math.log10(value))
-    return max(step * power for step in (1.0, 2.0, 5.0) if step * power <= value * (1.0 + 1e-12))

@@ -37,9 +37,7 @@ def lines_of(signal: Array, duration: float) -> tuple[Array, Array]:
     the last step before the end left out.
     """
     amplitude = np.abs(np.fft.rfft(signal) / signal.size)
-    amplitude[1:] *= 2.0
-    if signal.size % 2 == 0:
-        amplitude[-1] *= 0.5
+    amplitude[1 : (signal.size + 1) // 2] *= 2.0
     return np.arange(amplitude.size) / duration, amplitude
 
 

@@ -23,8 +23,8 @@ The beam of the scene simplifies the flat U, which is a sheet. As a Kirchhoff pl
 periods and the ends of the orbits? This part needs spring.kind = "flat_u" and a harmonic drive.
 
 Run:     python -m studies shape [--quick]
-Writes:  readings.csv (a row a shape); of a flat U plate_modes.csv and plate_ends.csv (a row a frequency);
-         springs.csv (a row a reading, bend radius, gap and ball); figures shapes, plate and finite_amplitude
+Writes:  readings.csv (a row a shape); of a flat U plate_ends.csv (a row a frequency);
+         springs.csv (a row a reading, bend radius, gap and ball); figures plate and finite_amplitude
 """
 
 from __future__ import annotations
@@ -35,27 +35,15 @@ from functools import partial
 from studies.shell.scene import Scene, model_of
 from studies.shell.study import Run, study
 from studies.spring.shape.finite_amplitude import Survival, springs_of, survivals
-from studies.spring.shape.model_error import (
-    COARSE,
-    FINE,
-    OrbitEnds,
-    mode_rows,
-    orbit_rows,
-    plates_of,
-    with_refitted,
-)
+from studies.spring.shape.model_error import COARSE, FINE, OrbitEnds, orbit_rows, plates_of, with_refitted
 from studies.spring.shape.shapes import TITLES, Reading, ReadingRow, reading_row, shapes_of
 
 
 @study()
 def shape(scene: Scene, run: Run) -> Mapping[str, object]:
     """Compute, store and draw."""
-    from studies.spring.shape import figure  # matplotlib is slow to import
-
-    shapes = shapes_of(scene)
-    readings = {name: reading_row(one) for name, one in shapes.items()}
+    readings = {name: reading_row(one) for name, one in shapes_of(scene).items()}
     run.table("readings", list(readings.values()), "Four springs of one free period.")
-    run.figure("shapes", figure.draw_shapes(shapes, readings), figure.SHAPES)
     judge(run, readings)
     return {
         "rows": list(readings.values()),
@@ -81,19 +69,17 @@ def judge(run: Run, readings: Mapping[Reading, ReadingRow]) -> None:
 
 
 def compare_plate(scene: Scene, run: Run) -> list[OrbitEnds]:
-    """Tables and figure of the flat U as a plate; none for another spring or drive."""
-    from studies.spring.shape import figure
+    """Table and figure of the flat U as a plate; none for another spring or drive."""
+    from studies.spring.shape import figure  # matplotlib is slow to import
 
     if (scene.spring.kind, scene.drive.kind) != ("flat_u", "harmonic"):
         run.say("The part on the plate is left out: it needs a flat U with a harmonic drive.")
         return []
     beam, plates = model_of(scene), plates_of(scene, COARSE if run.quick else FINE)
-    modes = mode_rows(plates, beam)
-    run.table("plate_modes", modes, "Symmetric modes of the flat U as a plate, and of its beam.")
     springs, frequencies = with_refitted(scene, run, plates, beam), scene.drive.frequencies_hz
     orbits = orbit_rows(scene, run, springs, frequencies[:: 2 if run.quick else 1])
     run.table("plate_ends", orbits, "Ends of the orbits on the way down, by beam and plates.")
-    run.figure("plate", figure.draw_plate(modes, orbits), figure.PLATE)
+    run.figure("plate", figure.draw_plate(orbits), figure.PLATE)
     same = all(row.same_period for row in orbits)
     words = [f"As a plate the spring {'keeps every' if same else 'changes a'} period that is born."]
     known = [row for row in orbits if row.factors]

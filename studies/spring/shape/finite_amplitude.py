@@ -74,11 +74,6 @@ class Survival:
     born_period: tuple[int | None, ...]
     survive: int
 
-    @property
-    def shift(self) -> float:
-        """kappa (gap/L)^2 [1]."""
-        return self.kappa * (self.gap_m / self.length_m) ** 2
-
 
 def reading_of(scene: Scene, reading: str, radius: float, ball: float) -> Scene:
     """The scene with its spring read so, the sheet as thick as the free period asks."""

@@ -1,4 +1,4 @@
-"""The error of beam theory: the flat U of the scene as a plate beside its beam, by modes and by orbits.
+"""The error of beam theory: the flat U of the scene as a plate beside its beam, by the ends of its orbits.
 
 The plate replaces the beam in the contact problem. It carries the ball on a point of the sheet, or on a rigid
 seat of the ball's radius; the real mount was not measured. All frequencies of a plate are multiplied by one
@@ -27,8 +27,8 @@ from studies.shell.study import Run
 from studies.spring.shape.plate import PlateModes, plate_modes
 from studies.spring.shape.plate_mesh import half_u
 
-MODES, LISTED = 30, 10
-"""Symmetric modes computed for a plate, with which the kick has converged; modes listed in the table."""
+MODES = 30
+"""Symmetric modes computed for a plate, with which the kick has converged."""
 
 COARSE, FINE = (1, 2), (2, 3)
 """Cells over the radius of the seat and over the rim beside it, in the coarser of two meshes, in pairs."""
@@ -45,23 +45,6 @@ PLATES = {
     "point_refitted": "on a point, refitted",
     "seat_refitted": "on a seat, refitted",
 }
-
-
-@dataclass(frozen=True, kw_only=True)
-class PlateMode:
-    """A symmetric mode of the plate, with the ball on a point and on a seat, beside a mode of the beam.
-
-    The columns of the beam are None if no mode of the beam has this mode as its nearest in frequency. Tip
-    values are in kg^(-1/2).
-    """
-
-    number: int
-    beam_hz: float | None
-    point_hz: float
-    seat_hz: float
-    tip_value_beam: float | None
-    tip_value_point: float
-    tip_value_seat: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -122,27 +105,6 @@ def plates_of(scene: Scene, cells: tuple[int, int]) -> dict[str, PlateModes]:
         return plate_modes(mesh, bare, taped or bare, tip, MODES, seated=name == "seat")
 
     return {name: modes(fine, name).extrapolated(modes(coarse, name)) for name in ("point", "seat")}
-
-
-def mode_rows(plates: Mapping[str, PlateModes], beam: ModalModel) -> list[PlateMode]:
-    """The first `LISTED` modes of the plate; each mode of the beam is beside the nearest in frequency."""
-    point, seat = plates["point"], plates["seat"]
-    nearest = {int(np.argmin(np.abs(point.omega - omega))): k for k, omega in enumerate(beam.omega)}
-    rows = []
-    for i in range(LISTED):
-        k = nearest.get(i)
-        rows.append(
-            PlateMode(
-                number=i + 1,
-                beam_hz=None if k is None else float(beam.frequencies_hz[k]),
-                point_hz=float(point.omega[i]) / (2.0 * np.pi),
-                seat_hz=float(seat.omega[i]) / (2.0 * np.pi),
-                tip_value_beam=None if k is None else float(beam.phi[k]),
-                tip_value_point=float(point.phi[i]),
-                tip_value_seat=float(seat.phi[i]),
-            )
-        )
-    return rows
 
 
 def with_refitted(scene: Scene, run: Run, plates: Mapping[str, PlateModes], beam: ModalModel) -> list[Spring]:
