@@ -9,8 +9,7 @@ import pytest
 
 from contact import State, StroboscopicMap
 from contact.orbits import settle
-from studies.experiment.chart.basins import parts, plane_of
-from studies.experiment.chart.cut import CHAOTIC, NOT_SETTLED, PERIODIC, WITHOUT, kind_of
+from studies.experiment.chart.settled import CHAOTIC, NOT_SETTLED, PERIODIC, WITHOUT, kind_of, parts, plane_of
 from studies.shell.scene import beam_at, single_mode_at
 
 FREQUENCY = 21.50
@@ -70,7 +69,7 @@ def test_both_orbits_have_a_basin_between_fold_and_grazing_and_one_below(letter_
 
 
 def test_small_form(run_study, monkeypatch):
-    monkeypatch.setattr("studies.experiment.chart.cut.QUICK_EXCESSES", FEW)
+    monkeypatch.setattr("studies.experiment.chart.settled.QUICK_EXCESSES", FEW)
     ran = run_study("chart", "--quick", "--points", "4", "8", "--side", "8")
     assert ran.code == 0
     rows = ran.rows("cut")

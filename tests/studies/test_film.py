@@ -10,7 +10,7 @@ from PIL import Image
 
 from contact import StroboscopicMap
 from contact.orbits import born
-from studies.experiment.time_trace.filmed_orbit import drawn_shapes, film_orbit
+from studies.experiment.time_trace.film import drawn_shapes, film_orbit
 from studies.shell import film
 from studies.shell.film import Moment, Scenery, can_encode, stage_of, write_gif, written_as_mp4
 from studies.shell.scene import beam_at, modes_of

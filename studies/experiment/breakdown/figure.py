@@ -63,8 +63,8 @@ def draw_scans(panels: Sequence[tuple[Outcome, Mapping[str, Diagram]]]) -> Figur
         plotting.panel(pair[0], number, title_of(outcome))
         plotting.label(pair[0].yaxis, "tip displacement" if number == 0 else "read-out", "mm")
         if outcome.fold_p3 is not None:
-            look = {"color": GREEN, "linestyle": "-.", "linewidth": 0.9, "zorder": 0}
-            pair[0].axvline(1e2 * outcome.fold_p3, **look, label="fold of p$_3$")
+            line: plotting.Style = {"color": GREEN, "linestyle": "-.", "linewidth": 0.9, "zorder": 0}
+            pair[0].axvline(1e2 * outcome.fold_p3, **line, label="fold of p$_3$")
     axes[0, 1].set_title("finer steps above grazing", loc="right")
     axes[-1, 1].set_title("letter: p$_6$ born here", loc="right")
     plotting.mark_letter(axes[0, 0].xaxis, 1e2 * CHAOS_AT, words="letter: chaos\nof Eq. (1)", along=0.98)

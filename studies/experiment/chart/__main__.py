@@ -36,10 +36,18 @@ from beam import InvalidValue
 from contact import ImpactOscillator
 from contact.orbits import AmplitudeScan
 from studies import letter
-from studies.experiment.chart.basins import basins
-from studies.experiment.chart.cells import EXCESSES, FREQUENCIES_HZ, KNEE, Plane, column_at, side_by_side
-from studies.experiment.chart.cut import cut
-from studies.experiment.chart.overlays import bands_in, folds_of_beam, folds_of_single_mode
+from studies.experiment.chart.model import (
+    EXCESSES,
+    FREQUENCIES_HZ,
+    KNEE,
+    Plane,
+    bands_in,
+    column_at,
+    folds_of_beam,
+    folds_of_single_mode,
+    side_by_side,
+)
+from studies.experiment.chart.settled import basins, cut
 from studies.physics.descriptions import TITLES
 from studies.shell.options import require_cells
 from studies.shell.scene import Scene, beam_at, corresponding, harmonic, single_mode_at

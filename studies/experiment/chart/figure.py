@@ -2,7 +2,9 @@
 
 Colours are the seven of the house style, one after the other with the period, lighter for 8 to 14, so that
 neighbouring periods and period doublings always differ; every region of some size says its number as well.
-The upright axis is that of the grid (``cells.sheared``).
+The upright axis is that of the grid (``model.sheared``).
+
+Figures of the settled motions: strobe points and exponents of a scan, and basins on the strobe plane.
 """
 
 from __future__ import annotations
@@ -12,27 +14,40 @@ from collections.abc import Mapping, Sequence
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import to_rgb
+from matplotlib.colors import ListedColormap, to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 from scipy import ndimage
 
 from contact import Band
-from studies.experiment.chart.cells import Fold, Plane, sheared
-from studies.shell.plotting import PAGE, PALETTE, in_house_style, label, legend_below, new_figure, panel, tint
+from studies.experiment.chart.model import Fold, Plane, sheared
+from studies.experiment.chart.settled import (
+    CHAOTIC,
+    NOT_SETTLED,
+    PERIODIC,
+    UNDECIDED,
+    WITHOUT,
+    Settlement,
+    Starts,
+    parts,
+)
+from studies.physics.descriptions import TITLES
+from studies.shell import plotting
 
-PERIODS = ["white", *PALETTE[1:8], *(tint(one, 0.45) for one in PALETTE[1:8]), "0.66"]
+SEVEN = plotting.PALETTE[1:8]
+PERIODS = ["white", *SEVEN, *(plotting.tint(one, 0.45) for one in SEVEN), "0.66"]
 """Colours of no impact, of the periods 1 to 14, and of a longer one."""
 
 CLASSES = {1: "1", 2: "2", 3: "3", 4: "4\u20135", 6: "6\u20138", 9: "9 or more"}
 """Classes of impacts in a period: lower end and name."""
-IMPACTS = ["white", *map(tuple, matplotlib.colormaps["cividis"](np.linspace(1.0, 0.0, len(CLASSES))))]
+CIVIDIS = matplotlib.colormaps["cividis"]
+IMPACTS = ["white", *map(to_hex, CIVIDIS(np.linspace(1.0, 0.0, len(CLASSES))))]
 
 NONE, FAILED = "0.33", "black"
 
 LEAST_AREA = 0.0012
-"""Part of a panel that a region must have to be given its number."""
+"""Part of a plotting.panel that a region must have to be given its number."""
 
 EDGE = 0.002
 """Half the height of the marks for band edges, which hold at grazing [excess]."""
@@ -47,12 +62,12 @@ CAPTION = (
 Integers = NDArray[np.int32]
 
 
-@in_house_style
+@plotting.in_house_style
 def draw(
     plane: Plane, cells: Mapping[str, Integers], edges: Sequence[Band], folds: Sequence[Fold], title: str
 ) -> Figure:
     """The figure."""
-    figure, axes = new_figure(2, 2, width=PAGE, height=0.150, sharex=True, sharey=True)
+    figure, axes = plotting.new_figure(2, 2, width=plotting.PAGE, height=0.150, sharex=True, sharey=True)
     x, y = plane.frequencies(), sheared(plane.rising_excesses())
     names = ["", *CLASSES.values()]
     for k, way in enumerate(("upward scan", "downward scan")):
@@ -67,18 +82,18 @@ def draw(
         hit = np.where((period > 0) & (impacts > 0), period, 0)
         _write_numbers(axes[0, k], hit, x, y, [f"p$_{{{m}}}$" for m in range(hit.max() + 1)])
         _write_numbers(axes[1, k], np.where(hit, classes, 0), x, y, names)
-        panel(axes[0, k], k, f"{way}: period")
-        panel(axes[1, k], 2 + k, f"{way}: impacts in a period")
-        label(axes[1, k].xaxis, "drive frequency", "Hz")
+        plotting.panel(axes[0, k], k, f"{way}: period")
+        plotting.panel(axes[1, k], 2 + k, f"{way}: impacts in a period")
+        plotting.label(axes[1, k].xaxis, "drive frequency", "Hz")
     for axis in axes[:, 0]:
         axis.set_yticks(sheared(TICKS), [f"{t:g}" for t in TICKS])
-        label(axis.yaxis, "excess F/F$_g$ − 1")
+        plotting.label(axis.yaxis, "excess F/F$_g$ − 1")
     known = {"p$_1$ without impact": "white", "no period found": NONE, "failed": FAILED}
     known |= {f"period {len(PERIODS) - 1} to 64": PERIODS[-1]}
     known |= {f"impacts: {name}": colour for name, colour in zip(names[1:], IMPACTS[1:], strict=True)}
     for name, colour in known.items():
         axes[0, 0].fill([], [], facecolor=colour, edgecolor="0.3", linewidth=0.4, label=name)
-    legend_below(figure, axes.flat, 5)
+    plotting.legend_below(figure, axes.flat, 5)
     figure.suptitle(title, fontsize=8)
     return figure
 
@@ -107,4 +122,83 @@ def _draw_theory(axis: Axes, edges: Sequence[Band], folds: Sequence[Fold]) -> No
         curve = [fold for fold in folds if fold.period == period]
         f, excess = [fold.frequency_hz for fold in curve], sheared([fold.excess for fold in curve])
         axis.plot(f, excess, color="white", linewidth=1.8)
-        axis.plot(f, excess, color=PALETTE[2], linewidth=0.9, label="exact fold of p$_m$")
+        axis.plot(f, excess, color=plotting.PALETTE[2], linewidth=0.9, label="exact fold of p$_m$")
+
+
+SCAN = (
+    "Strobe points and largest Lyapunov exponent against the excess, for Eq. (1) and the beam. Filled: "
+    "amplitude raised; open: lowered; pale: not periodic."
+)
+BASINS = (
+    "Where starts on the strobe plane of Eq. (1) lead below grazing: the motion without impacts has a small "
+    "basin, p_m the rest."
+)
+LOOKS = {
+    WITHOUT: ("v", plotting.SKY),
+    PERIODIC: ("o", plotting.BLUE),
+    CHAOTIC: ("s", plotting.VERMILION),
+    NOT_SETTLED: ("^", plotting.ORANGE),
+    UNDECIDED: ("x", "0.5"),
+}
+"""Marker and colour of a kind."""
+
+
+@plotting.in_house_style
+def draw_scan(
+    rows: Sequence[Settlement], strobes: Sequence[np.ndarray], frequency: float, quantity: str
+) -> Figure:
+    """Strobe points and exponents against the excess, a column for each model."""
+    figure, axes = plotting.new_figure(2, 2, width=plotting.PAGE, height=0.112, sharex="col")
+    for column, name in enumerate(("single_mode", "beam")):
+        upper, lower = axes[:, column]
+        for way, look in (("up", plotting.UP), ("down", plotting.DOWN)):
+            mine = [k for k, row in enumerate(rows) if (row.model, row.direction) == (name, way)]
+            excess, points = np.array([rows[k].excess for k in mine]), np.array([strobes[k] for k in mine])
+            settled = np.array([rows[k].period > 0 for k in mine])
+            plotting.strobe_points(upper, 1e2 * excess, 1e3 * points, settled, look, f"{way}ward scan")
+        for kind, (marker, colour) in LOOKS.items():
+            alike = [(1e2 * r.excess, r.lyapunov_map) for r in rows if (r.model, r.kind) == (name, kind)]
+            mark: plotting.Style = {"markersize": 3.4, "mfc": "none", "markeredgecolor": colour}
+            lower.plot(*np.array(alike).reshape(-1, 2).T, marker, **mark, label=kind)
+        lower.axhline(0.0, **plotting.GUIDE)
+        for axis in (upper, lower):
+            axis.axvline(0.0, **plotting.GUIDE)
+        plotting.panel(upper, column, f"{TITLES[name]}, {frequency:.2f} Hz")
+        plotting.panel(lower, column + 2)
+        plotting.label(lower.xaxis, plotting.EXCESS, "%")
+    plotting.label(axes[0, 0].yaxis, quantity, "mrad" if quantity == "rotation" else "mm")
+    plotting.label(axes[1, 0].yaxis, "exponent per drive period")
+    plotting.legend_below(figure, axes.flat, 3, markerscale=1.5)
+    return figure
+
+
+@plotting.in_house_style
+def draw_basins(plane: Starts, leads: np.ndarray, frequency: float) -> Figure:
+    """The strobe plane, coloured by where its points lead."""
+    figure, axis = plotting.new_figure(height=0.088)
+    oscillator, m = plane.strobed.oscillator, plane.period
+    gap, speed = oscillator.stop.gap, oscillator.unit_speed
+    looks = {
+        m: (plotting.BLUE, f"to p$_{{{m}}}$"),
+        1: (plotting.tint(plotting.SKY, 0.3), "to p$_1$ without impacts"),
+        0: (plotting.ORANGE, "to something else"),
+    }
+    x, y, picture = plane.x / gap, plane.velocity / speed, np.full(leads.shape, np.nan)
+    for place, code in enumerate(looks):
+        picture[leads == code] = place
+    colours = ListedColormap([colour for colour, _ in looks.values()])
+    axis.pcolormesh(x, y, picture, vmin=-0.5, vmax=len(looks) - 0.5, cmap=colours, rasterized=True)
+    for code in plane.orbits:
+        colour = plotting.VERMILION if code == 1 else "white"
+        look = {"color": colour, "markeredgecolor": "black", "markersize": 4}
+        strobes = (plane.strobes(code) / (gap, speed)).T
+        axis.plot(*strobes, "D" if code == 1 else "o", **look, label=f"p$_{{{code}}}$")
+    for colour, words in looks.values():
+        axis.fill([], [], facecolor=colour, edgecolor="0.4", label=words)
+    share = 100 * parts(leads, m)["p1 without impacts"]
+    title = f"Eq. (1), {frequency:.2f} Hz, $F/F_g - 1$ = {oscillator.excess:g}"
+    axis.set_title(f"{title}\n{share:.1f} % lead to p$_1$")
+    plotting.label(axis.xaxis, "$ξ$ / gap at the strobe")
+    plotting.label(axis.yaxis, "$\\dot{ξ}$ / (2π f gap) at the strobe")
+    plotting.legend_below(figure, [axis], 2)
+    return figure

@@ -170,8 +170,15 @@ def born_everywhere(scene: Scene, run: Run, count: int) -> list[Born]:
         nordmark = nordmark_at(scene, frequency)
         edges = band_of(scene, maximal_period(nordmark))
         part = (frequency - edges.lower) / (edges.upper - edges.lower)
-        known = {"spring": job.spring, "f_times_t": job.f_times_t, "map": maximal_periods(nordmark)}
-        rows.append(Born(**known, period=period, next_to_edge=part >= TOP))
+        rows.append(
+            Born(
+                spring=job.spring,
+                f_times_t=job.f_times_t,
+                period=period,
+                map=maximal_periods(nordmark),
+                next_to_edge=part >= TOP,
+            )
+        )
     again = [i for i, row in enumerate(rows) if row.next_to_edge and not row.agrees]
     nearer = [jobs[i]._replace(excess=CLOSER * excess) for i in again]
     for i, period in zip(again, run.attempt(born_at, nearer, "closer to grazing"), strict=True):

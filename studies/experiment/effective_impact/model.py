@@ -194,9 +194,8 @@ class Spring:
 def cases_of(spring: Spring, masses: Sequence[Spring], fine: Spring, every: int = 1) -> Iterator[Case]:
     """Every case, or every `every`-th of a curve: of the spring, with other tip masses, on a finer mesh."""
     own, hertz = contact_law_of(spring.scene), hertz_of(spring.scene)
-    lines = [(HERTZ, spring, hertz), ("bare tip, Hertz", masses[0], hertz)]
-    if own != hertz:
-        lines.insert(0, (OWN, spring, own))
+    other: list[tuple[str, Spring, ContactLaw]] = [] if own == hertz else [(OWN, spring, own)]
+    lines = [*other, (HERTZ, spring, hertz), ("bare tip, Hertz", masses[0], hertz)]
     for name, one, law in lines:
         for excess in EXCESSES[::every]:
             yield one.case("speed", name, law, value=excess, excess=excess)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -74,7 +75,7 @@ def curves(axis: Axes, rows: Sequence[Folds], sign: float) -> None:
             shown = [(row.frequency_hz, end) for row, end in ends if row.m == m and sign * end < 0.0]
             axis.plot(*np.array(shown).reshape(-1, 2).T, **style, linewidth=0.9)
     crossed = [(row.frequency_hz, end) for row, end in ends if sign * end < 0.0 and not row.beam_admissible]
-    look = {"markersize": 3.5, "color": VERMILION, "label": "beam, not admissible"}
+    look: plotting.Style = {"markersize": 3.5, "color": VERMILION, "label": "beam, not admissible"}
     axis.plot(*np.array(crossed).reshape(-1, 2).T, "x", **look)
 
 
@@ -83,7 +84,8 @@ def names_of_bands(axes: Sequence[Axes], scene: Scene, edges: Sequence[Band]) ->
     lowest, highest = (corresponding(scene, f) for f in FREQUENCIES_HZ)
     axes[1].set_xlim(lowest, highest)
     for seen, m in periods_of(scene).items():
-        at = {"transform": axes[1].get_xaxis_transform(), "fontsize": NOTE, "ha": "right", "va": "bottom"}
+        at: plotting.Style = {"transform": axes[1].get_xaxis_transform(), "fontsize": NOTE}
+        at |= {"ha": "right", "va": "bottom"}
         axes[1].text(seen, 0.02, f"p$_{{{m}}}$ ", **at)
     for edge in edges:
         middle = 0.5 * (max(edge.lower, lowest) + edge.upper)
@@ -98,8 +100,8 @@ def draw_bands(scene: Scene, path: Sequence[NordmarkMap]) -> Figure:
     figure, axis = plotting.new_figure(height=0.075)
     mode, rates = scene.single_mode, np.geomspace(100.0, 1e-3, 80)
     for m in range(3, 9):
-        spring = {"free_period": mode.free_period_s, "restitution": mode.restitution}
-        edges = [band(m, decay_rate=mu, **spring) for mu in rates.tolist()]
+        bands = partial(band, m, free_period=mode.free_period_s, restitution=mode.restitution)
+        edges = [bands(decay_rate=mu) for mu in rates.tolist()]
         f = np.array([*(one.upper for one in edges), *(one.lower for one in edges[::-1])])
         gamma = np.exp(-np.concatenate([rates, rates[::-1]]) / f)
         alpha = 2.0 * np.sqrt(gamma) * np.cos(2.0 * np.pi / (f * mode.free_period_s))

@@ -65,5 +65,5 @@ def draw_change(axis: Axes, row: Transition, before: float | None, place: int) -
         axis.barh(place + shift, factor - 1.0, 0.34, left=1.0, color=colour, zorder=2, label=way)
     if row.born != row.m:
         words = f"{word(row.born)} at {row.change}"
-        at = {"xycoords": ("axes fraction", "data"), "ha": "right", "va": "center"}
+        at: plotting.Style = {"xycoords": ("axes fraction", "data"), "ha": "right", "va": "center"}
         axis.annotate(words, (0.99, place + shift), **at, fontsize=NOTE)

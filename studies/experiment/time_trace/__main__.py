@@ -32,8 +32,7 @@ from contact import Collision, StroboscopicMap
 from contact.orbits import born
 from studies import letter
 from studies.experiment.time_trace import film as filming
-from studies.experiment.time_trace.model import close_up, trace_of
-from studies.experiment.time_trace.spectrum import Peak, lines_of, peaks_of
+from studies.experiment.time_trace.model import Peak, close_up, lines_of, peaks_of, trace_of
 from studies.physics.descriptions import word
 from studies.shell.film import MOST_FRAMES
 from studies.shell.run import Verdict

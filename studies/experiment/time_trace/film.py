@@ -3,20 +3,38 @@
 Higher modes are drawn enlarged, so that they show.  The ball is where the tip is: it meets the plate when the
 computed tip does, and the plate turns orange while they touch.  Below, the tip against time.  For ParaView
 motion.pvd with motion_frames has the arrays `displacement`, true, and the points as they are drawn.
+
+A settled orbit at the times of a film: fast in flight, slow at the collision.
+
+Times count from the strobe at which the film begins. The step from frame to frame is that of the flight, at
+most the distance from the nearest contact over `NEARER`, and 1/`IN_CONTACT` of a contact while it lasts:
+
+    step(t) = clip(distance(t)/NEARER, contact/IN_CONTACT, flight)
+
+and the frames lie where the integral of dt/step reaches whole numbers.
+
+Drawn is the shape of mode 1 that carries the whole tip displacement x, and the departure from it, enlarged M
+times:
+
+    (x/phi_1) Phi_1 + M sum_{k>=2} q_k [Phi_k - (phi_k/phi_1) Phi_1]
+
+The departure leaves the tip where it is: with any M the ball meets the plate when the computed tip meets it.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from beam import write_frames
-from contact import ImpactOscillator
+from beam import Modes, SpringMesh, write_frames
+from contact import ImpactKind, ImpactOscillator, State, simulate
 from contact.orbits import Settled
-from studies.experiment.time_trace.filmed_orbit import FilmedOrbit, drawn_shapes, film_orbit
-from studies.experiment.time_trace.model import Trace
+from studies.experiment.time_trace.model import Trace, touching
 from studies.shell.film import (
     DRIVE,
     WIDTH,
@@ -120,3 +138,102 @@ def composed(
         slowed = f"{1e3 * orbit.time[i]:.2f} ms, {orbit.slowed[i]:.0f} times slower; {texts[1]}"
         pen.text((12, 32), slowed, fill="#5A5A5A", font=font)
         yield np.asarray(image, dtype=np.uint8)
+
+
+Array = NDArray[np.float64]
+
+NEARER, IN_CONTACT = 8.0, 6.0
+FLIGHT_STEPS = 120.0
+"""Steps of the flight in a whole film, were there no contacts."""
+
+APERIODIC = 4
+"""Drive periods shown of a motion that has no period."""
+
+ROOM, MOST = 0.07, 100.0
+"""Largest enlarged departure over the greatest extent of the strip; enlargement beyond which nothing is
+seen."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FilmedOrbit:
+    """One period of an orbit, arrays by frame; times from the strobe at which it begins [s].
+
+    `slowed`: how many times slower than life a frame is shown; `coordinates`: modal, (n_frames, n_modes).
+    """
+
+    duration: float
+    contacts: list[tuple[float, float]]
+    """Begin and end of each [s]."""
+    time: Array
+    slowed: Array
+    tip: Array
+    base: Array
+    touched: NDArray[np.bool_]
+    coordinates: Array
+
+
+def frame_times(duration: float, contacts: list[tuple[float, float]], frames: int) -> Array:
+    """Times of `frames` frames over a period that begins again [s], shape (frames,)."""
+    around = [(a + n * duration, b + n * duration) for n in (-1, 0, 1) for a, b in contacts]
+    flight = duration / FLIGHT_STEPS
+    lengths = [last - first for first, last in contacts if last > first]
+    least = min(flight, float(np.median(lengths)) / IN_CONTACT if lengths else flight / 50.0)
+    edges = [place for span in around for place in span if 0.0 <= place <= duration]
+    near = [place + sign * least * 1.05**k for place in edges for k in range(200) for sign in (-1, 1)]
+    fine = np.unique(np.clip([*np.linspace(0.0, duration, 4001), *edges, *near], 0.0, duration))
+    step = np.full(fine.shape, flight)
+    for first, last in around:
+        distance = np.maximum(np.maximum(first - fine, fine - last), 0.0)
+        step = np.minimum(step, np.maximum(distance / NEARER, least))
+    passed = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(fine) * (1.0 / step[1:] + 1.0 / step[:-1]))])
+    times: Array = np.interp(np.arange(frames) / frames * passed[-1], passed, fine)
+    return times
+
+
+def film_orbit(
+    oscillator: ImpactOscillator, state: State, period: int, *, frames: int, rate: float
+) -> FilmedOrbit:
+    """The motion from `state`, which lies at a strobe, in so many frames at `rate` a second."""
+    length = period or APERIODIC
+    duration, begin = length * oscillator.period, state.time
+    whole = simulate(oscillator, state, periods=length + 1)
+    felt = (whole.impacts.kind != ImpactKind.GRAZE) & (whole.impacts.start < begin + duration)
+    spans = zip(whole.impacts.start[felt] - begin, whole.impacts.end[felt] - begin, strict=True)
+    contacts = [(float(a), float(b) if math.isfinite(b) else duration) for a, b in spans]
+    times = frame_times(duration, contacts, frames)
+    run = simulate(oscillator, state, periods=length + 1, times=begin + times)
+    return FilmedOrbit(
+        duration=duration,
+        contacts=contacts,
+        time=times,
+        slowed=1.0 / (rate * np.diff(times, append=duration)),
+        tip=oscillator.tip(run.displacement),
+        base=oscillator.driven.displacement(times),
+        touched=touching(run),
+        coordinates=run.displacement,
+    )
+
+
+def drawn_shapes(
+    mesh: SpringMesh, modes: Modes, coordinates: Array, magnification: float | None = None
+) -> tuple[Array, float]:
+    """Displacements of the points of the mesh relative to the base (n_frames, n_points, 3) [m], and M [1].
+
+    `coordinates` (n_frames, n_modes) are those of the coupled modes.
+
+    M is the largest whole number with which the departures stay below `ROOM`, unless it is given.
+    """
+    kept = np.flatnonzero(modes.coupled)[: coordinates.shape[1]]
+    phi, strip = modes.phi[kept], np.unique(mesh.hexahedra)
+    first = mesh.shapes[kept[0]] / phi[0]
+    departures = np.tensordot(coordinates, mesh.shapes[kept] - phi[:, None, None] * first, axes=1)
+    carried = (coordinates @ phi)[:, None, None] * first
+    # the ball is drawn where the tip is, and does not turn
+    ball, drive = np.unique(mesh.triangles), np.array([*modes.discretization.spring.drive, 0.0])
+    departures[:, ball] = 0.0
+    carried[:, ball] = ((coordinates @ phi)[:, None] * drive)[:, None]
+    if magnification is None:
+        largest = float(np.linalg.norm(departures[:, strip], axis=2).max())
+        room = ROOM * float(np.ptp(mesh.points[strip], axis=0).max())
+        magnification = min(MOST, max(1.0, math.floor(room / largest))) if largest > 0.0 else 1.0
+    return carried + magnification * departures, magnification

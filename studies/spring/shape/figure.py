@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from studies.shell.plotting import BLUE, GUIDE, in_house_style, label, legend_below, new_figure, points, tint
+from studies.shell import plotting
 from studies.shell.scene import Scene
 from studies.spring.shape.finite_amplitude import RADII, Survival
 from studies.spring.shape.model_error import PLATES, OrbitEnds
@@ -19,35 +19,35 @@ SURVIVAL = (
 )
 
 
-@in_house_style
+@plotting.in_house_style
 def draw_plate(orbits: Sequence[OrbitEnds]) -> Figure:
     """The plates' orbit ends divided by the beam's."""
-    figure, axis = new_figure(height=0.072)
+    figure, axis = plotting.new_figure(height=0.072)
     for number, (name, title) in enumerate(PLATES.items(), start=1):
         ratios = [(getattr(row, name) or np.nan) / (row.beam or np.nan) for row in orbits]
-        axis.plot(ratios, **points(number), label=title)
-    axis.axhline(1.0, **GUIDE)
+        axis.plot(ratios, **plotting.points(number), label=title)
+    axis.axhline(1.0, **plotting.GUIDE)
     axis.set_xticks(range(len(orbits)), [f"p{row.period}\n{row.frequency_hz:.2f}" for row in orbits])
-    label(axis.xaxis, "orbit, and drive frequency", "Hz")
-    label(axis.yaxis, "end of plate over end of beam")
-    legend_below(figure, [axis], 2)
+    plotting.label(axis.xaxis, "orbit, and drive frequency", "Hz")
+    plotting.label(axis.yaxis, "end of plate over end of beam")
+    plotting.legend_below(figure, [axis], 2)
     return figure
 
 
-@in_house_style
+@plotting.in_house_style
 def draw_survival(scene: Scene, rows: Sequence[Survival]) -> Figure:
     """Periods that survive, of the folded strip over bend radius and gap."""
-    figure, chart = new_figure()
+    figure, chart = plotting.new_figure()
     for row in rows:
         if row.reading == "folded" and row.tip_mass_kg == scene.tip.mass_kg:
             place = 1e3 * row.bend_radius_m, 1e3 * row.gap_m
-            chart.scatter(*place, s=120, color=tint(BLUE, row.survive / 6))
+            chart.scatter(*place, s=120, color=plotting.tint(plotting.BLUE, row.survive / 6))
             chart.annotate(str(row.survive), place, ha="center", va="center")
     chart.set_xscale("log")
     ticks = [1e3 * radius for radius in (RADII[0], 7.5e-3, 15e-3, 25e-3, RADII[-1])]
     chart.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     chart.set_xticks([], minor=True)
     chart.margins(0.08, 0.12)
-    label(chart.xaxis, "bend radius", "mm")
-    label(chart.yaxis, "gap", "mm")
+    plotting.label(chart.xaxis, "bend radius", "mm")
+    plotting.label(chart.yaxis, "gap", "mm")
     return figure

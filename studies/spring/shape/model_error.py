@@ -24,8 +24,7 @@ from studies.physics.calibration import Targets
 from studies.physics.descriptions import born_and_lowered
 from studies.shell.scene import READOUT, Scene, beam_at, sections_of
 from studies.shell.study import Run
-from studies.spring.shape.plate import PlateModes, plate_modes
-from studies.spring.shape.plate_mesh import half_u
+from studies.spring.shape.plate import PlateModes, half_u, plate_modes
 
 MODES = 30
 """Symmetric modes computed for a plate, with which the kick has converged."""
