@@ -69,7 +69,7 @@ def test_both_orbits_have_a_basin_between_fold_and_grazing_and_one_below(letter_
 
 
 def test_small_form(run_study, monkeypatch):
-    monkeypatch.setattr("studies.experiment.chart.settled.QUICK_EXCESSES", FEW)
+    monkeypatch.setattr("studies.experiment.chart.settled.QUICK_CUT", (FEW, 100))
     ran = run_study("chart", "--quick", "--points", "4", "8", "--side", "8")
     assert ran.code == 0
     rows = ran.rows("cut")

@@ -85,9 +85,9 @@ def draw_born(cells: Sequence[Cell], mass: float, found: Outcome | None) -> Figu
         place = factors.index(cell.higher_damping), masses.index(cell.tip_mass_kg)
         own = (cell.tip_mass_kg, cell.higher_damping)
         framed = found is not None and own == (found.tip_mass_kg, found.higher_damping)
-        box = {"facecolor": colours.get(cell.period, tint(GREEN, 0.2)), "pad": 3.0}
+        box = {"facecolor": colours.get(cell.period, tint(GREEN, 0.2)), "pad": 4.0}
         box["edgecolor"] = "black" if framed else "none"
-        axis.text(*place, f"{cell.period or '–':>3}", ha="center", va="center", fontsize=NOTE, bbox=box)
+        axis.text(*place, str(cell.period or "–"), ha="center", va="center", fontsize=NOTE, bbox=box)
     axis.set(xlim=(-0.5, len(factors) - 0.5), ylim=(-0.5, len(masses) - 0.5))
     axis.set_xticks(np.arange(len(factors)), [f"{k:g}" for k in factors])
     axis.set_yticks(np.arange(len(masses)), [f"{1e3 * m:.2f}" for m in masses])

@@ -4,8 +4,8 @@ Claim (letter 1996, Figs. 1 to 3, for a whole plane): below grazing an orbit p_m
 without impacts down to its fold; at grazing the period follows the bands of the map; above it periods
 double, and chaos lies between. Computed on a grid refined around grazing: at each frequency the amplitude is
 raised and lowered again with the state carried along, and each cell gets the period (up to 64) and the
-impacts of the orbit on which the motion settles, within --cycles drive periods
-(contact.orbits.AmplitudeScan). Drawn over it: the band edges of the map and the exact folds.
+impacts of the orbit on which the motion settles (contact.orbits.AmplitudeScan). Drawn over it: the band
+edges of the map and the exact folds.
 
 At one drive frequency, --cut-hz, two more questions are asked of Eq. (1) and of the beam with its N modes:
 
@@ -26,6 +26,7 @@ Writes:  chart_MODEL.npz (cells), folds_MODEL.csv, chart_MODEL.png; cut.csv, cut
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from functools import partial
 from typing import Annotated, Literal
@@ -36,6 +37,7 @@ from beam import InvalidValue
 from contact import ImpactOscillator
 from contact.orbits import AmplitudeScan
 from studies import letter
+from studies.experiment.chart import settled
 from studies.experiment.chart.model import (
     EXCESSES,
     FREQUENCIES_HZ,
@@ -47,10 +49,17 @@ from studies.experiment.chart.model import (
     folds_of_single_mode,
     side_by_side,
 )
-from studies.experiment.chart.settled import basins, cut
-from studies.physics.descriptions import TITLES
+from studies.physics.descriptions import TITLES, strobed_at
 from studies.shell.options import require_cells
-from studies.shell.scene import Scene, beam_at, corresponding, harmonic, single_mode_at
+from studies.shell.scene import (
+    Scene,
+    beam_at,
+    corresponding,
+    harmonic,
+    model_of,
+    require_drive_below,
+    single_mode_at,
+)
 from studies.shell.study import Run, study
 from studies.shell.sweep import Column, sweep
 
@@ -145,3 +154,52 @@ def drawn(
     without = float(np.mean(cells["period"] == 0))
     run.say(f"{100 * without:.1f} % of the cells without a period up to {LARGEST_PERIOD}")
     return {"share_without_period": without, "folds": len(folds)}
+
+
+def cut(scene: Scene, run: Run, f: float) -> Mapping[str, object]:
+    """The settled motions of Eq. (1) and of the beam at the drive frequency `f` [Hz], stored and drawn."""
+    from studies.experiment.chart import figure  # matplotlib is slow to import
+
+    modes = model_of(scene)
+    require_drive_below(scene, modes, f)
+    maps = {name: strobed_at(name, scene, f, modes) for name in ("single_mode", "beam")}
+    values, cycles = settled.QUICK_CUT if run.quick else settled.CUT
+    rows, strobes = list[settled.Settlement](), list[np.ndarray]()
+    jobs = partial(settled.carried, scene=scene, values=values, cycles=cycles)
+    for scan, recorded, failures in run.map(jobs, maps.items(), "scans"):
+        rows, strobes = rows + scan, strobes + recorded
+        for reason in failures:
+            run.failed("scan", reason)
+    run.table("cut", rows, "Settled motions; kind by the largest Lyapunov exponent.")
+    run.arrays("cut", points=np.array(strobes), excess=[row.excess for row in rows])
+    run.figure("cut", figure.draw_scan(rows, strobes, f, scene.readout.quantity), figure.SCAN)
+    wild = [row for row in rows if row.kind == settled.CHAOTIC]
+    chaotic = {name: [row.excess for row in wild if row.model == name] for name in maps}
+    spans = [f"{TITLES[name]}: {min(at):.3g} to {max(at):.3g}" for name, at in chaotic.items() if at]
+    run.verdict(
+        "chaos",
+        "agrees" if spans else "differs",
+        found="; ".join(spans) or "none",
+        note=f"excess with a positive Lyapunov exponent at {f:.2f} Hz",
+    )
+    kinds = Counter(f"{TITLES[row.model]}, {row.kind}" for row in rows)
+    return {"cut_hz": f, "rows": rows, "kinds": kinds}
+
+
+def basins(scene: Scene, run: Run, f: float, side: int) -> Mapping[str, object]:
+    """The basins of Eq. (1) at the drive frequency `f` [Hz], stored and drawn."""
+    from studies.experiment.chart import figure  # matplotlib is slow to import
+
+    plane = settled.plane_of(scene, f, side)
+    leads = np.array(run.map(plane.line, plane.velocity.tolist(), "basins"))  # shape (velocities, x)
+    run.arrays("basins", x=plane.x, velocity=plane.velocity, leads=leads)
+    run.figure("basins", figure.draw_basins(plane, leads, f), figure.BASINS)
+    period, shares = plane.period, settled.parts(leads, plane.period)
+    both = period > 1 and shares[f"p{period}"] > 0.0  # p1 without impacts is stable below grazing
+    run.verdict(
+        "coexistence",
+        "agrees" if both else "differs",
+        found=f"Eq. (1): p1 and p{period}" if both else "Eq. (1): one of them alone",
+        note=f"at excess {settled.EXCESS:g} the start decides which of them is reached",
+    )
+    return {"basins": {"excess": settled.EXCESS, "period": period, "parts": shares}}

@@ -46,7 +46,7 @@ IMPACTS = ["white", *map(to_hex, CIVIDIS(np.linspace(1.0, 0.0, len(CLASSES))))]
 
 NONE, FAILED = "0.33", "black"
 
-LEAST_AREA = 0.0012
+LEAST_AREA = 0.004
 """Part of a plotting.panel that a region must have to be given its number."""
 
 EDGE = 0.002
@@ -79,6 +79,7 @@ def draw(
             image = table[np.where(period < 0, -1, np.where(period == 0, -2, places))]
             axis.pcolormesh(x, y, image.swapaxes(0, 1), shading="nearest", rasterized=True)
             _draw_theory(axis, edges, folds)
+            axis.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
         hit = np.where((period > 0) & (impacts > 0), period, 0)
         _write_numbers(axes[0, k], hit, x, y, [f"p$_{{{m}}}$" for m in range(hit.max() + 1)])
         _write_numbers(axes[1, k], np.where(hit, classes, 0), x, y, names)

@@ -9,12 +9,10 @@ hysteresis of the letter's transitions, 1e-4 to 1.3e-2, would be lost within a s
 400 amplitudes over -0.15 ... 0.1; here the step at grazing is 1e-4 and the last ones are 3e-3, ten to the
 width of the islands near -0.1.
 
-What theory draws over the chart: band edges of the map, and the folds at which p_m orbits end.
-
-Bands (``contact.band``): frequencies at which p_m is born at grazing in the map.  Folds: in closed
-form for Eq. (1) (``contact.MaximalFamily``), by shooting and continuation along the frequency for the
-beam (``contact.orbits``).  Only orbits with one impact, and only where no further touch spoils
-them (certified).
+Theory draws over the chart the band edges of the map, and the folds at which p_m orbits end. Bands
+(``contact.band``): frequencies at which p_m is born at grazing in the map. Folds: in closed form for Eq. (1)
+(``contact.MaximalFamily``), by shooting and continuation along the frequency for the beam
+(``contact.orbits``). Only orbits with one impact, and only where no further touch spoils them (certified).
 """
 
 from __future__ import annotations

@@ -6,35 +6,27 @@ lyapunov_map     largest Lyapunov exponent per drive period, from the Jacobians 
 kind             periodic, chaotic (exponent above zero by three standard errors), not settled (below zero
                  by as much: a long period or a slow transient), or undecided
 
-Basins of attraction of Eq. (1) on the strobe plane, between the fold of p_m and grazing.
-
-The starts are a grid in x/gap and x'/(2 pi f gap). A motion has reached an orbit when a strobe lies within
-`NEAR` of one of the orbit's, in x and x'/omega: for p_m then nothing else is near, and next to the motion
-without impacts, p1, what is left of the free oscillation is a small part of what the tip keeps off the wall.
+Then basins of attraction of Eq. (1) on the strobe plane, between the fold of p_m and grazing. The starts are
+a grid in x/gap and x'/(2 pi f gap). A motion has reached an orbit when a strobe lies within `NEAR` of one of
+the orbit's, in x and x'/omega: for p_m then nothing else is near, and next to the motion without impacts, p1,
+what is left of the free oscillation is a small part of what the tip keeps off the wall.
 """
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any
 
 import numpy as np
 
 from contact import ContactError, State, StroboscopicMap
 from contact.orbits import Exponents, Settled, born, map_exponents, orbit_exponents, settle
-from studies.physics.descriptions import TITLES, strobed_at
-from studies.shell.scene import READOUT, Scene, model_of, require_drive_below, single_mode_at
-from studies.shell.study import Run
+from studies.physics.descriptions import TITLES
+from studies.shell.scene import READOUT, Scene, single_mode_at
 
-FREQUENCY = 21.50
-"""Drive frequency of the letter's period 4 [Hz]."""
-
-EXCESSES, QUICK_EXCESSES = np.linspace(-0.016, 0.06, 39), np.linspace(-0.016, 0.06, 11)
-AVERAGE, QUICK_AVERAGE = 600, 100
-"""Amplitudes of the cut [1]; drive periods in the averages of the exponents. The small form has fewer."""
+CUT, QUICK_CUT = (np.linspace(-0.016, 0.06, 39), 600), (np.linspace(-0.016, 0.06, 11), 100)
+"""Amplitudes of the cut [1] and drive periods in the averages of the exponents; of the small form."""
 
 SIGNIFICANT = 3.0
 """Standard errors by which an exponent must differ from zero to be told from it."""
@@ -101,35 +93,6 @@ def carried(
         found |= {"lyapunov_map": exponents.largest, "error_map": exponents.error}
         rows.append(Settlement(model=name, direction=direction, excess=excess, kind=kind, **found))
     return rows, points, failures
-
-
-def cut(scene: Scene, run: Run, f: float) -> Mapping[str, object]:
-    """The settled motions of Eq. (1) and of the beam at the drive frequency `f` [Hz], stored and drawn."""
-    from studies.experiment.chart import figure  # matplotlib is slow to import
-
-    modes = model_of(scene)
-    require_drive_below(scene, modes, f)
-    maps = {name: strobed_at(name, scene, f, modes) for name in ("single_mode", "beam")}
-    values, cycles = (QUICK_EXCESSES, QUICK_AVERAGE) if run.quick else (EXCESSES, AVERAGE)
-    rows, strobes = list[Settlement](), list[np.ndarray]()
-    jobs = partial(carried, scene=scene, values=values, cycles=cycles)
-    for scan, recorded, failures in run.map(jobs, maps.items(), "scans"):
-        rows, strobes = rows + scan, strobes + recorded
-        for reason in failures:
-            run.failed("scan", reason)
-    run.table("cut", rows, "Settled motions; kind by the largest Lyapunov exponent.")
-    run.arrays("cut", points=np.array(strobes), excess=[row.excess for row in rows])
-    run.figure("cut", figure.draw_scan(rows, strobes, f, scene.readout.quantity), figure.SCAN)
-    chaotic = {name: [r.excess for r in rows if (r.model, r.kind) == (name, CHAOTIC)] for name in maps}
-    spans = [f"{TITLES[name]}: {min(at):.3g} to {max(at):.3g}" for name, at in chaotic.items() if at]
-    run.verdict(
-        "chaos",
-        "agrees" if spans else "differs",
-        found="; ".join(spans) or "none",
-        note=f"excess with a positive Lyapunov exponent at {f:.2f} Hz",
-    )
-    kinds = Counter(f"{TITLES[row.model]}, {row.kind}" for row in rows)
-    return {"cut_hz": f, "rows": rows, "kinds": kinds}
 
 
 EXCESS = -0.006
@@ -209,22 +172,3 @@ def plane_of(scene: Scene, frequency: float, side: int, excess: float = EXCESS) 
         x=np.linspace(-FAR, 1.0, side) * gap,
         velocity=FAR * speed * np.linspace(-1.0, 1.0, side),
     )
-
-
-def basins(scene: Scene, run: Run, f: float, side: int) -> Mapping[str, object]:
-    """The basins of Eq. (1) at the drive frequency `f` [Hz], stored and drawn."""
-    from studies.experiment.chart import figure  # matplotlib is slow to import
-
-    plane = plane_of(scene, f, side)
-    leads = np.array(run.map(plane.line, plane.velocity.tolist(), "basins"))  # shape (velocities, x)
-    run.arrays("basins", x=plane.x, velocity=plane.velocity, leads=leads)
-    run.figure("basins", figure.draw_basins(plane, leads, f), figure.BASINS)
-    period, shares = plane.period, parts(leads, plane.period)
-    both = period > 1 and shares[f"p{period}"] > 0.0  # p1 without impacts is stable below grazing
-    run.verdict(
-        "coexistence",
-        "agrees" if both else "differs",
-        found=f"Eq. (1): p1 and p{period}" if both else "Eq. (1): one of them alone",
-        note=f"at excess {EXCESS:g} the start decides which of them is reached",
-    )
-    return {"basins": {"excess": EXCESS, "period": period, "parts": shares}}

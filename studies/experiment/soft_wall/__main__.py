@@ -17,7 +17,7 @@ stability, and at which a multiplier passes -1. The study compares the loss of s
 amplitude stability. `closed_forms` derives the equations.
 
 Run:     python -m studies soft_wall [--decades 1 6] [--quick]
-Writes:  kicks.csv, doublings.csv; figures kick and doublings
+Writes:  kicks.csv, doublings.csv; figure kick
 """
 
 from __future__ import annotations
@@ -73,7 +73,6 @@ def soft_wall(
     from studies.experiment.soft_wall import figure  # matplotlib is slow to import
 
     run.figure("kick", figure.draw_kicks([*kicks, *more]), figure.KICKS)
-    run.figure("doublings", figure.draw_doublings(scene, doublings, beam), figure.DOUBLINGS)
     judge_wall(run, doublings)
     if beam:
         judge_beam(run, beam)

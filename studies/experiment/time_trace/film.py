@@ -4,8 +4,6 @@ Higher modes are drawn enlarged, so that they show.  The ball is where the tip i
 computed tip does, and the plate turns orange while they touch.  Below, the tip against time.  For ParaView
 motion.pvd with motion_frames has the arrays `displacement`, true, and the points as they are drawn.
 
-A settled orbit at the times of a film: fast in flight, slow at the collision.
-
 Times count from the strobe at which the film begins. The step from frame to frame is that of the flight, at
 most the distance from the nearest contact over `NEARER`, and 1/`IN_CONTACT` of a contact while it lasts:
 

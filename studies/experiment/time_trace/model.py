@@ -4,9 +4,8 @@
 
 A law of restitution has no force: not a number.
 
-Lines of a periodic signal and its peaks.
-
-A signal of period P, sampled over a whole number of periods, is a sum of lines at the multiples of 1/P,
+The spectrum: a signal of period P, sampled over a whole number of periods, is a sum of lines at the multiples
+of 1/P,
 
     x(t) = a_0 + sum_j a_j cos(2 pi j t / P + phase_j),
 

@@ -24,7 +24,7 @@ periods and the ends of the orbits? This part needs spring.kind = "flat_u" and a
 
 Run:     python -m studies shape [--quick]
 Writes:  readings.csv (a row a shape); of a flat U plate_ends.csv (a row a frequency);
-         springs.csv (a row a reading, bend radius, gap and ball); figures plate and finite_amplitude
+         springs.csv (a row a reading, bend radius, gap and ball); the figure finite_amplitude
 """
 
 from __future__ import annotations
@@ -69,9 +69,7 @@ def judge(run: Run, readings: Mapping[Reading, ReadingRow]) -> None:
 
 
 def compare_plate(scene: Scene, run: Run) -> list[OrbitEnds]:
-    """Table and figure of the flat U as a plate; none for another spring or drive."""
-    from studies.spring.shape import figure  # matplotlib is slow to import
-
+    """Table of the flat U as a plate; none for another spring or drive."""
     if (scene.spring.kind, scene.drive.kind) != ("flat_u", "harmonic"):
         run.say("The part on the plate is left out: it needs a flat U with a harmonic drive.")
         return []
@@ -79,7 +77,6 @@ def compare_plate(scene: Scene, run: Run) -> list[OrbitEnds]:
     springs, frequencies = with_refitted(scene, run, plates, beam), scene.drive.frequencies_hz
     orbits = orbit_rows(scene, run, springs, frequencies[:: 2 if run.quick else 1])
     run.table("plate_ends", orbits, "Ends of the orbits on the way down, by beam and plates.")
-    run.figure("plate", figure.draw_plate(orbits), figure.PLATE)
     same = all(row.same_period for row in orbits)
     words = [f"As a plate the spring {'keeps every' if same else 'changes a'} period that is born."]
     known = [row for row in orbits if row.factors]
@@ -94,7 +91,7 @@ def compare_plate(scene: Scene, run: Run) -> list[OrbitEnds]:
 
 def finite_amplitude(scene: Scene, run: Run) -> list[Survival]:
     """The springs of the map, stored and drawn."""
-    from studies.spring.shape import figure
+    from studies.spring.shape import figure  # matplotlib is slow to import
 
     springs, gaps = springs_of(scene, run.quick)
     found = run.map(partial(survivals, scene, gaps), springs, "springs")

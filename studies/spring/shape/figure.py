@@ -1,37 +1,19 @@
-"""Figures of the shape: the flat U as a plate beside its beam, and the periods that survive."""
+"""The periods of the letter that survive at the amplitude of the gap."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
 from matplotlib.figure import Figure
 
 from studies.shell import plotting
 from studies.shell.scene import Scene
 from studies.spring.shape.finite_amplitude import RADII, Survival
-from studies.spring.shape.model_error import PLATES, OrbitEnds
 
-PLATE = "Ends of the orbits of the flat U as a plate, over the ends of its beam."
 SURVIVAL = (
     "How many of the letter's periods are born at 2.5e-4 and at 1e-3, of the folded strip with the scene's "
     "ball over bend radius and gap."
 )
-
-
-@plotting.in_house_style
-def draw_plate(orbits: Sequence[OrbitEnds]) -> Figure:
-    """The plates' orbit ends divided by the beam's."""
-    figure, axis = plotting.new_figure(height=0.072)
-    for number, (name, title) in enumerate(PLATES.items(), start=1):
-        ratios = [(getattr(row, name) or np.nan) / (row.beam or np.nan) for row in orbits]
-        axis.plot(ratios, **plotting.points(number), label=title)
-    axis.axhline(1.0, **plotting.GUIDE)
-    axis.set_xticks(range(len(orbits)), [f"p{row.period}\n{row.frequency_hz:.2f}" for row in orbits])
-    plotting.label(axis.xaxis, "orbit, and drive frequency", "Hz")
-    plotting.label(axis.yaxis, "end of plate over end of beam")
-    plotting.legend_below(figure, [axis], 2)
-    return figure
 
 
 @plotting.in_house_style

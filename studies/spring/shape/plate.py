@@ -15,11 +15,10 @@ unknowns (L. S. D. Morley, Aeronaut. Q. 19 (1968) 149). It does not conform; fre
 The ball is fixed to a point of the sheet or to a rigid round seat, where w = a + c x and x runs along the
 legs. The sheet can dimple under a point. The rotary inertia of the ball acts on c; it is ignored at a point.
 
-Triangles on half of a flat U, along its centreline.
-
-A grid has lines of constant s (along the centreline, from the clamp) and t (across, outwards) [m]. It covers
-one leg, of length L [m], and half of the bend, of radius r [m]. The angle is a = 0 on the leg and
-a = (s - L)/r on the bend. The grid point (s, t) is mapped to
+The triangles lie on half of a flat U, along its centreline. A grid has lines of constant s (along the
+centreline, from the clamp) and t (across, outwards) [m]. It covers one leg, of length L [m], and half of the
+bend, of radius r [m]. The angle is a = 0 on the leg and a = (s - L)/r on the bend. The grid point (s, t) is
+mapped to
 
     x = min(s, L) - L - r + (r + t) sin a,      z = (r + t) cos a,
 
