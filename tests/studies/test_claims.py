@@ -6,19 +6,8 @@ import numpy as np
 import pytest
 
 from contact import StroboscopicMap, maximal_period
-from contact.orbits import Shooting, settle
-from studies.experiment.claims.model import (
-    RESTITUTIONS,
-    Job,
-    born_at,
-    end_speed,
-    family_at,
-    has_one_impact,
-    line_of,
-    node_at,
-    springs,
-    trends,
-)
+from contact.orbits import settle
+from studies.experiment.claims.model import RESTITUTIONS, Job, born_at, line_of, node_at, springs, trends
 from studies.shell.scene import nordmark_at, single_mode_at
 
 
@@ -47,15 +36,6 @@ def test_the_node_keeps_one_impact_up_to_its_secondary_bifurcation(letter_scene,
     below = np.linspace(5e-4, found.secondary * 0.99, 25)
     assert followed(strobed, below) == (m, 1)
     assert followed(strobed, [*below, found.secondary * 1.01]) != (m, 1)
-
-
-@pytest.mark.parametrize(("frequency", "tau", "m"), [(21.50, 0.3, 4), (20.90, 0.5, 3)])
-def test_the_second_impact_is_where_shooting_finds_it(letter_scene, frequency, tau, m):
-    """The orbit of the closed form and that of shooting lose their single impact at the same speed."""
-    family = family_at(with_tau(letter_scene, tau), frequency, m)
-    speed, shooting = end_speed(family, family.fold()), Shooting(oscillator=family.oscillator, period=m)
-    inside, outside = (shooting.at_speed(part * speed) for part in (0.999, 1.001))
-    assert has_one_impact(inside) and outside.stable and not outside.admissible
 
 
 def test_a_secondary_bifurcation_below_grazing_lets_another_state_be_born(letter_scene):
