@@ -27,8 +27,8 @@ DRIVE_AMPLITUDE_M, AMPLITUDE_STABILITY_M = 2e-3, 0.5e-6
 AMPLITUDE_STABILITY = AMPLITUDE_STABILITY_M / DRIVE_AMPLITUDE_M
 """The same as an excess [1]."""
 
-TIME_TRACE_EXCESS = 0.013
-"""Fig. 4: excess of the period-4 time trace."""
+TIME_TRACE_HZ, TIME_TRACE_EXCESS = 21.50, 0.013
+"""Fig. 4: drive frequency [Hz] and excess of the period-4 time trace."""
 
 SETTLE_CYCLES, STROBE_POINTS = 10_000, 40
 """Fig. 5: drive periods waited at each amplitude, and strobe points drawn."""

@@ -16,7 +16,7 @@ parameters) or to all modes (kicks), and by shooting (beam).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any, ParamSpec, TypeVar
 
@@ -25,7 +25,16 @@ from numpy.typing import NDArray
 
 from beam import InvalidValue, ModalModel, Refusal
 from contact import ContactError, StrobedMap, StroboscopicMap
-from contact.orbits import KickFamily, OrbitDiagram, fold_excess, orbit_diagram
+from contact.orbits import (
+    KickFamily,
+    OrbitDiagram,
+    OrbitEnd,
+    Settled,
+    born,
+    fold_excess,
+    orbit_diagram,
+    orbit_end,
+)
 from studies.physics.two_parameters import fold_of_kicks, two_parameters_at
 from studies.shell.scene import READOUT, Scene, beam_at, nordmark_at, single_mode_at
 
@@ -34,6 +43,9 @@ TITLES = {"map": "Nordmark map", "single_mode": "Eq. (1)", "two_parameters": "tw
 
 BELOW = -1e-3
 """Excess of the motion without impacts from which a motion above grazing starts [1]."""
+
+ROUNDING = 1e-12
+"""Change of an excess that is rounding [1]."""
 
 Strobed = StrobedMap[Any]
 Diagram = OrbitDiagram[Any]
@@ -88,12 +100,27 @@ def up_and_down(strobed: Strobed, excesses: NDArray[np.float64], **settings: Any
     return {"up": up, "down": orbit_diagram(strobed, excesses[::-1], up.end, **settings)}
 
 
+def born_and_lowered(
+    strobed: Strobed, excess: float, most_cycles: int
+) -> tuple[Settled[Any], OrbitEnd[Any] | None]:
+    """The orbit that is born at `excess`, and its end when the amplitude is lowered; None for p1 and none."""
+    orbit = born(strobed, excess, most_cycles=most_cycles)
+    if orbit.period < 2:
+        return orbit, None
+    return orbit, orbit_end(strobed, orbit.end, excess, most_cycles=most_cycles)
+
+
 def or_none(function: Callable[P, T], *arguments: P.args, **options: P.kwargs) -> T | None:
     """The value of the function, or None where it cannot be computed (a ContactError or a Refusal)."""
     try:
         return function(*arguments, **options)
     except (ContactError, Refusal):
         return None
+
+
+def falls(excesses: Sequence[float]) -> bool:
+    """Whether no value exceeds the one before it by more than rounding; a NaN does not fall."""
+    return bool(np.all(np.diff(excesses) <= ROUNDING))
 
 
 def word(period: int | None) -> str:

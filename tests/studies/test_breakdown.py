@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from contact import maximal_period, stable_range
-from contact.orbits import Shooting, fold_excess
 from studies import letter
 from studies.experiment.breakdown.model import (
     FREQUENCY_HZ,
@@ -75,17 +74,6 @@ def test_the_island_of_eq_1_starts_at_the_fold_and_outlives_the_single_impact_p3
     assert found.end < -0.05
 
 
-def test_the_fold_of_p3_of_eq_1_from_shooting_is_that_of_the_closed_form_for_either_tau(scene):
-    """Closed form and shooting agree at both; by 1 + tau alone the folds would differ less."""
-    folds = []
-    for tau in (0.05, 0.1):
-        strobed = single_mode(scene, tau).strobed()
-        folds.append(fold_excess(strobed, 3))
-        shot = Shooting(oscillator=strobed.oscillator, period=3).fold()
-        assert shot.excess == pytest.approx(folds[-1], rel=1e-8)
-    assert folds[1] / folds[0] == pytest.approx(1.141, abs=2e-3)
-
-
 def test_the_beam_as_calibrated_and_eq_1_are_born_without_a_period(scene, calibrated):
     for spring in (single_mode(scene, 0.1), calibrated):
         cell = cell_of(spring)
@@ -94,9 +82,9 @@ def test_the_beam_as_calibrated_and_eq_1_are_born_without_a_period(scene, calibr
 
 def test_a_lighter_ball_gives_the_letters_p6_and_p3_at_the_end_of_the_downward_scan(light):
     cell = cell_of(light)
-    assert (cell.period, cell.impacts) == (6, 3) and -0.09 < cell.fold_p3 < -0.05
-    outcome, ways = scanned(("light", light), points=45, cycles=700, early=True)
-    assert (outcome.born_period, outcome.fold_p3) == (6, cell.fold_p3) and outcome.ends_on_p3
+    assert (cell.period, cell.impacts) == (6, 3)
+    outcome, ways = scanned(("light", light), points=31, cycles=500, early=True)
+    assert outcome.born_period == 6 and -0.09 < outcome.fold_p3 < -0.05 and outcome.ends_on_p3
     up, down = ways["up"], ways["down"]
     below = up.excess < -1e-9
     assert np.all(periods(up)[below] == 1) and np.all(up.impacts[below] == 0)
@@ -108,7 +96,7 @@ def test_a_lighter_ball_gives_the_letters_p6_and_p3_at_the_end_of_the_downward_s
     assert outcome.p3_first < 0.6 * outcome.fold_p3  # far from grazing, at the end of the scan
 
 
-@pytest.mark.parametrize("side", [-1.0, 1.0])
+@pytest.mark.parametrize("side", [-1.0, pytest.param(1.0, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", ["free_period", "decay_rate"])
 def test_errors_of_the_letter_do_not_give_period_6_to_the_calibrated_beam(scene, side, name):
     given = dict(letter.BREAKDOWN)
@@ -120,7 +108,7 @@ def test_errors_of_the_letter_do_not_give_period_6_to_the_calibrated_beam(scene,
 
 
 def test_small_form(run_study):
-    ran = run_study("breakdown", "--quick")
+    ran = run_study("breakdown", "--quick", "--cycles", "400")
     assert ran.code == 0
     six = ran.summary["cells_with_period_6"]
     assert (0.004, 1.0) in [(cell["tip_mass_kg"], cell["higher_damping"]) for cell in six]

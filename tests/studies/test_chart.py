@@ -9,12 +9,11 @@ import pytest
 
 from contact import State, StroboscopicMap
 from contact.orbits import settle
-from studies.experiment.chart.basins import parts, plane_of
-from studies.experiment.chart.cut import CHAOTIC, NOT_SETTLED, PERIODIC, WITHOUT, kind_of
+from studies.experiment.chart.settled import CHAOTIC, NOT_SETTLED, PERIODIC, WITHOUT, kind_of, parts, plane_of
 from studies.shell.scene import beam_at, single_mode_at
 
 FREQUENCY = 21.50
-CUT = ("--cut-range", "-0.02", "0.012", "--cut-points", "5")
+FEW = np.array([-0.02, -0.012, -0.004, 0.004, 0.012])
 
 
 def told(strobed, *, most_cycles=1500, cycles=400):
@@ -42,7 +41,7 @@ def test_chaos_slow_transient_and_motion_without_impacts_are_told_apart(letter_s
 
 
 def test_starts_next_to_either_orbit_lead_to_it_between_fold_and_grazing(letter_scene):
-    plane = plane_of(letter_scene, FREQUENCY, -0.006, 2)
+    plane = plane_of(letter_scene, FREQUENCY, 2)
     gap = letter_scene.stop.gap_m
     assert {m: points.shape for m, points in plane.orbits.items()} == {4: (4, 2), 1: (1, 2)}
     near = 3e-5 * gap
@@ -57,20 +56,21 @@ def test_starts_next_to_either_orbit_lead_to_it_between_fold_and_grazing(letter_
 
 
 def test_both_orbits_have_a_basin_between_fold_and_grazing_and_one_below(letter_scene):
-    between = plane_of(letter_scene, FREQUENCY, -0.006, 2)
+    between = plane_of(letter_scene, FREQUENCY, 2)
     ((x, velocity),), speed = between.strobes(1), 2.0 * np.pi * FREQUENCY
     around = np.linspace(-0.03, 0.03, 12) * letter_scene.stop.gap_m
     between = replace(between, x=x + around, velocity=velocity + speed * around)
     leads = np.array([between.line(v) for v in between.velocity.tolist()])
     assert np.mean(leads == 1) > 0.02 and np.mean(leads == 4) > 0.5
-    below = plane_of(letter_scene, FREQUENCY, -0.02, 6)
+    below = plane_of(letter_scene, FREQUENCY, 6, -0.02)
     leads = np.array([below.line(v) for v in below.velocity.tolist()])
     assert below.period == 1 and set(np.unique(leads)) <= {-1, 1}  # below the fold of -0.0132 only p1 is left
     assert parts(leads, below.period) == {"p1 without impacts": 1.0, "something else": 0.0}
 
 
-def test_small_form(run_study):
-    ran = run_study("chart", "--quick", "--points", "4", "8", "--side", "8", *CUT)
+def test_small_form(run_study, monkeypatch):
+    monkeypatch.setattr("studies.experiment.chart.settled.QUICK_CUT", (FEW, 100))
+    ran = run_study("chart", "--quick", "--points", "4", "8", "--side", "8")
     assert ran.code == 0
     rows = ran.rows("cut")
     for row in rows:

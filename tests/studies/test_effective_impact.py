@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from contact import LinearContact, NewtonRestitution, first_collision
+from contact import LinearContact, NewtonRestitution
 from studies.experiment.effective_impact.model import Approach, Spring, floor_of, on_orbits
 from studies.letter import TIME_TRACE_EXCESS
-from studies.physics.calibration import bare_cantilever, free_period, leaf_mass, with_mass_ratio
-from studies.shell.scene import beam_at, hertz_of, read_scene
+from studies.physics.calibration import bare_cantilever
+from studies.shell.scene import approach_speed, hertz_of, read_scene
 
 pytestmark = pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
 """Calibration tries springs that nobody would build."""
@@ -61,37 +61,25 @@ def test_the_floor_of_restitution_is_the_time_of_the_contact(spring):
     assert row.kick == pytest.approx(1.0, abs=0.02)
     assert row.restitution == pytest.approx(math.sqrt(row.contact_s / row.arc_s), rel=0.03)
     mass = LETTER.tip.mass_kg
-    linear = mass * (math.pi / hertz.contact_time(mass, spring.speed)) ** 2
+    linear = (
+        mass
+        * (
+            math.pi
+            / hertz.contact_time(mass, approach_speed(FREQUENCY, LETTER.stop.gap_m, TIME_TRACE_EXCESS))
+        )
+        ** 2
+    )
     as_hard, harder = (met(spring, LinearContact(stiffness=factor * linear)) for factor in (1.0, 9.0))
     assert as_hard.contact_s == pytest.approx(row.contact_s, rel=0.05)
     assert harder.contact_s == pytest.approx(as_hard.contact_s / 3.0, rel=0.05)
     assert harder.restitution < 0.65 * as_hard.restitution
 
 
-def test_energy_goes_where_it_is_said_to_go(spring):
-    elastic, lossy = met(spring, hertz_of(LETTER)), met(spring, spring.lossy(0.3))
-    # kick 1 takes all of mode 1: the higher modes have it, 1 - restitution^2 within the work of the spring
-    assert elastic.energy_share == pytest.approx(1.0 - elastic.restitution**2, abs=0.02)
-    assert lossy.energy_share < elastic.energy_share
-    lost = [
-        first_collision(spring.case("speed", "a", law).oscillator).energy_lost
-        for law in (hertz_of(LETTER), spring.lossy(0.3))
-    ]
-    assert lost[0] == pytest.approx(0.0, abs=1e-12) and lost[1] > 0.0
-
-
 def test_a_bare_tip_keeps_seven_tenths_and_is_late_by_more_than_the_arc(bare):
     row = met(bare, hertz_of(bare.scene))
     assert row.restitution == pytest.approx(0.7, abs=0.02)
     assert row.delay_s > row.arc_s
-    assert row.impacts > 1 and row.ball_limit == 0.0
-
-
-def test_the_family_of_tip_masses_keeps_period_and_amplitude_at_grazing():
-    fitted = with_mass_ratio(LETTER, 0.2, FREQUENCY)
-    assert fitted.tip.mass_kg == pytest.approx(0.2 * leaf_mass(fitted), rel=1e-9)
-    assert free_period(fitted) == pytest.approx(40.80e-3, rel=1e-8)
-    assert beam_at(fitted, FREQUENCY).grazing_amplitude() == pytest.approx(2e-3, rel=1e-9)
+    assert row.impacts > 1
 
 
 def test_a_settled_orbit_has_its_collision_in_every_period():
@@ -109,44 +97,27 @@ def test_a_settled_orbit_has_its_collision_in_every_period():
 
 
 def test_the_smallest_restitution_lies_between_the_cases():
-    row = Approach(
-        curve="search",
-        series="1",
-        value=0.0,
-        excess=0.01,
-        modes=20,
-        mass_ratio=0.3,
-        orbit_period=None,
-        ball_limit=0.8,
-        impacts=1,
-        arc_s=1e-3,
-    )
-    ratios = (0.1, 0.15, 0.2, 0.3, 0.4, 0.6, 1.0)
-    kick = [1.0 + 0.5 * math.log(ratio / 0.25) for ratio in ratios]
-    tau = [math.hypot(1.0 - k, 0.08) for k in kick]
-    found = floor_of(
-        [
-            replace(row, value=x, mass_ratio=x, kick=k, restitution=e)
-            for x, k, e in zip(ratios, kick, tau, strict=True)
-        ]
-    )
+    row = Approach(curve="search", series="1", value=0.0, excess=0.01, mass_ratio=0.3, impacts=1)
+    rows = []
+    for ratio in (0.1, 0.15, 0.2, 0.3, 0.4, 0.6, 1.0):
+        kick = 1.0 + 0.5 * math.log(ratio / 0.25)
+        rows.append(replace(row, mass_ratio=ratio, kick=kick, restitution=math.hypot(1.0 - kick, 0.08)))
+    found = floor_of(rows)
     assert found.restitution == pytest.approx(0.08, abs=1e-4)
     assert found.mass_ratio == pytest.approx(0.25, rel=0.01)
-    assert floor_of([]) is None
-    falling = [replace(row, value=x, mass_ratio=x, kick=0.5, restitution=1.0 - 0.5 * x) for x in ratios]
-    assert floor_of(falling) is None  # the end of the range is no floor
+    falling = [replace(row, kick=0.5, restitution=1.0 - 0.5 * row.mass_ratio) for row in rows]
+    assert floor_of([]) is floor_of(falling) is None  # the end of the range is no floor
 
 
 # the study
 
 
-def test_the_answers_agree_with_what_is_known(run_study):
+def test_the_answers_agree_with_what_is_known(run_study, monkeypatch):
+    monkeypatch.setattr("studies.experiment.effective_impact.__main__.QUICK", (4, 12))
     ran = run_study("effective_impact", "--quick", *(f"--set={key}={value}" for key, value in COARSE.items()))
     assert ran.code == 0 and ran.summary["frequency_hz"] == FREQUENCY
     curves = {row["curve"] for row in ran.rows("collisions")}
     assert curves == {"speed", "reference", "mass", "orbit", "search"}
     floors = [floor["restitution"] for floor in ran.summary["floors"]]
     assert len(floors) > 1 and all(0.2 < tau < 0.24 for tau in floors)  # whatever the loss in the contact
-    needed = ran.summary["what_gives_the_letters_restitution"]
-    assert 1.1e-5 < needed["contact_s"] < 1.2e-5 and 0.15 < needed["excess"] < 0.25
     assert ran.verdicts["restitution"] == "in part"

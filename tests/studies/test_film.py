@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import subprocess
 
 import numpy as np
@@ -11,7 +10,7 @@ from PIL import Image
 
 from contact import StroboscopicMap
 from contact.orbits import born
-from studies.experiment.time_trace.filmed_orbit import drawn_shapes, film_orbit
+from studies.experiment.time_trace.film import drawn_shapes, film_orbit
 from studies.shell import film
 from studies.shell.film import Moment, Scenery, can_encode, stage_of, write_gif, written_as_mp4
 from studies.shell.scene import beam_at, modes_of
@@ -55,7 +54,7 @@ def test_higher_modes_are_enlarged_and_the_tip_stays_where_it_is(scene, modes):
         assert np.ptp(points[:, ball], axis=1).max() < 1e-15  # it does not turn
     assert np.abs(drawn[10.0] - drawn[1.0]).max() > 1e-5
     _, chosen = drawn_shapes(scenery.mesh, modes, coordinates)
-    assert chosen >= 1.0 and chosen / 10.0 ** math.floor(math.log10(chosen)) in (1.0, 2.0, 5.0)
+    assert chosen >= 1.0 and chosen == round(chosen)
 
 
 def test_the_frames_of_an_orbit_show_its_contact(scene):
@@ -63,17 +62,13 @@ def test_the_frames_of_an_orbit_show_its_contact(scene):
     settled = born(StroboscopicMap(oscillator=oscillator), 0.013)
     orbit = film_orbit(oscillator, settled.end, settled.period, frames=80, rate=20.0)
     assert settled.period == 4 and len(orbit.contacts) == settled.impacts >= 1
-    gap = oscillator.stop.gap
-    touched, others = ([row for row in orbit.rows if row.contact == kind] for kind in (True, False))
-    assert touched and all(row.tip_m >= gap * (1 - 1e-12) and row.force_n >= 0.0 for row in touched)
-    assert all(row.force_n == 0.0 for row in others)
-    assert min(row.slowed for row in touched) > 20.0 * min(row.slowed for row in orbit.rows)
-    assert np.all(np.diff([row.time_s for row in orbit.rows]) > 0.0)
-    base = oscillator.drive.displacement([row.time_s for row in orbit.rows])
-    assert [row.base_m for row in orbit.rows] == pytest.approx(base)
+    assert orbit.touched.any() and np.all(orbit.tip[orbit.touched] >= oscillator.stop.gap * (1 - 1e-12))
+    assert orbit.slowed[orbit.touched].min() > 20.0 * orbit.slowed.min()
+    assert np.all(np.diff(orbit.time) > 0.0)
+    assert orbit.base == pytest.approx(oscillator.drive.displacement(orbit.time))
 
 
-@pytest.mark.parametrize("simple", [True, False])
+@pytest.mark.parametrize("simple", [True, pytest.param(False, marks=pytest.mark.slow)])
 def test_a_picture_shows_what_moves(scene, modes, simple):
     scenery = Scenery.of(modes, ball_radius=scene.tip.ball_radius_m, gap=0.01, swing=0.01)
     rest = at_rest(scenery)
@@ -122,9 +117,9 @@ def test_gif_and_mp4_hold_every_frame(tmp_path):
 
 def test_the_small_form_of_the_motion_writes_a_film_and_meshes(run_study):
     argv = [f"--set={key}={value}" for key, value in COARSE.items()]
-    ran = run_study("time_trace", "--quick", "--film", "--frames", "24", *argv)
+    ran = run_study("time_trace", "--quick", "--film", "--frames", "8", *argv)
     assert ran.code == 0 and ran.summary["period"] == 4 and ran.summary["impacts"] >= 1
-    assert len(list((ran.folder / "motion_frames").glob("*.vtu"))) == 24
+    assert len(list((ran.folder / "motion_frames").glob("*.vtu"))) == 8
     with Image.open(ran.folder / "motion.gif") as found:
-        assert found.n_frames == 24
-    assert {"motion.gif", "motion.pvd", "motion.png", "frames.csv"} <= set(ran.manifest["files"])
+        assert found.n_frames == 8
+    assert {"motion.gif", "motion.pvd"} <= set(ran.manifest["files"])

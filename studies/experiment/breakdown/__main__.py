@@ -43,7 +43,6 @@ from studies.experiment.breakdown.model import (
     fig_5,
     island,
     nearest_first,
-    periods,
     scanned,
     single_mode,
     tuned,
@@ -104,15 +103,10 @@ def breakdown(
     run.figure("born_period", figure.draw_born(cells, scene.tip.mass_kg, found), figure.BORN)
     judge(run, maximal_period(nordmark), outcomes, found, known)
     return {
-        "gap_m": scene.stop.gap_m,
-        "thickness_m": scene.spring.thickness_m,
-        "grazing_amplitude_m": calibrated.strobed().oscillator.grazing_amplitude(),
         "excess_of_letters_chaos_as_rho": nordmark.excess(CHAOS_AT),
-        "map_period": maximal_period(nordmark),
         "islands": known,
         "rows": outcomes,
         "found": found,
-        "cells": len(cells),
         "cells_with_period_6": [cell for cell in cells if cell.period == BORN_PERIOD],
     }
 
@@ -134,18 +128,13 @@ def search(scene: Scene, run: Run) -> tuple[list[Cell], list[Spring]]:
 
 
 def store(run: Run, scans: Sequence[tuple[Outcome, Mapping[str, Diagram]]]) -> None:
-    """All scans; failed amplitudes."""
+    """The strobe points of all scans; failed amplitudes."""
     arrays = dict[str, np.ndarray]()
     for outcome, ways in scans:
         name = outcome.description
         for way, diagram in ways.items():
             stem = f"{'single_mode' if name == 'Eq. (1)' else name.replace(' ', '_')}_{way}"
-            arrays |= {
-                f"{stem}_excess": diagram.excess,
-                f"{stem}_points": diagram.points,
-                f"{stem}_period": periods(diagram),
-                f"{stem}_impacts": diagram.impacts,
-            }
+            arrays |= {f"{stem}_excess": diagram.excess, f"{stem}_points": diagram.points}
             for reason in diagram.failures:
                 run.failed(f"{name}, {way}", reason)
     run.arrays("breakdown", **arrays)
@@ -176,26 +165,19 @@ def judge(
         note="" if agrees else note,
     )
     ends = next((outcome for outcome in (beam, found) if outcome is not None and outcome.ends_on_p3), None)
-    if ends is None:
-        run.verdict("breakdown_p3", "differs", found="beam: not so", note="no downward scan ends in p3")
-    else:
-        run.verdict(
-            "breakdown_p3",
-            "agrees" if ends is beam else "in part",
-            found=f"beam: {ends.p3_first:.4f} to {ends.p3_last:.4f}",
-            note="" if ends is beam else note,
-        )
+    run.verdict(
+        "breakdown_p3",
+        "differs" if ends is None else "agrees" if ends is beam else "in part",
+        found="beam: not so" if ends is None else f"beam: {ends.p3_first:.4f} to {ends.p3_last:.4f}",
+        note="no downward scan ends in p3" if ends is None else "" if ends is beam else note,
+    )
     alive = [entry.restitution for entry in islands if entry.end >= CHAOS_AT]
     printed = any(abs(tau - letter.RESTITUTION) < 1e-9 for tau in alive)
+    needs = f"the island is there; at the quoted place it needs tau of {max(alive, default=0.0):g} or less"
     run.verdict(
         "island",
         "agrees" if printed else "in part" if alive else "differs",
         found="Eq. (1): "
         + "; ".join(f"{i.fold_p3:.3f} to {i.end:.3f} at tau = {i.restitution:g}" for i in islands),
-        note=(
-            f"the island is there; at the quoted place it needs tau of {max(alive):g} or less, "
-            "read as an excess"
-        )
-        if alive
-        else "no island reaches the quoted place",
+        note=f"{needs}, read as an excess" if alive else "no island reaches the quoted place",
     )

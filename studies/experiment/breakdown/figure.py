@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
 
 from studies.experiment.breakdown.model import CHAOS_AT, HIGHEST, Cell, Outcome, periods
 from studies.physics.descriptions import Diagram
@@ -19,8 +18,8 @@ SCANS = (
     "finer steps above grazing. Pale: did not settle."
 )
 BORN = (
-    "Period born at grazing over the mass of ball and mount and the damping of the higher modes "
-    "(–: none up to 64; framed: the beam found)."
+    "Period born at excess 1e-3 (letter: 6) over the mass of ball and mount and the damping of the higher "
+    "modes (–: none up to 64; framed: the beam found)."
 )
 LOOKS = {
     "down": (DOWN, "downward scan"),
@@ -33,10 +32,10 @@ def title_of(outcome: Outcome) -> str:
     """What a panel shows."""
     if outcome.tip_mass_kg is None:
         return outcome.description
-    words = f"beam, {1e3 * outcome.tip_mass_kg:.2f} g"
-    if outcome.description == "beam":
-        return f"{words}, as calibrated"
-    return f"{words}, damping of the higher modes × {outcome.higher_damping:g}"
+    words = (
+        f"beam, {1e3 * outcome.tip_mass_kg:.2f} g, damping of the higher modes × {outcome.higher_damping:g}"
+    )
+    return f"{words}, as calibrated" if outcome.description == "beam" else words
 
 
 @plotting.in_house_style
@@ -64,14 +63,8 @@ def draw_scans(panels: Sequence[tuple[Outcome, Mapping[str, Diagram]]]) -> Figur
         plotting.panel(pair[0], number, title_of(outcome))
         plotting.label(pair[0].yaxis, "tip displacement" if number == 0 else "read-out", "mm")
         if outcome.fold_p3 is not None:
-            pair[0].axvline(
-                1e2 * outcome.fold_p3,
-                color=GREEN,
-                linestyle="-.",
-                linewidth=0.9,
-                zorder=0,
-                label="fold of p$_3$",
-            )
+            line: plotting.Style = {"color": GREEN, "linestyle": "-.", "linewidth": 0.9, "zorder": 0}
+            pair[0].axvline(1e2 * outcome.fold_p3, **line, label="fold of p$_3$")
     axes[0, 1].set_title("finer steps above grazing", loc="right")
     axes[-1, 1].set_title("letter: p$_6$ born here", loc="right")
     plotting.mark_letter(axes[0, 0].xaxis, 1e2 * CHAOS_AT, words="letter: chaos\nof Eq. (1)", along=0.98)
@@ -89,30 +82,12 @@ def draw_born(cells: Sequence[Cell], mass: float, found: Outcome | None) -> Figu
     figure, axis = plotting.new_figure(height=0.030 + 0.0058 * len(masses))
     colours = {3: SKY, 6: ORANGE, 12: tint(ORANGE, 0.4), 0: "0.87"}
     for cell in cells:
-        x, y = factors.index(cell.higher_damping), masses.index(cell.tip_mass_kg)
-        place = (cell.tip_mass_kg, cell.higher_damping)
-        framed = found is not None and place == (found.tip_mass_kg, found.higher_damping)
-        axis.add_patch(
-            Rectangle(
-                (x - 0.5, y - 0.5),
-                1.0,
-                1.0,
-                facecolor=colours.get(cell.period, tint(GREEN, 0.2)),
-                edgecolor="black" if framed else "white",
-                linewidth=1.2 if framed else 0.8,
-                zorder=1 + framed,
-            )
-        )
-        axis.text(
-            x,
-            y,
-            str(cell.period or "–"),
-            ha="center",
-            va="center",
-            fontsize=NOTE,
-            zorder=3,
-            fontweight="bold" if cell.period == 6 else "normal",
-        )
+        place = factors.index(cell.higher_damping), masses.index(cell.tip_mass_kg)
+        own = (cell.tip_mass_kg, cell.higher_damping)
+        framed = found is not None and own == (found.tip_mass_kg, found.higher_damping)
+        box = {"facecolor": colours.get(cell.period, tint(GREEN, 0.2)), "pad": 4.0}
+        box["edgecolor"] = "black" if framed else "none"
+        axis.text(*place, str(cell.period or "–"), ha="center", va="center", fontsize=NOTE, bbox=box)
     axis.set(xlim=(-0.5, len(factors) - 0.5), ylim=(-0.5, len(masses) - 0.5))
     axis.set_xticks(np.arange(len(factors)), [f"{k:g}" for k in factors])
     axis.set_yticks(np.arange(len(masses)), [f"{1e3 * m:.2f}" for m in masses])
@@ -120,9 +95,5 @@ def draw_born(cells: Sequence[Cell], mass: float, found: Outcome | None) -> Figu
     axis.spines[:].set_visible(False)
     plotting.label(axis.xaxis, "damping of the higher modes / that of the strips")
     plotting.label(axis.yaxis, "ball and mount", "g")
-    figure.supxlabel(
-        "number: period born at excess 10$^{-3}$ (letter: 6);\n–: none up to 64; "
-        f"the calibrated ball and mount have {1e3 * mass:.2f} g",
-        fontsize=NOTE,
-    )
+    axis.set_title(f"calibrated: {1e3 * mass:.2f} g, 1", loc="left")
     return figure

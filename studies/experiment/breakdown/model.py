@@ -15,7 +15,7 @@ import numpy as np
 
 from beam import ModalModel
 from contact import HarmonicDrive, ImpactOscillator, MaximalFamily, Stop, StroboscopicMap
-from contact.orbits import Shooting, born, fold_excess, orbit_diagram
+from contact.orbits import Shooting, born, born_period, fold_excess, orbit_diagram
 from studies import letter
 from studies.physics.calibration import calibrate, calibrate_thickness
 from studies.physics.descriptions import Diagram, or_none, up_and_down
@@ -94,26 +94,22 @@ def single_mode(scene: Scene, restitution: float) -> Spring:
 
 @dataclass(frozen=True, kw_only=True)
 class Cell:
-    """What a beam is born with at grazing: period (0: none up to 64), impacts, fold of p3 (where the period
-    is the letter's)."""
+    """What a beam is born with at grazing: period (0: none up to 64), impacts."""
 
     tip_mass_kg: float
     higher_damping: float
     period: int
     impacts: int
-    fold_p3: float | None = None
 
 
 def cell_of(spring: Spring) -> Cell:
     """One cell of the search."""
-    strobed = spring.strobed()
-    settled = born(strobed, BORN_EXCESS, most_cycles=SEARCH_CYCLES)
+    settled = born(spring.strobed(), BORN_EXCESS, most_cycles=SEARCH_CYCLES)
     return Cell(
         tip_mass_kg=spring.tip_mass_kg,
         higher_damping=spring.higher_damping,
         period=settled.period,
         impacts=settled.impacts,
-        fold_p3=or_none(fold_excess, strobed, 3) if settled.period == BORN_PERIOD else None,
     )
 
 
@@ -145,7 +141,6 @@ class Outcome:
     tip_mass_kg: float | None
     higher_damping: float
     born_period: int
-    born_impacts: int
     fold_p3: float | None
     p3_first: float | None
     p3_last: float | None
@@ -173,15 +168,13 @@ def scanned(
     counts = {"settle_cycles": cycles, "record_cycles": letter.STROBE_POINTS}
     ways = up_and_down(strobed, values, **counts, early=early)
     down = ways["down"]
-    settled = born(strobed, BORN_EXCESS, most_cycles=cycles)
     on_p3 = down.excess[(down.period == 3) & (down.impacts == 1)].tolist() or [None]
     struck = down.excess[down.impacts > 0].tolist() or [None]
     outcome = Outcome(
         description=name,
         tip_mass_kg=spring.tip_mass_kg or None,
         higher_damping=spring.higher_damping,
-        born_period=settled.period,
-        born_impacts=settled.impacts,
+        born_period=born_period(strobed, BORN_EXCESS, most_cycles=cycles),
         fold_p3=fold,
         p3_first=on_p3[0],
         p3_last=on_p3[-1],

@@ -4,13 +4,13 @@ Claim (letter 1996, Figs. 1 to 3, for a whole plane): below grazing an orbit p_m
 without impacts down to its fold; at grazing the period follows the bands of the map; above it periods
 double, and chaos lies between. Computed on a grid refined around grazing: at each frequency the amplitude is
 raised and lowered again with the state carried along, and each cell gets the period (up to 64) and the
-impacts of the orbit on which the motion settles, within --cycles drive periods
-(contact.orbits.AmplitudeScan). Drawn over it: the band edges of the map and the exact folds.
+impacts of the orbit on which the motion settles (contact.orbits.AmplitudeScan). Drawn over it: the band
+edges of the map and the exact folds.
 
 At one drive frequency, --cut-hz, two more questions are asked of Eq. (1) and of the beam with its N modes:
 
     cut      period, impacts and largest Lyapunov exponent of the settled motions: periodic or chaotic
-    basins   for Eq. (1) at --basin-excess: the orbit to which each start on the strobe plane leads
+    basins   for Eq. (1) below grazing: the orbit to which each start on the strobe plane leads
 
     python -m studies chart                          Eq. (1), 400 x 400, both directions
     python -m studies chart --model beam             the beam of the scene, 120 x 120
@@ -26,6 +26,7 @@ Writes:  chart_MODEL.npz (cells), folds_MODEL.csv, chart_MODEL.png; cut.csv, cut
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from functools import partial
 from typing import Annotated, Literal
@@ -35,24 +36,33 @@ import numpy as np
 from beam import InvalidValue
 from contact import ImpactOscillator
 from contact.orbits import AmplitudeScan
-from studies.experiment.chart.cells import (
+from studies import letter
+from studies.experiment.chart import settled
+from studies.experiment.chart.model import (
     EXCESSES,
     FREQUENCIES_HZ,
     KNEE,
     Plane,
+    bands_in,
     column_at,
-    counts,
+    folds_of_beam,
+    folds_of_single_mode,
     side_by_side,
 )
-from studies.experiment.chart.cut import FREQUENCY
-from studies.experiment.chart.overlays import bands_in, folds_of_beam, folds_of_single_mode
-from studies.experiment.chart.sections import basins, cut
+from studies.physics.descriptions import TITLES, strobed_at
 from studies.shell.options import require_cells
-from studies.shell.scene import Scene, beam_at, corresponding, harmonic, single_mode_at
+from studies.shell.scene import (
+    Scene,
+    beam_at,
+    corresponding,
+    harmonic,
+    model_of,
+    require_drive_below,
+    single_mode_at,
+)
 from studies.shell.study import Run, study
 from studies.shell.sweep import Column, sweep
 
-TITLES = {"single_mode": "Eq. (1)", "beam": "beam"}
 POINTS = {"single_mode": (400, 400), "beam": (120, 120)}
 QUICK_POINTS = {"single_mode": (46, 40), "beam": (10, 16)}
 CYCLES = {"single_mode": 8192, "beam": 1024}
@@ -73,41 +83,27 @@ MOST_REASONS = 20
 """Failures with a sentence of their own; all are in the columns."""
 
 
-@study(quick={"cut_points": 11, "average": 100, "side": 32})
+@study(quick={"side": 32})
 def chart(
     scene: Scene,
     run: Run,
     *,
     model: Annotated[Literal["single_mode", "beam"], "Eq. (1) or the beam"] = "single_mode",
     points: Annotated[tuple[int, int] | None, "frequencies and amplitudes (400 400, beam 120 120)"] = None,
-    frequencies: Annotated[
-        tuple[float, float] | None, "range of drive frequencies [Hz] (19.5 24; other springs, same f T)"
-    ] = None,
-    excesses: Annotated[tuple[float, float], "range of F/F_g - 1"] = EXCESSES,
-    cycles: Annotated[int | None, "bound of drive periods at one amplitude (8192, beam 1024)"] = None,
     cut_hz: Annotated[float | None, "drive frequency of the cut [Hz] (21.5; another spring: its f T)"] = None,
-    cut_range: Annotated[tuple[float, float], "range of F/F_g - 1 of the cut"] = (-0.016, 0.06),
-    cut_points: Annotated[int, "amplitudes of the cut"] = 39,
-    average: Annotated[int, "drive periods in the averages of the exponents"] = 600,
-    basin_excess: Annotated[float, "excess of the basins"] = -0.006,
     side: Annotated[int, "starts along each side of the basins"] = 200,
     fresh: Annotated[bool, "forget what is stored and begin anew"] = False,
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
-    lowest, highest = cut_range
-    if not -1.0 < lowest < highest:
-        raise InvalidValue(f"cut-range is {lowest} to {highest}; -1 < lowest < highest must hold")
-    if not -1.0 < basin_excess < 0.0:
-        raise InvalidValue(f"basin-excess is {basin_excess}; it must lie above -1 and below grazing, 0")
     require_cells("side", side, side**2)
-    if min(side, cut_points) < 2:
-        raise InvalidValue(f"side is {side} and cut-points {cut_points}; each must be 2 or more")
-    f = corresponding(harmonic(scene), FREQUENCY) if cut_hz is None else cut_hz
+    if side < 2:
+        raise InvalidValue(f"side is {side}; it must be 2 or more")
+    f = corresponding(harmonic(scene), letter.TIME_TRACE_HZ) if cut_hz is None else cut_hz
     with_modes = run.choose_modes(scene, CUT_NEEDS)
     columns, rows = points or (QUICK_POINTS if run.quick else POINTS)[model]
-    low, high = frequencies or (corresponding(harmonic(scene), f) for f in FREQUENCIES_HZ)
-    plane = Plane(columns=columns, rows=rows, frequencies_hz=(low, high), excesses=excesses)
-    bound = cycles or (QUICK_CYCLES if run.quick else CYCLES[model])
+    low, high = (corresponding(harmonic(scene), f) for f in FREQUENCIES_HZ)
+    plane = Plane(columns=columns, rows=rows, frequencies_hz=(low, high))
+    bound = QUICK_CYCLES if run.quick else CYCLES[model]
     if model == "beam":
         scene = run.choose_modes(scene, NEEDS)
     oscillator = (beam_at if model == "beam" else single_mode_at)(scene, 0.5 * (low + high))
@@ -116,17 +112,14 @@ def chart(
     work, name = partial(column_at, scan=scan, plane=plane), f"{model}-{columns}x{rows}"
     found = sweep(run, name, settings, plane.frequencies().tolist(), work, fresh=fresh)
     tell_failures(run, found)
-    result: dict[str, object] = {
+    return {
         "model": model,
         "modes": oscillator.n_modes,
         "points": [columns, rows],
         "most_cycles": bound,
-    }
-    return {
-        **result,
         **drawn(scene, run, plane, oscillator, found, model),
-        **cut(with_modes, run, f, np.linspace(lowest, highest, cut_points), average),
-        **basins(with_modes, run, f, basin_excess, side),
+        **cut(with_modes, run, f),
+        **basins(with_modes, run, f, side),
     }
 
 
@@ -146,10 +139,10 @@ def drawn(
     scene: Scene, run: Run, plane: Plane, oscillator: ImpactOscillator, columns: list[Column], model: str
 ) -> dict[str, object]:
     """Store the cells and what theory says, draw both."""
-    from studies.experiment.chart.figure import draw  # matplotlib is slow to import
+    from studies.experiment.chart.figure import CAPTION, draw  # matplotlib is slow to import
 
     edges, cells = bands_in(scene, *plane.frequencies_hz), side_by_side(columns)
-    frequencies, excesses, lowest = plane.frequencies(), plane.rising_excesses(), plane.excesses[0]
+    frequencies, excesses, lowest = plane.frequencies(), plane.rising_excesses(), EXCESSES[0]
     if model == "single_mode":
         folds = folds_of_single_mode(oscillator, frequencies, lowest)
     else:
@@ -157,17 +150,56 @@ def drawn(
     run.arrays(f"chart_{model}", frequency_hz=frequencies, excess=excesses, **cells)
     run.table(f"folds_{model}", folds, "Exact folds of p_m orbits with one impact.", show=())
     title = f"{TITLES[model]}, {plane.columns} × {plane.rows}"
-    caption = (
-        "Period (above) and impacts in a period (below) over drive frequency and excess, in the upward scan "
-        "(left) and the downward scan (right); lines: exact folds and band edges of the map."
-    )
-    run.figure(f"chart_{model}", draw(plane, cells, edges, folds, title), caption)
+    run.figure(f"chart_{model}", draw(plane, cells, edges, folds, title), CAPTION)
     without = float(np.mean(cells["period"] == 0))
     run.say(f"{100 * without:.1f} % of the cells without a period up to {LARGEST_PERIOD}")
-    bands = [{"period": band.period, "lower_hz": band.lower, "upper_hz": band.upper} for band in edges]
-    return {
-        "bands": bands,
-        "counts": counts(cells["period"]),
-        "share_without_period": without,
-        "folds": len(folds),
-    }
+    return {"share_without_period": without, "folds": len(folds)}
+
+
+def cut(scene: Scene, run: Run, f: float) -> Mapping[str, object]:
+    """The settled motions of Eq. (1) and of the beam at the drive frequency `f` [Hz], stored and drawn."""
+    from studies.experiment.chart import figure  # matplotlib is slow to import
+
+    modes = model_of(scene)
+    require_drive_below(scene, modes, f)
+    maps = {name: strobed_at(name, scene, f, modes) for name in ("single_mode", "beam")}
+    values, cycles = settled.QUICK_CUT if run.quick else settled.CUT
+    rows, strobes = list[settled.Settlement](), list[np.ndarray]()
+    jobs = partial(settled.carried, scene=scene, values=values, cycles=cycles)
+    for scan, recorded, failures in run.map(jobs, maps.items(), "scans"):
+        rows, strobes = rows + scan, strobes + recorded
+        for reason in failures:
+            run.failed("scan", reason)
+    run.table("cut", rows, "Settled motions; kind by the largest Lyapunov exponent.")
+    run.arrays("cut", points=np.array(strobes), excess=[row.excess for row in rows])
+    run.figure("cut", figure.draw_scan(rows, strobes, f, scene.readout.quantity), figure.SCAN)
+    wild = [row for row in rows if row.kind == settled.CHAOTIC]
+    chaotic = {name: [row.excess for row in wild if row.model == name] for name in maps}
+    spans = [f"{TITLES[name]}: {min(at):.3g} to {max(at):.3g}" for name, at in chaotic.items() if at]
+    run.verdict(
+        "chaos",
+        "agrees" if spans else "differs",
+        found="; ".join(spans) or "none",
+        note=f"excess with a positive Lyapunov exponent at {f:.2f} Hz",
+    )
+    kinds = Counter(f"{TITLES[row.model]}, {row.kind}" for row in rows)
+    return {"cut_hz": f, "rows": rows, "kinds": kinds}
+
+
+def basins(scene: Scene, run: Run, f: float, side: int) -> Mapping[str, object]:
+    """The basins of Eq. (1) at the drive frequency `f` [Hz], stored and drawn."""
+    from studies.experiment.chart import figure  # matplotlib is slow to import
+
+    plane = settled.plane_of(scene, f, side)
+    leads = np.array(run.map(plane.line, plane.velocity.tolist(), "basins"))  # shape (velocities, x)
+    run.arrays("basins", x=plane.x, velocity=plane.velocity, leads=leads)
+    run.figure("basins", figure.draw_basins(plane, leads, f), figure.BASINS)
+    period, shares = plane.period, settled.parts(leads, plane.period)
+    both = period > 1 and shares[f"p{period}"] > 0.0  # p1 without impacts is stable below grazing
+    run.verdict(
+        "coexistence",
+        "agrees" if both else "differs",
+        found=f"Eq. (1): p1 and p{period}" if both else "Eq. (1): one of them alone",
+        note=f"at excess {settled.EXCESS:g} the start decides which of them is reached",
+    )
+    return {"basins": {"excess": settled.EXCESS, "period": period, "parts": shares}}

@@ -1,146 +1,205 @@
 """The chart as a figure: upward scan left, downward scan right; period above, impacts in a period below.
 
-Colours are the seven of the house style, one after the other with the period, lighter for 8 to 14, darker for
-15 to 21, darker still to 28, so that neighbouring periods and period doublings always differ; every region of
-some size says its number as well.  The upright axis is that of the grid (``cells.sheared``).
+Colours are the seven of the house style, one after the other with the period, lighter for 8 to 14, so that
+neighbouring periods and period doublings always differ; every region of some size says its number as well.
+The upright axis is that of the grid (``model.sheared``).
+
+Figures of the settled motions: strobe points and exponents of a scan, and basins on the strobe plane.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import to_hex, to_rgb
+from matplotlib.colors import ListedColormap, to_hex, to_rgb
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 from scipy import ndimage
 
 from contact import Band
-from studies.experiment.chart.cells import Fold, Plane, sheared
-from studies.shell.plotting import PAGE, PALETTE, house_style, label, new_figure, panel, tint
+from studies.experiment.chart.model import Fold, Plane, sheared
+from studies.experiment.chart.settled import (
+    CHAOTIC,
+    NOT_SETTLED,
+    PERIODIC,
+    UNDECIDED,
+    WITHOUT,
+    Settlement,
+    Starts,
+    parts,
+)
+from studies.physics.descriptions import TITLES
+from studies.shell import plotting
 
-REST, NONE, FAILED, LONG = "white", "0.33", "black", "0.66"
-"""No impact; no period; failed; a period beyond 28."""
+SEVEN = plotting.PALETTE[1:8]
+PERIODS = ["white", *SEVEN, *(plotting.tint(one, 0.45) for one in SEVEN), "0.66"]
+"""Colours of no impact, of the periods 1 to 14, and of a longer one."""
 
-LEAST_AREA = 0.0012
-"""Part of a panel that a region must have to be given its number."""
+CLASSES = {1: "1", 2: "2", 3: "3", 4: "4\u20135", 6: "6\u20138", 9: "9 or more"}
+"""Classes of impacts in a period: lower end and name."""
+CIVIDIS = matplotlib.colormaps["cividis"]
+IMPACTS = ["white", *map(to_hex, CIVIDIS(np.linspace(1.0, 0.0, len(CLASSES))))]
+
+NONE, FAILED = "0.33", "black"
+
+LEAST_AREA = 0.004
+"""Part of a plotting.panel that a region must have to be given its number."""
 
 EDGE = 0.002
 """Half the height of the marks for band edges, which hold at grazing [excess]."""
 
 TICKS = (-0.1, -0.03, -0.01, -0.003, 0.0, 0.003, 0.01, 0.03, 0.1)
 
-CLASSES = {1: "1", 2: "2", 3: "3", 4: "4\u20135", 6: "6\u20138", 9: "9 or more"}
-"""Classes of impacts in a period: lower end and name."""
+CAPTION = (
+    "Period (above) and impacts in a period (below) over drive frequency and excess, in the upward scan "
+    "(left) and the downward scan (right); lines: exact folds and band edges of the map."
+)
 
 Integers = NDArray[np.int32]
 
 
-def _darker(colour: str, share: float) -> str:
-    red, green, blue = ((1.0 - share) * part for part in to_rgb(colour))
-    return to_hex((red, green, blue))
-
-
-PERIODS = [REST, *PALETTE[1:8], *(tint(one, 0.45) for one in PALETTE[1:8])]
-PERIODS += [_darker(one, share) for share in (0.45, 0.7) for one in PALETTE[1:8]]
-"""Colours of no impact and of the periods 1 to 28."""
-
-IMPACTS = [REST, *map(to_hex, matplotlib.colormaps["cividis"](np.linspace(1.0, 0.0, len(CLASSES))))]
-
-
-def _colours(table: Sequence[str], place: NDArray[np.int_], period: Integers) -> NDArray[np.float64]:
-    """RGB of cells from their `place` in a table of colours."""
-    colours = np.array([to_rgb(one) for one in (*table, NONE, FAILED)])
-    return colours[np.where(period < 0, -1, np.where(period == 0, -2, place))]
-
-
-def _write_numbers(
-    axis: Axes, values: np.ndarray, x: np.ndarray, y: np.ndarray, text: Callable[[int], str]
-) -> None:
-    """Each region of one value says it, at its place farthest from its border; the largest first."""
-    taken, regions = list[tuple[float, float]](), []
-    for value in np.unique(values[values > 0]):
-        marks, _count = ndimage.label(values == value)
-        sizes = np.bincount(marks.ravel())
-        large = 1 + np.flatnonzero(sizes[1:] >= LEAST_AREA * values.size)
-        regions += [(int(sizes[mark]), int(value), marks == mark) for mark in large]
-    for _size, value, inside in sorted(regions, key=lambda region: -region[0]):
-        depth = ndimage.distance_transform_edt(np.pad(inside, 1))[1:-1, 1:-1]
-        i, j = np.unravel_index(int(np.argmax(depth)), depth.shape)
-        spot = (i / x.size, j / y.size)
-        if any(abs(spot[0] - a) < 0.035 and abs(spot[1] - b) < 0.04 for a, b in taken):
-            continue
-        taken.append(spot)
-        outline = [withStroke(linewidth=1.4, foreground="white")]
-        axis.text(x[i], y[j], text(value), size=5.5, ha="center", va="center", path_effects=outline)
-
-
+@plotting.in_house_style
 def draw(
     plane: Plane, cells: Mapping[str, Integers], edges: Sequence[Band], folds: Sequence[Fold], title: str
 ) -> Figure:
     """The figure."""
-    figure, axes = new_figure(2, 2, width=PAGE, height=0.150, sharex=True, sharey=True)
+    figure, axes = plotting.new_figure(2, 2, width=plotting.PAGE, height=0.150, sharex=True, sharey=True)
     x, y = plane.frequencies(), sheared(plane.rising_excesses())
-    dx, dy = 0.5 * (x[1] - x[0]), 0.5 * (y[1] - y[0])
-    extent = (x[0] - dx, x[-1] + dx, y[0] - dy, y[-1] + dy)
-    names = list(CLASSES.values())
-    with house_style():
-        for k, way in enumerate(("upward scan", "downward scan")):
-            period, impacts = cells["period"][k], cells["impacts"][k]
-            classes = np.searchsorted(list(CLASSES), impacts, side="right")
-            of_period = np.where(impacts == 0, 0, np.minimum(period, len(PERIODS)))
-            images = (_colours([*PERIODS, LONG], of_period, period), _colours(IMPACTS, classes, period))
-            for axis, image in zip(axes[:, k], images, strict=True):
-                axis.imshow(
-                    image.swapaxes(0, 1),
-                    origin="lower",
-                    extent=extent,
-                    aspect="auto",
-                    interpolation="nearest",
-                )
-                _draw_theory(axis, edges, folds)
-                axis.set(xlim=extent[:2], ylim=extent[2:])
-            hit = np.where((period > 0) & (impacts > 0), period, 0)
-            _write_numbers(axes[0, k], hit, x, y, lambda value: f"p$_{{{value}}}$")
-            _write_numbers(axes[1, k], np.where(hit, classes, 0), x, y, lambda n: names[n - 1])
-            panel(axes[0, k], k, f"{way}: period")
-            panel(axes[1, k], 2 + k, f"{way}: impacts in a period")
-            label(axes[1, k].xaxis, "drive frequency", "Hz")
-        for axis in axes[:, 0]:
-            ticks = [t for t in TICKS if plane.excesses[0] <= t <= plane.excesses[1]]
-            axis.set_yticks([float(sheared(t)) for t in ticks], [f"{t:g}" for t in ticks])
-            label(axis.yaxis, "excess F/F$_g$ − 1")
-        known = {
-            "p$_1$ without impact": REST,
-            "no period found": NONE,
-            "period 29 to 64": LONG,
-            "failed": FAILED,
-        }
-        known |= {f"impacts: {name}": colour for name, colour in zip(names, IMPACTS[1:], strict=True)}
-        boxes = [Patch(fc=colour, ec="0.3", lw=0.4, label=name) for name, colour in known.items()]
-        lines, _ = axes[0, 0].get_legend_handles_labels()
-        figure.legend(handles=[*boxes, *lines], loc="outside lower center", ncols=5)
-        figure.suptitle(title, fontsize=8)
+    names = ["", *CLASSES.values()]
+    for k, way in enumerate(("upward scan", "downward scan")):
+        period, impacts = cells["period"][k], cells["impacts"][k]
+        capped = np.where(impacts == 0, 0, np.minimum(period, len(PERIODS) - 1))
+        classes = np.searchsorted(list(CLASSES), impacts, side="right")
+        for axis, colours, places in ((axes[0, k], PERIODS, capped), (axes[1, k], IMPACTS, classes)):
+            table = np.array([to_rgb(one) for one in (*colours, NONE, FAILED)])
+            image = table[np.where(period < 0, -1, np.where(period == 0, -2, places))]
+            axis.pcolormesh(x, y, image.swapaxes(0, 1), shading="nearest", rasterized=True)
+            _draw_theory(axis, edges, folds)
+            axis.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
+        hit = np.where((period > 0) & (impacts > 0), period, 0)
+        _write_numbers(axes[0, k], hit, x, y, [f"p$_{{{m}}}$" for m in range(hit.max() + 1)])
+        _write_numbers(axes[1, k], np.where(hit, classes, 0), x, y, names)
+        plotting.panel(axes[0, k], k, f"{way}: period")
+        plotting.panel(axes[1, k], 2 + k, f"{way}: impacts in a period")
+        plotting.label(axes[1, k].xaxis, "drive frequency", "Hz")
+    for axis in axes[:, 0]:
+        axis.set_yticks(sheared(TICKS), [f"{t:g}" for t in TICKS])
+        plotting.label(axis.yaxis, "excess F/F$_g$ − 1")
+    known = {"p$_1$ without impact": "white", "no period found": NONE, "failed": FAILED}
+    known |= {f"period {len(PERIODS) - 1} to 64": PERIODS[-1]}
+    known |= {f"impacts: {name}": colour for name, colour in zip(names[1:], IMPACTS[1:], strict=True)}
+    for name, colour in known.items():
+        axes[0, 0].fill([], [], facecolor=colour, edgecolor="0.3", linewidth=0.4, label=name)
+    plotting.legend_below(figure, axes.flat, 5)
+    figure.suptitle(title, fontsize=8)
     return figure
+
+
+def _write_numbers(
+    axis: Axes, values: np.ndarray, x: np.ndarray, y: np.ndarray, words: Sequence[str]
+) -> None:
+    """Each large region of one value says it, at its place farthest from its border."""
+    outline = [withStroke(linewidth=1.4, foreground="white")]
+    for value in np.unique(values[values > 0]):
+        marks, _count = ndimage.label(values == value)
+        sizes = np.bincount(marks.ravel())
+        for mark in 1 + np.flatnonzero(sizes[1:] >= LEAST_AREA * values.size):
+            depth = ndimage.distance_transform_edt(np.pad(marks == mark, 1))[1:-1, 1:-1]
+            i, j = np.unravel_index(int(np.argmax(depth)), depth.shape)
+            axis.text(x[i], y[j], words[value], size=5.5, ha="center", va="center", path_effects=outline)
 
 
 def _draw_theory(axis: Axes, edges: Sequence[Band], folds: Sequence[Fold]) -> None:
     """Grazing, the band edges there, and the folds."""
     axis.axhline(0.0, color="0.5", linewidth=0.4)
-    around = sheared([-EDGE, EDGE])
     for name, style in (("upper", "-"), ("lower", (0, (1.5, 1.0)))):
-        told = f"{name} band edge, map"
-        for band in edges:
-            axis.plot([getattr(band, name)] * 2, around, color="black", lw=0.7, ls=style, label=told)
-            told = ""
-    told = "exact fold of p$_m$"
+        places, told = [getattr(band, name) for band in edges], f"{name} band edge, map"
+        axis.vlines(places, *sheared([-EDGE, EDGE]), color="black", lw=0.7, ls=style, label=told)
     for period in sorted({fold.period for fold in folds}):
         curve = [fold for fold in folds if fold.period == period]
         f, excess = [fold.frequency_hz for fold in curve], sheared([fold.excess for fold in curve])
         axis.plot(f, excess, color="white", linewidth=1.8)
-        axis.plot(f, excess, color=PALETTE[2], linewidth=0.9, label=told)
-        told = ""
+        axis.plot(f, excess, color=plotting.PALETTE[2], linewidth=0.9, label="exact fold of p$_m$")
+
+
+SCAN = (
+    "Strobe points and largest Lyapunov exponent against the excess, for Eq. (1) and the beam. Filled: "
+    "amplitude raised; open: lowered; pale: not periodic."
+)
+BASINS = (
+    "Where starts on the strobe plane of Eq. (1) lead below grazing: the motion without impacts has a small "
+    "basin, p_m the rest."
+)
+LOOKS = {
+    WITHOUT: ("v", plotting.SKY),
+    PERIODIC: ("o", plotting.BLUE),
+    CHAOTIC: ("s", plotting.VERMILION),
+    NOT_SETTLED: ("^", plotting.ORANGE),
+    UNDECIDED: ("x", "0.5"),
+}
+"""Marker and colour of a kind."""
+
+
+@plotting.in_house_style
+def draw_scan(
+    rows: Sequence[Settlement], strobes: Sequence[np.ndarray], frequency: float, quantity: str
+) -> Figure:
+    """Strobe points and exponents against the excess, a column for each model."""
+    figure, axes = plotting.new_figure(2, 2, width=plotting.PAGE, height=0.112, sharex="col")
+    for column, name in enumerate(("single_mode", "beam")):
+        upper, lower = axes[:, column]
+        for way, look in (("up", plotting.UP), ("down", plotting.DOWN)):
+            mine = [k for k, row in enumerate(rows) if (row.model, row.direction) == (name, way)]
+            excess, points = np.array([rows[k].excess for k in mine]), np.array([strobes[k] for k in mine])
+            settled = np.array([rows[k].period > 0 for k in mine])
+            plotting.strobe_points(upper, 1e2 * excess, 1e3 * points, settled, look, f"{way}ward scan")
+        for kind, (marker, colour) in LOOKS.items():
+            alike = [(1e2 * r.excess, r.lyapunov_map) for r in rows if (r.model, r.kind) == (name, kind)]
+            mark: plotting.Style = {"markersize": 3.4, "mfc": "none", "markeredgecolor": colour}
+            lower.plot(*np.array(alike).reshape(-1, 2).T, marker, **mark, label=kind)
+        lower.axhline(0.0, **plotting.GUIDE)
+        for axis in (upper, lower):
+            axis.axvline(0.0, **plotting.GUIDE)
+        plotting.panel(upper, column, f"{TITLES[name]}, {frequency:.2f} Hz")
+        plotting.panel(lower, column + 2)
+        plotting.label(lower.xaxis, plotting.EXCESS, "%")
+    plotting.label(axes[0, 0].yaxis, quantity, "mrad" if quantity == "rotation" else "mm")
+    plotting.label(axes[1, 0].yaxis, "exponent per drive period")
+    plotting.legend_below(figure, axes.flat, 3, markerscale=1.5)
+    return figure
+
+
+@plotting.in_house_style
+def draw_basins(plane: Starts, leads: np.ndarray, frequency: float) -> Figure:
+    """The strobe plane, coloured by where its points lead."""
+    figure, axis = plotting.new_figure(height=0.088)
+    oscillator, m = plane.strobed.oscillator, plane.period
+    gap, speed = oscillator.stop.gap, oscillator.unit_speed
+    looks = {
+        m: (plotting.BLUE, f"to p$_{{{m}}}$"),
+        1: (plotting.tint(plotting.SKY, 0.3), "to p$_1$ without impacts"),
+        0: (plotting.ORANGE, "to something else"),
+    }
+    x, y, picture = plane.x / gap, plane.velocity / speed, np.full(leads.shape, np.nan)
+    for place, code in enumerate(looks):
+        picture[leads == code] = place
+    colours = ListedColormap([colour for colour, _ in looks.values()])
+    axis.pcolormesh(x, y, picture, vmin=-0.5, vmax=len(looks) - 0.5, cmap=colours, rasterized=True)
+    for code in plane.orbits:
+        colour = plotting.VERMILION if code == 1 else "white"
+        look = {"color": colour, "markeredgecolor": "black", "markersize": 4}
+        strobes = (plane.strobes(code) / (gap, speed)).T
+        axis.plot(*strobes, "D" if code == 1 else "o", **look, label=f"p$_{{{code}}}$")
+    for colour, words in looks.values():
+        axis.fill([], [], facecolor=colour, edgecolor="0.4", label=words)
+    share = 100 * parts(leads, m)["p1 without impacts"]
+    title = f"Eq. (1), {frequency:.2f} Hz, $F/F_g - 1$ = {oscillator.excess:g}"
+    axis.set_title(f"{title}\n{share:.1f} % lead to p$_1$")
+    plotting.label(axis.xaxis, "$ξ$ / gap at the strobe")
+    plotting.label(axis.yaxis, "$\\dot{ξ}$ / (2π f gap) at the strobe")
+    plotting.legend_below(figure, [axis], 2)
+    return figure

@@ -15,7 +15,7 @@ born period of the beams by following their motion; p_m of the overdamped map, i
 W. Chin, E. Ott, H. E. Nusse, C. Grebogi, Phys. Rev. E 50 (1994) 4427.
 
 Run:     python -m studies claims [--positions N]
-Writes:  loss.csv, universality.csv, and the figures loss, secondary, universality
+Writes:  loss.csv, universality.csv, and the figures loss, universality
 """
 
 from __future__ import annotations
@@ -37,16 +37,19 @@ from studies.experiment.claims.model import (
     Job,
     below_grazing,
     born_at,
-    falls,
     line_of,
     springs,
     trends,
 )
+from studies.physics.descriptions import falls
 from studies.shell.scene import Scene, band_of, corresponding, harmonic, nordmark_at
 from studies.shell.study import Run, study
 
 SCANNED_HZ = (19.62, 23.75)
 """Across the bands of p3 to p16, for the letter's spring."""
+
+PLANE, QUICK_PLANE = (240, 46), (60, 10)
+"""Frequencies and restitutions over which secondary bifurcations are counted."""
 
 SLACK = 0.02
 """Change of a share of the scanned frequencies that is that of one cell or two."""
@@ -61,25 +64,23 @@ EIGENVALUE, ADDED = 0.45, range(4, 21)
 """Of the overdamped map: its eigenvalue, between 1/4 and 2/3 where windows are parted by chaos; periods."""
 
 
-@study(needs={"fold": 0.05}, quick={"positions": 13, "across": 60, "restitutions": 10})
+@study(needs={"fold": 0.05}, quick={"positions": 13})
 def claims(
     scene: Scene,
     run: Run,
     *,
     positions: Annotated[int, "values of f T at which a period is born (universality)"] = 55,
-    across: Annotated[int, "frequencies over which secondary bifurcations are counted"] = 240,
-    restitutions: Annotated[int, "restitutions at which they are counted"] = 46,
 ) -> Mapping[str, object]:
     """Compute, store and draw, one claim after the other."""
     harmonic(scene)
     return {
-        **energy_loss(scene, run, across=across, restitutions=restitutions),
+        **energy_loss(scene, run),
         "universality": universality(scene, run, positions=positions),
         "period_adding": period_adding(run),
     }
 
 
-def energy_loss(scene: Scene, run: Run, *, across: int, restitutions: int) -> Mapping[str, object]:
+def energy_loss(scene: Scene, run: Run) -> Mapping[str, object]:
     """Hysteresis and secondary bifurcations against the energy lost: compute, store, draw and judge."""
     from studies.experiment.claims import figure  # matplotlib is slow to import
 
@@ -87,23 +88,13 @@ def energy_loss(scene: Scene, run: Run, *, across: int, restitutions: int) -> Ma
     lines = run.map(partial(line_of, scene, drives), RESTITUTIONS, "p_m against loss")
     rows = [node for f in zip(*lines, strict=True) for node in f]
     low, high = (corresponding(scene, f) for f in SCANNED_HZ)
+    across, restitutions = QUICK_PLANE if run.quick else PLANE
     frequencies = np.linspace(low, high, across)
     tau = np.linspace(0.0, 0.9, restitutions)
     plane = run.map(partial(below_grazing, scene, frequencies.tolist()), tau.tolist(), "plane of f and tau")
     below = np.array([part for part, _ in plane])
     run.table("loss", rows, "Fold and first bifurcation of p_m, F/F_g - 1.", show=())
-    run.figure(
-        "loss",
-        figure.draw_loss(rows),
-        "Hysteresis against restitution at each frequency: a smaller "
-        "restitution, more energy lost, less hysteresis, in the map and in Eq. (1).",
-    )
-    run.figure(
-        "secondary",
-        figure.draw_secondary(rows, tau, below),
-        "Excess of the secondary bifurcation in Eq. (1) against the restitution, and at which part of "
-        "the frequencies it lies below grazing.",
-    )
+    run.figure("loss", figure.draw_loss(rows, tau, below), figure.LOSS)
     found = trends(rows)
     both = found["map"] and found["eq1"]
     parts = ", ".join(f"{name} {'yes' if good else 'no'}" for name, good in found.items())
@@ -126,17 +117,7 @@ def energy_loss(scene: Scene, run: Run, *, across: int, restitutions: int) -> Ma
         found=f"map: never below excess {lowest:.2g}; Eq. (1): below grazing in {shares}",
         note=f"at one frequency its excess falls throughout as tau grows at {len(falling)} of {len(drives)}",
     )
-    return {
-        "rows": rows,
-        "loss": {"falls": found, "holds": both},
-        "secondary": {
-            "holds": holds,
-            "lowest_of_map": lowest,
-            "restitution": tau,
-            "part_below_grazing": below,
-            "falls_with_restitution_hz": falling,
-        },
-    }
+    return {"rows": rows, "falls": found, "restitution": tau, "part_below_grazing": below}
 
 
 def universality(scene: Scene, run: Run, *, positions: int) -> Mapping[str, object]:
@@ -153,12 +134,7 @@ def universality(scene: Scene, run: Run, *, positions: int) -> Mapping[str, obje
     run.table(
         "universality", rows, "Period born just above grazing, and that of the map as rho -> 0+.", show=()
     )
-    run.figure(
-        "universality",
-        figure.draw_born(scene, rows),
-        "Period born at grazing for seven springs and contact laws"
-        "; grey, the bands of the map. Near the upper edge of a band all agree with it.",
-    )
+    run.figure("universality", figure.draw_born(scene, rows), figure.BORN)
     failed = any(row.period is None for row in rows)
     agree = {
         name: float(np.mean([row.agrees for row in rows if row.spring == name]))
@@ -180,13 +156,7 @@ def universality(scene: Scene, run: Run, *, positions: int) -> Mapping[str, obje
             f" spring have the period of the map at excess {excess:g}",
             note=note,
         )
-    return {
-        "holds": None if failed else holds,
-        "agree": agree,
-        "exceptions_in_top_quarter": odd,
-        "closer_excess": CLOSER * excess,
-        "not_settled": sum(not row.settled for row in rows),
-    }
+    return {"agree": agree, "exceptions_in_top_quarter": odd, "closer_excess": CLOSER * excess}
 
 
 def born_everywhere(scene: Scene, run: Run, count: int) -> list[Born]:
@@ -194,8 +164,8 @@ def born_everywhere(scene: Scene, run: Run, count: int) -> list[Born]:
     excess = scene.scan.born_excess
     places = np.linspace(*SPAN, count).tolist()
     jobs = [Job(*spring, place, excess) for spring in springs(scene) for place in places]
-    rows = []
-    for job, period in zip(jobs, run.attempt(born_at, jobs, "born periods"), strict=True):
+    rows, born = [], run.attempt(born_at, jobs, "born periods")
+    for job, period in zip(jobs, born, strict=True):
         frequency = job.f_times_t / scene.single_mode.free_period_s
         nordmark = nordmark_at(scene, frequency)
         edges = band_of(scene, maximal_period(nordmark))
@@ -207,7 +177,6 @@ def born_everywhere(scene: Scene, run: Run, count: int) -> list[Born]:
                 period=period,
                 map=maximal_periods(nordmark),
                 next_to_edge=part >= TOP,
-                settled=bool(period),
             )
         )
     again = [i for i, row in enumerate(rows) if row.next_to_edge and not row.agrees]

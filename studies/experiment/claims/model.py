@@ -25,7 +25,7 @@ from beam import ModalModel
 from contact import MaximalFamily, NordmarkMap, fold, maximal_period, stable_range
 from contact.orbits import Orbit, born_period
 from studies.physics.calibration import bare_cantilever, with_mass_ratio
-from studies.physics.descriptions import strobed_at
+from studies.physics.descriptions import falls, strobed_at
 from studies.shell.scene import Scene, model_of, nordmark_at, single_mode_at, single_mode_of
 
 SPAN = (0.802, 0.956)
@@ -33,9 +33,6 @@ SPAN = (0.802, 0.956)
 
 RESTITUTIONS = tuple(np.round(np.linspace(0.0, 0.9, 19), 3).tolist())
 """tau of the curves."""
-
-ROUNDING = 1e-12
-"""Change of an excess that is rounding."""
 
 ABOVE, FASTEST, EXACT = 1e-6, 10.0, 1e-14
 """The bifurcation is looked for from next to the fold (relative) to this approach speed over 2 pi f gap, far
@@ -62,11 +59,6 @@ class Node:
     fold: float
     secondary: float
     admissible: bool
-
-
-def falls(values: Sequence[float]) -> bool:
-    """Whether no value exceeds the one before it by more than rounding; a NaN does not fall."""
-    return bool(np.all(np.diff(values) <= ROUNDING))
 
 
 def has_one_impact(orbit: Orbit) -> bool:
@@ -161,7 +153,6 @@ class Born:
     period: int | None
     map: tuple[int, ...]
     next_to_edge: bool
-    settled: bool
     closer: int | None = None
 
     @property

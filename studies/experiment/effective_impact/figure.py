@@ -1,13 +1,12 @@
-"""Restitution, delay and kick side by side against one quantity, and restitution over the tip mass."""
+"""Restitution, delay and kick side by side against one quantity."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullFormatter
 
 from studies import letter
 from studies.experiment.effective_impact.model import Approach, on_orbits, select, series_of
@@ -22,9 +21,6 @@ AXES = {
 """Column of the rows -> quantity, unit, factor to that unit."""
 
 MASS = "tip mass / mass of the leaf"
-
-SEARCHED = ("1", "0.7", "0.6", "0.4", "0.2", "0.1")
-"""Local restitutions drawn."""
 
 
 def line(axis: Any, rows: Sequence[Approach], column: str, number: int, name: str) -> None:
@@ -41,113 +37,54 @@ def line(axis: Any, rows: Sequence[Approach], column: str, number: int, name: st
     )
 
 
-def panels(
-    rows: Sequence[Approach], curve: str, quantity: str, *, log: bool = True
-) -> tuple[Figure, list[Any]]:
-    """The series of a curve, a panel for each quantity."""
+def panels(rows: Sequence[Approach], curve: str, quantity: str, arc_of: str) -> tuple[Figure, list[Any]]:
+    """The series of a curve, a panel for each quantity; beside the delay the arc v/a of one series."""
     figure, axes = plotting.new_figure(1, len(AXES), width=PAGE, height=0.066)
     for place, (axis, (column, (words, unit, _))) in enumerate(zip(axes, AXES.items(), strict=True)):
         for number, name in enumerate(series_of(rows, curve)):
             line(axis, select(rows, curve, name), column, number, name)
-        if log:
-            axis.set_xscale("log")
         plotting.label(axis.xaxis, quantity)
         plotting.label(axis.yaxis, words, unit)
         axis.set_ylim(bottom=0.0)
         plotting.panel(axis, place)
+    chosen = select(rows, curve, arc_of)
+    arc = [1e3 * row.arc_s for row in chosen]
+    axes[1].plot([row.value for row in chosen], arc, **plotting.GUIDE, label=f"arc v/a, {arc_of}")
     return figure, list(axes)
-
-
-def guide(
-    axis: Any, rows: Sequence[Approach], y: Callable[[Approach], float], name: str, style: str = "--"
-) -> None:
-    """A line that theory gives."""
-    axis.plot(
-        [row.value for row in rows],
-        [y(row) for row in rows],
-        color="0.45",
-        linewidth=0.8,
-        linestyle=style,
-        zorder=1,
-        label=name,
-    )
-
-
-def arc_ms(row: Approach) -> float:
-    """v/a [ms]."""
-    return 1e3 * row.arc_s
-
-
-def closed(figure: Figure, axes: Sequence[Any], columns: int = 4, along: float = 0.99) -> Figure:
-    """One legend below; the letter's restitution in the first panel."""
-    plotting.legend_below(figure, axes, columns, handlelength=3.0, columnspacing=1.5)
-    plotting.mark_letter(axes[0].yaxis, letter.RESTITUTION, words="letter, τ ≈ 0.1", along=along)
-    return figure
 
 
 @plotting.in_house_style
 def speed(rows: Sequence[Approach]) -> Figure:
     """Restitution, delay and kick against the excess above grazing. Kick and loss fade towards grazing, where
     the contact takes longer than the arc beyond the plate; shaded: below the letter's amplitude stability."""
-    figure, axes = panels(rows, "speed", plotting.EXCESS)
+    figure, axes = panels(rows, "speed", plotting.EXCESS, "Hertz")
     hertz = select(rows, "speed", "Hertz")
-    guide(axes[0], hertz, lambda row: math.sqrt(row.contact_s / row.arc_s), "√(contact time · a/v), Hertz")
-    guide(axes[1], hertz, arc_ms, "arc v/a", "-.")
-    for axis, top in zip(axes, (1.05, 10.0, 1.1), strict=True):
-        axis.axvspan(hertz[0].value, letter.AMPLITUDE_STABILITY, color="0.92", zorder=-1, linewidth=0)
-        axis.set_xlim(hertz[0].value, hertz[-1].value)
-        axis.set_ylim(top=top)
+    floor, words = [math.sqrt(row.contact_s / row.arc_s) for row in hertz], "√(contact time · a/v), Hertz"
+    axes[0].plot([row.value for row in hertz], floor, color="0.45", linewidth=0.8, label=words)
     axes[1].set_yscale("log")
-    axes[1].set_ylim(1e-2, 1e1)
-    axes[1].annotate("letter:\nstability\nof the\namplitude", (1.3e-5, 8.0), fontsize=plotting.NOTE, va="top")
-    return closed(figure, axes, 5, along=0.02)
+    for axis, bounds in zip(axes, ((0.0, 1.05), (1e-2, 1e1), (0.0, 1.1)), strict=True):
+        axis.set_xscale("log")
+        axis.axvspan(hertz[0].value, letter.AMPLITUDE_STABILITY, color="0.92", zorder=-1, linewidth=0)
+        axis.set(xlim=(hertz[0].value, hertz[-1].value), ylim=bounds)
+    plotting.mark_letter(axes[0].yaxis, letter.RESTITUTION, words="letter, τ ≈ 0.1", along=0.02)
+    plotting.legend_below(figure, axes, 5, handlelength=3.0)
+    return figure
 
 
 @plotting.in_house_style
 def mass(rows: Sequence[Approach]) -> Figure:
     """The same against the mass of ball and mount. The restitution is smallest where the kick is near one;
     crosses: collisions on settled orbits, bars on the axis: mode 1 does not come back to the gap."""
-    figure, axes = panels(rows, "mass", MASS, log=False)
-    middle = select(rows, "mass", "excess 0.013")
-    guide(axes[2], middle, lambda row: row.ball_limit, "2 M φ$_1^2$")
-    guide(axes[1], middle, arc_ms, "arc v/a, excess 0.013", "-.")
+    figure, axes = panels(rows, "mass", MASS, "excess 0.013")
     looks = ((True, "x", "settled orbit, excess 0.013"), (False, "|", "the same, no return"))
     for returns, mark, name in looks:
         chosen = [row for row in on_orbits(rows) if row.returns is returns]
-        axes[0].plot(
-            [row.value for row in chosen],
-            [row.restitution if returns else 0.0 for row in chosen],
-            linestyle="none",
-            marker=mark,
-            markersize=4.0,
-            color=PALETTE[4],
-            label=name,
-            clip_on=False,
-        )
+        heights = [row.restitution if returns else 0.0 for row in chosen]
+        look = {"linestyle": "none", "markersize": 4.0, "color": PALETTE[4], "clip_on": False}
+        axes[0].plot([row.value for row in chosen], heights, marker=mark, **look, label=name)
     for axis, top in zip(axes, (1.0, None, 1.7), strict=True):
         axis.set_xlim(0.0, 1.03)
         axis.set_ylim(top=top)
-    return closed(figure, axes)
-
-
-@plotting.in_house_style
-def search(rows: Sequence[Approach]) -> Figure:
-    """In search of the letter's restitution: loss in the contact (Hunt-Crossley) moves the minimum over the
-    tip mass, not its depth."""
-    figure, axis = plotting.new_figure(height=0.075)
-    for number, name in enumerate(name for name in series_of(rows, "search") if name in SEARCHED):
-        found = [row for row in select(rows, "search", name) if row.value > 0.0]
-        line(axis, found, "restitution", number, f"local restitution {name}")
-    plotting.mark_letter(axis.yaxis, letter.RESTITUTION, words="letter, τ ≈ 0.1")
-    axis.set_xscale("log")
-    axis.set_ylim(0.0, 1.12)
-    axis.set_xticks([0.02, 0.05, 0.1, 0.2, 0.5, 1, 2], ["0.02", "0.05", "0.1", "0.2", "0.5", "1", "2"])
-    axis.xaxis.set_minor_formatter(NullFormatter())
-    plotting.label(axis.xaxis, MASS)
-    plotting.label(axis.yaxis, "restitution τ")
-    plotting.legend_below(figure, [axis], 2, handlelength=3.0)
+    plotting.mark_letter(axes[0].yaxis, letter.RESTITUTION, words="letter, τ ≈ 0.1")
+    plotting.legend_below(figure, axes, 4, handlelength=3.0)
     return figure
-
-
-DRAWN: tuple[Callable[[Sequence[Approach]], Figure], ...] = (speed, mass, search)
-"""The figures; each is named by its function and has its docstring as caption."""

@@ -9,7 +9,6 @@
 Beside what `contact.collisions` measures a row holds
 
     arc_s          v/a, the time in which the arc of the single mode beyond the gap reaches its top [s]
-    ball_limit     2 M phi_1^2, the kick of the ball by itself on a hard stop [1]
     energy_share   energy given to the higher modes over that of the approach, v^2/(2 phi_1^2) [1]
 
 Between the cases of a curve restitution has a corner where the kick is 1, its square has none. Smallest
@@ -39,7 +38,7 @@ from contact import (
     simulate,
 )
 from contact.orbits import born
-from studies.letter import TIME_TRACE_EXCESS
+from studies.letter import TIME_TRACE_EXCESS, TIME_TRACE_HZ
 from studies.physics.calibration import leaf_mass, with_mass_ratio
 from studies.shell.scene import (
     Scene,
@@ -53,9 +52,6 @@ from studies.shell.scene import (
 
 OWN, HERTZ = "contact of the scene", "Hertz"
 """Series of the spring as it is; `OWN` is there where the scene's law is not Hertz's."""
-
-ORBIT_HZ = 21.50
-"""The letter's Fig. 4 [Hz]."""
 
 EXCESSES = (*np.geomspace(1e-5, 5e-2, 38).tolist(), *np.geomspace(5e-2, 0.4, 9)[1:].tolist())
 MASS_EXCESSES = (1e-4, 1e-3, TIME_TRACE_EXCESS, 5e-2)
@@ -81,21 +77,21 @@ class Approach:
     series: str
     value: float
     excess: float
-    modes: int
     mass_ratio: float
     orbit_period: int | None = None
-    approach_m_s: float = math.nan
     restitution: float = math.nan
     delay_s: float = math.nan
     kick: float = math.nan
-    shift_m: float = math.nan
     contact_s: float = math.nan
     arc_s: float = math.nan
-    ball_limit: float
     energy_share: float = math.nan
     impacts: int = 0
     forced_by_ringing: bool = False
-    returns: bool = False
+
+    @property
+    def returns(self) -> bool:
+        """Whether mode 1 comes back to the gap."""
+        return math.isfinite(self.restitution)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -110,7 +106,7 @@ class Case:
 
     def measured(self) -> Approach:
         """The row with its numbers; ContactError or Refusal if there is no collision."""
-        found, row = None, self.row
+        row = self.row
         if row.curve == "orbit":
             found, period = orbit_collision(self.oscillator)
             row = replace(row, orbit_period=period)
@@ -121,17 +117,14 @@ class Case:
         mode_1 = 2.0 * float(self.oscillator.model.phi[0]) ** 2
         return replace(
             row,
-            approach_m_s=found.approach,
             restitution=found.restitution,
             delay_s=found.delay,
             kick=found.kick,
-            shift_m=found.shift,
             contact_s=found.contact_time,
             arc_s=found.approach / found.deceleration,
             energy_share=found.energy_to_higher_modes * mode_1 / found.approach**2,
             impacts=found.impacts,
             forced_by_ringing=found.forced_by_ringing,
-            returns=found.returns,
         )
 
 
@@ -167,22 +160,12 @@ class Spring:
         """Tip mass over that of the leaf [1]."""
         return self.scene.tip.mass_kg / leaf_mass(self.scene)
 
-    @property
-    def speed(self) -> float:
-        """Approach speed at the excess of Fig. 4 [m/s]."""
-        return approach_speed(self.frequency, self.scene.stop.gap_m, TIME_TRACE_EXCESS)
-
-    @property
-    def laws(self) -> dict[str, ContactLaw]:
-        """The law of the scene and Hertz's, once if they are the same."""
-        own, hertz = contact_law_of(self.scene), hertz_of(self.scene)
-        return {HERTZ: hertz} if own == hertz else {OWN: own, HERTZ: hertz}
-
     def lossy(self, restitution: float) -> HuntCrossley:
-        """Hunt and Crossley's law that has this restitution with a free mass at `speed`."""
-        stiffness = hertz_of(self.scene).stiffness
+        """Hunt and Crossley's law that has this restitution with a free mass at the excess of Fig. 4."""
         return HuntCrossley.with_restitution(
-            stiffness=stiffness, restitution=restitution, velocity=self.speed
+            stiffness=hertz_of(self.scene).stiffness,
+            restitution=restitution,
+            velocity=approach_speed(self.frequency, self.scene.stop.gap_m, TIME_TRACE_EXCESS),
         )
 
     def case(
@@ -203,29 +186,21 @@ class Spring:
             series=series,
             value=ratio if value is None else value,
             excess=excess,
-            modes=self.model.n_modes,
             mass_ratio=ratio,
-            ball_limit=2.0 * float(self.model.tip_mass or 0.0) * float(self.model.phi[0]) ** 2,
         )
         return Case(row=row, oscillator=replace(oscillator, stop=stop).with_excess(excess))
 
 
 def cases_of(spring: Spring, masses: Sequence[Spring], fine: Spring, every: int = 1) -> Iterator[Case]:
-    """Every case of the study, or every `every`-th of a curve.
-
-    Parameters
-    ----------
-    spring : as it is.
-    masses : the same with other tip masses, the bare tip first.
-    fine : as it is, on a finer mesh.
-    """
-    hertz = hertz_of(spring.scene)
-    lines = [(name, spring, law) for name, law in spring.laws.items()]
-    for name, one, law in [*lines, ("bare tip, Hertz", masses[0], hertz)]:
+    """Every case, or every `every`-th of a curve: of the spring, with other tip masses, on a finer mesh."""
+    own, hertz = contact_law_of(spring.scene), hertz_of(spring.scene)
+    other: list[tuple[str, Spring, ContactLaw]] = [] if own == hertz else [(OWN, spring, own)]
+    lines = [*other, (HERTZ, spring, hertz), ("bare tip, Hertz", masses[0], hertz)]
+    for name, one, law in lines:
         for excess in EXCESSES[::every]:
             yield one.case("speed", name, law, value=excess, excess=excess)
-    yield fine.case("reference", *next(iter(fine.laws.items())))
-    orbit_hz = corresponding(spring.scene, ORBIT_HZ)
+    yield fine.case("reference", HERTZ if own == hertz else OWN, own)
+    orbit_hz = corresponding(spring.scene, TIME_TRACE_HZ)
     for one in masses:
         for excess in MASS_EXCESSES:
             yield one.case("mass", f"excess {excess:g}", hertz, excess=excess)
@@ -248,14 +223,6 @@ def series_of(rows: Sequence[Approach], curve: str) -> list[str]:
 def on_orbits(rows: Sequence[Approach]) -> list[Approach]:
     """The collisions on settled orbits that belong to a peak of mode 1."""
     return [row for row in select(rows, "orbit") if row.impacts and not row.forced_by_ringing]
-
-
-def crossing(x: Sequence[float], y: Sequence[float], level: float) -> float:
-    """The first x at which y(x) goes through `level`, by a monotone spline in log x; NaN if it never does."""
-    if len(x) < 2:
-        return math.nan
-    roots = PchipInterpolator(np.log(x), np.array(y) - level).roots(extrapolate=False)
-    return math.exp(roots[0]) if roots.size else math.nan
 
 
 @dataclass(frozen=True, kw_only=True)

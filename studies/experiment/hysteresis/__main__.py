@@ -48,14 +48,14 @@ from studies.experiment.hysteresis.model import (
     Folds,
     Inside,
     column,
-    falls,
     inside_band,
     path_of,
 )
 from studies.letter import AMPLITUDE_STABILITY
+from studies.physics.descriptions import falls
 from studies.shell.options import require_cells
 from studies.shell.run import Verdict
-from studies.shell.scene import Scene, band_of, harmonic, model_of, periods_of, require_drive_below
+from studies.shell.scene import Scene, harmonic, model_of, periods_of, require_drive_below
 from studies.shell.study import Run, study
 
 PERIODS, BANDS = range(3, 11), range(3, 12)
@@ -87,6 +87,9 @@ class Accuracy:
     folds: int
     median: float
     worst: float
+
+    def __str__(self) -> str:
+        return f"{self.median:.2f} (median; worst {self.worst:.1f})"
 
 
 @study(needs={"fold": 0.05}, quick={"step": 0.3, "inside": 26})
@@ -165,16 +168,12 @@ def judge(run: Run, rows: Sequence[Folds], off: Mapping[str, Accuracy], median: 
         run.say("no p_m has a fold in the map, Eq. (1) and the beam: there is nothing to compare")
         return
     up, down = max(factors, key=factors.__getitem__), min(factors, key=factors.__getitem__)
-
-    def in_words(name: str, digits: int = 2) -> str:
-        return f"{off[name].median:.{digits}f} (median; worst {off[name].worst:.{max(digits - 1, 1)}f})"
-
     run.answer(
         "hysteresis",
         "The map has the periods and the bands, not the size of the hysteresis. The difference is a product "
         f"of causes: in the median the {up.replace('_', ' ')} multiplies the hysteresis by "
         f"{factors[up]:.2f}, the {down.replace('_', ' ')} by {factors[down]:.2f}. The letter's two "
-        f"parameters represent the higher modes up to a factor of {in_words('two_parameters')}, which is the "
+        f"parameters represent the higher modes up to a factor of {off['two_parameters']}, which is the "
         "ringing that has not decayed when the tip comes back.",
     )
     own = factors["truncation_of_the_map"]
@@ -185,10 +184,8 @@ def judge(run: Run, rows: Sequence[Folds], off: Mapping[str, Accuracy], median: 
         note="the letter prints curves, no values; the beam differs from the map as the experiment did, but "
         f"a factor of {own:.2f} (median) is the map's own truncation, with no higher mode in it",
     )
-    present = {(row.frequency_hz, row.m) for row in rows if row.beam_admissible and (row.beam or 0.0) < 0.0}
-    beside = [
-        f"p{m} at {f:.2f} Hz" for f, m in sorted(present, key=lambda at: at[::-1]) if (f, m - 1) in present
-    ]
+    present = {(row.m, row.frequency_hz) for row in rows if row.beam_admissible and (row.beam or 0.0) < 0.0}
+    beside = [f"p{m} at {f:.2f} Hz" for m, f in sorted(present) if (m - 1, f) in present]
     if beside or not run.quick:  # few frequencies can miss them all
         run.verdict(
             "neighbour_band",
@@ -201,7 +198,7 @@ def judge(run: Run, rows: Sequence[Folds], off: Mapping[str, Accuracy], median: 
     run.verdict(
         "two_parameters",
         "agrees" if two.worst <= NEARLY else verdict,
-        found=f"off by {in_words('two_parameters')}; kick of all modes {in_words('all_mode_kick', 4)}",
+        found=f"off by {two}; kick of all modes {off['all_mode_kick'].median:.4f}",
         note="what is missing is the ringing of the higher modes that the next collision meets",
     )
 
@@ -221,9 +218,4 @@ def judge_bands(run: Run, scene: Scene, rows: Sequence[Inside]) -> Mapping[str, 
         note=f"alpha from {path[0].alpha:.2f} to {path[-1].alpha:.2f}, gamma from {path[0].gamma:.3f} to"
         f" {path[-1].gamma:.3f}: the bands are crossed at almost constant gamma",
     )
-    return {
-        "edges": [band_of(scene, m) for m in BANDS],
-        "at_lower_edge": [own[0] for own in of_band],
-        "largest_at_upper_edge": zero,
-        "crossed": crossed,
-    }
+    return {"largest_at_upper_edge": zero, "crossed": crossed}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -43,18 +44,12 @@ def draw_curves(scene: Scene, rows: Sequence[Folds]) -> Figure:
     figure, axes = plotting.new_figure(2, 1, width=PAGE, height=0.128, sharex=True)
     edges = [band_of(scene, m) for m in sorted({row.m for row in rows})]
     # f T at the edge is fixed: an error of T moves it by as much
-    unsure = letter.FREE_PERIOD_ERROR_S / letter.FREE_PERIOD_S
+    unsure = 1.0 + np.array([-1.0, 1.0]) * letter.FREE_PERIOD_ERROR_S / letter.FREE_PERIOD_S
+    shade = {"color": "0.82", "linewidth": 0, "zorder": 0}
     for number, (axis, sign) in enumerate(zip(axes, (1.0, -1.0), strict=True)):
         curves(axis, rows, sign)
         for edge in edges:
-            axis.axvspan(
-                edge.upper * (1.0 - unsure),
-                edge.upper * (1.0 + unsure),
-                color="0.82",
-                linewidth=0,
-                zorder=0,
-                label="upper edge of a band, letter's error of T",
-            )
+            axis.axvspan(*(edge.upper * unsure), **shade, label="upper edge of a band, letter's error of T")
         for seen in periods_of(scene):
             axis.axvline(seen, **LETTER, label="letter's Fig. 2: p$_m$ seen here")
         plotting.panel(axis, number)
@@ -80,13 +75,8 @@ def curves(axis: Axes, rows: Sequence[Folds], sign: float) -> None:
             shown = [(row.frequency_hz, end) for row, end in ends if row.m == m and sign * end < 0.0]
             axis.plot(*np.array(shown).reshape(-1, 2).T, **style, linewidth=0.9)
     crossed = [(row.frequency_hz, end) for row, end in ends if sign * end < 0.0 and not row.beam_admissible]
-    axis.plot(
-        *np.array(crossed).reshape(-1, 2).T,
-        "x",
-        markersize=3.5,
-        color=VERMILION,
-        label="beam, not admissible",
-    )
+    look: plotting.Style = {"markersize": 3.5, "color": VERMILION, "label": "beam, not admissible"}
+    axis.plot(*np.array(crossed).reshape(-1, 2).T, "x", **look)
 
 
 def names_of_bands(axes: Sequence[Axes], scene: Scene, edges: Sequence[Band]) -> None:
@@ -94,28 +84,14 @@ def names_of_bands(axes: Sequence[Axes], scene: Scene, edges: Sequence[Band]) ->
     lowest, highest = (corresponding(scene, f) for f in FREQUENCIES_HZ)
     axes[1].set_xlim(lowest, highest)
     for seen, m in periods_of(scene).items():
-        axes[1].annotate(
-            f"p$_{{{m}}}$",
-            (seen, 0.02),
-            xytext=(-1.5, 0),
-            textcoords="offset points",
-            ha="right",
-            xycoords=("data", "axes fraction"),
-            va="bottom",
-            fontsize=NOTE,
-        )
+        at: plotting.Style = {"transform": axes[1].get_xaxis_transform(), "fontsize": NOTE}
+        at |= {"ha": "right", "va": "bottom"}
+        axes[1].text(seen, 0.02, f"p$_{{{m}}}$ ", **at)
     for edge in edges:
         middle = 0.5 * (max(edge.lower, lowest) + edge.upper)
-        words = f"$m$ = {edge.period}" if edge.period < 6 else f"{edge.period}"
         if middle < highest:
-            axes[0].annotate(
-                words,
-                (middle, 1.01),
-                xycoords=("data", "axes fraction"),
-                ha="center",
-                va="bottom",
-                fontsize=NOTE,
-            )
+            at = {"transform": axes[0].get_xaxis_transform(), "fontsize": NOTE, "ha": "center"}
+            axes[0].text(middle, 1.01, f"$m$ = {edge.period}" if edge.period < 6 else f"{edge.period}", **at)
 
 
 @plotting.in_house_style
@@ -124,10 +100,8 @@ def draw_bands(scene: Scene, path: Sequence[NordmarkMap]) -> Figure:
     figure, axis = plotting.new_figure(height=0.075)
     mode, rates = scene.single_mode, np.geomspace(100.0, 1e-3, 80)
     for m in range(3, 9):
-        edges = [
-            band(m, free_period=mode.free_period_s, decay_rate=mu, restitution=mode.restitution)
-            for mu in rates.tolist()
-        ]
+        bands = partial(band, m, free_period=mode.free_period_s, restitution=mode.restitution)
+        edges = [bands(decay_rate=mu) for mu in rates.tolist()]
         f = np.array([*(one.upper for one in edges), *(one.lower for one in edges[::-1])])
         gamma = np.exp(-np.concatenate([rates, rates[::-1]]) / f)
         alpha = 2.0 * np.sqrt(gamma) * np.cos(2.0 * np.pi / (f * mode.free_period_s))

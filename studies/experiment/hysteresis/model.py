@@ -18,7 +18,6 @@ curves in the plane of alpha and gamma, with mu as parameter. The experiment cro
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -55,9 +54,6 @@ FREQUENCIES_HZ = (19.6, 23.8)
 
 EDGE = 1e-7
 """Distance of the last frequency in a band from its upper edge, relative to the band."""
-
-ROUNDING = 1e-12
-"""Change of an excess that is rounding."""
 
 BELOW_BAND = 0.5
 """How far below its band in the map a period is looked for, in widths of the band: there it coexists."""
@@ -183,8 +179,3 @@ def path_of(scene: Scene) -> list[NordmarkMap]:
     """The maps along the frequencies of the experiment."""
     low, high = (corresponding(scene, f) for f in FREQUENCIES_HZ)
     return [nordmark_at(scene, f) for f in np.linspace(low, high, 200).tolist()]
-
-
-def falls(values: Sequence[float]) -> bool:
-    """Whether no value exceeds the one before it by more than rounding."""
-    return bool(np.all(np.diff(values) <= ROUNDING))

@@ -25,15 +25,14 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Annotated
 
-from beam import InvalidValue
-from contact import StroboscopicMap
 from studies.experiment.last_period import pairs
 from studies.experiment.last_period.causes import Effect, causes_of, effect_of
-from studies.experiment.last_period.changes import changes_of, transitions_after, transitions_at
+from studies.experiment.last_period.changes import DESCRIPTIONS, changes_of, transitions_after, transitions_at
 from studies.experiment.last_period.clouds import Clouds, clouds_of, frequency_of
 from studies.letter import AMPLITUDE_STABILITY, PERIODS
+from studies.physics.descriptions import strobed_at
 from studies.physics.drive_noise import DriveNoise
-from studies.shell.scene import Scene, SceneError, beam_at, corresponding, harmonic, model_of, single_mode_at
+from studies.shell.scene import Scene, SceneError, corresponding, harmonic, model_of, single_mode_at
 from studies.shell.study import Run, study
 
 HIGHEST = max(PERIODS.values())
@@ -53,14 +52,10 @@ def last_period(
     *,
     stability: Annotated[float, "standard deviation of the amplitude, relative"] = AMPLITUDE_STABILITY,
     correlation_times: Annotated[tuple[float, ...], "of its drift (s), 0 for white"] = (0.0, 100.0, 3600.0),
-    readout: Annotated[float, "standard deviation of a reading of the displacement (m)"] = 0.0,
-    seed: Annotated[int, "of all noise"] = 1996,
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
     if harmonic(scene).spring.kind == "modal_data":
         raise SceneError("spring.kind is modal_data; this study varies the dimensions of a spring")
-    if not readout >= 0.0:
-        raise InvalidValue(f"readout is {readout:g} m; it must be 0 or more")
     times = dict.fromkeys(correlation_times)
     noises = [DriveNoise(stability=stability, correlation_s=time) for time in times]
     model, frequencies = model_of(scene), sorted(scene.drive.frequencies_hz)
@@ -86,13 +81,10 @@ def last_period(
     intervals = pair_intervals(scene, run)
 
     letters = [(row.frequency_hz, row.m) for row in base if row.description == "Eq. (1)" and row.m > 1]
-    one_mode = [(frequency_of(scene, m), m) for m in IN_NOISE[run.quick]]
-    noisy = [("Eq. (1)", StroboscopicMap(oscillator=single_mode_at(scene, f)), m) for f, m in one_mode]
-    noisy += [
-        ("beam", StroboscopicMap(oscillator=beam_at(scene, f, model)), m)
-        for f, m in letters[-2 if run.quick else 0 :]
-    ]
-    found = run.attempt(partial(clouds_of, readout, noises, seed), noisy, "periods in noise")
+    places = [("single_mode", frequency_of(scene, m), m) for m in IN_NOISE[run.quick]]
+    places += [("beam", f, m) for f, m in letters[-2 if run.quick else 0 :]]
+    noisy = [(DESCRIPTIONS[name], strobed_at(name, scene, f, model), m) for name, f, m in places]
+    found = run.attempt(partial(clouds_of, noises), noisy, "periods in noise")
     clouds = [row for row in found if row]
     kinds = [noise.name for noise in noises]
     caption = f"p_m at an excess of 1e-3 in noise ({', '.join(kinds)}): distances of clouds over their width."

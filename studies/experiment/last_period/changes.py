@@ -7,18 +7,17 @@ stay.  The fold after a change is that of the p_m that is born without it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TypeVar
 
 from beam import ModalModel
-from contact import ContactError, StroboscopicMap
 from contact.orbits import born_period, fold_excess
 from studies.letter import BREAKDOWN, FREE_PERIOD_ERROR_S
 from studies.physics.calibration import calibrate_damping, calibrate_thickness, free_period
-from studies.shell.scene import Scene, beam_at, model_of, nordmark_at, single_mode_at
+from studies.physics.descriptions import or_none, strobed_at
+from studies.shell.scene import Scene, model_of
 
-T = TypeVar("T")
+DESCRIPTIONS = {"map": "map", "single_mode": "Eq. (1)", "beam": "beam"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -131,29 +130,17 @@ class Transition:
     fold: float | None
 
 
-def known(compute: Callable[..., T], *arguments: object) -> T | None:
-    """The value, or None where it fails: next to a missing fold the orbits do not exist."""
-    try:
-        return compute(*arguments)
-    except ContactError:
-        return None
-
-
 def transitions_at(
     scene: Scene, model: ModalModel, frequency: float, periods: Sequence[int] | None = None
 ) -> list[Transition]:
     """The transition in map, Eq. (1) and beam; `periods` are the m of each, by default what is born."""
-    strobed = {
-        "map": nordmark_at(scene, frequency),
-        "Eq. (1)": StroboscopicMap(oscillator=single_mode_at(scene, frequency)),
-        "beam": StroboscopicMap(oscillator=beam_at(scene, frequency, model)),
-    }
     found = list[Transition]()
-    for k, (name, motion) in enumerate(strobed.items()):
-        born = known(born_period, motion)
+    for k, (name, words) in enumerate(DESCRIPTIONS.items()):
+        strobed = strobed_at(name, scene, frequency, model)
+        born = or_none(born_period, strobed)
         m = (born or 0) if periods is None else periods[k]
-        fold = known(fold_excess, motion, m)
-        found.append(Transition(frequency_hz=frequency, description=name, m=m, born=born, fold=fold))
+        fold = or_none(fold_excess, strobed, m)
+        found.append(Transition(frequency_hz=frequency, description=words, m=m, born=born, fold=fold))
     return found
 
 

@@ -1,24 +1,23 @@
 """Clouds of strobe points in noise of the drive: which p_m can be told apart, and which is still there.
 
 At an excess of 1e-3 the m strobe points of p_m become m clouds, sorted by the strobes since the last impact.
-Over `WAITS` waitings, and by the covariances of ``contact.orbits.cloud``, neighbouring clouds are separate if
-they are further apart than wide (90 % of the points).  In one record of the 40 strobes that the letter draws
-they are separate if no two overlap: a slow drift moves all points of a record together.  Noise of the
-read-out is included.  p_m is held if it is seen one standard deviation of the amplitude above grazing.
+Over `WAITS` waitings neighbouring clouds are separate if they are further apart than wide (90 % of the
+points).  In one record of the 40 strobes that the letter draws they are separate if no two overlap: a slow
+drift moves all points of a record together.  p_m is held if it is seen one standard deviation of the
+amplitude above grazing.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contact import ContactError, StroboscopicMap
-from contact.orbits import born, born_period, cloud, fold_excess
+from contact import StroboscopicMap
+from contact.orbits import born, born_period
 from studies.letter import SETTLE_CYCLES, STROBE_POINTS
 from studies.physics.drive_noise import DriveNoise, watched
 from studies.shell.scene import READOUT, Scene, band_of
@@ -35,8 +34,7 @@ WAITS, WAITING = 10, SETTLE_CYCLES
 FEWEST = 10
 """Least number of points of a cloud."""
 
-WIDTH = 3.2897072539029444
-"""Standard deviations of a normal distribution between which 90 % lie."""
+SEED = 1996
 
 Points = NDArray[np.float64]
 Counts = NDArray[np.int64]
@@ -48,30 +46,23 @@ class Clouds:
 
     Attributes
     ----------
-    born, fold : int, float or None
-        The period that is born without noise at excess 1e-3, and the excess of the fold of p_m.
+    born : int or None
+        The period that is born without noise at excess 1e-3.
     apart : tuple of float
-        Least distance of neighbouring clouds over their mean width, simulated.
-    predicted : tuple of float or None
-        The same by covariances; None where the orbit has none.
+        Least distance of neighbouring clouds over their mean width.
     records : tuple of float
         Part of the records of 40 strobes in which no two clouds overlap.
     held : tuple of float
         Part of the waitings in which p_m is seen at an excess of one standard deviation.
-    seen : tuple of bool
-        Whether both parts are above one half.
     """
 
     description: str
     m: int
     frequency_hz: float
     born: int
-    fold: float | None
     apart: tuple[float, ...] | None = None
-    predicted: tuple[float | None, ...] | None = None
     records: tuple[float, ...] | None = None
     held: tuple[float, ...] | None = None
-    seen: tuple[bool, ...] = ()
 
 
 def frequency_of(scene: Scene, m: int) -> float:
@@ -105,19 +96,12 @@ def apart(points: Points, impacts: Counts, period: int) -> float:
     if min(group.size for group in groups) < FEWEST:
         return math.nan
     low, centre, high = np.array([np.quantile(group, (0.05, 0.5, 0.95)) for group in groups]).T
-    return least_ratio(centre, high - low)
-
-
-def least_ratio(centre: Points, width: Points) -> float:
-    """Least distance of neighbouring centres over the mean width of the two."""
     order = np.argsort(centre)
-    between = 0.5 * (width[order][1:] + width[order][:-1])
-    return float(np.min(np.diff(centre[order]) / np.maximum(between, 1e-300)))
+    centre, width = centre[order], (high - low)[order]
+    return float(np.min(np.diff(centre) / np.maximum(0.5 * (width[1:] + width[:-1]), 1e-300)))
 
 
-def clouds_of(
-    readout: float, noises: Sequence[DriveNoise], seed: int, described: tuple[str, StroboscopicMap, int]
-) -> Clouds:
+def clouds_of(noises: Sequence[DriveNoise], described: tuple[str, StroboscopicMap, int]) -> Clouds:
     """p_m of a named description: the tip of Eq. (1), the read-out point of a beam."""
     description, strobed, m = described
     row = Clouds(
@@ -125,38 +109,23 @@ def clouds_of(
         m=m,
         frequency_hz=strobed.oscillator.driven.frequency,
         born=born_period(strobed, BORN_EXCESS),
-        fold=fold_excess(strobed, m) if strobed.oscillator.n_modes == 1 else None,
     )
     if row.born != m:
         return row
-    columns = zip(*(_in_noise(readout, noise, seed, strobed, m) for noise in noises), strict=True)
-    between, predicted, records, held = columns
-    seen = tuple(min(pair) > 0.5 for pair in zip(records, held, strict=True))
-    return replace(row, apart=between, predicted=predicted, records=records, held=held, seen=seen)
+    between, records, held = zip(*(_in_noise(noise, strobed, m) for noise in noises), strict=True)
+    return replace(row, apart=between, records=records, held=held)
 
 
-def _in_noise(
-    readout: float, noise: DriveNoise, seed: int, strobed: StroboscopicMap, m: int
-) -> tuple[float, float | None, float, float]:
-    """`apart`, `predicted`, `records` and `held` of p_m in one kind of noise."""
+def _in_noise(noise: DriveNoise, strobed: StroboscopicMap, m: int) -> tuple[float, float, float]:
+    """`apart`, `records` and `held` of p_m in one kind of noise."""
     here, frequency = strobed.at(BORN_EXCESS), strobed.oscillator.driven.frequency
-    dice = np.random.default_rng([seed, m, round(1e3 * frequency), round(1e3 * noise.correlation_s)])
+    dice = np.random.default_rng([SEED, m, round(1e3 * frequency), round(1e3 * noise.correlation_s)])
     factors = 1.0 + noise.drift(frequency, dice).next(WAITS * WAITING)
-    orbit, low = born(strobed, BORN_EXCESS), strobed.at(noise.stability)
-    run = here.orbit(orbit.end, factors.size, factors=factors)
-    lower = low.orbit(born(strobed, noise.stability).end, factors.size, factors=factors)
+    run = here.orbit(born(strobed, BORN_EXCESS).end, factors.size, factors=factors)
+    low = born(strobed, noise.stability).end
+    lower = strobed.at(noise.stability).orbit(low, factors.size, factors=factors)
     held = [watched(part, m)[0] > 0.5 for part in np.split(lower.impacts, WAITS)]
-
-    def reading(points: Points) -> Points:
-        at_laser = READOUT in strobed.oscillator.model.readouts
-        return here.readout(points, READOUT) if at_laser else here.tip(points)
-
-    predicted = None
-    with suppress(ContactError, ValueError):  # a strobe in a touch, a graze
-        spread = cloud(here, orbit.end, m, deviation=noise.stability, memory=noise.memory(frequency))
-        row = reading(np.eye(spread.shape[1]))
-        width = WIDTH * np.sqrt(np.einsum("i,jik,k->j", row, spread, row) + readout**2)
-        predicted = round(least_ratio(reading(here.orbit(orbit.end, m).points), width), 3)
-    points = reading(run.points) + readout * dice.standard_normal(factors.size)
+    at_laser = READOUT in strobed.oscillator.model.readouts
+    points = here.readout(run.points, READOUT) if at_laser else here.tip(run.points)
     between, clear = round(apart(points, run.impacts, m), 3), round(separate(points, run.impacts, m), 3)
-    return between, predicted, clear, float(np.mean(held))
+    return between, clear, float(np.mean(held))

@@ -17,7 +17,7 @@ stability, and at which a multiplier passes -1. The study compares the loss of s
 amplitude stability. `closed_forms` derives the equations.
 
 Run:     python -m studies soft_wall [--decades 1 6] [--quick]
-Writes:  kicks.csv, doublings.csv; figures kick and orbits
+Writes:  kicks.csv, doublings.csv; figure kick
 """
 
 from __future__ import annotations
@@ -43,13 +43,12 @@ UNSEEN = 1e-9
 """A loss of stability below this excess counts as one at grazing, as at a hard wall."""
 
 
-@study(needs={"kick": 0.005}, quick={"decades": (3, 5), "points": 13})
+@study(needs={"kick": 0.005}, quick={"decades": (3, 5)})
 def soft_wall(
     scene: Scene,
     run: Run,
     *,
     decades: Annotated[tuple[int, int], "powers of ten between which K runs"] = (1, 6),
-    points: Annotated[int, "excesses of the curve of the beam"] = 37,
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
     if not decades[0] <= decades[1] <= 7:
@@ -58,40 +57,22 @@ def soft_wall(
     shown = min(frequencies, key=lambda f: abs(f - SHOWN_HZ))
     if run.quick:
         frequencies = sorted({min(frequencies, key=lambda f: abs(f - g)) for g in QUICK_HZ})
-    walls = [
-        SoftWall(oscillator=single_mode_at(scene, f), hardness=10.0**k)
-        for f in frequencies
-        for k in range(decades[0], decades[1] + 1)
-    ]
+    hardness = [10.0**k for k in range(decades[0], decades[1] + 1)]
+    singles = [single_mode_at(scene, f) for f in frequencies]
+    walls = [SoftWall(oscillator=one, hardness=K) for one in singles for K in hardness]
     excesses = np.geomspace(1e-8, 3e-2, 14 if run.quick else 27)
     curves = [wall for wall in walls if wall.frequency == shown]
-    kicks = [
-        row
-        for rows in run.attempt(partial(kicks_of, excesses=excesses), curves, "kicks")
-        for row in rows or ()
-    ]
+    found = run.attempt(partial(kicks_of, excesses=excesses), curves, "kicks")
+    kicks = [row for rows in found for row in rows or ()]
     doublings = [row for row in run.attempt(doubling_of, walls, "period doublings") if row]
-    job = partial(beam_of, scene, excesses=np.geomspace(1e-7, 1e-1, points).tolist())
-    (found,) = run.attempt(job, [shown], "beam")
-    beam, more = found or (None, [])
+    job = partial(beam_of, scene, excesses=np.geomspace(1e-7, 1e-1, 13 if run.quick else 37).tolist())
+    (of_beam,) = run.attempt(job, [shown], "beam")
+    beam, more = of_beam or (None, [])
     run.table("kicks", [*kicks, *more], "Kick velocity of one collision [m/s].", show=())
     run.table("doublings", doublings, "Excess F/F_g - 1 at which p1 doubles its period.")
-    from studies.experiment.soft_wall.figure import draw_kicks, draw_orbits
+    from studies.experiment.soft_wall import figure  # matplotlib is slow to import
 
-    run.figure(
-        "kick",
-        draw_kicks([*kicks, *more]),
-        "Kick of one collision against the excess: points, "
-        "closed form (line) and, dashed, the law of a soft touch. All go over into the power 1/2 of a "
-        "hard one, the beam below what the letter's drive could resolve.",
-    )
-    run.figure(
-        "orbits",
-        draw_orbits(scene, doublings, beam),
-        "(a) Excess of the period doubling of p1 at an elastic wall; closed form (line). "
-        "(b) The beam: p1 that survives its touch, and what an experiment sees that raises "
-        "the drive in finite steps.",
-    )
+    run.figure("kick", figure.draw_kicks([*kicks, *more]), figure.KICKS)
     judge_wall(run, doublings)
     if beam:
         judge_beam(run, beam)
@@ -119,14 +100,10 @@ def judge_beam(run: Run, beam: Beam) -> None:
     end, lost, stable = beam.doubling_excess, beam.unstable_excess, letter.AMPLITUDE_STABILITY
     if end is None or lost is None:
         return
-    below = (
-        "within what the letter could resolve"
-        if lost >= stable
-        else (
-            f"{stable / lost:.0f} times below the letter's amplitude stability, which is why it was not seen"
-        )
-    )
-    loss = f"p1 doubles its period at {end:.2g}"
+    below, loss = "within what the letter could resolve", f"p1 doubles its period at {end:.2g}"
+    if lost < stable:
+        times = f"{stable / lost:.0f} times below the letter's amplitude stability"
+        below = f"{times}, which is why it was not seen"
     if beam.turns:
         loss = (
             f"p1 loses its stability at {lost:.2g} by a complex pair of multipliers; a multiplier passes "
@@ -141,7 +118,7 @@ def judge_beam(run: Run, beam: Beam) -> None:
     if beam.square_root_from is not None and beam.half_excess is not None:
         run.answer(
             "higher_modes",
-            f"The square root holds from an excess of {beam.square_root_from:.1e} on; "
-            f"half of the kick is left at {beam.half_excess:.1e}. Below, the Hertz contact smooths "
-            f"it: {loss}. This loss of stability is {below}.",
+            f"The square root holds from an excess of {beam.square_root_from:.1e} on; half of the kick is "
+            f"left at {beam.half_excess:.1e}. Below, the Hertz contact smooths it: {loss}. This loss of "
+            f"stability is {below}.",
         )

@@ -1,4 +1,4 @@
-"""Figures of the soft wall, from what the study has stored."""
+"""Kick of a collision at a soft wall, and of the beam."""
 
 from __future__ import annotations
 
@@ -8,12 +8,15 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from studies import letter
-from studies.experiment.soft_wall.closed_forms import SoftWall
-from studies.experiment.soft_wall.model import Beam, Doubling, Kick
+from studies.experiment.soft_wall.model import Kick
 from studies.shell import plotting
-from studies.shell.plotting import EXCESS, PAGE, PALETTE, in_house_style
-from studies.shell.scene import Scene, single_mode_at
+from studies.shell.plotting import EXCESS, PAGE, in_house_style
 
+KICKS = (
+    "Kick of one collision against the excess: points, closed form (line) and, dashed, the law of a soft "
+    "touch. All go over into the power 1/2 of a hard one, the beam below what the letter's drive could "
+    "resolve."
+)
 CASES = {"lossless": "Eq. (1), elastic wall: power 3/2", "beam": "beam, Hertz contact: power 2"}
 
 
@@ -38,50 +41,5 @@ def draw_kicks(rows: Sequence[Kick]) -> Figure:
         plotting.label(axis.xaxis, EXCESS)
     axes[0].set_ylim(bottom=0.3 * min((row.kick_velocity for row in rows), default=1e-6))
     plotting.label(axes[0].yaxis, "kick of one collision", "m/s")
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=7)
-    return figure
-
-
-@in_house_style
-def draw_orbits(scene: Scene, doublings: Sequence[Doubling], beam: Beam | None) -> Figure:
-    """Excess of the doubling against K; what is born on the beam."""
-    figure, axes = plotting.new_figure(1, 2, width=PAGE, height=0.075)
-    hardness = np.geomspace(10.0, 1e6, 121)
-    for i, frequency in enumerate(sorted({row.frequency_hz for row in doublings})):
-        style, colour = plotting.points(i % 7), PALETTE[i % 7]
-        oscillator = single_mode_at(scene, frequency)
-        walls = [SoftWall(oscillator=oscillator, hardness=K) for K in hardness.tolist()]
-        axes[0].loglog(hardness, [(wall.doubling() or (0.0, np.nan))[1] for wall in walls], color=colour)
-        rows = [row for row in doublings if row.frequency_hz == frequency]
-        axes[0].loglog(
-            [row.hardness for row in rows],
-            [row.excess or np.nan for row in rows],
-            **style,
-            markerfacecolor="white",
-            label=f"{frequency:.2f} Hz",
-        )
-    plotting.mark_letter(axes[0].yaxis, letter.AMPLITUDE_STABILITY, words="letter: stability")
-    if beam is not None:
-        axes[1].semilogx(
-            *zip(*(one for one in beam.born if one[1]), strict=True),
-            **plotting.points(2),
-            markerfacecolor="white",
-            label="raised in one step",
-        )
-        stable = (beam.born[0][0], beam.unstable_excess or np.nan)
-        axes[1].semilogx(stable, (1, 1), color=PALETTE[1], marker="|", label="p$_1$ with a touch is stable")
-        axes[1].set_ylim(0.0, 1.5 + axes[1].get_ylim()[1])
-        plotting.mark_letter(axes[1].xaxis, letter.AMPLITUDE_STABILITY, along=0.3, words="letter:\nstability")
-        axes[1].legend(loc="center left", bbox_to_anchor=(0.0, 0.55))
-    for number, (axis, name, across) in enumerate(
-        zip(
-            axes,
-            ("excess of the doubling of p$_1$", "beam: period born"),
-            ("hardness K", EXCESS),
-            strict=True,
-        )
-    ):
-        plotting.panel(axis, number, name)
-        plotting.label(axis.xaxis, across)
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=6)
+    plotting.legend_below(figure, axes[:1], 7)
     return figure

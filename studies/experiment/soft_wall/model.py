@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from contact import Collision, ImpactOscillator, StroboscopicMap, first_collision
-from contact.orbits import PeriodicOrbit, Shooting, born_period, follow
+from contact import Collision, ImpactOscillator, first_collision
+from contact.orbits import PeriodicOrbit, Shooting, follow
 from studies import letter
 from studies.experiment.soft_wall.closed_forms import SoftWall, hertz_doubling, hertz_kick
 from studies.shell.scene import Scene, approach_speed, beam_at
@@ -52,25 +52,19 @@ class Doubling:
 class Beam:
     """What the beam with Hertz contact does near grazing; excesses are F/F_g - 1.
 
-    `plateau`: the kick at Fig. 4, in approach speeds; `half_excess`: where half of it is left;
-    `share_at_stability`: what is left at the letter's amplitude stability; `square_root_from`: where the kick
-    rises with the power 0.6; `doubling_excess`, `doubling_theory`: of p1, by shooting and in closed form;
+    `half_excess`: where half of the kick at Fig. 4 is left, in approach speeds; `square_root_from`: where the
+    kick rises with the power 0.6; `doubling_excess`, `doubling_theory`: of p1, by shooting and closed form;
     `unstable_excess`: where p1 is stable no more, by that doubling or, below it, by `turns`, a complex pair
-    of multipliers that leaves the unit circle (Neimark and Sacker's bifurcation; one mode has none);
-    `born`: (excess, period) raised from -1e-3 in one step, as by an experiment, period 0 for none.
+    of multipliers that leaves the unit circle (Neimark and Sacker's bifurcation; one mode has none).
     """
 
     frequency_hz: float
-    modes: int
-    plateau: float
     half_excess: float | None
-    share_at_stability: float
     square_root_from: float | None
     doubling_excess: float | None
     doubling_theory: float | None
     unstable_excess: float | None
     turns: bool
-    born: tuple[tuple[float, int], ...]
 
 
 def kicks_of(wall: SoftWall, excesses: np.ndarray) -> list[Kick]:
@@ -163,19 +157,14 @@ def beam_of(scene: Scene, frequency: float, excesses: Sequence[float]) -> tuple[
     doubling = None if closed is None else doubling_near(oscillator, closed[0])
     lost = (None, False) if doubling is None else loss_of_stability(oscillator, doubling)
     half = zero_of(lambda e: collision(e).kick - 0.5 * plateau, 1e-8, 1e-2)
-    strobed = StroboscopicMap(oscillator=oscillator)
     beam = Beam(
         frequency_hz=frequency,
-        modes=oscillator.n_modes,
-        plateau=plateau,
         half_excess=half,
-        share_at_stability=collision(letter.AMPLITUDE_STABILITY).kick / plateau,
         square_root_from=zero_of(lambda e: power(e) - 0.6, 1e-5, 1e-1),
         doubling_excess=None if doubling is None else doubling.excess,
         doubling_theory=None if closed is None else closed[1],
         unstable_excess=lost[0],
         turns=lost[1],
-        born=tuple((e, born_period(strobed, e)) for e in excesses if e <= 0.01),
     )
     kicks = [
         Kick(

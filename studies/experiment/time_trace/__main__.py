@@ -15,25 +15,25 @@ A motion without a period up to 64 drive periods is drawn and told as such; its 
 
 With --film the orbit is filmed, slow at the collision, seen in space (`film`).
 
-Run:     python -m studies time_trace [--excess E] [--frequency HZ] [--film] [--magnify M] [--seen-from base]
+Run:     python -m studies time_trace [--excess E] [--frequency HZ] [--film]
 Writes:  time_trace.npz (time, tip, read-out), collisions.csv (contact.Collision: SI units), spectrum.npz,
-         peaks.csv, time_trace.png, spectrum.png; with --film motion.gif, motion.mp4 (extra `video`),
-         motion.png, frames.csv and motion.pvd for ParaView
+         peaks.csv, time_trace.png, spectrum.png; with --film motion.gif, motion.mp4 (extra `video`) and
+         motion.pvd for ParaView
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Literal
+from typing import Annotated
 
 from beam import InvalidValue
 from contact import Collision, StroboscopicMap
 from contact.orbits import born
 from studies import letter
 from studies.experiment.time_trace import film as filming
-from studies.experiment.time_trace.spectrum import Peak, lines_of, peaks_of
-from studies.experiment.time_trace.trace import close_up, trace_of
+from studies.experiment.time_trace.model import Peak, close_up, lines_of, peaks_of, trace_of
+from studies.physics.descriptions import word
 from studies.shell.film import MOST_FRAMES
 from studies.shell.run import Verdict
 from studies.shell.scene import (
@@ -46,9 +46,6 @@ from studies.shell.scene import (
     require_drive_below,
 )
 from studies.shell.study import Run, study
-
-FREQUENCY = 21.50
-"""Where the letter has the period 4 of its Fig. 4 [Hz]."""
 
 ORBIT_PERIODS = 2
 """Periods of the orbit in the figure."""
@@ -71,13 +68,11 @@ def time_trace(
     ] = None,
     film: Annotated[bool, "film one period of the orbit"] = False,
     frames: Annotated[int, "frames of the film"] = 240,
-    magnify: Annotated[float | None, "how many times the higher modes are drawn; so that they show"] = None,
-    seen_from: Annotated[Literal["laboratory", "base"], "where the viewer stands"] = "laboratory",
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
     if frames > MOST_FRAMES:
         raise InvalidValue(f"frames is {frames}; a film has at most {MOST_FRAMES}")
-    drive_hz = corresponding(harmonic(scene), FREQUENCY) if frequency is None else frequency
+    drive_hz = corresponding(harmonic(scene), letter.TIME_TRACE_HZ) if frequency is None else frequency
     model = model_of(scene)
     require_drive_below(scene, model, drive_hz)
     oscillator = beam_at(scene, drive_hz, model).with_excess(excess)
@@ -97,7 +92,7 @@ def time_trace(
     run.table("peaks", peaks, f"Peaks of the read-out [{unit}], with the mode they belong to.", show=())
     from studies.experiment.time_trace.figure import draw_spectrum, draw_trace  # matplotlib is slow to import
 
-    name = f"p{settled.period}" if settled.period else "no period up to 64"
+    name = word(settled.period)
     near = close_up(oscillator, settled.end, trace.collisions[0]) if trace.collisions else None
     run.figure(
         "time_trace",
@@ -114,11 +109,9 @@ def time_trace(
     filmed = dict[str, object]()
     if film:
         words = f"{name}, {drive_hz:g} Hz, excess {excess:g}"
-        filmed["film"] = filming.film(
-            scene, run, oscillator, settled, words, frames=frames, magnify=magnify, seen_from=seen_from
-        )
+        filmed["film"] = filming.film(scene, run, oscillator, settled, trace, words, frames=frames)
     seen = periods_of(scene).get(drive_hz) if excess == letter.TIME_TRACE_EXCESS else None
-    if seen == letter.PERIODS[FREQUENCY]:
+    if seen == letter.PERIODS[letter.TIME_TRACE_HZ]:
         judge(run, name, seen, trace.collisions, peaks)
     return {
         "frequency_hz": drive_hz,

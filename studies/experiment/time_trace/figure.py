@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -10,55 +9,38 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from studies.experiment.time_trace.trace import CloseUp, Trace
-from studies.shell.plotting import (
-    BLUE,
-    GUIDE,
-    NOTE,
-    PAGE,
-    VERMILION,
-    in_house_style,
-    label,
-    new_figure,
-    panel,
-)
+from studies.experiment.time_trace.model import CloseUp, Trace
+from studies.shell import plotting
 
 Array = NDArray[np.float64]
 
-NUMBER_WIDTH = 13.0
-"""Room that the number of a mode takes, in dots of the screen."""
+APART = 1.05
+"""Least ratio of two frequencies whose modes are both numbered."""
 
 MOST_DRAWN = 4_000
 """Points of a line: more than a page has dots."""
 
-MARK = {"color": VERMILION, "linewidth": 0.6, "linestyle": ":", "zorder": 1}
+MARK = {"color": plotting.VERMILION, "linewidth": 0.6, "linestyle": ":", "zorder": 1}
 
 
-@in_house_style
+@plotting.in_house_style
 def draw_trace(trace: Trace, near: CloseUp | None, gap: float, unit: str, title: str) -> Figure:
     """Tip and read-out against time, impacts marked, and one collision beside them; `unit` is m or rad."""
-    widths = {"width_ratios": [2.3, 1.0]}
-    figure, axes = new_figure(2, 2, width=PAGE, height=0.090, sharex="col", gridspec_kw=widths)
+    shared: plotting.Style = {"sharex": "col", "width_ratios": [2.3, 1.0]}
+    figure, axes = plotting.new_figure(2, 2, width=plotting.PAGE, height=0.090, **shared)
     (tip, readout), step = axes[:, 0], max(1, trace.time.size // MOST_DRAWN)
-    for axis, shown in ((tip, trace.tip), (readout, trace.readout)):
-        axis.plot(1e3 * trace.time[::step], 1e3 * shown[::step], color=BLUE, linewidth=0.8)
+    for number, (axis, shown) in enumerate(((tip, trace.tip), (readout, trace.readout))):
+        axis.plot(1e3 * trace.time[::step], 1e3 * shown[::step], color=plotting.BLUE, linewidth=0.8)
         axis.margins(x=0.0)
-    label(tip.yaxis, "tip displacement $ξ$", "mm")
-    label(readout.yaxis, f"read-out {'rotation' if unit == 'rad' else 'displacement'}", f"m{unit}")
-    label(readout.xaxis, "time", "ms")
-    panel(tip, 0, title)
-    panel(readout, 1, "read-out point")
-    tip.axhline(1e3 * gap, **GUIDE)
-    top, impacts = 1e3 * max(gap, float(trace.tip.max())), 1e3 * trace.impact_times
-    tip.set_ylim(1e3 * float(trace.tip.min()) - 1.0, top * 1.25)
-    tip.plot(impacts, np.full(impacts.size, 1.12 * top), "v", color=VERMILION, markersize=4.0)
+        for at in 1e3 * trace.impact_times:
+            axis.axvline(at, **MARK)
+        plotting.panel(axis, number, (title, "read-out point; dotted: impacts")[number])
+    plotting.label(tip.yaxis, "tip displacement $ξ$", "mm")
+    plotting.label(readout.yaxis, f"read-out {'rotation' if unit == 'rad' else 'displacement'}", f"m{unit}")
+    plotting.label(readout.xaxis, "time", "ms")
+    tip.axhline(1e3 * gap, **plotting.GUIDE)
     across = tip.get_yaxis_transform()
-    tip.annotate("plate", (0.005, 1e3 * gap), xycoords=across, fontsize=NOTE, va="bottom", color="0.35")
-    for number, at in enumerate(impacts):
-        readout.axvline(at, **MARK)
-        if number == 0:
-            beside = {"xytext": (5, 0), "textcoords": "offset points", "va": "center"}
-            tip.annotate("impact", (at, 1.12 * top), fontsize=NOTE, color=VERMILION, **beside)
+    tip.annotate("plate", (0.005, 1e3 * gap), xycoords=across, fontsize=plotting.NOTE, va="bottom")
     if near is None:
         for axis in axes[:, 1]:
             axis.set_visible(False)
@@ -69,45 +51,43 @@ def draw_trace(trace: Trace, near: CloseUp | None, gap: float, unit: str, title:
 
 def _collision(axes: Sequence[Axes], near: CloseUp) -> None:
     micro = 1e6 * near.time
-    axes[0].plot(micro, 1e6 * near.height, color=BLUE, linewidth=1.0)
-    axes[0].axhline(0.0, **GUIDE)
+    axes[0].plot(micro, 1e6 * near.height, color=plotting.BLUE, linewidth=1.0)
+    axes[0].axhline(0.0, **plotting.GUIDE)
     if np.all(np.isfinite(near.force)):
-        axes[1].plot(micro, near.force, color=VERMILION, linewidth=1.0)
+        axes[1].plot(micro, near.force, color=plotting.VERMILION, linewidth=1.0)
     for axis in axes:
         for begin, end in near.spans:
             axis.axvspan(1e6 * begin, 1e6 * end, color="0.9", zorder=0, linewidth=0)
         axis.margins(x=0.0)
-    panel(axes[0], 2, "collision, contact shaded")
-    panel(axes[1], 3)
-    label(axes[0].yaxis, "tip past the plate", "µm")
-    label(axes[1].yaxis, "contact force", "N")
-    label(axes[1].xaxis, "time from the first touch", "µs")
+    plotting.panel(axes[0], 2, "collision, contact shaded")
+    plotting.panel(axes[1], 3)
+    plotting.label(axes[0].yaxis, "tip past the plate", "µm")
+    plotting.label(axes[1].yaxis, "contact force", "N")
+    plotting.label(axes[1].xaxis, "time from the first touch", "µs")
     axes[1].set_ylim(bottom=0.0)
 
 
-@in_house_style
+@plotting.in_house_style
 def draw_spectrum(frequency: Array, amplitude: Array, modes_hz: Array, drive_hz: float, unit: str) -> Figure:
     """Lines of the read-out, with the frequencies of the modes marked above."""
-    figure, axis = new_figure(width=PAGE, height=0.070)
+    figure, axis = plotting.new_figure(width=plotting.PAGE, height=0.070)
     shown = modes_hz[modes_hz <= 0.5 * frequency[-1]]
     limit = 1.25 * float(shown[-1])
     inside = (frequency > 0.0) & (frequency <= limit)
     lines = 1e3 * amplitude[inside]
-    axis.plot(frequency[inside], lines, "o-", color=BLUE, lw=0.5, ms=1.5, label="lines of the read-out")
+    axis.plot(frequency[inside], lines, "o-", color=plotting.BLUE, lw=0.5, ms=1.5, label="read-out")
     top = float(lines.max())
     floor = max(float(lines.min()), 1e-8 * top)
     axis.set(xscale="log", yscale="log", ylim=(0.5 * floor, 30.0 * top), xlim=(0.9 * frequency[1], limit))
-    across, last = axis.get_xaxis_transform(), -math.inf
-    box = {"facecolor": "white", "edgecolor": "none", "pad": 0.6}
+    last = 0.0
     for number, at in enumerate(shown.tolist(), start=1):
         axis.axvline(at, **MARK, label="modes, numbered" if number == 1 else None)
-        x = float(axis.transData.transform((at, 1.0))[0])
-        if x - last > NUMBER_WIDTH:
-            style = {"ha": "center", "va": "top", "fontsize": NOTE, "color": VERMILION, "bbox": box}
-            axis.annotate(str(number), (at, 0.98), xycoords=across, **style)
-            last = x
-    axis.axvline(drive_hz, **GUIDE, label="drive")
-    label(axis.xaxis, "frequency", "Hz")
-    label(axis.yaxis, "amplitude of the read-out", f"m{unit}")
-    figure.legend(loc="outside lower center", ncols=3, handlelength=2.5)
+        if at > APART * last:
+            style = {"ha": "center", "va": "top", "fontsize": plotting.NOTE, "color": plotting.VERMILION}
+            axis.text(at, 0.98, str(number), transform=axis.get_xaxis_transform(), **style)
+            last = at
+    axis.axvline(drive_hz, **plotting.GUIDE, label="drive")
+    plotting.label(axis.xaxis, "frequency", "Hz")
+    plotting.label(axis.yaxis, "amplitude of the read-out", f"m{unit}")
+    plotting.legend_below(figure, [axis], 3)
     return figure

@@ -3,20 +3,36 @@
 Higher modes are drawn enlarged, so that they show.  The ball is where the tip is: it meets the plate when the
 computed tip does, and the plate turns orange while they touch.  Below, the tip against time.  For ParaView
 motion.pvd with motion_frames has the arrays `displacement`, true, and the points as they are drawn.
+
+Times count from the strobe at which the film begins. The step from frame to frame is that of the flight, at
+most the distance from the nearest contact over `NEARER`, and 1/`IN_CONTACT` of a contact while it lasts:
+
+    step(t) = clip(distance(t)/NEARER, contact/IN_CONTACT, flight)
+
+and the frames lie where the integral of dt/step reaches whole numbers.
+
+Drawn is the shape of mode 1 that carries the whole tip displacement x, and the departure from it, enlarged M
+times:
+
+    (x/phi_1) Phi_1 + M sum_{k>=2} q_k [Phi_k - (phi_k/phi_1) Phi_1]
+
+The departure leaves the tip where it is: with any M the ball meets the plate when the computed tip meets it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from beam import write_frames
-from contact import ImpactOscillator
+from beam import Modes, SpringMesh, write_frames
+from contact import ImpactKind, ImpactOscillator, State, simulate
 from contact.orbits import Settled
-from studies.experiment.time_trace.filmed_orbit import FilmedOrbit, FrameRow, drawn_shapes, film_orbit
+from studies.experiment.time_trace.model import Trace, touching
 from studies.shell.film import (
     DRIVE,
     WIDTH,
@@ -31,11 +47,6 @@ from studies.shell.film import (
 from studies.shell.scene import Scene, modes_of, shift_at_gap
 from studies.shell.study import Run
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-Array = NDArray[np.float64]
-
 LARGEST_SHIFT = 0.01
 """Relative change of the free frequency with amplitude [1]; a linear film above this bound is misleading."""
 
@@ -48,104 +59,179 @@ def film(
     run: Run,
     oscillator: ImpactOscillator,
     settled: Settled,
+    trace: Trace,
     words: str,
     *,
     frames: int,
-    magnify: float | None,
-    seen_from: str,
 ) -> Mapping[str, object]:
     """Film one period of a settled orbit; returns what the summary keeps of it."""
     modes = modes_of(scene)
     orbit = film_orbit(oscillator, settled.end, settled.period, frames=frames, rate=RATE)
-    swing, radius = max(abs(row.tip_m) for row in orbit.rows), scene.tip.ball_radius_m
-    if (shift := abs(shift_at_gap(scene)) * (swing / scene.stop.gap_m) ** 2) > LARGEST_SHIFT:
+    gap, swing, radius = scene.stop.gap_m, float(np.abs(orbit.tip).max()), scene.tip.ball_radius_m
+    if (shift := abs(shift_at_gap(scene)) * (swing / gap) ** 2) > LARGEST_SHIFT:
         off = f"would change its free frequency by {100.0 * shift:.2g} %"
         run.warn(f"the model is linear, but the tip moves by {swing:.3g} m, which {off}")
-    scenery = Scenery.of(modes, ball_radius=radius, gap=scene.stop.gap_m, swing=swing)
-    drawn, magnification = drawn_shapes(scenery.mesh, modes, orbit.coordinates, magnify)
-    carried = DRIVE * (seen_from == "laboratory")
-    moments = [
-        Moment(points=points, base=row.base_m * carried, touched=row.contact)
-        for points, row in zip(drawn, orbit.rows, strict=True)
-    ]
-    run.table("frames", orbit.rows, show=())
+    scenery = Scenery.of(modes, ball_radius=radius, gap=gap, swing=swing)
+    drawn, magnification = drawn_shapes(scenery.mesh, modes, orbit.coordinates)
     true, _ = drawn_shapes(scenery.mesh, modes, orbit.coordinates, 1.0)
-    write_frames(run.path("motion.pvd"), grids(scenery, moments, true, orbit.rows))
+    moments = [
+        Moment(points=points, base=base * DRIVE, touched=bool(touched))
+        for points, base, touched in zip(drawn, orbit.base, orbit.touched, strict=True)
+    ]
+
+    def grids() -> Iterator[tuple[float, Any]]:
+        """Time [s] and pyvista.UnstructuredGrid of every frame, the points as they are drawn."""
+        for time, moment, displacement in zip(orbit.time.tolist(), moments, true, strict=True):
+            grid = scenery.mesh.grid(scenery.mesh.points + moment.points + moment.base)
+            grid.point_data["displacement"] = displacement
+            yield time, grid
+
+    write_frames(run.path("motion.pvd"), grids())
     run.path("motion_frames")
-    slowed = [row.slowed for row in orbit.rows]
-    slow = f"{min(slowed):.0f} to {max(slowed):.0f} times slower than life"
+    slow = f"{orbit.slowed.min():.0f} to {orbit.slowed.max():.0f} times slower than life"
     run.say(f"{words}: {len(orbit.contacts)} contacts, {slow}")
-    found = {
-        "duration_s": orbit.duration,
-        "impacts": len(orbit.contacts),
-        "contacts_s": orbit.contacts,
-        "magnification": magnification,
-        "film_s": frames / RATE,
-    }
-    caption = f"The tip along the film, {words}; dashed: the plate."
-    run.figure("motion", draw_tip(orbit, scene.stop.gap_m)[0], caption)
-    enlarged, most = f"higher modes x {magnification:g}", len(moments)
+    texts = words, f"higher modes x {magnification:g}"
     with stage_of(scenery, simple=run.quick) as stage:
         # one picture after the other, so that memory does not grow with the film
 
         def pictured(chosen: Iterable[int]) -> Iterator[Picture]:
-            shown = ((orbit.rows[i], stage(moments[i])) for i in chosen)
-            return composed(orbit, shown, scene.stop.gap_m, words, enlarged)
+            return composed(orbit, trace, ((i, stage(moments[i])) for i in chosen), gap, texts)
 
-        samples = list(pictured([0, most // 2, most - 1]))
-        pictures = pictured(run.track(range(most), "frames"))
+        samples = list(pictured([0, frames // 2, frames - 1]))
+        pictures = pictured(run.track(range(frames), "frames"))
         if can_encode():
             pictures = written_as_mp4(run.path("motion.mp4"), pictures, RATE)
         else:
             run.say("no mp4: it needs imageio-ffmpeg (pip install -e '.[video]')")
         write_gif(run.path("motion.gif"), pictures, RATE, samples=samples)
-    return found
-
-
-def grids(
-    scenery: Scenery, moments: Sequence[Moment], true: Array, rows: Sequence[FrameRow]
-) -> Iterator[tuple[float, Any]]:
-    """Time [s] and pyvista.UnstructuredGrid of every frame, the points as they are drawn."""
-    for moment, displacement, row in zip(moments, true, rows, strict=True):
-        grid = scenery.mesh.grid(scenery.mesh.points + moment.points + moment.base)
-        grid.point_data["displacement"] = displacement
-        for name in ("tip_m", "base_m", "force_n", "slowed"):
-            grid.field_data[name] = [getattr(row, name)]
-        yield row.time_s, grid
-
-
-def draw_tip(orbit: FilmedOrbit, gap: float) -> tuple[Figure, Any]:
-    """The tip against time, and its axes."""
-    from studies.shell.plotting import BLUE, GUIDE, PAGE, house_style, label, new_figure
-
-    figure, axes = new_figure(width=PAGE, height=0.05)
-    with house_style():
-        axes.plot(1e3 * orbit.line_time, 1e3 * orbit.line_tip, color=BLUE)
-        axes.axhline(1e3 * gap, **GUIDE)
-        axes.set_xlim(0.0, 1e3 * orbit.duration)
-        label(axes.xaxis, "time", "ms")
-        label(axes.yaxis, "tip", "mm")
-    return figure, axes
+    return {"contacts_s": orbit.contacts, "magnification": magnification}
 
 
 def composed(
-    orbit: FilmedOrbit, shown: Iterable[tuple[FrameRow, Picture]], gap: float, words: str, enlarged: str
+    orbit: FilmedOrbit, trace: Trace, shown: Iterable[tuple[int, Picture]], gap: float, texts: tuple[str, str]
 ) -> Iterator[Picture]:
     """The frames: what is seen, the time and how it is slowed, and the tip against time with a mark."""
     from PIL import Image, ImageDraw, ImageFont
 
-    figure, axes = draw_tip(orbit, gap)
-    figure.set(dpi=110, size_inches=(WIDTH / 110, 150 / 110))
-    figure.canvas.draw()
+    from studies.shell.plotting import BLUE, GUIDE, house_style, label, new_figure
+
+    with house_style():
+        figure, axes = new_figure(width=WIDTH / 110 * 0.0254, height=150 / 110 * 0.0254)
+        axes.plot(1e3 * trace.time, 1e3 * trace.tip, color=BLUE)
+        axes.axhline(1e3 * gap, **GUIDE)
+        axes.set_xlim(0.0, 1e3 * orbit.duration)
+        label(axes.xaxis, "time", "ms")
+        label(axes.yaxis, "tip", "mm")
+        figure.set(dpi=110)
+        figure.canvas.draw()
     below = np.asarray(figure.canvas.buffer_rgba(), dtype=np.uint8)[..., :3]  # type: ignore[attr-defined]
     font = ImageFont.load_default(size=18)
-    for row, picture in shown:
-        place = axes.transData.transform((1e3 * row.time_s, 1e3 * row.tip_m))
+    for i, picture in shown:
+        place = axes.transData.transform((1e3 * orbit.time[i], 1e3 * orbit.tip[i]))
         image = Image.fromarray(np.concatenate([picture, below]))
         pen = ImageDraw.Draw(image)
         at = place[0], image.height - place[1]
-        pen.circle(at, 5, fill="#FF7A1A" if row.contact else "black")
-        pen.text((12, 8), words, fill="black", font=font)
-        slowed = f"{1e3 * row.time_s:.2f} ms, {row.slowed:.0f} times slower; {enlarged}"
+        pen.circle(at, 5, fill="#FF7A1A" if orbit.touched[i] else "black")
+        pen.text((12, 8), texts[0], fill="black", font=font)
+        slowed = f"{1e3 * orbit.time[i]:.2f} ms, {orbit.slowed[i]:.0f} times slower; {texts[1]}"
         pen.text((12, 32), slowed, fill="#5A5A5A", font=font)
         yield np.asarray(image, dtype=np.uint8)
+
+
+Array = NDArray[np.float64]
+
+NEARER, IN_CONTACT = 8.0, 6.0
+FLIGHT_STEPS = 120.0
+"""Steps of the flight in a whole film, were there no contacts."""
+
+APERIODIC = 4
+"""Drive periods shown of a motion that has no period."""
+
+ROOM, MOST = 0.07, 100.0
+"""Largest enlarged departure over the greatest extent of the strip; enlargement beyond which nothing is
+seen."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FilmedOrbit:
+    """One period of an orbit, arrays by frame; times from the strobe at which it begins [s].
+
+    `slowed`: how many times slower than life a frame is shown; `coordinates`: modal, (n_frames, n_modes).
+    """
+
+    duration: float
+    contacts: list[tuple[float, float]]
+    """Begin and end of each [s]."""
+    time: Array
+    slowed: Array
+    tip: Array
+    base: Array
+    touched: NDArray[np.bool_]
+    coordinates: Array
+
+
+def frame_times(duration: float, contacts: list[tuple[float, float]], frames: int) -> Array:
+    """Times of `frames` frames over a period that begins again [s], shape (frames,)."""
+    around = [(a + n * duration, b + n * duration) for n in (-1, 0, 1) for a, b in contacts]
+    flight = duration / FLIGHT_STEPS
+    lengths = [last - first for first, last in contacts if last > first]
+    least = min(flight, float(np.median(lengths)) / IN_CONTACT if lengths else flight / 50.0)
+    edges = [place for span in around for place in span if 0.0 <= place <= duration]
+    near = [place + sign * least * 1.05**k for place in edges for k in range(200) for sign in (-1, 1)]
+    fine = np.unique(np.clip([*np.linspace(0.0, duration, 4001), *edges, *near], 0.0, duration))
+    step = np.full(fine.shape, flight)
+    for first, last in around:
+        distance = np.maximum(np.maximum(first - fine, fine - last), 0.0)
+        step = np.minimum(step, np.maximum(distance / NEARER, least))
+    passed = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(fine) * (1.0 / step[1:] + 1.0 / step[:-1]))])
+    times: Array = np.interp(np.arange(frames) / frames * passed[-1], passed, fine)
+    return times
+
+
+def film_orbit(
+    oscillator: ImpactOscillator, state: State, period: int, *, frames: int, rate: float
+) -> FilmedOrbit:
+    """The motion from `state`, which lies at a strobe, in so many frames at `rate` a second."""
+    length = period or APERIODIC
+    duration, begin = length * oscillator.period, state.time
+    whole = simulate(oscillator, state, periods=length + 1)
+    felt = (whole.impacts.kind != ImpactKind.GRAZE) & (whole.impacts.start < begin + duration)
+    spans = zip(whole.impacts.start[felt] - begin, whole.impacts.end[felt] - begin, strict=True)
+    contacts = [(float(a), float(b) if math.isfinite(b) else duration) for a, b in spans]
+    times = frame_times(duration, contacts, frames)
+    run = simulate(oscillator, state, periods=length + 1, times=begin + times)
+    return FilmedOrbit(
+        duration=duration,
+        contacts=contacts,
+        time=times,
+        slowed=1.0 / (rate * np.diff(times, append=duration)),
+        tip=oscillator.tip(run.displacement),
+        base=oscillator.driven.displacement(times),
+        touched=touching(run),
+        coordinates=run.displacement,
+    )
+
+
+def drawn_shapes(
+    mesh: SpringMesh, modes: Modes, coordinates: Array, magnification: float | None = None
+) -> tuple[Array, float]:
+    """Displacements of the points of the mesh relative to the base (n_frames, n_points, 3) [m], and M [1].
+
+    `coordinates` (n_frames, n_modes) are those of the coupled modes.
+
+    M is the largest whole number with which the departures stay below `ROOM`, unless it is given.
+    """
+    kept = np.flatnonzero(modes.coupled)[: coordinates.shape[1]]
+    phi, strip = modes.phi[kept], np.unique(mesh.hexahedra)
+    first = mesh.shapes[kept[0]] / phi[0]
+    departures = np.tensordot(coordinates, mesh.shapes[kept] - phi[:, None, None] * first, axes=1)
+    carried = (coordinates @ phi)[:, None, None] * first
+    # the ball is drawn where the tip is, and does not turn
+    ball, drive = np.unique(mesh.triangles), np.array([*modes.discretization.spring.drive, 0.0])
+    departures[:, ball] = 0.0
+    carried[:, ball] = ((coordinates @ phi)[:, None] * drive)[:, None]
+    if magnification is None:
+        largest = float(np.linalg.norm(departures[:, strip], axis=2).max())
+        room = ROOM * float(np.ptp(mesh.points[strip], axis=0).max())
+        magnification = min(MOST, max(1.0, math.floor(room / largest))) if largest > 0.0 else 1.0
+    return carried + magnification * departures, magnification

@@ -24,9 +24,9 @@ motion did not settle: its points, of one moment, are stored but not drawn.
 Run:     python -m studies, or python -m studies transitions [--quick] [--full]     --full takes some minutes;
          python -m studies --all runs every study
 Writes:  transitions.csv (a row a frequency and description), periods.csv (a line a frequency),
-         two_parameters.csv (a row a frequency: what was extracted), orbit_diagram.csv (a row an amplitude:
-         period, and whether the motion settled), orbit_diagram.npz (points); the figures orbit_diagram (beam,
-         at its read-out point), orbit_diagram_two_parameters, orbit_diagram_single_mode, orbit_diagram_map
+         two_parameters.csv (a row a frequency: what was extracted), orbit_diagram.npz (points, period and
+         impacts by amplitude; period 0: not settled); the figures orbit_diagram (beam, at its read-out
+         point), orbit_diagram_two_parameters, orbit_diagram_single_mode, orbit_diagram_map
 """
 
 from __future__ import annotations
@@ -37,7 +37,6 @@ from functools import partial
 from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 
 from studies.experiment.transitions.model import AtFrequency, Scans, Transition, rows_at, scans
 from studies.letter import FREE_PERIOD_S
@@ -70,20 +69,6 @@ class Line:
     single_mode: str
     two_parameters: str
     beam: str
-
-
-@dataclass(frozen=True, kw_only=True)
-class Cell:
-    """One amplitude of one scan; `kind` is "periodic", "not settled" or "failed"."""
-
-    frequency_hz: float
-    model: str
-    direction: str
-    excess: float
-    kind: str
-    period: int
-    impacts: int
-    cycles: int
 
 
 @study(needs={"born_period": 0.0, "fold": 0.07})
@@ -184,29 +169,16 @@ def compare(run: Run, rows: Sequence[Transition], parameters: Sequence[Extracted
     run.verdict("two_parameters_born", verdict, found=said, note=text)
 
 
-def store(run: Run, found: Iterable[AtFrequency], diagrams: Iterable[Scans]) -> None:
-    """The points of all scans as npz, period and kind of each amplitude as csv."""
-    arrays, cells = dict[str, NDArray[np.float64]](), list[Cell]()
+def store(run: Run, found: Sequence[AtFrequency], diagrams: Iterable[Scans]) -> None:
+    """All scans, an array a column; failed amplitudes."""
+    arrays = dict[str, np.ndarray]()
     for at, scanned in zip(found, diagrams, strict=True):
         frequency = at.rows[0].frequency_hz
         for name, ways in scanned.items():
             for way, diagram in ways.items():
                 stem = f"{name}_{frequency:.2f}_hz_{way}".replace(".", "p")
-                arrays[f"{stem}_excess"], arrays[f"{stem}_points"] = diagram.excess, diagram.points
-                cells += [
-                    Cell(
-                        frequency_hz=frequency,
-                        model=name,
-                        direction=way,
-                        kind=kind,
-                        excess=float(diagram.excess[k]),
-                        period=int(diagram.period[k]),
-                        impacts=int(diagram.impacts[k]),
-                        cycles=int(diagram.cycles[k]),
-                    )
-                    for k, kind in enumerate(diagram.kind)
-                ]
+                for column in ("excess", "points", "period", "impacts"):
+                    arrays[f"{stem}_{column}"] = getattr(diagram, column)
                 for reason in diagram.failures:
                     run.failed(f"{frequency:g} Hz, {TITLES[name]}, {way}ward scan", reason)
     run.arrays("orbit_diagram", **arrays)
-    run.table("orbit_diagram", cells, show=())

@@ -61,13 +61,7 @@ def panel(axis: Axes, found: Mapping[str, Diagram], grazing: float | None) -> No
         axis.axvline(value, color="0.75", linewidth=0.5, zorder=1, label="_" if place else "not settled")
     at = 0.0 if grazing is None else 1e3 * grazing
     stable = 1e3 * (letter.AMPLITUDE_STABILITY if grazing is None else letter.AMPLITUDE_STABILITY_M)
-    axis.axvspan(
-        at - stable,
-        at + stable,
-        color="0.88",
-        linewidth=0,
-        zorder=0,
-        label="letter: stability of the amplitude",
-    )
+    band: plotting.Style = {"color": "0.88", "linewidth": 0, "zorder": 0}
+    axis.axvspan(at - stable, at + stable, **band, label="letter: stability of the amplitude")
     axis.axvline(at, **GUIDE, label="grazing")
     axis.locator_params(axis="x", nbins=4)

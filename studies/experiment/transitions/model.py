@@ -9,9 +9,17 @@ import numpy as np
 
 from beam import ModalModel, Refusal
 from contact import ContactError, State
-from contact.orbits import born, born_period, fold_excess, orbit_end
+from contact.orbits import born_period, fold_excess
 from studies import letter
-from studies.physics.descriptions import TITLES, Diagram, Strobed, or_none, strobed_at, up_and_down
+from studies.physics.descriptions import (
+    TITLES,
+    Diagram,
+    Strobed,
+    born_and_lowered,
+    or_none,
+    strobed_at,
+    up_and_down,
+)
 from studies.physics.two_parameters import Extracted, extracted
 from studies.shell.scene import Scene, beam_at, single_mode_at
 
@@ -66,11 +74,10 @@ class AtFrequency:
 
 def lowered(row: Transition, strobed: Strobed, excess: float, cycles: int) -> tuple[Transition, State]:
     """The row with what is born at `excess` and how that ends, and the state on the born orbit."""
-    orbit = born(strobed, excess, most_cycles=cycles)
+    orbit, end = born_and_lowered(strobed, excess, cycles)
     periods = {f"{excess:g}": orbit.period}
     periods |= {f"{other:g}": born_period(strobed, other, most_cycles=cycles) for other in OTHER_EXCESSES}
     row = replace(row, period=orbit.period, born=periods)
-    end = orbit_end(strobed, orbit.end, excess, most_cycles=cycles) if orbit.period > 1 else None
     if end is not None:
         speed = None if end.orbit is None else abs(end.orbit.speed)
         bracket = end.lost, end.held

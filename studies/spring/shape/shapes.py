@@ -16,6 +16,12 @@ Vectors: x along the legs, from the clamp to the ball; e the direction of the st
 A mode is named by what the section at the ball does most: it moves along e (bending), along f (sideways),
 along x (breathing of two legs, else lengthwise), or it turns about x so that the edges, b/2 off, move most
 (twist).
+
+With ball and contact off the plane of symmetry by d [m], a twist mode that turns the ball by theta has
+
+    phi = d theta + what a bending mode close by in frequency lends,
+
+computed with the ball where it is, not to first order.
 """
 
 from __future__ import annotations
@@ -38,11 +44,10 @@ from beam.space import (
     spatial_modes,
     upright,
 )
-from studies.shell.scene import Scene, SceneError, sections_of
+from studies.shell.scene import Scene, SceneError, sections_of, single_mode_of
 
 Reading = Literal["side_by_side", "channel", "folded", "plain"]
-READINGS: tuple[Reading, ...] = ("side_by_side", "channel", "folded", "plain")
-TITLES = {
+TITLES: dict[Reading, str] = {
     "side_by_side": "legs side by side",
     "channel": "channel",
     "folded": "folded",
@@ -57,6 +62,15 @@ FLANGE_REACH = 1.0
 
 ACCURACY = 1e-12
 """Of the fitted size [m]."""
+
+CHANNEL_SHEET = 0.25
+"""Sheet of the channel over that of the plain strip."""
+
+OFF_LINE = 0.5e-3
+"""Distance of the ball off the plane of symmetry, as careful gluing leaves it [m]."""
+
+MODES = 14
+"""Modes looked through for the first of each kind."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -186,3 +200,56 @@ def kinds_of(shape: Shape, modes: SpatialModes) -> list[str]:
     moved, turned = modes.displacement, 0.5 * shape.width * modes.rotation[:, 0]
     moves = (moved @ np.array(shape.stop), moved @ np.array(shape.sideways), turned, moved[:, 0])
     return [names[place] for place in np.argmax(np.abs(moves), axis=0)]
+
+
+def shapes_of(scene: Scene) -> dict[Reading, Shape]:
+    """The readings with the sizes of the scene, at its period."""
+    omega, fitted = float(single_mode_of(scene).omega[0]), dict[Reading, Shape]()
+    for name in ("side_by_side", "folded", "plain"):
+        fitted[name] = brought_to(shape_of(scene, name), omega)
+    plain = fitted["plain"]
+    channel = replace(plain, reading="channel", thickness=CHANNEL_SHEET * plain.thickness)
+    fitted["channel"] = brought_to(channel, omega)
+    return {name: fitted[name] for name in TITLES}
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReadingRow:
+    """A reading of "U shaped", brought to the free period of the scene; tip values [kg^(-1/2)].
+
+    Attributes
+    ----------
+    ratio_twist : first twist over first bending frequency.
+    tip_value_twist_off_line : with ball and contact `OFF_LINE` off the plane of symmetry.
+    turn_of_twist : theta of the ball in the twist mode [kg^(-1/2) m^(-1)].
+    """
+
+    reading: str
+    thickness_m: float
+    flange_m: float
+    first_bending_hz: float
+    first_twist_hz: float
+    ratio_twist: float
+    tip_value_bending: float
+    tip_value_twist_off_line: float
+    turn_of_twist: float
+
+
+def reading_row(shape: Shape) -> ReadingRow:
+    """The row of a shape that has been brought to its period."""
+    modes = spatial_modes(shape.spring(), MODES)
+    kinds, f = kinds_of(shape, modes), modes.frequencies_hz
+    bending, twist = kinds.index("bending"), kinds.index("twist")
+    off = spatial_modes(shape.spring(OFF_LINE), MODES)
+    near = np.abs(off.frequencies_hz / f[twist] - 1.0) < 0.1  # mixed, it may be named bending
+    return ReadingRow(
+        reading=shape.reading,
+        thickness_m=shape.thickness,
+        flange_m=shape.flange,
+        first_bending_hz=float(f[bending]),
+        first_twist_hz=float(f[twist]),
+        ratio_twist=float(f[twist] / f[bending]),
+        tip_value_bending=abs(float(modes.phi[bending])),
+        tip_value_twist_off_line=abs(float(off.phi[np.argmax(np.abs(off.rotation[:, 0]) * near)])),
+        turn_of_twist=abs(float(modes.rotation[twist, 0])),
+    )

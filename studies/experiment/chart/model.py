@@ -1,0 +1,157 @@
+"""The plane of the chart, the cells of one column, and what all of them say.
+
+Frequencies are evenly spaced. Excesses are even in
+
+    s = asinh(excess/KNEE),   KNEE = 0.005,
+
+in steps of (range of s) KNEE/(n - 1) around grazing and in proportion to the excess far from it: the
+hysteresis of the letter's transitions, 1e-4 to 1.3e-2, would be lost within a step or two of an even grid of
+400 amplitudes over -0.15 ... 0.1; here the step at grazing is 1e-4 and the last ones are 3e-3, ten to the
+width of the islands near -0.1.
+
+Theory draws over the chart the band edges of the map, and the folds at which p_m orbits end. Bands
+(``contact.band``): frequencies at which p_m is born at grazing in the map. Folds: in closed form for Eq. (1)
+(``contact.MaximalFamily``), by shooting and continuation along the frequency for the beam
+(``contact.orbits``). Only orbits with one impact, and only where no further touch spoils them (certified).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beam import InvalidValue
+from contact import Band, ImpactOscillator, MaximalFamily
+from contact.orbits import AmplitudeScan, Shooting, fold_along_frequency
+from studies.shell.options import require_cells
+from studies.shell.scene import Scene, band_of
+from studies.shell.sweep import Column
+
+FREQUENCIES_HZ = (19.5, 24.0)
+EXCESSES = (-0.15, 0.1)
+KNEE = 0.005
+DIRECTIONS = ("up", "down")
+
+
+def sheared(excess: float | Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:
+    """s of the module's docstring: the upright coordinate of the chart [1]."""
+    found: NDArray[np.float64] = np.arcsinh(np.asarray(excess, dtype=float) / KNEE)
+    return found
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plane:
+    """`columns` frequencies between given ends [Hz] by `rows` excesses [1]."""
+
+    columns: int
+    rows: int
+    frequencies_hz: tuple[float, float] = FREQUENCIES_HZ
+
+    def __post_init__(self) -> None:
+        if self.columns < 2 or self.rows < 2:
+            raise InvalidValue(
+                f"points of the chart are {self.columns} by {self.rows}; each must be 2 or more"
+            )
+        require_cells("points", f"{self.columns} {self.rows}", self.columns * self.rows)
+
+    def frequencies(self) -> NDArray[np.float64]:
+        """All of them, rising [Hz]."""
+        return np.linspace(*self.frequencies_hz, self.columns)
+
+    def rising_excesses(self) -> NDArray[np.float64]:
+        """All of them, rising [1]."""
+        low, high = sheared(EXCESSES).tolist()
+        excesses: NDArray[np.float64] = KNEE * np.sinh(np.linspace(low, high, self.rows))
+        excesses[[0, -1]] = EXCESSES
+        return excesses
+
+
+def column_at(frequency: float, scan: AmplitudeScan, plane: Plane) -> Column:
+    """The amplitude raised and lowered again at a frequency [Hz]: arrays that broadcast to (2, rows), the
+    upward scan first."""
+    excesses = plane.rising_excesses()
+    found = scan(frequency, excesses)
+    return {
+        "frequency_hz": np.array(frequency),
+        "direction": np.array(DIRECTIONS)[:, None],
+        "excess": excesses,
+        "period": found.period,
+        "impacts": found.impacts,
+        "cycles": found.cycles,
+        "reason": found.reason,
+    }
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fold:
+    """The exact end of a p_m orbit with one impact."""
+
+    period: int
+    frequency_hz: float
+    excess: float
+
+
+def side_by_side(columns: Sequence[Column]) -> dict[str, NDArray[np.int32]]:
+    """`period` (0: none found), `impacts` and `cycles` (drive periods spent) of all columns, arrays of shape
+    (2, n_frequencies, n_excesses): upward scan first, excesses rise in both; -1 where a cell failed."""
+    return {
+        name: np.stack([column[name] for column in columns], axis=1).astype(np.int32)
+        for name in ("period", "impacts", "cycles")
+    }
+
+
+LARGEST = 24
+"""Largest m that is drawn; its band ends at 23.98 Hz for the letter's period."""
+
+FEWEST = 7
+"""Folds of the beam looked for in each band at least, so that its curve is smooth."""
+
+
+def bands_in(scene: Scene, low: float, high: float) -> tuple[Band, ...]:
+    """The bands of p_2 ... p_24 that reach into `low` ... `high` [Hz]."""
+    found = (band_of(scene, m) for m in range(2, LARGEST + 1))
+    return tuple(band for band in found if band.upper > low and band.lower < high)
+
+
+def folds_of_single_mode(oscillator: ImpactOscillator, frequencies: np.ndarray, lowest: float) -> list[Fold]:
+    """The folds of Eq. (1) at `frequencies` [Hz] above the excess `lowest`."""
+    found = []
+    for frequency in frequencies.tolist():
+        here = _driven(oscillator, frequency)
+        for period in range(2, LARGEST + 1):
+            fold = MaximalFamily.from_oscillator(here, period=period).fold()
+            if fold is not None and fold.excess > lowest and fold.admissible:
+                found.append(Fold(period=period, frequency_hz=frequency, excess=fold.excess))
+    return found
+
+
+def _driven(oscillator: ImpactOscillator, frequency: float) -> ImpactOscillator:
+    return replace(oscillator, drive=replace(oscillator.driven, frequency=frequency))
+
+
+def folds_of_beam(
+    oscillator: ImpactOscillator, near: tuple[Band, ...], frequencies: np.ndarray, lowest: float
+) -> list[Fold]:
+    """The folds of the beam in and a little below the bands `near`, above the excess `lowest`.
+
+    At those of `frequencies` [Hz] that lie there, or where these are few at some more within their range.
+    """
+    found = []
+    for band in near:
+        low = max(float(frequencies[0]), band.lower - 0.1 * (band.upper - band.lower))
+        high = min(float(frequencies[-1]), band.upper)
+        if not low < high:
+            continue
+        inside = frequencies[(frequencies >= low) & (frequencies <= high)]
+        if inside.size < FEWEST:
+            inside = np.union1d(inside, np.linspace(low, high, FEWEST))
+        middle = inside.size // 2
+        family = Shooting(oscillator=_driven(oscillator, float(inside[middle])), period=band.period)
+        for way in (inside[middle::-1], inside[middle + 1 :]):
+            for frequency, fold in zip(way.tolist(), fold_along_frequency(family, way), strict=True):
+                if fold is not None and fold.admissible and fold.excess > lowest:
+                    found.append(Fold(period=band.period, frequency_hz=frequency, excess=fold.excess))
+    return sorted(found, key=lambda one: (one.period, one.frequency_hz))

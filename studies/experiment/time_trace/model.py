@@ -1,0 +1,166 @@
+"""A stretch of a motion, and one of its collisions close by: tip past the plate, and the contact force.
+
+    N = k d + c d'  (linear),   N = k d^(3/2)  (Hertz),   at depth d [m] and rate d' [m/s], while they touch
+
+A law of restitution has no force: not a number.
+
+The spectrum: a signal of period P, sampled over a whole number of periods, is a sum of lines at the multiples
+of 1/P,
+
+    x(t) = a_0 + sum_j a_j cos(2 pi j t / P + phase_j),
+
+and the discrete Fourier transform gives a_j without leakage and without a window.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import find_peaks
+
+from beam import InvalidType
+from contact import (
+    Collision,
+    HertzContact,
+    ImpactKind,
+    ImpactOscillator,
+    LinearContact,
+    NewtonRestitution,
+    State,
+    Trajectory,
+    collisions,
+    simulate,
+)
+from studies.shell.scene import READOUT
+
+PER_PERIOD = 16_384
+"""Samples in a drive period: at 21.5 Hz up to 176 kHz without folding, beyond what the spectrum shows."""
+
+MARGIN, LEAST_MARGIN, SAMPLES = 2.0, 50e-6, 1201
+"""Time before and after in contact times, and at least [s]; samples."""
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Trace:
+    """The motion from a strobe on: tip [m] and read-out [m or rad] over time [s]."""
+
+    time: Array
+    tip: Array
+    readout: Array
+    impact_times: Array
+    collisions: list[Collision]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CloseUp:
+    """Time from the first touch [s], tip past the plate [m], contact force [N]; `spans` are the contacts
+    [s]."""
+
+    time: Array
+    height: Array
+    force: Array
+    spans: list[tuple[float, float]]
+
+
+def trace_of(oscillator: ImpactOscillator, state: State, length: int) -> Trace:
+    """The motion over `length` drive periods from `state`."""
+    begin, span = state.time, length * oscillator.period
+    time = span * np.arange(length * PER_PERIOD) / (length * PER_PERIOD)
+    run = simulate(oscillator, state, periods=length + 2, times=begin + time)
+    touches = run.impacts.start[(run.impacts.kind == ImpactKind.IMPACT) & (run.impacts.start < begin + span)]
+    final = collisions(oscillator, run, unfinished="drop")
+    return Trace(
+        time=time,
+        tip=oscillator.tip(run.displacement),
+        readout=run.displacement @ oscillator.model.readouts[READOUT],
+        impact_times=touches - begin,
+        collisions=[collision for collision in final if collision.first_touch < begin + span],
+    )
+
+
+def close_up(oscillator: ImpactOscillator, state: State, collision: Collision) -> CloseUp:
+    """A collision of the motion from `state`."""
+    margin = max(MARGIN * collision.contact_time, LEAST_MARGIN)
+    first, last = collision.first_touch - margin, collision.end + margin
+    times = np.linspace(max(first, state.time), last, SAMPLES)
+    run = simulate(oscillator, state, duration=last - state.time + margin, times=times)
+    impacts = run.impacts
+    inside = (impacts.start >= first) & (impacts.start <= collision.end)
+    ends = zip(impacts.start[inside], impacts.end[inside], strict=True)
+    return CloseUp(
+        time=times - collision.first_touch,
+        height=oscillator.tip(run.displacement) - oscillator.stop.gap,
+        force=contact_force(oscillator, run),
+        spans=[(float(a) - collision.first_touch, float(b) - collision.first_touch) for a, b in ends],
+    )
+
+
+def touching(run: Trajectory) -> NDArray[np.bool_]:
+    """Whether tip and plate touch at the samples of a trajectory, shape (n_samples,)."""
+    begin, end = run.impacts.start, run.impacts.end
+    inside: NDArray[np.bool_] = np.any((run.time[:, None] >= begin) & (run.time[:, None] <= end), axis=1)
+    return inside
+
+
+def contact_force(oscillator: ImpactOscillator, run: Trajectory) -> Array:
+    """Force [N] at the samples of a trajectory, shape (n_samples,)."""
+    law = oscillator.stop.law
+    depth = np.maximum(oscillator.tip(run.displacement) - oscillator.stop.gap, 0.0)
+    if isinstance(law, NewtonRestitution):
+        return np.full(depth.shape, np.nan)
+    if isinstance(law, LinearContact):
+        force = law.stiffness * depth + law.damping * oscillator.tip(run.velocity)
+    elif isinstance(law, HertzContact):
+        force = law.stiffness * depth**1.5
+    else:
+        raise InvalidType(f"the force of {type(law).__name__} is not known here")
+    return np.where(touching(run), np.maximum(force, 0.0), 0.0)
+
+
+CLEAR, LOUD = 1e-3, 1e-7
+"""Least part of the largest line at which a peak away from the modes, and one at a mode, is told."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Peak:
+    """A line higher than its neighbours [m or rad], and the mode (from 1) it belongs to."""
+
+    frequency_hz: float
+    amplitude: float
+    mode: int | None
+
+
+def lines_of(signal: Array, duration: float) -> tuple[Array, Array]:
+    """Frequencies [Hz] and amplitudes, in the unit of the signal, of its lines.
+
+    `signal`, shape (n_samples,), lies at equal steps over a whole number of periods that last `duration` [s],
+    the last step before the end left out.
+    """
+    amplitude = np.abs(np.fft.rfft(signal) / signal.size)
+    amplitude[1 : (signal.size + 1) // 2] *= 2.0
+    return np.arange(amplitude.size) / duration, amplitude
+
+
+def peaks_of(frequency: Array, amplitude: Array, modes_hz: Array, width: float) -> list[Peak]:
+    """The strongest peak at each mode, within `width` [Hz], and all others that are loud; by rising
+    frequency.
+
+    A peak is a line that is higher than both its neighbours, the constant part left out.
+    """
+    padded = np.concatenate([[0.0], amplitude[1:], [0.0]])
+    places, _ = find_peaks(padded, height=LOUD * float(amplitude[1:].max()))
+    modes: dict[int, int] = {}
+    for number, at in enumerate(modes_hz, start=1):
+        near = [int(i) for i in places if abs(frequency[i] - at) <= width]
+        if near:
+            modes.setdefault(max(near, key=lambda i: float(amplitude[i])), number)
+    loud = CLEAR * float(amplitude[1:].max())
+    return [
+        Peak(frequency_hz=float(frequency[i]), amplitude=float(amplitude[i]), mode=modes.get(int(i)))
+        for i in places
+        if int(i) in modes or amplitude[i] >= loud
+    ]
