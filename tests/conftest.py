@@ -7,8 +7,6 @@ A run on the instructions that every processor has (``make test-generic``) is re
 others.
 """
 
-from __future__ import annotations
-
 import contextlib
 import os
 import signal

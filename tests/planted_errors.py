@@ -10,8 +10,6 @@ text, annotations and raised errors, which compute nothing; constants of modules
 the bounds of loops, which are choices; arrays of one record.  A file of tests that runs out of `LIMIT` fails.
 """
 
-from __future__ import annotations
-
 import argparse
 import ast
 import csv
@@ -29,7 +27,7 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
 FILES = {
-    "flight/*": "flight|crossing|elementary|polynomial|derivatives",
+    "flight/*": "flight|crossing|polynomial|derivatives",
     "touch/* sensitivity/*": "contact_laws|delayed|derivatives|shooting|time_stepping",
     "engine/*": "sampling|simulation|bouncing|digits|modes",
     "collision virtual_motion": "collision",

@@ -1,6 +1,4 @@
-"""An independent route to the modes of a U: many straight frame elements, classical matrices."""
-
-from __future__ import annotations
+"""Independent routes to the modes of strips: the frequency equation, and many straight frame elements."""
 
 import math
 
@@ -8,8 +6,21 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.linalg import eigsh
 
-from beam import Tip
+from beam import StripSection, Tip, UniformBeam
 from beam.space import SpatialSection
+
+BENT = np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]])
+CARRIED = np.array([[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]])
+"""Stiffness and mass of a cubic element of unit length."""
+
+
+def uniform_beam(
+    section: StripSection, length: float, tip: Tip, supports: tuple = ("clamped", "free")
+) -> UniformBeam:
+    """The strip with a rigid body at its end, for the frequency equation."""
+    numbers = dict(bending_stiffness=section.bending_stiffness, mass_per_length=section.mass_per_length)
+    body = dict(tip_mass=tip.mass, tip_rotary_inertia=tip.rotary_inertia)
+    return UniformBeam(length=length, supports=supports, **numbers, **body)
 
 
 def polygon(radius: float, leg: int, bend: int) -> np.ndarray:
@@ -42,30 +53,8 @@ def frame_frequencies(
             pair = np.ix_([first, second], [first, second])
             k[pair] = stiffness / h * np.array([[1, -1], [-1, 1]])
             g[pair] = mass * h / 6 * np.array([[2, 1], [1, 2]])
-        cubic = (
-            np.array(
-                [
-                    [12, 6 * h, -12, 6 * h],
-                    [6 * h, 4 * h * h, -6 * h, 2 * h * h],
-                    [-12, -6 * h, 12, -6 * h],
-                    [6 * h, 2 * h * h, -6 * h, 4 * h * h],
-                ]
-            )
-            / h**3
-        )
-        carried = (
-            m
-            * h
-            / 420
-            * np.array(
-                [
-                    [156, 22 * h, 54, -13 * h],
-                    [22 * h, 4 * h * h, 13 * h, -3 * h * h],
-                    [54, 13 * h, 156, -22 * h],
-                    [-13 * h, -3 * h * h, -22 * h, 4 * h * h],
-                ]
-            )
-        )
+        arms = np.diag([1.0, h, 1.0, h])
+        cubic, carried = arms @ BENT @ arms / h**3, m * h / 420 * arms @ CARRIED @ arms
         for places, sign, ei in (
             ([1, 5, 7, 11], 1.0, section.in_plane_stiffness),
             ([2, 4, 8, 10], -1.0, section.out_of_plane_stiffness),

@@ -5,20 +5,10 @@ import math
 
 import numpy as np
 import pytest
+from straight_frame import uniform_beam
 
 import beam.modes
-from beam import (
-    BRASS,
-    Readout,
-    StripSection,
-    Tip,
-    UniformBeam,
-    assemble,
-    cantilever,
-    exact_modes,
-    natural_modes,
-    straight_strip,
-)
+from beam import BRASS, StripSection, Tip, assemble, cantilever, exact_modes, natural_modes, straight_strip
 
 LENGTH = 0.13
 STRIP = StripSection(material=BRASS, width=12e-3, thickness=0.65e-3)
@@ -26,21 +16,10 @@ MASS = STRIP.mass_per_length * LENGTH
 HEAVY = Tip(mass=0.3 * MASS, rotary_inertia=0.01 * MASS * LENGTH**2)
 
 
-def beam_of(tip: Tip, supports: tuple = ("clamped", "free")) -> UniformBeam:
-    return UniformBeam(
-        length=LENGTH,
-        bending_stiffness=STRIP.bending_stiffness,
-        mass_per_length=STRIP.mass_per_length,
-        supports=supports,
-        tip_mass=tip.mass,
-        tip_rotary_inertia=tip.rotary_inertia,
-    )
-
-
 @pytest.mark.parametrize("tip", [Tip(), Tip(mass=0.3 * MASS), HEAVY])
 @pytest.mark.parametrize("mode", [1, 2, 5, 8])
 def test_frequencies_converge_at_fourth_order(tip: Tip, mode: int) -> None:
-    exact = exact_modes(beam_of(tip), mode).omega[-1]
+    exact = exact_modes(uniform_beam(STRIP, LENGTH, tip), mode).omega[-1]
     spring = cantilever(length=LENGTH, section=STRIP, tip=tip)
     counts = [max(4, 3 * mode), max(8, 6 * mode)]
     errors = [natural_modes(assemble(spring, n), mode).omega[-1] / exact - 1.0 for n in counts]
@@ -50,7 +29,7 @@ def test_frequencies_converge_at_fourth_order(tip: Tip, mode: int) -> None:
 
 @pytest.mark.parametrize("mode", [1, 3, 5])
 def test_shapes_converge_at_fourth_order_and_rotations_at_third(mode: int) -> None:
-    exact = exact_modes(beam_of(HEAVY), mode)
+    exact = exact_modes(uniform_beam(STRIP, LENGTH, HEAVY), mode)
     spring = cantilever(length=LENGTH, section=STRIP, tip=HEAVY)
     errors = []
     for count in (6 * mode, 12 * mode):
@@ -64,7 +43,7 @@ def test_shapes_converge_at_fourth_order_and_rotations_at_third(mode: int) -> No
 
 @pytest.mark.parametrize("tip", [Tip(), HEAVY])
 def test_default_mesh_gives_frequencies_tip_values_and_participations(tip: Tip) -> None:
-    exact = exact_modes(beam_of(tip), 20)
+    exact = exact_modes(uniform_beam(STRIP, LENGTH, tip), 20)
     modes = natural_modes(assemble(cantilever(length=LENGTH, section=STRIP, tip=tip)), 20)
     np.testing.assert_allclose(modes.omega, exact.omega, rtol=1e-4)
     np.testing.assert_allclose(modes.phi, exact.phi, rtol=1e-3)
@@ -81,7 +60,7 @@ def test_every_pair_of_supports(supports: tuple) -> None:
     modes = natural_modes(assemble(spring, 60), 8)
     rigid = spring.rigid_motions
     assert rigid == (modes.omega == 0.0).sum()
-    expected = exact_modes(beam_of(Tip(), supports), 8 - rigid).omega
+    expected = exact_modes(uniform_beam(STRIP, LENGTH, Tip(), supports), 8 - rigid).omega
     np.testing.assert_allclose(modes.omega[rigid:], expected, rtol=1e-4)
 
 
@@ -136,12 +115,12 @@ def test_readouts() -> None:
         section=STRIP,
         tip=HEAVY,
         readouts={
-            "tip": Readout(at=LENGTH),
-            "middle": Readout(at=0.5123 * LENGTH),
-            "laser": Readout(at=0.7 * LENGTH, quantity="rotation"),
+            "tip": beam.Readout(at=LENGTH),
+            "middle": beam.Readout(at=0.5123 * LENGTH),
+            "laser": beam.Readout(at=0.7 * LENGTH, quantity="rotation"),
         },
     )
-    modes, exact = natural_modes(assemble(spring), 6), exact_modes(beam_of(HEAVY), 6)
+    modes, exact = natural_modes(assemble(spring), 6), exact_modes(uniform_beam(STRIP, LENGTH, HEAVY), 6)
     np.testing.assert_allclose(modes.readouts["tip"], modes.phi, rtol=1e-12)
     middle, laser = exact.shapes(0.5123 * LENGTH)[:, 0], exact.shapes(0.7 * LENGTH, derivative=1)[:, 0]
     np.testing.assert_allclose(modes.readouts["middle"], middle, rtol=1e-4)
@@ -149,9 +128,7 @@ def test_readouts() -> None:
 
 
 @pytest.mark.parametrize("supports", [("clamped", "free"), ("pinned", "free"), ("free", "free")])
-def test_sparse_and_dense_solvers_agree_and_miss_nothing(
-    supports: tuple, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_sparse_and_dense_solvers_agree_and_miss_nothing(supports, monkeypatch):
     model = assemble(
         straight_strip(length=LENGTH, section=STRIP, supports=supports, tip_at=LENGTH, tip=HEAVY)
     )
@@ -172,11 +149,12 @@ def test_scan_misses_no_frequency(mass: float, inertia: float) -> None:
     """Light and heavy tips whose own rotation resonates with one bending mode or another."""
     tip = Tip(mass=mass * MASS, rotary_inertia=inertia * MASS * LENGTH**2)
     modes = natural_modes(assemble(cantilever(length=LENGTH, section=STRIP, tip=tip), 60), 12)
-    np.testing.assert_allclose(modes.omega, exact_modes(beam_of(tip), 12).omega, rtol=5e-4)
+    exact = exact_modes(uniform_beam(STRIP, LENGTH, tip), 12)
+    np.testing.assert_allclose(modes.omega, exact.omega, rtol=5e-4)
 
 
 def test_places_out_of_range_are_refused() -> None:
     with pytest.raises(ValueError, match="points_per_element"):
         natural_modes(assemble(cantilever(length=LENGTH, section=STRIP), 3), 2).displacement_along(0)
     with pytest.raises(ValueError, match="far"):
-        cantilever(length=LENGTH, section=STRIP, readouts={"far": Readout(at=0.2)})
+        cantilever(length=LENGTH, section=STRIP, readouts={"far": beam.Readout(at=0.2)})

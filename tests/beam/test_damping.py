@@ -6,51 +6,37 @@ import numpy as np
 import pytest
 from scipy.linalg import eig
 
-from beam import (
-    BRASS,
-    DAMPING_TAPE,
-    ConstantLossFactor,
-    ConstantRatio,
-    Layer,
-    MeasuredDecay,
-    Modes,
-    Rayleigh,
-    StripDamping,
-    StripSection,
-    Tip,
-    assemble,
-    cantilever,
-    folded_u,
-    natural_modes,
-)
+import beam
 
-BARE = StripSection(material=BRASS, width=12e-3, thickness=0.65e-3)
-GLUED = replace(BARE, layer=Layer(material=DAMPING_TAPE, thickness=0.2e-3))
+BARE = beam.StripSection(material=beam.BRASS, width=12e-3, thickness=0.65e-3)
+GLUED = replace(BARE, layer=beam.Layer(material=beam.DAMPING_TAPE, thickness=0.2e-3))
 
 
-def partly_covered(elements: int = 6) -> Modes:
-    spring = folded_u(
+def partly_covered(elements: int = 6) -> beam.Modes:
+    spring = beam.folded_u(
         leg_length=0.13,
         bend_radius=7.5e-3,
         section=BARE,
-        tip=Tip(mass=4e-3),
+        tip=beam.Tip(mass=4e-3),
         damped_section=GLUED,
         damped_span=(0.01, 0.07),
     )
-    return natural_modes(assemble(spring, elements), 12)
+    return beam.natural_modes(beam.assemble(spring, elements), 12)
 
 
 def test_closed_rules() -> None:
     modes = partly_covered()
     omega = modes.omega
-    np.testing.assert_allclose(ConstantRatio(ratio=0.01).decay_rates(modes), 0.02 * omega)
-    np.testing.assert_allclose(ConstantLossFactor(loss_factor=0.02).decay_rates(modes), 0.02 * omega)
-    rayleigh = Rayleigh(mass_coefficient=3.0, stiffness_coefficient=1e-6)
+    np.testing.assert_allclose(beam.ConstantRatio(ratio=0.01).decay_rates(modes), 0.02 * omega)
+    np.testing.assert_allclose(beam.ConstantLossFactor(loss_factor=0.02).decay_rates(modes), 0.02 * omega)
+    rayleigh = beam.Rayleigh(mass_coefficient=3.0, stiffness_coefficient=1e-6)
     np.testing.assert_allclose(rayleigh.decay_rates(modes), 3.0 + 1e-6 * omega**2)
 
 
 def test_one_section_throughout_has_one_loss_factor() -> None:
-    modes = natural_modes(assemble(cantilever(length=0.13, section=GLUED, tip=Tip(mass=1e-3)), 30), 10)
+    modes = beam.natural_modes(
+        beam.assemble(beam.cantilever(length=0.13, section=GLUED, tip=beam.Tip(mass=1e-3)), 30), 10
+    )
     np.testing.assert_allclose(modes.loss_factors(), GLUED.bending_loss_factor, rtol=1e-9)
 
 
@@ -70,21 +56,21 @@ def test_strain_energy_is_the_first_order_of_complex_stiffness() -> None:
 
 def test_where_the_layer_lies_decides_which_mode_it_damps() -> None:
     eta = partly_covered().loss_factors()
-    assert np.all(eta > BRASS.loss_factor) and np.all(eta < GLUED.bending_loss_factor)
+    assert np.all(eta > beam.BRASS.loss_factor) and np.all(eta < GLUED.bending_loss_factor)
     assert eta.max() > 1.2 * eta.min()
     np.testing.assert_allclose(
-        StripDamping().decay_rates(modes := partly_covered()), eta * modes.omega, rtol=1e-9
+        beam.StripDamping().decay_rates(modes := partly_covered()), eta * modes.omega, rtol=1e-9
     )
 
 
 def test_measured_decay_scales_the_rule_or_replaces_mode_1() -> None:
     modes = partly_covered()
-    rule = StripDamping().decay_rates(modes)
-    scaled = MeasuredDecay(decay_rate=3.56).decay_rates(modes)
+    rule = beam.StripDamping().decay_rates(modes)
+    scaled = beam.MeasuredDecay(decay_rate=3.56).decay_rates(modes)
     assert scaled[0] == pytest.approx(3.56, rel=1e-12)
     np.testing.assert_allclose(scaled / rule, 3.56 / rule[0], rtol=1e-12)
-    others = ConstantRatio(ratio=0.01)
-    replaced = MeasuredDecay(decay_rate=3.56, others=others, scaled=False).decay_rates(modes)
+    others = beam.ConstantRatio(ratio=0.01)
+    replaced = beam.MeasuredDecay(decay_rate=3.56, others=others, scaled=False).decay_rates(modes)
     np.testing.assert_allclose(replaced[1:], others.decay_rates(modes)[1:], rtol=1e-12)
     assert replaced[0] == 3.56
 
@@ -92,13 +78,13 @@ def test_measured_decay_scales_the_rule_or_replaces_mode_1() -> None:
 def test_measured_decay_speaks_of_the_first_coupled_mode() -> None:
     modes = partly_covered()
     swapped = replace(modes, coupled=~modes.coupled)
-    rates = MeasuredDecay(decay_rate=2.0).decay_rates(swapped)
+    rates = beam.MeasuredDecay(decay_rate=2.0).decay_rates(swapped)
     assert rates[1] == pytest.approx(2.0, rel=1e-12) and rates[0] != pytest.approx(2.0, rel=1e-3)
 
 
 def test_a_rule_that_cannot_be_scaled_is_refused() -> None:
     modes = partly_covered()
     with pytest.raises(ValueError, match="others"):
-        MeasuredDecay(decay_rate=1.0, others=ConstantRatio(ratio=0.0)).decay_rates(modes)
+        beam.MeasuredDecay(decay_rate=1.0, others=beam.ConstantRatio(ratio=0.0)).decay_rates(modes)
     with pytest.raises(ValueError, match="modes"):
-        MeasuredDecay(decay_rate=1.0).decay_rates(replace(modes, coupled=0 * modes.omega > 0))
+        beam.MeasuredDecay(decay_rate=1.0).decay_rates(replace(modes, coupled=0 * modes.omega > 0))

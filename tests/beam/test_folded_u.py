@@ -8,30 +8,20 @@ import numpy as np
 import pytest
 from straight_frame import frame_frequencies, polygon
 
-from beam import (
-    BRASS,
-    Arc,
-    Centreline,
-    LeafSpring,
-    Modes,
-    StripSection,
-    Tip,
-    assemble,
-    default_elements,
-    folded_u,
-    natural_modes,
-)
+import beam
 from beam.space import upright
 
 RADII = (7.5e-3, 15e-3, 30e-3)
-STRIP = StripSection(material=BRASS, width=12e-3, thickness=0.65e-3)
-BALL = Tip(mass=4e-3, rotary_inertia=3e-8)
+STRIP = beam.StripSection(material=beam.BRASS, width=12e-3, thickness=0.65e-3)
+BALL = beam.Tip(mass=4e-3, rotary_inertia=3e-8)
 
 
 @functools.cache
-def u_of(radius: float, refinement: int = 1, tip: Tip = BALL) -> Modes:
-    spring = folded_u(leg_length=0.13, bend_radius=radius, section=STRIP, tip=tip)
-    return natural_modes(assemble(spring, [refinement * n for n in default_elements(spring)]), 20)
+def u_of(radius: float, refinement: int = 1, tip: beam.Tip = BALL) -> beam.Modes:
+    spring = beam.folded_u(leg_length=0.13, bend_radius=radius, section=STRIP, tip=tip)
+    return beam.natural_modes(
+        beam.assemble(spring, [refinement * n for n in beam.default_elements(spring)]), 20
+    )
 
 
 @pytest.mark.parametrize("radius", RADII)
@@ -64,16 +54,16 @@ def test_symmetry_of_the_two_families(radius: float) -> None:
 
 
 def test_driving_along_the_legs_couples_the_other_family() -> None:
-    across = folded_u(leg_length=0.13, bend_radius=15e-3, section=STRIP, tip=BALL)
+    across = beam.folded_u(leg_length=0.13, bend_radius=15e-3, section=STRIP, tip=BALL)
     along = replace(across, drive=(2.0, 0.0))
     assert along.drive == (1.0, 0.0)
-    sway, breathing = (natural_modes(assemble(spring), 10) for spring in (across, along))
+    sway, breathing = (beam.natural_modes(beam.assemble(spring), 10) for spring in (across, along))
     np.testing.assert_allclose(sway.omega, breathing.omega, rtol=1e-6)
     np.testing.assert_array_equal(sway.coupled, ~breathing.coupled)
 
 
 def test_prototype_of_the_letter() -> None:
-    modes = u_of(7.5e-3, tip=Tip(mass=4e-3))
+    modes = u_of(7.5e-3, tip=beam.Tip(mass=4e-3))
     sway = modes.frequencies_hz[modes.coupled]
     assert 1.0 / sway[0] == pytest.approx(40.80e-3, rel=2e-3)
     np.testing.assert_allclose(sway[:5], [24.5, 149.0, 378.0, 717.0, 1170.0], rtol=3e-3)
@@ -101,7 +91,7 @@ def test_static_compliance_of_the_u_by_castigliano() -> None:
 
     along, across = energy(1.0, 0.0), energy(0.0, 1.0)
     least = 0.25 * (across - (energy(1.0, 1.0) - along - across) ** 2 / (4.0 * along))
-    model = assemble(folded_u(leg_length=leg, bend_radius=radius, section=STRIP, tip=BALL))
+    model = beam.assemble(beam.folded_u(leg_length=leg, bend_radius=radius, section=STRIP, tip=BALL))
     assert model.static_compliance() == pytest.approx(4.0 * least, rel=1e-5)
 
 
@@ -112,11 +102,11 @@ def test_ring_segment_between_guides(turn: float) -> None:
     Each n gives a 2 x 2 problem with strain (n A - B)/R and change of curvature n (A - n B)/R^2.
     """
     radius = 0.05
-    spring = LeafSpring(
-        centreline=Centreline(pieces=(Arc(radius=radius, angle=turn),)),
+    spring = beam.LeafSpring(
+        centreline=beam.Centreline(pieces=(beam.Arc(radius=radius, angle=turn),)),
         sections=(STRIP,),
         supports=("guided", "guided"),
-        tip=Tip(),
+        tip=beam.Tip(),
         tip_at=0.0,
     )
     expected = []
@@ -127,16 +117,18 @@ def test_ring_segment_between_guides(turn: float) -> None:
         )
         expected += list(np.linalg.eigvalsh(k / STRIP.mass_per_length)[0 if n else 1 :])
     bent = np.sort([value for value in expected if value > 1.0])
-    modes = natural_modes(assemble(spring, 120), 8)
+    modes = beam.natural_modes(beam.assemble(spring, 120), 8)
     rigid = spring.rigid_motions
     assert rigid == (1 if turn == math.pi else 0)
     np.testing.assert_allclose(modes.omega[rigid:] ** 2, bent[: 8 - rigid], rtol=2e-5)
 
 
 def test_elements_converge_at_fourth_order_on_the_arc() -> None:
-    spring = folded_u(leg_length=0.13, bend_radius=15e-3, section=STRIP, tip=BALL)
-    finest = natural_modes(assemble(spring, [60, 160, 60]), 1).omega[0]
-    errors = [natural_modes(assemble(spring, [60, n, 60]), 1).omega[0] / finest - 1.0 for n in (8, 16)]
+    spring = beam.folded_u(leg_length=0.13, bend_radius=15e-3, section=STRIP, tip=BALL)
+    finest = beam.natural_modes(beam.assemble(spring, [60, 160, 60]), 1).omega[0]
+    errors = [
+        beam.natural_modes(beam.assemble(spring, [60, n, 60]), 1).omega[0] / finest - 1.0 for n in (8, 16)
+    ]
     assert math.log2(errors[0] / errors[1]) == pytest.approx(4.0, abs=0.1)
 
 

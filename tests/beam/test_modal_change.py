@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from straight_frame import uniform_beam
 
 import beam
 
@@ -86,9 +87,7 @@ KEPT = {"period": [0], "overtones": [0, 0]}
         (beam.frequency_change(THREE, 1), {"hz": [0, 1, 0], "rates": [0, 0, 0]}),
     ],
 )
-def test_a_change_moves_its_own_parameter_and_keeps_the_others(
-    change: beam.ModalChange, moved: dict[str, list[float]]
-) -> None:
+def test_a_change_moves_its_own_parameter_and_keeps_the_others(change, moved):
     """Its own by 1 per unit; shapes are no business of theirs."""
     size = max(np.abs(getattr(change, name) / getattr(THREE, name)).max() for name in ARRAYS)
 
@@ -112,13 +111,7 @@ def test_frequencies_of_a_cantilever_with_a_ball(ratio: float) -> None:
     spring = beam.cantilever(length=LENGTH, section=STRIP, tip=beam.Tip(mass=ratio * OWN))
     modes = beam.natural_modes(beam.assemble(spring, 60), 4)
     change = beam.tip_mass_change(modes, beam.ConstantRatio(ratio=0.01))
-    uniform = beam.UniformBeam(
-        length=LENGTH,
-        bending_stiffness=STRIP.bending_stiffness,
-        mass_per_length=STRIP.mass_per_length,
-        tip_mass=ratio * OWN,
-    )
-    x = beam.exact_modes(uniform, 4).wave_numbers * LENGTH
+    x = beam.exact_modes(uniform_beam(STRIP, LENGTH, beam.Tip(mass=ratio * OWN)), 4).wave_numbers * LENGTH
     c, s, ch, sh = np.cos(x), np.sin(x), np.cosh(x), np.sinh(x)
     by_x = c * sh - s * ch + ratio * (c * sh - s * ch - 2.0 * x * s * sh)
     by_ratio = x * (c * sh - s * ch)
@@ -165,9 +158,5 @@ def test_what_has_no_derivative_is_refused() -> None:
     assert beam.tip_mass_change(free, rule).omega[0] == 0.0
     with pytest.raises(ValueError, match="rigid"):
         beam.mode_changes(free, rule, stiffness=free.discretization.mass)
-    with pytest.raises(ValueError, match="mode is 3"):
-        beam.frequency_change(THREE, 3)
     with pytest.raises(ValueError, match="does not swing"), pytest.warns(UserWarning, match="decay_rate"):
         beam.free_period_change(replace(THREE, decay_rate=[310.0, 1.0, 1.0]))
-    with pytest.raises(ValueError, match="phi has shape"):
-        beam.ModalChange(omega=[1.0, 2.0], decay_rate=[0.0, 0.0], phi=[0.0], participation=[0.0, 0.0])

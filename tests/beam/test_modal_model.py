@@ -10,25 +10,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import beam
-from beam import (
-    BRASS,
-    ConstantRatio,
-    ModalModel,
-    Modes,
-    Readout,
-    StripSection,
-    SuspiciousValue,
-    Tip,
-    assemble,
-    cantilever,
-    folded_u,
-    natural_modes,
-    reduce,
-    single_mode,
-    straight_strip,
-)
 
-STRIP = StripSection(material=BRASS, width=12e-3, thickness=0.65e-3)
+STRIP = beam.StripSection(material=beam.BRASS, width=12e-3, thickness=0.65e-3)
 THREE = {
     "omega": [1.0, 2.0, 3.0],
     "decay_rate": [0.1, 0.2, 0.0],
@@ -37,20 +20,20 @@ THREE = {
 }
 
 
-def u_modes(count: int = 12) -> Modes:
+def u_modes(count: int = 12) -> beam.Modes:
     readouts = {
-        "ball": Readout(at=0.13 + 0.5 * np.pi * 7.5e-3),
-        "laser": Readout(at=0.1, quantity="rotation"),
+        "ball": beam.Readout(at=0.13 + 0.5 * np.pi * 7.5e-3),
+        "laser": beam.Readout(at=0.1, quantity="rotation"),
     }
-    spring = folded_u(
-        leg_length=0.13, bend_radius=7.5e-3, section=STRIP, tip=Tip(mass=4e-3), readouts=readouts
+    spring = beam.folded_u(
+        leg_length=0.13, bend_radius=7.5e-3, section=STRIP, tip=beam.Tip(mass=4e-3), readouts=readouts
     )
-    return natural_modes(assemble(spring), count)
+    return beam.natural_modes(beam.assemble(spring), count)
 
 
 def test_single_mode_is_equation_1() -> None:
     """Integrated numerically, the free motion returns after T, smaller by exp(-mu T / 2)."""
-    model = single_mode(free_period=40.80e-3, decay_rate=3.56)
+    model = beam.single_mode(free_period=40.80e-3, decay_rate=3.56)
     assert model.n_modes == 1 and model.phi[0] == model.participation[0] == 1.0
     c, k = model.decay_rate[0], model.omega[0] ** 2
     path = solve_ivp(
@@ -63,7 +46,7 @@ def test_single_mode_is_equation_1() -> None:
 
 def test_arrays_are_copied_and_read_only() -> None:
     source = np.array([1.0, 2.0, 3.0])
-    model = ModalModel(**(THREE | {"omega": source}), readouts={"laser": source})
+    model = beam.ModalModel(**(THREE | {"omega": source}), readouts={"laser": source})
     source[0] = 9.0
     assert model.omega[0] == model.readouts["laser"][0] == 1.0 and model.phi.dtype == np.float64
     for row in (model.omega, model.decay_rate, model.phi, model.participation, model.readouts["laser"]):
@@ -76,7 +59,7 @@ def test_arrays_are_copied_and_read_only() -> None:
 
 
 def test_truncated() -> None:
-    model = ModalModel(**THREE, readouts={"laser": [4, 5, 6]}, static_compliance=1.0, tip_mass=2.0)
+    model = beam.ModalModel(**THREE, readouts={"laser": [4, 5, 6]}, static_compliance=1.0, tip_mass=2.0)
     short = model.truncated(2)
     assert short.n_modes == 2 and short.static_compliance == 1.0 and short.tip_mass == 2.0
     np.testing.assert_array_equal(short.readouts["laser"], [4, 5])
@@ -88,37 +71,37 @@ def test_truncated() -> None:
 
 def test_readouts_have_one_value_a_mode() -> None:
     with pytest.raises(ValueError, match="laser"):
-        ModalModel(**(THREE | {"readouts": {"laser": [1.0]}}))
+        beam.ModalModel(**(THREE | {"readouts": {"laser": [1.0]}}))
 
 
 def test_a_lowest_mode_that_hardly_swings_is_told() -> None:
-    with pytest.warns(SuspiciousValue, match="decay_rate"):
-        ModalModel(**(THREE | {"decay_rate": [1.1, 0.0, 0.0]}))
+    with pytest.warns(beam.SuspiciousValue, match="decay_rate"):
+        beam.ModalModel(**(THREE | {"decay_rate": [1.1, 0.0, 0.0]}))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        ModalModel(**(THREE | {"omega": [0.0, 2.0, 3.0], "decay_rate": [1.0, 1.9, 7.0]}))
+        beam.ModalModel(**(THREE | {"omega": [0.0, 2.0, 3.0], "decay_rate": [1.0, 1.9, 7.0]}))
 
 
 def test_uncoupled_modes_drop_out() -> None:
     modes = u_modes()
-    model = reduce(modes, ConstantRatio(ratio=0.01))
+    model = beam.reduce(modes, beam.ConstantRatio(ratio=0.01))
     assert model.n_modes == 6
     np.testing.assert_array_equal(model.omega, modes.omega[modes.coupled])
     np.testing.assert_allclose(model.decay_rate, 0.02 * model.omega)
     np.testing.assert_allclose(model.readouts["ball"], model.phi, rtol=1e-9)
     assert set(model.readouts) == {"ball", "laser"} and model.tip_mass == 4e-3
-    assert reduce(modes, ConstantRatio(ratio=0.01), 4).n_modes == 4
-    everything = reduce(modes, ConstantRatio(ratio=0.01), coupled_only=False)
+    assert beam.reduce(modes, beam.ConstantRatio(ratio=0.01), 4).n_modes == 4
+    everything = beam.reduce(modes, beam.ConstantRatio(ratio=0.01), coupled_only=False)
     assert everything.n_modes == 12 and np.count_nonzero(everything.phi) == 6
     with pytest.raises(ValueError, match="count"):
-        reduce(modes, ConstantRatio(ratio=0.01), 7)
+        beam.reduce(modes, beam.ConstantRatio(ratio=0.01), 7)
 
 
 def test_uncoupled_modes_take_no_part_in_the_motion_of_the_tip() -> None:
     """The response of the full matrices to a base motion and a tip force is that of the coupled modes."""
     modes = u_modes(60)
     full = modes.discretization
-    model = reduce(modes, ConstantRatio(ratio=0.0))
+    model = beam.reduce(modes, beam.ConstantRatio(ratio=0.0))
     for frequency in (20.0, 80.0, 300.0):
         square = (2.0 * np.pi * frequency) ** 2
         dynamic = (full.stiffness - square * full.mass).toarray()
@@ -133,16 +116,16 @@ def test_uncoupled_modes_take_no_part_in_the_motion_of_the_tip() -> None:
 
 def test_residual_compliance_falls_as_the_cube_of_the_number_of_modes() -> None:
     """Its terms fall as omega^-2, i.e. as the fourth power of the mode number."""
-    spring = cantilever(length=0.13, section=STRIP)
-    model = reduce(natural_modes(assemble(spring, 60), 16), ConstantRatio(ratio=0.01))
+    spring = beam.cantilever(length=0.13, section=STRIP)
+    model = beam.reduce(beam.natural_modes(beam.assemble(spring, 60), 16), beam.ConstantRatio(ratio=0.01))
     residual = model.static_compliance - np.cumsum(model.phi**2 / model.omega**2)
     assert np.all(residual > 0.0)
     assert np.log2(residual[7] / residual[15]) == pytest.approx(3.0, abs=0.15)
 
 
 def test_floating_strip_has_no_static_compliance() -> None:
-    spring = straight_strip(length=0.1, section=STRIP, supports=("pinned", "free"), tip_at=0.1)
-    model = reduce(natural_modes(assemble(spring, 10), 3), ConstantRatio(ratio=0.01))
+    spring = beam.straight_strip(length=0.1, section=STRIP, supports=("pinned", "free"), tip_at=0.1)
+    model = beam.reduce(beam.natural_modes(beam.assemble(spring, 10), 3), beam.ConstantRatio(ratio=0.01))
     assert model.static_compliance is None and model.omega[0] == model.decay_rate[0] == 0.0
     assert replace(model, static_compliance=1.0).static_compliance == 1.0
 
@@ -156,8 +139,8 @@ def test_the_package_keeps_its_word() -> None:
 
 @pytest.mark.parametrize("count", [1, 2, 4])
 def test_residual_mode_fulfils_the_sum_rules(count: int) -> None:
-    spring = folded_u(leg_length=0.13, bend_radius=7.5e-3, section=STRIP, tip=Tip(mass=5e-3))
-    model = reduce(natural_modes(assemble(spring), 30), ConstantRatio(ratio=0.01), count)
+    spring = beam.folded_u(leg_length=0.13, bend_radius=7.5e-3, section=STRIP, tip=beam.Tip(mass=5e-3))
+    model = beam.reduce(beam.natural_modes(beam.assemble(spring), 30), beam.ConstantRatio(ratio=0.01), count)
     whole = model.with_residual_mode()
     assert whole.n_modes == count + 1 and whole.omega[-1] > model.omega[-1]
     assert np.sum(whole.phi**2) == pytest.approx(1 / 5e-3, rel=1e-12)
@@ -166,8 +149,8 @@ def test_residual_mode_fulfils_the_sum_rules(count: int) -> None:
 
 
 def test_no_residual_mode_without_statics_tip_mass_or_remainder() -> None:
-    spring = folded_u(leg_length=0.13, bend_radius=7.5e-3, section=STRIP, tip=Tip(mass=5e-3))
-    model = reduce(natural_modes(assemble(spring), 30), ConstantRatio(ratio=0.01), 3)
+    spring = beam.folded_u(leg_length=0.13, bend_radius=7.5e-3, section=STRIP, tip=beam.Tip(mass=5e-3))
+    model = beam.reduce(beam.natural_modes(beam.assemble(spring), 30), beam.ConstantRatio(ratio=0.01), 3)
     with pytest.raises(ValueError, match="tip_mass is 0"):
         replace(model, tip_mass=0.0).with_residual_mode()
     with pytest.raises(ValueError, match="static_compliance is None"):

@@ -1,47 +1,27 @@
 """Files for ParaView, read back and compared with what the modes say."""
 
-from __future__ import annotations
-
 import math
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from beam import (
-    BRASS,
-    DAMPING_TAPE,
-    Layer,
-    Modes,
-    StripDamping,
-    StripSection,
-    Tip,
-    assemble,
-    cantilever,
-    flat_u,
-    folded_u,
-    natural_modes,
-)
-from beam.export import mode_name, write_mode_motion, write_modes
-from beam.spring_mesh import BALL, LAYER, STRIP, solid_spring
+import beam
+from beam.export import mode_name
 
 RADIUS = 2.5e-3
-BARE = StripSection(material=BRASS, width=12e-3, thickness=0.65e-3)
-TAPED = StripSection(
-    material=BRASS,
-    width=12e-3,
-    thickness=0.65e-3,
-    layer=Layer(material=DAMPING_TAPE, thickness=0.45e-3, both_sides=False),
-)
+BARE = beam.StripSection(material=beam.BRASS, width=12e-3, thickness=0.65e-3)
+TAPED = replace(BARE, layer=beam.Layer(material=beam.DAMPING_TAPE, thickness=0.45e-3, both_sides=False))
 
 
 @pytest.fixture(scope="module")
-def modes() -> Modes:
-    spring = folded_u(
-        leg_length=0.13, bend_radius=7.5e-3, section=BARE, damped_section=TAPED, tip=Tip(mass=5e-3)
+def modes() -> beam.Modes:
+    spring = beam.folded_u(
+        leg_length=0.13, bend_radius=7.5e-3, section=BARE, damped_section=TAPED, tip=beam.Tip(mass=5e-3)
     )
-    return natural_modes(assemble(spring), 4)
+    return beam.natural_modes(beam.assemble(spring), 4)
 
 
 def read(path: Path):
@@ -51,24 +31,24 @@ def read(path: Path):
 
 
 def test_the_mesh_has_the_masses_of_the_strip_and_the_surface_of_the_ball(modes):
-    mesh = solid_spring(modes, ball_radius=RADIUS)
+    mesh = beam.solid_spring(modes, ball_radius=RADIUS)
     sizes = mesh.grid().compute_cell_sizes()
-    volume = [float(sizes["Volume"][mesh.part == part].sum()) for part in (STRIP, LAYER)]
-    mass = BRASS.density * volume[0] + DAMPING_TAPE.density * volume[1]
+    volume = [float(sizes["Volume"][mesh.part == part].sum()) for part in (beam.STRIP, beam.LAYER)]
+    mass = beam.BRASS.density * volume[0] + beam.DAMPING_TAPE.density * volume[1]
     assert mass == pytest.approx(modes.discretization.spring.strip_mass, rel=1e-3)  # chords for arcs
-    area = float(sizes["Area"][mesh.part == BALL].sum())
+    area = float(sizes["Area"][mesh.part == beam.BALL].sum())
     assert area == pytest.approx(4.0 * math.pi * RADIUS**2, rel=0.02)
-    assert np.all(sizes["Volume"][mesh.part != BALL] > 0.0)
+    assert np.all(sizes["Volume"][mesh.part != beam.BALL] > 0.0)
 
 
 def test_a_flat_u_is_drawn_with_the_slot_between_its_legs():
-    spring = flat_u(
-        leg_length=0.13, bend_radius=7.5e-3, section=BARE, damped_section=TAPED, tip=Tip(mass=5e-3)
+    spring = beam.flat_u(
+        leg_length=0.13, bend_radius=7.5e-3, section=BARE, damped_section=TAPED, tip=beam.Tip(mass=5e-3)
     )
-    mesh = solid_spring(natural_modes(assemble(spring), 2), ball_radius=RADIUS)
+    mesh = beam.solid_spring(beam.natural_modes(beam.assemble(spring), 2), ball_radius=RADIUS)
     sizes = mesh.grid().compute_cell_sizes()
-    volume = [float(sizes["Volume"][mesh.part == part].sum()) for part in (STRIP, LAYER)]
-    assert BRASS.density * volume[0] + DAMPING_TAPE.density * volume[1] == pytest.approx(
+    volume = [float(sizes["Volume"][mesh.part == part].sum()) for part in (beam.STRIP, beam.LAYER)]
+    assert beam.BRASS.density * volume[0] + beam.DAMPING_TAPE.density * volume[1] == pytest.approx(
         spring.strip_mass, rel=1e-9
     )
     middle = mesh.points[mesh.hexahedra].mean(axis=1)
@@ -80,19 +60,8 @@ def test_a_flat_u_is_drawn_with_the_slot_between_its_legs():
     assert len(faces) == len(part)
 
 
-def test_the_tape_lies_inside_the_u_and_the_ball_touches_the_bend_from_outside(modes):
-    mesh = solid_spring(modes, ball_radius=RADIUS)
-    tape = mesh.points[np.unique(mesh.hexahedra[mesh.part[: len(mesh.hexahedra)] == LAYER])]
-    assert np.abs(tape[:, 1]).max() == pytest.approx(7.5e-3 - 0.325e-3, rel=1e-9)
-    ball = mesh.points[np.unique(mesh.triangles)]
-    surface = 0.1375 + 0.325e-3
-    assert ball[:, 0].min() == pytest.approx(surface, abs=0.01 * RADIUS)
-    assert ball[:, 0].max() == pytest.approx(surface + 2.0 * RADIUS, abs=0.01 * RADIUS)
-    assert ball[:, :2].mean(axis=0)[1] == pytest.approx(0.0, abs=1e-2 * RADIUS)
-
-
 def test_triangles_of_the_ball_face_outwards(modes):
-    mesh = solid_spring(modes, ball_radius=RADIUS)
+    mesh = beam.solid_spring(modes, ball_radius=RADIUS)
     centre = mesh.points[np.unique(mesh.triangles)].mean(axis=0)
     a, b, c = (mesh.points[mesh.triangles[:, i]] for i in range(3))
     assert np.all(np.einsum("ij,ij->i", np.cross(b - a, c - a), a - centre) > 0.0)
@@ -102,14 +71,14 @@ def test_triangles_of_the_ball_face_outwards(modes):
 
 def test_cross_sections_stay_plane_and_turn_with_the_strip(modes):
     """A small motion keeps the distances within a cross-section, and its middle moves as the centreline."""
-    mesh, along = solid_spring(modes), modes.displacement_along(1)
+    mesh, along = beam.solid_spring(modes), modes.displacement_along(1)
     corner = mesh.hexahedra[:, :4]
     for mode in range(4):
         rest, shape = mesh.points[corner], mesh.shapes[mode][corner]
         for i, j in ((0, 1), (1, 2), (0, 2)):
             stretch = np.einsum("nk,nk->n", rest[:, i] - rest[:, j], shape[:, i] - shape[:, j])
             assert np.abs(stretch).max() < 1e-12 * np.abs(shape).max()
-    strip = mesh.hexahedra[mesh.part == STRIP][:, :4]
+    strip = mesh.hexahedra[mesh.part == beam.STRIP][:, :4]
     middle = mesh.shapes[:, strip].mean(axis=2)
     place = mesh.points[strip].mean(axis=1)
     nearest = np.argmin(np.linalg.norm(along.points[None] - place[:, None], axis=2), axis=1)
@@ -120,7 +89,7 @@ def test_cross_sections_stay_plane_and_turn_with_the_strip(modes):
 
 
 def test_the_ball_moves_as_one_body_with_the_tip(modes):
-    mesh = solid_spring(modes, ball_radius=RADIUS)
+    mesh = beam.solid_spring(modes, ball_radius=RADIUS)
     ball = np.unique(mesh.triangles)
     spring = modes.discretization.spring
     tip = spring.centreline.points(spring.tip_at)
@@ -133,22 +102,16 @@ def test_the_ball_moves_as_one_body_with_the_tip(modes):
     np.testing.assert_allclose(along.displacement[:, at, 1], modes.phi, atol=1e-6)
 
 
-def test_a_cantilever_has_its_ball_on_the_side_of_the_drive():
-    strip = cantilever(length=0.13, section=BARE, tip=Tip(mass=4e-3))
-    mesh = solid_spring(natural_modes(assemble(strip, 12), 2), ball_radius=RADIUS)
-    ball = mesh.points[np.unique(mesh.triangles)]
-    assert ball[:, 1].min() == pytest.approx(0.325e-3, abs=0.01 * RADIUS)
-    assert ball[:, 0].mean() == pytest.approx(0.13, abs=1e-4)
-
-
 def test_mode_shapes_read_back(modes, tmp_path):
-    rates = StripDamping().decay_rates(modes)
-    path = write_modes(tmp_path / "modes.vtu", modes, decay_rates=rates, largest=0.01, ball_radius=RADIUS)
+    rates = beam.StripDamping().decay_rates(modes)
+    path = beam.write_modes(
+        tmp_path / "modes.vtu", modes, decay_rates=rates, largest=0.01, ball_radius=RADIUS
+    )
     grid = read(path)
     names = [mode_name(modes, mode) for mode in range(4)]
     assert list(grid.point_data) == names
     assert names[0].startswith("mode_01_2") and names[0].endswith("Hz")
-    mesh = solid_spring(modes, ball_radius=RADIUS)
+    mesh = beam.solid_spring(modes, ball_radius=RADIUS)
     for mode, name in enumerate(names):
         vectors = grid.point_data[name]
         assert vectors.shape == (len(mesh.points), 3) and vectors.dtype.kind == "f"
@@ -164,7 +127,7 @@ def test_mode_shapes_read_back(modes, tmp_path):
 
 @pytest.mark.parametrize("moved", [False, True])
 def test_a_mode_in_motion_loops_without_a_seam(modes, tmp_path, moved):
-    path, *frames = write_mode_motion(
+    path, *frames = beam.write_mode_motion(
         tmp_path / "sway & back.pvd", modes, 2, frames=8, moved=moved, largest=0.01, ball_radius=RADIUS
     )
     sets = ET.parse(path).getroot().findall("Collection/DataSet")
@@ -172,7 +135,7 @@ def test_a_mode_in_motion_loops_without_a_seam(modes, tmp_path, moved):
     period = 2.0 * math.pi / modes.omega[2]
     times = [float(entry.attrib["timestep"]) for entry in sets]
     np.testing.assert_allclose(times, period * np.arange(8) / 8, rtol=1e-14)
-    mesh = solid_spring(modes, ball_radius=RADIUS)
+    mesh = beam.solid_spring(modes, ball_radius=RADIUS)
     grids = [read(frame) for frame in frames]
     shape = mesh.normalised(0.01)[2]
     motion = np.array([grid.point_data["displacement"] for grid in grids])
@@ -187,15 +150,15 @@ def test_a_mode_in_motion_loops_without_a_seam(modes, tmp_path, moved):
 
 def test_wrong_use_is_refused(modes, tmp_path):
     with pytest.raises(ValueError, match=r"\.vtu"):
-        write_modes(tmp_path / "modes.vtk", modes)
+        beam.write_modes(tmp_path / "modes.vtk", modes)
     with pytest.raises(ValueError, match="decay_rates"):
-        write_modes(tmp_path / "modes.vtu", modes, decay_rates=[1.0])
+        beam.write_modes(tmp_path / "modes.vtu", modes, decay_rates=[1.0])
     with pytest.raises(ValueError, match="largest"):
-        write_modes(tmp_path / "modes.vtu", modes, largest=0.0)
+        beam.write_modes(tmp_path / "modes.vtu", modes, largest=0.0)
     with pytest.raises(ValueError, match="mode is 4"):
-        write_mode_motion(tmp_path / "motion.pvd", modes, 4)
+        beam.write_mode_motion(tmp_path / "motion.pvd", modes, 4)
     with pytest.raises(ValueError, match="frames"):
-        write_mode_motion(tmp_path / "motion.pvd", modes, 0, frames=1)
+        beam.write_mode_motion(tmp_path / "motion.pvd", modes, 0, frames=1)
     with pytest.raises(ValueError, match="ball_radius"):
-        solid_spring(modes, ball_radius=-1.0)
+        beam.solid_spring(modes, ball_radius=-1.0)
     assert not list(tmp_path.iterdir())

@@ -1,7 +1,5 @@
 """Public calls of `contact`: right arguments and wrong values; how it is written: calls_of_beam."""
 
-from __future__ import annotations
-
 import dataclasses
 from functools import cache
 

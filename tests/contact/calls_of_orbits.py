@@ -1,7 +1,5 @@
 """Public calls of `contact.orbits`: right arguments and wrong values; how it is written: calls_of_beam."""
 
-from __future__ import annotations
-
 import contextlib
 import dataclasses
 from collections.abc import Callable

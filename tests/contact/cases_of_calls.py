@@ -1,108 +1,88 @@
 """The laws of contact, oscillators, starts and approach speeds for which the public calls are made."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from oscillators import equation_1
+from oscillators import equation_1, modes_on_stop
 
-from beam import ModalModel
-from contact import (
-    ContactLaw,
-    DelayedRestitution,
-    HarmonicDrive,
-    HertzContact,
-    HuntCrossley,
-    ImpactOscillator,
-    LinearContact,
-    NewtonRestitution,
-    SingleImpactOrbit,
-    State,
-    Stop,
-    StroboscopicMap,
-)
+import contact
 from contact.orbits import KickFamily, PeriodicOrbit, Shooting
 
 GAP = 0.0107
-LAWS: dict[str, ContactLaw] = {
-    "newton": NewtonRestitution(local_restitution=0.1),
-    "delayed": DelayedRestitution(restitution=0.1, delay=1e-4),
-    "delayed by table": DelayedRestitution(
+LAWS: dict[str, contact.ContactLaw] = {
+    "newton": contact.NewtonRestitution(local_restitution=0.1),
+    "delayed": contact.DelayedRestitution(restitution=0.1, delay=1e-4),
+    "delayed by table": contact.DelayedRestitution(
         restitution=lambda v: 0.3 / (1 + v), delay=lambda v: 2e-4 * v**0.2
     ),
-    "linear": LinearContact(stiffness=1e7),
-    "dashpot": LinearContact(stiffness=1e7, damping=100.0),
-    "hertz": HertzContact(stiffness=1e9),
-    "hunt-crossley": HuntCrossley(stiffness=1e9, dissipation=0.3),
+    "linear": contact.LinearContact(stiffness=1e7),
+    "dashpot": contact.LinearContact(stiffness=1e7, damping=100.0),
+    "hertz": contact.HertzContact(stiffness=1e9),
+    "hunt-crossley": contact.HuntCrossley(stiffness=1e9, dissipation=0.3),
 }
-EXTREME: dict[str, ContactLaw] = {
-    "plastic": NewtonRestitution(local_restitution=0.0),
-    "elastic": NewtonRestitution(local_restitution=1.0),
-    "no delay": DelayedRestitution(restitution=0.9, delay=0.0),
-    "delay of rounding": DelayedRestitution(restitution=0.0, delay=1e-12),
-    "delay that holds": DelayedRestitution(restitution=0.0, delay=5e-3),
-    "delay of all periods": DelayedRestitution(restitution=0.5, delay=1.0),
-    "softest": LinearContact(stiffness=1e-300),
-    "stiffest": LinearContact(stiffness=1e18, damping=1e3),
-    "overdamped": LinearContact(stiffness=1e5, damping=1e5),
-    "softest hertz": HertzContact(stiffness=1e-300),
-    "stiffest hertz": HertzContact(stiffness=1e20),
-    "dissipative": HuntCrossley(stiffness=1e9, dissipation=100.0),
-    "dissipative and soft": HuntCrossley(stiffness=1e5, dissipation=1e6),
-    "creeping": HuntCrossley(stiffness=1e9, dissipation=3e3),
-    "creeping longest": HuntCrossley(stiffness=1e9, dissipation=1e4),
+EXTREME: dict[str, contact.ContactLaw] = {
+    "plastic": contact.NewtonRestitution(local_restitution=0.0),
+    "elastic": contact.NewtonRestitution(local_restitution=1.0),
+    "no delay": contact.DelayedRestitution(restitution=0.9, delay=0.0),
+    "delay of rounding": contact.DelayedRestitution(restitution=0.0, delay=1e-12),
+    "delay that holds": contact.DelayedRestitution(restitution=0.0, delay=5e-3),
+    "delay of all periods": contact.DelayedRestitution(restitution=0.5, delay=1.0),
+    "softest": contact.LinearContact(stiffness=1e-300),
+    "stiffest": contact.LinearContact(stiffness=1e18, damping=1e3),
+    "overdamped": contact.LinearContact(stiffness=1e5, damping=1e5),
+    "softest hertz": contact.HertzContact(stiffness=1e-300),
+    "stiffest hertz": contact.HertzContact(stiffness=1e20),
+    "dissipative": contact.HuntCrossley(stiffness=1e9, dissipation=100.0),
+    "dissipative and soft": contact.HuntCrossley(stiffness=1e5, dissipation=1e6),
+    "creeping": contact.HuntCrossley(stiffness=1e9, dissipation=3e3),
+    "creeping longest": contact.HuntCrossley(stiffness=1e9, dissipation=1e4),
 }
 MODES = {"dissipative": (2, 12), "creeping": (12,), "creeping longest": (12,)}
 """Other numbers of modes than one and two; delayed rebounds need a single one."""
 
 
-def oscillator_of(law: ContactLaw, modes: int) -> ImpactOscillator:
+def oscillator_of(law: contact.ContactLaw, modes: int) -> contact.ImpactOscillator:
     """Eq. (1), or a beam with two or with twelve modes; its read-out is the tip."""
-    if modes == 1:
-        plain = equation_1(22.2, law, gap=GAP)
-        return replace(plain, model=replace(plain.model, readouts={"laser": plain.model.phi}))
     k = np.arange(modes)
     omega, phi = 154.0 * (1.0 + 1.5 * k) ** 2, (-0.8) ** (k % 2) * (1.0 if modes == 2 else 7.0)
     gamma = 1.0 / (1.0 + 2.3 * k) / phi[0]
-    model = ModalModel(
-        omega=omega, decay_rate=0.02 * omega, phi=phi, participation=gamma, readouts={"laser": phi}
-    )
-    return ImpactOscillator(model=model, stop=Stop(gap=GAP, law=law), drive=HarmonicDrive(frequency=22.2))
+    several = modes_on_stop(omega, 0.02 * omega, phi, gamma, law=law, gap=GAP, drive=22.2)
+    plain = several if modes > 1 else equation_1(22.2, law, gap=GAP)
+    return replace(plain, model=replace(plain.model, readouts={"laser": plain.model.phi}))
 
 
 @dataclass(frozen=True)
 class Case:
     """An oscillator, the start of a motion, an approach speed, and the arguments made of them."""
 
-    oscillator: ImpactOscillator
+    oscillator: contact.ImpactOscillator
     starts_fast: bool = False
     part: float = 0.05
     """Approach speed over that of the drive at the gap."""
 
     @cached_property
-    def driven(self) -> ImpactOscillator:
+    def driven(self) -> contact.ImpactOscillator:
         """Above grazing; the one of twelve modes far above."""
         return self.oscillator.with_excess(1e4 if self.oscillator.n_modes == 12 else 0.02)
 
     @cached_property
-    def strobed(self) -> StroboscopicMap:
-        return StroboscopicMap(oscillator=self.driven)
+    def strobed(self) -> contact.StroboscopicMap:
+        return contact.StroboscopicMap(oscillator=self.driven)
 
     @cached_property
-    def below(self) -> StroboscopicMap:
+    def below(self) -> contact.StroboscopicMap:
         """A map below grazing."""
         return self.strobed.at(-0.1)
 
     @property
-    def fast(self) -> State:
+    def fast(self) -> contact.State:
         """All modes at 1 m kg^0.5/s."""
-        rest = State.rest(self.oscillator.n_modes)
-        return State(displacement=rest.displacement, velocity=rest.velocity + 1.0)
+        rest = contact.State.rest(self.oscillator.n_modes)
+        return contact.State(displacement=rest.displacement, velocity=rest.velocity + 1.0)
 
     @cached_property
-    def state(self) -> State:
+    def state(self) -> contact.State:
         return self.fast if self.starts_fast else self.strobed.steady()
 
     @cached_property
@@ -119,7 +99,7 @@ class Case:
         return self.part * self.oscillator.drive.angular_frequency * GAP
 
     @cached_property
-    def kicked(self) -> SingleImpactOrbit:
+    def kicked(self) -> contact.SingleImpactOrbit:
         return self.kicks.orbit(self.speed)
 
     @cached_property
@@ -135,15 +115,15 @@ class Case:
         return np.concatenate([orbit.displacement, orbit.velocity, drive])
 
 
-def cases_of(oscillator: ImpactOscillator) -> dict[str, tuple[Case, ...]]:
+def cases_of(oscillator: contact.ImpactOscillator) -> dict[str, tuple[Case, ...]]:
     """Cases by what a call follows: a motion, one from each start, a family, its orbits at each speed."""
     slow, fast = Case(oscillator), Case(oscillator, starts_fast=True)
     speeds = tuple(Case(oscillator, part=part) for part in (1e-6, 0.05, 0.3, 20.0))
     return {"motion": (slow,), "starts": (slow, fast), "family": (speeds[1],), "speeds": speeds}
 
 
-NEWTON = Case(oscillator_of(NewtonRestitution(local_restitution=0.1), 1))
+NEWTON = Case(oscillator_of(contact.NewtonRestitution(local_restitution=0.1), 1))
 """The usual case of a motion."""
-HERTZ = Case(oscillator_of(HertzContact(stiffness=8e9), 1))
+HERTZ = Case(oscillator_of(contact.HertzContact(stiffness=8e9), 1))
 """The usual case of a family."""
 USUAL = {"motion": NEWTON, "starts": NEWTON, "family": HERTZ, "speeds": HERTZ}

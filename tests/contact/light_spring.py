@@ -1,15 +1,11 @@
 """A spring with a light tip and Eq. (1), for collisions; their motion without impacts."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 import oscillators
 
-from contact.collision import Collision
-from contact.laws import ContactLaw, NewtonRestitution
-from contact.oscillator import ImpactOscillator
+from contact import Collision, ContactLaw, ImpactOscillator
 
 PHI = 10.0 * np.array([1.0, 0.9, 0.8, 0.7, 0.6, 0.5])
 
@@ -31,10 +27,6 @@ def spring(
 
 def equation_1(frequency: float, law: ContactLaw, excess: float) -> ImpactOscillator:
     return oscillators.equation_1(frequency, law, gap=0.0107, excess=excess)
-
-
-def newton(e: float) -> NewtonRestitution:
-    return NewtonRestitution(local_restitution=e)
 
 
 def real_differs(collision: Collision) -> bool:

@@ -1,32 +1,22 @@
 """One mode under Newton's law in any scaling, and its drive periods by the fast and the general loop."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
+from oscillators import modes_on_stop, newton
 
-from beam import ModalModel
-from contact.drive import HarmonicDrive
+from contact import ImpactOscillator, State, simulate
 from contact.engine.event_loop import DONE, advance
 from contact.engine.recorder import LOG, strobes_only
 from contact.engine.start import start_of
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import tip_state
-from contact.flight.motion import Motion
-from contact.laws import NewtonRestitution
 from contact.maps.strobed_motion import strobed_system
 from contact.one_mode.loop import one_mode_periods
-from contact.one_mode.period_table import flow_over
-from contact.oscillator import ImpactOscillator
-from contact.simulation import simulate
-from contact.stop import Stop
-from contact.trajectory import IMPACT, State
+from contact.trajectory import IMPACT
 
 GAP = 0.01
 OMEGA = 2.0 * math.pi / 40.80e-3
 FREQUENCIES = (20.90, 21.50, 22.20, 22.60, 23.05, 23.40)
-RESTITUTIONS = (0.0, 0.05, 0.1, 0.5, 1.0)
 DAMPINGS = {"undamped": 0.0, "letter": 3.56, "strong": 150.0, "over-damped": 2.5 * OMEGA}
 
 
@@ -40,22 +30,10 @@ def oscillator(
     participation: float | None = None,
 ) -> ImpactOscillator:
     """Eq. (1) of the letter in any scaling of its mode."""
-    if decay < 2 * OMEGA:
-        omega = math.sqrt(OMEGA**2 + decay**2 / 4)
-    else:
-        omega = OMEGA
-    one = np.ones(1)
-    model = ModalModel(
-        omega=omega * one,
-        decay_rate=decay * one,
-        phi=phi * one,
-        participation=one / phi if participation is None else participation * one,
-    )
-    return ImpactOscillator(
-        model=model,
-        stop=Stop(gap=GAP, law=NewtonRestitution(local_restitution=tau)),
-        drive=HarmonicDrive(frequency=frequency),
-    ).with_excess(excess)
+    omega = math.hypot(OMEGA, decay / 2) if decay < 2 * OMEGA else OMEGA
+    gamma = 1.0 / phi if participation is None else participation
+    single = modes_on_stop(omega, decay, phi, gamma, law=newton(tau), gap=GAP, drive=frequency)
+    return single.with_excess(excess)
 
 
 class Period:
@@ -145,23 +123,8 @@ def general_orbit(single: ImpactOscillator, begin: State, count: int) -> tuple[n
     return points, run.strobe_impacts
 
 
-def highest(motion: Motion, table, u: float, v: float) -> float:
-    """Highest tip displacement of a period without a stop, by 2000 samples and Newton's iteration [m]."""
-    times = np.linspace(0.0, motion.period, 2001)
-    root = np.sqrt(complex(motion.decay[0] ** 2 / 4 - motion.omega[0] ** 2))
-    fast, slow = -motion.decay[0] / 2 + root, -motion.decay[0] / 2 - root
-    b = (v - fast * u) / (slow - fast)
-    free = ((u - b) * np.exp(fast * times) + b * np.exp(slow * times)).real
-    angle = motion.drive * times
-    steady = motion.tip_sine * np.sin(angle) + motion.tip_cosine * np.cos(angle)
-    k = int(np.argmax(motion.phi[0] * free + steady))
-    t = times[k]
-    best = -math.inf
-    for _ in range(8):
-        un, vn = flow_over(table.mode, table.rows, t, u, v)
-        height, rate, acceleration = tip_state(motion, t, np.array([un]), np.array([vn]))
-        best = max(best, height)
-        if not 0 < k < 2000 or acceleration >= 0:
-            break
-        t = min(max(t - rate / acceleration, times[k - 1]), times[k + 1])
-    return best
+def compared(single: ImpactOscillator, periods: int) -> tuple[int, int]:
+    """Impacts, and periods that the fast loop leaves to the general one, of motions that agree."""
+    worst, impacts, left = Period(single).compare(*rest_of(single), periods)
+    assert worst < ROUNDINGS
+    return impacts, left

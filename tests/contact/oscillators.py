@@ -1,8 +1,7 @@
 """Oscillators that several tests of contact take: a spring of six modes, Eq. (1) of the letter."""
 
-from __future__ import annotations
-
 import numpy as np
+import pytest
 from scipy.optimize import linear_sum_assignment
 
 from beam import ModalModel, single_mode
@@ -36,6 +35,38 @@ MODES = {
 }
 
 
+def slow(*cases: object) -> list:
+    """Cases that only the long form of a test has; a tuple holds one value for each argument."""
+    rows = (case if isinstance(case, tuple) else (case,) for case in cases)
+    return [pytest.param(*row, marks=pytest.mark.slow) for row in rows]
+
+
+def newton(restitution: float) -> NewtonRestitution:
+    return NewtonRestitution(local_restitution=restitution)
+
+
+def modes_on_stop(
+    omega: object,
+    decay: object = 0.0,
+    phi: object = 1.0,
+    participation: object = 0.0,
+    *,
+    law: ContactLaw | None = None,
+    gap: float = 0.01,
+    drive: object = None,
+    load: object = None,
+) -> ImpactOscillator:
+    """Modes before a stop, under Newton's law with restitution 1/2 by default; a number holds for every mode.
+
+    drive = frequency [Hz], or (frequency, amplitude [m]).
+    """
+    omega, decay, phi, participation = np.broadcast_arrays(np.atleast_1d(omega), decay, phi, participation)
+    model = ModalModel(omega=omega, decay_rate=decay, phi=phi, participation=participation)
+    base = drive and HarmonicDrive(**dict(zip(("frequency", "amplitude"), np.ravel(drive), strict=False)))
+    stop, force = Stop(gap=gap, law=law or newton(0.5)), None if load is None else load + 0.0 * omega
+    return ImpactOscillator(model=model, stop=stop, drive=base, load=force)
+
+
 def spring(
     n_modes: int,
     law: ContactLaw,
@@ -50,25 +81,16 @@ def spring(
 
     `turned` is the same spring half a drive period later.
     """
-    omega = OMEGA[:n_modes]
-    model = ModalModel(
-        omega=omega,
-        decay_rate=damping * omega,
-        phi=phi[:n_modes],
-        participation=(-1 if turned else 1) * GAMMA[:n_modes],
+    omega, gamma = OMEGA[:n_modes], (-1 if turned else 1) * GAMMA[:n_modes]
+    return modes_on_stop(
+        omega, damping * omega, phi[:n_modes], gamma, law=law, gap=GAP, drive=drive, load=load
     )
-    base = None if drive is None else HarmonicDrive(frequency=drive[0], amplitude=drive[1])
-    return ImpactOscillator(model=model, stop=Stop(gap=GAP, law=law), drive=base, load=load)
 
 
 def many_modes(name: str, *, restitution: float = 0.35, **changes: list[float]) -> ImpactOscillator:
     """One of `MODES` under Newton's law at 20.5 Hz."""
-    numbers = {key: np.array(value) for key, value in (MODES[name] | changes).items()}
-    return ImpactOscillator(
-        model=ModalModel(**numbers),
-        drive=HarmonicDrive(frequency=20.5),
-        stop=Stop(gap=0.012, law=NewtonRestitution(local_restitution=restitution)),
-    )
+    numbers = (MODES[name] | changes).values()
+    return modes_on_stop(*numbers, law=newton(restitution), gap=0.012, drive=20.5)
 
 
 def equation_1(
@@ -77,7 +99,7 @@ def equation_1(
     """Eq. (1) of the letter, with its restitution of 0.1 by default; in gaps unless `gap` [m] is given."""
     oscillator = ImpactOscillator(
         model=single_mode(free_period=40.80e-3, decay_rate=3.56),
-        stop=Stop(gap=gap, law=law or NewtonRestitution(local_restitution=0.1)),
+        stop=Stop(gap=gap, law=law or newton(0.1)),
         drive=HarmonicDrive(frequency=frequency),
     )
     return oscillator if excess is None else oscillator.with_excess(excess)
@@ -91,11 +113,8 @@ def two_masses(w: float, force: float) -> ImpactOscillator:
     phi_k(j) with the base amplitude Z = `force`/W^2.
     """
     squares, shapes = np.linalg.eigh(np.array([[1.0, -1.0], [-1.0, 2.0]]))
-    model = ModalModel(
-        omega=np.sqrt(squares), decay_rate=0.03 * squares, phi=shapes[0], participation=shapes[1]
-    )
-    drive = HarmonicDrive(frequency=w / (2.0 * np.pi), amplitude=force / w**2)
-    return ImpactOscillator(model=model, stop=Stop(gap=1.0, law=LinearContact(stiffness=100.0)), drive=drive)
+    law, drive = LinearContact(stiffness=100.0), (w / (2.0 * np.pi), force / w**2)
+    return modes_on_stop(np.sqrt(squares), 0.03 * squares, *shapes, law=law, gap=1.0, drive=drive)
 
 
 def at_rest_on(model: ModalModel, law: LinearContact, load: float) -> tuple[ImpactOscillator, np.ndarray]:

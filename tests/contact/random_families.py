@@ -7,8 +7,6 @@ The judge continues the curve of the orbits over a parameter p by itself: from t
 from touch to touch alone.
 """
 
-from __future__ import annotations
-
 import argparse
 import contextlib
 import math
@@ -20,12 +18,13 @@ from functools import cache, partial
 from itertools import pairwise
 
 import numpy as np
+from oscillators import modes_on_stop
 from simulated_orbit import touches
 from tip_judge import Signal
 
 import contact
-from beam import ModalChange, ModalModel
-from contact import ContactError, DelayedRestitution, HarmonicDrive, ImpactOscillator, Stop, orbits
+from beam import ModalChange
+from contact import ContactError, DelayedRestitution, ImpactOscillator, orbits
 from contact.orbits import Change, Event, PeriodicOrbit, Shooting
 from contact.orbits.families.equations import sizes_of
 
@@ -41,14 +40,10 @@ def random_oscillator(rng: np.random.Generator) -> ImpactOscillator:
     name, unit = rng.choice(["newton", "linear", "hertz", "hunt-crossley", "delayed"]), 150.0
     n = 1 if name == "delayed" else int(rng.integers(1, 7))
     omega = unit * np.append(1.0, np.sort(rng.uniform(1.2, 30.0, n - 1)))
-    model = ModalModel(
-        omega=omega,
-        decay_rate=2.0 * 10.0 ** rng.uniform(-2.7, -0.8, n) * omega,
-        phi=np.append(1.0, rng.uniform(-1.0, 1.0, n - 1)),
-        participation=np.append(1.0, rng.uniform(-0.5, 0.5, n - 1)),
-    )
+    decay = 2.0 * 10.0 ** rng.uniform(-2.7, -0.8, n) * omega
+    phi, gamma = (np.append(1.0, rng.uniform(-most, most, n - 1)) for most in (1.0, 0.5))
     w = unit * rng.uniform(0.35, 0.99 if n == 1 else min(1.7, 0.99 * omega[-1] / unit))
-    mobility, e = float(model.phi @ model.phi), rng.uniform(0.05, 0.9)
+    mobility, e = float(phi @ phi), rng.uniform(0.05, 0.9)
     stiffness = (unit * 10.0 ** rng.uniform(0.5, 2.0)) ** 2 / mobility
     hertz, chi = stiffness / math.sqrt(0.1 * GAP), 10.0 ** rng.uniform(-2.0, 0.3) / (w * GAP)
     dashpot = 0.5 * e * math.sqrt(stiffness / mobility)
@@ -59,8 +54,7 @@ def random_oscillator(rng: np.random.Generator) -> ImpactOscillator:
         "hunt-crossley": contact.HuntCrossley(stiffness=hertz, dissipation=chi),
         "delayed": DelayedRestitution(restitution=e, delay=10.0 ** rng.uniform(-3.0, -0.5) / w),
     }[name]
-    drive = HarmonicDrive(frequency=w / (2.0 * np.pi))
-    return ImpactOscillator(model=model, stop=Stop(gap=GAP, law=law), drive=drive)
+    return modes_on_stop(omega, decay, phi, gamma, law=law, gap=GAP, drive=w / (2.0 * np.pi))
 
 
 def random_family(rng: np.random.Generator) -> tuple[Shooting, PeriodicOrbit]:
@@ -94,25 +88,13 @@ def random_change(oscillator: ImpactOscillator, rng: np.random.Generator) -> Cha
 
 def along(oscillator: ImpactOscillator, change: Change, step: float) -> ImpactOscillator:
     """The oscillator with its numbers moved by a step along a change."""
-    model = ModalModel(
-        **{name: getattr(oscillator.model, name) + step * getattr(change.model, name) for name in ARRAYS}
-    )
-    law: contact.ContactLaw = oscillator.stop.law
-    moved = {
-        unit: number + step * rate
-        for unit, number, rate in zip(law.units, law.numbers, change.law, strict=False)
-    }
-    if isinstance(law, DelayedRestitution):
-        moved = {"restitution": law.restitution, "delay": law.delay}
-    drive = oscillator.driven
-    return ImpactOscillator(
-        model=model,
-        stop=Stop(gap=oscillator.stop.gap + step * change.gap, law=replace(law, **moved)),
-        drive=HarmonicDrive(
-            frequency=drive.frequency + step * change.frequency,
-            amplitude=drive.amplitude + step * change.amplitude,
-        ),
-    )
+    rows = (getattr(oscillator.model, name) + step * getattr(change.model, name) for name in ARRAYS)
+    drive, law, gap = oscillator.driven, oscillator.stop.law, oscillator.stop.gap + step * change.gap
+    if not isinstance(law, DelayedRestitution):
+        numbers = np.array(law.numbers) + step * np.array(change.law)
+        law = replace(law, **dict(zip(law.units, numbers.tolist(), strict=False)))
+    base = drive.frequency + step * change.frequency, drive.amplitude + step * change.amplitude
+    return modes_on_stop(*rows, law=law, gap=gap, drive=base)
 
 
 class Curve:
@@ -164,13 +146,9 @@ class Curve:
         length = float(np.linalg.norm(b - a))
         first = self.solve(a, (b - a) / max(length, 1e-300))
         sides = self.unlike(start.approach) @ self.unlike(end.approach)
-        return (
-            length < 1e-5
-            or sides < 0.0
-            or (  # next to a graze; two curves cross in between
-                first is not None and any(self.leads(a, sign * first[1], b, length) for sign in (1.0, -1.0))
-            )
-        )
+        if length < 1e-5 or sides < 0.0:  # next to a graze; two curves cross in between
+            return True
+        return first is not None and any(self.leads(a, way, b, length) for way in (first[1], -first[1]))
 
     def leads(self, x: np.ndarray, way: np.ndarray, b: np.ndarray, length: float) -> bool:
         """Whether the curve leads from `x` along `way` to `b`, which is `length` away."""

@@ -1,42 +1,30 @@
 """The letter's spring under several laws, and what its simulated motion says of a periodic orbit."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
 import numpy as np
 from letters_spring import FOLD_MODES, GAP, HERTZ, letters_spring
 
+import contact
 from beam import ModalModel
-from contact import (
-    ContactLaw,
-    DelayedRestitution,
-    HarmonicDrive,
-    HuntCrossley,
-    ImpactOscillator,
-    LinearContact,
-    NewtonRestitution,
-    State,
-    Stop,
-    StroboscopicMap,
-    simulate,
-)
 from contact.orbits import PeriodicOrbit, Settled, settle
 
 LAWS = {
     "hertz": HERTZ,
-    "hunt-crossley": HuntCrossley(stiffness=HERTZ.stiffness, dissipation=0.3),
-    "linear": LinearContact(stiffness=1.887e7),
-    "dashpot": LinearContact(stiffness=1.887e7, damping=68.0),
-    "newton": NewtonRestitution(local_restitution=0.3),
+    "hunt-crossley": contact.HuntCrossley(stiffness=HERTZ.stiffness, dissipation=0.3),
+    "linear": contact.LinearContact(stiffness=1.887e7),
+    "dashpot": contact.LinearContact(stiffness=1.887e7, damping=68.0),
+    "newton": contact.NewtonRestitution(local_restitution=0.3),
 }
 DELAYED = {
-    "constant": DelayedRestitution(restitution=0.1, delay=1e-4),
-    "plastic": DelayedRestitution(restitution=0.0, delay=5e-4),
-    "elastic": DelayedRestitution(restitution=0.9, delay=2e-3),
-    "table": DelayedRestitution(restitution=lambda v: 0.3 / (1 + v), delay=lambda v: 4e-4 + 2e-4 * v),
-    "falling": DelayedRestitution(restitution=lambda v: 0.4 * math.exp(-v), delay=lambda v: 2e-4 * v**0.2),
+    "constant": contact.DelayedRestitution(restitution=0.1, delay=1e-4),
+    "plastic": contact.DelayedRestitution(restitution=0.0, delay=5e-4),
+    "elastic": contact.DelayedRestitution(restitution=0.9, delay=2e-3),
+    "table": contact.DelayedRestitution(restitution=lambda v: 0.3 / (1 + v), delay=lambda v: 4e-4 + 2e-4 * v),
+    "falling": contact.DelayedRestitution(
+        restitution=lambda v: 0.4 * math.exp(-v), delay=lambda v: 2e-4 * v**0.2
+    ),
 }
 # f [Hz], m, F_m/F_g - 1, and F/F_g - 1 at which the orbit gains a second impact (its rounding: last digit)
 EQUATION_1 = [
@@ -50,8 +38,8 @@ EQUATION_1 = [
 
 
 def beam(
-    frequency: float, law: ContactLaw, modes: int = FOLD_MODES, ratio: float | None = None
-) -> ImpactOscillator:
+    frequency: float, law: contact.ContactLaw, modes: int = FOLD_MODES, ratio: float | None = None
+) -> contact.ImpactOscillator:
     """The letter's spring with `modes` modes; with `ratio`, that damping ratio in all modes but the first."""
     model = letters_spring(modes)
     if ratio is not None:
@@ -61,21 +49,23 @@ def beam(
 
 
 def on_stop(
-    model: ModalModel, frequency: float, law: ContactLaw = HERTZ, gap: float = GAP
-) -> ImpactOscillator:
+    model: ModalModel, frequency: float, law: contact.ContactLaw = HERTZ, gap: float = GAP
+) -> contact.ImpactOscillator:
     """A spring before its stop, driven at `frequency` [Hz]."""
-    return ImpactOscillator(
-        model=model, stop=Stop(gap=gap, law=law), drive=HarmonicDrive(frequency=frequency)
+    return contact.ImpactOscillator(
+        model=model, stop=contact.Stop(gap=gap, law=law), drive=contact.HarmonicDrive(frequency=frequency)
     )
 
 
-def settled(oscillator: ImpactOscillator, excess: float, cycles: int = 4000) -> Settled[State]:
+def settled(
+    oscillator: contact.ImpactOscillator, excess: float, cycles: int = 4000
+) -> Settled[contact.State]:
     """Where the motion from below grazing comes to rest."""
-    strobed = StroboscopicMap(oscillator=oscillator)
+    strobed = contact.StroboscopicMap(oscillator=oscillator)
     return settle(strobed.at(excess), strobed.at(-1e-3).steady(), most_cycles=cycles)
 
 
-def sizes(oscillator: ImpactOscillator) -> np.ndarray:
+def sizes(oscillator: contact.ImpactOscillator) -> np.ndarray:
     """Scales of (q, q') of all modes."""
     model, size = oscillator.model, oscillator.stop.gap / np.abs(oscillator.model.phi).max()
     return np.concatenate([np.full(model.omega.size, size), size * model.omega])
@@ -85,10 +75,10 @@ def differences(orbit: PeriodicOrbit) -> tuple[np.ndarray, float]:
     """Multipliers by central differences of the simulated map over m periods, and how well the orbit
     closes."""
     oscillator, n = orbit.oscillator, orbit.oscillator.n_modes
-    strobed, scale = StroboscopicMap(oscillator=oscillator), sizes(oscillator)
+    strobed, scale = contact.StroboscopicMap(oscillator=oscillator), sizes(oscillator)
 
     def after(point: np.ndarray) -> np.ndarray:
-        end = strobed.orbit(State(displacement=point[:n], velocity=point[n:]), orbit.period).end
+        end = strobed.orbit(contact.State(displacement=point[:n], velocity=point[n:]), orbit.period).end
         return np.concatenate([end.displacement, end.velocity])
 
     state = orbit.strobe_state()
@@ -102,5 +92,5 @@ def differences(orbit: PeriodicOrbit) -> tuple[np.ndarray, float]:
 def touches(orbit: PeriodicOrbit) -> int:
     """Touches of the simulated motion from just before the first one to just before it comes again."""
     duration = orbit.period * orbit.oscillator.period * (1 - 1e-6)
-    run = simulate(orbit.oscillator, orbit.state(), duration=duration)
+    run = contact.simulate(orbit.oscillator, orbit.state(), duration=duration)
     return int(np.count_nonzero(run.impacts.kind == 0))

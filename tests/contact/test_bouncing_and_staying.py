@@ -1,22 +1,13 @@
 """Impacts that accumulate, and stays on the wall: closed forms, constrained motion, statics."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 import pytest
-from oscillators import OMEGA, PHI, heights, spring
-from whole_motions import FREE, HELD, IMPACT, STAY, falling_body, integrate, pressed
+from oscillators import OMEGA, PHI, heights, newton, spring
+from whole_motions import FREE, HELD, IMPACT, STAY, accelerations, falling_body, integrate, pressed
 
-from beam import ModalModel
-from contact.laws import NewtonRestitution
-from contact.oscillator import ImpactOscillator
-from contact.simulation import simulate
-from contact.stop import Stop
-from contact.trajectory import State
-
-# ------------------------------------------------------------------------------------------ the bouncing ball
+from contact import Chatter, State, simulate
 
 
 @pytest.mark.parametrize("e", [0.5, 0.7, 0.9, 0.99])
@@ -29,7 +20,7 @@ def test_bouncing_ball_comes_to_rest_when_it_should(e):
     assert e != 0.7 or total == pytest.approx(2.55863, abs=5e-6)
     last = total * np.array([1 - 1.2e-5, 1 + 4e-6])  # next to the last hops
     times = np.append(np.linspace(0, 1.5 * total, 401), last)
-    law = NewtonRestitution(local_restitution=e)
+    law = newton(e)
     run = simulate(falling_body(h, law), duration=1.5 * total, times=np.sort(times))
     hits = run.impacts.kind == IMPACT
     n = np.arange(hits.sum())
@@ -40,13 +31,9 @@ def test_bouncing_ball_comes_to_rest_when_it_should(e):
     speed = g * fall * e**n
     error = np.abs(run.impacts.approach[hits] / speed - 1)[known]
     assert np.all(error < 30 * np.finfo(float).eps / e ** (2 * n[known]))
-    np.testing.assert_allclose(
-        run.impacts.loss[hits], 0.5 * (1 - e * e) * run.impacts.approach[hits] ** 2, rtol=1e-15
-    )
     assert hits.sum() > 20
     # from every impact on, the hops left take 2 e v/(g (1 - e))
     left = 2 * e * run.impacts.approach[hits] / (g * (1 - e))
-    np.testing.assert_allclose((run.impacts.start[hits] + left)[known], total, rtol=1e-11)
     np.testing.assert_allclose(run.impacts.start[hits] + left, total, rtol=1e-8)
     assert list(np.flatnonzero(run.impacts.kind == STAY)) == [len(run.impacts) - 1]
     assert run.impacts.start[-1] == pytest.approx(total, rel=4e-6)
@@ -62,13 +49,9 @@ def test_bouncing_ball_comes_to_rest_when_it_should(e):
 def test_hops_of_an_almost_elastic_ball_do_not_lock_into_one_another(left):
     """Rounding moves a speed by some left/10 in each of the lowest hops, in 1/left hops by sqrt(left)/10."""
     gravity, gap = 9.81, 1e-3
-    ball = ModalModel(omega=[0.0], decay_rate=[0.0], phi=[1.0], participation=[0.0])
-    oscillator = ImpactOscillator(
-        model=ball, stop=Stop(gap=gap, law=NewtonRestitution(local_restitution=1.0 - left)), load=[gravity]
-    )
     speed = 0.25 * gravity * left
     state = State(displacement=np.array([gap]), velocity=np.array([-speed]))
-    run = simulate(oscillator, state, duration=0.9)
+    run = simulate(falling_body(gap, newton(1.0 - left)), state, duration=0.9)
     hops = run.impacts.approach[run.impacts.kind == 0]
     assert run.end.regime == 3
     expected = speed * (1.0 - left) ** np.arange(hops.size)
@@ -77,11 +60,26 @@ def test_hops_of_an_almost_elastic_ball_do_not_lock_into_one_another(left):
     assert rest == pytest.approx(0.5, rel=1e-5)
 
 
+def test_more_hops_than_are_counted_are_refused_as_chatter():
+    """Hops of a ball that rests after half a period: 1e5, as many as one may hold, at 1 - e = 4.69e-5."""
+    for left, refused in ((4.9e-5, False), (4.5e-5, True)):
+        ball = falling_body(1e-3, newton(1.0 - left))
+        start = State(displacement=np.array([1e-3]), velocity=np.array([-0.25 * 9.81 * left]))
+        if refused:
+            with pytest.raises(Chatter, match="accumulate") as caught:
+                simulate(ball, start, duration=0.9)
+            assert 0 < caught.value.time < 0.9 and abs(caught.value.gap) <= 1e-8
+            assert abs(caught.value.velocity) <= 5e-4
+        else:
+            run = simulate(ball, start, duration=0.9)
+            assert run.end.regime == HELD and 0.9e5 < len(run.impacts) < 1e5
+
+
 @pytest.mark.parametrize("e", [0.7, 0.99])
 def test_accumulation_that_straddles_a_strobe_loses_no_time(e):
     """Without a drive nothing depends on when the run starts; the strobe is put among the last hops."""
     h, beside = 1e-3, 2 * np.pi * 3.0
-    oscillator = falling_body(h, NewtonRestitution(local_restitution=e), beside=(beside,))
+    oscillator = falling_body(h, newton(e), beside=(beside,))
     total = math.sqrt(2 * h / 9.81) * (1 + 2 * e / (1 - e))
     length = total + 0.1
     start = dict(displacement=np.array([0.0, 0.0]), velocity=np.array([0.0, 1.0]))
@@ -100,9 +98,6 @@ def test_accumulation_that_straddles_a_strobe_loses_no_time(e):
         assert run.end.displacement[1] == pytest.approx(math.sin(beside * length) / beside, abs=1e-12)
         assert run.end.velocity[1] == pytest.approx(math.cos(beside * length), abs=1e-11)
         assert run.end.regime == HELD
-
-
-# ---------------------------------------------------------------------------------------------------- staying
 
 
 @pytest.mark.parametrize("n_modes, restitution", [(1, 0.0), (3, 0.0), (6, 0.0), (1, 0.5), (3, 0.5), (6, 0.5)])
@@ -132,10 +127,9 @@ def test_stay_on_the_wall_is_the_constrained_motion(n_modes, restitution):
         # at the release force and relative acceleration vanish together
         q, v = impacts.displacement_end[i], impacts.velocity_end[i]
         assert abs(heights(oscillator, q)) < 1e-14
-        model, w = oscillator.model, oscillator.drive.angular_frequency
-        base = model.participation * oscillator.drive.amplitude * w**2 * math.sin(w * impacts.end[i])
-        terms = model.phi * np.array([oscillator.load, base, -model.decay_rate * v, -(model.omega**2) * q])
-        assert abs(terms.sum()) < 1e-9 * np.abs(terms).sum()
+        model = oscillator.model
+        pull = model.phi * accelerations(oscillator)(impacts.end[i], q, v)
+        assert abs(pull.sum()) < 1e-9 * np.abs(model.phi) @ (model.omega**2 * np.abs(q))
 
 
 def test_held_for_good_under_a_load_without_drive():
@@ -143,7 +137,7 @@ def test_held_for_good_under_a_load_without_drive():
     n = 3
     load = np.zeros(n)
     load[0] = 2.0 * 0.005 / PHI[0] * OMEGA[0] ** 2
-    oscillator = spring(n, NewtonRestitution(local_restitution=0.0), load=load)
+    oscillator = spring(n, newton(0.0), load=load)
     run = simulate(oscillator, duration=60.0)
     assert run.end.regime == HELD
     assert abs(heights(oscillator, run.end.displacement)) < 1e-14
@@ -156,7 +150,7 @@ def test_held_for_good_under_a_load_without_drive():
 
 def test_plastic_tip_that_is_not_pressed_leaves_at_once():
     """e = 0 at a peak: no speed is left, the acceleration takes the tip away, nothing sticks."""
-    oscillator = spring(1, NewtonRestitution(local_restitution=0.0), damping=0.0)
+    oscillator = spring(1, newton(0.0), damping=0.0)
     run = simulate(oscillator, State(displacement=[0.0], velocity=[0.1]), duration=1.0)
     assert list(run.impacts.kind[:1]) == [IMPACT]
     assert np.all(run.impacts.kind != STAY)

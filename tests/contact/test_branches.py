@@ -7,63 +7,23 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from letters_spring import HERTZ
-from oscillators import apart, equation_1
+from letters_spring import HERTZ, steel_leaf
+from oscillators import apart, equation_1, modes_on_stop, newton, slow
 from random_families import ALL, QUICK, judged_family
-from simulated_orbit import DELAYED, EQUATION_1, beam, settled, touches
+from simulated_orbit import DELAYED, EQUATION_1, beam, on_stop, settled, touches
 
-from beam import (
-    STEEL,
-    ConstantRatio,
-    ModalModel,
-    StripSection,
-    Tip,
-    assemble,
-    cantilever,
-    natural_modes,
-    reduce,
-)
-from contact import (
-    BranchEnded,
-    ContactError,
-    HarmonicDrive,
-    HertzContact,
-    ImpactOscillator,
-    LinearContact,
-    NewtonRestitution,
-    NordmarkMap,
-    Stop,
-    StrobedOrbit,
-    StroboscopicMap,
-    fold,
-)
-from contact.orbits import (
-    KickFamily,
-    MaximalFamily,
-    PeriodicOrbit,
-    Shooting,
-    born,
-    first_event,
-    fold_along_frequency,
-    fold_of,
-    folds_of,
-    follow,
-    follow_path,
-    orbit_end,
-)
+import contact
+from contact import HertzContact, ImpactOscillator, LinearContact, NordmarkMap, StroboscopicMap, orbits
 from contact.orbits.branches.events import passes
 
-HARD = equation_1(20.90, NewtonRestitution(local_restitution=0.7))
-
-
-# ---------------------------------------------------------------------------------------------------- kicks
+HARD = equation_1(20.90, newton(0.7))
 
 
 @pytest.mark.parametrize("ratio", [None, 1e-3], ids=["the letter's strips", "ringing"])
 @pytest.mark.parametrize(("frequency", "period"), [(20.90, 3), (21.50, 4), (22.20, 5)])
 def test_kicks_foretell_their_own_error(ratio: float | None, frequency: float, period: int) -> None:
     oscillator = beam(frequency, HERTZ, ratio=ratio)
-    family = Shooting(oscillator=oscillator, period=period)
+    family = orbits.Shooting(oscillator=oscillator, period=period)
     kicks, unit = family.kicks, oscillator.unit_speed
     errors = []
     for part in (0.05, 0.1, 0.3):
@@ -78,23 +38,21 @@ def test_kicks_foretell_their_own_error(ratio: float | None, frequency: float, p
 @pytest.mark.parametrize(
     ("oscillator", "period", "digits"),
     [
-        (beam(20.90, HERTZ, modes=4), 3, 0.015),
+        *slow((beam(20.90, HERTZ, modes=4), 3, 0.015)),
         (beam(22.20, HERTZ, modes=4), 5, 0.015),
-        *(
-            (equation_1(f, DELAYED[name], gap=0.0107), m, 1e-8)
-            for f, m in ((20.90, 3), (21.50, 4), (22.20, 5))
-            for name in ("constant", "falling")
-        ),
+        *((equation_1(21.50, DELAYED[name], gap=0.0107), 4, 1e-8) for name in ("constant", "falling")),
+        *slow((equation_1(20.90, DELAYED["falling"], gap=0.0107), 3, 1e-8)),
+        *slow((equation_1(22.20, DELAYED["constant"], gap=0.0107), 5, 1e-8)),
     ],
 )
 def test_folds_against_a_downward_scan(oscillator: ImpactOscillator, period: int, digits: float) -> None:
     """And against the fold of the kicks, which are exact where one mode waits."""
-    family = Shooting(oscillator=oscillator, period=period)
-    fold = fold_of(family)
+    family = orbits.Shooting(oscillator=oscillator, period=period)
+    fold = orbits.fold_of(family)
     assert fold.admissible and apart(fold.multipliers[:1], np.ones(1)) < 1e-7
     node = family.at_speed(1.3 * fold.speed)
     assert node.stable and node.admissible and node.excess > fold.excess
-    end = orbit_end(
+    end = orbits.orbit_end(
         StroboscopicMap(oscillator=oscillator),
         replace(node.strobe_state(), time=0.0),
         node.excess,
@@ -110,11 +68,13 @@ def test_folds_against_a_downward_scan(oscillator: ImpactOscillator, period: int
 
 def test_an_end_by_period_doubling_is_named_and_exact() -> None:
     """p1 of a hard wall of restitution 0.7: the scan downwards ends where a multiplier passes -1."""
-    family, unit = Shooting(oscillator=HARD, period=1), HARD.unit_speed
-    branch = follow(family, family.at_speed(1.0 * unit), low=0.5 * unit, high=1.5 * unit)
+    family, unit = orbits.Shooting(oscillator=HARD, period=1), HARD.unit_speed
+    branch = orbits.follow(family, family.at_speed(1.0 * unit), low=0.5 * unit, high=1.5 * unit)
     (doubled,) = branch.of_kind("period doubling")
     start = family.at_speed(1.1 * doubled.speed, doubled)
-    end = orbit_end(StroboscopicMap(oscillator=HARD), start.strobe_state(), start.excess, most_cycles=4000)
+    end = orbits.orbit_end(
+        StroboscopicMap(oscillator=HARD), start.strobe_state(), start.excess, most_cycles=4000
+    )
     assert end.kind == "period doubling" and end.lost < end.excess < end.held
     assert end.excess == pytest.approx(doubled.excess, rel=1e-9)
 
@@ -123,15 +83,15 @@ def test_an_orbit_doubles_its_period_before_a_hard_touch_is_lost() -> None:
     """Eq. (1), 20.90 Hz: p3 has a second touch above 0.0891 and would lose it there on the way down, but next
     to the graze its derivative has no bound, and it doubles its period just before."""
     oscillator = equation_1(20.90)
-    single = Shooting(oscillator=oscillator, period=3)
-    (graze,) = follow(single, single.at_speed(100.0), low=90.0, high=140.0).of_kind("grazing")
+    single = orbits.Shooting(oscillator=oscillator, period=3)
+    (graze,) = orbits.follow(single, single.at_speed(100.0), low=90.0, high=140.0).of_kind("grazing")
     strobed = StroboscopicMap(oscillator=oscillator)
-    end = orbit_end(strobed, settled(oscillator, 0.1).end, 0.1, most_cycles=4000)
+    end = orbits.orbit_end(strobed, settled(oscillator, 0.1).end, 0.1, most_cycles=4000)
     assert (end.impacts, end.kind) == (2, "period doubling") and end.lost < end.excess < end.held
     assert 0.0 < end.excess / graze.excess - 1.0 < 0.02
 
 
-@pytest.mark.parametrize(("first_step", "relative"), [(1e-6, 0.03), (2e-4, 1e-3), (5e-2, 0.03)])
+@pytest.mark.parametrize(("first_step", "relative"), [(5e-2, 0.03), *slow((1e-6, 0.03), (2e-4, 1e-3))])
 def test_no_bracket_closes_because_a_long_step_fell_off(first_step: float, relative: float) -> None:
     """The exact end lies in the bracket, which one last step has made, however the scan came there."""
     for frequency, period, excess, _second, _digit in EQUATION_1:
@@ -139,10 +99,10 @@ def test_no_bracket_closes_because_a_long_step_fell_off(first_step: float, relat
         nordmark = NordmarkMap.from_oscillator(oscillator)
         for strobed, exact in (
             (StroboscopicMap(oscillator=oscillator), excess),
-            (nordmark, nordmark.excess(fold(nordmark, period).rho)),
+            (nordmark, nordmark.excess(contact.fold(nordmark, period).rho)),
         ):
-            start = born(strobed)
-            end = orbit_end(
+            start = orbits.born(strobed)
+            end = orbits.orbit_end(
                 strobed, start.end, 1e-3, most_cycles=1000, relative=relative, first_step=first_step
             )
             assert (end.period, end.impacts, end.kind) == (period, 1, "fold")
@@ -166,14 +126,14 @@ def test_an_end_that_nothing_can_make_exact_is_a_bracket() -> None:
         def steady(self) -> float:
             return -0.4
 
-        def orbit(self, state: float, count: int) -> StrobedOrbit[float]:
+        def orbit(self, state: float, count: int) -> contact.StrobedOrbit[float]:
             points = np.empty((count, 1))
             for i in range(count):
                 state = state * state + self.c
                 points[i] = state
-            return StrobedOrbit(end=state, points=points, impacts=np.ones(count, dtype=int))
+            return contact.StrobedOrbit(end=state, points=points, impacts=np.ones(count, dtype=int))
 
-    end = orbit_end(Square(0.0), -0.4, 0.3, most_cycles=20_000, absolute=1e-2)
+    end = orbits.orbit_end(Square(0.0), -0.4, 0.3, most_cycles=20_000, absolute=1e-2)
     assert (end.period, end.kind) == (1, "bracket")
     assert end.lost < 0.0 < end.held and end.held - end.lost < 1.01e-2
 
@@ -181,7 +141,7 @@ def test_an_end_that_nothing_can_make_exact_is_a_bracket() -> None:
 def test_one_mode_of_the_kick_is_not_the_whole_of_it() -> None:
     """With modes that ring on, the letter's two parameters are off where the kick of all modes is not."""
     oscillator = beam(20.90, HERTZ, ratio=1e-3)
-    family, speed = Shooting(oscillator=oscillator, period=3), 0.1 * oscillator.unit_speed
+    family, speed = orbits.Shooting(oscillator=oscillator, period=3), 0.1 * oscillator.unit_speed
     exact = family.at_speed(speed).excess
     kicks, mask = family.kicks, np.eye(oscillator.n_modes)[:1].T
     first = replace(kicks, collision=lambda v: replace(kicks.kick(v), jump=mask * kicks.kick(v).jump))
@@ -190,26 +150,23 @@ def test_one_mode_of_the_kick_is_not_the_whole_of_it() -> None:
 
 
 def test_a_narrow_range_or_a_wrong_band_has_no_kick_fold() -> None:
-    kicks = KickFamily(oscillator=equation_1(20.90), period=3)
+    kicks = orbits.KickFamily(oscillator=equation_1(20.90), period=3)
     at = kicks.fold().kick.speed / kicks.oscillator.unit_speed
     assert kicks.fold(speeds=(1.5 * at, 1.0)) is None
     assert kicks.fold(speeds=(1e-4, 0.7 * at)) is None
-    other = KickFamily(oscillator=equation_1(20.90), period=1)
+    other = orbits.KickFamily(oscillator=equation_1(20.90), period=1)
     assert other.fold() is None
-
-
-# ------------------------------------------------------------------------------------------------- branches
 
 
 @pytest.mark.parametrize(
     ("oscillator", "period", "middle"),
     [(HARD, 1, 1.0), (equation_1(22.20, DELAYED["constant"], gap=0.0107), 4, 0.37)],
 )
-def test_a_doubling_of_the_period_is_seen_by_the_simulation(
-    oscillator: ImpactOscillator, period: int, middle: float
-) -> None:
-    family, unit = Shooting(oscillator=oscillator, period=period), oscillator.unit_speed
-    branch = follow(family, family.at_speed(middle * unit), low=0.8 * middle * unit, high=1.2 * middle * unit)
+def test_a_doubling_of_the_period_is_seen_by_the_simulation(oscillator, period, middle):
+    family, unit = orbits.Shooting(oscillator=oscillator, period=period), oscillator.unit_speed
+    branch = orbits.follow(
+        family, family.at_speed(middle * unit), low=0.8 * middle * unit, high=1.2 * middle * unit
+    )
     (doubled,) = branch.of_kind("period doubling")
     assert np.min(np.abs(doubled.multipliers + 1)) < 1e-7
     for part, stable in ((0.99, False), (1.01, True)):
@@ -229,8 +186,8 @@ def test_the_events_of_a_branch_of_the_beam() -> None:
     """Hertz: next to grazing the orbit of period m touches at every period, and has a fold of its own
     there."""
     oscillator = beam(22.20, HERTZ)
-    family, unit = Shooting(oscillator=oscillator, period=5), oscillator.unit_speed
-    branch = follow(family, family.at_speed(0.1 * unit), low=1e-5 * unit, high=1.5 * unit)
+    family, unit = orbits.Shooting(oscillator=oscillator, period=5), oscillator.unit_speed
+    branch = orbits.follow(family, family.at_speed(0.1 * unit), low=1e-5 * unit, high=1.5 * unit)
     speeds = [orbit.speed for orbit in branch.orbits]
     assert speeds == sorted(speeds)
     assert [event.kind for event in branch.events] == ["grazing", "fold", "fold", "grazing"]
@@ -249,96 +206,88 @@ def test_a_branch_that_loses_a_touch_ends_with_its_last_good_orbit() -> None:
     elsewhere."""
     oscillator = equation_1(20.90)
     run = settled(oscillator, 0.1)
-    family = Shooting(oscillator=oscillator.with_excess(0.1), period=3, impacts=2)
+    family = orbits.Shooting(oscillator=oscillator.with_excess(0.1), period=3, impacts=2)
     start = family.from_state(run.end)
-    branch = follow(family, start, low=0.9 * start.speed, high=2.0 * start.speed)
+    branch = orbits.follow(family, start, low=0.9 * start.speed, high=2.0 * start.speed)
     assert branch.ended_low == "range"
     assert "one of 2 touches is a graze" in branch.ended_high
     last = branch.orbits[-1]
-    assert f"{last.speed:.6g} m/s" in branch.ended_high and f"{last.excess:.6g}" in branch.ended_high
     assert last.residual < 1e-9 and last.approach[1] < 5e-3 * last.approach[0]
     # there the orbit of one impact has its grazing
-    single = Shooting(oscillator=oscillator, period=3)
-    (graze,) = follow(single, single.at_speed(100.0), low=90.0, high=140.0).of_kind("grazing")
+    single = orbits.Shooting(oscillator=oscillator, period=3)
+    (graze,) = orbits.follow(single, single.at_speed(100.0), low=90.0, high=140.0).of_kind("grazing")
     assert last.speed == pytest.approx(graze.speed, rel=1e-5)
     assert last.excess == pytest.approx(graze.excess, rel=1e-5)
-    with pytest.raises(ContactError, match="lost"):
+    with pytest.raises(contact.ContactError, match="lost"):
         family.at_speed(1.02 * last.speed, last)
 
 
 def test_folds_along_frequency_are_those_of_each_frequency() -> None:
     oscillator = equation_1(21.40)
     frequencies = np.array([21.40, 21.45, 21.50])
-    found = fold_along_frequency(Shooting(oscillator=oscillator, period=4), frequencies)
+    found = orbits.fold_along_frequency(orbits.Shooting(oscillator=oscillator, period=4), frequencies)
     for frequency, orbit in zip(frequencies, found, strict=True):
-        closed = MaximalFamily.from_oscillator(equation_1(frequency), period=4).fold()
+        closed = contact.MaximalFamily.from_oscillator(equation_1(frequency), period=4).fold()
         assert orbit.excess == pytest.approx(closed.excess, abs=1e-13)
         assert orbit.oscillator.drive.frequency == frequency
-    other = Shooting(oscillator=oscillator, period=1)
-    assert fold_along_frequency(other, np.array([20.90])) == [None]
-    with pytest.raises(BranchEnded, match="period doubling") as caught:
-        fold_of(other)
+    other = orbits.Shooting(oscillator=oscillator, period=1)
+    assert orbits.fold_along_frequency(other, np.array([20.90])) == [None]
+    with pytest.raises(contact.BranchEnded, match="period doubling") as caught:
+        orbits.fold_of(other)
     assert np.min(np.abs(caught.value.orbit.multipliers + 1.0)) < 1e-6
 
 
 def test_an_orbit_that_ends_by_a_torus_has_no_fold_and_says_so() -> None:
     """A steel cantilever with a light ball: on the way down a complex pair of multipliers of its p3 passes
     the unit circle."""
-    section = StripSection(material=STEEL, width=0.012, thickness=0.00079)
-    spring = cantilever(length=0.206, section=section, tip=Tip(mass=0.00072))
-    model = reduce(natural_modes(assemble(spring), 4), ConstantRatio(ratio=0.00701))
-    oscillator = ImpactOscillator(
-        model=model, stop=Stop(gap=0.0085, law=HERTZ), drive=HarmonicDrive(frequency=12.21)
-    ).with_excess(1e-3)
+    oscillator = on_stop(steel_leaf(), 12.21, gap=0.0085).with_excess(1e-3)
     strobed = StroboscopicMap(oscillator=oscillator)
-    orbit = born(strobed, 1e-3)
+    orbit = orbits.born(strobed, 1e-3)
     assert (orbit.period, orbit.impacts) == (3, 1)
-    with pytest.raises(BranchEnded, match="torus") as caught:
-        fold_of(Shooting(oscillator=oscillator, period=3))
-    end = orbit_end(strobed, orbit.end, 1e-3, most_cycles=2000)
+    with pytest.raises(contact.BranchEnded, match="torus") as caught:
+        orbits.fold_of(orbits.Shooting(oscillator=oscillator, period=3))
+    end = orbits.orbit_end(strobed, orbit.end, 1e-3, most_cycles=2000)
     assert end.kind == "torus" and end.lost < end.excess < end.held
     assert caught.value.orbit.excess == pytest.approx(end.excess, rel=1e-9)
     assert abs(caught.value.orbit.multipliers[0]) == pytest.approx(1.0, abs=1e-6)
 
 
 def test_a_bound_that_is_used_up_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    family = Shooting(oscillator=equation_1(20.90), period=3)
+    family = orbits.Shooting(oscillator=equation_1(20.90), period=3)
     start, unit = family.at_speed(10.0), family.oscillator.unit_speed
     monkeypatch.setattr("contact.orbits.branches.branch.MOST_STEPS", 3)
-    cut = follow(family, start, low=1e-3 * unit, high=1.5 * unit)
+    cut = orbits.follow(family, start, low=1e-3 * unit, high=1.5 * unit)
     assert all("bound of 3 steps is used up" in ended for ended in (cut.ended_low, cut.ended_high))
     fast = family.at_speed(300.0)
-    for search in (lambda: folds_of(family, start), lambda: first_event(family, fast, -0.9)):
-        with pytest.raises(BranchEnded, match="3 steps") as caught:
+    for search in (lambda: orbits.folds_of(family, start), lambda: orbits.first_event(family, fast, -0.9)):
+        with pytest.raises(contact.BranchEnded, match="3 steps") as caught:
             search()
-        assert isinstance(caught.value.orbit, PeriodicOrbit)
+        assert isinstance(caught.value.orbit, orbits.PeriodicOrbit)
 
 
 def test_where_the_approach_velocity_turns_round_a_fold_is_one() -> None:
     """One mode under Hertz's law, two touches: an independent search puts the fold at -0.3838."""
-    model = ModalModel(omega=[150.0], decay_rate=[6.0], phi=[1.0], participation=[1.0])
-    stop, drive = Stop(gap=0.01, law=HertzContact(stiffness=1e7)), HarmonicDrive(frequency=14.0)
-    oscillator = ImpactOscillator(model=model, stop=stop, drive=drive).with_excess(0.1)
-    family = Shooting(oscillator=oscillator, period=1, impacts=2)
+    hertz = HertzContact(stiffness=1e7)
+    oscillator = modes_on_stop(150.0, 6.0, 1.0, 1.0, law=hertz, drive=14.0).with_excess(0.1)
+    family = orbits.Shooting(oscillator=oscillator, period=1, impacts=2)
     start = family.from_state(replace(settled(oscillator, 0.1).end, time=0.0))
-    (fold,) = folds_of(family, start)
-    for found in (fold_of(family, start), first_event(family, start, -0.9).orbit, fold):
+    (fold,) = orbits.folds_of(family, start)
+    for found in (orbits.fold_of(family, start), orbits.first_event(family, start, -0.9).orbit, fold):
         assert found.excess == pytest.approx(-0.3838388673, abs=1e-9) and found.admissible
         assert np.min(np.abs(found.multipliers - 1.0)) < 1e-6
 
 
 def test_orbits_run_twice_cross_at_a_branch_point() -> None:
     """p1 under a linear contact doubles its period at 0.0929: p2 ends there, and p1 run twice passes."""
-    model = ModalModel(omega=[150.0], decay_rate=[6.0], phi=[1.0], participation=[1.0])
-    stop, drive = Stop(gap=0.01, law=LinearContact(stiffness=1e6)), HarmonicDrive(frequency=22.0)
-    oscillator = ImpactOscillator(model=model, stop=stop, drive=drive).with_excess(0.1)
-    single, double = (Shooting(oscillator=oscillator, period=m, impacts=m) for m in (1, 2))
+    linear = LinearContact(stiffness=1e6)
+    oscillator = modes_on_stop(150.0, 6.0, 1.0, 1.0, law=linear, drive=22.0).with_excess(0.1)
+    single, double = (orbits.Shooting(oscillator=oscillator, period=m, impacts=m) for m in (1, 2))
     near, unit = single.at_speed(0.3 * oscillator.unit_speed), oscillator.unit_speed
-    doubling = follow(single, near, low=1e-2 * unit, high=unit).of_kind("period doubling")[0].excess
+    doubling = orbits.follow(single, near, low=1e-2 * unit, high=unit).of_kind("period doubling")[0].excess
     apart = double.from_state(replace(settled(oscillator, 0.1).end, time=0.0))
     once = single.at_excess(0.2, near)
     for start in (apart, double.at_speed(once.speed, once)):
-        found = follow_path(oscillator.with_excess, start, start.excess, low=0.01, high=0.3)
+        found = orbits.follow_path(oscillator.with_excess, start, start.excess, low=0.01, high=0.3)
         (crossing,) = (event for event in found.events if event.kind == "branch point")
         assert crossing.parameter == pytest.approx(doubling, abs=2e-8)
         assert not [event for event in found.events if event.kind in ("fold", "undecided")]
@@ -351,13 +300,10 @@ def test_a_sign_that_changes_at_an_orbit_changes_once(slopes: tuple[float, ...])
     assert [passes(a, b) for a, b in pairwise(slopes)].count(True) == 1
 
 
-QUICKLY = [(n, QUICK) for n in (3, 5, 9, 15, 101)]
-SLOWLY = [(n, QUICK) for n in (6, 7, 12, 62, 80)] + [(n, ALL) for n in range(0, 60, 3)]
+LONG = [(n, QUICK) for n in (3, 5, 6, 7, 12, 62, 80)] + [(n, ALL) for n in range(0, 60, 3)]
 
 
-@pytest.mark.parametrize(
-    ("number", "names"), QUICKLY + [pytest.param(*each, marks=pytest.mark.slow) for each in SLOWLY]
-)
+@pytest.mark.parametrize(("number", "names"), [*((n, QUICK) for n in (9, 15, 101)), *slow(*LONG)])
 def test_random_orbits_with_several_touches(number: int, names: tuple[str, ...]) -> None:
     """No event that is none, no step to another curve, no orbit that touches the stop more often than it
     says."""

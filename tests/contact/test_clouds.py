@@ -1,30 +1,20 @@
 """Amplitudes that change from period to period, and the cloud of strobe points that noise makes."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from letters_spring import HERTZ
-from oscillators import GAP, PHI, equation_1, spring
+from oscillators import GAP, PHI, equation_1, newton, spring
 from scipy.signal import lfilter
 from simulated_orbit import beam
 
 from beam import ModalModel
-from contact import (
-    NewtonRestitution,
-    NordmarkMap,
-    NotPeriodic,
-    State,
-    StroboscopicMap,
-    UnresolvedCrossing,
-    band,
-)
+from contact import NordmarkMap, NotPeriodic, State, StroboscopicMap, UnresolvedCrossing, band
 from contact.maps.nordmark_orbits import MapFamily
 from contact.orbits import MaximalFamily, PeriodicOrbit, Shooting, cloud, orbit_exponents
 
-NEWTON = NewtonRestitution(local_restitution=0.1)
+NEWTON = newton(0.1)
 PERIOD, SIGMA = 3, 1e-7
 
 

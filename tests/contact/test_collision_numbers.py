@@ -1,38 +1,29 @@
 """Each number of a collision by its definition, and the relations between them."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 
 import numpy as np
 import pytest
 from letters_spring import HERTZ, KICK_MODES
-from light_spring import equation_1, flow, newton, real_differs, spring, steady
-from oscillators import GAP, OMEGA
+from light_spring import flow, real_differs, spring, steady
+from oscillators import GAP, OMEGA, modes_on_stop, newton, slow
 from scipy.optimize import brentq
 from simulated_orbit import beam
 
-from beam import ModalModel
 from contact.collision import before_collision, collisions, first_collision
-from contact.laws import ContactLaw, DelayedRestitution, HertzContact, HuntCrossley, LinearContact
-from contact.oscillator import ImpactOscillator
+from contact.laws import ContactLaw, HertzContact, HuntCrossley, LinearContact
 from contact.simulation import simulate
-from contact.stop import Stop
 from contact.trajectory import Impacts, State
-
-# ------------------------------------------------------------------------------ each number by its definition
 
 
 @pytest.mark.parametrize(
     "n_modes, law, frequency",
     [
         (6, newton(0.3), 21.5),
-        (3, newton(0.8), 21.5),
         (6, HertzContact(stiffness=3e7), 21.5),
-        (6, LinearContact(stiffness=3e4), 21.5),
+        *slow((6, LinearContact(stiffness=3e4), 21.5)),
         (4, HuntCrossley(stiffness=3e7, dissipation=2.0), 21.5),
-        (2, newton(1.0), 21.5),
         (2, newton(1.0), 12.0),
     ],
     ids=repr,
@@ -46,7 +37,7 @@ def test_every_number_is_what_its_definition_says(n_modes: int, law: ContactLaw,
     oscillator = spring(n_modes, law, damping=0.01, frequency=frequency, excess=excess)
     run = simulate(oscillator, before_collision(oscillator), periods=60)
     found = collisions(oscillator, run, unfinished="drop")
-    impacts, phi, period = run.impacts, float(oscillator.model.phi[0]), oscillator.period
+    impacts, period = run.impacts, oscillator.period
     assert len(found) > 20
     starts = impacts.start[impacts.kind == 0]  # each belongs to one collision
     edges = np.searchsorted(starts, [c.first_touch for c in found])
@@ -88,9 +79,8 @@ def test_every_number_is_what_its_definition_says(n_modes: int, law: ContactLaw,
                 far = top
                 while motion(far)[0] > 0:
                     far += side * 0.002 * period
-                out.append(
-                    brentq(lambda t: motion(t)[0], min(far, top), max(far, top), xtol=1e-17, rtol=1e-15)
-                )
+                ends = sorted((far, top))
+                out.append(brentq(lambda t: motion(t)[0], *ends, xtol=1e-17, rtol=1e-15))
             return out
 
         touched = sides(incoming, c.first_touch)
@@ -121,13 +111,8 @@ def test_every_number_is_what_its_definition_says(n_modes: int, law: ContactLaw,
         gain = 0.0
         before, after = steady(oscillator, impacts.start[first]), steady(oscillator, impacts.end[last])
         for k in range(1, n_modes):
-            u, v = flow(
-                oscillator,
-                impacts.displacement_start[first, k] - before[0][k],
-                impacts.velocity_start[first, k] - before[1][k],
-                c.end - c.first_touch,
-                k,
-            )
+            u, v = impacts.displacement_start[first, k], impacts.velocity_start[first, k]
+            u, v = flow(oscillator, u - before[0][k], v - before[1][k], c.end - c.first_touch, k)
             q = impacts.displacement_end[last, k] - after[0][k]
             rate = impacts.velocity_end[last, k] - after[1][k]
             gain += 0.5 * (rate**2 - v**2 + OMEGA[k] ** 2 * (q**2 - u**2))
@@ -136,7 +121,6 @@ def test_every_number_is_what_its_definition_says(n_modes: int, law: ContactLaw,
         assert real_differs(c) == real and c.real_approach == impacts.approach[first]
         assert c.energy_lost == pytest.approx(float(np.sum(impacts.loss[rows])), rel=1e-12, abs=1e-18)
         assert c.contact_time == pytest.approx(float(np.sum((impacts.end - impacts.start)[rows])), abs=1e-15)
-        assert phi == 10.0
         slopes = [incoming(t_in + h)[1] for h in (-1e-6, 1e-6)]
         assert c.deceleration == pytest.approx(-(slopes[1] - slopes[0]) / 2e-6, rel=1e-5)
     assert returned > 3 and returned + refused == len(found)
@@ -145,10 +129,7 @@ def test_every_number_is_what_its_definition_says(n_modes: int, law: ContactLaw,
 @pytest.mark.parametrize("before_minimum", [1e-3, 1e-6, -1e-6, -1e-3])
 def test_minimum_of_the_outgoing_motion_ends_a_collision(before_minimum: float) -> None:
     """A second touch, made up to change nothing, counts to the first until the minimum and no longer."""
-    oscillator = ImpactOscillator(
-        model=ModalModel(omega=[2 * math.pi], decay_rate=[0.0], phi=[1.0], participation=[0.0]),
-        stop=Stop(gap=0.0, law=newton(0.5)),
-    )
+    oscillator = modes_on_stop(2 * math.pi, gap=0.0)
     # swinging through the wall at t = 1 with velocity 1, out with 1/2: minimum a quarter period later
     real = simulate(oscillator, State(displacement=[0.0], velocity=[-1.0], time=0.5), duration=2.2)
     assert real.impacts.start[0] == pytest.approx(1.0, abs=1e-15)
@@ -173,9 +154,6 @@ def test_minimum_of_the_outgoing_motion_ends_a_collision(before_minimum: float) 
     assert found[0].restitution == pytest.approx(0.5, rel=1e-12)
 
 
-# --------------------------------------------------------------------------- relations between the numbers
-
-
 @pytest.mark.parametrize("frequency", [20.90, 22.20, 23.40])
 def test_two_relations_of_a_single_contact_of_the_letters_spring(frequency: float) -> None:
     """restitution^2 = (1 - kick)^2 + 2 a shift/v^2, delay = (v/a)(1 + restitution - kick), within 3e-3."""
@@ -198,21 +176,3 @@ def test_two_relations_of_a_single_contact_of_the_letters_spring(frequency: floa
     assert kicks[0] < 0.15 and restitutions[0] > 0.98
     assert np.all(np.diff(kicks) > 0) and kicks[-1] > 1
     assert np.all(np.diff(restitutions) < 0)
-
-
-def test_leading_order_relations_are_those_of_a_parabola() -> None:
-    """The shorter its arc, the better a planted collision fulfils both relations."""
-    errors = []
-    for scale in (1.0, 0.5, 0.25, 0.125):
-        law = DelayedRestitution(restitution=0.4, delay=4e-4 * scale)
-        c = first_collision(equation_1(22.2, law, 2e-2 * scale**2))
-        a, v = c.deceleration, c.approach
-        errors.append(
-            [
-                abs(c.restitution**2 - (1 - c.kick) ** 2 - 2 * a * c.shift / v**2),
-                abs(c.delay * a / v - (1 + c.restitution - c.kick)),
-            ]
-        )
-    ratios = np.array(errors[:-1]) / np.array(errors[1:])
-    assert np.all(ratios > 1.7) and np.all(ratios < 5)
-    assert np.max(errors[-1]) < 3e-3

@@ -1,7 +1,5 @@
 """The cache of machine code: its folder, the removal of old folders, and the message on compilation."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

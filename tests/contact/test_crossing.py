@@ -1,44 +1,37 @@
 """The search for the first touch: planted over- and undershoots, none missed and none invented."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 import pytest
+from oscillators import modes_on_stop, newton, slow
 from tip_judge import PLANTED, Real, Signal, flights, judge, search, with_gap
 
-from beam import ModalModel
-from contact.drive import HarmonicDrive
 from contact.flight.crossing import CROSSES, FREE, GRAZE_TOLERANCE, GRAZES, UNRESOLVED
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import propagate, tip_rounding
-from contact.laws import NewtonRestitution
 from contact.orbits import Shooting
 from contact.orbits.branches.event_derivatives import peaks
-from contact.oscillator import ImpactOscillator
-from contact.stop import Stop
 
 pytestmark = pytest.mark.skipif(
     np.finfo(Real).eps > 2e-19, reason="the judge needs a long double of at least 64 bits"
 )
 
-# -------------------------------------------------------------------------------------------- planted heights
-
 
 @pytest.mark.parametrize("n_modes", [1, 2, 3, 5, 10, 20])
 @pytest.mark.parametrize("kind", ["at rest", "ringing", "drive off"])
-def test_planted_overshoots_are_found_and_undershoots_are_not(n_modes, kind):
+@pytest.mark.parametrize("count", [3, *slow(10)])
+def test_planted_overshoots_are_found_and_undershoots_are_not(n_modes, kind, count):
     """Peaks h = 1e-1 ... 1e-12 of the gap above and below the stop, over flights of up to one period."""
     told = {"free": 0, "crosses": 0, "within rounding": 0}
-    for flight in flights([n_modes, len(kind)], n_modes, 10 if n_modes < 10 else 4, kind, late=0.9):
+    for flight in flights([n_modes, len(kind)], n_modes, count, kind, late=0.9):
         for i in flight.chosen[:3]:
             for h in PLANTED:
                 gap = float(flight.heights[i] / (1 + Real(h)))
                 if gap > flight.start:
                     told[flight.agrees(gap, flight.motion.period - flight.base)] += 1
     assert told["within rounding"] == 0
-    assert min(told["free"], told["crosses"]) > 20
+    assert min(told["free"], told["crosses"]) > 2 * count
 
 
 @pytest.mark.parametrize("n_modes", [1, 2, 5, 20])
@@ -73,11 +66,7 @@ def test_a_peak_on_the_stop_is_a_graze_and_near_it_nothing_is_invented(n_modes):
 
 def test_a_graze_too_blurred_to_be_called_one_is_unresolved():
     """Two modes that cancel to 1e-3 of their size: the rounding bound exceeds 1e-13 of the gap."""
-    model = ModalModel(
-        omega=[100.0, 100.001], decay_rate=[0.0, 0.0], phi=[1.0, -1.0], participation=[0.0, 0.0]
-    )
-    stop = Stop(gap=1e-5, law=NewtonRestitution(local_restitution=0.5))
-    motion = ImpactOscillator(model=model, stop=stop).motion()
+    motion = modes_on_stop([100.0, 100.001], phi=[1.0, -1.0], gap=1e-5).motion()
     u, v = np.array([-0.01, -0.01]), np.array([0.2, 0.2 - 1e-3])
     signal = Signal(motion, 0.0, u, v)
     places = signal.peaks(motion.period)
@@ -133,19 +122,12 @@ def test_flight_that_ends_at_the_touch_finds_it_in_the_next_one():
             assert abs(end + s - root) < 1e-14
 
 
-# ----------------------------------------------------------------------------------------------------- loads
-
-
 @pytest.mark.filterwarnings("ignore:gap is 3 m:beam.SuspiciousValue")
 @pytest.mark.parametrize("decay", [0.0, 0.5, 20.0])
 def test_falling_body_reaches_the_ground(decay):
     """A mode of zero frequency under a constant load: no bound of its displacement, the search samples it."""
     for height in (1e-3, 0.1, 1.0, 3.0):
-        model = ModalModel(
-            omega=[0.0, 300.0], decay_rate=[decay, 2.0], phi=[1.0, 1.0], participation=[0.0, 0.0]
-        )
-        stop = Stop(gap=height, law=NewtonRestitution(local_restitution=0.7))
-        motion = ImpactOscillator(model=model, stop=stop, load=np.array([9.81, 0.0])).motion()
+        motion = modes_on_stop([0.0, 300.0], [decay, 2.0], gap=height, load=[9.81, 0.0]).motion()
         u, v = np.array([0.0, 1e-5]), np.array([-0.2, 0.0])
         signal = Signal(motion, 0.0, u, v)
         outcome, s = search(motion, 0.0, u, v, 3.0)
@@ -159,12 +141,9 @@ def test_falling_body_reaches_the_ground(decay):
 
 def test_thrown_body_turns_just_above_or_below_the_stop():
     """x = v s - g s^2/2 turns at v^2/2g: planted heights in closed form, free of the judge."""
-    model = ModalModel(omega=[0.0], decay_rate=[0.0], phi=[1.0], participation=[0.0])
-    for h in PLANTED:
-        gap = 1.0
-        stop = Stop(gap=gap, law=NewtonRestitution(local_restitution=0.7))
-        motion = ImpactOscillator(model=model, stop=stop, load=np.array([-8.0])).motion()
-        # v^2/16 = gap (1 + h)
+    gap = 1.0
+    motion = modes_on_stop(0.0, gap=gap, load=-8.0).motion()
+    for h in PLANTED:  # v^2/16 = gap (1 + h)
         speed = math.sqrt(16 * gap) * (1 + 0.5 * h - 0.125 * h * h + h**3 / 16)
         outcome, s = search(motion, 0.0, np.zeros(1), np.array([speed]), 3.0)
         excess = Real(speed) ** 2 / 16 - gap
@@ -176,25 +155,14 @@ def test_thrown_body_turns_just_above_or_below_the_stop():
 
 @pytest.mark.parametrize("hertz", [60.0, 900.0, 6000.0])
 def test_all_peaks_of_an_orbit_are_found(hertz):
-    """As many, and where, as a sampling of forty points a period of the higher mode shows."""
-    omega, decay = 2 * np.pi * np.array([24.5, hertz]), np.array([3.0, 20.0])
-    model = ModalModel(omega=omega, decay_rate=decay, phi=[7.0, 14.0], participation=[0.09, 0.0])
-    stop, drive = Stop(gap=0.01, law=NewtonRestitution(local_restitution=0.1)), HarmonicDrive(frequency=21.5)
-    family = Shooting(oscillator=ImpactOscillator(model=model, stop=stop, drive=drive), period=3)
-    orbit = family.at_speed(0.3 * family.oscillator.unit_speed)
-    (_start, left, _approach, _rebound, *state), w = orbit.record[0], drive.angular_frequency
-    u, v = np.array(state).reshape(2, 2)
-    times = np.linspace(0.0, orbit.duration - left, 1 + round(40 * max(100.0, hertz) * orbit.duration))
-    turns = np.sqrt(omega**2 - decay**2 / 4)
-    poles, sizes = -decay / 2 + 1j * turns, u - 1j * (v + decay * u / 2) / turns
-    turn = np.exp(1j * w * (orbit.phase + left + times))
-    driven = orbit.amplitude * family.oscillator.tip_response() * turn
-    free = model.phi * sizes * np.exp(np.multiply.outer(times, poles))
-    speed = (1j * w * driven).imag + (free @ poles).real
-    tops = np.flatnonzero((speed[:-1] > 0) & (speed[1:] <= 0))
-    found = peaks(orbit)
+    """As many, and where, as the judge's."""
+    omega = 2 * np.pi * np.array([24.5, hertz])
+    system = modes_on_stop(omega, [3.0, 20.0], [7.0, 14.0], [0.09, 0.0], law=newton(0.1), drive=21.5)
+    orbit = Shooting(oscillator=system, period=3).at_speed(0.3 * system.unit_speed)
+    (_start, left, _approach, _rebound, *state) = orbit.record[0]
+    signal = Signal(orbit.oscillator.motion(), float(orbit.phase + left), *np.reshape(state, (2, 2)))
+    tops = signal.peaks(orbit.duration - left)
+    found = np.array([(place, height) for _, place, height in peaks(orbit)])
     assert len(found) == tops.size > (40 if hertz > 1000 else 1)
-    places = np.array([s for _, s, _ in found])
-    assert np.all((times[tops] <= places) & (places <= times[tops + 1]))
-    heights = (driven.imag + free.sum(axis=1).real)[tops] - stop.gap
-    assert [height for *_, height in found] == pytest.approx(heights, abs=2e-6)
+    assert found[:, 0] == pytest.approx(tops.astype(float), abs=1e-9)
+    assert found[:, 1] == pytest.approx((signal(tops) - system.stop.gap).astype(float), abs=1e-12)

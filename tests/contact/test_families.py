@@ -3,10 +3,10 @@
 Where several describe the same motion their orbits are one, and each is an orbit of the simulated motion.
 """
 
-from __future__ import annotations
-
 import math
+from collections.abc import Callable, Iterable
 from functools import partial
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,28 +14,18 @@ from letters_spring import FOLDED_GAP, HERTZ, folded_strip
 from oscillators import MODES, apart, equation_1, many_modes
 from simulated_orbit import DELAYED, LAWS, beam, differences, on_stop, settled, sizes, touches
 
-from contact import (
-    DelayedRestitution,
-    HuntCrossley,
-    ImpactOscillator,
-    MapFamily,
-    MaximalFamily,
-    NewtonRestitution,
-    NordmarkMap,
-    simulate,
-)
-from contact.orbits import KickFamily, Shooting
-from contact.orbits.families.family import Family
+import contact
+from contact.orbits import Family, KickFamily, Shooting
 
-UNDELAYED = DelayedRestitution(restitution=0.1, delay=0.0)
+UNDELAYED = contact.DelayedRestitution(restitution=0.1, delay=0.0)
 PLACES = [(20.90, 3), (21.50, 4), (22.20, 5), (23.40, 11)]
 one_mode = partial(equation_1, gap=0.0107)
 
 MAKERS = {
-    "closed form": lambda at, period: MaximalFamily.from_oscillator(at, period=period),
+    "closed form": lambda at, period: contact.MaximalFamily.from_oscillator(at, period=period),
     "kicks": lambda at, period: KickFamily(oscillator=at, period=period),
     "shooting": lambda at, period: Shooting(oscillator=at, period=period),
-    "map": lambda at, period: MapFamily(NordmarkMap.from_oscillator(at), period),
+    "map": lambda at, period: contact.MapFamily(contact.NordmarkMap.from_oscillator(at), period),
 }
 OSCILLATORS = {
     **{f"Newton, {f} Hz": (one_mode(f), m) for f, m in PLACES},
@@ -51,9 +41,22 @@ CONTRACT = [
     *((name, f"{law}, 21.5 Hz") for name in ("kicks", "shooting") for law in ("constant", "falling")),
     ("shooting", "ten modes, hertz"),
 ]
+ALWAYS = ("closed form", "kicks", "map", ("shooting", "Newton, 21.5 Hz"), ("shooting", "ten modes, hertz"))
 
 
-@pytest.fixture(scope="module", params=CONTRACT, ids=str)
+def long(cases: Iterable, always: Callable[[Any], bool]) -> list:
+    """The cases, of which some always run and the others are slow."""
+    return [case if always(case) else pytest.param(case, marks=pytest.mark.slow) for case in cases]
+
+
+def quick(name: str) -> bool:
+    """Each law at one frequency."""
+    return "Hz" not in name or "21.5" in name
+
+
+@pytest.fixture(
+    scope="module", params=long(CONTRACT, lambda case: case[0] in ALWAYS or case in ALWAYS), ids=str
+)
 def family(request) -> Family:
     """Of Eq. (1) in each description, with a touch that waits; of many modes."""
     name, at = request.param
@@ -106,17 +109,17 @@ def test_past_the_band_there_is_no_fold_and_one_orbit_above_grazing_only() -> No
         assert family.orbits(-1e-4) == () and len(family.orbits(1e-3)) == 1
 
 
-def descriptions(oscillator: ImpactOscillator, period: int) -> list[Family]:
+def descriptions(oscillator: contact.ImpactOscillator, period: int) -> list[Family]:
     """All that hold for this law, the one in closed form first."""
     law, others = oscillator.stop.law, [MAKERS[name](oscillator, period) for name in ("kicks", "shooting")]
     if law is UNDELAYED:
         oscillator = one_mode(oscillator.drive.frequency)
-    elif not isinstance(law, NewtonRestitution):
+    elif not isinstance(law, contact.NewtonRestitution):
         return others
     return [MAKERS["closed form"](oscillator, period), *others]
 
 
-@pytest.mark.parametrize("name", [name for name in OSCILLATORS if not name.startswith("ten modes,")])
+@pytest.mark.parametrize("name", long((n for n in OSCILLATORS if not n.startswith("ten modes,")), quick))
 def test_where_several_descriptions_hold_they_are_one(name: str) -> None:
     """Under Newton's law, and where the touch of one mode waits."""
     oscillator, period = OSCILLATORS[name]
@@ -144,7 +147,7 @@ def test_where_several_descriptions_hold_they_are_one(name: str) -> None:
     assert folds[0] or not any(folds)
 
 
-@pytest.mark.parametrize("name", OSCILLATORS)
+@pytest.mark.parametrize("name", long(OSCILLATORS, quick))
 def test_an_orbit_is_one_of_the_simulated_motion(name: str) -> None:
     """It closes, has the multipliers of the simulated map, and is admissible if it touches once."""
     oscillator, period = OSCILLATORS[name]
@@ -170,13 +173,11 @@ def test_an_orbit_is_one_of_the_simulated_motion(name: str) -> None:
         (one_mode(21.50), 0.02, 4, 2),
         (on_stop(folded_strip(4), 20.90, gap=FOLDED_GAP), 0.1, 3, 2),
         (beam(21.50, HERTZ, modes=4), 0.02, 8, 3),
-        (one_mode(22.20, DelayedRestitution(restitution=0.1, delay=2e-3)), 1e-4, 6, 2),
-        (one_mode(22.20, DelayedRestitution(restitution=0.1, delay=2e-3)), 1e-3, 6, 2),
+        (one_mode(22.20, contact.DelayedRestitution(restitution=0.1, delay=2e-3)), 1e-4, 6, 2),
+        (one_mode(22.20, contact.DelayedRestitution(restitution=0.1, delay=2e-3)), 1e-3, 6, 2),
     ],
 )
-def test_orbits_with_several_touches(
-    oscillator: ImpactOscillator, excess: float, period: int, impacts: int
-) -> None:
+def test_orbits_with_several_touches(oscillator, excess, period, impacts):
     run = settled(oscillator, excess)
     assert (run.period, run.impacts) == (period, impacts)
     family = Shooting(oscillator=oscillator.with_excess(excess), period=period, impacts=impacts)
@@ -184,7 +185,7 @@ def test_orbits_with_several_touches(
     assert orbit.excess == pytest.approx(excess, abs=1e-14)
     assert orbit.residual < 1e-12 and orbit.admissible and orbit.stable
     assert touches(orbit) == impacts == len(orbit.approach)
-    last = simulate(orbit.oscillator, orbit.state(), duration=period * oscillator.period * (1 - 1e-6))
+    last = contact.simulate(orbit.oscillator, orbit.state(), duration=period * oscillator.period * (1 - 1e-6))
     assert np.allclose(last.impacts.approach[last.impacts.kind == 0], orbit.approach, rtol=1e-10)
     found, open_by = differences(orbit)
     assert open_by < 1e-10
@@ -195,7 +196,7 @@ def test_orbits_with_several_touches(
 
 def test_the_multipliers_of_a_kick_orbit_are_those_of_its_own_touch() -> None:
     """At the fold of the kicks of a soft wall the motion is all but at its own: a multiplier next to one."""
-    at = one_mode(21.50, HuntCrossley.with_restitution(stiffness=1e9, restitution=0.1, velocity=0.2))
+    at = one_mode(21.50, contact.HuntCrossley.with_restitution(stiffness=1e9, restitution=0.1, velocity=0.2))
     kick, exact = (make(oscillator=at, period=4).fold() for make in (KickFamily, Shooting))
     assert kick.excess == pytest.approx(exact.excess, rel=0.1)
     assert kick.multipliers[0] == pytest.approx(1.0, abs=0.05) and kick.admissible

@@ -1,25 +1,18 @@
 """Closed-form flights against matrix exponentials of 50 digits, and the bounds that the search relies on."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
 import mpmath as mp
 import numpy as np
 import pytest
-from oscillators import spring
+from oscillators import modes_on_stop, newton, spring
 
-from beam import ModalModel
-from contact.drive import HarmonicDrive
-from contact.flight.elementary import EPS
+from contact import ImpactOscillator, State, simulate
+from contact.flight import modal_flow
+from contact.flight.elementary import EPS, exponential, sine_cosine
 from contact.flight.modal_flow import flow_matrix, mode_acceleration, propagate, tip_rounding, tip_state
-from contact.flight.motion import COSINE, OFFSET, SINE, damped_frequency, motion_of
-from contact.laws import NewtonRestitution
-from contact.oscillator import ImpactOscillator
-from contact.simulation import simulate
-from contact.stop import Stop
-from contact.trajectory import State
+from contact.flight.motion import COSINE, LOAD, OFFSET, SINE, Motion, damped_frequency, motion_of
 
 MODES = {  # omega [rad/s], c [1/s]
     "undamped": (150.0, 0.0),
@@ -64,30 +57,9 @@ def difference(a: np.ndarray, b: np.ndarray, scale: float) -> float:
     return float(np.max(np.abs(a - b) * weight) / np.max(np.abs(b) * weight))
 
 
-def oscillator(
-    omega: list[float],
-    decay: list[float],
-    *,
-    drive: HarmonicDrive | None = None,
-    load: list[float] | None = None,
-    phi: list[float] | None = None,
-    participation: list[float] | None = None,
-    gap: float = 0.01,
-) -> ImpactOscillator:
-    n = len(omega)
-    model = ModalModel(
-        omega=omega,
-        decay_rate=decay,
-        phi=phi or [7.0 / (k + 1) for k in range(n)],
-        participation=participation or [0.1 / (k + 1) for k in range(n)],
-    )
-    stop = Stop(gap=gap, law=NewtonRestitution(local_restitution=0.5))
-    return ImpactOscillator(
-        model=model, stop=stop, drive=drive, load=None if load is None else np.array(load)
-    )
-
-
-# ---------------------------------------------------------------------------------------------- the free flow
+def oscillator(omega: list[float], decay: list[float], **others) -> ImpactOscillator:
+    k = 1.0 + np.arange(len(omega))
+    return modes_on_stop(omega, decay, **dict(phi=7.0 / k, participation=0.1 / k) | others)
 
 
 @pytest.mark.parametrize("name", MODES)
@@ -117,9 +89,6 @@ def test_slow_decay_of_a_creeping_mode_keeps_its_digits():
         np.testing.assert_allclose(computed[:, 0], exact[:, 0], rtol=1e-13)
 
 
-# ---------------------------------------------------------------------------------------- with drive and load
-
-
 def exact_state(
     system: ImpactOscillator, k: int, q: float, v: float, start: float, time: float
 ) -> np.ndarray:
@@ -141,20 +110,14 @@ def exact_state(
         return np.array([float(last[0] / unit), float(last[1]), float((matrix * last)[1])])
 
 
-DRIVEN = {
-    "drive": dict(drive=HarmonicDrive(frequency=21.5, amplitude=2e-3)),
-    "drive and load": dict(
-        drive=HarmonicDrive(frequency=21.5, amplitude=2e-3), load=[3.0, -20.0, 500.0, 2.0, -4.0]
-    ),
-    "load": dict(load=[3.0, -20.0, 500.0, 2.0, -4.0]),
-    "neither": {},
-}
+DRIVEN, LOADED = {"drive": (21.5, 2e-3)}, {"load": [3.0, -20.0, 500.0, 2.0, -4.0]}
+CASES = {"drive": DRIVEN, "drive and load": DRIVEN | LOADED, "load": LOADED, "neither": {}}
 
 
-@pytest.mark.parametrize("name", DRIVEN)
+@pytest.mark.parametrize("name", CASES)
 def test_flight_of_many_modes_is_the_exponential_of_the_whole_system(name):
     """Under-, critically and over-damped modes and two of zero frequency, one of them without damping."""
-    system = oscillator([150.0, 400.0, 900.0, 0.0, 0.0], [3.56, 800.0, 2500.0, 0.0, 25.0], **DRIVEN[name])
+    system = oscillator([150.0, 400.0, 900.0, 0.0, 0.0], [3.56, 800.0, 2500.0, 0.0, 25.0], **CASES[name])
     motion = system.motion()
     generator = np.random.default_rng(5)
     for start, time in ((0.0, 1e-3), (0.01, 0.02), (0.04, 0.006), (0.0, 0.0465)):
@@ -186,7 +149,7 @@ def test_flight_of_many_modes_is_the_exponential_of_the_whole_system(name):
 def test_constant_load_on_a_free_body_with_drag(product):
     """x'' + c x' = g from rest: g (t - (1 - exp(-ct))/c)/c, with c t through the switch of the formula."""
     time = 0.25
-    system = oscillator([0.0], [product / time], load=[9.81], phi=[1.0], participation=[1.0])
+    system = oscillator([0.0], [product / time], load=[9.81], phi=1.0)
     u, v = np.zeros(1), np.zeros(1)
     propagate(system.motion(), u, v, time, u, v)
     with mp.workdps(60):
@@ -204,14 +167,8 @@ def test_rounding_bound_holds_and_is_not_idle(n_modes):
     for amplitude, free in [(2e-3, 1e-3), (0.1, 0.0)] * 20:  # m, of the base and of what is free
         omega = 150.0 * 10 ** np.sort(generator.uniform(0, 2, n_modes))
         decay = omega * 10 ** generator.uniform(-4, 0.6, n_modes)
-        system = oscillator(
-            list(omega),
-            list(decay),
-            drive=HarmonicDrive(frequency=21.5, amplitude=amplitude),
-            phi=list(generator.normal(size=n_modes) * 7),
-            participation=list(generator.normal(size=n_modes)),
-        )
-        motion = system.motion()
+        phi, participation = generator.normal(size=(2, n_modes))
+        motion = modes_on_stop(omega, decay, 7 * phi, participation, drive=(21.5, amplitude)).motion()
         u, v = generator.normal(size=n_modes) * free, generator.normal(size=n_modes) * free * omega
         start, bound = float(generator.uniform(0, 0.02)), tip_rounding(motion, u, v)
         later_u, later_v = np.empty(n_modes), np.empty(n_modes)
@@ -239,7 +196,7 @@ def test_rounding_bound_holds_and_is_not_idle(n_modes):
 @pytest.mark.parametrize("amplitude", [0.0, 1e-9, 2e-4, 3.0])
 def test_numbers_at_another_amplitude_are_those_made_for_it(amplitude):
     """And none are left of a part that was replaced."""
-    first = spring(3, NewtonRestitution(local_restitution=0.1), drive=(21.5, 1e-3))
+    first = spring(3, newton(0.1), drive=(21.5, 1e-3))
     for other in (first, replace(first, drive=replace(first.drive, frequency=23.0)), first.with_excess(0.1)):
         _ = other.motion()
         found, drive, model = other.with_amplitude(amplitude).motion(), other.drive, other.model
@@ -258,14 +215,76 @@ def test_numbers_at_another_amplitude_are_those_made_for_it(amplitude):
             assert getattr(found, name) == pytest.approx(value, rel=1e-13, abs=0.0), name
 
 
-# ------------------------------------------------------------------------------------------- the strobe clock
-
-
 def test_steady_motion_stays_steady():
     """Started on its steady motion the spring shows the same state at each of 2000 strobes, to rounding."""
-    system = oscillator([150.0, 960.0], [3.56, 20.0], drive=HarmonicDrive(frequency=21.5, amplitude=1e-4))
+    system = oscillator([150.0, 960.0], [3.56, 20.0], drive=(21.5, 1e-4))
     motion = system.motion()
     start = State(displacement=motion.row(COSINE), velocity=motion.drive * motion.row(SINE))
     run = simulate(system, start, periods=2000)
     assert np.max(np.abs(run.strobe_displacement - motion.row(COSINE))) == 0.0
     assert np.max(np.abs(run.strobe_velocity - motion.drive * motion.row(SINE))) == 0.0
+
+
+def test_a_free_flight_keeps_phase_and_energy_for_1e5_periods():
+    """Its rounding is the same in every period, of about EPS each."""
+    omega = 2.0 * math.pi * 24.5
+    system = modes_on_stop(omega, gap=0.1)
+    start = State(displacement=np.full(1, 0.01), velocity=np.zeros(1))
+    run = simulate(system, start, periods=100_000)
+    for n in (1, 100, 10_000, 100_000):
+        with mp.workdps(30):
+            angle = mp.mpf(omega) * n * mp.mpf(system.period)
+            turn = complex(mp.cos(angle), mp.sin(angle))
+        found = complex(run.strobe_displacement[n - 1, 0], -run.strobe_velocity[n - 1, 0] / omega) / 0.01
+        change = np.log(found / turn)
+        assert abs(change.imag) < 10 * EPS * (n + 1) and abs(change.real) < 5 * EPS * (n + 1)
+
+
+def ladder(n: int, damping: float, load: float = 0.0) -> Motion:
+    omega = 154.0 * (2.0 * np.arange(1.0, n + 1.0) - 1.0) ** 2
+    omega[0] = 0.0 if load else omega[0]
+    return modes_on_stop(omega, damping * omega, drive=21.5, load=load * (omega == 0)).motion()
+
+
+@pytest.mark.parametrize("modes", [1, 7, 8, 20])
+@pytest.mark.parametrize(
+    "damping, load, longest", [(0.01, 0.0, 0.1), (0.0, 0.0, 2e3), (2.5, 0.0, 0.1), (0.01, 3.0, 0.1)]
+)
+def test_modes_carried_side_by_side_are_those_carried_one_by_one(modes, damping, load, longest):
+    """Also where they are not carried side by side: over-damped or loaded modes, phases beyond 5e5."""
+    motion, generator = ladder(modes, damping, load), np.random.default_rng(modes)
+    room = modal_flow.new_flight(motion)
+    size = np.maximum(motion.omega, 1.0)
+    u, v = generator.standard_normal(modes) / size, generator.standard_normal(modes)
+    modal_flow.load_state(room, u, v)
+    for t in longest * 10 ** generator.uniform(-6, 0, 40):
+        modal_flow.flow(motion, room, 0, room.shape[1], t)
+        for k in range(modes):
+            x, y = modal_flow.mode_flow(motion.modes, k, u[k], v[k], t)
+            scale = abs(v[k]) + size[k] * abs(u[k]) + abs(motion.row(LOAD)[k]) * t
+            assert abs(room[modal_flow.U, k] - x) * size[k] <= 1e-15 * scale
+            assert abs(room[modal_flow.V, k] - y) <= 1e-15 * scale
+
+
+def test_sine_cosine_and_exponential_are_good_to_one_unit_in_the_last_place():
+    generator = np.random.default_rng(2)
+    worst = np.zeros(3)
+    with mp.workdps(50):
+        for _ in range(4000):
+            phase = float(generator.choice([-1, 1]) * 10 ** generator.uniform(-6, 6.5))
+            rest = float(generator.uniform(-1, 1) * 1e-16 * abs(phase))
+            exact = mp.mpf(phase) + mp.mpf(rest)
+            size = 1.5 if abs(phase) < 5e5 else 1e4  # beyond, the library's result is turned by `rest`
+            for place, (value, true) in enumerate(
+                zip(sine_cosine(phase, rest), (mp.sin(exact), mp.cos(exact)), strict=True)
+            ):
+                error = abs(float((mp.mpf(value) - true) / math.ulp(abs(float(true)))))
+                worst[place] = max(worst[place], error / size)
+            x = -float(10 ** generator.uniform(-6, 2.85))
+            true = mp.exp(x)
+            worst[2] = max(
+                worst[2], abs(float((mp.mpf(exponential(x)) - true) / math.ulp(float(true)))) / 1.5
+            )
+    assert np.all(worst < 1.0)
+    assert sine_cosine(0.0, 0.0) == (0.0, 1.0)
+    assert exponential(0.0) == 1.0 and exponential(-800.0) == 0.0

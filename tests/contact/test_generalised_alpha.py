@@ -1,29 +1,19 @@
 """Newmark, Hilber-Hughes-Taylor and generalised-alpha: the step, its order, its energy and its limits."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 
 import numpy as np
 import pytest
-from oscillators import GAP, OMEGA, THROWN, at_rest_on, spring
+from oscillators import GAP, OMEGA, THROWN, at_rest_on, modes_on_stop, spring
 from scipy.optimize import brentq
+from whole_motions import DASHPOT, HERTZ, LOSSY, SPRING, accelerations
 
-from beam import ModalModel
-from contact.errors import StepTooLarge
+from contact import ContactLaw, ImpactOscillator, LinearContact, State, simulate
+from contact.integrators import GeneralisedAlpha
 from contact.integrators.fixed_step import stiffness_at
-from contact.integrators.generalised_alpha import AlphaNumbers, GeneralisedAlpha, limit, stable
-from contact.laws import ContactLaw, HertzContact, HuntCrossley, LinearContact
-from contact.oscillator import ImpactOscillator
-from contact.simulation import simulate
-from contact.stop import Stop
-from contact.trajectory import State
+from contact.integrators.generalised_alpha import AlphaNumbers, limit, stable
 
-HERTZ = HertzContact(stiffness=3e7)
-LOSSY = HuntCrossley(stiffness=3e7, dissipation=1.2)
-SPRING = LinearContact(stiffness=3e5)
-DASHPOT = LinearContact(stiffness=3e5, damping=15.0)
 FORMS = [
     GeneralisedAlpha.newmark(step=1.0),
     GeneralisedAlpha.newmark(step=1.0, beta=0.0),
@@ -60,10 +50,7 @@ def dense_motion(
     model, law, h = spring.model, spring.stop.law, method.step
     n = spring.n_modes
     stiffness, damping, phi = np.diag(model.omega**2), np.diag(model.decay_rate), np.asarray(model.phi)
-    w = 0.0 if spring.drive is None else spring.drive.angular_frequency
-    push = 0.0 if spring.drive is None else spring.drive.amplitude * w**2 * model.participation
-    constant = np.zeros(n) if spring.load is None else spring.load
-    k, extra = law.numbers[0], law.numbers[1]
+    flight, (k, extra) = accelerations(spring), law.numbers[:2]
 
     def force(q: np.ndarray, v: np.ndarray) -> float:
         depth, rate = phi @ q - spring.stop.gap, phi @ v
@@ -72,9 +59,6 @@ def dense_motion(
         if isinstance(law, LinearContact):
             return float(max(0.0, k * depth + extra * rate))
         return float(k * depth**1.5 * (1 + extra * rate))
-
-    def flight(t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        return np.asarray(constant + push * math.sin(w * t) - damping @ v - stiffness @ q)
 
     m, f, beta, gamma = method.alpha_m, method.alpha_f, method.beta, method.gamma
     q, v = np.array(start.displacement), np.array(start.velocity)
@@ -85,15 +69,12 @@ def dense_motion(
         v_old = v + h * (1 - gamma) * a
         known = f * total - m * a + (1 - f) * flight(start.time + (i + 1) * h, q_old, v_old)
 
-        def end(
-            contact: float, known: np.ndarray = known, q_old: np.ndarray = q_old, v_old: np.ndarray = v_old
-        ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        def end(contact: float, known=known, q_old=q_old, v_old=v_old) -> tuple[np.ndarray, ...]:
             new = np.linalg.solve(matrix, known - (1 - f) * phi * contact)
             return q_old + beta * h**2 * new, v_old + gamma * h * new, new
 
-        def balance(contact: float, end: object = end) -> float:
-            q_new, v_new, _ = end(contact)  # type: ignore[operator]
-            return contact - force(q_new, v_new)
+        def balance(contact: float, end=end) -> float:
+            return contact - force(*end(contact)[:2])
 
         first = force(*end(0.0)[:2])
         contact = 0.0
@@ -126,13 +107,9 @@ def test_the_step_is_that_of_the_matrix_equations(form: int, law: ContactLaw) ->
 def test_flight_multiplies_by_the_roots(form: int) -> None:
     """A single mode: the sampled motion obeys the recurrence whose roots are the multipliers."""
     method = dataclasses.replace(FORMS[form], step=1e-3)
-    model = ModalModel(
-        omega=np.array([150.0]), decay_rate=np.array([9.0]), phi=np.ones(1), participation=np.ones(1)
-    )
-    spring = ImpactOscillator(model=model, stop=Stop(gap=1.0, law=SPRING))
+    single, times = modes_on_stop(150.0, 9.0, law=SPRING, gap=1.0), method.step * np.arange(1, 12)
     start = State(displacement=np.array([0.1]), velocity=np.array([3.0]))
-    times = method.step * np.arange(1, 12)
-    motion = simulate(spring, start, duration=12e-3, times=times, method=method).displacement[:, 0]
+    motion = simulate(single, start, duration=12e-3, times=times, method=method).displacement[:, 0]
     polynomial = np.poly(factors(method.numbers, 0.150, 0.009))
     residual = np.convolve(motion, polynomial, mode="valid")
     assert np.abs(residual).max() < 1e-13 * np.abs(motion).max()
@@ -194,7 +171,7 @@ def test_the_trapezoidal_rule_keeps_the_energy_of_a_lasting_contact() -> None:
     assert lost[-1] < 0.9 * begun
 
 
-def test_a_contact_beyond_the_limit_is_refused_and_grows() -> None:
+def test_a_contact_beyond_the_limit_grows() -> None:
     """Explicit Newmark in a lasting linear contact: bounded just below the critical stiffness, not above."""
     plain = spring(3, SPRING, damping=0.0)
     step = 1.9 / OMEGA[2]
@@ -210,10 +187,4 @@ def test_a_contact_beyond_the_limit_is_refused_and_grows() -> None:
         # growth by 1 % of (h omega)^2 beyond 4: a step multiplies by 1 + 0.2 or less; 60 steps suffice
         end = simulate(beam, begun, duration=60 * step, method=method).end
         sizes.append(float(np.abs(end.displacement - rest).max()))
-        refusing = dataclasses.replace(method, beyond_limit=False)
-        if factor > 1:
-            with pytest.raises(StepTooLarge, match="stability"):
-                simulate(beam, begun, duration=60 * step, method=refusing)
-        else:
-            simulate(beam, begun, duration=60 * step, method=refusing)
     assert sizes[1] > 30 * sizes[0]

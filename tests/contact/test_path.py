@@ -1,7 +1,5 @@
 """Orbits along a path p -> oscillator, against branches by approach speed and simulated motions."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
@@ -9,20 +7,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from letters_spring import HERTZ
-from oscillators import apart, equation_1, two_masses
+from oscillators import apart, equation_1, modes_on_stop, newton, slow, two_masses
 from simulated_orbit import DELAYED, beam
 
-from beam import ModalModel
-from contact import (
-    HarmonicDrive,
-    ImpactOscillator,
-    LinearContact,
-    NewtonRestitution,
-    NotPeriodic,
-    State,
-    Stop,
-    simulate,
-)
+from contact import ImpactOscillator, LinearContact, NotPeriodic, State, simulate
 from contact.orbits import Branch, Shooting, follow, follow_path
 from contact.orbits.branches.events import is_torus, torus
 from contact.sensitivity.change import change_along
@@ -30,13 +18,13 @@ from contact.sensitivity.change import change_along
 PATH = partial(two_masses, force=1.0)
 
 LAWS = {
-    "newton": equation_1(20.90, NewtonRestitution(local_restitution=0.1)),
+    "newton": equation_1(20.90),
     "delayed": equation_1(20.90, DELAYED["constant"]),
     "beam with Hertz contact": beam(20.90, HERTZ, modes=4),
 }
 
 
-@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("name", ["newton", "delayed", *slow("beam with Hertz contact")])
 def test_a_path_in_amplitude_is_the_branch_in_approach_speed(name: str) -> None:
     family = Shooting(oscillator=LAWS[name], period=3)
     fold = family.fold()
@@ -65,9 +53,6 @@ def test_a_path_in_amplitude_is_the_branch_in_approach_speed(name: str) -> None:
     assert found.ended_high == "range" and found.parameters[-1] == highest
 
 
-# --------------------------------------------------------------- two masses, of which one meets a spring
-
-
 def followed(w: float, touches: int, low: float, high: float, force: float = 1.0) -> Branch:
     """From the motion that has settled at `w`."""
     path, rest = partial(two_masses, force=force), State(displacement=np.zeros(2), velocity=np.zeros(2))
@@ -76,15 +61,15 @@ def followed(w: float, touches: int, low: float, high: float, force: float = 1.0
     return follow_path(path, start, w, low=low, high=high, step=0.2)
 
 
-@pytest.fixture(scope="module")
-def curve() -> Branch:
-    return followed(0.3, 1, 0.24, 0.42)
+@pytest.fixture(scope="module", params=[0.29, *slow(0.24)])
+def curve(request) -> Branch:
+    return followed(0.3, 1, request.param, 0.42)
 
 
 @pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
 def test_touches_are_gained_and_lost_along_the_curve(curve: Branch) -> None:
     """Simulated motions repeat the curve."""
-    assert len(decided(curve)) > 15
+    assert len(decided(curve)) > 10
     counts = [orbit.impacts for orbit in curve.orbits]
     assert set(counts) == {1, 2, 3}
     changes = [(a, b) for a, b in pairwise(curve.orbits) if a.impacts != b.impacts]
@@ -96,9 +81,7 @@ def test_touches_are_gained_and_lost_along_the_curve(curve: Branch) -> None:
         run = simulate(orbit.oscillator, orbit.state(), periods=orbit.period)
         start = orbit.state()
         assert np.allclose(run.end.displacement, start.displacement, rtol=0.0, atol=1e-9)
-        assert run.impacts.kind.size - (run.impacts.start[-1] > start.time + 0.999999 * orbit.duration) == (
-            orbit.impacts
-        )
+        assert np.sum(run.impacts.start <= start.time + 0.999999 * orbit.duration) == orbit.impacts
 
 
 def decided(branch: Branch) -> list[tuple[str, float]]:
@@ -113,8 +96,8 @@ def decided(branch: Branch) -> list[tuple[str, float]]:
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
-def test_starts_with_one_and_two_touches_lead_along_the_same_curve(curve: Branch) -> None:
-    places = [decided(branch) for branch in (curve, followed(0.4, 2, 0.24, 0.42))]
+def test_starts_with_one_and_two_touches_lead_along_the_same_curve() -> None:
+    places = [decided(followed(w, touches, 0.24, 0.42)) for w, touches in ((0.3, 1), (0.4, 2))]
     assert [kind for kind, _ in places[0]] == [kind for kind, _ in places[1]]
     assert [p for _, p in places[0]] == pytest.approx([p for _, p in places[1]], abs=1e-8)
 
@@ -130,12 +113,8 @@ def test_events_say_what_simulated_motions_do(curve: Branch) -> None:
         start, columns = replace(event.orbit.strobe_state(), time=0.0), []
         for axis in np.eye(4):
             q, v = start.displacement, start.velocity
-            ends = [
-                simulate(
-                    event.orbit.oscillator, State(displacement=q + h[:2], velocity=v + h[2:]), periods=1
-                ).end
-                for h in (1e-6 * axis, -1e-6 * axis)
-            ]
+            begun = [State(displacement=q + h[:2], velocity=v + h[2:]) for h in (1e-6 * axis, -1e-6 * axis)]
+            ends = [simulate(event.orbit.oscillator, state, periods=1).end for state in begun]
             plus, minus = (np.concatenate([end.displacement, end.velocity]) for end in ends)
             columns.append((plus - minus) / 2e-6)
         values = np.linalg.eigvals(np.array(columns).T)
@@ -144,7 +123,7 @@ def test_events_say_what_simulated_motions_do(curve: Branch) -> None:
         else:
             distances = np.abs(values - np.exp(1j * expected[event.kind]))
         assert distances.min() < 1e-5
-    assert checked >= 12
+    assert checked >= 6
     kinds = {event.kind for event in curve.events}
     assert kinds - {"undecided"} == {"fold", "period doubling", "torus", "grazing"}
 
@@ -184,20 +163,15 @@ def test_no_orbit_next_to_the_start() -> None:
     family = Shooting(oscillator=LAWS["newton"], period=3)
     start = family.at_speed(1.3 * family.fold().speed)
     with pytest.raises(NotPeriodic, match="period 3"):
-        follow_path(
-            lambda f: equation_1(f, NewtonRestitution(local_restitution=0.9)),
-            start,
-            22.0,
-            low=21.0,
-            high=23.0,
-        )
+        follow_path(lambda f: equation_1(f, newton(0.9)), start, 22.0, low=21.0, high=23.0)
 
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
 @pytest.mark.parametrize("kind", ["fold", "period doubling"])
-def test_any_event_is_a_start(curve: Branch, kind: str) -> None:
+def test_any_event_is_a_start(kind: str) -> None:
     """At a fold p does not tell an orbit from its neighbours."""
+    curve = followed(0.3, 1, 0.24, 0.42)
     start = next(e for e in curve.events if e.kind == kind and e.orbit.approach.min() > 0.01)
     found = follow_path(PATH, start.orbit, start.parameter, low=0.24, high=0.29, step=0.3)
     inside = [e.parameter for e in curve.events if e.parameter < 0.29]
@@ -208,26 +182,22 @@ def test_any_event_is_a_start(curve: Branch, kind: str) -> None:
 
 @pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
 def test_an_end_of_the_range_is_a_start(curve: Branch) -> None:
-    at_end = follow_path(PATH, curve.orbits[0], 0.24, low=0.24, high=0.26, step=0.3)
-    assert at_end.parameters[0] == 0.24 < at_end.parameters[1] and at_end.ended_low == "range"
+    low = curve.parameters[0]
+    at_end = follow_path(PATH, curve.orbits[0], low, low=low, high=low + 0.01, step=0.3)
+    assert at_end.parameters[0] == low < at_end.parameters[1] and at_end.ended_low == "range"
 
 
 def test_the_reason_for_an_end_is_told() -> None:
     """The drive may not be faster than the highest mode: no graze; an orbit that pierces the wall is none."""
-    stop = Stop(gap=1.0, law=LinearContact(stiffness=5.0))
-    unit = ModalModel(omega=[1.0], decay_rate=[0.02], phi=[1.0], participation=[1.0])
 
     def driven(w: float) -> ImpactOscillator:
-        drive = HarmonicDrive(frequency=w / (2.0 * np.pi), amplitude=0.6)
-        return ImpactOscillator(model=unit, stop=stop, drive=drive)
+        law, drive = LinearContact(stiffness=5.0), (w / (2.0 * np.pi), 0.6)
+        return modes_on_stop(1.0, 0.02, 1.0, 1.0, law=law, gap=1.0, drive=drive)
 
-    start = Shooting(oscillator=driven(0.9), period=1).at_excess(
-        driven(0.9).excess, Shooting(oscillator=driven(0.9), period=1).at_speed(1.0)
-    )
+    family = Shooting(oscillator=driven(0.9), period=1)
+    start = family.at_excess(driven(0.9).excess, family.at_speed(1.0))
     found = follow_path(driven, start, 0.9, low=0.88, high=1.1, step=0.1)
-    assert "highest retained mode" in found.ended_high and not [
-        e for e in found.events if e.kind == "grazing"
-    ]
+    assert "highest retained mode" in found.ended_high and not found.of_kind("grazing")
     family = Shooting(oscillator=LAWS["newton"], period=3)
     through = family.at_speed(20.0 * family.fold().speed)
     assert not through.admissible

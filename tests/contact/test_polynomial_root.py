@@ -1,7 +1,5 @@
 """The first rising root of a polynomial in an interval."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Old names go on working and warn."""
 
-from __future__ import annotations
-
 import importlib
 from dataclasses import replace
 

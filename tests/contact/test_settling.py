@@ -1,7 +1,5 @@
 """Transients that end on a proved orbit: the same orbits as after the letter's 10000 drive periods."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from letters_spring import GAP, HERTZ

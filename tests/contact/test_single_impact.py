@@ -1,31 +1,26 @@
 """Closed-form maximal orbits against integrations and 50-digit arithmetic that share no code with them."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
 import mpmath as mp
+import numpy as np
+import oscillators
 import pytest
-from oscillators import many_modes
+from oscillators import many_modes, modes_on_stop, newton
 from simulated_orbit import EQUATION_1
 
-from beam import ModalModel, single_mode
-from contact import HarmonicDrive, ImpactOscillator, LinearContact, NewtonRestitution, Stop
-from contact.maps.nordmark import NordmarkMap
+from beam import single_mode
+from contact import LinearContact, MaximalFamily, NordmarkMap, Stop, StroboscopicMap
 from contact.maps.nordmark_orbits import fold as map_fold
-from contact.orbits.families.single_impact import MaximalFamily
 
 T, MU, TAU = 0.0408, 3.56, 0.1
 
 
-def equation_1(frequency: float, period: int, **changes: float) -> MaximalFamily:
-    numbers = dict(free_period=T, decay_rate=MU, restitution=TAU) | changes
-    law = NewtonRestitution(local_restitution=numbers.pop("restitution"))
-    oscillator = ImpactOscillator(
-        model=single_mode(**numbers), stop=Stop(gap=1.0, law=law), drive=HarmonicDrive(frequency=frequency)
-    )
-    return MaximalFamily(oscillator=oscillator, period=period)
+def equation_1(frequency: float, period: int, restitution=TAU, free_period=T) -> MaximalFamily:
+    plain = oscillators.equation_1(frequency, newton(restitution))
+    model = single_mode(free_period=free_period, decay_rate=MU)
+    return MaximalFamily(oscillator=replace(plain, model=model), period=period)
 
 
 @pytest.mark.parametrize(("frequency", "period"), [place[:2] for place in EQUATION_1])
@@ -79,14 +74,9 @@ def test_ratio_to_the_map_at_a_band_edge() -> None:
 def test_many_modes_with_one_tip_value_are_equation_1() -> None:
     """A second mode that the tip does not see changes nothing, even if it is rigid and undamped."""
     plain = equation_1(21.5, 4)
-    model = ModalModel(
-        omega=[*plain.oscillator.model.omega, 0.0],
-        decay_rate=[MU, 0.0],
-        phi=[2.0, 0.0],
-        participation=[0.5, 1.0],
-    )
-    stop = replace(plain.oscillator.stop, gap=0.01)
-    family = replace(plain, oscillator=replace(plain.oscillator, model=model, stop=stop))
+    omega, law = [*plain.oscillator.model.omega, 0.0], plain.oscillator.stop.law
+    two = modes_on_stop(omega, [MU, 0.0], [2.0, 0.0], [0.5, 1.0], law=law, drive=21.5)
+    family = replace(plain, oscillator=two)
     assert family.fold().excess == pytest.approx(plain.fold().excess, rel=1e-12)
     assert family.fold().speed / 0.01 == pytest.approx(plain.fold().speed, rel=1e-12)
 
@@ -126,3 +116,13 @@ def test_slow_orbits_are_certified_down_to_grazing() -> None:
     family = equation_1(20.90, 3)
     for part in (1e-2, 1e-4, 1e-6):
         assert family.orbit(part * family.oscillator.unit_speed).admissible
+
+
+def test_an_orbit_repeats_to_rounding_for_20_000_periods() -> None:
+    """p5 of Eq. (1) at 22.2 Hz, from its closed form on."""
+    orbits = equation_1(22.2, 5).orbits(1e-3)
+    (orbit,) = [o for o in orbits if o.stable and o.admissible]
+    strobed = StroboscopicMap(oscillator=orbit.oscillator)
+    points = strobed.orbit(replace(orbit.strobe_state(), time=0.0), 20_000).points.reshape(-1, 5, 2)
+    assert np.abs(points - points[0]).max() < 1e-13 * strobed.scale
+    assert np.abs(points[-2:] - points[-3]).max() < 1e-15 * strobed.scale

@@ -1,29 +1,16 @@
 """What the loop of one mode is made of, and when it is used."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from one_mode import FREQUENCIES, GAP, OMEGA, general_orbit, oscillator
 
+import contact
 from beam import ModalModel, SuspiciousValue, single_mode
-from contact.drive import HarmonicDrive
 from contact.engine.event_loop import FAILED_CHATTER
-from contact.errors import ContactError
-from contact.laws import DelayedRestitution, HertzContact
 from contact.maps import stroboscope
-from contact.maps.stroboscope import StroboscopicMap, strobed_orbits
 from contact.one_mode.period_table import period_table, table_at
-from contact.oscillator import ImpactOscillator
-from contact.stop import Stop
-from contact.trajectory import State
-
-# --- the crossing in one evaluation ------------------------------------------------------------------------
-
-
-# --- the motion between the nodes --------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("factor", [0.3, 1.0, 7.0])
@@ -44,17 +31,14 @@ def test_the_table_of_another_amplitude_is_a_scaled_one(factor):
     assert table_at(table, single.motion(), 1e7).steady.largest_deviation < 0
 
 
-# --- when it is used ---------------------------------------------------------------------------------------
-
-
 def test_it_is_offered_to_one_mode_under_newtons_law_only():
     single = oscillator()
     assert period_table(single.motion()) is not None
-    for law in (HertzContact(stiffness=1e9), DelayedRestitution(restitution=0.1, delay=1e-3)):
-        other = replace(single, stop=Stop(gap=GAP, law=law))
+    for law in (contact.HertzContact(stiffness=1e9), contact.DelayedRestitution(restitution=0.1, delay=1e-3)):
+        other = replace(single, stop=contact.Stop(gap=GAP, law=law))
         assert period_table(other.motion()) is None
     with pytest.warns(SuspiciousValue, match="frequency of the drive"):
-        fast = replace(single, drive=HarmonicDrive(frequency=0.2, amplitude=0.01))
+        fast = replace(single, drive=contact.HarmonicDrive(frequency=0.2, amplitude=0.01))
     assert period_table(fast.motion()) is None
     two = ModalModel(
         omega=np.array([150.0, 900.0]), decay_rate=np.ones(2), phi=np.ones(2), participation=np.ones(2)
@@ -62,12 +46,12 @@ def test_it_is_offered_to_one_mode_under_newtons_law_only():
     assert period_table(replace(single, model=two).motion()) is None
     loose = single_mode(free_period=40.80e-3, decay_rate=3.56)
     loose = replace(loose, omega=np.zeros(1))
-    assert period_table(ImpactOscillator(model=loose, stop=single.stop).motion()) is None
+    assert period_table(contact.ImpactOscillator(model=loose, stop=single.stop).motion()) is None
 
 
 def test_a_constant_load_moves_the_mean_place():
     single = replace(oscillator(22.2, excess=0.0), load=np.array([0.03 * GAP * OMEGA**2]))
-    strobed = StroboscopicMap(oscillator=single)
+    strobed = contact.StroboscopicMap(oscillator=single)
     assert period_table(single.motion()) is not None
     ours = strobed.orbit(strobed.steady(), 300)
     points, counts = general_orbit(single, strobed.steady(), 300)
@@ -77,7 +61,7 @@ def test_a_constant_load_moves_the_mean_place():
 
 
 def test_orbits_continue_bit_for_bit():
-    maps = [StroboscopicMap(oscillator=oscillator(f, tau=t)) for f in FREQUENCIES for t in (0.1, 0.5)]
+    maps = [contact.StroboscopicMap(oscillator=oscillator(f, tau=t)) for f in FREQUENCIES for t in (0.1, 0.5)]
     for strobed in maps:
         whole, half = (strobed.orbit(strobed.steady(), count) for count in (500, 250))
         assert np.array_equal(half.points, whole.points[:250])
@@ -93,17 +77,17 @@ MIXED = (
     + [oscillator(6.0, tau=0.1, decay=20.0, excess=3.0), oscillator(9.0, tau=0.3, excess=0.6)]
     + [oscillator(22.2, excess=-0.1), oscillator(22.2, phi=-1.3)]
     + [oscillator(21.5, phi=2.7, participation=-0.4)]
-    + [replace(oscillator(), stop=Stop(gap=GAP, law=HertzContact(stiffness=1e9)))]
+    + [replace(oscillator(), stop=contact.Stop(gap=GAP, law=contact.HertzContact(stiffness=1e9)))]
 )
 
 
 def test_an_orbit_is_the_same_in_any_company():
-    maps = [StroboscopicMap(oscillator=single) for single in MIXED]
-    starts = [State.rest(1) if i % 2 else strobed.steady() for i, strobed in enumerate(maps)]
+    maps = [contact.StroboscopicMap(oscillator=single) for single in MIXED]
+    starts = [contact.State.rest(1) if i % 2 else strobed.steady() for i, strobed in enumerate(maps)]
     impacts = 0
     for workers in (1, 3):
         for strobed, start, orbit in zip(
-            maps, starts, strobed_orbits(maps, starts, 700, workers=workers), strict=True
+            maps, starts, contact.strobed_orbits(maps, starts, 700, workers=workers), strict=True
         ):
             wanted = strobed.orbit(start, 700)
             assert np.array_equal(wanted.points, orbit.points)
@@ -113,7 +97,7 @@ def test_an_orbit_is_the_same_in_any_company():
             assert (wanted.end.time, wanted.end.regime) == (orbit.end.time, orbit.end.regime)
             impacts += int(orbit.impacts.sum())
     assert impacts > 3000
-    assert strobed_orbits([], [], 5) == []
+    assert contact.strobed_orbits([], [], 5) == []
 
 
 def test_the_first_failure_in_their_order_ends_a_batch(monkeypatch):
@@ -128,7 +112,7 @@ def test_the_first_failure_in_their_order_ends_a_batch(monkeypatch):
 
     monkeypatch.setattr(stroboscope, "strobed_motion", failing)
     slow = [oscillator(6.0, tau=tau, decay=20.0, excess=3.0) for tau in (0.1, 0.5, 0.5)]
-    maps = [StroboscopicMap(oscillator=single) for single in slow]
-    with pytest.raises(ContactError, match="accumulate") as caught:
-        strobed_orbits(maps, [State.rest(1)] * 3, 200, workers=1)
+    maps = [contact.StroboscopicMap(oscillator=single) for single in slow]
+    with pytest.raises(contact.ContactError, match="accumulate") as caught:
+        contact.strobed_orbits(maps, [contact.State.rest(1)] * 3, 200, workers=1)
     assert (caught.value.time * 6.0) % 1.0 == pytest.approx(0.25)

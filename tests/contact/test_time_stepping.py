@@ -3,32 +3,21 @@
 Their steps against matrices, energy, impacts that accumulate, penetration, stays on the stop, limits.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 import pytest
-from oscillators import GAMMA, GAP, OMEGA, PHI, THROWN, spring
+from oscillators import GAMMA, GAP, OMEGA, PHI, THROWN, modes_on_stop, newton, spring
 from whole_motions import falling_body
 
-from beam import ModalModel
+from contact import State, simulate
+from contact.integrators import MoreauJean, NonsmoothGeneralisedAlpha
 from contact.integrators.generalised_alpha import chung_hulbert
-from contact.integrators.moreau_jean import MoreauJean
-from contact.integrators.nonsmooth_generalised_alpha import NonsmoothGeneralisedAlpha
-from contact.laws import NewtonRestitution
-from contact.oscillator import ImpactOscillator
-from contact.simulation import simulate
-from contact.trajectory import State
 
 RESTITUTION, STEP, STEPS = 0.6, 4e-5, 1000
 W = 2 * np.pi * 21.5
 PUSH, SPRINGS, DAMPING = GAMMA[:3] * 1e-4 * W**2, np.diag(OMEGA[:3] ** 2), np.diag(0.02 * OMEGA[:3])
 TIP = PHI[:3]
-
-
-def newton(restitution: float) -> NewtonRestitution:
-    return NewtonRestitution(local_restitution=restitution)
 
 
 def by_percussions(theta: float) -> tuple[np.ndarray, np.ndarray, int]:
@@ -67,14 +56,8 @@ def by_all_unknowns(rho: float) -> tuple[np.ndarray, np.ndarray, int]:
     free = np.block([*rows, [np.zeros((1, 4 * n)), np.ones((1, 1))]])
     struck = np.block([*rows, [np.concatenate([np.zeros(n), TIP, np.zeros(2 * n + 1)])[None, :]]])
     for i in range(STEPS):
-        known = np.concatenate(
-            [
-                q + h * v + h**2 * (0.5 - beta) * a,
-                v + h * (1 - gamma) * a,
-                f * smooth - m * a,
-                PUSH * math.sin(W * (i + 1) * h),
-            ]
-        )
+        place, speed = q + h * v + h**2 * (0.5 - beta) * a, v + h * (1 - gamma) * a
+        known = np.concatenate([place, speed, f * smooth - m * a, PUSH * math.sin(W * (i + 1) * h)])
         before = TIP @ v
         answer = np.linalg.solve(free, np.append(known, 0.0))
         if TIP @ q - GAP + 0.5 * h * before >= 0 and TIP @ answer[n : 2 * n] + RESTITUTION * before > 0:
@@ -226,13 +209,7 @@ def test_a_stay_on_the_stop_does_not_drift() -> None:
 
 @pytest.mark.parametrize("zeta", [0.3, 1.7])
 def test_the_limit_is_where_the_growth_factor_of_a_step_leaves_one(zeta: float) -> None:
-    model = ModalModel(
-        omega=np.array([100.0]),
-        decay_rate=np.array([2 * zeta * 100.0]),
-        phi=np.ones(1),
-        participation=np.ones(1),
-    )
-    motion = ImpactOscillator(model=model, stop=spring(1, newton(0.5)).stop).motion()
+    motion = modes_on_stop(100.0, 2 * zeta * 100.0).motion()
     for step in (1e-3, 3e-3, 6e-3, 1e-2, 2e-2, 4e-2):
         system = np.array([[0.0, 1.0], [-1e4, -200.0 * zeta]])
         for theta in (0.0, 0.3):

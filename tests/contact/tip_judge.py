@@ -4,28 +4,20 @@ With real exponentials and phases in place of the recurrences of the package: th
 points per period of its fastest mode, every maximum is polished, the first one above the stop counts.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
+from oscillators import modes_on_stop
 
-from beam import ModalModel
-from contact.drive import HarmonicDrive
+from contact import ImpactOscillator
 from contact.flight.crossing import CROSSES, FREE, GRAZE_TOLERANCE, GRAZES, first_crossing
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import tip_rounding
 from contact.flight.motion import LOAD, Motion
-from contact.laws import NewtonRestitution
-from contact.oscillator import ImpactOscillator
-from contact.stop import Stop
 
 Real = np.longdouble
 DECADES = [10.0**-k for k in range(1, 13)]
 PLANTED = [sign * h for h in DECADES for sign in (1.0, -1.0)]
-
-
-# -------------------------------------------------------------------------------------------------- the judge
 
 
 class Signal:
@@ -140,11 +132,15 @@ def judge(
     return Verdict(time, heights[first], signal(time, 1))
 
 
+def highest(signal: Signal, gap: float, start: float, end: float) -> Real:
+    """Greatest tip displacement minus gap in [start, end]."""
+    places = signal.peaks(end)
+    places = np.append(places[places >= start], np.array([start, end], dtype=Real))
+    return (signal(places) - Real(gap)).max()
+
+
 def search(motion: Motion, base: float, u: np.ndarray, v: np.ndarray, duration: float, order: int = 0):
     return first_crossing(motion, base, u, v, duration, order)
-
-
-# --------------------------------------------------------------------------------------------- random flights
 
 
 def random_oscillator(
@@ -158,15 +154,9 @@ def random_oscillator(
         10 ** generator.uniform(-4, -1, n_modes),
     )
     decay[generator.random(n_modes) < 0.1] = 0.0
-    drive = HarmonicDrive(frequency=float(generator.uniform(14, 19)), amplitude=2e-3) if driven else None
-    model = ModalModel(
-        omega=omega,
-        decay_rate=decay,
-        phi=generator.normal(size=n_modes) * 5 + 2,
-        participation=generator.normal(size=n_modes) * 0.1,
-    )
-    stop = Stop(gap=0.01, law=NewtonRestitution(local_restitution=0.5))
-    return ImpactOscillator(model=model, stop=stop, drive=drive)
+    drive = (float(generator.uniform(14, 19)), 2e-3) if driven else None
+    phi, participation = generator.normal(size=n_modes) * 5 + 2, generator.normal(size=n_modes) * 0.1
+    return modes_on_stop(omega, decay, phi, participation, drive=drive)
 
 
 def random_deviation(generator: np.random.Generator, motion: Motion, *, ringing: float) -> tuple:
