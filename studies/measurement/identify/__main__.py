@@ -7,7 +7,7 @@ A record is a CSV file of one of three kinds, by its heading (studies.measuremen
 example makes one of each):
 
     x_m[,v_m_per_s]                        strobe points of a settled motion, a row a drive period
-    time_s,x_m                             displacement of the tip relative to the base, at a constant rate
+    time_s,x_m                             displacement of the tip relative to the base
     frequency_hz,period,excess[,error]     where p_m is lost as the drive is lowered
 
 The oscillator is that of the scene: Eq. (1) (one_mode), the same with a constant delay (two_parameters), or
@@ -41,10 +41,13 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
+import numpy as np
+
 from beam import InvalidValue
 from contact import ImpactOscillator
 from studies.measurement.identify import coverage as covering
 from studies.measurement.identify import figure
+from studies.measurement.identify.displacement import SENSOR
 from studies.measurement.identify.estimates import SHOWN, estimates_of, quality_of, traded
 from studies.measurement.identify.fit import Fit
 from studies.measurement.identify.fit import fit as fitted
@@ -67,7 +70,10 @@ from studies.shell.study import Run, study
 
 USUAL: Mapping[Kind, tuple[str, ...]] = {
     "strobe": ("free_period", "decay_rate", "gap", "restitution", "stiffness"),
-    "displacement": ("free_period", "decay_rate", "gap", "amplitude", "restitution", "delay", "stiffness"),
+    "displacement": (
+        *("free_period", "decay_rate", "gap", "amplitude"),
+        *("restitution", "delay", "stiffness", "frequency"),
+    ),
     "transitions": ("free_period", "restitution"),
 }
 """The parameters that are fitted to a kind of record by default, as far as the oscillator has them."""
@@ -80,17 +86,19 @@ EXAMPLES: Mapping[Kind, Description] = {
 FREQUENCY_HZ, SEED = 22.20, 1996  # of the example: the letter's p5
 
 
-def frequency_of(record: Record) -> float:
-    """The drive frequency of a record, the first of a table [Hz]."""
-    if (frequency := float(record.rows[0, 0]) if record.kind == "transitions" else record.frequency) is None:
+def frequency_of(record: Record, scene: Scene) -> float:
+    """The drive frequency where a fit begins [Hz]: of the record, the first of a table, or of the scene."""
+    if record.kind == "transitions":
+        return float(record.rows[0, 0])
+    if record.frequency is None and record.kind == "strobe":
         raise InvalidValue("the record does not say the frequency of the drive: give --drive HZ MM")
-    return frequency
+    return record.frequency or corresponding(scene, FREQUENCY_HZ)
 
 
 def in_step(record: Record, oscillator: ImpactOscillator) -> int:
     """Rows a drive period if that is a whole number within what the record resolves; else 0."""
     times = record.rows[:, 0]
-    rows = oscillator.period / (times[1] - times[0])
+    rows = oscillator.period / float(np.median(np.diff(times)))
     return round(rows) if abs(rows - round(rows)) * (times[-1] - times[0]) < oscillator.period else 0
 
 
@@ -107,7 +115,7 @@ def driven(record: Record, oscillator: ImpactOscillator, names: Sequence[str]) -
     """The oscillator at the drive amplitude of the record."""
     if record.amplitude is not None:
         return oscillator.with_amplitude(record.amplitude)
-    if record.kind != "transitions" and "amplitude" not in names:
+    if record.kind == "strobe" and "amplitude" not in names:
         raise InvalidValue("the record does not say the amplitude of the base: give --drive HZ MM, or fit it")
     return oscillator
 
@@ -123,6 +131,11 @@ def identify(
     drive: Annotated[
         tuple[float, float] | None, "frequency (Hz) and amplitude of the base (mm), in place of the record's"
     ] = None,
+    sensor: Annotated[
+        tuple[str, ...],
+        "numbers of the sensor that are fitted to a displacement: phase (of the drive at time zero), offset "
+        "(reading at equilibrium), scale (reading per displacement)",
+    ] = ("phase", "offset"),
     noise_um: Annotated[float | None, "noise of the read-out, where it is known"] = None,
     delay_ms: Annotated[
         float | None, "two_parameters: the delay, or where its fit starts (default: T/136)"
@@ -138,6 +151,8 @@ def identify(
         raise InvalidValue(f"drive is {drive[0]:g} Hz, {drive[1]:g} mm; it needs a record, and both above 0")
     if delay_ms is not None and description != "two_parameters" and record is not None:
         raise InvalidValue(f"delay_ms is {delay_ms:g} ms; only --description two_parameters has a delay")
+    if unknown := [name for name in sensor if name not in SENSOR]:
+        raise InvalidValue(f"sensor names {unknown[0]}; a sensor has {', '.join(SENSOR)}")
     noise = None if noise_um is None else 1e-6 * noise_um
     delay = None if delay_ms is None else 1e-3 * delay_ms
     if description == "beam":
@@ -146,19 +161,21 @@ def identify(
         read = read_record(record)
         if drive is not None:
             read = replace(read, frequency=drive[0], amplitude=1e-3 * drive[1])
-        oscillator = described(scene, description, delay, frequency_of(read))
+        oscillator = described(scene, description, delay, frequency_of(read, scene))
         given = {record.stem: (read, oscillator)}
     elif fit:
         raise InvalidValue(f"fit names {' '.join(fit)}, but no record is given: put its file before --fit")
     else:
         given = examples(scene, run, delay)
     found = {
-        name: fitted(one, driven(one, oscillator, fit), fit or usual(one, oscillator), noise=noise)
+        name: fitted(
+            one, driven(one, oscillator, fit), fit or usual(one, oscillator), noise=noise, free=sensor
+        )
         for name, (one, oscillator) in given.items()
     }
     results = report(run, found)
-    for name, (one, oscillator) in given.items():
-        if one.kind == "displacement" and (rows := in_step(one, oscillator)):
+    for name, one in found.items():
+        if one.record.kind == "displacement" and (rows := in_step(one.record, one.oscillator)):
             run.say(
                 f"{name}: {rows} rows a drive period, so that all impacts lie alike between two of them: "
                 "errors of gap, restitution and delay are too small; record at another rate"

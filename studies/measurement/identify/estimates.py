@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from studies.measurement.identify.displacement import UNITS
 from studies.measurement.identify.fit import Fit
 from studies.measurement.identify.profiles import Profile, profile
 from studies.physics.parameters import parameters_of
@@ -59,7 +60,8 @@ class Quality:
 
 def estimates_of(name: str, found: Fit, profiles: Sequence[Profile]) -> list[Estimate]:
     """The rows of a fit; intervals come from the likelihood where its profile is known."""
-    known, intervals = parameters_of(found.oscillator), dict(zip(found.names, found.intervals(), strict=True))
+    units = {name: one.unit for name, one in parameters_of(found.oscillator).items()} | UNITS
+    intervals = dict(zip(found.names, found.intervals(), strict=True))
     for one in {row.parameter for row in profiles}:
         points = [row for row in profiles if row.parameter == one]
         values, depth = np.array([(row.value, max(row.depth, 0.0)) for row in points]).T
@@ -70,7 +72,7 @@ def estimates_of(name: str, found: Fit, profiles: Sequence[Profile]) -> list[Est
         Estimate(
             record=name,
             parameter=one,
-            unit=known[one].unit,
+            unit=units[one],
             start=float(found.start[i]),
             low90=float(low),
             estimate=float(found.estimate[i]),
@@ -99,6 +101,7 @@ def traded(found: Fit, quick: bool) -> list[Profile]:
     """
     size = np.abs(found.correlations) - np.eye(len(found.names))
     partners = {i: int(np.argmax(row)) for i, row in enumerate(size) if row.max() > TRADE}
+    partners = {i: k for i, k in partners.items() if max(i, k) < len(found.problem.names)}
     order = sorted(partners, key=lambda i: -size[i, partners[i]])
     kept = [i for k, i in enumerate(order) if partners[i] not in order[:k] or partners[partners[i]] != i]
     return [

@@ -20,13 +20,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 from scipy.optimize import least_squares
+from scipy.special import expit, logit
 
 from beam import InvalidValue, Refusal
 from contact import ContactError, ImpactOscillator
 from studies import letter
+from studies.measurement.identify.displacement import SENSOR
 from studies.measurement.identify.predictions import Prediction
 from studies.measurement.identify.records import READ_OUT, Record
-from studies.measurement.identify.starts import prediction_of
+from studies.measurement.identify.starts import predictions_of
 from studies.physics.parameters import parameters_of, require_names, with_values
 
 Array = NDArray[np.float64]
@@ -49,14 +51,16 @@ MOST = 200
 LEASH = 1.0
 """Prior of the parameters while the beginning of a record is fitted, which need not determine all of them."""
 
-REGION, PART = 2.0, 0.3
-"""Half axes of the confidence region in standard errors; part of the largest from which a parameter takes
-part in a direction that is not determined."""
+PART, LOST = 0.3, 2.0
+"""Part of the largest from which a parameter takes part in a direction that is not determined; standard error
+of a logarithm above which its parameter is not determined."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Fit:
-    """A fit; arrays by `names`, in SI units: `before` the record was looked at, at the `start` of the fit.
+    """A fit; arrays by `names`, parameters and then numbers of the sensor, in SI units.
+
+    `before` has the values before the record was looked at, `start` those at the start of the fit.
 
     `noise`: standard deviation of x [m], or of an excess in units of its error; `freedom`: rows less
     unknowns; `residuals`: observed less predicted, shape of the record's `observed`; `chance`: probability of
@@ -100,15 +104,27 @@ class Fit:
         return float(stats.norm.ppf(tail) if self.noise_known else stats.t.ppf(tail, self.freedom))
 
     def intervals(self) -> Array:
-        """Lower and upper ends, shape (n, 2)."""
-        return self.estimate[:, None] + np.outer(self.errors, [-self.reach, self.reach])
+        """Lower and upper ends, shape (n, 2), within the physical range.
+
+        They are those of the unknowns of the problem, of a restitution r those of log(r/(1 - r)).
+        """
+        problem, own = self.problem, self.problem.named
+        ends = np.tile(self.unknowns, (2, 1))
+        ends[:, own] += np.outer([-self.reach, self.reach], self.errors / problem.slopes(self.unknowns)[own])
+        found = problem.values(ends)[:, own].T
+        for i, name in enumerate(self.names):
+            if name == "restitution" and 0.0 < (r := self.estimate[i]) < 1.0:
+                wide = self.reach * self.errors[i] / (r * (1.0 - r))
+                found[i] = expit(logit(r) + np.array([-wide, wide]))
+        return np.asarray(found)
 
 
 class Problem:
-    """Residuals and Jacobian in units of the noise, by unknowns in units of their size.
+    """Residuals and Jacobian in units of the noise, by unknowns u without units.
 
-    The further unknowns are held by their prior, the parameters by a `leash`: a standard deviation about
-    where they start, in units of their size.
+    A parameter p that starts at p_0 > 0 has u = log(p/p_0), and no search leaves the physical range; another
+    one, and a restitution, has u = p/size.  The further unknowns are held by their prior, the parameters by a
+    `leash`: a standard deviation of u about where it starts.
     """
 
     def __init__(
@@ -122,18 +138,44 @@ class Problem:
         self.prediction, self.oscillator, self.names = prediction, oscillator, names
         known = parameters_of(oscillator)
         self.sizes = np.concatenate([[known[name].size for name in names], prediction.sizes])
-        self.start = np.concatenate([[known[name].value for name in names], prediction.extra]) / self.sizes
+        values = np.concatenate([[known[name].value for name in names], prediction.extra])
+        self.log = (np.arange(values.size) < len(names)) & (values > 0.0)
+        self.log[[i for i, name in enumerate(names) if name == "restitution"]] = False
+        self.sizes[self.log] = values[self.log]
+        self.start = self.unknowns_of(values)
         self.weights = 1.0 / prediction.record.units(noise).ravel()
         self.observed = prediction.record.observed.ravel()
         self.noise, own = noise, np.arange(self.sizes.size) < len(names)
         self.held = 1.0 / np.append(np.full(len(names), leash), prediction.prior / prediction.sizes)
         self.middle = np.where(own, self.start, 0.0)
+        self.unknowns = self.start.size - int(np.isfinite(prediction.prior).sum())
+        self.freedom = max(self.observed.size - self.unknowns, 1)
+        sensor = range(self.start.size - len(prediction.sensor), self.start.size)
+        self.named = [*range(len(names)), *sensor]
         self.last: tuple[Array, ImpactOscillator, Array] | None = None
+
+    def values(self, unknowns: Array) -> Array:
+        """Parameters and further unknowns in their units."""
+        found = unknowns * self.sizes
+        found[..., self.log] = self.sizes[self.log] * np.exp(np.clip(unknowns[..., self.log], -50.0, 50.0))
+        return np.asarray(found)
+
+    def unknowns_of(self, values: Array) -> Array:
+        """The inverse of `values`."""
+        found = values / self.sizes
+        found[self.log] = np.log(found[self.log])
+        return np.asarray(found)
+
+    def slopes(self, unknowns: Array) -> Array:
+        """Derivatives of `values`, each by its own unknown."""
+        found, slopes = self.values(unknowns), self.sizes.copy()
+        slopes[self.log] = found[self.log]
+        return slopes
 
     def at(self, unknowns: Array) -> tuple[ImpactOscillator, Array]:
         """Oscillator and further unknowns; for the same unknowns the same objects."""
         if self.last is None or not np.array_equal(self.last[0], unknowns):
-            values, n = unknowns * self.sizes, len(self.names)
+            values, n = self.values(unknowns), len(self.names)
             own = dict(zip(self.names, values[:n].tolist(), strict=True))
             self.last = unknowns.copy(), with_values(self.oscillator, own), values[n:]
         return self.last[1], self.last[2]
@@ -152,7 +194,7 @@ class Problem:
     def jacobian(self, unknowns: Array) -> Array:
         """Shape (rows + unknowns, unknowns)."""
         rows = self.prediction.jacobian(*self.at(unknowns), self.names) * self.weights[:, None]
-        return np.vstack([rows * self.sizes, np.diag(self.held)])
+        return np.vstack([rows * self.slopes(unknowns), np.diag(self.held)])
 
     def solve(self, start: Array) -> Any:
         """``scipy.optimize.least_squares`` from `start`."""
@@ -174,85 +216,99 @@ class Problem:
 
 
 def fit(
-    record: Record, oscillator: ImpactOscillator, names: Sequence[str], *, noise: float | None = None
+    record: Record,
+    oscillator: ImpactOscillator,
+    names: Sequence[str],
+    *,
+    noise: float | None = None,
+    free: Sequence[str] = ("phase", "offset"),
 ) -> Fit:
     """Fit the named parameters; the others keep the values of `oscillator`, driven as the record was.
 
-    `noise` is the standard deviation of the read-out where it is known [m], or of the excesses of a table.
-    ValueError is raised, in one sentence, for a record that cannot determine them.
+    `noise` is the standard deviation of the read-out where it is known [m], or of the excesses of a table;
+    `free` are the numbers of the sensor that are fitted to a displacement.  InvalidValue is raised, in one
+    sentence, for a record that cannot determine them.
     """
     require_names(names, oscillator)
-    names = tuple(names)
-    table = record.kind == "transitions"
     known = noise is not None or len(record.columns) == 4
-    unit = noise or (letter.AMPLITUDE_STABILITY if table else READ_OUT)
-    prediction, begun = prediction_of(record, oscillator, names)
-    problem = Problem(prediction, begun, names, unit)
-    rows, unknowns = problem.observed.size, problem.start.size - int(np.isfinite(prediction.prior).sum())
-    if rows < unknowns + (not known):
+    unit = noise or (letter.AMPLITUDE_STABILITY if record.kind == "transitions" else READ_OUT)
+    best, failure = None, None
+    for prediction, begun in predictions_of(record, oscillator, tuple(names), free):
+        problem = Problem(prediction, begun, tuple(names), unit)
+        try:
+            found = _solved(problem, known)
+        except (ContactError, Refusal) as error:
+            failure = failure or error
+            continue
+        if best is None or found.cost < best[1].cost:
+            best = problem, found
+        if _chance(found.fun[: problem.observed.size], prediction, known, problem.freedom) > TOO_SMALL:
+            break
+    if best is None:
+        raise failure or InvalidValue("no motion like that of the record was found to start from")
+    return _judged(*best, oscillator, known)
+
+
+def _solved(problem: Problem, known: bool) -> Any:
+    """The least squares of a problem, its beginning first."""
+    rows, names = problem.observed.size, problem.names
+    if rows < problem.unknowns + (not known):
         raise InvalidValue(
-            f"the record has {rows} numbers, too short for {unknowns} unknowns and their errors"
+            f"the record has {rows} numbers, too short for {problem.unknowns} unknowns and their errors"
         )
-    at = start = problem.start
-    for part in prediction.parts(begun)[:-1]:
-        start = Problem(part, begun, names, unit, LEASH).solve(start).x
+    start = problem.start
+    for part in problem.prediction.parts(problem.oscillator)[:-1]:
+        start = Problem(part, problem.oscillator, names, problem.noise, LEASH).solve(start).x
     found = problem.solve(start)
     if found.status == 0:
         raise InvalidValue(f"the fit has not settled after {MOST} steps: give better values, or fit fewer")
-    freedom = max(rows - unknowns, 1)
-    spread = 1.0 if known else float(np.sqrt(2.0 * found.cost / freedom))
-    n, sizes, shape = len(names), problem.sizes, prediction.record.observed.shape
-    _u, singular, axes = np.linalg.svd(found.jac, full_matrices=False)
+    return found
+
+
+def _judged(problem: Problem, found: Any, oscillator: ImpactOscillator, known: bool) -> Fit:
+    """The fit that a solution is; InvalidValue if the record does not determine it."""
+    prediction, rows = problem.prediction, problem.observed.size
+    spread = 1.0 if known else float(np.sqrt(2.0 * found.cost / problem.freedom))
+    own = problem.named
+    names = problem.names + prediction.sensor
+    lengths = np.linalg.norm(found.jac, axis=0)
+    lengths[lengths == 0.0] = 1.0
+    _u, singular, axes = np.linalg.svd(found.jac / lengths, full_matrices=False)
     if not singular[-1] > SINGULAR * singular[0]:
-        raise InvalidValue(f"the record cannot {_blind(axes, names)}: fit fewer parameters or another record")
-    covariance = (axes.T / singular**2 @ axes * np.outer(sizes, sizes) * spread**2)[:n, :n]
+        blind = _blind(axes[:, own], names)
+        raise InvalidValue(f"the record cannot {blind}: fit fewer parameters or another record")
+    axes = axes / lengths
+    covariance = (axes.T / singular**2 @ axes * spread**2)[np.ix_(own, own)]
+    slopes = problem.slopes(found.x)[own]
+    before = parameters_of(oscillator)
     result = Fit(
         record=prediction.record,
         oscillator=problem.at(found.x)[0],
         names=names,
-        start=(at * sizes)[:n],
-        before=np.array([parameters_of(oscillator)[name].value for name in names]),
-        estimate=(found.x * sizes)[:n],
-        covariance=covariance,
-        noise=spread * unit,
+        start=problem.values(problem.start)[own],
+        before=np.array([before[name].value if name in before else SENSOR[name] for name in names]),
+        estimate=problem.values(found.x)[own],
+        covariance=covariance * np.outer(slopes, slopes),
+        noise=spread * problem.noise,
         noise_known=known,
-        freedom=freedom,
-        residuals=(-found.fun[:rows] / problem.weights).reshape(shape),
-        chance=_chance(found.fun[:rows], prediction, known, freedom),
+        freedom=problem.freedom,
+        residuals=(-found.fun[:rows] / problem.weights).reshape(prediction.record.observed.shape),
+        chance=_chance(found.fun[:rows], prediction, known, problem.freedom),
         problem=problem,
         unknowns=found.x,
     )
-    if not result.too_small:  # else errors mean little, and `report` says so
-        lost = result.errors > sizes[:n] * np.maximum(np.abs(found.x[:n]), 1.0)
-        if np.any(lost):
-            worst = names[int(np.argmax(lost))]
-            raise InvalidValue(
-                f"the record cannot {_blind(axes, names)}: the standard error of {worst} is above its value"
-            )
-        _require_same_impacts(problem, found.x, axes * spread / singular[:, None])
+    most = np.where(problem.log, LOST, np.maximum(np.abs(found.x), 1.0))[own]
+    if not result.too_small and np.any(lost := np.sqrt(np.diag(covariance)) > most):  # else `report` says so
+        worst, blind = names[int(np.argmax(lost))], _blind(axes[:, own], names)
+        raise InvalidValue(f"the record cannot {blind}: the standard error of {worst} is above its value")
     return result
 
 
 def _blind(axes: Array, names: Sequence[str]) -> str:
     """The parameters of the last axis, which a record cannot separate or determine."""
-    share = np.abs(axes[-1][: len(names)])
+    share = np.abs(axes[-1])
     blind = [name for name, part in zip(names, share, strict=True) if part > PART * share.max()]
     return f"tell {' from '.join(blind)}" if len(blind) > 1 else f"determine {blind[0]}"
-
-
-def _require_same_impacts(problem: Problem, unknowns: Array, axes: Array) -> None:
-    """ValueError if the impacts change inside the confidence region with these half axes."""
-    touches, before = problem.prediction.touches, problem.prediction.touches(*problem.at(unknowns))
-    for axis in [sign * axis for axis in axes for sign in (-REGION, REGION)]:
-        try:
-            same = touches(*problem.at(unknowns + axis)) == before
-        except (ContactError, Refusal):
-            same = False
-        if not same:
-            raise InvalidValue(
-                "the orbit changes its impacts inside the confidence region, so that errors mean nothing: "
-                "record it longer, or farther from where it ends"
-            )
 
 
 def _chance(residuals: Array, prediction: Prediction, known: bool, freedom: int) -> float:

@@ -1,15 +1,12 @@
 """Predicted rows of a record for an oscillator with given parameters, and their derivatives.
 
 Strobe points: the periodic orbit p_m next to the last one (``contact.orbits.Shooting``), its m strobes in the
-cyclic order that fits best. Displacement: the motion from a start that is fitted too; modes that hardly
-appear in the record are held by a prior, one per cent of the gap at the tip. Transitions: the fold of each
-p_m.
+cyclic order that fits best. Transitions: the fold of each p_m. A displacement is predicted in
+`studies.measurement.identify.displacement`.
 """
 
 from __future__ import annotations
 
-import copy
-import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import replace
@@ -17,17 +14,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from beam import InvalidValue, Refusal
-from contact import (
-    ContactError,
-    ImpactKind,
-    ImpactOscillator,
-    MaximalFamily,
-    NewtonRestitution,
-    State,
-    Trajectory,
-    simulate,
-)
+from beam import InvalidValue
+from contact import ImpactOscillator, MaximalFamily, NewtonRestitution, simulate
 from contact.orbits import (
     KickFamily,
     PeriodicOrbit,
@@ -35,7 +23,6 @@ from contact.orbits import (
     SingleImpactOrbit,
     excess_derivatives,
     fold_of,
-    motion_derivatives,
     orbit_derivatives,
 )
 from studies.measurement.identify.records import Record
@@ -43,19 +30,13 @@ from studies.physics.parameters import changes_of
 
 Array = NDArray[np.float64]
 
-CLOSE, END = 0.01, 0.002
-"""Residuals over the size of the record that are close; part of a record at whose end impacts do not
-count."""
-
-PRIOR = 0.01
-"""Standard deviation of a mode beyond the first at the start of a record, in gaps at the tip."""
-
 
 class Prediction(ABC):
     """What is predicted of one record; `extra` are the unknowns beside the parameters.
 
     `sizes` measure changes of them, `prior` holds each about zero with this standard deviation (infinite:
-    not), all of shape (n_extra,). Rows repeat after `period`, unless it is 0.
+    not), all of shape (n_extra,). The last of them are the `sensor` numbers that are estimated, by name. Rows
+    repeat after `period`, unless it is 0.
     """
 
     record: Record
@@ -63,6 +44,7 @@ class Prediction(ABC):
     extra: Array = np.empty(0)
     sizes: Array = np.empty(0)
     prior: Array = np.empty(0)
+    sensor: tuple[str, ...] = ()
 
     def parts(self, oscillator: ImpactOscillator) -> Sequence[Prediction]:
         """What is fitted one after the other, itself last."""
@@ -159,87 +141,3 @@ class Transitions(Prediction):
         self.values(oscillator, extra)
         orbits = [fold for fold in self.folds if fold is not None]
         return np.array([excess_derivatives(one, changes_of(one.oscillator, names)) for one in orbits])
-
-
-class Displacement(Prediction):
-    """The tip at the times of the record; its `first` rows have an impact."""
-
-    def __init__(self, record: Record, oscillator: ImpactOscillator, start: State, first: int) -> None:
-        self.first, model = first, oscillator.model
-        begin = int(np.searchsorted(record.rows[:, 0], start.time - 1e-12))
-        self.record = replace(record, rows=record.rows[begin:])
-        self.time, self.times = float(start.time), self.record.rows[:, 0]
-        tip = oscillator.stop.gap / np.abs(model.phi)
-        self.sizes = np.concatenate([tip, tip * model.omega])
-        free = np.arange(model.n_modes) == 0
-        self.prior = np.where(np.tile(free, 2), np.inf, PRIOR * self.sizes)
-        self.extra = np.concatenate([start.displacement, start.velocity])
-        self.hits: int | None = None
-
-    def parts(self, oscillator: ImpactOscillator) -> Sequence[Prediction]:
-        """Itself if it starts close to the record, else first its beginning, twice as long each time."""
-        if self._off(oscillator) < CLOSE:
-            return [self]
-        self.hits, most = None, 0.75 * len(self.times)
-        counts = [self.first * 2**k for k in range(64) if self.first * 2**k < most]
-        return [*(self._upto(count) for count in counts), self]
-
-    def misfit(self, oscillator: ImpactOscillator, hits: int) -> tuple[bool, float]:
-        """Whether the first rows have another number of `hits`; residuals there over their size."""
-        part = self._upto(self.first)
-        off = part._off(oscillator)
-        return part.hits != hits or off == math.inf, off
-
-    def _off(self, oscillator: ImpactOscillator) -> float:
-        """Residuals at the start over the size of the record."""
-        seen = self.record.observed
-        try:
-            return float((self.values(oscillator, self.extra) - seen).std() / seen.std())
-        except (ContactError, Refusal):
-            return math.inf
-
-    def _upto(self, count: int) -> Displacement:
-        part = copy.copy(self)
-        part.record = replace(self.record, rows=self.record.rows[:count])
-        part.times, part.hits = self.times[:count], None
-        return part
-
-    def _state(self, extra: Array) -> State:
-        q, v = extra.reshape(2, -1)
-        return State(displacement=q, velocity=v, time=self.time)
-
-    def _periods(self, oscillator: ImpactOscillator) -> int:
-        return math.ceil((self.times[-1] - self.time) / oscillator.period + 1e-9)
-
-    def _run(self, oscillator: ImpactOscillator, extra: Array) -> tuple[Trajectory, int]:
-        """The motion, and its impacts up to the last rows, among which one more may come and go."""
-        run = simulate(oscillator, self._state(extra), periods=self._periods(oscillator), times=self.times)
-        end = self.times[-1] - END * (self.times[-1] - self.time)
-        return run, int(np.sum(run.impacts.start <= end))
-
-    def values(self, oscillator: ImpactOscillator, extra: Array) -> Array:
-        """The displacement of the tip; ValueError for another number of impacts than before."""
-        run, hits = self._run(oscillator, extra)
-        if np.any(run.impacts.kind != ImpactKind.IMPACT):
-            raise InvalidValue("the motion grazes the stop or comes to rest on it")
-        if self.hits is None:
-            self.hits = hits
-        if hits != self.hits:
-            raise InvalidValue(f"the motion has {hits} impacts instead of {self.hits}")
-        return oscillator.tip(run.displacement)[:, None]
-
-    def touches(self, oscillator: ImpactOscillator, extra: Array) -> int:
-        """Impacts in the record."""
-        return self._run(oscillator, extra)[1]
-
-    def jacobian(self, oscillator: ImpactOscillator, extra: Array, names: Sequence[str]) -> Array:
-        """Derivatives of `values`."""
-        found = motion_derivatives(
-            oscillator,
-            self._state(extra),
-            changes_of(oscillator, names),
-            periods=self._periods(oscillator),
-            times=self.times,
-        )
-        tip = np.tensordot(found.states[:, : oscillator.n_modes], oscillator.model.phi, (1, 0))
-        return np.roll(tip, len(names), axis=1)

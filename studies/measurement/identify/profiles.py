@@ -30,14 +30,16 @@ def profile(found: Fit, name: str, other: str, *, points: int = 9, reach: float 
     """The profile likelihood of `name`, `reach` standard errors to both sides."""
     problem, i, variance = found.problem, found.names.index(name), (found.noise / found.problem.noise) ** 2
     best, rows = np.sum(problem.residuals(found.unknowns) ** 2), list[Profile]()
-    others = tuple(one for one in found.names if one != name)
+    others = tuple(one for one in problem.names if one != name)
     for side in np.linspace(-reach, reach, points):
-        values = found.unknowns * problem.sizes
-        values[: len(found.names)] += side * found.covariance[:, i] / found.errors[i]
+        unknowns = found.unknowns.copy()
+        step = side * found.covariance[:, i] / found.errors[i]
+        unknowns[problem.named] += step / problem.slopes(found.unknowns)[problem.named]
+        values = problem.values(unknowns)
         try:
             at = with_values(found.oscillator, {name: float(values[i])})
             fewer = Problem(problem.prediction, at, others, problem.noise)
-            held = fewer.solve(np.delete(values, i) / fewer.sizes)
+            held = fewer.solve(fewer.unknowns_of(np.delete(values, i)))
         except Refusal:
             continue
         rows.append(
@@ -46,7 +48,7 @@ def profile(found: Fit, name: str, other: str, *, points: int = 9, reach: float 
                 value=float(values[i]),
                 depth=float(2.0 * held.cost - best) / variance,
                 other=other,
-                other_value=float((held.x * fewer.sizes)[others.index(other)]),
+                other_value=float(fewer.values(held.x)[fewer.named][others.index(other)]),
             )
         )
     return rows

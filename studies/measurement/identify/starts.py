@@ -4,35 +4,25 @@ Strobe points: of the orbits p_m of the given oscillator, m the repetition of th
 record's drive; where there is none, or none like the record, parameters and approach speed are fitted
 together, the drive amplitude allowed to be a little off, until one is close.
 
-Displacement: at an impact the velocity jumps. Between two impacts, with one mode,
-
-    x = A sin(w t) + B cos(w t) + exp(-c t/2) (C cos(2 pi t/T) + D sin(2 pi t/T)),
-
-A and B the same everywhere: linear least squares for given T and c, which are varied if they are fitted. The
-gap is the height at the corners, restitution and delay follow from the curves on both sides of them.
+Displacement: the kicked motion that is most like it (`studies.measurement.identify.kicks`) gives free period,
+decay rate, amplitude, phase, gap, restitution, the offset and the sign of the sensor, and the state at the
+first row. It does not show the stiffness or the delay of a contact: several values are tried.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d
 from scipy.optimize import least_squares
 
 from beam import InvalidValue, Refusal
-from contact import ContactError, ImpactOscillator, SingleImpactOrbit, State
-from studies.measurement.identify.predictions import (
-    PRIOR,
-    Displacement,
-    Prediction,
-    Strobes,
-    Transitions,
-    family_of,
-)
+from contact import ContactError, ImpactOscillator, SingleImpactOrbit
+from studies.measurement.identify.displacement import SENSOR, Displacement
+from studies.measurement.identify.kicks import Kicked, kicked_motions
+from studies.measurement.identify.predictions import Prediction, Strobes, Transitions, family_of
 from studies.measurement.identify.records import Record
 from studies.physics.parameters import parameters_of, with_values
 
@@ -56,31 +46,28 @@ SIMILAR, TRIED = 0.1, 3
 SPEEDS = np.geomspace(0.01, 0.5, 12)
 """Approach speeds that a search begins with, in units of 2 pi f gap."""
 
-CORNER, LEVEL, FINE = 0.01, 2e-4, 81
-"""Jump of the velocity over 2 pi f gap from which on a maximum of a displacement is an impact; part of the
-height within which the tip rests on the stop; instants at which the curves of both sides are compared."""
+SEEN = 40.0
+"""By how much kicks must lower chi^2 of the harmonics: noise alone gives 25 once in a thousand records."""
 
-WINDOW, DENSEST, ENOUGH = 0.08, 40, 100
-"""Part of a drive period on either side that gives the velocity at an impact; least number of rows a period;
-most rows that are used."""
-
-SHARES, OF_CORNERS = np.linspace(1.0, 0.0, 5), ("gap", "restitution", "delay")
-"""Places of the top between where the curves on both sides meet and the highest row, and what they give."""
-
-STRETCHES, ROWS, SHORTEST = 8, 60, 0.1
-"""Stretches between impacts, and rows of each, that give free period and decay rate; drive periods of the
-shortest."""
+BELOW, FACTORS = 0.98, (1.0, 0.3, 3.0, 0.1, 10.0)
+"""Part of the gap below which a record may begin; values of what a kick does not tell, over the given one."""
 
 
-def prediction_of(
-    record: Record, oscillator: ImpactOscillator, names: Sequence[str]
-) -> tuple[Prediction, ImpactOscillator]:
-    """The prediction of the rows, and the start of the fit; ValueError for a poor record."""
+def predictions_of(
+    record: Record,
+    oscillator: ImpactOscillator,
+    names: Sequence[str],
+    free: Sequence[str] = ("phase", "offset"),
+) -> Sequence[tuple[Prediction, ImpactOscillator]]:
+    """Predictions of the rows and the starts of their fits, the best first; InvalidValue for a poor record.
+
+    `free` are the numbers of the sensor that are fitted to a displacement.
+    """
     if record.kind == "transitions":
-        return Transitions(record), oscillator
+        return [(Transitions(record), oscillator)]
     if record.kind == "strobe":
-        return _strobes(record, oscillator, names)
-    return _displacement(record, oscillator, names)
+        return [_strobes(record, oscillator, names)]
+    return _displacement(record, oscillator, names, free)
 
 
 def repetition(record: Record) -> int:
@@ -165,133 +152,41 @@ def _searched(
     return orbit_at(min(found, key=lambda one: one.cost).x)
 
 
-class Corner(NamedTuple):
-    """An impact in a displacement: the last row before it, the first after it, and what the cubics through
-    the rows on both sides give for height [m], restitution [1] and delay [s], shape (n_shares, 3)."""
-
-    before: int
-    after: int
-    values: Array
-
-
-def _corners(times: Array, x: Array, oscillator: ImpactOscillator, waits: bool) -> list[Corner]:
-    """The impacts of a displacement: maxima at which its velocity jumps, after a wait or at once."""
-    step = float(times[1] - times[0])
-    width = max(5, round(WINDOW * oscillator.period / step))
-    cubic = np.linalg.pinv(np.vander(np.arange(width) * step, 4))
-    speed, found = oscillator.driven.angular_frequency * float(x.max()), list[Corner]()
-    tops = np.flatnonzero((x == maximum_filter1d(x, 2 * width + 1)) & (x > 0.5 * x.max()))
-    for i in tops[(tops >= width) & (tops < x.size - width)]:
-        level = np.flatnonzero(x[i + 1 :] < x[i] - LEVEL * x.max())
-        here, there = i - 1, i + 1 + (int(level[0]) if waits and level.size else 0)
-        if there + width > x.size:
-            continue
-        back, ahead = cubic @ x[here - width + 1 : here + 1][::-1], cubic @ x[there : there + width]
-        apart = times[there] - times[here]
-        s = np.linspace(0.0, apart, FINE)
-        left, right = np.polyval(back, -s), np.polyval(ahead, s - apart)
-        meet = int(np.argmin(np.abs(left - right)))
-        v_in, v_out = -np.polyval(np.polyder(back), -s), np.polyval(np.polyder(ahead), s - apart)
-        if v_in[meet] - v_out[meet] < CORNER * speed:
-            continue
-        # the top lies between the highest row and where the curves meet, or is seen where the tip rests on it
-        over = left[meet] - x[i] if there - here == 2 else 0.0
-        values = []
-        for top in x[i] + over * SHARES:
-            met, gone = int(np.argmax(left >= top)), FINE - 1 - int(np.argmax(right[::-1] >= top))
-            values.append((top, np.clip(-v_out[gone] / v_in[met], 0.0, 1.0), max(s[gone] - s[met], 0.0)))
-        found.append(Corner(here, there, np.array(values)))
-    return found
-
-
 def _displacement(
-    record: Record, oscillator: ImpactOscillator, names: Sequence[str]
-) -> tuple[Displacement, ImpactOscillator]:
+    record: Record, oscillator: ImpactOscillator, names: Sequence[str], free: Sequence[str]
+) -> list[tuple[Prediction, ImpactOscillator]]:
     times, x = record.rows.T
-    if (times[-1] - times[0]) < 2.0 * oscillator.period:
+    if record.frequency is not None and (times[-1] - times[0]) * record.frequency < 2.0:
         raise InvalidValue("the record is too short: it must be two drive periods long at least")
-    if (density := oscillator.period / (times[1] - times[0])) < DENSEST:
-        raise InvalidValue(f"the record has {density:.3g} rows a drive period; it needs {DENSEST} at least")
-    known = parameters_of(oscillator)
-    thin = max(1, int(density / ENOUGH))  # a slow rebound hides in the noise of the next row
-    corners = [
-        one._replace(before=thin * one.before, after=thin * one.after)
-        for one in _corners(times[::thin], x[::thin], oscillator, "delay" in known)
-    ]
-    if not corners:
+    motions = kicked_motions(times, x, oscillator, record.frequency)
+    if motions[0].without - motions[0].cost < SEEN:
         raise InvalidValue("there is no impact in the record")
-    cuts = [0, *(one.after + 1 for one in corners)], [*(one.before for one in corners), x.size]
-    stretches = [(a, b) for a, b in zip(*cuts, strict=True) if b - a > SHORTEST * density]
-    rung = _rung(times, x, stretches, oscillator, names) if oscillator.n_modes == 1 else {}
-    begin = stretches[0][0]
-    near = [int(one.after) - begin for one in corners if one.before > begin]
-    first = int(max([*near[:1], 2.5 * density]) + 0.5 * density)
-    expected = sum(row < first for row in near)
-
-    def tried(values: dict[str, float]) -> tuple[tuple[bool, float], Displacement, ImpactOscillator]:
-        """Whether the first impacts are missed, and the misfit around them."""
-        begun = with_values(oscillator, {name: values[name] for name in names if name in values})
-        found = Displacement(record, begun, _start(times, x, stretches[0], begun), first)
-        return found.misfit(begun, expected), found, begun
-
-    law: dict[str, float] = {name: known[name].value for name in ("restitution", "delay") if name in known}
-    medians = np.median([one.values for one in corners], axis=0)
-    rows = [dict(zip(OF_CORNERS, row, strict=True)) for row in medians.tolist()]
-    highest = {"gap": max(rows[0]["gap"], float(x.max()))}
-    choices: list[dict[str, float]] = [rung | one | other for one in rows for other in (highest, law, {})]
-    return min(map(tried, choices), key=lambda one: one[0])[1:]
+    starts = [one for motion in motions[:TRIED] for one in _starts(record, motion, oscillator, names, free)]
+    near = sorted(starts, key=lambda one: one[0].upto(one[0].first).off(one[1]))
+    return near[:TRIED]
 
 
-def _rung(
-    times: Array,
-    x: Array,
-    stretches: Sequence[tuple[int, int]],
-    oscillator: ImpactOscillator,
-    names: Sequence[str],
-) -> dict[str, float]:
-    """Free period, decay rate and drive amplitude of one mode, from between the impacts."""
-    known, w = parameters_of(oscillator), oscillator.driven.angular_frequency
-    free = [name for name in ("free_period", "decay_rate") if name in names]
-    picked = [np.unique(np.linspace(a, b - 1, ROWS).astype(int)) for a, b in stretches[:STRETCHES]]
-    rows, place = np.concatenate(picked), np.repeat(np.arange(len(picked)), [one.size for one in picked])
-    t, y, age = times[rows], x[rows], times[rows] - np.array([times[one[0]] for one in picked])[place]
-    matrix = np.zeros((t.size, 2 + 2 * len(picked)))
-    matrix[:, :2] = np.column_stack([np.sin(w * t), np.cos(w * t)])
-
-    def split(unknowns: Array) -> tuple[Array, Array]:
-        """Residuals and coefficients; the first two coefficients belong to the steady motion."""
-        given = dict(zip(free, unknowns.tolist(), strict=True))
-        period, rate = (given.get(name, known[name].value) for name in ("free_period", "decay_rate"))
-        free_motion = np.exp((2j * math.pi / period - 0.5 * rate) * age)
-        matrix[np.arange(t.size), 2 + 2 * place] = free_motion.real
-        matrix[np.arange(t.size), 3 + 2 * place] = free_motion.imag
-        coefficients = np.linalg.lstsq(matrix, y, rcond=None)[0]
-        return matrix @ coefficients - y, coefficients
-
-    begun = np.array([known[name].value for name in free])
-    best = least_squares(lambda u: split(u)[0], begun, x_scale=begun, max_nfev=20).x if free else begun
-    values = dict(zip(free, best.tolist(), strict=True))
-    response = abs(with_values(oscillator, values).tip_response())
-    return values | {"amplitude": float(np.hypot(*split(best)[1][:2])) / response}
-
-
-def _start(times: Array, x: Array, stretch: tuple[int, int], oscillator: ImpactOscillator) -> State:
-    """The state at the first row of a stretch without impact, from its rows; other modes near rest."""
-    model, (a, b) = oscillator.model, stretch
-    rows = np.unique(np.linspace(a, b - 1, 4 * ROWS).astype(int))
-    w, age = oscillator.driven.angular_frequency, times[rows] - times[a]
-    steady = np.imag(
-        oscillator.driven.amplitude * oscillator.steady_response() * np.exp(1j * w * times[rows, None])
-    )
-    turn = np.sqrt(np.maximum(model.omega**2 - (0.5 * model.decay_rate) ** 2, 1e-6 * model.omega**2))
-    free = np.exp(np.outer(age, 1j * turn - 0.5 * model.decay_rate)) * model.phi
-    matrix = np.hstack([free.real, free.imag])
-    held = np.where(np.arange(model.n_modes) == 0, 0.0, np.abs(model.phi) / oscillator.stop.gap / PRIOR)
-    # rows count as good to a ten-thousandth of the gap: a prior beside them
-    scale = 1e4 / oscillator.stop.gap
-    whole = np.vstack([scale * matrix, np.diag(np.tile(held, 2))])
-    target = np.append(scale * (x[rows] - oscillator.tip(steady)), np.zeros(2 * model.n_modes))
-    cos, sin = np.linalg.lstsq(whole, target, rcond=None)[0].reshape(2, -1)
-    response = oscillator.driven.amplitude * oscillator.steady_response() * np.exp(1j * w * times[a])
-    velocity = turn * sin - 0.5 * model.decay_rate * cos + w * response.real
-    return State(displacement=cos + response.imag, velocity=velocity, time=float(times[a]))
+def _starts(
+    record: Record, motion: Kicked, oscillator: ImpactOscillator, names: Sequence[str], free: Sequence[str]
+) -> list[tuple[Displacement, ImpactOscillator]]:
+    """Starts at a kicked motion, with several values of what it does not tell of the contact."""
+    at, times, read = motion.oscillator, record.rows[:, 0], motion.reading()
+    sign = read["sign"]
+    drive = 2j * motion.steady * sign / at.tip_response()
+    told = {name: one.value for name, one in parameters_of(at).items()} | read | {"amplitude": abs(drive)}
+    known = parameters_of(oscillator)
+    soft = [name for name in ("stiffness", "delay") if name in names]
+    begun = with_values(oscillator, {n: told[n] for n in names if n in told and n in known and n not in soft})
+    sensor = dict(SENSOR) | {"offset": motion.offset, "phase": float(np.angle(drive)), "scale": sign}
+    sensor = {name: sensor[name] if name in free or name == "scale" else SENSOR[name] for name in sensor}
+    lasting = min(motion.period * at.period, times[-1] - times[0])
+    early = np.flatnonzero(times - times[0] < lasting)
+    heights = np.array([sign * motion.tip(float(t))[0] for t in times[early]])
+    begin = int(np.argmax(heights < BELOW * read["gap"]))
+    start = sign * sum(motion.state(float(times[begin])))
+    first = int(np.searchsorted(times - times[begin], 1.5 * lasting))
+    others = [{}] if not soft else [{soft[0]: known[soft[0]].value * factor} for factor in FACTORS]
+    return [
+        (Displacement(record, one, start, sensor, free, begin, first), one)
+        for one in (with_values(begun, other) for other in others)
+    ]

@@ -1,0 +1,304 @@
+"""A settled motion with impacts as one that is kicked: where its impacts are, and what follows from them.
+
+Modes n with frequencies omega_n, decay rates c_n and tip values phi_n, driven at f and kicked J times in an
+orbit of m drive periods P = m/f, move the tip by
+
+    x(t) = sum_k Y_k exp(i k w t),   w = 2 pi/P,
+    Y_k  = sum_j I_j exp(-i k w t_j) G(k w)   for all k but 0 and m,
+    G(v) = (1/P) sum_n phi_n^2/(omega_n^2 - v^2 + i c_n v),
+
+I_j the impulse of the kick at time t_j.  Y_0 has the offset of the sensor besides, Y_m the drive.  The Y_k
+follow from the rows by linear least squares.  The kicks are found one after the other, each where it explains
+most of what is left of the Y_k (matching pursuit: Mallat and Zhang, IEEE Trans. Signal Process. 41 (1993)
+3397).  All are then fitted together with the free period and the decay rate.  No row is differentiated: noise
+is averaged over the whole record.  A contact that lasts a while counts as a kick in its middle.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+
+from contact import ImpactOscillator
+from studies.physics.parameters import parameters_of, with_values
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+MOST_HARMONICS, MOST_KICKS, LONGEST = 90, 6, 12
+"""Bounds of a search: harmonics of an orbit, kicks in it, its drive periods."""
+
+FREE_PERIODS, DECAY_RATES = np.geomspace(0.6, 1.4, 16), np.array([0.03, 0.1, 0.3, 0.7])
+"""Where a search begins, in drive periods and per drive period."""
+
+STARTS, WORTH, APART = 5, 12.0, 0.04
+"""First kicks that are followed; what a further kick must take off chi^2; drive periods between two kicks."""
+
+SAME = 1.3
+"""An orbit repeats after m drive periods if this leaves no more than so much of the least scatter."""
+
+NEAR = 3e-3
+"""Part of the drive frequency by which a given one may be off."""
+
+LINES, DRIVES, HIGH, ENOUGH = 6, 4, 0.05, 3000
+"""Lines of the spectrum that give an orbit, harmonics of it that may be the drive, their least part of the
+highest; rows that show whether a record repeats."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Kicked:
+    """A kicked motion: the `oscillator` with its free period, decay rate and drive frequency as fitted.
+
+    It repeats after `period` drive periods.  The `kicks` are at these times [s] and have these `impulses`
+    [N s].  The drive moves the tip by `steady` exp(2 pi i f t) and its conjugate [m]; `offset` is that of the
+    sensor [m].  `cost` is chi^2 of the harmonics and a charge for each kick, `without` that without kicks.
+    """
+
+    oscillator: ImpactOscillator
+    period: int
+    kicks: Array
+    impulses: Array
+    steady: complex
+    offset: float
+    cost: float
+    without: float
+
+    def state(self, time: float, before: bool = False) -> tuple[Array, Array]:
+        """Modal displacements and velocities at a time, by the drive and by the kicks; shape (2, modes) each.
+
+        `before` is the side of a kick that a time at it means.
+        """
+        one, w = self.oscillator, self.oscillator.driven.angular_frequency
+        share = one.steady_response() / one.tip_response() * 2.0 * self.steady * np.exp(1j * w * time)
+        lasting = self.period * one.period
+        ages = (time - self.kicks) % lasting
+        ages = np.where(before & (ages < 1e-9 * lasting), lasting, ages)
+        pole = poles(one)
+        free = np.exp(np.multiply.outer(ages, pole)) / (1.0 - np.exp(pole * lasting)) * one.model.phi
+        kicked = [(self.impulses @ (rate * free / pole.imag)).imag for rate in (1.0, pole)]
+        return np.array([share.real, (1j * w * share).real]), np.array(kicked)
+
+    def tip(self, time: float, before: bool = False) -> tuple[float, float]:
+        """Displacement from equilibrium and velocity of the tip."""
+        x, v = sum(self.state(time, before)) @ self.oscillator.model.phi
+        return float(x), float(v)
+
+    def reading(self) -> dict[str, float]:
+        """What the strongest kick says: `sign` of the sensor, `gap` and `restitution`."""
+        strongest = int(np.argmax(np.abs(self.impulses)))
+        sign, at = -float(np.sign(self.impulses[strongest])), float(self.kicks[strongest])
+        (x, v_in), (_, v_out) = self.tip(at, True), self.tip(at)
+        back = -v_out / v_in if v_in * sign > 0.0 else 0.0
+        return {"sign": sign, "gap": sign * x, "restitution": min(max(back, 0.01), 0.99)}
+
+
+def poles(oscillator: ImpactOscillator) -> Complex:
+    """-c_n/2 + i (omega_n^2 - c_n^2/4)^(1/2) of each mode; overdamped ones count as hardly oscillating."""
+    half = 0.5 * oscillator.model.decay_rate
+    turn = np.sqrt(np.maximum(oscillator.model.omega**2 - half**2, 1e-6 * oscillator.model.omega**2))
+    return np.asarray(-half + 1j * turn)
+
+
+def harmonics(times: Array, values: Array, pace: float, count: int) -> tuple[Complex, float]:
+    """Y_0 to Y_count of the base frequency `pace` [Hz], and the standard deviation of what they leave."""
+    turn = np.exp(2j * math.pi * pace * times)
+    waves = np.multiply.accumulate(np.broadcast_to(turn, (count, times.size)), axis=0)
+    matrix = np.vstack([np.ones(times.size), waves.real, waves.imag])
+    normal, moments = matrix @ matrix.T, matrix @ values
+    found = np.linalg.lstsq(normal, moments, rcond=None)[0]  # much faster than of the matrix itself
+    rest, spare = values - found @ matrix, max(times.size - found.size, 1)
+    coefficients = 0.5 * (found[1 : count + 1] - 1j * found[count + 1 :])
+    return np.append(found[0] + 0j, coefficients), math.sqrt(float(rest @ rest) / spare)
+
+
+def count_of(times: Array, pace: float) -> int:
+    """How many harmonics of `pace` [Hz] the rows resolve, within `MOST_HARMONICS`."""
+    rate = (times.size - 1) / (times[-1] - times[0])
+    return max(2, int(min(MOST_HARMONICS, 0.42 * rate / pace, min(times.size, ENOUGH) // 6)))
+
+
+def line(times: Array, values: Array, frequency: float, near: float) -> float:
+    """The strongest line of the spectrum within a part `near` of a frequency [Hz]."""
+    span, off = times[-1] - times[0], (values - values.mean()) * np.hanning(times.size)
+
+    def power(at: Array) -> Array:
+        return np.abs(np.exp(-2j * math.pi * np.outer(at, times - times[0])) @ off)
+
+    grid = np.linspace(
+        frequency * (1 - near), frequency * (1 + near), max(9, int(12 * frequency * near * span))
+    )
+    best, step = float(grid[np.argmax(power(grid))]), float(grid[1] - grid[0])
+    for _ in range(12):
+        low, middle, high = power(best + step * np.array([-1.0, 0.0, 1.0]))
+        bend = low - 2.0 * middle + high
+        best += step * float(np.clip(0.5 * (low - high) / bend, -1.0, 1.0)) if bend < 0.0 else 0.0
+        step *= 0.4
+    return best
+
+
+def drives(times: Array, values: Array, given: float | None) -> list[tuple[float, int]]:
+    """Drive frequencies [Hz] that a record may have, each with its period m; several if none is `given`."""
+    if given is not None:
+        found = line(times, values, given, NEAR)
+        return [(found, repetition(times, values, found))]
+    rate = (times.size - 1) / (times[-1] - times[0])
+    even = np.linspace(times[0], times[-1], times.size)
+    spectrum = np.abs(np.fft.rfft((np.interp(even, times, values) - values.mean()) * np.hanning(times.size)))
+    peaks = np.flatnonzero((spectrum[1:-1] > spectrum[:-2]) & (spectrum[1:-1] >= spectrum[2:])) + 1
+    strongest = peaks[np.argsort(-spectrum[peaks])][:LINES]
+    step = rate / times.size
+    lines = [line(times, values, float(i) * step, 1.0 / i) for i in strongest if i > 1]
+    rows = sample(times)
+    paces = [one / m for one in lines for m in range(1, LONGEST // 2 + 1)]
+    scatter = [harmonics(times[rows], values[rows], pace, count_of(times, pace))[1] for pace in paces]
+    base = max(pace for pace, size in zip(paces, scatter, strict=True) if size < SAME * min(scatter))
+    heights = np.abs(harmonics(times, values, base, min(LONGEST, count_of(times, base)))[0][1:])
+    likely = [int(m) + 1 for m in np.argsort(-heights)[:DRIVES] if heights[m] > HIGH * heights.max()]
+    return [(line(times, values, m * base, 0.5 / (m * base * (times[-1] - times[0]))), m) for m in likely]
+
+
+def sample(times: Array) -> NDArray[np.int64]:
+    """Rows at random that show whether a record repeats; equal steps would hide some of its waves."""
+    random = np.random.default_rng(0)
+    return np.sort(random.choice(times.size, min(times.size, ENOUGH), replace=False))
+
+
+def repetition(times: Array, values: Array, frequency: float) -> int:
+    """Drive periods after which a record repeats."""
+    most, rows = max(1, min(LONGEST, int((times[-1] - times[0]) * frequency / 1.5))), sample(times)
+    paces = [frequency / m for m in range(1, most + 1)]
+    scatter = [harmonics(times[rows], values[rows], pace, count_of(times, pace))[1] for pace in paces]
+    return int(np.argmax(np.array(scatter) < SAME * min(scatter))) + 1
+
+
+class Search:
+    """The kicks of a record of `oscillator` at its drive frequency, given that it repeats after `period`."""
+
+    def __init__(self, times: Array, values: Array, oscillator: ImpactOscillator, period: int) -> None:
+        known, self.leading = parameters_of(oscillator), oscillator.model.leading_mode
+        self.given = known["free_period"].value, max(known["decay_rate"].value, 1e-3 / oscillator.period)
+        self.oscillator, self.period = with_values(oscillator, {"decay_rate": self.given[1]}), period
+        self.pace = oscillator.driven.frequency / period
+        count = count_of(times, self.pace)
+        self.seen, noise = harmonics(times, values, self.pace, count)
+        self.error = max(noise, 1e-9 * float(np.ptp(values))) / math.sqrt(2.0 * times.size)
+        order = np.arange(count + 1)
+        self.used, self.w = (order > 0) & (order != period), 2.0 * math.pi * self.pace * order
+
+    def response(self, logs: Sequence[float]) -> Complex:
+        """G at the harmonics, of the oscillator with exp(logs) as its free period and decay rate."""
+        model, w, (period, rate) = self.oscillator.model, self.w[:, None], np.exp(logs).tolist()
+        omega = model.omega * (math.hypot(2.0 * math.pi / period, 0.5 * rate) / model.omega[self.leading])
+        rates = model.decay_rate * (rate / model.decay_rate[self.leading])
+        return np.asarray((model.phi**2 / (omega**2 - w**2 + 1j * rates * w)).sum(axis=1) * self.pace)
+
+    def waves(self, response: Complex, kicks: Array) -> Complex:
+        """The harmonics of unit kicks, shape (harmonics, kicks)."""
+        return np.asarray(response[:, None] * np.exp(-1j * np.outer(self.w, kicks)))
+
+    def impulses(self, waves: Complex) -> Array:
+        """The impulses that explain most."""
+        a, b = waves[self.used], self.seen[self.used]
+        return np.asarray(
+            np.linalg.lstsq(np.vstack([a.real, a.imag]), np.append(b.real, b.imag), rcond=None)[0]
+        )
+
+    def left(self, response: Complex, kicks: Array) -> Complex:
+        """What kicks leave of the harmonics."""
+        waves = self.waves(response, kicks)
+        return self.seen - waves @ self.impulses(waves) if kicks.size else self.seen
+
+    def gains(self, response: Complex, kicks: Array) -> tuple[Array, Array]:
+        """Times of a further kick, and the projection of what is left on one there."""
+        size = 1 << math.ceil(math.log2(6 * self.w.size))
+        product = np.zeros(size, complex)
+        product[: self.w.size] = np.conj(response) * self.left(response, kicks) * self.used
+        length = math.sqrt(float(np.sum(np.abs(response[self.used]) ** 2)))
+        return np.arange(size) / (size * self.pace), np.fft.ifft(product).real * size / length
+
+    def first(self) -> list[tuple[tuple[float, float], Array]]:
+        """Logarithms of free period and decay rate, and a first kick: the best of a grid that differ."""
+        beat, found = self.oscillator.period, list[tuple[float, float, float, float]]()
+        for period, rate in [self.given, *((a * beat, c / beat) for a in FREE_PERIODS for c in DECAY_RATES)]:
+            logs = math.log(period), math.log(rate)
+            times, gains = self.gains(self.response(logs), np.empty(0))
+            best = int(np.argmax(np.abs(gains)))
+            found.append((abs(float(gains[best])), *logs, float(times[best])))
+        kept = list[tuple[float, float, float, float]]()
+        for one in sorted(found, reverse=True):
+            turned = [abs(math.sin(math.pi * (one[3] - other[3]) * self.pace)) for other in kept]
+            if all(abs(one[1] - o[1]) > 0.06 or t > 0.05 for o, t in zip(kept, turned, strict=True)):
+                kept.append(one)
+        return [((log_t, log_c), np.array([at])) for _, log_t, log_c, at in kept[:STARTS]]
+
+    def refined(self, logs: Sequence[float], kicks: Array) -> tuple[Sequence[float], Array, float]:
+        """Both logarithms and the times of kicks by least squares, and chi^2."""
+
+        def off(unknowns: Array) -> Array:
+            rest = self.left(self.response(unknowns[:2].tolist()), unknowns[2:])
+            return np.concatenate([rest[self.used].real, rest[self.used].imag]) / self.error
+
+        beat = self.oscillator.period
+        middle = np.log([beat, 0.1 / beat])
+        low, high = middle + np.log([0.3, 1e-3]), middle + np.log([3.0, 60.0])
+        bounds = [np.append(end, np.full(kicks.size, way)) for end, way in ((low, -np.inf), (high, np.inf))]
+        begun = np.append(np.clip(logs, low + 1e-6, high - 1e-6), kicks)
+        scale = np.append([0.05, 0.5], np.full(kicks.size, 0.02 * beat))
+        found = least_squares(off, begun, bounds=bounds, x_scale=scale, max_nfev=40)
+        return found.x[:2].tolist(), found.x[2:], 2.0 * float(found.cost)
+
+    def along(self, logs: Sequence[float], kicks: Array) -> tuple[float, Sequence[float], Array]:
+        """The best number of kicks from a first one on: cost with its charges, logarithms, times."""
+        best, spare = (math.inf, logs, kicks), 2 * int(self.used.sum())
+        while kicks.size <= MOST_KICKS:
+            logs, kicks, cost = self.refined(logs, kicks)
+            charged = cost + WORTH * kicks.size
+            if charged >= best[0]:
+                break
+            best = charged, logs, kicks
+            if cost < 1.2 * spare or spare < 2 * kicks.size + 6:
+                break
+            response = self.response(logs)
+            times, gains = self.gains(response, kicks)
+            apart = np.abs(np.sin(math.pi * self.pace * (times[:, None] - kicks))).min(axis=1)
+            way = math.copysign(1.0, self.impulses(self.waves(response, kicks))[0])
+            gains = np.where(apart > math.sin(math.pi * APART / self.period), way * gains, -math.inf)
+            kicks = np.append(kicks, times[int(np.argmax(gains))])
+        return best
+
+    def best(self) -> Kicked:
+        """The kicked motion that is most like the record."""
+        cost, logs, kicks = min((self.along(*one) for one in self.first()), key=lambda one: one[0])
+        waves, (period, rate) = self.waves(self.response(logs), kicks), np.exp(logs).tolist()
+        impulses = self.impulses(waves)
+        rest = self.seen - waves @ impulses
+        return Kicked(
+            oscillator=with_values(self.oscillator, {"free_period": period, "decay_rate": rate}),
+            period=self.period,
+            kicks=kicks % (1.0 / self.pace),
+            impulses=impulses,
+            steady=complex(rest[self.period]),
+            offset=float(rest[0].real),
+            cost=cost,
+            without=float(np.sum(np.abs(self.seen[self.used]) ** 2)) / self.error**2,
+        )
+
+
+def kicked_motions(
+    times: Array, values: Array, oscillator: ImpactOscillator, given: float | None
+) -> list[Kicked]:
+    """Kicked motions that a record may be, the best first, from the drive frequency that is `given` [Hz].
+
+    The modes of `oscillator` beyond the first keep their ratios to it.  Without a frequency each harmonic of
+    the orbit is tried as that of the drive.
+    """
+    found = list[Kicked]()
+    for frequency, period in drives(times, values, given):
+        at = with_values(oscillator, {"frequency": frequency})
+        found.append(Search(times, values, at, period).best())
+    return sorted(found, key=lambda one: one.cost)
