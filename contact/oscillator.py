@@ -134,12 +134,6 @@ class ImpactOscillator:
         does)."""
         if self.drive is not None:
             return self.drive.period
-        highest = float(self.model.omega.max())
-        if 0.0 < HIGHEST_DRIVE * highest < drive.angular_frequency:
-            suspect(
-                f"frequency of the drive is {drive.frequency:g} Hz, far above the highest retained mode at "
-                f"{highest / (2 * np.pi):g} Hz; modes that the drive excites are missing"
-            )
         oscillating = self.model.omega[self.model.omega > 0]
         return float(2 * np.pi / oscillating.min()) if oscillating.size else 1.0
 

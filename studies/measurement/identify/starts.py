@@ -154,7 +154,7 @@ def _searched(
 
 def _displacement(
     record: Record, oscillator: ImpactOscillator, names: Sequence[str], free: Sequence[str]
-) -> list[tuple[Prediction, ImpactOscillator]]:
+) -> Sequence[tuple[Prediction, ImpactOscillator]]:
     times, x = record.rows.T
     if record.frequency is not None and (times[-1] - times[0]) * record.frequency < 2.0:
         raise InvalidValue("the record is too short: it must be two drive periods long at least")
@@ -183,7 +183,7 @@ def _starts(
     early = np.flatnonzero(times - times[0] < lasting)
     heights = np.array([sign * motion.tip(float(t))[0] for t in times[early]])
     begin = int(np.argmax(heights < BELOW * read["gap"]))
-    start = sign * sum(motion.state(float(times[begin])))
+    start = sign * np.add(*motion.state(float(times[begin])))
     first = int(np.searchsorted(times - times[begin], 1.5 * lasting))
     others = [{}] if not soft else [{soft[0]: known[soft[0]].value * factor} for factor in FACTORS]
     return [
