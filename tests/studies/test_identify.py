@@ -98,7 +98,7 @@ def test_the_jacobian_is_that_of_differences(made, name, kind, velocity, names):
 def test_restitution_and_delay_trade_off_and_the_profile_shows_it(made):
     waiting, names = made["waiting"], (*NAMES, "delay")
     found = fit(synthetic("displacement", waiting, seed=3), waiting, names)
-    assert found.correlations[3, 4] > 0.99
+    assert found.correlations[3, 4] > 0.95
     rows = profile(found, "delay", "restitution", points=5, reach=1.0)
     depth = np.array([row.depth for row in rows])
     assert depth[2] == pytest.approx(0.0, abs=1e-6) and depth[[0, -1]] == pytest.approx(1.0, abs=0.3)

@@ -293,7 +293,7 @@ def test_a_script_without_options_refuses_them(tmp_path):
 @pytest.mark.parametrize("number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)])
 def test_a_signal_ends_a_program_with_what_it_stored(tmp_path, number):
     """A chart that would take minutes; interrupted when its first column is there, it stores a summary."""
-    argv = ["-m", "studies", "chart", "--points", "4000", "60", "--cycles", "4096", "--json"]
+    argv = ["-m", "studies", "chart", "--points", "4000", "60", "--json"]
     argv += ["--out", str(tmp_path)]
     program = subprocess.Popen(
         [sys.executable, *argv], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True

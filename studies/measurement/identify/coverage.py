@@ -71,7 +71,8 @@ class Trial:
                 one = fit(self.record.noisy(int(seed[0]), noise), self.start, tuple(self.truth))
             except (ContactError, Refusal):
                 continue
-            found[:, i] = one.estimate, one.errors, one.intervals()[:, 1] - one.estimate
+            width = one.intervals()[:, 1] - one.estimate
+            found[:, i] = [row[: len(self.truth)] for row in (one.estimate, one.errors, width)]
             small[i] = one.too_small
         return {"estimate": found[0], "error": found[1], "width": found[2], "small": small}
 

@@ -35,15 +35,11 @@ MOST_HARMONICS, MOST_KICKS, LONGEST = 90, 6, 12
 
 FREE_PERIODS, DECAY_RATES = np.geomspace(0.6, 1.4, 16), np.array([0.03, 0.1, 0.3, 0.7])
 """Where a search begins, in drive periods and per drive period."""
-
 STARTS, WORTH, APART = 5, 12.0, 0.04
 """First kicks that are followed; what a further kick must take off chi^2; drive periods between two kicks."""
 
-SAME = 1.3
-"""An orbit repeats after m drive periods if this leaves no more than so much of the least scatter."""
-
-NEAR = 3e-3
-"""Part of the drive frequency by which a given one may be off."""
+SAME, NEAR = 1.3, 3e-3
+"""An orbit leaves at most so much of the least scatter; part by which a given drive frequency may be off."""
 
 LINES, DRIVES, HIGH, ENOUGH = 6, 4, 0.05, 3000
 """Lines of the spectrum that give an orbit, harmonics of it that may be the drive, their least part of the

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from beam import Refusal
-from studies.measurement.identify.fit import Fit, Problem
+from studies.measurement.identify.fit import Fit
+from studies.measurement.identify.problem import Problem
 from studies.physics.parameters import with_values
 
 

@@ -161,7 +161,10 @@ def _displacement(
     motions = kicked_motions(times, x, oscillator, record.frequency)
     if motions[0].without - motions[0].cost < SEEN:
         raise InvalidValue("there is no impact in the record")
-    starts = [one for motion in motions[:TRIED] for one in _starts(record, motion, oscillator, names, free)]
+    likely = [one for one in motions if one.reading()["gap"] > 0.0 and one.steady != 0.0]
+    if not likely:
+        raise InvalidValue("the record repeats, but not as a motion with impacts at one gap")
+    starts = [one for motion in likely[:TRIED] for one in _starts(record, motion, oscillator, names, free)]
     near = sorted(starts, key=lambda one: one[0].upto(one[0].first).off(one[1]))
     return near[:TRIED]
 
@@ -185,7 +188,8 @@ def _starts(
     begin = int(np.argmax(heights < BELOW * read["gap"]))
     start = sign * np.add(*motion.state(float(times[begin])))
     first = int(np.searchsorted(times - times[begin], 1.5 * lasting))
-    others = [{}] if not soft else [{soft[0]: known[soft[0]].value * factor} for factor in FACTORS]
+    law = {name: known[name].value for name in ("restitution", *soft) if name in names}
+    others = [law, *({soft[0]: law[soft[0]] * factor} for factor in FACTORS)] if soft else [{}, law]
     return [
         (Displacement(record, one, start, sensor, free, begin, first), one)
         for one in (with_values(begun, other) for other in others)

@@ -1,0 +1,116 @@
+"""The least-squares problem of a fit: residuals and their derivatives by unknowns without units."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+
+from beam import InvalidValue, Refusal
+from contact import ContactError, ImpactOscillator
+from studies.measurement.identify.predictions import Prediction
+from studies.physics.parameters import parameters_of, with_values
+
+Array = NDArray[np.float64]
+
+MOST = 200
+"""Steps of a fit: a dozen are usual, a hundred along a valley of two parameters that trade off."""
+
+
+class Problem:
+    """Residuals and Jacobian in units of the noise, by unknowns u without units.
+
+    A parameter p that starts at p_0 > 0 has u = log(p/p_0), and no search leaves the physical range; another
+    one, and a restitution, has u = p/size.  The further unknowns are held by their prior, the parameters by a
+    `leash`: a standard deviation of u about where it starts.
+    """
+
+    def __init__(
+        self,
+        prediction: Prediction,
+        oscillator: ImpactOscillator,
+        names: tuple[str, ...],
+        noise: float,
+        leash: float = math.inf,
+    ) -> None:
+        self.prediction, self.oscillator, self.names = prediction, oscillator, names
+        known = parameters_of(oscillator)
+        self.sizes = np.concatenate([[known[name].size for name in names], prediction.sizes])
+        values = np.concatenate([[known[name].value for name in names], prediction.extra])
+        self.log = (np.arange(values.size) < len(names)) & (values > 0.0)
+        self.log[[i for i, name in enumerate(names) if name == "restitution"]] = False
+        self.sizes[self.log] = values[self.log]
+        self.start = self.unknowns_of(values)
+        self.weights = 1.0 / prediction.record.units(noise).ravel()
+        self.observed = prediction.record.observed.ravel()
+        self.noise, own = noise, np.arange(self.sizes.size) < len(names)
+        self.held = 1.0 / np.append(np.full(len(names), leash), prediction.prior / prediction.sizes)
+        self.middle = np.where(own, self.start, 0.0)
+        self.unknowns = self.start.size - int(np.isfinite(prediction.prior).sum())
+        self.freedom = max(self.observed.size - self.unknowns, 1)
+        sensor = range(self.start.size - len(prediction.sensor), self.start.size)
+        self.named = [*range(len(names)), *sensor]
+        self.last: tuple[Array, ImpactOscillator, Array] | None = None
+
+    def values(self, unknowns: Array) -> Array:
+        """Parameters and further unknowns in their units."""
+        found = unknowns * self.sizes
+        found[..., self.log] = self.sizes[self.log] * np.exp(np.clip(unknowns[..., self.log], -50.0, 50.0))
+        return np.asarray(found)
+
+    def unknowns_of(self, values: Array) -> Array:
+        """The inverse of `values`."""
+        found = values / self.sizes
+        found[self.log] = np.log(found[self.log])
+        return np.asarray(found)
+
+    def slopes(self, unknowns: Array) -> Array:
+        """Derivatives of `values`, each by its own unknown."""
+        found, slopes = self.values(unknowns), self.sizes.copy()
+        slopes[self.log] = found[self.log]
+        return slopes
+
+    def at(self, unknowns: Array) -> tuple[ImpactOscillator, Array]:
+        """Oscillator and further unknowns; for the same unknowns the same objects."""
+        if self.last is None or not np.array_equal(self.last[0], unknowns):
+            values, n = self.values(unknowns), len(self.names)
+            own = dict(zip(self.names, values[:n].tolist(), strict=True))
+            self.last = unknowns.copy(), with_values(self.oscillator, own), values[n:]
+        return self.last[1], self.last[2]
+
+    def residuals(self, unknowns: Array) -> Array:
+        """Residuals of rows and priors, shape (rows + unknowns,); not a number where there is no orbit, which
+        rejects the step."""
+        try:
+            oscillator, extra = self.at(unknowns)
+            predicted = self.prediction.values(oscillator, extra).ravel()
+        except (ContactError, Refusal):
+            return np.full(self.observed.size + self.held.size, np.nan)
+        off = (predicted - self.observed) * self.weights
+        return np.concatenate([off, (unknowns - self.middle) * self.held])
+
+    def jacobian(self, unknowns: Array) -> Array:
+        """Shape (rows + unknowns, unknowns)."""
+        rows = self.prediction.jacobian(*self.at(unknowns), self.names) * self.weights[:, None]
+        return np.vstack([rows * self.slopes(unknowns), np.diag(self.held)])
+
+    def solve(self, start: Array) -> Any:
+        """``scipy.optimize.least_squares`` from `start`."""
+        if not np.all(np.isfinite(self.residuals(start))):
+            raise InvalidValue(
+                "no motion like the record's was found to start from: fit more, or give better values"
+            )
+        with np.errstate(all="ignore"):  # of the trust region, along what is not seen
+            return least_squares(
+                self.residuals,
+                start,
+                jac=self.jacobian,
+                x_scale="jac",
+                max_nfev=MOST,
+                xtol=1e-10,
+                ftol=1e-12,
+                gtol=1e-12,
+            )
