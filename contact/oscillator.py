@@ -38,13 +38,9 @@ GREATEST_AMPLITUDE = 0.1
 """Amplitude of a base motion beyond which a warning is given [m]: the stroke of large vibration exciters is
 50 mm, and the letter's drive moved by 1.5 mm.  Exactly 1 asks for the response per unit amplitude."""
 
-HIGHEST_DRIVE = 2.0
-"""Drive frequency over that of the highest mode above which a warning is given: the next mode of a beam is then
-nearer to the drive, and missing."""
-
-SLOWEST_DRIVE = 0.01
-"""Drive frequency over that of the lowest mode below which a warning is given: the tip then moves by less
-than 1e-4 of the base's motion, too little to reach a stop."""
+HIGHEST_DRIVE, SLOWEST_DRIVE = 2.0, 0.01
+"""Drive frequencies above the first, over the highest mode, and below the second, over the lowest one, bring
+a warning: a mode is missing, or the tip moves by less than 1e-4 of the motion of the base."""
 
 
 def dynamic_stiffness(omega: np.ndarray, decay_rate: np.ndarray, w: float) -> np.ndarray:
