@@ -7,30 +7,36 @@ From the bottom of `LADDER` upwards the first truncation is taken whose answers 
 reference by no more than the tolerances:
 
     frequency K    K-th frequency of the modes that move the ball: K modes have it
-    kick           of the first collision at excess 0.0065, 0.013 and 0.026, middle drive frequency; absolute
+    response       grazing amplitude, middle drive frequency; relative
+    kick           of the first collision at half, once and twice the excess, middle drive frequency; absolute
     restitution    of these collisions; absolute
-    born_period    period of the orbit settled at excess 1e-3, every drive frequency; whether it differs (0)
+    born_period    period of the orbit settled at scan.born_excess, every drive frequency; whether it
+                   differs (0)
     fold           F/F_g - 1 at the fold of p_m, every drive frequency; relative to it, or to the letter's
                    amplitude stability of 2.5e-4 where it is smaller; infinite if another p_m is born
     fold_middle    the same at the middle drive frequency
-    tip_trace      tip over one period of the orbit settled at excess 0.013, middle drive frequency; root
+    tip_trace      tip over one period of the orbit settled at the excess, middle drive frequency; root
                    mean square of the difference over the gap
+
+Drive frequencies, excess and law are those of the command; the excess is 0.013 where it has none.
 
 Folds are those of the collision as a kick of all modes (``contact.orbits.KickFamily``), which has them to
 0.2 % (median; 1 % at worst) at a hundredth of the price of following the orbits. Modes left out act on a
 collision through their compliance, sum phi_k^2/omega_k^2 over the modes beyond, so that errors fall steadily
 along the ladder: the least number is found by bisection, and the next one is asked as well, lest errors
-cancel by chance. A quantity that the reference does not have at a frequency (no orbit, no fold) asks nothing
-there. `studies.methods.adequacy` holds this choice against a search that follows every orbit.
+cancel by chance. Where the reference lacks a quantity (no orbit, no fold), the quantities of `ALWAYS` are
+compared there. Where it lacks a first collision too, all its modes are kept. The modes kept always reach
+above the fastest drive. `studies.methods.adequacy` holds this choice against a search that follows every
+orbit.
 """
 
 from __future__ import annotations
 
 import math
 from bisect import bisect
-from collections.abc import Callable, Hashable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from functools import cache, partial
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,7 +46,7 @@ from contact import ImpactOscillator, StroboscopicMap, first_collision, simulate
 from contact.orbits import born, born_period
 from studies import letter
 from studies.physics.descriptions import kick_fold, or_none
-from studies.shell.scene import Scene, SceneError, beam_at, model_of
+from studies.shell.scene import Scene, SceneError, beam_at, model_of, periods_of
 
 REFERENCE = 40
 """Coupled modes of the reference: for the letter's spring 30 have its folds to 2e-4, 60 to 1e-4."""
@@ -48,9 +54,12 @@ REFERENCE = 40
 LADDER = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 15, 18, 21, 25, 30)
 """Numbers of modes that are tried."""
 
-TRACE_EXCESS = letter.TIME_TRACE_EXCESS
+TRACE_EXCESS, BORN = letter.TIME_TRACE_EXCESS, 1e-3
 COLLISIONS = (0.5 * TRACE_EXCESS, TRACE_EXCESS, 2.0 * TRACE_EXCESS)
 """Excesses of the collisions that are asked for: three, lest errors that cancel at one pass for accuracy."""
+
+ALWAYS = {"response": 1e-3, "kick": 0.005, "restitution": 0.01}
+"""Quantities, with tolerances, that take the place of one that the reference lacks."""
 
 SAMPLES = 256
 """Samples of a trace in a drive period."""
@@ -60,7 +69,8 @@ Answer = Values | None
 At = Callable[[float], ImpactOscillator]
 """The oscillator of a model at a drive frequency [Hz]."""
 Distance = Callable[[Values, Values], float]
-Ask = Callable[[At, float], Answer]
+Ask = Callable[..., Answer]
+"""The answer of a model at a drive frequency [Hz] and, if given, an excess [1]."""
 Fold = Callable[[StroboscopicMap, int], float | None]
 Off = Callable[[int], float]
 Choice = TypeVar("Choice", bound=Hashable)
@@ -86,15 +96,16 @@ def distances(ask: Callable[[Choice], Answer], distance: Distance) -> Callable[[
 
 def reference_of(scene: Scene) -> ModalModel:
     """The spring with as many coupled modes as `REFERENCE`, or as its mesh or its measured rates have."""
-    most = REFERENCE
+    most, refused = REFERENCE, None
     if scene.damping.kind == "measured":
         most = min(most, len(scene.damping.measured_rates_per_s))
     while True:
         try:
             return model_of(scene.replace({"modes.count": most}))
-        except SceneError:
+        except SceneError as error:
+            refused = refused or error
             if most == 1:
-                raise
+                raise refused from None
             most = max(1, most // 2)
 
 
@@ -104,16 +115,18 @@ def middle_of(scene: Scene) -> float:
     return drives[(len(drives) - 1) // 2]
 
 
-def collisions(oscillator: ImpactOscillator, name: str) -> Answer:
-    """`restitution`, `delay` or `kick` of the first collision at each of `COLLISIONS`."""
-    values = [getattr(first_collision(oscillator.with_excess(excess)), name) for excess in COLLISIONS]
+def collisions(name: str, at: At, frequency: float, excess: float = TRACE_EXCESS) -> Answer:
+    """`restitution`, `delay` or `kick` of the first collision at `COLLISIONS`, in proportion to `excess`."""
+    struck = [at(frequency).with_excess(each * excess / TRACE_EXCESS) for each in COLLISIONS]
+    values = [getattr(first_collision(oscillator), name) for oscillator in struck]
     return np.array(values) if np.all(np.isfinite(values)) else None
 
 
-def tip_trace(oscillator: ImpactOscillator) -> Answer:
-    """Tip over gap during one period of the orbit settled at excess 0.013; None without an orbit."""
-    orbit = born(StroboscopicMap(oscillator=oscillator), TRACE_EXCESS)
-    driven = oscillator.with_excess(TRACE_EXCESS)
+def tip_trace(at: At, frequency: float, excess: float = TRACE_EXCESS) -> Answer:
+    """Tip over gap during one period of the orbit settled at `excess`; None without an orbit."""
+    oscillator = at(frequency)
+    orbit = born(StroboscopicMap(oscillator=oscillator), excess)
+    driven = oscillator.with_excess(excess)
     if orbit.period == 0 or orbit.impacts == 0:
         return None
     times = orbit.end.time + np.arange(orbit.period * SAMPLES) / SAMPLES * driven.period
@@ -121,10 +134,15 @@ def tip_trace(oscillator: ImpactOscillator) -> Answer:
     return driven.tip(run.displacement) / driven.stop.gap
 
 
-def fold_of_born(fold: Fold, at: At, frequency: float) -> Answer:
-    """Excess at which the orbit that is born has its fold, by `fold`, and its m."""
+def born_at(at: At, frequency: float, excess: float = BORN) -> Answer:
+    """Period of the orbit that settles at `excess`."""
+    return np.array([float(born_period(StroboscopicMap(oscillator=at(frequency)), excess))])
+
+
+def fold_of_born(fold: Fold, at: At, frequency: float, excess: float = BORN) -> Answer:
+    """Excess at which the orbit that settles at `excess` has its fold, by `fold`, and its m."""
     strobed = StroboscopicMap(oscillator=at(frequency))
-    period = born_period(strobed)
+    period = born_period(strobed, excess)
     end = fold(strobed, period)
     return None if end is None else np.array([end, float(period)])
 
@@ -145,45 +163,81 @@ def error_of_fold(answer: Values, reference: Values) -> float:
     return float(abs(answer[0] - reference[0]) / max(abs(reference[0]), letter.AMPLITUDE_STABILITY))
 
 
+def relative_error(answer: Values, reference: Values) -> float:
+    """The largest difference, relative to the reference."""
+    return float(np.max(np.abs(answer / reference - 1.0)))
+
+
 def largest_error(answer: Values, reference: Values) -> float:
     """The largest absolute difference."""
     return float(np.max(np.abs(answer - reference)))
 
 
-QUANTITIES: Mapping[str, tuple[Ask, Distance, bool]] = {
-    "kick": (lambda at, f: collisions(at(f), "kick"), largest_error, False),
-    "restitution": (lambda at, f: collisions(at(f), "restitution"), largest_error, False),
-    "fold": (partial(fold_of_born, kick_fold), error_of_fold, True),
-    "fold_middle": (partial(fold_of_born, kick_fold), error_of_fold, False),
-    "tip_trace": (lambda at, f: tip_trace(at(f)), error_of_trace, False),
-    "born_period": (
-        lambda at, f: np.array([float(born_period(StroboscopicMap(oscillator=at(f))))]),
-        largest_error,
-        True,
-    ),
+QUANTITIES: Mapping[str, tuple[Ask, Distance, bool, bool]] = {
+    "response": (lambda at, f, _=0.0: np.array([at(f).grazing_amplitude()]), relative_error, False, False),
+    "kick": (partial(collisions, "kick"), largest_error, False, False),
+    "restitution": (partial(collisions, "restitution"), largest_error, False, False),
+    "fold": (partial(fold_of_born, kick_fold), error_of_fold, True, True),
+    "fold_middle": (partial(fold_of_born, kick_fold), error_of_fold, False, True),
+    "tip_trace": (tip_trace, error_of_trace, False, False),
+    "born_period": (born_at, largest_error, True, True),
 }
-"""Name -> answer, distance, whether it is asked at every drive frequency. Born periods are asked last:
-transients are long where modes are missing."""
+"""Name -> answer, distance, whether it is asked at every drive frequency, and whether at scan.born_excess.
+Born periods are asked last: transients are long where modes are missing."""
+
+
+class Question(NamedTuple):
+    """A quantity at a drive frequency, `words`, its tolerance, and the distance of a number of modes.
+
+    `lacking` is the quantity whose place it takes, and the frequency, as text.
+    """
+
+    words: str
+    tolerance: float
+    off: Off
+    lacking: tuple[str, str] = ("", "")
 
 
 def questions(
-    scene: Scene, needs: Mapping[str, float], whole: ModalModel
-) -> Iterator[tuple[str, float, Off]]:
-    """What the needs come to, where the reference, the model `whole`, has an answer: in words, the tolerance,
-    and the distance of a number of modes."""
+    scene: Scene, needs: Mapping[str, float], whole: ModalModel, excess: float = TRACE_EXCESS
+) -> Iterator[Question]:
+    """The questions of the needs, or those of `ALWAYS` where the reference, the model `whole`, lacks one."""
+    lacking = dict[float, tuple[str, str]]()
+
+    def off_of(quantity: str, frequency: float) -> Off:
+        ask, distance, _, born = QUANTITIES[quantity]
+
+        def answer(modes: int) -> Answer:
+            there = scene.scan.born_excess if born else excess
+            return ask(lambda f: beam_at(scene, f, whole.truncated(modes)), frequency, there)
+
+        return partial(distances(answer, distance), whole.n_modes)
+
     for quantity in sorted(needs, key=list(QUANTITIES).index):
-        ask, distance, everywhere = QUANTITIES[quantity]
-        for frequency in sorted(scene.drive.frequencies_hz) if everywhere else [middle_of(scene)]:
-
-            def answer(modes: int, ask: Ask = ask, frequency: float = frequency) -> Answer:
-                return ask(lambda f: beam_at(scene, f, whole.truncated(modes)), frequency)
-
-            off = partial(distances(answer, distance), whole.n_modes)
+        name = quantity.removesuffix("_middle")
+        for frequency in (
+            sorted(scene.drive.frequencies_hz) if QUANTITIES[quantity][2] else [middle_of(scene)]
+        ):
+            off = off_of(quantity, frequency)
             if math.isfinite(off(whole.n_modes)):
-                yield f"{quantity.removesuffix('_middle')} at {frequency:g} Hz", needs[quantity], off
+                yield Question(f"{name} at {frequency:g} Hz", needs[quantity], off)
+            else:
+                lacking.setdefault(frequency, (name.replace("_", " "), f"{frequency:g}"))
+    for frequency, words in lacking.items():
+        for name, tolerance in ALWAYS.items():
+            off = off_of(name, frequency)
+            if math.isfinite(off(whole.n_modes)) or (name == "kick" and excess > 0.0):
+                yield Question(f"{name} at {frequency:g} Hz", tolerance, off, words)
 
 
-def least_modes(scene: Scene, needs: Mapping[str, float]) -> tuple[Scene, str]:
+def at_letters_drives(scene: Scene, _: Mapping[str, object]) -> tuple[list[float], float]:
+    """The drive frequencies [Hz] with the f T of the letter's six, for studies that scan their range."""
+    return list(periods_of(scene)), TRACE_EXCESS
+
+
+def least_modes(
+    scene: Scene, needs: Mapping[str, float], frequencies: Sequence[float] = (), excess: float = TRACE_EXCESS
+) -> tuple[Scene, str]:
     """The scene with the least number of modes for all `needs`, and why, in one sentence.
 
     Parameters
@@ -192,6 +246,8 @@ def least_modes(scene: Scene, needs: Mapping[str, float]) -> tuple[Scene, str]:
         Returned as it is, with an empty sentence, if it says the number itself or has no drive or no shape.
     needs : mapping of quantity to tolerance
         Quantities and their errors are listed in the module's docstring.
+    frequencies, excess : list of float, float
+        Drive frequencies [Hz], by default those of the scene, and excess [1] of the command.
     """
     if scene.modes.count or scene.spring.kind == "modal_data" or scene.drive.kind != "harmonic":
         return scene, ""
@@ -203,22 +259,31 @@ def least_modes(scene: Scene, needs: Mapping[str, float]) -> tuple[Scene, str]:
     least = max(numbers, default=1)
     reason = f"frequency {least}" if numbers else "the least there is"
     if others:
-        whole = reference_of(scene)
-        sharp = whole.n_modes
+        drives = frequencies or scene.drive.frequencies_hz
+        asked = scene.replace({"drive.frequencies_hz": tuple(drives)})
+        whole = reference_of(asked)
+        sharp, fastest = whole.n_modes, max(*drives, *scene.drive.frequencies_hz)
+        least = max(least, int(np.searchsorted(whole.frequencies_hz, fastest)) + 1)
         rungs = sorted({*(n for n in LADDER if least < n < sharp), min(least, sharp), sharp})
-        low, worst = 0, None
-        for words, tolerance, off in questions(scene, others, whole):
+        low, worst, lacking = 0, None, dict[str, dict[str, None]]()
+        for question in questions(asked, others, whole, excess):
+            lacking.setdefault(question.lacking[0], {})[question.lacking[1]] = None
 
-            def enough(place: int, off: Off = off, tolerance: float = tolerance) -> bool:
+            def enough(place: int, question: Question = question) -> bool:
                 """Whether the rung with this number and the next one are near enough."""
-                return all(off(n) <= tolerance for n in rungs[place : place + 2])
+                return all(question.off(n) <= question.tolerance for n in rungs[place : place + 2])
 
             if not enough(low):
-                # the first rung above `low` that is good enough; the reference itself is
-                low, worst = bisect(range(low, len(rungs)), False, key=enough) + low, (words, off)
+                # the first rung above `low` that is good enough, or else the reference
+                low, worst = bisect(range(low, len(rungs) - 1), False, key=enough) + low, question
         least = rungs[low]
         if least == sharp:
-            reason = f"all that were tried; fewer do not give {worst[0] if worst else 'what is asked'}"
+            reason = f"all that were tried, for {worst.words if worst else 'the drive'}"
         elif worst is not None:
-            reason = f"{worst[0]}, good to {worst[1](least):.1e} against {sharp} modes"
+            reason = f"{worst.words}, good to {worst.off(least):.1e} against {sharp} modes"
+        for name, places in lacking.items():
+            if name:
+                reason += (
+                    f"; no {name} at {', '.join(places)} Hz: response and first collision compared there"
+                )
     return scene.replace({"modes.count": least}, provenance="least"), f"modes kept: {least} ({reason})"

@@ -18,7 +18,14 @@ from difflib import get_close_matches
 from typing import Any, Literal
 
 from beam import InvalidValue, SuspiciousValue, decay_rate_change, free_period_change
-from contact import ContactLaw, DelayedRestitution, HertzContact, ImpactOscillator, LinearContact
+from contact import (
+    ContactLaw,
+    DelayedRestitution,
+    HertzContact,
+    HuntCrossley,
+    ImpactOscillator,
+    LinearContact,
+)
 from contact.orbits import Change
 from studies.shell.scene import Scene, beam_at, hertz_of, single_mode_at
 
@@ -163,10 +170,11 @@ def fitted_scene(scene: Scene, oscillator: ImpactOscillator, frequencies: Sequen
     }
     if isinstance(law, LinearContact):
         changes |= {"contact.stiffness_n_per_m": law.stiffness, "contact.damping_ns_per_m": law.damping}
-    elif isinstance(law, HertzContact):
+    elif isinstance(law, HertzContact | HuntCrossley):
         moduli, harder = ("ball_young_modulus_pa", "plate_young_modulus_pa"), law.stiffness
         harder /= hertz_of(scene).stiffness
         changes |= {f"tip.{key}": harder * scene.number(f"tip.{key}") for key in moduli}
+        changes["contact.dissipation_s_per_m"] = getattr(law, "dissipation", 0.0)
     else:
         changes |= {"contact.law": "newton", "contact.local_restitution": known["restitution"]}
     if model.n_modes == 1:

@@ -28,7 +28,8 @@ from numpy.typing import ArrayLike
 from beam import Refusal
 from contact import ContactError
 from studies import letter
-from studies.physics.least_model import least_modes
+from studies.physics.least_model import TRACE_EXCESS, least_modes
+from studies.physics.one_mode import doubts, with_restitution
 from studies.shell.executors import pool_of, progress, say
 from studies.shell.files import (
     SCHEMA,
@@ -41,13 +42,10 @@ from studies.shell.files import (
     versions,
     write_atomically,
 )
-from studies.shell.scene import Scene, free_period
+from studies.shell.scene import Scene
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-SAME_SPRING = 0.005
-"""Relative difference of two free periods beyond which the born period changes next to a band edge."""
 
 Verdict = Literal["agrees", "in part", "differs", "fitted", "not printed"]
 
@@ -126,22 +124,26 @@ class Run:
                 self.failed(f"{label}, {item}", error)
         return [found for found, _ in tried]
 
-    def choose_modes(self, scene: Scene, needs: Mapping[str, float]) -> Scene:
-        """The scene with the least number of modes for these quantities, unless it says the number.
-
-        A spring whose first mode is not that of [single_mode] is told: map and Eq. (1) describe another one.
-        """
-        self.scene, self.model_choice = least_modes(scene, needs)
+    def choose_modes(
+        self,
+        scene: Scene,
+        needs: Mapping[str, float],
+        frequencies: Sequence[float] = (),
+        excess: float = TRACE_EXCESS,
+    ) -> Scene:
+        """The scene with the least number of modes for these quantities, unless it says the number."""
+        self.scene, self.model_choice = least_modes(scene, needs, frequencies, excess)
         if self.model_choice:
             self.say(self.model_choice)
-        if scene.spring.kind != "modal_data":
-            told, found = scene.single_mode.free_period_s, free_period(scene)
-            if abs(told / found - 1.0) > SAME_SPRING:
-                doubt = (
-                    f"single_mode.free_period_s is {told:g} s, but the first mode of the spring has "
-                    f"{found:.5g} s: map and Eq. (1) describe another spring than the beam"
-                )
-                self.warn(doubt)
+        return self.scene
+
+    def describe_one_mode(self, scene: Scene) -> Scene:
+        """The scene with the restitution of Eq. (1) where it is open; prints it, and what is doubtful."""
+        self.scene, chosen = with_restitution(scene)
+        if chosen:
+            self.say(chosen)
+        for sentence in doubts(self.scene):
+            self.warn(sentence)
         return self.scene
 
     # what it leaves

@@ -27,7 +27,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TextIO, cast
+from typing import Any, TextIO, cast
 
 from beam import SuspiciousValue
 from contact import ContactError
@@ -36,13 +36,17 @@ from studies.shell.files import SCHEMA
 from studies.shell.options import add_options, parser_of
 from studies.shell.programs import DONE, FAILED_CELLS, INTERRUPTED, as_program, perform, run_time_of, tell
 from studies.shell.run import Run
-from studies.shell.scene import Scene, beyond_linear, read_scene
+from studies.shell.scene import Scene, read_scene
 
 Function = Callable[..., Mapping[str, object]]
+At = Callable[[Scene, Mapping[str, Any]], tuple[Sequence[float], float]]
 
 
 def study(
-    *, needs: Mapping[str, float] | None = None, quick: Mapping[str, object] | None = None
+    *,
+    needs: Mapping[str, float] | None = None,
+    quick: Mapping[str, object] | None = None,
+    at: At | None = None,
 ) -> Callable[[Function], Study]:
     """Decorator of the one function of a study.
 
@@ -53,8 +57,10 @@ def study(
         that gives these quantities (``least_model``).
     quick : mapping of option to value
         Defaults of the small form, --quick.
+    at : function of scene and options
+        Drive frequencies [Hz] and excess [1] at which its numbers are needed; by default those of the scene.
     """
-    return lambda function: Study(function=function, needs=dict(needs or {}), quick=dict(quick or {}))
+    return lambda function: Study(function=function, needs=dict(needs or {}), quick=dict(quick or {}), at=at)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,6 +70,7 @@ class Study:
     function: Function
     needs: Mapping[str, float]
     quick: Mapping[str, object]
+    at: At | None = None
 
     def __call__(self, scene: Scene, run: Run, **options: object) -> Mapping[str, object]:
         """Run the function."""
@@ -97,9 +104,6 @@ class Study:
             whole = {"schema": SCHEMA, "study": self.name, **values}
             tell(whole if given["json"] else scene.dump().rstrip(), output)
             return DONE
-        with warnings.catch_warnings():  # told already
-            warnings.simplefilter("ignore", SuspiciousValue)
-            doubtful += [beyond] if (beyond := beyond_linear(scene)) else []
         chosen = {**self.defaults(given["quick"]), **{name: given[name] for name in options if name in given}}
         chosen = {name: tuple(v) if isinstance(v, list) else v for name, v in chosen.items()}
         for sentence in doubtful:
@@ -139,7 +143,9 @@ class Study:
         try:
             with warnings.catch_warnings():  # a study varies the scene on purpose; what the user gave is told
                 warnings.simplefilter("ignore", SuspiciousValue)
-                scene = run.choose_modes(run.scene, self.needs) if self.needs else run.scene
+                asked = self.at(run.scene, options) if self.at else ()
+                scene = run.choose_modes(run.scene, self.needs, *asked) if self.needs else run.scene
+                scene = run.describe_one_mode(scene)
                 results = self.function(scene, run, **options)
         except (KeyboardInterrupt, Exception) as error:
             if _interrupted(error):

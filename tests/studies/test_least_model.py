@@ -34,8 +34,8 @@ def test_errors_of_folds_from_kicks_are_those_of_the_orbits_themselves(letter_sc
         found[modes] = fold_of(Shooting(oscillator=oscillator, period=period)).excess
     error = abs(found[12] / found[40] - 1.0)
     here = letter_scene.replace({"drive.frequencies_hz": (frequency,)})
-    ((_, _, off),) = questions(here, {"fold": 0.0}, whole)
-    assert off(12) == pytest.approx(error, rel=0.12)
+    (question,) = questions(here, {"fold": 0.0}, whole)
+    assert question.off(12) == pytest.approx(error, rel=0.12)
 
 
 @pytest.mark.slow
@@ -44,8 +44,8 @@ def test_the_reference_is_good_to_the_third_of_a_percent(letter_scene, monkeypat
     monkeypatch.setattr("studies.physics.least_model.REFERENCE", 60)
     whole = reference_of(letter_scene)
     assert whole.n_modes == 60
-    for _, _, off in questions(letter_scene, {"fold": 0.05}, whole):
-        assert off(40) < 3e-3
+    for question in questions(letter_scene, {"fold": 0.05}, whole):
+        assert question.off(40) < 3e-3
 
 
 def test_what_the_scene_says_itself_is_not_changed(letter_scene):

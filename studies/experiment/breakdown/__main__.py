@@ -48,6 +48,7 @@ from studies.experiment.breakdown.model import (
     tuned,
 )
 from studies.physics.descriptions import Diagram, word
+from studies.physics.least_model import TRACE_EXCESS
 from studies.shell.options import require_cells
 from studies.shell.scene import Scene, model_of, nordmark_at
 from studies.shell.study import Run, study
@@ -62,7 +63,11 @@ MOST_SCANNED = 4
 """Cells with period 6 whose scans are made: those that depart least from the scene."""
 
 
-@study(needs={"kick": 0.005}, quick={"points": 21, "cycles": 500})
+@study(
+    needs={"kick": 0.005},
+    quick={"points": 21, "cycles": 500},
+    at=lambda scene, options: ([FREQUENCY_HZ], TRACE_EXCESS),
+)
 def breakdown(
     scene: Scene,
     run: Run,

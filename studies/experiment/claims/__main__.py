@@ -42,6 +42,7 @@ from studies.experiment.claims.model import (
     trends,
 )
 from studies.physics.descriptions import falls
+from studies.physics.least_model import at_letters_drives
 from studies.shell.scene import Scene, band_of, corresponding, harmonic, nordmark_at
 from studies.shell.study import Run, study
 
@@ -64,7 +65,7 @@ EIGENVALUE, ADDED = 0.45, range(4, 21)
 """Of the overdamped map: its eigenvalue, between 1/4 and 2/3 where windows are parted by chaos; periods."""
 
 
-@study(needs={"fold": 0.05}, quick={"positions": 13})
+@study(needs={"fold": 0.05}, quick={"positions": 13}, at=at_letters_drives)
 def claims(
     scene: Scene,
     run: Run,

@@ -53,6 +53,7 @@ from studies.experiment.hysteresis.model import (
 )
 from studies.letter import AMPLITUDE_STABILITY
 from studies.physics.descriptions import falls
+from studies.physics.least_model import at_letters_drives
 from studies.shell.options import require_cells
 from studies.shell.run import Verdict
 from studies.shell.scene import Scene, harmonic, model_of, periods_of, require_drive_below
@@ -92,7 +93,7 @@ class Accuracy:
         return f"{self.median:.2f} (median; worst {self.worst:.1f})"
 
 
-@study(needs={"fold": 0.05}, quick={"step": 0.3, "inside": 26})
+@study(needs={"fold": 0.05}, quick={"step": 0.3, "inside": 26}, at=at_letters_drives)
 def hysteresis(
     scene: Scene,
     run: Run,

@@ -25,7 +25,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Annotated
+from typing import Annotated, Any
 
 from beam import InvalidValue
 from contact import Collision, StroboscopicMap
@@ -36,15 +36,7 @@ from studies.experiment.time_trace.model import Peak, close_up, lines_of, peaks_
 from studies.physics.descriptions import word
 from studies.shell.film import MOST_FRAMES
 from studies.shell.run import Verdict
-from studies.shell.scene import (
-    Scene,
-    beam_at,
-    corresponding,
-    harmonic,
-    model_of,
-    periods_of,
-    require_drive_below,
-)
+from studies.shell.scene import Scene, beam_at, model_of, own_frequency, periods_of, require_drive_below
 from studies.shell.study import Run, study
 
 ORBIT_PERIODS = 2
@@ -57,14 +49,21 @@ TOLD = ("first_touch", "approach", "restitution", "delay", "kick", "impacts", "c
 """Columns of a collision that are shown to a person."""
 
 
-@study(needs={"tip_trace": 2e-3}, quick={"frames": 60})
+def conditions(scene: Scene, options: Mapping[str, Any]) -> tuple[list[float], float]:
+    """Drive frequency [Hz] and excess of the command."""
+    given = options["frequency"]
+    return [own_frequency(scene, letter.TIME_TRACE_HZ) if given is None else given], options["excess"]
+
+
+@study(needs={"tip_trace": 2e-3, "kick": 0.005, "restitution": 0.01}, quick={"frames": 60}, at=conditions)
 def time_trace(
     scene: Scene,
     run: Run,
     *,
     excess: Annotated[float, "F/F_g - 1 of the orbit, above -1"] = letter.TIME_TRACE_EXCESS,
     frequency: Annotated[
-        float | None, "drive frequency (Hz); 21.5, other springs at the same f T, by default"
+        float | None,
+        "drive frequency (Hz); by default 21.5, or that of the scene with this f T, or its middle one",
     ] = None,
     film: Annotated[bool, "film one period of the orbit"] = False,
     frames: Annotated[int, "frames of the film"] = 240,
@@ -72,7 +71,7 @@ def time_trace(
     """Compute, store and draw."""
     if frames > MOST_FRAMES:
         raise InvalidValue(f"frames is {frames}; a film has at most {MOST_FRAMES}")
-    drive_hz = corresponding(harmonic(scene), letter.TIME_TRACE_HZ) if frequency is None else frequency
+    drive_hz = own_frequency(scene, letter.TIME_TRACE_HZ) if frequency is None else frequency
     model = model_of(scene)
     require_drive_below(scene, model, drive_hz)
     oscillator = beam_at(scene, drive_hz, model).with_excess(excess)

@@ -1,6 +1,6 @@
 """A stretch of a motion, and one of its collisions close by: tip past the plate, and the contact force.
 
-    N = k d + c d'  (linear),   N = k d^(3/2)  (Hertz),   at depth d [m] and rate d' [m/s], while they touch
+    N = k d + c d'  (linear),   N = k d^(3/2) (1 + chi d')  (Hertz: chi = 0),   at depth d [m], rate d' [m/s]
 
 A law of restitution has no force: not a number.
 
@@ -24,6 +24,7 @@ from beam import InvalidType
 from contact import (
     Collision,
     HertzContact,
+    HuntCrossley,
     ImpactKind,
     ImpactOscillator,
     LinearContact,
@@ -116,6 +117,8 @@ def contact_force(oscillator: ImpactOscillator, run: Trajectory) -> Array:
         force = law.stiffness * depth + law.damping * oscillator.tip(run.velocity)
     elif isinstance(law, HertzContact):
         force = law.stiffness * depth**1.5
+    elif isinstance(law, HuntCrossley):
+        force = law.stiffness * depth**1.5 * (1.0 + law.dissipation * oscillator.tip(run.velocity))
     else:
         raise InvalidType(f"the force of {type(law).__name__} is not known here")
     return np.where(touching(run), np.maximum(force, 0.0), 0.0)

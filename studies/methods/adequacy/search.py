@@ -48,8 +48,7 @@ MESH_ORDER = 4
 
 
 def _delays(at: At, frequency: float) -> Answer:
-    oscillator = at(frequency)
-    found, gap = collisions(oscillator, "delay"), oscillator.stop.gap
+    found, gap = collisions("delay", at, frequency), at(frequency).stop.gap
     speeds = np.array([approach_speed(frequency, gap, excess) for excess in COLLISIONS])
     return None if found is None else found * (2.0 * math.pi * frequency) ** 2 * gap / speeds
 

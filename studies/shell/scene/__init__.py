@@ -25,6 +25,7 @@ from contact import (
     ContactLaw,
     HarmonicDrive,
     HertzContact,
+    HuntCrossley,
     ImpactOscillator,
     LinearContact,
     NewtonRestitution,
@@ -34,6 +35,7 @@ from contact import (
     band,
 )
 from studies import ROOT, letter
+from studies.shell.scene.key import OPEN as OPEN
 from studies.shell.scene.key import SceneError, shown
 from studies.shell.scene.spring import READOUT as READOUT
 from studies.shell.scene.spring import (
@@ -44,8 +46,10 @@ from studies.shell.scene.spring import (
     shift_at_gap,
     single_mode_of,
     spring_of,
+    with_first_mode,
 )
 from studies.shell.scene.spring import elements_of as elements_of
+from studies.shell.scene.spring import first_mode as first_mode
 from studies.shell.scene.spring import free_period as free_period
 from studies.shell.scene.spring import modes_of as modes_of
 from studies.shell.scene.spring import sections_of as sections_of
@@ -58,6 +62,9 @@ LARGEST_BANDS = range(3, 13)
 
 SAME_PERIOD = 1e-3
 """Relative change of T within which a spring counts as the letter's: twice the error of its 40.80 ms."""
+
+SAME_DRIVE = 3e-3
+"""Relative difference of two f T that are taken for one: a fifth of the narrowest distance in Fig. 2."""
 
 
 def read_scene(name: str | Path = "letter", overrides: Iterable[str] = ()) -> Scene:
@@ -73,6 +80,8 @@ def read_scene(name: str | Path = "letter", overrides: Iterable[str] = ()) -> Sc
         raise SceneError(f"the scene {shown(str(name))} cannot be read: {reason}; {choices}") from error
     scene = scene_from_text(text, name=str(path), overrides=overrides, folder=path.parent)
     check(scene)
+    scene = with_first_mode(scene)
+    single_mode_of(scene)
     for sentence in doubts(scene):
         warnings.warn(sentence, SuspiciousValue, stacklevel=2)
     return scene
@@ -91,8 +100,8 @@ def check(scene: Scene) -> None:
     scene.make(Stop, {"gap": "stop.gap_m"}, law=contact_law_of(scene))
     for frequency in scene.drive.frequencies_hz:
         scene.make(HarmonicDrive, {"frequency": "drive.frequencies_hz"}, frequency=frequency)
-    scene.make(NewtonRestitution, {"local_restitution": "single_mode.restitution"})
-    single_mode_of(scene)
+    if scene.single_mode.restitution != OPEN:
+        restitution_of(scene)
     if spring.kind == "modal_data":
         require_drive_below(scene, model_of(scene))
         return
@@ -147,6 +156,9 @@ def contact_law_of(scene: Scene) -> ContactLaw:
         return hertz_of(scene)
     if law == "newton":
         return scene.make(NewtonRestitution, {"local_restitution": "contact.local_restitution"})
+    if law == "hunt_crossley":
+        keys = {"dissipation": "contact.dissipation_s_per_m"}
+        return scene.make(HuntCrossley, keys, stiffness=hertz_of(scene).stiffness)
     if stiffness == 0.0:
         mass = scene.modal_data.tip_mass_kg if scene.spring.kind == "modal_data" else scene.tip.mass_kg
         if not mass > 0:
@@ -177,8 +189,14 @@ def beam_at(scene: Scene, frequency: float, model: ModalModel | None = None) -> 
 
 def single_mode_at(scene: Scene, frequency: float) -> ImpactOscillator:
     """Eq. (1) of the letter at drive frequency `frequency` [Hz], with the gap of the scene."""
-    law = scene.make(NewtonRestitution, {"local_restitution": "single_mode.restitution"})
-    return _on_stop(scene, single_mode_of(scene), law, frequency)
+    return _on_stop(scene, single_mode_of(scene), restitution_of(scene), frequency)
+
+
+def restitution_of(scene: Scene) -> NewtonRestitution:
+    """The law of Eq. (1); SceneError where the restitution is open, because no collision gave it."""
+    if scene.single_mode.restitution == OPEN:
+        raise SceneError("single_mode.restitution is open (-1), and no first collision gave it: give 0 to 1")
+    return scene.make(NewtonRestitution, {"local_restitution": "single_mode.restitution"})
 
 
 def nordmark_at(scene: Scene, frequency: float) -> NordmarkMap:
@@ -229,7 +247,7 @@ def period_shifts(scene: Scene) -> Mapping[float, tuple[float, float]]:
 
 def beyond_linear(scene: Scene) -> str | None:
     """One sentence if the spring is too nonlinear at the gap for the periods that are born, else None."""
-    if scene.drive.kind != "harmonic":
+    if scene.drive.kind != "harmonic" or scene.single_mode.restitution == OPEN:
         return None
     shifts = period_shifts(scene)
     moved = {f"{f:g}": shift for f, (shift, room) in shifts.items() if abs(shift) > room}
@@ -251,6 +269,16 @@ def corresponding(scene: Scene, letter_hz: float) -> float:
     """
     ratio = letter.FREE_PERIOD_S / scene.single_mode.free_period_s
     return letter_hz if abs(ratio - 1.0) <= SAME_PERIOD else float(f"{letter_hz * ratio:.5g}")
+
+
+def own_frequency(scene: Scene, letter_hz: float) -> float:
+    """The drive frequency [Hz] of a study of one frequency, the letter's `letter_hz` on the letter's scene.
+
+    Another scene has its drive frequency with the same f T, if it is one of its own, or else its middle one.
+    """
+    there, drives = corresponding(scene, letter_hz), sorted(harmonic(scene).drive.frequencies_hz)
+    near = min(drives, key=lambda frequency: abs(frequency - there))
+    return near if abs(near / there - 1.0) <= SAME_DRIVE else drives[(len(drives) - 1) // 2]
 
 
 def periods_of(scene: Scene) -> Mapping[float, int]:

@@ -16,6 +16,9 @@ from beam import InvalidValue
 
 LETTER, CALIBRATED, ASSUMED, GIVEN = "letter", "calibrated", "assumed", "given"
 
+OPEN = -1.0
+"""Value of a key that is left open, to be taken from the spring."""
+
 
 class SceneError(InvalidValue):
     """A scene that cannot be used; the message is one sentence on one line."""
@@ -37,7 +40,10 @@ T = TypeVar("T", float, int, str, tuple[float, ...])
 
 @dataclass(frozen=True)
 class Key:
-    """What is known of a key; `unit` is "" where nothing is measured and "1" for a pure number."""
+    """What is known of a key; `unit` is "" where nothing is measured and "1" for a pure number.
+
+    `printed` is the letter's value where that is not the default.
+    """
 
     default: Value
     unit: str
@@ -46,6 +52,7 @@ class Key:
     low: float
     high: float
     choices: tuple[str, ...]
+    printed: Value | None
 
     def valid(self) -> str:
         """What a value must be, as part of a sentence."""
@@ -98,9 +105,11 @@ def key(
     low: float = -math.inf,
     high: float = math.inf,
     choices: tuple[str, ...] = (),
+    printed: T | None = None,
 ) -> T:
     """The field of a section for one key."""
-    known = Key(default, unit, provenance, meaning, low, min(high, HIGHEST.get(unit, math.inf)), choices)
+    high = min(high, HIGHEST.get(unit, math.inf))
+    known = Key(default, unit, provenance, meaning, low, high, choices, printed)
     return field(default=default, metadata={"key": known})
 
 

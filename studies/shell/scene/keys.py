@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from studies.shell.scene.key import CALIBRATED, LETTER, key
+from studies.shell.scene.key import CALIBRATED, LETTER, OPEN, key
 
 MODE_LISTS = ("frequencies_hz", "decay_rates_per_s", "tip_values", "participation")
 """The lists of [modal_data], one entry a mode."""
@@ -133,11 +133,15 @@ class ModalDataKeys:
 
 @dataclass(frozen=True, kw_only=True)
 class SingleModeKeys:
-    """Eq. (1) of the letter."""
+    """Eq. (1) of the letter, and the map; -1 leaves a value open, to be taken from the spring."""
 
-    free_period_s: float = key(0.0408, "s", "damped period of the free motion", LETTER, low=1e-6)
-    decay_rate_per_s: float = key(3.56, "1/s", "mu (printed with Fig. 5)", LETTER)
-    restitution: float = key(0.1, "1", "tau, about 0.1", LETTER)
+    free_period_s: float = key(
+        OPEN, "s", "damped period T of the free motion; -1: that of mode 1", printed=0.0408
+    )
+    decay_rate_per_s: float = key(OPEN, "1/s", "decay rate mu; -1: that of mode 1", printed=3.56)
+    restitution: float = key(
+        OPEN, "1", "tau; -1: that of a first collision of the beam at excess 0.013", printed=0.1
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -163,12 +167,17 @@ class StopKeys:
 class ContactKeys:
     """Ball on plate."""
 
-    law: str = key("hertz", "", "what happens at the plate", choices=("linear", "newton", "hertz"))
+    law: str = key(
+        "hertz", "", "what happens at the plate", choices=("linear", "newton", "hertz", "hunt_crossley")
+    )
     stiffness_n_per_m: float = key(
         0.0, "N/m", "linear: stiffness; 0: that with Hertz's contact time", low=0.0
     )
     damping_ns_per_m: float = key(0.0, "N s/m", "linear: dashpot beside it", low=0.0)
     local_restitution: float = key(1.0, "1", "newton: speed after over before an impact", low=0.0, high=1.0)
+    dissipation_s_per_m: float = key(
+        0.0, "s/m", "hunt_crossley: chi in N = k d^(3/2) (1 + chi d'), k that of hertz", low=0.0
+    )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 import beam
 from beam import LeafSpring, ModalModel, Modes, StripSection
-from studies.shell.scene.key import SceneError
+from studies.shell.scene.key import OPEN, SceneError
 from studies.shell.scene.keys import MODE_LISTS
 from studies.shell.scene.values import Scene
 
@@ -223,9 +223,38 @@ def single_mode_of(scene: Scene) -> ModalModel:
     return dataclasses.replace(model, readouts={READOUT: model.phi})
 
 
-def free_period(scene: Scene) -> float:
-    """Damped period of the first mode of the spring [s]; infinite if it does not swing."""
-    modes = modes_of(scene, 1)
-    rate, omega = float(damping_of(scene).decay_rates(modes)[-1]), float(modes.omega[-1])
+def first_mode(scene: Scene) -> tuple[float, float]:
+    """Damped period [s] and decay rate [1/s] of the first mode of the spring that is no rigid motion.
+
+    The period is infinite if that mode does not oscillate.
+    """
+    if scene.spring.kind == "modal_data":
+        model = model_of(scene)
+        first = min(int(np.argmax(model.omega > 0.0)), model.n_modes - 1)
+        rate, omega = float(model.decay_rate[first]), float(model.omega[first])
+    else:
+        modes = modes_of(scene, 1 + spring_of(scene).rigid_motions)
+        rate, omega = float(damping_of(scene).decay_rates(modes)[-1]), float(modes.omega[-1])
     square = omega**2 - (0.5 * rate) ** 2
-    return 2.0 * math.pi / math.sqrt(square) if square > 0.0 else math.inf
+    return (2.0 * math.pi / math.sqrt(square) if square > 0.0 else math.inf), rate
+
+
+def free_period(scene: Scene) -> float:
+    """Damped period of the first mode of the spring [s]; infinite if it does not oscillate."""
+    return first_mode(scene)[0]
+
+
+def with_first_mode(scene: Scene) -> Scene:
+    """The scene with period and decay rate of mode 1, to nine digits, where they are open."""
+    names = ("single_mode.free_period_s", "single_mode.decay_rate_per_s")
+    if not any(scene[name] == OPEN for name in names):
+        return scene
+    found = first_mode(scene)
+    values = {
+        name: float(f"{value:.9g}") for name, value in zip(names, found, strict=True) if scene[name] == OPEN
+    }
+    if math.isinf(found[0]):
+        raise SceneError(
+            f"mode 1 of the spring does not oscillate: give {names[0]} (unit s) and {names[1]} (unit 1/s)"
+        )
+    return scene.replace(values, provenance="mode 1")

@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from studies.shell.scene import keys as scene_keys
-from studies.shell.scene.key import GIVEN, Key, SceneError, Value, shown
+from studies.shell.scene.key import GIVEN, LETTER, Key, SceneError, Value, shown
 from studies.shell.scene.keys import MODE_LISTS
 
 T = TypeVar("T")
@@ -94,7 +94,11 @@ class Scene:
         """Dotted key -> letter, calibrated, assumed (a default), or what `replace` was told (else given)."""
         origins = dict(self.origins)
         return {
-            key: known.provenance if self[key] == known.default else origins.get(key, GIVEN)
+            key: known.provenance
+            if self[key] == known.default
+            else LETTER
+            if self[key] == known.printed
+            else origins.get(key, GIVEN)
             for key, known in KEYS.items()
         }
 

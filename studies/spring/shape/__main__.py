@@ -35,7 +35,15 @@ from functools import partial
 from studies.shell.scene import Scene, model_of
 from studies.shell.study import Run, study
 from studies.spring.shape.finite_amplitude import Survival, springs_of, survivals
-from studies.spring.shape.model_error import COARSE, FINE, OrbitEnds, orbit_rows, plates_of, with_refitted
+from studies.spring.shape.model_error import (
+    COARSE,
+    FINE,
+    MODES,
+    OrbitEnds,
+    orbit_rows,
+    plates_of,
+    with_refitted,
+)
 from studies.spring.shape.shapes import TITLES, Reading, ReadingRow, reading_row, shapes_of
 
 
@@ -76,7 +84,11 @@ def compare_plate(scene: Scene, run: Run) -> list[OrbitEnds]:
     beam, plates = model_of(scene), plates_of(scene, COARSE if run.quick else FINE)
     springs, frequencies = with_refitted(scene, run, plates, beam), scene.drive.frequencies_hz
     orbits = orbit_rows(scene, run, springs, frequencies[:: 2 if run.quick else 1])
-    run.table("plate_ends", orbits, "Ends of the orbits on the way down, by beam and plates.")
+    kept = (
+        f"Ends of the orbits on the way down, by plates of {MODES} modes and the beam with {beam.n_modes}. "
+        "The main job keeps as few modes as its accuracy of 7 % allows."
+    )
+    run.table("plate_ends", orbits, kept)
     same = all(row.same_period for row in orbits)
     words = [f"As a plate the spring {'keeps every' if same else 'changes a'} period that is born."]
     known = [row for row in orbits if row.factors]
