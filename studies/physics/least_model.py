@@ -10,13 +10,14 @@ reference by no more than the tolerances:
     response       grazing amplitude, middle drive frequency; relative
     kick           of the first collision at half, once and twice the excess, middle drive frequency; absolute
     restitution    of these collisions; absolute
-    born_period    period of the orbit settled at scan.born_excess, every drive frequency; whether it
-                   differs (0)
+    born_period    period and impacts of the orbit settled at scan.born_excess, every drive frequency;
+                   whether they differ (0)
     fold           F/F_g - 1 at the fold of p_m, every drive frequency; relative to it, or to the letter's
-                   amplitude stability of 2.5e-4 where it is smaller; infinite if another p_m is born
+                   amplitude stability of 2.5e-4 where it is smaller; infinite if another p_m is born, or
+                   one with several impacts
     fold_middle    the same at the middle drive frequency
     tip_trace      tip over one period of the orbit settled at the excess, middle drive frequency; root
-                   mean square of the difference over the gap
+                   mean square of the difference over the gap, infinite if impacts differ in number
 
 Drive frequencies, excess and law are those of the command; the excess is 0.013 where it has none.
 
@@ -43,7 +44,7 @@ from numpy.typing import NDArray
 
 from beam import InvalidValue, ModalModel
 from contact import ImpactOscillator, StroboscopicMap, first_collision, simulate
-from contact.orbits import born, born_period
+from contact.orbits import born
 from studies import letter
 from studies.physics.descriptions import kick_fold, or_none
 from studies.shell.scene import Scene, SceneError, beam_at, model_of, periods_of
@@ -123,42 +124,53 @@ def collisions(name: str, at: At, frequency: float, excess: float = TRACE_EXCESS
 
 
 def tip_trace(at: At, frequency: float, excess: float = TRACE_EXCESS) -> Answer:
-    """Tip over gap during one period of the orbit settled at `excess`; None without an orbit."""
+    """Impacts of the orbit settled at `excess`, and tip over gap during one period; 0 without an orbit."""
     oscillator = at(frequency)
     orbit = born(StroboscopicMap(oscillator=oscillator), excess)
     driven = oscillator.with_excess(excess)
-    if orbit.period == 0 or orbit.impacts == 0:
-        return None
+    if orbit.period == 0:
+        return np.zeros(1)
     times = orbit.end.time + np.arange(orbit.period * SAMPLES) / SAMPLES * driven.period
     run = simulate(driven, orbit.end, periods=orbit.period, times=times)
-    return driven.tip(run.displacement) / driven.stop.gap
+    return np.append(orbit.impacts, driven.tip(run.displacement) / driven.stop.gap)
 
 
 def born_at(at: At, frequency: float, excess: float = BORN) -> Answer:
-    """Period of the orbit that settles at `excess`."""
-    return np.array([float(born_period(StroboscopicMap(oscillator=at(frequency)), excess))])
+    """Period and impacts of the orbit that settles at `excess`; both are 0 without an orbit."""
+    orbit = born(StroboscopicMap(oscillator=at(frequency)), excess)
+    return np.array([orbit.period, orbit.impacts], dtype=float) * (orbit.period > 0)
 
 
 def fold_of_born(fold: Fold, at: At, frequency: float, excess: float = BORN) -> Answer:
-    """Excess at which the orbit that settles at `excess` has its fold, by `fold`, and its m."""
+    """Excess at which the orbit that settles at `excess` has its fold, by `fold`, and its m.
+
+    Orbits with several impacts mostly end otherwise: then the excess is not a number.
+    """
     strobed = StroboscopicMap(oscillator=at(frequency))
-    period = born_period(strobed, excess)
-    end = fold(strobed, period)
-    return None if end is None else np.array([end, float(period)])
+    orbit = born(strobed, excess)
+    end = math.nan if orbit.period > 1 and orbit.impacts > 1 else fold(strobed, orbit.period)
+    return None if end is None else np.array([end, float(orbit.period)])
 
 
 def error_of_trace(answer: Values, reference: Values) -> float:
-    """Root mean square of the difference; a p_m orbit has m phases, and any of them is the same orbit."""
-    if answer.size != reference.size:
+    """Root mean square of the difference; infinite if periods or impacts differ.
+
+    A p_m orbit has m phases, and any of them is the same orbit.
+    """
+    if answer.size != reference.size or answer[0] != reference[0]:
         return math.inf
-    turns = [np.roll(answer, shift) for shift in range(0, answer.size, SAMPLES)]
-    return float(min(np.sqrt(np.mean((turn - reference) ** 2)) for turn in turns))
+    if answer.size == 1:
+        return 0.0
+    turns = [np.roll(answer[1:], shift) for shift in range(0, answer.size - 1, SAMPLES)]
+    return float(min(np.sqrt(np.mean((turn - reference[1:]) ** 2)) for turn in turns))
 
 
 def error_of_fold(answer: Values, reference: Values) -> float:
     """Relative to the fold, or to the letter's amplitude stability where it is smaller; infinite if m
-    differs."""
-    if answer[1] != reference[1]:
+    differs, and for another model of an orbit without a fold."""
+    if answer is reference:
+        return 0.0
+    if answer[1] != reference[1] or math.isnan(answer[0] - reference[0]):
         return math.inf
     return float(abs(answer[0] - reference[0]) / max(abs(reference[0]), letter.AMPLITUDE_STABILITY))
 
