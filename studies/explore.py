@@ -24,11 +24,13 @@ from matplotlib.backend_bases import FigureManagerBase
 from matplotlib.figure import Figure
 from matplotlib.widgets import RadioButtons, Slider
 
-from beam import InvalidValue, Refusal
+from beam import InvalidValue, ModalModel, Refusal
 from contact import ContactError, ImpactKind, StrobedMap, StroboscopicMap, simulate
 from contact.orbits import settle
 from studies.physics.descriptions import BELOW, TITLES, strobed_at, up_and_down
 from studies.physics.least_model import least_modes, middle_of
+from studies.physics.one_mode import with_restitution
+from studies.shell.executors import say
 from studies.shell.options import Parser, add_scene, tool
 from studies.shell.plotting import DOWN, EXCESS, GUIDE, INCH, PAGE, UP, house_style, points, strobe_points
 from studies.shell.scene import Scene, harmonic, model_of, read_scene
@@ -41,7 +43,13 @@ NAMES = dict(zip(KINDS, TITLES, strict=True))
 REACH, SPAN, TRACE, SAMPLES, STROBES, SETTLE = 0.03, 0.01, 12, 2401, 64, 600
 """Excess of slider and diagram; periods, samples of a trace; strobes; periods to settle."""
 
-modes_of_beam = lru_cache(maxsize=4)(lambda scene: model_of(least_modes(scene, {"fold": 0.07})[0]))
+
+@lru_cache(maxsize=4)
+def modes_of_beam(scene: Scene) -> ModalModel:
+    """The least number of modes, which is printed."""
+    scene, sentence = least_modes(scene, {"fold": 0.07})
+    say(sentence)
+    return model_of(scene)
 
 
 @lru_cache(maxsize=64)
@@ -125,7 +133,8 @@ class Window:
 
 def explore(given: Any) -> tuple[str, dict[str, object]]:
     """Show the window until it is closed."""
-    scene = harmonic(read_scene(given.scene, given.overrides))
+    scene, sentence = with_restitution(harmonic(read_scene(given.scene, given.overrides)))
+    say(sentence)
     try:
         figure = plt.figure(figsize=(PAGE / INCH, 0.75 * PAGE / INCH), dpi=140)
         if type(figure.canvas.manager) is FigureManagerBase:

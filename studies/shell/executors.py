@@ -24,8 +24,9 @@ PATIENCE = 20.0
 
 
 def say(sentence: str) -> None:
-    """A line for a person."""
-    print(sentence, file=sys.stderr, flush=True)
+    """A line for a person, if there is something to say."""
+    if sentence:
+        print(sentence, file=sys.stderr, flush=True)
 
 
 def duration(seconds: float) -> str:

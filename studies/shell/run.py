@@ -133,15 +133,13 @@ class Run:
     ) -> Scene:
         """The scene with the least number of modes for these quantities, unless it says the number."""
         self.scene, self.model_choice = least_modes(scene, needs, frequencies, excess)
-        if self.model_choice:
-            self.say(self.model_choice)
+        self.say(self.model_choice)
         return self.scene
 
     def describe_one_mode(self, scene: Scene) -> Scene:
         """The scene with the restitution of Eq. (1) where it is open; prints it, and what is doubtful."""
         self.scene, chosen = with_restitution(scene)
-        if chosen:
-            self.say(chosen)
+        self.say(chosen)
         for sentence in doubts(self.scene):
             self.warn(sentence)
         return self.scene
