@@ -72,7 +72,7 @@ def small(
         Row(number=n, value=None if n else np.float64(np.nan), word="a,b", good=n > 0, pair=(0.0, float(n)))
         for n in run.track(range(points), "rows")
     ]
-    run.table("rows", rows, "Rows.")
+    run.table("rows", rows, "Rows.", of=Row)
     run.arrays("numbers", x=np.arange(3.0))
     if fail:
         run.failed("cell 1", ValueError("no number"))

@@ -175,8 +175,8 @@ def _judged(problem: Problem, found: Any, oscillator: ImpactOscillator, known: b
     lengths[lengths == 0.0] = 1.0
     _u, singular, axes = np.linalg.svd(found.jac / lengths, full_matrices=False)
     if not singular[-1] > SINGULAR * singular[0]:
-        blind = _blind(axes[:, own], names)
-        raise InvalidValue(f"the record cannot {blind}: fit fewer parameters or another record")
+        cannot = _cannot(_blind(axes[:, own], names))
+        raise InvalidValue(f"{cannot}: fit fewer parameters or another record")
     axes = axes / lengths
     covariance = (axes.T / singular**2 @ axes * spread**2)[np.ix_(own, own)]
     slopes = problem.slopes(found.x)[own]
@@ -198,17 +198,23 @@ def _judged(problem: Problem, found: Any, oscillator: ImpactOscillator, known: b
         unknowns=found.x,
     )
     most = np.where(problem.log, LOST, np.maximum(np.abs(found.x), 1.0))[own]
-    if not result.too_small and np.any(lost := np.sqrt(np.diag(covariance)) > most):  # else `report` says so
-        worst, blind = names[int(np.argmax(lost))], _blind(axes[:, own], names)
-        raise InvalidValue(f"the record cannot {blind}: the standard error of {worst} is above its value")
+    share = np.sqrt(np.diag(covariance)) / most
+    if not result.too_small and np.any(share > 1.0):  # else `report` says so
+        worst, blind = names[int(np.argmax(share))], _blind(axes[:, own], names)
+        cannot = _cannot(blind if worst in blind else [worst])
+        raise InvalidValue(f"{cannot}: the standard error of {worst} is above its value")
     return result
 
 
-def _blind(axes: Array, names: Sequence[str]) -> str:
+def _blind(axes: Array, names: Sequence[str]) -> list[str]:
     """The parameters of the last axis, which a record cannot separate or determine."""
     share = np.abs(axes[-1])
-    blind = [name for name, part in zip(names, share, strict=True) if part > PART * share.max()]
-    return f"tell {' from '.join(blind)}" if len(blind) > 1 else f"determine {blind[0]}"
+    return [name for name, part in zip(names, share, strict=True) if part > PART * share.max()]
+
+
+def _cannot(blind: Sequence[str]) -> str:
+    """What a record cannot do for these parameters."""
+    return f"the record cannot {'tell' if len(blind) > 1 else 'determine'} {' from '.join(blind)}"
 
 
 def _chance(residuals: Array, prediction: Prediction, known: bool, freedom: int) -> float:

@@ -56,8 +56,9 @@ SCENES = ROOT / "studies" / "scenes"
 LARGEST_BANDS = range(3, 13)
 """Periods whose bands are looked at: edges lie closer and closer beyond."""
 
-SAME_PERIOD = 1e-3
-"""Relative change of T within which a spring counts as the letter's: twice the error of its 40.80 ms."""
+SAME_PERIOD, SAME_SPRING, TYPICAL = 1e-3, 0.005, 3.0
+"""Relative change of T within which a spring counts as the letter's: twice the error of its 40.80 ms; that of
+the first mode beyond which the born period changes next to a band edge; factor on the letter's amplitude."""
 
 
 def read_scene(name: str | Path = "letter", overrides: Iterable[str] = ()) -> Scene:
@@ -251,6 +252,26 @@ def corresponding(scene: Scene, letter_hz: float) -> float:
     """
     ratio = letter.FREE_PERIOD_S / scene.single_mode.free_period_s
     return letter_hz if abs(ratio - 1.0) <= SAME_PERIOD else float(f"{letter_hz * ratio:.5g}")
+
+
+def of_the_letter(scene: Scene) -> bool:
+    """Whether the scene is a spring of the letter by its numbers: what the letter says is held against no
+    other.
+
+    T and mu of [single_mode] and T of the first mode of the spring are the printed ones, and Eq. (1) grazes
+    about at the typical amplitude.
+    """
+    keys, measured = scene.single_mode, scene.modal_data.frequencies_hz
+    if scene.drive.kind != "harmonic" or corresponding(scene, 1.0) != 1.0:
+        return False
+    first = 1.0 / min(measured) if scene.spring.kind == "modal_data" else free_period(scene)
+    size = single_mode_at(scene, letter.TIME_TRACE_HZ).grazing_amplitude() / letter.DRIVE_AMPLITUDE_M
+    rate, error = (letter.BREAKDOWN[f"decay_rate{key}_per_s"] for key in ("", "_error"))
+    return (
+        abs(first / letter.FREE_PERIOD_S - 1.0) <= SAME_SPRING
+        and abs(keys.decay_rate_per_s - rate) <= error
+        and 1.0 / TYPICAL <= size <= TYPICAL
+    )
 
 
 def periods_of(scene: Scene) -> Mapping[float, int]:
